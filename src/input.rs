@@ -8,17 +8,17 @@ use std::io::{Error, ErrorKind, Read, Result};
 use std::path::Path;
 
 /// Opens a path if it is a file; links are followed.
-pub fn open(path: &Path) -> Result<File> {
+pub fn open_file(path: &Path) -> Result<File> {
     // Checked before it is opened, since opening a pipe waits.
-    check(&fs::metadata(path)?)?;
+    check_is_file(&fs::metadata(path)?)?;
     let file = File::open(path)?;
-    check(&file.metadata()?)?;
+    check_is_file(&file.metadata()?)?;
     Ok(file)
 }
 
 /// The bytes of a file that has at most `most`.
-pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
-    let file = open(path)?;
+pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>> {
+    let file = open_file(path)?;
     let length = file.metadata()?.len();
     if length > most {
         return Err(too_large(length, most));
@@ -31,7 +31,7 @@ pub fn read(path: &Path, most: u64) -> Result<Vec<u8>> {
     }
 }
 
-fn check(found: &fs::Metadata) -> Result<()> {
+fn check_is_file(found: &fs::Metadata) -> Result<()> {
     if found.is_file() {
         return Ok(());
     }

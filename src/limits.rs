@@ -31,7 +31,7 @@ impl Limit {
     /// The value as a person writes it: `4 MiB`, `1,048,576`, `5 s`.
     pub fn written(&self) -> String {
         match self.unit {
-            Measure::Count => thousands(self.value),
+            Measure::Count => with_commas(self.value),
             Measure::Seconds => format!("{} s", self.value),
             Measure::Bytes if self.value >= 1 << 30 => format!("{} GiB", self.value >> 30),
             Measure::Bytes if self.value >= 1 << 20 => format!("{} MiB", self.value >> 20),
@@ -41,10 +41,10 @@ impl Limit {
 }
 
 /// With a comma between groups of three digits.
-fn thousands(number: u64) -> String {
+fn with_commas(number: u64) -> String {
     match number / 1000 {
         0 => number.to_string(),
-        more => format!("{},{:03}", thousands(more), number % 1000),
+        more => format!("{},{:03}", with_commas(more), number % 1000),
     }
 }
 
@@ -62,12 +62,12 @@ thread_local! {
 }
 
 /// Steps that stages took on this thread so far.
-pub fn taken() -> u64 {
+pub fn steps_taken() -> u64 {
     TAKEN.get()
 }
 
 /// Counts steps of a loop that has a bound of another kind, such as on what it gives.
-pub fn count(steps: u64) {
+pub fn count_steps(steps: u64) {
     TAKEN.set(TAKEN.get().wrapping_add(steps));
 }
 
@@ -86,7 +86,7 @@ impl Steps {
     /// # Errors
     /// Where fewer are left. Nothing is left afterwards.
     pub fn spend(&mut self, steps: u64) -> Result<(), Exhausted> {
-        count(steps);
+        count_steps(steps);
         let left = self.left.checked_sub(steps);
         self.left = left.unwrap_or(0);
         self.is_exhausted |= left.is_none();

@@ -61,7 +61,7 @@ impl Tool {
             child.wait_with_output()
         });
         let said = said.map_err(failed)?;
-        if said.status.success() { Ok(said.stdout) } else { Err(words(&said)) }
+        if said.status.success() { Ok(said.stdout) } else { Err(printed_words(&said)) }
     }
 
     /// Runs it on files.
@@ -76,7 +76,7 @@ impl Tool {
 }
 
 /// Everything that a program printed.
-pub fn words(said: &Output) -> String {
+pub fn printed_words(said: &Output) -> String {
     let all = [said.stdout.as_slice(), said.stderr.as_slice()].concat();
     String::from_utf8_lossy(&all).trim().to_owned()
 }

@@ -7,7 +7,7 @@ use lamplight::catalogue::{self, Kind, preset, probe};
 use lamplight::diagnostic::Diagnostic;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::project;
-use lamplight::proof::catalogue::{Files, modules, pages};
+use lamplight::proof::catalogue::{Files, catalogue_files, made_modules};
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 
@@ -32,9 +32,9 @@ pub fn trials() -> Vec<Trial> {
 
 /// `docs/catalogue` has exactly the pages that `cargo xtask docs` would write now.
 fn pages_are_up_to_date() -> Result<(), Failed> {
-    same_on_disk("docs/catalogue", &made(pages())?)?;
+    same_on_disk("docs/catalogue", &made(catalogue_files())?)?;
     let found = on_disk("docs/catalogue");
-    let expected = made(pages())?;
+    let expected = made(catalogue_files())?;
     let stale: Vec<&String> = found.iter().filter(|path| !expected.contains_key(*path)).collect();
     if stale.is_empty() {
         Ok(())
@@ -44,7 +44,7 @@ fn pages_are_up_to_date() -> Result<(), Failed> {
 }
 
 fn modules_are_up_to_date() -> Result<(), Failed> {
-    same_on_disk("shaderlib", &made(modules())?)
+    same_on_disk("shaderlib", &made(made_modules())?)
 }
 
 fn same_on_disk(folder: &str, files: &Files) -> Result<(), Failed> {
@@ -79,7 +79,7 @@ fn on_disk(folder: &str) -> Vec<String> {
 }
 
 fn same_bytes_twice() -> Result<(), Failed> {
-    match made(pages())? == made(pages())? {
+    match made(catalogue_files())? == made(catalogue_files())? {
         true => Ok(()),
         false => Err("the pages of the catalogue were made twice and differ".into()),
     }
@@ -90,7 +90,7 @@ fn made(files: Result<Files, (SourceSet, Vec<Diagnostic>)>) -> Result<Files, Fai
 }
 
 fn every_item_has_a_twin() -> Result<(), Failed> {
-    let items = catalogue::library().into_iter().flat_map(|module| module.items);
+    let items = catalogue::library_modules().into_iter().flat_map(|module| module.items);
     let alone: Vec<String> =
         items.filter(|item| item.glsl.is_none()).map(|item| item.path()).collect();
     if alone.is_empty() { Ok(()) } else { Err(format!("not in GLSL: {alone:?}").into()) }
@@ -98,7 +98,7 @@ fn every_item_has_a_twin() -> Result<(), Failed> {
 
 /// Every parameter of a function and every field of a struct has a description.
 fn every_member_is_described() -> Result<(), Failed> {
-    let items = catalogue::library().into_iter().flat_map(|module| module.items);
+    let items = catalogue::library_modules().into_iter().flat_map(|module| module.items);
     let silent = |item: &catalogue::Item| -> Vec<String> {
         let members = item.members.iter().filter(|member| member.doc.is_empty());
         members.map(|member| format!("{}: `{}`", item.path(), member.name)).collect()
@@ -110,8 +110,8 @@ fn every_member_is_described() -> Result<(), Failed> {
 /// A function of numbers that returns a number can be plotted without choosing anything, so each of
 /// them must have a plot.
 fn every_plain_function_is_plotted() -> Result<(), Failed> {
-    let files = made(pages())?;
-    let items = catalogue::library()
+    let files = made(catalogue_files())?;
+    let items = catalogue::library_modules()
         .into_iter()
         .flat_map(|module| module.items)
         .filter(|item| item.kind == Kind::Function);
@@ -133,7 +133,7 @@ fn every_plain_function_is_plotted() -> Result<(), Failed> {
 fn presets() -> Result<Vec<preset::Preset>, Failed> {
     let (mut sources, manifest) = project::library_manifest()
         .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
-    catalogue::examples(&mut sources, &manifest)
+    catalogue::library_examples(&mut sources, &manifest)
         .map(|(presets, _)| presets)
         .map_err(|problems| render(&sources, &problems, Form::Human).into())
 }
@@ -181,7 +181,8 @@ fn preset_mistakes_are_reported() -> Result<(), Failed> {
     for (text, code) in cases {
         let mut sources = SourceSet::default();
         let id = sources.add("presets.toml", format!("{head}{text}\n"));
-        let problems = preset::parse(&sources, id, &manifest, &[]).err().unwrap_or_default();
+        let problems =
+            preset::parse_presets(&sources, id, &manifest, &[]).err().unwrap_or_default();
         if !problems.iter().any(|problem| problem.code.name == code && !problem.labels.is_empty()) {
             return Err(format!(
                 "expected `{code}` for\n{text}\ngot\n{}",
@@ -196,7 +197,7 @@ fn preset_mistakes_are_reported() -> Result<(), Failed> {
 /// A group of a preset's numbers is named after a uniform. If that is a struct of the library, the
 /// struct must have every field that the preset sets.
 fn preset_numbers_name_fields() -> Result<(), Failed> {
-    let structs: BTreeMap<String, Vec<String>> = catalogue::library()
+    let structs: BTreeMap<String, Vec<String>> = catalogue::library_modules()
         .into_iter()
         .flat_map(|module| module.items)
         .filter(|item| item.kind == Kind::Struct)

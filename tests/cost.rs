@@ -313,7 +313,7 @@ fn budget() -> Outcome {
 /// if this machine has the driver that was recorded. Every recorded axis and value exists.
 fn record_is_current() -> Outcome {
     let mut sources = SourceSet::default();
-    let library = cost::library(&mut sources);
+    let library = cost::library_costs(&mut sources);
     let recorded = library.map_err(|problems| format!("{problems:?}"))?;
     let (_, manifest) =
         project::library_manifest().map_err(|(_, problems)| format!("{problems:?}"))?;

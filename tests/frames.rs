@@ -20,7 +20,7 @@ use lamplight::generate::{Request, in_memory};
 use lamplight::permute::axis::ValueSet;
 use lamplight::permute::space::{Lists, Slice};
 use lamplight::permute::{Assignment, Space, cover};
-use lamplight::picture::frame::{Composed, Programs, Stages, pack, probe};
+use lamplight::picture::frame::{Composed, Programs, Stages, pack_buffer, probe};
 use lamplight::project;
 use lamplight::validate::{Validated, validate};
 use libtest_mimic::{Failed, Trial};
@@ -61,7 +61,7 @@ pub fn trials() -> Vec<Trial> {
 
 fn run((name, language): &(&str, Language), backend: &'static str) -> Result<(), Failed> {
     let outcome = on_thread(|| {
-        let renderer = executors::find(backend).ok_or("no such executor")?.start()?;
+        let renderer = executors::find_executor(backend).ok_or("no such executor")?.start()?;
         let mut sources = Sources::load(*language)?;
         let points = covering(&sources.space);
         if *name == SHIPPED {
@@ -165,7 +165,7 @@ impl Sources {
             let place = (binding.group, binding.binding);
             match binding.kind {
                 BindingKind::Uniform => {
-                    let bytes = pack(binding, &|path| Some(number(path)));
+                    let bytes = pack_buffer(binding, &|path| Some(number(path)));
                     buffers.insert(place, bytes.map_err(|problem| problem.message)?);
                 }
                 _ => drop(
@@ -368,7 +368,7 @@ fn mesh(vertex: &Reflection) -> Mesh {
 fn agrees(renderer: &dyn Session, scene: &Scene) -> Result<Tally, String> {
     let Scene { vertex, fragment, drawn: [drawn_vertex, drawn_fragment], mesh, buffers, .. } =
         scene;
-    let watched = probe::watched(&drawn_fragment.module, fragment.entry).ok_or("no colour")?;
+    let watched = probe::watch_entry(&drawn_fragment.module, fragment.entry).ok_or("no colour")?;
     let drawing = Drawing {
         vertex: EntryPoint { module: &drawn_vertex.module, entry: vertex.entry },
         fragment: Some(EntryPoint { module: &watched.module, entry: fragment.entry }),

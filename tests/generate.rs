@@ -70,8 +70,8 @@ fn layout() -> Outcome {
         ("/", "/\n"),
         ("a /* open", "a\n"),
     ];
-    let wgsl = wgsl.into_iter().map(|(text, wanted)| (lean::wgsl(text), wanted));
-    let glsl = glsl.into_iter().map(|(text, wanted)| (lean::glsl(text), wanted));
+    let wgsl = wgsl.into_iter().map(|(text, wanted)| (lean::lean_wgsl(text), wanted));
+    let glsl = glsl.into_iter().map(|(text, wanted)| (lean::lean_glsl(text), wanted));
     match wgsl.chain(glsl).find(|(found, wanted)| found != wanted) {
         None => Ok(()),
         Some((found, wanted)) => Err(format!("found {found:?}, wanted {wanted:?}").into()),

@@ -99,13 +99,13 @@ fn library_on(wanted: fn(&str) -> bool, part: usize) -> Result<(), Failed> {
             .check(&sources, &paths, &[Language::Wesl, Language::Glsl], open)
             .map_err(|errors| render(&sources, &errors))?;
         if std::env::var_os("LAMPLIGHT_TABLE").is_some() {
-            println!("{}", check::table(&report));
+            println!("{}", check::report_table(&report));
         }
         // If the environment's filter matches no file, the trial must fail, since it proved nothing.
         if report.outcomes.is_empty() {
             return Err(format!("no case file has `{only}` in its path").into());
         }
-        match (failed(&report) + &check::lacking(&report)).as_str() {
+        match (failed(&report) + &check::lacking_text(&report)).as_str() {
             "" => Ok(()),
             text => Err(text.to_owned().into()),
         }
@@ -155,7 +155,7 @@ fn lacking() -> Result<(), Failed> {
         let report = library
             .check(&sources, &["mine.toml".to_owned()], &[Language::Wesl], open)
             .map_err(|errors| render(&sources, &errors))?;
-        let lacking = check::lacking(&report);
+        let lacking = check::lacking_text(&report);
         let told = ["essl300", "webgl2"]
             .map(|one| format!("mine::pick (case 1, wesl on {one}): target `essl300`: "));
         let ran = |outcome: &&check::Outcome| outcome.passed();
@@ -243,7 +243,7 @@ fn expressions() -> Result<(), Failed> {
         for (text, expected) in EXPRESSIONS {
             for open in open.iter_mut() {
                 for language in [Language::Wesl, Language::Glsl] {
-                    let found = match expression::evaluate(
+                    let found = match expression::evaluate_expression(
                         &library,
                         &sources,
                         text,
@@ -270,7 +270,7 @@ fn expressions() -> Result<(), Failed> {
 
 /// The failures of a report, as text.
 fn failed(report: &check::Report) -> String {
-    check::failures_as_text(&check::failures(report))
+    check::failures_as_text(&check::report_failures(report))
 }
 
 fn render(sources: &Mutex<SourceSet>, errors: &[lamplight::diagnostic::Diagnostic]) -> Failed {
@@ -293,8 +293,8 @@ fn shapes(a: f32, o: Outer, u: vec3u) -> Outer {
 /// dispatch has, and gives the exact words.
 fn runs(executor: &'static executors::Entry) -> Result<(), Failed> {
     let module = naga::front::wgsl::parse_str(SHAPES)?;
-    let kernel =
-        kernel::build(&module, "shapes", &BTreeMap::new()).map_err(|error| format!("{error:?}"))?;
+    let kernel = kernel::build_kernel(&module, "shapes", &BTreeMap::new())
+        .map_err(|error| format!("{error:?}"))?;
     assert_eq!((kernel.input_words(), kernel.result_words()), (17, 13));
     let mut session = executor.start()?;
     let count = 70_000u32;

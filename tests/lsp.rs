@@ -310,6 +310,30 @@ fn symbols_and_signature() -> Outcome {
 fn survives() -> Outcome {
     let mut session = Session::new(MAIN)?;
     session.told("main.wesl")?;
+    send_garbage(&mut session)?;
+    let deep = "(".repeat(100_000);
+    let halves: Vec<String> = (0..MAIN.len()).step_by(37).map(|at| MAIN[..at].to_owned()).collect();
+    let texts = halves.into_iter().chain([deep, "/*".to_owned(), "\u{feff}@if(".to_owned()]);
+    for text in texts {
+        session.change(&text)?;
+        ask_beyond_the_end(&mut session, &text)?;
+    }
+    for method in ["textDocument/hover", "textDocument/rename", "no/such", "lamplight/permutation"]
+    {
+        let refused = session.answer(method, json!({ "position": -1 }))?;
+        expect(refused.is_err(), &(method, refused))?;
+    }
+    session.change(MAIN)?;
+    let hover = session.at("textDocument/hover", MAIN, "half(sum)", json!({}))?;
+    expect(hover["contents"]["value"].is_string(), &hover)?;
+    session.ask("shutdown", Value::Null)?;
+    session.tell("exit", Value::Null)?;
+    let status = session.child.wait()?;
+    expect(status.success(), &status)
+}
+
+/// Bytes that are no messages, and messages that mean nothing.
+fn send_garbage(session: &mut Session) -> Outcome {
     let raw: &[&[u8]] = &[
         b"Content-Length: 5\r\n\r\n{\"a\":",
         b"Content-Length: nonsense\r\n\r\n",
@@ -329,38 +353,25 @@ fn survives() -> Outcome {
     ] {
         session.send(&message)?;
     }
-    let deep = "(".repeat(100_000);
-    let halves: Vec<String> = (0..MAIN.len()).step_by(37).map(|at| MAIN[..at].to_owned()).collect();
-    let texts = halves.into_iter().chain([deep, "/*".to_owned(), "\u{feff}@if(".to_owned()]);
-    for text in texts {
-        session.change(&text)?;
-        for method in [
-            "textDocument/hover",
-            "textDocument/completion",
-            "textDocument/definition",
-            "textDocument/formatting",
-            "textDocument/codeLens",
-            "textDocument/signatureHelp",
-        ] {
-            let mut parameters = session.place(MAIN, "import", json!({}))?;
-            parameters["position"] =
-                json!({ "line": text.matches('\n').count(), "character": 9999 });
-            let answered = session.answer(method, parameters)?;
-            expect(answered.is_ok(), &(method, answered))?;
-        }
+    Ok(())
+}
+
+/// Each question about a place beyond the end of the text is answered.
+fn ask_beyond_the_end(session: &mut Session, text: &str) -> Outcome {
+    for method in [
+        "textDocument/hover",
+        "textDocument/completion",
+        "textDocument/definition",
+        "textDocument/formatting",
+        "textDocument/codeLens",
+        "textDocument/signatureHelp",
+    ] {
+        let mut parameters = session.place(MAIN, "import", json!({}))?;
+        parameters["position"] = json!({ "line": text.matches('\n').count(), "character": 9999 });
+        let answered = session.answer(method, parameters)?;
+        expect(answered.is_ok(), &(method, answered))?;
     }
-    for method in ["textDocument/hover", "textDocument/rename", "no/such", "lamplight/permutation"]
-    {
-        let refused = session.answer(method, json!({ "position": -1 }))?;
-        expect(refused.is_err(), &(method, refused))?;
-    }
-    session.change(MAIN)?;
-    let hover = session.at("textDocument/hover", MAIN, "half(sum)", json!({}))?;
-    expect(hover["contents"]["value"].is_string(), &hover)?;
-    session.ask("shutdown", Value::Null)?;
-    session.tell("exit", Value::Null)?;
-    let status = session.child.wait()?;
-    expect(status.success(), &status)
+    Ok(())
 }
 
 /// Neovim, run without a screen, uses the server. `cargo xtask test` installs it.

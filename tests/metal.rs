@@ -17,7 +17,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use lamplight::metal::request::{Bound, Fragment};
-use lamplight::metal::{Program, judge};
+use lamplight::metal::{Program, judge_texts};
 use libtest_mimic::{Failed, Trial};
 use references::{REFERENCES, Reference};
 
@@ -53,7 +53,7 @@ fn mistakes() -> Outcome {
     let files = files("refused");
     let texts: Vec<String> = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
     let views: Vec<&str> = texts.iter().map(String::as_str).collect();
-    let refusals = judge(&views, &|_| ()).map_err(|missing| missing.reason)?;
+    let refusals = judge_texts(&views, &|_| ()).map_err(|missing| missing.reason)?;
     let mut wrong = Vec::new();
     for (index, text) in texts.iter().enumerate() {
         let expected = text.lines().next().unwrap().strip_prefix("// mistake in line ").unwrap();

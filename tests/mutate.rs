@@ -29,7 +29,7 @@ pub fn trials() -> Vec<Trial> {
 fn mutants(library: &Library, modules: &[&str]) -> Result<Report, Failed> {
     let sources = Mutex::new(SourceSet::default());
     let modules: Vec<String> = modules.iter().map(|module| (*module).to_owned()).collect();
-    let report = mutate::mutate(library, &sources, &modules);
+    let report = mutate::run_mutants(library, &sources, &modules);
     report.map_err(|errors| render(&sources.into_inner().unwrap(), &errors, Form::Short).into())
 }
 
@@ -165,7 +165,7 @@ fn stale_entries_are_told() -> Outcome {
 /// Cases reach every statement and every branch of the library.
 fn every_block_is_reached() -> Outcome {
     let (library, sources) = (Library::embedded(), Mutex::new(SourceSet::default()));
-    let found = mutate::coverage(&library, &sources, &library.modules());
+    let found = mutate::measure_coverage(&library, &sources, &library.modules());
     let found =
         found.map_err(|errors| render(&sources.into_inner().unwrap(), &errors, Form::Short))?;
     let missed: String = found

@@ -70,11 +70,11 @@ fn function() -> Outcome {
     for module in ["brdf::diffuse", "brdf::fresh", "optics::fresh"] {
         let files = make("function", &format!("{module}::minnaert"))?;
         let stem = format!("shaderlib/{}", module.replace("::", "/"));
-        let cases = parsed(text(&files, &format!("{stem}.toml"))?, cases::parse)?;
+        let cases = parsed(text(&files, &format!("{stem}.toml"))?, cases::parse_cases)?;
         if !cases.cases.iter().any(|case| case.function == "minnaert") {
             return Err(format!("{stem}.toml has no case for `minnaert`").into());
         }
-        let plots = parsed(text(&files, &format!("{stem}.plot.toml"))?, plot::parse)?;
+        let plots = parsed(text(&files, &format!("{stem}.plot.toml"))?, plot::parse_plots)?;
         if !plots.contains_key("minnaert") {
             return Err(format!("{stem}.plot.toml has no plot for `minnaert`").into());
         }

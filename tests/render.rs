@@ -23,7 +23,7 @@ use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::frame::{Buffers, EntryPoint};
 use lamplight::execute::{Session, executors, on_thread};
 use lamplight::picture::frame::{Programs, probe as watch};
-use lamplight::picture::{Picture, Plan, Prepared, Shot, Surroundings, prepare};
+use lamplight::picture::{Picture, Plan, Prepared, Shot, Surroundings, prepare_passes};
 use lamplight::scene::environment;
 use libtest_mimic::{Failed, Trial};
 
@@ -87,7 +87,7 @@ pub fn library() -> &'static Library {
             .unwrap();
         let probes = programs.with_texts(probe::library).unwrap();
         let presets = programs
-            .with_texts(|texts| preset::library(texts, programs.manifest(), &probes))
+            .with_texts(|texts| preset::library_presets(texts, programs.manifest(), &probes))
             .unwrap();
         Library { programs, presets, probes }
     })
@@ -104,7 +104,7 @@ pub fn on_device(
 
 /// Opens an executor by name.
 pub fn start(name: &str) -> Result<Box<dyn Session>, String> {
-    executors::find(name).ok_or("no such executor")?.start()
+    executors::find_executor(name).ok_or("no such executor")?.start()
 }
 
 pub fn shot(size: [u32; 2], samples: u32, language: Language) -> Shot {
@@ -135,8 +135,8 @@ fn shown(
 ) -> Result<(), String> {
     let plan = plan(preset)?;
     let shot = shot(SIZE, SAMPLES, language);
-    let picture =
-        lamplight::picture::render(painter, &library().programs, &plan, &shot).map_err(said)?;
+    let picture = lamplight::picture::render_plan(painter, &library().programs, &plan, &shot)
+        .map_err(said)?;
     difference::reviewed(&picture, &preset.name, backend)?;
     let tally = recomputed(painter, &plan, language)?;
     println!("{} on {backend}: {tally}", preset.name);
@@ -146,7 +146,7 @@ fn shown(
 /// Sampled fragments of the objects of one material, then of the next, until there are enough.
 fn recomputed(painter: &dyn Session, plan: &Plan, language: Language) -> Result<Tally, String> {
     let small = shot(SMALL, 1, language);
-    let mut prepared = prepare(painter, &library().programs, plan, &small).map_err(said)?;
+    let mut prepared = prepare_passes(painter, &library().programs, plan, &small).map_err(said)?;
     // How far between two levels a texture is read, drivers decide as they like.
     prepared.levels.clear();
     let (items, own) = (prepared.items.clone(), fragment_buffers(&prepared));
@@ -208,7 +208,7 @@ pub fn watched(
     size: [u32; 2],
 ) -> Result<Vec<Vec<u32>>, String> {
     let stage = prepared.stages.fragment.as_ref().ok_or("no fragment stage")?;
-    let watched = watch::watched(&stage.validated.module, stage.entry).ok_or("no colour")?;
+    let watched = watch::watch_entry(&stage.validated.module, stage.entry).ok_or("no colour")?;
     let views = [prepared.eye_view([0.0; 2], size).map_err(|problem| problem.message)?];
     let fragment = EntryPoint { module: &watched.module, entry: stage.entry };
     let frames =

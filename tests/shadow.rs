@@ -232,7 +232,8 @@ impl Run<'_> {
             .flat_map(|(map, smp)| [("map", Fixture::Texture(map)), ("smp", Fixture::Sampler(smp))])
             .map(|(name, fixture)| (name.to_owned(), Arc::new(fixture)))
             .collect();
-        let kernel = kernel::build(&module, function, &fixtures).map_err(|error| said(&[error]))?;
+        let kernel =
+            kernel::build_kernel(&module, function, &fixtures).map_err(|error| said(&[error]))?;
         let results = self.session.run(&kernel, words).map_err(|error| said(&[error]))?;
         Ok(results.into_iter().map(|word| f64::from(f32::from_bits(word))).collect())
     }

@@ -81,7 +81,7 @@ fn without_errors(page: &mut Page) -> Outcome {
 fn catalogue() -> Outcome {
     let opened = Opened::new()?;
     let mut page = opened.page("#/catalogue")?;
-    let modules = catalogue::library();
+    let modules = catalogue::library_modules();
     let items = modules.iter().flat_map(|module| &module.items);
     let paths: Vec<Value> = items.map(|item| json!([item.path(), item.name])).collect();
     let script = format!(
@@ -183,7 +183,7 @@ fn rendered(preset: &str) -> Result<Picture, Failed> {
     let drawn = on_thread(|| {
         let programs = Programs::load().map_err(|(_, problems)| problems)?;
         let (presets, probes) =
-            programs.with_texts(|texts| catalogue::examples(texts, programs.manifest()))?;
+            programs.with_texts(|texts| catalogue::library_examples(texts, programs.manifest()))?;
         let found = presets.iter().find(|one| one.name == preset).ok_or_else(Vec::new)?;
         let plan = Plan::of_preset(&programs, found, &probes)?;
         let sky = environment("studio").ok_or_else(Vec::new)?;
@@ -196,7 +196,7 @@ fn rendered(preset: &str) -> Result<Picture, Failed> {
             surroundings: Surroundings::Formula(sky),
         };
         let painter = executors::vulkan::EXECUTOR.start().map_err(|_| Vec::new())?;
-        picture::render(painter.as_ref(), &programs, &plan, &shot)
+        picture::render_plan(painter.as_ref(), &programs, &plan, &shot)
     });
     let drawn = drawn.ok_or("the renderer stopped")?;
     drawn.map_err(|problems: Diagnostics| format!("{preset}: {problems:?}").into())

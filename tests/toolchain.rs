@@ -15,7 +15,7 @@ use lamplight::generate::Root;
 use lamplight::link::Linker;
 use lamplight::permute::{Program, Quoted, Setting, Settings, key};
 use lamplight::project::{self, library_manifest};
-use lamplight::proof::expression::evaluate;
+use lamplight::proof::expression::evaluate_expression;
 use lamplight::proof::library::Library;
 use lamplight::proof::references;
 use lamplight::resolve::{self, Packages};
@@ -122,7 +122,7 @@ fn permutations(asked: &mut Asked) -> Result<(), Failed> {
             permutation(asked, program, &key, index % 2 == 1)?;
         }
     }
-    let (presets, _) = catalogue::examples(&mut sources, &manifest).map_err(told)?;
+    let (presets, _) = catalogue::library_examples(&mut sources, &manifest).map_err(told)?;
     let mut seen = BTreeSet::new();
     for preset in &presets {
         let program = manifest.program(&preset.program).ok_or("a preset without a program")?;
@@ -248,12 +248,12 @@ fn example(
 fn expressions(asked: &mut Asked) -> Result<(), Failed> {
     let (library, mut session) =
         (Library::embedded(), EXECUTOR.start().map_err(|_| "no evaluator")?);
-    for module in catalogue::library() {
-        let path = catalogue::plot::path(&module.path);
+    for module in catalogue::library_modules() {
+        let path = catalogue::plot::plot_path(&module.path);
         let Some(text) = Embedded.read(&path).ok().flatten() else { continue };
         let mut sources = SourceSet::default();
         let id = sources.add(path, text);
-        for (name, plot) in catalogue::plot::parse(&sources, id).map_err(told)? {
+        for (name, plot) in catalogue::plot::parse_plots(&sources, id).map_err(told)? {
             let second = plot.curves.as_ref().and_then(|curves| curves.values.first().copied());
             let parameter = plot.curves.as_ref().map_or("unused", |curves| &curves.name);
             for (index, share) in [0.25, 0.6, 0.85].into_iter().enumerate() {
@@ -262,7 +262,8 @@ fn expressions(asked: &mut Asked) -> Result<(), Failed> {
                 let text = substituted(&plot.value, &name, &path, (x, parameter, second));
                 let language = if index == 1 { Language::Glsl } else { Language::Wesl };
                 let texts = Mutex::new(SourceSet::default());
-                let Ok(value) = evaluate(&library, &texts, &text, language, session.as_mut())
+                let Ok(value) =
+                    evaluate_expression(&library, &texts, &text, language, session.as_mut())
                 else {
                     continue;
                 };
@@ -356,7 +357,8 @@ fn formulas(asked: &mut Asked) -> Result<(), Failed> {
         ("brdf::specular", "f_schlick", vec![0.25, 0.04, 1.0]),
     ];
     for (module, function, words) in calls {
-        let formula = references::find(module, function).ok_or("a reference is missing")?;
+        let formula =
+            references::find_reference(module, function).ok_or("a reference is missing")?;
         let value = formula(&mut references::Arguments::new(&words, &[])).value;
         let path = format!("{module}::{function}");
         let mut call = vec![json!(path)];

@@ -35,49 +35,52 @@ pub fn run() -> Outcome {
     )?;
     let first = server.told()?;
     println!("lsp: {FILES} files, {lines} lines, {FEATURES} features; opened in {first:.1?}");
-    let mut keystrokes = Vec::new();
-    for stroke in 0..KEYSTROKES {
-        // A letter more in a comment, in a name, and gone again.
-        let place = ["// Sum", "var sum", "return sum"][stroke % 3];
-        let text = text.replacen(place, &format!("{place}{}", &"abcdefgh"[..stroke % 8]), 1);
-        server.tell(
-            "textDocument/didChange",
-            json!({
-                "textDocument": { "uri": uri, "version": stroke },
-                "contentChanges": [{ "text": text }],
-            }),
-        )?;
-        keystrokes.push(server.told()?);
-    }
-    shown("keystroke to diagnostics", &mut keystrokes);
+    time_keystrokes(&mut server, &uri, &text)?;
     for (what, method) in [
         ("hover after an edit", "textDocument/hover"),
         ("completion after an edit", "textDocument/completion"),
         ("references after an edit", "textDocument/references"),
     ] {
-        let line = text.lines().take_while(|line| !line.contains("var sum")).count();
-        let mut times = Vec::new();
-        for version in 0..KEYSTROKES / 10 {
-            server.tell(
-                "textDocument/didChange",
-                json!({
-                    "textDocument": { "uri": uri, "version": version },
-                    "contentChanges": [{ "text": text }],
-                }),
-            )?;
-            server.told()?;
-            times.push(server.ask(
-                method,
-                json!({
-                    "textDocument": { "uri": uri },
-                    "position": { "line": line, "character": 9 },
-                }),
-            )?);
-        }
-        shown(what, &mut times);
+        time_answers(&mut server, &uri, &text, (what, method))?;
     }
     println!("lsp: {} MB of memory at most", server.memory()? / 1000);
     Ok(fs::remove_dir_all(&folder)?)
+}
+
+/// From a keystroke to what is wrong.
+fn time_keystrokes(server: &mut Server, uri: &str, text: &str) -> Outcome {
+    let mut times = Vec::new();
+    for stroke in 0..KEYSTROKES {
+        // A letter more in a comment, in a name, and gone again.
+        let place = ["// Sum", "var sum", "return sum"][stroke % 3];
+        let text = text.replacen(place, &format!("{place}{}", &"abcdefgh"[..stroke % 8]), 1);
+        times.push(server.change(uri, stroke, &text)?);
+    }
+    shown("keystroke to diagnostics", &mut times);
+    Ok(())
+}
+
+/// From a question about a name to the answer, each after an edit.
+fn time_answers(
+    server: &mut Server,
+    uri: &str,
+    text: &str,
+    (what, method): (&str, &str),
+) -> Outcome {
+    let line = text.lines().take_while(|line| !line.contains("var sum")).count();
+    let mut times = Vec::new();
+    for version in 0..KEYSTROKES / 10 {
+        server.change(uri, version, text)?;
+        times.push(server.ask(
+            method,
+            json!({
+                "textDocument": { "uri": uri },
+                "position": { "line": line, "character": 9 },
+            }),
+        )?);
+    }
+    shown(what, &mut times);
+    Ok(())
 }
 
 fn shown(what: &str, times: &mut [Duration]) {
@@ -179,6 +182,23 @@ impl Server {
 
     fn tell(&mut self, method: &str, parameters: Value) -> std::io::Result<()> {
         self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": parameters }))
+    }
+
+    /// Until what is wrong with a changed text is told.
+    fn change(
+        &mut self,
+        uri: &str,
+        version: usize,
+        text: &str,
+    ) -> Result<Duration, Box<dyn std::error::Error>> {
+        self.tell(
+            "textDocument/didChange",
+            json!({
+                "textDocument": { "uri": uri, "version": version },
+                "contentChanges": [{ "text": text }],
+            }),
+        )?;
+        self.told()
     }
 
     /// Until what is wrong is told.

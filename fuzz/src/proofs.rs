@@ -10,7 +10,7 @@ use lamplight::execute::executors;
 use lamplight::lsp::Server;
 use lamplight::model::View;
 use lamplight::picture::Picture;
-use lamplight::proof::check::{Open, failures, failures_as_text};
+use lamplight::proof::check::{Open, failures_as_text, report_failures};
 use lamplight::proof::library::Library;
 use lamplight::scene::Equirect;
 use lamplight::source::{Memory, SourceSet};
@@ -63,11 +63,13 @@ fn cases(bytes: &[u8]) -> String {
         files.into_iter().map(|(name, text)| (name.to_owned(), text)).collect();
     let library = Library::new("package", Arc::new(Memory(files)), Vec::new());
     let sources = Mutex::new(SourceSet::default());
-    let opened = executors::find("eval").and_then(|entry| entry.start().ok());
+    let opened = executors::find_executor("eval").and_then(|entry| entry.start().ok());
     let mut open: Vec<Open> =
         opened.map(|session| Open { executor: "eval", session }).into_iter().collect();
     match library.check(&sources, &["m.toml".to_owned()], &[Language::Wesl], &mut open) {
-        Ok(report) => format!("{} {}", report.outcomes.len(), failures_as_text(&failures(&report))),
+        Ok(report) => {
+            format!("{} {}", report.outcomes.len(), failures_as_text(&report_failures(&report)))
+        }
         Err(problems) => {
             let sources = sources.into_inner().unwrap_or_default();
             [Form::Human, Form::Json].map(|form| render(&sources, &problems, form)).concat()
@@ -92,7 +94,7 @@ fn model(bytes: &[u8]) -> String {
     let body = [chunk(b"JSON", &text), chunk(b"BIN\0", &square())].concat();
     let length = (body.len() as u32 + 12).to_le_bytes();
     let file = [b"glTF".as_slice(), &2_u32.to_le_bytes(), &length, &body].concat();
-    match lamplight::model::read(&file, View::Own) {
+    match lamplight::model::read_model(&file, View::Own) {
         Ok(model) => format!("{:?} {:?} {:?}", model.notes, model.axes, model.scene.eye),
         Err(problem) => problem,
     }

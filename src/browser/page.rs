@@ -77,7 +77,7 @@ impl Page {
         let method = "Runtime.evaluate";
         let mut said = self.browser.call(Some(&self.session), method, parameters, patience)?;
         match said.get("exceptionDetails") {
-            Some(details) => Err(Problem::Threw(thrown(details))),
+            Some(details) => Err(Problem::Threw(exception_text(details))),
             None => Ok(said["result"]["value"].take()),
         }
     }
@@ -115,7 +115,7 @@ impl Page {
     /// that could not be loaded.
     pub fn errors(&mut self) -> &[String] {
         let events = self.browser.wire.events(&self.session);
-        self.errors.extend(events.iter().filter_map(complaint));
+        self.errors.extend(events.iter().filter_map(error_of_event));
         &self.errors
     }
 
@@ -162,7 +162,7 @@ impl Drop for Page {
 }
 
 /// The exception as one text.
-fn thrown(details: &Value) -> String {
+fn exception_text(details: &Value) -> String {
     let description = details["exception"]["description"].as_str();
     let value = || match &details["exception"]["value"] {
         Value::String(text) => text.clone(),
@@ -172,10 +172,10 @@ fn thrown(details: &Value) -> String {
 }
 
 /// The error that an event reports, if it reports one.
-fn complaint(event: &Value) -> Option<String> {
+fn error_of_event(event: &Value) -> Option<String> {
     let parameters = &event["params"];
     match event["method"].as_str()? {
-        "Runtime.exceptionThrown" => Some(thrown(&parameters["exceptionDetails"])),
+        "Runtime.exceptionThrown" => Some(exception_text(&parameters["exceptionDetails"])),
         "Runtime.consoleAPICalled"
             if matches!(parameters["type"].as_str(), Some("error" | "assert")) =>
         {

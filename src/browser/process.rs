@@ -86,7 +86,7 @@ impl Process {
         };
         let kept = Arc::clone(&words);
         let reader = std::thread::Builder::new().name("browser's words".to_owned());
-        let reader = reader.spawn(move || listen(stderr, &kept));
+        let reader = reader.spawn(move || keep_last_output(stderr, &kept));
         reader.map_err(|error| failed(&error.to_string()))?;
         Ok((Self { shell, words }, stdin, stdout))
     }
@@ -131,7 +131,7 @@ impl Process {
 }
 
 /// Keeps the last bytes of its output.
-fn listen(mut stderr: ChildStderr, kept: &Mutex<Vec<u8>>) {
+fn keep_last_output(mut stderr: ChildStderr, kept: &Mutex<Vec<u8>>) {
     let mut buffer = [0; 1024];
     while let Ok(count @ 1..) = stderr.read(&mut buffer) {
         let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);

@@ -46,7 +46,9 @@ impl Server {
                 }
                 let files = Arc::clone(&files);
                 // If a connection fails, the browser asks again.
-                std::thread::spawn(move || stream.and_then(|stream| answer(stream, &files)));
+                std::thread::spawn(move || {
+                    stream.and_then(|stream| answer_request(stream, &files))
+                });
             }
         })?;
         Ok(Self { address, ends })
@@ -86,7 +88,7 @@ impl Files {
 }
 
 /// Answers one request and closes the connection.
-fn answer(stream: TcpStream, files: &Files) -> std::io::Result<()> {
+fn answer_request(stream: TcpStream, files: &Files) -> std::io::Result<()> {
     stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(PATIENCE))?;
     let mut lines = BufReader::new((&stream).take(QUESTION));
@@ -98,9 +100,9 @@ fn answer(stream: TcpStream, files: &Files) -> std::io::Result<()> {
     }
     let path = first.split(' ').nth(1).unwrap_or_default();
     let path = path.split(['?', '#']).next().unwrap_or_default().trim_start_matches('/');
-    let found = if first.starts_with("GET ") { files.read(&plain(path)) } else { None };
+    let found = if first.starts_with("GET ") { files.read(&decoded_path(path)) } else { None };
     let (status, kind, bytes) = match &found {
-        Some((path, bytes)) => ("200 OK", kind(path), bytes.as_slice()),
+        Some((path, bytes)) => ("200 OK", content_type(path), bytes.as_slice()),
         None => ("404 Not Found", "text/plain", b"there is nothing here".as_slice()),
     };
     let mut stream = &stream;
@@ -115,7 +117,7 @@ fn answer(stream: TcpStream, files: &Files) -> std::io::Result<()> {
 }
 
 /// The path with `%20` and the like decoded.
-fn plain(path: &str) -> String {
+fn decoded_path(path: &str) -> String {
     let mut bytes = Vec::new();
     let mut rest = path.as_bytes();
     while let Some((first, after)) = rest.split_first() {
@@ -136,7 +138,7 @@ fn plain(path: &str) -> String {
 }
 
 /// The content type of a file.
-fn kind(path: &str) -> &'static str {
+fn content_type(path: &str) -> &'static str {
     match path.rsplit('.').next().unwrap_or_default() {
         "html" => "text/html; charset=utf-8",
         "js" | "mjs" => "text/javascript; charset=utf-8",

@@ -48,7 +48,7 @@ impl Wire {
             }
         });
         let shared = Arc::clone(&state);
-        std::thread::spawn(move || receive(from, &shared));
+        std::thread::spawn(move || receive_messages(from, &shared));
         Arc::new(Self { state, next: AtomicU64::new(1) })
     }
 
@@ -76,7 +76,7 @@ impl Wire {
                 }
             },
             Err(RecvTimeoutError::Timeout) => {
-                lock(&self.state).waiting.remove(&id);
+                lock_state(&self.state).waiting.remove(&id);
                 Err(Problem::Late { what: method.to_owned(), after: patience })
             }
             Err(RecvTimeoutError::Disconnected) if self.has_crashed(session) => {
@@ -95,7 +95,7 @@ impl Wire {
         let mut bytes = message.to_string().into_bytes();
         bytes.push(0);
         let (sender, answers) = mpsc::channel();
-        let mut state = lock(&self.state);
+        let mut state = lock_state(&self.state);
         if session.is_some_and(|session| state.crashed.iter().any(|other| other == session)) {
             return Err(Problem::Crashed);
         }
@@ -107,28 +107,28 @@ impl Wire {
     }
 
     fn has_crashed(&self, session: Option<&str>) -> bool {
-        let state = lock(&self.state);
+        let state = lock_state(&self.state);
         session.is_some_and(|session| state.crashed.iter().any(|other| other == session))
     }
 
     /// The events of a session since the last call.
     pub fn events(&self, session: &str) -> Vec<Value> {
-        lock(&self.state).events.get_mut(session).map(std::mem::take).unwrap_or_default()
+        lock_state(&self.state).events.get_mut(session).map(std::mem::take).unwrap_or_default()
     }
 
     /// Whether nothing more will come.
     pub fn is_closed(&self) -> bool {
-        lock(&self.state).outgoing.is_none()
+        lock_state(&self.state).outgoing.is_none()
     }
 
     /// Closes what is written to. The browser ends.
     pub fn close(&self) {
-        lock(&self.state).outgoing = None;
+        lock_state(&self.state).outgoing = None;
     }
 }
 
 /// Passes on what comes until the connection ends.
-fn receive(from: impl Read, state: &Mutex<State>) {
+fn receive_messages(from: impl Read, state: &Mutex<State>) {
     let mut from = BufReader::with_capacity(1 << 20, from);
     let mut bytes = Vec::new();
     while matches!(from.read_until(0, &mut bytes), Ok(1..)) {
@@ -136,11 +136,11 @@ fn receive(from: impl Read, state: &Mutex<State>) {
             bytes.pop();
         }
         if let Ok(message) = serde_json::from_slice::<Value>(&bytes) {
-            lock(state).take(message);
+            lock_state(state).take(message);
         }
         bytes.clear();
     }
-    let mut state = lock(state);
+    let mut state = lock_state(state);
     state.outgoing = None;
     state.waiting.clear();
 }
@@ -167,6 +167,6 @@ impl State {
     }
 }
 
-fn lock(state: &Mutex<State>) -> MutexGuard<'_, State> {
+fn lock_state(state: &Mutex<State>) -> MutexGuard<'_, State> {
     state.lock().unwrap_or_else(PoisonError::into_inner)
 }

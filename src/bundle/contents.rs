@@ -95,7 +95,7 @@ impl Unit {
             hasher.update(&(bytes.len() as u64).to_le_bytes());
             hasher.update(bytes);
         };
-        part(&json(&*self.reflection)?);
+        part(&to_json(&*self.reflection)?);
         let mut blobs = Vec::with_capacity(self.targets.len());
         for (target, artifact) in &self.targets {
             let length = u32::try_from(artifact.bytes.len())
@@ -103,11 +103,11 @@ impl Unit {
             let sum = checksum(&artifact.bytes);
             part(target.as_bytes());
             part(artifact.extension.as_bytes());
-            part(&json(&*artifact.native)?);
+            part(&to_json(&*artifact.native)?);
             part(&sum);
             blobs.push((sum, length));
         }
-        Ok(Digest { unit: short(&hasher.finalize()), blobs: blobs.into() })
+        Ok(Digest { unit: shortened_hash(&hasher.finalize()), blobs: blobs.into() })
     }
 
     /// Equal for units with equal content, on any machine.
@@ -164,7 +164,7 @@ fn merge_entry(mine: &mut EntryContents, other: EntryContents) -> Result<(), Err
 
 /// Refuses names with control characters, which would do more than show a name when they are
 /// printed.
-pub(super) fn plain<'a>(
+pub(super) fn refuse_control_characters<'a>(
     part: &str,
     names: impl IntoIterator<Item = &'a String>,
 ) -> Result<(), Error> {
@@ -177,11 +177,11 @@ pub(super) fn plain<'a>(
     }
 }
 
-pub(super) fn json<T: Serialize>(value: &T) -> Result<Vec<u8>, Error> {
+pub(super) fn to_json<T: Serialize>(value: &T) -> Result<Vec<u8>, Error> {
     serde_json::to_vec(value).map_err(|error| Error::Io(error.to_string()))
 }
 
-pub(super) fn short(hash: &blake3::Hash) -> Hash {
+pub(super) fn shortened_hash(hash: &blake3::Hash) -> Hash {
     let mut short = [0; 16];
     short.copy_from_slice(&hash.as_bytes()[..16]);
     short
@@ -189,11 +189,11 @@ pub(super) fn short(hash: &blake3::Hash) -> Hash {
 
 /// The checksum used everywhere in a bundle.
 pub(super) fn checksum(bytes: &[u8]) -> Hash {
-    short(&blake3::hash(bytes))
+    shortened_hash(&blake3::hash(bytes))
 }
 
 /// Lower-case hexadecimal.
-pub(super) fn hex(bytes: &[u8]) -> String {
+pub(super) fn to_hex(bytes: &[u8]) -> String {
     bytes
         .iter()
         .flat_map(|byte| [byte >> 4, byte & 15])
@@ -201,8 +201,8 @@ pub(super) fn hex(bytes: &[u8]) -> String {
         .collect()
 }
 
-/// Reads what [`hex`] wrote.
-pub(super) fn unhex(text: &str) -> Option<Hash> {
+/// Reads what [`to_hex`] wrote.
+pub(super) fn from_hex(text: &str) -> Option<Hash> {
     let mut hash = [0; 16];
     let (pairs, rest) = text.as_bytes().as_chunks::<2>();
     if pairs.len() != hash.len() || !rest.is_empty() {

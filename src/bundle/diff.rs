@@ -50,10 +50,10 @@ pub fn diff(old: &Contents, new: &Contents) -> Difference {
         if axes(old) != axes(new) {
             difference.axes.push(program.clone());
         }
-        let (before, after) = (entries(old, program), entries(new, program));
+        let (before, after) = (entries_by_place(old, program), entries_by_place(new, program));
         let places: BTreeSet<_> = before.keys().chain(after.keys()).copied().collect();
         for place in places {
-            compare(
+            compare_entries(
                 program,
                 place,
                 before.get(&place).copied(),
@@ -67,7 +67,7 @@ pub fn diff(old: &Contents, new: &Contents) -> Difference {
 
 type EntryPlace<'a> = (Language, &'a str);
 
-fn entries<'a>(
+fn entries_by_place<'a>(
     contents: &'a Contents,
     program: &str,
 ) -> BTreeMap<EntryPlace<'a>, &'a EntryContents> {
@@ -80,7 +80,7 @@ fn entries<'a>(
         .collect()
 }
 
-fn compare(
+fn compare_entries(
     program: &str,
     place: EntryPlace<'_>,
     old: Option<&EntryContents>,
@@ -98,7 +98,7 @@ fn compare(
             (_, None) => ("removed", Vec::new()),
             (Some(one), Some(other)) => (
                 "changed",
-                parts(
+                changed_parts(
                     old.and_then(|entry| entry.units.get(one)),
                     new.and_then(|entry| entry.units.get(other)),
                 ),
@@ -115,7 +115,7 @@ fn compare(
     }
 }
 
-fn parts(old: Option<&Unit>, new: Option<&Unit>) -> Vec<String> {
+fn changed_parts(old: Option<&Unit>, new: Option<&Unit>) -> Vec<String> {
     let (Some(old), Some(new)) = (old, new) else { return Vec::new() };
     let reflection = (old.reflection != new.reflection).then(|| "reflection".to_owned());
     let targets: BTreeSet<&String> = old.targets.keys().chain(new.targets.keys()).collect();

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::contents::{checksum, hex, plain, unhex};
+use super::contents::{checksum, from_hex, refuse_control_characters, to_hex};
 use super::layout::MOST_GROUP_BYTES;
 use super::manifest::{self, Manifest, ManifestArtifact, ManifestUnit};
 use super::store::{self, Artifact, Program, Programs, Store};
@@ -35,9 +35,9 @@ pub struct Directory {
 
 /// The manifest of a directory.
 pub(super) fn read_manifest(path: &Path) -> Result<Manifest, Error> {
-    let text = input::read(&path.join(MANIFEST), MOST_MANIFEST_BYTES)
+    let text = input::read_file(&path.join(MANIFEST), MOST_MANIFEST_BYTES)
         .map_err(|error| Error::Io(format!("{MANIFEST}: {error}")))?;
-    manifest::read(
+    manifest::read_manifest(
         &String::from_utf8(text).map_err(|_| Error::corrupt(MANIFEST, "it is not UTF-8"))?,
     )
 }
@@ -70,8 +70,8 @@ pub fn open(path: &Path) -> Result<Directory, Error> {
     }
     for (name, program) in manifest.programs {
         let entries = program.entries.values().flat_map(BTreeMap::keys);
-        plain(MANIFEST, std::iter::once(&name).chain(entries))?;
-        plain(MANIFEST, program.axes.iter().flat_map(Axis::names))?;
+        refuse_control_characters(MANIFEST, std::iter::once(&name).chain(entries))?;
+        refuse_control_characters(MANIFEST, program.axes.iter().flat_map(Axis::names))?;
         let mut index = Program { axes: program.axes, ..Program::default() };
         for (language, entries) in program.entries {
             for (entry, contents) in entries {
@@ -106,11 +106,11 @@ pub struct BlobFile {
 /// Every distinct blob of a directory bundle: for tools that take files.
 pub fn blob_files(path: impl AsRef<Path>) -> Result<BTreeSet<BlobFile>, Error> {
     let path = path.as_ref();
-    listed(&read_manifest(path)?, &|name| path.join(BLOBS).join(name))
+    packed_from_manifest(&read_manifest(path)?, &|name| path.join(BLOBS).join(name))
 }
 
 /// The same for a manifest whose blobs are where `place` says.
-pub(super) fn listed(
+pub(super) fn packed_from_manifest(
     manifest: &Manifest,
     place: &dyn Fn(&str) -> PathBuf,
 ) -> Result<BTreeSet<BlobFile>, Error> {
@@ -119,7 +119,7 @@ pub(super) fn listed(
     for (name, unit) in &manifest.units {
         let reflection = manifest.reflections.get(&unit.reflection);
         let stage = reflection.ok_or_else(|| lost("reflection"))?.stage;
-        let hash = unhex(name).ok_or_else(|| Error::corrupt(MANIFEST, "a unit has no name"))?;
+        let hash = from_hex(name).ok_or_else(|| Error::corrupt(MANIFEST, "a unit has no name"))?;
         for (target, artifact) in &unit.targets {
             let native = manifest.natives.get(&artifact.native).ok_or_else(|| lost("native"))?;
             let file = artifact.file()?;
@@ -145,7 +145,7 @@ impl Directory {
             .get(&unit.reflection)
             .ok_or_else(|| Error::corrupt(MANIFEST, "a unit names no reflection"))?;
         let mut targets = BTreeMap::new();
-        plain(MANIFEST, unit.targets.keys())?;
+        refuse_control_characters(MANIFEST, unit.targets.keys())?;
         for (target, artifact) in unit.targets {
             artifact.file()?;
             let next = self.artifacts.len() as u32;
@@ -221,13 +221,13 @@ impl Store for Directory {
         let path = self.blobs.join(&name);
         let part = format!("{BLOBS}/{name}");
         let io = |error| Error::Io(format!("{part}: {error}"));
-        let found = input::open(&path).and_then(|file| file.metadata()).map_err(io)?.len();
+        let found = input::open_file(&path).and_then(|file| file.metadata()).map_err(io)?.len();
         if found != artifact.bytes {
             let words = format!("it has {found} bytes, not {}", artifact.bytes);
             return Err(Error::corrupt(part, words));
         }
-        let bytes = input::read(&path, found.min(MOST_GROUP_BYTES as u64)).map_err(io)?;
-        if hex(&checksum(&bytes)) == artifact.blob {
+        let bytes = input::read_file(&path, found.min(MOST_GROUP_BYTES as u64)).map_err(io)?;
+        if to_hex(&checksum(&bytes)) == artifact.blob {
             Ok(bytes)
         } else {
             Err(Error::corrupt(part, "the checksum does not match"))

@@ -14,7 +14,9 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use super::directory::{BLOBS, BlobFile, MANIFEST, MOST_MANIFEST_BYTES, listed, read_manifest};
+use super::directory::{
+    BLOBS, BlobFile, MANIFEST, MOST_MANIFEST_BYTES, packed_from_manifest, read_manifest,
+};
 use super::manifest::{self, Before, Manifest, ManifestArtifact};
 use super::{Contents, Digest, Error, Unit};
 use crate::limits::GROUP_BYTES;
@@ -76,7 +78,7 @@ impl DirectoryWriter {
     ) -> Result<Self, Error> {
         let path = path.as_ref();
         output::make_folder(path)?;
-        let turn = output::turn(path, waiting);
+        let turn = output::wait_for_turn(path, waiting);
         let before = survey_manifest(path, replace)?;
         let is_ours = before.is_some();
         let live = before.unwrap_or_default();
@@ -154,7 +156,7 @@ impl DirectoryWriter {
             true => self.scratch.path(name),
             false => self.path.join(BLOBS).join(name),
         };
-        listed(&self.manifest(), &place)
+        packed_from_manifest(&self.manifest(), &place)
     }
 
     /// Writes the manifest for the programs and keys of `contents`; units in `contents` are
@@ -195,7 +197,7 @@ impl DirectoryWriter {
         let artifacts = manifest.units.values().flat_map(|unit| unit.targets.values());
         let next = artifacts.map(ManifestArtifact::file).collect::<Result<BTreeSet<_>, _>>()?;
         let mut text = Vec::new();
-        manifest::write(manifest, &mut text)?;
+        manifest::write_manifest(manifest, &mut text)?;
         let place = self.path.join(MANIFEST);
         let is_same = fs::read(&place).is_ok_and(|found| found == text);
         let staged = self.staged.lock().unwrap_or_else(PoisonError::into_inner);
@@ -207,7 +209,7 @@ impl DirectoryWriter {
         self.move_blobs(&staged)?;
         self.write_retired(self.live.difference(&next))?;
         if !is_same {
-            fs::rename(&written, &place).map_err(|error| io(&place, &error))?;
+            fs::rename(&written, &place).map_err(|error| io_error(&place, &error))?;
             output::sync_folder(&self.path);
         }
         Ok(())
@@ -225,7 +227,7 @@ impl DirectoryWriter {
                 return Err(Error::Foreign(Foreign::never(&place, "is not a file")));
             }
             if !is_ours && self.replace == Replace::Ours {
-                return Err(Error::Foreign(stranger(&place)));
+                return Err(Error::Foreign(foreign_file(&place)));
             }
         }
         Ok(())
@@ -233,10 +235,11 @@ impl DirectoryWriter {
 
     fn move_blobs(&self, staged: &BTreeSet<String>) -> Result<(), Error> {
         let blobs = self.path.join(BLOBS);
-        fs::create_dir_all(&blobs).map_err(|error| io(&blobs, &error))?;
+        fs::create_dir_all(&blobs).map_err(|error| io_error(&blobs, &error))?;
         for name in staged {
             let place = blobs.join(name);
-            fs::rename(self.scratch.path(name), &place).map_err(|error| io(&place, &error))?;
+            fs::rename(self.scratch.path(name), &place)
+                .map_err(|error| io_error(&place, &error))?;
         }
         output::sync_folder(&blobs);
         Ok(())
@@ -255,10 +258,10 @@ impl DirectoryWriter {
         if !lines.is_empty() {
             let text = RETIRED_HEADER.to_owned() + &lines;
             let written = self.scratch.write(RETIRED, text.as_bytes())?;
-            return fs::rename(written, &place).map_err(|error| io(&place, &error));
+            return fs::rename(written, &place).map_err(|error| io_error(&place, &error));
         }
         match fs::remove_file(&place) {
-            Err(error) if error.kind() != ErrorKind::NotFound => Err(io(&place, &error)),
+            Err(error) if error.kind() != ErrorKind::NotFound => Err(io_error(&place, &error)),
             _ => Ok(()),
         }
     }
@@ -269,11 +272,11 @@ impl DirectoryWriter {
     }
 }
 
-fn io(path: &Path, error: &std::io::Error) -> Error {
+fn io_error(path: &Path, error: &std::io::Error) -> Error {
     output::Error::io(path, error).into()
 }
 
-fn stranger(path: &Path) -> Foreign {
+fn foreign_file(path: &Path) -> Foreign {
     Foreign::file(path, "is a file that Lamplight did not write")
 }
 
@@ -281,11 +284,11 @@ fn stranger(path: &Path) -> Foreign {
 fn survey_manifest(path: &Path, replace: Replace) -> Result<Option<BTreeSet<String>>, Error> {
     let place = path.join(MANIFEST);
     let Some(text) = read_own(&place)? else { return Ok(None) };
-    match manifest::before(&text) {
+    match manifest::kind_of_manifest(&text) {
         Before::Whole(files) => Ok(Some(files)),
         Before::Unreadable => Ok(Some(BTreeSet::new())),
         Before::Foreign if replace == Replace::Any || text.is_empty() => Ok(None),
-        Before::Foreign => Err(Error::Foreign(stranger(&place))),
+        Before::Foreign => Err(Error::Foreign(foreign_file(&place))),
     }
 }
 
@@ -300,7 +303,7 @@ fn read_retired(path: &Path, replace: Replace) -> Result<BTreeSet<String>, Error
     match text.strip_prefix(RETIRED_HEADER) {
         Some(lines) => Ok(lines.lines().filter(is_name).map(str::to_owned).collect()),
         None if replace == Replace::Any || text.is_empty() => Ok(BTreeSet::new()),
-        None => Err(Error::Foreign(stranger(&place))),
+        None => Err(Error::Foreign(foreign_file(&place))),
     }
 }
 
@@ -308,12 +311,12 @@ fn read_retired(path: &Path, replace: Replace) -> Result<BTreeSet<String>, Error
 fn read_own(place: &Path) -> Result<Option<Vec<u8>>, Error> {
     match fs::symlink_metadata(place) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(io(place, &error)),
+        Err(error) => Err(io_error(place, &error)),
         Ok(found) if !found.is_file() => {
             Err(Error::Foreign(Foreign::never(place, "is not a file")))
         }
-        Ok(found) if found.len() > MOST_MANIFEST_BYTES => Err(Error::Foreign(stranger(place))),
-        Ok(_) => fs::read(place).map(Some).map_err(|error| io(place, &error)),
+        Ok(found) if found.len() > MOST_MANIFEST_BYTES => Err(Error::Foreign(foreign_file(place))),
+        Ok(_) => fs::read(place).map(Some).map_err(|error| io_error(place, &error)),
     }
 }
 
@@ -321,7 +324,7 @@ fn read_own(place: &Path) -> Result<Option<Vec<u8>>, Error> {
 fn is_folder(place: &Path) -> Result<bool, Error> {
     match fs::symlink_metadata(place) {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(false),
-        Err(error) => Err(io(place, &error)),
+        Err(error) => Err(io_error(place, &error)),
         Ok(found) if found.is_dir() => Ok(true),
         Ok(found) if found.is_symlink() => Err(Error::Foreign(Foreign::never(
             place,
@@ -334,7 +337,7 @@ fn is_folder(place: &Path) -> Result<bool, Error> {
 /// Refuses a folder that has something in it but no bundle of ours.
 fn survey_strangers(path: &Path, scratch: &Scratch, has_blobs: bool) -> Result<(), Error> {
     let entries = |folder: &Path| {
-        let entries = fs::read_dir(folder).map_err(|error| io(folder, &error))?;
+        let entries = fs::read_dir(folder).map_err(|error| io_error(folder, &error))?;
         let mut names: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
         names.sort();
         Ok::<_, Error>(names)
@@ -357,7 +360,7 @@ fn survey_strangers(path: &Path, scratch: &Scratch, has_blobs: bool) -> Result<(
 /// Removes blobs that a killed run moved and that no manifest names.
 fn remove_unfinished(left: &Path, blobs: &Path, known: [&BTreeSet<String>; 2]) {
     let Ok(Some(text)) = read_own(&left.join(MANIFEST)) else { return };
-    let Before::Whole(files) = manifest::before(&text) else { return };
+    let Before::Whole(files) = manifest::kind_of_manifest(&text) else { return };
     files
         .iter()
         .filter(|name| known.iter().all(|known| !known.contains(*name)))

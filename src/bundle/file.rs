@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 use memmap2::Mmap;
 use serde::de::DeserializeOwned;
 
-use super::contents::{Hash, checksum, hex, plain};
+use super::contents::{Hash, checksum, refuse_control_characters, to_hex};
 use super::layout::*;
 use super::store::{Artifact, Program, Programs, Store, Unit};
 use super::{Axis, Error, Reflection, VERSION};
@@ -53,39 +53,41 @@ impl std::ops::Deref for Bytes {
 /// Maps the file. It must not be changed in place while it is open: replace it by renaming, as
 /// [`super::write_file`] does.
 pub fn open(path: &Path) -> Result<Packed, Error> {
-    let file = input::open(path)?;
+    let file = input::open_file(path)?;
     if file.metadata()?.len() < HEADER_BYTES as u64 {
         return Err(Error::corrupt("header", "the file is too short"));
     }
     // SAFETY: the map is read-only and private to this value. Another process could still change
     // the file under it, which the documentation of this function excludes.
     let map = unsafe { Mmap::map(&file)? };
-    parse(Bytes::Mapped(map))
+    parse_file(Bytes::Mapped(map))
 }
 
 /// As [`Self::open`], for bytes in memory.
 pub fn from_bytes(bytes: Vec<u8>) -> Result<Packed, Error> {
-    parse(Bytes::Owned(bytes))
+    parse_file(Bytes::Owned(bytes))
 }
 
-fn parse(bytes: Bytes) -> Result<Packed, Error> {
-    let sections = header(&bytes)?;
+fn parse_file(bytes: Bytes) -> Result<Packed, Error> {
+    let sections = read_header(&bytes)?;
     let (offset, length, expected) = sections[META];
-    let text = slice(&bytes, offset, length, "meta")?;
+    let text = slice_at(&bytes, offset, length, "meta")?;
     if checksum(text) != expected {
         return Err(Error::corrupt("meta", "the checksum does not match"));
     }
     let meta: Meta =
         serde_json::from_slice(text).map_err(|error| Error::corrupt("meta", error.to_string()))?;
-    meta.targets.iter().try_for_each(|target| plain("meta", [&target.name, &target.extension]))?;
+    meta.targets.iter().try_for_each(|target| {
+        refuse_control_characters("meta", [&target.name, &target.extension])
+    })?;
     let mut programs = Programs::new();
     let mut entries = Vec::new();
     for (name, program) in &meta.programs {
-        plain(
+        refuse_control_characters(
             "meta",
             std::iter::once(name).chain(program.entries.iter().map(|entry| &entry.name)),
         )?;
-        plain("meta", program.axes.iter().flat_map(Axis::names))?;
+        refuse_control_characters("meta", program.axes.iter().flat_map(Axis::names))?;
         let mut numbers = BTreeMap::new();
         for entry in &program.entries {
             numbers.insert((entry.language, entry.name.clone()), entries.len());
@@ -105,9 +107,9 @@ fn parse(bytes: Bytes) -> Result<Packed, Error> {
 }
 
 /// The offset, length and checksum of each section, from a header whose own checksum is right.
-fn header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], Error> {
+fn read_header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], Error> {
     let part = "header";
-    if slice(bytes, 0, 8, part)? != MAGIC {
+    if slice_at(bytes, 0, 8, part)? != MAGIC {
         return Err(Error::corrupt(part, "this is not a Lamplight bundle"));
     }
     let version = u32_at(bytes, 8, part)?;
@@ -115,7 +117,7 @@ fn header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], Error>
         return Err(Error::Version { found: version, known: VERSION });
     }
     if hash_at(bytes, HEADER_BYTES - 16, part)?
-        != checksum(slice(bytes, 0, HEADER_BYTES - 16, part)?)
+        != checksum(slice_at(bytes, 0, HEADER_BYTES - 16, part)?)
     {
         return Err(Error::corrupt(part, "the checksum does not match"));
     }
@@ -133,7 +135,7 @@ fn header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], Error>
         let at = 24 + index * 32;
         let (offset, length) =
             (u64_at(bytes, at, part)? as usize, u64_at(bytes, at + 8, part)? as usize);
-        slice(bytes, offset, length, SECTIONS[index])?;
+        slice_at(bytes, offset, length, SECTIONS[index])?;
         if offset != next {
             return Err(Error::corrupt(
                 SECTIONS[index],
@@ -154,7 +156,7 @@ impl Packed {
     /// The bytes of a section, whose checksum is verified once.
     fn section(&self, index: usize) -> Result<&[u8], Error> {
         let (offset, length, expected) = self.sections[index];
-        let section = slice(&self.bytes, offset, length, SECTIONS[index])?;
+        let section = slice_at(&self.bytes, offset, length, SECTIONS[index])?;
         if index != DATA {
             let check = || {
                 if checksum(section) == expected {
@@ -178,7 +180,7 @@ impl Packed {
 
     fn key<'a>(&self, keys: &'a [u8], set: &KeySet, index: usize) -> Result<&'a [u8], Error> {
         let record = set.records as usize + index * RECORD_BYTES;
-        slice(
+        slice_at(
             keys,
             u32_at(keys, record, "keys")? as usize,
             u32_at(keys, record + 4, "keys")? as usize,
@@ -200,7 +202,7 @@ impl Packed {
         }
         let texts = self.section(TEXTS)?;
         let record = index as usize * RECORD_BYTES;
-        let text = slice(
+        let text = slice_at(
             texts,
             u32_at(texts, record, "texts")? as usize,
             u32_at(texts, record + 4, "texts")? as usize,
@@ -255,7 +257,7 @@ impl Packed {
     fn decompress(&self, group: u32) -> Result<Vec<u8>, Error> {
         let part = format!("group {group}");
         let (offset, packed, raw, expected) = self.group_record(group)?;
-        let packed = slice(self.section(DATA)?, offset, packed, &part)?;
+        let packed = slice_at(self.section(DATA)?, offset, packed, &part)?;
         if checksum(packed) != expected {
             return Err(Error::corrupt(part, "the checksum does not match"));
         }
@@ -299,10 +301,11 @@ impl Store for Packed {
         if !set.slot_count.is_power_of_two() {
             return Err(Error::corrupt("meta", "a number of slots is not a power of two"));
         }
-        let slots = slice(keys, set.slots as usize, set.slot_count as usize * SLOT_BYTES, "keys")?
-            .as_chunks::<SLOT_BYTES>()
-            .0;
-        let hash = hash(key.as_bytes());
+        let slots =
+            slice_at(keys, set.slots as usize, set.slot_count as usize * SLOT_BYTES, "keys")?
+                .as_chunks::<SLOT_BYTES>()
+                .0;
+        let hash = hash_key(key.as_bytes());
         let mask = slots.len() - 1;
         for step in 0..slots.len().min(PROBES) {
             let slot = u128::from_le_bytes(slots[(hash as usize).wrapping_add(step) & mask]);
@@ -374,12 +377,12 @@ impl Store for Packed {
         let (offset, length) =
             (u32_at(table, at + 4, "blobs")? as usize, u32_at(table, at + 8, "blobs")? as usize);
         let group = self.group(u32_at(table, at, "blobs")?)?;
-        slice(&group, offset, length, "blobs").map(<[u8]>::to_vec)
+        slice_at(&group, offset, length, "blobs").map(<[u8]>::to_vec)
     }
 
     fn digest(&self, blob: u32) -> Result<String, Error> {
         let table = self.section(BLOBS)?;
-        hash_at(table, blob as usize * BLOB_BYTES + 12, "blobs").map(|hash| hex(&hash))
+        hash_at(table, blob as usize * BLOB_BYTES + 12, "blobs").map(|hash| to_hex(&hash))
     }
 
     fn measure(&self) -> Result<(), Error> {

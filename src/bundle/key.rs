@@ -53,15 +53,15 @@ pub fn parts(key: &str) -> impl Iterator<Item = Part<'_>> {
         rest = after.map(|text| Word { text, start: start + part.len() + 1 });
         Some(match part.split_once('=') {
             Some((axis, value)) => Part {
-                axis: trimmed(axis, start),
-                value: Some(trimmed(value, start + axis.len() + 1)),
+                axis: trimmed_word(axis, start),
+                value: Some(trimmed_word(value, start + axis.len() + 1)),
             },
-            None => Part { axis: trimmed(part, start), value: None },
+            None => Part { axis: trimmed_word(part, start), value: None },
         })
     })
 }
 
-fn trimmed(text: &str, start: usize) -> Word<'_> {
+fn trimmed_word(text: &str, start: usize) -> Word<'_> {
     Word { text: text.trim(), start: start + text.len() - text.trim_start().len() }
 }
 
@@ -86,7 +86,7 @@ pub fn write<'a>(differing: impl IntoIterator<Item = (&'a str, &'a str)>) -> Str
 pub fn canonical(axes: &[Axis], key: &str) -> Result<String, Error> {
     let mut chosen: Vec<(&str, &str)> = Vec::new();
     for part in parts(key) {
-        let found = choice(axes, part)
+        let found = axis_and_value(axes, part)
             .and_then(|(axis, value)| match chosen.iter().any(|(other, _)| *other == axis.name) {
                 true => Err(format!("axis `{}` is named twice", axis.name)),
                 false => Ok((axis.name.as_str(), value)),
@@ -101,13 +101,13 @@ pub fn canonical(axes: &[Axis], key: &str) -> Result<String, Error> {
 }
 
 /// The axis and the value that a part names.
-fn choice<'a>(axes: &'a [Axis], part: Part<'a>) -> Result<(&'a Axis, &'a str), String> {
+fn axis_and_value<'a>(axes: &'a [Axis], part: Part<'a>) -> Result<(&'a Axis, &'a str), String> {
     let name = part.axis.text;
     if name.is_empty() {
         return Err("expected `axis=value`".to_owned());
     }
     let axis = axes.iter().find(|axis| axis.name == name).ok_or_else(|| {
-        format!("there is no axis `{name}`{}", list(axes.iter().map(|axis| &axis.name)))
+        format!("there is no axis `{name}`{}", quoted_names(axes.iter().map(|axis| &axis.name)))
     })?;
     if axis.mode == DYNAMIC {
         return Err(format!("axis `{name}` is dynamic: its value is chosen while running"));
@@ -116,7 +116,7 @@ fn choice<'a>(axes: &'a [Axis], part: Part<'a>) -> Result<(&'a Axis, &'a str), S
     if axis.values.iter().any(|known| known == value) {
         return Ok((axis, value));
     }
-    let known = list(axis.values.iter());
+    let known = quoted_names(axis.values.iter());
     Err(match part.value {
         Some(value) if !value.text.is_empty() => {
             format!("axis `{name}` has no value `{}`{known}", value.text)
@@ -162,7 +162,7 @@ fn words_of<'k>(part: &Part<'k>) -> (&'k str, &'k str) {
     (part.axis.text, part.chosen())
 }
 
-fn list<'a>(names: impl Iterator<Item = &'a String>) -> String {
+fn quoted_names<'a>(names: impl Iterator<Item = &'a String>) -> String {
     let names: Vec<&str> = names.map(String::as_str).collect();
     if names.is_empty() { String::new() } else { format!("; there are: {}", names.join(", ")) }
 }

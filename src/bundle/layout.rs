@@ -87,7 +87,7 @@ pub struct KeySet {
     /// Where the records start in KEYS.
     pub records: u32,
     /// Where the hash slots start in KEYS, and how many there are, which is a power of two. A slot
-    /// has 96 bits of a key's [`hash`] above one more than the index of its record, or is zero. A
+    /// has 96 bits of a key's [`hash_key`] above one more than the index of its record, or is zero. A
     /// lookup compares these bits and not the text, since reading the text would be one more access
     /// to distant memory. Two keys have the same bits with a probability of 2^-96.
     pub slots: u32,
@@ -96,7 +96,7 @@ pub struct KeySet {
 
 /// A hash of 128 bits. Two chains of multiplications go over the key's words, and each product is
 /// folded so that all its bits count.
-pub fn hash(key: &[u8]) -> u128 {
+pub fn hash_key(key: &[u8]) -> u128 {
     // Odd numbers from the fractions of the square roots of 2, 3, 5 and 7.
     const ROOTS: [u64; 4] = [
         0x6a09_e667_f3bc_c909,
@@ -125,7 +125,12 @@ pub fn hash(key: &[u8]) -> u128 {
 }
 
 /// `length` bytes from `at`.
-pub fn slice<'a>(bytes: &'a [u8], at: usize, length: usize, part: &str) -> Result<&'a [u8], Error> {
+pub fn slice_at<'a>(
+    bytes: &'a [u8],
+    at: usize,
+    length: usize,
+    part: &str,
+) -> Result<&'a [u8], Error> {
     at.checked_add(length)
         .and_then(|end| bytes.get(at..end))
         .ok_or_else(|| Error::corrupt(part, "a position is out of range"))

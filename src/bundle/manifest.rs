@@ -6,7 +6,7 @@ use std::io::{self, Write as _};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
-use super::contents::{checksum, hex, json, short};
+use super::contents::{checksum, shortened_hash, to_hex, to_json};
 use super::{Axis, Contents, Digest, Error, Hash, Language, Native, Reflection, Unit, VERSION};
 
 /// The published JSON Schema of the manifest.
@@ -71,14 +71,14 @@ pub struct ManifestArtifact {
 impl ManifestArtifact {
     /// The blob's file below `blobs/`, if the fields are as a writer writes them.
     pub fn file(&self) -> Result<String, Error> {
-        file(&self.blob, &self.extension).ok_or_else(|| {
+        blob_file_name(&self.blob, &self.extension).ok_or_else(|| {
             let reason = format!("`{}` and `{}` do not name a blob", self.blob, self.extension);
             Error::corrupt("manifest.json", reason)
         })
     }
 }
 
-fn file(blob: &str, extension: &str) -> Option<String> {
+fn blob_file_name(blob: &str, extension: &str) -> Option<String> {
     let is_hex = blob.len() == 32 && blob.bytes().all(|byte| byte.is_ascii_hexdigit());
     let mut parts = extension.split('.');
     let is_part =
@@ -87,7 +87,7 @@ fn file(blob: &str, extension: &str) -> Option<String> {
 }
 
 /// Writes the text of a manifest, and at its end the checksum of everything before.
-pub fn write(manifest: &Manifest, out: impl io::Write) -> Result<(), Error> {
+pub fn write_manifest(manifest: &Manifest, out: impl io::Write) -> Result<(), Error> {
     let mut out = io::BufWriter::with_capacity(
         1 << 16,
         Sealing { out, hasher: blake3::Hasher::new(), held: Vec::new() },
@@ -123,7 +123,7 @@ impl<W: io::Write> io::Write for Sealing<W> {
 impl<W: io::Write> Sealing<W> {
     fn seal(mut self) -> Result<(), Error> {
         self.hasher.update(&self.held);
-        let sum = hex(&short(&self.hasher.finalize()));
+        let sum = to_hex(&shortened_hash(&self.hasher.finalize()));
         self.out.write_all(sum.as_bytes())?;
         self.out.write_all(END.as_bytes())?;
         Ok(self.out.flush()?)
@@ -131,7 +131,7 @@ impl<W: io::Write> Sealing<W> {
 }
 
 /// Reads a manifest whose checksum is right.
-pub fn read(text: &str) -> Result<Manifest, Error> {
+pub fn read_manifest(text: &str) -> Result<Manifest, Error> {
     let damaged = |reason: String| Error::corrupt("manifest.json", reason);
     let manifest: Manifest = match serde_json::from_str(text) {
         Ok(manifest) => manifest,
@@ -150,7 +150,7 @@ pub fn read(text: &str) -> Result<Manifest, Error> {
 /// Whether the checksum is that of the text; `None` if it is not at the end.
 fn is_sealed(text: &str, sum: &str) -> Option<bool> {
     let body = text.strip_suffix(END)?.strip_suffix(sum)?;
-    Some(hex(&checksum(format!("{body}{BLANK}{END}").as_bytes())) == sum)
+    Some(to_hex(&checksum(format!("{body}{BLANK}{END}").as_bytes())) == sum)
 }
 
 /// What a writer must know about the manifest that it will replace.
@@ -187,7 +187,7 @@ struct MarkArtifact {
 }
 
 /// What a text of that name is.
-pub fn before(text: &[u8]) -> Before {
+pub fn kind_of_manifest(text: &[u8]) -> Before {
     let Ok(text) = std::str::from_utf8(text) else { return Before::Foreign };
     let Ok(mark) = serde_json::from_str::<Mark>(text) else {
         return if is_marked(text) { Before::Unreadable } else { Before::Foreign };
@@ -197,7 +197,7 @@ pub fn before(text: &[u8]) -> Before {
         _ if !is_hex => Before::Foreign,
         (Some(true), Some(units)) => {
             let artifacts = units.values().flat_map(|unit| unit.targets.values());
-            let files = artifacts.filter_map(|found| file(&found.blob, &found.extension));
+            let files = artifacts.filter_map(|found| blob_file_name(&found.blob, &found.extension));
             Before::Whole(files.collect())
         }
         _ => Before::Unreadable,
@@ -226,17 +226,18 @@ fn version_error(text: &str) -> Option<Error> {
 impl Manifest {
     /// Adds a unit under its hash, unless it is there.
     pub fn add_unit(&mut self, digest: &Digest, unit: &Unit) -> Result<(), Error> {
-        let name = hex(&digest.unit);
+        let name = to_hex(&digest.unit);
         if self.units.contains_key(&name) {
             return Ok(());
         }
-        let reflection = hex(&checksum(&json(&*unit.reflection)?));
+        let reflection = to_hex(&checksum(&to_json(&*unit.reflection)?));
         self.reflections.entry(reflection.clone()).or_insert_with(|| (*unit.reflection).clone());
         let mut targets = BTreeMap::new();
         for ((target, artifact), (blob, bytes)) in unit.targets.iter().zip(&digest.blobs) {
-            let native = hex(&checksum(&json(&*artifact.native)?));
+            let native = to_hex(&checksum(&to_json(&*artifact.native)?));
             self.natives.entry(native.clone()).or_insert_with(|| (*artifact.native).clone());
-            let (blob, bytes, extension) = (hex(blob), (*bytes).into(), artifact.extension.clone());
+            let (blob, bytes, extension) =
+                (to_hex(blob), (*bytes).into(), artifact.extension.clone());
             targets.insert(target.clone(), ManifestArtifact { blob, extension, bytes, native });
         }
         self.units.insert(name, ManifestUnit { reflection, targets });
@@ -274,7 +275,7 @@ impl Manifest {
     }
 
     fn known(&self, hash: &Hash) -> Result<String, Error> {
-        let name = hex(hash);
+        let name = to_hex(hash);
         if self.units.contains_key(&name) {
             Ok(name)
         } else {

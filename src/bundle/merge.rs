@@ -28,7 +28,7 @@ pub fn merge_into(bundles: &[Bundle], writer: DirectoryWriter) -> Result<(), Err
     bundles.iter().try_for_each(Bundle::verify)?;
     let mut all = Contents::default();
     for bundle in bundles {
-        all.merge(copy(bundle, &writer)?)?;
+        all.merge(copy_units(bundle, &writer)?)?;
     }
     writer.finish(&all)
 }
@@ -49,7 +49,7 @@ pub fn patch_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<()
 }
 
 /// Writes the units of a bundle; its programs and keys.
-fn copy(bundle: &Bundle, writer: &DirectoryWriter) -> Result<Contents, Error> {
+fn copy_units(bundle: &Bundle, writer: &DirectoryWriter) -> Result<Contents, Error> {
     let mut contents = Contents::default();
     let mut digests = BTreeMap::new();
     for name in bundle.programs() {

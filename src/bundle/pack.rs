@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::contents::{checksum, json};
+use super::contents::{checksum, to_json};
 use super::layout::{
     EntryMeta, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES, Meta, PROBES, ProgramMeta,
-    RECORD_BYTES, SLOT_BYTES, TargetMeta, hash,
+    RECORD_BYTES, SLOT_BYTES, TargetMeta, hash_key,
 };
 use super::{Contents, EntryContents, Error, Hash, Unit, VERSION};
 use crate::output::{self, Replace};
@@ -115,7 +115,7 @@ impl Packer {
             )));
         }
         let hash = checksum(bytes);
-        let next = number(self.blobs.len())?;
+        let next = to_u32(self.blobs.len())?;
         if *self.blob_numbers.entry(hash).or_insert(next) == next {
             self.blobs.push(bytes.clone());
         }
@@ -134,17 +134,17 @@ impl Packer {
         }
         let slot_count = (keys.len() + keys.len() / 4 + 1).next_power_of_two();
         let set = KeySet {
-            count: number(keys.len())?,
-            records: number(self.keys.len())?,
-            slots: number(self.keys.len() + keys.len() * RECORD_BYTES)?,
-            slot_count: number(slot_count)?,
+            count: to_u32(keys.len())?,
+            records: to_u32(self.keys.len())?,
+            slots: to_u32(self.keys.len() + keys.len() * RECORD_BYTES)?,
+            slot_count: to_u32(slot_count)?,
         };
         let mut text_at = self.keys.len() + keys.len() * RECORD_BYTES + slot_count * SLOT_BYTES;
         for key in &keys {
-            put(&mut self.keys, &[number(text_at)?, number(key.len())?]);
+            push_words(&mut self.keys, &[to_u32(text_at)?, to_u32(key.len())?]);
             text_at += key.len();
         }
-        slots(&keys, slot_count)?
+        build_slots(&keys, slot_count)?
             .iter()
             .for_each(|slot| self.keys.extend_from_slice(&slot.to_le_bytes()));
         keys.iter().for_each(|key| self.keys.extend_from_slice(key.as_bytes()));
@@ -154,14 +154,14 @@ impl Packer {
 
     /// Writes one unit number for each key, and returns where they start.
     fn unit_numbers(&mut self, entry: &EntryContents) -> Result<u32, Error> {
-        let start = number(self.keys.len())?;
+        let start = to_u32(self.keys.len())?;
         for hash in entry.keys.values() {
             let unit = entry
                 .units
                 .get(hash)
                 .ok_or_else(|| Error::Io("a key refers to no unit".to_owned()))?;
             let unit = self.unit(hash, unit)?;
-            put(&mut self.keys, &[unit]);
+            push_words(&mut self.keys, &[unit]);
         }
         Ok(start)
     }
@@ -170,16 +170,19 @@ impl Packer {
         if let Some(number) = self.unit_numbers.get(hash) {
             return Ok(*number);
         }
-        let reflection = self.text(json(&*unit.reflection)?)?;
-        put(&mut self.units, &[reflection, self.meta.artifacts, number(unit.targets.len())?]);
+        let reflection = self.text(to_json(&*unit.reflection)?)?;
+        push_words(
+            &mut self.units,
+            &[reflection, self.meta.artifacts, to_u32(unit.targets.len())?],
+        );
         for (target, artifact) in &unit.targets {
             let position =
                 |known: &TargetMeta| known.name == *target && known.extension == artifact.extension;
-            let target = number(self.meta.targets.iter().position(position).unwrap_or_default())?;
-            let native = self.text(json(&*artifact.native)?)?;
+            let target = to_u32(self.meta.targets.iter().position(position).unwrap_or_default())?;
+            let native = self.text(to_json(&*artifact.native)?)?;
             let blob =
                 self.blob_numbers.get(&checksum(&artifact.bytes)).copied().unwrap_or_default();
-            put(&mut self.artifacts, &[target, native, blob]);
+            push_words(&mut self.artifacts, &[target, native, blob]);
             self.meta.artifacts += 1;
         }
         self.unit_numbers.insert(*hash, self.meta.units);
@@ -188,7 +191,7 @@ impl Packer {
     }
 
     fn text(&mut self, text: Vec<u8>) -> Result<u32, Error> {
-        let next = number(self.texts.len())?;
+        let next = to_u32(self.texts.len())?;
         let found = *self.text_numbers.entry(text.clone()).or_insert(next);
         if found == next {
             self.texts.push(text);
@@ -198,10 +201,17 @@ impl Packer {
 
     fn finish(mut self) -> Result<Vec<u8>, Error> {
         let (blobs, data) = self.groups()?;
-        self.meta.texts = number(self.texts.len())?;
-        self.meta.blobs = number(self.blobs.len())?;
+        self.meta.texts = to_u32(self.texts.len())?;
+        self.meta.blobs = to_u32(self.blobs.len())?;
         self.units.append(&mut self.artifacts);
-        assemble([json(&self.meta)?, self.keys, self.units, heap(&self.texts)?, blobs, data])
+        join_sections([
+            to_json(&self.meta)?,
+            self.keys,
+            self.units,
+            text_heap(&self.texts)?,
+            blobs,
+            data,
+        ])
     }
 
     /// Builds the BLOBS and DATA sections.
@@ -210,7 +220,7 @@ impl Packer {
         let mut raw = Vec::new();
         let mut members = 0;
         for (index, blob) in self.blobs.iter().enumerate() {
-            put(&mut table, &[self.meta.groups, number(raw.len())?, number(blob.len())?]);
+            push_words(&mut table, &[self.meta.groups, to_u32(raw.len())?, to_u32(blob.len())?]);
             table.extend_from_slice(&checksum(blob));
             raw.extend_from_slice(blob);
             members += 1;
@@ -218,7 +228,7 @@ impl Packer {
             if members == GROUP_BLOBS || raw.len().saturating_add(next) > GROUP_BYTES {
                 let packed = packing::compress(&raw)?;
                 groups.extend_from_slice(&(data.len() as u64).to_le_bytes());
-                put(&mut groups, &[number(packed.len())?, number(raw.len())?]);
+                push_words(&mut groups, &[to_u32(packed.len())?, to_u32(raw.len())?]);
                 groups.extend_from_slice(&checksum(&packed));
                 data.extend_from_slice(&packed);
                 raw.clear();
@@ -237,10 +247,10 @@ fn in_key_order(entry: &EntryContents) -> impl Iterator<Item = &Unit> {
 }
 
 /// Builds the hash table of a key set.
-fn slots(keys: &[&str], count: usize) -> Result<Vec<u128>, Error> {
+fn build_slots(keys: &[&str], count: usize) -> Result<Vec<u128>, Error> {
     let mut slots = vec![0; count];
     for (index, key) in keys.iter().enumerate() {
-        let hash = hash(key.as_bytes());
+        let hash = hash_key(key.as_bytes());
         let mut at = hash as usize & (count - 1);
         let mut probes = 1;
         while slots[at] != 0 {
@@ -250,17 +260,17 @@ fn slots(keys: &[&str], count: usize) -> Result<Vec<u128>, Error> {
                 return Err(Error::Io(format!("too many keys have the hash of `{key}`")));
             }
         }
-        slots[at] = hash >> 32 << 32 | u128::from(number(index + 1)?);
+        slots[at] = hash >> 32 << 32 | u128::from(to_u32(index + 1)?);
     }
     Ok(slots)
 }
 
 /// A section of texts: the offset and length of each, then the texts.
-fn heap(texts: &[Vec<u8>]) -> Result<Vec<u8>, Error> {
+fn text_heap(texts: &[Vec<u8>]) -> Result<Vec<u8>, Error> {
     let mut section = Vec::new();
     let mut at = texts.len() * 8;
     for text in texts {
-        put(&mut section, &[number(at)?, number(text.len())?]);
+        push_words(&mut section, &[to_u32(at)?, to_u32(text.len())?]);
         at += text.len();
     }
     texts.iter().for_each(|text| section.extend_from_slice(text));
@@ -268,11 +278,11 @@ fn heap(texts: &[Vec<u8>]) -> Result<Vec<u8>, Error> {
 }
 
 /// The header and the sections. DATA has no checksum of its own, since each of its groups has one.
-fn assemble(sections: [Vec<u8>; 6]) -> Result<Vec<u8>, Error> {
+fn join_sections(sections: [Vec<u8>; 6]) -> Result<Vec<u8>, Error> {
     let total = HEADER_BYTES + sections.iter().map(Vec::len).sum::<usize>();
     let mut file = Vec::with_capacity(total);
     file.extend_from_slice(MAGIC);
-    put(&mut file, &[VERSION, number(sections.len())?]);
+    push_words(&mut file, &[VERSION, to_u32(sections.len())?]);
     file.extend_from_slice(&(total as u64).to_le_bytes());
     let mut at = HEADER_BYTES;
     for (index, section) in sections.iter().enumerate() {
@@ -288,10 +298,10 @@ fn assemble(sections: [Vec<u8>; 6]) -> Result<Vec<u8>, Error> {
     Ok(file)
 }
 
-fn put(bytes: &mut Vec<u8>, words: &[u32]) {
+fn push_words(bytes: &mut Vec<u8>, words: &[u32]) {
     words.iter().for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
 }
 
-fn number(value: usize) -> Result<u32, Error> {
+fn to_u32(value: usize) -> Result<u32, Error> {
     u32::try_from(value).map_err(|_| Error::Io("a table of the bundle outgrows 32 bits".to_owned()))
 }

@@ -31,7 +31,7 @@ impl Bundle {
     pub fn reload(&mut self) -> Result<Difference, Error> {
         let Some(path) = self.path() else { return Ok(Difference::default()) };
         let next = loader::store_of(path)?;
-        let difference = compare(self.store(), &*next)?;
+        let difference = compare_stores(self.store(), &*next)?;
         self.replace_store(next);
         Ok(difference)
     }
@@ -40,7 +40,7 @@ impl Bundle {
 /// An entry point of a program.
 type Place = (String, Language, String);
 
-fn compare(old: &dyn Store, new: &dyn Store) -> Result<Difference, Error> {
+fn compare_stores(old: &dyn Store, new: &dyn Store) -> Result<Difference, Error> {
     let mut difference = Difference::default();
     let names: BTreeSet<&String> = old.programs().keys().chain(new.programs().keys()).collect();
     for name in names {
@@ -56,14 +56,14 @@ fn compare(old: &dyn Store, new: &dyn Store) -> Result<Difference, Error> {
                 program
                     .and_then(|program| program.entries.get(&(*language, entry.clone())).copied())
             };
-            let sides = (keys(old, number(before))?, keys(new, number(after))?);
-            difference.permutations.extend(changes(old, new, &place, &sides)?);
+            let sides = (keys_of_entry(old, number(before))?, keys_of_entry(new, number(after))?);
+            difference.permutations.extend(entry_changes(old, new, &place, &sides)?);
         }
     }
     Ok(difference)
 }
 
-fn keys(store: &dyn Store, entry: Option<usize>) -> Result<BTreeMap<String, u32>, Error> {
+fn keys_of_entry(store: &dyn Store, entry: Option<usize>) -> Result<BTreeMap<String, u32>, Error> {
     let mut keys = BTreeMap::new();
     if let Some(entry) = entry {
         store.each_key(entry, &mut |key, unit| {
@@ -74,7 +74,7 @@ fn keys(store: &dyn Store, entry: Option<usize>) -> Result<BTreeMap<String, u32>
 }
 
 /// What changed of one entry point. Many keys share a unit, which is compared once.
-fn changes(
+fn entry_changes(
     old: &dyn Store,
     new: &dyn Store,
     (program, language, entry): &Place,
@@ -89,7 +89,7 @@ fn changes(
                     Entry::Occupied(known) => known.get().clone(),
                     Entry::Vacant(place) => {
                         let sides = ((old, &old.unit(*one)?), (new, &new.unit(*other)?));
-                        place.insert(parts(sides.0, sides.1)?).clone()
+                        place.insert(changed_parts(sides.0, sides.1)?).clone()
                     }
                 };
                 ("changed", parts)
@@ -106,7 +106,7 @@ fn changes(
 }
 
 /// `reflection`, and the targets that differ. Bytes are compared by their hashes.
-fn parts(
+fn changed_parts(
     (old, before): (&dyn Store, &Unit),
     (new, after): (&dyn Store, &Unit),
 ) -> Result<Vec<String>, Error> {

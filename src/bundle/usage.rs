@@ -50,7 +50,7 @@ impl Usage {
     /// [`Error::Corrupt`] where the file is not a list; it is not changed then.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
-        let mut all = match input::read(path, MOST_BYTES) {
+        let mut all = match input::read_file(path, MOST_BYTES) {
             Ok(text) => Self::parse(&String::from_utf8_lossy(&text)).map_err(|line| {
                 Error::corrupt("usage list", format!("line {line} is not a program and a key"))
             })?,

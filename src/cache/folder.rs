@@ -42,8 +42,8 @@ impl Folder {
             }
             Err(_) => Vec::new(),
         };
-        let is_tagged =
-            input::read(&path.join(TAG_FILE), TAG.len() as u64).is_ok_and(|found| found == TAG);
+        let is_tagged = input::read_file(&path.join(TAG_FILE), TAG.len() as u64)
+            .is_ok_and(|found| found == TAG);
         match entries.iter().find(|found| !is_tagged && !is_ours(found)) {
             Some(found) => {
                 let found = found.file_name();
@@ -104,7 +104,7 @@ impl Storage for Folder {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(error.to_string()),
         }
-        match input::read(&path, record::MOST_RECORD_BYTES) {
+        match input::read_file(&path, record::MOST_RECORD_BYTES) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
             Err(error) => Err(error.to_string()),

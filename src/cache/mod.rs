@@ -131,10 +131,10 @@ impl Cache {
     }
 
     pub(crate) fn get(&self, kind: &str, key: Hash) -> Option<Vec<u8>> {
-        let name = name(kind, key);
+        let name = record_name(kind, key);
         for (index, storage) in self.storages.iter().enumerate() {
             let Some(record) = storage.get(&name) else { continue };
-            if let Some(payload) = record::open(&name, &record) {
+            if let Some(payload) = record::open_record(&name, &record) {
                 self.storages[..index].iter().for_each(|nearer| nearer.put(&name, &record));
                 return Some(payload);
             }
@@ -143,8 +143,8 @@ impl Cache {
     }
 
     pub(crate) fn put(&self, kind: &str, key: Hash, payload: Option<Vec<u8>>) {
-        let name = name(kind, key);
-        let Some(record) = payload.and_then(|payload| record::seal(&name, &payload)) else {
+        let name = record_name(kind, key);
+        let Some(record) = payload.and_then(|payload| record::seal_record(&name, &payload)) else {
             return;
         };
         self.storages.iter().for_each(|storage| storage.put(&name, &record));
@@ -171,12 +171,12 @@ impl Counted {
 }
 
 /// The name of a record. Two letters of the hash name a folder, so that no folder grows too large.
-fn name(kind: &str, key: Hash) -> String {
-    let hex = hex(&key);
+fn record_name(kind: &str, key: Hash) -> String {
+    let hex = to_hex(&key);
     format!("{kind}/{}/{}", &hex[..2], &hex[2..])
 }
 
-pub(crate) fn hex(bytes: &[u8]) -> String {
+pub(crate) fn to_hex(bytes: &[u8]) -> String {
     bytes
         .iter()
         .flat_map(|byte| [byte >> 4, byte & 15])
@@ -191,26 +191,26 @@ fn unit_key(job: Job<'_>) -> Hash {
         "{:?} {:?} {options:?} {entry:?} {names:?} {clip:?}",
         composed.language, composed.stage
     );
-    hash(&["unit", BUILD, &rest, text])
+    hash_parts(&["unit", BUILD, &rest, text])
 }
 
 /// The key of a unit's diagnostics. They have places, so it covers where each part of the text came
 /// from.
 fn told_key(unit: Hash, composed: &Composed) -> Hash {
-    hash(&["told", &hex(&unit), &composed.text, &format!("{:?}", composed.map.segments())])
+    hash_parts(&["told", &to_hex(&unit), &composed.text, &format!("{:?}", composed.map.segments())])
 }
 
 /// 128 bits of a hash. Each part is hashed with its length, so parts cannot run into each other.
-pub(crate) fn hash(parts: &[&str]) -> Hash {
+pub(crate) fn hash_parts(parts: &[&str]) -> Hash {
     let mut hasher = blake3::Hasher::new();
     for part in parts {
         hasher.update(&(part.len() as u64).to_le_bytes());
         hasher.update(part.as_bytes());
     }
-    short(&hasher.finalize())
+    shortened_hash(&hasher.finalize())
 }
 
-pub(crate) fn short(hash: &blake3::Hash) -> Hash {
+pub(crate) fn shortened_hash(hash: &blake3::Hash) -> Hash {
     let mut short = [0; 16];
     short.copy_from_slice(&hash.as_bytes()[..16]);
     short

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use lz4_flex::block;
 use serde::{Deserialize, Serialize};
 
-use super::short;
+use super::shortened_hash;
 use crate::bundle::{Artifact, Hash, Native, Reflection, Unit};
 use crate::diagnostic::{Diagnostic, Diagnostics, Label, Severity, codes};
 use crate::limits::CACHE_BYTES;
@@ -24,18 +24,18 @@ const MOST_RATIO: usize = 256;
 
 /// Packs a payload, with a checksum over it and over its name; `None` where it is too large to be
 /// kept.
-pub fn seal(name: &str, payload: &[u8]) -> Option<Vec<u8>> {
+pub fn seal_record(name: &str, payload: &[u8]) -> Option<Vec<u8>> {
     if payload.len() > CACHE_BYTES {
         return None;
     }
     let packed = block::compress_prepend_size(payload);
-    Some([MAGIC.as_slice(), &sum(name, &packed), &packed].concat())
+    Some([MAGIC.as_slice(), &record_checksum(name, &packed), &packed].concat())
 }
 
 /// Unpacks the payload of a record that is undamaged and was written under that name.
-pub fn open(name: &str, record: &[u8]) -> Option<Vec<u8>> {
+pub fn open_record(name: &str, record: &[u8]) -> Option<Vec<u8>> {
     let (found, packed) = record.strip_prefix(MAGIC)?.split_first_chunk::<SUM_BYTES>()?;
-    if sum(name, packed) != *found {
+    if record_checksum(name, packed) != *found {
         return None;
     }
     let most = CACHE_BYTES.min(packed.len().saturating_mul(MOST_RATIO));
@@ -45,12 +45,12 @@ pub fn open(name: &str, record: &[u8]) -> Option<Vec<u8>> {
 
 /// The checksum of a record. It covers the name, so that a record that was moved to another name is
 /// not taken for that result.
-fn sum(name: &str, packed: &[u8]) -> Hash {
+fn record_checksum(name: &str, packed: &[u8]) -> Hash {
     let mut hasher = blake3::Hasher::new();
     hasher.update(&(name.len() as u64).to_le_bytes());
     hasher.update(name.as_bytes());
     hasher.update(packed);
-    short(&hasher.finalize())
+    shortened_hash(&hasher.finalize())
 }
 
 /// What is written before the bytes of a unit's targets.

@@ -80,10 +80,10 @@ impl Costs {
         let mut text = format!(
             "# What functions and axes cost. Measured by `cargo xtask docs --costs`: not edited by hand.\n\n\
              driver = {}\ngpus = [\n",
-            quoted(&self.driver)
+            toml_string(&self.driver)
         );
         for Chip { name, generation } in &self.gpus {
-            let (name, generation) = (quoted(name), quoted(generation));
+            let (name, generation) = (toml_string(name), toml_string(generation));
             let _ = writeln!(text, "    {{ name = {name}, generation = {generation} }},");
         }
         let _ = write!(text, "]\naxes = [\n");
@@ -92,7 +92,7 @@ impl Costs {
         }
         let _ = write!(text, "]\n\n# For each GPU: {}.\n[functions]\n", FIGURES.join(", "));
         for (path, rows) in &self.functions {
-            let _ = writeln!(text, "{} = {rows:?}", quoted(path));
+            let _ = writeln!(text, "{} = {rows:?}", toml_string(path));
         }
         text
     }
@@ -106,15 +106,15 @@ impl AxisCost {
             "program = {}, axis = {}, value = {}, stage = {}, pairs = {pairs}, \
              instructions = {instructions:?}, vgprs = {vgprs}, waves = {waves:?}, \
              inverse_throughput = {inverse_throughput}",
-            quoted(&self.program),
-            quoted(&self.axis),
-            quoted(&self.value),
-            quoted(stage),
+            toml_string(&self.program),
+            toml_string(&self.axis),
+            toml_string(&self.value),
+            toml_string(stage),
         )
     }
 }
 
-fn quoted(text: &str) -> String {
+fn toml_string(text: &str) -> String {
     toml::Value::from(text).to_string()
 }
 
@@ -124,10 +124,10 @@ pub fn is_record(head: &[u8]) -> bool {
 }
 
 /// The library's record; empty if there is none.
-pub fn library(sources: &mut SourceSet) -> Result<Costs, Diagnostics> {
+pub fn library_costs(sources: &mut SourceSet) -> Result<Costs, Diagnostics> {
     let library = Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) };
     match source::read(sources, &library, PATH).map_err(|error| vec![error.into()])? {
-        Some(id) => reader::data(sources, id),
+        Some(id) => reader::read_data(sources, id),
         None => Ok(Costs::default()),
     }
 }

@@ -94,7 +94,7 @@ impl Item {
     pub fn paragraphs(&self) -> Vec<String> {
         let lines: Vec<String> =
             self.doc.iter().take_while(|line| !is_heading(line)).cloned().collect();
-        paragraphs(&lines)
+        joined_paragraphs(&lines)
     }
 
     /// The text under the heading `NAME:`, without the heading.
@@ -142,7 +142,7 @@ fn is_heading(line: &str) -> bool {
 }
 
 /// Lines joined where no blank one is between them.
-fn paragraphs(lines: &[String]) -> Vec<String> {
+fn joined_paragraphs(lines: &[String]) -> Vec<String> {
     let blocks = lines.split(|line| line.is_empty()).filter(|block| !block.is_empty());
     blocks.map(|block| block.iter().map(|line| line.trim()).collect::<Vec<_>>().join(" ")).collect()
 }
@@ -179,23 +179,25 @@ impl Module {
 }
 
 /// Every module of the embedded library, by path.
-pub fn library() -> Vec<Module> {
-    modules(&Embedded)
+pub fn library_modules() -> Vec<Module> {
+    package_modules(&Embedded)
 }
 
 /// The library's presets and light probes, each by name.
-pub fn examples(
+pub fn library_examples(
     sources: &mut SourceSet,
     manifest: &Manifest,
 ) -> Result<(Vec<preset::Preset>, Vec<probe::Probe>), Diagnostics> {
     let probes = probe::library(sources)?;
-    Ok((preset::library(sources, manifest, &probes)?, probes))
+    Ok((preset::library_presets(sources, manifest, &probes)?, probes))
 }
 
 /// Every module of a package that has the library's layout.
-pub fn modules(files: &dyn Files) -> Vec<Module> {
+pub fn package_modules(files: &dyn Files) -> Vec<Module> {
     let paths = files.list(&["wesl"]).into_iter().filter(|path| !path.starts_with(PROGRAMS));
-    paths.filter_map(|path| module(files, LIBRARY, path.strip_suffix(".wesl")?, ".wesl")).collect()
+    paths
+        .filter_map(|path| read_module(files, LIBRARY, path.strip_suffix(".wesl")?, ".wesl"))
+        .collect()
 }
 
 /// Every module of the user's own package, even if it is not documented.
@@ -203,7 +205,7 @@ pub fn own_modules(files: &dyn Files) -> Vec<Module> {
     let paths = files.list(&["wesl", "wgsl"]).into_iter();
     let of = |path: String| {
         let ending = if path.ends_with(".wesl") { ".wesl" } else { ".wgsl" };
-        module(files, OWN, path.strip_suffix(ending)?, ending)
+        read_module(files, OWN, path.strip_suffix(ending)?, ending)
     };
     paths.filter_map(of).collect()
 }
@@ -211,20 +213,20 @@ pub fn own_modules(files: &dyn Files) -> Vec<Module> {
 /// The name of the user's own package in imports.
 const OWN: &str = "package";
 
-fn module(files: &dyn Files, package: &str, stem: &str, ending: &str) -> Option<Module> {
+fn read_module(files: &dyn Files, package: &str, stem: &str, ending: &str) -> Option<Module> {
     let text = files.read(&format!("{stem}{ending}")).ok()??;
     let twin = files.read(&format!("{stem}.glsl")).ok().flatten().unwrap_or_default();
     let path = stem.replace('/', "::");
-    let glsl = outline::glsl(&twin);
-    let declared = outline::wesl(&text).into_iter();
+    let glsl = outline::glsl_declarations(&twin);
+    let declared = outline::wesl_declarations(&text).into_iter();
     // What the library does not document is not for its users.
     let declared = declared.filter(|found| package != LIBRARY || !found.doc.is_empty());
-    let items = declared.map(|found| item(package, &path, found, &glsl)).collect();
-    let doc = paragraphs(&outline::module_doc(&text));
+    let items = declared.map(|found| make_item(package, &path, found, &glsl)).collect();
+    let doc = joined_paragraphs(&outline::module_doc(&text));
     Some(Module { doc, items, path: in_package(package, &path), package: package.to_owned() })
 }
 
-fn item(
+fn make_item(
     package: &str,
     module: &str,
     found: outline::Declaration,
@@ -250,7 +252,7 @@ fn item(
 fn describe_parameters(item: &mut Item) {
     let Some(section) = item.section(SECTIONS[0]) else { return };
     for entry in section.trim_end_matches('.').split("; ") {
-        let (names, words) = described(entry);
+        let (names, words) = split_description(entry);
         for member in item.members.iter_mut().filter(|member| names.contains(&member.name)) {
             member.doc = words.clone();
         }
@@ -258,7 +260,7 @@ fn describe_parameters(item: &mut Item) {
 }
 
 /// The names in backticks at the start of an entry, and the text about them.
-fn described(entry: &str) -> (Vec<String>, String) {
+fn split_description(entry: &str) -> (Vec<String>, String) {
     let (mut names, mut rest) = (Vec::new(), entry.trim());
     while let Some((name, after)) = rest.strip_prefix('`').and_then(|rest| rest.split_once('`')) {
         names.push(name.to_owned());

@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 
 /// Compares names part by part, numbers by their value.
-pub fn order(a: &str, b: &str) -> Ordering {
-    parts(a).cmp(&parts(b)).then_with(|| a.cmp(b))
+pub fn natural_order(a: &str, b: &str) -> Ordering {
+    name_parts(a).cmp(&name_parts(b)).then_with(|| a.cmp(b))
 }
 
 /// A part of a name: numbers come before words.
@@ -14,7 +14,7 @@ enum Part<'t> {
     Word(&'t str),
 }
 
-fn parts(text: &str) -> Vec<Part<'_>> {
+fn name_parts(text: &str) -> Vec<Part<'_>> {
     let pieces = text.split(['_', '-', '.']).filter(|piece| !piece.is_empty());
     pieces.map(|piece| piece.parse().map_or(Part::Word(piece), Part::Number)).collect()
 }

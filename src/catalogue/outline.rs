@@ -14,13 +14,13 @@ pub struct Declaration {
 }
 
 /// Functions, structs and constants of a WESL module.
-pub fn wesl(text: &str) -> Vec<Declaration> {
-    declarations(text, wesl_name)
+pub fn wesl_declarations(text: &str) -> Vec<Declaration> {
+    find_declarations(text, wesl_name)
 }
 
 /// Functions, structs and constants of a GLSL module.
-pub fn glsl(text: &str) -> Vec<Declaration> {
-    declarations(text, glsl_name)
+pub fn glsl_declarations(text: &str) -> Vec<Declaration> {
+    find_declarations(text, glsl_name)
 }
 
 /// The comment that opens a module, without its marks.
@@ -34,7 +34,7 @@ pub fn module_doc(text: &str) -> Vec<String> {
 
 type Naming = fn(&str) -> Option<(Kind, String)>;
 
-fn declarations(text: &str, name: Naming) -> Vec<Declaration> {
+fn find_declarations(text: &str, name: Naming) -> Vec<Declaration> {
     let mut found = Vec::new();
     let mut doc = Vec::new();
     let mut depth = 0i32;
@@ -46,27 +46,27 @@ fn declarations(text: &str, name: Naming) -> Vec<Declaration> {
         }
         let named = if depth == 0 { name(line) } else { None };
         if let Some((kind, name)) = named {
-            found.push(declaration(kind, name, std::mem::take(&mut doc), &lines[index..]));
+            found.push(make_declaration(kind, name, std::mem::take(&mut doc), &lines[index..]));
         }
         doc.clear();
-        depth += nesting(line);
+        depth += bracket_depth(line);
     }
     found
 }
 
-fn declaration(kind: Kind, name: String, doc: Vec<String>, lines: &[&str]) -> Declaration {
+fn make_declaration(kind: Kind, name: String, doc: Vec<String>, lines: &[&str]) -> Declaration {
     let code = lines.iter().map(|line| without_comment(line)).collect::<Vec<_>>().join("\n");
     let (declaration, members) = match kind {
         Kind::Function => {
             let head = single_spaced(code.split('{').next().unwrap_or_default());
-            let members = parameters(&head);
+            let members = parse_parameters(&head);
             (head, members)
         }
         Kind::Struct => {
             let body = code.split_inclusive('}').next().unwrap_or_default();
             (
                 body.lines().filter(|line| !line.trim().is_empty()).collect::<Vec<_>>().join("\n"),
-                fields(lines),
+                struct_fields(lines),
             )
         }
         Kind::Constant => {
@@ -81,7 +81,7 @@ fn declaration(kind: Kind, name: String, doc: Vec<String>, lines: &[&str]) -> De
 }
 
 /// The `name: type` of each parameter. A comma within brackets belongs to a type.
-fn parameters(head: &str) -> Vec<Member> {
+fn parse_parameters(head: &str) -> Vec<Member> {
     let list = head
         .split_once('(')
         .and_then(|(_, rest)| rest.split_once(')'))
@@ -91,11 +91,11 @@ fn parameters(head: &str) -> Vec<Member> {
         depth += i32::from(letter == '<') - i32::from(letter == '>');
         letter == ',' && depth == 0
     });
-    parts.filter_map(|part| member(part, Vec::new())).collect()
+    parts.filter_map(|part| parse_member(part, Vec::new())).collect()
 }
 
 /// The fields of a struct with their doc comments, up to its closing brace.
-fn fields(lines: &[&str]) -> Vec<Member> {
+fn struct_fields(lines: &[&str]) -> Vec<Member> {
     let mut found = Vec::new();
     let mut doc = Vec::new();
     for line in
@@ -103,7 +103,7 @@ fn fields(lines: &[&str]) -> Vec<Member> {
     {
         match line.strip_prefix("///") {
             Some(comment) => doc.push(comment.trim().to_owned()),
-            None => found.extend(member(
+            None => found.extend(parse_member(
                 without_comment(line).trim_end_matches(','),
                 std::mem::take(&mut doc),
             )),
@@ -112,7 +112,7 @@ fn fields(lines: &[&str]) -> Vec<Member> {
     found
 }
 
-fn member(text: &str, doc: Vec<String>) -> Option<Member> {
+fn parse_member(text: &str, doc: Vec<String>) -> Option<Member> {
     let (name, ty) = text.split_once(':')?;
     Some(Member { name: name.trim().to_owned(), ty: ty.trim().to_owned(), doc: doc.join(" ") })
 }
@@ -126,7 +126,7 @@ fn without_comment(line: &str) -> &str {
     line.split("//").next().unwrap_or_default().trim_end()
 }
 
-fn nesting(line: &str) -> i32 {
+fn bracket_depth(line: &str) -> i32 {
     without_comment(line)
         .chars()
         .map(|letter| i32::from(letter == '{') - i32::from(letter == '}'))

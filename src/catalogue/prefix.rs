@@ -27,8 +27,8 @@ const HEAD: &str = "\
 ";
 
 /// The file, from the modules of a package that has the library's layout.
-pub fn glsl(files: &dyn Files) -> String {
-    let names = names(files);
+pub fn prefix_file(files: &dyn Files) -> String {
+    let names = prefixed_names(files);
     let mut text = format!("{HEAD}\n#ifndef LAMPLIGHT_PREFIXED\n#define LAMPLIGHT_PREFIXED\n\n");
     for Name { name, parameters } in &names {
         let _ = writeln!(text, "#define {name}{parameters} {PREFIX}{name}{parameters}");
@@ -49,16 +49,17 @@ struct Name {
 }
 
 /// All names, sorted.
-fn names(files: &dyn Files) -> Vec<Name> {
+fn prefixed_names(files: &dyn Files) -> Vec<Name> {
     let is_module = |path: &String| !path.starts_with(super::PROGRAMS) && path != PATH;
     let texts = files.list(&["glsl"]).into_iter().filter(is_module);
     let texts = texts.filter_map(|path| files.read(&path).ok().flatten());
-    let mut names: Vec<Name> = texts.flat_map(|text| outline::glsl(&text)).map(named).collect();
+    let mut names: Vec<Name> =
+        texts.flat_map(|text| outline::glsl_declarations(&text)).map(name_of).collect();
     names.sort_by(|a, b| a.name.cmp(&b.name));
     names
 }
 
-fn named(found: outline::Declaration) -> Name {
+fn name_of(found: outline::Declaration) -> Name {
     let parameters = match found.kind {
         Kind::Function => {
             let names: Vec<String> = (0..count_parameters(&found.declaration))

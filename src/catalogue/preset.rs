@@ -167,14 +167,14 @@ struct PassEntry {
 pub const PATH: &str = "presets.toml";
 
 /// The library's presets, in their natural order; its manifest comes from [`crate::project::library_manifest`].
-pub fn library(
+pub fn library_presets(
     sources: &mut SourceSet,
     manifest: &Manifest,
     probes: &[Probe],
 ) -> Result<Vec<Preset>, Diagnostics> {
     let package = Package { name: "lamplight".to_owned(), files: Box::new(Embedded) };
     match source::read(sources, &package, PATH).map_err(|error| vec![error.into()])? {
-        Some(id) => parse(sources, id, manifest, probes),
+        Some(id) => parse_presets(sources, id, manifest, probes),
         None => Ok(Vec::new()),
     }
 }
@@ -183,17 +183,17 @@ pub fn library(
 ///
 /// Every mistake is reported: programs, scenes and probes that do not exist, keys that are not
 /// canonical, break a constraint or do not ship.
-pub fn parse(
+pub fn parse_presets(
     sources: &SourceSet,
     id: SourceId,
     manifest: &Manifest,
     probes: &[Probe],
 ) -> Result<Vec<Preset>, Diagnostics> {
-    let entries: Entries = reader::data(sources, id)?;
+    let entries: Entries = reader::read_data(sources, id)?;
     let mut checker = Checker { sources, id, manifest, probes, problems: Vec::new() };
     let mut presets: Vec<Preset> =
         entries.into_iter().map(|(name, entry)| checker.preset(name.into_inner(), entry)).collect();
-    presets.sort_by(|a, b| natural::order(&a.name, &b.name));
+    presets.sort_by(|a, b| natural::natural_order(&a.name, &b.name));
     if checker.problems.is_empty() { Ok(presets) } else { Err(checker.problems) }
 }
 
@@ -260,11 +260,11 @@ impl Checker<'_> {
             None => {
                 let unknown = format!("there is no group `{group}`");
                 let known = groups.iter().map(|(known, _)| *known);
-                let problem = reader::invalid(self.span(name), unknown).suggest(group, known);
+                let problem = reader::invalid_data(self.span(name), unknown).suggest(group, known);
                 return self.problems.push(problem);
             }
         };
-        self.problems.push(reader::invalid(self.span(name), problem));
+        self.problems.push(reader::invalid_data(self.span(name), problem));
     }
 
     fn known<'a>(
@@ -276,7 +276,7 @@ impl Checker<'_> {
         if !known.clone().any(|known| known == name.get_ref()) {
             let wrong = name.get_ref();
             self.problems.push(
-                reader::invalid(self.span(name), format!("there is no {what} `{wrong}`"))
+                reader::invalid_data(self.span(name), format!("there is no {what} `{wrong}`"))
                     .suggest(wrong, known),
             );
         }
@@ -318,13 +318,16 @@ fn check_key(program: &Program, text: &Quoted) -> Diagnostics {
     let mut problems: Diagnostics = broken.collect();
     let canonical = program.space.key(&point);
     if canonical.as_str() != text.text {
-        problems
-            .push(reader::invalid(text.span, format!("the permutation's name is `{canonical}`")));
+        problems.push(reader::invalid_data(
+            text.span,
+            format!("the permutation's name is `{canonical}`"),
+        ));
     }
     if problems.is_empty() && !program.space.contains(&point) {
         let message = format!("permutation `{canonical}` of `{}` does not ship", program.name);
         problems.push(
-            reader::invalid(text.span, message).note("help: add it to `include` in the manifest"),
+            reader::invalid_data(text.span, message)
+                .note("help: add it to `include` in the manifest"),
         );
     }
     problems

@@ -44,13 +44,13 @@ pub fn library(sources: &mut SourceSet) -> Result<Vec<Probe>, Diagnostics> {
     else {
         return Ok(Vec::new());
     };
-    let entries: BTreeMap<toml::Spanned<String>, Entry> = reader::data(sources, id)?;
+    let entries: BTreeMap<toml::Spanned<String>, Entry> = reader::read_data(sources, id)?;
     let mut problems = Vec::new();
     let probes = entries.into_iter().filter_map(|(name, entry)| {
         let span = source::Span::new(id, name.span());
-        let found = probe(name.into_inner(), &entry);
+        let found = make_probe(name.into_inner(), &entry);
         if found.is_none() {
-            problems.push(reader::invalid(
+            problems.push(reader::invalid_data(
                 span,
                 format!("a light probe has the rows {}", ORDER.join(", ")),
             ));
@@ -61,7 +61,7 @@ pub fn library(sources: &mut SourceSet) -> Result<Vec<Probe>, Diagnostics> {
     if problems.is_empty() { Ok(probes) } else { Err(problems) }
 }
 
-fn probe(name: String, entry: &Entry) -> Option<Probe> {
+fn make_probe(name: String, entry: &Entry) -> Option<Probe> {
     let mut coefficients = [[0.0; 3]; 9];
     for (place, row) in coefficients.iter_mut().zip(ORDER) {
         *place = *entry.rows.get(row)?;
@@ -85,17 +85,17 @@ const HEAD: &str = "\
 const PREFIXED: &str = "#ifdef LAMPLIGHT_PREFIX\n#include \"../prefix.glsl\"\n#endif\n";
 
 /// The module `ambient::probes` in WESL.
-pub fn wesl(probes: &[Probe]) -> String {
+pub fn wesl_module(probes: &[Probe]) -> String {
     let mut text = HEAD.to_owned();
     for probe in probes {
         let _ = write!(
             text,
             "\n{}fn probe_{}() -> array<vec3f, 9> {{\n    return array<vec3f, 9>(\n",
-            doc(probe),
+            probe_doc(probe),
             probe.name
         );
         for row in &probe.coefficients {
-            let _ = writeln!(text, "        vec3f({}),", numbers(row));
+            let _ = writeln!(text, "        vec3f({}),", joined_numbers(row));
         }
         text.push_str("    );\n}\n");
     }
@@ -103,7 +103,7 @@ pub fn wesl(probes: &[Probe]) -> String {
 }
 
 /// The same in GLSL.
-pub fn glsl(probes: &[Probe]) -> String {
+pub fn glsl_module(probes: &[Probe]) -> String {
     let mut text = format!(
         "{HEAD}\n#ifndef LAMPLIGHT_AMBIENT_PROBES_GLSL\n#define LAMPLIGHT_AMBIENT_PROBES_GLSL\n\n{PREFIXED}"
     );
@@ -111,13 +111,13 @@ pub fn glsl(probes: &[Probe]) -> String {
         let _ = write!(
             text,
             "\n{}vec3[9] probe_{}() {{\n    return vec3[9](\n",
-            doc(probe),
+            probe_doc(probe),
             probe.name
         );
         let rows: Vec<String> = probe
             .coefficients
             .iter()
-            .map(|row| format!("        vec3({})", numbers(row)))
+            .map(|row| format!("        vec3({})", joined_numbers(row)))
             .collect();
         text.push_str(&rows.join(",\n"));
         text.push_str("\n    );\n}\n");
@@ -127,10 +127,10 @@ pub fn glsl(probes: &[Probe]) -> String {
 }
 
 /// Numeric cases of the module: every coefficient as published.
-pub fn cases(probes: &[Probe]) -> String {
+pub fn numeric_cases(probes: &[Probe]) -> String {
     let mut text = CASES.to_owned();
     for probe in probes {
-        let all: Vec<String> = probe.coefficients.iter().map(numbers).collect();
+        let all: Vec<String> = probe.coefficients.iter().map(joined_numbers).collect();
         let _ = write!(text, "\n[[case]]\nfunction = \"probe_{}\"\n", probe.name);
         let _ = write!(
             text,
@@ -148,21 +148,21 @@ const CASES: &str = "\
 # Made from `data/sh9_probes.toml` by `cargo xtask docs`: edit that file, not this one.
 ";
 
-fn doc(probe: &Probe) -> String {
+fn probe_doc(probe: &Probe) -> String {
     format!(
         "/// {}\n///\n/// Parameters: none.\n/// Returns: nine linear RGB coefficients of the radiance, ordered {}.\n/// Source: {}.\n\
          /// Edges: none.\n/// Error model: exact: the published digits.\n",
-        summary(probe),
+        probe_summary(probe),
         ORDER.join(", "),
         probe.source,
     )
 }
 
-fn summary(probe: &Probe) -> String {
+fn probe_summary(probe: &Probe) -> String {
     format!("The light around a point: {}.", probe.title)
 }
 
-fn numbers(row: &[f64; 3]) -> String {
+fn joined_numbers(row: &[f64; 3]) -> String {
     let number = |value: &f64| {
         let value = if *value == 0.0 { 0.0 } else { *value };
         if value.fract() == 0.0 { format!("{value:.1}") } else { value.to_string() }

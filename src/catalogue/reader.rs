@@ -6,12 +6,12 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::{SourceId, SourceSet, Span};
 
 /// A data file in the set as a value of `T`.
-pub fn data<T: DeserializeOwned>(sources: &SourceSet, id: SourceId) -> Result<T, Diagnostics> {
+pub fn read_data<T: DeserializeOwned>(sources: &SourceSet, id: SourceId) -> Result<T, Diagnostics> {
     let text = &sources.get(id).text;
     toml::from_str(text).map_err(|error| {
         let range = error.span().unwrap_or(0..0);
         let message = error.message().lines().collect::<Vec<_>>().join("; ");
-        vec![invalid(
+        vec![invalid_data(
             Span::new(id, range.start.min(text.len())..range.end.min(text.len())),
             message,
         )]
@@ -19,6 +19,6 @@ pub fn data<T: DeserializeOwned>(sources: &SourceSet, id: SourceId) -> Result<T,
 }
 
 /// Something in a data file is not as expected.
-pub fn invalid(span: Span, message: impl Into<String>) -> Diagnostic {
+pub fn invalid_data(span: Span, message: impl Into<String>) -> Diagnostic {
     Diagnostic::error(codes::DATA_SYNTAX, message).at(span, "in this data file")
 }

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::compile::target;
+use super::compile::parse_target;
 use super::failure::Failure;
 use super::input::LanguageName;
-use super::overwrite::{Overwrite, unwritable};
-use super::terminal::{data, is_terminal, stdout};
+use super::overwrite::{Overwrite, write_failure};
+use super::terminal::{is_terminal, stdout, write_data};
 use crate::bundle::{self, Bundle, Error, Shader, Target};
 use crate::limits::MANIFEST_BYTES;
 use crate::{input, output};
@@ -59,7 +59,7 @@ struct Get {
     entry: String,
     /// `shadow=hard`; `default` for the permutation of all defaults.
     key: String,
-    #[arg(long, value_name = "T", value_parser = target)]
+    #[arg(long, value_name = "T", value_parser = parse_target)]
     target: Target,
     /// The source language [default: WESL where the bundle has both].
     #[arg(long, value_enum)]
@@ -74,38 +74,40 @@ struct Get {
     overwrite: Overwrite,
 }
 
-pub fn run(arguments: Arguments) -> Result<(), Failure> {
+pub fn run_bundle(arguments: Arguments) -> Result<(), Failure> {
     match arguments.command {
-        Command::List { bundle, program } => list(&open(&bundle)?, program.as_deref()),
-        Command::Get(get) => fetch(&get),
+        Command::List { bundle, program } => list_keys(&open_bundle(&bundle)?, program.as_deref()),
+        Command::Get(get) => fetch_file(&get),
         Command::Verify { bundle } => {
-            verify(&bundle)?;
+            verify_bundle(&bundle)?;
             Ok(writeln!(stdout(), "`{}` is whole", bundle.display())?)
         }
         Command::Pack { bundle, out, overwrite } => {
-            let opened = open(&bundle)?;
+            let opened = open_bundle(&bundle)?;
             let wrong = |error| Failure::input(format!("`{}`: {error}", bundle.display()));
             opened.verify().map_err(wrong)?;
             let contents = opened.contents().map_err(wrong)?;
             bundle::replace_file(&contents, &out, overwrite.replace())
-                .map_err(|error| unwritable(&out, error))
+                .map_err(|error| write_failure(&out, error))
         }
-        Command::Diff { old, new, json } => compare(&open(&old)?, &open(&new)?, json),
+        Command::Diff { old, new, json } => {
+            compare_bundles(&open_bundle(&old)?, &open_bundle(&new)?, json)
+        }
     }
 }
 
-fn open(path: &PathBuf) -> Result<Bundle, Failure> {
+fn open_bundle(path: &PathBuf) -> Result<Bundle, Failure> {
     Bundle::open(path).map_err(|error| Failure::input(format!("`{}`: {error}", path.display())))
 }
 
 /// Checks every byte. If a directory is written at the same time, it is checked again, since old
 /// blobs are kept for only one more run.
-fn verify(path: &PathBuf) -> Result<(), Failure> {
+fn verify_bundle(path: &PathBuf) -> Result<(), Failure> {
     const MOST_LOOKS: u32 = 16;
-    let state = || input::read(&path.join("manifest.json"), MANIFEST_BYTES).ok();
+    let state = || input::read_file(&path.join("manifest.json"), MANIFEST_BYTES).ok();
     for look in 1.. {
         let before = state();
-        match open(path)?.verify() {
+        match open_bundle(path)?.verify() {
             Ok(()) => return Ok(()),
             Err(_) if path.is_dir() && look < MOST_LOOKS && state() != before => {}
             Err(error) => {
@@ -116,30 +118,36 @@ fn verify(path: &PathBuf) -> Result<(), Failure> {
     Ok(())
 }
 
-fn wrong(error: Error) -> Failure {
+fn bundle_failure(error: Error) -> Failure {
     Failure::input(error.to_string())
 }
 
-fn list(bundle: &Bundle, program: Option<&str>) -> Result<(), Failure> {
+fn list_keys(bundle: &Bundle, program: Option<&str>) -> Result<(), Failure> {
     let mut out = std::io::BufWriter::new(stdout());
     if let Some(name) = program {
-        let program = bundle.program(name).map_err(wrong)?;
+        let program = bundle.program(name).map_err(bundle_failure)?;
         let Some((language, entry)) = program.entries().next() else { return Ok(()) };
-        for key in program.entry(language, entry).and_then(|shader| shader.keys()).map_err(wrong)? {
+        for key in program
+            .entry(language, entry)
+            .and_then(|shader| shader.keys())
+            .map_err(bundle_failure)?
+        {
             writeln!(out, "{key}")?;
         }
         return Ok(out.flush()?);
     }
     for name in bundle.programs() {
-        let program = bundle.program(name).map_err(wrong)?;
+        let program = bundle.program(name).map_err(bundle_failure)?;
         for (language, entry) in program.entries() {
-            let keys =
-                program.entry(language, entry).and_then(|shader| shader.keys()).map_err(wrong)?;
+            let keys = program
+                .entry(language, entry)
+                .and_then(|shader| shader.keys())
+                .map_err(bundle_failure)?;
             let targets = match keys.first() {
                 Some(key) => program
                     .entry(language, entry)
                     .and_then(|shader| shader.targets(key))
-                    .map_err(wrong)?,
+                    .map_err(bundle_failure)?,
                 None => Vec::new(),
             };
             let language = format!("{language:?}").to_lowercase();
@@ -155,15 +163,15 @@ fn list(bundle: &Bundle, program: Option<&str>) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-fn fetch(get: &Get) -> Result<(), Failure> {
-    let bundle = open(&get.bundle)?;
-    let program = bundle.program(&get.program).map_err(wrong)?;
+fn fetch_file(get: &Get) -> Result<(), Failure> {
+    let bundle = open_bundle(&get.bundle)?;
+    let program = bundle.program(&get.program).map_err(bundle_failure)?;
     let shader: Shader<'_> = match get.lang {
         Some(language) => program.entry(language.into(), &get.entry),
         None => program.shader(&get.entry),
     }
-    .map_err(wrong)?;
-    let found = shader.get(&get.key, get.target).map_err(wrong)?;
+    .map_err(bundle_failure)?;
+    let found = shader.get(&get.key, get.target).map_err(bundle_failure)?;
     if get.reflection {
         return Ok(writeln!(
             stdout(),
@@ -179,13 +187,16 @@ fn fetch(get: &Get) -> Result<(), Failure> {
         None if get.target == Target::SPIRV && is_terminal() => {
             Err(Failure::usage("SPIR-V is binary: name a file with `-o`"))
         }
-        None => Ok(data(&found.bytes)?),
+        None => Ok(write_data(&found.bytes)?),
     }
 }
 
-fn compare(old: &Bundle, new: &Bundle, json: bool) -> Result<(), Failure> {
-    [old, new].into_iter().try_for_each(Bundle::verify).map_err(wrong)?;
-    let difference = bundle::diff(&old.contents().map_err(wrong)?, &new.contents().map_err(wrong)?);
+fn compare_bundles(old: &Bundle, new: &Bundle, json: bool) -> Result<(), Failure> {
+    [old, new].into_iter().try_for_each(Bundle::verify).map_err(bundle_failure)?;
+    let difference = bundle::diff(
+        &old.contents().map_err(bundle_failure)?,
+        &new.contents().map_err(bundle_failure)?,
+    );
     if json {
         writeln!(stdout(), "{:#}", serde_json::json!(difference))?;
     } else {

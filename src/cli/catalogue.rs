@@ -40,20 +40,24 @@ pub struct Arguments {
     overwrite: Overwrite,
 }
 
-pub fn run(arguments: Arguments, gpus: cost::Opened) -> Result<(), Failure> {
+pub fn run_catalogue(arguments: Arguments, gpus: cost::Opened) -> Result<(), Failure> {
     if let Some(path) = &arguments.costs {
-        let text = cost::record(gpus)?.text();
+        let text = cost::record_costs(gpus)?.text();
         let replace = arguments.overwrite.replace();
         return Ok(output::write_file(path, text.as_bytes(), is_record, replace)?);
     }
     let (folder, files) = match &arguments.modules {
-        Some(folder) => (folder, catalogue::modules()),
-        None => (&arguments.output, catalogue::pages()),
+        Some(folder) => (folder, catalogue::made_modules()),
+        None => (&arguments.output, catalogue::catalogue_files()),
     };
     let files = files.map_err(|(sources, problems)| Failure::Input(sources, problems))?;
-    let changed = changed(folder, &files);
+    let changed = changed_files(folder, &files);
     if arguments.check {
-        return if changed.is_empty() { Ok(()) } else { Err(Failure::check(outdated(&changed))) };
+        return if changed.is_empty() {
+            Ok(())
+        } else {
+            Err(Failure::check(outdated_message(&changed)))
+        };
     }
     let files_as_bytes = files.iter().map(|(path, text)| (path.as_str(), text.as_bytes()));
     output::write_folder(folder, files_as_bytes, arguments.overwrite.replace())?;
@@ -66,14 +70,14 @@ pub fn run(arguments: Arguments, gpus: cost::Opened) -> Result<(), Failure> {
     )?)
 }
 
-fn changed(folder: &Path, files: &Files) -> Vec<(PathBuf, String)> {
+fn changed_files(folder: &Path, files: &Files) -> Vec<(PathBuf, String)> {
     let differs = |(path, text): &(PathBuf, String)| {
-        input::read(path, text.len() as u64).ok().as_deref() != Some(text.as_bytes())
+        input::read_file(path, text.len() as u64).ok().as_deref() != Some(text.as_bytes())
     };
     files.iter().map(|(path, text)| (folder.join(path), text.clone())).filter(differs).collect()
 }
 
-fn outdated(changed: &[(PathBuf, String)]) -> String {
+fn outdated_message(changed: &[(PathBuf, String)]) -> String {
     let names: Vec<String> = changed.iter().map(|(path, _)| path.display().to_string()).collect();
     format!("not up to date: {}\nrun: cargo xtask docs", names.join(", "))
 }

@@ -12,12 +12,14 @@ use super::features;
 use super::input::{self, LanguageName};
 use crate::bundle::Language;
 use crate::cli::terminal::stdout;
-use crate::diagnostic::{Diagnostics, nearest};
+use crate::diagnostic::{Diagnostics, nearest_name};
 use crate::execute::on_thread;
 use crate::output::{self, Replace};
 use crate::permute::{Setting, Settings};
 use crate::project::{self, LIBRARY};
-use crate::proof::check::{Open, Options, Report, failures, lacking, stricter, table};
+use crate::proof::check::{
+    Open, Options, Report, lacking_text, report_failures, report_table, stricter_cases,
+};
 use crate::proof::library::Library;
 use crate::proof::ratchet::{FILE, Ratchet};
 use crate::report;
@@ -50,7 +52,7 @@ pub struct Arguments {
     #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = input::axis_value)]
     set: Vec<(String, Setting)>,
     /// Turn a feature on, or turn it off with `=false`.
-    #[arg(long, value_name = "NAME[=BOOL]", value_delimiter = ',', value_parser = input::feature)]
+    #[arg(long, value_name = "NAME[=BOOL]", value_delimiter = ',', value_parser = input::parse_feature)]
     feature: Vec<(String, Setting)>,
     #[command(flatten)]
     features: features::Arguments,
@@ -71,9 +73,9 @@ struct Selection {
     languages: Vec<Language>,
 }
 
-pub fn run(arguments: Arguments) -> Result<(), Failure> {
-    let selections = selections(&arguments)?;
-    on_thread(|| check(&selections, &arguments))
+pub fn run_check(arguments: Arguments) -> Result<(), Failure> {
+    let selections = parse_selections(&arguments)?;
+    on_thread(|| check_selections(&selections, &arguments))
         .unwrap_or_else(|| Err(Failure::environment("the check stopped with an internal error")))
 }
 
@@ -102,18 +104,18 @@ impl Arguments {
     }
 }
 
-fn opened(name: &str) -> Result<Open, Failure> {
-    let entry = executor::find(name)?;
-    Ok(Open { executor: entry.name, session: executor::open(entry)? })
+fn open_executor(name: &str) -> Result<Open, Failure> {
+    let entry = executor::find_executor(name)?;
+    Ok(Open { executor: entry.name, session: executor::open_executor(entry)? })
 }
 
-fn check(selections: &[Selection], arguments: &Arguments) -> Result<(), Failure> {
+fn check_selections(selections: &[Selection], arguments: &Arguments) -> Result<(), Failure> {
     let mut sessions =
-        arguments.executor.iter().map(|name| opened(name)).collect::<Result<Vec<_>, _>>()?;
+        arguments.executor.iter().map(|name| open_executor(name)).collect::<Result<Vec<_>, _>>()?;
     let mut report = Report::default();
     let sources = Mutex::new(SourceSet::default());
     for selection in selections {
-        match one(selection, &sources, arguments, &mut sessions) {
+        match check_one(selection, &sources, arguments, &mut sessions) {
             Ok(found) => report.append(found?),
             Err(diagnostics) => {
                 return Err(Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics));
@@ -121,12 +123,12 @@ fn check(selections: &[Selection], arguments: &Arguments) -> Result<(), Failure>
         }
     }
     let sources = sources.into_inner().unwrap_or_default();
-    write!(stdout(), "{}", table(&report))?;
+    write!(stdout(), "{}", report_table(&report))?;
     print_spec(&report, arguments.spec)?;
     print_untested(&report)?;
     let passed = report.outcomes.iter().filter(|outcome| outcome.passed()).count();
     write!(stdout(), "{passed} of {} pass", report.outcomes.len())?;
-    let lacking = lacking(&report);
+    let lacking = lacking_text(&report);
     match lacking.lines().count() {
         0 => writeln!(stdout())?,
         count => write!(stdout(), ", {count} cannot run on their executor:\n{lacking}")?,
@@ -138,7 +140,7 @@ fn check(selections: &[Selection], arguments: &Arguments) -> Result<(), Failure>
         let files = texts.iter().map(|(name, text)| (*name, text.as_bytes()));
         output::write_folder(folder, files, arguments.replace())?;
     }
-    if report.passed() { Ok(()) } else { Err(Failure::Check(sources, failures(&report))) }
+    if report.passed() { Ok(()) } else { Err(Failure::Check(sources, report_failures(&report))) }
 }
 
 /// The command line, to be typed again.
@@ -166,7 +168,7 @@ fn print_untested(report: &Report) -> Result<(), Failure> {
 }
 
 /// Checks one selection. With `--bless`, the recorded shares of its package are lowered afterwards.
-fn one(
+fn check_one(
     selection: &Selection,
     sources: &Mutex<SourceSet>,
     arguments: &Arguments,
@@ -203,7 +205,7 @@ fn one(
 /// Tolerances below WGSL's own bounds. This is not a failure, since a backend may well be more
 /// exact.
 fn print_spec(report: &Report, all: bool) -> Result<(), Failure> {
-    let lines = stricter(report);
+    let lines = stricter_cases(report);
     match (all, lines.lines().count()) {
         (_, 0) => {}
         (true, _) => write!(stdout(), "{lines}")?,
@@ -219,7 +221,7 @@ fn print_spec(report: &Report, all: bool) -> Result<(), Failure> {
     Ok(())
 }
 
-fn selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
+fn parse_selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
     let here =
         project::package_above(Path::new("")).map(|root| root.to_string_lossy().into_owned());
     let default: Vec<String> = here.into_iter().filter(|_| arguments.path.is_empty()).collect();
@@ -232,7 +234,7 @@ fn selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
         let languages = LANGUAGES
             .iter()
             .map(|(language, _)| *language)
-            .filter(|language| asked(arguments, *language))
+            .filter(|language| is_asked(arguments, *language))
             .collect();
         selections.push(Selection { library, root: None, files, languages });
     }
@@ -248,14 +250,14 @@ fn selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
 const LANGUAGES: [(Language, &[&str]); 2] =
     [(Language::Wesl, &["wesl", "wgsl"]), (Language::Glsl, &["glsl"])];
 
-fn asked(arguments: &Arguments, language: Language) -> bool {
+fn is_asked(arguments: &Arguments, language: Language) -> bool {
     arguments.lang.is_none_or(|name| Language::from(name) == language)
 }
 
 /// The user's case files: the file itself, that of a module, or all below a folder.
 fn case_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
     if path.is_dir() {
-        let disk = Disk::new(path).map_err(|error| unreadable(path, &error))?;
+        let disk = Disk::new(path).map_err(|error| unreadable_file(path, &error))?;
         let found: Vec<PathBuf> = Library::new("", Arc::new(disk), Vec::new())
             .case_files()
             .iter()
@@ -295,7 +297,7 @@ fn add_own(
     };
     let languages: Vec<Language> = LANGUAGES
         .iter()
-        .filter(|(language, extensions)| asked(arguments, *language) && present(extensions))
+        .filter(|(language, extensions)| is_asked(arguments, *language) && present(extensions))
         .map(|(language, _)| *language)
         .collect();
     if languages.is_empty() {
@@ -307,7 +309,7 @@ fn add_own(
     match selections.iter_mut().find(same) {
         Some(selection) => selection.files.push(path),
         None => selections.push(Selection {
-            library: package(&root)?.with_settings(arguments.settings(&root)?),
+            library: open_package(&root)?.with_settings(arguments.settings(&root)?),
             root: Some(root),
             files: vec![path],
             languages,
@@ -336,7 +338,7 @@ fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Fa
             let known: Vec<String> =
                 files.iter().map(|file| stem(file).replace('/', "::")).collect();
             let asked = wanted.replace('/', "::");
-            let near = nearest(&asked, known.iter().map(String::as_str));
+            let near = nearest_name(&asked, known.iter().map(String::as_str));
             let near = near.map_or(String::new(), |near| format!("\nhelp: did you mean `{near}`?"));
             return Err(Failure::input(format!(
                 "`{path}` is neither a file nor a module of the library with numeric cases{near}"
@@ -348,7 +350,7 @@ fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Fa
 }
 
 /// The user's package with what it may import.
-fn package(root: &Path) -> Result<Library, Failure> {
+fn open_package(root: &Path) -> Result<Library, Failure> {
     let mut sources = SourceSet::default();
     let packages = project::packages(root, &mut sources)
         .map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
@@ -359,6 +361,6 @@ fn package(root: &Path) -> Result<Library, Failure> {
     Ok(Library::new(&name, Arc::from(packages.root.files), dependencies))
 }
 
-fn unreadable(path: &Path, error: &std::io::Error) -> Failure {
+fn unreadable_file(path: &Path, error: &std::io::Error) -> Failure {
     Failure::input(format!("cannot read `{}`: {error}", path.display()))
 }

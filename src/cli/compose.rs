@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure};
 use super::input::Input;
-use super::terminal::data;
+use super::terminal::write_data;
 use crate::source::SourceSet;
 
 /// Print a root module and everything that it uses as one text.
@@ -18,7 +18,7 @@ pub struct Arguments {
     input: Input,
 }
 
-pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+pub fn run_compose(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let ready = arguments.input.compose(&arguments.file, SourceSet::default(), form)?;
-    Ok(data(ready.composed.text.as_bytes())?)
+    Ok(write_data(ready.composed.text.as_bytes())?)
 }

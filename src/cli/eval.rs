@@ -6,12 +6,12 @@ use std::sync::Mutex;
 use clap::Args;
 
 use super::executor;
-use super::failure::{DiagnosticForm, Failure, warn};
+use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::input::LanguageName;
 use super::own::Own;
 use crate::cli::terminal::stdout;
 use crate::execute::{Session, on_thread};
-use crate::proof::expression::evaluate;
+use crate::proof::expression::evaluate_expression;
 use crate::proof::library::Library;
 use crate::source::SourceSet;
 
@@ -31,18 +31,18 @@ pub struct Arguments {
     expressions: Vec<String>,
 }
 
-pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+pub fn run_eval(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     on_thread(|| evaluate_all(&arguments, form)).unwrap_or_else(|| {
         Err(Failure::environment("the evaluation stopped with an internal error"))
     })
 }
 
 fn evaluate_all(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failure> {
-    let mut session = executor::open(executor::find(&arguments.executor)?)?;
+    let mut session = executor::open_executor(executor::find_executor(&arguments.executor)?)?;
     let library = arguments.own.library()?;
     let mut failed = false;
     let mut one = |text: &str, session: &mut dyn Session| -> Result<(), Failure> {
-        failed |= !print(&library, text, arguments.lang, session, form)?;
+        failed |= !print_value(&library, text, arguments.lang, session, form)?;
         Ok(())
     };
     if arguments.expressions.is_empty() {
@@ -61,7 +61,7 @@ fn evaluate_all(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failu
 
 /// Prints one line for each expression. An expression without a value gives an empty line, and
 /// diagnostics.
-fn print(
+fn print_value(
     library: &Library,
     text: &str,
     language: LanguageName,
@@ -69,14 +69,14 @@ fn print(
     form: DiagnosticForm,
 ) -> Result<bool, Failure> {
     let sources = Mutex::new(SourceSet::default());
-    match evaluate(library, &sources, text.trim(), language.into(), session) {
+    match evaluate_expression(library, &sources, text.trim(), language.into(), session) {
         Ok(value) => {
             writeln!(stdout(), "{value}")?;
             Ok(true)
         }
         Err(diagnostics) => {
             writeln!(stdout())?;
-            warn(&sources.into_inner().unwrap_or_default(), &diagnostics, form);
+            print_warnings(&sources.into_inner().unwrap_or_default(), &diagnostics, form);
             Ok(false)
         }
     }

@@ -5,30 +5,33 @@ use crate::execute::Session;
 use crate::execute::executors::{self, Entry};
 
 /// The executor of that name.
-pub fn find(name: &str) -> Result<&'static Entry, Failure> {
-    executors::find(name).ok_or_else(|| {
-        Failure::usage(format!("there is no executor `{name}` (executors: {})", names(|_| true)))
+pub fn find_executor(name: &str) -> Result<&'static Entry, Failure> {
+    executors::find_executor(name).ok_or_else(|| {
+        Failure::usage(format!(
+            "there is no executor `{name}` (executors: {})",
+            executor_names(|_| true)
+        ))
     })
 }
 
 /// The executor of that name, which must draw frames.
 pub fn find_drawing(name: &str) -> Result<&'static Entry, Failure> {
-    let entry = find(name)?;
+    let entry = find_executor(name)?;
     match entry.samples {
         Some(_) => Ok(entry),
         None => Err(Failure::usage(format!(
             "`{name}` draws no pictures (executors that do: {})",
-            names(|entry| entry.samples.is_some())
+            executor_names(|entry| entry.samples.is_some())
         ))),
     }
 }
 
 /// Opens an executor.
-pub fn open(entry: &Entry) -> Result<Box<dyn Session>, Failure> {
+pub fn open_executor(entry: &Entry) -> Result<Box<dyn Session>, Failure> {
     entry.start().map_err(Failure::environment)
 }
 
-fn names(wanted: impl Fn(&Entry) -> bool) -> String {
+fn executor_names(wanted: impl Fn(&Entry) -> bool) -> String {
     let names: Vec<&str> =
         executors::ALL.iter().filter(|entry| wanted(entry)).map(|entry| entry.name).collect();
     names.join(", ")

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::terminal::stdout;
-use crate::diagnostic::{codes, guide, nearest};
+use crate::diagnostic::{codes, guide, nearest_name};
 
 /// Explain the code of a diagnostic, or list all codes.
 #[derive(Args)]
@@ -15,16 +15,16 @@ pub struct Arguments {
     code: Option<String>,
 }
 
-pub fn run(arguments: Arguments) -> Result<(), Failure> {
+pub fn run_explain(arguments: Arguments) -> Result<(), Failure> {
     match arguments.code {
-        Some(name) => explain(&name),
-        None => list(),
+        Some(name) => explain_code(&name),
+        None => list_codes(),
     }
 }
 
-fn explain(name: &str) -> Result<(), Failure> {
+fn explain_code(name: &str) -> Result<(), Failure> {
     let Some(code) = codes::find(name) else {
-        let hint = nearest(name, codes::ALL.iter().map(|code| code.name))
+        let hint = nearest_name(name, codes::ALL.iter().map(|code| code.name))
             .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         return Err(Failure::input(format!("no diagnostic has the code `{name}`{hint}")));
     };
@@ -35,7 +35,7 @@ fn explain(name: &str) -> Result<(), Failure> {
     }
 }
 
-fn list() -> Result<(), Failure> {
+fn list_codes() -> Result<(), Failure> {
     let width = codes::ALL.iter().map(|code| code.name.len()).max().unwrap_or(0);
     for code in codes::ALL {
         writeln!(stdout(), "{:width$}  {}", code.name, code.title)?;

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::ValueEnum;
 
 use super::guide;
-use crate::cli::terminal::{coloured, escaped, is_person, stderr};
+use crate::cli::terminal::{coloured_stderr, escape_text, is_person, stderr};
 use crate::diagnostic::render::{Form, render};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::SourceSet;
@@ -50,16 +50,16 @@ impl Failure {
             Self::Input(sources, diagnostics)
                 if diagnostics.iter().any(|error| error.code == codes::BUNDLE_FAILED) =>
             {
-                warn(&sources, &diagnostics, form);
+                print_warnings(&sources, &diagnostics, form);
                 let _ = writeln!(stderr(), "error: cannot write the bundle");
                 ExitCode::from(4)
             }
             Self::Input(sources, diagnostics) => {
-                explain(&sources, &diagnostics, form);
+                explain_diagnostics(&sources, &diagnostics, form);
                 ExitCode::from(1)
             }
             Self::Check(sources, diagnostics) => {
-                explain(&sources, &diagnostics, form);
+                explain_diagnostics(&sources, &diagnostics, form);
                 ExitCode::from(3)
             }
             Self::Message(code, message) => {
@@ -69,8 +69,8 @@ impl Failure {
                         writeln!(stderr(), "error: {message}")
                     }
                     DiagnosticForm::Coloured => {
-                        let message = escaped(&message);
-                        writeln!(coloured(), "\x1b[1;31merror\x1b[0m: {message}")
+                        let message = escape_text(&message);
+                        writeln!(coloured_stderr(), "\x1b[1;31merror\x1b[0m: {message}")
                     }
                 };
                 ExitCode::from(code)
@@ -80,8 +80,8 @@ impl Failure {
 }
 
 /// Prints diagnostics, and for people where to read on.
-fn explain(sources: &SourceSet, diagnostics: &[Diagnostic], form: DiagnosticForm) {
-    warn(sources, diagnostics, form);
+fn explain_diagnostics(sources: &SourceSet, diagnostics: &[Diagnostic], form: DiagnosticForm) {
+    print_warnings(sources, diagnostics, form);
     let reading = guide::after_errors(diagnostics);
     if let (Some(reading), DiagnosticForm::Human | DiagnosticForm::Coloured) = (reading, form) {
         let _ = stderr().write_all(reading.as_bytes());
@@ -104,11 +104,11 @@ impl From<io::Error> for Failure {
 }
 
 /// Prints diagnostics, whether or not they stop the command.
-pub fn warn(sources: &SourceSet, diagnostics: &[Diagnostic], form: DiagnosticForm) {
+pub fn print_warnings(sources: &SourceSet, diagnostics: &[Diagnostic], form: DiagnosticForm) {
     let text = render(sources, diagnostics, form.into());
     let _ = match form {
         // Control characters were removed from quoted text before.
-        DiagnosticForm::Coloured => coloured().write_all(text.as_bytes()),
+        DiagnosticForm::Coloured => coloured_stderr().write_all(text.as_bytes()),
         _ => stderr().write_all(text.as_bytes()),
     };
 }

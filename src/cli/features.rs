@@ -16,13 +16,13 @@ pub struct Arguments {
     features_default: Option<Undeclared>,
     /// The value of `constants::NAME` where no axis has the name: a literal of WGSL, whose suffix
     /// is its type, such as `4u`, `0.5f` or `true`.
-    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',', value_parser = named,
+    #[arg(long, value_name = "NAME=VALUE", value_delimiter = ',', value_parser = parse_constant,
         allow_hyphen_values = true)]
     constant: Vec<(String, String)>,
 }
 
 /// A constant as the option has it.
-fn named(text: &str) -> Result<(String, String), String> {
+fn parse_constant(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
     Ok((plain_name(name)?, constant::parse(value)?))
 }

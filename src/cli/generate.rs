@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::compile::{Wanted, clip, wanted, wanted_one};
+use super::compile::{Wanted, parse_clip, wanted_one, wanted_targets};
 use super::failure::{DiagnosticForm, Failure};
 use super::terminal::stdout;
 use super::work::{Places, Work};
@@ -30,7 +30,7 @@ pub struct Arguments {
     target: Vec<Wanted>,
     /// Clip space: `wgpu`, the same for all targets, or `native`, as each API has it [default: the
     /// manifest's].
-    #[arg(long, value_name = "SPACE", value_parser = clip)]
+    #[arg(long, value_name = "SPACE", value_parser = parse_clip)]
     clip: Option<Clip>,
     /// Compile only the k-th of n parts, which `lamplight merge` puts together.
     #[arg(long, value_name = "K/N")]
@@ -47,10 +47,10 @@ pub struct Arguments {
     json: bool,
 }
 
-pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+pub fn run_generate(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let start = Instant::now();
     let mut work = Work::open(&arguments.places)?;
-    let request = request(&arguments, &mut work.sources);
+    let request = make_request(&arguments, &mut work.sources);
     if arguments.validate {
         work.judge(&request)?;
     }
@@ -65,7 +65,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     Ok(write!(stdout(), "{summary}")?)
 }
 
-fn request(arguments: &Arguments, sources: &mut SourceSet) -> Request {
+fn make_request(arguments: &Arguments, sources: &mut SourceSet) -> Request {
     let only = arguments.only.as_ref().map(|key| {
         let id = sources.add("--only", key.as_str());
         Quoted::whole(sources, id)
@@ -73,7 +73,7 @@ fn request(arguments: &Arguments, sources: &mut SourceSet) -> Request {
     Request {
         program: arguments.program.clone(),
         only,
-        targets: wanted(&arguments.target),
+        targets: wanted_targets(&arguments.target),
         clip: arguments.clip,
         shard: arguments.shard,
     }

@@ -16,7 +16,7 @@ struct Entry {
     examples: &'static [&'static str],
 }
 
-const fn entry(
+const fn guide_entry(
     command: &'static str,
     page: &'static str,
     examples: &'static [&'static str],
@@ -30,15 +30,19 @@ const MANIFEST: &str = "Axes, constraints and the manifest";
 const CASES: &str = "Numeric cases";
 
 const ENTRIES: &[Entry] = &[
-    entry("init", PACKAGE, &["lamplight init lamps"]),
-    entry("list", FIRST, &["lamplight list", "lamplight list axes --json"]),
-    entry("show", FIRST, &["lamplight show brdf::specular::blinn_phong", "lamplight show fresnel"]),
-    entry(
+    guide_entry("init", PACKAGE, &["lamplight init lamps"]),
+    guide_entry("list", FIRST, &["lamplight list", "lamplight list axes --json"]),
+    guide_entry(
+        "show",
+        FIRST,
+        &["lamplight show brdf::specular::blinn_phong", "lamplight show fresnel"],
+    ),
+    guide_entry(
         "compose",
         "Conditions and constants",
         &["lamplight compose shaders/lamp.wesl --set fog=true"],
     ),
-    entry(
+    guide_entry(
         "compile",
         PACKAGE,
         &[
@@ -47,21 +51,25 @@ const ENTRIES: &[Entry] = &[
             "lamplight compile - --lang wesl --target wgsl --feature fog < shaders/lamp.wesl",
         ],
     ),
-    entry("lint", PACKAGE, &["lamplight lint", "lamplight lint shaders/lamp.wesl"]),
-    entry("migrate", "From naga_oil", &["lamplight migrate --from naga_oil old -o new"]),
-    entry(
+    guide_entry("lint", PACKAGE, &["lamplight lint", "lamplight lint shaders/lamp.wesl"]),
+    guide_entry("migrate", "From naga_oil", &["lamplight migrate --from naga_oil old -o new"]),
+    guide_entry(
         "gen",
         MANIFEST,
         &["lamplight gen", "lamplight gen --check", "lamplight gen -o lamp.lamplight"],
     ),
-    entry(
+    guide_entry(
         "merge",
         "Many machines",
         &["lamplight gen --shard 1/1 -o part && lamplight merge whole part"],
     ),
-    entry("variants", MANIFEST, &["lamplight variants", "lamplight variants --keys lamp"]),
-    entry("watch", "Hot reload", &["lamplight watch", "lamplight watch --program lamp --key fog"]),
-    entry(
+    guide_entry("variants", MANIFEST, &["lamplight variants", "lamplight variants --keys lamp"]),
+    guide_entry(
+        "watch",
+        "Hot reload",
+        &["lamplight watch", "lamplight watch --program lamp --key fog"],
+    ),
+    guide_entry(
         "bundle",
         "Bundles",
         &[
@@ -69,8 +77,8 @@ const ENTRIES: &[Entry] = &[
             "lamplight bundle get bundle lamp fs_main fog --target msl",
         ],
     ),
-    entry("keys", "In an engine", &["lamplight keys --lang rust"]),
-    entry(
+    guide_entry("keys", "In an engine", &["lamplight keys --lang rust"]),
+    guide_entry(
         "eval",
         FIRST,
         &[
@@ -78,28 +86,28 @@ const ENTRIES: &[Entry] = &[
             "lamplight eval 'package::falloff::falloff(1.0, 2.0)'",
         ],
     ),
-    entry(
+    guide_entry(
         "check",
         CASES,
         &["lamplight check", "lamplight check shaders/falloff.toml --report report"],
     ),
-    entry("catalogue", FIRST, &["lamplight catalogue -o catalogue"]),
-    entry(
+    guide_entry("catalogue", FIRST, &["lamplight catalogue -o catalogue"]),
+    guide_entry(
         "render",
         FIRST,
         &["lamplight render hpg_4_spot --executor eval --size 32x32 -o spot.png"],
     ),
-    entry("mutate", CASES, &[]),
-    entry("export", "WESL without this tool", &["lamplight export shaders/lamplight"]),
-    entry(
+    guide_entry("mutate", CASES, &[]),
+    guide_entry("export", "WESL without this tool", &["lamplight export shaders/lamplight"]),
+    guide_entry(
         "explain",
         "Troubleshooting by diagnostic",
         &["lamplight explain missing-module", "lamplight explain"],
     ),
-    entry("lsp", "In an editor", &["lamplight lsp < /dev/null"]),
-    entry("completions", FIRST, &["lamplight completions bash > lamplight.bash"]),
-    entry("man", FIRST, &["lamplight man -o man", "lamplight man gen"]),
-    entry("cost", "Cost on GPUs", &["lamplight cost lighting::spot --gpu navi21"]),
+    guide_entry("lsp", "In an editor", &["lamplight lsp < /dev/null"]),
+    guide_entry("completions", FIRST, &["lamplight completions bash > lamplight.bash"]),
+    guide_entry("man", FIRST, &["lamplight man -o man", "lamplight man gen"]),
+    guide_entry("cost", "Cost on GPUs", &["lamplight cost lighting::spot --gpu navi21"]),
 ];
 
 /// Codes that one line names.
@@ -109,11 +117,11 @@ const CODES: usize = 3;
 pub fn in_help(command: Command) -> Command {
     command.mut_subcommands(|command| {
         let found = ENTRIES.iter().find(|entry| entry.command == command.get_name());
-        found.map_or(command.clone(), |entry| with(command, entry))
+        found.map_or(command.clone(), |entry| with_guide(command, entry))
     })
 }
 
-fn with(command: Command, entry: &Entry) -> Command {
+fn with_guide(command: Command, entry: &Entry) -> Command {
     let examples: String = entry.examples.iter().map(|example| format!("  {example}\n")).collect();
     let page = format!("Guide: {}", entry.page);
     let after = |before: Option<&clap::builder::StyledStr>, examples: &str| {
@@ -131,10 +139,10 @@ fn with(command: Command, entry: &Entry) -> Command {
 
 /// What to read about the errors, for a person at a terminal; `None` for a program.
 pub fn after_errors(diagnostics: &[Diagnostic]) -> Option<String> {
-    is_person().then(|| reading(diagnostics)).flatten()
+    is_person().then(|| what_to_read(diagnostics)).flatten()
 }
 
-fn reading(diagnostics: &[Diagnostic]) -> Option<String> {
+fn what_to_read(diagnostics: &[Diagnostic]) -> Option<String> {
     let errors = diagnostics.iter().filter(|error| error.severity == Severity::Error);
     let mut seen = BTreeSet::new();
     let codes: Vec<_> =

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::failure::{DiagnosticForm, Failure, warn};
+use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::{features, stream};
 use crate::bundle::{Clip, Language, Stage};
 use crate::compose::{self, Composed, Keep, Mangle, Options};
@@ -33,7 +33,7 @@ pub struct Input {
     #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = axis_value)]
     set: Vec<(String, Setting)>,
     /// Turn a feature on, or turn it off with `=false`.
-    #[arg(long, value_name = "NAME[=BOOL]", value_delimiter = ',', value_parser = feature)]
+    #[arg(long, value_name = "NAME[=BOOL]", value_delimiter = ',', value_parser = parse_feature)]
     feature: Vec<(String, Setting)>,
     #[command(flatten)]
     features: features::Arguments,
@@ -108,7 +108,7 @@ pub fn plain_name(name: &str) -> Result<String, String> {
 }
 
 /// A feature, on unless it says otherwise, as an option has it.
-pub fn feature(text: &str) -> Result<(String, Setting), String> {
+pub fn parse_feature(text: &str) -> Result<(String, Setting), String> {
     let (name, value) = text.split_once('=').unwrap_or((text, "true"));
     match Setting::parse(value) {
         value @ Setting::Bool(_) => Ok((plain_name(name)?, value)),
@@ -118,7 +118,7 @@ pub fn feature(text: &str) -> Result<(String, Setting), String> {
 
 /// The error about a permutation that breaks a constraint, labelled at the source that names all of
 /// its values.
-pub fn broken(
+pub fn broken_constraint(
     program: &Program,
     point: &Assignment,
     sources: &SourceSet,
@@ -197,8 +197,8 @@ impl Input {
         let mut project =
             opened.map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;
         let path = if stream::is_stream(file) {
-            let name = stream::name(language, self.stage.map(Stage::from));
-            let text = stream::read(file)?;
+            let name = stream::stream_name(language, self.stage.map(Stage::from));
+            let text = stream::read_stream(file)?;
             let below = project.packages.root.files;
             project.packages.root.files =
                 Box::new(stream::Overlay { below, name: name.clone(), text });
@@ -211,7 +211,7 @@ impl Input {
             .and_then(|path| self.compose_in(&mut project, &root, &path, language));
         match composed {
             Ok((composed, context)) => {
-                warn(&project.sources, &composed.warnings, form);
+                print_warnings(&project.sources, &composed.warnings, form);
                 Ok(Ready { sources: project.sources, composed, context })
             }
             Err(diagnostics) => Err(Failure::Input(project.sources, diagnostics)),
@@ -372,7 +372,7 @@ impl Input {
             self.set.iter().chain(of_axes).map(|(axis, value)| format!("{axis}={value}")).collect();
         let id = sources.add("--set", parts.join(","));
         let point = key::parse(&program.space, &Quoted::whole(sources, id))?;
-        let broken = broken(program, &point, sources, id)
+        let broken = broken_constraint(program, &point, sources, id)
             .into_iter()
             .map(|error| Diagnostic { severity: Severity::Warning, ..error });
         let mut settings = program.space.settings(&point);

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::failure::{DiagnosticForm, Failure, warn};
+use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::overwrite::Overwrite;
-use super::terminal::data;
+use super::terminal::write_data;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::input;
 use crate::keys::{self, LANGUAGES, Language};
@@ -23,7 +23,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     manifest: Option<PathBuf>,
     /// The language of the keys.
-    #[arg(long, value_name = "c|rust|ts", value_parser = language, required_unless_present = "lock")]
+    #[arg(long, value_name = "c|rust|ts", value_parser = find_language, required_unless_present = "lock")]
     lang: Option<&'static Language>,
     /// The file to write [default: standard output].
     #[arg(short, long, value_name = "FILE", requires = "lang")]
@@ -39,35 +39,41 @@ pub struct Arguments {
     overwrite: Overwrite,
 }
 
-fn language(name: &str) -> Result<&'static Language, String> {
+fn find_language(name: &str) -> Result<&'static Language, String> {
     let names: Vec<&str> = LANGUAGES.iter().map(|language| language.name).collect();
     keys::find(name).ok_or_else(|| format!("there are: {}", names.join(", ")))
 }
 
-pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+pub fn run_keys(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let named = arguments.manifest.clone().or_else(|| project::manifest_above(Path::new("")));
     if arguments.lock && named.is_none() {
         return Err(Failure::usage("`--lock` needs a manifest: add `--manifest FILE`"));
     }
-    let (mut sources, manifest) = open(named.as_deref())?;
-    warn(&sources, &manifest.warnings, form);
-    let lock = match named.as_deref().map(|path| lock(path, &arguments, &mut sources, &manifest)) {
-        Some(Err(diagnostics)) => return Err(Failure::Input(sources, diagnostics)),
-        found => found.and_then(Result::ok).flatten(),
-    };
+    let (mut sources, manifest) = open_manifest(named.as_deref())?;
+    print_warnings(&sources, &manifest.warnings, form);
+    let lock =
+        match named.as_deref().map(|path| read_lock(path, &arguments, &mut sources, &manifest)) {
+            Some(Err(diagnostics)) => return Err(Failure::Input(sources, diagnostics)),
+            found => found.and_then(Result::ok).flatten(),
+        };
     if let (Some(path), Some(lock), true) = (&named, &lock, arguments.lock) {
         // The file that is there was read as a lock file, so it may be replaced.
-        put(&project::lock_path(path), &lock.to_string(), arguments.check, Replace::Any)?;
+        write_or_check(
+            &project::lock_path(path),
+            &lock.to_string(),
+            arguments.check,
+            Replace::Any,
+        )?;
     }
     let Some(language) = arguments.lang else { return Ok(()) };
     let text = keys::write(&manifest, lock.as_ref(), language);
     match &arguments.out {
-        Some(path) => put(path, &text, arguments.check, arguments.overwrite.replace()),
-        None => Ok(data(text.as_bytes())?),
+        Some(path) => write_or_check(path, &text, arguments.check, arguments.overwrite.replace()),
+        None => Ok(write_data(text.as_bytes())?),
     }
 }
 
-fn open(path: Option<&Path>) -> Result<(SourceSet, Manifest), Failure> {
+fn open_manifest(path: Option<&Path>) -> Result<(SourceSet, Manifest), Failure> {
     let Some(path) = path else {
         return project::library_manifest()
             .map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics));
@@ -81,7 +87,7 @@ fn open(path: Option<&Path>) -> Result<(SourceSet, Manifest), Failure> {
 
 /// The lock from which numbers are written: the file beside the manifest. If it is to be written,
 /// what it lacks is added.
-fn lock(
+fn read_lock(
     path: &Path,
     arguments: &Arguments,
     sources: &mut SourceSet,
@@ -91,7 +97,7 @@ fn lock(
         return Ok(None);
     }
     let lock = project::lock(path, sources)?;
-    let whole = extended(&lock, manifest);
+    let whole = extended_lock(&lock, manifest);
     if arguments.lock || whole == lock {
         return Ok(Some(whole));
     }
@@ -102,18 +108,18 @@ fn lock(
     ])
 }
 
-fn extended(lock: &Lock, manifest: &Manifest) -> Lock {
+fn extended_lock(lock: &Lock, manifest: &Manifest) -> Lock {
     manifest
         .programs
         .iter()
         .fold(lock.clone(), |lock, program| lock.extended(&program.name, &program.space))
 }
 
-fn put(path: &Path, text: &str, check: bool, replace: Replace) -> Result<(), Failure> {
+fn write_or_check(path: &Path, text: &str, check: bool, replace: Replace) -> Result<(), Failure> {
     if !check {
         return Ok(output::write_file(path, text.as_bytes(), keys::is_written, replace)?);
     }
-    if input::read(path, text.len() as u64).is_ok_and(|known| known == text.as_bytes()) {
+    if input::read_file(path, text.len() as u64).is_ok_and(|known| known == text.as_bytes()) {
         return Ok(());
     }
     Err(Failure::check(format!(

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::failure::{DiagnosticForm, Failure, warn};
+use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::features;
-use super::input::{self, feature};
+use super::input::{self, parse_feature};
 use crate::cli::terminal::stdout;
 use crate::diagnostic::{Diagnostics, Severity};
 use crate::lint::{self, EXTENSIONS, Request};
@@ -24,13 +24,13 @@ pub struct Arguments {
     #[arg(long, value_name = "AXIS=VALUE", value_delimiter = ',', value_parser = input::axis_value)]
     set: Vec<(String, Setting)>,
     /// Turn a feature on, or turn it off with `=false`.
-    #[arg(long, value_name = "NAME[=BOOL]", value_delimiter = ',', value_parser = feature)]
+    #[arg(long, value_name = "NAME[=BOOL]", value_delimiter = ',', value_parser = parse_feature)]
     feature: Vec<(String, Setting)>,
     #[command(flatten)]
     features: features::Arguments,
 }
 
-pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+pub fn run_lint(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let (mut modules, mut errors, mut warnings) = (0, 0, 0);
     let settings = Settings {
         values: arguments.set.iter().chain(&arguments.feature).cloned().collect(),
@@ -39,13 +39,13 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
         ..Settings::default()
     };
     let mut last = SourceSet::default();
-    for (root, paths) in packages(&arguments.path)? {
+    for (root, paths) in packages_of(&arguments.path)? {
         let mut sources = SourceSet::default();
-        let found = match one(&root, &paths, &settings, &mut sources) {
+        let found = match lint_package(&root, &paths, &settings, &mut sources) {
             Ok(found) => found,
             Err(diagnostics) => lint::Linted { diagnostics, modules: 0 },
         };
-        warn(&sources, &found.diagnostics, form);
+        print_warnings(&sources, &found.diagnostics, form);
         let is_error = |severity| severity == Severity::Error;
         let count = found.diagnostics.iter().filter(|found| is_error(found.severity)).count();
         errors += count;
@@ -54,18 +54,18 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
         last = sources;
     }
     let counted = [(modules, "module"), (errors, "error"), (warnings, "warning")];
-    writeln!(stdout(), "{}", counted.map(|(count, what)| plural(count, what)).join(", "))?;
+    writeln!(stdout(), "{}", counted.map(|(count, what)| counted_words(count, what)).join(", "))?;
     // The errors have been printed already.
     if errors == 0 { Ok(()) } else { Err(Failure::Input(last, Vec::new())) }
 }
 
 /// `1 module`, `2 modules`.
-pub fn plural(count: usize, what: &str) -> String {
+pub fn counted_words(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// Roots of packages, each with what was asked for below it.
-fn packages(asked: &[PathBuf]) -> Result<Vec<(PathBuf, Vec<PathBuf>)>, Failure> {
+fn packages_of(asked: &[PathBuf]) -> Result<Vec<(PathBuf, Vec<PathBuf>)>, Failure> {
     let mut found: Vec<(PathBuf, Vec<PathBuf>)> = Vec::new();
     if asked.is_empty() {
         let here = project::package_above(Path::new(""));
@@ -94,7 +94,7 @@ fn packages(asked: &[PathBuf]) -> Result<Vec<(PathBuf, Vec<PathBuf>)>, Failure> 
     Ok(found)
 }
 
-fn one(
+fn lint_package(
     root: &Path,
     asked: &[PathBuf],
     settings: &Settings,

@@ -51,20 +51,26 @@ struct Table {
     things: Vec<Value>,
 }
 
-pub fn run(arguments: Arguments) -> Result<(), Failure> {
+pub fn run_list(arguments: Arguments) -> Result<(), Failure> {
     let table = match arguments.what {
-        What::Modules => modules(known(&arguments.own)?),
-        What::Functions => items(known(&arguments.own)?, Kind::Function, &["function", "summary"]),
-        What::Structs => items(known(&arguments.own)?, Kind::Struct, &["struct", "summary"]),
-        What::Constants => {
-            items(known(&arguments.own)?, Kind::Constant, &["constant", "wesl", "summary"])
+        What::Modules => module_table(known_modules(&arguments.own)?),
+        What::Functions => {
+            item_table(known_modules(&arguments.own)?, Kind::Function, &["function", "summary"])
         }
-        What::Programs => programs(all_programs(&arguments.own)?),
-        What::Axes => axes(&all_programs(&arguments.own)?),
-        What::Presets => presets()?,
-        What::Probes => probes()?,
-        What::Targets => targets(),
-        What::Executors => executors(),
+        What::Structs => {
+            item_table(known_modules(&arguments.own)?, Kind::Struct, &["struct", "summary"])
+        }
+        What::Constants => item_table(
+            known_modules(&arguments.own)?,
+            Kind::Constant,
+            &["constant", "wesl", "summary"],
+        ),
+        What::Programs => program_table(all_programs(&arguments.own)?),
+        What::Axes => axis_table(&all_programs(&arguments.own)?),
+        What::Presets => preset_table()?,
+        What::Probes => probe_table()?,
+        What::Targets => target_table(),
+        What::Executors => executor_table(),
     };
     let text = if arguments.json {
         format!("{:#}\n", Value::Array(table.things))
@@ -75,18 +81,18 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 }
 
 /// The modules of the user's own package, then those of the library.
-pub fn known(own: &Own) -> Result<Vec<catalogue::Module>, Failure> {
+pub fn known_modules(own: &Own) -> Result<Vec<catalogue::Module>, Failure> {
     let own = own.packages()?.map(|packages| catalogue::own_modules(&*packages.root.files));
-    Ok(own.into_iter().flatten().chain(catalogue::library()).collect())
+    Ok(own.into_iter().flatten().chain(catalogue::library_modules()).collect())
 }
 
 /// The programs of the user's own manifest, then those of the library.
 fn all_programs(own: &Own) -> Result<Vec<Program>, Failure> {
     let own = own.manifest()?.map_or(Vec::new(), |manifest| manifest.programs);
-    Ok(own.into_iter().chain(manifest()?.1.programs).collect())
+    Ok(own.into_iter().chain(own_manifest()?.1.programs).collect())
 }
 
-fn modules(known: Vec<catalogue::Module>) -> Table {
+fn module_table(known: Vec<catalogue::Module>) -> Table {
     let thing = |module: catalogue::Module| {
         json!({
             "module": module.path,
@@ -102,7 +108,7 @@ fn modules(known: Vec<catalogue::Module>) -> Table {
     }
 }
 
-fn items(known: Vec<catalogue::Module>, kind: Kind, shown: &'static [&'static str]) -> Table {
+fn item_table(known: Vec<catalogue::Module>, kind: Kind, shown: &'static [&'static str]) -> Table {
     let items = known.into_iter().flat_map(|module| module.items).filter(|item| item.kind == kind);
     let thing = |item: catalogue::Item| {
         json!({
@@ -117,12 +123,12 @@ fn items(known: Vec<catalogue::Module>, kind: Kind, shown: &'static [&'static st
     Table { shown, things: items.map(thing).collect() }
 }
 
-fn programs(programs: Vec<Program>) -> Table {
+fn program_table(programs: Vec<Program>) -> Table {
     let things = programs.into_iter().map(|program| {
         json!({
             "program": program.name,
             "axes": program.space.axes().len(),
-            "permutations": count(program.space.count()),
+            "permutations": count_json(program.space.count()),
             "targets": program.targets.iter().map(|target| target.name()).collect::<Vec<_>>(),
             "files": program.files().map(|file| file.path.clone()).collect::<Vec<_>>(),
             "summary": program.doc,
@@ -131,22 +137,22 @@ fn programs(programs: Vec<Program>) -> Table {
     Table { shown: &["program", "axes", "permutations", "targets"], things: things.collect() }
 }
 
-fn axes(programs: &[Program]) -> Table {
+fn axis_table(programs: &[Program]) -> Table {
     let things = programs.iter().flat_map(|program| {
         program.space.axes().iter().map(|axis| super::show::axis_json(&program.name, axis))
     });
     Table { shown: &["program", "axis", "mode", "default", "values"], things: things.collect() }
 }
 
-fn presets() -> Result<Table, Failure> {
-    let (mut sources, manifest) = manifest()?;
-    let (presets, _) = catalogue::examples(&mut sources, &manifest)
+fn preset_table() -> Result<Table, Failure> {
+    let (mut sources, manifest) = own_manifest()?;
+    let (presets, _) = catalogue::library_examples(&mut sources, &manifest)
         .map_err(|problems| Failure::Input(sources, problems))?;
     let things = presets.iter().map(super::show::preset_json).collect();
     Ok(Table { shown: &["preset", "program", "scene", "key"], things })
 }
 
-fn probes() -> Result<Table, Failure> {
+fn probe_table() -> Result<Table, Failure> {
     let mut sources = SourceSet::default();
     let probes =
         probe::library(&mut sources).map_err(|problems| Failure::Input(sources, problems))?;
@@ -156,24 +162,24 @@ fn probes() -> Result<Table, Failure> {
     })
 }
 
-fn manifest() -> Result<(SourceSet, Manifest), Failure> {
+fn own_manifest() -> Result<(SourceSet, Manifest), Failure> {
     project::library_manifest()
         .map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))
 }
 
-fn targets() -> Table {
+fn target_table() -> Table {
     let things = targets::ALL.iter().map(|entry| {
         json!({
             "target": entry.target.name(),
             "extension": entry.extension,
-            "compiled": format!("*.{}", compile::ending(entry.target, "frag", entry.extension)),
+            "compiled": format!("*.{}", compile::file_ending(entry.target, "frag", entry.extension)),
             "summary": entry.about,
         })
     });
     Table { shown: &["target", "extension", "compiled", "summary"], things: things.collect() }
 }
 
-fn executors() -> Table {
+fn executor_table() -> Table {
     let things = executors::ALL.iter().map(
         |entry| json!({ "executor": entry.name, "needs": entry.needs, "draws": entry.samples.is_some(), "summary": entry.about }),
     );
@@ -181,12 +187,12 @@ fn executors() -> Table {
 }
 
 /// A count as a number, or as text beyond what JSON's readers keep exact.
-pub fn count(count: u128) -> Value {
+pub fn count_json(count: u128) -> Value {
     u64::try_from(count).map_or_else(|_| json!(count.to_string()), |count| json!(count))
 }
 
 /// A value of an axis, as what it is.
-pub fn setting(setting: &Setting) -> Value {
+pub fn setting_json(setting: &Setting) -> Value {
     match setting {
         Setting::Bool(value) => json!(value),
         Setting::Int(value) => json!(value),
@@ -198,16 +204,16 @@ fn as_text(table: &Table) -> String {
     let rows: Vec<Vec<String>> = table
         .things
         .iter()
-        .map(|thing| table.shown.iter().map(|key| cell(&thing[key])).collect())
+        .map(|thing| table.shown.iter().map(|key| cell_text(&thing[key])).collect())
         .collect();
-    text::table(table.shown, &rows)
+    text::table_text(table.shown, &rows)
 }
 
-fn cell(value: &Value) -> String {
+fn cell_text(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
         Value::String(text) => text.clone(),
-        Value::Array(values) => values.iter().map(cell).collect::<Vec<_>>().join(" "),
+        Value::Array(values) => values.iter().map(cell_text).collect::<Vec<_>>().join(" "),
         other => other.to_string(),
     }
 }

@@ -24,26 +24,26 @@ pub struct Arguments {}
 /// How long to wait for more keystrokes before looking at documents.
 const PAUSE: Duration = Duration::from_millis(2);
 
-pub fn run(_: Arguments) -> Result<(), Failure> {
+pub fn run_lsp(_: Arguments) -> Result<(), Failure> {
     let (sender, receiver) = channel();
     // Reading goes on while documents are looked at, so that a keystroke is noticed at once.
     thread::spawn(move || {
         let mut stream = BufReader::new(stdin().lock());
-        while let Ok(incoming) = wire::read(&mut stream) {
+        while let Ok(incoming) = wire::read_message(&mut stream) {
             let is_end = matches!(incoming, Incoming::End);
             if sender.send(incoming).is_err() || is_end {
                 return;
             }
         }
     });
-    match serve(&receiver)? {
+    match serve_editor(&receiver)? {
         0 => Ok(()),
         _ => Err(Failure::input("the editor left without `shutdown`")),
     }
 }
 
 /// Answers until the editor leaves; returns the exit code that the protocol demands.
-fn serve(receiver: &Receiver<Incoming>) -> Result<u8, Failure> {
+fn serve_editor(receiver: &Receiver<Incoming>) -> Result<u8, Failure> {
     let mut server = Server::new(Box::new(library_file));
     let mut pause = PAUSE;
     loop {
@@ -54,20 +54,20 @@ fn serve(receiver: &Receiver<Incoming>) -> Result<u8, Failure> {
         let sent = match next {
             Ok(Incoming::Message(message)) => {
                 pause = PAUSE;
-                guarded(&mut server, &message, |server| server.receive(&message))
+                guard_request(&mut server, &message, |server| server.receive(&message))
             }
             Ok(Incoming::Malformed(answer)) => vec![answer],
             Ok(Incoming::End) | Err(RecvTimeoutError::Disconnected) => return Ok(0),
             Err(RecvTimeoutError::Timeout) => {
                 pause = Duration::ZERO;
-                guarded(&mut server, &Value::Null, Server::look)
+                guard_request(&mut server, &Value::Null, Server::look)
             }
         };
         for message in sent {
             let mut bytes = Vec::new();
-            wire::write(&mut bytes, &message)?;
-            terminal::data(&bytes)?;
-            terminal::flush()?;
+            wire::write_message(&mut bytes, &message)?;
+            terminal::write_data(&bytes)?;
+            terminal::flush_stdout()?;
         }
         if let Some(code) = server.exit {
             return Ok(code);
@@ -76,14 +76,14 @@ fn serve(receiver: &Receiver<Incoming>) -> Result<u8, Failure> {
 }
 
 /// A request that panics is answered with an error, and the server continues.
-fn guarded(
+fn guard_request(
     server: &mut Server,
     message: &Value,
     work: impl FnOnce(&mut Server) -> Vec<Value>,
 ) -> Vec<Value> {
     catch_unwind(AssertUnwindSafe(|| work(server))).unwrap_or_else(|_| {
         let id = message.get("id");
-        id.map(|id| wire::error(id, wire::FAILED, "internal error")).into_iter().collect()
+        id.map(|id| wire::error_message(id, wire::FAILED, "internal error")).into_iter().collect()
     })
 }
 

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::overwrite::{Overwrite, unwritable, waiting};
+use super::overwrite::{Overwrite, tell_waiting, write_failure};
 use super::terminal::stdout;
 use super::work::is_file;
 use crate::bundle::{self, Bundle, DirectoryWriter, Error, Language};
@@ -29,13 +29,13 @@ pub struct Arguments {
     overwrite: Overwrite,
 }
 
-pub fn run(arguments: Arguments) -> Result<(), Failure> {
+pub fn run_merge(arguments: Arguments) -> Result<(), Failure> {
     let inputs = arguments.inputs.iter().map(|path| {
         Bundle::open(path).map_err(|error| Failure::input(format!("`{}`: {error}", path.display())))
     });
     let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
     // Everything is checked before anything is written.
-    complete(&arguments, &inputs)?;
+    check_complete(&arguments, &inputs)?;
     for (path, bundle) in arguments.inputs.iter().zip(&inputs) {
         bundle
             .verify()
@@ -43,7 +43,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     }
     let failed = |error| match error {
         Error::Conflict(_) | Error::Corrupt { .. } => Failure::check(error.to_string()),
-        error => unwritable(&arguments.out, error),
+        error => write_failure(&arguments.out, error),
     };
     let replace = arguments.overwrite.replace();
     if is_file(&arguments.out) {
@@ -51,7 +51,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
             .and_then(|contents| bundle::replace_file(&contents, &arguments.out, replace))
             .map_err(failed)?;
     } else {
-        DirectoryWriter::take_over(&arguments.out, replace, &|| waiting(&arguments.out))
+        DirectoryWriter::take_over(&arguments.out, replace, &|| tell_waiting(&arguments.out))
             .and_then(|writer| bundle::merge_into(&inputs, writer))
             .map_err(failed)?;
     }
@@ -60,13 +60,13 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 
 /// Every permutation of the manifest is in every entry point of its program, in one of the
 /// bundles.
-fn complete(arguments: &Arguments, inputs: &[Bundle]) -> Result<(), Failure> {
+fn check_complete(arguments: &Arguments, inputs: &[Bundle]) -> Result<(), Failure> {
     let Some(path) = &arguments.manifest else { return Ok(()) };
     let mut sources = SourceSet::default();
     let manifest = project::read_manifest(path, &mut sources)
         .map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
     for program in &manifest.programs {
-        let found = keys(inputs, &program.name)
+        let found = keys_of_entries(inputs, &program.name)
             .map_err(|error| Failure::check(format!("program `{}`: {error}", program.name)))?;
         if found.is_empty() {
             return Err(Failure::check(format!("no bundle has program `{}`", program.name)));
@@ -86,7 +86,7 @@ fn complete(arguments: &Arguments, inputs: &[Bundle]) -> Result<(), Failure> {
 }
 
 /// The keys of each entry point of a program, by language and name, over all bundles.
-fn keys(
+fn keys_of_entries(
     inputs: &[Bundle],
     program: &str,
 ) -> Result<BTreeMap<(Language, String), BTreeSet<String>>, Error> {

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::failure::{DiagnosticForm, Failure, warn};
-use super::lint::plural;
+use super::failure::{DiagnosticForm, Failure, print_warnings};
+use super::lint::counted_words;
 use super::overwrite::Overwrite;
 use crate::cli::terminal::stdout;
 use crate::diagnostic::{Diagnostic, Severity, codes};
@@ -41,19 +41,19 @@ enum From {
 
 const WESL_TOML: &str = "wesl.toml";
 
-pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+pub fn run_migrate(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let From::NagaOil = arguments.from;
     let mut sources = SourceSet::default();
-    let (files, unread) = read(&arguments.folder, &mut sources)?;
+    let (files, unread) = read_shaders(&arguments.folder, &mut sources)?;
     let count = files.len();
     let mut migrated = migrate::naga_oil(&sources, &files);
     migrated.diagnostics.splice(0..0, unread);
     let out = arguments.out.as_ref().unwrap_or(&arguments.folder);
-    let (texts, declares) = texts(&migrated, out);
+    let (texts, declares) = written_texts(&migrated, out);
     let texts = texts.iter().map(|(path, text)| (path.as_str(), text.as_bytes()));
     output::write_folder(out, texts, arguments.overwrite.replace())?;
-    warn(&sources, &migrated.diagnostics, form);
-    summary(&migrated, count, declares)?;
+    print_warnings(&sources, &migrated.diagnostics, form);
+    print_summary(&migrated, count, declares)?;
     let is_error = |one: &Diagnostic| one.severity == Severity::Error;
     // What is wrong has been told.
     match migrated.diagnostics.iter().any(is_error) {
@@ -66,7 +66,10 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
 type Read = Vec<(String, source::SourceId)>;
 
 /// All shaders below a folder, and what could not be read.
-fn read(folder: &Path, sources: &mut SourceSet) -> Result<(Read, Vec<Diagnostic>), Failure> {
+fn read_shaders(
+    folder: &Path,
+    sources: &mut SourceSet,
+) -> Result<(Read, Vec<Diagnostic>), Failure> {
     let none = || Failure::input(format!("there is no folder `{}`", folder.display()));
     if !folder.is_dir() {
         return Err(none());
@@ -95,12 +98,12 @@ fn read(folder: &Path, sources: &mut SourceSet) -> Result<(Read, Vec<Diagnostic>
 }
 
 /// What is written, by path, and whether a `wesl.toml` is among it. One that is there stays.
-fn texts(migrated: &Migrated, out: &Path) -> (Vec<(String, String)>, bool) {
+fn written_texts(migrated: &Migrated, out: &Path) -> (Vec<(String, String)>, bool) {
     let wesl = |path: &String| format!("{}.wesl", path.strip_suffix(".wgsl").unwrap_or(path));
     let mut texts: Vec<(String, String)> =
         migrated.files.iter().map(|(path, text)| (wesl(path), text.clone())).collect();
     let own = wesl_toml(&BTreeSet::new());
-    let is_ours = crate::input::read(&out.join(WESL_TOML), FILE_BYTES as u64)
+    let is_ours = crate::input::read_file(&out.join(WESL_TOML), FILE_BYTES as u64)
         .is_ok_and(|text| text.starts_with(own.as_bytes()));
     let declares = is_ours || project::wesl_home(out).is_none();
     if declares {
@@ -115,9 +118,9 @@ fn wesl_toml(features: &BTreeSet<String>) -> String {
     features.iter().fold(head.to_owned(), |text, name| text + &format!("{name} = false\n"))
 }
 
-fn summary(migrated: &Migrated, count: usize, declares: bool) -> Result<(), Failure> {
+fn print_summary(migrated: &Migrated, count: usize, declares: bool) -> Result<(), Failure> {
     let mut out = stdout();
-    writeln!(out, "{} of {} migrated", migrated.files.len(), plural(count, "file"))?;
+    writeln!(out, "{} of {} migrated", migrated.files.len(), counted_words(count, "file"))?;
     let listed =
         |names: &BTreeSet<String>| names.iter().map(String::as_str).collect::<Vec<_>>().join(", ");
     if !declares && !migrated.features.is_empty() {

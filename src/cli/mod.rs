@@ -105,7 +105,7 @@ impl Command {
             Self::Render(arguments) => std::slice::from_ref(&arguments.executor),
             _ => &[],
         };
-        names.iter().filter_map(|name| executors::find(name)).collect()
+        names.iter().filter_map(|name| executors::find_executor(name)).collect()
     }
 
     /// The GPUs that it asks for, opened while there is one thread.
@@ -122,7 +122,7 @@ impl Command {
 }
 
 /// The command line with examples and pages in its help.
-fn described() -> clap::Command {
+fn described_command() -> clap::Command {
     guide::in_help(Cli::command()).color(asked_for_colour())
 }
 
@@ -144,16 +144,16 @@ fn asked_for_colour() -> clap::ColorChoice {
 
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
-    let matches = described().try_get_matches().unwrap_or_else(wrong_usage);
+    let matches = described_command().try_get_matches().unwrap_or_else(wrong_usage);
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(wrong_usage);
     // Done while there is only one thread.
-    executors::prepare(&cli.command.executors());
+    executors::prepare_process(&cli.command.executors());
     let gpus = cli.command.gpus();
     let form = cli.color.of(cli.diagnostics);
     if !matches!(cli.command, Command::Rehearse(_)) {
-        rehearse::install();
+        rehearse::install_rehearsal();
     }
-    match dispatch(cli.command, gpus, form) {
+    match dispatch_command(cli.command, gpus, form) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(form),
     }
@@ -174,42 +174,44 @@ fn wrong_usage<T>(error: clap::Error) -> T {
     };
     let text = error.render();
     let _ = match in_colour {
-        true => write!(terminal::coloured(), "{}", text.ansi()),
+        true => write!(terminal::coloured_stderr(), "{}", text.ansi()),
         false => write!(terminal::stderr(), "{text}"),
     };
     std::process::exit(error.exit_code())
 }
 
-fn dispatch(
+fn dispatch_command(
     command: Command,
     gpus: cost::Opened,
     form: failure::DiagnosticForm,
 ) -> Result<(), Failure> {
     match command {
-        Command::Init(arguments) => init::run(arguments),
-        Command::List(arguments) => list::run(arguments),
-        Command::Show(arguments) => show::run(arguments),
-        Command::Compose(arguments) => compose::run(arguments, form),
-        Command::Compile(arguments) => compile::run(arguments, form),
-        Command::Lint(arguments) => lint::run(arguments, form),
-        Command::Migrate(arguments) => migrate::run(arguments, form),
-        Command::Gen(arguments) => generate::run(arguments, form),
-        Command::Merge(arguments) => merge::run(arguments),
-        Command::Variants(arguments) => variants::run(arguments, gpus, form),
-        Command::Watch(arguments) => watch::run(arguments, form),
-        Command::Bundle(arguments) => bundle::run(arguments),
-        Command::Keys(arguments) => keys::run(arguments, form),
-        Command::Eval(arguments) => eval::run(arguments, form),
-        Command::Check(arguments) => check::run(arguments),
-        Command::Catalogue(arguments) => catalogue::run(arguments, gpus),
-        Command::Render(arguments) => render::run(arguments, form),
-        Command::Cost(arguments) => cost::run(arguments, gpus, form),
-        Command::Mutate(arguments) => mutate::run(arguments),
-        Command::Rehearse(arguments) => rehearse::run(arguments),
-        Command::Export(arguments) => export::run(arguments),
-        Command::Explain(arguments) => explain::run(arguments),
-        Command::Lsp(arguments) => lsp::run(arguments),
-        Command::Completions(arguments) => completions::completions(&arguments, described()),
-        Command::Man(arguments) => completions::manual(&arguments, described()),
+        Command::Init(arguments) => init::run_init(arguments),
+        Command::List(arguments) => list::run_list(arguments),
+        Command::Show(arguments) => show::run_show(arguments),
+        Command::Compose(arguments) => compose::run_compose(arguments, form),
+        Command::Compile(arguments) => compile::run_compile(arguments, form),
+        Command::Lint(arguments) => lint::run_lint(arguments, form),
+        Command::Migrate(arguments) => migrate::run_migrate(arguments, form),
+        Command::Gen(arguments) => generate::run_generate(arguments, form),
+        Command::Merge(arguments) => merge::run_merge(arguments),
+        Command::Variants(arguments) => variants::run_variants(arguments, gpus, form),
+        Command::Watch(arguments) => watch::run_watch(arguments, form),
+        Command::Bundle(arguments) => bundle::run_bundle(arguments),
+        Command::Keys(arguments) => keys::run_keys(arguments, form),
+        Command::Eval(arguments) => eval::run_eval(arguments, form),
+        Command::Check(arguments) => check::run_check(arguments),
+        Command::Catalogue(arguments) => catalogue::run_catalogue(arguments, gpus),
+        Command::Render(arguments) => render::run_render(arguments, form),
+        Command::Cost(arguments) => cost::run_cost(arguments, gpus, form),
+        Command::Mutate(arguments) => mutate::run_mutate(arguments),
+        Command::Rehearse(arguments) => rehearse::run_rehearsal(arguments),
+        Command::Export(arguments) => export::run_export(arguments),
+        Command::Explain(arguments) => explain::run_explain(arguments),
+        Command::Lsp(arguments) => lsp::run_lsp(arguments),
+        Command::Completions(arguments) => {
+            completions::write_completions(&arguments, described_command())
+        }
+        Command::Man(arguments) => completions::write_manual(&arguments, described_command()),
     }
 }

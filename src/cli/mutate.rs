@@ -9,7 +9,7 @@ use clap::Args;
 use super::failure::Failure;
 use super::terminal::stdout;
 use crate::proof::library::Library;
-use crate::proof::mutate::{coverage, mutate};
+use crate::proof::mutate::{measure_coverage, run_mutants};
 use crate::source::{Disk, SourceSet};
 
 /// Put mistakes into functions, one at a time, and see whether the numeric cases notice.
@@ -25,13 +25,17 @@ pub struct Arguments {
     coverage: bool,
 }
 
-pub fn run(arguments: Arguments) -> Result<(), Failure> {
-    let library = library(&arguments)?;
-    let modules = modules(&library, &arguments.module)?;
-    if arguments.coverage { cover(&library, &modules) } else { survive(&library, &modules) }
+pub fn run_mutate(arguments: Arguments) -> Result<(), Failure> {
+    let library = open_library(&arguments)?;
+    let modules = asked_modules(&library, &arguments.module)?;
+    if arguments.coverage {
+        print_coverage(&library, &modules)
+    } else {
+        print_survivors(&library, &modules)
+    }
 }
 
-fn library(arguments: &Arguments) -> Result<Library, Failure> {
+fn open_library(arguments: &Arguments) -> Result<Library, Failure> {
     let Some(root) = &arguments.root else { return Ok(Library::embedded()) };
     let disk = Disk::new(root)
         .map_err(|error| Failure::input(format!("cannot read `{}`: {error}", root.display())))?;
@@ -39,7 +43,7 @@ fn library(arguments: &Arguments) -> Result<Library, Failure> {
 }
 
 /// The modules of those paths, or below them.
-fn modules(library: &Library, asked: &[String]) -> Result<Vec<String>, Failure> {
+fn asked_modules(library: &Library, asked: &[String]) -> Result<Vec<String>, Failure> {
     let all = library.modules();
     let below = |module: &str, path: &str| {
         module.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
@@ -53,9 +57,9 @@ fn modules(library: &Library, asked: &[String]) -> Result<Vec<String>, Failure> 
         .collect())
 }
 
-fn survive(library: &Library, modules: &[String]) -> Result<(), Failure> {
+fn print_survivors(library: &Library, modules: &[String]) -> Result<(), Failure> {
     let sources = Mutex::new(SourceSet::default());
-    let report = mutate(library, &sources, modules);
+    let report = run_mutants(library, &sources, modules);
     let report = report.map_err(|diagnostics| {
         Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics)
     })?;
@@ -70,9 +74,9 @@ fn survive(library: &Library, modules: &[String]) -> Result<(), Failure> {
     if report.passed() { Ok(()) } else { Err(Failure::check("the cases notice too few mistakes")) }
 }
 
-fn cover(library: &Library, modules: &[String]) -> Result<(), Failure> {
+fn print_coverage(library: &Library, modules: &[String]) -> Result<(), Failure> {
     let sources = Mutex::new(SourceSet::default());
-    let found = coverage(library, &sources, modules);
+    let found = measure_coverage(library, &sources, modules);
     let found = found.map_err(|diagnostics| {
         Failure::Input(sources.into_inner().unwrap_or_default(), diagnostics)
     })?;

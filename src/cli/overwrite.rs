@@ -46,12 +46,12 @@ impl From<Error> for Failure {
 }
 
 /// Says why nothing happens for the moment.
-pub fn waiting(out: &Path) {
+pub fn tell_waiting(out: &Path) {
     let _ = writeln!(stderr(), "waiting for another run that writes `{}`", out.display());
 }
 
 /// A bundle that could not be written.
-pub fn unwritable(out: &Path, error: bundle::Error) -> Failure {
+pub fn write_failure(out: &Path, error: bundle::Error) -> Failure {
     match error {
         bundle::Error::Foreign(foreign) => foreign.into(),
         error => Failure::environment(format!("cannot write `{}`: {error}", out.display())),

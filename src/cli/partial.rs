@@ -9,11 +9,11 @@ use crate::generate::Request;
 use crate::permute::{Manifest, Program};
 
 /// Fails if the bundle at `out` has a program whole and the run would leave a part of it.
-pub fn refuse(manifest: &Manifest, request: &Request, out: &Path) -> Result<(), Failure> {
+pub fn refuse_partial(manifest: &Manifest, request: &Request, out: &Path) -> Result<(), Failure> {
     let Ok(there) = Bundle::open(out) else { return Ok(()) };
     for program in &manifest.programs {
         let Ok(known) = there.program(&program.name) else { continue };
-        let Ok(Some(targets)) = whole(&known, program) else { continue };
+        let Ok(Some(targets)) = targets_of_whole(&known, program) else { continue };
         let (all, made) = (program.space.count(), asked_for(request, program));
         let is_lost = |target: &&String| {
             let is = |one: &bundle::Target| one.name() == **target;
@@ -37,7 +37,7 @@ pub fn refuse(manifest: &Manifest, request: &Request, out: &Path) -> Result<(), 
 }
 
 /// The targets of a program of which the bundle has every permutation.
-fn whole(
+fn targets_of_whole(
     known: &bundle::Program<'_>,
     program: &Program,
 ) -> Result<Option<BTreeSet<String>>, bundle::Error> {

@@ -25,20 +25,20 @@ const LONGEST: Duration = Duration::from_secs(12 * REHEARSAL_SECONDS);
 /// How many bytes of a process's error output are read.
 const WORDS: u64 = 64 << 10;
 
-/// Makes [`run`] in another process do the rehearsals of this one.
-pub fn install() {
+/// Makes [`run_rehearsal`] in another process do the rehearsals of this one.
+pub fn install_rehearsal() {
     run_by(in_a_child);
 }
 
 /// Runs in the other process: the job is on standard input.
-pub fn run(arguments: Arguments) -> Result<(), Failure> {
+pub fn run_rehearsal(arguments: Arguments) -> Result<(), Failure> {
     limited()?;
     let mut job = Vec::new();
     std::io::stdin().lock().read_to_end(&mut job)?;
     match arguments.stage.as_str() {
         validate::STAGE => {
             let job = serde_json::from_slice(&job);
-            link::perform(&job.map_err(|error| Failure::usage(error.to_string()))?);
+            link::perform_job(&job.map_err(|error| Failure::usage(error.to_string()))?);
         }
         scene::DECODER => drop(Equirect::from_radiance(&job)),
         other => return Err(Failure::usage(format!("there is no stage `{other}`"))),
@@ -98,13 +98,13 @@ fn in_a_child(stage: &str, job: &[u8]) -> Result<(), Exhausted> {
             }
             String::from_utf8_lossy(&words).into_owned()
         });
-        let status = ended(&mut child);
-        judged(status, &words.join().unwrap_or_default())
+        let status = exit_status(&mut child);
+        judge_exit(status, &words.join().unwrap_or_default())
     })
 }
 
 /// How a process ended by itself.
-fn ended(child: &mut Child) -> Option<ExitStatus> {
+fn exit_status(child: &mut Child) -> Option<ExitStatus> {
     let started = Instant::now();
     while started.elapsed() < LONGEST {
         match child.try_wait() {
@@ -118,7 +118,7 @@ fn ended(child: &mut Child) -> Option<ExitStatus> {
     None
 }
 
-fn judged(status: Option<ExitStatus>, words: &str) -> Result<(), Exhausted> {
+fn judge_exit(status: Option<ExitStatus>, words: &str) -> Result<(), Exhausted> {
     match status {
         Some(status) if status.success() => Ok(()),
         None => Err(Exhausted::Time),

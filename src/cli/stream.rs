@@ -18,7 +18,7 @@ pub fn is_stream(path: &Path) -> bool {
 }
 
 /// The text of a stream, as long as a file may be.
-pub fn read(path: &Path) -> Result<String, Failure> {
+pub fn read_stream(path: &Path) -> Result<String, Failure> {
     let most = LIMITS.file_bytes as u64;
     let mut bytes = Vec::new();
     if path.as_os_str() == STANDARD_INPUT {
@@ -41,7 +41,7 @@ pub fn read(path: &Path) -> Result<String, Failure> {
 }
 
 /// The name of a stream's module in its package, which tells the composer the stage of GLSL.
-pub fn name(language: Language, stage: Option<Stage>) -> String {
+pub fn stream_name(language: Language, stage: Option<Stage>) -> String {
     let stage = match stage {
         Some(Stage::Vertex) => ".vert",
         Some(Stage::Fragment) => ".frag",

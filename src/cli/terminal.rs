@@ -3,7 +3,7 @@
 //! What commands print holds names, paths and messages from elsewhere: a bundle's programs, a
 //! cached message, an argument that is echoed. A terminal obeys control characters, so such a name
 //! could hide lines, move the cursor or reverse the writing direction. Everything that is printed
-//! goes through [`Escaping`]. Bytes that are a result ([`data`]) do so only on a terminal, and are
+//! goes through [`Escaping`]. Bytes that are a result ([`write_data`]) do so only on a terminal, and are
 //! unchanged in pipes and files. No other file of the command line may name the streams of the
 //! standard library; `house::one_way_to_the_terminal` checks that.
 
@@ -22,12 +22,12 @@ pub fn stderr() -> Escaping<io::Stderr> {
 }
 
 /// Standard error, for text with colours of our own.
-pub fn coloured() -> Escaping<io::Stderr> {
+pub fn coloured_stderr() -> Escaping<io::Stderr> {
     Escaping { out: io::stderr(), has_colours: true, cut: Vec::new() }
 }
 
 /// Escapes text of somebody else, to be put into text of ours.
-pub fn escaped(text: &str) -> String {
+pub fn escape_text(text: &str) -> String {
     let mut bytes = Vec::new();
     // Writing to memory does not fail.
     let _ = Escaping::new(&mut bytes).write_all(text.as_bytes());
@@ -46,7 +46,7 @@ pub fn is_person() -> bool {
 
 /// Writes a result, such as a shader, byte by byte. If standard output is a terminal, it is
 /// escaped.
-pub fn data(bytes: &[u8]) -> io::Result<()> {
+pub fn write_data(bytes: &[u8]) -> io::Result<()> {
     match is_terminal() {
         true => stdout().write_all(bytes),
         false => io::stdout().write_all(bytes),
@@ -54,7 +54,7 @@ pub fn data(bytes: &[u8]) -> io::Result<()> {
 }
 
 /// Flushes standard output.
-pub fn flush() -> io::Result<()> {
+pub fn flush_stdout() -> io::Result<()> {
     io::stdout().flush()
 }
 
@@ -79,7 +79,7 @@ impl<W: Write> Escaping<W> {
         while let Some(at) = rest.find(is_obeyed) {
             let (before, after) = rest.split_at(at);
             self.out.write_all(before.as_bytes())?;
-            let colour = if self.has_colours { colour(after) } else { 0 };
+            let colour = if self.has_colours { colour_length(after) } else { 0 };
             if colour > 0 {
                 self.out.write_all(&after.as_bytes()[..colour])?;
                 rest = &after[colour..];
@@ -96,7 +96,7 @@ impl<W: Write> Escaping<W> {
 }
 
 /// Length of the sequence that chooses a colour, if the text begins with one.
-fn colour(text: &str) -> usize {
+fn colour_length(text: &str) -> usize {
     let Some(rest) = text.strip_prefix("\u{1b}[") else { return 0 };
     let end = rest.find(|letter: char| !(letter.is_ascii_digit() || letter == ';'));
     end.filter(|end| rest[*end..].starts_with('m')).map_or(0, |end| end + 3)
@@ -108,7 +108,7 @@ impl<W: Write> Write for Escaping<W> {
             true => bytes.to_vec(),
             false => [std::mem::take(&mut self.cut).as_slice(), bytes].concat(),
         };
-        let whole = whole(&joined);
+        let whole = whole_length(&joined);
         let text = String::from_utf8_lossy(&joined[..whole]).into_owned();
         self.text(&text)?;
         self.cut = joined[whole..].to_vec();
@@ -129,7 +129,7 @@ impl<W: Write> Drop for Escaping<W> {
 }
 
 /// Length of the bytes before a character that is cut at the end.
-fn whole(bytes: &[u8]) -> usize {
+fn whole_length(bytes: &[u8]) -> usize {
     let tail = bytes.len().saturating_sub(3);
     let start = (tail..bytes.len()).rev().find(|at| bytes[*at] & 0xc0 != 0x80);
     match start {

@@ -5,27 +5,30 @@
 pub const WIDTH: usize = 100;
 
 /// Words in lines of at most [`WIDTH`] columns, each after `indent` blanks; ends with a newline.
-pub fn wrapped(text: &str, indent: usize) -> String {
-    lines(text, WIDTH - indent.min(WIDTH / 2))
+pub fn wrap_words(text: &str, indent: usize) -> String {
+    wrapped_lines(text, WIDTH - indent.min(WIDTH / 2))
         .into_iter()
         .map(|line| format!("{:indent$}{line}\n", ""))
         .collect()
 }
 
 /// Lines of code as they are, indented; ends with a newline.
-pub fn indented(text: &str, indent: usize) -> String {
+pub fn indent_lines(text: &str, indent: usize) -> String {
     text.lines().map(|line| format!("{:indent$}{line}\n", "")).collect()
 }
 
 /// Rows under their columns; the last column is wrapped.
-pub fn table(columns: &[&str], rows: &[Vec<String>]) -> String {
+pub fn table_text(columns: &[&str], rows: &[Vec<String>]) -> String {
     let head = columns.iter().map(ToString::to_string).collect();
-    std::iter::once(&head).chain(rows).map(|row| row_text(row, &widths(columns, rows))).collect()
+    std::iter::once(&head)
+        .chain(rows)
+        .map(|row| row_text(row, &column_widths(columns, rows)))
+        .collect()
 }
 
 /// Rows without a heading, indented; the last column is wrapped.
-pub fn rows(rows: &[Vec<String>], indent: usize) -> String {
-    let mut widths = widths(&vec![""; rows.first().map_or(0, Vec::len)], rows);
+pub fn rows_text(rows: &[Vec<String>], indent: usize) -> String {
+    let mut widths = column_widths(&vec![""; rows.first().map_or(0, Vec::len)], rows);
     if let Some(first) = widths.first_mut() {
         *first += indent;
     }
@@ -39,7 +42,7 @@ pub fn rows(rows: &[Vec<String>], indent: usize) -> String {
     indented.map(|row| row_text(&row, &widths)).collect()
 }
 
-fn widths(columns: &[&str], rows: &[Vec<String>]) -> Vec<usize> {
+fn column_widths(columns: &[&str], rows: &[Vec<String>]) -> Vec<usize> {
     let widest = |column: usize| {
         rows.iter()
             .map(|row| row[column].chars().count())
@@ -58,7 +61,7 @@ fn row_text(row: &[String], widths: &[usize]) -> String {
         .map(|(cell, width)| format!("{cell:width$}  "))
         .collect::<String>();
     let indent = start.chars().count();
-    let wrapped = lines(last, WIDTH.saturating_sub(indent).max(WIDTH / 3));
+    let wrapped = wrapped_lines(last, WIDTH.saturating_sub(indent).max(WIDTH / 3));
     if wrapped.is_empty() {
         return format!("{}\n", start.trim_end());
     }
@@ -68,7 +71,7 @@ fn row_text(row: &[String], widths: &[usize]) -> String {
     lines.collect()
 }
 
-fn lines(text: &str, width: usize) -> Vec<String> {
+fn wrapped_lines(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
         match lines.last_mut() {

@@ -8,11 +8,11 @@ use clap::Args;
 use serde::Serialize;
 
 use super::cost;
-use super::failure::{DiagnosticForm, Failure, warn};
+use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::progress::Bar;
 use super::terminal::stdout;
 use crate::cost::permutations::Change;
-use crate::diagnostic::{Diagnostics, nearest};
+use crate::diagnostic::{Diagnostics, nearest_name};
 use crate::generate::{self, Discard, Request, Tools};
 use crate::permute::axis::Mode;
 use crate::permute::report::{Report, StageCount, report};
@@ -48,7 +48,7 @@ pub struct Arguments {
     pub gpus: cost::Gpus,
 }
 
-pub fn run(
+pub fn run_variants(
     arguments: Arguments,
     opened: cost::Opened,
     form: DiagnosticForm,
@@ -58,12 +58,12 @@ pub fn run(
     }
     let mut sources = SourceSet::default();
     let manifest = arguments.manifest.clone().or_else(|| project::manifest_above(Path::new("")));
-    let read = open(manifest.as_deref(), &mut sources);
+    let read = open_manifest(manifest.as_deref(), &mut sources);
     let (manifest, packages) =
         read.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
-    warn(&sources, &manifest.warnings, form);
+    print_warnings(&sources, &manifest.warnings, form);
     if let Some(name) = &arguments.keys {
-        return keys(&manifest, name, arguments.json);
+        return print_keys(&manifest, name, arguments.json);
     }
     let devices = opened.map_err(Failure::environment)?;
     let reports = manifest.programs.iter().map(|program| {
@@ -81,7 +81,9 @@ pub fn run(
         }
         let changes = match devices.as_slice() {
             [] => Vec::new(),
-            devices => cost::changes(&mut sources, &packages, &manifest, &program.name, devices)?,
+            devices => {
+                cost::axis_changes(&mut sources, &packages, &manifest, &program.name, devices)?
+            }
         };
         Ok(Told { report, changes })
     });
@@ -113,7 +115,7 @@ impl Told {
 }
 
 /// The manifest of a path, or the library's, with its packages.
-pub fn open(
+pub fn open_manifest(
     path: Option<&Path>,
     sources: &mut SourceSet,
 ) -> Result<(Manifest, Packages), Diagnostics> {
@@ -161,11 +163,11 @@ fn compose(
     Ok(())
 }
 
-fn keys(manifest: &Manifest, name: &str, json: bool) -> Result<(), Failure> {
+fn print_keys(manifest: &Manifest, name: &str, json: bool) -> Result<(), Failure> {
     let program = manifest.program(name).ok_or_else(|| {
         let known = manifest.programs.iter().map(|program| program.name.as_str());
-        let hint =
-            nearest(name, known).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+        let hint = nearest_name(name, known)
+            .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         Failure::input(format!("the manifest declares no program `{name}`{hint}"))
     })?;
     let points = program.space.enumerate();

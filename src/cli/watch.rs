@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure};
-use super::lint::plural;
+use super::lint::counted_words;
 use super::terminal::stdout;
 use super::work::{Places, Work};
 use crate::generate::Request;
@@ -33,20 +33,20 @@ pub struct Arguments {
     program: Option<String>,
 }
 
-pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+pub fn run_watch(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     loop {
         match Work::open(&arguments.places) {
             Ok(mut work) => {
-                told(update(&arguments, &mut work, form), form)?;
+                tell_outcome(update_bundle(&arguments, &mut work, form), form)?;
                 while work.is_current() {
                     sleep(PAUSE);
                 }
             }
             Err(failure) => {
                 let manifest = arguments.places.manifest();
-                let before = text(&manifest);
-                told(Err(failure), form)?;
-                while text(&manifest) == before {
+                let before = file_bytes(&manifest);
+                tell_outcome(Err(failure), form)?;
+                while file_bytes(&manifest) == before {
                     sleep(PAUSE);
                 }
             }
@@ -56,7 +56,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
 
 /// An error in the input is printed, and the command waits for the next change. Any other error
 /// ends it.
-fn told(outcome: Result<(), Failure>, form: DiagnosticForm) -> Result<(), Failure> {
+fn tell_outcome(outcome: Result<(), Failure>, form: DiagnosticForm) -> Result<(), Failure> {
     match outcome {
         Err(failure @ Failure::Input(..)) => {
             let _ = failure.report(form);
@@ -66,33 +66,37 @@ fn told(outcome: Result<(), Failure>, form: DiagnosticForm) -> Result<(), Failur
     }
 }
 
-fn text(path: &Path) -> Option<Vec<u8>> {
-    input::read(path, LIMITS.file_bytes as u64).ok()
+fn file_bytes(path: &Path) -> Option<Vec<u8>> {
+    input::read_file(path, LIMITS.file_bytes as u64).ok()
 }
 
-fn update(arguments: &Arguments, work: &mut Work, form: DiagnosticForm) -> Result<(), Failure> {
+fn update_bundle(
+    arguments: &Arguments,
+    work: &mut Work,
+    form: DiagnosticForm,
+) -> Result<(), Failure> {
     let start = Instant::now();
     let all = Request::default();
     if work.up_to_date(&all, form).is_some() {
-        return say(&format!("up to date, {:.2} s", start.elapsed().as_secs_f64()));
+        return say_line(&format!("up to date, {:.2} s", start.elapsed().as_secs_f64()));
     }
     if let (Some(key), true) = (&arguments.key, work.out.is_dir()) {
         let id = work.sources.add("--key", key.as_str());
         let only = Some(Quoted::whole(&work.sources, id));
         work.patch(&Request { program: arguments.program.clone(), only, ..Request::default() })?;
-        say(&format!("`{key}` ready, {:.2} s", start.elapsed().as_secs_f64()))?;
+        say_line(&format!("`{key}` ready, {:.2} s", start.elapsed().as_secs_f64()))?;
     }
     let summary = work.run(&all, false, form)?;
     let compiled = summary.texts().saturating_sub(summary.cached);
-    say(&format!(
+    say_line(&format!(
         "{}, {} compiled, {:.2} s",
-        plural(summary.permutations(), "permutation"),
-        plural(compiled, "text"),
+        counted_words(summary.permutations(), "permutation"),
+        counted_words(compiled, "text"),
         start.elapsed().as_secs_f64()
     ))
 }
 
-fn say(line: &str) -> Result<(), Failure> {
+fn say_line(line: &str) -> Result<(), Failure> {
     let mut out = stdout();
     writeln!(out, "{line}")?;
     Ok(out.flush()?)

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::failure::{DiagnosticForm, Failure, warn};
+use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::judged::{Inputs, Judges};
-use super::overwrite::{Overwrite, unwritable, waiting};
+use super::overwrite::{Overwrite, tell_waiting, write_failure};
 use super::partial;
 use super::progress::Bar;
 use super::terminal::stderr;
@@ -86,7 +86,7 @@ impl Work {
             packages: observer.observe(packages),
             manifest,
             observer,
-            cache: cache(places, &path)?,
+            cache: open_cache(places, &path)?,
             cache_folder: places.cache.clone(),
             judges: None,
             path,
@@ -139,7 +139,7 @@ impl Work {
         form: DiagnosticForm,
     ) -> Result<Summary, Failure> {
         if !check && self.replace == Replace::Ours {
-            partial::refuse(&self.manifest, request, &self.out)?;
+            partial::refuse_partial(&self.manifest, request, &self.out)?;
         }
         let bar = Bar::new();
         let outcome = if check || is_file(&self.out) {
@@ -149,7 +149,7 @@ impl Work {
         };
         bar.clear();
         let Generated { summary, warnings, .. } = outcome?;
-        warn(&self.sources, &warnings, form);
+        print_warnings(&self.sources, &warnings, form);
         if let Some(cache) = &self.cache {
             told_failures(cache);
             let told = Told::new(&self.path, &self.sources, &warnings);
@@ -175,13 +175,14 @@ impl Work {
         let mut generated = self.generate(request, &memory, &Bar::new())?;
         memory.fill(&mut generated.contents);
         bundle::patch_directory(&generated.contents, &self.out)
-            .map_err(|error| unwritable(&self.out, error))
+            .map_err(|error| write_failure(&self.out, error))
     }
 
     /// Writes a directory, unit by unit.
     fn streamed(&mut self, request: &Request, bar: &Bar) -> Result<Generated, Failure> {
-        let writer = DirectoryWriter::take_over(&self.out, self.replace, &|| waiting(&self.out));
-        let writer = writer.map_err(|error| unwritable(&self.out, error))?;
+        let writer =
+            DirectoryWriter::take_over(&self.out, self.replace, &|| tell_waiting(&self.out));
+        let writer = writer.map_err(|error| write_failure(&self.out, error))?;
         let mut generated = self.generate(request, &writer, bar)?;
         let (judges, inputs) = self.judges();
         if let Some(judges) = judges {
@@ -191,7 +192,7 @@ impl Work {
             let contents = || Ok(generated.contents.clone());
             generated.summary.judged = Some(judges.files(files, &contents, inputs, bar)?);
         }
-        writer.finish(&generated.contents).map_err(|error| unwritable(&self.out, error))?;
+        writer.finish(&generated.contents).map_err(|error| write_failure(&self.out, error))?;
         Ok(generated)
     }
 
@@ -210,9 +211,9 @@ impl Work {
             generated.summary.judged = Some(judges.contents(&generated.contents, inputs, bar)?);
         }
         match check {
-            true => compare(&generated.contents, &self.out)?,
+            true => compare_with_last(&generated.contents, &self.out)?,
             false => bundle::replace_file(&generated.contents, &self.out, self.replace)
-                .map_err(|error| unwritable(&self.out, error))?,
+                .map_err(|error| write_failure(&self.out, error))?,
         }
         Ok(generated)
     }
@@ -234,7 +235,7 @@ impl Work {
     }
 }
 
-fn cache(places: &Places, manifest: &Path) -> Result<Option<Cache>, Failure> {
+fn open_cache(places: &Places, manifest: &Path) -> Result<Option<Cache>, Failure> {
     if places.no_cache {
         return Ok(None);
     }
@@ -264,7 +265,7 @@ pub fn is_file(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "lamplight")
 }
 
-fn compare(contents: &Contents, out: &Path) -> Result<(), Failure> {
+fn compare_with_last(contents: &Contents, out: &Path) -> Result<(), Failure> {
     let there = Bundle::open(out).and_then(|bundle| bundle.contents());
     let there = there.map_err(|error| Failure::check(format!("`{}`: {error}", out.display())))?;
     let difference = bundle::diff(&there, contents);

@@ -34,7 +34,7 @@ pub fn lean(composed: &Composed) -> Composed {
         let author = &composed.text[part.range.clone()];
         let whole = match part.aliases.is_empty() {
             true => Some(Cow::Borrowed(author)),
-            false => expanded(composed, part).map(Cow::Owned),
+            false => expand_aliases(composed, part).map(Cow::Owned),
         };
         if part.kind != PartKind::Alias || whole.is_none() {
             squeezer.append(whole.as_deref().unwrap_or(author), &mut text);
@@ -89,14 +89,14 @@ fn has_odd_lines(text: &str) -> bool {
 }
 
 /// A part with its aliases expanded; `None` where that is not possible.
-fn expanded(composed: &Composed, part: &Part) -> Option<String> {
+fn expand_aliases(composed: &Composed, part: &Part) -> Option<String> {
     let mut text = String::new();
-    append(composed, part, part.range.clone(), ALIAS_DEPTH, &mut text)?;
+    append_expanded(composed, part, part.range.clone(), ALIAS_DEPTH, &mut text)?;
     Some(text)
 }
 
 /// Appends a range of a part, in which each alias is replaced by its type.
-fn append(
+fn append_expanded(
     composed: &Composed,
     part: &Part,
     range: Range<usize>,
@@ -110,11 +110,11 @@ fn append(
         let alias = composed.parts.get(*alias as usize)?;
         let declaration = &composed.text[alias.range.clone()];
         let name = alias.names.first()?;
-        let equals = alias.range.start + declares(declaration, name)?;
+        let equals = alias.range.start + alias_type_start(declaration, name)?;
         let end = alias.range.start + declaration.rfind(';')?;
         // A blank on both sides, since the bracket that ends a type must not touch a `=` or `>`.
         text.push(' ');
-        append(composed, alias, equals..end, depth.checked_sub(1)?, text)?;
+        append_expanded(composed, alias, equals..end, depth.checked_sub(1)?, text)?;
         text.push(' ');
         if text.len() > part.range.len() + ALIAS_BYTES {
             return None;
@@ -126,8 +126,8 @@ fn append(
 }
 
 /// Where the type begins in the declaration of an alias: after the `=` behind its name.
-fn declares(declaration: &str, name: &str) -> Option<usize> {
-    let squeezed = wgsl(declaration);
+fn alias_type_start(declaration: &str, name: &str) -> Option<usize> {
+    let squeezed = lean_wgsl(declaration);
     // A comment may have a `=` too. Each one is tried, and the right one has the type behind it.
     let (_, target) = squeezed.split_once('=')?;
     let plain = squeezed.strip_prefix("alias ")?.trim_start().strip_prefix(name)?;
@@ -135,14 +135,14 @@ fn declares(declaration: &str, name: &str) -> Option<usize> {
     let is_plain = plain.trim_start().starts_with('=');
     let places = declaration.match_indices('=').map(|(at, _)| at + 1);
     let mut fitting = places.filter(|at| {
-        *at <= ends && format!("{};", wgsl(&declaration[*at..ends])).trim() == target.trim()
+        *at <= ends && format!("{};", lean_wgsl(&declaration[*at..ends])).trim() == target.trim()
     });
     fitting.next().filter(|_| is_plain)
 }
 
 /// WGSL without comments and layout. It has no strings: `//` and `/*` always begin a comment, and
 /// block comments nest.
-pub fn wgsl(text: &str) -> String {
+pub fn lean_wgsl(text: &str) -> String {
     let mut lean = String::with_capacity(text.len());
     append_wgsl(text, &mut lean);
     lean
@@ -152,18 +152,18 @@ fn append_wgsl(text: &str, lean: &mut String) {
     let mut at = 0;
     while at < text.len() {
         let rest = &text[at..];
-        let gap = gap(rest);
+        let gap = gap_length(rest);
         if gap > 0 && gap < rest.len() {
-            part(lean, &rest[gap..]);
+            write_part(lean, &rest[gap..]);
         }
-        let token = token(&rest[gap..]);
+        let token = token_length(&rest[gap..]);
         lean.push_str(&rest[gap..gap + token]);
         at += gap + token;
     }
 }
 
 /// Writes `next`, after a blank where the two could become one token.
-fn part(lean: &mut String, next: &str) {
+fn write_part(lean: &mut String, next: &str) {
     let alone = |found: Option<&u8>| found.is_none_or(|byte| stands_alone(*byte));
     if !alone(lean.as_bytes().last()) && !alone(next.as_bytes().first()) {
         lean.push(' ');
@@ -171,12 +171,12 @@ fn part(lean: &mut String, next: &str) {
 }
 
 /// Length of the text up to the first blank or comment.
-fn token(text: &str) -> usize {
+fn token_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut at = 0;
     while let Some(&byte) = bytes.get(at) {
         at += match byte {
-            b'/' if comment(&text[at..]).is_some() => return at,
+            b'/' if comment_length(&text[at..]).is_some() => return at,
             b'!'..=b'~' => 1,
             _ => match text[at..].chars().next() {
                 Some(found) if !is_blank(found) => found.len_utf8(),
@@ -188,7 +188,7 @@ fn token(text: &str) -> usize {
 }
 
 /// Length of the blanks and comments at the start of the text.
-fn gap(text: &str) -> usize {
+fn gap_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let mut at = 0;
     while let Some(&byte) = bytes.get(at) {
@@ -196,7 +196,7 @@ fn gap(text: &str) -> usize {
             // Nearly all blanks are one of these two.
             b' ' | b'\n' => 1,
             b'!'..=b'.' | b'0'..=b'~' => return at,
-            _ => match (comment(&text[at..]), text[at..].chars().next()) {
+            _ => match (comment_length(&text[at..]), text[at..].chars().next()) {
                 (Some(length), _) => length,
                 (None, Some(found)) if is_blank(found) => found.len_utf8(),
                 _ => return at,
@@ -212,7 +212,7 @@ fn stands_alone(found: u8) -> bool {
 }
 
 /// Length of the comment at the start of the text, if there is one.
-fn comment(text: &str) -> Option<usize> {
+fn comment_length(text: &str) -> Option<usize> {
     match text.as_bytes() {
         [b'/', b'/', ..] => Some(line_comment(text)),
         [b'/', b'*', ..] => Some(block_comment(text).0),
@@ -222,7 +222,7 @@ fn comment(text: &str) -> Option<usize> {
 
 /// GLSL without comments and layout. Directives end with their line, so lines stay; block comments
 /// do not nest.
-pub fn glsl(text: &str) -> String {
+pub fn lean_glsl(text: &str) -> String {
     let mut lean = String::with_capacity(text.len());
     append_glsl(text, &mut String::new(), &mut lean);
     lean
@@ -255,7 +255,7 @@ fn append_glsl(text: &str, plain: &mut String, lean: &mut String) {
             if is_directive && !lean.ends_with('\n') && !lean.is_empty() {
                 lean.push(' ')
             } else {
-                part(lean, word)
+                write_part(lean, word)
             }
             lean.push_str(word);
         }

@@ -32,14 +32,14 @@ pub struct Rise {
 }
 
 /// The key under which a cost is recorded.
-pub fn key(cost: &Cost) -> String {
+pub fn baseline_key(cost: &Cost) -> String {
     format!("{} {} {:?}", cost.name, cost.gpu.name, cost.stage).to_lowercase()
 }
 
 impl Baseline {
     /// Records costs.
     pub fn of(driver: &str, costs: &[Cost]) -> Self {
-        let costs = costs.iter().map(|cost| (key(cost), *cost.figures())).collect();
+        let costs = costs.iter().map(|cost| (baseline_key(cost), *cost.figures())).collect();
         Self { format: FORMAT.to_owned(), driver: driver.to_owned(), costs }
     }
 
@@ -81,7 +81,7 @@ impl Baseline {
     pub fn rises(&self, costs: &[Cost], share: f64) -> Vec<Rise> {
         let mut rises = Vec::new();
         for cost in costs {
-            let key = key(cost);
+            let key = baseline_key(cost);
             let Some(recorded) = self.costs.get(&key) else { continue };
             for figure in FIGURES {
                 let (before, after) = (figure.of(recorded), figure.of(cost.figures()));

@@ -49,7 +49,8 @@ impl Device {
     /// # Errors
     /// Why the device cannot be opened. If the driver is missing, the command that installs it.
     pub fn open(gpu: &'static Gpu) -> Result<Self, String> {
-        let manifest = manifest().ok_or_else(|| missing("there is no RADV driver"))?;
+        let manifest =
+            driver_manifest().ok_or_else(|| missing_feature("there is no RADV driver"))?;
         let settings = [
             ("RADV_FORCE_FAMILY", gpu.name),
             ("VK_DRIVER_FILES", &manifest),
@@ -76,17 +77,18 @@ impl Device {
 
     fn create(gpu: &'static Gpu) -> Result<Self, String> {
         // SAFETY: the loader is the system's, and outlives what is made with it in `Device`.
-        let entry =
-            unsafe { ash::Entry::load() }.map_err(|_| missing("there is no Vulkan loader"))?;
+        let entry = unsafe { ash::Entry::load() }
+            .map_err(|_| missing_feature("there is no Vulkan loader"))?;
         let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_3);
         let info = vk::InstanceCreateInfo::default().application_info(&application);
         // SAFETY: the structures live during the call.
-        let instance = unsafe { entry.create_instance(&info, None) }.map_err(refused)?;
+        let instance = unsafe { entry.create_instance(&info, None) }.map_err(refusal_text)?;
         // SAFETY: `instance` is valid until it is destroyed in `drop`, and here on failure.
-        let found = unsafe { instance.enumerate_physical_devices() }.map_err(refused);
+        let found = unsafe { instance.enumerate_physical_devices() }.map_err(refusal_text);
         let opened = found.and_then(|found| {
-            let physical = found.first().copied().ok_or_else(|| missing("RADV has no device"))?;
-            logical(&instance, physical, gpu)
+            let physical =
+                found.first().copied().ok_or_else(|| missing_feature("RADV has no device"))?;
+            open_device(&instance, physical, gpu)
         });
         match opened {
             Ok((device, driver)) => {
@@ -108,7 +110,7 @@ impl Device {
     /// What the driver says where it refuses the pipeline.
     pub fn measure(&self, pipeline: &Pipeline) -> Result<Vec<(Stage, Statistics)>, String> {
         let mut made = Made::new(&self.device);
-        let compiled = made.pipeline(pipeline).map_err(refused)?;
+        let compiled = made.pipeline(pipeline).map_err(refusal_text)?;
         self.figures(compiled)
     }
 
@@ -117,16 +119,16 @@ impl Device {
         // SAFETY: the pipeline was made by this device with its statistics captured.
         let found = unsafe { self.executables.get_pipeline_executable_properties(&info) };
         let mut stages = Vec::new();
-        for (index, executable) in found.map_err(refused)?.iter().enumerate() {
-            let Some(stage) = stage(executable.stages) else { continue };
+        for (index, executable) in found.map_err(refusal_text)?.iter().enumerate() {
+            let Some(stage) = stage_of(executable.stages) else { continue };
             let info = vk::PipelineExecutableInfoKHR::default()
                 .pipeline(pipeline)
                 .executable_index(index as u32);
             // SAFETY: as above; the index is one of those just told.
             let named = unsafe { self.executables.get_pipeline_executable_statistics(&info) };
-            let named = named.map_err(refused)?;
+            let named = named.map_err(refusal_text)?;
             let named = named.iter().filter_map(|named| {
-                Some((named.name_as_c_str().ok()?.to_str().ok()?, value(named)))
+                Some((named.name_as_c_str().ok()?.to_str().ok()?, statistic_value(named)))
             });
             stages.push((stage, Statistics::from_named(named)));
         }
@@ -145,7 +147,7 @@ impl Drop for Device {
 }
 
 /// The driver's manifest: that of `LAMPLIGHT_RADV_MANIFEST`, or where packages put it.
-fn manifest() -> Option<String> {
+fn driver_manifest() -> Option<String> {
     let named = std::env::var(MANIFEST).ok();
     let known = || MANIFESTS.iter().map(|path| (*path).to_owned());
     let mut paths: Box<dyn Iterator<Item = String>> = match named {
@@ -156,7 +158,7 @@ fn manifest() -> Option<String> {
 }
 
 /// The logical device, and the driver's version.
-fn logical(
+fn open_device(
     instance: &ash::Instance,
     physical: vk::PhysicalDevice,
     gpu: &Gpu,
@@ -165,14 +167,14 @@ fn logical(
     let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
     // SAFETY: `physical` is one of the instance's.
     unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
-    let name = text(properties.properties.device_name_as_c_str());
+    let name = text_of(properties.properties.device_name_as_c_str());
     if !name.contains(NULL_HARDWARE) {
         return Err(format!(
             "RADV gave the device `{name}` instead of {} without hardware",
             gpu.name
         ));
     }
-    let version = text(driver.driver_info_as_c_str());
+    let version = text_of(driver.driver_info_as_c_str());
     let priorities = [1.0];
     let queues = [vk::DeviceQueueCreateInfo::default().queue_priorities(&priorities)];
     let extensions = [khr::pipeline_executable_properties::NAME.as_ptr()];
@@ -189,23 +191,23 @@ fn logical(
         .push_next(&mut executables)
         .push_next(&mut rendering);
     // SAFETY: the structures live during the call.
-    let device = unsafe { instance.create_device(physical, &info, None) }.map_err(refused)?;
+    let device = unsafe { instance.create_device(physical, &info, None) }.map_err(refusal_text)?;
     Ok((device, version))
 }
 
-fn missing(what: &str) -> String {
+fn missing_feature(what: &str) -> String {
     format!("{what}\ninstall it with: {INSTALL}")
 }
 
-fn refused(error: vk::Result) -> String {
+fn refusal_text(error: vk::Result) -> String {
     format!("the driver answered {error}")
 }
 
-fn text(name: Result<&CStr, std::ffi::FromBytesUntilNulError>) -> String {
+fn text_of(name: Result<&CStr, std::ffi::FromBytesUntilNulError>) -> String {
     name.map_or(String::new(), |name| name.to_string_lossy().into_owned())
 }
 
-fn stage(flags: vk::ShaderStageFlags) -> Option<Stage> {
+fn stage_of(flags: vk::ShaderStageFlags) -> Option<Stage> {
     if flags.contains(vk::ShaderStageFlags::FRAGMENT) {
         Some(Stage::Fragment)
     } else if flags.contains(vk::ShaderStageFlags::VERTEX) {
@@ -217,7 +219,7 @@ fn stage(flags: vk::ShaderStageFlags) -> Option<Stage> {
     }
 }
 
-fn value(named: &vk::PipelineExecutableStatisticKHR) -> i64 {
+fn statistic_value(named: &vk::PipelineExecutableStatisticKHR) -> i64 {
     // SAFETY: the format tells which field was written.
     unsafe {
         match named.format {

@@ -15,19 +15,19 @@ pub struct Gpu {
 
 /// Every GPU, oldest first.
 pub const GPUS: &[Gpu] = &[
-    gpu("tahiti", "GCN 1", "Radeon HD 7970", false),
-    gpu("fiji", "GCN 3", "Radeon R9 Fury", false),
-    gpu("polaris10", "GCN 4", "Radeon RX 480", true),
-    gpu("vega10", "GCN 5", "Radeon RX Vega 64", true),
-    gpu("raven", "GCN 5", "Ryzen 5 2400G", false),
-    gpu("navi10", "RDNA 1", "Radeon RX 5700", true),
-    gpu("navi21", "RDNA 2", "Radeon RX 6800", true),
-    gpu("navi24", "RDNA 2", "Radeon RX 6500 XT", false),
-    gpu("vangogh", "RDNA 2", "Steam Deck", false),
-    gpu("gfx1100", "RDNA 3", "Radeon RX 7900 XTX", true),
+    make_gpu("tahiti", "GCN 1", "Radeon HD 7970", false),
+    make_gpu("fiji", "GCN 3", "Radeon R9 Fury", false),
+    make_gpu("polaris10", "GCN 4", "Radeon RX 480", true),
+    make_gpu("vega10", "GCN 5", "Radeon RX Vega 64", true),
+    make_gpu("raven", "GCN 5", "Ryzen 5 2400G", false),
+    make_gpu("navi10", "RDNA 1", "Radeon RX 5700", true),
+    make_gpu("navi21", "RDNA 2", "Radeon RX 6800", true),
+    make_gpu("navi24", "RDNA 2", "Radeon RX 6500 XT", false),
+    make_gpu("vangogh", "RDNA 2", "Steam Deck", false),
+    make_gpu("gfx1100", "RDNA 3", "Radeon RX 7900 XTX", true),
 ];
 
-const fn gpu(
+const fn make_gpu(
     name: &'static str,
     generation: &'static str,
     example: &'static str,
@@ -37,6 +37,6 @@ const fn gpu(
 }
 
 /// The GPU of that name.
-pub fn find(name: &str) -> Option<&'static Gpu> {
+pub fn find_gpu(name: &str) -> Option<&'static Gpu> {
     GPUS.iter().find(|gpu| gpu.name == name)
 }

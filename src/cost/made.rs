@@ -47,7 +47,7 @@ impl<'d> Made<'d> {
                 .map(|slot| {
                     vk::DescriptorSetLayoutBinding::default()
                         .binding(slot.binding)
-                        .descriptor_type(descriptor(slot.kind))
+                        .descriptor_type(descriptor_type(slot.kind))
                         .descriptor_count(1)
                         .stage_flags(vk::ShaderStageFlags::ALL)
                 })
@@ -70,7 +70,7 @@ impl<'d> Made<'d> {
         let stages = wanted.stages.iter().zip(constants).zip(&self.modules);
         let info = stages.map(|((stage, constants), module)| {
             vk::PipelineShaderStageCreateInfo::default()
-                .stage(flags(stage.stage))
+                .stage(stage_flags(stage.stage))
                 .module(*module)
                 .name(&stage.entry)
                 .specialization_info(constants)
@@ -95,7 +95,7 @@ impl<'d> Made<'d> {
         let none = vk::PipelineCache::null();
         // SAFETY: the structures live during the call.
         let made = unsafe { self.device.create_compute_pipelines(none, &infos, None) };
-        first(made)
+        first_pipeline(made)
     }
 
     fn graphics(
@@ -103,8 +103,8 @@ impl<'d> Made<'d> {
         wanted: &Pipeline,
         stages: &[vk::PipelineShaderStageCreateInfo<'_>],
     ) -> Result<vk::Pipeline, vk::Result> {
-        let attributes: Vec<_> = wanted.attributes.iter().map(attribute).collect();
-        let strides: Vec<_> = wanted.attributes.iter().map(stride).collect();
+        let attributes: Vec<_> = wanted.attributes.iter().map(attribute_description).collect();
+        let strides: Vec<_> = wanted.attributes.iter().map(binding_description).collect();
         let vertices = vk::PipelineVertexInputStateCreateInfo::default()
             .vertex_binding_descriptions(&strides)
             .vertex_attribute_descriptions(&attributes);
@@ -116,7 +116,7 @@ impl<'d> Made<'d> {
         let samples = vk::PipelineMultisampleStateCreateInfo::default()
             .rasterization_samples(vk::SampleCountFlags::TYPE_1);
         let depth = vk::PipelineDepthStencilStateCreateInfo::default();
-        let formats: Vec<_> = wanted.colors.iter().map(color).collect();
+        let formats: Vec<_> = wanted.colors.iter().map(color_format).collect();
         let written = vk::PipelineColorBlendAttachmentState::default()
             .color_write_mask(vk::ColorComponentFlags::RGBA);
         let blends = vec![written; formats.len()];
@@ -142,7 +142,7 @@ impl<'d> Made<'d> {
         let none = vk::PipelineCache::null();
         // SAFETY: the structures live during the call.
         let made = unsafe { self.device.create_graphics_pipelines(none, &[info], None) };
-        first(made)
+        first_pipeline(made)
     }
 }
 
@@ -185,7 +185,7 @@ impl Entries {
     }
 }
 
-fn first(
+fn first_pipeline(
     made: Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
 ) -> Result<vk::Pipeline, vk::Result> {
     match made {
@@ -194,7 +194,7 @@ fn first(
     }
 }
 
-fn flags(stage: Stage) -> vk::ShaderStageFlags {
+fn stage_flags(stage: Stage) -> vk::ShaderStageFlags {
     match stage {
         Stage::Vertex => vk::ShaderStageFlags::VERTEX,
         Stage::Fragment => vk::ShaderStageFlags::FRAGMENT,
@@ -202,7 +202,7 @@ fn flags(stage: Stage) -> vk::ShaderStageFlags {
     }
 }
 
-fn descriptor(kind: Kind) -> vk::DescriptorType {
+fn descriptor_type(kind: Kind) -> vk::DescriptorType {
     match kind {
         Kind::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
         Kind::Storage => vk::DescriptorType::STORAGE_BUFFER,
@@ -212,24 +212,24 @@ fn descriptor(kind: Kind) -> vk::DescriptorType {
     }
 }
 
-fn attribute(attribute: &Attribute) -> vk::VertexInputAttributeDescription {
+fn attribute_description(attribute: &Attribute) -> vk::VertexInputAttributeDescription {
     vk::VertexInputAttributeDescription::default()
         .location(attribute.location)
         .binding(attribute.location)
-        .format(format(attribute.scalar, attribute.components))
+        .format(vertex_format(attribute.scalar, attribute.components))
 }
 
 /// The layout of a vertex buffer. Each attribute has its own.
-fn stride(attribute: &Attribute) -> vk::VertexInputBindingDescription {
+fn binding_description(attribute: &Attribute) -> vk::VertexInputBindingDescription {
     vk::VertexInputBindingDescription::default().binding(attribute.location).stride(16)
 }
 
-fn color(attribute: &Option<Attribute>) -> vk::Format {
-    attribute.as_ref().map_or(vk::Format::UNDEFINED, |attribute| format(attribute.scalar, 4))
+fn color_format(attribute: &Option<Attribute>) -> vk::Format {
+    attribute.as_ref().map_or(vk::Format::UNDEFINED, |attribute| vertex_format(attribute.scalar, 4))
 }
 
 /// The format that holds a value of 32-bit components unchanged.
-fn format(scalar: naga::ScalarKind, components: u8) -> vk::Format {
+fn vertex_format(scalar: naga::ScalarKind, components: u8) -> vk::Format {
     use vk::Format;
     let formats = match scalar {
         naga::ScalarKind::Sint => [

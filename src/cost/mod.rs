@@ -22,7 +22,7 @@ use rayon::prelude::*;
 
 use crate::bundle::{Language, Stage};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::execute::kernel::{ENTRY, varying};
+use crate::execute::kernel::{ENTRY, varying_modules};
 use crate::validate::{CAPABILITIES, Validated, on_large_stack};
 use device::Device;
 use gpu::Gpu;
@@ -63,9 +63,13 @@ impl Cost {
 ///
 /// # Errors
 /// There is no such function, or it has parameters that no fragment stage can take.
-pub fn function(name: &str, module: &naga::Module, function: &str) -> Result<Subject, Diagnostic> {
-    let [called, empty] = varying(module, function)?;
-    let pipeline = |module| stage_alone(module).map_err(|reason| cannot(name, &reason));
+pub fn function_subject(
+    name: &str,
+    module: &naga::Module,
+    function: &str,
+) -> Result<Subject, Diagnostic> {
+    let [called, empty] = varying_modules(module, function)?;
+    let pipeline = |module| stage_alone(module).map_err(|reason| cannot_measure(name, &reason));
     Ok(Subject {
         name: name.to_owned(),
         stages: vec![Stage::Fragment],
@@ -81,7 +85,7 @@ fn stage_alone(module: naga::Module) -> Result<Pipeline, String> {
     Pipeline::new(Known::of_module(&validated, ENTRY)?, None)
 }
 
-fn cannot(name: &str, reason: &str) -> Diagnostic {
+fn cannot_measure(name: &str, reason: &str) -> Diagnostic {
     Diagnostic::error(
         codes::UNTESTABLE_FUNCTION,
         format!("`{name}` could not be put into a fragment stage: {reason}"),
@@ -93,7 +97,7 @@ fn cannot(name: &str, reason: &str) -> Diagnostic {
 /// # Errors
 /// No pipeline can be made of them: there is none of them, or a stage to go with it cannot be
 /// written.
-pub fn stages(name: &str, mut known: Vec<Known>) -> Result<Subject, String> {
+pub fn stages_subject(name: &str, mut known: Vec<Known>) -> Result<Subject, String> {
     let stages = known.iter().map(|known| known.words.stage).collect();
     let first = known.pop().ok_or("there is no stage")?;
     let pipeline = Pipeline::new(first, known.pop())?;
@@ -104,7 +108,7 @@ pub fn stages(name: &str, mut known: Vec<Known>) -> Result<Subject, String> {
 ///
 /// # Errors
 /// The driver's message where it refuses a pipeline, with the subject's name.
-pub fn measure(
+pub fn measure_subjects(
     devices: &[Device],
     subjects: &[Subject],
     progress: &(dyn Fn(usize, usize) + Sync),

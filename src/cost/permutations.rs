@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::pipeline::Known;
 use super::statistics::{FIGURES, Figure};
-use super::{Cost, Subject, stages};
+use super::{Cost, Subject, stages_subject};
 use crate::bundle::key::{self, Part};
 use crate::bundle::{
     self, Axis, Choice, Constant, EntryContents, Hash, Language, ProgramContents, Stage, Target,
@@ -16,7 +16,10 @@ use crate::bundle::{
 ///
 /// # Errors
 /// A permutation that no pipeline can be made of, and why.
-pub fn subjects(program: &ProgramContents, language: Language) -> Result<Vec<Subject>, String> {
+pub fn permutation_subjects(
+    program: &ProgramContents,
+    language: Language,
+) -> Result<Vec<Subject>, String> {
     let Some(entries) = program.languages.get(&language) else { return Ok(Vec::new()) };
     let known = entries.iter().map(|(name, entry)| known_units(name, entry));
     let known = known.collect::<Result<Vec<_>, String>>()?;
@@ -24,9 +27,9 @@ pub fn subjects(program: &ProgramContents, language: Language) -> Result<Vec<Sub
     let subject = |key: &String| {
         let units = entries.values().zip(&known).filter_map(|(entry, known)| {
             let stage = known.get(entry.keys.get(key)?)?;
-            Some(chosen(&program.axes, key, stage))
+            Some(chosen_stage(&program.axes, key, stage))
         });
-        stages(key, units.collect::<Result<_, _>>()?)
+        stages_subject(key, units.collect::<Result<_, _>>()?)
     };
     keys.into_iter()
         .map(|key| subject(key).map_err(|reason| format!("permutation `{key}`: {reason}")))
@@ -52,7 +55,7 @@ fn known_units(name: &str, entry: &EntryContents) -> Result<BTreeMap<Hash, Unit>
 }
 
 /// The stage of a key, with the values that the key gives its overrides.
-fn chosen(axes: &[Axis], key: &str, unit: &Unit) -> Result<Known, String> {
+fn chosen_stage(axes: &[Axis], key: &str, unit: &Unit) -> Result<Known, String> {
     let mut known = unit.known.clone();
     let constants =
         bundle::constants(axes, key, &known.reflection).map_err(|error| error.to_string())?;
@@ -60,13 +63,13 @@ fn chosen(axes: &[Axis], key: &str, unit: &Unit) -> Result<Known, String> {
         // An override that the stage does not use has no number.
         let choice = unit.choices.iter().find(|choice| choice.name == constant.name);
         let Some(id) = choice.and_then(|choice| choice.id) else { continue };
-        known.words.constants.push((id, bits(&constant)?));
+        known.words.constants.push((id, constant_bits(&constant)?));
     }
     Ok(known)
 }
 
 /// The 32 bits that a specialisation constant takes.
-fn bits(constant: &Constant) -> Result<u32, String> {
+fn constant_bits(constant: &Constant) -> Result<u32, String> {
     match constant.value.as_str() {
         "true" => Ok(1),
         "false" => Ok(0),
@@ -102,7 +105,7 @@ pub struct Spread {
 }
 
 /// The changes of every value for which some pair of permutations exists.
-pub fn changes(axes: &[Axis], costs: &[Cost]) -> Vec<Change> {
+pub fn value_changes(axes: &[Axis], costs: &[Cost]) -> Vec<Change> {
     let mut by_place: BTreeMap<(&str, Stage), BTreeMap<&str, &Cost>> = BTreeMap::new();
     for cost in costs {
         let place = by_place.entry((cost.gpu.name, cost.stage)).or_default();
@@ -112,7 +115,7 @@ pub fn changes(axes: &[Axis], costs: &[Cost]) -> Vec<Change> {
     for axis in axes {
         for value in axis.values.iter().filter(|value| **value != axis.default) {
             for ((gpu, stage), costs) in &by_place {
-                let pairs = pairs(&axis.name, value, costs);
+                let pairs = cost_pairs(&axis.name, value, costs);
                 if pairs.is_empty() {
                     continue;
                 }
@@ -133,7 +136,7 @@ pub fn changes(axes: &[Axis], costs: &[Cost]) -> Vec<Change> {
 
 /// The costs of permutations with the axis's default and with the value, which are otherwise the
 /// same.
-fn pairs<'c>(
+fn cost_pairs<'c>(
     axis: &str,
     value: &str,
     costs: &BTreeMap<&str, &'c Cost>,

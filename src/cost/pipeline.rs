@@ -92,24 +92,24 @@ impl Pipeline {
         let other = match (stage.reflection.stage, other) {
             (Stage::Compute, _) => None,
             (_, Some(other)) => Some(other),
-            (Stage::Fragment, None) => Some(partner(&before(&stage.reflection))?),
-            (Stage::Vertex, None) => Some(partner(&after(&stage.reflection)?)?),
+            (Stage::Fragment, None) => Some(partner_stage(&vertex_text(&stage.reflection))?),
+            (Stage::Vertex, None) => Some(partner_stage(&fragment_text(&stage.reflection)?)?),
         };
         let mut stages: Vec<Known> = other.into_iter().chain([stage]).collect();
         stages.sort_by_key(|known| known.reflection.stage);
         let of = |wanted: Stage| stages.iter().find(|known| known.reflection.stage == wanted);
         let inputs = of(Stage::Vertex).map_or(&[][..], |known| &known.reflection.inputs);
         let outputs = of(Stage::Fragment).map_or(&[][..], |known| &known.reflection.outputs);
-        let attributes = located(inputs)?;
-        let colors = colors(&located(outputs)?);
-        let slots = slots(&stages);
+        let attributes = located_values(inputs)?;
+        let colors = color_targets(&located_values(outputs)?);
+        let slots = stage_slots(&stages);
         let stages = stages.into_iter().map(|known| known.words).collect();
         Ok(Self { stages, slots, attributes, colors })
     }
 }
 
 /// The resources of all stages, each once.
-fn slots(stages: &[Known]) -> Vec<Slot> {
+fn stage_slots(stages: &[Known]) -> Vec<Slot> {
     let bindings = stages.iter().flat_map(|known| &known.reflection.bindings);
     let slot =
         |found: &Binding| Slot { group: found.group, binding: found.binding, kind: found.kind };
@@ -118,23 +118,23 @@ fn slots(stages: &[Known]) -> Vec<Slot> {
 }
 
 /// The values that have a location. The others are built-ins.
-fn located(values: &[Varying]) -> Result<Vec<Attribute>, String> {
+fn located_values(values: &[Varying]) -> Result<Vec<Attribute>, String> {
     let located = values.iter().filter_map(|value| Some((value.location?, &value.ty)));
     let attribute = |(location, ty): (u32, &String)| {
-        let (scalar, components) = shape(ty)?;
+        let (scalar, components) = scalar_and_count(ty)?;
         Ok(Attribute { location, scalar, components })
     };
     located.map(attribute).collect()
 }
 
-fn colors(written: &[Attribute]) -> Vec<Option<Attribute>> {
+fn color_targets(written: &[Attribute]) -> Vec<Option<Attribute>> {
     let count = written.iter().map(|color| color.location + 1).max().unwrap_or(0);
     let color = |location| written.iter().find(|color| color.location == location).copied();
     (0..count).map(color).collect()
 }
 
 /// Scalar and components of a scalar or vector type, as WGSL spells it.
-fn shape(ty: &str) -> Result<(ScalarKind, u8), String> {
+fn scalar_and_count(ty: &str) -> Result<(ScalarKind, u8), String> {
     let (components, scalar) =
         match ty.strip_prefix("vec").and_then(|rest| rest.split_at_checked(1)) {
             Some((count, scalar)) => (count, scalar.trim_matches(['<', '>'])),
@@ -151,7 +151,7 @@ fn shape(ty: &str) -> Result<(ScalarKind, u8), String> {
 }
 
 /// A stage from a text of ours.
-fn partner(text: &str) -> Result<Known, String> {
+fn partner_stage(text: &str) -> Result<Known, String> {
     let told = |error: &dyn std::fmt::Display| format!("the stage added to it: {error}");
     let module = naga::front::wgsl::parse_str(text).map_err(|error| told(&error))?;
     let flags = naga::valid::ValidationFlags::all();
@@ -164,7 +164,7 @@ fn partner(text: &str) -> Result<Known, String> {
 const PARTNER: &str = "lamplight_partner";
 
 /// The text of a vertex stage that provides the inputs of a fragment stage, each from an attribute.
-fn before(fragment: &Reflection) -> String {
+fn vertex_text(fragment: &Reflection) -> String {
     let mut members = "@builtin(position) position: vec4f,\n".to_owned();
     let (mut parameters, mut values) = (String::new(), String::new());
     let mut next = 0;
@@ -189,9 +189,9 @@ fn before(fragment: &Reflection) -> String {
 }
 
 /// The text of a fragment stage that uses every output of a vertex stage.
-fn after(vertex: &Reflection) -> Result<String, String> {
+fn fragment_text(vertex: &Reflection) -> Result<String, String> {
     let (mut parameters, mut sum) = (String::new(), String::new());
-    for Attribute { location, scalar, components } in located(&vertex.outputs)? {
+    for Attribute { location, scalar, components } in located_values(&vertex.outputs)? {
         let ty = vertex.outputs.iter().find(|output| output.location == Some(location));
         let ty = ty.map_or("", |output| &output.ty);
         let flat = if scalar == ScalarKind::Float { "" } else { "@interpolate(flat) " };

@@ -24,12 +24,12 @@ const MESSAGE: usize = 400;
 const GAP: &str = "…";
 
 /// A message without control characters, in lines that are short enough to read.
-pub fn tidy(message: &str) -> String {
+pub fn tidy_message(message: &str) -> String {
     message.split('\n').map(tidy_line).collect::<Vec<_>>().join("\n")
 }
 
 fn tidy_line(line: &str) -> String {
-    let line: String = line.chars().map(harmless).collect();
+    let line: String = line.chars().map(harmless_character).collect();
     if line.chars().count() <= MESSAGE {
         return line;
     }
@@ -116,12 +116,12 @@ impl Page {
 
     fn push(&mut self, origin: usize, line: &str, ranges: &[Range<usize>]) {
         let line = line.strip_suffix('\r').unwrap_or(line);
-        let window = window(origin, line, ranges);
+        let window = visible_window(origin, line, ranges);
         let start = self.text.len();
         let lead = if window.start > 0 { GAP } else { "" };
         let tail = if window.end < line.len() { GAP } else { "" };
         self.text.push_str(lead);
-        self.text.extend(line[window.clone()].chars().map(harmless));
+        self.text.extend(line[window.clone()].chars().map(harmless_character));
         self.text.push_str(tail);
         self.text.push('\n');
         self.lines.push(Line {
@@ -148,7 +148,7 @@ impl Page {
 }
 
 /// The part of a line to show: around the first range that starts or ends in it.
-fn window(origin: usize, line: &str, ranges: &[Range<usize>]) -> Range<usize> {
+fn visible_window(origin: usize, line: &str, ranges: &[Range<usize>]) -> Range<usize> {
     if line.len() <= LONG {
         return 0..line.len();
     }
@@ -161,7 +161,7 @@ fn window(origin: usize, line: &str, ranges: &[Range<usize>]) -> Range<usize> {
 }
 
 /// Replaces control characters and changes of writing direction by characters of as many bytes.
-fn harmless(character: char) -> char {
+fn harmless_character(character: char) -> char {
     match character {
         '\t' => character,
         '\0'..'\x20' | '\x7f' => '?',
@@ -177,7 +177,7 @@ impl<'a> Files<'a> for Excerpts<'a> {
     type Source = &'a str;
 
     fn name(&self, id: usize) -> Result<String, Error> {
-        Ok(tidy(&self.sources.get(self.page(id)?.source).path))
+        Ok(tidy_message(&self.sources.get(self.page(id)?.source).path))
     }
 
     fn source(&'a self, id: usize) -> Result<&'a str, Error> {

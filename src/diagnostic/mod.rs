@@ -116,7 +116,7 @@ impl Diagnostic {
 
     /// Adds "did you mean" with the nearest of the known names, if one is near enough.
     pub fn suggest<'a>(self, wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
-        match nearest(wrong, known) {
+        match nearest_name(wrong, known) {
             Some(name) => self.note(format!("help: did you mean `{name}`?")),
             None => self,
         }
@@ -127,7 +127,7 @@ impl Diagnostic {
 const LONGEST_MISSPELT: usize = 100;
 
 /// A conversion is often looked for by its opposite name: `a_to_b` is `b_from_a`.
-fn converse(name: &str) -> Option<String> {
+fn opposite_name(name: &str) -> Option<String> {
     let named = |one: &str, other: &str| {
         name.split_once(one).map(|(left, right)| format!("{right}{other}{left}"))
     };
@@ -135,13 +135,13 @@ fn converse(name: &str) -> Option<String> {
 }
 
 /// The known name nearest to a misspelt one; ties go to the alphabetically first.
-pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest_name<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let length = wrong.chars().count();
     if length > LONGEST_MISSPELT {
         return None;
     }
     let known: Vec<&str> = known.into_iter().collect();
-    let converse = converse(wrong);
+    let converse = opposite_name(wrong);
     if let Some(same) = known.iter().find(|name| Some(**name) == converse.as_deref()) {
         return Some(same);
     }

@@ -4,7 +4,7 @@
 use codespan_reporting::diagnostic as codespan;
 use codespan_reporting::term;
 
-use super::excerpt::{Excerpts, tidy};
+use super::excerpt::{Excerpts, tidy_message};
 use super::{Diagnostic, Severity, codes};
 use crate::source::{SourceSet, Span};
 
@@ -30,16 +30,16 @@ const SHOWN: usize = crate::limits::DIAGNOSTICS;
 /// Of those after the first hundred, only the number is printed.
 pub fn render(sources: &SourceSet, diagnostics: &[Diagnostic], form: Form) -> String {
     let one = |diagnostic: &Diagnostic| match form {
-        Form::Human => human(sources, diagnostic),
-        Form::Coloured => coloured(sources, diagnostic),
-        Form::Short => short(sources, diagnostic) + "\n",
-        Form::Json => json(sources, diagnostic).to_string() + "\n",
+        Form::Human => human_form(sources, diagnostic),
+        Form::Coloured => coloured_form(sources, diagnostic),
+        Form::Short => short_form(sources, diagnostic) + "\n",
+        Form::Json => json_form(sources, diagnostic).to_string() + "\n",
     };
     let shown = diagnostics.iter().take(SHOWN).map(one);
-    shown.chain(rest(diagnostics).map(|diagnostic| one(&diagnostic))).collect()
+    shown.chain(count_of_rest(diagnostics).map(|diagnostic| one(&diagnostic))).collect()
 }
 
-fn rest(diagnostics: &[Diagnostic]) -> Option<Diagnostic> {
+fn count_of_rest(diagnostics: &[Diagnostic]) -> Option<Diagnostic> {
     let hidden = diagnostics.get(SHOWN..).filter(|hidden| !hidden.is_empty())?;
     let severity = hidden.iter().map(|diagnostic| diagnostic.severity).min()?;
     Some(Diagnostic {
@@ -48,7 +48,7 @@ fn rest(diagnostics: &[Diagnostic]) -> Option<Diagnostic> {
     })
 }
 
-fn human(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
+fn human_form(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
     let spans: Vec<Span> = diagnostic.labels.iter().map(|label| label.span).collect();
     let excerpts = Excerpts::new(sources, &spans);
     let mut text = String::new();
@@ -60,11 +60,11 @@ fn human(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
         &to_codespan(diagnostic, &excerpts),
     ) {
         Ok(()) => text,
-        Err(_) => short(sources, diagnostic) + "\n",
+        Err(_) => short_form(sources, diagnostic) + "\n",
     }
 }
 
-fn coloured(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
+fn coloured_form(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
     let spans: Vec<Span> = diagnostic.labels.iter().map(|label| label.span).collect();
     let excerpts = Excerpts::new(sources, &spans);
     let styles = term::Styles::default();
@@ -74,7 +74,7 @@ fn coloured(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
     let config = term::Config::default();
     match term::emit_to_write_style(&mut writer, &config, &excerpts, &found) {
         Ok(()) => String::from_utf8_lossy(ansi.get_ref()).into_owned(),
-        Err(_) => short(sources, diagnostic) + "\n",
+        Err(_) => short_form(sources, diagnostic) + "\n",
     }
 }
 
@@ -86,26 +86,26 @@ fn to_codespan(diagnostic: &Diagnostic, excerpts: &Excerpts<'_>) -> codespan::Di
             codespan::LabelStyle::Secondary
         };
         codespan::Label::new(style, label.span.source.0 as usize, excerpts.range(label.span))
-            .with_message(tidy(&label.message))
+            .with_message(tidy_message(&label.message))
     });
     codespan::Diagnostic::new(match diagnostic.severity {
         Severity::Error => codespan::Severity::Error,
         Severity::Warning => codespan::Severity::Warning,
     })
     .with_code(diagnostic.code.name)
-    .with_message(tidy(&diagnostic.message))
+    .with_message(tidy_message(&diagnostic.message))
     .with_labels(labels.collect())
-    .with_notes(diagnostic.notes.iter().map(|note| tidy(note)).collect())
+    .with_notes(diagnostic.notes.iter().map(|note| tidy_message(note)).collect())
 }
 
-fn short(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
+fn short_form(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
     let place = diagnostic.labels.first().map_or(String::new(), |label| {
         let (line, column) = sources.position(label.span.source, label.span.start as usize);
         format!("{}:{line}:{column}: ", sources.get(label.span.source).path)
     });
     let help = diagnostic.notes.iter().find_map(|note| note.strip_prefix("help: "));
     let help = help.map_or(String::new(), |help| format!(" ({})", help.replace('\n', " ")));
-    tidy(&format!(
+    tidy_message(&format!(
         "{place}{}[{}]: {}{help}",
         severity_name(diagnostic.severity),
         diagnostic.code.name,
@@ -113,7 +113,7 @@ fn short(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
     ))
 }
 
-fn json(sources: &SourceSet, diagnostic: &Diagnostic) -> serde_json::Value {
+fn json_form(sources: &SourceSet, diagnostic: &Diagnostic) -> serde_json::Value {
     let labels: Vec<_> = diagnostic
         .labels
         .iter()

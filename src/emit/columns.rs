@@ -37,13 +37,13 @@ pub fn without_casts(text: &str) -> String {
         return text.to_owned();
     }
     let mut shapes = BTreeSet::new();
-    let mut line = |line: &str| written(&read(line, &mut shapes), &mut shapes);
+    let mut line = |line: &str| rewrite_write(&rewrite_read(line, &mut shapes), &mut shapes);
     let changed: String = text.split_inclusive('\n').map(&mut line).collect();
     shapes.iter().fold(changed, |text, shape| shape.declared_in(text))
 }
 
 /// `((float3x2[4])a)` as a call.
-fn read(line: &str, shapes: &mut BTreeSet<Shape>) -> String {
+fn rewrite_read(line: &str, shapes: &mut BTreeSet<Shape>) -> String {
     let mut changed = String::with_capacity(line.len());
     let mut parts = line.split("((");
     changed.push_str(parts.next().unwrap_or_default());
@@ -66,7 +66,7 @@ fn read(line: &str, shapes: &mut BTreeSet<Shape>) -> String {
 }
 
 /// `a = (__mat3x2_f32[4])b;` with a call.
-fn written(line: &str, shapes: &mut BTreeSet<Shape>) -> String {
+fn rewrite_write(line: &str, shapes: &mut BTreeSet<Shape>) -> String {
     let changed = line.split_once(" = (").and_then(|(before, cast)| {
         let (ty, value) = cast.strip_suffix(";\n")?.split_once(')')?;
         let shape = Shape::of_columns(ty)?;

@@ -4,9 +4,9 @@ use naga::back::glsl::{Options, PipelineOptions, ReflectionInfo, Version, Writer
 use naga::proc::BoundsCheckPolicies;
 
 use super::lacks;
-use super::reflect::place;
+use super::reflect::place_of;
 use super::rename;
-use super::slots::{EXPLICIT_LIMIT, Numbering, assign, native};
+use super::slots::{EXPLICIT_LIMIT, Numbering, assign_slots, native_reflection};
 use super::text::Text;
 use super::{Emitted, Source};
 use crate::bundle::{Clip, Combined, Kind, Native};
@@ -15,17 +15,17 @@ use crate::bundle::{Clip, Combined, Kind, Native};
 const FIRST_INSTANCE: &str = "naga_vs_first_instance";
 
 /// Writes GLSL of one version.
-pub fn write(
+pub fn write_glsl(
     source: &Source<'_>,
     version: Version,
     numbering: Numbering,
 ) -> Result<Emitted, String> {
-    if let Some(reason) = lacks::first(source.module, version) {
+    if let Some(reason) = lacks::first_lack(source.module, version) {
         return Err(reason);
     }
-    let changed = rename::renamed(source.module, &is_taken);
+    let changed = rename::rename_taken(source.module, &is_taken);
     let source = &Source { module: changed.as_ref().unwrap_or(source.module), ..*source };
-    let options = options(source, version, numbering)?;
+    let options = writer_options(source, version, numbering)?;
     let pipeline = PipelineOptions {
         shader_stage: source.stage,
         entry_point: source.entry.to_owned(),
@@ -45,7 +45,7 @@ pub fn write(
     // naga omits the prefix of this one extension's name, and no driver knows it without.
     let mut text = text.0.replacen("#extension ARB_", "#extension GL_ARB_", 1);
     name_blocks(source, &mut text, &mut info);
-    let mut native = reflection(source, &info, numbering);
+    let mut native = glsl_reflection(source, &info, numbering);
     let is_asked = text.contains(&format!("uniform uint {FIRST_INSTANCE};"));
     native.first_instance = is_asked.then(|| FIRST_INSTANCE.to_owned());
     Ok(Emitted { bytes: text.into_bytes(), native })
@@ -84,7 +84,11 @@ fn is_taken(name: &str) -> bool {
     is_sized || is_number || is_nagas || WORDS.contains(&name) || name.trim_end_matches('_') == "gl"
 }
 
-fn options(source: &Source<'_>, version: Version, numbering: Numbering) -> Result<Options, String> {
+fn writer_options(
+    source: &Source<'_>,
+    version: Version,
+    numbering: Numbering,
+) -> Result<Options, String> {
     let mut options = Options {
         version,
         writer_flags: match source.clip {
@@ -94,7 +98,7 @@ fn options(source: &Source<'_>, version: Version, numbering: Numbering) -> Resul
         ..Options::default()
     };
     if numbering == Numbering::Explicit {
-        for (binding, _, index) in assign(source, numbering) {
+        for (binding, _, index) in assign_slots(source, numbering) {
             let slot = index.and_then(|index| u8::try_from(index).ok()).ok_or_else(|| {
                 format!(
                     "@group({}) @binding({}) has no number: this target takes groups and bindings below {EXPLICIT_LIMIT}",
@@ -124,7 +128,7 @@ fn name_blocks(source: &Source<'_>, text: &mut String, info: &mut ReflectionInfo
             (ty, number.trim_start_matches(|digit: char| digit.is_ascii_digit()))
         });
         if let (Some((ty, stage)), Some([group, binding])) =
-            (numbered, place(source.module, *handle))
+            (numbered, place_of(source.module, *handle))
         {
             let own = format!("{}{BLOCK}{group}_{binding}{stage}", before_block(ty));
             *text = text.replacen(&format!(" {name} {{"), &format!(" {own} {{"), 1);
@@ -135,19 +139,19 @@ fn name_blocks(source: &Source<'_>, text: &mut String, info: &mut ReflectionInfo
 
 /// The reflection. Samplers are combined with the textures that they are used with, and only the
 /// combined names have units.
-fn reflection(source: &Source<'_>, info: &ReflectionInfo, numbering: Numbering) -> Native {
-    let mut native = native(source, "main", numbering);
-    let samplers: Vec<_> = assign(source, numbering)
+fn glsl_reflection(source: &Source<'_>, info: &ReflectionInfo, numbering: Numbering) -> Native {
+    let mut native = native_reflection(source, "main", numbering);
+    let samplers: Vec<_> = assign_slots(source, numbering)
         .into_iter()
         .filter(|(_, kind, _)| matches!(kind, Kind::Sampler | Kind::ComparisonSampler))
         .map(|(binding, ..)| [binding.group, binding.binding])
         .collect();
     native.slots.retain(|slot| !samplers.contains(&[slot.group, slot.binding]));
-    native.combined = combined(source, info);
+    native.combined = combined_samplers(source, info);
     let blocks = info
         .uniforms
         .iter()
-        .filter_map(|(handle, name)| Some((place(source.module, *handle)?, name.clone())));
+        .filter_map(|(handle, name)| Some((place_of(source.module, *handle)?, name.clone())));
     let textures = native.combined.iter().map(|combined| (combined.texture, combined.name.clone()));
     let names: std::collections::BTreeMap<_, _> = blocks.chain(textures).collect();
     for slot in &mut native.slots {
@@ -156,14 +160,14 @@ fn reflection(source: &Source<'_>, info: &ReflectionInfo, numbering: Numbering) 
     native
 }
 
-fn combined(source: &Source<'_>, info: &ReflectionInfo) -> Vec<Combined> {
+fn combined_samplers(source: &Source<'_>, info: &ReflectionInfo) -> Vec<Combined> {
     let mut found: Vec<Combined> = info
         .texture_mapping
         .iter()
         .filter_map(|(name, mapping)| {
-            let sampler = mapping.sampler.and_then(|sampler| place(source.module, sampler));
+            let sampler = mapping.sampler.and_then(|sampler| place_of(source.module, sampler));
             Some(Combined {
-                texture: place(source.module, mapping.texture)?,
+                texture: place_of(source.module, mapping.texture)?,
                 sampler,
                 name: name.clone(),
             })

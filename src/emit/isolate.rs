@@ -11,13 +11,13 @@ use crate::validate::{CAPABILITIES, Validated, guard, on_large_stack};
 /// # Errors
 /// `unknown-entry-point`, and `naga-internal` where naga panics or rejects its own work.
 pub fn isolate(validated: &Validated, entry: &str) -> Result<Validated, Diagnostics> {
-    let index = super::find(validated, entry).map_err(|error| vec![error])?;
-    on_large_stack(|| guard("", || keep(validated, index)))
+    let index = super::find_target(validated, entry).map_err(|error| vec![error])?;
+    on_large_stack(|| guard("", || keep_entry(validated, index)))
         .and_then(|result| result)
         .map_err(|error| vec![error])
 }
 
-fn keep(validated: &Validated, index: usize) -> Result<Validated, Diagnostic> {
+fn keep_entry(validated: &Validated, index: usize) -> Result<Validated, Diagnostic> {
     let mut module = validated.module.clone();
     module.entry_points = vec![module.entry_points.swap_remove(index)];
     compact(&mut module, KeepUnused::No);

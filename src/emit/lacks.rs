@@ -46,7 +46,7 @@ const TWO_ROWS: &str =
 ///
 /// # Errors
 /// `emit-failed` for each.
-pub fn check(
+pub fn check_lacks(
     composed: &Composed,
     validated: &Validated,
     targets: &[Target],
@@ -58,8 +58,8 @@ pub fn check(
         found.push(place.into_iter().fold(error, |error, span| error.at(span, label)));
     };
     for (target, version) in VERSIONS.iter().filter(|(target, _)| targets.contains(target)) {
-        for (what, span) in lacking(module, *version) {
-            refuse(told(*target, what), span, "it is written so");
+        for (what, span) in lacking_features(module, *version) {
+            refuse(lack_message(*target, what), span, "it is written so");
         }
         for span in two_rows(module) {
             refuse(format!("target `{target}`: {TWO_ROWS}"), span, "it is in here");
@@ -79,19 +79,19 @@ const VERSIONS: &[(Target, Version)] = &[
     (Target::ESSL300, Version::new_gles(300)),
 ];
 
-fn told(target: Target, what: &str) -> String {
+fn lack_message(target: Target, what: &str) -> String {
     format!("target `{target}`: the language has no {what}, which is needed here")
 }
 
 /// The first thing in the module that a version of GLSL lacks.
-pub fn first(module: &Module, version: Version) -> Option<String> {
+pub fn first_lack(module: &Module, version: Version) -> Option<String> {
     if two_rows(module).next().is_some() {
         return Some(TWO_ROWS.to_owned());
     }
     if asks_for_sample(module, version) {
         return Some("the language has no `gl_SampleID`, which is needed".to_owned());
     }
-    let (what, _) = lacking(module, version).next()?;
+    let (what, _) = lacking_features(module, version).next()?;
     Some(format!("the language has no {what}, which is needed"))
 }
 
@@ -115,13 +115,16 @@ fn has_two_rows(module: &Module, ty: Handle<Type>) -> bool {
     }
 }
 
-fn lacking(module: &Module, version: Version) -> impl Iterator<Item = (&'static str, Span)> {
+fn lacking_features(
+    module: &Module,
+    version: Version,
+) -> impl Iterator<Item = (&'static str, Span)> {
     let points = module.entry_points.iter().map(|point| &point.function);
     let all = module.functions.iter().map(|(_, function)| function).chain(points);
     let expressions = all.flat_map(move |function| {
         let expressions = function.expressions.iter();
         expressions.filter_map(move |(handle, expression)| {
-            let what = later(module, function, version, expression)?;
+            let what = later_builtin(module, function, version, expression)?;
             Some((what, function.expressions.get_span(handle)))
         })
     });
@@ -166,7 +169,7 @@ fn place_of(module: &Module, ty: Handle<Type>) -> Span {
 }
 
 /// The name, in GLSL, of something that a version lacks.
-fn later(
+fn later_builtin(
     module: &Module,
     function: &Function,
     version: Version,

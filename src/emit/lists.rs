@@ -12,11 +12,11 @@ pub fn with_plain_constants(text: &str) -> String {
     if !text.contains(" = Construct") {
         return text.to_owned();
     }
-    let structs = structs(text);
+    let structs = find_structs(text);
     let line = |line: &str| {
         let declared = line.split_once(" = ").filter(|_| line.starts_with("static "));
         match declared.and_then(|(head, value)| Some((head, value.strip_suffix(";\n")?))) {
-            Some((head, value)) => format!("{head} = {};\n", listed(value, &structs)),
+            Some((head, value)) => format!("{head} = {};\n", as_list(value, &structs)),
             None => line.to_owned(),
         }
     };
@@ -36,7 +36,7 @@ enum Member {
     Columns,
 }
 
-fn structs(text: &str) -> Structs<'_> {
+fn find_structs(text: &str) -> Structs<'_> {
     let mut structs = Structs::new();
     let first = text.strip_prefix("struct ");
     for part in text.split("\nstruct ").skip(1).chain(first) {
@@ -57,12 +57,12 @@ fn structs(text: &str) -> Structs<'_> {
 }
 
 /// `ConstructPair(a, b)` written as `{ a, b }`.
-fn listed(value: &str, structs: &Structs<'_>) -> String {
-    let list = call(value).and_then(|(word, arguments)| {
+fn as_list(value: &str, structs: &Structs<'_>) -> String {
+    let list = parse_call(value).and_then(|(word, arguments)| {
         let of = word.strip_prefix("Construct")?;
         match structs.get(of) {
-            None => Some(arguments.iter().map(|value| listed(value, structs)).collect()),
-            Some(members) => filled(members, &arguments, structs),
+            None => Some(arguments.iter().map(|value| as_list(value, structs)).collect()),
+            Some(members) => filled_members(members, &arguments, structs),
         }
     });
     list.map_or_else(|| value.to_owned(), |list: Vec<String>| format!("{{ {} }}", list.join(", ")))
@@ -70,7 +70,11 @@ fn listed(value: &str, structs: &Structs<'_>) -> String {
 
 /// The values of all members, padding included. naga declares the columns of a matrix of two rows
 /// as members.
-fn filled(members: &[Member], arguments: &[&str], structs: &Structs<'_>) -> Option<Vec<String>> {
+fn filled_members(
+    members: &[Member],
+    arguments: &[&str],
+    structs: &Structs<'_>,
+) -> Option<Vec<String>> {
     let mut values = Vec::new();
     let mut places = members.iter().filter(|member| **member != Member::Gap);
     for argument in arguments {
@@ -81,7 +85,7 @@ fn filled(members: &[Member], arguments: &[&str], structs: &Structs<'_>) -> Opti
                 places.nth(columns.len().checked_sub(2)?)?;
                 values.extend(columns.into_iter().map(str::to_owned));
             }
-            _ => values.push(listed(argument, structs)),
+            _ => values.push(as_list(argument, structs)),
         }
     }
     let mut values = values.into_iter();
@@ -95,13 +99,13 @@ fn filled(members: &[Member], arguments: &[&str], structs: &Structs<'_>) -> Opti
 
 /// The columns of a matrix of two rows.
 fn columns_of(value: &str) -> Option<Vec<&str>> {
-    let (word, columns) = call(value)?;
+    let (word, columns) = parse_call(value)?;
     matches!(word, "float2x2" | "float3x2" | "float4x2").then_some(columns)
 }
 
 /// An array of matrices of two rows, as lists of columns.
 fn listed_columns(value: &str) -> String {
-    let list: Vec<String> = match (columns_of(value), call(value)) {
+    let list: Vec<String> = match (columns_of(value), parse_call(value)) {
         (Some(columns), _) => columns.into_iter().map(str::to_owned).collect(),
         (None, Some((_, elements))) => elements.into_iter().map(listed_columns).collect(),
         (None, None) => return value.to_owned(),
@@ -110,7 +114,7 @@ fn listed_columns(value: &str) -> String {
 }
 
 /// Reads a value that is a call: the name of the function, and its arguments.
-fn call(value: &str) -> Option<(&str, Vec<&str>)> {
+fn parse_call(value: &str) -> Option<(&str, Vec<&str>)> {
     let (word, rest) = value.split_once('(')?;
     let rest = rest.strip_suffix(')')?;
     let (mut depth, mut start, mut arguments) = (0_usize, 0, Vec::new());

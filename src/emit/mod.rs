@@ -126,13 +126,13 @@ pub struct Emitted {
 ///
 /// # Errors
 /// `dependent-override`, `emit-failed`; in the author's places where `composed` knows them.
-pub fn check(
+pub fn check_targets(
     composed: &Composed,
     validated: &Validated,
     targets: &[Target],
 ) -> Result<(), Diagnostics> {
-    specialise::check(composed, validated)?;
-    lacks::check(composed, validated, targets)
+    specialise::check_overrides(composed, validated)?;
+    lacks::check_lacks(composed, validated, targets)
 }
 
 /// Writes one entry point for one target. Overrides stay open: [`Native::choices`] says how each
@@ -140,7 +140,7 @@ pub fn check(
 ///
 /// # Errors
 /// `emit-failed` with the writer's message, `naga-internal` where the writer panicked,
-/// `unknown-entry-point`, and `dependent-override`, whose place [`check`] gives.
+/// `unknown-entry-point`, and `dependent-override`, whose place [`check_targets`] gives.
 pub fn emit(validated: &Validated, entry: &str, target: Target) -> Result<Emitted, Diagnostic> {
     emit_for(validated, entry, target, Clip::default())
 }
@@ -155,31 +155,31 @@ pub fn emit_for(
     target: Target,
     clip: Clip,
 ) -> Result<Emitted, Diagnostic> {
-    let index = find(validated, entry)?;
+    let index = find_target(validated, entry)?;
     let Some(writer) = targets::find(target) else {
         return Err(Diagnostic::error(
             codes::EMIT_FAILED,
             format!("there is no writer for target `{target}`"),
         ));
     };
-    on_large_stack(|| guard("", || write(validated, index, writer, clip)))
+    on_large_stack(|| guard("", || write_entry(validated, index, writer, clip)))
         .and_then(|result| result)
         .map_err(|error| error.note(format!("while writing `{entry}` for target `{target}`")))
 }
 
-fn write(
+fn write_entry(
     validated: &Validated,
     index: usize,
     writer: &Entry,
     clip: Clip,
 ) -> Result<Emitted, Diagnostic> {
-    let mut emitted = written(validated, index, writer, clip)?;
+    let mut emitted = written_plainly(validated, index, writer, clip)?;
     let is_vertex = validated.module.entry_points[index].stage == ShaderStage::Vertex;
     emitted.native.clip = is_vertex.then(|| writer.clip.of(clip));
     Ok(emitted)
 }
 
-fn written(
+fn written_plainly(
     validated: &Validated,
     index: usize,
     writer: &Entry,
@@ -189,7 +189,7 @@ fn written(
         Diagnostic::error(codes::EMIT_FAILED, format!("target `{}`: {reason}", writer.target))
     };
     let point = &validated.module.entry_points[index];
-    specialise::refuse(&validated.module)?;
+    specialise::refuse_overrides(&validated.module)?;
     let source = Source {
         module: &validated.module,
         info: &validated.info,
@@ -201,7 +201,7 @@ fn written(
     if writer.target == Target::WGSL || validated.module.overrides.is_empty() {
         return (writer.write)(&source).map_err(failed);
     }
-    if let Some(written) = specialise::write(&source, writer) {
+    if let Some(written) = specialise::write_open(&source, writer) {
         return written.map_err(failed);
     }
     let chosen = Some((point.stage, point.name.as_str()));
@@ -232,7 +232,7 @@ pub fn at_entry(error: Diagnostic, composed: &Composed, entry: &str) -> Diagnost
 }
 
 /// Index of the entry point of that name.
-fn find(validated: &Validated, entry: &str) -> Result<usize, Diagnostic> {
+fn find_target(validated: &Validated, entry: &str) -> Result<usize, Diagnostic> {
     let points = &validated.module.entry_points;
     points.iter().position(|point| point.name == entry).ok_or_else(|| {
         let names: Vec<&str> = points.iter().map(|point| point.name.as_str()).collect();
@@ -248,7 +248,7 @@ fn find(validated: &Validated, entry: &str) -> Result<usize, Diagnostic> {
 }
 
 /// Whether a module's stage is one the crate handles.
-fn stage(stage: ShaderStage) -> Option<bundle::Stage> {
+fn known_stage(stage: ShaderStage) -> Option<bundle::Stage> {
     match stage {
         ShaderStage::Vertex => Some(bundle::Stage::Vertex),
         ShaderStage::Fragment => Some(bundle::Stage::Fragment),

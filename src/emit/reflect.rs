@@ -14,7 +14,7 @@ use crate::validate::{Validated, guard};
 /// # Errors
 /// `unknown-entry-point`; `emit-failed` for stages that no target of the crate has.
 pub fn reflect(validated: &Validated, entry: &str) -> Result<Reflection, Diagnostic> {
-    let index = super::find(validated, entry)?;
+    let index = super::find_target(validated, entry)?;
     guard("", || entry_point(validated, index)).and_then(|result| result)
 }
 
@@ -22,7 +22,7 @@ fn entry_point(validated: &Validated, index: usize) -> Result<Reflection, Diagno
     let module = &validated.module;
     let point = &module.entry_points[index];
     let info = validated.info.get_entry_point(index);
-    let stage = super::stage(point.stage).ok_or_else(|| {
+    let stage = super::known_stage(point.stage).ok_or_else(|| {
         Diagnostic::error(
             codes::EMIT_FAILED,
             format!("`{}` has a stage that no target has", point.name),
@@ -35,10 +35,10 @@ fn entry_point(validated: &Validated, index: usize) -> Result<Reflection, Diagno
     Ok(Reflection {
         stage,
         workgroup_size: (point.stage == naga::ShaderStage::Compute).then_some(point.workgroup_size),
-        inputs: inputs(module, &point.function),
-        outputs: outputs(module, &point.function),
-        bindings: bindings(module, info, &layouter),
-        pairs: pairs(module, info),
+        inputs: entry_inputs(module, &point.function),
+        outputs: entry_outputs(module, &point.function),
+        bindings: used_bindings(module, info, &layouter),
+        pairs: texture_pairs(module, info),
         overrides: module
             .overrides
             .iter()
@@ -48,28 +48,33 @@ fn entry_point(validated: &Validated, index: usize) -> Result<Reflection, Diagno
 }
 
 /// What enters an entry point, by location.
-pub fn inputs(module: &Module, function: &naga::Function) -> Vec<Varying> {
+pub fn entry_inputs(module: &Module, function: &naga::Function) -> Vec<Varying> {
     let arguments = function.arguments.iter();
-    sorted(
+    sorted_varyings(
         arguments
             .flat_map(|argument| {
-                varyings(module, argument.name.as_deref(), argument.ty, argument.binding.as_ref())
+                bound_varyings(
+                    module,
+                    argument.name.as_deref(),
+                    argument.ty,
+                    argument.binding.as_ref(),
+                )
             })
             .collect(),
     )
 }
 
-fn outputs(module: &Module, function: &naga::Function) -> Vec<Varying> {
+fn entry_outputs(module: &Module, function: &naga::Function) -> Vec<Varying> {
     let result = function.result.iter();
-    sorted(
+    sorted_varyings(
         result
-            .flat_map(|result| varyings(module, None, result.ty, result.binding.as_ref()))
+            .flat_map(|result| bound_varyings(module, None, result.ty, result.binding.as_ref()))
             .collect(),
     )
 }
 
 /// Locations first, by number; then built-ins, by name.
-fn sorted(mut varyings: Vec<Varying>) -> Vec<Varying> {
+fn sorted_varyings(mut varyings: Vec<Varying>) -> Vec<Varying> {
     varyings.sort_by_key(|varying| {
         (varying.location.is_none(), varying.location, varying.builtin.clone())
     });
@@ -77,25 +82,25 @@ fn sorted(mut varyings: Vec<Varying>) -> Vec<Varying> {
 }
 
 /// A bound value, or the bound members of a struct.
-fn varyings(
+fn bound_varyings(
     module: &Module,
     name: Option<&str>,
     ty: Handle<Type>,
     binding: Option<&naga::Binding>,
 ) -> Vec<Varying> {
     match (binding, &module.types[ty].inner) {
-        (Some(binding), _) => vec![varying(module, name, ty, binding)],
+        (Some(binding), _) => vec![make_varying(module, name, ty, binding)],
         (None, TypeInner::Struct { members, .. }) => members
             .iter()
             .flat_map(|member| {
-                varyings(module, member.name.as_deref(), member.ty, member.binding.as_ref())
+                bound_varyings(module, member.name.as_deref(), member.ty, member.binding.as_ref())
             })
             .collect(),
         _ => Vec::new(),
     }
 }
 
-fn varying(
+fn make_varying(
     module: &Module,
     name: Option<&str>,
     ty: Handle<Type>,
@@ -122,30 +127,30 @@ fn varying(
     }
 }
 
-fn bindings(module: &Module, info: &FunctionInfo, layouter: &Layouter) -> Vec<Binding> {
-    let mut found: Vec<Binding> = used(module, info)
-        .filter_map(|(handle, variable)| binding(module, info[handle], variable, layouter))
+fn used_bindings(module: &Module, info: &FunctionInfo, layouter: &Layouter) -> Vec<Binding> {
+    let mut found: Vec<Binding> = used_globals(module, info)
+        .filter_map(|(handle, variable)| make_binding(module, info[handle], variable, layouter))
         .collect();
     found.sort_by_key(|binding| (binding.group, binding.binding));
     found
 }
 
 /// Globals the entry point uses, itself or through the functions it calls.
-pub(super) fn used<'a>(
+pub(super) fn used_globals<'a>(
     module: &'a Module,
     info: &'a FunctionInfo,
 ) -> impl Iterator<Item = (Handle<GlobalVariable>, &'a GlobalVariable)> + use<'a> {
     module.global_variables.iter().filter(|(handle, _)| !info[*handle].is_empty())
 }
 
-fn binding(
+fn make_binding(
     module: &Module,
     usage: GlobalUse,
     variable: &GlobalVariable,
     layouter: &Layouter,
 ) -> Option<Binding> {
     let place = variable.binding?;
-    let kind = kind(module, variable)?;
+    let kind = binding_kind(module, variable)?;
     let ty = &module.types[variable.ty];
     let is_buffer = matches!(kind, Kind::Uniform | Kind::Storage);
     Some(Binding {
@@ -157,11 +162,11 @@ fn binding(
         ty: type_name(module, variable.ty),
         size: is_buffer.then(|| layouter[variable.ty].size),
         writable: usage.contains(GlobalUse::WRITE),
-        members: if is_buffer { members(module, variable.ty, layouter) } else { Vec::new() },
+        members: if is_buffer { struct_members(module, variable.ty, layouter) } else { Vec::new() },
     })
 }
 
-pub(super) fn kind(module: &Module, variable: &GlobalVariable) -> Option<Kind> {
+pub(super) fn binding_kind(module: &Module, variable: &GlobalVariable) -> Option<Kind> {
     match (variable.space, &module.types[variable.ty].inner) {
         (AddressSpace::Uniform, _) => Some(Kind::Uniform),
         (AddressSpace::Storage { .. }, _) => Some(Kind::Storage),
@@ -176,17 +181,17 @@ pub(super) fn kind(module: &Module, variable: &GlobalVariable) -> Option<Kind> {
 }
 
 /// Members of a struct, or of the elements of an array of structs.
-fn members(module: &Module, ty: Handle<Type>, layouter: &Layouter) -> Vec<Member> {
+fn struct_members(module: &Module, ty: Handle<Type>, layouter: &Layouter) -> Vec<Member> {
     match &module.types[ty].inner {
         TypeInner::Struct { members, .. } => {
-            members.iter().map(|member| self::member(module, member, layouter)).collect()
+            members.iter().map(|member| self::make_member(module, member, layouter)).collect()
         }
-        TypeInner::Array { base, .. } => self::members(module, *base, layouter),
+        TypeInner::Array { base, .. } => self::struct_members(module, *base, layouter),
         _ => Vec::new(),
     }
 }
 
-fn member(module: &Module, member: &naga::StructMember, layouter: &Layouter) -> Member {
+fn make_member(module: &Module, member: &naga::StructMember, layouter: &Layouter) -> Member {
     let stride = match module.types[member.ty].inner {
         TypeInner::Array { stride, .. } => Some(stride),
         _ => None,
@@ -197,20 +202,23 @@ fn member(module: &Module, member: &naga::StructMember, layouter: &Layouter) -> 
         offset: member.offset,
         size: layouter[member.ty].size,
         stride,
-        members: members(module, member.ty, layouter),
+        members: struct_members(module, member.ty, layouter),
     }
 }
 
 /// The place of a global that has one.
-pub(super) fn place(module: &Module, handle: Handle<GlobalVariable>) -> Option<Place> {
+pub(super) fn place_of(module: &Module, handle: Handle<GlobalVariable>) -> Option<Place> {
     module.global_variables[handle].binding.map(|binding| [binding.group, binding.binding])
 }
 
-fn pairs(module: &Module, info: &FunctionInfo) -> Vec<Pair> {
+fn texture_pairs(module: &Module, info: &FunctionInfo) -> Vec<Pair> {
     let keys = info.sampling_set.iter();
     let mut pairs: Vec<Pair> = keys
         .filter_map(|key| {
-            Some(Pair { texture: place(module, key.image)?, sampler: place(module, key.sampler)? })
+            Some(Pair {
+                texture: place_of(module, key.image)?,
+                sampler: place_of(module, key.sampler)?,
+            })
         })
         .collect();
     pairs.sort();
@@ -222,12 +230,12 @@ fn override_of(module: &Module, constant: &naga::Override) -> Override {
         name: constant.name.clone(),
         id: constant.id,
         ty: type_name(module, constant.ty),
-        default: constant.init.and_then(|init| literal(module, init)),
+        default: constant.init.and_then(|init| literal_text(module, init)),
     }
 }
 
-fn literal(module: &Module, expression: Handle<Expression>) -> Option<String> {
-    Some(match super::specialise::literal(module, expression)? {
+fn literal_text(module: &Module, expression: Handle<Expression>) -> Option<String> {
+    Some(match super::specialise::literal_of(module, expression)? {
         naga::Literal::F32(value) => format!("{value:?}"),
         naga::Literal::U32(value) => value.to_string(),
         naga::Literal::I32(value) => value.to_string(),

@@ -4,10 +4,10 @@ use naga::{Function, Module, Type, TypeInner};
 
 /// The module with other names for those that are taken; `None` where none is. The entry point's
 /// name is changed too.
-pub fn renamed(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<Module> {
+pub fn rename_taken(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<Module> {
     // naga drops underscores at the end, and all but one of several in a row.
-    let is_taken = |name: &str| is_taken(name) || is_taken(&plain(name));
-    if !names(module).any(is_taken) {
+    let is_taken = |name: &str| is_taken(name) || is_taken(&plain_name(name));
+    if !names_of(module).any(is_taken) {
         return None;
     }
     let mut module = module.clone();
@@ -48,7 +48,7 @@ pub fn renamed(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<Modul
 }
 
 /// A name as naga writes it, without the number that it may append.
-fn plain(name: &str) -> String {
+fn plain_name(name: &str) -> String {
     let mut plain = String::with_capacity(name.len());
     for letter in name.trim_end_matches('_').chars() {
         if letter != '_' || !plain.ends_with('_') {
@@ -59,7 +59,7 @@ fn plain(name: &str) -> String {
 }
 
 /// Every name of a module.
-fn names(module: &Module) -> impl Iterator<Item = &str> {
+fn names_of(module: &Module) -> impl Iterator<Item = &str> {
     let members = module.types.iter().flat_map(|(_, ty)| match &ty.inner {
         TypeInner::Struct { members, .. } => members.as_slice(),
         _ => &[],

@@ -3,7 +3,7 @@
 use naga::ResourceBinding;
 
 use super::Source;
-use super::reflect::{kind, used};
+use super::reflect::{binding_kind, used_globals};
 use crate::bundle::{Kind, Native, Slot};
 
 /// How a target numbers bindings.
@@ -23,25 +23,29 @@ pub enum Numbering {
 pub const EXPLICIT_LIMIT: u32 = 16;
 
 /// Every used binding, sorted, with its kind and its number in the target.
-pub fn assign(
+pub fn assign_slots(
     source: &Source<'_>,
     numbering: Numbering,
 ) -> Vec<(ResourceBinding, Kind, Option<u32>)> {
-    let globals = used(source.module, source.info.get_entry_point(source.index));
+    let globals = used_globals(source.module, source.info.get_entry_point(source.index));
     let mut found: Vec<(ResourceBinding, Kind)> = globals
-        .filter_map(|(_, variable)| Some((variable.binding?, kind(source.module, variable)?)))
+        .filter_map(|(_, variable)| {
+            Some((variable.binding?, binding_kind(source.module, variable)?))
+        })
         .collect();
     found.sort();
     let mut next = [0; 3];
     found
         .into_iter()
-        .map(|(binding, kind)| (binding, kind, number(numbering, binding, &mut next[table(kind)])))
+        .map(|(binding, kind)| {
+            (binding, kind, slot_number(numbering, binding, &mut next[slot_table(kind)]))
+        })
         .collect()
 }
 
 /// The reflection of a target without combined samplers.
-pub fn native(source: &Source<'_>, entry: &str, numbering: Numbering) -> Native {
-    let slots = assign(source, numbering)
+pub fn native_reflection(source: &Source<'_>, entry: &str, numbering: Numbering) -> Native {
+    let slots = assign_slots(source, numbering)
         .into_iter()
         .map(|(binding, _, index)| Slot {
             group: binding.group,
@@ -55,7 +59,7 @@ pub fn native(source: &Source<'_>, entry: &str, numbering: Numbering) -> Native 
     Native { entry_name: entry.to_owned(), slots, ..Native::default() }
 }
 
-fn number(numbering: Numbering, binding: ResourceBinding, next: &mut u32) -> Option<u32> {
+fn slot_number(numbering: Numbering, binding: ResourceBinding, next: &mut u32) -> Option<u32> {
     match numbering {
         Numbering::Author => Some(binding.binding),
         Numbering::Explicit => (binding.group < EXPLICIT_LIMIT && binding.binding < EXPLICIT_LIMIT)
@@ -68,7 +72,7 @@ fn number(numbering: Numbering, binding: ResourceBinding, next: &mut u32) -> Opt
     }
 }
 
-fn table(kind: Kind) -> usize {
+fn slot_table(kind: Kind) -> usize {
     match kind {
         Kind::Uniform | Kind::Storage => 0,
         Kind::Texture | Kind::StorageTexture => 1,

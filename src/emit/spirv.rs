@@ -30,8 +30,6 @@ pub(crate) mod op {
     pub const MEMBER_DECORATE: u16 = 72;
     pub const COPY_OBJECT: u16 = 83;
     pub const IMAGE_WRITE: u16 = 99;
-    pub const DECORATE_STRING: u16 = 5632;
-    pub const MEMBER_DECORATE_STRING: u16 = 5633;
 }
 
 /// The words of a module's bytes, which are little-endian.

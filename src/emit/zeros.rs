@@ -8,8 +8,9 @@ const MOST_LISTED: usize = 1024;
 
 /// The text without casts of a number to an array.
 pub fn without_casts(text: &str) -> String {
-    let line =
-        |line: &str| declared(line).or_else(|| returned(line)).unwrap_or_else(|| line.to_owned());
+    let line = |line: &str| {
+        zero_declaration(line).or_else(|| zero_return(line)).unwrap_or_else(|| line.to_owned())
+    };
     if text.contains("])0;") {
         text.split_inclusive('\n').map(line).collect()
     } else {
@@ -18,7 +19,7 @@ pub fn without_casts(text: &str) -> String {
 }
 
 /// `float3 a[2] = (float3[2])0;` with a list instead.
-fn declared(line: &str) -> Option<String> {
+fn zero_declaration(line: &str) -> Option<String> {
     let (declaration, cast) = line.split_once(" = (")?;
     let zeros = Zeros::read(cast)?;
     if !declaration.ends_with(']') {
@@ -35,7 +36,7 @@ fn declared(line: &str) -> Option<String> {
 }
 
 /// `return (float3[2])0;` with a variable that is returned instead.
-fn returned(line: &str) -> Option<String> {
+fn zero_return(line: &str) -> Option<String> {
     let (indent, cast) = line.split_once("return (")?;
     let zeros = Zeros::read(cast)?;
     let sizes: String = zeros.sizes.iter().map(|size| format!("[{size}]")).collect();

@@ -24,7 +24,7 @@ pub enum Kind {
 }
 
 /// The kind of a scalar; `None` for scalars that the evaluator lacks.
-pub fn kind(scalar: Scalar) -> Option<Kind> {
+pub fn kind_of(scalar: Scalar) -> Option<Kind> {
     match (scalar.kind, scalar.width) {
         (ScalarKind::Bool, _) => Some(Kind::Bool),
         (ScalarKind::Sint, 4) => Some(Kind::Sint),
@@ -83,7 +83,7 @@ impl<'m> Layout<'m> {
             TypeInner::Struct { ref members, .. } => {
                 members.iter().try_for_each(|member| self.kinds(member.ty, to))?
             }
-            ref inner => to.extend(std::iter::repeat_n(leaf(inner), slots as usize)),
+            ref inner => to.extend(std::iter::repeat_n(leaf_kind(inner), slots as usize)),
         }
         Ok(())
     }
@@ -136,10 +136,10 @@ impl<'m> Layout<'m> {
     fn measure(&self, inner: &TypeInner) -> Option<u32> {
         let limit = |slots: u64| u32::try_from(slots.min(u64::from(MAX_SLOTS) + 1)).ok();
         match *inner {
-            TypeInner::Scalar(scalar) => kind(scalar).map(|_| 1),
-            TypeInner::Vector { size, scalar } => kind(scalar).map(|_| size as u32),
+            TypeInner::Scalar(scalar) => kind_of(scalar).map(|_| 1),
+            TypeInner::Vector { size, scalar } => kind_of(scalar).map(|_| size as u32),
             TypeInner::Matrix { columns, rows, scalar } => {
-                kind(scalar).map(|_| columns as u32 * rows as u32)
+                kind_of(scalar).map(|_| columns as u32 * rows as u32)
             }
             TypeInner::Array { base, size: ArraySize::Constant(count), .. } => {
                 limit(u64::from(self.size(base).ok()?) * u64::from(count.get()))
@@ -159,13 +159,13 @@ impl<'m> Layout<'m> {
     }
 
     fn unsupported(&self, inner: &TypeInner) -> Error {
-        Error::unsupported(format!("values of the type {}", name(inner)))
+        Error::unsupported(format!("values of the type {}", type_name(inner)))
     }
 }
 
 /// Reads a buffer's bytes into slots: calls `write` with the kind and the four bytes of each
 /// scalar. Bytes that are missing read as zero.
-pub fn decode(
+pub fn decode_buffer(
     types: &UniqueArena<Type>,
     ty: Handle<Type>,
     bytes: &[u8],
@@ -178,7 +178,7 @@ pub fn decode(
                 .get(at..at + 4)
                 .and_then(|bytes| bytes.try_into().ok())
                 .map_or(0, u32::from_le_bytes);
-            write(kind(scalar).unwrap_or(Kind::Uint), word);
+            write(kind_of(scalar).unwrap_or(Kind::Uint), word);
         }
     };
     match types[ty].inner {
@@ -195,31 +195,36 @@ pub fn decode(
                 bytes.len() / stride.max(1) as usize
             };
             (0..count).for_each(|index| {
-                decode(types, base, rest(bytes, index.saturating_mul(stride as usize)), write)
+                decode_buffer(
+                    types,
+                    base,
+                    rest_from(bytes, index.saturating_mul(stride as usize)),
+                    write,
+                )
             });
         }
         TypeInner::Struct { ref members, .. } => {
             members.iter().for_each(|member| {
-                decode(types, member.ty, rest(bytes, member.offset as usize), write)
+                decode_buffer(types, member.ty, rest_from(bytes, member.offset as usize), write)
             });
         }
         _ => {}
     }
 }
 
-fn rest(bytes: &[u8], from: usize) -> &[u8] {
+fn rest_from(bytes: &[u8], from: usize) -> &[u8] {
     bytes.get(from..).unwrap_or_default()
 }
 
-fn leaf(inner: &TypeInner) -> Kind {
+fn leaf_kind(inner: &TypeInner) -> Kind {
     match *inner {
         TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. } => Kind::Pointer,
         TypeInner::Image { .. } | TypeInner::Sampler { .. } => Kind::Handle,
-        _ => inner.scalar().and_then(kind).unwrap_or(Kind::Uint),
+        _ => inner.scalar().and_then(kind_of).unwrap_or(Kind::Uint),
     }
 }
 
-fn name(inner: &TypeInner) -> String {
+fn type_name(inner: &TypeInner) -> String {
     match inner.scalar() {
         Some(scalar) => format!("`{:?}{}`", scalar.kind, u32::from(scalar.width) * 8),
         None => {

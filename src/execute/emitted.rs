@@ -15,34 +15,34 @@ use crate::validate::{CAPABILITIES, Validated};
 ///
 /// # Errors
 /// `executor-lacks` where the target's language cannot express something in the kernel.
-pub fn emit(kernel: &Kernel, target: Target) -> Result<Emitted, Diagnostic> {
+pub fn emit_kernel(kernel: &Kernel, target: Target) -> Result<Emitted, Diagnostic> {
     Ok(of_module(&kernel.module, ENTRY, target)?.0)
 }
 
 /// Emits an entry point of a module in a target's language, with the module's analysis.
 ///
 /// # Errors
-/// Those of [`emit`].
+/// Those of [`emit_kernel`].
 pub fn of_module(
     module: &Module,
     entry: &str,
     target: Target,
 ) -> Result<(Emitted, Validated), Diagnostic> {
     let info = Validator::new(ValidationFlags::all(), CAPABILITIES).validate(module);
-    let info = info.map_err(|error| failed(format!("the module is not valid: {error}")))?;
+    let info = info.map_err(|error| emit_failed(format!("the module is not valid: {error}")))?;
     let validated = Validated { language: Language::Wesl, module: module.clone(), info };
     match link::compile_module(&validated, entry, target) {
         Ok(artifact) => {
             let (bytes, native) = (artifact.bytes.to_vec(), Native::clone(&artifact.native));
             Ok((Emitted { bytes, native }, validated))
         }
-        Err(errors) => Err(refused(errors, target)),
+        Err(errors) => Err(kernel_refused(errors, target)),
     }
 }
 
 /// The first of a kernel's errors. Where the target lacks a construct, the error says that the
 /// executor cannot run the kernel.
-fn refused(errors: Diagnostics, target: Target) -> Diagnostic {
+fn kernel_refused(errors: Diagnostics, target: Target) -> Diagnostic {
     let lost = || Diagnostic::error(codes::EMIT_FAILED, format!("no output for {target}"));
     let error = errors.into_iter().next().unwrap_or_else(lost);
     if error.code.name == codes::EMIT_FAILED.name {
@@ -52,6 +52,6 @@ fn refused(errors: Diagnostics, target: Target) -> Diagnostic {
     }
 }
 
-fn failed(message: impl Into<String>) -> Diagnostic {
+fn emit_failed(message: impl Into<String>) -> Diagnostic {
     Diagnostic::error(codes::EXECUTOR_FAILED, message)
 }

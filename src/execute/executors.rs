@@ -62,8 +62,8 @@ const DEVICE_SAMPLES: u32 = 4;
 
 /// A session on a device of wgpu.
 #[cfg(not(target_family = "wasm"))]
-fn opened(wanted: super::gpu::Wanted) -> Result<Box<dyn Session>, Unavailable> {
-    match super::gpu::open(wanted) {
+fn open_gpu(wanted: super::gpu::Wanted) -> Result<Box<dyn Session>, Unavailable> {
+    match super::gpu::open_gpu(wanted) {
         Ok(gpu) => Ok(Box::new(gpu)),
         Err(reason) => Err(Unavailable { reason }),
     }
@@ -90,7 +90,7 @@ fn opened_page(api: super::web::Api) -> Result<Box<dyn Session>, Unavailable> {
 include!(concat!(env!("OUT_DIR"), "/executors.rs"));
 
 /// Prepares the process for executors. Call this while it has only one thread.
-pub fn prepare(entries: &[&Entry]) {
+pub fn prepare_process(entries: &[&Entry]) {
     if entries.iter().any(|entry| !entry.needs.is_empty()) {
         without_windows();
     }
@@ -116,6 +116,6 @@ fn without_windows() {
 }
 
 /// The executor of that name.
-pub fn find(name: &str) -> Option<&'static Entry> {
+pub fn find_executor(name: &str) -> Option<&'static Entry> {
     ALL.iter().copied().find(|entry| entry.name == name)
 }

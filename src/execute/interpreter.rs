@@ -51,13 +51,13 @@ impl Interpreter {
         let info = validated.map_err(|error| {
             Diagnostic::error(codes::EXECUTOR_FAILED, format!("the kernel is not valid: {error}"))
         })?;
-        let program = Program::new(module, &info).map_err(failed)?;
-        let slots = slots(kernel, &program)?;
+        let program = Program::new(module, &info).map_err(eval_failed)?;
+        let slots = argument_slots(kernel, &program)?;
         Ok(Self {
             function: FunctionId::from(kernel.function),
             program,
             slots,
-            resources: resources(kernel),
+            resources: kernel_resources(kernel),
             steps: AtomicU64::new(0),
             most: kernel.steps,
         })
@@ -70,8 +70,8 @@ impl Interpreter {
 
     /// The memory for the calls of one thread.
     pub fn calls<N: Number>(&self) -> Result<Calls<'_, N>, Diagnostic> {
-        let mut machine = Machine::new(&self.program).map_err(failed)?;
-        machine.bind(self.resources.clone()).map_err(failed)?;
+        let mut machine = Machine::new(&self.program).map_err(eval_failed)?;
+        machine.bind(self.resources.clone()).map_err(eval_failed)?;
         Ok(Calls { interpreter: self, machine, arguments: Vec::new() })
     }
 }
@@ -83,10 +83,10 @@ impl<N: Number> Calls<'_, N> {
         self.arguments.clear();
         self.arguments.extend(self.interpreter.slots.iter().map(|slot| match slot {
             Slot::Handle(handle) => N::from_word(*handle),
-            Slot::Word(kind) => number(words.next().unwrap_or(0), *kind),
+            Slot::Word(kind) => slot_from_word(words.next().unwrap_or(0), *kind),
         }));
         let Interpreter { function, steps, most, .. } = self.interpreter;
-        self.machine.call(*function, &self.arguments).map_err(failed)?;
+        self.machine.call(*function, &self.arguments).map_err(eval_failed)?;
         let taken = self.machine.steps();
         if steps.fetch_add(taken, Ordering::Relaxed).saturating_add(taken) > *most {
             let message = format!("all calls together take more than {most} steps");
@@ -97,7 +97,7 @@ impl<N: Number> Calls<'_, N> {
 }
 
 /// A slot from a word of the kind.
-fn number<N: Number>(word: u32, kind: ScalarKind) -> N {
+fn slot_from_word<N: Number>(word: u32, kind: ScalarKind) -> N {
     match kind {
         ScalarKind::Float => N::from_f64(f64::from(f32::from_bits(word))),
         _ => N::from_word(word),
@@ -105,10 +105,10 @@ fn number<N: Number>(word: u32, kind: ScalarKind) -> N {
 }
 
 /// The number in a slot.
-pub fn value<N: Number>(slot: N, kind: ScalarKind) -> f64 {
+pub fn slot_value<N: Number>(slot: N, kind: ScalarKind) -> f64 {
     match kind {
         ScalarKind::Float => slot.value(),
-        _ => super::kernel::number(slot.word(), kind),
+        _ => super::kernel::word_value(slot.word(), kind),
     }
 }
 
@@ -120,7 +120,7 @@ pub fn word_of<N: Number>(slot: N, kind: ScalarKind) -> u32 {
     }
 }
 
-fn slots(kernel: &Kernel, program: &Program) -> Result<Vec<Slot>, Diagnostic> {
+fn argument_slots(kernel: &Kernel, program: &Program) -> Result<Vec<Slot>, Diagnostic> {
     let mut slots = Vec::new();
     for parameter in &kernel.parameters {
         match &parameter.kind {
@@ -142,7 +142,7 @@ fn slots(kernel: &Kernel, program: &Program) -> Result<Vec<Slot>, Diagnostic> {
 }
 
 /// The fixtures of a kernel at their bindings.
-pub fn resources(kernel: &Kernel) -> Resources {
+pub fn kernel_resources(kernel: &Kernel) -> Resources {
     let mut resources = Resources::default();
     for resource in kernel.resources() {
         let place = (0, resource.binding);
@@ -190,6 +190,6 @@ impl From<Sampler> for eval::Sampler {
 
 /// The error as a diagnostic without a place, since naga read the kernel's text and not the
 /// author's.
-pub fn failed(error: eval::Error) -> Diagnostic {
+pub fn eval_failed(error: eval::Error) -> Diagnostic {
     Diagnostic::error(error.code, error.message)
 }

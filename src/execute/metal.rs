@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::fixture::Fixture;
 use super::frame::{Drawing, EntryPoint, Frame};
-use super::gpu::{batched, emitted, input_texels, unpack};
+use super::gpu::{emitted, input_texels, run_batches, unpack_results};
 use super::kernel::{INPUT_WIDTH, Kernel, TARGET_WIDTH};
 use super::raster::Compiled;
 use super::shipped::Shipped;
@@ -17,7 +17,7 @@ use crate::diagnostic::{Diagnostic, codes};
 use crate::emit::Emitted;
 use crate::eval::{Sampler, Shape, Texture};
 use crate::metal::request::{Bound, Format, Fragment, Image, ImageLevel};
-use crate::metal::{Missing, Program, version};
+use crate::metal::{Missing, Program, clang_version};
 use crate::validate::on_large_stack;
 
 /// A session. It holds programs, each of which has many kernels.
@@ -42,7 +42,7 @@ impl Metal {
     /// # Errors
     /// It is missing.
     pub fn open() -> Result<Self, Missing> {
-        let compiler = version()?;
+        let compiler = clang_version()?;
         Ok(Self { compiler, programs: Vec::new(), kept: HashMap::new(), runs: 0 })
     }
 
@@ -53,11 +53,12 @@ impl Metal {
         if new.is_empty() {
             return;
         }
-        let emit = |kernel: &&Kernel| emitted::emit(kernel, Target::MSL).and_then(text);
+        let emit =
+            |kernel: &&Kernel| emitted::emit_kernel(kernel, Target::MSL).and_then(emitted_text);
         let outputs: Vec<Result<(String, Native), Diagnostic>> =
             on_large_stack(|| new.par_iter().map(emit).collect());
         let texts: Vec<&str> = outputs.iter().flatten().map(|(text, _)| text.as_str()).collect();
-        let program = Program::build(&texts).map_err(|missing| failed(missing.reason));
+        let program = Program::build(&texts).map_err(|missing| metal_failed(missing.reason));
         let (index, mut next) = (self.programs.len(), 0);
         for (kernel, output) in new.iter().zip(&outputs) {
             let kept = match (output, &program) {
@@ -85,16 +86,16 @@ impl Metal {
         let kept = match self.kept.get(&kernel.id) {
             Some(Ok(kept)) => kept,
             Some(Err(error)) => return Err(error.clone()),
-            None => return Err(failed("the kernel was not prepared")),
+            None => return Err(metal_failed("the kernel was not prepared")),
         };
         let Some(program) = self.programs.get_mut(kept.program) else {
-            return Err(failed("the program was lost"));
+            return Err(metal_failed("the program was lost"));
         };
-        let bound = bound(kernel, &kept.native, input_texels(kernel, inputs, header));
+        let bound = bind_kernel(kernel, &kept.native, input_texels(kernel, inputs, header));
         let quads: Vec<[Fragment; 4]> = (0..rows.div_ceil(2))
-            .flat_map(|y| (0..TARGET_WIDTH / 2).map(move |x| quad(2 * x, 2 * y)))
+            .flat_map(|y| (0..TARGET_WIDTH / 2).map(move |x| quad_fragments(2 * x, 2 * y)))
             .collect();
-        let shaded = program.quads(kept.text, &bound, &quads).map_err(failed)?;
+        let shaded = program.quads(kept.text, &bound, &quads).map_err(metal_failed)?;
         let mut pixels = vec![0; (rows * TARGET_WIDTH) as usize * 4];
         for (fragment, shaded) in quads.iter().flatten().zip(shaded.iter().flatten()) {
             let [x, y, ..] = fragment.position.map(|place| place as usize);
@@ -105,7 +106,7 @@ impl Metal {
                 pixel.copy_from_slice(words);
             }
         }
-        unpack(kernel, &pixels, header)
+        unpack_results(kernel, &pixels, header)
     }
 }
 
@@ -120,7 +121,7 @@ impl Session for Metal {
 
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
         self.compile(&[kernel]);
-        batched(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
+        run_batches(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
     }
 
     fn draw_frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
@@ -128,7 +129,7 @@ impl Session for Metal {
         let mut stages = vec![shipped(drawing.vertex)?];
         stages.extend(drawing.fragment.map(shipped).transpose()?);
         let fragment = stages.len().checked_sub(2).map(|_| 1);
-        let compiled = Compiled::new(stages).map_err(|missing| failed(missing.reason))?;
+        let compiled = Compiled::new(stages).map_err(|missing| metal_failed(missing.reason))?;
         compiled.draw(0, fragment, drawing)
     }
 
@@ -137,24 +138,24 @@ impl Session for Metal {
         pair: Pair<'_>,
         drawing: &Drawing<'_>,
     ) -> Result<Vec<Frame>, Diagnostic> {
-        let targets = pair.fragment.targets().map_err(failed)?.len() as u32;
+        let targets = pair.fragment.targets().map_err(metal_failed)?.len() as u32;
         let stages = vec![pair.vertex.clone(), pair.fragment.clone()];
-        let compiled = Compiled::new(stages).map_err(|missing| failed(missing.reason))?;
+        let compiled = Compiled::new(stages).map_err(|missing| metal_failed(missing.reason))?;
         compiled.draw(0, Some(1), &Drawing { targets, ..*drawing })
     }
 }
 
-fn failed(message: impl Into<String>) -> Diagnostic {
+fn metal_failed(message: impl Into<String>) -> Diagnostic {
     Diagnostic::error(codes::EXECUTOR_FAILED, message)
 }
 
-fn text(emitted: Emitted) -> Result<(String, Native), Diagnostic> {
-    let text = String::from_utf8(emitted.bytes).map_err(|error| failed(error.to_string()))?;
+fn emitted_text(emitted: Emitted) -> Result<(String, Native), Diagnostic> {
+    let text = String::from_utf8(emitted.bytes).map_err(|error| metal_failed(error.to_string()))?;
     Ok((text, emitted.native))
 }
 
 /// The fragments at four places.
-fn quad(x: u32, y: u32) -> [Fragment; 4] {
+fn quad_fragments(x: u32, y: u32) -> [Fragment; 4] {
     [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].map(|(x, y)| Fragment {
         position: [x as f32 + 0.5, y as f32 + 0.5, 0.0, 1.0],
         front: true,
@@ -163,7 +164,7 @@ fn quad(x: u32, y: u32) -> [Fragment; 4] {
 }
 
 /// Binds the inputs and the fixtures of a kernel, where its text has them.
-fn bound(kernel: &Kernel, native: &Native, texels: Vec<u32>) -> Bound {
+fn bind_kernel(kernel: &Kernel, native: &Native, texels: Vec<u32>) -> Bound {
     let mut bound = Bound::default();
     let fixture = |binding: u32| kernel.resources().find(|resource| resource.binding == binding);
     for slot in &native.slots {
@@ -176,14 +177,14 @@ fn bound(kernel: &Kernel, native: &Native, texels: Vec<u32>) -> Bound {
             Some(Fixture::Sampler(sampler)) => {
                 bound.samplers.insert(index, Sampler::from(*sampler));
             }
-            None => drop(bound.textures.insert(index, inputs(&texels))),
+            None => drop(bound.textures.insert(index, input_image(&texels))),
         }
     }
     bound
 }
 
 /// The input texture, binding 0.
-fn inputs(texels: &[u32]) -> Image {
+fn input_image(texels: &[u32]) -> Image {
     let height = texels.len() as u32 / 4 / INPUT_WIDTH;
     let level = ImageLevel { width: INPUT_WIDTH, height, layers: 1, words: texels.to_vec() };
     Image { shape: Shape::D2, format: Format::Unsigned, levels: vec![level] }

@@ -7,26 +7,26 @@ use glam::{DVec2, DVec3};
 use super::fixture::{Sampler, Texture};
 
 /// The share of the texels around a place that pass the sampler's comparison.
-pub fn compare(map: &Texture, sampler: Sampler, uv: DVec2, depth: f64) -> f64 {
-    filtered(map, sampler, uv, 0, |stored| passes(sampler, depth, stored), 0)
+pub fn compare_depth(map: &Texture, sampler: Sampler, uv: DVec2, depth: f64) -> f64 {
+    filter_texels(map, sampler, uv, 0, |stored| passes_comparison(sampler, depth, stored), 0)
 }
 
 /// The same for a direction into a cube map.
 pub fn compare_cube(map: &Texture, sampler: Sampler, direction: DVec3, depth: f64) -> f64 {
-    let (face, uv) = face(direction);
-    filtered(map, sampler, uv, face, |stored| passes(sampler, depth, stored), 0)
+    let (face, uv) = cube_face(direction);
+    filter_texels(map, sampler, uv, face, |stored| passes_comparison(sampler, depth, stored), 0)
 }
 
 /// One channel of a colour texture.
-pub fn read(map: &Texture, sampler: Sampler, uv: DVec2, channel: usize) -> f64 {
-    filtered(map, sampler, uv, 0, |stored| stored, channel)
+pub fn read_channel(map: &Texture, sampler: Sampler, uv: DVec2, channel: usize) -> f64 {
+    filter_texels(map, sampler, uv, 0, |stored| stored, channel)
 }
 
-fn passes(sampler: Sampler, depth: f64, stored: f64) -> f64 {
+fn passes_comparison(sampler: Sampler, depth: f64, stored: f64) -> f64 {
     f64::from(u8::from(sampler.compare.is_some_and(|compare| compare.passes(depth, stored))))
 }
 
-fn filtered(
+fn filter_texels(
     map: &Texture,
     sampler: Sampler,
     uv: DVec2,
@@ -50,7 +50,7 @@ fn filtered(
 
 /// The face a direction hits (+x, -x, +y, -y, +z, -z) and the place on it, by the table of the
 /// Vulkan specification, "Cube Map Face Selection".
-fn face(d: DVec3) -> (u32, DVec2) {
+fn cube_face(d: DVec3) -> (u32, DVec2) {
     let size = d.abs();
     let (face, s, t, major) = if size.z >= size.x && size.z >= size.y {
         if d.z >= 0.0 { (4, d.x, -d.y, size.z) } else { (5, -d.x, -d.y, size.z) }

@@ -63,7 +63,7 @@ pub fn compose_all(
             .into_iter()
             .zip(&jobs)
             .map(|(made, job)| job.named(made, entries, space, &points[batch.clone()]));
-        let made = collect(made.collect())?;
+        let made = collect_values(made.collect())?;
         for ((entry, Compiled { digest, warnings, whole }), job) in made.into_iter().zip(&jobs) {
             let result = &mut known[entry].result;
             result.made.push(digest);
@@ -122,7 +122,7 @@ fn compose_batch(
         let settings = space.settings(point);
         known.iter().map(|entry| entry.find(&settings, space, point)).collect::<Result<Vec<_>, _>>()
     };
-    let found = collect(batch.par_iter().map(|point| answers(known, point)).collect())?;
+    let found = collect_values(batch.par_iter().map(|point| answers(known, point)).collect())?;
     let mut jobs = Vec::new();
     for (point, answers) in found.into_iter().enumerate() {
         for (entry, answer) in answers.into_iter().enumerate() {
@@ -216,13 +216,13 @@ impl<'a> Known<'a> {
 }
 
 /// All values, or the first diagnostics of those that failed, each once.
-fn collect<T>(results: Vec<Result<T, Diagnostics>>) -> Result<Vec<T>, Diagnostics> {
+fn collect_values<T>(results: Vec<Result<T, Diagnostics>>) -> Result<Vec<T>, Diagnostics> {
     let mut values = Vec::with_capacity(results.len());
     let mut errors: Diagnostics = Vec::new();
     for result in results {
         match result {
             Ok(value) => values.push(value),
-            Err(found) => found.into_iter().for_each(|error| keep(&mut errors, error)),
+            Err(found) => found.into_iter().for_each(|error| keep_new(&mut errors, error)),
         }
     }
     if errors.is_empty() { Ok(values) } else { Err(errors) }
@@ -230,7 +230,7 @@ fn collect<T>(results: Vec<Result<T, Diagnostics>>) -> Result<Vec<T>, Diagnostic
 
 /// Keeps a diagnostic unless it is known. The same mistake in many permutations is reported for the
 /// first.
-fn keep(errors: &mut Diagnostics, error: Diagnostic) {
+fn keep_new(errors: &mut Diagnostics, error: Diagnostic) {
     let same = |known: &Diagnostic| {
         known.code == error.code && known.message == error.message && known.labels == error.labels
     };

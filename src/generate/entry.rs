@@ -38,7 +38,7 @@ pub fn entries(
 ) -> Result<Vec<Entry>, Diagnostics> {
     let Some(point) = point else { return Ok(Vec::new()) };
     let (mut entries, mut errors) = (Vec::new(), Diagnostics::new());
-    for (file, language) in roots(program) {
+    for (file, language) in root_files(program) {
         let found = of_file(sources, packages, program, point, (file, language), &mut entries);
         errors.extend(found.err().into_iter().flatten());
     }
@@ -71,9 +71,9 @@ fn of_file(
         return Err(of_permutation(vec![error], program, point));
     }
     for found in points {
-        let keep = shader::kept(&graph, &Options::default(), &found.name);
+        let keep = shader::kept_items(&graph, &Options::default(), &found.name);
         let options = Options { keep, ..Options::default() };
-        let label = label(entries, language, &found);
+        let label = entry_label(entries, language, &found);
         let (program, graph) = (program.name.clone(), graph.clone());
         entries.push(Entry {
             program,
@@ -114,7 +114,7 @@ fn of_permutation(errors: Diagnostics, program: &Program, point: &Assignment) ->
     errors.into_iter().map(|error| error.note(note.as_str())).collect()
 }
 
-fn label(before: &[Entry], language: Language, point: &naga::EntryPoint) -> String {
+fn entry_label(before: &[Entry], language: Language, point: &naga::EntryPoint) -> String {
     let twin = before.iter().find(|entry| entry.language != language && entry.stage == point.stage);
     match (language, twin) {
         (Language::Wesl, _) => point.name.clone(),
@@ -123,7 +123,7 @@ fn label(before: &[Entry], language: Language, point: &naga::EntryPoint) -> Stri
     }
 }
 
-fn roots(program: &Program) -> Vec<(&File, Language)> {
+fn root_files(program: &Program) -> Vec<(&File, Language)> {
     let glsl = program.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
     let wesl = program.wesl.iter().map(|file| (file, Language::Wesl));
     wesl.chain(glsl.map(|file| (file, Language::Glsl))).collect()

@@ -75,7 +75,7 @@ impl Lints {
             }
         }
         for span in outcomes.places() {
-            *self.conditions.entry(place(sources, span)).or_default() += 1;
+            *self.conditions.entry(place_of(sources, span)).or_default() += 1;
         }
         outcomes.warnings().for_each(|warning| self.constant(sources, warning));
     }
@@ -90,7 +90,7 @@ impl Lints {
     ) {
         for (entry, result) in entries.iter().zip(results) {
             for span in result.decided.places() {
-                *self.conditions.entry(place(sources, span)).or_default() += 1;
+                *self.conditions.entry(place_of(sources, span)).or_default() += 1;
             }
             // GLSL's conditions are known only from what was composed, which is too little where
             // lists left permutations out.
@@ -107,7 +107,7 @@ impl Lints {
 
     fn constant(&mut self, sources: &SourceSet, warning: Diagnostic) {
         if let Some(label) = warning.labels.first() {
-            let key = (place(sources, label.span), warning.message.clone());
+            let key = (place_of(sources, label.span), warning.message.clone());
             self.constant.entry(key).or_insert((0, warning)).0 += 1;
         }
     }
@@ -176,7 +176,7 @@ impl Decided {
     fn warnings(&self) -> Diagnostics {
         let constant =
             self.outcomes.iter().filter(|(_, ways)| !(ways.held && (ways.failed || ways.later)));
-        constant.map(|(span, ways)| lint::constant(*span, ways.held)).collect()
+        constant.map(|(span, ways)| lint::constant_condition(*span, ways.held)).collect()
     }
 }
 
@@ -185,7 +185,7 @@ pub fn distinct(sources: &SourceSet, warnings: Diagnostics) -> Diagnostics {
     let mut known = BTreeSet::new();
     let key = |warning: &Diagnostic| {
         (
-            warning.labels.first().map(|label| place(sources, label.span)),
+            warning.labels.first().map(|label| place_of(sources, label.span)),
             warning.code.name,
             warning.message.clone(),
         )
@@ -196,6 +196,6 @@ pub fn distinct(sources: &SourceSet, warnings: Diagnostics) -> Diagnostics {
     kept
 }
 
-fn place(sources: &SourceSet, span: Span) -> Place {
+fn place_of(sources: &SourceSet, span: Span) -> Place {
     (sources.get(span.source).path.clone(), span.start, span.end)
 }

@@ -123,7 +123,7 @@ pub fn generate(
     };
     let mut outputs = Outputs::default();
     let mut lints = Lints::default();
-    for (program, points, entries) in prepared(sources, packages, manifest, request)? {
+    for (program, points, entries) in prepare_programs(sources, packages, manifest, request)? {
         let points = request.shard.map_or(&*points, |shard| shard.of(&points));
         let targets = request.targets_of(program);
         let clip = request.clip.unwrap_or(program.clip);
@@ -159,15 +159,15 @@ pub fn generate(
 type Prepared<'a> = (&'a Program, Vec<Assignment>, Vec<Entry>);
 
 /// Every program that is asked for. Errors of one do not hide errors of another.
-fn prepared<'a>(
+fn prepare_programs<'a>(
     sources: &mut SourceSet,
     packages: &Packages,
     manifest: &'a Manifest,
     request: &Request,
 ) -> Result<Vec<Prepared<'a>>, Diagnostics> {
     let (mut programs, mut errors) = (Vec::new(), Diagnostics::new());
-    for program in chosen(manifest, request)? {
-        let points = points(program, request).map_err(|errors| {
+    for program in chosen_programs(manifest, request)? {
+        let points = wanted_points(program, request).map_err(|errors| {
             // A key belongs to one program.
             let help = format!("of program `{}`; `--program` names another", program.name);
             let named = manifest.programs.len() > 1 && request.program.is_none();
@@ -218,7 +218,7 @@ pub fn survey(
     program: &Program,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<ProgramSummary, Diagnostics> {
-    let points = points(program, &Request::default())?;
+    let points = wanted_points(program, &Request::default())?;
     let entries = entry::entries(sources, packages, program, points.first())?;
     let one = || {
         Ok(Compiled {
@@ -239,11 +239,17 @@ impl Generated {
         self.summary.add_reasons(&program.name, results);
         self.summary.programs.push(summary::program(&program.name, points.len(), results));
         self.warnings.extend(results.iter().flat_map(|result| result.warnings.iter().cloned()));
-        self.contents.programs.insert(program.name.clone(), contents(program, points, results));
+        self.contents
+            .programs
+            .insert(program.name.clone(), program_contents(program, points, results));
     }
 }
 
-fn contents(program: &Program, points: &[Assignment], results: &[EntryResult]) -> ProgramContents {
+fn program_contents(
+    program: &Program,
+    points: &[Assignment],
+    results: &[EntryResult],
+) -> ProgramContents {
     let axes = program.space.axes().iter().map(|axis| Axis {
         name: axis.name.clone(),
         values: axis.value_names(),
@@ -261,7 +267,10 @@ fn contents(program: &Program, points: &[Assignment], results: &[EntryResult]) -
     contents
 }
 
-fn chosen<'a>(manifest: &'a Manifest, request: &Request) -> Result<Vec<&'a Program>, Diagnostics> {
+fn chosen_programs<'a>(
+    manifest: &'a Manifest,
+    request: &Request,
+) -> Result<Vec<&'a Program>, Diagnostics> {
     let Some(name) = &request.program else { return Ok(manifest.programs.iter().collect()) };
     let known = manifest.programs.iter().map(|program| program.name.as_str());
     manifest.program(name).map(|program| vec![program]).ok_or_else(|| {
@@ -275,15 +284,15 @@ fn chosen<'a>(manifest: &'a Manifest, request: &Request) -> Result<Vec<&'a Progr
     })
 }
 
-fn points(program: &Program, request: &Request) -> Result<Vec<Assignment>, Diagnostics> {
+fn wanted_points(program: &Program, request: &Request) -> Result<Vec<Assignment>, Diagnostics> {
     match &request.only {
-        Some(text) => Ok(vec![asked(program, text)?]),
+        Some(text) => Ok(vec![asked_point(program, text)?]),
         None => Ok(program.space.enumerate()),
     }
 }
 
 /// The point of a key that was asked for by name: it must satisfy the constraints.
-fn asked(program: &Program, text: &Quoted) -> Result<Assignment, Diagnostics> {
+fn asked_point(program: &Program, text: &Quoted) -> Result<Assignment, Diagnostics> {
     let point = key::parse(&program.space, text)?;
     let broken: Diagnostics = program
         .space

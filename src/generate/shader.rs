@@ -86,8 +86,10 @@ impl Root<'_> {
     }
 
     fn one(&self, entry: &str, linker: &Linker<'_>) -> Result<Made, Diagnostics> {
-        let options =
-            Options { mangle: self.options.mangle, keep: kept(self.graph, self.options, entry) };
+        let options = Options {
+            mangle: self.options.mangle,
+            keep: kept_items(self.graph, self.options, entry),
+        };
         let composed = compose::compose(self.graph, self.settings, &options)?;
         let lean = lean(&composed);
         link::compile(
@@ -101,15 +103,15 @@ impl Root<'_> {
 
 /// What the text of one entry point keeps. In GLSL that is the whole file, since a file has one
 /// entry point.
-pub fn kept(graph: &Graph, options: &Options, entry: &str) -> Keep {
-    match (language(graph), &options.keep) {
+pub fn kept_items(graph: &Graph, options: &Options, entry: &str) -> Keep {
+    match (graph_language(graph), &options.keep) {
         (_, Keep::All) => Keep::All,
         (Language::Wesl, _) => Keep::Items(vec![entry.to_owned()]),
         (Language::Glsl, _) => Keep::EntryPoints,
     }
 }
 
-fn language(graph: &Graph) -> Language {
+fn graph_language(graph: &Graph) -> Language {
     match graph {
         Graph::Wesl(_) => Language::Wesl,
         Graph::Glsl(_) => Language::Glsl,

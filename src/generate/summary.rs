@@ -160,7 +160,7 @@ impl Summary {
 }
 
 /// `1 text`, `2 texts`.
-fn counted(count: usize, what: &str) -> String {
+fn counted_words(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
@@ -175,17 +175,17 @@ impl fmt::Display for Summary {
             return writeln!(
                 f,
                 "{} up to date, checked in {:.2} s",
-                counted(self.permutations(), "permutation"),
+                counted_words(self.permutations(), "permutation"),
                 self.seconds
             );
         }
-        writeln!(f, "{}: {} from the cache", counted(self.texts(), "text"), self.cached)?;
+        writeln!(f, "{}: {} from the cache", counted_words(self.texts(), "text"), self.cached)?;
         self.whole.iter().try_for_each(|whole| write!(f, "{whole}"))?;
         let rate = self.permutations() as f64 / self.seconds.max(1e-9);
         writeln!(
             f,
             "{} in {:.2} s, {rate:.0} a second",
-            counted(self.permutations(), "permutation"),
+            counted_words(self.permutations(), "permutation"),
             self.seconds
         )
     }
@@ -193,7 +193,7 @@ impl fmt::Display for Summary {
 
 impl fmt::Display for ProgramSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}: {}", self.name, counted(self.permutations, "permutation"))?;
+        writeln!(f, "{}: {}", self.name, counted_words(self.permutations, "permutation"))?;
         self.entries.iter().try_for_each(|entry| write!(f, "{entry}"))
     }
 }

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde::{Deserialize, Serialize};
 
 use super::{Request, Summary};
-use crate::cache::{BUILD, Cache, hash, hex, short};
+use crate::cache::{BUILD, Cache, hash_parts, shortened_hash, to_hex};
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::render::{Form, render};
 use crate::input;
@@ -127,33 +127,34 @@ impl Trace {
             .answers()
             .into_iter()
             .map(|((package, question), answer)| (package, question, answer));
-        Some(Self { reads: reads.collect(), output: output(out)?, summary, told })
+        Some(Self { reads: reads.collect(), output: output_hash(out)?, summary, told })
     }
 
     /// Finds the trace of an equal run, if everything that it read is the same and the bundle is
     /// the one that it wrote.
     pub fn find(cache: &Cache, run: Run<'_>) -> Option<Self> {
         let trace: Self =
-            serde_json::from_slice(&cache.get("runs", key(run.declared, run.request))?).ok()?;
+            serde_json::from_slice(&cache.get("runs", trace_key(run.declared, run.request))?)
+                .ok()?;
         let reads = trace.reads.iter().map(|(package, question, answer)| {
             ((package.clone(), question.clone()), answer.clone())
         });
         let is_same = trace.told.is_of(run.manifest) && is_current(&reads.collect(), run.packages);
-        (is_same && output(run.out).as_ref() == Some(&trace.output)).then_some(trace)
+        (is_same && output_hash(run.out).as_ref() == Some(&trace.output)).then_some(trace)
     }
 
     /// Keeps the trace for [`Self::find`].
     pub fn keep(&self, cache: &Cache, run: Run<'_>) {
-        cache.put("runs", key(run.declared, run.request), serde_json::to_vec(self).ok());
+        cache.put("runs", trace_key(run.declared, run.request), serde_json::to_vec(self).ok());
     }
 }
 
-fn key(sources: &SourceSet, request: &Request) -> crate::bundle::Hash {
+fn trace_key(sources: &SourceSet, request: &Request) -> crate::bundle::Hash {
     let only = request.only.as_ref().map(|only| &only.text);
     let Request { program, targets, clip, shard, .. } = request;
     let asked = format!("{program:?} {only:?} {targets:?} {clip:?} {shard:?}");
     let texts = sources.iter().map(|(_, source)| &*source.text);
-    hash(&["run", BUILD, &asked].into_iter().chain(texts).collect::<Vec<_>>())
+    hash_parts(&["run", BUILD, &asked].into_iter().chain(texts).collect::<Vec<_>>())
 }
 
 fn is_current(reads: &BTreeMap<Question, String>, packages: &Packages) -> bool {
@@ -161,29 +162,29 @@ fn is_current(reads: &BTreeMap<Question, String>, packages: &Packages) -> bool {
         packages.dependencies.iter().chain([&packages.root]).find(|package| package.name == name)
     };
     reads.iter().all(|((package, question), answer)| {
-        find(package).is_some_and(|package| ask(&*package.files, question) == *answer)
+        find(package).is_some_and(|package| ask_files(&*package.files, question) == *answer)
     })
 }
 
 /// Asks the files again. A question that starts with `*.` asks for a list of files, any other for
 /// the file at that path.
-fn ask(files: &dyn Files, question: &str) -> String {
+fn ask_files(files: &dyn Files, question: &str) -> String {
     match question.strip_prefix("*.") {
-        Some(extensions) => listed(&files.list(&extensions.split(',').collect::<Vec<_>>())),
-        None => read(&files.read(question)),
+        Some(extensions) => listed_answer(&files.list(&extensions.split(',').collect::<Vec<_>>())),
+        None => read_answer(&files.read(question)),
     }
 }
 
-fn read(answer: &Result<Option<String>, ReadError>) -> String {
+fn read_answer(answer: &Result<Option<String>, ReadError>) -> String {
     match answer {
-        Ok(Some(text)) => hex(&hash(&[text])),
+        Ok(Some(text)) => to_hex(&hash_parts(&[text])),
         Ok(None) => "none".to_owned(),
         Err(error) => format!("{error:?}"),
     }
 }
 
-fn listed(paths: &[String]) -> String {
-    hex(&hash(&paths.iter().map(String::as_str).collect::<Vec<_>>()))
+fn listed_answer(paths: &[String]) -> String {
+    to_hex(&hash_parts(&paths.iter().map(String::as_str).collect::<Vec<_>>()))
 }
 
 struct Observed {
@@ -195,13 +196,17 @@ struct Observed {
 impl Files for Observed {
     fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
         let answer = self.files.read(path);
-        self.observer.note(&self.package, path.to_owned(), read(&answer));
+        self.observer.note(&self.package, path.to_owned(), read_answer(&answer));
         answer
     }
 
     fn list(&self, extensions: &[&str]) -> Vec<String> {
         let answer = self.files.list(extensions);
-        self.observer.note(&self.package, format!("*.{}", extensions.join(",")), listed(&answer));
+        self.observer.note(
+            &self.package,
+            format!("*.{}", extensions.join(",")),
+            listed_answer(&answer),
+        );
         answer
     }
 
@@ -220,15 +225,17 @@ const MOST_BYTES: u64 = 4 << 30;
 /// The hash of a bundle: of its file, or of its manifest and the names of its blobs. The content of
 /// blobs is not read: a blob has the name of its content, and was renamed to it only once it was
 /// complete.
-fn output(out: &Path) -> Option<String> {
+fn output_hash(out: &Path) -> Option<String> {
     if !out.is_dir() {
-        return Some(hex(&short(&blake3::hash(&input::read(out, MOST_BYTES).ok()?))));
+        return Some(to_hex(&shortened_hash(&blake3::hash(
+            &input::read_file(out, MOST_BYTES).ok()?,
+        ))));
     }
-    let manifest = blake3::hash(&input::read(&out.join("manifest.json"), MOST_BYTES).ok()?);
+    let manifest = blake3::hash(&input::read_file(&out.join("manifest.json"), MOST_BYTES).ok()?);
     let names = std::fs::read_dir(out.join("blobs"))
         .ok()?
         .map(|entry| entry.ok()?.file_name().into_string().ok());
     let mut names = names.collect::<Option<Vec<_>>>()?;
     names.sort_unstable();
-    Some(format!("{} {}", hex(&short(&manifest)), listed(&names)))
+    Some(format!("{} {}", to_hex(&shortened_hash(&manifest)), listed_answer(&names)))
 }

@@ -34,7 +34,7 @@ pub struct Made<'a> {
 pub fn blame(sources: &mut SourceSet, made: &Made<'_>, refusals: &[Refusal]) -> Diagnostics {
     let mut told: Diagnostics = Vec::new();
     for refusal in refusals {
-        let found = one(sources, made, refusal);
+        let found = blame_one(sources, made, refusal);
         let is_told = |error: &Diagnostic| {
             told.iter()
                 .any(|known| (&known.message, &known.labels) == (&error.message, &error.labels))
@@ -56,20 +56,20 @@ pub fn blame(sources: &mut SourceSet, made: &Made<'_>, refusals: &[Refusal]) -> 
     told
 }
 
-fn one(sources: &mut SourceSet, made: &Made<'_>, refusal: &Refusal) -> Diagnostics {
+fn blame_one(sources: &mut SourceSet, made: &Made<'_>, refusal: &Refusal) -> Diagnostics {
     let error = Diagnostic::error(
         codes::OUTPUT_REFUSED,
         format!("{} refuses the output for `{}`", refusal.judge, refusal.output.target),
     );
-    let line = line(refusal);
+    let line = refused_line(refusal);
     let words: Vec<&str> = refusal.words.lines().take(LINES).collect();
     let mut error = error.note(words.join("\n"));
     if let (Some(number), Some((_, text))) = (refusal.line, &line) {
         error = error.note(format!("line {number} of the output: `{}`", text.trim()));
     }
-    let Some(named) = shader(made.contents, &refusal.output) else { return vec![error] };
+    let Some(named) = find_shader(made.contents, &refusal.output) else { return vec![error] };
     match permutation(sources, made.packages, made.manifest, named) {
-        Ok(Some(permutation)) => permutation.named(vec![placed(error, &permutation, line)]),
+        Ok(Some(permutation)) => permutation.named(vec![place_error(error, &permutation, line)]),
         // It was composed before, so this cannot happen.
         Ok(None) | Err(_) => {
             vec![error.note(format!("in permutation `{}` of {}", named.key, named.program))]
@@ -78,7 +78,7 @@ fn one(sources: &mut SourceSet, made: &Made<'_>, refusal: &Refusal) -> Diagnosti
 }
 
 /// The first shader that has the output, in the order of names and keys.
-fn shader<'c>(contents: &'c Contents, output: &Output) -> Option<Named<'c>> {
+fn find_shader<'c>(contents: &'c Contents, output: &Output) -> Option<Named<'c>> {
     let languages = contents.programs.iter().flat_map(|(program, contents)| {
         contents.languages.iter().map(move |(language, entries)| (program, language, entries))
     });
@@ -95,18 +95,18 @@ fn shader<'c>(contents: &'c Contents, output: &Output) -> Option<Named<'c>> {
 /// The declaration and the text of the line at fault.
 type Line = (Option<String>, String);
 
-fn line(refusal: &Refusal) -> Option<Line> {
+fn refused_line(refusal: &Refusal) -> Option<Line> {
     let number = refusal.line?.checked_sub(1)? as usize;
     let text = refusal.output.text().ok()?;
     let lines: Vec<&str> = text.lines().collect();
     let line = lines.get(number)?;
     let before = lines[..=number].iter().rev();
-    let name = before.filter_map(|line| declares(line, refusal.output.target)).next();
+    let name = before.filter_map(|line| declared_name(line, refusal.output.target)).next();
     Some((name, (*line).to_owned()))
 }
 
 /// The name that a line declares. Only lines that begin a declaration are not indented.
-fn declares(line: &str, target: Target) -> Option<String> {
+fn declared_name(line: &str, target: Target) -> Option<String> {
     if !line.starts_with(begins_word) {
         return None;
     }
@@ -122,13 +122,13 @@ fn declares(line: &str, target: Target) -> Option<String> {
 }
 
 /// Puts the error at the author's line, or at the entry point.
-fn placed(error: Diagnostic, permutation: &Permutation, line: Option<Line>) -> Diagnostic {
+fn place_error(error: Diagnostic, permutation: &Permutation, line: Option<Line>) -> Diagnostic {
     let composed = &permutation.composed;
     let (name, text) = line.map_or((None, None), |(name, text)| (name, Some(text)));
-    let named = name.and_then(|name| part(&composed.parts, &name));
+    let named = name.and_then(|name| find_part(&composed.parts, &name));
     let is_entry = |part: &&Part| part.names.contains(&permutation.entry);
     let Some(part) = named.or_else(|| composed.parts.iter().find(is_entry)) else { return error };
-    let place = nearest(&composed.text, part, text.as_deref().unwrap_or_default());
+    let place = nearest_line(&composed.text, part, text.as_deref().unwrap_or_default());
     match composed.map.lookup(place) {
         Some(span) => error.at(span, "written from here"),
         None => error,
@@ -136,7 +136,7 @@ fn placed(error: Diagnostic, permutation: &Permutation, line: Option<Line>) -> D
 }
 
 /// The author's declaration of a name to which naga may have appended something.
-fn part<'p>(parts: &'p [Part], name: &str) -> Option<&'p Part> {
+fn find_part<'p>(parts: &'p [Part], name: &str) -> Option<&'p Part> {
     let plain = name.trim_end_matches('_');
     let bare = plain.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_');
     let find = |name: &str| {
@@ -151,7 +151,7 @@ fn part<'p>(parts: &'p [Part], name: &str) -> Option<&'p Part> {
 
 /// The line of a declaration that shares most words with a line of the output, since writers keep
 /// the author's names. If no line shares a word, the first line with code.
-fn nearest(text: &str, part: &Part, output: &str) -> Range<usize> {
+fn nearest_line(text: &str, part: &Part, output: &str) -> Range<usize> {
     let wanted: BTreeSet<&str> = words(output).map(|word| word.text).collect();
     let mut best: Option<(usize, Range<usize>)> = None;
     for line in code_lines(text, part.range.clone()) {

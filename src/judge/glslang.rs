@@ -2,24 +2,24 @@
 //!
 //! Starting it takes longer than reading a text, so it gets many texts at once. When it makes
 //! SPIR-V it links all of them, which makes no sense here, so its messages about linking are
-//! ignored. Outputs with something new in them ([`novel`]) are compiled to SPIR-V one by one.
+//! ignored. Outputs with something new in them ([`novel_outputs`]) are compiled to SPIR-V one by one.
 
 use std::path::Path;
 use std::process::Output as Said;
 
-use super::novel::novel;
-use super::{Found, Output, Refusal, Work, parts};
+use super::novel::novel_outputs;
+use super::{Found, Output, Refusal, Work, divide_group};
 use crate::bundle::Stage;
 use crate::emit::GlslRules;
 use crate::output::Scratch;
-use crate::tools::{GLSLANG, words};
+use crate::tools::{GLSLANG, printed_words};
 
 const BATCH: usize = 64;
 
 const NAME: &str = "glslangValidator";
 
 /// A stage as glslangValidator calls it.
-fn stage(stage: Stage) -> &'static str {
+fn stage_name(stage: Stage) -> &'static str {
     match stage {
         Stage::Vertex => "vert",
         Stage::Fragment => "frag",
@@ -28,31 +28,33 @@ fn stage(stage: Stage) -> &'static str {
 }
 
 /// The work for texts of GLSL of one stage.
-pub fn glsl<'w>(
+pub fn plan_glsl<'w>(
     group: &'w [&'w Output],
     rules: &[GlslRules],
     scratch: &'w Scratch,
 ) -> Result<Vec<Work<'w>>, String> {
     let Some(first) = group.first() else { return Ok(Vec::new()) };
-    let own = vec!["-S", stage(first.stage)];
+    let own = vec!["-S", stage_name(first.stage)];
     let mut works = Vec::new();
     for rules in rules {
         match rules {
             GlslRules::Own => {
                 let arguments = own.clone();
-                works.extend(parts(group, BATCH, move |outputs| together(&arguments, outputs)));
+                works.extend(divide_group(group, BATCH, move |outputs| {
+                    judge_together(&arguments, outputs)
+                }));
             }
             GlslRules::Later(version) => {
                 let (arguments, version) = (own.clone(), *version);
-                works.extend(parts(group, BATCH, move |outputs| {
-                    later(&arguments, outputs, version, scratch)
+                works.extend(divide_group(group, BATCH, move |outputs| {
+                    judge_later_version(&arguments, outputs, version, scratch)
                 }));
             }
             GlslRules::Vulkan => {
                 // The relaxed rules accept OpenGL's names of built-in variables. They also accept
                 // uniforms outside of blocks, which get bindings.
                 let more = ["-V", "-R", "--amb", "-o", "/dev/null"];
-                works.extend(compiled(group, [&own[..], &more].concat())?);
+                works.extend(plan_compiled(group, [&own[..], &more].concat())?);
             }
         }
     }
@@ -60,43 +62,53 @@ pub fn glsl<'w>(
 }
 
 /// The work for texts of HLSL of one stage and entry point.
-pub fn hlsl<'w>(group: &'w [&'w Output]) -> Result<Vec<Work<'w>>, String> {
+pub fn plan_hlsl<'w>(group: &'w [&'w Output]) -> Result<Vec<Work<'w>>, String> {
     let Some(first) = group.first() else { return Ok(Vec::new()) };
-    let stage = stage(first.stage);
-    compiled(group, vec!["-D", "-V", "-S", stage, "-e", &first.entry, "-o", "/dev/null"])
+    let stage = stage_name(first.stage);
+    plan_compiled(group, vec!["-D", "-V", "-S", stage, "-e", &first.entry, "-o", "/dev/null"])
 }
 
 /// Reads each text, and compiles those with something new in them.
-fn compiled<'w>(group: &'w [&'w Output], arguments: Vec<&'w str>) -> Result<Vec<Work<'w>>, String> {
+fn plan_compiled<'w>(
+    group: &'w [&'w Output],
+    arguments: Vec<&'w str>,
+) -> Result<Vec<Work<'w>>, String> {
     let alone = arguments.clone();
-    let mut works = parts(group, BATCH, move |outputs| read(&arguments, outputs));
-    let each = novel(group)?.into_iter().map(|output| {
+    let mut works = divide_group(group, BATCH, move |outputs| judge_parse(&arguments, outputs));
+    let each = novel_outputs(group)?.into_iter().map(|output| {
         let arguments = alone.clone();
-        Work { outputs: 1, run: Box::new(move || one(&arguments, output)) }
+        Work { outputs: 1, run: Box::new(move || judge_one(&arguments, output)) }
     });
     works.extend(each);
     Ok(works)
 }
 
 /// Judges texts as the files they are.
-fn together(arguments: &[&str], outputs: &[&Output]) -> Found {
-    if run(arguments, outputs.iter().map(|output| &*output.file))?.status.success() {
+fn judge_together(arguments: &[&str], outputs: &[&Output]) -> Found {
+    if run_glslang(arguments, outputs.iter().map(|output| &*output.file))?.status.success() {
         return Ok(Vec::new());
     }
-    each(arguments, outputs)
+    judge_each(arguments, outputs)
 }
 
-fn each(arguments: &[&str], outputs: &[&Output]) -> Found {
-    let found = outputs.iter().map(|output| one(arguments, output));
+fn judge_each(arguments: &[&str], outputs: &[&Output]) -> Found {
+    let found = outputs.iter().map(|output| judge_one(arguments, output));
     Ok(found.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
-fn one(arguments: &[&str], output: &Output) -> Found {
-    Ok(refusal(output, &output.file, &run(arguments, [&*output.file])?).into_iter().collect())
+fn judge_one(arguments: &[&str], output: &Output) -> Found {
+    Ok(make_refusal(output, &output.file, &run_glslang(arguments, [&*output.file])?)
+        .into_iter()
+        .collect())
 }
 
 /// Judges texts with another version in their first line.
-fn later(arguments: &[&str], outputs: &[&Output], version: &str, scratch: &Scratch) -> Found {
+fn judge_later_version(
+    arguments: &[&str],
+    outputs: &[&Output],
+    version: &str,
+    scratch: &Scratch,
+) -> Found {
     let mut files = Vec::new();
     for output in outputs {
         let text = output.text()?;
@@ -104,11 +116,11 @@ fn later(arguments: &[&str], outputs: &[&Output], version: &str, scratch: &Scrat
         let text = format!("#version {version}{rest}");
         files.push(scratch.write_unsynced(text.as_bytes()).map_err(|error| error.to_string())?);
     }
-    let said = run(arguments, files.iter().map(|file| &**file))?;
+    let said = run_glslang(arguments, files.iter().map(|file| &**file))?;
     let mut refusals = Vec::new();
     for (output, file) in outputs.iter().zip(&files) {
         if !said.status.success() {
-            refusals.extend(refusal(output, file, &run(arguments, [&**file])?));
+            refusals.extend(make_refusal(output, file, &run_glslang(arguments, [&**file])?));
         }
         // A file that cannot be removed now is removed with the folder.
         let _ = std::fs::remove_file(file);
@@ -117,22 +129,25 @@ fn later(arguments: &[&str], outputs: &[&Output], version: &str, scratch: &Scrat
 }
 
 /// Reads texts by the rules of Vulkan. Linking always fails, and that is ignored.
-fn read(arguments: &[&str], outputs: &[&Output]) -> Found {
-    let said = run(arguments, outputs.iter().map(|output| &*output.file))?;
+fn judge_parse(arguments: &[&str], outputs: &[&Output]) -> Found {
+    let said = run_glslang(arguments, outputs.iter().map(|output| &*output.file))?;
     let of_a_text = |line: &str| line.starts_with("ERROR: ") && !line.contains(" Linking ");
-    if said.status.code().is_some() && !words(&said).lines().any(of_a_text) {
+    if said.status.code().is_some() && !printed_words(&said).lines().any(of_a_text) {
         return Ok(Vec::new());
     }
-    each(arguments, outputs)
+    judge_each(arguments, outputs)
 }
 
-fn run<'f>(arguments: &[&str], files: impl IntoIterator<Item = &'f Path>) -> Result<Said, String> {
+fn run_glslang<'f>(
+    arguments: &[&str],
+    files: impl IntoIterator<Item = &'f Path>,
+) -> Result<Said, String> {
     GLSLANG.run(arguments, files).map_err(|error| error.to_string())
 }
 
-fn refusal(output: &Output, file: &Path, said: &Said) -> Option<Refusal> {
+fn make_refusal(output: &Output, file: &Path, said: &Said) -> Option<Refusal> {
     let path = file.display().to_string();
-    let said = (!said.status.success()).then(|| words(said))?;
+    let said = (!said.status.success()).then(|| printed_words(said))?;
     let lines = said.lines().map(str::trim).filter(|line| !line.is_empty() && *line != path);
     let words = lines.collect::<Vec<_>>().join("\n").replace(&path, "0");
     let line = words.lines().find_map(line_of);

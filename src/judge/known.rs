@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::bundle::{Hash, Target};
-use crate::cache::{Cache, hash};
+use crate::cache::{Cache, hash_parts};
 
 const KIND: &str = "judged";
 
@@ -21,7 +21,7 @@ pub struct Known {
 impl Known {
     /// The outputs that judges of these versions accepted.
     pub fn load(cache: Option<&Cache>, target: Target, versions: &str) -> Self {
-        let key = hash(&[KIND, target.name(), versions]);
+        let key = hash_parts(&[KIND, target.name(), versions]);
         let text = cache.and_then(|cache| cache.get(KIND, key)).unwrap_or_default();
         let text = String::from_utf8_lossy(&text);
         let mut names: BTreeSet<String> = text.lines().map(str::to_owned).collect();

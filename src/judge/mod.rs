@@ -53,7 +53,7 @@ impl Output {
 
     fn text(&self) -> Result<String, String> {
         let said = |error: &dyn fmt::Display| format!("`{}`: {error}", self.file.display());
-        let bytes = crate::input::read(&self.file, u64::MAX).map_err(|error| said(&error))?;
+        let bytes = crate::input::read_file(&self.file, u64::MAX).map_err(|error| said(&error))?;
         String::from_utf8(bytes).map_err(|error| said(&error))
     }
 }
@@ -104,7 +104,7 @@ impl fmt::Display for Missing {
 }
 
 /// The programs that a judge needs.
-fn tools(judge: Judge) -> &'static [Tool] {
+fn judge_tools(judge: Judge) -> &'static [Tool] {
     match judge {
         Judge::SpirvVal(_) => &[SPIRV_VAL],
         Judge::Glslang(_) | Judge::GlslangHlsl => &[GLSLANG],
@@ -121,7 +121,7 @@ fn judge_of(target: Target) -> Option<Judge> {
 pub fn missing(targets: &[Target], tint: &Tint) -> Vec<Missing> {
     let one = |target: &Target| {
         let judge = judge_of(*target)?;
-        let absent = tools(judge).iter().find(|tool| tool.path().is_none());
+        let absent = judge_tools(judge).iter().find(|tool| tool.path().is_none());
         let absent = absent.map(|tool| Missing {
             what: format!("`{}`", tool.program),
             install: format!("apt-get install {}", tool.package),
@@ -135,12 +135,12 @@ pub fn missing(targets: &[Target], tint: &Tint) -> Vec<Missing> {
 }
 
 /// The versions of a target's judges. Outputs are judged again when they change.
-fn versions(target: Target, tint: &Tint) -> String {
+fn judge_versions(target: Target, tint: &Tint) -> String {
     let Some(judge) = judge_of(target) else { return String::new() };
-    let programs: String = tools(judge).iter().map(|tool| tool.version()).collect();
+    let programs: String = judge_tools(judge).iter().map(|tool| tool.version()).collect();
     let own = match judge {
         Judge::NagaAndTint => format!("naga {} tint {}", env!("LAMPLIGHT_NAGA"), tint.version()),
-        Judge::Clang => crate::metal::shim(),
+        Judge::Clang => crate::metal::shim_hash(),
         Judge::SpirvVal(_) | Judge::Glslang(_) | Judge::GlslangHlsl => String::new(),
     };
     format!("{judge:?} {programs} {own}")
@@ -178,7 +178,7 @@ pub fn verdict(
     let mut passed = Vec::new();
     for alike in outputs.chunk_by(|one, other| one.target == other.target) {
         let target = alike[0].target;
-        let mut known = known::Known::load(cache, target, &versions(target, tint));
+        let mut known = known::Known::load(cache, target, &judge_versions(target, tint));
         let (old, fresh): (Vec<&Output>, Vec<&Output>) =
             alike.iter().partition(|output| known.names.contains(&output.name()));
         verdict.known += old.len();
@@ -219,7 +219,7 @@ pub fn judge(outputs: &[Output], tint: Option<&Tint>, progress: Progress<'_>) ->
     };
     let groups: Vec<&[&Output]> = sorted.chunk_by(alike).collect();
     on_large_stack(|| {
-        let planned = groups.par_iter().map(|group| plan(group, tint, &scratch));
+        let planned = groups.par_iter().map(|group| plan_group(group, tint, &scratch));
         let works = planned.collect::<Result<Vec<Vec<Work<'_>>>, String>>()?;
         let works: Vec<Work<'_>> = works.into_iter().flatten().collect();
         let total = works.iter().map(|work| work.outputs).sum();
@@ -238,7 +238,7 @@ pub fn judge(outputs: &[Output], tint: Option<&Tint>, progress: Progress<'_>) ->
 }
 
 /// The work for outputs of one target, stage and name of the entry point.
-fn plan<'w>(
+fn plan_group<'w>(
     group: &'w [&'w Output],
     tint: Option<&'w Tint>,
     scratch: &'w Scratch,
@@ -246,16 +246,16 @@ fn plan<'w>(
     let Some(first) = group.first() else { return Ok(Vec::new()) };
     let judge = judge_of(first.target).ok_or_else(|| format!("no target `{}`", first.target))?;
     match judge {
-        Judge::SpirvVal(environments) => Ok(spirv::plan(group, environments)),
-        Judge::Glslang(rules) => glslang::glsl(group, rules, scratch),
-        Judge::GlslangHlsl => glslang::hlsl(group),
-        Judge::Clang => msl::plan(group),
-        Judge::NagaAndTint => Ok(wgsl::plan(group, tint)),
+        Judge::SpirvVal(environments) => Ok(spirv::plan_spirv(group, environments)),
+        Judge::Glslang(rules) => glslang::plan_glsl(group, rules, scratch),
+        Judge::GlslangHlsl => glslang::plan_hlsl(group),
+        Judge::Clang => msl::plan_msl(group),
+        Judge::NagaAndTint => Ok(wgsl::plan_wgsl(group, tint)),
     }
 }
 
 /// Divides a group into works that do the same.
-fn parts<'w>(
+fn divide_group<'w>(
     group: &'w [&'w Output],
     size: usize,
     run: impl Fn(&[&Output]) -> Found + Clone + Send + Sync + 'w,

@@ -8,7 +8,7 @@ use crate::parse::words::{PieceKind, pieces};
 /// The outputs with two neighbouring tokens that no output before them had next to each other. If a
 /// compiler cannot handle some construct in texts of this kind, it fails on one of these outputs
 /// too, since operations, types and their operands are neighbours.
-pub fn novel<'o>(outputs: &[&'o Output]) -> Result<Vec<&'o Output>, String> {
+pub fn novel_outputs<'o>(outputs: &[&'o Output]) -> Result<Vec<&'o Output>, String> {
     let (mut lines, mut pairs) = (HashSet::new(), HashSet::new());
     let mut found = Vec::new();
     for output in outputs {
@@ -18,7 +18,7 @@ pub fn novel<'o>(outputs: &[&'o Output]) -> Result<Vec<&'o Output>, String> {
         for line in text.lines().map(str::trim) {
             if !lines.contains(line) {
                 lines.insert(line.to_owned());
-                is_new |= add(line, &mut pairs);
+                is_new |= add_pairs(line, &mut pairs);
             }
         }
         if is_new {
@@ -29,8 +29,8 @@ pub fn novel<'o>(outputs: &[&'o Output]) -> Result<Vec<&'o Output>, String> {
 }
 
 /// Adds the pairs of a line; whether one of them is new.
-fn add(line: &str, pairs: &mut HashSet<(String, String)>) -> bool {
-    let tokens = tokens(line);
+fn add_pairs(line: &str, pairs: &mut HashSet<(String, String)>) -> bool {
+    let tokens = line_tokens(line);
     let ends = [""].into_iter().chain(tokens.iter().copied());
     let (mut before, mut is_new) = (String::new(), false);
     for token in ends.skip(1).chain([""]) {
@@ -41,7 +41,7 @@ fn add(line: &str, pairs: &mut HashSet<(String, String)>) -> bool {
 }
 
 /// The tokens of a line: words, other characters, and a common token for all numbers.
-fn tokens(line: &str) -> Vec<&str> {
+fn line_tokens(line: &str) -> Vec<&str> {
     let solid = pieces(line).filter(|piece| piece.kind != PieceKind::Blank);
     solid.map(|piece| if piece.kind == PieceKind::Number { "0" } else { piece.text }).collect()
 }

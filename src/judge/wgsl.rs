@@ -3,20 +3,20 @@
 use naga::front::wgsl;
 use naga::valid::{ValidationFlags, Validator};
 
-use super::{Found, Output, Refusal, Tint, Work, parts};
+use super::{Found, Output, Refusal, Tint, Work, divide_group};
 use crate::validate::{CAPABILITIES, guard};
 
 /// How many texts naga gets at once, and how many each start of node.
 const BATCH: usize = 64;
 const TINT_BATCH: usize = 512;
 
-pub fn plan<'w>(group: &'w [&'w Output], tint: Option<&'w Tint>) -> Vec<Work<'w>> {
-    let mut works = parts(group, BATCH, |outputs: &[&Output]| {
+pub fn plan_wgsl<'w>(group: &'w [&'w Output], tint: Option<&'w Tint>) -> Vec<Work<'w>> {
+    let mut works = divide_group(group, BATCH, |outputs: &[&Output]| {
         let found = outputs.iter().map(|output| by_naga(output));
         Ok(found.collect::<Result<Vec<_>, String>>()?.into_iter().flatten().collect())
     });
     works.extend(tint.into_iter().flat_map(|tint| {
-        parts(group, TINT_BATCH, move |outputs: &[&Output]| by_tint(outputs, tint))
+        divide_group(group, TINT_BATCH, move |outputs: &[&Output]| by_tint(outputs, tint))
     }));
     works
 }

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::names::{Taken, comment, value};
-use super::ordinal::{Ordinals, Says, ordinals};
-use super::{Language, axes, default, part};
+use super::names::{Taken, comment_lines, value_name};
+use super::ordinal::{Ordinals, Says, key_ordinals};
+use super::{Language, default_setting, key_axes, key_part};
 use crate::permute::{Axis, Kind, Lock, Manifest, Program, Setting};
 
 pub const LANGUAGE: Language = Language { name: "c", about: "a header for C99 and C++", write };
@@ -88,19 +88,19 @@ static inline size_t lamplight_key_part(char *text, size_t length, const char *p
 ";
 
 fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
-    let guard = guard(manifest);
+    let guard = include_guard(manifest);
     let mut taken = Taken::new(&[&guard, "LAMPLIGHT_KEY_PART", "lamplight_key_part"]);
     let mut text = START.replace("GUARD", &guard);
     for program in &manifest.programs {
-        let found = lock.and_then(|lock| ordinals(program, lock, u64::MAX));
-        text.push_str(&self::program(program, found.as_ref(), &mut taken));
+        let found = lock.and_then(|lock| key_ordinals(program, lock, u64::MAX));
+        text.push_str(&self::program_keys(program, found.as_ref(), &mut taken));
     }
     text.push_str("\n#endif\n");
     text
 }
 
 /// An include guard of its own for each manifest, from a hash of its programs' names.
-fn guard(manifest: &Manifest) -> String {
+fn include_guard(manifest: &Manifest) -> String {
     let names: Vec<&str> = manifest.programs.iter().map(|program| program.name.as_str()).collect();
     let hash = blake3::hash(names.join("\n").as_bytes()).to_hex();
     format!("LAMPLIGHT_KEYS_{}_H", hash[..16].to_uppercase())
@@ -117,7 +117,7 @@ struct Named<'a> {
 impl Named<'_> {
     fn default(&self) -> &str {
         match (self.axis.kind, self.axis.default) {
-            (Kind::Bool, _) if *default(self.axis) == Setting::Bool(true) => "true",
+            (Kind::Bool, _) if *default_setting(self.axis) == Setting::Bool(true) => "true",
             (Kind::Bool, _) => "false",
             (_, ordinal) => &self.constants[ordinal],
         }
@@ -132,7 +132,7 @@ impl Named<'_> {
     }
 }
 
-fn program(program: &Program, ordinals: Option<&Ordinals>, taken: &mut Taken) -> String {
+fn program_keys(program: &Program, ordinals: Option<&Ordinals>, taken: &mut Taken) -> String {
     let name = taken.give(format!("lamplight_{}", program.name));
     let [default, to_key, bytes] = [
         format!("{name}_default"),
@@ -142,16 +142,16 @@ fn program(program: &Program, ordinals: Option<&Ordinals>, taken: &mut Taken) ->
     .map(|name| taken.give(name));
     let mut fields = Taken::new(KEYWORDS);
     let axes: Vec<Named<'_>> =
-        axes(program).map(|axis| named(axis, &name, taken, &mut fields)).collect();
+        key_axes(program).map(|axis| named_axis(axis, &name, taken, &mut fields)).collect();
     let mut text = String::from("\n");
     axes.iter()
         .filter(|axis| axis.axis.kind != Kind::Bool)
-        .for_each(|axis| text.push_str(&enumeration(axis)));
-    text.push_str(&structure(program, &name, &axes));
+        .for_each(|axis| text.push_str(&write_enumeration(axis)));
+    text.push_str(&write_structure(program, &name, &axes));
     let _ = writeln!(
         text,
         "\n/* Bytes of the longest key, its end included. */\n#define {bytes} {}",
-        longest(&axes)
+        longest_key(&axes)
     );
     let _ = writeln!(text, "\nstatic inline {name} {default}(void)\n{{\n    {name} key;");
     text.extend(axes.iter().map(|axis| format!("    key.{} = {};\n", axis.field, axis.default())));
@@ -168,7 +168,12 @@ fn program(program: &Program, ordinals: Option<&Ordinals>, taken: &mut Taken) ->
     text
 }
 
-fn named<'a>(axis: &'a Axis, program: &str, taken: &mut Taken, fields: &mut Taken) -> Named<'a> {
+fn named_axis<'a>(
+    axis: &'a Axis,
+    program: &str,
+    taken: &mut Taken,
+    fields: &mut Taken,
+) -> Named<'a> {
     let ty = match axis.kind {
         Kind::Bool => "bool".to_owned(),
         Kind::Enum | Kind::Int => taken.give(format!("{program}_{}", axis.name)),
@@ -179,22 +184,24 @@ fn named<'a>(axis: &'a Axis, program: &str, taken: &mut Taken, fields: &mut Take
         Kind::Enum | Kind::Int => axis
             .values
             .iter()
-            .map(|known| taken.give(format!("{prefix}_{}", value(known).to_uppercase())))
+            .map(|known| taken.give(format!("{prefix}_{}", value_name(known).to_uppercase())))
             .collect(),
     };
     Named { axis, field: fields.give(axis.name.clone()), ty, constants }
 }
 
-fn enumeration(Named { axis, ty, constants, .. }: &Named<'_>) -> String {
-    let mut text =
-        axis.doc.as_deref().map_or(String::new(), |doc| format!("/*\n{} */\n", comment(" *", doc)));
+fn write_enumeration(Named { axis, ty, constants, .. }: &Named<'_>) -> String {
+    let mut text = axis
+        .doc
+        .as_deref()
+        .map_or(String::new(), |doc| format!("/*\n{} */\n", comment_lines(" *", doc)));
     let _ = writeln!(text, "typedef enum {ty} {{");
     text.extend(constants.iter().map(|constant| format!("    {constant},\n")));
     let _ = writeln!(text, "}} {ty};\n");
     text.replace(",\n}", "\n}")
 }
 
-fn structure(program: &Program, name: &str, axes: &[Named<'_>]) -> String {
+fn write_structure(program: &Program, name: &str, axes: &[Named<'_>]) -> String {
     let mut text = format!(
         "/* One permutation of program `{}`: start from its default. */\ntypedef struct {name} {{\n",
         program.name
@@ -209,9 +216,15 @@ fn structure(program: &Program, name: &str, axes: &[Named<'_>]) -> String {
     text
 }
 
-fn longest(axes: &[Named<'_>]) -> usize {
+fn longest_key(axes: &[Named<'_>]) -> usize {
     let parts = axes.iter().map(|named| {
-        named.axis.values.iter().map(|value| part(named.axis, value).len() + 1).max().unwrap_or(0)
+        named
+            .axis
+            .values
+            .iter()
+            .map(|value| key_part(named.axis, value).len() + 1)
+            .max()
+            .unwrap_or(0)
     });
     parts.sum::<usize>().max("default".len() + 1)
 }
@@ -227,28 +240,28 @@ fn to_text(name: &str, to_key: &str, bytes: &str, axes: &[Named<'_>]) -> String 
     if axes.is_empty() {
         text.push_str("    (void)key;\n");
     }
-    axes.iter().for_each(|axis| text.push_str(&append(axis)));
+    axes.iter().for_each(|axis| text.push_str(&append_part(axis)));
     text.push_str(
         "    return length > 0 ? length : lamplight_key_part(text, 0, \"default\");\n}\n",
     );
     text
 }
 
-fn append(named: &Named<'_>) -> String {
+fn append_part(named: &Named<'_>) -> String {
     let Named { axis, field, .. } = named;
     if axis.kind == Kind::Bool {
-        let other = axis.values.iter().find(|value| *value != default(axis));
+        let other = axis.values.iter().find(|value| *value != default_setting(axis));
         let append = |value| {
             format!(
                 "    if (key->{field} != {})\n        length = lamplight_key_part(text, length, \"{}\");\n",
                 named.default(),
-                part(axis, value)
+                key_part(axis, value)
             )
         };
         return other.map_or(String::new(), append);
     }
     let parts: Vec<String> =
-        axis.values.iter().map(|value| format!("\"{}\"", part(axis, value))).collect();
+        axis.values.iter().map(|value| format!("\"{}\"", key_part(axis, value))).collect();
     let mut text =
         format!("    {{\n        static const char *const parts[] = {{{}}};\n", parts.join(", "));
     let _ = writeln!(
@@ -274,7 +287,7 @@ fn to_ordinal(name: &str, function: &str, axes: &[Named<'_>], ordinals: &Ordinal
         text.push_str("    (void)key;\n");
     }
     for (named, adds) in axes.iter().zip(&ordinals.of_values) {
-        let (adds, place) = added(named, adds);
+        let (adds, place) = added_numbers(named, adds);
         let adds: Vec<String> = adds.iter().map(|add| format!("UINT64_C({add})")).collect();
         let _ = writeln!(
             text,
@@ -287,7 +300,7 @@ fn to_ordinal(name: &str, function: &str, axes: &[Named<'_>], ordinals: &Ordinal
 }
 
 /// What an axis adds, and the index of what a key adds.
-fn added(named: &Named<'_>, adds: &[u64]) -> (Vec<u64>, String) {
+fn added_numbers(named: &Named<'_>, adds: &[u64]) -> (Vec<u64>, String) {
     let field = &named.field;
     match named.axis.kind {
         // The manifest may list its values in either order.

@@ -45,18 +45,18 @@ pub fn write(manifest: &Manifest, lock: Option<&Lock>, language: &Language) -> S
 }
 
 /// The axes that keys name, sorted by name as in keys.
-fn axes(program: &Program) -> impl Iterator<Item = &Axis> {
+fn key_axes(program: &Program) -> impl Iterator<Item = &Axis> {
     program.space.axes().iter().filter(|axis| axis.mode != Mode::Dynamic)
 }
 
 /// The part of a key that sets the axis. It is only written for a value that is not the default.
-fn part(axis: &Axis, value: &Setting) -> String {
+fn key_part(axis: &Axis, value: &Setting) -> String {
     match value {
         Setting::Bool(true) => axis.name.clone(),
         value => format!("{}={value}", axis.name),
     }
 }
 
-fn default(axis: &Axis) -> &Setting {
+fn default_setting(axis: &Axis) -> &Setting {
     &axis.values[axis.default]
 }

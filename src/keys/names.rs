@@ -3,7 +3,7 @@
 use crate::permute::Setting;
 
 /// `pcf_3x3` as `Pcf3x3`.
-pub fn camel(name: &str) -> String {
+pub fn camel_case(name: &str) -> String {
     let words = name.split('_').filter(|word| !word.is_empty());
     let joined: String = words.map(|word| word[..1].to_ascii_uppercase() + &word[1..]).collect();
     if joined.starts_with(|first: char| first.is_ascii_digit()) {
@@ -15,13 +15,13 @@ pub fn camel(name: &str) -> String {
 
 /// `depth_view` as `depthView`.
 pub fn lower_camel(name: &str) -> String {
-    let camel = camel(name);
+    let camel = camel_case(name);
     let length = camel.len().min(1);
     camel[..length].to_ascii_lowercase() + &camel[length..]
 }
 
 /// A value as a part of an identifier. A number gets a letter before it, and a word for its sign.
-pub fn value(value: &Setting) -> String {
+pub fn value_name(value: &Setting) -> String {
     match value {
         Setting::Int(number) if *number < 0 => format!("minus_{}", number.unsigned_abs()),
         Setting::Int(number) => format!("n{number}"),
@@ -50,7 +50,7 @@ impl Taken {
 }
 
 /// Lines of a comment, one for each of the text's.
-pub fn comment(prefix: &str, text: &str) -> String {
+pub fn comment_lines(prefix: &str, text: &str) -> String {
     // Each of these characters ends a line comment in some language. A lone carriage return is an
     // error in a comment of Rust.
     let text = text.replace("\r\n", "\n").replace(['\r', '\u{2028}', '\u{2029}'], "\n");

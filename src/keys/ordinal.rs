@@ -34,18 +34,19 @@ pub enum Says {
 
 /// The numbers of a program's keys; `None` if the lock lacks a value of it, or if a number may be
 /// larger than `most`.
-pub fn ordinals(program: &Program, lock: &Lock, most: u64) -> Option<Ordinals> {
+pub fn key_ordinals(program: &Program, lock: &Lock, most: u64) -> Option<Ordinals> {
     let space = &program.space;
     let default = lock.dense(&program.name, space, &space.default_assignment())?;
-    let axes: Vec<&Axis> = super::axes(program).collect();
+    let axes: Vec<&Axis> = super::key_axes(program).collect();
     let mut of_values: Vec<Vec<u64>> = axes.iter().map(|axis| vec![0; axis.values.len()]).collect();
     let (mut digits, mut range) = (Vec::new(), 1u128);
     for (weight, line) in lock.digits(&program.name) {
         let weight = u64::try_from(weight?).ok()?;
         range = u128::from(weight).checked_mul(line.radix())?;
         let Some(axis) = axes.iter().position(|axis| axis.name == line.axis) else { continue };
-        let says: Vec<Says> =
-            (0..line.radix()).map(|digit| said(axes[axis], line.setting(digit), digit)).collect();
+        let says: Vec<Says> = (0..line.radix())
+            .map(|digit| digit_comment(axes[axis], line.setting(digit), digit))
+            .collect();
         for (digit, says) in says.iter().enumerate() {
             if let Says::Value(value) = says {
                 of_values[axis][*value] += weight * digit as u64;
@@ -63,7 +64,7 @@ pub fn ordinals(program: &Program, lock: &Lock, most: u64) -> Option<Ordinals> {
     Some(Ordinals { constant, of_values, digits })
 }
 
-fn said(axis: &Axis, setting: Option<&crate::permute::Setting>, digit: u128) -> Says {
+fn digit_comment(axis: &Axis, setting: Option<&crate::permute::Setting>, digit: u128) -> Says {
     match setting {
         None if digit == 0 => Says::Nothing,
         None => Says::Gone,

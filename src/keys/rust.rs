@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::names::{Taken, camel, comment, value};
-use super::ordinal::{Ordinals, Says, ordinals};
-use super::{Language, axes, default, part};
+use super::names::{Taken, camel_case, comment_lines, value_name};
+use super::ordinal::{Ordinals, Says, key_ordinals};
+use super::{Language, default_setting, key_axes, key_part};
 use crate::permute::{Axis, Kind, Lock, Manifest, Program};
 
 pub const LANGUAGE: Language =
@@ -22,7 +22,7 @@ fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
     let mut taken = Taken::new(KEYWORDS);
     let mut text = String::from("// Written by `lamplight keys --lang rust`; do not edit.\n");
     manifest.programs.iter().for_each(|program| {
-        text.push_str(&module(program, lock, &taken.give(program.name.clone())))
+        text.push_str(&program_module(program, lock, &taken.give(program.name.clone())))
     });
     text
 }
@@ -49,45 +49,45 @@ impl Named<'_> {
     }
 }
 
-fn named(program: &Program) -> Vec<Named<'_>> {
+fn named_axes(program: &Program) -> Vec<Named<'_>> {
     let (mut fields, mut types) = (Taken::new(KEYWORDS), Taken::new(&["Key", "Self"]));
-    let named = axes(program).map(|axis| {
+    let named = key_axes(program).map(|axis| {
         let mut variants = Taken::new(KEYWORDS);
         let ty = match axis.kind {
             Kind::Bool => "bool".to_owned(),
-            Kind::Enum | Kind::Int => types.give(camel(&axis.name)),
+            Kind::Enum | Kind::Int => types.give(camel_case(&axis.name)),
         };
         let variants =
-            axis.values.iter().map(|known| variants.give(camel(&value(known)))).collect();
+            axis.values.iter().map(|known| variants.give(camel_case(&value_name(known)))).collect();
         Named { axis, field: fields.give(axis.name.clone()), ty, variants }
     });
     named.collect()
 }
 
-fn module(program: &Program, lock: Option<&Lock>, name: &str) -> String {
-    let axes = named(program);
+fn program_module(program: &Program, lock: Option<&Lock>, name: &str) -> String {
+    let axes = named_axes(program);
     let mut text = format!("\n/// Keys of program `{}`.\n", program.name);
     text.push_str(
         &program
             .doc
             .as_deref()
-            .map_or(String::new(), |doc| format!("///\n{}", comment("///", doc))),
+            .map_or(String::new(), |doc| format!("///\n{}", comment_lines("///", doc))),
     );
     let _ =
         writeln!(text, "#[allow(dead_code, non_camel_case_types, clippy::all)]\npub mod {name} {{");
     axes.iter()
         .filter(|axis| axis.axis.kind != Kind::Bool)
-        .for_each(|axis| text.push_str(&enumeration(axis)));
-    text.push_str(&structure(&axes));
-    text.push_str(&display(&axes));
-    let found = lock.and_then(|lock| ordinals(program, lock, u64::MAX));
-    text.push_str(&found.map_or(String::new(), |found| numbers(&axes, &found)));
+        .for_each(|axis| text.push_str(&write_enumeration(axis)));
+    text.push_str(&write_structure(&axes));
+    text.push_str(&display_impl(&axes));
+    let found = lock.and_then(|lock| key_ordinals(program, lock, u64::MAX));
+    text.push_str(&found.map_or(String::new(), |found| number_functions(&axes, &found)));
     text.push_str("}\n");
     text
 }
 
-fn enumeration(Named { axis, ty, variants, .. }: &Named<'_>) -> String {
-    let mut text = axis.doc.as_deref().map_or(String::new(), |doc| comment("    ///", doc));
+fn write_enumeration(Named { axis, ty, variants, .. }: &Named<'_>) -> String {
+    let mut text = axis.doc.as_deref().map_or(String::new(), |doc| comment_lines("    ///", doc));
     let _ = writeln!(
         text,
         "    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]\n    pub enum {ty} {{"
@@ -109,13 +109,13 @@ fn enumeration(Named { axis, ty, variants, .. }: &Named<'_>) -> String {
     text
 }
 
-fn structure(axes: &[Named<'_>]) -> String {
+fn write_structure(axes: &[Named<'_>]) -> String {
     let mut text =
         String::from("    /// One permutation: `Key { axis: value, ..Key::default() }`.\n");
     text.push_str("    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]\n    pub struct Key {\n");
     for Named { axis, field, ty, .. } in axes {
         let doc = axis.doc.as_deref().filter(|_| axis.kind == Kind::Bool);
-        text.push_str(&doc.map_or(String::new(), |doc| comment("        ///", doc)));
+        text.push_str(&doc.map_or(String::new(), |doc| comment_lines("        ///", doc)));
         let _ = writeln!(text, "        pub {field}: {ty},");
     }
     text.push_str("    }\n\n    impl ::core::default::Default for Key {\n        fn default() -> Self {\n            Self {\n");
@@ -127,7 +127,7 @@ fn structure(axes: &[Named<'_>]) -> String {
 }
 
 /// Keys as numbers, and back.
-fn numbers(axes: &[Named<'_>], ordinals: &Ordinals) -> String {
+fn number_functions(axes: &[Named<'_>], ordinals: &Ordinals) -> String {
     let mut text = String::from(
         "\n    impl Key {\n        /// The number in the lock file: it stays what it is when axes and values are added.\n",
     );
@@ -168,7 +168,7 @@ fn numbers(axes: &[Named<'_>], ordinals: &Ordinals) -> String {
     text + "        }\n    }\n"
 }
 
-fn display(axes: &[Named<'_>]) -> String {
+fn display_impl(axes: &[Named<'_>]) -> String {
     let mut text = String::from(
         "    impl Key {\n        /// The canonical key, as a bundle's loader takes it.\n",
     );
@@ -183,7 +183,7 @@ fn display(axes: &[Named<'_>]) -> String {
     }
     for axis in axes {
         let _ = writeln!(text, "            if self.{} != {} {{", axis.field, axis.default());
-        let _ = writeln!(text, "                {}", written(axis));
+        let _ = writeln!(text, "                {}", write_part(axis));
         text.push_str("                separator = \",\";\n            }\n");
     }
     text.push_str(if axes.is_empty() {
@@ -196,10 +196,12 @@ fn display(axes: &[Named<'_>]) -> String {
 }
 
 /// The statement that writes an axis which is not at its default.
-fn written(Named { axis, field, .. }: &Named<'_>) -> String {
+fn write_part(Named { axis, field, .. }: &Named<'_>) -> String {
     match axis.kind {
-        Kind::Bool => match axis.values.iter().find(|value| *value != default(axis)) {
-            Some(value) => format!("::core::write!(f, \"{{separator}}{}\")?;", part(axis, value)),
+        Kind::Bool => match axis.values.iter().find(|value| *value != default_setting(axis)) {
+            Some(value) => {
+                format!("::core::write!(f, \"{{separator}}{}\")?;", key_part(axis, value))
+            }
             None => String::new(),
         },
         Kind::Enum | Kind::Int => {

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::names::{Taken, camel, comment, lower_camel};
-use super::ordinal::{Ordinals, Says, ordinals};
-use super::{Language, axes, default};
+use super::names::{Taken, camel_case, comment_lines, lower_camel};
+use super::ordinal::{Ordinals, Says, key_ordinals};
+use super::{Language, default_setting, key_axes};
 use crate::permute::{Axis, Kind, Lock, Manifest, Program, Setting};
 
 pub const LANGUAGE: Language =
@@ -73,33 +73,33 @@ fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
         text.push_str(NUMBERS);
     }
     for program in &manifest.programs {
-        let found = lock.and_then(|lock| ordinals(program, lock, MOST));
-        text.push_str(&self::program(program, found.as_ref(), &mut taken));
+        let found = lock.and_then(|lock| key_ordinals(program, lock, MOST));
+        text.push_str(&self::program_keys(program, found.as_ref(), &mut taken));
     }
     text
 }
 
-fn program(program: &Program, ordinals: Option<&Ordinals>, taken: &mut Taken) -> String {
-    let ty = taken.give(format!("{}Key", camel(&program.name)));
+fn program_keys(program: &Program, ordinals: Option<&Ordinals>, taken: &mut Taken) -> String {
+    let ty = taken.give(format!("{}Key", camel_case(&program.name)));
     let function = taken.give(format!("{}Key", lower_camel(&program.name)));
     let mut text = format!(
         "\n/** One permutation of program `{}`; what is left out is at its default. */\nexport interface {ty} {{\n",
         program.name
     );
     let mut fields = Taken::new(INHERITED);
-    let fields: Vec<String> = axes(program).map(|axis| fields.give(axis.name.clone())).collect();
-    for (axis, field) in axes(program).zip(&fields) {
+    let fields: Vec<String> =
+        key_axes(program).map(|axis| fields.give(axis.name.clone())).collect();
+    for (axis, field) in key_axes(program).zip(&fields) {
         text.push_str(
-            &axis
-                .doc
-                .as_deref()
-                .map_or(String::new(), |doc| format!("  /**\n{}   */\n", comment("   *", doc))),
+            &axis.doc.as_deref().map_or(String::new(), |doc| {
+                format!("  /**\n{}   */\n", comment_lines("   *", doc))
+            }),
         );
-        let _ = writeln!(text, "  {field}?: {};", values(axis));
+        let _ = writeln!(text, "  {field}?: {};", value_union(axis));
     }
     text.push_str("}\n");
-    let defaults: Vec<String> = axes(program)
-        .map(|axis| format!("  [\"{}\", {}],\n", axis.name, literal(default(axis))))
+    let defaults: Vec<String> = key_axes(program)
+        .map(|axis| format!("  [\"{}\", {}],\n", axis.name, value_literal(default_setting(axis))))
         .collect();
     let list = if defaults.is_empty() { String::new() } else { format!("\n{}", defaults.concat()) };
     let _ = writeln!(
@@ -109,31 +109,35 @@ fn program(program: &Program, ordinals: Option<&Ordinals>, taken: &mut Taken) ->
     let _ = writeln!(
         text,
         "  return keyText({}, [{}]);\n}}",
-        renamed(program, &fields),
+        renamed_fields(program, &fields),
         list.replace("\n  ", "\n    ").trim_end_matches(' ').to_owned()
             + if list.is_empty() { "" } else { "  " }
     );
     if let Some(ordinals) = ordinals {
         let lower = lower_camel(&program.name);
         let names = ["Ordinal", "FromOrdinal"].map(|what| taken.give(format!("{lower}{what}")));
-        text.push_str(&numbers(program, ordinals, &ty, (&fields, &names)));
+        text.push_str(&number_functions(program, ordinals, &ty, (&fields, &names)));
     }
     text
 }
 
 /// The functions from a key to its number, and back.
-fn numbers(
+fn number_functions(
     program: &Program,
     ordinals: &Ordinals,
     ty: &str,
     (fields, [to, from]): (&[String], &[String; 2]),
 ) -> String {
-    let axes: Vec<&Axis> = axes(program).collect();
+    let axes: Vec<&Axis> = key_axes(program).collect();
     let field = |((axis, field), adds): ((&&Axis, &String), &Vec<u64>)| {
         let adds = axis.values.iter().zip(adds);
         let adds: Vec<String> =
-            adds.map(|(value, add)| format!("[{}, {add}]", literal(value))).collect();
-        format!("    [\"{field}\", {}, [{}]],\n", literal(default(axis)), adds.join(", "))
+            adds.map(|(value, add)| format!("[{}, {add}]", value_literal(value))).collect();
+        format!(
+            "    [\"{field}\", {}, [{}]],\n",
+            value_literal(default_setting(axis)),
+            adds.join(", ")
+        )
     };
     let listed: String = axes.iter().zip(fields).zip(&ordinals.of_values).map(field).collect();
     let mut text = format!(
@@ -142,7 +146,7 @@ fn numbers(
     );
     let digit = |digit: &super::ordinal::Digit| {
         let says = digit.says.iter().map(|says| match says {
-            Says::Value(value) => literal(&axes[digit.axis].values[*value]),
+            Says::Value(value) => value_literal(&axes[digit.axis].values[*value]),
             Says::Nothing => "null".to_owned(),
             Says::Gone => "undefined".to_owned(),
         });
@@ -158,10 +162,12 @@ fn numbers(
 }
 
 /// The key, with the names of axes instead of fields that have other names.
-fn renamed(program: &Program, fields: &[String]) -> String {
-    let differing = axes(program).zip(fields).filter(|(axis, field)| axis.name != **field);
+fn renamed_fields(program: &Program, fields: &[String]) -> String {
+    let differing = key_axes(program).zip(fields).filter(|(axis, field)| axis.name != **field);
     let names: Vec<String> = differing
-        .map(|(axis, field)| format!("{}: key.{field} ?? {}", axis.name, literal(default(axis))))
+        .map(|(axis, field)| {
+            format!("{}: key.{field} ?? {}", axis.name, value_literal(default_setting(axis)))
+        })
         .collect();
     match names.is_empty() {
         true => "key".to_owned(),
@@ -169,15 +175,17 @@ fn renamed(program: &Program, fields: &[String]) -> String {
     }
 }
 
-fn values(axis: &Axis) -> String {
+fn value_union(axis: &Axis) -> String {
     match axis.kind {
         Kind::Bool => "boolean".to_owned(),
-        Kind::Enum | Kind::Int => axis.values.iter().map(literal).collect::<Vec<_>>().join(" | "),
+        Kind::Enum | Kind::Int => {
+            axis.values.iter().map(value_literal).collect::<Vec<_>>().join(" | ")
+        }
     }
 }
 
 /// Integers that a number cannot hold are of type `bigint`.
-fn literal(value: &Setting) -> String {
+fn value_literal(value: &Setting) -> String {
     match value {
         Setting::Name(name) => format!("\"{name}\""),
         Setting::Int(number) if number.unsigned_abs() >= 1 << 53 => format!("{number}n"),

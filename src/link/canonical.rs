@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 use naga::ShaderStage;
 
-use super::outline::{Key, Outline, hash};
+use super::outline::{Key, Outline, hash_parts};
 use super::reason::Reason;
 use super::summary::{Place, Shape, Summary};
 use crate::bundle::Language;
@@ -52,7 +52,7 @@ pub struct Recipe<'s> {
 }
 
 /// Collects what a unit needs. `summaries` has the summary of every function that comes before it.
-pub fn recipe<'s>(
+pub fn make_recipe<'s>(
     outline: &Outline<'_>,
     unit: UnitId,
     summaries: &dyn Fn(usize) -> Option<&'s Summary>,
@@ -79,7 +79,7 @@ pub fn recipe<'s>(
         let asserted = |index: &usize| outline.declarations[*index].kind == PartKind::Assertion;
         open.extend((0..outline.declarations.len()).filter(asserted));
     }
-    let reached = closure(outline, open);
+    let reached = named_closure(outline, open);
     let of = |wanted: PartKind| {
         let is_wanted = move |index: &&usize| {
             (outline.declarations[**index].kind == PartKind::Variable)
@@ -97,7 +97,7 @@ pub fn recipe<'s>(
 }
 
 /// All that `open` names, itself or through others, but functions; in the order of the text.
-fn closure(outline: &Outline<'_>, mut open: Vec<usize>) -> BTreeSet<usize> {
+fn named_closure(outline: &Outline<'_>, mut open: Vec<usize>) -> BTreeSet<usize> {
     let mut reached = BTreeSet::new();
     while let Some(index) = open.pop() {
         let declaration = &outline.declarations[index];
@@ -137,7 +137,7 @@ impl Recipe<'_> {
         for one in [&self.function, &self.interface] {
             parts.push(one.as_ref().map_or(&[], declared));
         }
-        hash(parts)
+        hash_parts(parts)
     }
 
     /// Bytes of the declarations that the text is made of.
@@ -215,7 +215,7 @@ fn write_stub(outline: &Outline<'_>, stub: usize, summary: &Summary) -> Result<S
     let declaration = &outline.declarations[stub];
     let head = declaration.head;
     let mut body = String::new();
-    let arguments = arguments(head, outline.language).ok_or(Reason::Stub)?;
+    let arguments = parameter_names(head, outline.language).ok_or(Reason::Stub)?;
     for pair in &summary.pairs {
         let name = |place: &Place| match place {
             Place::Global(name) => Some(name.clone()),
@@ -223,7 +223,7 @@ fn write_stub(outline: &Outline<'_>, stub: usize, summary: &Summary) -> Result<S
         };
         let texture = name(&pair.texture).ok_or(Reason::Stub)?;
         let sampler = name(&pair.sampler).ok_or(Reason::Stub)?;
-        let sample = sample(outline.language, pair.shape, &texture, &sampler);
+        let sample = sample_statement(outline.language, pair.shape, &texture, &sampler);
         body.push_str(&sample.ok_or(Reason::Sampling)?);
     }
     for name in summary.globals.iter().filter(|name| is_built_in(name)) {
@@ -251,7 +251,7 @@ fn write_stub(outline: &Outline<'_>, stub: usize, summary: &Summary) -> Result<S
 }
 
 /// The names of a function's parameters.
-fn arguments(head: &str, language: Language) -> Option<Vec<String>> {
+fn parameter_names(head: &str, language: Language) -> Option<Vec<String>> {
     let open = head.find('(')?;
     let mut list = head.get(open + 1..)?;
     let (mut depth, mut starts, mut end) = (0_i32, vec![0], list.len());
@@ -281,7 +281,12 @@ fn arguments(head: &str, language: Language) -> Option<Vec<String>> {
 }
 
 /// A statement that samples a texture.
-fn sample(language: Language, shape: Shape, texture: &str, sampler: &str) -> Option<String> {
+fn sample_statement(
+    language: Language,
+    shape: Shape,
+    texture: &str,
+    sampler: &str,
+) -> Option<String> {
     let Shape { coordinates, cube, arrayed, depth, compares } = shape;
     let size = if coordinates > 1 { coordinates.to_string() } else { return None };
     Some(match language {

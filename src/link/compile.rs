@@ -42,7 +42,7 @@ pub fn compile(
         Ok(linked) => linked,
         Err(reason) => {
             let (unit, warnings) = compile_whole(text, entry, targets, linker)?;
-            bounded(&unit).map_err(|error| vec![error])?;
+            check_size(&unit).map_err(|error| vec![error])?;
             let whole = targets.iter().map(|target| (*target, reason)).collect();
             return Ok(Made { unit, warnings, whole });
         }
@@ -61,14 +61,14 @@ pub fn compile(
         let left: Vec<Target> = whole.iter().map(|(target, _)| *target).collect();
         unit.targets.extend(compile_whole(text, entry, &left, linker)?.0.targets);
     }
-    let warnings = if linked.suspect { lint(text)? } else { Vec::new() };
-    bounded(&unit).map_err(|error| vec![error])?;
+    let warnings = if linked.suspect { lint_text(text)? } else { Vec::new() };
+    check_size(&unit).map_err(|error| vec![error])?;
     Ok(Made { unit, warnings, whole })
 }
 
 /// Validates a text after a rehearsal: a large text first goes through everything that is asked for
 /// in another process, which shows that naga survives it.
-fn rehearsed(
+fn rehearse_and_validate(
     text: &Text<'_>,
     entry: &str,
     targets: &[Target],
@@ -94,7 +94,7 @@ fn rehearsed(
 
 /// Does what [`compile`] and [`validate()`] would do with a large text. It is called in a process
 /// of its own, and its result does not matter: only that the process survives.
-pub fn perform(job: &validate::Job) {
+pub fn perform_job(job: &validate::Job) {
     let composed = Composed::of_text(job.language, job.stage, job.text.clone());
     let Some(outputs) = &job.outputs else {
         let _ = validate(&composed);
@@ -108,7 +108,7 @@ pub fn perform(job: &validate::Job) {
 }
 
 /// Refuses an output that is larger than a bundle allows.
-fn bounded(unit: &Unit) -> Result<(), Diagnostic> {
+fn check_size(unit: &Unit) -> Result<(), Diagnostic> {
     match unit.targets.iter().find(|(_, artifact)| artifact.bytes.len() > GROUP_BYTES) {
         None => Ok(()),
         Some((target, artifact)) => {
@@ -122,7 +122,7 @@ fn bounded(unit: &Unit) -> Result<(), Diagnostic> {
     }
 }
 
-fn lint(text: &Text<'_>) -> Result<Diagnostics, Diagnostics> {
+fn lint_text(text: &Text<'_>) -> Result<Diagnostics, Diagnostics> {
     // naga refuses some texts for their aliases, which the lean one does not have.
     let (composed, validated) = match validate(text.composed) {
         Ok(validated) => (text.composed, validated),
@@ -139,17 +139,17 @@ fn compile_whole(
     linker: &Linker<'_>,
 ) -> Result<(Unit, Diagnostics), Diagnostics> {
     let whole = || validate(text.composed);
-    let validated = rehearsed(text, entry, targets, linker)?;
-    emit::check(text.lean, &validated, targets)
-        .or_else(|_| emit::check(text.composed, &whole()?, targets))?;
-    let unit = unit(text, &validated, entry, targets, linker)
+    let validated = rehearse_and_validate(text, entry, targets, linker)?;
+    emit::check_targets(text.lean, &validated, targets)
+        .or_else(|_| emit::check_targets(text.composed, &whole()?, targets))?;
+    let unit = compile_unit(text, &validated, entry, targets, linker)
         .map_err(|error| vec![emit::at_entry(error, text.composed, entry)])?;
     // Lints are looked for in the author's text, since the lean text has no places.
-    let warnings = if validate::has_lints(&validated) { lint(text)? } else { Vec::new() };
+    let warnings = if validate::has_lints(&validated) { lint_text(text)? } else { Vec::new() };
     Ok((unit, warnings))
 }
 
-fn unit(
+fn compile_unit(
     text: &Text<'_>,
     validated: &Validated,
     entry: &str,
@@ -158,8 +158,8 @@ fn unit(
 ) -> Result<Unit, Diagnostic> {
     let reflection = Arc::new(emit::reflect(validated, entry)?);
     let artifacts = targets.iter().map(|&target| {
-        let artifact = artifact(validated, entry, target, linker.clip);
-        let artifact = artifact.map_err(|error| placed(error, text, entry, target, linker))?;
+        let artifact = compile_artifact(validated, entry, target, linker.clip);
+        let artifact = artifact.map_err(|error| place_error(error, text, entry, target, linker))?;
         Ok((target.name().to_owned(), artifact))
     });
     let targets = artifacts.collect::<Result<BTreeMap<_, _>, Diagnostic>>()?;
@@ -168,7 +168,7 @@ fn unit(
 
 /// Gives an error of a writer its place: the function that the target has no words for, or else the
 /// entry point.
-fn placed(
+fn place_error(
     error: Diagnostic,
     text: &Text<'_>,
     entry: &str,
@@ -187,7 +187,7 @@ fn placed(
     }
 }
 
-fn artifact(
+fn compile_artifact(
     validated: &Validated,
     entry: &str,
     target: Target,

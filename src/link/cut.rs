@@ -77,14 +77,14 @@ pub struct Reference {
 ///
 /// # Errors
 /// `shape` where something is not as naga 30 writes it.
-pub fn cut(text: &str, wanted: &Wanted<'_>) -> Result<Cut, Reason> {
-    let (header, declared) = text::split(text).map_err(|_| Reason::Shape)?;
+pub fn cut_output(text: &str, wanted: &Wanted<'_>) -> Result<Cut, Reason> {
+    let (header, declared) = text::split_declarations(text).map_err(|_| Reason::Shape)?;
     let mut cut = Cut { header: header.to_owned(), ..Cut::default() };
     let (mut bodies, mut roots) = (0, Vec::new());
     let mut shared: Vec<usize> = Vec::new();
     let mut bound: BTreeSet<&str> = BTreeSet::new();
     for (index, declaration) in declared.iter().enumerate() {
-        match role(declaration, wanted)? {
+        match declared_role(declaration, wanted)? {
             Role::Body => {
                 roots.push(declaration.text);
                 cut.body = Fragment::read(declaration.text, wanted.names)?;
@@ -101,13 +101,13 @@ pub fn cut(text: &str, wanted: &Wanted<'_>) -> Result<Cut, Reason> {
             Role::Dropped => {}
         }
     }
-    cut.shared = share(&declared, &shared, &roots, &bound, wanted.names)?;
+    cut.shared = shared_by_roots(&declared, &shared, &roots, &bound, wanted.names)?;
     if bodies == 1 { Ok(cut) } else { Err(Reason::Shape) }
 }
 
 /// The shared declarations that the roots name, themselves or through others. Each comes after
 /// those that it names.
-fn share(
+fn shared_by_roots(
     declared: &[Declared<'_>],
     shared: &[usize],
     roots: &[&str],
@@ -157,9 +157,9 @@ enum Role {
     Dropped,
 }
 
-fn role(declaration: &Declared<'_>, wanted: &Wanted<'_>) -> Result<Role, Reason> {
+fn declared_role(declaration: &Declared<'_>, wanted: &Wanted<'_>) -> Result<Role, Reason> {
     let name = declaration.name;
-    let found = mark::find(name, 0);
+    let found = mark::find_mark(name, 0);
     let is_whole = |mark: &Mark| mark.start == 0 && mark.end == name.len();
     let is_function = declaration.kind == text::Kind::Function;
     Ok(match found {
@@ -185,7 +185,7 @@ impl Fragment {
     pub fn read(text: &str, names: &[String]) -> Result<Self, Reason> {
         let mut fragment = Self { text: String::with_capacity(text.len()), ..Self::default() };
         let mut at = 0;
-        while let Some(mark) = mark::find(text, at) {
+        while let Some(mark) = mark::find_mark(text, at) {
             let name = names.get(mark.number as usize).filter(|name| !name.is_empty());
             let name = name.ok_or(Reason::Shape)?.clone();
             fragment.text.push_str(&text[at..mark.start]);
@@ -262,7 +262,7 @@ mod tests {
     #[test]
     fn words_are_plain_where_no_reference_touches_them() {
         let names = ["".to_owned(), "author".to_owned()];
-        let mark = mark::mark(1);
+        let mark = mark::write_mark(1);
         let text = format!("a.b Make{mark} {mark}_1 c+{mark} d .{mark} e . f {mark}(g)h1{mark}x");
         let fragment = Fragment::read(&text, &names).unwrap();
         assert_eq!(fragment.words().collect::<Vec<_>>(), ["a", "c", "d", "e", "g"]);

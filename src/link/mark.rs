@@ -22,7 +22,7 @@ pub struct Mark {
 
 /// The mark of a declaration. It ends with a letter, since naga appends to names that end with a
 /// digit. It has no underscore, since naga removes some of those.
-pub fn mark(number: u32) -> String {
+pub fn write_mark(number: u32) -> String {
     let mut mark = "Zq".to_owned();
     for digit in format!("{number:x}").chars() {
         let letter = digit.to_digit(16).and_then(|digit| char::from_digit(digit + 10, 26 + 10));
@@ -32,7 +32,7 @@ pub fn mark(number: u32) -> String {
 }
 
 /// The first mark at or after a place.
-pub fn find(text: &str, from: usize) -> Option<Mark> {
+pub fn find_mark(text: &str, from: usize) -> Option<Mark> {
     let bytes = text.as_bytes();
     let mut at = from;
     while let Some(found) = text.get(at..).and_then(|rest| rest.find("qz")) {
@@ -53,8 +53,8 @@ pub fn find(text: &str, from: usize) -> Option<Mark> {
 }
 
 /// Whether a text has something that looks like a mark.
-pub fn occurs(text: &str) -> bool {
-    find(text, 0).is_some()
+pub fn occurs_in(text: &str) -> bool {
+    find_mark(text, 0).is_some()
 }
 
 #[cfg(test)]
@@ -64,12 +64,12 @@ mod tests {
     #[test]
     fn marks_are_found_in_longer_names() {
         for number in [0, 1, 9, 10, 15, 16, 255, 4095] {
-            let text = format!("Construct{}_1 + x", mark(number));
-            let found = find(&text, 0).unwrap();
+            let text = format!("Construct{}_1 + x", write_mark(number));
+            let found = find_mark(&text, 0).unwrap();
             assert_eq!((found.number, found.start, found.small), (number, 9, false));
-            let small = find(&text.to_lowercase(), 3).unwrap();
+            let small = find_mark(&text.to_lowercase(), 3).unwrap();
             assert_eq!((small.number, small.end, small.small), (number, found.end, true));
         }
-        assert_eq!(find("qz zqqz Zq1qz aqz", 0), None);
+        assert_eq!(find_mark("qz zqqz Zq1qz aqz", 0), None);
     }
 }

@@ -23,7 +23,7 @@ pub fn mark_module(
     mark_values(&mut marked, &mut names);
     mark_functions(outline, recipe, &mut marked, &mut names);
     if is_function {
-        marked.entry_points.iter_mut().for_each(|point| point.name = mark::mark(SCRATCH));
+        marked.entry_points.iter_mut().for_each(|point| point.name = mark::write_mark(SCRATCH));
     }
     Ok((marked, names.0))
 }
@@ -35,7 +35,7 @@ impl Names {
     /// The mark of the next name.
     fn mark(&mut self, name: &str) -> String {
         self.0.push(name.to_owned());
-        mark::mark(self.0.len() as u32 - 1)
+        mark::write_mark(self.0.len() as u32 - 1)
     }
 }
 
@@ -52,7 +52,7 @@ fn mark_types(
             _ if predeclared.contains(&handle) => continue,
             (Some(name), TypeInner::Struct { .. }) => Some(names.mark(name)),
             // The result of the entry point that naga makes of a GLSL `main`.
-            (None, TypeInner::Struct { .. }) if is_function => Some(mark::mark(SCRATCH)),
+            (None, TypeInner::Struct { .. }) if is_function => Some(mark::write_mark(SCRATCH)),
             (_, TypeInner::Array { .. }) => {
                 Some(array_name(marked, found).ok_or(Reason::Declaration)?)
             }
@@ -73,7 +73,7 @@ fn mark_types(
 fn mark_values(marked: &mut Module, names: &mut Names) {
     for (_, variable) in marked.global_variables.iter_mut() {
         match &variable.name {
-            Some(name) if name == IDLE => variable.name = Some(mark::mark(SCRATCH)),
+            Some(name) if name == IDLE => variable.name = Some(mark::write_mark(SCRATCH)),
             Some(name) => variable.name = Some(names.mark(name)),
             None => {}
         }
@@ -97,14 +97,14 @@ fn mark_functions(
     for (_, function) in marked.functions.iter_mut() {
         let Some(name) = function.name.clone() else { continue };
         if name == BUILT_INS {
-            function.name = Some(mark::mark(SCRATCH));
+            function.name = Some(mark::write_mark(SCRATCH));
             continue;
         }
         function.name = Some(names.mark(&name));
         if stubs.contains(&*name) {
             function.arguments.iter_mut().for_each(|argument| argument.name = None);
             function.local_variables.iter_mut().for_each(|(_, local)| {
-                local.name = Some(mark::mark(SCRATCH));
+                local.name = Some(mark::write_mark(SCRATCH));
             });
         }
     }

@@ -60,7 +60,7 @@ mod texts;
 mod translate;
 mod uses;
 
-pub use compile::{Made, Text, compile, perform};
+pub use compile::{Made, Text, compile, perform_job};
 pub use module::compile_module;
 pub use reason::Reason;
 
@@ -72,11 +72,11 @@ use crate::bundle::Language;
 use crate::bundle::{Artifact, Clip, Reflection, Target};
 use crate::compose::Composed;
 use crate::limits::LINKED_BYTES;
-use canonical::{Recipe, recipe};
+use canonical::{Recipe, make_recipe};
 use outline::Outline;
 use pool::{Parts, Pool, Unit};
 use summary::Summary;
-use translate::translate;
+use translate::translate_unit;
 
 /// Bytes of units after which the pool is emptied. A unit that is needed again is translated again,
 /// to the same bytes.
@@ -189,7 +189,7 @@ impl<'a> Linker<'a> {
         let summary = |function: usize| -> Option<&Summary> {
             units.get(function)?.as_ref().map(|unit| &unit.summary)
         };
-        let recipe: Recipe<'_> = recipe(outline, unit, &summary)?;
+        let recipe: Recipe<'_> = make_recipe(outline, unit, &summary)?;
         *left = left.checked_sub(recipe.bytes(outline)).ok_or(Reason::Large)?;
         let key = recipe.key(outline);
         self.asked.fetch_add(1, Ordering::Relaxed);
@@ -198,7 +198,7 @@ impl<'a> Linker<'a> {
             return known;
         }
         self.new.fetch_add(1, Ordering::Relaxed);
-        let translated = translate(outline, &recipe, self.targets, self.clip);
+        let translated = translate_unit(outline, &recipe, self.targets, self.clip);
         let function = match unit {
             canonical::UnitId::Function(function) => Some(outline.declarations[function].name()),
             canonical::UnitId::Entry => None,

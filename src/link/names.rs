@@ -165,21 +165,21 @@ impl Names {
 
 /// What naga calls a declaration of that name in a module with nothing else.
 fn plain_name(name: &str, target: Target) -> Option<String> {
-    let text = written(&trivial(name)?, target)?;
-    let (_, declared) = text::split(&text).ok()?;
+    let text = usual_name(&trivial_module(name)?, target)?;
+    let (_, declared) = text::split_declarations(&text).ok()?;
     let mut constants = declared.iter().filter(|declared| declared.kind == text::Kind::Constant);
     let found = constants.next()?.name.to_owned();
     constants.next().is_none().then_some(found)
 }
 
-fn written(module: &Validated, target: Target) -> Option<String> {
+fn usual_name(module: &Validated, target: Target) -> Option<String> {
     String::from_utf8(emit(module, ENTRY, target).ok()?.bytes).ok()
 }
 
 const ENTRY: &str = "lamplight_entry";
 
 /// A module with an entry point that does nothing, and a constant of the given name.
-fn trivial(name: &str) -> Option<Validated> {
+fn trivial_module(name: &str) -> Option<Validated> {
     let text = format!("@fragment fn {ENTRY}() {{}}");
     let mut module: Module = naga::front::wgsl::parse_str(&text).ok()?;
     let number = Type { name: None, inner: TypeInner::Scalar(Scalar::U32) };

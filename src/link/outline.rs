@@ -69,24 +69,24 @@ impl<'a> Outline<'a> {
         if lean.parts.is_empty() {
             return Err(Reason::NoParts);
         }
-        if lean.parts.len() > DECLARATIONS || mark::occurs(&lean.text) {
+        if lean.parts.len() > DECLARATIONS || mark::occurs_in(&lean.text) {
             return Err(Reason::MarkedName);
         }
-        let stage = stage(lean, entry)?;
+        let stage = entry_stage(lean, entry)?;
         let text = |part: &Part| &lean.text[part.range.clone()];
         let directives = lean.parts.iter().filter(|part| part.kind == PartKind::Directive);
         let header = directives.map(text).collect::<Vec<_>>().concat();
-        let declarations = declarations(lean)?;
+        let declarations = read_declarations(lean)?;
         let mut outline = Outline {
             language: lean.language,
             stage,
             header,
-            named: named(&declarations),
+            named: first_of_name(&declarations),
             declarations,
             functions: Vec::new(),
             interface: None,
         };
-        outline.functions = order(&outline.declarations, entry)?;
+        outline.functions = call_order(&outline.declarations, entry)?;
         outline.interface = outline.returned();
         Ok(outline)
     }
@@ -121,7 +121,7 @@ impl<'a> Outline<'a> {
 }
 
 /// The first declaration of each name, functions left out.
-fn named<'a>(declared: &[Declaration<'a>]) -> FxHashMap<&'a str, usize> {
+fn first_of_name<'a>(declared: &[Declaration<'a>]) -> FxHashMap<&'a str, usize> {
     let mut named = FxHashMap::default();
     for (index, declaration) in declared.iter().enumerate() {
         if declaration.kind != PartKind::Function {
@@ -134,14 +134,14 @@ fn named<'a>(declared: &[Declaration<'a>]) -> FxHashMap<&'a str, usize> {
 }
 
 /// The stage of the one entry point.
-fn stage(lean: &Composed, entry: &str) -> Result<ShaderStage, Reason> {
+fn entry_stage(lean: &Composed, entry: &str) -> Result<ShaderStage, Reason> {
     let stage = match lean.language {
         Language::Glsl => lean.stage,
         Language::Wesl => {
             let stages = lean.parts.iter().filter_map(|part| {
                 let text = &lean.text[part.range.clone()];
                 let head = text.split('{').next().unwrap_or_default();
-                (part.kind == PartKind::Function).then(|| attribute(head)).flatten()
+                (part.kind == PartKind::Function).then(|| stage_attribute(head)).flatten()
             });
             let found: Vec<Stage> = stages.collect();
             let is_known = lean.parts.iter().any(|part| {
@@ -158,7 +158,7 @@ fn stage(lean: &Composed, entry: &str) -> Result<ShaderStage, Reason> {
 }
 
 /// The stage that an attribute before a function names.
-fn attribute(head: &str) -> Option<Stage> {
+fn stage_attribute(head: &str) -> Option<Stage> {
     words(head).filter(|word| word.before == b'@').find_map(|word| match word.text {
         "vertex" => Some(Stage::Vertex),
         "fragment" => Some(Stage::Fragment),
@@ -167,7 +167,7 @@ fn attribute(head: &str) -> Option<Stage> {
     })
 }
 
-fn declarations(lean: &Composed) -> Result<Vec<Declaration<'_>>, Reason> {
+fn read_declarations(lean: &Composed) -> Result<Vec<Declaration<'_>>, Reason> {
     let mut numbers = vec![usize::MAX; lean.parts.len()];
     let kept: Vec<(usize, &Part)> = lean
         .parts
@@ -197,7 +197,7 @@ fn declarations(lean: &Composed) -> Result<Vec<Declaration<'_>>, Reason> {
             head,
             uses,
             head_uses: Vec::new(),
-            hash: hash([text.as_bytes()]),
+            hash: hash_parts([text.as_bytes()]),
         }
     });
     let mut declared: Vec<Declaration<'_>> = declared.collect();
@@ -242,7 +242,7 @@ fn refuse_any(lean: &Composed, kept: &[(usize, &Part)]) -> Result<(), Reason> {
     let asks_line = lean.language == Language::Glsl && lean.text.contains("__LINE__");
     for (_, part) in kept {
         let text = &lean.text[part.range.clone()];
-        refuse(part, text, lean.language)?;
+        refuse_part(part, text, lean.language)?;
         if asks_line && text.contains("__LINE__") {
             return Err(Reason::Declaration);
         }
@@ -255,7 +255,7 @@ fn refuse_any(lean: &Composed, kept: &[(usize, &Part)]) -> Result<(), Reason> {
 }
 
 /// Refuses the kinds of declaration that cannot be separated.
-fn refuse(part: &Part, text: &str, language: Language) -> Result<(), Reason> {
+fn refuse_part(part: &Part, text: &str, language: Language) -> Result<(), Reason> {
     let is_storage = |text: &str| match language {
         Language::Wesl => {
             let space =
@@ -288,7 +288,7 @@ fn initialised_by_variables(declared: &[Declaration<'_>]) -> bool {
 }
 
 /// The functions that the entry point reaches, callees first.
-fn order(declared: &[Declaration<'_>], entry: &str) -> Result<Vec<usize>, Reason> {
+fn call_order(declared: &[Declaration<'_>], entry: &str) -> Result<Vec<usize>, Reason> {
     let is_function = |index: usize| declared[index].kind == PartKind::Function;
     let mut functions = (0..declared.len()).filter(|index| is_function(*index));
     let root = functions.rfind(|index| declared[*index].name() == entry);
@@ -331,7 +331,7 @@ impl Walk<'_, '_> {
 }
 
 /// 128 bits of a hash. Each part is hashed with its length, so parts cannot run into each other.
-pub fn hash<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> Key {
+pub fn hash_parts<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> Key {
     let mut bytes = Vec::with_capacity(512);
     for part in parts {
         bytes.extend_from_slice(&(part.len() as u64).to_le_bytes());

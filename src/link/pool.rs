@@ -110,7 +110,7 @@ impl Pool {
         text: &mut String,
     ) -> Result<Artifact, Reason> {
         let texts = self.texts.get(index).ok_or(Reason::Shape)?;
-        let (bytes, native) = match piece(&parts.entry, index)? {
+        let (bytes, native) = match spirv_piece(&parts.entry, index)? {
             Piece::Text(_) => {
                 let native = texts.link(&text_pieces(parts, index)?, text)?;
                 (text.as_bytes().into(), native)
@@ -131,11 +131,11 @@ impl Pool {
     ) -> Result<Vec<u8>, Reason> {
         let mut named: FxHashMap<&str, &spirv::Piece> = FxHashMap::default();
         for (name, unit) in &parts.functions {
-            if let Piece::Words { piece, .. } = piece(unit, index)? {
+            if let Piece::Words { piece, .. } = spirv_piece(unit, index)? {
                 named.insert(name, piece);
             }
         }
-        let words = spirv::assemble(&self.words, entry, &|name| named.get(name).copied());
+        let words = spirv::assemble_module(&self.words, entry, &|name| named.get(name).copied());
         let words = words.map_err(|_| Reason::Spirv)?;
         let mut bytes = Vec::with_capacity(4 * words.len());
         words.iter().for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
@@ -150,7 +150,7 @@ impl Unit {
     }
 }
 
-fn piece(unit: &Unit, index: usize) -> Result<&Piece, Reason> {
+fn spirv_piece(unit: &Unit, index: usize) -> Result<&Piece, Reason> {
     match unit.targets.get(index) {
         Some(piece) => piece.as_ref().map_err(|reason| *reason),
         None => Err(Reason::Shape),
@@ -160,7 +160,7 @@ fn piece(unit: &Unit, index: usize) -> Result<&Piece, Reason> {
 /// The pieces of a text: callees first, the entry point last.
 fn text_pieces<'p>(parts: &'p Parts<'_>, index: usize) -> Result<Vec<&'p TextPiece>, Reason> {
     let units = parts.functions.iter().map(|(_, unit)| unit).chain([&parts.entry]);
-    let text = |unit: &'p Arc<Unit>| match piece(unit, index)? {
+    let text = |unit: &'p Arc<Unit>| match spirv_piece(unit, index)? {
         Piece::Text(piece) => Ok(piece),
         Piece::Words { .. } => Err(Reason::Shape),
     };
@@ -176,7 +176,8 @@ fn words_piece(
 ) -> Result<Piece, Reason> {
     let is_author = |name: &str| function == Some(name) || callees.contains(name);
     let is_wanted = |name: &str| function.unwrap_or(&native.entry_name) == name;
-    let parts = spirv::split(words, pool, &is_author, &is_wanted).map_err(|_| Reason::Spirv)?;
+    let parts =
+        spirv::split_module(words, pool, &is_author, &is_wanted).map_err(|_| Reason::Spirv)?;
     let mut functions = parts.functions.into_iter();
     let piece = match function {
         Some(name) => functions.find(|(found, _)| found == name).map(|(_, piece)| piece),

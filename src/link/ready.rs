@@ -165,22 +165,22 @@ impl Ready {
         let fragment = name_small(fragment, names)?;
         let template = Template::new(&fragment, names)?;
         let numbers = template.spots.iter().map(|spot| spot.name).collect();
-        let named: Vec<u32> = sorted(numbers);
+        let named: Vec<u32> = sorted_numbers(numbers);
         let locals = fragment.locals.iter().map(|local| names.word(local)).collect();
-        let locals: Vec<u32> = sorted(locals);
+        let locals: Vec<u32> = sorted_numbers(locals);
         let is_local = |word: &u32| locals.binary_search(word).is_ok();
         let usual = named.iter().map(|name| names.usual_word(*name)).collect();
-        let usual: Vec<u32> = sorted(usual);
+        let usual: Vec<u32> = sorted_numbers(usual);
         let is_captured = |name: &u32| is_local(&names.usual_word(*name));
         let captured = named.iter().copied().filter(is_captured).collect();
-        let derived = derived(&template, names);
+        let derived = find_derived(&template, names);
         // Identifiers with references in them count as words too, in their usual form.
         let all = words(&template.text).map(|word| names.word(word.text)).collect();
-        let mut known: Vec<u32> = sorted(all);
+        let mut known: Vec<u32> = sorted_numbers(all);
         known.retain(|word| !is_local(word) && usual.binary_search(word).is_err());
         let plain = fragment.words().map(|word| names.word(word));
         known.extend(plain.filter(|word| !is_local(word)));
-        let (names, words) = (Numbers::new(&named), Numbers::new(&sorted(known)));
+        let (names, words) = (Numbers::new(&named), Numbers::new(&sorted_numbers(known)));
         Ok(Self { template, names, captured, words, locals, derived })
     }
 
@@ -216,14 +216,14 @@ pub enum Identifier {
 }
 
 /// Sorted, each once.
-fn sorted(mut numbers: Vec<u32>) -> Vec<u32> {
+fn sorted_numbers(mut numbers: Vec<u32>) -> Vec<u32> {
     numbers.sort_unstable();
     numbers.dedup();
     numbers
 }
 
 /// Finds the identifiers that have references in them.
-fn derived(template: &Template, names: &mut Names) -> Vec<Derived> {
+fn find_derived(template: &Template, names: &mut Names) -> Vec<Derived> {
     let mut derived: Vec<Derived> = Vec::new();
     for (index, spot) in template.spots.iter().enumerate() {
         if let Some(last) = derived.last_mut()
@@ -270,7 +270,7 @@ fn name_small(mut fragment: Fragment, names: &mut Names) -> Result<Fragment, Rea
 mod tests {
     use super::*;
     use crate::bundle::Target;
-    use crate::link::mark::mark;
+    use crate::link::mark::write_mark;
 
     #[test]
     fn sets_hold_what_was_put_in() {
@@ -288,7 +288,7 @@ mod tests {
     fn a_fragment_is_written_with_other_names() {
         let mut names = Names::new(Target::WGSL);
         let author = ["", "first", "second"].map(str::to_owned);
-        let text = format!("{}(own) = Make{}_1 + {1}.x;", mark(1), mark(2));
+        let text = format!("{}(own) = Make{}_1 + {1}.x;", write_mark(1), write_mark(2));
         let mut fragment = Fragment::read(&text, &author).unwrap();
         fragment.locals = vec!["own".to_owned()];
         let ready = Ready::new(fragment, &mut names).unwrap();

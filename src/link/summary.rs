@@ -8,7 +8,7 @@ use naga::{
     SampleLevel, ShaderStage, Statement, TypeInner,
 };
 
-use super::outline::{Key, hash};
+use super::outline::{Key, hash_parts};
 
 /// Facts about a callee that writers, the reflection and the lints use.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -67,38 +67,40 @@ pub fn name_of(module: &Module, variable: &GlobalVariable) -> Option<String> {
 }
 
 /// Names of the variables that a function uses.
-pub fn globals(module: &Module, info: &FunctionInfo) -> Option<BTreeSet<String>> {
+pub fn used_globals(module: &Module, info: &FunctionInfo) -> Option<BTreeSet<String>> {
     let used = module.global_variables.iter().filter(|(handle, _)| !info[*handle].is_empty());
     used.map(|(_, variable)| name_of(module, variable)).collect()
 }
 
 /// Summarises a function. `callee` gives the summaries of the functions that it calls. `None` where
 /// a texture or a sampler comes neither from a variable nor from an argument.
-pub fn summarise<'s>(
+pub fn summarise_function<'s>(
     module: &Module,
     info: &FunctionInfo,
     function: &Function,
     callee: &dyn Fn(Handle<Function>) -> Option<&'s Summary>,
 ) -> Option<Summary> {
-    let mut summary = Summary { globals: globals(module, info)?, ..Summary::default() };
+    let mut summary = Summary { globals: used_globals(module, info)?, ..Summary::default() };
     for (_, expression) in function.expressions.iter() {
-        summary.derives |= derives(expression);
-        summary.only_fragments |= derives(expression);
+        summary.derives |= is_derivative(expression);
+        summary.only_fragments |= is_derivative(expression);
         if let Expression::ImageSample { image, sampler, .. } = expression {
-            let shape = shape(module, info, *image, *sampler)?;
-            let (texture, sampler) =
-                (place(module, function, *image)?, place(module, function, *sampler)?);
+            let shape = sample_shape(module, info, *image, *sampler)?;
+            let (texture, sampler) = (
+                resource_place(module, function, *image)?,
+                resource_place(module, function, *sampler)?,
+            );
             summary.pairs.insert(Pair { texture, sampler, shape });
         }
     }
     let mut walk = Walk { module, function, callee, summary, has_diverged: false };
     walk.block(&function.body, false)?;
     let mut summary = walk.summary;
-    summary.key = hash([format!("{summary:?}").as_bytes()]);
+    summary.key = hash_parts([format!("{summary:?}").as_bytes()]);
     Some(summary)
 }
 
-fn derives(expression: &Expression) -> bool {
+fn is_derivative(expression: &Expression) -> bool {
     matches!(
         expression,
         Expression::Derivative { .. }
@@ -106,7 +108,11 @@ fn derives(expression: &Expression) -> bool {
     )
 }
 
-fn place(module: &Module, function: &Function, handle: Handle<Expression>) -> Option<Place> {
+fn resource_place(
+    module: &Module,
+    function: &Function,
+    handle: Handle<Expression>,
+) -> Option<Place> {
     match function.expressions[handle] {
         Expression::GlobalVariable(variable) => {
             name_of(module, &module.global_variables[variable]).map(Place::Global)
@@ -116,7 +122,7 @@ fn place(module: &Module, function: &Function, handle: Handle<Expression>) -> Op
     }
 }
 
-fn shape(
+fn sample_shape(
     module: &Module,
     info: &FunctionInfo,
     image: Handle<Expression>,
@@ -162,7 +168,7 @@ impl Walk<'_, '_> {
         match statement {
             Statement::Emit(range) => {
                 let mut emitted = range.clone();
-                let is_derived = |handle| derives(&self.function.expressions[handle]);
+                let is_derived = |handle| is_derivative(&self.function.expressions[handle]);
                 self.summary.derives_non_uniformly |= is_non_uniform && emitted.any(is_derived);
             }
             Statement::Block(block) => self.block(block, inside)?,
@@ -208,7 +214,7 @@ impl Walk<'_, '_> {
                 Place::Global(_) => Some(place.clone()),
                 Place::Argument(number) => {
                     let argument = *arguments.get(*number as usize)?;
-                    self::place(self.module, self.function, argument)
+                    self::resource_place(self.module, self.function, argument)
                 }
             };
             let (texture, sampler) = (at_call(&pair.texture)?, at_call(&pair.sampler)?);

@@ -25,25 +25,25 @@ pub struct Declared<'a> {
 ///
 /// # Errors
 /// Where the text has a form that this crate does not know.
-pub fn split(text: &str) -> Result<(&str, Vec<Declared<'_>>), String> {
-    let header = header(text);
+pub fn split_declarations(text: &str) -> Result<(&str, Vec<Declared<'_>>), String> {
+    let header = header_length(text);
     let (mut rest, mut declared) = (text[header..].trim_start(), Vec::new());
     while !rest.is_empty() {
-        let length = length(rest).ok_or("a declaration has no end")?;
+        let length = declaration_length(rest).ok_or("a declaration has no end")?;
         let (first, after) = rest.split_at(length);
-        declared.push(declaration(first.trim_end())?);
+        declared.push(read_declaration(first.trim_end())?);
         rest = after.trim_start();
     }
     Ok((text[..header].trim_end(), declared))
 }
 
 /// Length of the lines before the first declaration.
-fn header(text: &str) -> usize {
+fn header_length(text: &str) -> usize {
     text.split_inclusive('\n').take_while(|line| is_header_line(line)).map(str::len).sum()
 }
 
 /// Length of the declaration at the start of the text, with the semicolon after its brackets.
-fn length(text: &str) -> Option<usize> {
+fn declaration_length(text: &str) -> Option<usize> {
     // A structure without a tag is named after its brackets.
     let names_what_it_holds = text.starts_with("typedef ");
     let mut depth = 0_usize;
@@ -69,8 +69,8 @@ fn length(text: &str) -> Option<usize> {
     None
 }
 
-fn declaration(text: &str) -> Result<Declared<'_>, String> {
-    let head = head(text);
+fn read_declaration(text: &str) -> Result<Declared<'_>, String> {
+    let head = declaration_head(text);
     // Where the name comes last, it may be any word, a keyword of another language too.
     let (last, before) =
         head.words.split_last().map_or((None, &[][..]), |(last, all)| (Some(*last), all));
@@ -107,7 +107,7 @@ struct Head<'a> {
     stop: u8,
 }
 
-fn head(text: &str) -> Head<'_> {
+fn declaration_head(text: &str) -> Head<'_> {
     let bytes = text.as_bytes();
     let (mut at, mut words, mut is_attribute) = (0, Vec::new(), false);
     while let Some(piece) = piece_at(text, at) {

@@ -58,11 +58,11 @@ impl Declared {
 
     /// What distinguishes functions of one name from each other.
     fn head(&self) -> &str {
-        head(self.kind, &self.ready)
+        section_heading(self.kind, &self.ready)
     }
 }
 
-fn head(kind: Kind, ready: &Ready) -> &str {
+fn section_heading(kind: Kind, ready: &Ready) -> &str {
     match kind {
         Kind::Function => ready.template.text.split('{').next().unwrap_or_default(),
         _ => "",
@@ -113,7 +113,7 @@ impl Texts {
         let height = below().map(|below| below.height + 1).max().unwrap_or(0);
         let ready = Ready::new(key.0.clone(), &mut self.names)?;
         let declares = Template::new(&shared.declares, &mut self.names)?;
-        let twin = (declares.text.clone(), head(kind, &ready).to_owned());
+        let twin = (declares.text.clone(), section_heading(kind, &ready).to_owned());
         let next = self.twins.len() as u32;
         let twin = *self.twins.entry(twin).or_insert(next);
         let number = self.declarations.len() as u32;
@@ -173,7 +173,7 @@ impl Texts {
             }
         }
         text.push('\n');
-        named(entry, renames)
+        native_names(entry, renames)
     }
 
     /// The shared declarations that the pieces need, in the order in which a text writes them.
@@ -258,7 +258,7 @@ impl Texts {
 }
 
 /// The native names of an entry point, where some of the author's names were renamed.
-fn named(entry: &TextPiece, renames: &Renames) -> Result<Arc<Native>, Reason> {
+fn native_names(entry: &TextPiece, renames: &Renames) -> Result<Arc<Native>, Reason> {
     let Some(template) = entry.template.as_ref().filter(|text| text.is_renamed(renames)) else {
         return Ok(entry.native.clone());
     };

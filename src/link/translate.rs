@@ -13,7 +13,7 @@ use super::cut::{self, Cut, Fragment};
 use super::marked::mark_module;
 use super::outline::Outline;
 use super::reason::Reason;
-use super::summary::{Summary, globals, summarise};
+use super::summary::{Summary, summarise_function, used_globals};
 use super::uses::{call_function, show_stubs};
 use crate::bundle::Language;
 use crate::bundle::{Clip, Native, Reflection, Target};
@@ -53,7 +53,7 @@ struct Parsed {
 ///
 /// # Errors
 /// The reason why texts with the unit are compiled as a whole.
-pub fn translate(
+pub fn translate_unit(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,
     targets: &[Target],
@@ -68,18 +68,20 @@ pub fn translate(
     if !is_calm(&composed).map_err(|_| Reason::Refused)? {
         return Err(Reason::Large);
     }
-    on_large_stack(|| guard(&composed.text, || inner(outline, recipe, &composed, targets, clip)))
-        .unwrap_or(Err(Reason::Refused))
+    on_large_stack(|| {
+        guard(&composed.text, || translate_inner(outline, recipe, &composed, targets, clip))
+    })
+    .unwrap_or(Err(Reason::Refused))
 }
 
-fn inner(
+fn translate_inner(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,
     composed: &Composed,
     targets: &[Target],
     clip: Clip,
 ) -> Result<Translated, Reason> {
-    let mut module = parse(outline, &composed.text)?;
+    let mut module = parse_recipe(outline, &composed.text)?;
     if !is_bounded(&module) {
         return Err(Reason::Refused);
     }
@@ -88,7 +90,7 @@ fn inner(
     let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
         .validate(&module)
         .map_err(|_| Reason::Refused)?;
-    let summary = summary(outline, recipe, &module, &info)?;
+    let summary = checked_summary(outline, recipe, &module, &info)?;
     let is_entry = recipe.unit == UnitId::Entry;
     if is_entry && !summary.is_for(outline.stage) {
         return Err(Reason::Stage);
@@ -100,11 +102,12 @@ fn inner(
     let reflection = is_entry.then(|| emit::reflect(&validated, &entry).map(Arc::new));
     let reflection = reflection.transpose().map_err(|_| Reason::Refused)?;
     let parsed = Parsed { validated, entry, names, marked };
-    let targets = targets.iter().map(|target| write(outline, recipe, &parsed, *target, clip));
+    let targets =
+        targets.iter().map(|target| write_target(outline, recipe, &parsed, *target, clip));
     Ok(Translated { summary, targets: targets.collect(), reflection })
 }
 
-fn parse(outline: &Outline<'_>, text: &str) -> Result<Module, Reason> {
+fn parse_recipe(outline: &Outline<'_>, text: &str) -> Result<Module, Reason> {
     match outline.language {
         Language::Wesl => wgsl::parse_str(text).map_err(|_| Reason::Refused),
         Language::Glsl => glsl::Frontend::default()
@@ -114,7 +117,7 @@ fn parse(outline: &Outline<'_>, text: &str) -> Result<Module, Reason> {
 }
 
 /// The summary of the unit. Before that it is checked that every stub shows what its function does.
-fn summary(
+fn checked_summary(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,
     module: &Module,
@@ -126,7 +129,7 @@ fn summary(
         let is_it =
             |(stub, _): &&(usize, &Summary)| name == Some(outline.declarations[*stub].name());
         if let Some((_, summary)) = recipe.stubs.iter().find(is_it) {
-            if globals(module, &info[handle]).as_ref() != Some(&summary.globals) {
+            if used_globals(module, &info[handle]).as_ref() != Some(&summary.globals) {
                 return Err(Reason::Stub);
             }
             stubs.insert(handle, *summary);
@@ -139,17 +142,17 @@ fn summary(
             let mut functions = module.functions.iter();
             let found = functions.find(|(_, function)| function.name.as_deref() == name);
             let (handle, function) = found.ok_or(Reason::Refused)?;
-            summarise(module, &info[handle], function, &callee)
+            summarise_function(module, &info[handle], function, &callee)
         }
         (UnitId::Entry, _) => {
             let point = module.entry_points.first().ok_or(Reason::EntryPoint)?;
-            summarise(module, info.get_entry_point(0), &point.function, &callee)
+            summarise_function(module, info.get_entry_point(0), &point.function, &callee)
         }
     };
     found.ok_or(Reason::Sampling)
 }
 
-fn write(
+fn write_target(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,
     parsed: &Parsed,
@@ -171,8 +174,8 @@ fn write(
         UnitId::Entry => None,
     };
     let wanted = cut::Wanted { function, entry: &emitted.native.entry_name, names: &parsed.names };
-    let mut cut = cut::cut(&text, &wanted)?;
-    cut.add_locals(&locals(recipe, &parsed.validated.module, function), wanted.entry);
+    let mut cut = cut::cut_output(&text, &wanted)?;
+    cut.add_locals(&local_names(recipe, &parsed.validated.module, function), wanted.entry);
     let native = match recipe.unit {
         UnitId::Function(_) => None,
         UnitId::Entry => {
@@ -184,7 +187,11 @@ fn write(
 }
 
 /// Names that the author gave within the unit's function, to which naga may append numbers.
-fn locals<'m>(recipe: &Recipe<'_>, module: &'m Module, name: Option<&str>) -> BTreeSet<&'m str> {
+fn local_names<'m>(
+    recipe: &Recipe<'_>,
+    module: &'m Module,
+    name: Option<&str>,
+) -> BTreeSet<&'m str> {
     let function = match recipe.unit {
         UnitId::Entry => module.entry_points.first().map(|point| &point.function),
         UnitId::Function(_) => {

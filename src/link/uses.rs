@@ -66,7 +66,7 @@ pub fn call_function(
     let span = Span::UNDEFINED;
     let mut pointers = Vec::with_capacity(types.len());
     for ty in types {
-        let (argument, is_value) = argument(module, &mut point.function, ty)?;
+        let (argument, is_value) = argument_for(module, &mut point.function, ty)?;
         pointers.push((point.function.expressions.append(argument, span), is_value));
     }
     let expressions = &mut point.function.expressions;
@@ -88,7 +88,7 @@ pub fn call_function(
 
 /// An expression to pass for a parameter, and whether it has to be loaded first. Its value does not
 /// matter.
-fn argument(
+fn argument_for(
     module: &mut Module,
     point: &mut Function,
     ty: Handle<Type>,

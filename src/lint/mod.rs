@@ -61,19 +61,19 @@ pub fn lint(sources: &mut SourceSet, request: &Request<'_>) -> Linted {
             Err(errors) => found.extend(errors),
         }
     }
-    let included = included(sources, &graphs);
+    let included = included_files(sources, &graphs);
     for (path, graph) in &graphs {
         found.extend(flags::undeclared(graph, request));
         // A GLSL file that others include is checked where it is included.
         if !included.contains(&request.packages.root.files.display(path)) {
-            found.extend(module(graph, request, path));
+            found.extend(lint_module(graph, request, path));
         }
     }
-    Linted { diagnostics: distinct(sources, found), modules }
+    Linted { diagnostics: distinct_in_order(sources, found), modules }
 }
 
 /// Names of the GLSL files that others of the package include.
-fn included(sources: &SourceSet, graphs: &BTreeMap<String, Graph>) -> BTreeSet<String> {
+fn included_files(sources: &SourceSet, graphs: &BTreeMap<String, Graph>) -> BTreeSet<String> {
     let of = |graph: &Graph| match graph {
         Graph::Glsl(graph) => graph
             .modules
@@ -87,7 +87,7 @@ fn included(sources: &SourceSet, graphs: &BTreeMap<String, Graph>) -> BTreeSet<S
 }
 
 /// Checks a module with each of the settings that matter to it.
-fn module(graph: &Graph, request: &Request<'_>, path: &str) -> Diagnostics {
+fn lint_module(graph: &Graph, request: &Request<'_>, path: &str) -> Diagnostics {
     let mut found = Diagnostics::new();
     let mut texts = BTreeSet::new();
     for settings in settings::candidates(graph, request, path) {
@@ -149,7 +149,7 @@ pub fn text(graph: &Graph, composed: &Composed) -> Diagnostics {
 
 /// Each diagnostic once, in the order of places. A module is read again for each one that reaches
 /// it.
-fn distinct(sources: &SourceSet, found: Diagnostics) -> Diagnostics {
+fn distinct_in_order(sources: &SourceSet, found: Diagnostics) -> Diagnostics {
     let key = |diagnostic: &Diagnostic| {
         let place = diagnostic.labels.first().map(|label| {
             (sources.get(label.span.source).path.clone(), label.span.start, label.span.end)

@@ -26,7 +26,7 @@ pub fn candidates(graph: &Graph, request: &Request<'_>, path: &str) -> Vec<Setti
 }
 
 fn of_program(graph: &Graph, request: &Request<'_>, program: &Program) -> Vec<Settings> {
-    let space = narrowed(graph, &program.space);
+    let space = narrowed_space(graph, &program.space);
     let points = std::iter::once(program.space.default_assignment())
         .chain(cover::pairwise(&space).points)
         .filter(|point| program.space.is_valid(point))
@@ -42,7 +42,7 @@ fn of_program(graph: &Graph, request: &Request<'_>, program: &Program) -> Vec<Se
 
 /// The space with all axes at their defaults that the module cannot ask for; the whole space if
 /// nothing is left.
-fn narrowed(graph: &Graph, space: &Space) -> Space {
+fn narrowed_space(graph: &Graph, space: &Space) -> Space {
     let mut axes = space.axes().to_vec();
     for axis in axes.iter_mut().filter(|axis| !graph.may_ask(&axis.name)) {
         // A dynamic axis is always at its default.

@@ -13,7 +13,7 @@ use crate::project::MANIFEST;
 const OFFERED: usize = 8;
 
 /// `textDocument/codeAction`.
-pub fn actions(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn code_actions(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let document = server.document(parameters)?;
     let (root, path, text) = (document.root.clone(), document.path.clone(), document.text.clone());
     let uri = parameters.pointer("/textDocument/uri").cloned().unwrap_or_default();
@@ -21,9 +21,10 @@ pub fn actions(server: &mut Server, parameters: &Value) -> Result<Value, String>
     let mut found = Vec::new();
     let told = parameters.pointer("/context/diagnostics").and_then(Value::as_array);
     for diagnostic in told.into_iter().flatten() {
-        let start = diagnostic.pointer("/range/start").and_then(|at| place::byte(&text, at));
+        let start =
+            diagnostic.pointer("/range/start").and_then(|at| place::byte_of_position(&text, at));
         let Some(start) = start else { continue };
-        let word = place::word(&text, start);
+        let word = place::word_at_byte(&text, start);
         let name = text[word.clone()].to_owned();
         let action = |title: String, uri: &Value, edit: Value| {
             json!({
@@ -41,14 +42,14 @@ pub fn actions(server: &mut Server, parameters: &Value) -> Result<Value, String>
                 }
             }
             Some("undeclared-flag" | "unknown-feature") => {
-                if let Some((file, edit)) = declaration(&root, &name) {
+                if let Some((file, edit)) = feature_declaration(&root, &name) {
                     let title = format!("Declare the feature `{name}`");
                     found.push(action(title, &Value::String(file), edit));
                 }
             }
             _ => {
                 let Some(modules) = server.modules(&root) else { continue };
-                let known = complete::importable(server, &modules, &path);
+                let known = complete::importable_items(server, &modules, &path);
                 let fitting = known.into_iter().filter(|(_, found, _)| *found == name);
                 for (path, ..) in fitting.take(OFFERED) {
                     let edit = import_edit(&text, &lines, &path);
@@ -97,11 +98,12 @@ fn import_part(text: &str, word: Range<usize>) -> Option<Range<usize>> {
 }
 
 /// The file that declares features, and the edit that adds one.
-fn declaration(root: &Path, name: &str) -> Option<(String, Value)> {
+fn feature_declaration(root: &Path, name: &str) -> Option<(String, Value)> {
     let folders = root.ancestors().take(2);
     let names = [MANIFEST, "wesl.toml"];
     let places = folders.flat_map(|folder| names.iter().map(move |name| folder.join(name)));
-    let (file, text) = places.into_iter().find_map(|file| Some((file.clone(), read(&file)?)))?;
+    let (file, text) =
+        places.into_iter().find_map(|file| Some((file.clone(), read_text(&file)?)))?;
     const TABLE: &str = "[features]\n";
     let (at, new) = match text.find(TABLE) {
         Some(at) => (at + TABLE.len(), format!("{name} = false\n")),
@@ -111,19 +113,19 @@ fn declaration(root: &Path, name: &str) -> Option<(String, Value)> {
         }
     };
     let edit = json!({ "range": Lines::new(&text).range(at..at), "newText": new });
-    Some((place::address(&file), edit))
+    Some((place::file_address(&file), edit))
 }
 
-fn read(file: &Path) -> Option<String> {
-    let bytes = crate::input::read(file, crate::limits::FILE_BYTES as u64).ok()?;
+fn read_text(file: &Path) -> Option<String> {
+    let bytes = crate::input::read_file(file, crate::limits::FILE_BYTES as u64).ok()?;
     String::from_utf8(bytes).ok()
 }
 
 /// `textDocument/formatting`.
-pub fn formatting(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn format_document(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let document = server.document(parameters)?;
     let text = &document.text;
-    match format::format(text).filter(|new| new != text) {
+    match format::format_text(text).filter(|new| new != text) {
         Some(new) => {
             let range = Lines::new(text).range(0..text.len());
             Ok(json!([{ "range": range, "newText": new }]))

@@ -13,7 +13,7 @@ pub const COMMANDS: &[&str] = &[CHOOSE, COMPOSED];
 
 /// `lamplight/permutation`: with `set`, such as `shadow=hard,fog`, chooses it for the package of
 /// `uri`; always answers with the axes, features and what is chosen.
-pub fn permutation(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn choose_permutation(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let document = server.document(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
     if let Some(text) = parameters.get("set").and_then(Value::as_str) {
@@ -29,7 +29,7 @@ pub fn permutation(server: &mut Server, parameters: &Value) -> Result<Value, Str
         server.forget(None);
     }
     let opened = server.opened(&root).ok_or("the package cannot be read")?;
-    let (settings, note) = look::settings(&opened, &path, &server.choice(&root));
+    let (settings, note) = look::module_settings(&opened, &path, &server.choice(&root));
     let programs = opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     let axes = programs.flat_map(|program| program.space.axes()).map(|axis| {
         let values: Vec<String> = axis.values.iter().map(ToString::to_string).collect();
@@ -50,19 +50,19 @@ pub fn permutation(server: &mut Server, parameters: &Value) -> Result<Value, Str
 }
 
 /// `workspace/executeCommand`: the same, and the composed text.
-pub fn command(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn execute_command(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let name = parameters.get("command").and_then(Value::as_str).ok_or_else(String::new)?;
     let argument = |index: usize| parameters.pointer(&format!("/arguments/{index}")).cloned();
     let uri = argument(0).ok_or_else(String::new)?;
     match name {
-        CHOOSE => permutation(server, &json!({ "uri": uri, "set": argument(1) })),
+        CHOOSE => choose_permutation(server, &json!({ "uri": uri, "set": argument(1) })),
         COMPOSED => {
             let document = server.document(&json!({ "uri": uri }))?;
             let (root, path) = (document.root.clone(), document.path.clone());
             let mut opened = server.opened(&root).ok_or("the package cannot be read")?;
-            let (settings, _) = look::settings(&opened, &path, &server.choice(&root));
-            let text =
-                look::graph(&mut opened, &path).and_then(|graph| look::composed(&graph, &settings));
+            let (settings, _) = look::module_settings(&opened, &path, &server.choice(&root));
+            let text = look::module_graph(&mut opened, &path)
+                .and_then(|graph| look::composed_text(&graph, &settings));
             let first = |errors: Vec<crate::diagnostic::Diagnostic>| {
                 errors.first().map_or("no module".to_owned(), |error| error.message.clone())
             };
@@ -73,7 +73,7 @@ pub fn command(server: &mut Server, parameters: &Value) -> Result<Value, String>
 }
 
 /// `textDocument/codeLens`: above each entry point its program's permutations.
-pub fn lenses(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn code_lenses(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let document = server.document(parameters)?;
     let uri = parameters.pointer("/textDocument/uri").cloned().unwrap_or_default();
     let (root, path) = (document.root.clone(), document.path.clone());

@@ -23,39 +23,39 @@ const CONSTANT: u32 = 21;
 const STRUCT: u32 = 22;
 
 /// `textDocument/completion`.
-pub fn completion(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn complete_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let (document, byte) = server.asked(parameters)?;
     let (root, path, text) = (document.root.clone(), document.path.clone(), document.text.clone());
-    let word = place::word(&text, byte).start;
+    let word = place::word_at_byte(&text, byte).start;
     let line = text[..word].rfind('\n').map_or(0, |end| end + 1);
     let before = &text[line..word];
     let Some(modules) = server.modules(&root) else { return Ok(json!([])) };
     if let Some(condition) = before.rfind("@if(").max(before.rfind("@elif("))
         && before[condition..].matches('(').count() > before[condition..].matches(')').count()
     {
-        return Ok(flags(server, parameters, before));
+        return Ok(complete_flags(server, parameters, before));
     }
     if before.ends_with("::") {
-        return Ok(path_members(server, &modules, &path, statement(&text, word)));
+        return Ok(path_members(server, &modules, &path, statement_before(&text, word)));
     }
     if before.ends_with('.') {
-        return Ok(fields(&modules, &path));
+        return Ok(complete_fields(&modules, &path));
     }
-    Ok(names(server, &modules, &path, &text, word..byte))
+    Ok(complete_names(server, &modules, &path, &text, word..byte))
 }
 
-fn entry(label: &str, kind: u32, detail: &str) -> Value {
+fn completion_entry(label: &str, kind: u32, detail: &str) -> Value {
     json!({ "label": label, "kind": kind, "detail": detail })
 }
 
 /// From the start of the statement to a byte, without line breaks.
-fn statement(text: &str, byte: usize) -> &str {
+fn statement_before(text: &str, byte: usize) -> &str {
     let start = text[..byte].rfind([';', '}']).map_or(0, |end| end + 1);
     &text[start..byte]
 }
 
 /// Axes and features, or the values of the axis that is compared.
-fn flags(server: &Server, parameters: &Value, before: &str) -> Value {
+fn complete_flags(server: &Server, parameters: &Value, before: &str) -> Value {
     let Some(opened) =
         server.document(parameters).ok().and_then(|document| server.opened(&document.root))
     else {
@@ -66,21 +66,20 @@ fn flags(server: &Server, parameters: &Value, before: &str) -> Value {
     let compared = before.trim_end().strip_suffix("==").or(before.trim_end().strip_suffix("!="));
     if let Some(before) = compared {
         let before = before.trim_end();
-        let name = &before[place::word(before, before.len())];
+        let name = &before[place::word_at_byte(before, before.len())];
         let values = axes.filter(|axis| axis.name == name).flat_map(|axis| &axis.values);
         let names: BTreeSet<String> = values.map(ToString::to_string).collect();
-        return names.iter().map(|name| entry(name, VALUE, "value")).collect();
+        return names.iter().map(|name| completion_entry(name, VALUE, "value")).collect();
     }
     let mut seen = BTreeSet::new();
     let axes = axes.filter(|axis| seen.insert(axis.name.clone())).map(|axis| {
         let values: Vec<String> = axis.values.iter().map(ToString::to_string).collect();
-        entry(&axis.name, VARIABLE, &format!("axis: {}", values.join(", ")))
+        completion_entry(&axis.name, VARIABLE, &format!("axis: {}", values.join(", ")))
     });
     let axes: Vec<Value> = axes.collect();
-    let features =
-        opened.features.declared.iter().map(|(name, feature)| {
-            entry(name, VARIABLE, feature.doc.as_deref().unwrap_or("feature"))
-        });
+    let features = opened.features.declared.iter().map(|(name, feature)| {
+        completion_entry(name, VARIABLE, feature.doc.as_deref().unwrap_or("feature"))
+    });
     axes.into_iter().chain(features).collect()
 }
 
@@ -94,9 +93,9 @@ fn path_members(server: &mut Server, modules: &Modules, here: &str, before: &str
         return json!([]);
     };
     if *first == "constants" {
-        return constants(&opened);
+        return complete_constants(&opened);
     }
-    let Some((files, label, folder)) = target(&opened, here, first, rest) else {
+    let Some((files, label, folder)) = path_target(&opened, here, first, rest) else {
         return json!([]);
     };
     let prefix = if folder.is_empty() { String::new() } else { folder.join("/") + "/" };
@@ -105,37 +104,42 @@ fn path_members(server: &mut Server, modules: &Modules, here: &str, before: &str
         Some(rest.split(['/', '.']).next()?.to_owned())
     });
     let below: BTreeSet<String> = below.collect();
-    let mut found: Vec<Value> = below.iter().map(|name| entry(name, MODULE, "module")).collect();
+    let mut found: Vec<Value> =
+        below.iter().map(|name| completion_entry(name, MODULE, "module")).collect();
     let label = std::iter::once(label).chain(folder.iter().copied()).collect::<Vec<_>>().join("::");
     let node = modules.graph.nodes.iter().find(|node| node.label == label);
     for item in node.into_iter().flat_map(|node| &node.module.items) {
         if item.name != Name::UNDERSCORE {
-            found.push(entry(modules.graph.names.text(item.name), kind(item.kind), &label));
+            found.push(completion_entry(
+                modules.graph.names.text(item.name),
+                completion_kind(item.kind),
+                &label,
+            ));
         }
     }
     // A module of the library that nothing imports yet.
     let known = server.items();
     let module = known.iter().find(|module| format!("lamplight::{}", module.path) == label);
     for item in module.filter(|_| node.is_none()).into_iter().flat_map(|module| &module.items) {
-        found.push(entry(&item.name, of_library(item.kind), item.summary()));
+        found.push(completion_entry(&item.name, of_library(item.kind), item.summary()));
     }
     Value::Array(found)
 }
 
 /// The axes that `constants` has: those whose values are numbers or booleans.
-fn constants(opened: &Opened) -> Value {
+fn complete_constants(opened: &Opened) -> Value {
     let programs = opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     let axes = programs.flat_map(|program| program.space.axes());
     let is_number = |axis: &&crate::permute::Axis| {
         !matches!(axis.values.first(), Some(Setting::Name(_)) | None)
     };
     let names: BTreeSet<&str> = axes.filter(is_number).map(|axis| axis.name.as_str()).collect();
-    names.into_iter().map(|name| entry(name, CONSTANT, "constant")).collect()
+    names.into_iter().map(|name| completion_entry(name, CONSTANT, "constant")).collect()
 }
 
 /// The package that a path leads into: its files, its name, and the names of the path from its
 /// root. `None` if there is no such package.
-fn target<'p>(
+fn path_target<'p>(
     opened: &'p Opened,
     here: &'p str,
     first: &'p str,
@@ -165,7 +169,7 @@ fn written_path(before: &str) -> Vec<String> {
     let mut rest = before.trim_end();
     loop {
         while let Some(shorter) = rest.strip_suffix("::") {
-            let name = place::word(shorter, shorter.len());
+            let name = place::word_at_byte(shorter, shorter.len());
             if name.is_empty() {
                 break;
             }
@@ -191,7 +195,7 @@ fn written_path(before: &str) -> Vec<String> {
 }
 
 /// Members of the structs of a module and of what it reaches by name.
-fn fields(modules: &Modules, here: &str) -> Value {
+fn complete_fields(modules: &Modules, here: &str) -> Value {
     let Some(node) = modules.node(here) else { return json!([]) };
     let mut found = BTreeSet::new();
     let symbols = modules.places_in(node).map(|(symbol, _)| symbol);
@@ -205,15 +209,15 @@ fn fields(modules: &Modules, here: &str) -> Value {
             else {
                 continue;
             };
-            found.insert(name[place::word(name, name.trim_end().len())].to_owned());
+            found.insert(name[place::word_at_byte(name, name.trim_end().len())].to_owned());
         }
     }
-    let owner = |name: &String| entry(name, FIELD, "member");
+    let owner = |name: &String| completion_entry(name, FIELD, "member");
     found.iter().filter(|name| !name.is_empty()).map(owner).collect()
 }
 
 /// Names in scope, those that can be imported, built-ins and keywords.
-fn names(
+fn complete_names(
     server: &mut Server,
     modules: &Modules,
     here: &str,
@@ -234,7 +238,7 @@ fn names(
     }
     if !prefix.is_empty() {
         let lines = Lines::new(text);
-        for (path, name, kind) in importable(server, modules, here) {
+        for (path, name, kind) in importable_items(server, modules, here) {
             let edit = act::import_edit(text, &lines, &path);
             let value = json!({
                 "label": name,
@@ -247,10 +251,10 @@ fn names(
         }
     }
     for name in naga::keywords::wgsl::BUILTIN_IDENTIFIERS.iter().copied() {
-        add(name, entry(name, FUNCTION, "built in"));
+        add(name, completion_entry(name, FUNCTION, "built in"));
     }
     for name in keywords() {
-        add(name, entry(name, KEYWORD, "keyword"));
+        add(name, completion_entry(name, KEYWORD, "keyword"));
     }
     Value::Array(found)
 }
@@ -265,15 +269,15 @@ fn in_scope<'m>(modules: &'m Modules, here: &str, at: u32) -> Vec<(&'m str, Valu
     let locals = around.into_iter().flat_map(|item| &item.locals);
     let locals = locals.map(|local| (named(*local), VARIABLE, "local"));
     let items = node.module.items.iter().filter(|item| item.name != Name::UNDERSCORE);
-    let items = items.map(|item| (named(item.name), kind(item.kind), &*node.label));
+    let items = items.map(|item| (named(item.name), completion_kind(item.kind), &*node.label));
     let imports = node.module.imports.iter();
     let imports = imports.map(|import| (named(import.alias), VARIABLE, "imported"));
     let all = locals.chain(items).chain(imports);
-    all.map(|(name, kind, detail)| (name, entry(name, kind, detail))).collect()
+    all.map(|(name, kind, detail)| (name, completion_entry(name, kind, detail))).collect()
 }
 
 /// Items of other modules and of the library: path, name, kind.
-pub fn importable(
+pub fn importable_items(
     server: &mut Server,
     modules: &Modules,
     here: &str,
@@ -286,7 +290,7 @@ pub fn importable(
         }
         for item in node.module.items.iter().filter(|item| item.name != Name::UNDERSCORE) {
             let name = modules.graph.names.text(item.name).to_owned();
-            found.push((format!("{}::{name}", node.label), name, kind(item.kind)));
+            found.push((format!("{}::{name}", node.label), name, completion_kind(item.kind)));
         }
     }
     for module in server.items().iter() {
@@ -297,7 +301,7 @@ pub fn importable(
     found
 }
 
-fn kind(kind: ItemKind) -> u32 {
+fn completion_kind(kind: ItemKind) -> u32 {
     match kind {
         ItemKind::Function => FUNCTION,
         ItemKind::Struct | ItemKind::Alias => STRUCT,

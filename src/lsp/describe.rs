@@ -12,14 +12,14 @@ use crate::parse::wesl::ItemKind;
 use crate::project::LIBRARY;
 
 /// `textDocument/hover`.
-pub fn hover(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn hover_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let Some((modules, symbol, span)) = server.symbol(parameters)? else { return Ok(Value::Null) };
     let document = server.document(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
     let text = match symbol {
         Symbol::Items { .. } => {
             let known = server.items();
-            item(&modules, symbol, &known)
+            describe_item(&modules, symbol, &known)
         }
         Symbol::Local { node, declared } => {
             let text = &modules.graph.nodes[node as usize].module.text;
@@ -30,13 +30,13 @@ pub fn hover(server: &mut Server, parameters: &Value) -> Result<Value, String> {
         Symbol::Flag(name) => {
             let opened = server.opened(&root);
             let name = modules.graph.names.text(name).to_owned();
-            opened.map(|opened| flag(server, &opened, &path, &name))
+            opened.map(|opened| describe_flag(server, &opened, &path, &name))
         }
         Symbol::Constant(index) => {
             let name = modules.graph.constants.get(index as usize);
             let name = name.map(|found| modules.graph.names.text(found.name).to_owned());
             let opened = server.opened(&root).zip(name);
-            opened.map(|(opened, name)| flag(server, &opened, &path, &name))
+            opened.map(|(opened, name)| describe_flag(server, &opened, &path, &name))
         }
     };
     let Some(text) = text else { return Ok(Value::Null) };
@@ -48,7 +48,7 @@ pub fn hover(server: &mut Server, parameters: &Value) -> Result<Value, String> {
 }
 
 /// An item of the library as `show` tells it; any other by its comment and declaration.
-fn item(modules: &Modules, symbol: Symbol, known: &[catalogue::Module]) -> Option<String> {
+fn describe_item(modules: &Modules, symbol: Symbol, known: &[catalogue::Module]) -> Option<String> {
     let (node, found) = modules.item(symbol)?;
     let name = modules.graph.names.text(found.name);
     if let Some(path) = node.label.strip_prefix(&format!("{LIBRARY}::")) {
@@ -86,8 +86,8 @@ fn of_library(item: &Item) -> String {
 }
 
 /// An axis with its values and what it multiplies, or a feature.
-fn flag(server: &Server, opened: &Opened, path: &str, name: &str) -> String {
-    let (settings, _) = look::settings(opened, path, &server.choice(&opened.root));
+fn describe_flag(server: &Server, opened: &Opened, path: &str, name: &str) -> String {
+    let (settings, _) = look::module_settings(opened, path, &server.choice(&opened.root));
     let value = settings.values.get(name).map(ToString::to_string);
     let value = value.or_else(|| settings.constants.get(name).cloned());
     let shown = value.map_or("no value".to_owned(), |value| format!("`{value}`"));
@@ -116,9 +116,9 @@ fn flag(server: &Server, opened: &Opened, path: &str, name: &str) -> String {
 }
 
 /// `textDocument/signatureHelp`: of the call that the position is in.
-pub fn signature(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn signature_help(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let (document, byte) = server.asked(parameters)?;
-    let Some((name, argument)) = call(&document.text, byte) else { return Ok(Value::Null) };
+    let Some((name, argument)) = call_around(&document.text, byte) else { return Ok(Value::Null) };
     let (root, path) = (document.root.clone(), document.path.clone());
     let word = document.text[name.clone()].to_owned();
     let Some(modules) = server.modules(&root) else { return Ok(Value::Null) };
@@ -149,13 +149,13 @@ pub fn signature(server: &mut Server, parameters: &Value) -> Result<Value, Strin
 }
 
 /// The name of the call around a byte, and which of its arguments the byte is in.
-fn call(text: &str, byte: usize) -> Option<(std::ops::Range<usize>, usize)> {
+fn call_around(text: &str, byte: usize) -> Option<(std::ops::Range<usize>, usize)> {
     let (mut depth, mut argument) = (0, 0);
     for (at, letter) in text[..byte].char_indices().rev() {
         match letter {
             ')' | ']' => depth += 1,
             '(' if depth == 0 => {
-                let name = place::word(text, at);
+                let name = place::word_at_byte(text, at);
                 return (!name.is_empty()).then_some((name, argument));
             }
             '(' | '[' => depth -= 1,

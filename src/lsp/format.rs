@@ -8,7 +8,7 @@ const EMPTY: usize = 1;
 const INDENT: &str = "    ";
 
 /// The text laid out; nothing where its brackets or comments do not close.
-pub fn format(text: &str) -> Option<String> {
+pub fn format_text(text: &str) -> Option<String> {
     let mut out = String::with_capacity(text.len());
     let (mut depth, mut empty, mut comment) = (0_usize, 0_usize, 0_usize);
     let mut before = ";".to_owned();
@@ -19,7 +19,7 @@ pub fn format(text: &str) -> Option<String> {
             // The inside of a block comment is its author's.
             out += line.trim_end();
             out.push('\n');
-            scan(line, &mut comment, &mut |_| Some(()))?;
+            scan_line(line, &mut comment, &mut |_| Some(()))?;
             continue;
         }
         let trimmed = line.trim();
@@ -39,13 +39,13 @@ pub fn format(text: &str) -> Option<String> {
             // The line stands where the line of the last bracket that it closes begins.
             _ => *open.get(open.len().checked_sub(closers)?)?,
         };
-        out += &INDENT.repeat(level + usize::from(closers == 0 && continues(&before)));
+        out += &INDENT.repeat(level + usize::from(closers == 0 && continues_statement(&before)));
         if !trimmed.starts_with("//") {
-            before = code(trimmed).to_owned();
+            before = code_of_line(trimmed).to_owned();
         }
         out += trimmed;
         out.push('\n');
-        scan(trimmed, &mut comment, &mut |byte| {
+        scan_line(trimmed, &mut comment, &mut |byte| {
             match byte {
                 b'(' | b'[' | b'{' => open.push(level),
                 _ => drop(open.pop()?),
@@ -58,20 +58,24 @@ pub fn format(text: &str) -> Option<String> {
 }
 
 /// A line without the comment at its end.
-fn code(line: &str) -> &str {
+fn code_of_line(line: &str) -> &str {
     line.split("//").next().unwrap_or_default().trim_end()
 }
 
 /// Whether what comes behind a line belongs to its statement. Attributes stand on lines of their
 /// own.
-fn continues(before: &str) -> bool {
+fn continues_statement(before: &str) -> bool {
     !before.is_empty()
         && !before.starts_with('@')
         && !before.ends_with([';', '{', '}', '(', '[', ',', ':', '/'])
 }
 
 /// Calls for each bracket of a line that is in no comment; counts block comments that stay open.
-fn scan(line: &str, comment: &mut usize, bracket: &mut dyn FnMut(u8) -> Option<()>) -> Option<()> {
+fn scan_line(
+    line: &str,
+    comment: &mut usize,
+    bracket: &mut dyn FnMut(u8) -> Option<()>,
+) -> Option<()> {
     let bytes = line.as_bytes();
     let mut at = 0;
     while at < bytes.len() {

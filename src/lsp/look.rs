@@ -18,7 +18,7 @@ pub type Choice = BTreeMap<String, Setting>;
 
 /// The settings of a module, and how they are told: those of the program that has it as a root, or
 /// else of one that knows what it asks for.
-pub fn settings(opened: &Opened, path: &str, choice: &Choice) -> (Settings, String) {
+pub fn module_settings(opened: &Opened, path: &str, choice: &Choice) -> (Settings, String) {
     let programs = || opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     let is_root = |program: &&Program| program.files().any(|file| file.path == path);
     let program = programs().find(is_root).or_else(|| programs().next());
@@ -45,13 +45,13 @@ pub fn settings(opened: &Opened, path: &str, choice: &Choice) -> (Settings, Stri
 }
 
 /// A graph with the module as its root, and what is wrong so far.
-pub fn graph(opened: &mut Opened, path: &str) -> Result<Graph, Diagnostics> {
+pub fn module_graph(opened: &mut Opened, path: &str) -> Result<Graph, Diagnostics> {
     let Some(language) = lint::language(path) else { return Err(Vec::new()) };
     resolve::load(&mut opened.sources, &opened.packages, path, language)
 }
 
 /// What is wrong with a module under the settings: names, conditions, then what naga says.
-pub fn problems(graph: &Graph, settings: &Settings, path: &str) -> Diagnostics {
+pub fn module_problems(graph: &Graph, settings: &Settings, path: &str) -> Diagnostics {
     let mut found = graph.undeclared(settings);
     // What nothing declares is told on its own; what else is wrong is looked for without it.
     let settings = Settings { undeclared: settings.undeclared.or(Some(false)), ..settings.clone() };
@@ -63,13 +63,13 @@ pub fn problems(graph: &Graph, settings: &Settings, path: &str) -> Diagnostics {
 }
 
 /// The composed text of a module, as an entry point's lens opens it.
-pub fn composed(graph: &Graph, settings: &Settings) -> Result<String, Diagnostics> {
+pub fn composed_text(graph: &Graph, settings: &Settings) -> Result<String, Diagnostics> {
     let settings = Settings { undeclared: settings.undeclared.or(Some(false)), ..settings.clone() };
     compose::compose(graph, &settings, &Options::default()).map(|composed| composed.text)
 }
 
 /// The parts of a WESL module that the settings take away, by place.
-pub fn inactive(graph: &Graph, settings: &Settings) -> Vec<Range<u32>> {
+pub fn inactive_ranges(graph: &Graph, settings: &Settings) -> Vec<Range<u32>> {
     let Graph::Wesl(graph) = graph else { return Vec::new() };
     let Some(root) = graph.nodes.first() else { return Vec::new() };
     let settings = Settings { undeclared: settings.undeclared.or(Some(false)), ..settings.clone() };

@@ -29,7 +29,9 @@ use crate::limits::{EDIT_STEPS, Steps};
 use crate::project;
 use look::Choice;
 use package::{Modules, Opened, Texts};
-use wire::{FAILED, NO_METHOD, WRONG_PARAMETERS, answer, error, notification};
+use wire::{
+    FAILED, NO_METHOD, WRONG_PARAMETERS, answer_message, error_message, notification_message,
+};
 
 /// Where a file of the embedded library lies on the disk, for editors to show.
 pub type Library = Box<dyn Fn(&str) -> Option<PathBuf>>;
@@ -63,22 +65,22 @@ type Handler = fn(&mut Server, &Value) -> Result<Value, String>;
 
 /// What editors ask for.
 const REQUESTS: &[(&str, Handler)] = &[
-    ("textDocument/hover", describe::hover),
-    ("textDocument/signatureHelp", describe::signature),
-    ("textDocument/definition", navigate::definition),
-    ("textDocument/references", navigate::references),
+    ("textDocument/hover", describe::hover_at),
+    ("textDocument/signatureHelp", describe::signature_help),
+    ("textDocument/definition", navigate::definition_at),
+    ("textDocument/references", navigate::references_at),
     ("textDocument/prepareRename", navigate::prepare_rename),
-    ("textDocument/rename", navigate::rename),
+    ("textDocument/rename", navigate::rename_symbol),
     ("textDocument/documentSymbol", navigate::document_symbols),
     ("workspace/symbol", navigate::workspace_symbols),
-    ("textDocument/completion", complete::completion),
-    ("textDocument/codeAction", act::actions),
-    ("textDocument/formatting", act::formatting),
-    ("textDocument/semanticTokens/full", shade::tokens),
-    ("textDocument/inlayHint", shade::hints),
-    ("textDocument/codeLens", choose::lenses),
-    ("workspace/executeCommand", choose::command),
-    ("lamplight/permutation", choose::permutation),
+    ("textDocument/completion", complete::complete_at),
+    ("textDocument/codeAction", act::code_actions),
+    ("textDocument/formatting", act::format_document),
+    ("textDocument/semanticTokens/full", shade::semantic_tokens),
+    ("textDocument/inlayHint", shade::inlay_hints),
+    ("textDocument/codeLens", choose::code_lenses),
+    ("workspace/executeCommand", choose::execute_command),
+    ("lamplight/permutation", choose::choose_permutation),
 ];
 
 impl Server {
@@ -107,36 +109,42 @@ impl Server {
             // Answers to what this server asks: it asks nothing.
             (None, _) if message.get("result").or(message.get("error")).is_some() => Vec::new(),
             (None, id) => {
-                vec![error(id.unwrap_or(&nothing), wire::PARSE_ERROR, "a message has a method")]
+                vec![error_message(
+                    id.unwrap_or(&nothing),
+                    wire::PARSE_ERROR,
+                    "a message has a method",
+                )]
             }
         }
     }
 
     fn request(&mut self, method: &str, id: &Value, parameters: &Value) -> Value {
         match method {
-            "initialize" => return answer(id, capabilities()),
+            "initialize" => return answer_message(id, server_capabilities()),
             "shutdown" => {
                 self.is_shut_down = true;
-                return answer(id, Value::Null);
+                return answer_message(id, Value::Null);
             }
             _ => {}
         }
         let Some((_, handler)) = REQUESTS.iter().find(|(known, _)| *known == method) else {
-            return error(id, NO_METHOD, &format!("there is no request `{method}`"));
+            return error_message(id, NO_METHOD, &format!("there is no request `{method}`"));
         };
         match handler(self, parameters) {
-            Ok(result) => answer(id, result),
-            Err(words) if words.is_empty() => {
-                error(id, WRONG_PARAMETERS, &format!("these are not parameters of `{method}`"))
-            }
-            Err(words) => error(id, FAILED, &words),
+            Ok(result) => answer_message(id, result),
+            Err(words) if words.is_empty() => error_message(
+                id,
+                WRONG_PARAMETERS,
+                &format!("these are not parameters of `{method}`"),
+            ),
+            Err(words) => error_message(id, FAILED, &words),
         }
     }
 
     fn notified(&mut self, method: &str, parameters: &Value) -> Vec<Value> {
         let document = parameters.get("textDocument");
         let uri = document.and_then(|found| found.get("uri")).and_then(Value::as_str);
-        let path = uri.and_then(place::path);
+        let path = uri.and_then(place::path_of_address);
         match (method, path) {
             ("exit", _) => self.exit = Some(u8::from(!self.is_shut_down)),
             ("textDocument/didOpen", Some(path)) => {
@@ -162,7 +170,7 @@ impl Server {
     }
 
     fn open(&mut self, path: PathBuf, text: String, version: Value) {
-        let (root, below) = home(&path);
+        let (root, below) = package_of_file(&path);
         let document = Document { text, version, root, path: below };
         self.documents.insert(path.clone(), document);
         self.forget(Some(&path));
@@ -179,7 +187,7 @@ impl Server {
                 return self.close_overloaded(path);
             }
             let range = change.get("range").map(|range| {
-                let byte = |end: &str| place::byte(&document.text, range.get(end)?);
+                let byte = |end: &str| place::byte_of_position(&document.text, range.get(end)?);
                 byte("start").zip(byte("end")).filter(|(start, end)| start <= end)
             });
             match range {
@@ -199,7 +207,7 @@ impl Server {
         self.documents.remove(path);
         self.forget(None);
         let words = "one message edits this document too often: close it and open it again";
-        vec![notification("window/showMessage", json!({ "type": 1, "message": words }))]
+        vec![notification_message("window/showMessage", json!({ "type": 1, "message": words }))]
     }
 
     /// Something changed: every open document is to be looked at again, the edited one first.
@@ -222,15 +230,15 @@ impl Server {
     }
 
     fn look_at(&self, file: &Path) -> Option<Value> {
-        let uri = place::address(file);
+        let uri = place::file_address(file);
         let Some(document) = self.documents.get(file) else {
             // Closed: what was told of it is told no longer.
             let parameters = json!({ "uri": uri, "diagnostics": [] });
-            return Some(notification("textDocument/publishDiagnostics", parameters));
+            return Some(notification_message("textDocument/publishDiagnostics", parameters));
         };
         let found = self.problems(document, &uri).unwrap_or_default();
         let parameters = json!({ "uri": uri, "version": document.version, "diagnostics": found });
-        Some(notification("textDocument/publishDiagnostics", parameters))
+        Some(notification_message("textDocument/publishDiagnostics", parameters))
     }
 
     fn problems(&self, document: &Document, uri: &str) -> Option<Vec<Value>> {
@@ -240,10 +248,10 @@ impl Server {
                 let library = &*self.library;
                 place.and_then(|id| told::address_of(sources, id, library)).as_deref() == Some(uri)
             });
-            let told = |found| told::diagnostic(sources, found, note, &*self.library);
+            let told = |found| told::diagnostic_json(sources, found, note, &*self.library);
             here.filter_map(told).collect::<Vec<_>>()
         };
-        let mut opened = match package::open(&document.root, &self.texts(&document.root)) {
+        let mut opened = match package::open_package(&document.root, &self.texts(&document.root)) {
             Ok(opened) => opened,
             Err((sources, problems)) => return Some(shown(&sources, &problems, None)),
         };
@@ -251,12 +259,12 @@ impl Server {
             return Some(shown(&opened.sources, &opened.problems, None));
         }
         let (settings, note) =
-            look::settings(&opened, &document.path, &self.choice(&document.root));
-        match look::graph(&mut opened, &document.path) {
+            look::module_settings(&opened, &document.path, &self.choice(&document.root));
+        match look::module_graph(&mut opened, &document.path) {
             Ok(graph) => {
-                let found = look::problems(&graph, &settings, &document.path);
+                let found = look::module_problems(&graph, &settings, &document.path);
                 let mut told = shown(&opened.sources, &found, Some(&note));
-                told.extend(shade::unnecessary(&document.text, &graph, &settings));
+                told.extend(shade::inactive_hints(&document.text, &graph, &settings));
                 Some(told)
             }
             Err(found) => Some(shown(&opened.sources, &found, None)),
@@ -274,7 +282,7 @@ impl Server {
     }
 
     fn opened(&self, root: &Path) -> Option<Opened> {
-        package::open(root, &self.texts(root)).ok()
+        package::open_package(root, &self.texts(root)).ok()
     }
 
     /// All modules of a package, read again once a document changed.
@@ -282,35 +290,35 @@ impl Server {
         if let Some((_, known)) = self.modules.as_ref().filter(|(known, _)| known == root) {
             return Some(Arc::clone(known));
         }
-        let modules = Arc::new(package::modules(&mut self.opened(root)?)?);
+        let modules = Arc::new(package::read_modules(&mut self.opened(root)?)?);
         self.modules = Some((root.to_owned(), Arc::clone(&modules)));
         Some(modules)
     }
 
     /// The library's items, as `show` tells them.
     fn items(&mut self) -> Arc<Vec<catalogue::Module>> {
-        Arc::clone(self.items.get_or_insert_with(|| Arc::new(catalogue::library())))
+        Arc::clone(self.items.get_or_insert_with(|| Arc::new(catalogue::library_modules())))
     }
 
     /// The document that parameters name, and the byte of their position in it.
     fn asked(&self, parameters: &Value) -> Result<(&Document, usize), String> {
         let document = self.document(parameters)?;
         let position = parameters.get("position").ok_or_else(String::new)?;
-        let byte = place::byte(&document.text, position).ok_or_else(String::new)?;
+        let byte = place::byte_of_position(&document.text, position).ok_or_else(String::new)?;
         Ok((document, byte))
     }
 
     fn document(&self, parameters: &Value) -> Result<&Document, String> {
         let uri = parameters.get("textDocument").and_then(|found| found.get("uri"));
         let uri = uri.or_else(|| parameters.get("uri")).and_then(Value::as_str);
-        let path = uri.ok_or_else(String::new).map(place::path)?;
+        let path = uri.ok_or_else(String::new).map(place::path_of_address)?;
         path.and_then(|path| self.documents.get(&path))
             .ok_or_else(|| "the document is not open".to_owned())
     }
 }
 
 /// The package of a file, which need not be on the disk yet, and its path there.
-fn home(file: &Path) -> (PathBuf, String) {
+fn package_of_file(file: &Path) -> (PathBuf, String) {
     let folder = file.parent().unwrap_or(Path::new("/"));
     let real = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
     let name = file.file_name().unwrap_or_default();
@@ -321,7 +329,7 @@ fn home(file: &Path) -> (PathBuf, String) {
     (root, below.to_string_lossy().replace('\\', "/"))
 }
 
-fn capabilities() -> Value {
+fn server_capabilities() -> Value {
     json!({
         "capabilities": {
             "textDocumentSync": { "openClose": true, "change": 2, "save": true },

@@ -39,14 +39,14 @@ impl Server {
 }
 
 /// `textDocument/definition`.
-pub fn definition(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn definition_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let Some((modules, symbol, _)) = server.symbol(parameters)? else { return Ok(Value::Null) };
     let places = modules.declarations(symbol);
     Ok(places.into_iter().filter_map(|span| server.location(&modules, span)).collect())
 }
 
 /// `textDocument/references`.
-pub fn references(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn references_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let Some((modules, symbol, _)) = server.symbol(parameters)? else { return Ok(json!([])) };
     let declared = parameters.pointer("/context/includeDeclaration").and_then(Value::as_bool);
     let declarations = modules.declarations(symbol);
@@ -56,7 +56,7 @@ pub fn references(server: &mut Server, parameters: &Value) -> Result<Value, Stri
 }
 
 /// Why a symbol keeps its name, if it does.
-fn fixed(modules: &Modules, symbol: Symbol) -> Option<&'static str> {
+fn why_fixed(modules: &Modules, symbol: Symbol) -> Option<&'static str> {
     match symbol {
         Symbol::Items { node, .. } if modules.graph.nodes[node as usize].package != 0 => {
             Some("it is declared in another package")
@@ -72,7 +72,7 @@ pub fn prepare_rename(server: &mut Server, parameters: &Value) -> Result<Value, 
     let Some((modules, symbol, span)) = server.symbol(parameters)? else {
         return Ok(Value::Null);
     };
-    if let Some(reason) = fixed(&modules, symbol) {
+    if let Some(reason) = why_fixed(&modules, symbol) {
         return Err(reason.to_owned());
     }
     let text = &modules.sources.get(span.source).text;
@@ -88,12 +88,12 @@ fn last_name(text: &str, span: Span) -> Span {
 }
 
 /// `textDocument/rename`: each place that writes the name; those that write an alias stay.
-pub fn rename(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn rename_symbol(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let new = parameters.get("newName").and_then(Value::as_str).ok_or_else(String::new)?.to_owned();
     let Some((modules, symbol, span)) = server.symbol(parameters)? else {
         return Err("there is no name here".to_owned());
     };
-    if let Some(reason) = fixed(&modules, symbol) {
+    if let Some(reason) = why_fixed(&modules, symbol) {
         return Err(reason.to_owned());
     }
     if !is_word(&new) || is_keyword(&new) || new == "_" {
@@ -102,7 +102,7 @@ pub fn rename(server: &mut Server, parameters: &Value) -> Result<Value, String> 
     let declared = modules.declarations(symbol);
     let old = declared.first().map(|span| modules.sources.text(*span).to_owned());
     let old = old.ok_or("its declaration is not known")?;
-    if let Some(taken) = taken(&modules, symbol, &new) {
+    if let Some(taken) = name_taken_in(&modules, symbol, &new) {
         return Err(format!("`{new}` is already declared in `{taken}`"));
     }
     // The place that was asked about may write an alias, which is a name of its own.
@@ -124,7 +124,7 @@ pub fn rename(server: &mut Server, parameters: &Value) -> Result<Value, String> 
 }
 
 /// The module that has the name already where the symbol is declared or used.
-fn taken(modules: &Modules, symbol: Symbol, new: &str) -> Option<String> {
+fn name_taken_in(modules: &Modules, symbol: Symbol, new: &str) -> Option<String> {
     let name: Name = modules.graph.names.find(new)?;
     let places = modules.references(symbol);
     let nodes = modules.graph.nodes.iter();
@@ -138,7 +138,7 @@ fn taken(modules: &Modules, symbol: Symbol, new: &str) -> Option<String> {
 }
 
 /// The protocol's number of what an item is.
-pub(super) fn kind(kind: ItemKind) -> u32 {
+pub(super) fn symbol_kind(kind: ItemKind) -> u32 {
     match kind {
         ItemKind::Function => 12,
         ItemKind::Struct => 23,
@@ -166,7 +166,7 @@ pub fn document_symbols(server: &mut Server, parameters: &Value) -> Result<Value
         };
         json!({
             "name": name,
-            "kind": kind(item.kind),
+            "kind": symbol_kind(item.kind),
             "range": range(&item.range),
             "selectionRange": range(&item.name_range),
         })
@@ -191,7 +191,7 @@ pub fn workspace_symbols(server: &mut Server, parameters: &Value) -> Result<Valu
                     found.extend(place.map(|location| {
                         json!({
                             "name": name,
-                            "kind": kind(item.kind),
+                            "kind": symbol_kind(item.kind),
                             "containerName": node.label,
                             "location": location,
                         })

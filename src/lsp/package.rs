@@ -64,7 +64,7 @@ pub struct Opened {
 }
 
 /// Opens the package of a root folder. A manifest with errors is as good as none, and told.
-pub fn open(root: &Path, texts: &Texts) -> Result<Opened, (SourceSet, Diagnostics)> {
+pub fn open_package(root: &Path, texts: &Texts) -> Result<Opened, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
     let mut packages = match project::packages(root, &mut sources) {
         Ok(packages) => packages,
@@ -106,7 +106,7 @@ pub struct Modules {
 }
 
 /// Reads all modules of the opened package.
-pub fn modules(opened: &mut Opened) -> Option<Modules> {
+pub fn read_modules(opened: &mut Opened) -> Option<Modules> {
     let paths = opened.packages.root.files.list(&["wesl", "wgsl"]);
     let graph = load_all(&mut opened.sources, &opened.packages, &paths)?;
     Some(Modules { graph, sources: opened.sources.clone() })
@@ -124,7 +124,8 @@ impl Modules {
     pub fn symbol(&self, node: u32, byte: u32) -> Option<(Symbol, Range<u32>)> {
         let module = &self.graph.nodes[node as usize].module;
         let has = |range: &Range<u32>| range.start <= byte && byte <= range.end;
-        let flag = module.expressions.iter().flat_map(flags).find(|(_, range)| has(range));
+        let flag =
+            module.expressions.iter().flat_map(condition_flags).find(|(_, range)| has(range));
         if let Some((name, range)) = flag {
             return Some((Symbol::Flag(name), range));
         }
@@ -139,10 +140,10 @@ impl Modules {
     /// Items, constants and what imports bring, at each place of a module that names them.
     pub fn places_in(&self, node: u32) -> impl Iterator<Item = (Symbol, Range<u32>)> {
         let here = &self.graph.nodes[node as usize];
-        let uses = here.module.items.iter().flat_map(move |item| uses(here, node, item));
+        let uses = here.module.items.iter().flat_map(move |item| uses_of_item(here, node, item));
         let imports = here.module.imports.iter().zip(&here.imports);
         let imports = imports.flat_map(|(import, targets)| {
-            let symbol = targets.iter().copied().find_map(symbol);
+            let symbol = targets.iter().copied().find_map(symbol_of);
             let places = [import.path.range.clone(), import.alias_range.clone()];
             let distinct = usize::from(places[0].end < places[1].start) + 1;
             symbol.into_iter().flat_map(move |symbol| {
@@ -182,7 +183,7 @@ impl Modules {
                 }
                 Symbol::Local { .. } => {}
                 Symbol::Flag(name) => {
-                    let flags = module.expressions.iter().flat_map(flags);
+                    let flags = module.expressions.iter().flat_map(condition_flags);
                     let flags = flags.filter(|(flag, _)| *flag == name);
                     found.extend(flags.map(|(_, range)| module.span(range)));
                 }
@@ -207,7 +208,7 @@ impl Modules {
 }
 
 /// Names of a condition with their places.
-fn flags(expression: &Expression) -> Vec<(Name, Range<u32>)> {
+fn condition_flags(expression: &Expression) -> Vec<(Name, Range<u32>)> {
     let named = |operand: &Operand| match operand {
         Operand::Name(name, range) => Some((*name, range.clone())),
         Operand::Integer(..) => None,
@@ -221,7 +222,7 @@ fn flags(expression: &Expression) -> Vec<(Name, Range<u32>)> {
     }
 }
 
-fn symbol(target: Target) -> Option<Symbol> {
+fn symbol_of(target: Target) -> Option<Symbol> {
     match target {
         Target::Items { node, name } => Some(Symbol::Items { node, name }),
         Target::Constant(index) => Some(Symbol::Constant(index)),
@@ -230,7 +231,7 @@ fn symbol(target: Target) -> Option<Symbol> {
 }
 
 /// What an item declares and uses.
-fn uses<'n>(
+fn uses_of_item<'n>(
     here: &'n Node,
     node: u32,
     item: &'n Item,
@@ -241,7 +242,7 @@ fn uses<'n>(
         }
         Event::Use { reference, start, end, .. } => {
             let candidates = here.bindings.get(reference as usize)?;
-            let found = candidates.iter().find_map(|candidate| symbol(candidate.target))?;
+            let found = candidates.iter().find_map(|candidate| symbol_of(candidate.target))?;
             Some((found, start..end))
         }
         Event::Cut { .. } | Event::Node { .. } => None,

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::parse::words::word_around;
 
 /// The address of a file.
-pub fn address(path: &Path) -> String {
+pub fn file_address(path: &Path) -> String {
     let mut text = "file://".to_owned();
     for byte in path.to_string_lossy().replace('\\', "/").bytes() {
         match byte {
@@ -22,7 +22,7 @@ pub fn address(path: &Path) -> String {
 }
 
 /// The file of an address; nothing for other kinds of addresses.
-pub fn path(address: &str) -> Option<PathBuf> {
+pub fn path_of_address(address: &str) -> Option<PathBuf> {
     let text = address.strip_prefix("file://")?;
     let mut bytes = Vec::new();
     let mut rest = text.bytes();
@@ -39,7 +39,7 @@ pub fn path(address: &str) -> Option<PathBuf> {
 }
 
 /// The byte of a position; the end of the line or the text where it is beyond.
-pub fn byte(text: &str, position: &Value) -> Option<usize> {
+pub fn byte_of_position(text: &str, position: &Value) -> Option<usize> {
     let line = usize::try_from(position.get("line")?.as_u64()?).ok()?;
     let units = usize::try_from(position.get("character")?.as_u64()?).ok()?;
     let mut start = 0;
@@ -91,7 +91,7 @@ impl<'t> Lines<'t> {
 }
 
 /// The identifier around a byte.
-pub fn word(text: &str, byte: usize) -> Range<usize> {
+pub fn word_at_byte(text: &str, byte: usize) -> Range<usize> {
     let byte = text.floor_char_boundary(byte.min(text.len()));
     word_around(text, byte..byte)
 }

@@ -15,20 +15,20 @@ impl Server {
         let document = self.document(parameters)?;
         let found = self.opened(&document.root).and_then(|mut opened| {
             let choice = self.choice(&document.root);
-            let (settings, _) = look::settings(&opened, &document.path, &choice);
-            let graph = look::graph(&mut opened, &document.path).ok()?;
-            Some(look::inactive(&graph, &settings))
+            let (settings, _) = look::module_settings(&opened, &document.path, &choice);
+            let graph = look::module_graph(&mut opened, &document.path).ok()?;
+            Some(look::inactive_ranges(&graph, &settings))
         });
         Ok((&document.text, found.unwrap_or_default()))
     }
 }
 
 /// Hints that let editors fade inactive code.
-pub fn unnecessary(text: &str, graph: &Graph, settings: &Settings) -> Vec<Value> {
+pub fn inactive_hints(text: &str, graph: &Graph, settings: &Settings) -> Vec<Value> {
     let lines = Lines::new(text);
     let hint = |range: Range<u32>| {
         json!({
-            "range": lines.range(trimmed(text, &range)),
+            "range": lines.range(trimmed_range(text, &range)),
             "severity": 4,
             "code": "inactive",
             "source": "lamplight",
@@ -36,11 +36,11 @@ pub fn unnecessary(text: &str, graph: &Graph, settings: &Settings) -> Vec<Value>
             "tags": [1],
         })
     };
-    look::inactive(graph, settings).into_iter().map(hint).collect()
+    look::inactive_ranges(graph, settings).into_iter().map(hint).collect()
 }
 
 /// A range without the blanks at its ends.
-fn trimmed(text: &str, range: &Range<u32>) -> Range<usize> {
+fn trimmed_range(text: &str, range: &Range<u32>) -> Range<usize> {
     let range = range.start as usize..(range.end as usize).min(text.len());
     let inner = text.get(range.clone()).unwrap_or_default();
     let start = range.start + inner.len() - inner.trim_start().len();
@@ -48,13 +48,13 @@ fn trimmed(text: &str, range: &Range<u32>) -> Range<usize> {
 }
 
 /// `textDocument/semanticTokens/full`: inactive code as comments, line by line.
-pub fn tokens(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn semantic_tokens(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let (text, inactive) = server.shaded(parameters)?;
     let lines = Lines::new(text);
     let (mut data, mut last) = (Vec::new(), (0, 0));
     let mut covered = 0;
     for range in inactive {
-        let range = trimmed(text, &range);
+        let range = trimmed_range(text, &range);
         let mut at = range.start.max(covered);
         covered = covered.max(range.end);
         while at < range.end {
@@ -75,11 +75,11 @@ pub fn tokens(server: &mut Server, parameters: &Value) -> Result<Value, String> 
 }
 
 /// `textDocument/inlayHint`: a word at the end of the first line of what is not there.
-pub fn hints(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn inlay_hints(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let (text, inactive) = server.shaded(parameters)?;
     let lines = Lines::new(text);
     let hint = |range: Range<u32>| {
-        let range = trimmed(text, &range);
+        let range = trimmed_range(text, &range);
         let first = text[range.clone()].find('\n').map_or(range.end, |end| range.start + end);
         json!({
             "position": lines.position(first),

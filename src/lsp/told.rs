@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::place::{Lines, address};
+use super::place::{Lines, file_address};
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::source::{SourceId, SourceSet};
 
@@ -16,14 +16,14 @@ pub fn address_of(
 ) -> Option<String> {
     let source = sources.get(id);
     if !source.on_disk {
-        return Some(address(&library(source.path.strip_prefix("lamplight/")?)?));
+        return Some(file_address(&library(source.path.strip_prefix("lamplight/")?)?));
     }
     let path = Path::new(&source.path);
-    Some(address(&path.canonicalize().unwrap_or_else(|_| path.to_owned())))
+    Some(file_address(&path.canonicalize().unwrap_or_else(|_| path.to_owned())))
 }
 
 /// One diagnostic at its first place.
-pub fn diagnostic(
+pub fn diagnostic_json(
     sources: &SourceSet,
     found: &Diagnostic,
     note: Option<&str>,

@@ -25,7 +25,7 @@ pub enum Incoming {
 ///
 /// # Errors
 /// Those of the stream itself.
-pub fn read(stream: &mut impl BufRead) -> io::Result<Incoming> {
+pub fn read_message(stream: &mut impl BufRead) -> io::Result<Incoming> {
     let mut length: Option<u64> = None;
     loop {
         let mut line = Vec::new();
@@ -40,7 +40,7 @@ pub fn read(stream: &mut impl BufRead) -> io::Result<Incoming> {
             length = value.trim().parse().ok();
         } else if line.is_empty() {
             match length {
-                Some(length) => return body(stream, length),
+                Some(length) => return read_body(stream, length),
                 // Blank lines and other noise between messages.
                 None => continue,
             }
@@ -48,17 +48,19 @@ pub fn read(stream: &mut impl BufRead) -> io::Result<Incoming> {
     }
 }
 
-fn body(stream: &mut impl BufRead, length: u64) -> io::Result<Incoming> {
+fn read_body(stream: &mut impl BufRead, length: u64) -> io::Result<Incoming> {
     if length > MESSAGE_BYTES {
         let skipped = io::copy(&mut stream.by_ref().take(length), &mut io::sink())?;
         let words = format!("a message of {skipped} bytes is more than {MESSAGE_BYTES}");
-        return Ok(Incoming::Malformed(error(&Value::Null, PARSE_ERROR, &words)));
+        return Ok(Incoming::Malformed(error_message(&Value::Null, PARSE_ERROR, &words)));
     }
     let mut bytes = Vec::new();
     stream.by_ref().take(length).read_to_end(&mut bytes)?;
     Ok(match serde_json::from_slice(&bytes) {
         Ok(message) => Incoming::Message(message),
-        Err(wrong) => Incoming::Malformed(error(&Value::Null, PARSE_ERROR, &wrong.to_string())),
+        Err(wrong) => {
+            Incoming::Malformed(error_message(&Value::Null, PARSE_ERROR, &wrong.to_string()))
+        }
     })
 }
 
@@ -66,7 +68,7 @@ fn body(stream: &mut impl BufRead, length: u64) -> io::Result<Incoming> {
 ///
 /// # Errors
 /// Those of the stream.
-pub fn write(stream: &mut impl Write, message: &Value) -> io::Result<()> {
+pub fn write_message(stream: &mut impl Write, message: &Value) -> io::Result<()> {
     let text = message.to_string();
     write!(stream, "Content-Length: {}\r\n\r\n{text}", text.len())?;
     stream.flush()
@@ -80,16 +82,16 @@ pub const WRONG_PARAMETERS: i32 = -32602;
 pub const FAILED: i32 = -32803;
 
 /// The answer to a request.
-pub fn answer(id: &Value, result: Value) -> Value {
+pub fn answer_message(id: &Value, result: Value) -> Value {
     json!({ "jsonrpc": "2.0", "id": id, "result": result })
 }
 
 /// The answer to a request that cannot be done.
-pub fn error(id: &Value, code: i32, words: &str) -> Value {
+pub fn error_message(id: &Value, code: i32, words: &str) -> Value {
     json!({ "jsonrpc": "2.0", "id": id, "error": { "code": code, "message": words } })
 }
 
 /// Something that nobody asked for.
-pub fn notification(method: &str, parameters: Value) -> Value {
+pub fn notification_message(method: &str, parameters: Value) -> Value {
     json!({ "jsonrpc": "2.0", "method": method, "params": parameters })
 }

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::token::{Token, tokens};
+use super::token::{Token, msl_tokens};
 
 /// The text that clang gets.
 ///
@@ -11,8 +11,8 @@ use super::token::{Token, tokens};
 ///   are one here.
 /// - `(a < b).x` is the number 0 or -1 in clang. The headers' `__lamplight::truth` makes it a
 ///   `bool`.
-pub fn adapt(text: &str) -> Cow<'_, str> {
-    let tokens = tokens(text);
+pub fn adapt_text(text: &str) -> Cow<'_, str> {
+    let tokens = msl_tokens(text);
     let mut edits = Vec::new();
     for at in 0..tokens.len() {
         edits.extend(function_constant(&tokens, at));
@@ -35,14 +35,14 @@ pub fn adapt(text: &str) -> Cow<'_, str> {
 /// The first byte, the byte after the last one, and what replaces them.
 type Edit = (usize, usize, &'static str);
 
-fn texts<'t, const N: usize>(tokens: &[Token<'t>], at: usize) -> Option<[&'t str; N]> {
+fn token_texts<'t, const N: usize>(tokens: &[Token<'t>], at: usize) -> Option<[&'t str; N]> {
     let found = tokens.get(at..at + N)?;
     Some(std::array::from_fn(|index| found[index].text))
 }
 
 /// `[[function_constant(0)]];` -> `= {};`
 fn function_constant(tokens: &[Token<'_>], at: usize) -> Option<Edit> {
-    let ["[", "[", "function_constant", "(", _, ")", "]", "]", ";"] = texts::<9>(tokens, at)?
+    let ["[", "[", "function_constant", "(", _, ")", "]", "]", ";"] = token_texts::<9>(tokens, at)?
     else {
         return None;
     };
@@ -52,7 +52,7 @@ fn function_constant(tokens: &[Token<'_>], at: usize) -> Option<Edit> {
 /// `template <typename A> R naga_...(threadgroup A *atomic_ptr` gets a name of its own.
 fn second_helper(tokens: &[Token<'_>], at: usize) -> Option<Edit> {
     const HELPER: &str = "naga_atomic_compare_exchange_weak_explicit";
-    let [HELPER, "(", "threadgroup", "A", "*"] = texts::<5>(tokens, at)? else { return None };
+    let [HELPER, "(", "threadgroup", "A", "*"] = token_texts::<5>(tokens, at)? else { return None };
     Some((tokens[at].at, tokens[at].end(), "naga_atomic_of_threadgroup"))
 }
 
@@ -64,15 +64,15 @@ fn component_of_group(tokens: &[Token<'_>], at: usize) -> Option<Edit> {
     if open.text != "(" || is_call && before.text != "return" {
         return None;
     }
-    let close = closing(tokens, at)?;
-    let [".", letter] = texts::<2>(tokens, close + 1)? else { return None };
+    let close = closing_bracket(tokens, at)?;
+    let [".", letter] = token_texts::<2>(tokens, close + 1)? else { return None };
     let is_component = letter.starts_with(['x', 'y', 'z', 'w']);
     let edit = (open.at, open.at, " __lamplight::truth");
-    (is_component && compares(&tokens[at + 1..close])).then_some(edit)
+    (is_component && has_comparison(&tokens[at + 1..close])).then_some(edit)
 }
 
 /// Index of the bracket that closes the one at `at`.
-fn closing(tokens: &[Token<'_>], at: usize) -> Option<usize> {
+fn closing_bracket(tokens: &[Token<'_>], at: usize) -> Option<usize> {
     let mut depth = 0u32;
     for (index, token) in tokens.iter().enumerate().skip(at) {
         match token.text {
@@ -87,6 +87,6 @@ fn closing(tokens: &[Token<'_>], at: usize) -> Option<usize> {
 }
 
 /// Whether anything is compared, at any depth.
-fn compares(tokens: &[Token<'_>]) -> bool {
+fn has_comparison(tokens: &[Token<'_>]) -> bool {
     tokens.iter().any(|token| matches!(token.text, "<" | ">" | "=" | "!"))
 }

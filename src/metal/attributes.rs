@@ -1,6 +1,6 @@
 //! Checks the attributes of a text, since clang ignores those that it does not know.
 
-use super::token::{Token, place, tokens};
+use super::token::{Token, line_and_column, msl_tokens};
 
 /// What an attribute may have in its brackets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,8 +101,11 @@ impl Attribute<'_> {
 
 /// The attributes between `[[` and `]]`, whose first token is at `start`, and the index of the
 /// token after them. `None` if there are no such brackets.
-pub fn list<'t>(tokens: &[Token<'t>], start: usize) -> Option<(Vec<Attribute<'t>>, usize)> {
-    if !opens(tokens, start) {
+pub fn attribute_list<'t>(
+    tokens: &[Token<'t>],
+    start: usize,
+) -> Option<(Vec<Attribute<'t>>, usize)> {
+    if !opens_attributes(tokens, start) {
         return None;
     }
     let (mut found, mut at) = (Vec::new(), start + 2);
@@ -129,7 +132,7 @@ pub fn list<'t>(tokens: &[Token<'t>], start: usize) -> Option<(Vec<Attribute<'t>
 }
 
 /// Whether `[[` is there, without a space.
-fn opens(tokens: &[Token<'_>], start: usize) -> bool {
+fn opens_attributes(tokens: &[Token<'_>], start: usize) -> bool {
     match tokens.get(start..start + 2) {
         Some([first, second]) => {
             first.text == "[" && second.text == "[" && first.end() == second.at
@@ -139,8 +142,8 @@ fn opens(tokens: &[Token<'_>], start: usize) -> bool {
 }
 
 /// The first mistake in the attributes of a text, in clang's format.
-pub fn mistake(text: &str) -> Option<String> {
-    let tokens = tokens(text);
+pub fn first_mistake(text: &str) -> Option<String> {
+    let tokens = msl_tokens(text);
     let (mut brackets, mut braces) = (0u32, 0u32);
     let mut at = 0;
     while let Some(token) = tokens.get(at) {
@@ -149,7 +152,7 @@ pub fn mistake(text: &str) -> Option<String> {
             ")" => brackets = brackets.saturating_sub(1),
             "{" => braces += 1,
             "}" => braces = braces.saturating_sub(1),
-            "[" if opens(&tokens, at) => {
+            "[" if opens_attributes(&tokens, at) => {
                 let behind = if brackets > 0 {
                     Parameter
                 } else if braces > 0 {
@@ -157,14 +160,14 @@ pub fn mistake(text: &str) -> Option<String> {
                 } else {
                     Item
                 };
-                let Some((found, next)) = list(&tokens, at) else {
-                    return Some(told(text, token.at, "an attribute is not well formed"));
+                let Some((found, next)) = attribute_list(&tokens, at) else {
+                    return Some(mistake_text(text, token.at, "an attribute is not well formed"));
                 };
-                let wrong = found
-                    .iter()
-                    .find_map(|attribute| Some((attribute.at, wrong(attribute, behind)?)));
+                let wrong = found.iter().find_map(|attribute| {
+                    Some((attribute.at, wrong_attribute(attribute, behind)?))
+                });
                 if let Some((at, message)) = wrong {
-                    return Some(told(text, at, &message));
+                    return Some(mistake_text(text, at, &message));
                 }
                 at = next;
                 continue;
@@ -176,12 +179,12 @@ pub fn mistake(text: &str) -> Option<String> {
     None
 }
 
-fn told(text: &str, at: usize, message: &str) -> String {
-    let (line, column) = place(text, at);
+fn mistake_text(text: &str, at: usize, message: &str) -> String {
+    let (line, column) = line_and_column(text, at);
     format!("{line}:{column}: error: {message}")
 }
 
-fn wrong(attribute: &Attribute<'_>, behind: Behind) -> Option<String> {
+fn wrong_attribute(attribute: &Attribute<'_>, behind: Behind) -> Option<String> {
     let name = attribute.name;
     let Some((_, given, place)) = KNOWN.iter().find(|(known, ..)| *known == name) else {
         return Some(format!("there is no attribute `{name}`"));

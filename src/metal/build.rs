@@ -7,7 +7,7 @@ use std::process::Output;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use super::adapt::adapt;
+use super::adapt::adapt_text;
 use super::clang::{Clang, Missing};
 use super::interface::{Interface, Part, Role};
 
@@ -43,10 +43,10 @@ impl Built {
 }
 
 /// Compiles and links.
-pub fn build(texts: &[&str]) -> Result<Built, Missing> {
+pub fn build_program(texts: &[&str]) -> Result<Built, Missing> {
     let clang = Clang::open()?;
     let mut entries: Vec<_> = texts.iter().map(|text| Interface::read(text)).collect();
-    let units = units(texts, &entries);
+    let units = text_units(texts, &entries);
     let (next, objects) = (AtomicUsize::new(0), Mutex::new(Ok(Vec::new())));
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
@@ -54,11 +54,11 @@ pub fn build(texts: &[&str]) -> Result<Built, Missing> {
                 loop {
                     let index = next.fetch_add(1, Ordering::Relaxed);
                     let compiled = match (index, units.get(index.wrapping_sub(1))) {
-                        (0, _) => runtime(&clang),
-                        (_, Some(unit)) => compile(&clang, texts, unit),
+                        (0, _) => compile_runtime(&clang),
+                        (_, Some(unit)) => compile_unit(&clang, texts, unit),
                         (_, None) => break,
                     };
-                    add(&objects, compiled);
+                    add_objects(&objects, compiled);
                 }
             });
         }
@@ -72,7 +72,7 @@ pub fn build(texts: &[&str]) -> Result<Built, Missing> {
         }
     }
     names.sort();
-    link(&clang, &entries, &names)?;
+    link_objects(&clang, &entries, &names)?;
     Ok(Built { clang, entries })
 }
 
@@ -85,7 +85,7 @@ enum Object {
 
 type Objects = Result<Vec<Object>, Missing>;
 
-fn add(all: &Mutex<Objects>, found: Objects) {
+fn add_objects(all: &Mutex<Objects>, found: Objects) {
     let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
     match (all.as_mut(), found) {
         (Ok(objects), Ok(found)) => objects.extend(found),
@@ -97,7 +97,7 @@ fn add(all: &Mutex<Objects>, found: Objects) {
 /// A text that is compiled: its index, and its interface.
 type Text<'t> = (usize, &'t Interface);
 
-fn units<'t>(texts: &[&str], entries: &'t [Result<Interface, String>]) -> Vec<Vec<Text<'t>>> {
+fn text_units<'t>(texts: &[&str], entries: &'t [Result<Interface, String>]) -> Vec<Vec<Text<'t>>> {
     let (mut units, mut bytes) = (Vec::new(), UNIT);
     for (index, entry) in entries.iter().enumerate() {
         let Ok(interface) = entry else { continue };
@@ -114,40 +114,40 @@ fn units<'t>(texts: &[&str], entries: &'t [Result<Interface, String>]) -> Vec<Ve
 }
 
 /// Compiles a unit. If it is refused it is divided in halves, until the texts at fault are found.
-fn compile(clang: &Clang, texts: &[&str], unit: &[Text<'_>]) -> Objects {
+fn compile_unit(clang: &Clang, texts: &[&str], unit: &[Text<'_>]) -> Objects {
     let Some((first, _)) = unit.first() else { return Ok(Vec::new()) };
     let name = format!("unit{first}-{}.o", unit.len());
     let arguments: Vec<&str> = FLAGS.iter().copied().chain(["-o", &name]).collect();
-    let output = clang.compile(&source(texts, unit), &arguments)?;
+    let output = clang.compile(&unit_source(texts, unit), &arguments)?;
     if output.status.success() {
         return Ok(vec![Object::Compiled(name)]);
     }
     if unit.len() == 1 {
-        return Ok(vec![Object::Refused(*first, told(&output))]);
+        return Ok(vec![Object::Refused(*first, output_text(&output))]);
     }
     let (first, second) = unit.split_at(unit.len() / 2);
-    let mut objects = compile(clang, texts, first)?;
-    objects.extend(compile(clang, texts, second)?);
+    let mut objects = compile_unit(clang, texts, first)?;
+    objects.extend(compile_unit(clang, texts, second)?);
     Ok(objects)
 }
 
-fn told(output: &Output) -> String {
+fn output_text(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).trim().to_owned()
 }
 
 /// The program around the shaders.
-fn runtime(clang: &Clang) -> Objects {
+fn compile_runtime(clang: &Clang) -> Objects {
     let name = "runtime.o";
-    done(clang.call(&["-std=c++17", "-O1", "-c", "runtime.cpp", "-o", name])?)?;
+    check_output(clang.call(&["-std=c++17", "-O1", "-c", "runtime.cpp", "-o", name])?)?;
     Ok(vec![Object::Compiled(name.to_owned())])
 }
 
-fn done(output: Output) -> Result<(), Missing> {
-    if output.status.success() { Ok(()) } else { Err(Missing { reason: told(&output) }) }
+fn check_output(output: Output) -> Result<(), Missing> {
+    if output.status.success() { Ok(()) } else { Err(Missing { reason: output_text(&output) }) }
 }
 
 /// Links all, with the table of entry points.
-fn link(
+fn link_objects(
     clang: &Clang,
     entries: &[Result<Interface, String>],
     objects: &[String],
@@ -163,31 +163,31 @@ fn link(
     }
     // C++ has no empty array.
     table += "  {nullptr}};\n";
-    done(clang.compile(&table, &["-c", "-o", "table.o"])?)?;
+    check_output(clang.compile(&table, &["-c", "-o", "table.o"])?)?;
     let mut arguments = vec!["-o", "program", "table.o"];
     arguments.extend(objects.iter().map(String::as_str));
     arguments.push("-lm");
-    done(clang.call(&arguments)?)
+    check_output(clang.call(&arguments)?)
 }
 
 /// Texts one after another, each in a namespace of its own and followed by the function that runs
 /// it.
-fn source(texts: &[&str], unit: &[Text<'_>]) -> String {
+fn unit_source(texts: &[&str], unit: &[Text<'_>]) -> String {
     let mut source = "#include \"glue.h\"\n".to_owned();
     for (index, interface) in unit {
-        let text = adapt(texts[*index]);
+        let text = adapt_text(texts[*index]);
         let _ = write!(
             source,
             "namespace {{ namespace text{index} {{\n#line 1 \"text\"\n{text}\n}} }}\n"
         );
         let _ = writeln!(source, "#line 1 \"glue\"");
-        glue(&mut source, *index, interface);
+        write_glue(&mut source, *index, interface);
     }
     source
 }
 
 /// The function that fills parameters and takes results, according to their attributes.
-fn glue(to: &mut String, index: usize, interface: &Interface) {
+fn write_glue(to: &mut String, index: usize, interface: &Interface) {
     let _ = writeln!(
         to,
         "void run{index}(const __lamplight::bindings& bound, const __lamplight::given& given,\n    \
@@ -195,17 +195,17 @@ fn glue(to: &mut String, index: usize, interface: &Interface) {
     );
     if let Some((name, members)) = &interface.input {
         let _ = writeln!(to, "  text{index}::{name} input = {{}};");
-        members.iter().for_each(|member| taken(to, member));
+        members.iter().for_each(|member| write_taken(to, member));
     }
-    let arguments: Vec<String> = interface.parameters.iter().map(argument).collect();
+    let arguments: Vec<String> = interface.parameters.iter().map(argument_text).collect();
     let returned = if interface.output.is_empty() { "" } else { "const auto output = " };
     let (name, list) = (&interface.name, arguments.join(", "));
     let _ = writeln!(to, "  {returned}text{index}::{name}({list});");
-    interface.output.iter().for_each(|member| given(to, member));
+    interface.output.iter().for_each(|member| write_given(to, member));
     *to += "}\n";
 }
 
-fn argument(part: &Part) -> String {
+fn argument_text(part: &Part) -> String {
     match part.role {
         Role::StageIn => "input".to_owned(),
         Role::Buffer(slot) => format!("__lamplight::buffer(bound, {slot})"),
@@ -219,14 +219,14 @@ fn argument(part: &Part) -> String {
     }
 }
 
-fn taken(to: &mut String, member: &Part) {
+fn write_taken(to: &mut String, member: &Part) {
     if let Role::Location(location) = member.role {
         let name = &member.name;
         let _ = writeln!(to, "  __lamplight::take(input.{name}, given.locations[{location}]);");
     }
 }
 
-fn given(to: &mut String, member: &Part) {
+fn write_given(to: &mut String, member: &Part) {
     let name = &member.name;
     let _ = match member.role {
         Role::Location(location) => {

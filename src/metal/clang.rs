@@ -53,7 +53,7 @@ pub struct Clang {
 }
 
 /// A hash of the headers and of how they are read, since other headers judge differently.
-pub fn shim() -> String {
+pub fn shim_hash() -> String {
     let mut hasher = blake3::Hasher::new();
     let texts = SHIM.iter().flat_map(|(name, text)| [*name, *text]).chain(FLAGS.iter().copied());
     texts.for_each(|text| {
@@ -67,8 +67,8 @@ pub fn shim() -> String {
 ///
 /// # Errors
 /// There is none.
-pub fn version() -> Result<String, Missing> {
-    let output = Command::new(CLANG.program).arg("--version").output().map_err(reason)?;
+pub fn clang_version() -> Result<String, Missing> {
+    let output = Command::new(CLANG.program).arg("--version").output().map_err(missing_reason)?;
     let text = String::from_utf8_lossy(&output.stdout);
     let version = text.lines().next().unwrap_or_default().trim().to_owned();
     if output.status.success() && version.contains("clang") {
@@ -78,17 +78,17 @@ pub fn version() -> Result<String, Missing> {
     }
 }
 
-fn reason(error: io::Error) -> Missing {
+fn missing_reason(error: io::Error) -> Missing {
     Missing { reason: format!("{}: {error}", CLANG.program) }
 }
 
 impl Clang {
     /// Looks for clang, and writes the headers.
     pub fn open() -> Result<Self, Missing> {
-        version()?;
-        let clang = Self { folder: own_folder().map_err(reason)? };
+        clang_version()?;
+        let clang = Self { folder: own_folder().map_err(missing_reason)? };
         for (name, text) in SHIM {
-            clang.write(name, text.as_bytes()).map_err(reason)?;
+            clang.write(name, text.as_bytes()).map_err(missing_reason)?;
         }
         Ok(clang)
     }
@@ -122,17 +122,17 @@ impl Clang {
     fn run(&self, mut command: Command, input: &[u8]) -> Result<Output, Missing> {
         command.current_dir(&self.folder).stdin(Stdio::piped());
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = command.spawn().map_err(reason)?;
+        let mut child = command.spawn().map_err(missing_reason)?;
         if let Some(mut stdin) = child.stdin.take() {
             // clang stops reading at a fatal error. Its message is read below.
             match stdin.write_all(input) {
                 Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-                    return Err(reason(error));
+                    return Err(missing_reason(error));
                 }
                 _ => drop(stdin),
             }
         }
-        child.wait_with_output().map_err(reason)
+        child.wait_with_output().map_err(missing_reason)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Reads from a text what its entry point takes and returns.
 
-use super::attributes::{Attribute, list};
-use super::token::{Token, tokens};
+use super::attributes::{Attribute, attribute_list};
+use super::token::{Token, msl_tokens};
 use crate::bundle::Stage;
 
 /// What a parameter or a member stands for.
@@ -45,27 +45,28 @@ pub struct Interface {
 impl Interface {
     /// Reads the only entry point of a text. The error tells what is not understood.
     pub fn read(text: &str) -> Result<Self, String> {
-        let tokens = tokens(text);
+        let tokens = msl_tokens(text);
         let stages = [("vertex", Stage::Vertex), ("fragment", Stage::Fragment)];
         let found = tokens.iter().enumerate().find_map(|(at, token)| {
             let (_, stage) = stages.iter().find(|(name, _)| *name == token.text)?;
             Some((at, *stage))
         });
         let (at, stage) = found.ok_or("there is no vertex or fragment entry point")?;
-        let [returned, name, "("] = texts(&tokens, at + 1)? else {
+        let [returned, name, "("] = token_texts(&tokens, at + 1)? else {
             return Err(format!("`{}` is not followed by a function", tokens[at].text));
         };
         let mut parameters = Vec::new();
         let mut input = None;
-        for parameter in parts(&tokens, at + 4, (",", ")"))? {
-            let part = part(&parameter)?;
+        for parameter in separated_parts(&tokens, at + 4, (",", ")"))? {
+            let part = read_part(&parameter)?;
             if part.role == Role::StageIn {
                 let name = parameter.first().map_or("", |token| token.text);
-                input = Some((name.to_owned(), members(&tokens, name)?));
+                input = Some((name.to_owned(), struct_members(&tokens, name)?));
             }
             parameters.push(part);
         }
-        let output = if returned == "void" { Vec::new() } else { members(&tokens, returned)? };
+        let output =
+            if returned == "void" { Vec::new() } else { struct_members(&tokens, returned)? };
         Ok(Self { stage, name: name.to_owned(), parameters, input, output })
     }
 
@@ -82,21 +83,24 @@ impl Interface {
     }
 }
 
-fn texts<'t, const N: usize>(tokens: &[Token<'t>], at: usize) -> Result<[&'t str; N], String> {
+fn token_texts<'t, const N: usize>(
+    tokens: &[Token<'t>],
+    at: usize,
+) -> Result<[&'t str; N], String> {
     let found = tokens.get(at..at + N).ok_or("the text ends too early")?;
     Ok(std::array::from_fn(|index| found[index].text))
 }
 
 /// The members of a struct.
-fn members(tokens: &[Token<'_>], name: &str) -> Result<Vec<Part>, String> {
+fn struct_members(tokens: &[Token<'_>], name: &str) -> Result<Vec<Part>, String> {
     let declared =
-        |at: &usize| texts(tokens, *at).is_ok_and(|found| found == ["struct", name, "{"]);
+        |at: &usize| token_texts(tokens, *at).is_ok_and(|found| found == ["struct", name, "{"]);
     let at = (0..tokens.len()).find(declared).ok_or_else(|| format!("there is no `{name}`"))?;
-    parts(tokens, at + 3, (";", "}"))?.iter().map(|part| self::part(part)).collect()
+    separated_parts(tokens, at + 3, (";", "}"))?.iter().map(|part| self::read_part(part)).collect()
 }
 
 /// The tokens between separators, up to the end.
-fn parts<'t>(
+fn separated_parts<'t>(
     tokens: &[Token<'t>],
     start: usize,
     (separator, end): (&str, &str),
@@ -120,14 +124,15 @@ fn parts<'t>(
 }
 
 /// A parameter or a member. The last word before its attributes is its name.
-fn part(tokens: &[Token<'_>]) -> Result<Part, String> {
-    let at = (0..tokens.len()).find(|at| list(tokens, *at).is_some());
-    let Some((at, (attributes, _))) = at.and_then(|at| Some((at, list(tokens, at)?))) else {
+fn read_part(tokens: &[Token<'_>]) -> Result<Part, String> {
+    let at = (0..tokens.len()).find(|at| attribute_list(tokens, *at).is_some());
+    let Some((at, (attributes, _))) = at.and_then(|at| Some((at, attribute_list(tokens, at)?)))
+    else {
         let words: Vec<&str> = tokens.iter().map(|token| token.text).collect();
         return Err(format!("`{}` has no attribute", words.join(" ")));
     };
     let name = tokens[..at].last().map_or("", |token| token.text).to_owned();
-    let role = attributes.iter().find_map(role).ok_or_else(|| {
+    let role = attributes.iter().find_map(attribute_role).ok_or_else(|| {
         let names: Vec<&str> = attributes.iter().map(|attribute| attribute.name).collect();
         format!("`{name}` is `{}`, which nothing stands for on the CPU", names.join(", "))
     })?;
@@ -135,7 +140,7 @@ fn part(tokens: &[Token<'_>]) -> Result<Part, String> {
     Ok(Part { name, role, is_flat })
 }
 
-fn role(attribute: &Attribute<'_>) -> Option<Role> {
+fn attribute_role(attribute: &Attribute<'_>) -> Option<Role> {
     let user = || attribute.given?.strip_prefix("loc")?.parse().ok();
     match attribute.name {
         "stage_in" => Some(Role::StageIn),

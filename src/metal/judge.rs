@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use super::adapt::adapt;
+use super::adapt::adapt_text;
 use super::attributes;
 use super::clang::{Clang, Missing};
-use super::token::tokens;
+use super::token::msl_tokens;
 
 /// Bytes of texts that one run of clang gets: enough that the headers cost little, few enough that
 /// a refused text is found quickly.
@@ -26,17 +26,17 @@ pub struct Refusal {
 ///
 /// # Errors
 /// clang is missing or cannot be run.
-pub fn judge(texts: &[&str], progress: &(dyn Fn(usize) + Sync)) -> Refusals {
+pub fn judge_texts(texts: &[&str], progress: &(dyn Fn(usize) + Sync)) -> Refusals {
     let clang = Clang::open()?;
     let texts: Vec<Text<'_>> = texts.iter().copied().enumerate().collect();
-    let batches = batches(&texts);
+    let batches = divide_batches(&texts);
     let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let outcome = Mutex::new(Ok(Vec::new()));
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
             scope.spawn(|| {
                 while let Some(batch) = batches.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    add(&outcome, judge_batch(&clang, batch));
+                    add_refusals(&outcome, judge_batch(&clang, batch));
                     progress(done.fetch_add(batch.len(), Ordering::Relaxed) + batch.len());
                 }
             });
@@ -49,7 +49,7 @@ pub fn judge(texts: &[&str], progress: &(dyn Fn(usize) + Sync)) -> Refusals {
 
 type Refusals = Result<Vec<Refusal>, Missing>;
 
-fn add(outcome: &Mutex<Refusals>, found: Refusals) {
+fn add_refusals(outcome: &Mutex<Refusals>, found: Refusals) {
     let mut outcome = outcome.lock().unwrap_or_else(PoisonError::into_inner);
     match (outcome.as_mut(), found) {
         (Ok(refusals), Ok(found)) => refusals.extend(found),
@@ -81,15 +81,15 @@ fn before_clang(text: &str) -> Option<String> {
         return Some("1:1: error: `metal_stdlib` is not included".to_owned());
     }
     let is_stage = |word: &str| ["vertex", "fragment", "kernel"].contains(&word);
-    if !tokens(text).iter().any(|token| is_stage(token.text)) {
+    if !msl_tokens(text).iter().any(|token| is_stage(token.text)) {
         return Some("1:1: error: there is no entry point".to_owned());
     }
-    attributes::mistake(text)
+    attributes::first_mistake(text)
 }
 
 type Text<'t> = (usize, &'t str);
 
-fn batches<'b, 't>(texts: &'b [Text<'t>]) -> Vec<&'b [Text<'t>]> {
+fn divide_batches<'b, 't>(texts: &'b [Text<'t>]) -> Vec<&'b [Text<'t>]> {
     let (mut batches, mut start, mut bytes) = (Vec::new(), 0, 0);
     for (index, (_, text)) in texts.iter().enumerate() {
         bytes += text.len();
@@ -107,12 +107,12 @@ fn judge_sound(clang: &Clang, batch: &[Text<'_>], to: &mut Vec<Refusal>) -> Resu
     if batch.is_empty() {
         return Ok(());
     }
-    let output = clang.compile(&unit(batch), &["-fsyntax-only"])?;
+    let output = clang.compile(&unit_text(batch), &["-fsyntax-only"])?;
     if output.status.success() {
         return Ok(());
     }
     if let [(index, _)] = batch {
-        to.push(Refusal { index: *index, errors: errors(&output.stderr) });
+        to.push(Refusal { index: *index, errors: clang_errors(&output.stderr) });
         return Ok(());
     }
     let (first, second) = batch.split_at(batch.len() / 2);
@@ -121,26 +121,28 @@ fn judge_sound(clang: &Clang, batch: &[Text<'_>], to: &mut Vec<Refusal>) -> Resu
 }
 
 /// Texts side by side, each in a namespace of its own.
-fn unit(texts: &[Text<'_>]) -> String {
+fn unit_text(texts: &[Text<'_>]) -> String {
     let mut unit = "#include <metal_stdlib>\n".to_owned();
     for (number, (_, text)) in texts.iter().enumerate() {
-        let _ = write!(unit, "namespace text{number} {{\n#line 1 \"text\"\n{}\n}}\n", adapt(text));
+        let _ =
+            write!(unit, "namespace text{number} {{\n#line 1 \"text\"\n{}\n}}\n", adapt_text(text));
     }
     unit
 }
 
 /// clang's errors about a text, a line for each, with Metal's names of types.
-fn errors(stderr: &[u8]) -> String {
+fn clang_errors(stderr: &[u8]) -> String {
     let text = String::from_utf8_lossy(stderr);
     let lines: Vec<&str> = text.lines().collect();
-    let errors: Vec<String> = (0..lines.len()).filter_map(|at| error(&lines[at..])).collect();
+    let errors: Vec<String> =
+        (0..lines.len()).filter_map(|at| placed_error(&lines[at..])).collect();
     let errors = if errors.is_empty() { text.trim().to_owned() } else { errors.join("\n") };
     TYPES.iter().fold(errors, |errors, (clang, metal)| errors.replace(clang, metal))
 }
 
 /// An error with its place. If that is in the headers, a note tells which place of the text led
 /// there.
-fn error(lines: &[&str]) -> Option<String> {
+fn placed_error(lines: &[&str]) -> Option<String> {
     let (place, message) = lines.first()?.split_once(": error: ")?;
     let here = |line: &str| line.strip_prefix("text:").map(str::to_owned);
     let notes = lines[1..].iter().take_while(|line| !line.contains(": error: "));

@@ -17,6 +17,6 @@ pub mod program;
 pub mod request;
 mod token;
 
-pub use clang::{Clang, Missing, shim, version};
-pub use judge::{Refusal, judge, judge_batch};
+pub use clang::{Clang, Missing, clang_version, shim_hash};
+pub use judge::{Refusal, judge_batch, judge_texts};
 pub use program::Program;

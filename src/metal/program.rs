@@ -23,7 +23,7 @@ impl Program {
     /// # Errors
     /// clang is missing or cannot be run.
     pub fn build(texts: &[&str]) -> Result<Self, Missing> {
-        Ok(Self { built: build::build(texts)?, child: None })
+        Ok(Self { built: build::build_program(texts)?, child: None })
     }
 
     /// What the entry point of a text takes and returns.
@@ -114,7 +114,7 @@ impl Program {
     fn exchange(&mut self, request: &[u32], count: usize) -> std::io::Result<Words> {
         let child = match &mut self.child {
             Some(child) => child,
-            none => none.insert(start(&self.built)?),
+            none => none.insert(start_program(&self.built)?),
         };
         let (Some(stdin), Some(stdout)) = (&mut child.stdin, &mut child.stdout) else {
             return Err(std::io::ErrorKind::BrokenPipe.into());
@@ -151,7 +151,7 @@ impl Drop for Program {
     }
 }
 
-fn start(built: &Built) -> std::io::Result<Child> {
+fn start_program(built: &Built) -> std::io::Result<Child> {
     Command::new(built.program())
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())

@@ -18,7 +18,7 @@ impl Token<'_> {
 }
 
 /// The tokens in order.
-pub fn tokens(text: &str) -> Vec<Token<'_>> {
+pub fn msl_tokens(text: &str) -> Vec<Token<'_>> {
     let mut found = Vec::new();
     let mut at = 0;
     while let Some(first) = text[at..].chars().next() {
@@ -40,7 +40,7 @@ pub fn tokens(text: &str) -> Vec<Token<'_>> {
 }
 
 /// Line and column of a byte, both from 1.
-pub fn place(text: &str, at: usize) -> (usize, usize) {
+pub fn line_and_column(text: &str, at: usize) -> (usize, usize) {
     let before = text.get(..at).unwrap_or(text);
     let line = before.matches('\n').count() + 1;
     let start = before.rfind('\n').map_or(0, |end| end + 1);

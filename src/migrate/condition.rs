@@ -60,14 +60,14 @@ impl Condition {
             None if self.negated => format!("!{name}"),
             None => name.clone(),
             Some((operator, value)) => {
-                let operator = if self.negated { opposite(operator) } else { operator };
+                let operator = if self.negated { opposite_operator(operator) } else { operator };
                 format!("{name} {operator} {value}")
             }
         }
     }
 }
 
-fn opposite(operator: &str) -> &str {
+fn opposite_operator(operator: &str) -> &str {
     match operator {
         "==" => "!=",
         "!=" => "==",
@@ -79,7 +79,7 @@ fn opposite(operator: &str) -> &str {
 }
 
 /// All of them, as `@if` has it.
-pub fn all(conditions: &[Condition]) -> String {
+pub fn joined_conditions(conditions: &[Condition]) -> String {
     let mut texts: Vec<String> = Vec::new();
     for text in conditions.iter().map(Condition::text) {
         if !texts.contains(&text) {
@@ -133,7 +133,7 @@ impl Asked {
 }
 
 /// Names that are asked for in two ways.
-pub fn clashes<'a>(files: impl Iterator<Item = &'a Scanned>) -> Vec<Diagnostic> {
+pub fn asked_twice<'a>(files: impl Iterator<Item = &'a Scanned>) -> Vec<Diagnostic> {
     let (mut features, mut numbers) = (BTreeMap::new(), BTreeMap::new());
     for file in files {
         file.asked.features.iter().for_each(|(name, span)| {

@@ -7,7 +7,7 @@ use super::tree::{Bytes, Choice, Import, Leaf, Node, Path};
 use crate::parse::words::word_at;
 
 /// The text without its comments, byte for byte.
-pub fn bare(text: &str) -> String {
+pub fn without_comments(text: &str) -> String {
     let mut bare = String::with_capacity(text.len());
     while bare.len() < text.len() {
         let rest = &text[bare.len()..];
@@ -24,8 +24,8 @@ pub fn bare(text: &str) -> String {
 type Wrong = (&'static str, Bytes);
 
 /// Reads the directive in `place`.
-pub fn parse(text: &str, place: Bytes) -> Result<Leaf, Wrong> {
-    let bare = bare(&text[place.clone()]);
+pub fn parse_import(text: &str, place: Bytes) -> Result<Leaf, Wrong> {
+    let bare = without_comments(&text[place.clone()]);
     let start = bare.find("import").unwrap_or(0) + "import".len();
     let end = bare.trim_end().trim_end_matches(';').trim_end().len();
     let mut reader = Reader { bare: &bare[..end.max(start)], at: start, offset: place.start };
@@ -41,17 +41,19 @@ pub fn parse(text: &str, place: Bytes) -> Result<Leaf, Wrong> {
 }
 
 /// What an import gives names to.
-pub fn paths(tree: &Leaf) -> Vec<Path> {
+pub fn import_paths(tree: &Leaf) -> Vec<Path> {
     let mut found = Vec::new();
-    collect(tree, &[], &mut found);
+    collect_paths(tree, &[], &mut found);
     found
 }
 
-fn collect(leaf: &Leaf, before: &[String], found: &mut Vec<Path>) {
+fn collect_paths(leaf: &Leaf, before: &[String], found: &mut Vec<Path>) {
     let path: Vec<String> =
         before.iter().chain(leaf.file.as_ref()).chain(&leaf.path).cloned().collect();
     match (&leaf.alias, path.last(), &leaf.braces) {
-        (_, _, Some(_)) => leaf.children.iter().for_each(|child| collect(child, &path, found)),
+        (_, _, Some(_)) => {
+            leaf.children.iter().for_each(|child| collect_paths(child, &path, found))
+        }
         (alias, Some(last), None) => {
             let alias = alias.as_ref().unwrap_or(last).clone();
             found.push(Path { alias, at: leaf.at.clone(), path });
@@ -170,7 +172,10 @@ impl Reader<'_> {
 }
 
 /// The nodes without imports that would stand in a block: those go to `late`.
-pub fn early(nodes: Vec<Node>, late: &mut Vec<(Vec<Condition>, Import)>) -> Vec<Node> {
+pub fn without_late_imports(
+    nodes: Vec<Node>,
+    late: &mut Vec<(Vec<Condition>, Import)>,
+) -> Vec<Node> {
     let taken = std::mem::take(late);
     let one = |node| match node {
         Node::Choice(choice) if !choice.is_of_imports() => {
@@ -209,13 +214,17 @@ fn without_imports(
 }
 
 /// What `import` has to be followed by for each part of a directive: nothing where WESL needs none.
-pub fn statements(text: &str, tree: &Leaf, modules: &Modules) -> Result<Vec<String>, String> {
+pub fn import_statements(
+    text: &str,
+    tree: &Leaf,
+    modules: &Modules,
+) -> Result<Vec<String>, String> {
     let mut found = Vec::new();
-    write(text, tree, &[], modules, &mut found)?;
+    write_import(text, tree, &[], modules, &mut found)?;
     Ok(found)
 }
 
-fn write(
+fn write_import(
     text: &str,
     leaf: &Leaf,
     before: &[String],
@@ -225,7 +234,7 @@ fn write(
     let path: Vec<String> =
         before.iter().chain(leaf.file.as_ref()).chain(&leaf.path).cloned().collect();
     let Some(braces) = &leaf.braces else {
-        found.extend(one(&path, leaf, modules)?);
+        found.extend(import_one(&path, leaf, modules)?);
         return Ok(());
     };
     let module = modules.module(&path)?;
@@ -246,7 +255,7 @@ fn write(
             for child in &leaf.children {
                 let comment = bare_of_blanks(&text[child.lead.clone()]);
                 let first = found.len();
-                write(text, child, &path, modules, found)?;
+                write_import(text, child, &path, modules, found)?;
                 if let Some(statement) = found.get_mut(first).filter(|_| !comment.is_empty()) {
                     *statement = format!("{comment} {statement}");
                 }
@@ -289,7 +298,7 @@ fn bare_of_blanks(lead: &str) -> String {
 }
 
 /// One name.
-fn one(path: &[String], leaf: &Leaf, modules: &Modules) -> Result<Option<String>, String> {
+fn import_one(path: &[String], leaf: &Leaf, modules: &Modules) -> Result<Option<String>, String> {
     let Some(last) = path.last() else { return Ok(None) };
     if modules.lacks(&path[..path.len() - 1], last) {
         return Ok(None);

@@ -40,7 +40,7 @@ pub fn naga_oil(sources: &SourceSet, files: &[(String, SourceId)]) -> Migrated {
     let mut migrated = Migrated::default();
     let mut scanned = Vec::new();
     for (path, id) in files {
-        match scan::scan(&sources.get(*id).text, *id) {
+        match scan::scan_file(&sources.get(*id).text, *id) {
             Ok(found) => scanned.push((path, *id, found)),
             Err(error) => migrated.diagnostics.push(error),
         }
@@ -49,7 +49,9 @@ pub fn naga_oil(sources: &SourceSet, files: &[(String, SourceId)]) -> Migrated {
     let own = scanned.iter().map(|(path, id, found)| (path.as_str(), text(id), *id, found));
     let modules = names::Modules::new(own, &mut migrated.diagnostics);
     for (path, id, found) in &scanned {
-        match write::write(text(id), *id, found, &modules).and_then(|text| parsed(*id, text)) {
+        match write::write_file(text(id), *id, found, &modules)
+            .and_then(|text| parse_result(*id, text))
+        {
             Ok(text) => {
                 migrated.files.insert((*path).clone(), text);
                 found.asked.add_to(&mut migrated);
@@ -59,12 +61,12 @@ pub fn naga_oil(sources: &SourceSet, files: &[(String, SourceId)]) -> Migrated {
         migrated.diagnostics.extend(found.notes.iter().cloned());
     }
     migrated.diagnostics.extend(modules.foreign());
-    migrated.diagnostics.extend(condition::clashes(scanned.iter().map(|(_, _, found)| found)));
+    migrated.diagnostics.extend(condition::asked_twice(scanned.iter().map(|(_, _, found)| found)));
     migrated
 }
 
 /// The text, if it is WESL as far as the parser can tell.
-fn parsed(id: SourceId, text: String) -> Result<String, Diagnostic> {
+fn parse_result(id: SourceId, text: String) -> Result<String, Diagnostic> {
     let module = wesl::parse(id, text.as_str().into(), &mut wesl::Names::default());
     match module.errors.first() {
         None => Ok(text),

@@ -49,7 +49,7 @@ impl Modules {
             let Some((name, range)) = &found.name else { continue };
             let span = Span::new(id, range.clone());
             let segments: Vec<String> = name.split("::").map(str::to_owned).collect();
-            let words = words(text, &found.nodes);
+            let words = compiled_words(text, &found.nodes);
             // Of two the one that says more: the other is there for builds without it.
             let other = places.get(&segments).copied();
             let counts = modules.words.get(&segments).is_none_or(|known| known.len() < words.len());
@@ -104,11 +104,11 @@ impl Modules {
             let Some(known) = self.files.keys().find(fits) else {
                 return Err(format!("there is no file `{file}`"));
             };
-            return Ok(Place::Known(joined(&self.files[known].clone()?, &path[1..])));
+            return Ok(Place::Known(joined_path(&self.files[known].clone()?, &path[1..])));
         }
         for length in (1..=path.len()).rev() {
             if let Some(found) = self.paths.get(&path[..length]) {
-                return Ok(Place::Known(joined(&found.clone()?, &path[length..])));
+                return Ok(Place::Known(joined_path(&found.clone()?, &path[length..])));
             }
         }
         let is_prefix = |known: &&Vec<String>| known.starts_with(path);
@@ -157,7 +157,7 @@ impl Modules {
 }
 
 /// Every word that is compiled.
-fn words(text: &str, nodes: &[Node]) -> BTreeSet<String> {
+fn compiled_words(text: &str, nodes: &[Node]) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     for node in nodes {
         match node {
@@ -165,7 +165,10 @@ fn words(text: &str, nodes: &[Node]) -> BTreeSet<String> {
                 found.insert(text[token.range.clone()].to_owned());
             }
             Node::Choice(choice) => {
-                choice.branches.iter().for_each(|branch| found.extend(words(text, &branch.nodes)));
+                choice
+                    .branches
+                    .iter()
+                    .for_each(|branch| found.extend(compiled_words(text, &branch.nodes)));
             }
             Node::Import(_) | Node::Comment(_) | Node::Gone(_) => {}
         }
@@ -173,7 +176,7 @@ fn words(text: &str, nodes: &[Node]) -> BTreeSet<String> {
     found
 }
 
-fn joined(module: &str, rest: &[String]) -> String {
+fn joined_path(module: &str, rest: &[String]) -> String {
     rest.iter().fold(module.to_owned(), |path, segment| format!("{path}::{segment}"))
 }
 

@@ -10,7 +10,7 @@ use crate::parse::words::{begins_word, continues_word, number_end, word_at};
 use crate::source::{LIMITS, SourceId, Span};
 
 /// Cuts up a file. The error is the first thing that cannot be understood.
-pub fn scan(text: &str, source: SourceId) -> Result<Scanned, Diagnostic> {
+pub fn scan_file(text: &str, source: SourceId) -> Result<Scanned, Diagnostic> {
     let mut scanner = Scanner {
         text,
         source,
@@ -33,7 +33,7 @@ pub fn scan(text: &str, source: SourceId) -> Result<Scanned, Diagnostic> {
     }
     let mut found = scanner.found;
     found.tail = scanner.lead..text.len();
-    found.nodes = super::import::early(scanner.nodes, &mut found.late);
+    found.nodes = super::import::without_late_imports(scanner.nodes, &mut found.late);
     Ok(found)
 }
 
@@ -241,7 +241,7 @@ impl Scanner<'_> {
         let start = self.at;
         let mut line = self.line();
         let is_open = |text: &str| {
-            let bare = import::bare(text);
+            let bare = import::without_comments(text);
             bare.matches('{').count() > bare.matches('}').count()
         };
         while is_open(&self.text[start..self.at]) && self.at < self.text.len() {
@@ -249,9 +249,9 @@ impl Scanner<'_> {
             line.range.end = next.range.end;
             line.words.end = next.words.end;
         }
-        let tree = import::parse(self.text, line.words.clone())
+        let tree = import::parse_import(self.text, line.words.clone())
             .map_err(|(message, place)| self.wrong(message, place))?;
-        self.found.imports.extend(import::paths(&tree));
+        self.found.imports.extend(import::import_paths(&tree));
         let import = Import { line, tree };
         match self.declared {
             false => self.nodes.push(Node::Import(import)),
@@ -343,7 +343,7 @@ impl Scanner<'_> {
 }
 
 /// Bytes of blanks and comments at the start of a text.
-pub fn trivia(text: &str) -> usize {
+pub fn trivia_length(text: &str) -> usize {
     let mut at = 0;
     loop {
         let rest = &text[at..];

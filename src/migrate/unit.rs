@@ -52,12 +52,15 @@ const STEPS: usize = 400;
 const STEPS_AT_LEAST: usize = 200_000;
 
 /// Reads a file. The error is the byte from which on it cannot be understood.
-pub fn read<'a>(text: &'a str, nodes: &'a [Node]) -> Result<Vec<Element<'a>>, (usize, bool)> {
-    let steps = STEPS_AT_LEAST + STEPS * count(nodes);
+pub fn read_elements<'a>(
+    text: &'a str,
+    nodes: &'a [Node],
+) -> Result<Vec<Element<'a>>, (usize, bool)> {
+    let steps = STEPS_AT_LEAST + STEPS * count_nodes(nodes);
     let reader = Reader { text, steps: Cell::new(steps) };
     let facts = Facts::default();
     let row = reader.row(nodes, &facts);
-    let place = |at: usize| row.get(at).or(row.last()).map_or(0, |node| start(node));
+    let place = |at: usize| row.get(at).or(row.last()).map_or(0, |node| node_start(node));
     let mut at = 0;
     match reader.list(&row, &mut at, Level::Declarations, &facts) {
         Ok(found) if at == row.len() => Ok(found),
@@ -67,15 +70,15 @@ pub fn read<'a>(text: &'a str, nodes: &'a [Node]) -> Result<Vec<Element<'a>>, (u
     }
 }
 
-fn count(nodes: &[Node]) -> usize {
-    let one = |node: &Node| match node {
-        Node::Choice(choice) => choice.branches.iter().map(|branch| count(&branch.nodes)).sum(),
+fn count_nodes(nodes: &[Node]) -> usize {
+    let of = |node: &Node| match node {
+        Node::Choice(one) => one.branches.iter().map(|branch| count_nodes(&branch.nodes)).sum(),
         _ => 1,
     };
-    nodes.iter().map(one).sum()
+    nodes.iter().map(of).sum()
 }
 
-fn start(node: &Node) -> usize {
+fn node_start(node: &Node) -> usize {
     match node {
         Node::Token(token) => token.range.start,
         Node::Import(import) => import.line.words.start,
@@ -90,7 +93,7 @@ struct Reader<'a> {
 }
 
 /// The ways a choice can go: the last one is `#else`, whether it was written or not.
-fn ways(choice: &Choice) -> Vec<(Option<Condition>, &[Node])> {
+fn choice_ways(choice: &Choice) -> Vec<(Option<Condition>, &[Node])> {
     let mut found: Vec<(Option<Condition>, &[Node])> = Vec::new();
     for branch in &choice.branches {
         found.push((branch.condition.clone(), &branch.nodes));
@@ -102,7 +105,7 @@ fn ways(choice: &Choice) -> Vec<(Option<Condition>, &[Node])> {
 }
 
 /// What holds in each branch: its own condition, and none before it.
-pub fn explicit(conditions: &[Option<Condition>]) -> Vec<Vec<Condition>> {
+pub fn explicit_conditions(conditions: &[Option<Condition>]) -> Vec<Vec<Condition>> {
     let mut before = Vec::new();
     let one = |condition: &Option<Condition>| {
         let here: Vec<Condition> = before.iter().chain(condition).cloned().collect();
@@ -131,7 +134,7 @@ impl<'a> Reader<'a> {
         let mut row = Row::new();
         for node in nodes {
             match node {
-                Node::Choice(choice) => match decided(choice, facts) {
+                Node::Choice(choice) => match decided_branch(choice, facts) {
                     Some(branch) => row.extend(self.row(branch, facts)),
                     None => row.push(node),
                 },
@@ -216,7 +219,7 @@ impl<'a> Reader<'a> {
         let conditions: Vec<_> =
             choice.branches.iter().map(|branch| branch.condition.clone()).collect();
         let mut branches = Vec::new();
-        for (branch, known) in choice.branches.iter().zip(explicit(&conditions)) {
+        for (branch, known) in choice.branches.iter().zip(explicit_conditions(&conditions)) {
             let facts = facts.with(&known);
             let row = self.row(&branch.nodes, &facts);
             let mut at = 0;
@@ -239,12 +242,12 @@ impl<'a> Reader<'a> {
         facts: &Facts,
     ) -> Read<(Chosen<'a>, usize)> {
         let Node::Choice(choice) = row[cut] else { return Err(Stop::Broken(cut)) };
-        let ways = ways(choice);
+        let ways = choice_ways(choice);
         let conditions: Vec<_> = ways.iter().map(|(condition, _)| condition.clone()).collect();
         let behind: HashMap<*const Node, usize> =
             (cut + 1..row.len()).map(|index| (std::ptr::from_ref(row[index]), index)).collect();
         let mut variants = Vec::new();
-        for ((_, nodes), known) in ways.iter().zip(explicit(&conditions)) {
+        for ((_, nodes), known) in ways.iter().zip(explicit_conditions(&conditions)) {
             self.step(row.len() - start)?;
             let facts = facts.with(&known);
             let mut variant = row[start..cut].to_vec();
@@ -334,7 +337,7 @@ impl<'a> Reader<'a> {
                     let row = self.row(rest, &facts);
                     matches!(self.goes_on(&row, 0, &facts), Ok(true) | Err(_))
                 };
-                let cut = ways(choice).iter().any(starts);
+                let cut = choice_ways(choice).iter().any(starts);
                 if cut { Err(Stop::Cut(at)) } else { Ok(false) }
             }
             Some(node) => Ok(self.is_word(node, "else")),
@@ -385,7 +388,7 @@ impl<'a> Reader<'a> {
 }
 
 /// The branch that is known to be there; `Some` of nothing where none is.
-fn decided<'a>(choice: &'a Choice, facts: &Facts) -> Option<&'a [Node]> {
+fn decided_branch<'a>(choice: &'a Choice, facts: &Facts) -> Option<&'a [Node]> {
     for branch in &choice.branches {
         match branch.condition.as_ref().map_or(Some(true), |condition| facts.holds(condition)) {
             Some(true) => return Some(&branch.nodes),

@@ -9,7 +9,7 @@ use super::tree::{Bytes, Kind, Node, Scanned, Token};
 type Wrong = (String, Bytes);
 
 /// New texts of tokens, by their first byte.
-pub fn replaced(
+pub fn replaced_tokens(
     text: &str,
     found: &Scanned,
     modules: &Modules,

@@ -3,19 +3,19 @@
 use std::collections::BTreeMap;
 
 use super::condition::{self, Condition};
-use super::import::statements;
+use super::import::import_statements;
 use super::level::Level;
 use super::names::Modules;
-use super::scan::trivia;
+use super::scan::trivia_length;
 use super::tree::{Bytes, Choice, Import, Line, Scanned};
-use super::unit::{self, Chosen, Element, Part, explicit};
+use super::unit::{self, Chosen, Element, Part, explicit_conditions};
 use super::uses;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::limits;
 use crate::source::{SourceId, Span};
 
 /// The text of a file in WESL. The error is why there is none.
-pub fn write(
+pub fn write_file(
     text: &str,
     source: SourceId,
     found: &Scanned,
@@ -25,15 +25,15 @@ pub fn write(
         Diagnostic::error(codes::NOT_MIGRATED, message.to_owned())
             .at(Span::new(source, place), "this file stays as it is")
     };
-    let elements = unit::read(text, &found.nodes).map_err(|(at, intricate)| {
+    let elements = unit::read_elements(text, &found.nodes).map_err(|(at, intricate)| {
         let message = match intricate {
             true => "conditions cut through declarations in too many ways",
             false => "what starts here cannot be understood",
         };
         wrong(message, at..(at + 1).min(text.len()))
     })?;
-    let replaced =
-        uses::replaced(text, found, modules).map_err(|(message, place)| wrong(&message, place))?;
+    let replaced = uses::replaced_tokens(text, found, modules)
+        .map_err(|(message, place)| wrong(&message, place))?;
     let mut writer = Writer {
         text,
         modules,
@@ -82,8 +82,8 @@ impl Writer<'_> {
         for element in elements {
             match element {
                 Element::Unit(parts) => {
-                    let before =
-                        (!around.is_empty()).then(|| format!("@if({}) ", condition::all(around)));
+                    let before = (!around.is_empty())
+                        .then(|| format!("@if({}) ", condition::joined_conditions(around)));
                     self.unit(level, parts, &before.unwrap_or_default());
                 }
                 Element::Import(import) => self.import(import, around),
@@ -173,7 +173,7 @@ impl Writer<'_> {
             return;
         }
         let rest = &self.text[end..];
-        let blank = trivia(rest);
+        let blank = trivia_length(rest);
         let lines = rest[..blank].rfind('\n').map_or(0, |newline| newline + 1);
         self.out.push_str(&rest[..lines]);
     }
@@ -209,9 +209,9 @@ impl Writer<'_> {
     fn statements(&mut self, import: &Import, around: &[Condition]) -> Vec<String> {
         let before = match around {
             [] => String::new(),
-            _ => format!("@if({}) ", condition::all(around)),
+            _ => format!("@if({}) ", condition::joined_conditions(around)),
         };
-        match statements(self.text, &import.tree, self.modules) {
+        match import_statements(self.text, &import.tree, self.modules) {
             Ok(found) => found.iter().map(|path| format!("{before}import {path};")).collect(),
             Err(message) => {
                 self.wrong.get_or_insert((message, import.line.words.clone()));
@@ -260,7 +260,7 @@ impl Writer<'_> {
         {
             self.lead(&branch.line.lead);
             let close = if index == 0 { "" } else { "} " };
-            let head = head(index, branch.condition.as_ref());
+            let head = condition_head(index, branch.condition.as_ref());
             self.out.push_str(&format!("{}{close}{head}{{", self.indent(&branch.line)));
             self.rest_of(&branch.line);
             self.list(level, elements, &[]);
@@ -283,14 +283,14 @@ impl Writer<'_> {
         let is_single = |elements: &Vec<Element<'_>>| matches!(elements[..], [Element::Unit(_)]);
         let alike = chosen.branches.iter().all(|(_, elements)| is_single(elements));
         for (index, ((_, elements), known)) in
-            chosen.branches.iter().zip(explicit(&conditions)).enumerate()
+            chosen.branches.iter().zip(explicit_conditions(&conditions)).enumerate()
         {
             if let Some(choice) = choice {
                 self.gone(&choice.branches[index].line);
             }
             match &elements[..] {
                 [Element::Unit(parts)] if alike && around.is_empty() => {
-                    self.unit(level, parts, &head(index, conditions[index].as_ref()));
+                    self.unit(level, parts, &condition_head(index, conditions[index].as_ref()));
                 }
                 _ => self.list(level, elements, &[around, &known].concat()),
             }
@@ -330,7 +330,7 @@ impl Writer<'_> {
                 self.out.push_str(&indent);
             }
             let text = text.trim_start();
-            let head = head(index, condition.as_ref());
+            let head = condition_head(index, condition.as_ref());
             if single {
                 let gap = if index == 0 { String::new() } else { format!("\n{indent}") };
                 self.out.push_str(&format!("{gap}{head}{text}"));
@@ -357,7 +357,7 @@ impl Writer<'_> {
 }
 
 /// `@if(...) `, `@elif(...) ` or `@else `.
-fn head(index: usize, condition: Option<&Condition>) -> String {
+fn condition_head(index: usize, condition: Option<&Condition>) -> String {
     match condition {
         Some(condition) if index == 0 => format!("@if({}) ", condition.text()),
         Some(condition) => format!("@elif({}) ", condition.text()),

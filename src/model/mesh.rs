@@ -5,14 +5,14 @@ use gltf::mesh::Mode;
 
 use super::Reader;
 use super::nodes::Part;
-use super::surface::surface;
+use super::surface::read_surface;
 use super::texture::Sheet;
 use crate::limits::MODEL_CORNERS;
 use crate::scene::sets::Object;
 use crate::scene::{Shape, Vertex, smooth_normals};
 
 /// The objects of a mesh in its place: one for each primitive of triangles.
-pub fn objects(
+pub fn mesh_objects(
     reader: &mut Reader<'_>,
     part: &Part,
     sheet: &Sheet,
@@ -26,32 +26,33 @@ pub fn objects(
         if primitive.morph_targets().next().is_some() {
             reader.notes.insert("morph targets are left out".to_owned());
         }
-        let Some(indices) = triangles(reader, &primitive, &place)? else { continue };
+        let Some(indices) = triangle_indices(reader, &primitive, &place)? else { continue };
         // Corners that no triangle has take memory too, once for each place.
         let count = primitive.get(&gltf::Semantic::Positions).map_or(0, |rows| rows.count());
         *corners += indices.len().max(count);
         if *corners > MODEL_CORNERS {
             return Err(format!("{place}: more than {MODEL_CORNERS} corners of triangles"));
         }
-        let vertices = vertices(reader, &primitive, &indices, &place)?;
+        let vertices = mesh_vertices(reader, &primitive, &indices, &place)?;
         let shape = Shape { vertices, indices };
         let shape = sheet.placed(shape, &primitive.material());
         let shape = shape.transformed(part.world_from_mesh);
-        let shape = if part.world_from_mesh.determinant() < 0.0 { turned(shape) } else { shape };
-        let (color, material) = surface(reader, &primitive.material());
+        let shape =
+            if part.world_from_mesh.determinant() < 0.0 { mirror_winding(shape) } else { shape };
+        let (color, material) = read_surface(reader, &primitive.material());
         objects.push(Object::made(shape, DMat4::IDENTITY, color, material));
     }
     Ok(objects)
 }
 
 /// Mirrored triangles wind the other way round.
-fn turned(mut shape: Shape) -> Shape {
+fn mirror_winding(mut shape: Shape) -> Shape {
     shape.indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(1, 2));
     shape
 }
 
 /// Indices of triangles, or `None` where the primitive has others.
-fn triangles(
+fn triangle_indices(
     reader: &mut Reader<'_>,
     primitive: &gltf::Primitive<'_>,
     place: &str,
@@ -91,7 +92,7 @@ fn triangles(
     }))
 }
 
-fn vertices(
+fn mesh_vertices(
     reader: &Reader<'_>,
     primitive: &gltf::Primitive<'_>,
     indices: &[u32],

@@ -53,41 +53,46 @@ struct Reader<'b> {
 ///
 /// # Errors
 /// In words, with the place in the document: a file that is none, or that is broken or too large.
-pub fn read(bytes: &[u8], view: View) -> Result<Model, String> {
+pub fn read_model(bytes: &[u8], view: View) -> Result<Model, String> {
     if bytes.len() as u64 > MODEL_BYTES {
         return Err(format!("{} bytes are more than {MODEL_BYTES}", bytes.len()));
     }
-    let (json, blob) = chunks(bytes)?;
+    let (json, blob) = document_and_bytes(bytes)?;
     // The crate that reads documents panics at some that are broken.
     let read = || -> Result<Model, String> {
-        let document = gltf::Gltf::from_slice(json).map_err(|error| told(&error))?.document;
-        scene(&mut Reader { document: &document, blob, notes: BTreeSet::new() }, view)
+        let document =
+            gltf::Gltf::from_slice(json).map_err(|error| document_error(&error))?.document;
+        model_scene(&mut Reader { document: &document, blob, notes: BTreeSet::new() }, view)
     };
     caught(read).unwrap_or_else(|reason| Err(format!("the document is broken: {reason}")))
 }
 
 /// The document of a binary file, and its bytes.
-fn chunks(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
+fn document_and_bytes(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
     const HEADER: usize = 12;
     if !bytes.starts_with(b"glTF") {
         return Err("the file is no binary glTF (`.glb`)".to_owned());
     }
-    let version = word(bytes, 4)?;
+    let version = word_at(bytes, 4)?;
     if version != 2 {
         return Err(format!("glTF of version {version} is not read, only of version 2"));
     }
-    let (json, after) = chunk(bytes, HEADER, b"JSON")?;
+    let (json, after) = chunk_bytes(bytes, HEADER, b"JSON")?;
     if json.len() > MODEL_JSON_BYTES {
         return Err(format!("its document has more bytes than {MODEL_JSON_BYTES}"));
     }
     let has_more = after + 8 <= bytes.len();
-    let blob = if has_more { chunk(bytes, after, b"BIN\0")?.0 } else { &[] };
+    let blob = if has_more { chunk_bytes(bytes, after, b"BIN\0")?.0 } else { &[] };
     Ok((json, blob))
 }
 
 /// The bytes of the chunk that begins at a place, and where the next one begins.
-fn chunk<'b>(bytes: &'b [u8], at: usize, kind: &[u8; 4]) -> Result<(&'b [u8], usize), String> {
-    let length = word(bytes, at)? as usize;
+fn chunk_bytes<'b>(
+    bytes: &'b [u8],
+    at: usize,
+    kind: &[u8; 4],
+) -> Result<(&'b [u8], usize), String> {
+    let length = word_at(bytes, at)? as usize;
     let end = (at + 8).checked_add(length).filter(|end| *end <= bytes.len());
     let end = end
         .ok_or_else(|| format!("the chunk at byte {at} has {length} bytes, more than the file"))?;
@@ -97,13 +102,13 @@ fn chunk<'b>(bytes: &'b [u8], at: usize, kind: &[u8; 4]) -> Result<(&'b [u8], us
     Ok((&bytes[at + 8..end], end.next_multiple_of(4)))
 }
 
-fn word(bytes: &[u8], at: usize) -> Result<u32, String> {
+fn word_at(bytes: &[u8], at: usize) -> Result<u32, String> {
     let four = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
     four.map(u32::from_le_bytes).ok_or_else(|| format!("the file ends at byte {}", bytes.len()))
 }
 
 /// What is wrong with a document, with the places that its reader names.
-fn told(error: &gltf::Error) -> String {
+fn document_error(error: &gltf::Error) -> String {
     const SHOWN: usize = 4;
     let gltf::Error::Validation(problems) = error else { return error.to_string() };
     let told = |(path, problem): &(gltf::json::Path, gltf::json::validation::Error)| {
@@ -113,21 +118,21 @@ fn told(error: &gltf::Error) -> String {
     shown.join("; ")
 }
 
-fn scene(reader: &mut Reader<'_>, view: View) -> Result<Model, String> {
-    let placed = nodes::walk(reader)?;
-    let sheet = texture::sheet(reader, &placed)?;
+fn model_scene(reader: &mut Reader<'_>, view: View) -> Result<Model, String> {
+    let placed = nodes::walk_scene(reader)?;
+    let sheet = texture::texture_sheet(reader, &placed)?;
     let mut objects = Vec::new();
     let mut corners = 0;
     for part in &placed.parts {
-        objects.extend(mesh::objects(reader, part, &sheet, &mut corners)?);
+        objects.extend(mesh::mesh_objects(reader, part, &sheet, &mut corners)?);
     }
     if objects.is_empty() {
         return Err("the model has no triangles".to_owned());
     }
-    let bounds = nodes::bounds(&objects);
-    let eye = eye(&placed, &bounds, view)?;
-    let lamps = nodes::lamps(&placed, &bounds, &eye);
-    let axes = axes(reader, &placed, &sheet, &lamps);
+    let bounds = nodes::bounding_ball(&objects);
+    let eye = model_eye(&placed, &bounds, view)?;
+    let lamps = nodes::model_lamps(&placed, &bounds, &eye);
+    let axes = model_axes(reader, &placed, &sheet, &lamps);
     let mut scene = Scene::of_model(objects, eye, lamps);
     scene.own_maps = sheet.maps.map(Arc::new);
     let notes = std::mem::take(&mut reader.notes);
@@ -135,7 +140,12 @@ fn scene(reader: &mut Reader<'_>, view: View) -> Result<Model, String> {
 }
 
 /// Microfacets as in glTF, as many lamps as there are, and textures where there are any.
-fn axes(reader: &Reader<'_>, placed: &nodes::Placed, sheet: &Sheet, lamps: &[Lamp]) -> Vec<String> {
+fn model_axes(
+    reader: &Reader<'_>,
+    placed: &nodes::Placed,
+    sheet: &Sheet,
+    lamps: &[Lamp],
+) -> Vec<String> {
     let most = [1, 4, 10].into_iter().find(|most| lamps.len() <= *most).unwrap_or(10);
     let shadow = match lamps.first().map(|lamp| lamp.kind) {
         Some(LampKind::Directional) => "shadow=pcf_3x3,shadow_light=directional",
@@ -156,7 +166,7 @@ fn axes(reader: &Reader<'_>, placed: &nodes::Placed, sheet: &Sheet, lamps: &[Lam
     chosen.split(',').map(str::to_owned).collect()
 }
 
-fn eye(placed: &nodes::Placed, bounds: &nodes::Ball, view: View) -> Result<Eye, String> {
+fn model_eye(placed: &nodes::Placed, bounds: &nodes::Ball, view: View) -> Result<Eye, String> {
     let (near, far) = (0.005 * bounds.radius, 40.0 * bounds.radius);
     let looking = |position: DVec3, target: DVec3, fov_y: f64| Eye {
         position,

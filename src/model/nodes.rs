@@ -37,7 +37,7 @@ pub struct Ball {
 }
 
 /// Walks the scene that the document shows.
-pub fn walk(reader: &mut Reader<'_>) -> Result<Placed, String> {
+pub fn walk_scene(reader: &mut Reader<'_>) -> Result<Placed, String> {
     let document = reader.document;
     let scene = document.default_scene().or_else(|| document.scenes().next());
     let scene = scene.ok_or("the model has no scene")?;
@@ -59,13 +59,13 @@ pub fn walk(reader: &mut Reader<'_>) -> Result<Placed, String> {
         if !world.is_finite() {
             return Err(format!("{place}: its place is not finite"));
         }
-        take(reader, &node, world, &mut placed);
+        take_node(reader, &node, world, &mut placed);
         open.extend(node.children().map(|child| (child, world, depth + 1)));
     }
     Ok(placed)
 }
 
-fn take(reader: &mut Reader<'_>, node: &gltf::Node<'_>, world: DMat4, placed: &mut Placed) {
+fn take_node(reader: &mut Reader<'_>, node: &gltf::Node<'_>, world: DMat4, placed: &mut Placed) {
     if node.skin().is_some() {
         reader.notes.insert("skins are left out: the model is drawn in its rest pose".to_owned());
     }
@@ -96,7 +96,7 @@ fn take(reader: &mut Reader<'_>, node: &gltf::Node<'_>, world: DMat4, placed: &m
 }
 
 /// A ball around the corners of all objects.
-pub fn bounds(objects: &[Object]) -> Ball {
+pub fn bounding_ball(objects: &[Object]) -> Ball {
     let points = || {
         objects.iter().flat_map(|object| object.shape.vertices.iter().map(|vertex| vertex.position))
     };
@@ -108,7 +108,7 @@ pub fn bounds(objects: &[Object]) -> Ball {
 }
 
 /// A lamp above the viewer's left shoulder, whose cone has all of the model.
-fn key(bounds: &Ball, eye: &Eye) -> Lamp {
+fn key_lamp(bounds: &Ball, eye: &Eye) -> Lamp {
     let towards = (eye.position - bounds.middle).normalize_or(DVec3::Z);
     let left = DVec3::Y.cross(towards).normalize_or(DVec3::X) * -1.0;
     let direction = (1.2 * DVec3::Y + towards + 0.9 * left).normalize_or(DVec3::Y);
@@ -123,10 +123,10 @@ fn key(bounds: &Ball, eye: &Eye) -> Lamp {
 }
 
 /// The model's lamps, at most ten; without any, one of our own.
-pub fn lamps(placed: &Placed, bounds: &Ball, eye: &Eye) -> Vec<Lamp> {
+pub fn model_lamps(placed: &Placed, bounds: &Ball, eye: &Eye) -> Vec<Lamp> {
     const MOST: usize = 10;
     if placed.lights.is_empty() {
-        return vec![key(bounds, eye)];
+        return vec![key_lamp(bounds, eye)];
     }
     let lamp = |(color, kind, world, half_angle): &(DVec3, LampKind, DMat4, f64)| {
         let position = world.transform_point3(DVec3::ZERO);

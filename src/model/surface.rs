@@ -6,7 +6,7 @@ use super::Reader;
 use crate::scene::sets::Material;
 
 /// The colour of a surface, and what it does with light.
-pub fn surface(reader: &mut Reader<'_>, material: &gltf::Material<'_>) -> (DVec3, Material) {
+pub fn read_surface(reader: &mut Reader<'_>, material: &gltf::Material<'_>) -> (DVec3, Material) {
     let own = material.pbr_metallic_roughness();
     let [red, green, blue, _] = own.base_color_factor().map(f64::from);
     let color = DVec3::new(red, green, blue);

@@ -28,14 +28,14 @@ pub struct Sheet {
 }
 
 /// Puts the textures of all materials that are drawn on a sheet.
-pub fn sheet(reader: &mut Reader<'_>, placed: &Placed) -> Result<Sheet, String> {
+pub fn texture_sheet(reader: &mut Reader<'_>, placed: &Placed) -> Result<Sheet, String> {
     let document = reader.document;
     let mut cells = BTreeMap::new();
     for part in &placed.parts {
         let mesh = document.meshes().nth(part.mesh).ok_or("a node has a mesh that is not there")?;
         for primitive in mesh.primitives() {
             let count = cells.len();
-            cells.entry(images(&primitive.material())).or_insert(count);
+            cells.entry(material_images(&primitive.material())).or_insert(count);
         }
     }
     if cells.keys().all(|images| *images == (None, None)) {
@@ -44,30 +44,30 @@ pub fn sheet(reader: &mut Reader<'_>, placed: &Placed) -> Result<Sheet, String> 
     if cells.len() > MODEL_TEXTURES {
         return Err(format!("materials: more than {MODEL_TEXTURES} sets of textures"));
     }
-    let across = across(cells.len());
+    let across = cells_across(cells.len());
     let side = (SIDE / across).min(1024);
-    let mut base = blank(across * side, DVec4::ONE);
-    let mut normal = blank(across * side, DVec4::new(0.5, 0.5, 1.0, 1.0));
+    let mut base = blank_map(across * side, DVec4::ONE);
+    let mut normal = blank_map(across * side, DVec4::new(0.5, 0.5, 1.0, 1.0));
     for ((color, bumps), cell) in &cells {
         let at = [cell % across * side, cell / across * side];
         if let Some(image) = color {
-            place(&mut base, &decoded(reader, *image, true)?, at, side);
+            place_image(&mut base, &decode_image(reader, *image, true)?, at, side);
         }
         if let Some(image) = bumps {
-            place(&mut normal, &decoded(reader, *image, false)?, at, side);
+            place_image(&mut normal, &decode_image(reader, *image, false)?, at, side);
         }
     }
     let has_colors = cells.keys().any(|(color, _)| color.is_some());
     let has_normals = cells.keys().any(|(_, bumps)| bumps.is_some());
-    let light = blank(1, DVec4::ONE);
+    let light = blank_map(1, DVec4::ONE);
     Ok(Sheet { maps: Some(Maps { base, normal, light }), has_colors, has_normals, cells })
 }
 
 impl Sheet {
     /// A shape whose coordinates are those of its material's cell.
     pub fn placed(&self, shape: Shape, material: &gltf::Material<'_>) -> Shape {
-        let across = across(self.cells.len());
-        let Some(cell) = self.cells.get(&images(material)).filter(|_| across > 1) else {
+        let across = cells_across(self.cells.len());
+        let Some(cell) = self.cells.get(&material_images(material)).filter(|_| across > 1) else {
             return shape;
         };
         let corner = DVec2::new((cell % across) as f64, (cell / across) as f64);
@@ -79,22 +79,22 @@ impl Sheet {
 }
 
 /// Cells in a row of the sheet.
-fn across(cells: usize) -> usize {
+fn cells_across(cells: usize) -> usize {
     (1..).find(|side| side * side >= cells).unwrap_or(1)
 }
 
-fn images(material: &gltf::Material<'_>) -> Images {
+fn material_images(material: &gltf::Material<'_>) -> Images {
     let own = material.pbr_metallic_roughness();
     let color = own.base_color_texture().map(|info| info.texture().source().index());
     (color, material.normal_texture().map(|info| info.texture().source().index()))
 }
 
-fn blank(side: usize, texel: DVec4) -> Map {
+fn blank_map(side: usize, texel: DVec4) -> Map {
     Map { width: side, height: side, texels: vec![texel; side * side] }
 }
 
 /// Writes an image into a cell, the nearest pixel for each texel.
-fn place(map: &mut Map, image: &Map, [left, top]: [usize; 2], side: usize) {
+fn place_image(map: &mut Map, image: &Map, [left, top]: [usize; 2], side: usize) {
     for (y, x) in (0..side).flat_map(|y| (0..side).map(move |x| (y, x))) {
         let (column, row) = (x * image.width / side, y * image.height / side);
         map.texels[(top + y) * map.width + left + x] = image.texels[row * image.width + column];
@@ -102,7 +102,7 @@ fn place(map: &mut Map, image: &Map, [left, top]: [usize; 2], side: usize) {
 }
 
 /// An image of the document, linear.
-fn decoded(reader: &Reader<'_>, index: usize, is_color: bool) -> Result<Map, String> {
+fn decode_image(reader: &Reader<'_>, index: usize, is_color: bool) -> Result<Map, String> {
     let place = format!("images[{index}]");
     let image = reader.document.images().nth(index).ok_or(format!("{place}: is not there"))?;
     let bytes = match image.source() {

@@ -29,28 +29,28 @@ pub fn write_file(
     replace: Replace,
 ) -> Result<(), Error> {
     if is_descriptor(path) {
-        return append(path, bytes);
+        return append_bytes(path, bytes);
     }
-    let Some(found) = there(path)? else { return put(path, bytes, None) };
+    let Some(found) = metadata_at(path)? else { return put_file(path, bytes, None) };
     if is_stream(found.file_type()) {
-        return append(path, bytes);
+        return append_bytes(path, bytes);
     }
     if !found.is_file() {
-        return Err(Foreign::never(path, what(found.file_type())).into());
+        return Err(Foreign::never(path, kind_of_entry(found.file_type())).into());
     }
     let real = path.canonicalize().map_err(|error| Error::io(path, &error))?;
     if has_bytes(&real, found.len(), bytes) {
         return Ok(());
     }
-    let head = head(&real).map_err(|error| Error::io(path, &error))?;
+    let head = read_head(&real).map_err(|error| Error::io(path, &error))?;
     if replace == Replace::Ours && !head.is_empty() && !is_ours(&head) {
         return Err(Foreign::file(path, "is a file that Lamplight did not write").into());
     }
-    put(&real, bytes, Some(found.permissions()))
+    put_file(&real, bytes, Some(found.permissions()))
 }
 
 /// What is at a path, links followed; `None` where nothing is.
-fn there(path: &Path) -> Result<Option<fs::Metadata>, Error> {
+fn metadata_at(path: &Path) -> Result<Option<fs::Metadata>, Error> {
     match fs::metadata(path) {
         Ok(found) => Ok(Some(found)),
         Err(error) if error.kind() == ErrorKind::NotFound => match fs::symlink_metadata(path) {
@@ -64,8 +64,8 @@ fn there(path: &Path) -> Result<Option<fs::Metadata>, Error> {
 }
 
 /// Writes a file beside the path and renames it.
-fn put(path: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> Result<(), Error> {
-    let folder = parent(path);
+fn put_file(path: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> Result<(), Error> {
+    let folder = parent_folder(path);
     make_folder(&folder)?;
     let scratch = Scratch::new(&folder)?;
     let written = scratch.write("file", bytes)?;
@@ -77,13 +77,13 @@ fn put(path: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> Resul
     Ok(())
 }
 
-fn parent(path: &Path) -> PathBuf {
+fn parent_folder(path: &Path) -> PathBuf {
     let parent = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     parent.unwrap_or(Path::new(".")).to_owned()
 }
 
 /// Writes to a stream, or to the end of a file that is open as one of our descriptors.
-fn append(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+fn append_bytes(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     let all = |stream: &mut dyn Write| stream.write_all(bytes).and_then(|()| stream.flush());
     let written = match path.to_str() {
         // A socket cannot be opened by its path.
@@ -106,7 +106,7 @@ fn is_descriptor(path: &Path) -> bool {
             return true;
         }
         let Ok(next) = fs::read_link(&at) else { return false };
-        at = parent(&at).join(next);
+        at = parent_folder(&at).join(next);
     }
     false
 }
@@ -123,7 +123,7 @@ pub(super) fn is_stream(_: FileType) -> bool {
 }
 
 /// Describes something that is not a file.
-pub(super) fn what(kind: FileType) -> &'static str {
+pub(super) fn kind_of_entry(kind: FileType) -> &'static str {
     if kind.is_dir() {
         "is a folder"
     } else if kind.is_symlink() {
@@ -140,7 +140,7 @@ pub(super) fn has_bytes(path: &Path, length: u64, bytes: &[u8]) -> bool {
     length == bytes.len() as u64 && fs::read(path).is_ok_and(|found| found == bytes)
 }
 
-fn head(path: &Path) -> io::Result<Vec<u8>> {
+fn read_head(path: &Path) -> io::Result<Vec<u8>> {
     let mut head = Vec::new();
     File::open(path)?.take(HEAD_BYTES as u64).read_to_end(&mut head)?;
     Ok(head)

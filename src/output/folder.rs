@@ -5,9 +5,9 @@ use std::fs::{self, File};
 use std::io::ErrorKind;
 use std::path::{Component, Path, PathBuf};
 
-use super::file::{has_bytes, what};
+use super::file::{has_bytes, kind_of_entry};
 use super::scratch::sync_folder;
-use super::{Error, Foreign, Replace, Scratch, make_folder, turn};
+use super::{Error, Foreign, Replace, Scratch, make_folder, wait_for_turn};
 
 /// The record's name, and how it begins.
 const RECORD: &str = ".lamplight-outputs";
@@ -55,7 +55,7 @@ impl Folder {
     /// Makes the folder, or opens the one that is there.
     pub fn open(path: &Path, replace: Replace) -> Result<Self, Error> {
         make_folder(path)?;
-        let turn = turn(path, &|| ());
+        let turn = wait_for_turn(path, &|| ());
         Ok(Self {
             path: path.to_owned(),
             replace,
@@ -104,7 +104,7 @@ impl Folder {
             };
             let is_last = index + 1 == parts.len();
             if !is_last && !found.is_dir() || is_last && !found.is_file() {
-                return Err(Foreign::never(&path, what(found.file_type())).into());
+                return Err(Foreign::never(&path, kind_of_entry(found.file_type())).into());
             }
             if is_last && !self.may_replace(name, &path, found.len(), bytes)? {
                 let found = "is a file that Lamplight did not write, or that was changed since";
@@ -131,14 +131,14 @@ impl Folder {
             return Ok(false);
         }
         let found = fs::read(path).map_err(|error| Error::io(path, &error))?;
-        Ok(self.record.contains(&line(name, &found)))
+        Ok(self.record.contains(&record_line(name, &found)))
     }
 
     /// Records files that are about to be written.
     fn note(&mut self, files: &[(&str, &[u8])]) -> Result<(), Error> {
         let before = self.record.len();
         for (name, bytes) in files {
-            let line = line(name, bytes);
+            let line = record_line(name, bytes);
             self.record.insert(line.clone());
             self.written.insert(line);
         }
@@ -172,7 +172,7 @@ impl Folder {
     }
 }
 
-fn line(name: &str, bytes: &[u8]) -> (String, String) {
+fn record_line(name: &str, bytes: &[u8]) -> (String, String) {
     (blake3::hash(bytes).to_hex().to_string(), name.to_owned())
 }
 
@@ -184,7 +184,7 @@ fn read_record(folder: &Path, replace: Replace) -> Result<BTreeSet<(String, Stri
         Err(error) => return Err(Error::io(&path, &error)),
     };
     if !found.is_file() {
-        return Err(Foreign::never(&path, what(found.file_type())).into());
+        return Err(Foreign::never(&path, kind_of_entry(found.file_type())).into());
     }
     let text = match found.len() {
         0..=MOST_RECORD_BYTES => fs::read(&path).map_err(|error| Error::io(&path, &error))?,

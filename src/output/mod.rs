@@ -38,7 +38,7 @@ pub enum Replace {
 ///
 /// A turn ends at the latest with its process. Where folders cannot be locked, runs do not wait for
 /// each other.
-pub fn turn(folder: &Path, waiting: &dyn Fn()) -> Option<File> {
+pub fn wait_for_turn(folder: &Path, waiting: &dyn Fn()) -> Option<File> {
     let folder = File::open(folder).ok()?;
     match folder.try_lock() {
         Ok(()) => Some(folder),
@@ -56,7 +56,7 @@ pub fn make_folder(path: &Path) -> Result<(), Error> {
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => Ok(()),
         Ok(_) => Err(Foreign::never(path, "is not a folder").into()),
-        Err(_) => fs::create_dir_all(path).map_err(|error| match obstacle(path) {
+        Err(_) => fs::create_dir_all(path).map_err(|error| match file_in_the_way(path) {
             Some(file) => Foreign::never(file, "is not a folder").into(),
             None => Error::io(path, &error),
         }),
@@ -64,6 +64,6 @@ pub fn make_folder(path: &Path) -> Result<(), Error> {
 }
 
 /// The file that is where a folder would have to be.
-fn obstacle(path: &Path) -> Option<&Path> {
+fn file_in_the_way(path: &Path) -> Option<&Path> {
     path.ancestors().find(|above| fs::symlink_metadata(above).is_ok_and(|found| !found.is_dir()))
 }

@@ -41,15 +41,15 @@ impl Scratch {
 
     /// As [`Self::new`]; `look` sees the folder of each killed run before it is removed.
     pub fn after(parent: &Path, look: &mut dyn FnMut(&Path)) -> Result<Self, Error> {
-        for (folder, _mark) in left(parent) {
+        for (folder, _mark) in left_folders(parent) {
             look(&folder);
-            remove(&folder);
+            remove_scratch(&folder);
         }
         let mut last = None;
         for _ in 0..TRIES {
             let random = RandomState::new().build_hasher().finish();
             let folder = parent.join(format!("{PREFIX}{random:0DIGITS$x}"));
-            match make(&folder) {
+            match make_mark(&folder) {
                 Ok(mark) => return Ok(Self { folder, _mark: mark, next: AtomicU32::new(0) }),
                 // The folder is somebody else's, or another run removed it before its mark was
                 // locked.
@@ -117,11 +117,11 @@ impl Scratch {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        remove(&self.folder);
+        remove_scratch(&self.folder);
     }
 }
 
-fn make(folder: &Path) -> std::io::Result<File> {
+fn make_mark(folder: &Path) -> std::io::Result<File> {
     fs::create_dir(folder)?;
     let path = folder.join(MARK_FILE);
     let mut mark = OpenOptions::new().read(true).write(true).create_new(true).open(&path)?;
@@ -134,7 +134,7 @@ fn make(folder: &Path) -> std::io::Result<File> {
 }
 
 /// Folders of runs that were killed, each with the lock on its mark.
-fn left(parent: &Path) -> Vec<(PathBuf, File)> {
+fn left_folders(parent: &Path) -> Vec<(PathBuf, File)> {
     let named = |name: &str| {
         name.strip_prefix(PREFIX).is_some_and(|digits| {
             digits.len() == DIGITS
@@ -146,7 +146,7 @@ fn left(parent: &Path) -> Vec<(PathBuf, File)> {
         let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
         if is_folder && entry.file_name().to_str().is_some_and(named) {
             let folder = entry.path();
-            match dead(&folder.join(MARK_FILE)) {
+            match dead_mark(&folder.join(MARK_FILE)) {
                 Some(mark) => found.push((folder, mark)),
                 // A run was killed before it wrote its mark. The folder is removed only if it is
                 // empty.
@@ -158,7 +158,7 @@ fn left(parent: &Path) -> Vec<(PathBuf, File)> {
 }
 
 /// The mark of a folder that no run holds.
-fn dead(path: &Path) -> Option<File> {
+fn dead_mark(path: &Path) -> Option<File> {
     if !fs::symlink_metadata(path).ok()?.is_file() {
         return None;
     }
@@ -171,7 +171,7 @@ fn dead(path: &Path) -> Option<File> {
 
 /// Removes a scratch folder, its mark last. Anything that is not a file stays, and so does the
 /// folder then.
-fn remove(folder: &Path) {
+fn remove_scratch(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
         if is_file && entry.file_name() != MARK_FILE {

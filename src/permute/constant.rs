@@ -20,12 +20,12 @@ pub fn parse(text: &str) -> Result<String, String> {
     if digits.len() > LONGEST || !digits.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
         return Err(wrong());
     }
-    let fits = integer(text).or_else(|| float(text)).ok_or_else(wrong)?;
+    let fits = integer_fits(text).or_else(|| float_fits(text)).ok_or_else(wrong)?;
     if fits { Ok(text.to_owned()) } else { Err(format!("`{text}` does not fit its type")) }
 }
 
 /// Whether an integer fits the type that its suffix names; `None` if it is none.
-fn integer(text: &str) -> Option<bool> {
+fn integer_fits(text: &str) -> Option<bool> {
     let (number, range) = match text.as_bytes().last()? {
         b'u' => (text.strip_suffix('u')?, 0..=i128::from(u32::MAX)),
         b'i' => (text.strip_suffix('i')?, i128::from(i32::MIN)..=i128::from(i32::MAX)),
@@ -45,7 +45,7 @@ fn integer(text: &str) -> Option<bool> {
 }
 
 /// Whether a number with a point or an exponent fits its type; `None` if it is none.
-fn float(text: &str) -> Option<bool> {
+fn float_fits(text: &str) -> Option<bool> {
     let (number, most) = match text.strip_suffix('f') {
         Some(number) => (number, f64::from(f32::MAX)),
         None => (text, f64::MAX),

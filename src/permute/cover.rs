@@ -31,15 +31,15 @@ pub struct Cover {
 /// The search is greedy and deterministic. It pins the first uncovered pair. Then each other axis
 /// takes the value that covers the most uncovered pairs and still leads to a valid point.
 pub fn pairwise(space: &Space) -> Cover {
-    let mut left = pairs(space);
+    let mut left = allowed_pairs(space);
     let mut cover = Cover { points: Vec::new(), infeasible: Vec::new() };
     if left.is_empty() {
-        cover.points = pairless(space);
+        cover.points = cover_without_pairs(space);
     }
     while let Some(pair) = left.first().copied() {
-        match covering(space, pair, &left) {
+        match covering_point(space, pair, &left) {
             Some(point) => {
-                left.retain(|pair| !has(&point, *pair));
+                left.retain(|pair| !has_pair(&point, *pair));
                 cover.points.push(point);
             }
             None => {
@@ -52,18 +52,18 @@ pub fn pairwise(space: &Space) -> Cover {
 }
 
 /// The cover of a space with fewer than two axes: each valid value of its axis, or its only point.
-fn pairless(space: &Space) -> Vec<Assignment> {
+fn cover_without_pairs(space: &Space) -> Vec<Assignment> {
     match space.axes() {
         [axis] => axis
             .domain()
             .iter()
-            .filter_map(|ordinal| space.pick_valid(&[(0, ordinal)], |_, open| first(open)))
+            .filter_map(|ordinal| space.pick_valid(&[(0, ordinal)], |_, open| first_value(open)))
             .collect(),
-        _ => space.pick_valid(&[], |_, open| first(open)).into_iter().collect(),
+        _ => space.pick_valid(&[], |_, open| first_value(open)).into_iter().collect(),
     }
 }
 
-fn pairs(space: &Space) -> BTreeSet<Pair> {
+fn allowed_pairs(space: &Space) -> BTreeSet<Pair> {
     let values = space.axes().iter().enumerate().flat_map(|(index, axis)| {
         axis.domain().iter().map(move |ordinal| (index, ordinal)).collect::<Vec<_>>()
     });
@@ -77,12 +77,15 @@ fn pairs(space: &Space) -> BTreeSet<Pair> {
     values.iter().flat_map(|first| second(*first)).collect()
 }
 
-fn covering(space: &Space, pair: Pair, left: &BTreeSet<Pair>) -> Option<Assignment> {
+fn covering_point(space: &Space, pair: Pair, left: &BTreeSet<Pair>) -> Option<Assignment> {
     let pins = [pair.first, pair.second];
     let mut chosen = pins.to_vec();
     space.pick_valid(&pins, |axis, open| {
         let gain = |ordinal: usize| {
-            chosen.iter().filter(|other| left.contains(&ordered(**other, (axis, ordinal)))).count()
+            chosen
+                .iter()
+                .filter(|other| left.contains(&ordered_pair(**other, (axis, ordinal))))
+                .count()
         };
         let best = open
             .iter()
@@ -95,14 +98,14 @@ fn covering(space: &Space, pair: Pair, left: &BTreeSet<Pair>) -> Option<Assignme
     })
 }
 
-fn has(point: &Assignment, pair: Pair) -> bool {
+fn has_pair(point: &Assignment, pair: Pair) -> bool {
     [pair.first, pair.second].iter().all(|(axis, ordinal)| point.ordinal(*axis) == *ordinal)
 }
 
-fn ordered(one: (usize, usize), other: (usize, usize)) -> Pair {
+fn ordered_pair(one: (usize, usize), other: (usize, usize)) -> Pair {
     Pair { first: one.min(other), second: one.max(other) }
 }
 
-fn first(open: ValueSet) -> usize {
+fn first_value(open: ValueSet) -> usize {
     open.iter().next().unwrap_or(0)
 }

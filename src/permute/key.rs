@@ -77,9 +77,9 @@ pub fn parse_over(
     let mut seen: Vec<Option<Span>> = vec![None; space.axes().len()];
     let mut problems = Vec::new();
     for part in key::parts(&key.text) {
-        match choice(space, key, part) {
+        match named_choice(space, key, part) {
             Ok((axis, ordinal, span)) => {
-                problems.extend(seen[axis].map(|first| twice(space, axis, span, first)));
+                problems.extend(seen[axis].map(|first| named_twice(space, axis, span, first)));
                 seen[axis] = Some(span);
                 point.0[axis] = ordinal as u8;
             }
@@ -89,7 +89,11 @@ pub fn parse_over(
     if problems.is_empty() { Ok(point) } else { Err(problems) }
 }
 
-fn choice(space: &Space, key: &Quoted, part: Part<'_>) -> Result<(usize, usize, Span), Diagnostic> {
+fn named_choice(
+    space: &Space,
+    key: &Quoted,
+    part: Part<'_>,
+) -> Result<(usize, usize, Span), Diagnostic> {
     let place = |word: Word<'_>| key.span(word.start..word.start + word.text.len());
     let last = part.value.unwrap_or(part.axis);
     let span = key.span(part.axis.start..last.start + last.text.len());
@@ -107,7 +111,7 @@ fn choice(space: &Space, key: &Quoted, part: Part<'_>) -> Result<(usize, usize, 
         Some(value) if !value.text.is_empty() => {
             find_value(found, &Setting::parse(value.text), place(value))?
         }
-        None | Some(_) => return Err(valueless(found, span)),
+        None | Some(_) => return Err(valueless_part(found, span)),
     };
     Ok((axis, ordinal, span))
 }
@@ -115,7 +119,7 @@ fn choice(space: &Space, key: &Quoted, part: Part<'_>) -> Result<(usize, usize, 
 /// The index of an axis that permutations differ in.
 pub(super) fn find_axis(axes: &[Axis], name: &str, span: Span) -> Result<usize, Diagnostic> {
     match axes.iter().position(|axis| axis.name == name) {
-        Some(index) if axes[index].mode == Mode::Dynamic => Err(dynamic(&axes[index], span)),
+        Some(index) if axes[index].mode == Mode::Dynamic => Err(dynamic_axis(&axes[index], span)),
         Some(index) => Ok(index),
         None => {
             let unknown =
@@ -147,7 +151,7 @@ pub(super) fn find_value(axis: &Axis, value: &Setting, span: Span) -> Result<usi
     })
 }
 
-fn dynamic(axis: &Axis, span: Span) -> Diagnostic {
+fn dynamic_axis(axis: &Axis, span: Span) -> Diagnostic {
     Diagnostic::error(
         codes::DYNAMIC_AXIS,
         format!("axis `{}` is dynamic: its value is chosen while running", axis.name),
@@ -156,13 +160,13 @@ fn dynamic(axis: &Axis, span: Span) -> Diagnostic {
     .at(axis.span, "declared here")
 }
 
-fn valueless(axis: &Axis, span: Span) -> Diagnostic {
+fn valueless_part(axis: &Axis, span: Span) -> Diagnostic {
     let message = format!("{} axis `{}` needs a value", axis.kind.name(), axis.name);
     let note = format!("write `{}=` and one of: {}", axis.name, axis.value_names().join(", "));
     Diagnostic::error(codes::KEY_SYNTAX, message).at(span, "no value here").note(note)
 }
 
-fn twice(space: &Space, axis: usize, span: Span, first: Span) -> Diagnostic {
+fn named_twice(space: &Space, axis: usize, span: Span, first: Span) -> Diagnostic {
     Diagnostic::error(codes::KEY_SYNTAX, format!("axis `{}` is set twice", space.axes()[axis].name))
         .at(span, "set again here")
         .at(first, "first set here")

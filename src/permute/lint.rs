@@ -30,7 +30,8 @@ pub fn lint(space: &Space, what: &str, place: Span) -> Vec<Diagnostic> {
             .flat_map(|(axis, valid)| never_valid(axis, valid)),
     );
     let most = SPACE_STEPS as usize / space.steps_of_meeting().max(1);
-    warnings.extend(space.lists().only.iter().take(most).filter_map(|slice| empty(space, slice)));
+    warnings
+        .extend(space.lists().only.iter().take(most).filter_map(|slice| empty_slice(space, slice)));
     warnings.extend(nothing_wanted(space, what, place));
     warnings
 }
@@ -48,10 +49,14 @@ pub fn nothing_wanted(space: &Space, what: &str, place: Span) -> Option<Diagnost
 fn trivial_constraints(space: &Space) -> Vec<Diagnostic> {
     let mut steps = Steps::new(SPACE_STEPS);
     let constraints = space.constraints().iter();
-    constraints.filter_map(|constraint| trivial(space, constraint, &mut steps)).collect()
+    constraints.filter_map(|constraint| trivial_constraint(space, constraint, &mut steps)).collect()
 }
 
-fn trivial(space: &Space, constraint: &Constraint, steps: &mut Steps) -> Option<Diagnostic> {
+fn trivial_constraint(
+    space: &Space,
+    constraint: &Constraint,
+    steps: &mut Steps,
+) -> Option<Diagnostic> {
     let satisfying = space.satisfying(&constraint.formula, steps).ok()?;
     let (code, word) = match satisfying {
         0 => (codes::CONSTRAINT_ALWAYS_FALSE, "false"),
@@ -88,7 +93,7 @@ fn never_valid(axis: &Axis, valid: ValueSet) -> Option<Diagnostic> {
     )
 }
 
-fn empty(space: &Space, slice: &Slice) -> Option<Diagnostic> {
+fn empty_slice(space: &Space, slice: &Slice) -> Option<Diagnostic> {
     let warning = || {
         let message = "this entry of `only` selects no valid permutation";
         let warning =

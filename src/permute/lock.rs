@@ -75,7 +75,7 @@ pub fn parse(sources: &SourceSet, id: SourceId) -> Result<Lock, Diagnostics> {
         if text.is_empty() || text.starts_with('#') {
             continue;
         }
-        match digit(&lock, text) {
+        match read_digit(&lock, text) {
             Ok(digit) => lock.lines.push(digit),
             Err(message) => problems
                 .push(Diagnostic::error(codes::LOCK_SYNTAX, message).at(span, "in this line")),
@@ -84,7 +84,7 @@ pub fn parse(sources: &SourceSet, id: SourceId) -> Result<Lock, Diagnostics> {
     if problems.is_empty() { Ok(lock) } else { Err(problems) }
 }
 
-fn digit(before: &Lock, line: &str) -> Result<Digit, String> {
+fn read_digit(before: &Lock, line: &str) -> Result<Digit, String> {
     let mut words = line.split_whitespace();
     let (Some(program), Some(axis)) = (words.next(), words.next()) else {
         return Err("a line is a program, an axis and its values".to_owned());

@@ -33,7 +33,7 @@ impl Quoted {
 
     /// A TOML string whose literal, quotes included, covers `span` and means `text`.
     pub fn toml(sources: &SourceSet, span: Span, text: &str) -> Self {
-        let places = places(sources.text(span), text)
+        let places = byte_places(sources.text(span), text)
             .into_iter()
             .map(|place| span.start + place as u32)
             .collect();
@@ -50,13 +50,13 @@ impl Quoted {
 /// The byte of `literal` at which each byte of `text`, and its end, is written. Both are walked
 /// side by side: where `literal` does not have the next character itself, it has an escape that
 /// stands for it.
-fn places(literal: &str, text: &str) -> Vec<usize> {
-    let (start, escapes) = opening(literal);
+fn byte_places(literal: &str, text: &str) -> Vec<usize> {
+    let (start, escapes) = opening_quotes(literal);
     let mut places = Vec::with_capacity(text.len() + 1);
     let mut at = start;
     for character in text.chars() {
-        at += if escapes { continued(&literal[at..]) } else { 0 };
-        let next = at + written(&literal[at..], character, escapes);
+        at += if escapes { continuation_length(&literal[at..]) } else { 0 };
+        let next = at + written_length(&literal[at..], character, escapes);
         places.extend(std::iter::repeat_n(at, character.len_utf8()));
         at = (at..=next).rev().find(|byte| literal.is_char_boundary(*byte)).unwrap_or(at);
     }
@@ -66,7 +66,7 @@ fn places(literal: &str, text: &str) -> Vec<usize> {
 
 /// The length of the opening quotes, with the newline that TOML drops, and whether the string
 /// has escapes. A bare key has neither.
-fn opening(literal: &str) -> (usize, bool) {
+fn opening_quotes(literal: &str) -> (usize, bool) {
     let quote = ["\"\"\"", "'''", "\"", "'"]
         .into_iter()
         .find(|quote| literal.starts_with(quote))
@@ -82,14 +82,14 @@ fn opening(literal: &str) -> (usize, bool) {
 
 /// The length of line continuations: a backslash at the end of a line swallows the white space
 /// up to the next character.
-fn continued(rest: &str) -> usize {
+fn continuation_length(rest: &str) -> usize {
     let Some(after) = rest.strip_prefix('\\') else { return 0 };
     let swallowed = after.len() - after.trim_start_matches([' ', '\t', '\r', '\n']).len();
-    if swallowed == 0 { 0 } else { 1 + swallowed + continued(&after[swallowed..]) }
+    if swallowed == 0 { 0 } else { 1 + swallowed + continuation_length(&after[swallowed..]) }
 }
 
 /// The length of what writes one character.
-fn written(rest: &str, character: char, escapes: bool) -> usize {
+fn written_length(rest: &str, character: char, escapes: bool) -> usize {
     match rest.strip_prefix('\\').filter(|_| escapes).and_then(|after| after.chars().next()) {
         Some('x') => 4,
         Some('u') => 6,

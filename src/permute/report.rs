@@ -84,14 +84,14 @@ pub fn report(program: &str, space: &Space) -> Report {
         unique_outputs: None,
         axes: axes
             .map(|(index, axis)| {
-                cost(axis, valid[index].len(), wanted, space.count_without(index).ok())
+                axis_cost(axis, valid[index].len(), wanted, space.count_without(index).ok())
             })
             .collect(),
         static_in_glsl: Vec::new(),
     }
 }
 
-fn cost(axis: &Axis, valid_values: usize, wanted: u128, without: Option<u128>) -> AxisCost {
+fn axis_cost(axis: &Axis, valid_values: usize, wanted: u128, without: Option<u128>) -> AxisCost {
     AxisCost {
         name: axis.name.clone(),
         kind: axis.kind.name(),
@@ -129,7 +129,7 @@ impl fmt::Display for Report {
         writeln!(f, "program {}", self.program)?;
         let funnel =
             self.funnel().into_iter().map(|(name, count)| vec![name, count.to_string()]).collect();
-        table(f, &[Align::Left, Align::Right], funnel)?;
+        write_table(f, &[Align::Left, Align::Right], funnel)?;
         for stage in self.stages.iter().flatten().filter(|stage| !stage.blind.is_empty()) {
             writeln!(f, "  {} is blind to {}", stage.stage, stage.blind.join(", "))?;
         }
@@ -140,7 +140,7 @@ impl fmt::Display for Report {
         let heading =
             ["axis", "kind", "mode", "values", "without it", "costs"].map(str::to_owned).to_vec();
         let rows = std::iter::once(heading).chain(self.axes.iter().map(AxisCost::row)).collect();
-        table(
+        write_table(
             f,
             &[Align::Left, Align::Left, Align::Left, Align::Right, Align::Right, Align::Right],
             rows,
@@ -176,7 +176,11 @@ enum Align {
 }
 
 /// Rows of cells in columns as wide as their widest cell, indented by two.
-fn table(f: &mut fmt::Formatter<'_>, columns: &[Align], rows: Vec<Vec<String>>) -> fmt::Result {
+fn write_table(
+    f: &mut fmt::Formatter<'_>,
+    columns: &[Align],
+    rows: Vec<Vec<String>>,
+) -> fmt::Result {
     let width = |column: usize| rows.iter().map(|row| row[column].len()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns.len()).map(width).collect();
     for row in &rows {

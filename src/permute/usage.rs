@@ -22,14 +22,14 @@ pub fn narrow(
     sources: &mut SourceSet,
     list: SourceId,
 ) -> Result<Vec<Diagnostic>, Diagnostics> {
-    let keys = keys(&program.name, sources, list)?;
+    let keys = listed_keys(&program.name, sources, list)?;
     let mut warnings = Vec::new();
     let mut include = program.space.lists().include.clone();
     for key in keys {
         match parse(&program.space, &key) {
             Ok(point) if program.space.is_valid(&point) => include.push(point),
-            Ok(_) => warnings.push(gone(&key, "a constraint excludes it")),
-            Err(problems) => warnings.push(gone(
+            Ok(_) => warnings.push(key_is_gone(&key, "a constraint excludes it")),
+            Err(problems) => warnings.push(key_is_gone(
                 &key,
                 &problems
                     .iter()
@@ -79,11 +79,11 @@ pub fn unknown(programs: &[Program], sources: &SourceSet, list: SourceId) -> Vec
         let warning = Diagnostic::warning(codes::UNKNOWN_PROGRAM, message).at(place, "left out");
         Some(warning.suggest(name, known()))
     };
-    lines(sources, list).filter_map(of_line).collect()
+    list_lines(sources, list).filter_map(of_line).collect()
 }
 
 /// The lines of a list that say something, each with its place.
-fn lines(sources: &SourceSet, list: SourceId) -> impl Iterator<Item = (Span, &str)> {
+fn list_lines(sources: &SourceSet, list: SourceId) -> impl Iterator<Item = (Span, &str)> {
     let mut start = 0;
     sources.get(list).text.split_inclusive('\n').filter_map(move |line| {
         let text = line.trim();
@@ -95,9 +95,13 @@ fn lines(sources: &SourceSet, list: SourceId) -> impl Iterator<Item = (Span, &st
 }
 
 /// The keys that the list has for the program, each with its place.
-fn keys(program: &str, sources: &SourceSet, list: SourceId) -> Result<Vec<Quoted>, Diagnostics> {
+fn listed_keys(
+    program: &str,
+    sources: &SourceSet,
+    list: SourceId,
+) -> Result<Vec<Quoted>, Diagnostics> {
     let (mut keys, mut problems) = (Vec::new(), Vec::new());
-    for (span, text) in lines(sources, list) {
+    for (span, text) in list_lines(sources, list) {
         match text.split_once(char::is_whitespace) {
             Some((found, key)) if found == program => {
                 keys.push(Quoted::plain(
@@ -115,7 +119,7 @@ fn keys(program: &str, sources: &SourceSet, list: SourceId) -> Result<Vec<Quoted
     if problems.is_empty() { Ok(keys) } else { Err(problems) }
 }
 
-fn gone(key: &Quoted, reason: &str) -> Diagnostic {
+fn key_is_gone(key: &Quoted, reason: &str) -> Diagnostic {
     let message = format!("`{}` is not a permutation: {reason}", key.text);
     Diagnostic {
         severity: Severity::Warning,

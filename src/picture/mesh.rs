@@ -7,13 +7,18 @@ use crate::scene::{Shape, Vertex};
 
 /// The mesh of an object for a vertex stage. With `faceted`, each triangle has vertices of its own,
 /// with the normal of its face.
-pub fn mesh(object: &Object, vertex: &Reflection, faceted: bool) -> Mesh {
-    let attributes = attributes(vertex);
+pub fn object_mesh(object: &Object, vertex: &Reflection, faceted: bool) -> Mesh {
+    let attributes = vertex_attributes(vertex);
     let own = faceted.then(|| object.shape.faceted());
     let shape: &Shape = own.as_ref().unwrap_or(&object.shape);
     let words = |corner: &Vertex| {
         let one = |attribute: &Attribute| {
-            numbers(corner, attribute.location, object.material_index, components(*attribute))
+            corner_numbers(
+                corner,
+                attribute.location,
+                object.material_index,
+                component_count(*attribute),
+            )
         };
         attributes.iter().flat_map(one).collect::<Vec<u32>>()
     };
@@ -22,13 +27,14 @@ pub fn mesh(object: &Object, vertex: &Reflection, faceted: bool) -> Mesh {
 }
 
 /// The attributes that the stage reads, in its order.
-pub fn attributes(vertex: &Reflection) -> Vec<Attribute> {
-    let attribute =
-        |input: &Varying| Some(Attribute { location: input.location?, format: format(&input.ty) });
+pub fn vertex_attributes(vertex: &Reflection) -> Vec<Attribute> {
+    let attribute = |input: &Varying| {
+        Some(Attribute { location: input.location?, format: vertex_format(&input.ty) })
+    };
     vertex.inputs.iter().filter_map(attribute).collect()
 }
 
-fn format(ty: &str) -> VertexFormat {
+fn vertex_format(ty: &str) -> VertexFormat {
     match ty {
         "u32" => VertexFormat::Uint32,
         "f32" => VertexFormat::Float32,
@@ -38,13 +44,13 @@ fn format(ty: &str) -> VertexFormat {
     }
 }
 
-fn components(attribute: Attribute) -> usize {
+fn component_count(attribute: Attribute) -> usize {
     attribute.format.words() as usize
 }
 
 /// The words that `forward` reads at a location. `programs/forward.wesl` has the table of
 /// locations.
-fn numbers(corner: &Vertex, location: u32, material: u32, count: usize) -> Vec<u32> {
+fn corner_numbers(corner: &Vertex, location: u32, material: u32, count: usize) -> Vec<u32> {
     let numbers = match location {
         0 => corner.position.extend(1.0).to_array(),
         1 => corner.normal.extend(0.0).to_array(),

@@ -21,7 +21,7 @@ mod textures;
 mod values;
 
 pub use needs::Needs;
-pub use passes::prepare;
+pub use passes::prepare_passes;
 pub use pixels::{Linear, Picture, is_own_png};
 pub use plan::{Pass, Plan};
 pub use prepared::Prepared;
@@ -79,12 +79,12 @@ impl Surroundings {
 ///
 /// # Errors
 /// Those of compositions and of the painter.
-pub fn render(
+pub fn render_plan(
     painter: &dyn Session,
     programs: &Programs,
     plan: &Plan,
     shot: &Shot,
 ) -> Result<Picture, Diagnostics> {
-    let prepared = prepare(painter, programs, plan, shot)?;
+    let prepared = prepare_passes(painter, programs, plan, shot)?;
     Ok(prepared.photograph(painter, shot)?.develop())
 }

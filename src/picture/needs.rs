@@ -164,11 +164,11 @@ impl Table {
         id: SourceId,
         manifest: &Manifest,
     ) -> Result<Self, Diagnostics> {
-        let entry: FileEntry = reader::data(sources, id)?;
+        let entry: FileEntry = reader::read_data(sources, id)?;
         let problems: Diagnostics = entry
             .program
             .iter()
-            .flat_map(|(name, entry)| check(id, manifest, name, entry))
+            .flat_map(|(name, entry)| check_needs(id, manifest, name, entry))
             .collect();
         if !problems.is_empty() {
             return Err(problems);
@@ -257,7 +257,7 @@ impl From<ProgramEntry> for ProgramNeeds {
 }
 
 /// Errors in a program's tables.
-fn check(
+fn check_needs(
     id: SourceId,
     manifest: &Manifest,
     name: &Spanned<String>,
@@ -265,7 +265,7 @@ fn check(
 ) -> Diagnostics {
     let Some(program) = manifest.program(name.get_ref()) else {
         let message = format!("there is no program `{}`", name.get_ref());
-        return vec![reader::invalid(Span::new(id, name.span()), message)];
+        return vec![reader::invalid_data(Span::new(id, name.span()), message)];
     };
     entry.axis.iter().flat_map(|(axis, rows)| check_axis(id, program, axis, rows)).collect()
 }
@@ -279,12 +279,12 @@ fn check_axis(
     let span = Span::new(id, name.span());
     let Some(axis) = program.space.axis(name.get_ref()) else {
         let message = format!("`{}` has no axis `{}`", program.name, name.get_ref());
-        return vec![reader::invalid(span, message)];
+        return vec![reader::invalid_data(span, message)];
     };
     let values = axis.value_names();
     let unknown = rows.keys().filter(|value| !values.contains(value.get_ref())).map(|value| {
         let message = format!("axis `{}` has no value `{}`", axis.name, value.get_ref());
-        reader::invalid(Span::new(id, value.span()), message)
+        reader::invalid_data(Span::new(id, value.span()), message)
     });
     let is_listed = |value: &String| rows.keys().any(|row| row.get_ref() == value);
     let missing = values.iter().filter(|value| !is_listed(value));
@@ -292,7 +292,7 @@ fn check_axis(
 }
 
 fn without_row(axis: &Axis, value: &str, span: Span) -> Diagnostic {
-    reader::invalid(span, format!("no row for `{}={value}`", axis.name))
+    reader::invalid_data(span, format!("no row for `{}={value}`", axis.name))
         .at(axis.span, "the axis has the value")
         .note(format!("help: write `{value} = {{}}` if pictures need nothing for it"))
 }

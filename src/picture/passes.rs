@@ -7,18 +7,18 @@ use glam::DMat4;
 
 use super::Shot;
 use super::light::LightView;
-use super::mesh::{self, attributes};
+use super::mesh::{self, vertex_attributes};
 use super::pixels::Background;
 use super::plan::{Pass, Plan};
-use super::prepared::{Prepared, colour, no_frame};
-use super::textures::{Left, Library, sampler};
+use super::prepared::{Prepared, no_frame, pixel_colour};
+use super::textures::{Left, Library, binding_sampler};
 use super::values::{Camera, Values};
 use crate::bundle::{Binding, Kind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::Session;
 use crate::execute::fixture::{Fixture, Texture, TextureKind};
 use crate::execute::frame::{Buffers, Mesh, Side, State};
-use crate::picture::frame::{Composed, Programs, Stages, pack};
+use crate::picture::frame::{Composed, Programs, Stages, pack_buffer};
 use crate::scene::sets::{self, Eye, LampKind, Scene};
 use crate::scene::{Clip, Depth, cascade_splits, depth_range, perspective};
 
@@ -46,7 +46,7 @@ const MAP_SIZES: (u32, u32) = (256, 1024);
 ///
 /// # Errors
 /// Those of compositions and of the painter.
-pub fn prepare(
+pub fn prepare_passes(
     painter: &dyn Session,
     programs: &Programs,
     plan: &Plan,
@@ -89,7 +89,7 @@ pub fn prepare(
     for (near, far) in slices_of(&scene, shot.cascades) {
         scene.eye = Eye { near, far, ..whole };
         let light =
-            LightView::cascade(&scene, &key, viewer(&scene.eye, shot).clip_from_world, size);
+            LightView::cascade(&scene, &key, viewer_camera(&scene.eye, shot).clip_from_world, size);
         slices.push(slice(&scene, light)?);
     }
     let mut slices = slices.into_iter();
@@ -143,7 +143,7 @@ fn no_cascades(pass: &Pass) -> Diagnostic {
 }
 
 /// The viewer's camera.
-fn viewer(eye: &Eye, shot: &Shot) -> Camera {
+fn viewer_camera(eye: &Eye, shot: &Shot) -> Camera {
     let [width, height] = shot.size;
     let aspect = f64::from(width) / f64::from(height.max(1));
     // A picture that is higher than wide still shows everything that a square one shows.
@@ -178,7 +178,8 @@ impl Studio<'_> {
         let cleared = self.values.cleared_moments();
         let frame = frames.into_iter().next().ok_or_else(|| vec![no_frame()])?;
         let texels = frame.targets.iter().flatten().copied().collect::<Vec<u32>>();
-        let texels = texels.chunks(4).flat_map(|pixel| colour(pixel).unwrap_or(cleared)).collect();
+        let texels =
+            texels.chunks(4).flat_map(|pixel| pixel_colour(pixel).unwrap_or(cleared)).collect();
         Ok(Left::Color(Texture { kind: TextureKind::Color2d, width: side, height: side, texels }))
     }
 
@@ -196,14 +197,14 @@ impl Studio<'_> {
         };
         let program = self.programs.manifest().program(&pass.program).ok_or_else(unknown)?;
         let stages = self.programs.stages(program, &pass.settings, self.values.shot.language)?;
-        let bindings = bindings(&stages);
+        let bindings = stage_bindings(&stages);
         let camera = bindings.iter().find(|binding| binding.name == "camera").cloned();
         let Bound { buffers, fixtures, levels } = self.bound(&bindings, left)?;
         let plain =
             PLAIN.iter().filter_map(|name| bindings.iter().find(|binding| binding.name == *name));
         let plain = plain.map(|binding| (binding.group, binding.binding)).collect();
         let items = self.items(pass, &stages, &bindings).map_err(|problem| vec![problem])?;
-        let eye = viewer(&self.values.scene.eye, self.values.shot);
+        let eye = viewer_camera(&self.values.scene.eye, self.values.shot);
         let background = Background::new(&self.values, eye);
         let state = self.state(pass, camera.is_some());
         Ok(Prepared {
@@ -229,11 +230,11 @@ impl Studio<'_> {
             let place = (binding.group, binding.binding);
             match binding.kind {
                 Kind::Uniform => {
-                    let bytes = pack(binding, &|path| self.values.number(path));
+                    let bytes = pack_buffer(binding, &|path| self.values.number(path));
                     bound.buffers.insert(place, bytes.map_err(|problem| vec![problem])?);
                 }
                 Kind::Sampler | Kind::ComparisonSampler => {
-                    bound.fixtures.insert(place, Arc::new(sampler(binding)));
+                    bound.fixtures.insert(place, Arc::new(binding_sampler(binding)));
                 }
                 _ => {
                     let mut chain = library.texture(&binding.name)?;
@@ -271,7 +272,7 @@ impl Studio<'_> {
         bindings: &[Binding],
     ) -> Result<Vec<(Mesh, Buffers)>, Diagnostic> {
         let vertex = &stages.vertex.reflection;
-        if attributes(vertex).is_empty() {
+        if vertex_attributes(vertex).is_empty() {
             return Ok(vec![(Mesh::default(), Buffers::new())]);
         }
         let own: Vec<&Binding> = bindings
@@ -281,11 +282,11 @@ impl Studio<'_> {
         let faceted = pass.needs.faceted;
         let item = |object| {
             let buffer = |binding: &&Binding| {
-                let bytes = pack(binding, &|path| self.values.object(object, path))?;
+                let bytes = pack_buffer(binding, &|path| self.values.object(object, path))?;
                 Ok(((binding.group, binding.binding), bytes))
             };
             let buffers = own.iter().map(buffer).collect::<Result<_, Diagnostic>>()?;
-            Ok((mesh::mesh(object, vertex, faceted), buffers))
+            Ok((mesh::object_mesh(object, vertex, faceted), buffers))
         };
         let of_light = !std::ptr::eq(pass, self.values.last);
         let objects = self.values.scene.objects.iter();
@@ -302,7 +303,7 @@ fn is_own(name: &str) -> bool {
 }
 
 /// The bindings of both stages, each once, with the members that either of them has.
-fn bindings(stages: &Stages) -> Vec<Binding> {
+fn stage_bindings(stages: &Stages) -> Vec<Binding> {
     let of = |stage: &Composed| stage.reflection.bindings.clone();
     let all = of(&stages.vertex).into_iter().chain(stages.fragment.iter().flat_map(of));
     let by_place: BTreeMap<_, _> =

@@ -114,7 +114,7 @@ impl Linear {
             let behind =
                 || background.colour((x + 0.5 - shift[0]) / width, (y + 0.5 + shift[1]) / height);
             let drawn = colour.map(|[r, g, b, _]| DVec3::new(r.into(), g.into(), b.into()));
-            self.sums[index] += visible(drawn.unwrap_or_else(behind) * factor);
+            self.sums[index] += visible_part(drawn.unwrap_or_else(behind) * factor);
             if self.samples == 0 {
                 self.first[index] = drawn;
             }
@@ -126,7 +126,7 @@ impl Linear {
     pub fn add_all(&mut self, colours: impl Iterator<Item = DVec3>, exposure: f64) {
         let factor = exposure.exp2();
         for (sum, colour) in self.sums.iter_mut().zip(colours) {
-            *sum += visible(colour * factor);
+            *sum += visible_part(colour * factor);
         }
         self.samples += 1;
     }
@@ -139,20 +139,20 @@ impl Linear {
     /// The picture in sRGB.
     pub fn develop(&self) -> Picture {
         let scale = 1.0 / f64::from(self.samples.max(1));
-        let byte = |linear: f64| (encoded(linear * scale) * 255.0).round() as u8;
+        let byte = |linear: f64| (srgb_encoded(linear * scale) * 255.0).round() as u8;
         let pixels = self.sums.iter().flat_map(|sum| sum.to_array().map(byte)).collect();
         Picture { width: self.size[0], height: self.size[1], pixels }
     }
 }
 
 /// The part of a colour that can be shown.
-fn visible(seen: DVec3) -> DVec3 {
+fn visible_part(seen: DVec3) -> DVec3 {
     let parts = seen.to_array().map(|part| if part.is_nan() { 0.0 } else { part });
     DVec3::from_array(parts).clamp(DVec3::ZERO, DVec3::ONE)
 }
 
 /// The transfer function of sRGB.
-fn encoded(linear: f64) -> f64 {
+fn srgb_encoded(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
@@ -250,7 +250,7 @@ impl Picture {
             };
             let all = (0..factor).flat_map(|j| (0..factor).map(move |i| (i, j)));
             let sum: f64 = all.map(|(i, j)| at(i, j)).sum();
-            (encoded(sum / f64::from(factor * factor)) * 255.0).round() as u8
+            (srgb_encoded(sum / f64::from(factor * factor)) * 255.0).round() as u8
         };
         let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         let pixels = places.flat_map(|(x, y)| [0, 1, 2].map(|channel| mean(x, y, channel)));

@@ -70,7 +70,7 @@ impl Plan {
     /// # Errors
     /// A program or key that the manifest does not have, or that breaks a constraint.
     pub fn of_key(programs: &Programs, program: &str, text: &str) -> Result<Self, Diagnostics> {
-        let found = known(programs, program)?;
+        let found = known_program(programs, program)?;
         let point = programs.with_texts(|texts| {
             let id = texts.add("key", text.to_owned());
             key::parse(&found.space, &Quoted::whole(texts, id))
@@ -148,7 +148,10 @@ impl Plan {
 ///
 /// # Errors
 /// There is none.
-pub(super) fn known<'p>(programs: &'p Programs, name: &str) -> Result<&'p Program, Diagnostics> {
+pub(super) fn known_program<'p>(
+    programs: &'p Programs,
+    name: &str,
+) -> Result<&'p Program, Diagnostics> {
     let unknown = || {
         let message = format!("there is no program `{name}`");
         vec![Diagnostic::error(codes::UNKNOWN_PROGRAM, message)]
@@ -158,7 +161,7 @@ pub(super) fn known<'p>(programs: &'p Programs, name: &str) -> Result<&'p Progra
 
 impl Pass {
     fn new(programs: &Programs, program: &str, text: &str) -> Result<Self, Diagnostics> {
-        let found = known(programs, program)?;
+        let found = known_program(programs, program)?;
         let mut texts = SourceSet::default();
         let id = texts.add("key", text.to_owned());
         let point = key::parse(&found.space, &Quoted::whole(&texts, id))?;

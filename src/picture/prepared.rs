@@ -14,7 +14,7 @@ use crate::execute::Session;
 use crate::execute::fixture::{Fixture, Texture};
 use crate::execute::frame::{Buffers, Drawing, EntryPoint, Frame, Item, Mesh, State};
 use crate::execute::kernel::SENTINEL;
-use crate::picture::frame::{Stages, pack, probe};
+use crate::picture::frame::{Stages, pack_buffer, probe};
 
 /// A pass with everything that it is drawn with.
 pub struct Prepared {
@@ -38,7 +38,7 @@ impl Prepared {
     /// The buffers of a view.
     pub(super) fn view(&self, camera: &Camera) -> Result<Buffers, Diagnostic> {
         let buffer = |binding: &Binding| {
-            let bytes = pack(binding, &|path| camera.number(path))?;
+            let bytes = pack_buffer(binding, &|path| camera.number(path))?;
             Ok(((binding.group, binding.binding), bytes))
         };
         self.camera.iter().map(buffer).collect()
@@ -101,8 +101,8 @@ impl Prepared {
         size: [u32; 2],
     ) -> Result<Vec<Frame>, Diagnostics> {
         let stage = self.stages.fragment.as_ref().ok_or_else(|| vec![no_frame()])?;
-        let module =
-            probe::bits(&stage.validated.module, stage.entry).ok_or_else(|| vec![no_frame()])?;
+        let module = probe::bits_module(&stage.validated.module, stage.entry)
+            .ok_or_else(|| vec![no_frame()])?;
         self.draw(
             painter,
             views,
@@ -117,7 +117,7 @@ impl Prepared {
     /// The painter's.
     pub fn photograph(&self, painter: &dyn Session, shot: &Shot) -> Result<Linear, Diagnostics> {
         let shifts: Vec<[f64; 2]> =
-            (0..shot.samples.max(1)).map(|index| shift(index, shot.samples)).collect();
+            (0..shot.samples.max(1)).map(|index| sample_shift(index, shot.samples)).collect();
         let views = self.eye_views(&shifts, shot.size)?;
         let mut picture = Linear::new(shot.size);
         let views = if self.camera.is_some() { &views[..] } else { &views[..1] };
@@ -150,7 +150,13 @@ impl Prepared {
         size: [u32; 2],
     ) -> Result<Vec<Vec<Option<[f32; 4]>>>, Diagnostics> {
         let colours = |frame: Frame| {
-            frame.targets.first().map_or(&[][..], Vec::as_slice).chunks(4).map(colour).collect()
+            frame
+                .targets
+                .first()
+                .map_or(&[][..], Vec::as_slice)
+                .chunks(4)
+                .map(pixel_colour)
+                .collect()
         };
         Ok(self.draw_colors(painter, views, size)?.into_iter().map(colours).collect())
     }
@@ -161,7 +167,7 @@ const AT_ONCE: usize = 64 << 20;
 
 /// The offset of a sample from the pixel's centre: points of Halton's sequence, or the centre for a
 /// single sample.
-pub(super) fn shift(index: u32, samples: u32) -> [f64; 2] {
+pub(super) fn sample_shift(index: u32, samples: u32) -> [f64; 2] {
     let radical = |base: u32| {
         let (mut rest, mut place, mut value) = (index + 1, 1.0, 0.0);
         while rest > 0 {
@@ -175,7 +181,7 @@ pub(super) fn shift(index: u32, samples: u32) -> [f64; 2] {
 }
 
 /// The colour of a pixel; `None` where nothing was drawn.
-pub(super) fn colour(pixel: &[u32]) -> Option<[f32; 4]> {
+pub(super) fn pixel_colour(pixel: &[u32]) -> Option<[f32; 4]> {
     let words: [u32; 4] = pixel.try_into().ok()?;
     (words != [SENTINEL; 4]).then(|| words.map(f32::from_bits))
 }

@@ -19,7 +19,7 @@ pub enum Left {
 }
 
 /// The sampler of a binding.
-pub fn sampler(binding: &Binding) -> Fixture {
+pub fn binding_sampler(binding: &Binding) -> Fixture {
     let compare = (binding.kind == Kind::ComparisonSampler).then_some(Compare::LessEqual);
     let address = if binding.name == "map_sampler" { Address::Repeat } else { Address::Clamp };
     Fixture::Sampler(Sampler { compare, linear: binding.name != "depth_sampler", address })
@@ -47,25 +47,25 @@ impl<'a> Library<'a> {
     pub fn texture(&mut self, name: &str) -> Result<Vec<Texture>, Diagnostics> {
         let surroundings = &self.values.shot.surroundings;
         let sky = |exponent, (size, rows)| {
-            surroundings.with_sky(|sky| cube(&prefilter(sky, exponent, size, rows)))
+            surroundings.with_sky(|sky| cube_texture(&prefilter(sky, exponent, size, rows)))
         };
         match (name, self.left) {
             ("shadow_map", Left::Depth(faces, size)) => {
-                Ok(vec![flat(TextureKind::Depth2d, faces, *size)])
+                Ok(vec![flat_texture(TextureKind::Depth2d, faces, *size)])
             }
             ("shadow_cube", Left::Depth(faces, size)) => {
-                Ok(vec![flat(TextureKind::DepthCube, faces, *size)])
+                Ok(vec![flat_texture(TextureKind::DepthCube, faces, *size)])
             }
             ("shadow_depth" | "depths", Left::Depth(faces, size)) => {
                 Ok(vec![as_color(faces, *size)])
             }
             ("blurred", Left::Color(texture)) => Ok(vec![texture.clone()]),
-            ("shadow_moments", Left::Color(texture)) => Ok(mipped(texture.clone())),
+            ("shadow_moments", Left::Color(texture)) => Ok(with_levels(texture.clone())),
             ("sky_diffuse", _) => Ok(vec![sky(1.0, DIFFUSE)]),
             ("sky_specular", _) => Ok(vec![sky(LOBE, SPECULAR)]),
-            ("base_map", _) => Ok(colors(self.maps().base.clone().levels())),
-            ("normal_map", _) => Ok(colors(self.maps().normal.clone().levels())),
-            ("light_map", _) => Ok(colors(vec![self.maps().light.clone()])),
+            ("base_map", _) => Ok(color_textures(self.maps().base.clone().levels())),
+            ("normal_map", _) => Ok(color_textures(self.maps().normal.clone().levels())),
+            ("light_map", _) => Ok(color_textures(vec![self.maps().light.clone()])),
             _ => Err(vec![Diagnostic::error(
                 codes::EXECUTOR_FAILED,
                 format!("no pass before has drawn what `{name}` reads"),
@@ -80,7 +80,7 @@ impl<'a> Library<'a> {
     }
 }
 
-fn flat(kind: TextureKind, faces: &[Vec<f32>], size: u32) -> Texture {
+fn flat_texture(kind: TextureKind, faces: &[Vec<f32>], size: u32) -> Texture {
     Texture {
         kind,
         width: size,
@@ -95,7 +95,7 @@ fn as_color(faces: &[Vec<f32>], size: u32) -> Texture {
     Texture { kind: TextureKind::Color2d, width: size, height: size, texels }
 }
 
-fn cube(map: &CubeMap) -> Texture {
+fn cube_texture(map: &CubeMap) -> Texture {
     let texels = map
         .texels
         .iter()
@@ -110,7 +110,7 @@ fn cube(map: &CubeMap) -> Texture {
     }
 }
 
-fn colors(levels: Vec<Map>) -> Vec<Texture> {
+fn color_textures(levels: Vec<Map>) -> Vec<Texture> {
     let color = |map: Map| Texture {
         kind: TextureKind::Color2d,
         width: map.width as u32,
@@ -122,10 +122,10 @@ fn colors(levels: Vec<Map>) -> Vec<Texture> {
 
 /// A texture with all its smaller levels. They are made after the blur, so that they are blurred
 /// too.
-fn mipped(texture: Texture) -> Vec<Texture> {
+fn with_levels(texture: Texture) -> Vec<Texture> {
     let (pixels, _) = texture.texels.as_chunks::<4>();
     let texels = pixels.iter().map(|pixel| glam::Vec4::from_array(*pixel).as_dvec4()).collect();
-    let mut levels = colors(
+    let mut levels = color_textures(
         Map { width: texture.width as usize, height: texture.height as usize, texels }.levels(),
     );
     levels[0] = texture;

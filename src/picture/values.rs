@@ -62,8 +62,8 @@ impl Camera {
     /// The numbers of a field of the block `camera`.
     pub fn number(&self, path: &str) -> Option<Vec<f64>> {
         match Path::new(path).field {
-            "clip_from_world" => Some(columns(self.clip_from_world)),
-            "world_from_view" => Some(columns(self.world_from_view)),
+            "clip_from_world" => Some(matrix_columns(self.clip_from_world)),
+            "world_from_view" => Some(matrix_columns(self.world_from_view)),
             _ => None,
         }
     }
@@ -92,13 +92,13 @@ impl Values<'_> {
     pub fn object(&self, object: &Object, path: &str) -> Option<Vec<f64>> {
         let parsed = Path::new(path);
         match (parsed.block, parsed.field) {
-            ("object", "world_from_object") => Some(columns(object.world_from_object)),
+            ("object", "world_from_object") => Some(matrix_columns(object.world_from_object)),
             ("object", "normal_from_object") => {
-                Some(columns(DMat4::from_mat3(normal_matrix(object.world_from_object))))
+                Some(matrix_columns(DMat4::from_mat3(normal_matrix(object.world_from_object))))
             }
             ("object", "color") => Some(object.color.extend(1.0).to_array().to_vec()),
             ("materials", field) if !self.last.needs.material_array => {
-                self.published(&parsed).or_else(|| material(&object.material, field))
+                self.published(&parsed).or_else(|| material_value(&object.material, field))
             }
             _ => self.number(path),
         }
@@ -135,11 +135,11 @@ impl Values<'_> {
                 LampKind::Point => 2.0,
                 LampKind::Spot => 3.0,
             }],
-            "color" => vector(self.intensity(index, lamp, kind)),
-            "ambient" => vector(lamp.color * 0.06),
+            "color" => vector_values(self.intensity(index, lamp, kind)),
+            "ambient" => vector_values(lamp.color * 0.06),
             "range" => vec![RANGE * lamp.reach()],
-            "position" => vector(lamp.position),
-            "axis" => vector(self.axis(index, lamp, kind)),
+            "position" => vector_values(lamp.position),
+            "axis" => vector_values(self.axis(index, lamp, kind)),
             "cutoff" | "outer" => vec![lamp.half_angle.cos()],
             "inner" => vec![(0.75 * lamp.half_angle).cos()],
             "shadow_layer" => vec![if index == 0 { 0.0 } else { -1.0 }],
@@ -190,19 +190,21 @@ impl Values<'_> {
         let (pair, side) = if self.last.needs.sides { (index / 2, index % 2) } else { (index, 0) };
         // An array that is longer than the scene has materials ends with zeros.
         let Some(sides) = self.scene.materials.get(pair) else { return Some(Vec::new()) };
-        material(&sides[side], field)
+        material_value(&sides[side], field)
     }
 
     fn surroundings(&self, path: &Path<'_>) -> Option<Vec<f64>> {
         let lit = !self.last.needs.unlit;
         let dimmed = if lit { 0.35 } else { 1.0 };
         Some(match path.field {
-            "color" => vector(if lit { self.scene.ambient } else { DVec3::new(0.44, 0.45, 0.48) }),
+            "color" => {
+                vector_values(if lit { self.scene.ambient } else { DVec3::new(0.44, 0.45, 0.48) })
+            }
             // Published coefficients are used as the book uses them.
             "scale" => vec![dimmed * if self.plan.probe.is_some() { 1.0 } else { 1.0 / PI }],
-            "sky" => vector(self.scene.sky * dimmed),
-            "ground" => vector(self.scene.ground * dimmed),
-            "up" => vector(DVec3::Y),
+            "sky" => vector_values(self.scene.sky * dimmed),
+            "ground" => vector_values(self.scene.ground * dimmed),
+            "up" => vector_values(DVec3::Y),
             "diffuse_share" => vec![if lit { 0.35 } else { 1.0 }],
             "specular_share" => vec![if lit { 0.25 } else { 0.4 }],
             "sh" => self.probe().get(path.index)?.to_vec(),
@@ -212,13 +214,13 @@ impl Values<'_> {
 
     /// The nine coefficients: the published ones, or those of the surroundings.
     pub fn probe(&self) -> [[f64; 3]; 9] {
-        self.plan.probe.unwrap_or_else(|| projected(&self.shot.surroundings))
+        self.plan.probe.unwrap_or_else(|| projected_light(&self.shot.surroundings))
     }
 
     fn haze(&self, field: &str) -> Option<Vec<f64>> {
         let (start, end) = self.scene.haze_range;
         Some(match field {
-            "color" => vector(self.scene.haze),
+            "color" => vector_values(self.scene.haze),
             // So that half of the colour is left in the middle of the haze.
             "density" => vec![2.0_f64.ln().sqrt() / (0.5 * (start + end))],
             "start" => vec![start],
@@ -233,7 +235,7 @@ impl Values<'_> {
             if self.is_biased_by_source() { 0.0 } else { 1.0 + 0.5 * self.last.needs.reach };
         Some(match field {
             // A point light has a matrix for each face, and its stage reads none.
-            "clip_from_world" => columns(*self.light.clip_from_world.first()?),
+            "clip_from_world" => matrix_columns(*self.light.clip_from_world.first()?),
             "near" => vec![self.light.near],
             "far" => vec![self.light.far],
             "texel" => vec![self.light.texel],
@@ -280,31 +282,31 @@ impl Values<'_> {
     }
 }
 
-fn projected(surroundings: &Surroundings) -> [[f64; 3]; 9] {
+fn projected_light(surroundings: &Surroundings) -> [[f64; 3]; 9] {
     let samples = directions(24)
         .into_iter()
         .map(|(direction, angle)| (direction, angle, surroundings.radiance(direction)));
     sh9_project(samples).map(|coefficient| coefficient.to_array())
 }
 
-fn material(material: &Material, field: &str) -> Option<Vec<f64>> {
+fn material_value(material: &Material, field: &str) -> Option<Vec<f64>> {
     Some(match field {
-        "emission" => vector(material.emission),
+        "emission" => vector_values(material.emission),
         "shininess" => vec![material.shininess],
-        "ambient" => vector(material.ambient),
+        "ambient" => vector_values(material.ambient),
         "roughness" => vec![material.roughness],
-        "diffuse" => vector(material.diffuse),
+        "diffuse" => vector_values(material.diffuse),
         "wrap" => vec![material.wrap],
-        "specular" => vector(material.specular),
+        "specular" => vector_values(material.specular),
         "sigma" => vec![material.sigma],
         _ => return None,
     })
 }
 
-fn vector(vector: DVec3) -> Vec<f64> {
+fn vector_values(vector: DVec3) -> Vec<f64> {
     vector.to_array().to_vec()
 }
 
-fn columns(matrix: DMat4) -> Vec<f64> {
+fn matrix_columns(matrix: DMat4) -> Vec<f64> {
     matrix.to_cols_array().to_vec()
 }

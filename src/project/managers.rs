@@ -28,7 +28,7 @@ impl Manager {
             let unknown = || format!("`package-manager` is `npm` or `cargo`, not `{name}`");
             return found.map(|(_, manager, _)| *manager).ok_or_else(unknown);
         }
-        for above in upwards(folder) {
+        for above in folders_upwards(folder) {
             let is_here = |(_, _, file): &&(&str, Self, &str)| above.join(file).is_file();
             let mut here = Self::ALL.iter().filter(is_here);
             match (here.next(), here.next()) {
@@ -48,37 +48,37 @@ impl Manager {
     /// The folder of an installed package.
     pub fn find(self, folder: &Path, package: &str) -> Result<PathBuf, String> {
         match self {
-            Self::Npm => npm(folder, package),
-            Self::Cargo => cargo(folder, package),
+            Self::Npm => npm_package(folder, package),
+            Self::Cargo => cargo_package(folder, package),
         }
     }
 
     /// The packages that the manager's file lists, with the names that WESL can spell.
     pub fn listed(self, folder: &Path) -> Vec<(String, String)> {
         let names = match self {
-            Self::Npm => upwards(folder).find_map(|above| listed_by_npm(&above)),
-            Self::Cargo => upwards(folder).find_map(|above| {
-                let table = table(&above.join("Cargo.toml"))?;
+            Self::Npm => folders_upwards(folder).find_map(|above| listed_by_npm(&above)),
+            Self::Cargo => folders_upwards(folder).find_map(|above| {
+                let table = read_table(&above.join("Cargo.toml"))?;
                 Some(table.get("dependencies")?.as_table()?.keys().cloned().collect())
             }),
         };
-        names.unwrap_or_default().into_iter().map(|name| (spelled(&name), name)).collect()
+        names.unwrap_or_default().into_iter().map(|name| (spelled_name(&name), name)).collect()
     }
 }
 
 /// A package's name as WESL can spell it: `@lorem/fun-shaders` is `lorem__fun_shaders`.
-fn spelled(name: &str) -> String {
+fn spelled_name(name: &str) -> String {
     name.trim_start_matches('@').replace('/', "__").replace('-', "_")
 }
 
 fn listed_by_npm(folder: &Path) -> Option<Vec<String>> {
-    let bytes = input::read(&folder.join("package.json"), LIMITS.file_bytes as u64).ok()?;
+    let bytes = input::read_file(&folder.join("package.json"), LIMITS.file_bytes as u64).ok()?;
     let document: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
     Some(document.get("dependencies")?.as_object()?.keys().cloned().collect())
 }
 
 /// A folder and those above it, by the name that was given.
-fn upwards(folder: &Path) -> impl Iterator<Item = PathBuf> {
+fn folders_upwards(folder: &Path) -> impl Iterator<Item = PathBuf> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let levels = folder.canonicalize().map_or(1, |real| real.components().count());
     std::iter::successors(Some(folder.to_owned()), |last| Some(last.join(".."))).take(levels)
@@ -97,22 +97,22 @@ fn is_name(package: &str) -> bool {
     }
 }
 
-fn npm(folder: &Path, package: &str) -> Result<PathBuf, String> {
+fn npm_package(folder: &Path, package: &str) -> Result<PathBuf, String> {
     if !is_name(package) {
         return Err(format!("`{package}` is not the name of an npm package"));
     }
-    let mut places = upwards(folder).map(|above| above.join("node_modules").join(package));
+    let mut places = folders_upwards(folder).map(|above| above.join("node_modules").join(package));
     places
         .find(|place| place.is_dir())
         .ok_or_else(|| format!("`{package}` is not installed: run `npm install {package}`"))
 }
 
-fn cargo(folder: &Path, package: &str) -> Result<PathBuf, String> {
+fn cargo_package(folder: &Path, package: &str) -> Result<PathBuf, String> {
     if !is_name(package) || package.contains(['@', '/']) {
         return Err(format!("`{package}` is not the name of a Cargo package"));
     }
-    let above: Vec<PathBuf> = upwards(folder).collect();
-    let declared = above.iter().find_map(|above| declared(above, package));
+    let above: Vec<PathBuf> = folders_upwards(folder).collect();
+    let declared = above.iter().find_map(|above| declared_folder(above, package));
     if let Some(path) = declared {
         return Ok(path);
     }
@@ -120,21 +120,24 @@ fn cargo(folder: &Path, package: &str) -> Result<PathBuf, String> {
     if let Some(place) = vendored.into_iter().find(|place| place.is_dir()) {
         return Ok(place);
     }
-    let version = above.iter().find_map(|above| locked(above, package)).ok_or_else(|| {
-        format!("no `Cargo.lock` names `{package}`: add it to `Cargo.toml` and run `cargo fetch`")
-    })?;
+    let version =
+        above.iter().find_map(|above| locked_version(above, package)).ok_or_else(|| {
+            format!(
+                "no `Cargo.lock` names `{package}`: add it to `Cargo.toml` and run `cargo fetch`"
+            )
+        })?;
     let missing = || format!("`{package}` {version} is not there yet: run `cargo fetch`");
-    registry(&format!("{package}-{version}")).ok_or_else(missing)
+    registry_folder(&format!("{package}-{version}")).ok_or_else(missing)
 }
 
-fn table(path: &Path) -> Option<Table> {
-    let bytes = input::read(path, LIMITS.file_bytes as u64).ok()?;
+fn read_table(path: &Path) -> Option<Table> {
+    let bytes = input::read_file(path, LIMITS.file_bytes as u64).ok()?;
     String::from_utf8(bytes).ok()?.parse().ok()
 }
 
 /// The folder that a `Cargo.toml` names for a dependency, of its own or of its workspace.
-fn declared(folder: &Path, package: &str) -> Option<PathBuf> {
-    let table = table(&folder.join("Cargo.toml"))?;
+fn declared_folder(folder: &Path, package: &str) -> Option<PathBuf> {
+    let table = read_table(&folder.join("Cargo.toml"))?;
     let workspace = table.get("workspace").and_then(|found| found.get("dependencies"));
     let tables = [table.get("dependencies"), workspace];
     let paths = tables.into_iter().flatten().filter_map(|dependencies| {
@@ -149,8 +152,8 @@ fn declared(folder: &Path, package: &str) -> Option<PathBuf> {
 }
 
 /// The version that a folder's `Cargo.lock` has of a package; the greatest, where it has several.
-fn locked(folder: &Path, package: &str) -> Option<String> {
-    let table = table(&folder.join("Cargo.lock"))?;
+fn locked_version(folder: &Path, package: &str) -> Option<String> {
+    let table = read_table(&folder.join("Cargo.lock"))?;
     let versions = table.get("package")?.as_array()?.iter().filter_map(|entry| {
         let is_it = entry.get("name")?.as_str()? == package;
         entry.get("version")?.as_str().filter(|_| is_it).map(str::to_owned)
@@ -162,7 +165,7 @@ fn locked(folder: &Path, package: &str) -> Option<String> {
 }
 
 /// Where Cargo unpacked a package of a registry.
-fn registry(name: &str) -> Option<PathBuf> {
+fn registry_folder(name: &str) -> Option<PathBuf> {
     let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")))?;
     let registries = std::fs::read_dir(home.join("registry/src")).ok()?;

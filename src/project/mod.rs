@@ -49,7 +49,7 @@ pub fn packages(root: &Path, sources: &mut SourceSet) -> Result<Packages, Diagno
             format!("`{}` is a file, not a package's root folder", root.display()),
         )]);
     }
-    let disk = Disk::new(root).map_err(|error| vec![unreadable(root, &error)])?;
+    let disk = Disk::new(root).map_err(|error| vec![unreadable_file(root, &error)])?;
     let mut dependencies = wesl_toml::dependencies(root, sources)?;
     if !dependencies.iter().any(|package| package.name == LIBRARY) {
         dependencies.push(Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) });
@@ -77,8 +77,8 @@ pub fn relative(file: &Path, root: &Path) -> Result<String, Diagnostic> {
             path.canonicalize()
         }
     };
-    let real_root = real(root).map_err(|error| unreadable(root, &error))?;
-    let real_file = real(file).map_err(|error| unreadable(file, &error))?;
+    let real_root = real(root).map_err(|error| unreadable_file(root, &error))?;
+    let real_file = real(file).map_err(|error| unreadable_file(file, &error))?;
     if real_file.is_dir() {
         return Err(Diagnostic::error(
             codes::UNREADABLE,
@@ -86,7 +86,7 @@ pub fn relative(file: &Path, root: &Path) -> Result<String, Diagnostic> {
         ));
     }
     match real_file.strip_prefix(&real_root) {
-        Ok(below) => Ok(slashed(below)),
+        Ok(below) => Ok(with_slashes(below)),
         Err(_) => Err(Diagnostic::error(
             codes::OUTSIDE_ROOT,
             format!("`{}` is not below the package root `{}`", file.display(), root.display()),
@@ -94,7 +94,7 @@ pub fn relative(file: &Path, root: &Path) -> Result<String, Diagnostic> {
     }
 }
 
-fn slashed(path: &Path) -> String {
+fn with_slashes(path: &Path) -> String {
     let parts = path.components().filter_map(|component| match component {
         Component::Normal(part) => Some(part.to_string_lossy()),
         _ => None,
@@ -102,7 +102,7 @@ fn slashed(path: &Path) -> String {
     parts.collect::<Vec<_>>().join("/")
 }
 
-fn unreadable(path: &Path, error: &std::io::Error) -> Diagnostic {
+fn unreadable_file(path: &Path, error: &std::io::Error) -> Diagnostic {
     let shown = path.display();
     let message = match error.kind() {
         std::io::ErrorKind::NotFound => format!("there is no file or folder `{shown}`"),
@@ -137,7 +137,7 @@ pub fn read_manifest(path: &Path, sources: &mut SourceSet) -> Result<Manifest, D
         )]);
     }
     let folder = path.parent().unwrap_or(Path::new(""));
-    let disk = Disk::new(folder).map_err(|error| vec![unreadable(path, &error)])?;
+    let disk = Disk::new(folder).map_err(|error| vec![unreadable_file(path, &error)])?;
     let package = Package { name: String::new(), files: Box::new(disk) };
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let mut manifest = parse_manifest(&package, &name, sources)?;
@@ -167,7 +167,7 @@ pub fn lock_path(manifest: &Path) -> PathBuf {
 pub fn lock(manifest: &Path, sources: &mut SourceSet) -> Result<Lock, Diagnostics> {
     let folder =
         manifest.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let disk = Disk::new(folder).map_err(|error| vec![unreadable(folder, &error)])?;
+    let disk = Disk::new(folder).map_err(|error| vec![unreadable_file(folder, &error)])?;
     let package = Package { name: String::new(), files: Box::new(disk) };
     match source::read(sources, &package, LOCK).map_err(|error| vec![error.into()])? {
         Some(id) => lock::parse(sources, id),

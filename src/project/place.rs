@@ -3,7 +3,7 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use super::{MANIFEST, relative, slashed, unreadable, wesl_toml};
+use super::{MANIFEST, relative, unreadable_file, wesl_toml, with_slashes};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::manifest::{File, Program};
 
@@ -13,7 +13,7 @@ use crate::permute::manifest::{File, Program};
 pub fn root_of(file: &Path) -> PathBuf {
     let folder =
         file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    above(folder)
+    folders_above(folder)
         .iter()
         .find_map(|ancestor| declared_root(ancestor).filter(|root| relative(file, root).is_ok()))
         .unwrap_or_else(|| folder.to_owned())
@@ -21,7 +21,7 @@ pub fn root_of(file: &Path) -> PathBuf {
 
 /// The root of the package whose `wesl.toml` or manifest is in the folder or above it.
 pub fn package_above(folder: &Path) -> Option<PathBuf> {
-    let root = above(folder).iter().find_map(|ancestor| declared_root(ancestor))?;
+    let root = folders_above(folder).iter().find_map(|ancestor| declared_root(ancestor))?;
     Some(if root.as_os_str().is_empty() { PathBuf::from(".") } else { root })
 }
 
@@ -29,7 +29,7 @@ pub fn package_above(folder: &Path) -> Option<PathBuf> {
 pub fn package_at(folder: &Path) -> Option<PathBuf> {
     declared_root(folder).or_else(|| {
         let below = |root: &PathBuf| relative_folder(folder, root).is_ok();
-        above(folder).iter().find_map(|ancestor| declared_root(ancestor).filter(below))
+        folders_above(folder).iter().find_map(|ancestor| declared_root(ancestor).filter(below))
     })
 }
 
@@ -37,7 +37,7 @@ pub fn package_at(folder: &Path) -> Option<PathBuf> {
 pub fn relative_folder(folder: &Path, root: &Path) -> Result<String, Diagnostic> {
     let real = |path: &Path| {
         let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
-        path.canonicalize().map_err(|error| unreadable(path, &error))
+        path.canonicalize().map_err(|error| unreadable_file(path, &error))
     };
     let (folder_real, root_real) = (real(folder)?, real(root)?);
     let outside = || {
@@ -46,13 +46,16 @@ pub fn relative_folder(folder: &Path, root: &Path) -> Result<String, Diagnostic>
         Diagnostic::error(codes::OUTSIDE_ROOT, message)
     };
     let below = folder_real.strip_prefix(&root_real).map_err(|_| outside())?;
-    let below = slashed(below);
+    let below = with_slashes(below);
     Ok(if below.is_empty() { below } else { below + "/" })
 }
 
 /// The nearest manifest in a folder or above it.
 pub fn manifest_above(folder: &Path) -> Option<PathBuf> {
-    above(folder).into_iter().map(|ancestor| ancestor.join(MANIFEST)).find(|path| path.is_file())
+    folders_above(folder)
+        .into_iter()
+        .map(|ancestor| ancestor.join(MANIFEST))
+        .find(|path| path.is_file())
 }
 
 /// The root that a folder's `wesl.toml` declares, or the folder itself if it has a manifest.
@@ -65,7 +68,7 @@ fn declared_root(folder: &Path) -> Option<PathBuf> {
 pub fn root_beside(folder: &Path) -> PathBuf {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let declared = wesl_toml::declared_root(folder).filter(|root| root.is_dir());
-    declared.map_or_else(|| folder.to_owned(), |root| tidy(&root))
+    declared.map_or_else(|| folder.to_owned(), |root| tidy_path(&root))
 }
 
 /// The manifest of a package: in its root, or beside the `wesl.toml` that declares the root.
@@ -82,18 +85,18 @@ pub fn manifest_of(root: &Path) -> Option<PathBuf> {
 /// package's root.
 pub fn below_root(programs: &mut [Program], folder: &Path) -> Result<(), Diagnostics> {
     let root = root_beside(folder);
-    let prefix = tidy(tidy(&root).strip_prefix(tidy(folder)).unwrap_or(&root));
+    let prefix = tidy_path(tidy_path(&root).strip_prefix(tidy_path(folder)).unwrap_or(&root));
     let mut errors = Vec::new();
     for file in programs.iter_mut().flat_map(Program::files_mut) {
-        match tidy(Path::new(&file.path)).strip_prefix(&prefix) {
+        match tidy_path(Path::new(&file.path)).strip_prefix(&prefix) {
             Ok(path) => file.path = path.to_string_lossy().replace('\\', "/"),
-            Err(_) => errors.push(outside(file, &prefix)),
+            Err(_) => errors.push(outside_package(file, &prefix)),
         }
     }
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
-fn outside(file: &File, root: &Path) -> Diagnostic {
+fn outside_package(file: &File, root: &Path) -> Diagnostic {
     let root = root.display();
     let message = format!("`{}` is not below the package root `{root}`", file.path);
     Diagnostic::error(codes::OUTSIDE_ROOT, message).at(file.span, "named here").note(format!(
@@ -103,13 +106,13 @@ fn outside(file: &File, root: &Path) -> Diagnostic {
 }
 
 /// The path without `.` components.
-fn tidy(path: &Path) -> PathBuf {
+fn tidy_path(path: &Path) -> PathBuf {
     path.components().filter(|component| *component != Component::CurDir).collect()
 }
 
 /// A folder and all above it, by the names that were given as far as they reach and by `..` from
 /// there on.
-fn above(folder: &Path) -> Vec<PathBuf> {
+fn folders_above(folder: &Path) -> Vec<PathBuf> {
     let is_up = |path: &Path| path.components().next_back() == Some(Component::ParentDir);
     let mut found: Vec<PathBuf> = Vec::new();
     for ancestor in folder.ancestors() {
@@ -122,7 +125,7 @@ fn above(folder: &Path) -> Vec<PathBuf> {
     let here = if last.as_os_str().is_empty() { Path::new(".") } else { &last };
     let levels = here.canonicalize().map_or(0, |real| real.components().count());
     for _ in 1..levels {
-        last = tidy(&last).join("..");
+        last = tidy_path(&last).join("..");
         found.push(last.clone());
     }
     found

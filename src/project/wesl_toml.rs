@@ -28,7 +28,7 @@ pub fn declared_root(folder: &Path) -> Option<PathBuf> {
 
 /// The tables of a folder's file, if it is one that can be read.
 fn table_of(folder: &Path) -> Option<Table> {
-    let text = input::read(&folder.join(NAME), LIMITS.file_bytes as u64).ok()?;
+    let text = input::read_file(&folder.join(NAME), LIMITS.file_bytes as u64).ok()?;
     String::from_utf8(text).ok()?.parse().ok()
 }
 
@@ -39,16 +39,16 @@ pub fn declared_name(root: &Path) -> Option<String> {
 
 /// The packages that the root's `wesl.toml` lists, those they list in turn included.
 pub fn dependencies(root: &Path, sources: &mut SourceSet) -> Result<Vec<Package>, Diagnostics> {
-    found(root, sources).map(|found| found.packages)
+    find_tables(root, sources).map(|found| found.packages)
 }
 
 /// The features that the root's `wesl.toml` declares, and those of its dependencies.
 pub fn features(root: &Path, sources: &mut SourceSet) -> Result<Features, Diagnostics> {
     let mut apart = SourceSet::default();
-    let Ok(found) = found(root, &mut apart) else { return Ok(Features::default()) };
+    let Ok(found) = find_tables(root, &mut apart) else { return Ok(Features::default()) };
     let mut features = Features::default();
     for folder in found.folders {
-        let Ok((table, id)) = parse(&folder, &folder, sources) else { continue };
+        let Ok((table, id)) = parse_tables(&folder, &folder, sources) else { continue };
         if table.contains_key("features") {
             features.extend(manifest::read_features(sources, id)?);
         }
@@ -56,8 +56,8 @@ pub fn features(root: &Path, sources: &mut SourceSet) -> Result<Features, Diagno
     Ok(features)
 }
 
-fn found(root: &Path, sources: &mut SourceSet) -> Result<Found, Diagnostics> {
-    broken(root, sources)?;
+fn find_tables(root: &Path, sources: &mut SourceSet) -> Result<Found, Diagnostics> {
+    refuse_broken(root, sources)?;
     let Some(folder) = home(root) else { return Ok(Found::default()) };
     let shown = shown_home(root, &folder);
     let mut found = Found { visited: vec![folder], ..Found::default() };
@@ -87,7 +87,7 @@ pub fn shown_home(root: &Path, home: &Path) -> PathBuf {
 
 /// Refuses a `wesl.toml` of the root, or above it, that cannot be read. To ignore it would make its
 /// imports look wrong.
-fn broken(root: &Path, sources: &mut SourceSet) -> Result<(), Diagnostics> {
+fn refuse_broken(root: &Path, sources: &mut SourceSet) -> Result<(), Diagnostics> {
     let Ok(real) = root.canonicalize() else { return Ok(()) };
     for folder in [Some(real.as_path()), real.parent()]
         .into_iter()
@@ -95,13 +95,13 @@ fn broken(root: &Path, sources: &mut SourceSet) -> Result<(), Diagnostics> {
         .filter(|folder| folder.join(NAME).is_file())
     {
         let shown = if folder == real { root.to_owned() } else { root.join("..") };
-        parse(folder, &shown, sources).map_err(|error| vec![error])?;
+        parse_tables(folder, &shown, sources).map_err(|error| vec![error])?;
     }
     Ok(())
 }
 
 /// The tables of a folder's `wesl.toml`, which is there; `shown` is the folder's name in diagnostics.
-fn parse(
+fn parse_tables(
     folder: &Path,
     shown: &Path,
     sources: &mut SourceSet,
@@ -125,12 +125,12 @@ fn parse(
         Diagnostic::error(codes::WESL_TOML, "`wesl.toml` is not valid TOML")
             .at(span, error.message().replace('\n', "; "))
     })?;
-    check(&table, id, &text)?;
+    check_values(&table, id, &text)?;
     Ok((table, id))
 }
 
 /// Checks that the values that are read have the expected types.
-fn check(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
+fn check_values(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
     let wrong = |what: &str, expected: &str, key: &str| {
         let start = text.find(key).unwrap_or(0);
         let message = format!("{what} of `wesl.toml` is not {expected}");
@@ -201,7 +201,7 @@ impl Files for Shown {
     }
 
     fn display(&self, path: &str) -> String {
-        source::shown(&self.folder.join(path))
+        source::shown_path(&self.folder.join(path))
     }
 
     fn on_disk(&self, path: &str) -> bool {
@@ -234,7 +234,7 @@ impl Found {
         if !folder.join(NAME).is_file() {
             return;
         }
-        let (table, id) = match parse(folder, folder, sources) {
+        let (table, id) = match parse_tables(folder, folder, sources) {
             Ok(found) => found,
             Err(error) => return self.diagnostics.push(error),
         };
@@ -290,7 +290,7 @@ impl Found {
     /// Adds the dependency in `folder`.
     fn add(&mut self, name: &str, folder: &Path, span: Span, sources: &mut SourceSet) {
         if folder.join(NAME).is_file()
-            && let Err(error) = parse(folder, folder, sources)
+            && let Err(error) = parse_tables(folder, folder, sources)
         {
             return self.diagnostics.push(error.at(span, "of this dependency"));
         }

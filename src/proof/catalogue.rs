@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use super::library::Library;
 use super::plots;
-use crate::catalogue::pages::{Contents, pages as written};
+use crate::catalogue::pages::{Contents, catalogue_pages as written};
 use crate::catalogue::{self, Module, cost, plot, prefix, preset, probe};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::{Session, executors, on_thread};
@@ -17,49 +17,50 @@ use crate::source::{self, Embedded, Package, SourceSet};
 pub type Files = BTreeMap<String, String>;
 
 /// The catalogue's files. Errors are about the library, and come with its texts.
-pub fn pages() -> Result<Files, (SourceSet, Diagnostics)> {
+pub fn catalogue_files() -> Result<Files, (SourceSet, Diagnostics)> {
     let (sources, manifest) = project::library_manifest()?;
     let sources = Mutex::new(sources);
-    let made = on_thread(|| contents(&sources, &manifest)).unwrap_or_else(|| Err(vec![stopped()]));
+    let made = on_thread(|| read_contents(&sources, &manifest))
+        .unwrap_or_else(|| Err(vec![drawing_stopped()]));
     made.map_err(|problems| (sources.into_inner().unwrap_or_default(), problems))
 }
 
 /// Files of the library that are made from others, by path below the library: modules and cases
 /// from its data, and the names with a prefix.
-pub fn modules() -> Result<Files, (SourceSet, Diagnostics)> {
+pub fn made_modules() -> Result<Files, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
     let probes = match probe::library(&mut sources) {
         Ok(probes) => probes,
         Err(problems) => return Err((sources, problems)),
     };
     let made = [
-        ("ambient/probes.wesl", probe::wesl(&probes)),
-        ("ambient/probes.glsl", probe::glsl(&probes)),
-        ("ambient/probes.toml", probe::cases(&probes)),
-        (prefix::PATH, prefix::glsl(&Embedded)),
+        ("ambient/probes.wesl", probe::wesl_module(&probes)),
+        ("ambient/probes.glsl", probe::glsl_module(&probes)),
+        ("ambient/probes.toml", probe::numeric_cases(&probes)),
+        (prefix::PATH, prefix::prefix_file(&Embedded)),
     ];
     Ok(made.into_iter().map(|(path, text)| (path.to_owned(), text)).collect())
 }
 
-fn contents(sources: &Mutex<SourceSet>, manifest: &Manifest) -> Result<Files, Diagnostics> {
-    let modules = catalogue::library();
-    let plots = drawn(sources, &modules)?;
-    let probes = probe::library(&mut lock(sources))?;
-    let presets = preset::library(&mut lock(sources), manifest, &probes)?;
+fn read_contents(sources: &Mutex<SourceSet>, manifest: &Manifest) -> Result<Files, Diagnostics> {
+    let modules = catalogue::library_modules();
+    let plots = draw_plots(sources, &modules)?;
+    let probes = probe::library(&mut lock_sources(sources))?;
+    let presets = preset::library_presets(&mut lock_sources(sources), manifest, &probes)?;
     Ok(written(&Contents {
         modules: &modules,
         plots: &plots,
         manifest,
         presets: &presets,
         probes: &probes,
-        costs: &cost::library(&mut lock(sources))?,
+        costs: &cost::library_costs(&mut lock_sources(sources))?,
     }))
 }
 
 /// The SVG of every plot, by the path of its function.
-fn drawn(sources: &Mutex<SourceSet>, modules: &[Module]) -> Result<Files, Diagnostics> {
+fn draw_plots(sources: &Mutex<SourceSet>, modules: &[Module]) -> Result<Files, Diagnostics> {
     let (executor, library) = (executors::eval::EXECUTOR, Library::embedded());
-    let mut session = executor.start().map_err(|_| vec![stopped()])?;
+    let mut session = executor.start().map_err(|_| vec![drawing_stopped()])?;
     let mut found = Files::new();
     for module in modules {
         for (name, plot) in read_plots(sources, &module.path)? {
@@ -67,10 +68,16 @@ fn drawn(sources: &Mutex<SourceSet>, modules: &[Module]) -> Result<Files, Diagno
             if !module.items.iter().any(|item| item.name == name) {
                 return Err(vec![Diagnostic::error(
                     codes::UNKNOWN_FUNCTION,
-                    format!("`{}` plots `{path}`, which does not exist", plot::path(&module.path)),
+                    format!(
+                        "`{}` plots `{path}`, which does not exist",
+                        plot::plot_path(&module.path)
+                    ),
                 )]);
             }
-            found.insert(path.clone(), draw(&library, sources, &path, &plot, session.as_mut())?);
+            found.insert(
+                path.clone(),
+                draw_plot(&library, sources, &path, &plot, session.as_mut())?,
+            );
         }
     }
     Ok(found)
@@ -78,30 +85,30 @@ fn drawn(sources: &Mutex<SourceSet>, modules: &[Module]) -> Result<Files, Diagno
 
 fn read_plots(sources: &Mutex<SourceSet>, module: &str) -> Result<plot::Plots, Diagnostics> {
     let package = Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) };
-    let mut sources = lock(sources);
-    match source::read(&mut sources, &package, &plot::path(module))
+    let mut sources = lock_sources(sources);
+    match source::read(&mut sources, &package, &plot::plot_path(module))
         .map_err(|error| vec![error.into()])?
     {
-        Some(id) => plot::parse(&sources, id),
+        Some(id) => plot::parse_plots(&sources, id),
         None => Ok(plot::Plots::new()),
     }
 }
 
-fn draw(
+fn draw_plot(
     library: &Library,
     sources: &Mutex<SourceSet>,
     path: &str,
     plot: &plot::Plot,
     session: &mut dyn Session,
 ) -> Result<String, Diagnostics> {
-    let curves = plots::curves(library, sources, path, plot, session)?;
-    Ok(plot::draw(path.rsplit("::").next().unwrap_or(path), plot, &curves))
+    let curves = plots::plot_curves(library, sources, path, plot, session)?;
+    Ok(plot::draw_plot(path.rsplit("::").next().unwrap_or(path), plot, &curves))
 }
 
-fn stopped() -> Diagnostic {
+fn drawing_stopped() -> Diagnostic {
     Diagnostic::error(codes::EVAL_INTERNAL, "the plots stopped with an internal error")
 }
 
-fn lock(sources: &Mutex<SourceSet>) -> std::sync::MutexGuard<'_, SourceSet> {
+fn lock_sources(sources: &Mutex<SourceSet>) -> std::sync::MutexGuard<'_, SourceSet> {
     sources.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }

@@ -10,7 +10,7 @@ mod functions;
 
 use std::ops::Range;
 
-use crate::diagnostic::{Diagnostic, codes, nearest};
+use crate::diagnostic::{Diagnostic, codes, nearest_name};
 use crate::execute::kernel::Shape;
 use crate::limits::{FORMULA_NESTING, FORMULA_PARTS};
 use crate::parse::words::{begins_word, continues_word, number_end};
@@ -31,14 +31,14 @@ type Operator = (&'static str, u8, fn(f64, f64) -> f64);
 
 /// Longer ones before those that they begin with.
 const OPERATORS: &[Operator] = &[
-    ("||", 1, |a, b| truth(a != 0.0 || b != 0.0)),
-    ("&&", 2, |a, b| truth(a != 0.0 && b != 0.0)),
-    ("<=", 3, |a, b| truth(a <= b)),
-    (">=", 3, |a, b| truth(a >= b)),
-    ("==", 3, |a, b| truth(a == b)),
-    ("!=", 3, |a, b| truth(a != b)),
-    ("<", 3, |a, b| truth(a < b)),
-    (">", 3, |a, b| truth(a > b)),
+    ("||", 1, |a, b| truth_value(a != 0.0 || b != 0.0)),
+    ("&&", 2, |a, b| truth_value(a != 0.0 && b != 0.0)),
+    ("<=", 3, |a, b| truth_value(a <= b)),
+    (">=", 3, |a, b| truth_value(a >= b)),
+    ("==", 3, |a, b| truth_value(a == b)),
+    ("!=", 3, |a, b| truth_value(a != b)),
+    ("<", 3, |a, b| truth_value(a < b)),
+    (">", 3, |a, b| truth_value(a > b)),
     ("+", 4, |a, b| a + b),
     ("-", 4, |a, b| a - b),
     ("*", 5, |a, b| a * b),
@@ -92,9 +92,9 @@ impl Formula {
         match self {
             Self::Number(value) => vec![*value],
             Self::Words(first, count) => row[*first..first + count].to_vec(),
-            Self::Negated(inner) => map(&inner.eval(row), |x| -x),
+            Self::Negated(inner) => map_components(&inner.eval(row), |x| -x),
             Self::Binary(operator, left, right) => {
-                zip(&left.eval(row), &right.eval(row), operator.2)
+                zip_components(&left.eval(row), &right.eval(row), operator.2)
             }
             Self::Call(function, arguments) => (function.apply)(
                 &arguments.iter().map(|argument| argument.eval(row)).collect::<Vec<_>>(),
@@ -243,7 +243,7 @@ impl Parser<'_> {
         let path: Vec<String> = name.split('.').map(str::to_owned).collect();
         self.scope.words(&path).map(|(first, count)| Formula::Words(first, count)).ok_or_else(
             || {
-                let known = nearest(name, self.scope.0.iter().map(|(name, _)| *name));
+                let known = nearest_name(name, self.scope.0.iter().map(|(name, _)| *name));
                 (
                     range,
                     format!(
@@ -258,7 +258,7 @@ impl Parser<'_> {
 
     fn call(&mut self, name: &str, range: Range<usize>) -> Parsed {
         let Some(function) = FUNCTIONS.iter().find(|function| function.name == name) else {
-            let known = nearest(name, FUNCTIONS.iter().map(|function| function.name));
+            let known = nearest_name(name, FUNCTIONS.iter().map(|function| function.name));
             let known = known.map_or(String::new(), |known| format!("; did you mean `{known}`?"));
             let names: Vec<&str> = FUNCTIONS.iter().map(|function| function.name).collect();
             return Err(Mistake {
@@ -296,17 +296,17 @@ impl Parser<'_> {
     }
 }
 
-fn truth(value: bool) -> f64 {
+fn truth_value(value: bool) -> f64 {
     f64::from(u8::from(value))
 }
 
-fn map(a: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> {
+fn map_components(a: &[f64], f: impl Fn(f64) -> f64) -> Vec<f64> {
     a.iter().map(|x| f(*x)).collect()
 }
 
 /// Applies `f` to each component. A scalar is used for every component. Of two vectors the shorter
 /// one decides how many components there are.
-fn zip(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+fn zip_components(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     let count = match (a.len(), b.len()) {
         (1, n) | (n, 1) => n,
         (n, m) => n.min(m),

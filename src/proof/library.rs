@@ -112,7 +112,7 @@ impl Library {
 
     /// What drivers were measured to need for the package's tolerances, if that is recorded.
     pub fn ratchet(&self, sources: &Mutex<SourceSet>) -> Result<Option<Ratchet>, Diagnostics> {
-        let mut sources = lock(sources);
+        let mut sources = lock_sources(sources);
         let id = source::read(&mut sources, &self.package(), ratchet::FILE)
             .map_err(|error| vec![error.into()])?;
         id.map(|id| Ratchet::parse(&sources.get(id).text, id))
@@ -137,7 +137,7 @@ impl Library {
         for (module, file) in &files {
             let text = |ending| self.text(&format!("{}.{ending}", module.replace("::", "/")));
             report.untested.extend(match (text("wesl"), text("glsl")) {
-                (Some(text), _) => untested::of(module, &text, file),
+                (Some(text), _) => untested::untested_functions(module, &text, file),
                 (None, Some(text)) => untested::of_glsl(module, &text, file),
                 (None, None) => Vec::new(),
             });
@@ -151,7 +151,7 @@ impl Library {
         sources: &Mutex<SourceSet>,
         paths: &[String],
     ) -> Result<Vec<(String, File)>, Diagnostics> {
-        let mut sources = lock(sources);
+        let mut sources = lock_sources(sources);
         let package = self.package();
         let mut files = Vec::new();
         for path in paths {
@@ -165,7 +165,7 @@ impl Library {
             })?;
             files.push((
                 path.trim_end_matches(".toml").replace('/', "::"),
-                cases::parse(&sources, id)?,
+                cases::parse_cases(&sources, id)?,
             ));
         }
         Ok(files)
@@ -179,7 +179,7 @@ impl Library {
     ) -> Result<(Composed, Validated), Diagnostics> {
         let packages = Packages { root: self.package(), dependencies: self.dependencies() };
         let root = format!("{}.wesl", module.replace("::", "/"));
-        let graph = resolve::wesl::load(&mut lock(sources), &packages, &root)?;
+        let graph = resolve::wesl::load(&mut lock_sources(sources), &packages, &root)?;
         let composed = compose::wesl::compose(&graph, &self.settings, &Options::default())?;
         let validated = validate::validate(&composed)?;
         Ok((composed, validated))
@@ -248,15 +248,15 @@ impl Library {
     }
 
     fn package(&self) -> Package {
-        shared(&self.name, &self.files)
+        shared_package(&self.name, &self.files)
     }
 
     fn dependencies(&self) -> Vec<Package> {
-        self.dependencies.iter().map(|(name, files)| shared(name, files)).collect()
+        self.dependencies.iter().map(|(name, files)| shared_package(name, files)).collect()
     }
 }
 
-fn shared(name: &str, files: &Arc<dyn Files>) -> Package {
+fn shared_package(name: &str, files: &Arc<dyn Files>) -> Package {
     Package {
         name: name.to_owned(),
         files: Box::new(Overlay { base: files.clone(), extra: BTreeMap::new() }),
@@ -274,7 +274,7 @@ fn composed(
     let mut keep = functions.to_vec();
     match language {
         Language::Wesl => {
-            let graph = resolve::wesl::load(&mut lock(sources), packages, root)?;
+            let graph = resolve::wesl::load(&mut lock_sources(sources), packages, root)?;
             compose::wesl::compose(
                 &graph,
                 settings,
@@ -282,7 +282,7 @@ fn composed(
             )
         }
         Language::Glsl => {
-            let graph = resolve::glsl::load(&mut lock(sources), packages, root)?;
+            let graph = resolve::glsl::load(&mut lock_sources(sources), packages, root)?;
             keep.push("main".to_owned());
             compose::glsl::compose(
                 &graph,
@@ -316,6 +316,6 @@ impl Files for Overlay {
     }
 }
 
-fn lock(sources: &Mutex<SourceSet>) -> std::sync::MutexGuard<'_, SourceSet> {
+fn lock_sources(sources: &Mutex<SourceSet>) -> std::sync::MutexGuard<'_, SourceSet> {
     sources.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -14,7 +14,7 @@ use crate::source::SourceSet;
 const FUNCTION: &str = "lamplight_plot";
 
 /// The value of each of a plot's curves at each of its inputs. `path` is the function's in the library.
-pub fn curves(
+pub fn plot_curves(
     library: &Library,
     sources: &Mutex<SourceSet>,
     path: &str,
@@ -28,7 +28,8 @@ pub fn curves(
         library.name()
     );
     let module = library.importing(sources, ("plot.wesl", &text), Language::Wesl, FUNCTION)?.module;
-    let kernel = kernel::build(&module, FUNCTION, &BTreeMap::new()).map_err(|error| vec![error])?;
+    let kernel =
+        kernel::build_kernel(&module, FUNCTION, &BTreeMap::new()).map_err(|error| vec![error])?;
     if kernel.input_words() != 2 || kernel.result_words() != 1 {
         return Err(vec![Diagnostic::error(
             codes::UNTESTABLE_FUNCTION,

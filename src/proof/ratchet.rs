@@ -73,7 +73,7 @@ impl Ratchet {
             Diagnostic::error(codes::CASE_INVALID, what).at(Span::new(id, 0..0), "in this file")
         };
         let texts = |value: &Value| value.as_str().map(str::to_owned);
-        let adapters = entries(&table, "adapter")
+        let adapters = table_entries(&table, "adapter")
             .filter_map(|(name, value)| Some((name.clone(), texts(value)?)))
             .collect();
         let shares = |value: &Value| -> BTreeMap<String, f64> {
@@ -81,14 +81,15 @@ impl Ratchet {
                 .as_table()
                 .into_iter()
                 .flatten()
-                .filter_map(|(name, value)| Some((name.clone(), number(value)?)))
+                .filter_map(|(name, value)| Some((name.clone(), number_of(value)?)))
                 .collect()
         };
-        let shares =
-            entries(&table, "share").map(|(name, value)| (name.clone(), shares(value))).collect();
+        let shares = table_entries(&table, "share")
+            .map(|(name, value)| (name.clone(), shares(value)))
+            .collect();
         let waivers = table.get("waiver").and_then(Value::as_array).into_iter().flatten();
         let waivers = waivers.map(|value| {
-            waiver(value).ok_or_else(|| {
+            read_waiver(value).ok_or_else(|| {
                 wrong(
                     "a waiver has a `function`, an `executor`, a `share` and a `reason`".to_owned(),
                 )
@@ -125,7 +126,7 @@ impl Ratchet {
 
     /// The recorded share of a case on an executor, if it was measured on that adapter.
     pub fn share(&self, record: &str, executor: &str, adapter: &str) -> Option<f64> {
-        self.adapters.get(executor).filter(|known| **known == pinned(adapter))?;
+        self.adapters.get(executor).filter(|known| **known == pinned_adapter(adapter))?;
         self.shares.get(record)?.get(executor).copied()
     }
 
@@ -139,8 +140,10 @@ impl Ratchet {
     /// Lowers the shares to what a report measured. They are raised only by force. Shares from
     /// another adapter are measured again. What fails is not recorded.
     pub fn bless(&mut self, report: &Report, force: bool) {
-        for (executor, adapter) in
-            report.outcomes.iter().map(|outcome| (outcome.executor, pinned(&outcome.adapter)))
+        for (executor, adapter) in report
+            .outcomes
+            .iter()
+            .map(|outcome| (outcome.executor, pinned_adapter(&outcome.adapter)))
         {
             if self.adapters.get(executor) != Some(&adapter) {
                 self.shares
@@ -149,7 +152,7 @@ impl Ratchet {
                 self.adapters.insert(executor.to_owned(), adapter);
             }
         }
-        for ((record, executor), measured) in measured(report) {
+        for ((record, executor), measured) in measured_shares(report) {
             let shares = self.shares.entry(record).or_default();
             let known = shares.get(executor).copied().filter(|_| !force).unwrap_or(f64::INFINITY);
             shares.insert(executor.to_owned(), known.min(measured));
@@ -158,7 +161,7 @@ impl Ratchet {
 }
 
 /// The worst share of each case and executor that passes, rounded up.
-fn measured(report: &Report) -> BTreeMap<(String, &'static str), f64> {
+fn measured_shares(report: &Report) -> BTreeMap<(String, &'static str), f64> {
     let mut found = BTreeMap::new();
     for outcome in report.outcomes.iter().filter(|outcome| outcome.is_within()) {
         let Ok(verdict) = &outcome.verdict else { continue };
@@ -175,7 +178,7 @@ fn measured(report: &Report) -> BTreeMap<(String, &'static str), f64> {
 
 /// An adapter's name without what is in parentheses, since the width of vectors differs between
 /// processors.
-pub fn pinned(adapter: &str) -> String {
+pub fn pinned_adapter(adapter: &str) -> String {
     let mut depth = 0;
     let mut kept = String::new();
     for letter in adapter.chars() {
@@ -188,21 +191,24 @@ pub fn pinned(adapter: &str) -> String {
     kept.split_whitespace().collect::<Vec<_>>().join(" ").replace(" ,", ",")
 }
 
-fn entries<'t>(table: &'t Table, name: &str) -> impl Iterator<Item = (&'t String, &'t Value)> {
+fn table_entries<'t>(
+    table: &'t Table,
+    name: &str,
+) -> impl Iterator<Item = (&'t String, &'t Value)> {
     table.get(name).and_then(Value::as_table).into_iter().flatten()
 }
 
-fn number(value: &Value) -> Option<f64> {
+fn number_of(value: &Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|number| number as f64))
 }
 
-fn waiver(value: &Value) -> Option<Waiver> {
+fn read_waiver(value: &Value) -> Option<Waiver> {
     let text =
         |name: &str| value.get(name)?.as_str().filter(|text| !text.is_empty()).map(str::to_owned);
     Some(Waiver {
         function: text("function")?,
         executor: text("executor")?,
-        share: number(value.get("share")?)?,
+        share: number_of(value.get("share")?)?,
         reason: text("reason")?,
     })
 }

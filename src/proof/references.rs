@@ -151,7 +151,7 @@ impl From<DMat3> for Expected {
 include!(concat!(env!("OUT_DIR"), "/references.rs"));
 
 /// The reference of a function by its path below the package.
-pub fn find(module: &str, function: &str) -> Option<Reference> {
+pub fn find_reference(module: &str, function: &str) -> Option<Reference> {
     let entry = ALL.iter().find(|entry| entry.module == module)?;
     entry.functions.iter().find(|(name, _)| *name == function).map(|(_, reference)| *reference)
 }

@@ -32,10 +32,10 @@ pub struct Kind {
 
 /// Every kind, by name.
 pub const TERMS: &[Kind] = &[
-    Kind { name: "ulp", formulas: &[], default: 1.0, allowed: |k, _, y| k * ulp(y) },
+    Kind { name: "ulp", formulas: &[], default: 1.0, allowed: |k, _, y| k * ulp_of(y) },
     Kind { name: "abs", formulas: &[], default: 0.0, allowed: |a, _, _| a },
     Kind { name: "rel", formulas: &[], default: 0.0, allowed: |r, _, y| r * y.abs() },
-    Kind { name: "pow", formulas: &["base", "exponent"], default: 2.0, allowed: pow },
+    Kind { name: "pow", formulas: &["base", "exponent"], default: 2.0, allowed: pow_error },
     Kind {
         name: "scaled",
         formulas: &["by"],
@@ -61,7 +61,7 @@ impl std::fmt::Debug for Kind {
 }
 
 /// The kind of that name.
-pub fn find(name: &str) -> Option<&'static Kind> {
+pub fn find_kind(name: &str) -> Option<&'static Kind> {
     TERMS.iter().find(|kind| kind.name == name)
 }
 
@@ -80,7 +80,7 @@ impl Bound {
 }
 
 /// Binds the formulas of a case's terms.
-pub fn bind(
+pub fn bind_terms(
     terms: &[Term<super::cases::Text>],
     scope: &Scope<'_>,
     result: &[Shape],
@@ -88,7 +88,7 @@ pub fn bind(
     let all: u32 = result.iter().map(Shape::words).sum();
     let bound = terms.iter().map(|term| {
         let words = match &term.only {
-            Some(path) => part(path, result).ok_or_else(|| {
+            Some(path) => result_part(path, result).ok_or_else(|| {
                 let message = format!("the result has no part `{path}`");
                 Diagnostic::error(crate::diagnostic::codes::CASE_INVALID, message)
             })?,
@@ -109,19 +109,19 @@ pub fn bind(
     bound.collect()
 }
 
-fn part(path: &str, result: &[Shape]) -> Option<std::ops::Range<usize>> {
+fn result_part(path: &str, result: &[Shape]) -> Option<std::ops::Range<usize>> {
     let parts: Vec<String> = path.split('.').map(str::to_owned).collect();
     let (first, shape) = result.first()?.part(&parts)?;
     Some(first as usize..(first + shape.words()) as usize)
 }
 
 /// The values of the terms' formulas over a row, which do not depend on the component.
-pub fn values(terms: &[Bound], row: &[f64]) -> Vec<f64> {
+pub fn formula_values(terms: &[Bound], row: &[f64]) -> Vec<f64> {
     terms.iter().flat_map(|bound| &bound.term.formulas).map(|formula| formula.scalar(row)).collect()
 }
 
-/// What the terms allow for one component of a row's result, given the row's [`values`].
-pub fn allowed(terms: &[Bound], values: &[f64], word: usize, expected: f64) -> f64 {
+/// What the terms allow for one component of a row's result, given the row's [`formula_values`].
+pub fn allowed_error(terms: &[Bound], values: &[f64], word: usize, expected: f64) -> f64 {
     let (mut sum, mut rest) = (0.0, values);
     for Bound { term, words } in terms {
         let (own, others) = rest.split_at(term.formulas.len().min(rest.len()));
@@ -135,13 +135,13 @@ pub fn allowed(terms: &[Bound], values: &[f64], word: usize, expected: f64) -> f
 }
 
 /// Distance from the f32 nearest to `y` to its neighbour away from zero.
-pub fn ulp(y: f64) -> f64 {
+pub fn ulp_of(y: f64) -> f64 {
     let y = (y as f32).abs().clamp(f32::MIN_POSITIVE, f32::MAX.next_down());
     f64::from(y.next_up()) - f64::from(y)
 }
 
 /// `exp2(s*log2(x))` as the WGSL specification bounds it, with the base's own error.
-fn pow(ulps: f64, of: &[f64], y: f64) -> f64 {
+fn pow_error(ulps: f64, of: &[f64], y: f64) -> f64 {
     let (x, s) = (of[0], of[1].abs());
     if x <= 0.0 {
         return 0.0;

@@ -9,32 +9,32 @@ use crate::source::{SourceId, SourceSet};
 
 /// Paths of the functions of a WESL module that no case names and that no named function calls.
 /// Entry points need no cases.
-pub fn of(module: &str, text: &str, file: &File) -> Vec<String> {
+pub fn untested_functions(module: &str, text: &str, file: &File) -> Vec<String> {
     let mut names = Names::default();
     let parsed = wesl::parse(SourceId(0), text.into(), &mut names);
-    let tried = named(file).filter_map(|name| names.find(name)).collect();
-    let reached = reached(tried, |name| {
+    let tried = named_functions(file).filter_map(|name| names.find(name)).collect();
+    let reached = reached_from(tried, |name| {
         let items = parsed.items.iter().filter(|item| item.name == name);
-        items.flat_map(|item| used(&parsed, item)).collect()
+        items.flat_map(|item| used_names(&parsed, item)).collect()
     });
     let functions = parsed.items.iter().filter(|item| item.kind == ItemKind::Function);
     let missed = functions.filter(|item| !item.entry && !reached.contains(&item.name));
-    paths(module, missed.map(|item| names.text(item.name)))
+    function_paths(module, missed.map(|item| names.text(item.name)))
 }
 
 /// The same for a GLSL module, whichever of its conditions hold.
 pub fn of_glsl(module: &str, text: &str, file: &File) -> Vec<String> {
     let (mut sources, mut symbols) = (SourceSet::default(), Symbols::default());
     let id = sources.add(format!("{module}.glsl"), text);
-    let functions = definitions(&glsl::parse(&sources, id, &mut symbols));
-    let tried = named(file).filter_map(|name| symbols.find(name)).collect();
-    let reached = reached(tried, |name| functions.get(&name).cloned().unwrap_or_default());
+    let functions = function_definitions(&glsl::parse(&sources, id, &mut symbols));
+    let tried = named_functions(file).filter_map(|name| symbols.find(name)).collect();
+    let reached = reached_from(tried, |name| functions.get(&name).cloned().unwrap_or_default());
     let missed = functions.keys().filter(|name| **name != known::MAIN && !reached.contains(name));
-    paths(module, missed.map(|name| symbols.text(*name)))
+    function_paths(module, missed.map(|name| symbols.text(*name)))
 }
 
 /// The functions that cases name, partners of laws among them.
-fn named(file: &File) -> impl Iterator<Item = &str> {
+fn named_functions(file: &File) -> impl Iterator<Item = &str> {
     file.cases.iter().flat_map(|case| {
         let partners = case.laws.iter().flat_map(|law| &law.partners);
         std::iter::once(case.function.as_str()).chain(partners.map(|partner| partner.as_str()))
@@ -42,7 +42,7 @@ fn named(file: &File) -> impl Iterator<Item = &str> {
 }
 
 /// What is named, and everything that this uses.
-fn reached<N: Copy + Ord>(mut open: Vec<N>, uses: impl Fn(N) -> Vec<N>) -> BTreeSet<N> {
+fn reached_from<N: Copy + Ord>(mut open: Vec<N>, uses: impl Fn(N) -> Vec<N>) -> BTreeSet<N> {
     let mut reached = BTreeSet::new();
     while let Some(name) = open.pop() {
         if reached.insert(name) {
@@ -52,13 +52,13 @@ fn reached<N: Copy + Ord>(mut open: Vec<N>, uses: impl Fn(N) -> Vec<N>) -> BTree
     reached
 }
 
-fn paths<'a>(module: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
+fn function_paths<'a>(module: &str, names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let paths: BTreeSet<String> = names.map(|name| format!("{module}::{name}")).collect();
     paths.into_iter().collect()
 }
 
 /// Every function that a GLSL file defines, with the identifiers of its body.
-fn definitions(module: &glsl::Module) -> BTreeMap<Symbol, Vec<Symbol>> {
+fn function_definitions(module: &glsl::Module) -> BTreeMap<Symbol, Vec<Symbol>> {
     let texts = module.parts.iter().filter_map(|part| match part {
         Part::Text(text) => Some(text.tokens.start as usize..text.tokens.end as usize),
         Part::Directive(..) => None,
@@ -69,11 +69,11 @@ fn definitions(module: &glsl::Module) -> BTreeMap<Symbol, Vec<Symbol>> {
     while at < tokens.len() {
         let next = |at: usize| tokens.get(at).map(|token| token.symbol);
         if next(at) == Some(known::OPEN_BRACE) {
-            at = closed(&tokens, at, known::OPEN_BRACE, known::CLOSE_BRACE);
+            at = closing_token(&tokens, at, known::OPEN_BRACE, known::CLOSE_BRACE);
         } else if tokens[at].kind == Kind::Identifier && next(at + 1) == Some(known::OPEN) {
-            let body = closed(&tokens, at + 1, known::OPEN, known::CLOSE);
+            let body = closing_token(&tokens, at + 1, known::OPEN, known::CLOSE);
             if next(body) == Some(known::OPEN_BRACE) {
-                let end = closed(&tokens, body, known::OPEN_BRACE, known::CLOSE_BRACE);
+                let end = closing_token(&tokens, body, known::OPEN_BRACE, known::CLOSE_BRACE);
                 let words = tokens[body..end].iter().filter(|word| word.kind == Kind::Identifier);
                 found.entry(tokens[at].symbol).or_default().extend(words.map(|word| word.symbol));
                 at = end;
@@ -88,7 +88,7 @@ fn definitions(module: &glsl::Module) -> BTreeMap<Symbol, Vec<Symbol>> {
 }
 
 /// The token after the bracket that closes the one at `at`.
-fn closed(tokens: &[&Token], at: usize, open: Symbol, close: Symbol) -> usize {
+fn closing_token(tokens: &[&Token], at: usize, open: Symbol, close: Symbol) -> usize {
     let mut depth = 0usize;
     for (index, token) in tokens.iter().enumerate().skip(at) {
         if token.symbol == open {
@@ -104,7 +104,7 @@ fn closed(tokens: &[&Token], at: usize, open: Symbol, close: Symbol) -> usize {
 }
 
 /// The module's own names that an item uses.
-fn used<'a>(module: &'a Module, item: &'a Item) -> impl Iterator<Item = Name> + 'a {
+fn used_names<'a>(module: &'a Module, item: &'a Item) -> impl Iterator<Item = Name> + 'a {
     item.events.iter().filter_map(|event| match event {
         Event::Use { reference, .. } => match &module.references[*reference as usize] {
             Reference::Name(name) => Some(*name),

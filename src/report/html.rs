@@ -6,16 +6,17 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::plot::{Series, error_plot, heat_map};
-use super::{Origin, escaped};
+use super::{Origin, escape_markup};
 use crate::bundle::Language;
 use crate::proof::check::{
-    Input, Outcome, Proof, Report, Verdict, failures_as_text, language, of_outcome, short,
+    Input, Outcome, Proof, Report, Verdict, failures_as_text, language_name, of_outcome,
+    short_number,
 };
 
 const STYLE: &str = include_str!("style.css");
 
 /// The report as a page.
-pub fn page(report: &Report, origin: &Origin<'_>) -> String {
+pub fn html_report(report: &Report, origin: &Origin<'_>) -> String {
     let page = Page::new(report, origin);
     let mut html = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\n\
@@ -28,7 +29,7 @@ pub fn page(report: &Report, origin: &Origin<'_>) -> String {
     for (path, outcomes) in page.failures_first() {
         page.function(&mut html, path, outcomes);
     }
-    columns::legend(&mut html);
+    columns::write_legend(&mut html);
     html + "</main></body></html>\n"
 }
 
@@ -68,8 +69,9 @@ impl<'a> Page<'a> {
     /// Links to what fails, above everything else.
     fn failed(&self, html: &mut String) {
         let failing = self.functions.iter().filter(|(path, outcomes)| self.fails(path, outcomes));
-        let links: Vec<String> =
-            failing.map(|(path, _)| format!("<a href=\"#{0}\">{0}</a>", escaped(path))).collect();
+        let links: Vec<String> = failing
+            .map(|(path, _)| format!("<a href=\"#{0}\">{0}</a>", escape_markup(path)))
+            .collect();
         if !links.is_empty() {
             let _ = writeln!(
                 html,
@@ -78,7 +80,7 @@ impl<'a> Page<'a> {
             );
         }
         if !self.report.untested.is_empty() {
-            let untested = escaped(&self.report.untested.join(", "));
+            let untested = escape_markup(&self.report.untested.join(", "));
             let _ = writeln!(html, "<p class=\"note\">Without a case: {untested}.</p>");
         }
     }
@@ -119,10 +121,10 @@ impl<'a> Page<'a> {
             let _ = write!(
                 html,
                 "<li><i class=\"swatch b{index}\"></i><b>{executor}</b> {}</li>",
-                escaped(adapter)
+                escape_markup(adapter)
             );
         }
-        let (version, command) = (env!("CARGO_PKG_VERSION"), escaped(&self.origin.command));
+        let (version, command) = (env!("CARGO_PKG_VERSION"), escape_markup(&self.origin.command));
         let _ =
             write!(html, "</ul><p class=\"note\">lamplight {version}: <code>{command}</code></p>");
         html.push_str("<p class=\"note\">Lines show the largest error over each parameter, dashed for GLSL; the grey area is what is allowed. Headroom is what is left of that.</p>\n");
@@ -136,12 +138,12 @@ impl<'a> Page<'a> {
         }
         html.push_str("</tr></thead><tbody>\n");
         for (path, outcomes) in self.failures_first() {
-            let _ = write!(html, "<tr><td><a href=\"#{0}\">{0}</a></td>", escaped(path));
+            let _ = write!(html, "<tr><td><a href=\"#{0}\">{0}</a></td>", escape_markup(path));
             for executor in &self.executors {
                 let own: Vec<&&Outcome> =
                     outcomes.iter().filter(|outcome| outcome.executor == *executor).collect();
-                let share = own.iter().map(|outcome| share(outcome)).fold(0.0, f64::max);
-                let text = cell(!own.iter().any(|outcome| outcome.failed()), share);
+                let share = own.iter().map(|outcome| worst_share(outcome)).fold(0.0, f64::max);
+                let text = html_cell(!own.iter().any(|outcome| outcome.failed()), share);
                 html.push_str(&text);
             }
             html.push_str("</tr>\n");
@@ -150,7 +152,7 @@ impl<'a> Page<'a> {
     }
 
     fn function(&self, html: &mut String, path: &str, outcomes: &[&Outcome]) {
-        let _ = writeln!(html, "<section id=\"{0}\"><h2>{0}</h2>", escaped(path));
+        let _ = writeln!(html, "<section id=\"{0}\"><h2>{0}</h2>", escape_markup(path));
         let mut cases: Vec<usize> = outcomes.iter().map(|outcome| outcome.case).collect();
         cases.sort_unstable();
         cases.dedup();
@@ -158,7 +160,7 @@ impl<'a> Page<'a> {
             let own: Vec<&Outcome> =
                 outcomes.iter().copied().filter(|outcome| outcome.case == case).collect();
             let proof = self.report.proofs.iter().find(|proof| {
-                proof.case == case && own.first().is_some_and(|outcome| belongs(proof, outcome))
+                proof.case == case && own.first().is_some_and(|outcome| belongs_to(proof, outcome))
             });
             self.case(html, case, &own, proof);
         }
@@ -168,20 +170,20 @@ impl<'a> Page<'a> {
     fn case(&self, html: &mut String, case: usize, outcomes: &[&Outcome], proof: Option<&Proof>) {
         let place = outcomes.first().map_or(String::new(), |outcome| {
             let (file, line) = self.origin.place(outcome.span);
-            format!(", {}:{line}", escaped(file))
+            format!(", {}:{line}", escape_markup(file))
         });
         let _ = writeln!(html, "<h3>case {}{place}</h3>", case + 1);
-        columns::heading(html);
+        columns::write_heading(html);
         for outcome in outcomes {
-            row(html, outcome);
+            write_row(html, outcome);
         }
         html.push_str("</tbody></table>\n");
         if let Some(proof) = proof {
-            let _ = writeln!(html, "<p class=\"note\">{}</p>", proved(proof));
+            let _ = writeln!(html, "<p class=\"note\">{}</p>", proven_parts(proof));
         }
         self.plots(html, outcomes);
-        failing(html, outcomes);
-        inputs(html, outcomes);
+        write_failing(html, outcomes);
+        write_inputs(html, outcomes);
     }
 
     fn plots(&self, html: &mut String, outcomes: &[&Outcome]) {
@@ -204,7 +206,7 @@ impl<'a> Page<'a> {
         let hottest = series
             .iter()
             .filter_map(|one| Some((one, one.profile.map.as_ref()?)))
-            .max_by(|a, b| sum(&a.1.cells).total_cmp(&sum(&b.1.cells)));
+            .max_by(|a, b| sum_cells(&a.1.cells).total_cmp(&sum_cells(&b.1.cells)));
         if let Some((one, map)) = hottest {
             html.push_str(&heat_map(map, one.profile).unwrap_or_default());
         }
@@ -212,15 +214,15 @@ impl<'a> Page<'a> {
     }
 }
 
-fn sum(cells: &[f64]) -> f64 {
+fn sum_cells(cells: &[f64]) -> f64 {
     cells.iter().filter(|cell| !cell.is_nan()).sum()
 }
 
-fn belongs(proof: &Proof, outcome: &Outcome) -> bool {
+fn belongs_to(proof: &Proof, outcome: &Outcome) -> bool {
     proof.module == outcome.module && proof.function == outcome.function
 }
 
-fn share(outcome: &Outcome) -> f64 {
+fn worst_share(outcome: &Outcome) -> f64 {
     outcome
         .verdict
         .as_ref()
@@ -229,12 +231,12 @@ fn share(outcome: &Outcome) -> f64 {
         .map_or(0.0, |worst| worst.share())
 }
 
-fn headroom(share: f64) -> String {
+fn headroom_text(share: f64) -> String {
     if share == 0.0 { "exact".to_owned() } else { format!("{:.0} %", 100.0 * (1.0 - share)) }
 }
 
 /// A table cell, with a bar that shows how much of the tolerance is used.
-fn cell(passed: bool, share: f64) -> String {
+fn html_cell(passed: bool, share: f64) -> String {
     let class = if !passed {
         "bad"
     } else if share > 0.8 {
@@ -242,16 +244,20 @@ fn cell(passed: bool, share: f64) -> String {
     } else {
         "ok"
     };
-    let text = if passed { headroom(share) } else { "fails".to_owned() };
+    let text = if passed { headroom_text(share) } else { "fails".to_owned() };
     format!(
         "<td class=\"bar {class}\" style=\"--used:{:.0}%\">{text}</td>",
         100.0 * share.clamp(0.0, 1.0)
     )
 }
 
-fn row(html: &mut String, outcome: &Outcome) {
-    let _ =
-        write!(html, "<tr><td>{}</td><td>{}</td>", outcome.executor, language(outcome.language));
+fn write_row(html: &mut String, outcome: &Outcome) {
+    let _ = write!(
+        html,
+        "<tr><td>{}</td><td>{}</td>",
+        outcome.executor,
+        language_name(outcome.language)
+    );
     match &outcome.verdict {
         Err(error) => {
             let _ = write!(
@@ -259,15 +265,15 @@ fn row(html: &mut String, outcome: &Outcome) {
                 "<td colspan=\"9\" class=\"{}\">{}: {}</td>",
                 if outcome.failed() { "bad" } else { "note" },
                 if outcome.failed() { "not run" } else { "cannot run here" },
-                escaped(&error.message)
+                escape_markup(&error.message)
             );
         }
-        Ok(verdict) => numbers(html, outcome, verdict),
+        Ok(verdict) => write_numbers(html, outcome, verdict),
     }
     html.push_str("</tr>\n");
 }
 
-fn numbers(html: &mut String, outcome: &Outcome, verdict: &Verdict) {
+fn write_numbers(html: &mut String, outcome: &Outcome, verdict: &Verdict) {
     let (ulps, allowed) =
         verdict.worst.map_or((0.0, 0.0), |worst| (worst.ulps(), worst.allowed_ulps()));
     let percent =
@@ -276,14 +282,14 @@ fn numbers(html: &mut String, outcome: &Outcome, verdict: &Verdict) {
         html,
         "<td>{}</td><td>{}</td><td>{}</td><td>{}</td>{}",
         verdict.inputs,
-        short(verdict.largest),
-        short(ulps),
-        short(allowed),
-        cell(outcome.passed(), share(outcome))
+        short_number(verdict.largest),
+        short_number(ulps),
+        short_number(allowed),
+        html_cell(outcome.passed(), worst_share(outcome))
     );
     let driver =
         outcome.of_driver().map_or("–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
-    let parity = verdict.parity.map_or("–".to_owned(), short);
+    let parity = verdict.parity.map_or("–".to_owned(), short_number);
     let _ = write!(
         html,
         "<td>{driver}</td><td>{}</td><td>{}</td><td>{parity}</td>",
@@ -293,12 +299,12 @@ fn numbers(html: &mut String, outcome: &Outcome, verdict: &Verdict) {
 }
 
 /// What is proven without a device, a sentence for each part.
-fn proved(proof: &Proof) -> String {
+fn proven_parts(proof: &Proof) -> String {
     let mut text = match &proof.spec {
-        Err(error) => format!("WGSL's own bound is not known: {}. ", escaped(error)),
+        Err(error) => format!("WGSL's own bound is not known: {}. ", escape_markup(error)),
         Ok(spec) if spec.bound_ulps == 0.0 => String::new(),
         Ok(spec) => {
-            let (stated, bound) = (short(spec.stated_ulps), short(spec.bound_ulps));
+            let (stated, bound) = (short_number(spec.stated_ulps), short_number(spec.bound_ulps));
             format!(
                 "Tightest: {stated} ULP stated where WGSL allows {bound} ({} of {} inputs state less than WGSL allows). ",
                 spec.stricter, spec.rows
@@ -310,12 +316,12 @@ fn proved(proof: &Proof) -> String {
         Some(value) if value.off == 0 => {
             text += &format!(
                 "In f64 the code is within {} of what is allowed, on {} inputs. ",
-                short(value.share),
+                short_number(value.share),
                 value.rows
             )
         }
         Some(value) => {
-            let (off, rows, share) = (value.off, value.rows, short(value.share));
+            let (off, rows, share) = (value.off, value.rows, short_number(value.share));
             text += &format!(
                 "<b class=\"bad\">In f64 the code is off on {off} of {rows} inputs, by up to {share} of what is allowed.</b> "
             );
@@ -324,7 +330,8 @@ fn proved(proof: &Proof) -> String {
     match &proof.parity {
         None => {}
         Some(Err(error)) => {
-            text += &format!("The languages could not be compared in f64: {}.", escaped(error))
+            text +=
+                &format!("The languages could not be compared in f64: {}.", escape_markup(error))
         }
         Some(Ok(parity)) if parity.apart == 0 => {
             text += &format!("WESL and GLSL agree in f64 on {} inputs.", parity.rows)
@@ -339,16 +346,17 @@ fn proved(proof: &Proof) -> String {
     text
 }
 
-fn failing(html: &mut String, outcomes: &[&Outcome]) {
+fn write_failing(html: &mut String, outcomes: &[&Outcome]) {
     for failure in outcomes.iter().filter_map(|outcome| of_outcome(outcome)) {
         let text = failures_as_text(std::slice::from_ref(&failure));
-        let _ = writeln!(html, "<pre class=\"bad\">{}</pre>", escaped(&text));
+        let _ = writeln!(html, "<pre class=\"bad\">{}</pre>", escape_markup(&text));
     }
 }
 
 /// The inputs with the largest share of what is allowed, from the run with the largest share.
-fn inputs(html: &mut String, outcomes: &[&Outcome]) {
-    let Some(outcome) = outcomes.iter().max_by(|a, b| share(a).total_cmp(&share(b))) else {
+fn write_inputs(html: &mut String, outcomes: &[&Outcome]) {
+    let Some(outcome) = outcomes.iter().max_by(|a, b| worst_share(a).total_cmp(&worst_share(b)))
+    else {
         return;
     };
     let profile = outcome.verdict.as_ref().ok().and_then(|verdict| verdict.profile.as_deref());
@@ -360,12 +368,14 @@ fn inputs(html: &mut String, outcomes: &[&Outcome]) {
         html,
         "<details><summary>worst inputs ({}, {})</summary><table><tbody>",
         outcome.executor,
-        language(outcome.language)
+        language_name(outcome.language)
     );
     for Input { words, worst } in worst {
         let words: Vec<String> = words
             .iter()
-            .map(|(name, value, bits)| format!("{} = {value} <i>0x{bits:08x}</i>", escaped(name)))
+            .map(|(name, value, bits)| {
+                format!("{} = {value} <i>0x{bits:08x}</i>", escape_markup(name))
+            })
             .collect();
         let _ = write!(
             html,
@@ -373,8 +383,8 @@ fn inputs(html: &mut String, outcomes: &[&Outcome]) {
             words.join(", "),
             worst.found,
             worst.expected,
-            short(worst.ulps()),
-            short(worst.allowed_ulps())
+            short_number(worst.ulps()),
+            short_number(worst.allowed_ulps())
         );
     }
     html.push_str("</tbody></table></details>\n");

@@ -3,26 +3,26 @@
 use serde_json::{Value, json};
 
 use super::Origin;
-use crate::proof::check::{Input, Outcome, Proof, Report, Verdict, Worst, language};
+use crate::proof::check::{Input, Outcome, Proof, Report, Verdict, Worst, language_name};
 
 /// The report as indented JSON.
-pub fn text(report: &Report, origin: &Origin<'_>) -> String {
+pub fn json_report(report: &Report, origin: &Origin<'_>) -> String {
     let value = json!({
         "format": 1,
         "version": env!("CARGO_PKG_VERSION"),
         "command": origin.command,
         "passed": report.passed(),
-        "outcomes": report.outcomes.iter().map(|one| outcome(one, origin)).collect::<Vec<_>>(),
-        "proofs": report.proofs.iter().map(|one| proof(one, origin)).collect::<Vec<_>>(),
+        "outcomes": report.outcomes.iter().map(|one| outcome_json(one, origin)).collect::<Vec<_>>(),
+        "proofs": report.proofs.iter().map(|one| proof_json(one, origin)).collect::<Vec<_>>(),
         "untested": report.untested,
     });
     format!("{value:#}\n")
 }
 
-fn outcome(outcome: &Outcome, origin: &Origin<'_>) -> Value {
+fn outcome_json(outcome: &Outcome, origin: &Origin<'_>) -> Value {
     let (file, line) = origin.place(outcome.span);
     let (verdict, error) = match &outcome.verdict {
-        Ok(found) => (verdict(found), Value::Null),
+        Ok(found) => (verdict_json(found), Value::Null),
         Err(error) => (Value::Null, json!(error.message)),
     };
     json!({
@@ -31,7 +31,7 @@ fn outcome(outcome: &Outcome, origin: &Origin<'_>) -> Value {
         "case": outcome.case,
         "file": file,
         "line": line,
-        "language": language(outcome.language),
+        "language": language_name(outcome.language),
         "executor": outcome.executor,
         "adapter": outcome.adapter,
         "passed": outcome.passed(),
@@ -44,7 +44,7 @@ fn outcome(outcome: &Outcome, origin: &Origin<'_>) -> Value {
     })
 }
 
-fn verdict(verdict: &Verdict) -> Value {
+fn verdict_json(verdict: &Verdict) -> Value {
     let laws = verdict
         .laws
         .iter()
@@ -57,14 +57,14 @@ fn verdict(verdict: &Verdict) -> Value {
         "failing": verdict.failing.len(),
         "parity_ulps": verdict.parity,
         "largest_error": verdict.largest,
-        "worst": verdict.worst.as_ref().map(worst),
-        "worst_inputs": worst_inputs.map(input).collect::<Vec<_>>(),
+        "worst": verdict.worst.as_ref().map(worst_json),
+        "worst_inputs": worst_inputs.map(input_json).collect::<Vec<_>>(),
         "laws": laws.collect::<Vec<_>>(),
         "smallest": verdict.smallest,
     })
 }
 
-fn worst(worst: &Worst) -> Value {
+fn worst_json(worst: &Worst) -> Value {
     json!({
         "row": worst.row,
         "component": worst.word,
@@ -78,12 +78,12 @@ fn worst(worst: &Worst) -> Value {
     })
 }
 
-fn input(input: &Input) -> Value {
+fn input_json(input: &Input) -> Value {
     let words = input.words.iter().map(|(name, value, bits)| json!({ "name": name, "value": value, "bits": format!("0x{bits:08x}") }));
-    json!({ "words": words.collect::<Vec<_>>(), "outcome": worst(&input.worst) })
+    json!({ "words": words.collect::<Vec<_>>(), "outcome": worst_json(&input.worst) })
 }
 
-fn proof(proof: &Proof, origin: &Origin<'_>) -> Value {
+fn proof_json(proof: &Proof, origin: &Origin<'_>) -> Value {
     let (file, line) = origin.place(proof.span);
     let spec = match &proof.spec {
         Ok(spec) => json!({

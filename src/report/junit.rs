@@ -3,9 +3,9 @@
 
 use std::fmt::Write as _;
 
-use super::{Origin, escaped};
+use super::{Origin, escape_markup};
 use crate::diagnostic::Diagnostic;
-use crate::proof::check::{Report, failures_as_text, language, of_outcome, of_proof};
+use crate::proof::check::{Report, failures_as_text, language_name, of_outcome, of_proof};
 
 /// A test case: the module it belongs to, its name, how it failed, and why it cannot run.
 struct Test<'a> {
@@ -18,8 +18,8 @@ struct Test<'a> {
 }
 
 /// The report as JUnit understands it.
-pub fn text(report: &Report, origin: &Origin<'_>) -> String {
-    let tests = tests(report, origin);
+pub fn junit_report(report: &Report, origin: &Origin<'_>) -> String {
+    let tests = junit_tests(report, origin);
     let mut modules: Vec<&str> = tests.iter().map(|test| test.module).collect();
     modules.sort_unstable();
     modules.dedup();
@@ -28,23 +28,23 @@ pub fn text(report: &Report, origin: &Origin<'_>) -> String {
         text,
         "<testsuites name=\"lamplight\" tests=\"{}\" failures=\"{}\">",
         tests.len(),
-        failed(&tests)
+        failed_count(&tests)
     );
     for module in modules {
         let own: Vec<&Test<'_>> = tests.iter().filter(|test| test.module == module).collect();
-        suite(&mut text, module, &own);
+        write_suite(&mut text, module, &own);
     }
     text + "</testsuites>\n"
 }
 
-fn tests<'a>(report: &'a Report, origin: &'a Origin<'_>) -> Vec<Test<'a>> {
+fn junit_tests<'a>(report: &'a Report, origin: &'a Origin<'_>) -> Vec<Test<'a>> {
     let outcomes = report.outcomes.iter().map(|outcome| Test {
         module: &outcome.module,
         name: format!(
             "{} case {} {} {}",
             outcome.function,
             outcome.case + 1,
-            language(outcome.language),
+            language_name(outcome.language),
             outcome.executor
         ),
         place: origin.place(outcome.span),
@@ -61,16 +61,16 @@ fn tests<'a>(report: &'a Report, origin: &'a Origin<'_>) -> Vec<Test<'a>> {
     outcomes.chain(proofs).collect()
 }
 
-fn failed<'a>(tests: impl IntoIterator<Item = &'a Test<'a>>) -> usize {
+fn failed_count<'a>(tests: impl IntoIterator<Item = &'a Test<'a>>) -> usize {
     tests.into_iter().filter(|test| test.failure.is_some()).count()
 }
 
-fn suite(text: &mut String, module: &str, tests: &[&Test<'_>]) {
-    let failures = failed(tests.iter().copied());
+fn write_suite(text: &mut String, module: &str, tests: &[&Test<'_>]) {
+    let failures = failed_count(tests.iter().copied());
     let _ = writeln!(
         text,
         "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{failures}\" skipped=\"{}\">",
-        escaped(module),
+        escape_markup(module),
         tests.len(),
         tests.iter().filter(|test| test.lacks.is_some()).count()
     );
@@ -78,9 +78,9 @@ fn suite(text: &mut String, module: &str, tests: &[&Test<'_>]) {
         let _ = write!(
             text,
             "    <testcase classname=\"{}\" name=\"{}\" file=\"{}\" line=\"{}\"",
-            escaped(module),
-            escaped(&test.name),
-            escaped(test.place.0),
+            escape_markup(module),
+            escape_markup(&test.name),
+            escape_markup(test.place.0),
             test.place.1
         );
         let Some(failure) = &test.failure else {
@@ -88,7 +88,7 @@ fn suite(text: &mut String, module: &str, tests: &[&Test<'_>]) {
                 Some(reason) => {
                     format!(
                         ">\n      <skipped message=\"{}\"/>\n    </testcase>\n",
-                        escaped(reason)
+                        escape_markup(reason)
                     )
                 }
                 None => "/>\n".to_owned(),
@@ -98,8 +98,8 @@ fn suite(text: &mut String, module: &str, tests: &[&Test<'_>]) {
         let _ = writeln!(
             text,
             ">\n      <failure message=\"{}\">{}</failure>\n    </testcase>",
-            escaped(&failure.message),
-            escaped(&failures_as_text(std::slice::from_ref(failure)))
+            escape_markup(&failure.message),
+            escape_markup(&failures_as_text(std::slice::from_ref(failure)))
         );
     }
     text.push_str("  </testsuite>\n");

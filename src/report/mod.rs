@@ -37,13 +37,13 @@ impl Origin<'_> {
 
 /// Every form.
 pub const ALL: &[Entry] = &[
-    Entry { file: "index.html", text: html::page },
-    Entry { file: "report.json", text: json::text },
-    Entry { file: "junit.xml", text: junit::text },
+    Entry { file: "index.html", text: html::html_report },
+    Entry { file: "report.json", text: json::json_report },
+    Entry { file: "junit.xml", text: junit::junit_report },
 ];
 
 /// Text with the letters that HTML and XML give a meaning replaced, and those XML refuses left out.
-fn escaped(text: &str) -> String {
+fn escape_markup(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::escaped;
-use crate::proof::check::{Axis, BINS, CELLS, Map, Profile, Scale, short};
+use super::escape_markup;
+use crate::proof::check::{Axis, BINS, CELLS, Map, Profile, Scale, short_number};
 
 const WIDTH: f64 = 250.0;
 const HEIGHT: f64 = 116.0;
@@ -39,20 +39,20 @@ pub fn error_plot(index: usize, series: &[Series<'_>]) -> Option<String> {
     let frame = Frame { low: least.log10(), high: most.log10().max(least.log10() + 0.5) };
     let mut svg = format!(
         "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" class=\"plot\"><text x=\"{LEFT}\" y=\"10\" class=\"name\">{}</text>",
-        escaped(&first.name)
+        escape_markup(&first.name)
     );
     let _ = write!(svg, "<path class=\"allowed\" d=\"{}\"/>", frame.area(&axes));
     for (one, axis) in &axes {
         let points: Vec<String> = axis
             .bins
             .iter()
-            .map(|bin| format!("{:.1} {:.1}", across(bin.index), frame.y(bin.error)))
+            .map(|bin| format!("{:.1} {:.1}", x_of_index(bin.index), frame.y(bin.error)))
             .collect();
         let dash = if one.dashed { " dash" } else { "" };
         let _ =
             write!(svg, "<path class=\"line e{}{dash}\" d=\"M{}\"/>", one.class, points.join("L"));
     }
-    labels(&mut svg, &frame, first.scale);
+    write_labels(&mut svg, &frame, first.scale);
     Some(svg + "</svg>")
 }
 
@@ -81,8 +81,9 @@ impl Frame {
                 .map(|bin| bin.allowed)
                 .reduce(f64::max)
         };
-        let points: Vec<(f64, f64)> =
-            (0..BINS).filter_map(|index| Some((across(index), self.y(allowed(index)?)))).collect();
+        let points: Vec<(f64, f64)> = (0..BINS)
+            .filter_map(|index| Some((x_of_index(index), self.y(allowed(index)?))))
+            .collect();
         let (Some(first), Some(last)) = (points.first(), points.last()) else {
             return String::new();
         };
@@ -92,11 +93,11 @@ impl Frame {
     }
 }
 
-fn across(index: usize) -> f64 {
+fn x_of_index(index: usize) -> f64 {
     LEFT + (index as f64 + 0.5) / BINS as f64 * (WIDTH - LEFT - RIGHT)
 }
 
-fn labels(svg: &mut String, frame: &Frame, scale: Scale) {
+fn write_labels(svg: &mut String, frame: &Frame, scale: Scale) {
     let (floor, right) = (HEIGHT - BOTTOM, WIDTH - RIGHT);
     let _ = write!(svg, "<path class=\"frame\" d=\"M{LEFT} {TOP}V{floor}H{right}\"/>");
     for (value, y) in [(frame.high, TOP + 4.0), (frame.low, floor)] {
@@ -113,7 +114,7 @@ fn labels(svg: &mut String, frame: &Frame, scale: Scale) {
             svg,
             "<text x=\"{x}\" y=\"{}\" class=\"{class}\">{}</text>",
             HEIGHT - 4.0,
-            short(scale.value(place))
+            short_number(scale.value(place))
         );
     }
 }
@@ -136,7 +137,8 @@ pub fn heat_map(map: &Map, profile: &Profile) -> Option<String> {
             TOP + side - (row + 1) as f64 * cell
         );
     }
-    let title = format!("{} across, {} up: share of allowed", escaped(&x.name), escaped(&y.name));
+    let names = [x, y].map(|axis| escape_markup(&axis.name));
+    let title = format!("{} across, {} up: share of allowed", names[0], names[1]);
     let mut svg =
         format!("<svg viewBox=\"0 0 {width} {HEIGHT}\" class=\"plot map\"><title>{title}</title>");
     for (level, path) in paths.iter().enumerate().filter(|(_, path)| !path.is_empty()) {
@@ -146,15 +148,14 @@ pub fn heat_map(map: &Map, profile: &Profile) -> Option<String> {
     let _ = write!(
         svg,
         "<text x=\"{LEFT}\" y=\"10\" class=\"name\">{} × {}</text>",
-        escaped(&x.name),
-        escaped(&y.name)
+        names[0], names[1]
     );
     for (value, y) in [(y.scale.high, TOP + 4.0), (y.scale.low, floor)] {
         let _ = write!(
             svg,
             "<text x=\"{}\" y=\"{y}\" class=\"end\">{}</text>",
             LEFT - 3.0,
-            short(value)
+            short_number(value)
         );
     }
     for (value, x, class) in [(x.scale.low, LEFT, "start"), (x.scale.high, right, "end")] {
@@ -162,7 +163,7 @@ pub fn heat_map(map: &Map, profile: &Profile) -> Option<String> {
             svg,
             "<text x=\"{x}\" y=\"{}\" class=\"{class}\">{}</text>",
             HEIGHT - 4.0,
-            short(value)
+            short_number(value)
         );
     }
     Some(svg + "</svg>")

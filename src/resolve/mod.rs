@@ -58,7 +58,7 @@ impl Graph {
     /// Warnings about flags of conditions that no setting declares and that nothing has asked for yet.
     pub fn undeclared(&self, settings: &Settings) -> Diagnostics {
         match self {
-            Self::Wesl(graph) => wesl::undeclared(graph, settings),
+            Self::Wesl(graph) => wesl::undeclared_flags(graph, settings),
             Self::Glsl(_) => Vec::new(),
         }
     }

@@ -13,9 +13,9 @@ pub type Environment = fn(DVec3) -> DVec3;
 
 /// Environments by formula: name, what it is, radiance.
 pub const ENVIRONMENTS: &[(&str, &str, Environment)] = &[
-    ("studio", "a grey room with a large soft box, a strip light and a warm lamp", studio),
-    ("daylight", "a blue sky with a sun over brown earth", daylight),
-    ("constant", "radiance 1 from everywhere", constant),
+    ("studio", "a grey room with a large soft box, a strip light and a warm lamp", studio_sky),
+    ("daylight", "a blue sky with a sun over brown earth", daylight_sky),
+    ("constant", "radiance 1 from everywhere", constant_sky),
 ];
 
 /// The environment of that name.
@@ -23,22 +23,22 @@ pub fn environment(name: &str) -> Option<Environment> {
     ENVIRONMENTS.iter().find(|(known, _, _)| *known == name).map(|(_, _, environment)| *environment)
 }
 
-fn constant(_: DVec3) -> DVec3 {
+fn constant_sky(_: DVec3) -> DVec3 {
     DVec3::ONE
 }
 
-fn studio(d: DVec3) -> DVec3 {
+fn studio_sky(d: DVec3) -> DVec3 {
     let wall =
         DVec3::new(0.16, 0.17, 0.2).lerp(DVec3::new(0.42, 0.44, 0.48), smoothstep(-0.6, 0.9, d.y));
     let floor = DVec3::new(0.11, 0.1, 0.09);
     let room = floor.lerp(wall, smoothstep(-0.25, -0.05, d.y));
-    room + softbox(d, DVec3::new(-0.6, 0.65, 0.45), (0.45, 0.35)) * DVec3::new(5.5, 5.4, 5.2)
-        + softbox(d, DVec3::new(0.95, 0.25, -0.1), (0.1, 0.6)) * DVec3::new(2.2, 2.6, 3.4)
-        + softbox(d, DVec3::new(0.5, 0.1, -0.9), (0.07, 0.07)) * DVec3::new(4.2, 2.4, 1.1)
+    room + softbox_light(d, DVec3::new(-0.6, 0.65, 0.45), (0.45, 0.35)) * DVec3::new(5.5, 5.4, 5.2)
+        + softbox_light(d, DVec3::new(0.95, 0.25, -0.1), (0.1, 0.6)) * DVec3::new(2.2, 2.6, 3.4)
+        + softbox_light(d, DVec3::new(0.5, 0.1, -0.9), (0.07, 0.07)) * DVec3::new(4.2, 2.4, 1.1)
 }
 
 /// 1 inside a rectangle as seen from the origin, 0 outside, with a soft rim between.
-fn softbox(d: DVec3, towards: DVec3, half: (f64, f64)) -> f64 {
+fn softbox_light(d: DVec3, towards: DVec3, half: (f64, f64)) -> f64 {
     let forward = towards.normalize();
     let right = forward.cross(DVec3::Y).normalize();
     let depth = d.dot(forward);
@@ -49,7 +49,7 @@ fn softbox(d: DVec3, towards: DVec3, half: (f64, f64)) -> f64 {
     inside(d.dot(right), half.0) * inside(d.dot(right.cross(forward)), half.1)
 }
 
-fn daylight(d: DVec3) -> DVec3 {
+fn daylight_sky(d: DVec3) -> DVec3 {
     let sun = DVec3::new(-0.45, 0.6, 0.5).normalize();
     let zenith = DVec3::new(0.18, 0.36, 0.8);
     let horizon = DVec3::new(0.75, 0.82, 0.9);

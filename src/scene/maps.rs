@@ -69,8 +69,9 @@ pub fn bricks() -> Maps {
     Maps {
         base: Map::of(256, |at| {
             let brick = Brick::at(at);
-            let clay =
-                DVec3::new(0.86, 0.8, 0.76) * (0.8 + 0.35 * brick.tone) * (0.92 + 0.08 * grain(at));
+            let clay = DVec3::new(0.86, 0.8, 0.76)
+                * (0.8 + 0.35 * brick.tone)
+                * (0.92 + 0.08 * fine_grain(at));
             DVec3::new(0.55, 0.54, 0.52).lerp(clay, brick.height).extend(1.0)
         }),
         normal: Map::of(256, |at| {
@@ -103,7 +104,7 @@ pub fn soil() -> Maps {
 /// Bright grass of many tones. The other maps are those of [`bricks`].
 pub fn meadow() -> Maps {
     let base = Map::of(256, |at| {
-        let tone = 0.9 + 0.06 * grain(at) + 0.04 * grain(at * 2.0);
+        let tone = 0.9 + 0.06 * fine_grain(at) + 0.04 * fine_grain(at * 2.0);
         DVec4::new(tone, tone, tone, 1.0)
     });
     Maps { base, ..bricks() }
@@ -137,7 +138,7 @@ impl Brick {
 }
 
 /// Fine noise that repeats with the texture, [-1, 1].
-fn grain(at: DVec2) -> f64 {
+fn fine_grain(at: DVec2) -> f64 {
     let turn = at * std::f64::consts::TAU;
     ((23.0 * turn.x).sin() * (31.0 * turn.y).cos() + (47.0 * turn.x + 19.0 * turn.y).sin()) * 0.5
 }

@@ -48,9 +48,9 @@ impl std::error::Error for MeshError {}
 /// # Errors
 /// An incomplete triangle, an index beyond the positions.
 pub fn face_normals(positions: &[DVec3], indices: Option<&[u32]>) -> Result<Vec<DVec3>, MeshError> {
-    Ok(triangles(positions, indices)?
+    Ok(index_triangles(positions, indices)?
         .iter()
-        .map(|corners| area(positions, *corners).normalize_or_zero())
+        .map(|corners| double_area(positions, *corners).normalize_or_zero())
         .collect())
 }
 
@@ -68,22 +68,29 @@ pub fn smooth_normals(
     positions: &[DVec3],
     indices: Option<&[u32]>,
 ) -> Result<Vec<DVec3>, MeshError> {
-    let triangles = triangles(positions, indices)?;
-    let vertex = if indices.is_some() { (0..positions.len()).collect() } else { welded(positions) };
+    let triangles = index_triangles(positions, indices)?;
+    let vertex = if indices.is_some() {
+        (0..positions.len()).collect()
+    } else {
+        welded_positions(positions)
+    };
     let mut sums = vec![DVec3::ZERO; positions.len()];
     for corners in triangles {
-        let area = area(positions, corners);
+        let area = double_area(positions, corners);
         corners.iter().for_each(|corner| sums[vertex[*corner]] += area);
     }
     Ok(vertex.iter().map(|vertex| sums[*vertex].try_normalize().unwrap_or(UNUSED_NORMAL)).collect())
 }
 
 /// Twice the area of a triangle, along its normal.
-fn area(positions: &[DVec3], [a, b, c]: [usize; 3]) -> DVec3 {
+fn double_area(positions: &[DVec3], [a, b, c]: [usize; 3]) -> DVec3 {
     (positions[b] - positions[a]).cross(positions[c] - positions[a])
 }
 
-fn triangles(positions: &[DVec3], indices: Option<&[u32]>) -> Result<Vec<[usize; 3]>, MeshError> {
+fn index_triangles(
+    positions: &[DVec3],
+    indices: Option<&[u32]>,
+) -> Result<Vec<[usize; 3]>, MeshError> {
     let corners: Vec<usize> = match indices {
         None => (0..positions.len()).collect(),
         Some(indices) => match indices.iter().find(|index| **index as usize >= positions.len()) {
@@ -100,7 +107,7 @@ fn triangles(positions: &[DVec3], indices: Option<&[u32]>) -> Result<Vec<[usize;
 }
 
 /// For each position, the first one that is equal to it. 0 and -0 are equal.
-fn welded(positions: &[DVec3]) -> Vec<usize> {
+fn welded_positions(positions: &[DVec3]) -> Vec<usize> {
     let mut first = BTreeMap::new();
     let key = |position: &DVec3| position.to_array().map(|part| (part + 0.0).to_bits());
     positions

@@ -193,7 +193,7 @@ impl Eye {
 impl Scene {
     /// The scene of a model that was read.
     pub fn of_model(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Self {
-        base(objects, eye, lamps)
+        base_scene(objects, eye, lamps)
     }
 
     /// A lamp as it is drawn: a bulb, and for a spot light a shade behind it.
@@ -203,7 +203,7 @@ impl Scene {
         let material = Material { emission: glow * 1.5, ..Material::default().glossy(0.0) };
         let ball = Object::new(Shape::sphere(0.11, (24, 12)), place, glow).of(material, 7);
         let tin = Material { emission: DVec3::splat(0.015), ..Material::default().glossy(0.1) };
-        let shade = Object::new(shade(lamp), place, DVec3::splat(0.16)).of(tin, 8);
+        let shade = Object::new(lamp_shade(lamp), place, DVec3::splat(0.16)).of(tin, 8);
         let parts = [Some(ball), (kind == LampKind::Spot).then_some(shade)];
         parts.into_iter().flatten().map(|part| Object { casts: false, ..part }).collect()
     }
@@ -224,7 +224,7 @@ impl Scene {
 }
 
 /// An open cone along the lamp's axis.
-fn shade(lamp: &Lamp) -> Shape {
+fn lamp_shade(lamp: &Lamp) -> Shape {
     let (rim, depth) = (0.3, 0.34);
     let cone = Shape::surface(28, 1, |u, v| {
         let (sin, cos) = (std::f64::consts::TAU * u).sin_cos();
@@ -254,12 +254,12 @@ pub fn scene(name: &str) -> Option<Scene> {
 }
 
 /// A transformation that rotates about y and then moves.
-fn placed(x: f64, y: f64, z: f64, turn: f64) -> DMat4 {
+fn placed_at(x: f64, y: f64, z: f64, turn: f64) -> DMat4 {
     DMat4::from_translation(DVec3::new(x, y, z)) * DMat4::from_rotation_y(turn)
 }
 
 /// A scene with what most scenes share: the materials, ambient light, haze and textures.
-fn base(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Scene {
+fn base_scene(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Scene {
     Scene {
         objects,
         eye,

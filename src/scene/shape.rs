@@ -43,7 +43,7 @@ impl Shape {
                     f64::from(column) / f64::from(columns.max(1)),
                     f64::from(row) / f64::from(rows.max(1)),
                 );
-                shape.vertices.push(vertex(&at, u, v));
+                shape.vertices.push(surface_vertex(&at, u, v));
             }
         }
         for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)))
@@ -70,7 +70,7 @@ impl Shape {
     pub fn sphere(radius: f64, quads: (u32, u32)) -> Self {
         Self::surface(quads.0, quads.1, |u, v| {
             let (ring, height) = ((PI * v).sin(), -(PI * v).cos());
-            around(u, ring) * radius + DVec3::Y * height * radius
+            point_around(u, ring) * radius + DVec3::Y * height * radius
         })
     }
 
@@ -78,7 +78,7 @@ impl Shape {
     pub fn torus(radius: f64, thickness: f64, quads: (u32, u32)) -> Self {
         Self::surface(quads.0, quads.1, |u, v| {
             let (sin, cos) = (TAU * v).sin_cos();
-            around(u, radius + thickness * cos) + DVec3::Y * thickness * sin
+            point_around(u, radius + thickness * cos) + DVec3::Y * thickness * sin
         })
     }
 
@@ -103,8 +103,8 @@ impl Shape {
     /// smooth between its points.
     pub fn lathe(profile: &[DVec2], quads: (u32, u32)) -> Self {
         Self::surface(quads.0, quads.1, |u, v| {
-            let point = smooth(profile, v);
-            around(u, point.x.max(0.0)) + DVec3::Y * point.y
+            let point = smooth_curve(profile, v);
+            point_around(u, point.x.max(0.0)) + DVec3::Y * point.y
         })
     }
 
@@ -113,12 +113,13 @@ impl Shape {
         let line: Vec<DVec2> = points.iter().map(|(point, _)| *point).collect();
         let radii: Vec<DVec2> = points.iter().map(|(_, radius)| DVec2::new(*radius, 0.0)).collect();
         Self::surface(quads.0, quads.1, |u, v| {
-            let ahead = (smooth(&line, (v + 1e-3).min(1.0)) - smooth(&line, (v - 1e-3).max(0.0)))
-                .normalize_or_zero();
+            let ahead = (smooth_curve(&line, (v + 1e-3).min(1.0))
+                - smooth_curve(&line, (v - 1e-3).max(0.0)))
+            .normalize_or_zero();
             let (sin, cos) = (TAU * u).sin_cos();
             let side = (DVec3::new(-ahead.y, ahead.x, 0.0) * cos + DVec3::Z * sin)
-                * smooth(&radii, v).x.max(0.0);
-            smooth(&line, v).extend(0.0) + side
+                * smooth_curve(&radii, v).x.max(0.0);
+            smooth_curve(&line, v).extend(0.0) + side
         })
     }
 
@@ -179,13 +180,13 @@ impl Shape {
 }
 
 /// A point on a circle around the y axis.
-fn around(u: f64, radius: f64) -> DVec3 {
+fn point_around(u: f64, radius: f64) -> DVec3 {
     let (sin, cos) = (TAU * u).sin_cos();
     DVec3::new(radius * cos, 0.0, -radius * sin)
 }
 
 /// A corner of a surface, with the normal that its neighbourhood has.
-fn vertex(at: &impl Fn(f64, f64) -> DVec3, u: f64, v: f64) -> Vertex {
+fn surface_vertex(at: &impl Fn(f64, f64) -> DVec3, u: f64, v: f64) -> Vertex {
     const STEP: f64 = 1e-4;
     // A little away from the edges, since a pole has no direction there.
     let inside = |x: f64| x.clamp(2.0 * STEP, 1.0 - 2.0 * STEP);
@@ -203,7 +204,7 @@ fn vertex(at: &impl Fn(f64, f64) -> DVec3, u: f64, v: f64) -> Vertex {
 }
 
 /// A curve through points, even in their number (Catmull and Rom).
-fn smooth(points: &[DVec2], at: f64) -> DVec2 {
+fn smooth_curve(points: &[DVec2], at: f64) -> DVec2 {
     let Some(last) = points.len().checked_sub(1) else { return DVec2::ZERO };
     let place = at.clamp(0.0, 1.0) * last as f64;
     let first = (place as usize).min(last.saturating_sub(1));

@@ -4,7 +4,7 @@ mod package;
 mod read;
 
 pub use package::{Disk, Embedded, Files, LIMITS, Limits, Memory, Package, ReadError};
-pub(crate) use package::{is_inside, shown};
+pub(crate) use package::{is_inside, shown_path};
 pub use read::{ReadFailure, read};
 
 /// One text an author wrote, as shown in diagnostics.

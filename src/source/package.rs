@@ -131,7 +131,7 @@ impl Files for Disk {
         if metadata.len() > LIMITS.file_bytes as u64 {
             return Err(ReadError::TooLarge { bytes: metadata.len() });
         }
-        decode(input::read(&real, LIMITS.file_bytes as u64).map_err(io)?).map(Some)
+        decode_text(input::read_file(&real, LIMITS.file_bytes as u64).map_err(io)?).map(Some)
     }
 
     fn list(&self, extensions: &[&str]) -> Vec<String> {
@@ -156,7 +156,7 @@ impl Files for Disk {
     }
 
     fn display(&self, path: &str) -> String {
-        shown(&self.shown.join(path))
+        shown_path(&self.shown.join(path))
     }
 
     fn on_disk(&self, _path: &str) -> bool {
@@ -166,7 +166,7 @@ impl Files for Disk {
 
 /// A path as its author would write it: without `.`, and without `..` if the file is below the
 /// current folder.
-pub fn shown(path: &Path) -> String {
+pub fn shown_path(path: &Path) -> String {
     let tidy: PathBuf =
         path.components().filter(|component| *component != Component::CurDir).collect();
     let short = if tidy.components().any(|component| component == Component::ParentDir) {
@@ -255,7 +255,7 @@ pub fn is_inside(path: &str) -> bool {
 }
 
 /// The text of a file, without the byte-order mark that some editors write.
-fn decode(mut bytes: Vec<u8>) -> Result<String, ReadError> {
+fn decode_text(mut bytes: Vec<u8>) -> Result<String, ReadError> {
     if bytes.starts_with("\u{feff}".as_bytes()) {
         bytes.drain(..'\u{feff}'.len_utf8());
     }

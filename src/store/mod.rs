@@ -29,7 +29,7 @@ const ROOT: &str = "/lamplight";
 
 /// Opens the store at `fs:/path` or `redis://host:port`, if it answers.
 pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
-    let operator = operator(address)?;
+    let operator = open_operator(address)?;
     let runtime = Builder::new_multi_thread()
         .worker_threads(1)
         .enable_all()
@@ -51,7 +51,7 @@ pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
     Ok(Box::new(Store { operator, runtime }))
 }
 
-fn operator(address: &str) -> Result<Operator, String> {
+fn open_operator(address: &str) -> Result<Operator, String> {
     let operator = match address.split_once(':') {
         Some(("fs", path)) => {
             Operator::new(Fs::default().root(path).atomic_write_dir(&format!("{path}/.tmp")))

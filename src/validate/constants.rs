@@ -22,14 +22,14 @@ struct Constant<'a> {
 }
 
 /// The first place where constants exceed a part of their bounds.
-pub fn scan(text: &str, language: Language, part: u64) -> Option<Excess> {
+pub fn scan_constants(text: &str, language: Language, part: u64) -> Option<Excess> {
     let (most_parts, most_uses) = (CONSTANT_PARTS / part, CONSTANT_USES / part);
-    let constants = constants(text, language);
+    let constants = find_constants(text, language);
     // A single constant cannot multiply anything.
     if constants.len() < 2 {
         return None;
     }
-    let costs = match costs(&constants, most_parts) {
+    let costs = match constant_costs(&constants, most_parts) {
         Ok(costs) => costs,
         Err(offset) => {
             let limit = most_parts as usize;
@@ -49,24 +49,27 @@ pub fn scan(text: &str, language: Language, part: u64) -> Option<Excess> {
 }
 
 /// The size of every constant, by name; or the place of one that is too large.
-fn costs<'a>(constants: &[Constant<'a>], most: u64) -> Result<HashMap<&'a str, u64>, usize> {
+fn constant_costs<'a>(
+    constants: &[Constant<'a>],
+    most: u64,
+) -> Result<HashMap<&'a str, u64>, usize> {
     let mut costs: HashMap<&str, u64> = HashMap::new();
     let globals: HashMap<&str, usize> = (0..constants.len())
         .filter(|index| constants[*index].is_global)
         .map(|index| (constants[index].name, index))
         .collect();
-    for index in order(constants, &globals) {
-        add(&constants[index], &mut costs, most)?;
+    for index in use_order(constants, &globals) {
+        add_cost(&constants[index], &mut costs, most)?;
     }
     for constant in constants.iter().filter(|constant| !constant.is_global) {
-        add(constant, &mut costs, most)?;
+        add_cost(constant, &mut costs, most)?;
     }
     Ok(costs)
 }
 
 /// Adds a size. Local constants of several functions may share a name, for which the largest
 /// counts.
-fn add<'a>(
+fn add_cost<'a>(
     constant: &Constant<'a>,
     costs: &mut HashMap<&'a str, u64>,
     most: u64,
@@ -82,7 +85,7 @@ fn add<'a>(
 }
 
 /// The global constants, each after those that it names. naga itself refuses cycles.
-fn order(constants: &[Constant<'_>], globals: &HashMap<&str, usize>) -> Vec<usize> {
+fn use_order(constants: &[Constant<'_>], globals: &HashMap<&str, usize>) -> Vec<usize> {
     let mut state = vec![0usize; constants.len()];
     let mut order = Vec::new();
     for root in (0..constants.len()).filter(|index| constants[*index].is_global) {
@@ -111,7 +114,7 @@ fn order(constants: &[Constant<'_>], globals: &HashMap<&str, usize>) -> Vec<usiz
 
 /// Every constant of a text. Its name is the last word before the `=` that is outside of brackets,
 /// in both languages. Comments are not skipped, which can only make the count larger.
-fn constants(text: &str, language: Language) -> Vec<Constant<'_>> {
+fn find_constants(text: &str, language: Language) -> Vec<Constant<'_>> {
     let mut found: Vec<Constant<'_>> = Vec::new();
     let (mut depth, mut open, mut start) = (0usize, None::<Constant<'_>>, 0usize);
     let mut in_value = false;

@@ -38,18 +38,18 @@ pub fn every(composed: &Composed) -> Result<Validated, Diagnostics> {
         if found.len() >= MOST {
             break;
         }
-        let needed = needed(composed, index);
+        let needed = needed_parts(composed, index);
         // A mistake in a part is reported for that part, and not again for every part that needs
         // it.
         if needed.iter().zip(&wrong).any(|(needed, wrong)| *needed && *wrong) {
             continue;
         }
-        let Err(errors) = validate(&alone(composed, &needed)) else { continue };
+        let Err(errors) = validate(&only_needed(composed, &needed)) else { continue };
         wrong[index] = true;
         let new = errors.into_iter().filter(|error| {
             !stops(error)
                 && !error.labels.is_empty()
-                && !found.iter().any(|known| same(known, error))
+                && !found.iter().any(|known| same_mistake(known, error))
         });
         found.extend(new.collect::<Vec<_>>());
     }
@@ -58,14 +58,14 @@ pub fn every(composed: &Composed) -> Result<Validated, Diagnostics> {
 }
 
 /// The same mistake at the same place.
-fn same(one: &Diagnostic, other: &Diagnostic) -> bool {
+fn same_mistake(one: &Diagnostic, other: &Diagnostic) -> bool {
     one.code == other.code
         && one.labels.first().map(|label| label.span)
             == other.labels.first().map(|label| label.span)
 }
 
 /// A part, everything that it names, and what concerns the text as a whole.
-fn needed(composed: &Composed, index: usize) -> Vec<bool> {
+fn needed_parts(composed: &Composed, index: usize) -> Vec<bool> {
     let whole = |kind| matches!(kind, PartKind::Directive | PartKind::Other);
     let mut needed: Vec<bool> = composed.parts.iter().map(|part| whole(part.kind)).collect();
     let mut open = vec![index as u32];
@@ -78,7 +78,7 @@ fn needed(composed: &Composed, index: usize) -> Vec<bool> {
 }
 
 /// The text with blanks instead of what is not needed, so that places do not change.
-fn alone(composed: &Composed, needed: &[bool]) -> Composed {
+fn only_needed(composed: &Composed, needed: &[bool]) -> Composed {
     let mut bytes = composed.text.clone().into_bytes();
     let left_out = || composed.parts.iter().zip(needed).filter(|(_, needed)| !**needed);
     for (part, _) in left_out() {

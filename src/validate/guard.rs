@@ -27,7 +27,7 @@ thread_local! {
 /// Wrap a whole batch in one call: rayon's iterators inside it use the same pool, and nested calls
 /// run in place. Where no thread can be made, `work` runs on the caller's thread.
 pub fn on_large_stack<R: Send>(work: impl FnOnce() -> R + Send) -> R {
-    match pool() {
+    match thread_pool() {
         Some(pool) if !ON_LARGE_STACK.get() => pool.install(work),
         _ => work(),
     }
@@ -40,13 +40,13 @@ pub fn guard<R>(text: &str, work: impl FnOnce() -> R) -> Result<R, Diagnostic> {
             codes::NAGA_INTERNAL,
             format!("naga stopped with an internal error: {reason}"),
         )
-        .note(quote(text))
+        .note(quote_start(text))
     })
 }
 
 /// Runs `work`, which calls code of others; a panic becomes its message, and prints nothing.
 pub fn caught<R>(work: impl FnOnce() -> R) -> Result<R, String> {
-    hush();
+    hush_panics();
     let outer = GUARDED.replace(true);
     // A panic may leave values half changed. They are dropped with `work`, since callers keep only
     // its result.
@@ -55,7 +55,7 @@ pub fn caught<R>(work: impl FnOnce() -> R) -> Result<R, String> {
     result.map_err(|_| PANIC.take().unwrap_or_else(|| "no message".to_owned()))
 }
 
-fn pool() -> Option<&'static ThreadPool> {
+fn thread_pool() -> Option<&'static ThreadPool> {
     static POOL: OnceLock<Option<ThreadPool>> = OnceLock::new();
     POOL.get_or_init(|| {
         ThreadPoolBuilder::new()
@@ -70,13 +70,13 @@ fn pool() -> Option<&'static ThreadPool> {
 
 /// Installs, once, a panic hook that keeps guarded panics silent and calls the previous hook for
 /// others.
-fn hush() {
+fn hush_panics() {
     static HUSHED: Once = Once::new();
     HUSHED.call_once(|| {
         let previous = panic::take_hook();
         panic::set_hook(Box::new(move |info| {
             if GUARDED.get() {
-                PANIC.set(Some(describe(info)));
+                PANIC.set(Some(describe_panic(info)));
             } else {
                 previous(info);
             }
@@ -85,7 +85,7 @@ fn hush() {
 }
 
 /// The panic's message and its line in naga, without the path on this machine.
-fn describe(info: &panic::PanicHookInfo<'_>) -> String {
+fn describe_panic(info: &panic::PanicHookInfo<'_>) -> String {
     let payload = info.payload();
     let message = payload
         .downcast_ref::<&str>()
@@ -102,7 +102,7 @@ fn describe(info: &panic::PanicHookInfo<'_>) -> String {
     }
 }
 
-fn quote(text: &str) -> String {
+fn quote_start(text: &str) -> String {
     let end = (0..=QUOTED_BYTES.min(text.len()))
         .rev()
         .find(|end| text.is_char_boundary(*end))

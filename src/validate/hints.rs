@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use crate::bundle::Language;
 use crate::compose::{Composed, PartKind};
-use crate::diagnostic::{Diagnostic, nearest};
+use crate::diagnostic::{Diagnostic, nearest_name};
 use crate::parse::words::word_at;
 use crate::source::{Embedded, Files};
 
@@ -108,10 +108,13 @@ const GLSL: &[&str] = &[
 ];
 
 /// Adds the import that is missing, or the nearest name.
-pub fn unknown(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic {
-    if let Some(modules) = library().get(name) {
+pub fn hint_unknown(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic {
+    if let Some(modules) = library_names().get(name) {
         return modules.iter().fold(error, |error, module| {
-            error.note(format!("help: the library has it: `{}`", import(composed, module, name)))
+            error.note(format!(
+                "help: the library has it: `{}`",
+                missing_import(composed, module, name)
+            ))
         });
     }
     let own = match composed.language {
@@ -121,19 +124,19 @@ pub fn unknown(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic
     let declared = composed.parts.iter().flat_map(|part| part.names.iter().map(String::as_str));
     let here: Vec<&str> =
         declared.chain(SHARED.iter().copied()).chain(own.iter().copied()).collect();
-    let of_library = library().keys().map(String::as_str);
+    let of_library = library_names().keys().map(String::as_str);
     // All names are searched together, so that the nearest one is suggested wherever it comes from.
-    match nearest(name, here.iter().copied().chain(of_library)) {
+    match nearest_name(name, here.iter().copied().chain(of_library)) {
         Some(near) if here.contains(&near) => error.note(format!("help: did you mean `{near}`?")),
-        Some(near) => library()[near].iter().fold(error, |error, module| {
-            let import = import(composed, module, near);
+        Some(near) => library_names()[near].iter().fold(error, |error, module| {
+            let import = missing_import(composed, module, near);
             error.note(format!("help: did you mean the library's `{near}`? `{import}`"))
         }),
         None => error,
     }
 }
 
-fn import(composed: &Composed, module: &str, name: &str) -> String {
+fn missing_import(composed: &Composed, module: &str, name: &str) -> String {
     match composed.language {
         Language::Wesl => format!("import lamplight::{}::{name};", module.replace('/', "::")),
         Language::Glsl => format!("#include \"lamplight/{module}.glsl\""),
@@ -141,7 +144,7 @@ fn import(composed: &Composed, module: &str, name: &str) -> String {
 }
 
 /// The modules of the library, by the names that they declare.
-fn library() -> &'static BTreeMap<String, Vec<String>> {
+fn library_names() -> &'static BTreeMap<String, Vec<String>> {
     static ITEMS: OnceLock<BTreeMap<String, Vec<String>>> = OnceLock::new();
     ITEMS.get_or_init(|| {
         let mut items: BTreeMap<String, Vec<String>> = BTreeMap::new();
@@ -150,7 +153,7 @@ fn library() -> &'static BTreeMap<String, Vec<String>> {
         for path in paths {
             let text = Embedded.read(&path).ok().flatten().unwrap_or_default();
             let module = path.trim_end_matches(".wesl");
-            for name in text.lines().filter_map(declared) {
+            for name in text.lines().filter_map(declared_name) {
                 items.entry(name.to_owned()).or_default().push(module.to_owned());
             }
         }
@@ -159,13 +162,13 @@ fn library() -> &'static BTreeMap<String, Vec<String>> {
 }
 
 /// The name that a line at the top of a module declares.
-fn declared(line: &str) -> Option<&str> {
+fn declared_name(line: &str) -> Option<&str> {
     let rest = ["fn ", "const ", "struct "].iter().find_map(|word| line.strip_prefix(word))?;
     Some(word_at(rest))
 }
 
 /// Adds a note with each declaration of a function, for a call whose arguments fit none of them.
-pub fn signatures(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic {
+pub fn note_signatures(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic {
     let declares = |part: &&crate::compose::Part| {
         matches!(part.kind, PartKind::Function | PartKind::Prototype)
             && part.names.iter().any(|found| found == name)

@@ -36,7 +36,7 @@ pub const LIMITS: Limits = Limits {
 
 /// Refuses a text that might exhaust naga's stack. For a text that is accepted but exceeds the calm
 /// part of a limit, gives the place.
-pub fn check(composed: &Composed) -> Result<Option<Excess>, Diagnostic> {
+pub fn check_limits(composed: &Composed) -> Result<Option<Excess>, Diagnostic> {
     let text = &composed.text;
     if text.len() > LIMITS.bytes {
         let message = format!(
@@ -47,17 +47,18 @@ pub fn check(composed: &Composed) -> Result<Option<Excess>, Diagnostic> {
         return Err(Diagnostic::error(codes::LIMIT_EXCEEDED, message));
     }
     // Nearly every text is below that part and is read only once.
-    let Some(large) = beyond(composed, limits::CALM_PART) else { return Ok(None) };
-    beyond(composed, 1).map_or(Ok(Some(large)), |excess| Err(report(composed, &excess)))
+    let Some(large) = beyond_limits(composed, limits::CALM_PART) else { return Ok(None) };
+    beyond_limits(composed, 1)
+        .map_or(Ok(Some(large)), |excess| Err(report_excess(composed, &excess)))
 }
 
 /// The first place that exceeds a part of any limit.
-fn beyond(composed: &Composed, part: usize) -> Option<Excess> {
+fn beyond_limits(composed: &Composed, part: usize) -> Option<Excess> {
     let text = &composed.text;
     let limit = LIMITS.bytes / part;
     let long = (text.len() > limit).then_some(Excess { offset: limit, what: "bytes", limit });
-    scan(text.as_bytes(), part)
-        .or_else(|| constants::scan(text, composed.language, part as u64))
+    scan_text(text.as_bytes(), part)
+        .or_else(|| constants::scan_constants(text, composed.language, part as u64))
         .or(long)
 }
 
@@ -68,14 +69,14 @@ pub struct Excess {
     pub limit: usize,
 }
 
-fn report(composed: &Composed, excess: &Excess) -> Diagnostic {
+fn report_excess(composed: &Composed, excess: &Excess) -> Diagnostic {
     let message = format!("more than {} {}", excess.limit, excess.what);
     let error = Diagnostic::error(codes::LIMIT_EXCEEDED, message);
-    place(composed, error, excess, "the limit is reached")
+    place_excess(composed, error, excess, "the limit is reached")
 }
 
 /// Adds the place of an excess to an error, and what is wrong there.
-pub(super) fn place(
+pub(super) fn place_excess(
     composed: &Composed,
     error: Diagnostic,
     excess: &Excess,
@@ -117,7 +118,7 @@ struct Scan<'a> {
     in_case: bool,
 }
 
-fn scan(bytes: &[u8], part: usize) -> Option<Excess> {
+fn scan_text(bytes: &[u8], part: usize) -> Option<Excess> {
     let mut scan = Scan {
         bytes,
         at: 0,

@@ -54,18 +54,20 @@ pub const CAPABILITIES: Capabilities =
 /// would have ended the process.
 pub fn validate(composed: &Composed) -> Result<Validated, Diagnostics> {
     rehearse(composed, composed, || None).map_err(|error| vec![error])?;
-    read(composed)
+    read_text(composed)
 }
 
 /// As [`validate`], for a text that was rehearsed together with what is done to it afterwards.
 pub(crate) fn validate_rehearsed(composed: &Composed) -> Result<Validated, Diagnostics> {
-    limits::check(composed).map_err(|error| vec![error])?;
-    read(composed)
+    limits::check_limits(composed).map_err(|error| vec![error])?;
+    read_text(composed)
 }
 
-fn read(composed: &Composed) -> Result<Validated, Diagnostics> {
+fn read_text(composed: &Composed) -> Result<Validated, Diagnostics> {
     on_large_stack(|| {
-        guard(&composed.text, || parse(composed).and_then(|module| analyse(composed, module)))
+        guard(&composed.text, || {
+            parse_text(composed).and_then(|module| analyse_module(composed, module))
+        })
     })
     .map_err(|error| vec![error])
     .and_then(|result| result)
@@ -76,14 +78,13 @@ fn read(composed: &Composed) -> Result<Validated, Diagnostics> {
 /// # Errors
 /// `limit-exceeded` where naga should not see it at all.
 pub fn is_calm(composed: &Composed) -> Result<bool, Diagnostic> {
-    limits::check(composed).map(|large| large.is_none())
+    limits::check_limits(composed).map(|large| large.is_none())
 }
 
-fn parse(composed: &Composed) -> Result<naga::Module, Diagnostics> {
+fn parse_text(composed: &Composed) -> Result<naga::Module, Diagnostics> {
     match composed.language {
-        Language::Wesl => {
-            wgsl::parse_str(&composed.text).map_err(|error| vec![report::wgsl(composed, &error)])
-        }
+        Language::Wesl => wgsl::parse_str(&composed.text)
+            .map_err(|error| vec![report::wgsl_error(composed, &error)]),
         Language::Glsl => {
             let stage = composed.stage.ok_or_else(|| {
                 vec![Diagnostic::error(
@@ -94,18 +95,18 @@ fn parse(composed: &Composed) -> Result<naga::Module, Diagnostics> {
             let options = glsl::Options::from(naga_stage(stage));
             glsl::Frontend::default()
                 .parse(&options, &composed.text)
-                .map_err(|errors| report::glsl(composed, &errors))
+                .map_err(|errors| report::glsl_errors(composed, &errors))
         }
     }
 }
 
 /// Whether no type or value of a module is too large to be written out.
 pub fn is_bounded(module: &naga::Module) -> bool {
-    sizes::check(module).is_none()
+    sizes::check_sizes(module).is_none()
 }
 
-fn analyse(composed: &Composed, module: naga::Module) -> Result<Validated, Diagnostics> {
-    if let Some(large) = sizes::check(&module) {
+fn analyse_module(composed: &Composed, module: naga::Module) -> Result<Validated, Diagnostics> {
+    if let Some(large) = sizes::check_sizes(&module) {
         let error = Diagnostic::error(codes::LIMIT_EXCEEDED, large.message);
         let range = large.span.to_range().unwrap_or(0..0);
         return Err(vec![match composed.map.lookup(range.clone()) {
@@ -118,7 +119,7 @@ fn analyse(composed: &Composed, module: naga::Module) -> Result<Validated, Diagn
     }
     let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
         .validate(&module)
-        .map_err(|error| vec![report::validation(composed, &module, &error)])?;
+        .map_err(|error| vec![report::validation_error(composed, &module, &error)])?;
     Ok(Validated { language: composed.language, module, info })
 }
 

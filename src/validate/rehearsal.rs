@@ -46,7 +46,7 @@ pub fn rehearse(
     placed: &Composed,
     outputs: impl FnOnce() -> Option<Outputs>,
 ) -> Result<(), Diagnostic> {
-    if limits::check(composed)?.is_none() {
+    if limits::check_limits(composed)?.is_none() {
         return Ok(());
     }
     // A text and its lean form share one rehearsal.
@@ -54,15 +54,15 @@ pub fn rehearse(
     let (language, stage) = (composed.language, composed.stage);
     let job = Job { language, stage, text, outputs: outputs() };
     let Ok(job) = serde_json::to_vec(&job) else { return Ok(()) };
-    rehearse::rehearse(STAGE, &job).map_err(|how| exhausted(placed, &how))
+    rehearse::rehearse(STAGE, &job).map_err(|how| exhausted_process(placed, &how))
 }
 
-fn exhausted(composed: &Composed, how: &rehearse::Exhausted) -> Diagnostic {
+fn exhausted_process(composed: &Composed, how: &rehearse::Exhausted) -> Diagnostic {
     let error = Diagnostic::error(codes::NAGA_EXHAUSTED, format!("naga {how} over this shader"));
-    let error = match limits::check(composed) {
+    let error = match limits::check_limits(composed) {
         Ok(Some(large)) => {
             let words = format!("more than {} {}", large.limit, large.what);
-            limits::place(composed, error, &large, &words)
+            limits::place_excess(composed, error, &large, &words)
         }
         _ => error,
     };

@@ -15,15 +15,16 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 /// An error of the WGSL parser, with all its labels and notes.
 ///
 /// naga does not publish the kinds of these errors, so its sentences are used, in our style.
-pub fn wgsl(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
-    let message = sentence(error.message());
+pub fn wgsl_error(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
+    let message = as_sentence(error.message());
     let mut diagnostic = Diagnostic::error(codes::WGSL_ERROR, &*message);
     for (span, label) in error.labels() {
-        diagnostic = place(diagnostic, composed, span.to_range(), &sentence(label));
+        diagnostic = label_or_note(diagnostic, composed, span.to_range(), &as_sentence(label));
     }
-    diagnostic = error.notes().fold(diagnostic, |diagnostic, note| diagnostic.note(sentence(note)));
+    diagnostic =
+        error.notes().fold(diagnostic, |diagnostic, note| diagnostic.note(as_sentence(note)));
     match unknown_name(&message) {
-        Some(name) => hints::unknown(diagnostic, composed, name),
+        Some(name) => hints::hint_unknown(diagnostic, composed, name),
         None => diagnostic,
     }
 }
@@ -38,12 +39,12 @@ fn unknown_name(message: &str) -> Option<&str> {
 }
 
 /// Every error of the GLSL parser.
-pub fn glsl(composed: &Composed, errors: &glsl::ParseErrors) -> Diagnostics {
+pub fn glsl_errors(composed: &Composed, errors: &glsl::ParseErrors) -> Diagnostics {
     errors
         .errors
         .iter()
         .map(|error| {
-            let message = sentence(&words::glsl(&error.kind));
+            let message = as_sentence(&words::glsl_words(&error.kind));
             if message == "missing entry point" {
                 return Diagnostic::error(codes::NO_ENTRY_POINT, "the file has no function `main`");
             }
@@ -51,10 +52,19 @@ pub fn glsl(composed: &Composed, errors: &glsl::ParseErrors) -> Diagnostics {
             match &error.kind {
                 ErrorKind::UnknownVariable(name) | ErrorKind::UnknownType(name) => {
                     let error = Diagnostic::error(codes::GLSL_ERROR, message);
-                    hints::unknown(place(error, composed, range, "here"), composed, name)
+                    hints::hint_unknown(
+                        label_or_note(error, composed, range, "here"),
+                        composed,
+                        name,
+                    )
                 }
-                ErrorKind::SemanticError(text) => called(composed, text, message, range),
-                _ => place(Diagnostic::error(codes::GLSL_ERROR, message), composed, range, "here"),
+                ErrorKind::SemanticError(text) => called_function(composed, text, message, range),
+                _ => label_or_note(
+                    Diagnostic::error(codes::GLSL_ERROR, message),
+                    composed,
+                    range,
+                    "here",
+                ),
             }
         })
         .collect()
@@ -62,7 +72,7 @@ pub fn glsl(composed: &Composed, errors: &glsl::ParseErrors) -> Diagnostics {
 
 /// naga reports a function that does not exist and one with other arguments in the same way. This
 /// tells them apart.
-fn called(
+fn called_function(
     composed: &Composed,
     text: &str,
     message: String,
@@ -70,21 +80,30 @@ fn called(
 ) -> Diagnostic {
     let name = text.strip_prefix("Unknown function '").and_then(|rest| rest.strip_suffix('\''));
     let Some(name) = name else {
-        return place(Diagnostic::error(codes::GLSL_ERROR, message), composed, range, "here");
+        return label_or_note(
+            Diagnostic::error(codes::GLSL_ERROR, message),
+            composed,
+            range,
+            "here",
+        );
     };
     let is_declared =
         composed.parts.iter().any(|part| part.names.iter().any(|known| known == name));
     if is_declared {
         let message = format!("`{name}` does not take these arguments");
         let error = Diagnostic::error(codes::CALL_MISMATCH, message);
-        return hints::signatures(place(error, composed, range, "here"), composed, name);
+        return hints::note_signatures(
+            label_or_note(error, composed, range, "here"),
+            composed,
+            name,
+        );
     }
     let error = Diagnostic::error(codes::GLSL_ERROR, format!("there is no function `{name}`"));
-    hints::unknown(place(error, composed, range, "here"), composed, name)
+    hints::hint_unknown(label_or_note(error, composed, range, "here"), composed, name)
 }
 
 /// An error of the validator as a diagnostic, with its spans as labels.
-pub fn validation(
+pub fn validation_error(
     composed: &Composed,
     module: &Module,
     error: &naga::WithSpan<ValidationError>,
@@ -96,23 +115,23 @@ pub fn validation(
     // The shortest span is the most precise, so it becomes the place of the diagnostic. The span of
     // a type comes last: it is where the type was first written, which may be anywhere.
     let mut spans: Vec<_> =
-        error.spans().map(|(span, context)| (span.to_range(), kind(context))).collect();
+        error.spans().map(|(span, context)| (span.to_range(), span_kind(context))).collect();
     spans.sort_by_key(|(range, words)| {
         (*words == TYPE, range.as_ref().map_or(usize::MAX, ExactSizeIterator::len))
     });
-    let said = words::validation(module, error.as_inner());
+    let said = words::validation_words(module, error.as_inner());
     let diagnostic = Diagnostic::error(said.code.unwrap_or(fallback), said.message);
-    let diagnostic = spans
-        .into_iter()
-        .fold(diagnostic, |diagnostic, (range, words)| place(diagnostic, composed, range, words));
+    let diagnostic = spans.into_iter().fold(diagnostic, |diagnostic, (range, words)| {
+        label_or_note(diagnostic, composed, range, words)
+    });
     let diagnostic = said.beside.into_iter().fold(diagnostic, |diagnostic, (span, words)| {
-        place(diagnostic, composed, span.to_range(), &words)
+        label_or_note(diagnostic, composed, span.to_range(), &words)
     });
     said.notes.into_iter().fold(diagnostic, Diagnostic::note)
 }
 
 /// A label if the range has an author, else a note that quotes the composed text.
-fn place(
+fn label_or_note(
     diagnostic: Diagnostic,
     composed: &Composed,
     range: Option<Range<usize>>,
@@ -136,7 +155,7 @@ fn place(
 const TYPE: &str = "this type";
 
 /// What a span of the validator is, since naga names the Rust type of the arena.
-fn kind(context: &str) -> &'static str {
+fn span_kind(context: &str) -> &'static str {
     const KINDS: [(&str, &str); 8] = [
         ("::GlobalVariable", "this variable"),
         ("::LocalVariable", "this variable"),
@@ -152,7 +171,7 @@ fn kind(context: &str) -> &'static str {
 
 /// naga's message in our style: it starts in lower case, unless with a name, and quotes the
 /// shader's text in backticks.
-fn sentence(message: &str) -> String {
+fn as_sentence(message: &str) -> String {
     let message = message.trim().replace(['"', '\''], "`");
     // An apostrophe is not a quote.
     let message =

@@ -34,7 +34,7 @@ struct Sizes<'m> {
 }
 
 /// The first type, constant or variable that is too large.
-pub fn check(module: &Module) -> Option<Large> {
+pub fn check_sizes(module: &Module) -> Option<Large> {
     let mut sizes = Sizes { module, scalars: Vec::new(), depths: Vec::new() };
     for (handle, ty) in module.types.iter() {
         let (scalars, depth) = sizes.measure(&ty.inner);

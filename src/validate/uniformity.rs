@@ -20,18 +20,18 @@ const ROUNDS: usize = 8;
 
 /// Warnings about the fragment entry points of a module, in the order of its text.
 pub fn lint(composed: &Composed, validated: &Validated) -> Diagnostics {
-    findings(validated)
+    find_derivatives(validated)
         .iter()
-        .filter_map(|(range, finding)| warning(composed, range.0..range.1, finding))
+        .filter_map(|(range, finding)| derivative_warning(composed, range.0..range.1, finding))
         .collect()
 }
 
 /// Whether there is anything to warn of, whatever text it is in.
 pub fn has_lints(validated: &Validated) -> bool {
-    !findings(validated).is_empty()
+    !find_derivatives(validated).is_empty()
 }
 
-fn findings(validated: &Validated) -> BTreeMap<(usize, usize), Finding> {
+fn find_derivatives(validated: &Validated) -> BTreeMap<(usize, usize), Finding> {
     let mut flow = Flow::new(&validated.module);
     if flow.functions.iter().any(|function| function.is_entry) {
         let _ = (0..ROUNDS).find(|_| !flow.round());
@@ -39,7 +39,7 @@ fn findings(validated: &Validated) -> BTreeMap<(usize, usize), Finding> {
     flow.found
 }
 
-fn warning(
+fn derivative_warning(
     composed: &Composed,
     range: std::ops::Range<usize>,
     finding: &Finding,

@@ -37,7 +37,7 @@ pub fn trials() -> Vec<Trial> {
 
 fn built(text: &str, function: &str) -> Result<kernel::Kernel, Failed> {
     let module = naga::front::wgsl::parse_str(text)?;
-    kernel::build(&module, function, &BTreeMap::new()).map_err(|error| error.message.into())
+    kernel::build_kernel(&module, function, &BTreeMap::new()).map_err(|error| error.message.into())
 }
 
 /// A kernel that every session can run.

@@ -211,7 +211,7 @@ fn kernel(case: &One) -> Result<Kernel, String> {
     let fail = |text: String| format!("{}: {text}", case.0);
     let parsed = naga::front::wgsl::parse_str(&text(case));
     let module = parsed.map_err(|error| fail(error.to_string()))?;
-    kernel::build(&module, "f", &BTreeMap::new()).map_err(|error| fail(error.message))
+    kernel::build_kernel(&module, "f", &BTreeMap::new()).map_err(|error| fail(error.message))
 }
 
 fn sweep(

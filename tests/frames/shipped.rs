@@ -188,7 +188,7 @@ impl Driver {
         if let Some(known) = self.telling.get(&inputs) {
             return Ok(known.clone());
         }
-        let told = probe::told(&stage.validated.module, stage.entry)
+        let told = probe::told_inputs(&stage.validated.module, stage.entry)
             .ok_or_else(|| lost(format!("`{}` is not a fragment stage", stage.entry)))?;
         let point = EntryPoint { module: &told.module, entry: probe::TELLS };
         let made = Shipped::of(point, self.target)?;

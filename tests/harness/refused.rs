@@ -24,10 +24,15 @@ pub fn expression_errors() -> Result<(), Failed> {
         let library = Library::embedded();
         for (text, language, expected) in EXPRESSION_ERRORS {
             let sources = Mutex::new(SourceSet::default());
-            let errors =
-                expression::evaluate(&library, &sources, text, *language, open[0].session.as_mut())
-                    .err()
-                    .unwrap_or_default();
+            let errors = expression::evaluate_expression(
+                &library,
+                &sources,
+                text,
+                *language,
+                open[0].session.as_mut(),
+            )
+            .err()
+            .unwrap_or_default();
             let found = lamplight::diagnostic::render::render(
                 &sources.lock().unwrap(),
                 &errors,

@@ -58,9 +58,9 @@ fn is_linear(case: &Case) -> Outcome {
 
 /// The steps of reading and composing the first file, whether that succeeds or not.
 fn steps(files: &Files) -> u64 {
-    let before = limits::taken();
+    let before = limits::steps_taken();
     let _ = outcome(files);
-    limits::taken() - before
+    limits::steps_taken() - before
 }
 
 fn outcome(files: &Files) -> Result<(), Diagnostics> {

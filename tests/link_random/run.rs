@@ -24,7 +24,7 @@ use lamplight::execute::fixture::Fixture;
 use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, Mesh, State};
 use lamplight::execute::shipped::Shipped;
 use lamplight::execute::{Pair, Session};
-use lamplight::picture::frame::{pack, probe};
+use lamplight::picture::frame::{pack_buffer, probe};
 use lamplight::validate::{Validated, validate};
 
 use super::judge::Finding;
@@ -205,14 +205,14 @@ impl<'r> Ready<'r> {
         let text = feeder(&whole, &mut random);
         let feeder = Composed::of_text(Language::Wesl, None, text);
         let feeder = validate(&feeder).map_err(told)?;
-        let tells = probe::told(&validated.module, entry);
+        let tells = probe::told_inputs(&validated.module, entry);
         let (mut buffers, mut fixtures) = (Buffers::new(), BTreeMap::new());
         for binding in &unit.reflection.bindings {
             let place = (binding.group, binding.binding);
             if binding.kind == Kind::Uniform {
                 let start = random.next();
                 let numbers = |path: &str| Some(numbers(start, path));
-                let bytes = pack(binding, &numbers).map_err(|problem| problem.message)?;
+                let bytes = pack_buffer(binding, &numbers).map_err(|problem| problem.message)?;
                 buffers.insert(place, bytes);
             } else {
                 let made = fixture(binding.kind, &binding.name, &binding.ty);

@@ -59,7 +59,7 @@ impl Session {
     }
 
     pub fn send(&mut self, message: &Value) -> Outcome {
-        Ok(wire::write(self.to.as_mut().ok_or("closed")?, message)?)
+        Ok(wire::write_message(self.to.as_mut().ok_or("closed")?, message)?)
     }
 
     pub fn tell(&mut self, method: &str, parameters: Value) -> Outcome {
@@ -73,7 +73,7 @@ impl Session {
     }
 
     pub fn receive(&mut self) -> Result<Value, Failed> {
-        match wire::read(&mut self.from)? {
+        match wire::read_message(&mut self.from)? {
             Incoming::Message(message) => Ok(message),
             other => Err(format!("expected a message of the server, found {other:?}").into()),
         }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use lamplight::bundle::{Language, Stage, Target};
 use lamplight::compose::Composed;
-use lamplight::metal::judge;
+use lamplight::metal::judge_texts;
 use lamplight::validate::{Validated, validate};
 use lamplight::{emit, link};
 
@@ -36,7 +36,7 @@ pub fn outputs() -> Outcome {
         }
     }
     let views: Vec<&str> = texts.iter().map(String::as_str).collect();
-    let refusals = judge(&views, &|_| ()).map_err(|missing| missing.reason)?;
+    let refusals = judge_texts(&views, &|_| ()).map_err(|missing| missing.reason)?;
     let wrong: Vec<String> = refusals
         .iter()
         .map(|refusal| {

@@ -39,7 +39,7 @@ pub fn hold() -> Outcome {
         for name in ["control_flow", "lighting", "packing", "values"] {
             read(name, &mut cases, &mut wrong)?;
         }
-        let mut session = executors::find("msl").ok_or("no such executor")?.start()?;
+        let mut session = executors::find_executor("msl").ok_or("no such executor")?.start()?;
         session.prepare(&cases.iter().map(|case| &case.kernel).collect::<Vec<_>>());
         for case in &cases {
             let found = words(case)
@@ -72,7 +72,7 @@ fn read(name: &str, cases: &mut Vec<Case>, wrong: &mut Vec<String>) -> Result<()
             let words = text.split([',', ' ']).filter(|word| !word.is_empty());
             words.map(str::to_owned).collect()
         };
-        match kernel::build(&module, function, &BTreeMap::new()) {
+        match kernel::build_kernel(&module, function, &BTreeMap::new()) {
             Ok(kernel) => cases.push(Case {
                 file: name.to_owned(),
                 text: case.to_owned(),

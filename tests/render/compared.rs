@@ -13,7 +13,7 @@ const SIZE: [u32; 2] = [320, 240];
 const VISIBLE: f64 = 4.0;
 
 pub fn trials() -> Vec<Trial> {
-    let comparisons = library().programs.with_texts(strip::library).unwrap();
+    let comparisons = library().programs.with_texts(strip::library_comparisons).unwrap();
     let trial = |comparison: Comparison| {
         Trial::test(format!("render/compared/{}", comparison.name), move || {
             on_device("vulkan", |_| neighbours_differ(&comparison))
@@ -26,7 +26,8 @@ fn neighbours_differ(comparison: &Comparison) -> Result<(), String> {
     let mut painter = super::start("vulkan")?;
     let shot = shot(SIZE, 1, Language::Wesl);
     let draw = |panel| {
-        strip::panel(painter.as_mut(), &library().programs, comparison, panel, &shot).map_err(said)
+        strip::draw_panel(painter.as_mut(), &library().programs, comparison, panel, &shot)
+            .map_err(said)
     };
     let pictures = comparison.panels.iter().map(draw).collect::<Result<Vec<_>, _>>()?;
     let mut alike = Vec::new();

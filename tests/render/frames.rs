@@ -5,7 +5,7 @@ use lamplight::bundle::Language;
 use lamplight::catalogue::preset::Number;
 use lamplight::execute::Session;
 use lamplight::permute::{Quoted, key};
-use lamplight::picture::{Linear, Plan, Prepared, Shot, prepare};
+use lamplight::picture::{Linear, Plan, Prepared, Shot, prepare_passes};
 use lamplight::source::SourceSet;
 
 use super::{library, said, shot, watched};
@@ -63,14 +63,14 @@ impl Bench<'_> {
     }
 
     pub fn prepared(&self, plan: &Plan, size: u32) -> Result<Prepared, String> {
-        prepare(self.painter, &library().programs, plan, &shot([size; 2], 1, self.language))
+        prepare_passes(self.painter, &library().programs, plan, &shot([size; 2], 1, self.language))
             .map_err(said)
     }
 
     /// With a shadow map for each of so many parts of the depth.
     pub fn cascaded(&self, plan: &Plan, size: u32, cascades: u32) -> Result<Prepared, String> {
         let shot = Shot { cascades, ..shot([size; 2], 1, self.language) };
-        prepare(self.painter, &library().programs, plan, &shot).map_err(said)
+        prepare_passes(self.painter, &library().programs, plan, &shot).map_err(said)
     }
 
     pub fn photograph(&self, prepared: &Prepared, size: u32) -> Result<Linear, String> {

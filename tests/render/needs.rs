@@ -3,7 +3,7 @@
 
 use lamplight::bundle::{Binding, Kind, Member};
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::picture::frame::pack;
+use lamplight::picture::frame::pack_buffer;
 use lamplight::picture::needs::Table;
 use libtest_mimic::{Failed, Trial};
 
@@ -64,9 +64,10 @@ fn numbers_are_demanded() -> Result<(), Failed> {
     let numbers = |count: usize| {
         move |path: &str| (count > 0 || path == "haze.color").then(|| vec![1.0; count.max(3)])
     };
-    let unknown = pack(&binding, &numbers(0)).err().ok_or("a field is left 0")?;
-    let enough = pack(&binding, &numbers(3)).map_err(|problem| problem.message)?;
-    let short = pack(&binding, &|_| Some(vec![1.0; 2])).err().ok_or("a component is left 0")?;
+    let unknown = pack_buffer(&binding, &numbers(0)).err().ok_or("a field is left 0")?;
+    let enough = pack_buffer(&binding, &numbers(3)).map_err(|problem| problem.message)?;
+    let short =
+        pack_buffer(&binding, &|_| Some(vec![1.0; 2])).err().ok_or("a component is left 0")?;
     let is_one = |at: usize| enough[at..at + 4] == 1.0_f32.to_le_bytes();
     let is_packed = is_one(8) && is_one(24) && enough[12..16] == [0; 4];
     match unknown.message.contains("haze.tint") && short.message.contains("2 of 3") && is_packed {

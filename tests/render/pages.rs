@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use lamplight::bundle::Language;
-use lamplight::picture::{Picture, gallery, is_own_png, render, strip};
+use lamplight::picture::{Picture, gallery, is_own_png, render_plan, strip};
 use lamplight::scene::Equirect;
 use libtest_mimic::{Failed, Trial};
 
@@ -42,9 +42,9 @@ fn without_driver(name: &str) -> Result<(), Failed> {
         library().presets.iter().find(|preset| preset.name == name).ok_or("no such preset")?;
     on_device("vulkan", |vulkan| {
         let (plan, shot) = (plan(preset)?, shot([64, 64], 1, Language::Wesl));
-        let wanted = render(vulkan, &library().programs, &plan, &shot).map_err(said)?;
-        let found =
-            render(start("eval")?.as_ref(), &library().programs, &plan, &shot).map_err(said)?;
+        let wanted = render_plan(vulkan, &library().programs, &plan, &shot).map_err(said)?;
+        let found = render_plan(start("eval")?.as_ref(), &library().programs, &plan, &shot)
+            .map_err(said)?;
         let difference = Difference::new(&wanted, &found)?;
         let (mean, most) = (difference.mean(), difference.most());
         // Edges are drawn once, so that a pixel may fall to either side.
@@ -73,7 +73,7 @@ fn gallery_is_current() -> Result<(), Failed> {
         .map(|preset| gallery::Card::new(&library().programs, preset, Language::Wesl));
     let cards: Vec<gallery::Card> = cards.collect::<Result<_, _>>().map_err(said)?;
     let cards: Vec<&gallery::Card> = cards.iter().collect();
-    let strips = library().programs.with_texts(strip::library).map_err(said)?;
+    let strips = library().programs.with_texts(strip::library_comparisons).map_err(said)?;
     let strips = strips
         .into_iter()
         .map(|one| gallery::StripCard::new(&library().programs, one, Language::Wesl));
@@ -115,7 +115,7 @@ fn gallery_is_current() -> Result<(), Failed> {
 
 /// How the large picture and its smaller form differ from the reviewed one.
 fn changed(folder: &Path, name: &str) -> Result<Option<String>, String> {
-    let [large, thumb] = gallery::files(name).map(|file| folder.join(file));
+    let [large, thumb] = gallery::picture_files(name).map(|file| folder.join(file));
     let head = std::fs::read(&large).map_err(|error| format!("{}: {error}", large.display()))?;
     // Width and height are the first numbers of the header.
     let number = |at: usize| head.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());

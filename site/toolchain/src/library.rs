@@ -87,7 +87,7 @@ pub struct PlotInfo {
 /// Every module of the library.
 #[wasm_bindgen]
 pub fn library() -> Answer<LibraryInfo> {
-    let modules = catalogue::library().into_iter().map(|module| {
+    let modules = catalogue::library_modules().into_iter().map(|module| {
         let plots = plots(&module.path);
         let items = module.items.iter().map(|item| info(item, plots.get(&item.name)));
         ModuleInfo { items: items.collect(), path: module.path.clone(), doc: module.doc.clone() }
@@ -99,8 +99,8 @@ pub fn library() -> Answer<LibraryInfo> {
 fn plots(module: &str) -> plot::Plots {
     let mut sources = SourceSet::default();
     let package = Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) };
-    match source::read(&mut sources, &package, &plot::path(module)) {
-        Ok(Some(id)) => plot::parse(&sources, id).unwrap_or_default(),
+    match source::read(&mut sources, &package, &plot::plot_path(module)) {
+        Ok(Some(id)) => plot::parse_plots(&sources, id).unwrap_or_default(),
         _ => plot::Plots::new(),
     }
 }
@@ -128,7 +128,7 @@ fn info(item: &Item, plot: Option<&Plot>) -> ItemInfo {
         include: item.include(),
         plot: plot.map(plotted),
         has_reference: item.kind == Kind::Function
-            && references::find(&item.module, &item.name).is_some(),
+            && references::find_reference(&item.module, &item.name).is_some(),
     }
 }
 
@@ -235,7 +235,7 @@ pub fn search(query: &str) -> Answer<SearchResult> {
         return answer(&SearchResult { hits });
     }
     let mut texts = BTreeMap::new();
-    for item in catalogue::library().iter().flat_map(|module| &module.items) {
+    for item in catalogue::library_modules().iter().flat_map(|module| &module.items) {
         let stem = item.module.replace("::", "/");
         let text = texts
             .entry(item.module.clone())

@@ -55,7 +55,13 @@ pub fn evaluate(request: Ts<EvalRequest>) -> Answer<EvalResult> {
     let language = if request.glsl { Language::Glsl } else { Language::Wesl };
     let found = EXECUTOR.start().map_err(|_| vec![stopped()]).and_then(|mut session| {
         let text = request.expression.trim();
-        expression::evaluate(&library(request.files), &sources, text, language, session.as_mut())
+        expression::evaluate_expression(
+            &library(request.files),
+            &sources,
+            text,
+            language,
+            session.as_mut(),
+        )
     });
     let sources = sources.into_inner().unwrap_or_default();
     answer(&match found {
@@ -175,7 +181,7 @@ fn drawn(
         let root = ("plot.wesl", text.as_str());
         let module = Library::embedded().importing(sources, root, Language::Wesl, FUNCTION)?.module;
         let one = |problem| vec![problem];
-        let kernel = kernel::build(&module, FUNCTION, &BTreeMap::new()).map_err(one)?;
+        let kernel = kernel::build_kernel(&module, FUNCTION, &BTreeMap::new()).map_err(one)?;
         if kernel.input_words() != 2 || kernel.result_words() != 1 {
             let message = format!("`{}` is not one number", request.value);
             return Err(vec![diagnostic::Diagnostic::error(codes::UNTESTABLE_FUNCTION, message)]);
@@ -219,6 +225,6 @@ fn curve(kept: &Kept, inputs: &[f64], parameter: f64) -> Result<Curve, diagnosti
 #[wasm_bindgen]
 pub fn reference(path: &str, arguments: Vec<f64>) -> Option<Vec<f64>> {
     let (module, function) = path.rsplit_once("::")?;
-    let formula = references::find(module, function)?;
+    let formula = references::find_reference(module, function)?;
     Some(formula(&mut references::Arguments::new(&arguments, &[])).value)
 }

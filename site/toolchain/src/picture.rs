@@ -132,7 +132,7 @@ fn load() -> Result<Kept, Vec<Diagnostic>> {
         Programs::load().map_err(|(sources, problems)| diagnostics(&sources, &problems))?;
     let read = programs.with_texts(|texts| {
         let probes = probe::library(texts)?;
-        Ok((preset::library(texts, programs.manifest(), &probes)?, probes))
+        Ok((preset::library_presets(texts, programs.manifest(), &probes)?, probes))
     });
     match read {
         Ok((presets, probes)) => Ok(Kept { presets, probes, programs }),
@@ -161,7 +161,7 @@ fn advance(kept: &Kept, current: &mut Current) -> Result<Step, Diagnostics> {
     let target = target.ok_or_else(|| vec![refused("the page draws with `wgsl` or `essl300`")])?;
     let (plan, shot) = (plan(kept, request)?, shot(request)?);
     let page = Page { given: &current.given, state: Mutex::default(), target };
-    let rendered = picture::render(&page, &kept.programs, &plan, &shot);
+    let rendered = picture::render_plan(&page, &kept.programs, &plan, &shot);
     let state = page.state.into_inner().unwrap_or_default();
     if let Some((drawing, layout)) = state.wanted {
         current.wanted = layout;

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 use super::super::cost::{AxisCost, Costs, FIGURES, SHOWN, SORTED_BY};
 use super::super::{Item, Module};
-use super::markdown::cell;
+use super::markdown::table_cell;
 use super::page_of;
 
 const HEAD: &str = "\
@@ -38,7 +38,7 @@ pub fn of_function(text: &mut String, item: &Item, costs: &Costs) {
 }
 
 /// The page: the functions of each module, the most expensive first.
-pub fn page(modules: &[Module], costs: &Costs) -> String {
+pub fn cost_page(modules: &[Module], costs: &Costs) -> String {
     let mut text = HEAD.to_owned();
     let Some(shown) = costs.shown() else { return text };
     let generation = &costs.gpus[shown].generation;
@@ -61,7 +61,7 @@ pub fn page(modules: &[Module], costs: &Costs) -> String {
             text,
             "\n## {}\n\n{}\n\n| function | {} |\n|---|{}\n",
             module.path,
-            cell(module.summary()),
+            table_cell(module.summary()),
             FIGURES.join(" | "),
             "---:|".repeat(FIGURES.len())
         );

@@ -15,7 +15,7 @@ use super::preset::Preset;
 use super::probe::Probe;
 use super::{Kind, Module};
 use crate::permute::Manifest;
-use markdown::{cell, prose};
+use markdown::{escaped_prose, table_cell};
 
 /// What the catalogue shows.
 pub struct Contents<'c> {
@@ -29,15 +29,18 @@ pub struct Contents<'c> {
 }
 
 /// The files of the catalogue: path below its folder and text.
-pub fn pages(contents: &Contents) -> BTreeMap<String, String> {
+pub fn catalogue_pages(contents: &Contents) -> BTreeMap<String, String> {
     let mut files = BTreeMap::from([
-        ("README.md".to_owned(), index(contents)),
-        ("programs.md".to_owned(), program::page(contents.manifest, contents.costs)),
-        ("costs.md".to_owned(), cost::page(contents.modules, contents.costs)),
-        ("presets.md".to_owned(), preset::page(contents.presets, contents.probes)),
+        ("README.md".to_owned(), index_page(contents)),
+        ("programs.md".to_owned(), program::program_page(contents.manifest, contents.costs)),
+        ("costs.md".to_owned(), cost::cost_page(contents.modules, contents.costs)),
+        ("presets.md".to_owned(), preset::preset_page(contents.presets, contents.probes)),
     ]);
     for module in contents.modules {
-        files.insert(page_of(&module.path), module::page(module, contents.plots, contents.costs));
+        files.insert(
+            page_of(&module.path),
+            module::module_page(module, contents.plots, contents.costs),
+        );
     }
     for (path, svg) in contents.plots {
         files.insert(format!("{}.svg", path.replace("::", "/")), svg.clone());
@@ -75,7 +78,7 @@ one for each published example, and of the [costs](costs.md) of functions on GPU
 `cargo xtask docs` generates this catalogue from the library.
 ";
 
-fn index(contents: &Contents) -> String {
+fn index_page(contents: &Contents) -> String {
     let mut text = INDEX.to_owned();
     let mut folder = "";
     for module in contents.modules {
@@ -87,9 +90,12 @@ fn index(contents: &Contents) -> String {
         let link = format!("[`{}`]({})", module.path, page_of(&module.path));
         let functions = module.items.iter().filter(|item| item.kind == Kind::Function);
         let names: Vec<String> = functions
-            .map(|item| format!("[{}]({}#{})", prose(&item.name), page_of(&module.path), item.name))
+            .map(|item| {
+                format!("[{}]({}#{})", escaped_prose(&item.name), page_of(&module.path), item.name)
+            })
             .collect();
-        let _ = writeln!(text, "| {link} | {} | {} |", names.join(", "), cell(module.summary()));
+        let _ =
+            writeln!(text, "| {link} | {} | {} |", names.join(", "), table_cell(module.summary()));
     }
     text
 }

@@ -6,25 +6,25 @@ use std::fmt::Write as _;
 use super::super::cost::Costs;
 use super::super::{Item, Kind, Module, SECTIONS};
 use super::cost;
-use super::markdown::{block, cell, prose};
+use super::markdown::{code_block, escaped_prose, table_cell};
 
 /// The sections that are printed as paragraphs. The parameters are a table.
 const PARAGRAPHS: std::ops::RangeFrom<usize> = 1..;
 
 /// The page: the module's comment, a table of contents, every item.
-pub fn page(module: &Module, plots: &BTreeMap<String, String>, costs: &Costs) -> String {
+pub fn module_page(module: &Module, plots: &BTreeMap<String, String>, costs: &Costs) -> String {
     let mut text = format!("# {}\n", module.path);
     for paragraph in &module.doc {
-        let _ = write!(text, "\n{}\n", prose(paragraph));
+        let _ = write!(text, "\n{}\n", escaped_prose(paragraph));
     }
     if let Some(item) = module.items.first() {
         let import = format!("import lamplight::{}::{{..}};", module.path);
         let _ =
             write!(text, "\n| WESL | GLSL |\n|---|---|\n| `{import}` | `{}` |\n", item.include());
     }
-    contents(&mut text, module);
+    write_contents(&mut text, module);
     for item in &module.items {
-        entry(&mut text, item, plots.contains_key(&item.path()));
+        write_item(&mut text, item, plots.contains_key(&item.path()));
         cost::of_function(&mut text, item, costs);
     }
     let up = "../".repeat(module.path.matches("::").count());
@@ -32,7 +32,7 @@ pub fn page(module: &Module, plots: &BTreeMap<String, String>, costs: &Costs) ->
     text
 }
 
-fn contents(text: &mut String, module: &Module) {
+fn write_contents(text: &mut String, module: &Module) {
     text.push_str("\n| | |\n|---|---|\n");
     for item in &module.items {
         let kind = if item.kind == Kind::Function {
@@ -45,39 +45,40 @@ fn contents(text: &mut String, module: &Module) {
             "| {kind}[`{}`](#{}) | {} |",
             item.name,
             item.name.to_lowercase(),
-            cell(item.summary())
+            table_cell(item.summary())
         );
     }
 }
 
-fn entry(text: &mut String, item: &Item, plotted: bool) {
-    let _ = write!(text, "\n## {}\n", prose(&item.name));
+fn write_item(text: &mut String, item: &Item, plotted: bool) {
+    let _ = write!(text, "\n## {}\n", escaped_prose(&item.name));
     for paragraph in item.paragraphs() {
-        let _ = write!(text, "\n{}\n", prose(&paragraph));
+        let _ = write!(text, "\n{}\n", escaped_prose(&paragraph));
     }
-    let _ = write!(text, "\n{}", block("wgsl", &item.wesl));
+    let _ = write!(text, "\n{}", code_block("wgsl", &item.wesl));
     if let Some(glsl) = &item.glsl {
-        let _ = write!(text, "\n{}", block("glsl", glsl));
+        let _ = write!(text, "\n{}", code_block("glsl", glsl));
     }
     if plotted {
         let (_, module) = item.module.rsplit_once("::").unwrap_or(("", &item.module));
         let _ = write!(text, "\n![{} plotted]({module}/{}.svg)\n", item.name, item.name);
     }
-    members(text, item);
+    write_members(text, item);
     for section in &SECTIONS[PARAGRAPHS] {
         if let Some(words) = item.section(section) {
-            let _ = write!(text, "\n**{section}.** {}\n", prose(&words));
+            let _ = write!(text, "\n**{section}.** {}\n", escaped_prose(&words));
         }
     }
 }
 
-fn members(text: &mut String, item: &Item) {
+fn write_members(text: &mut String, item: &Item) {
     if item.members.is_empty() {
         return;
     }
     let heading = if item.kind == Kind::Struct { "field" } else { "parameter" };
     let _ = write!(text, "\n| {heading} | type | |\n|---|---|---|\n");
     for member in &item.members {
-        let _ = writeln!(text, "| `{}` | `{}` | {} |", member.name, member.ty, cell(&member.doc));
+        let _ =
+            writeln!(text, "| `{}` | `{}` | {} |", member.name, member.ty, table_cell(&member.doc));
     }
 }

@@ -4,26 +4,26 @@ use std::fmt::Write as _;
 
 use super::super::preset::Preset;
 use super::super::probe::{ORDER, Probe};
-use super::markdown::{cell, prose};
+use super::markdown::{escaped_prose, table_cell};
 use crate::scene::sets;
 
 /// The page: presets, scenes, light probes.
-pub fn page(presets: &[Preset], probes: &[Probe]) -> String {
+pub fn preset_page(presets: &[Preset], probes: &[Probe]) -> String {
     let mut text = "# Presets\n\nEach published example is a preset. Its numbers are those that the source gives, under the names of the\n\
                     uniforms' fields. The scene chooses the values that the source leaves open: `lamplight show PRESET` lists these.\n"
         .to_owned();
     let mut work = "";
     for preset in presets {
-        let (here, place) = place(preset);
+        let (here, place) = work_and_place(preset);
         if here != work {
             let _ = write!(
                 text,
                 "\n## {}\n\n| preset | place | permutation | scene | numbers | |\n|---|---|---|---|---|---|\n",
-                prose(here)
+                escaped_prose(here)
             );
             work = here;
         }
-        row(&mut text, preset, place);
+        write_row(&mut text, preset, place);
     }
     text.push_str("\n## Scenes\n\n| scene | what it is |\n|---|---|\n");
     for set in sets::ALL {
@@ -35,7 +35,7 @@ pub fn page(presets: &[Preset], probes: &[Probe]) -> String {
 }
 
 /// The work, and the place in it.
-fn place(preset: &Preset) -> (&str, &str) {
+fn work_and_place(preset: &Preset) -> (&str, &str) {
     let source = preset.source.as_str();
     if !source.starts_with(preset.work()) {
         return (preset.work(), source);
@@ -46,7 +46,7 @@ fn place(preset: &Preset) -> (&str, &str) {
     here.split_once(", chapter 4, ").unwrap_or((here, place))
 }
 
-fn row(text: &mut String, preset: &Preset, place: &str) {
+fn write_row(text: &mut String, preset: &Preset, place: &str) {
     let passes = preset
         .passes
         .iter()
@@ -61,17 +61,17 @@ fn row(text: &mut String, preset: &Preset, place: &str) {
         text,
         "| `{}` | {} | {passes}`{}:{}` | `{}` | {} | {} |",
         preset.name,
-        cell(place),
+        table_cell(place),
         preset.program,
         preset.key,
         preset.scene,
         numbers.join("<br>"),
-        cell(&told(preset)),
+        table_cell(&preset_description(preset)),
     );
 }
 
 /// What a preset shows, and how that differs from the example.
-fn told(preset: &Preset) -> String {
+fn preset_description(preset: &Preset) -> String {
     let deviations = preset.deviations.iter().map(String::as_str);
     let sentences: Vec<&str> = std::iter::once(preset.doc.as_str()).chain(deviations).collect();
     sentences.join(" ")
@@ -86,6 +86,7 @@ fn light_probes(text: &mut String, probes: &[Probe]) {
     );
     for probe in probes {
         let [r, g, b] = probe.coefficients[0];
-        let _ = writeln!(text, "| `{}` | {} | {r}, {g}, {b} |", probe.name, cell(&probe.title));
+        let _ =
+            writeln!(text, "| `{}` | {} | {r}, {g}, {b} |", probe.name, table_cell(&probe.title));
     }
 }

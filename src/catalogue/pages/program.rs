@@ -4,25 +4,25 @@ use std::fmt::Write as _;
 
 use super::super::cost::Costs;
 use super::cost;
-use super::markdown::{cell, prose};
+use super::markdown::{escaped_prose, table_cell};
 use crate::permute::{Axis, Manifest, Program};
 
 /// The page.
-pub fn page(manifest: &Manifest, costs: &Costs) -> String {
+pub fn program_page(manifest: &Manifest, costs: &Costs) -> String {
     let mut text = "# Programs\n\nThe programs of the library have entry points in both languages. Axes multiply the permutations of a\n\
                     program, and constraints exclude some. `shaderlib/lamplight.toml` lists those that ship.\n"
         .to_owned();
     for program in &manifest.programs {
-        entry(&mut text, program, costs);
+        write_program(&mut text, program, costs);
     }
     text.push_str("\n---\n[Catalogue](README.md)\n");
     text
 }
 
-fn entry(text: &mut String, program: &Program, costs: &Costs) {
-    let _ = write!(text, "\n## {}\n", prose(&program.name));
+fn write_program(text: &mut String, program: &Program, costs: &Costs) {
+    let _ = write!(text, "\n## {}\n", escaped_prose(&program.name));
     if let Some(doc) = &program.doc {
-        let _ = write!(text, "\n{}\n", prose(doc));
+        let _ = write!(text, "\n{}\n", escaped_prose(doc));
     }
     let files: Vec<String> = program.files().map(|file| format!("`{}`", file.path)).collect();
     let targets: Vec<&str> = program.targets.iter().map(|target| target.name()).collect();
@@ -40,17 +40,19 @@ fn entry(text: &mut String, program: &Program, costs: &Costs) {
         space.valid_count(),
         space.count()
     );
-    axes(text, space.axes());
+    write_axes(text, space.axes());
     cost::of_program(text, &program.name, costs);
     for (index, constraint) in space.constraints().iter().enumerate() {
         let start = if index == 0 { "\nConstraints:\n\n" } else { "" };
-        let doc =
-            constraint.doc.as_ref().map_or(String::new(), |doc| format!("  \n  {}", prose(doc)));
+        let doc = constraint
+            .doc
+            .as_ref()
+            .map_or(String::new(), |doc| format!("  \n  {}", escaped_prose(doc)));
         let _ = writeln!(text, "{start}- `{}`{doc}", constraint.text);
     }
 }
 
-fn axes(text: &mut String, axes: &[Axis]) {
+fn write_axes(text: &mut String, axes: &[Axis]) {
     if axes.is_empty() {
         return;
     }
@@ -67,7 +69,7 @@ fn axes(text: &mut String, axes: &[Axis]) {
             axis.name,
             values.join(", "),
             axis.mode.name(),
-            cell(doc)
+            table_cell(doc)
         );
     }
     text.push_str("\nThe default of each axis is bold.\n");

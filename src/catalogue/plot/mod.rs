@@ -15,7 +15,7 @@
 mod scale;
 mod svg;
 
-pub use svg::draw;
+pub use svg::draw_plot;
 
 use std::collections::BTreeMap;
 
@@ -80,11 +80,11 @@ impl Plot {
 pub type Plots = BTreeMap<String, Plot>;
 
 /// Reads a file of plots that is in the set.
-pub fn parse(sources: &SourceSet, id: SourceId) -> Result<Plots, Diagnostics> {
-    reader::data(sources, id)
+pub fn parse_plots(sources: &SourceSet, id: SourceId) -> Result<Plots, Diagnostics> {
+    reader::read_data(sources, id)
 }
 
 /// The path of a module's plots: `lighting/spot.plot.toml` for `lighting::spot`.
-pub fn path(module: &str) -> String {
+pub fn plot_path(module: &str) -> String {
     format!("{}.plot.toml", module.replace("::", "/"))
 }

@@ -16,7 +16,7 @@ impl Scale {
 
     /// Round values within the interval, about `count` of them.
     pub fn ticks(&self, count: f64) -> Vec<f64> {
-        let step = step((self.to - self.from) / count);
+        let step = tick_step((self.to - self.from) / count);
         let (first, last) =
             ((self.from / step - 1e-9).ceil() as i64, (self.to / step + 1e-9).floor() as i64);
         (first..=last).map(|index| index as f64 * step).collect()
@@ -25,7 +25,7 @@ impl Scale {
 
 /// Bounds of the values, extended to the next tick. The interval is not empty even if all values
 /// are the same.
-pub fn fitted(values: impl Iterator<Item = f64>) -> (f64, f64) {
+pub fn fitted_bounds(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values
         .filter(|value| value.is_finite())
         .fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(value), high.max(value)));
@@ -34,14 +34,14 @@ pub fn fitted(values: impl Iterator<Item = f64>) -> (f64, f64) {
     }
     // Most functions of light start at 0, so a scale that nearly starts there does.
     let low = if low > 0.0 && low < 0.4 * high { 0.0 } else { low };
-    let step = step((high - low).max(high.abs().max(1e-6) * 0.01) / 4.0);
+    let step = tick_step((high - low).max(high.abs().max(1e-6) * 0.01) / 4.0);
     let (from, to) = ((low / step + 1e-6).floor() * step, (high / step - 1e-6).ceil() * step);
     if to > from { (from, to) } else { (from - step, from + step) }
 }
 
 /// The smallest step for ticks above a size: 1, 2 or 5 times a power of ten, or 45 and 90 for
 /// degrees.
-fn step(size: f64) -> f64 {
+fn tick_step(size: f64) -> f64 {
     let power = 10f64.powf(size.log10().floor());
     let degrees = [15.0, 30.0, 45.0, 90.0];
     if let Some(step) = degrees.into_iter().find(|step| (size - step).abs() < 1e-9) {
@@ -55,7 +55,7 @@ fn step(size: f64) -> f64 {
 }
 
 /// A tick's value, as short as possible.
-pub fn number(value: f64) -> String {
+pub fn tick_label(value: f64) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     let text = if rounded == 0.0 { "0".to_owned() } else { rounded.to_string() };
     text.replace('-', "\u{2212}")

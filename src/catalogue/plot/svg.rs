@@ -5,7 +5,7 @@
 
 use std::fmt::Write as _;
 
-use super::scale::{Scale, fitted, number};
+use super::scale::{Scale, fitted_bounds, tick_label};
 use super::{Plot, SAMPLES};
 
 const WIDTH: f64 = 560.0;
@@ -24,38 +24,39 @@ const CURVES: [(&str, &str); 4] =
 const FLAT: f64 = 0.04;
 
 /// The plot with the values of its curves, each at the [`SAMPLES`] inputs of the plot.
-pub fn draw(title: &str, plot: &Plot, curves: &[Vec<f64>]) -> String {
-    let (from, to) = plot
-        .y
-        .map_or_else(|| fitted(curves.iter().flatten().copied()), |range| (range.from, range.to));
+pub fn draw_plot(title: &str, plot: &Plot, curves: &[Vec<f64>]) -> String {
+    let (from, to) = plot.y.map_or_else(
+        || fitted_bounds(curves.iter().flatten().copied()),
+        |range| (range.from, range.to),
+    );
     let x = Scale { from: plot.x.from, to: plot.x.to, start: LEFT, end: RIGHT };
     let y = Scale { from, to, start: BOTTOM, end: TOP };
-    let mut svg = head(title);
-    axes(&mut svg, &x, &y);
+    let mut svg = svg_head(title);
+    draw_axes(&mut svg, &x, &y);
     for (index, values) in curves.iter().enumerate() {
-        curve(&mut svg, index, &path(values, &x, &y));
+        draw_curve(&mut svg, index, &curve_path(values, &x, &y));
     }
-    captions(&mut svg, title, plot);
+    draw_captions(&mut svg, title, plot);
     svg.push_str("</svg>\n");
     svg
 }
 
-fn head(title: &str) -> String {
+fn svg_head(title: &str) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" \
          role=\"img\" font-family=\"system-ui, sans-serif\" font-size=\"12\">\n<title>{}</title>\n",
-        escaped(title)
+        escape_xml(title)
     )
 }
 
-fn axes(svg: &mut String, x: &Scale, y: &Scale) {
+fn draw_axes(svg: &mut String, x: &Scale, y: &Scale) {
     let _ = writeln!(svg, "<g stroke=\"{INK}\" stroke-opacity=\"0.25\">");
     for value in y.ticks(5.0) {
-        let at = place(y.place(value));
+        let at = rounded_place(y.place(value));
         let _ = writeln!(svg, "<path d=\"M{LEFT} {at}H{RIGHT}\"/>");
     }
     for value in x.ticks(6.0) {
-        let at = place(x.place(value));
+        let at = rounded_place(x.place(value));
         let _ = writeln!(svg, "<path d=\"M{at} {BOTTOM}V{TOP}\"/>");
     }
     let _ = writeln!(svg, "</g>\n<g fill=\"{INK}\">");
@@ -64,57 +65,57 @@ fn axes(svg: &mut String, x: &Scale, y: &Scale) {
             svg,
             "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>",
             LEFT - 8.0,
-            place(y.place(value) + 4.0),
-            number(value)
+            rounded_place(y.place(value) + 4.0),
+            tick_label(value)
         );
     }
     for value in x.ticks(6.0) {
         let _ = writeln!(
             svg,
             "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-            place(x.place(value)),
+            rounded_place(x.place(value)),
             BOTTOM + 18.0,
-            number(value)
+            tick_label(value)
         );
     }
     svg.push_str("</g>\n");
 }
 
-fn curve(svg: &mut String, index: usize, path: &str) {
+fn draw_curve(svg: &mut String, index: usize, path: &str) {
     let (colour, dashes) = CURVES[index % CURVES.len()];
     let _ = writeln!(
         svg,
         "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\" stroke-linejoin=\"round\"{}/>",
-        dashed(dashes)
+        dash_attribute(dashes)
     );
 }
 
-fn dashed(dashes: &str) -> String {
+fn dash_attribute(dashes: &str) -> String {
     if dashes.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{dashes}\"") }
 }
 
 /// The name, the legend, the note, and the label of the horizontal axis.
-fn captions(svg: &mut String, title: &str, plot: &Plot) {
+fn draw_captions(svg: &mut String, title: &str, plot: &Plot) {
     let _ = writeln!(
         svg,
         "<text x=\"{LEFT}\" y=\"22\" fill=\"{INK}\" font-weight=\"600\">{}</text>",
-        escaped(title)
+        escape_xml(title)
     );
     let mut right = RIGHT;
-    for (index, text) in legend(plot).iter().enumerate().rev() {
+    for (index, text) in legend_entries(plot).iter().enumerate().rev() {
         let (colour, dashes) = CURVES[index % CURVES.len()];
         let start = right - 7.0 * text.chars().count() as f64;
         let _ = writeln!(
             svg,
             "<text x=\"{}\" y=\"22\" fill=\"{INK}\">{}</text>",
-            place(start),
-            escaped(text)
+            rounded_place(start),
+            escape_xml(text)
         );
-        let line = format!("M{} 18h22", place(start - 28.0));
+        let line = format!("M{} 18h22", rounded_place(start - 28.0));
         let _ = writeln!(
             svg,
             "<path d=\"{line}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"{}/>",
-            dashed(dashes)
+            dash_attribute(dashes)
         );
         right = start - 44.0;
     }
@@ -123,14 +124,18 @@ fn captions(svg: &mut String, title: &str, plot: &Plot) {
     let _ = writeln!(
         svg,
         "<text x=\"{middle}\" y=\"290\" fill=\"{INK}\" text-anchor=\"middle\">{}</text>",
-        escaped(&(plot.x.label.clone() + &note))
+        escape_xml(&(plot.x.label.clone() + &note))
     );
 }
 
 /// One entry for each curve; the parameter's name is on the first.
-fn legend(plot: &Plot) -> Vec<String> {
+fn legend_entries(plot: &Plot) -> Vec<String> {
     let named = |curves: &super::Curves, index: usize, value: &f64| {
-        if index == 0 { format!("{} = {}", curves.name, number(*value)) } else { number(*value) }
+        if index == 0 {
+            format!("{} = {}", curves.name, tick_label(*value))
+        } else {
+            tick_label(*value)
+        }
     };
     plot.curves
         .iter()
@@ -141,7 +146,7 @@ fn legend(plot: &Plot) -> Vec<String> {
 }
 
 /// A curve within the frame. It is interrupted where a value is not finite.
-fn path(values: &[f64], x: &Scale, y: &Scale) -> String {
+fn curve_path(values: &[f64], x: &Scale, y: &Scale) -> String {
     let step = (x.to - x.from) / (SAMPLES - 1) as f64;
     let points: Vec<Option<(f64, f64)>> = values
         .iter()
@@ -162,18 +167,18 @@ fn path(values: &[f64], x: &Scale, y: &Scale) -> String {
 fn piece_path(points: &[(f64, f64)]) -> String {
     let mut kept = vec![false; points.len()];
     (kept[0], kept[points.len() - 1]) = (true, true);
-    keep(points, &mut kept, 0, points.len() - 1);
+    keep_bends(points, &mut kept, 0, points.len() - 1);
     let corners = points
         .iter()
         .zip(kept)
         .filter(|(_, kept)| *kept)
-        .map(|((x, y), _)| format!("{} {}", place(*x), place(*y)));
+        .map(|((x, y), _)| format!("{} {}", rounded_place(*x), rounded_place(*y)));
     format!("M{}", corners.collect::<Vec<_>>().join("L"))
 }
 
 /// Marks the points that are too far from a line between the first and the last (Douglas and
 /// Peucker).
-fn keep(points: &[(f64, f64)], kept: &mut [bool], first: usize, last: usize) {
+fn keep_bends(points: &[(f64, f64)], kept: &mut [bool], first: usize, last: usize) {
     let distance = |index: usize| {
         let ((ax, ay), (bx, by), (px, py)) = (points[first], points[last], points[index]);
         ((bx - ax) * (py - ay) - (by - ay) * (px - ax)).abs() / (bx - ax).hypot(by - ay)
@@ -184,17 +189,17 @@ fn keep(points: &[(f64, f64)], kept: &mut [bool], first: usize, last: usize) {
     };
     if distance(farthest) > FLAT {
         kept[farthest] = true;
-        keep(points, kept, first, farthest);
-        keep(points, kept, farthest, last);
+        keep_bends(points, kept, first, farthest);
+        keep_bends(points, kept, farthest, last);
     }
 }
 
 /// Rounded to a tenth of a unit: finer than can be seen, coarser than differences of rounding.
-fn place(value: f64) -> String {
+fn rounded_place(value: f64) -> String {
     let rounded = (value * 10.0).round() / 10.0;
     rounded.to_string()
 }
 
-fn escaped(text: &str) -> String {
+fn escape_xml(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

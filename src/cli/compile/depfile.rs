@@ -8,7 +8,7 @@ use crate::output::{self, Replace};
 use crate::source::SourceSet;
 
 /// Writes the rule. The library is part of this program, so it is not listed.
-pub fn write(
+pub fn write_depfile(
     path: &Path,
     outputs: impl Iterator<Item = PathBuf>,
     sources: &SourceSet,
@@ -19,8 +19,10 @@ pub fn write(
         .filter(|(_, source)| source.on_disk)
         .map(|(_, source)| source.path.as_str())
         .collect();
-    let outputs: Vec<String> = outputs.map(|path| escaped(&path.to_string_lossy())).collect();
-    let inputs: String = inputs.iter().map(|path| format!(" \\\n  {}", escaped(path))).collect();
+    let outputs: Vec<String> =
+        outputs.map(|path| escape_for_make(&path.to_string_lossy())).collect();
+    let inputs: String =
+        inputs.iter().map(|path| format!(" \\\n  {}", escape_for_make(path))).collect();
     let rule = format!("{}:{inputs}\n", outputs.join(" "));
     // A file that is there may be replaced if it is a rule for the same outputs.
     let is_ours =
@@ -29,7 +31,7 @@ pub fn write(
 }
 
 /// A name in the syntax of make.
-fn escaped(path: &str) -> String {
+fn escape_for_make(path: &str) -> String {
     let mut text = String::with_capacity(path.len());
     for letter in path.chars() {
         match letter {

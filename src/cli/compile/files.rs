@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::bundle::Target;
 use crate::cli::failure::Failure;
 use crate::cli::stream;
-use crate::cli::terminal::{data, is_terminal, stdout};
+use crate::cli::terminal::{is_terminal, stdout, write_data};
 use crate::emit::targets;
 use crate::generate::Shader;
 use crate::output::{self, Replace};
@@ -24,7 +24,7 @@ pub struct File {
 const ENDINGS: &[&str] = &[".wesl", ".wgsl", ".glsl", ".vert", ".frag", ".comp"];
 
 /// The name of a root module without its endings.
-pub fn stem(file: &Path) -> String {
+pub fn module_stem(file: &Path) -> String {
     if stream::is_stream(file) {
         return "stdin".to_owned();
     }
@@ -37,9 +37,9 @@ pub fn stem(file: &Path) -> String {
 }
 
 /// A file for each target of a shader, and one for its reflection.
-pub fn of(stem: &str, shader: &Shader, wanted: &[Target], reflection: bool) -> Vec<File> {
+pub fn files_of(stem: &str, shader: &Shader, wanted: &[Target], reflection: bool) -> Vec<File> {
     let named = |ending: &str| format!("{stem}.{}.{ending}", shader.entry);
-    let stage = stage(shader.stage);
+    let stage = stage_name(shader.stage);
     let mut files = Vec::new();
     for &target in wanted {
         let (Some(entry), Some(artifact)) =
@@ -47,7 +47,7 @@ pub fn of(stem: &str, shader: &Shader, wanted: &[Target], reflection: bool) -> V
         else {
             continue;
         };
-        let name = named(&ending(target, stage, entry.extension));
+        let name = named(&file_ending(target, stage, entry.extension));
         files.push(File { name, binary: entry.binary, bytes: artifact.bytes.to_vec() });
     }
     if reflection {
@@ -66,7 +66,7 @@ pub fn of(stem: &str, shader: &Shader, wanted: &[Target], reflection: bool) -> V
     files
 }
 
-fn stage(stage: naga::ShaderStage) -> &'static str {
+fn stage_name(stage: naga::ShaderStage) -> &'static str {
     match stage {
         naga::ShaderStage::Vertex => "vert",
         naga::ShaderStage::Fragment => "frag",
@@ -76,7 +76,7 @@ fn stage(stage: naga::ShaderStage) -> &'static str {
 
 /// The ending of a file. Files of several targets must not share a name, and GLSL files end as
 /// glslang expects.
-pub fn ending(target: Target, stage: &str, extension: &str) -> String {
+pub fn file_ending(target: Target, stage: &str, extension: &str) -> String {
     match target {
         Target::GLSL450 | Target::GLSL330 | Target::ESSL300 => format!("{target}.{stage}"),
         _ => format!("{stage}.{extension}"),
@@ -84,7 +84,7 @@ pub fn ending(target: Target, stage: &str, extension: &str) -> String {
 }
 
 /// Fails if two shaders would have the same name. Root modules in different folders may share one.
-pub fn distinct(files: &[File]) -> Result<(), Failure> {
+pub fn refuse_same_names(files: &[File]) -> Result<(), Failure> {
     let mut names = BTreeSet::new();
     match files.iter().find(|file| !names.insert(&file.name)) {
         Some(file) => Err(Failure::usage(format!(
@@ -96,7 +96,7 @@ pub fn distinct(files: &[File]) -> Result<(), Failure> {
 }
 
 /// Writes files into a folder, and prints their paths.
-pub fn write(files: &[File], folder: &Path, replace: Replace) -> Result<(), Failure> {
+pub fn write_files(files: &[File], folder: &Path, replace: Replace) -> Result<(), Failure> {
     let named = files.iter().map(|file| (file.name.as_str(), &*file.bytes));
     output::write_folder(folder, named, replace)?;
     for file in files {
@@ -107,7 +107,7 @@ pub fn write(files: &[File], folder: &Path, replace: Replace) -> Result<(), Fail
 
 /// Writes text to standard output, with file names if there are several files. A single binary may
 /// go there too.
-pub fn print(files: &[File]) -> Result<(), Failure> {
+pub fn print_files(files: &[File]) -> Result<(), Failure> {
     if files.iter().any(|file| file.binary) && (files.len() > 1 || is_terminal()) {
         return Err(Failure::usage("a binary target needs `-o DIR`"));
     }
@@ -115,7 +115,7 @@ pub fn print(files: &[File]) -> Result<(), Failure> {
         if files.len() > 1 {
             writeln!(stdout(), "// ==== {}", file.name)?;
         }
-        data(&file.bytes)?;
+        write_data(&file.bytes)?;
     }
     Ok(())
 }

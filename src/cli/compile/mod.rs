@@ -4,14 +4,14 @@ mod depfile;
 mod files;
 mod target;
 
-pub use files::ending;
-pub use target::{Wanted, clip, target, wanted, wanted_one};
+pub use files::file_ending;
+pub use target::{Wanted, parse_clip, parse_target, wanted_one, wanted_targets};
 
 use std::path::PathBuf;
 
 use clap::Args;
 
-use super::failure::{DiagnosticForm, Failure, warn};
+use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::input::{Context, Input, Ready};
 use super::overwrite::Overwrite;
 use crate::bundle::{Clip, Target};
@@ -34,7 +34,7 @@ pub struct Arguments {
     target: Vec<Wanted>,
     /// Clip space: `wgpu`, the same for all targets, or `native`, as each API has it [default: that
     /// of the file's program in the manifest, or else `wgpu`].
-    #[arg(long, value_name = "SPACE", value_parser = clip)]
+    #[arg(long, value_name = "SPACE", value_parser = parse_clip)]
     clip: Option<Clip>,
     /// Compile only this entry point; may be given several times.
     #[arg(long, value_name = "NAME")]
@@ -52,8 +52,8 @@ pub struct Arguments {
     overwrite: Overwrite,
 }
 
-pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
-    let targets = wanted(&arguments.target);
+pub fn run_compile(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
+    let targets = wanted_targets(&arguments.target);
     let mut made: Vec<File> = Vec::new();
     let mut failed: Option<Failure> = None;
     let mut sources = SourceSet::default();
@@ -61,7 +61,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
         let compiled = arguments
             .input
             .compose(file, sources, form)
-            .and_then(|ready| compile(&arguments, file, ready, &targets, form));
+            .and_then(|ready| compile_file(&arguments, file, ready, &targets, form));
         sources = match compiled {
             Ok((sources, files)) => {
                 made.extend(files);
@@ -69,7 +69,7 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
             }
             // Errors in one file do not hide those in the next.
             Err(Failure::Input(sources, errors)) => {
-                warn(&sources, &errors, form);
+                print_warnings(&sources, &errors, form);
                 failed = Some(Failure::Input(sources.clone(), Vec::new()));
                 sources
             }
@@ -79,20 +79,20 @@ pub fn run(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     if let Some(failed) = failed {
         return Err(failed);
     }
-    files::distinct(&made)?;
-    let Some(folder) = &arguments.out else { return files::print(&made) };
-    files::write(&made, folder, arguments.overwrite.replace())?;
+    files::refuse_same_names(&made)?;
+    let Some(folder) = &arguments.out else { return files::print_files(&made) };
+    files::write_files(&made, folder, arguments.overwrite.replace())?;
     match &arguments.depfile {
         Some(path) => {
             let outputs = made.iter().map(|file| folder.join(&file.name));
-            depfile::write(path, outputs, &sources, arguments.overwrite.replace())
+            depfile::write_depfile(path, outputs, &sources, arguments.overwrite.replace())
         }
         None => Ok(()),
     }
 }
 
 /// The files of one root module.
-fn compile(
+fn compile_file(
     arguments: &Arguments,
     file: &std::path::Path,
     ready: Ready,
@@ -104,14 +104,15 @@ fn compile(
     let clip = arguments.clip.unwrap_or(context.clip);
     let root = Root { graph, settings, options, clip };
     let shaders = root.entries(&composed).and_then(|entries| {
-        let entries = chosen(arguments, file, entries)?;
+        let entries = chosen_entries(arguments, file, entries)?;
         root.compile(&entries, targets)
     });
     match shaders {
         Ok(shaders) => {
-            warn(&sources, &warnings(&context, &shaders), form);
-            let stem = files::stem(file);
-            let of = |shader: &Shader| files::of(&stem, shader, targets, arguments.reflection);
+            print_warnings(&sources, &shared_warnings(&context, &shaders), form);
+            let stem = files::module_stem(file);
+            let of =
+                |shader: &Shader| files::files_of(&stem, shader, targets, arguments.reflection);
             Ok((sources, shaders.iter().flat_map(of).collect()))
         }
         Err(errors) => Err(Failure::Input(sources, context.explain(errors))),
@@ -119,7 +120,7 @@ fn compile(
 }
 
 /// A warning about something that two entry points share is printed once.
-fn warnings(context: &Context, shaders: &[Shader]) -> Diagnostics {
+fn shared_warnings(context: &Context, shaders: &[Shader]) -> Diagnostics {
     let mut found = Diagnostics::new();
     for warning in shaders.iter().flat_map(|shader| &shader.made.warnings) {
         if !found.contains(warning) {
@@ -132,7 +133,7 @@ fn warnings(context: &Context, shaders: &[Shader]) -> Diagnostics {
 type Entries = Vec<(String, naga::ShaderStage)>;
 
 /// The entry points that `--entry` names, or all.
-fn chosen(
+fn chosen_entries(
     arguments: &Arguments,
     file: &std::path::Path,
     entries: Entries,

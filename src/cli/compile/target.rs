@@ -1,7 +1,7 @@
 //! Targets by name.
 
 use crate::bundle::{Clip, Target};
-use crate::diagnostic::nearest;
+use crate::diagnostic::nearest_name;
 
 /// What `--target` may name.
 #[derive(Debug, Clone, Copy)]
@@ -12,11 +12,11 @@ pub enum Wanted {
 
 /// `all`, or a target.
 pub fn wanted_one(name: &str) -> Result<Wanted, String> {
-    if name == "all" { Ok(Wanted::All) } else { target(name).map(Wanted::One) }
+    if name == "all" { Ok(Wanted::All) } else { parse_target(name).map(Wanted::One) }
 }
 
 /// Every target that is wanted, once, in the order of naming.
-pub fn wanted(chosen: &[Wanted]) -> Vec<Target> {
+pub fn wanted_targets(chosen: &[Wanted]) -> Vec<Target> {
     let mut targets: Vec<Target> = Vec::new();
     for one in chosen {
         let named = match one {
@@ -29,17 +29,17 @@ pub fn wanted(chosen: &[Wanted]) -> Vec<Target> {
 }
 
 /// A target by name, as an option's value.
-pub fn target(name: &str) -> Result<Target, String> {
+pub fn parse_target(name: &str) -> Result<Target, String> {
     Target::find(name).ok_or_else(|| {
         let names: Vec<&str> = Target::ALL.iter().map(|target| target.name()).collect();
-        let hint = nearest(name, names.iter().copied())
+        let hint = nearest_name(name, names.iter().copied())
             .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         format!("no such target{hint} (targets: {})", names.join(", "))
     })
 }
 
 /// A clip space by name, as an option's value.
-pub fn clip(name: &str) -> Result<Clip, String> {
+pub fn parse_clip(name: &str) -> Result<Clip, String> {
     Clip::find(name).ok_or_else(|| {
         let names: Vec<&str> = Clip::ALL.iter().map(|(name, _)| *name).collect();
         format!("no such clip space (clip spaces: {})", names.join(", "))

@@ -2,7 +2,7 @@
 
 use super::super::failure::Failure;
 use super::super::text;
-use super::measured;
+use super::measure_costs;
 use super::subjects::permutations_of;
 use crate::bundle::{Language, Target};
 use crate::cost::device::Device;
@@ -13,7 +13,7 @@ use crate::resolve::Packages;
 use crate::source::SourceSet;
 
 /// What each value of each axis of a program changes, over all its permutations.
-pub fn changes(
+pub fn axis_changes(
     sources: &mut SourceSet,
     packages: &Packages,
     manifest: &Manifest,
@@ -26,7 +26,7 @@ pub fn changes(
         ..Request::default()
     };
     let (axes, subjects) = permutations_of(sources, packages, manifest, &request, Language::Wesl)?;
-    Ok(permutations::changes(&axes, &measured(devices, &subjects)?))
+    Ok(permutations::value_changes(&axes, &measure_costs(devices, &subjects)?))
 }
 
 /// The table of changes: medians, and the range of the instructions.
@@ -50,5 +50,5 @@ pub fn changes_table(changes: &[Change]) -> String {
             format!("{}={}", change.axis, change.value),
         ]
     };
-    text::table(&columns, &changes.iter().map(row).collect::<Vec<_>>())
+    text::table_text(&columns, &changes.iter().map(row).collect::<Vec<_>>())
 }

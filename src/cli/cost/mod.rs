@@ -4,8 +4,8 @@ mod axes;
 mod record;
 mod subjects;
 
-pub use axes::{changes, changes_table};
-pub use record::record;
+pub use axes::{axis_changes, changes_table};
+pub use record::record_costs;
 
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -26,9 +26,9 @@ use crate::cost::device::Device;
 use crate::cost::gpu::{self, GPUS, Gpu};
 use crate::cost::statistics::FIGURES;
 use crate::cost::{self, Cost, Subject};
-use crate::diagnostic::nearest;
+use crate::diagnostic::nearest_name;
 use crate::generate::Progress;
-use crate::input::read;
+use crate::input::read_file;
 use crate::output;
 
 /// The most bytes of a file of recorded costs.
@@ -64,7 +64,7 @@ pub struct Arguments {
     #[arg(long, requires = "baseline")]
     record: bool,
     /// The share by which a figure may rise, such as 0.02.
-    #[arg(long, value_name = "SHARE", default_value_t = 0.02, value_parser = share)]
+    #[arg(long, value_name = "SHARE", default_value_t = 0.02, value_parser = parse_share)]
     rise: f64,
     /// Print the figures of whole stages, instead of those that the functions add.
     #[arg(long)]
@@ -77,15 +77,15 @@ pub struct Arguments {
 }
 
 fn gpu_name(name: &str) -> Result<&'static Gpu, String> {
-    gpu::find(name).ok_or_else(|| {
+    gpu::find_gpu(name).ok_or_else(|| {
         let names: Vec<&str> = GPUS.iter().map(|gpu| gpu.name).collect();
-        let hint = nearest(name, names.iter().copied())
+        let hint = nearest_name(name, names.iter().copied())
             .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         format!("no such GPU{hint} (GPUs: {})", names.join(", "))
     })
 }
 
-fn share(text: &str) -> Result<f64, String> {
+fn parse_share(text: &str) -> Result<f64, String> {
     let share = text.parse::<f64>().ok().filter(|share| share.is_finite() && *share >= 0.0);
     share.ok_or_else(|| "expected a number from 0, such as 0.02".to_owned())
 }
@@ -124,17 +124,17 @@ impl Gpus {
     }
 }
 
-pub fn run(arguments: Arguments, opened: Opened, form: DiagnosticForm) -> Result<(), Failure> {
+pub fn run_cost(arguments: Arguments, opened: Opened, form: DiagnosticForm) -> Result<(), Failure> {
     let recorded = arguments.baseline.as_deref().filter(|_| !arguments.record);
     let recorded = recorded.map(recorded_in).transpose()?.flatten();
-    let subjects = subjects::subjects(&arguments, form)?;
+    let subjects = subjects::asked_subjects(&arguments, form)?;
     let devices = opened.map_err(Failure::environment)?;
-    let costs = measured(&devices, &subjects)?;
+    let costs = measure_costs(&devices, &subjects)?;
     let driver = devices.first().map_or("", |device| &device.driver);
-    print(&arguments, driver, &costs)?;
+    print_costs(&arguments, driver, &costs)?;
     let Some(path) = &arguments.baseline else { return Ok(()) };
     match recorded {
-        Some(recorded) => compare(&recorded, driver, &costs, arguments.rise),
+        Some(recorded) => compare_costs(&recorded, driver, &costs, arguments.rise),
         None => {
             let text = Baseline::of(driver, &costs).text();
             let replace = arguments.overwrite.replace();
@@ -144,10 +144,10 @@ pub fn run(arguments: Arguments, opened: Opened, form: DiagnosticForm) -> Result
     }
 }
 
-fn measured(devices: &[Device], subjects: &[Subject]) -> Result<Vec<Cost>, Failure> {
+fn measure_costs(devices: &[Device], subjects: &[Subject]) -> Result<Vec<Cost>, Failure> {
     let bar = Bar::new();
     let progress = |done, total| bar.show(Progress { stage: "compiling".to_owned(), done, total });
-    let costs = cost::measure(devices, subjects, &progress);
+    let costs = cost::measure_subjects(devices, subjects, &progress);
     bar.clear();
     costs.map_err(Failure::input)
 }
@@ -158,13 +158,18 @@ fn recorded_in(path: &Path) -> Result<Option<Baseline>, Failure> {
         return Ok(None);
     }
     let told = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
-    let bytes = read(path, MOST_BYTES).map_err(|error| told(error.to_string()))?;
+    let bytes = read_file(path, MOST_BYTES).map_err(|error| told(error.to_string()))?;
     Baseline::parse(&bytes)
         .map(Some)
         .map_err(|reason| told(format!("this is not a file of recorded costs: {reason}")))
 }
 
-fn compare(recorded: &Baseline, driver: &str, costs: &[Cost], share: f64) -> Result<(), Failure> {
+fn compare_costs(
+    recorded: &Baseline,
+    driver: &str,
+    costs: &[Cost],
+    share: f64,
+) -> Result<(), Failure> {
     if recorded.driver != driver {
         return Err(Failure::environment(format!(
             "the costs were recorded with `{}`, and this is `{driver}`: figures of two versions of \
@@ -189,9 +194,9 @@ fn compare(recorded: &Baseline, driver: &str, costs: &[Cost], share: f64) -> Res
     )))
 }
 
-fn print(arguments: &Arguments, driver: &str, costs: &[Cost]) -> Result<(), Failure> {
+fn print_costs(arguments: &Arguments, driver: &str, costs: &[Cost]) -> Result<(), Failure> {
     if arguments.json {
-        let objects: Vec<_> = costs.iter().map(|cost| object(driver, cost)).collect();
+        let objects: Vec<_> = costs.iter().map(|cost| cost_object(driver, cost)).collect();
         return Ok(writeln!(stdout(), "{:#}", json!(objects))?);
     }
     let several_stages = costs.iter().any(|cost| cost.stage != Stage::Fragment);
@@ -211,10 +216,10 @@ fn print(arguments: &Arguments, driver: &str, costs: &[Cost]) -> Result<(), Fail
         })
         .collect();
     writeln!(stdout(), "{driver}\n")?;
-    Ok(stdout().write_all(text::table(&columns, &rows).as_bytes())?)
+    Ok(stdout().write_all(text::table_text(&columns, &rows).as_bytes())?)
 }
 
-fn object(driver: &str, cost: &Cost) -> serde_json::Value {
+fn cost_object(driver: &str, cost: &Cost) -> serde_json::Value {
     json!({
         "name": cost.name,
         "gpu": cost.gpu.name,

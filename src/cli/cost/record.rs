@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::super::failure::Failure;
-use super::{Opened, changes, measured, subjects};
+use super::{Opened, axis_changes, measure_costs, subjects};
 use crate::bundle::Language;
 use crate::catalogue::cost::{AxisCost, Chip, Costs, FIGURES, SHOWN};
 use crate::catalogue::{self, Item};
@@ -15,13 +15,13 @@ use crate::project;
 use crate::source::SourceSet;
 
 /// Measures all of it, of the library.
-pub fn record(opened: Opened) -> Result<Costs, Failure> {
+pub fn record_costs(opened: Opened) -> Result<Costs, Failure> {
     let devices = opened.map_err(Failure::environment)?;
-    let modules = catalogue::library();
+    let modules = catalogue::library_modules();
     let items: Vec<&Item> = modules.iter().flat_map(|module| &module.items).collect();
     let mut functions = Vec::new();
-    subjects::functions(&items, &[], Language::Wesl, &mut functions)?;
-    let measured = measured(&devices, &functions)?;
+    subjects::function_subjects(&items, &[], Language::Wesl, &mut functions)?;
+    let measured = measure_costs(&devices, &functions)?;
     let chip = |device: &Device| Chip {
         name: device.gpu.name.to_owned(),
         generation: device.gpu.generation.to_owned(),
@@ -60,13 +60,13 @@ fn of_axes(devices: &[Device]) -> Result<Vec<AxisCost>, Failure> {
     let mut axes = Vec::new();
     for program in &manifest.programs {
         let name = &program.name;
-        let changes = changes(&mut sources, &packages, &manifest, name, shown)?;
-        axes.extend(changes.into_iter().map(|change| row(name, change)));
+        let changes = axis_changes(&mut sources, &packages, &manifest, name, shown)?;
+        axes.extend(changes.into_iter().map(|change| axis_cost(name, change)));
     }
     Ok(axes)
 }
 
-fn row(program: &str, change: Change) -> AxisCost {
+fn axis_cost(program: &str, change: Change) -> AxisCost {
     let of = |key: &str| change.figures.get(key).copied().unwrap_or_default();
     let (instructions, waves) = (of("instructions"), of("subgroups_per_simd"));
     AxisCost {

@@ -13,7 +13,7 @@ use crate::bundle::{Axis, Clip, Language, Stage, Target};
 use crate::catalogue::{self, Item, Kind};
 use crate::cost::pipeline::Known;
 use crate::cost::{self, Subject, permutations};
-use crate::diagnostic::nearest;
+use crate::diagnostic::nearest_name;
 use crate::generate::{Memory, Request, Root, Tools, generate};
 use crate::permute::{Manifest, Quoted};
 use crate::proof::library::Library;
@@ -24,28 +24,31 @@ use crate::source::SourceSet;
 const EXTENSIONS: [&str; 6] = ["wesl", "wgsl", "glsl", "vert", "frag", "comp"];
 
 /// What was asked for, in order.
-pub fn subjects(arguments: &Arguments, form: DiagnosticForm) -> Result<Vec<Subject>, Failure> {
+pub fn asked_subjects(
+    arguments: &Arguments,
+    form: DiagnosticForm,
+) -> Result<Vec<Subject>, Failure> {
     let mut subjects = Vec::new();
     let (files, named): (Vec<&String>, Vec<&String>) =
         arguments.subjects.iter().partition(|name| is_file(name));
-    let modules = catalogue::library();
+    let modules = catalogue::library_modules();
     let items: Vec<&Item> = modules.iter().flat_map(|module| &module.items).collect();
-    let (paths, keys) = separated(arguments, &items, named)?;
+    let (paths, keys) = separate_paths(arguments, &items, named)?;
     if arguments.subjects.is_empty() || !paths.is_empty() {
-        functions(&items, &paths, language(arguments), &mut subjects)?;
+        function_subjects(&items, &paths, asked_language(arguments), &mut subjects)?;
     }
     for key in keys {
-        subjects.push(permutation(arguments, key)?);
+        subjects.push(permutation_subject(arguments, key)?);
     }
     for file in files {
-        subjects.extend(shaders(arguments, Path::new(file), form)?);
+        subjects.extend(file_subjects(arguments, Path::new(file), form)?);
     }
     Ok(subjects)
 }
 
 /// Separates paths of the library from keys. A key has a sign that only keys have, or it is a word
 /// that names an axis of the program and no path of the library.
-fn separated<'a>(
+fn separate_paths<'a>(
     arguments: &Arguments,
     items: &[&Item],
     named: Vec<&'a String>,
@@ -53,7 +56,7 @@ fn separated<'a>(
     let is_path = |name: &str| items.iter().any(|item| is_below(&item.path(), name));
     let is_plain = |name: &str| !name.contains(['=', ',', ':']) && !is_path(name);
     let axes = match named.iter().any(|name| is_plain(name)) {
-        true => axes(arguments)?,
+        true => axis_names(arguments)?,
         false => Vec::new(),
     };
     let is_axis = |name: &str| name == DEFAULT || axes.iter().any(|axis| axis == name);
@@ -62,11 +65,11 @@ fn separated<'a>(
 }
 
 /// Names of the axes of the program that keys are of.
-fn axes(arguments: &Arguments) -> Result<Vec<String>, Failure> {
+fn axis_names(arguments: &Arguments) -> Result<Vec<String>, Failure> {
     let mut sources = SourceSet::default();
-    let (manifest, _) = variants::open(arguments.manifest.as_deref(), &mut sources)
+    let (manifest, _) = variants::open_manifest(arguments.manifest.as_deref(), &mut sources)
         .map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
-    let name = program(arguments, &manifest)?;
+    let name = program_of_key(arguments, &manifest)?;
     let program = manifest.programs.iter().find(|program| program.name == name);
     let axes = program.into_iter().flat_map(|program| program.space.axes());
     Ok(axes.map(|axis| axis.name.clone()).collect())
@@ -84,13 +87,13 @@ fn is_file(name: &str) -> bool {
     extension.is_some_and(|extension| EXTENSIONS.contains(&extension))
 }
 
-fn language(arguments: &Arguments) -> Language {
+fn asked_language(arguments: &Arguments) -> Language {
     arguments.input.chosen_language().unwrap_or(Language::Wesl)
 }
 
 /// The subjects of a file: its vertex and its fragment stage together, if it has one of each;
 /// otherwise each entry point.
-fn shaders(
+fn file_subjects(
     arguments: &Arguments,
     file: &Path,
     form: DiagnosticForm,
@@ -117,16 +120,16 @@ fn shaders(
     let is_pair = (of(Stage::Vertex), of(Stage::Fragment), known.len()) == (1, 1, 2);
     if is_pair {
         let pair = known.into_iter().map(|(_, known)| known).collect();
-        return Ok(vec![cost::stages(&name.to_string(), pair).map_err(told)?]);
+        return Ok(vec![cost::stages_subject(&name.to_string(), pair).map_err(told)?]);
     }
     let each = known
         .into_iter()
-        .map(|(entry, known)| cost::stages(&format!("{name} {entry}"), vec![known]));
+        .map(|(entry, known)| cost::stages_subject(&format!("{name} {entry}"), vec![known]));
     each.collect::<Result<_, _>>().map_err(told)
 }
 
 /// The subjects of functions, modules and folders; of all functions where none is named.
-pub fn functions(
+pub fn function_subjects(
     items: &[&Item],
     paths: &[&String],
     language: Language,
@@ -138,7 +141,7 @@ pub fn functions(
     for named in paths {
         if !functions.iter().any(|item| is_below(&item.path(), named)) {
             let known: Vec<String> = functions.iter().map(|item| item.path()).collect();
-            let hint = nearest(named, known.iter().map(String::as_str))
+            let hint = nearest_name(named, known.iter().map(String::as_str))
                 .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
             return Err(Failure::input(format!("the library has no `{named}`{hint}")));
         }
@@ -159,18 +162,18 @@ pub fn functions(
         };
         let composed =
             library.module(&sources, module, language, &[name.to_owned()]).map_err(of_sources)?;
-        let subject = cost::function(&path, &composed, name);
+        let subject = cost::function_subject(&path, &composed, name);
         subjects.push(subject.map_err(|diagnostic| of_sources(vec![diagnostic]))?);
     }
     Ok(())
 }
 
 /// The subject of one permutation: its stages in SPIR-V, as a bundle has them.
-fn permutation(arguments: &Arguments, key: &str) -> Result<Subject, Failure> {
+fn permutation_subject(arguments: &Arguments, key: &str) -> Result<Subject, Failure> {
     let mut sources = SourceSet::default();
-    let (manifest, packages) = variants::open(arguments.manifest.as_deref(), &mut sources)
+    let (manifest, packages) = variants::open_manifest(arguments.manifest.as_deref(), &mut sources)
         .map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
-    let program = program(arguments, &manifest)?;
+    let program = program_of_key(arguments, &manifest)?;
     let id = sources.add("KEY", key);
     let request = Request {
         program: Some(program),
@@ -179,7 +182,7 @@ fn permutation(arguments: &Arguments, key: &str) -> Result<Subject, Failure> {
         ..Request::default()
     };
     let subjects =
-        permutations_of(&mut sources, &packages, &manifest, &request, language(arguments));
+        permutations_of(&mut sources, &packages, &manifest, &request, asked_language(arguments));
     subjects?.1.pop().ok_or_else(|| {
         Failure::input(format!("the permutation `{key}` has no stages in this language"))
     })
@@ -204,12 +207,13 @@ pub fn permutations_of(
     memory.fill(&mut contents);
     let program = contents.programs.into_values().next();
     let Some(program) = program else { return Ok(Default::default()) };
-    let subjects = permutations::subjects(&program, language).map_err(Failure::input)?;
+    let subjects =
+        permutations::permutation_subjects(&program, language).map_err(Failure::input)?;
     Ok((program.axes, subjects))
 }
 
 /// The program that a key is of.
-fn program(arguments: &Arguments, manifest: &Manifest) -> Result<String, Failure> {
+fn program_of_key(arguments: &Arguments, manifest: &Manifest) -> Result<String, Failure> {
     if let Some(program) = &arguments.program {
         return Ok(program.clone());
     }

@@ -1,15 +1,15 @@
 //! A crate that carries the library as a package for the `wesl` crate.
 
-use super::{Contents, DESCRIPTION, KEYWORDS, below, licenses, wesl_toml};
+use super::{Contents, DESCRIPTION, KEYWORDS, files_below, license_files, wesl_toml};
 
 /// The crate's name, with the suffix that shader packages have; imports begin with the package's, `lamplight`.
 pub const NAME: &str = "lamplight_wgsl";
 
 const ROOT: &str = "src/shaders";
 
-pub fn contents(modules: Contents) -> Contents {
+pub fn crate_contents(modules: Contents) -> Contents {
     let own = [
-        ("Cargo.toml", manifest()),
+        ("Cargo.toml", cargo_manifest()),
         ("build.rs", BUILD.to_owned()),
         ("src/lib.rs", LIB.to_owned()),
         ("README.md", README.to_owned()),
@@ -17,13 +17,13 @@ pub fn contents(modules: Contents) -> Contents {
     ];
     own.into_iter()
         .map(|(path, text)| (path.to_owned(), text))
-        .chain(licenses())
-        .chain(below(ROOT, modules))
+        .chain(license_files())
+        .chain(files_below(ROOT, modules))
         .collect()
 }
 
 /// The manifest. It is a workspace of its own, so that the crate builds wherever it is written.
-fn manifest() -> String {
+fn cargo_manifest() -> String {
     format!(
         r#"[package]
 name = "{NAME}"

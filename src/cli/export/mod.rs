@@ -52,11 +52,11 @@ const KEYWORDS: [&str; 5] = ["WGSL", "WESL", "WebGPU", "lighting", "shadow"];
 
 const DESCRIPTION: &str = "Lighting and shadow functions for WGSL, tested function by function";
 
-pub fn run(arguments: Arguments) -> Result<(), Failure> {
+pub fn run_export(arguments: Arguments) -> Result<(), Failure> {
     let (name, contents) = match arguments.form {
-        Form::Files => (LIBRARY, files()?),
-        Form::Cargo => (cargo::NAME, cargo::contents(modules()?)),
-        Form::Npm => (npm::NAME, npm::contents(modules()?, texts(&["glsl"])?)),
+        Form::Files => (LIBRARY, exported_files()?),
+        Form::Cargo => (cargo::NAME, cargo::crate_contents(library_modules()?)),
+        Form::Npm => (npm::NAME, npm::npm_contents(library_modules()?, library_texts(&["glsl"])?)),
     };
     let files: Contents =
         contents.into_iter().map(|(path, text)| (format!("{name}/{path}"), text)).collect();
@@ -66,16 +66,16 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
     Ok(writeln!(stdout(), "{}: {} files", folder.display(), files.len())?)
 }
 
-fn files() -> Result<Contents, Failure> {
-    let mut contents = texts(&["wesl", "wgsl", "glsl"])?;
-    contents.extend(texts(&["toml"])?.into_iter().filter(|(path, _)| path == "wesl.toml"));
-    contents.extend(licenses());
-    contents.insert("README.md".to_owned(), readme());
+fn exported_files() -> Result<Contents, Failure> {
+    let mut contents = library_texts(&["wesl", "wgsl", "glsl"])?;
+    contents.extend(library_texts(&["toml"])?.into_iter().filter(|(path, _)| path == "wesl.toml"));
+    contents.extend(license_files());
+    contents.insert("README.md".to_owned(), readme_text());
     Ok(contents)
 }
 
 /// Describes the files and their version.
-fn readme() -> String {
+fn readme_text() -> String {
     let version = env!("CARGO_PKG_VERSION");
     let (license, repository) = (env!("CARGO_PKG_LICENSE"), env!("CARGO_PKG_REPOSITORY"));
     format!(
@@ -88,14 +88,14 @@ fn readme() -> String {
 
 /// The modules that others can import. Programs are left out: they are entry points with conditions
 /// over axes of Lamplight.
-fn modules() -> Result<Contents, Failure> {
-    Ok(texts(&["wesl", "wgsl"])?
+fn library_modules() -> Result<Contents, Failure> {
+    Ok(library_texts(&["wesl", "wgsl"])?
         .into_iter()
         .filter(|(path, _)| !path.starts_with("programs/"))
         .collect())
 }
 
-fn texts(extensions: &[&str]) -> Result<Contents, Failure> {
+fn library_texts(extensions: &[&str]) -> Result<Contents, Failure> {
     let text = |path: String| match Embedded.read(&path) {
         Ok(Some(text)) => Ok((path, text)),
         _ => Err(Failure::environment(format!("the binary carries no `{path}`"))),
@@ -104,11 +104,11 @@ fn texts(extensions: &[&str]) -> Result<Contents, Failure> {
 }
 
 /// The files below a folder of the package.
-fn below(folder: &str, files: Contents) -> impl Iterator<Item = (String, String)> {
+fn files_below(folder: &str, files: Contents) -> impl Iterator<Item = (String, String)> {
     files.into_iter().map(move |(path, text)| (format!("{folder}/{path}"), text))
 }
 
-fn licenses() -> impl Iterator<Item = (String, String)> {
+fn license_files() -> impl Iterator<Item = (String, String)> {
     LICENSES.into_iter().map(|(path, text)| (path.to_owned(), text.to_owned()))
 }
 

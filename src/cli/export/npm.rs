@@ -2,30 +2,30 @@
 
 use serde_json::{Value, json};
 
-use super::{Contents, DESCRIPTION, EDITION, KEYWORDS, below, licenses, wesl_toml};
+use super::{Contents, DESCRIPTION, EDITION, KEYWORDS, files_below, license_files, wesl_toml};
 use crate::project::LIBRARY;
 
 /// The package's name. wesl-js finds a package by the first name of an import path, so it is that of the library.
 pub const NAME: &str = LIBRARY;
 
-pub fn contents(modules: Contents, glsl: Contents) -> Contents {
+pub fn npm_contents(modules: Contents, glsl: Contents) -> Contents {
     let own = [
-        ("package.json", manifest()),
-        ("dist/weslBundle.js", bundle(&modules)),
+        ("package.json", npm_manifest()),
+        ("dist/weslBundle.js", bundled_module(&modules)),
         ("dist/weslBundle.d.ts", TYPES.to_owned()),
         ("README.md", README.to_owned()),
         ("wesl.toml", wesl_toml("npm", "shaders")),
     ];
     let own = own.into_iter().map(|(path, text)| (path.to_owned(), text));
-    own.chain(licenses())
-        .chain(below("shaders", modules))
-        .chain(below("glsl/lamplight", glsl))
+    own.chain(license_files())
+        .chain(files_below("shaders", modules))
+        .chain(files_below("glsl/lamplight", glsl))
         .collect()
 }
 
 /// Written by hand, since the order of conditions matters: tools take the first one that they know,
 /// and `types` must come before `import`.
-fn manifest() -> String {
+fn npm_manifest() -> String {
     let (name, description) = (json!(NAME), json!(DESCRIPTION));
     let keywords = json!(KEYWORDS);
     let (version, license) = (env!("CARGO_PKG_VERSION"), env!("CARGO_PKG_LICENSE"));
@@ -52,15 +52,15 @@ fn manifest() -> String {
 }
 
 /// The module: one object in JSON, which is JavaScript too, with its texts as strings.
-fn bundle(modules: &Contents) -> String {
+fn bundled_module(modules: &Contents) -> String {
     let bundle = json!({ "name": LIBRARY, "edition": EDITION, "modules": modules });
     format!(
         "export const weslBundle = {};\n\nexport default weslBundle;\n",
-        pretty(&bundle).trim_end()
+        pretty_json(&bundle).trim_end()
     )
 }
 
-fn pretty(value: &Value) -> String {
+fn pretty_json(value: &Value) -> String {
     format!("{value:#}\n")
 }
 

@@ -26,7 +26,7 @@ const FILES: &[(&str, &str)] = &[
     ("shaders/falloff.toml", include_str!("package/falloff.toml.in")),
 ];
 
-pub fn run(arguments: Arguments) -> Result<(), Failure> {
+pub fn run_init(arguments: Arguments) -> Result<(), Failure> {
     let folder = &arguments.folder;
     // All or nothing: nothing is written if a file of the package is there already.
     if let Some((path, _)) =
@@ -37,7 +37,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
             folder.join(path).display()
         )));
     }
-    let name = name(folder);
+    let name = package_name(folder);
     for (path, text) in FILES {
         let path = folder.join(path);
         if let Some(folder) = path.parent() {
@@ -58,7 +58,7 @@ pub fn run(arguments: Arguments) -> Result<(), Failure> {
 }
 
 /// The folder's name in the form of a package's name.
-fn name(folder: &Path) -> String {
+fn package_name(folder: &Path) -> String {
     let real = folder.canonicalize().or_else(|_| std::path::absolute(folder));
     let last = real.ok().and_then(|path| Some(path.file_name()?.to_string_lossy().into_owned()));
     let fits = |letter: char| if letter.is_ascii_alphanumeric() { letter } else { '_' };

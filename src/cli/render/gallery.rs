@@ -4,7 +4,7 @@ use std::io::Write;
 use std::time::Instant;
 
 use super::super::terminal::stdout;
-use super::{Failure, comparisons, input, library};
+use super::{Failure, input_failure, library_comparisons, library_examples};
 use crate::catalogue::preset::Preset;
 use crate::execute::Session;
 use crate::output::Folder;
@@ -17,29 +17,29 @@ use crate::picture::{Plan, Shot};
 const PAGES: [&str; 3] = ["README.md", "index.html", "adapters.txt"];
 
 /// Draws all presets into a folder, with a page in Markdown and one in HTML.
-pub fn run(
+pub fn draw_gallery(
     painter: &mut dyn Session,
     programs: &Programs,
     shot: &Shot,
     mut folder: Folder,
 ) -> Result<(), Failure> {
     let start = Instant::now();
-    let (presets, probes) = library(programs)?;
-    let compared = comparisons(programs)?;
-    check(&folder, &presets, &compared)?;
+    let (presets, probes) = library_examples(programs)?;
+    let compared = library_comparisons(programs)?;
+    check_folder(&folder, &presets, &compared)?;
     let mut exhibits = Vec::new();
     for preset in &presets {
         let plan = Plan::of_preset(programs, preset, &probes)
-            .map_err(|problems| input(programs, problems))?;
+            .map_err(|problems| input_failure(programs, problems))?;
         let exhibit = Exhibit::new(&*painter, programs, preset, &plan, shot)
-            .map_err(|problems| input(programs, problems))?;
-        let [picture, thumb] = gallery::files(&preset.name);
+            .map_err(|problems| input_failure(programs, problems))?;
+        let [picture, thumb] = gallery::picture_files(&preset.name);
         let small = exhibit.picture.shrunk(gallery::THUMB);
         folder.write(&picture, &exhibit.picture.png().map_err(Failure::environment)?)?;
         folder.write(&thumb, &small.png().map_err(Failure::environment)?)?;
         exhibits.push(exhibit);
     }
-    let mut lines = gallery::adapters(&exhibits, shot);
+    let mut lines = gallery::adapter_lines(&exhibits, shot);
     let (strips, drawn) = draw_strips(painter, programs, shot, &mut folder, compared)?;
     lines += &drawn;
     let cards: Vec<&Card> = exhibits.iter().map(|exhibit| &exhibit.card).collect();
@@ -61,8 +61,12 @@ pub fn run(
 }
 
 /// Finds files that are not ours before the drawing, which takes minutes.
-fn check(folder: &Folder, presets: &[Preset], compared: &[Comparison]) -> Result<(), Failure> {
-    let drawn = presets.iter().flat_map(|preset| gallery::files(&preset.name));
+fn check_folder(
+    folder: &Folder,
+    presets: &[Preset],
+    compared: &[Comparison],
+) -> Result<(), Failure> {
+    let drawn = presets.iter().flat_map(|preset| gallery::picture_files(&preset.name));
     let strips = compared.iter().map(|comparison| gallery::strip_file(&comparison.name));
     let pages = PAGES.iter().map(ToString::to_string);
     for file in pages.chain(drawn).chain(strips) {
@@ -81,12 +85,12 @@ fn draw_strips(
 ) -> Result<(Vec<StripCard>, String), Failure> {
     let (mut strips, mut lines) = (Vec::new(), String::new());
     for comparison in compared {
-        let picture = strip::draw(painter, programs, &comparison, shot)
-            .map_err(|problems| input(programs, problems))?;
+        let picture = strip::draw_strip(painter, programs, &comparison, shot)
+            .map_err(|problems| input_failure(programs, problems))?;
         let file = gallery::strip_file(&comparison.name);
         folder.write(&file, &picture.png().map_err(Failure::environment)?)?;
         let card = StripCard::new(programs, comparison, shot.language)
-            .map_err(|problems| input(programs, problems))?;
+            .map_err(|problems| input_failure(programs, problems))?;
         lines += &format!("{}, {}\n", card.current(shot), painter.adapter());
         strips.push(card);
     }

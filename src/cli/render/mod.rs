@@ -18,7 +18,7 @@ use super::terminal::{self, stdout};
 use crate::bundle::Language;
 use crate::catalogue::preset::{self, Preset};
 use crate::catalogue::probe;
-use crate::diagnostic::{Diagnostics, nearest};
+use crate::diagnostic::{Diagnostics, nearest_name};
 use crate::execute::executors::Entry;
 use crate::execute::on_thread;
 use crate::limits::ENVIRONMENT_BYTES;
@@ -52,7 +52,7 @@ pub struct Arguments {
     model: Option<PathBuf>,
     /// The view of the model: the number of one of its cameras, or the positions of the eye and of
     /// the point that it looks at [default: its first camera, or a position that shows all of it].
-    #[arg(long, value_name = "N|X,Y,Z,X,Y,Z", requires = "model", value_parser = model::view,
+    #[arg(long, value_name = "N|X,Y,Z,X,Y,Z", requires = "model", value_parser = model::parse_view,
         allow_hyphen_values = true)]
     camera: Option<View>,
     /// Draw every preset, with pages that show them.
@@ -63,13 +63,13 @@ pub struct Arguments {
     #[arg(short, long = "out", alias = "output", value_name = "FILE")]
     output: Option<PathBuf>,
     /// Width and height in pixels [default: 512x512; 960x720 with `--all`].
-    #[arg(long, value_name = "WxH", value_parser = size)]
+    #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<[u32; 2]>,
     /// Samples of each pixel, which are averaged [default: 4; 16 with `--all`; 1 on `eval`].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     samples: Option<u32>,
     /// Exposure in stops: each stop doubles all light.
-    #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = stops,
+    #[arg(long, value_name = "STOPS", default_value_t = 0.0, value_parser = parse_stops,
         allow_negative_numbers = true)]
     exposure: f64,
     /// The number of cascades, the shadow maps of a directional light.
@@ -88,7 +88,7 @@ pub struct Arguments {
     overwrite: Overwrite,
 }
 
-fn size(text: &str) -> Result<[u32; 2], String> {
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
     const LARGEST: u32 = 4096;
     let (width, height) = text.split_once('x').ok_or("expected WxH, such as 512x512")?;
     let number =
@@ -100,35 +100,40 @@ fn size(text: &str) -> Result<[u32; 2], String> {
 }
 
 /// A number of stops. `nan` parses as a number and is refused here.
-fn stops(text: &str) -> Result<f64, String> {
+fn parse_stops(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
     number.ok_or_else(|| "expected a number".to_owned())
 }
 
-pub fn run(arguments: Arguments, _: DiagnosticForm) -> Result<(), Failure> {
-    on_thread(|| draw(&arguments))
+pub fn run_render(arguments: Arguments, _: DiagnosticForm) -> Result<(), Failure> {
+    on_thread(|| draw_picture(&arguments))
         .unwrap_or_else(|| Err(Failure::environment("the renderer stopped with an internal error")))
 }
 
-fn draw(arguments: &Arguments) -> Result<(), Failure> {
+fn draw_picture(arguments: &Arguments) -> Result<(), Failure> {
     let programs =
         Programs::load().map_err(|(sources, problems)| Failure::Input(sources, problems))?;
     let entry = executor::find_drawing(&arguments.executor)?;
-    let shot = shot(arguments, entry)?;
+    let shot = make_shot(arguments, entry)?;
     if arguments.all {
         let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from("gallery"));
         let folder = output::Folder::open(&folder, arguments.overwrite.replace())?;
-        return gallery::run(executor::open(entry)?.as_mut(), &programs, &shot, folder);
+        return gallery::draw_gallery(
+            executor::open_executor(entry)?.as_mut(),
+            &programs,
+            &shot,
+            folder,
+        );
     }
-    if let Some(comparison) = comparison(&programs, arguments)? {
-        return drawn(&programs, arguments, &comparison, &shot, entry);
+    if let Some(comparison) = named_comparison(&programs, arguments)? {
+        return draw_comparison(&programs, arguments, &comparison, &shot, entry);
     }
-    let plan = planned(&programs, arguments)?;
-    let painter = executor::open(entry)?;
+    let plan = make_plan(&programs, arguments)?;
+    let painter = executor::open_executor(entry)?;
     let start = Instant::now();
-    let picture = picture::render(painter.as_ref(), &programs, &plan, &shot)
-        .map_err(|problems| input(&programs, problems))?;
-    let path = written(arguments, &picture)?;
+    let picture = picture::render_plan(painter.as_ref(), &programs, &plan, &shot)
+        .map_err(|problems| input_failure(&programs, problems))?;
+    let path = write_picture(arguments, &picture)?;
     let last = plan.last().map_or("", |pass| pass.key.as_str());
     let [width, height] = shot.size;
     let own = arguments.model.as_ref().map(|model| model.display().to_string());
@@ -142,14 +147,16 @@ fn draw(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// What is drawn: a model, or a scene of ours.
-fn planned(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
-    let Some(own) = model::read(arguments)? else { return plan(programs, arguments) };
-    let plan = model::plan(programs, arguments, &own)?;
+fn make_plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
+    let Some(own) = model::read_model(arguments)? else {
+        return permutation_plan(programs, arguments);
+    };
+    let plan = model::model_plan(programs, arguments, &own)?;
     Ok(Plan { model: Some(Arc::new(own.scene)), ..plan })
 }
 
 /// Writes the picture where it is asked for.
-fn written(arguments: &Arguments, picture: &Picture) -> Result<PathBuf, Failure> {
+fn write_picture(arguments: &Arguments, picture: &Picture) -> Result<PathBuf, Failure> {
     let name = arguments.preset.as_deref().unwrap_or("render");
     let path = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.png")));
     told_form(&path);
@@ -159,9 +166,13 @@ fn written(arguments: &Arguments, picture: &Picture) -> Result<PathBuf, Failure>
 }
 
 /// The comparison that is named, if it is one.
-fn comparison(programs: &Programs, arguments: &Arguments) -> Result<Option<Comparison>, Failure> {
+fn named_comparison(
+    programs: &Programs,
+    arguments: &Arguments,
+) -> Result<Option<Comparison>, Failure> {
     let Some(name) = &arguments.preset else { return Ok(None) };
-    let found = comparisons(programs)?.into_iter().find(|comparison| comparison.name == *name);
+    let found =
+        library_comparisons(programs)?.into_iter().find(|comparison| comparison.name == *name);
     let is_changed = !arguments.set.is_empty()
         || arguments.program.is_some()
         || arguments.scene.is_some()
@@ -175,28 +186,28 @@ fn comparison(programs: &Programs, arguments: &Arguments) -> Result<Option<Compa
 }
 
 /// Draws a comparison.
-fn drawn(
+fn draw_comparison(
     programs: &Programs,
     arguments: &Arguments,
     comparison: &Comparison,
     shot: &Shot,
     entry: &Entry,
 ) -> Result<(), Failure> {
-    let mut painter = executor::open(entry)?;
+    let mut painter = executor::open_executor(entry)?;
     let start = Instant::now();
-    let picture = strip::draw(painter.as_mut(), programs, comparison, shot)
-        .map_err(|problems| input(programs, problems))?;
-    let path = written(arguments, &picture)?;
+    let picture = strip::draw_strip(painter.as_mut(), programs, comparison, shot)
+        .map_err(|problems| input_failure(programs, problems))?;
+    let path = write_picture(arguments, &picture)?;
     let (path, seconds) = (path.display(), start.elapsed().as_secs_f64());
     let (count, adapter) = (comparison.panels.len(), painter.adapter());
     Ok(writeln!(stdout(), "{path}: {count} panels in {seconds:.2} s, {adapter}")?)
 }
 
-fn input(programs: &Programs, problems: Diagnostics) -> Failure {
+fn input_failure(programs: &Programs, problems: Diagnostics) -> Failure {
     Failure::Input(programs.texts(), problems)
 }
 
-fn plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
+fn permutation_plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
     let mut plan = match &arguments.preset {
         Some(name) => of_preset(programs, arguments, name)?,
         None if arguments.set.is_empty()
@@ -211,14 +222,14 @@ fn plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
         None => of_point(
             programs,
             arguments,
-            program(programs, arguments.program.as_deref().unwrap_or("forward"))?,
+            find_program(programs, arguments.program.as_deref().unwrap_or("forward"))?,
             None,
         )?,
     };
     if let Some(scene) = &arguments.scene {
         let known = sets::ALL.iter().map(|set| set.name);
         if !known.clone().any(|name| name == scene) {
-            return Err(unknown("scene", scene, known));
+            return Err(unknown_name("scene", scene, known));
         }
         plan.scene.clone_from(scene);
     }
@@ -226,19 +237,19 @@ fn plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure> {
 }
 
 fn of_preset(programs: &Programs, arguments: &Arguments, name: &str) -> Result<Plan, Failure> {
-    let (presets, probes) = library(programs)?;
+    let (presets, probes) = library_examples(programs)?;
     let Some(preset) = presets.iter().find(|preset| preset.name == name) else {
-        let comparisons = comparisons(programs)?;
+        let comparisons = library_comparisons(programs)?;
         let compared = comparisons.iter().map(|comparison| comparison.name.as_str());
         let known = presets.iter().map(|preset| preset.name.as_str()).chain(compared);
-        return Err(unknown("preset", name, known));
+        return Err(unknown_name("preset", name, known));
     };
-    let plan =
-        Plan::of_preset(programs, preset, &probes).map_err(|problems| input(programs, problems))?;
+    let plan = Plan::of_preset(programs, preset, &probes)
+        .map_err(|problems| input_failure(programs, problems))?;
     if arguments.set.is_empty() && arguments.program.is_none() {
         return Ok(plan);
     }
-    let program = program(programs, arguments.program.as_deref().unwrap_or(&preset.program))?;
+    let program = find_program(programs, arguments.program.as_deref().unwrap_or(&preset.program))?;
     // Another permutation needs other passes. Numbers and scene are still the preset's.
     let changed = of_point(
         programs,
@@ -250,28 +261,34 @@ fn of_preset(programs: &Programs, arguments: &Arguments, name: &str) -> Result<P
 }
 
 /// Presets and light probes of the library.
-pub fn library(programs: &Programs) -> Result<(Vec<Preset>, Vec<probe::Probe>), Failure> {
+pub fn library_examples(programs: &Programs) -> Result<(Vec<Preset>, Vec<probe::Probe>), Failure> {
     let read = programs.with_texts(|texts| {
         let probes = probe::library(texts)?;
-        Ok((preset::library(texts, programs.manifest(), &probes)?, probes))
+        Ok((preset::library_presets(texts, programs.manifest(), &probes)?, probes))
     });
-    read.map_err(|problems| input(programs, problems))
+    read.map_err(|problems| input_failure(programs, problems))
 }
 
 /// Comparisons of the library.
-pub fn comparisons(programs: &Programs) -> Result<Vec<Comparison>, Failure> {
-    programs.with_texts(strip::library).map_err(|problems| input(programs, problems))
+pub fn library_comparisons(programs: &Programs) -> Result<Vec<Comparison>, Failure> {
+    programs
+        .with_texts(strip::library_comparisons)
+        .map_err(|problems| input_failure(programs, problems))
 }
 
-fn program<'p>(programs: &'p Programs, name: &str) -> Result<&'p Program, Failure> {
+fn find_program<'p>(programs: &'p Programs, name: &str) -> Result<&'p Program, Failure> {
     let known = programs.manifest().programs.iter().map(|program| program.name.as_str());
-    programs.manifest().program(name).ok_or_else(|| unknown("program", name, known))
+    programs.manifest().program(name).ok_or_else(|| unknown_name("program", name, known))
 }
 
 /// The error about an unknown name, with the nearest name, or with all names if there are few.
-fn unknown<'a>(what: &str, name: &str, known: impl Iterator<Item = &'a str> + Clone) -> Failure {
+fn unknown_name<'a>(
+    what: &str,
+    name: &str,
+    known: impl Iterator<Item = &'a str> + Clone,
+) -> Failure {
     const FEW: usize = 12;
-    let hint = match nearest(name, known.clone()) {
+    let hint = match nearest_name(name, known.clone()) {
         Some(nearest) => format!("\nhelp: did you mean `{nearest}`?"),
         None if known.clone().count() <= FEW => {
             format!("\nhelp: there are {}", known.collect::<Vec<_>>().join(", "))
@@ -287,12 +304,12 @@ fn of_point(
     program: &Program,
     over: Option<&str>,
 ) -> Result<Plan, Failure> {
-    let point = point(programs, arguments, program, over)?;
-    Plan::of_point(programs, program, &point).map_err(|problems| input(programs, problems))
+    let point = chosen_point(programs, arguments, program, over)?;
+    Plan::of_point(programs, program, &point).map_err(|problems| input_failure(programs, problems))
 }
 
 /// The point of the program's space that is asked for, over the point of a key.
-fn point(
+fn chosen_point(
     programs: &Programs,
     arguments: &Arguments,
     program: &Program,
@@ -307,13 +324,13 @@ fn point(
     let point = key::parse(&program.space, &base)
         .and_then(|base| key::parse_over(&program.space, base, &over));
     let checked = point.and_then(|point| {
-        let problems = super::input::broken(program, &point, &texts, id);
+        let problems = super::input::broken_constraint(program, &point, &texts, id);
         if problems.is_empty() { Ok(point) } else { Err(problems) }
     });
     checked.map_err(|problems| Failure::Input(texts, problems))
 }
 
-fn shot(arguments: &Arguments, executor: &Entry) -> Result<Shot, Failure> {
+fn make_shot(arguments: &Arguments, executor: &Entry) -> Result<Shot, Failure> {
     let (size, samples) = if arguments.all {
         (picture::gallery::SIZE, executor.samples.map(|few| if few > 1 { SAMPLES } else { few }))
     } else {
@@ -325,20 +342,20 @@ fn shot(arguments: &Arguments, executor: &Entry) -> Result<Shot, Failure> {
         cascades: arguments.cascades,
         exposure: arguments.exposure.clamp(-32.0, 32.0),
         language: Language::from(arguments.lang),
-        surroundings: surroundings(&arguments.environment)?,
+        surroundings: find_surroundings(&arguments.environment)?,
     })
 }
 
 /// What is around a scene, by name or from a file.
-fn surroundings(name: &str) -> Result<Surroundings, Failure> {
+fn find_surroundings(name: &str) -> Result<Surroundings, Failure> {
     if let Some(formula) = environment(name) {
         return Ok(Surroundings::Formula(formula));
     }
     let known = ENVIRONMENTS.iter().map(|(name, _, _)| *name);
-    let bytes = match crate::input::read(Path::new(name), ENVIRONMENT_BYTES) {
+    let bytes = match crate::input::read_file(Path::new(name), ENVIRONMENT_BYTES) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            return Err(unknown("environment or file", name, known));
+            return Err(unknown_name("environment or file", name, known));
         }
         Err(error) => return Err(Failure::input(format!("cannot read `{name}`: {error}"))),
     };

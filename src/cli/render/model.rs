@@ -13,7 +13,7 @@ use crate::picture::Plan;
 use crate::picture::frame::Programs;
 
 /// From where the model is seen, as `--camera` says it.
-pub fn view(text: &str) -> Result<View, String> {
+pub fn parse_view(text: &str) -> Result<View, String> {
     if let Ok(index) = text.parse() {
         return Ok(View::Camera(index));
     }
@@ -32,12 +32,12 @@ pub fn view(text: &str) -> Result<View, String> {
 }
 
 /// The model that is asked for; what is left out of it is said on standard error.
-pub fn read(arguments: &Arguments) -> Result<Option<Model>, Failure> {
+pub fn read_model(arguments: &Arguments) -> Result<Option<Model>, Failure> {
     let Some(path) = &arguments.model else { return Ok(None) };
     let shown = path.display();
-    let bytes = crate::input::read(path, MODEL_BYTES)
+    let bytes = crate::input::read_file(path, MODEL_BYTES)
         .map_err(|error| Failure::input(format!("cannot read `{shown}`: {error}")))?;
-    let model = model::read(&bytes, arguments.camera.unwrap_or(View::Own))
+    let model = model::read_model(&bytes, arguments.camera.unwrap_or(View::Own))
         .map_err(|error| Failure::input(format!("`{shown}`: {error}")))?;
     for note in &model.notes {
         writeln!(terminal::stderr(), "note: `{shown}`: {note}")?;
@@ -46,16 +46,20 @@ pub fn read(arguments: &Arguments) -> Result<Option<Model>, Failure> {
 }
 
 /// The permutation that shows a model: that of the user, whose axes go before the model's own.
-pub fn plan(programs: &Programs, arguments: &Arguments, model: &Model) -> Result<Plan, Failure> {
+pub fn model_plan(
+    programs: &Programs,
+    arguments: &Arguments,
+    model: &Model,
+) -> Result<Plan, Failure> {
     let is_forward = arguments.program.as_deref().is_none_or(|program| program == "forward");
     if !is_forward || arguments.preset.is_some() {
-        return super::plan(programs, arguments);
+        return super::permutation_plan(programs, arguments);
     }
     let own = model.axes.iter().filter_map(|axis| axis_value(axis).ok());
     let is_chosen = |axis: &str| arguments.set.iter().any(|(chosen, _)| chosen == axis);
     let free = own.filter(|(axis, _)| !is_chosen(axis));
     let set = free.chain(arguments.set.iter().cloned()).collect();
     // What the user chose may exclude what the model would have.
-    super::plan(programs, &Arguments { set, ..arguments.clone() })
-        .or_else(|_| super::plan(programs, arguments))
+    super::permutation_plan(programs, &Arguments { set, ..arguments.clone() })
+        .or_else(|_| super::permutation_plan(programs, arguments))
 }

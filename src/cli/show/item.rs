@@ -4,16 +4,16 @@ use serde_json::{Value, json};
 
 use super::Shown;
 use crate::catalogue::{Item, Kind, Member, Module, SECTIONS};
-use crate::cli::text::{indented, rows, wrapped};
+use crate::cli::text::{indent_lines, rows_text, wrap_words};
 use crate::project::LIBRARY;
 
 /// A function, a struct or a constant.
-pub fn item(item: &Item) -> Shown {
+pub fn show_item(item: &Item) -> Shown {
     Shown { text: item_text(item), json: item_json(item) }
 }
 
 /// A module with its items.
-pub fn module(module: &Module) -> Shown {
+pub fn show_module(module: &Module) -> Shown {
     let items = module.items.iter().map(item_json).collect::<Vec<_>>();
     let json = json!({ "module": module.path, "doc": module.doc, "items": items });
     Shown { text: module_text(module), json }
@@ -22,23 +22,23 @@ pub fn module(module: &Module) -> Shown {
 fn item_text(item: &Item) -> String {
     let mut text = format!("{}\n", item.full_path());
     for paragraph in item.paragraphs() {
-        text += &format!("\n{}", wrapped(&paragraph, 2));
+        text += &format!("\n{}", wrap_words(&paragraph, 2));
     }
     if item.members.iter().any(|member| !member.doc.is_empty()) {
         let heading = if item.kind == Kind::Struct { "Fields" } else { "Parameters" };
         text += &format!(
             "\n{heading}\n{}",
-            rows(&item.members.iter().map(member_row).collect::<Vec<_>>(), 2)
+            rows_text(&item.members.iter().map(member_row).collect::<Vec<_>>(), 2)
         );
     }
     for section in SECTIONS.iter().skip(1) {
         if let Some(words) = item.section(section) {
-            text += &format!("\n{section}\n{}", wrapped(&words, 2));
+            text += &format!("\n{section}\n{}", wrap_words(&words, 2));
         }
     }
-    text += &format!("\nWESL\n{}  {}\n", indented(&item.wesl, 2), item.import());
+    text += &format!("\nWESL\n{}  {}\n", indent_lines(&item.wesl, 2), item.import());
     if let Some(glsl) = &item.glsl {
-        text += &format!("\nGLSL\n{}  {}\n", indented(glsl, 2), item.include());
+        text += &format!("\nGLSL\n{}  {}\n", indent_lines(glsl, 2), item.include());
     }
     text
 }
@@ -76,11 +76,11 @@ fn module_text(module: &Module) -> String {
     };
     let mut text = format!("{path}\n");
     for paragraph in &module.doc {
-        text += &format!("\n{}", wrapped(paragraph, 2));
+        text += &format!("\n{}", wrap_words(paragraph, 2));
     }
     for item in &module.items {
         let signature = item.wesl.lines().next().unwrap_or_default().trim_end_matches(['{', ' ']);
-        text += &format!("\n{}{}", wrapped_code(signature), wrapped(item.summary(), 6));
+        text += &format!("\n{}{}", wrapped_code(signature), wrap_words(item.summary(), 6));
     }
     if let Some(item) = module.items.first() {
         text += &format!("\nWESL\n  import {path}::{{..}};\n\nGLSL\n  {}\n", item.include());
@@ -90,6 +90,6 @@ fn module_text(module: &Module) -> String {
 
 /// A signature, its later lines deeper than its first.
 fn wrapped_code(code: &str) -> String {
-    let text = wrapped(code, 4);
+    let text = wrap_words(code, 4);
     text.replacen("    ", "  ", 1)
 }

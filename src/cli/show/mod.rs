@@ -14,13 +14,13 @@ use clap::Args;
 use serde_json::Value;
 
 use super::failure::Failure;
-use super::list::known;
+use super::list::known_modules;
 use super::own::Own;
 use crate::catalogue::preset::Preset;
 use crate::catalogue::probe::Probe;
 use crate::catalogue::{self, Item, Module};
 use crate::cli::terminal::stdout;
-use crate::diagnostic::nearest;
+use crate::diagnostic::nearest_name;
 use crate::permute::Manifest;
 use crate::project::{self, LIBRARY};
 
@@ -53,57 +53,63 @@ struct Library {
     probes: Vec<Probe>,
 }
 
-pub fn run(arguments: Arguments) -> Result<(), Failure> {
+pub fn run_show(arguments: Arguments) -> Result<(), Failure> {
     let path = arguments
         .path
         .strip_prefix(LIBRARY)
         .and_then(|rest| rest.strip_prefix("::"))
         .unwrap_or(&arguments.path);
-    let library = library(&arguments.own)?;
-    let shown = find(&library, path)
-        .or_else(|| search::search(&library, path))
-        .ok_or_else(|| missing(path, &library))?;
+    let library = open_library(&arguments.own)?;
+    let shown = find_shown(&library, path)
+        .or_else(|| search::search_library(&library, path))
+        .ok_or_else(|| missing_path(path, &library))?;
     let text = if arguments.json { format!("{:#}\n", shown.json) } else { shown.text };
     Ok(stdout().write_all(text.as_bytes())?)
 }
 
-fn library(own: &Own) -> Result<Library, Failure> {
+fn open_library(own: &Own) -> Result<Library, Failure> {
     let (mut sources, manifest) = project::library_manifest()
         .map_err(|(sources, problems)| Failure::Input(sources, problems))?;
-    match catalogue::examples(&mut sources, &manifest) {
+    match catalogue::library_examples(&mut sources, &manifest) {
         Ok((presets, probes)) => {
             let manifests = own.manifest()?.into_iter().chain([manifest]).collect();
-            Ok(Library { modules: known(own)?, manifests, presets, probes })
+            Ok(Library { modules: known_modules(own)?, manifests, presets, probes })
         }
         Err(problems) => Err(Failure::Input(sources, problems)),
     }
 }
 
-fn find(library: &Library, path: &str) -> Option<Shown> {
+fn find_shown(library: &Library, path: &str) -> Option<Shown> {
     let item = || {
         library
             .modules
             .iter()
             .flat_map(|module| &module.items)
             .find(|item| item.path() == path)
-            .map(item::item)
+            .map(item::show_item)
     };
-    let module = || library.modules.iter().find(|module| module.path == path).map(item::module);
+    let module =
+        || library.modules.iter().find(|module| module.path == path).map(item::show_module);
     let program = || {
-        library.manifests.iter().find_map(|manifest| manifest.program(path)).map(program::program)
+        library
+            .manifests
+            .iter()
+            .find_map(|manifest| manifest.program(path))
+            .map(program::show_program)
     };
-    let preset = || library.presets.iter().find(|preset| preset.name == path).map(preset::preset);
-    let probe = || library.probes.iter().find(|probe| probe.name == path).map(preset::probe);
+    let preset =
+        || library.presets.iter().find(|preset| preset.name == path).map(preset::show_preset);
+    let probe = || library.probes.iter().find(|probe| probe.name == path).map(preset::show_probe);
     item()
         .or_else(module)
         .or_else(program)
-        .or_else(|| axis(library, path))
+        .or_else(|| find_axis(library, path))
         .or_else(preset)
         .or_else(probe)
 }
 
 /// `PROGRAM.AXIS`, or the axis alone where one program has it.
-fn axis(library: &Library, path: &str) -> Option<Shown> {
+fn find_axis(library: &Library, path: &str) -> Option<Shown> {
     let (wanted, name) =
         path.split_once('.').map_or((None, path), |(program, name)| (Some(program), name));
     let programs = library
@@ -113,10 +119,10 @@ fn axis(library: &Library, path: &str) -> Option<Shown> {
         .filter(|program| wanted.is_none_or(|wanted| wanted == program.name));
     let mut found = programs.filter_map(|program| Some((program, program.space.axis(name)?)));
     let (program, axis) = found.next()?;
-    found.next().is_none().then(|| program::axis(program, axis))
+    found.next().is_none().then(|| program::show_axis(program, axis))
 }
 
-fn missing(path: &str, library: &Library) -> Failure {
+fn missing_path(path: &str, library: &Library) -> Failure {
     let items: Vec<String> =
         library.modules.iter().flat_map(|module| module.items.iter().map(Item::path)).collect();
     let axes: Vec<String> = library
@@ -142,7 +148,7 @@ fn missing(path: &str, library: &Library) -> Failure {
         .find(|item| item.rsplit("::").next() == path.rsplit("::").next())
         .map(String::as_str);
     let hint = same_name
-        .or_else(|| nearest(path, known))
+        .or_else(|| nearest_name(path, known))
         .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
     Failure::input(format!("the library has no `{path}`{hint}"))
 }

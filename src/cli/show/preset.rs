@@ -5,18 +5,19 @@ use serde_json::{Value, json};
 use super::Shown;
 use crate::catalogue::preset::{Pass, Preset};
 use crate::catalogue::probe::{ORDER, Probe};
-use crate::cli::text::{rows, wrapped};
+use crate::cli::text::{rows_text, wrap_words};
 
 /// A preset with its numbers.
-pub fn preset(preset: &Preset) -> Shown {
+pub fn show_preset(preset: &Preset) -> Shown {
     let mut facts = vec![vec!["source".to_owned(), preset.source.clone()]];
-    facts.extend(preset.passes.iter().map(|pass| vec!["first".to_owned(), permutation(pass)]));
+    facts.extend(preset.passes.iter().map(|pass| vec!["first".to_owned(), permutation_text(pass)]));
     facts.push(vec!["program".to_owned(), preset.program.clone()]);
     facts.push(vec!["key".to_owned(), preset.key.replace(',', ", ")]);
     facts.push(vec!["scene".to_owned(), preset.scene.clone()]);
     facts.extend(preset.probe.iter().map(|probe| vec!["light probe".to_owned(), probe.clone()]));
     let about = format!("{} {}", preset.doc, preset.look);
-    let mut text = format!("{}\n\n{}\n{}", preset.name, wrapped(&about, 2), rows(&facts, 2));
+    let mut text =
+        format!("{}\n\n{}\n{}", preset.name, wrap_words(&about, 2), rows_text(&facts, 2));
     let numbers: Vec<Vec<String>> = preset
         .numbers
         .iter()
@@ -27,14 +28,14 @@ pub fn preset(preset: &Preset) -> Shown {
         })
         .collect();
     if !numbers.is_empty() {
-        text += &format!("\nNumbers\n{}", rows(&numbers, 2));
+        text += &format!("\nNumbers\n{}", rows_text(&numbers, 2));
     }
     if !preset.open.is_empty() {
         let open: Vec<&str> = preset.open.iter().map(String::as_str).collect();
-        text += &format!("\nLeft open by the source\n{}", wrapped(&open.join(", "), 2));
+        text += &format!("\nLeft open by the source\n{}", wrap_words(&open.join(", "), 2));
     }
     if !preset.deviations.is_empty() {
-        let deviations = preset.deviations.iter().map(|deviation| wrapped(deviation, 2));
+        let deviations = preset.deviations.iter().map(|deviation| wrap_words(deviation, 2));
         text += &format!("\nDifferences from the source\n{}", deviations.collect::<String>());
     }
     Shown { text, json: preset_json(preset) }
@@ -58,7 +59,7 @@ pub fn preset_json(preset: &Preset) -> Value {
     })
 }
 
-fn permutation(pass: &Pass) -> String {
+fn permutation_text(pass: &Pass) -> String {
     if pass.key == "default" {
         pass.program.clone()
     } else {
@@ -67,7 +68,7 @@ fn permutation(pass: &Pass) -> String {
 }
 
 /// A light probe with its coefficients.
-pub fn probe(probe: &Probe) -> Shown {
+pub fn show_probe(probe: &Probe) -> Shown {
     let number = |value: f64| format!("{value:>9}");
     let table: Vec<Vec<String>> = ORDER
         .iter()
@@ -80,9 +81,9 @@ pub fn probe(probe: &Probe) -> Shown {
     let text = format!(
         "{}\n\n{}{}\n{}\n  {function}\n",
         probe.name,
-        wrapped(&probe.title, 2),
-        wrapped(&probe.source, 2),
-        rows(&table, 2)
+        wrap_words(&probe.title, 2),
+        wrap_words(&probe.source, 2),
+        rows_text(&table, 2)
     );
     Shown { text, json: probe_json(probe) }
 }

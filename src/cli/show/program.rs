@@ -3,22 +3,22 @@
 use serde_json::{Value, json};
 
 use super::Shown;
-use crate::cli::list::{count, setting};
-use crate::cli::text::{rows, wrapped};
+use crate::cli::list::{count_json, setting_json};
+use crate::cli::text::{rows_text, wrap_words};
 use crate::parse::words::has_word;
 use crate::permute::{Axis, Program};
 
 /// A program with its axes and constraints.
-pub fn program(program: &Program) -> Shown {
+pub fn show_program(program: &Program) -> Shown {
     Shown { text: program_text(program), json: program_json(program) }
 }
 
 /// An axis of a program.
-pub fn axis(program: &Program, axis: &Axis) -> Shown {
+pub fn show_axis(program: &Program, axis: &Axis) -> Shown {
     let mut json = axis_json(&program.name, axis);
-    json["constraints"] = json!(constraints(program, axis));
+    json["constraints"] = json!(constraints_on(program, axis));
     let mut text = format!("{}.{}\n", program.name, axis.name);
-    text += &axis.doc.as_ref().map_or(String::new(), |doc| format!("\n{}", wrapped(doc, 2)));
+    text += &axis.doc.as_ref().map_or(String::new(), |doc| format!("\n{}", wrap_words(doc, 2)));
     let facts = [
         ["kind", axis.kind.name()].map(str::to_owned),
         ["mode", axis.mode.name()].map(str::to_owned),
@@ -26,8 +26,8 @@ pub fn axis(program: &Program, axis: &Axis) -> Shown {
         ["default".to_owned(), axis.values[axis.default].to_string()],
         ["GLSL macros".to_owned(), axis.macros().join(" ")],
     ];
-    text += &format!("\n{}", rows(&facts.map(Vec::from), 2));
-    text += &heading("Constraints", &constraints(program, axis));
+    text += &format!("\n{}", rows_text(&facts.map(Vec::from), 2));
+    text += &heading_text("Constraints", &constraints_on(program, axis));
     Shown { text, json }
 }
 
@@ -38,15 +38,15 @@ pub fn axis_json(program: &str, axis: &Axis) -> Value {
         "axis": axis.name,
         "kind": axis.kind.name(),
         "mode": axis.mode.name(),
-        "default": setting(&axis.values[axis.default]),
-        "values": axis.values.iter().map(setting).collect::<Vec<_>>(),
+        "default": setting_json(&axis.values[axis.default]),
+        "values": axis.values.iter().map(setting_json).collect::<Vec<_>>(),
         "macros": axis.macros(),
         "summary": axis.doc,
     })
 }
 
 /// The constraints that name the axis.
-fn constraints(program: &Program, axis: &Axis) -> Vec<String> {
+fn constraints_on(program: &Program, axis: &Axis) -> Vec<String> {
     program
         .space
         .constraints()
@@ -59,7 +59,7 @@ fn constraints(program: &Program, axis: &Axis) -> Vec<String> {
 fn program_text(program: &Program) -> String {
     let space = &program.space;
     let mut text = format!("{}\n", program.name);
-    text += &program.doc.as_ref().map_or(String::new(), |doc| format!("\n{}", wrapped(doc, 2)));
+    text += &program.doc.as_ref().map_or(String::new(), |doc| format!("\n{}", wrap_words(doc, 2)));
     let facts = [
         [
             "files".to_owned(),
@@ -73,12 +73,12 @@ fn program_text(program: &Program) -> String {
         ["valid".to_owned(), space.valid_count().to_string()],
         ["shipped".to_owned(), space.count().to_string()],
     ];
-    text += &format!("\n{}", rows(&facts.map(Vec::from), 2));
+    text += &format!("\n{}", rows_text(&facts.map(Vec::from), 2));
     if !space.axes().is_empty() {
         let axes: Vec<Vec<String>> = space.axes().iter().map(axis_row).collect();
-        text += &format!("\nAxes, defaults in brackets\n{}", rows(&axes, 2));
+        text += &format!("\nAxes, defaults in brackets\n{}", rows_text(&axes, 2));
     }
-    text + &heading(
+    text + &heading_text(
         "Constraints",
         &space.constraints().iter().map(|constraint| constraint.text.clone()).collect::<Vec<_>>(),
     )
@@ -94,11 +94,11 @@ fn axis_row(axis: &Axis) -> Vec<String> {
     ]
 }
 
-fn heading(name: &str, lines: &[String]) -> String {
+fn heading_text(name: &str, lines: &[String]) -> String {
     if lines.is_empty() {
         String::new()
     } else {
-        format!("\n{name}\n{}", lines.iter().map(|line| wrapped(line, 2)).collect::<String>())
+        format!("\n{name}\n{}", lines.iter().map(|line| wrap_words(line, 2)).collect::<String>())
     }
 }
 
@@ -109,9 +109,9 @@ fn program_json(program: &Program) -> Value {
         "summary": program.doc,
         "files": program.files().map(|file| file.path.as_str()).collect::<Vec<_>>(),
         "targets": program.targets.iter().map(|target| target.name()).collect::<Vec<_>>(),
-        "full_product": count(space.full_count()),
-        "valid": count(space.valid_count()),
-        "shipped": count(space.count()),
+        "full_product": count_json(space.full_count()),
+        "valid": count_json(space.valid_count()),
+        "shipped": count_json(space.count()),
         "axes": space.axes().iter().map(|axis| axis_json(&program.name, axis)).collect::<Vec<_>>(),
         "constraints": space.constraints().iter().map(|found| json!({ "require": found.text, "doc": found.doc })).collect::<Vec<_>>(),
     })

@@ -6,13 +6,13 @@ use super::{Library, Shown};
 use crate::cli::text;
 
 /// Everything with the word, or with all of several words; `None` if there is nothing.
-pub fn search(library: &Library, asked: &str) -> Option<Shown> {
+pub fn search_library(library: &Library, asked: &str) -> Option<Shown> {
     let words: Vec<String> = asked.split_whitespace().map(str::to_lowercase).collect();
     let has = |text: &str| {
         let text = text.to_lowercase();
         words.iter().all(|word| text.contains(word.as_str()))
     };
-    let things = things(library);
+    let things = searchable_things(library);
     let (named, rest): (Vec<Thing>, Vec<Thing>) =
         things.into_iter().partition(|thing| has(&thing.path));
     let told = rest.into_iter().filter(|thing| has(&thing.summary) || has(&thing.doc));
@@ -28,7 +28,7 @@ pub fn search(library: &Library, asked: &str) -> Option<Shown> {
         .iter()
         .map(|thing| json!({ "path": thing.path, "kind": thing.what, "summary": thing.summary }));
     Some(Shown {
-        text: text::table(&["path", "kind", "summary"], &rows),
+        text: text::table_text(&["path", "kind", "summary"], &rows),
         json: json!({ "matches": json.collect::<Vec<_>>() }),
     })
 }
@@ -40,7 +40,7 @@ struct Thing {
     doc: String,
 }
 
-fn things(library: &Library) -> Vec<Thing> {
+fn searchable_things(library: &Library) -> Vec<Thing> {
     let modules = library.modules.iter().map(|module| Thing {
         path: module.path.clone(),
         what: "module",

@@ -6,9 +6,13 @@ use crate::diagnostic::{Diagnostic, codes};
 use crate::parse::glsl::{Directive, Module, Part, Symbol, known};
 
 /// The warning about the branch at `index`, if it asks whether a setting is defined.
-pub fn warning(expander: &Expander<'_, '_>, module: &Module, index: usize) -> Option<Diagnostic> {
+pub fn always_warning(
+    expander: &Expander<'_, '_>,
+    module: &Module,
+    index: usize,
+) -> Option<Diagnostic> {
     let Part::Directive(directive, span) = module.parts.get(index)? else { return None };
-    let (name, negated) = asked(module, directive)?;
+    let (name, negated) = asked_macro(module, directive)?;
     // A setting that is on is defined, as whoever asks expects.
     match expander.table.get(name)? {
         Meaning::Setting(setting) if !expander.reads.is_on(setting) => {}
@@ -31,7 +35,7 @@ pub fn warning(expander: &Expander<'_, '_>, module: &Module, index: usize) -> Op
 }
 
 /// The macro that a directive asks about, and whether the branch is for its absence.
-fn asked(module: &Module, directive: &Directive) -> Option<(Symbol, bool)> {
+fn asked_macro(module: &Module, directive: &Directive) -> Option<(Symbol, bool)> {
     match directive {
         Directive::Ifdef { name: Ok(name), negated, .. } => Some((*name, *negated)),
         Directive::If { condition, .. } | Directive::Elif { condition, .. } => {

@@ -8,7 +8,7 @@ use crate::source::{LIMITS, Span};
 
 /// Evaluates the expanded tokens of a condition. Operands that `&&` and `||` skip are not
 /// evaluated: they may divide by zero, and settings in them do not count as read.
-pub fn evaluate(
+pub fn evaluate_condition(
     expander: &mut Expander<'_, '_>,
     tokens: &[Tok],
     directive: Span,

@@ -8,7 +8,7 @@ use super::reads::Reads;
 use super::table::{Meaning, Table};
 use super::token::{NO_SETTING, NONE, Tok};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::limits::count;
+use crate::limits::count_steps;
 use crate::parse::glsl::{BodyToken, Kind, Macro, Module, Symbol, known};
 use crate::resolve::glsl::Graph;
 use crate::source::LIMITS;
@@ -102,7 +102,7 @@ impl<'g, 's> Expander<'g, 's> {
         place: crate::source::Span,
     ) -> Result<(), Fatal> {
         self.work += tokens;
-        count(tokens as u64);
+        count_steps(tokens as u64);
         self.bytes += bytes;
         if self.work > LIMITS.tokens || self.bytes > LIMITS.expansion_bytes {
             let message = format!(

@@ -13,19 +13,19 @@ impl Piece<'_> {
     /// How many lines a piece of white space ends.
     pub fn newlines(self) -> usize {
         match self {
-            Self::Space(text) => newlines(text.as_bytes()),
+            Self::Space(text) => count_newlines(text.as_bytes()),
             Self::Comment(_) => 0,
         }
     }
 }
 
 /// The pieces of a gap with their offsets, in order.
-pub fn pieces(gap: &str) -> impl Iterator<Item = (usize, Piece<'_>)> {
+pub fn gap_pieces(gap: &str) -> impl Iterator<Item = (usize, Piece<'_>)> {
     let mut at = 0;
     std::iter::from_fn(move || {
         let rest = gap.get(at..).filter(|rest| !rest.is_empty())?;
         let start = at;
-        let piece = piece(rest);
+        let piece = first_piece(rest);
         at += match piece {
             Piece::Space(text) | Piece::Comment(text) => text.len(),
         };
@@ -33,7 +33,7 @@ pub fn pieces(gap: &str) -> impl Iterator<Item = (usize, Piece<'_>)> {
     })
 }
 
-fn piece(rest: &str) -> Piece<'_> {
+fn first_piece(rest: &str) -> Piece<'_> {
     if rest.starts_with("//") {
         return Piece::Comment(&rest[..line_comment(rest)]);
     }
@@ -45,7 +45,7 @@ fn piece(rest: &str) -> Piece<'_> {
 }
 
 /// Newlines without a `\` before them.
-fn newlines(space: &[u8]) -> usize {
+fn count_newlines(space: &[u8]) -> usize {
     let continued = |at: usize| matches!(space[..at], [.., b'\\'] | [.., b'\\', b'\r']);
     (0..space.len()).filter(|at| space[*at] == b'\n' && !continued(*at)).count()
 }
@@ -66,10 +66,10 @@ fn line_comment(rest: &str) -> usize {
 /// The part of the gap before an item that belongs to the item: the comments without a blank line
 /// between them and it. With `after_item` another item ends just before the gap, and the rest of
 /// that line belongs to that one.
-pub fn attached(gap: &str, after_item: bool) -> std::ops::Range<usize> {
+pub fn attached_part(gap: &str, after_item: bool) -> std::ops::Range<usize> {
     let mut start = None;
     let mut own_line = !after_item;
-    for (at, piece) in pieces(gap) {
+    for (at, piece) in gap_pieces(gap) {
         match piece {
             Piece::Space(_) if piece.newlines() > 1 => {
                 start = None;
@@ -84,9 +84,9 @@ pub fn attached(gap: &str, after_item: bool) -> std::ops::Range<usize> {
 }
 
 /// The comments of a gap that stand on the line of the token before it.
-pub fn trailing(gap: &str) -> std::ops::Range<usize> {
+pub fn trailing_comments(gap: &str) -> std::ops::Range<usize> {
     let mut end = 0;
-    for (at, piece) in pieces(gap) {
+    for (at, piece) in gap_pieces(gap) {
         match piece {
             Piece::Space(_) if piece.newlines() > 0 => break,
             Piece::Space(_) => {}

@@ -28,7 +28,7 @@ pub struct Items {
 
 /// Cuts tokens into items at top level. Brackets nest up to a limit. Text without an end is an item
 /// of its own.
-pub fn split(tokens: &[Tok], modules: &[Module]) -> Result<Items, Diagnostic> {
+pub fn split_items(tokens: &[Tok], modules: &[Module]) -> Result<Items, Diagnostic> {
     let mut items = Items::default();
     let mut start = 0;
     while start < tokens.len() {
@@ -36,7 +36,7 @@ pub fn split(tokens: &[Tok], modules: &[Module]) -> Result<Items, Diagnostic> {
         let item = &tokens[start..end];
         if item[0].symbol != known::SEMICOLON {
             let (first, number) = (items.names.len(), items.list.len() as u32);
-            let function = names(item, &mut |name| items.names.push((name, number)));
+            let function = give_names(item, &mut |name| items.names.push((name, number)));
             items.list.push(Item {
                 tokens: start..end,
                 function,
@@ -83,7 +83,7 @@ fn end_of(tokens: &[Tok], start: usize) -> Result<usize, &Tok> {
 }
 
 /// Gives the names that an item declares. Returns whether the item is a function.
-fn names(item: &[Tok], give: &mut impl FnMut(Symbol)) -> bool {
+fn give_names(item: &[Tok], give: &mut impl FnMut(Symbol)) -> bool {
     match item {
         [first, ..] if first.symbol == known::PRECISION => false,
         [first, name, _] if first.symbol == known::INVARIANT || first.symbol == known::PRECISE => {

@@ -46,17 +46,19 @@ pub fn compose(
     settings: &Settings,
     options: &Options,
 ) -> Result<Composed, Diagnostics> {
-    let stage = stage(graph, &options.keep)?;
+    let stage = stage_of(graph, &options.keep)?;
     let preprocessed = preprocess(graph, settings, ROOM.take())?;
-    let items = items::split(&preprocessed.tokens, &graph.modules).map_err(|error| vec![error])?;
-    let kept = reach::reach(&preprocessed.tokens, &items, &preprocessed.spellings, &options.keep)?;
-    let (writer, ranges) = write(graph, &preprocessed, &items, &kept, &options.keep);
+    let items =
+        items::split_items(&preprocessed.tokens, &graph.modules).map_err(|error| vec![error])?;
+    let kept =
+        reach::reached_items(&preprocessed.tokens, &items, &preprocessed.spellings, &options.keep)?;
+    let (writer, ranges) = write_kept(graph, &preprocessed, &items, &kept, &options.keep);
     let (text, map) = (writer.text, writer.map);
-    let parts = parts::parts(&preprocessed, &items, &kept, ranges);
+    let parts = parts::make_parts(&preprocessed, &items, &kept, ranges);
     let decisions = preprocessed.decisions.clone();
     let mut warnings = preprocessed.warnings.clone();
-    warnings.extend(unversioned(graph, &preprocessed, &options.keep));
-    let reads = reads(graph, preprocessed, &items, &kept)?;
+    warnings.extend(warn_unversioned(graph, &preprocessed, &options.keep));
+    let reads = settings_read(graph, preprocessed, &items, &kept)?;
     Ok(Composed {
         language: Language::Glsl,
         stage: Some(stage),
@@ -70,7 +72,7 @@ pub fn compose(
 }
 
 /// Warns of a shader without a version, which other compilers read as GLSL 1.10.
-fn unversioned(
+fn warn_unversioned(
     graph: &Graph,
     preprocessed: &Preprocessed<'_, '_>,
     keep: &Keep,
@@ -93,7 +95,7 @@ fn unversioned(
 const STAGES: &[(&str, Stage)] =
     &[("vert", Stage::Vertex), ("frag", Stage::Fragment), ("comp", Stage::Compute)];
 
-fn stage(graph: &Graph, keep: &Keep) -> Result<Stage, Diagnostics> {
+fn stage_of(graph: &Graph, keep: &Keep) -> Result<Stage, Diagnostics> {
     let name = graph.root.strip_suffix(".glsl").unwrap_or(&graph.root);
     let ending = name.rsplit('.').next().unwrap_or_default();
     match STAGES.iter().find(|(known, _)| *known == ending) {
@@ -112,7 +114,7 @@ fn stage(graph: &Graph, keep: &Keep) -> Result<Stage, Diagnostics> {
     }
 }
 
-fn write<'a>(
+fn write_kept<'a>(
     graph: &'a Graph,
     preprocessed: &'a Preprocessed<'a, '_>,
     items: &Items,
@@ -156,7 +158,7 @@ struct Written {
 
 /// The settings that were read: those of the conditions, then those whose values are in the kept
 /// items.
-fn reads(
+fn settings_read(
     graph: &Graph,
     preprocessed: Preprocessed<'_, '_>,
     items: &Items,

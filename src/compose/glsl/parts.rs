@@ -14,7 +14,7 @@ use crate::parse::glsl::{Kind, Symbol, known};
 const OF_ONE_NAME: usize = 64;
 
 /// The directives as one part, then a part for each kept item; none where too many share a name.
-pub fn parts(
+pub fn make_parts(
     preprocessed: &Preprocessed<'_, '_>,
     items: &Items,
     kept: &[bool],
@@ -23,11 +23,11 @@ pub fn parts(
     let (tokens, spellings) = (&preprocessed.tokens, &preprocessed.spellings);
     let mut numbers = vec![u32::MAX; items.list.len()];
     let kept: Vec<usize> = (0..items.list.len()).filter(|index| kept[*index]).collect();
-    let mut parts = vec![part(PartKind::Directive, written.header)];
+    let mut parts = vec![make_part(PartKind::Directive, written.header)];
     for (index, range) in kept.iter().zip(written.items) {
         numbers[*index] = parts.len() as u32;
-        parts.push(part(
-            kind(&tokens[items.list[*index].tokens.clone()], &items.list[*index]),
+        parts.push(make_part(
+            part_kind(&tokens[items.list[*index].tokens.clone()], &items.list[*index]),
             range,
         ));
     }
@@ -45,14 +45,12 @@ pub fn parts(
     for index in kept {
         let number = numbers[index];
         let item = &tokens[items.list[index].tokens.clone()];
-        parts[number as usize].uses = uses(item, number, &declared, &parts);
+        parts[number as usize].uses = used_parts(item, number, &declared, &parts);
     }
-    parts.extend(
-        written.main.map(|range| Part {
-            names: vec!["main".to_owned()],
-            ..part(PartKind::Function, range)
-        }),
-    );
+    parts.extend(written.main.map(|range| Part {
+        names: vec!["main".to_owned()],
+        ..make_part(PartKind::Function, range)
+    }));
     parts
 }
 
@@ -86,11 +84,11 @@ impl Declared {
     }
 }
 
-fn part(kind: PartKind, range: Range<usize>) -> Part {
+fn make_part(kind: PartKind, range: Range<usize>) -> Part {
     Part { kind, names: Vec::new(), range, uses: Vec::new(), aliases: Vec::new() }
 }
 
-fn kind(tokens: &[Tok], item: &Item) -> PartKind {
+fn part_kind(tokens: &[Tok], item: &Item) -> PartKind {
     let has = |symbol: Symbol| tokens.iter().any(|token| token.symbol == symbol);
     let ends = |symbol: Symbol| tokens.last().is_some_and(|token| token.symbol == symbol);
     let first = tokens.first().map(|token| token.symbol);
@@ -109,7 +107,7 @@ fn kind(tokens: &[Tok], item: &Item) -> PartKind {
 }
 
 /// The parts that an item names, except itself.
-fn uses(item: &[Tok], own: u32, declared: &Declared, parts: &[Part]) -> Vec<u32> {
+fn used_parts(item: &[Tok], own: u32, declared: &Declared, parts: &[Part]) -> Vec<u32> {
     let mut uses = Vec::new();
     let mut previous = known::SEMICOLON;
     for (index, token) in item.iter().enumerate() {

@@ -11,7 +11,7 @@ use super::table::{Meaning, Spellings, Table};
 use super::token::Tok;
 use crate::compose::Decision;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::limits::count;
+use crate::limits::count_steps;
 use crate::parse::glsl::{Directive, Macro, Module, Part};
 use crate::permute::Settings;
 use crate::resolve::glsl::{Graph, Target};
@@ -41,7 +41,7 @@ pub fn preprocess<'g, 's>(
     mut tokens: Vec<Tok>,
 ) -> Result<Preprocessed<'g, 's>, Diagnostics> {
     tokens.clear();
-    let (number, es) = language(&graph.modules[0]);
+    let (number, es) = version_and_profile(&graph.modules[0]);
     let mut reads = Reads::new(settings);
     let mut table = Table::new(&graph.symbols, number, es);
     reads.define(&mut table, settings);
@@ -70,7 +70,7 @@ pub fn preprocess<'g, 's>(
 }
 
 /// Version and profile of the root file; 450 where it names none.
-fn language(root: &Module) -> (u32, bool) {
+fn version_and_profile(root: &Module) -> (u32, bool) {
     match root.parts.first() {
         Some(Part::Directive(Directive::Version { number, es, .. }, _)) => (*number, *es),
         _ => (450, false),
@@ -143,7 +143,7 @@ impl<'g> State<'g, '_> {
     }
 
     fn part(&mut self, open: Open, part: &'g Part) -> Result<(), Fatal> {
-        count(1);
+        count_steps(1);
         match part {
             Part::Text(text) => {
                 let input = Input::Source {

@@ -9,7 +9,7 @@ use crate::parse::glsl::{Kind, Symbol, known};
 
 /// Whether each item is kept: those that `keep` names, and those that they reach by name. Overloads
 /// share a name, so they are kept together.
-pub fn reach(
+pub fn reached_items(
     tokens: &[Tok],
     items: &Items,
     spellings: &Spellings<'_>,

@@ -30,7 +30,7 @@ impl<'s> Reads<'s> {
         let entries = settings.values.iter().map(|(name, setting)| Entry {
             name,
             setting,
-            value: value(settings, name, setting),
+            value: macro_value(settings, name, setting),
             symbol: Symbol(0),
             read: false,
         });
@@ -90,7 +90,7 @@ impl<'s> Reads<'s> {
     }
 }
 
-fn value(settings: &Settings, name: &str, setting: &Setting) -> Option<i64> {
+fn macro_value(settings: &Settings, name: &str, setting: &Setting) -> Option<i64> {
     match setting {
         Setting::Bool(value) => Some(i64::from(*value)),
         Setting::Int(value) => Some(*value),

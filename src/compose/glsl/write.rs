@@ -132,7 +132,7 @@ impl<'a> Writer<'a> {
         let module = &self.modules[first.module as usize];
         let after_item = !module.tokens[first.before as usize].first_of_part;
         let text = self.source(first, span);
-        let kept = gap::attached(text, after_item);
+        let kept = gap::attached_part(text, after_item);
         self.pieces(
             &[(Span { start: span.start + kept.start as u32, ..span }, &text[kept])],
             false,
@@ -145,7 +145,7 @@ impl<'a> Writer<'a> {
         }
         let span = self.gap_after(last);
         let text = self.source(last, span);
-        let kept = gap::trailing(text);
+        let kept = gap::trailing_comments(text);
         if !kept.is_empty() {
             self.pieces(
                 &[(Span { end: span.start + kept.end as u32, ..span }, &text[kept])],
@@ -183,7 +183,7 @@ impl<'a> Writer<'a> {
     fn minimal_gap(&mut self, left: &Tok, right: &Tok) {
         let first = self.spellings.text(left.symbol).chars().next_back();
         let second = self.spellings.text(right.symbol).chars().next();
-        if right.spaced || glues(first, second) {
+        if right.spaced || would_join(first, second) {
             self.made(" ");
         }
     }
@@ -193,14 +193,14 @@ impl<'a> Writer<'a> {
     fn pieces(&mut self, gaps: &[(Span, &str)], new_line: bool) {
         let (mut newlines, mut indent, mut any) = (0, "", false);
         for (span, text) in gaps {
-            for (at, piece) in gap::pieces(text) {
+            for (at, piece) in gap::gap_pieces(text) {
                 match piece {
                     Piece::Space(space) if piece.newlines() > 0 => {
                         newlines += piece.newlines();
-                        indent = indentation(space);
+                        indent = last_indentation(space);
                     }
                     Piece::Space(space) => {
-                        indent = if newlines > 0 { indentation(space) } else { " " }
+                        indent = if newlines > 0 { last_indentation(space) } else { " " }
                     }
                     Piece::Comment(comment) => {
                         self.space(newlines, indent);
@@ -233,11 +233,11 @@ impl<'a> Writer<'a> {
     }
 }
 
-fn indentation(space: &str) -> &str {
+fn last_indentation(space: &str) -> &str {
     space.rsplit(['\n', '\r', '\\']).next().unwrap_or_default()
 }
 
-fn glues(left: Option<char>, right: Option<char>) -> bool {
+fn would_join(left: Option<char>, right: Option<char>) -> bool {
     let (Some(left), Some(right)) = (left, right) else { return false };
     let number = |c: char| c.is_ascii_digit() || c == '.';
     (continues_word(left) && continues_word(right))

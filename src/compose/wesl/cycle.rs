@@ -6,7 +6,7 @@ use crate::parse::wesl::ItemKind;
 use crate::resolve::wesl::Graph;
 
 /// Reports cycles among constants, overrides, aliases, structs and variables: one error for each.
-pub fn check(graph: &Graph, reached: &Reached, errors: &mut Diagnostics) {
+pub fn check_cycles(graph: &Graph, reached: &Reached, errors: &mut Diagnostics) {
     let mut edges: Vec<Dependency> = reached
         .dependencies
         .iter()
@@ -17,7 +17,7 @@ pub fn check(graph: &Graph, reached: &Reached, errors: &mut Diagnostics) {
     let mut done = vec![false; reached.len()];
     for start in 0..edges.len() {
         if !done[reached.index(edges[start].user)] {
-            search(graph, reached, &edges, start, &mut done, errors);
+            search_cycle(graph, reached, &edges, start, &mut done, errors);
         }
     }
 }
@@ -32,7 +32,7 @@ fn is_function(graph: &Graph, thing: Thing) -> bool {
 }
 
 /// A depth-first search from the user of the edge `start`, without recursion.
-fn search(
+fn search_cycle(
     graph: &Graph,
     reached: &Reached,
     edges: &[Dependency],
@@ -57,7 +57,7 @@ fn search(
         let used = reached.index(edge.used);
         if on_path[used] {
             let from = path.iter().position(|(thing, _)| *thing == edge.used).unwrap_or(0);
-            errors.push(report(graph, edges, &path[from..]));
+            errors.push(report_cycle(graph, edges, &path[from..]));
         } else if !done[used] {
             on_path[used] = true;
             path.push((edge.used, first(edge.used)));
@@ -68,7 +68,7 @@ fn search(
 /// The most steps of a cycle that a message lists.
 const TOLD: usize = 12;
 
-fn report(graph: &Graph, edges: &[Dependency], circle: &[(Thing, usize)]) -> Diagnostic {
+fn report_cycle(graph: &Graph, edges: &[Dependency], circle: &[(Thing, usize)]) -> Diagnostic {
     let text = |thing: Thing| graph.names.text(name_of(graph, thing));
     let first = text(circle[0].0);
     let mut chain: Vec<String> =

@@ -3,10 +3,10 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::limits::count;
+use crate::limits::count_steps;
 use crate::parse::wesl::{Comparison, ConditionId, Event, Expression, ExpressionId, Name, Operand};
 use crate::permute::{Setting, Settings};
-use crate::resolve::wesl::{Graph, places, shown_at};
+use crate::resolve::wesl::{Graph, flag_places, shown_at};
 use crate::source::Span;
 
 /// What is known of a condition.
@@ -57,7 +57,7 @@ impl<'a> Evaluator<'a> {
         let mut next = Some(condition);
         while let Some(id) = next.filter(|id| state(self, *id) == State::Unknown) {
             chain.push(id);
-            count(1);
+            count_steps(1);
             next = here.module.conditions[id as usize].after;
         }
         for id in chain.into_iter().rev() {
@@ -84,7 +84,7 @@ impl<'a> Evaluator<'a> {
         let mut at = 0;
         while let Some(event) = events.get(at) {
             at += 1;
-            count(1);
+            count_steps(1);
             match *event {
                 Event::Node { condition, .. } if self.holds(node, condition) => {}
                 Event::Node { next, .. } => {
@@ -109,7 +109,7 @@ impl<'a> Evaluator<'a> {
             }
             let found = graph.nodes[node as usize].module.guards[index as usize];
             passed.push(index);
-            count(1);
+            count_steps(1);
             if self.holds(node, found.condition) {
                 answer = true;
                 break;
@@ -163,7 +163,7 @@ impl<'a> Evaluator<'a> {
                 let error =
                     Diagnostic::error(codes::UNKNOWN_FEATURE, format!("unknown feature `{text}`"))
                         .at(span, "asked for here");
-                let places = self.places.get_or_insert_with(|| places(self.graph));
+                let places = self.places.get_or_insert_with(|| flag_places(self.graph));
                 let others = places.remove(&name).unwrap_or_default().into_iter();
                 let others = others.filter(|place| *place != span).collect();
                 let error = shown_at(error, others, "and here");
@@ -232,10 +232,14 @@ impl<'a> Evaluator<'a> {
                 self.compare_enum(node, (*axis, at), operator, (*value, value_at))
             }
             (Operand::Name(axis, at), Operand::Integer(value, _)) => {
-                self.compare_integer(node, *axis, at, |axis| ordered(axis, operator, *value))
+                self.compare_integer(node, *axis, at, |axis| {
+                    compare_ordered(axis, operator, *value)
+                })
             }
             (Operand::Integer(value, _), Operand::Name(axis, at)) => {
-                self.compare_integer(node, *axis, at, |axis| ordered(*value, operator, axis))
+                self.compare_integer(node, *axis, at, |axis| {
+                    compare_ordered(*value, operator, axis)
+                })
             }
             (Operand::Name(axis, at), Operand::Name(..)) => {
                 Err(self.undeclared(*axis, self.span(node, at), "enum"))
@@ -263,7 +267,7 @@ impl<'a> Evaluator<'a> {
                 format!("the axis `{axis_text}` has no value `{text}`"),
             )
             .at(self.span(node, value_at), "not one of its values")
-            .note(format!("its values are {}", quoted(known)))
+            .note(format!("its values are {}", quoted_values(known)))
             .suggest(text, known.iter().map(String::as_str)));
         }
         let Some(chosen) = self.setting(axis, span) else { return Ok(false) };
@@ -314,11 +318,11 @@ impl<'a> Evaluator<'a> {
     }
 }
 
-fn quoted(values: &[String]) -> String {
+fn quoted_values(values: &[String]) -> String {
     values.iter().map(|value| format!("`{value}`")).collect::<Vec<_>>().join(", ")
 }
 
-fn ordered(left: i64, operator: Comparison, right: i64) -> bool {
+fn compare_ordered(left: i64, operator: Comparison, right: i64) -> bool {
     match operator {
         Comparison::Equal => left == right,
         Comparison::NotEqual => left != right,

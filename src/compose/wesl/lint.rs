@@ -27,8 +27,9 @@ impl<'g> Outcomes<'g> {
     /// Nothing is known yet of what permutations use.
     pub fn new(graph: &'g Graph) -> Self {
         let own = graph.nodes.iter().enumerate().filter(|(_, node)| node.package == 0);
-        let conditions = own
-            .flat_map(|(index, node)| conditions(&node.module).map(move |id| (index as u32, id)));
+        let conditions = own.flat_map(|(index, node)| {
+            asked_conditions(&node.module).map(move |id| (index as u32, id))
+        });
         let open = conditions.map(|(node, id)| Condition {
             node,
             id,
@@ -64,9 +65,9 @@ impl<'g> Outcomes<'g> {
     /// The places of the conditions that are evaluated.
     pub fn places(&self) -> impl Iterator<Item = Span> {
         self.graph.nodes.iter().filter(|node| node.package == 0).flat_map(|node| {
-            let conditions = conditions(&node.module)
+            let conditions = asked_conditions(&node.module)
                 .filter_map(|id| node.module.conditions[id as usize].expression);
-            conditions.filter_map(|expression| place(&node.module, expression))
+            conditions.filter_map(|expression| expression_span(&node.module, expression))
         })
     }
 
@@ -75,15 +76,16 @@ impl<'g> Outcomes<'g> {
         self.open.iter().filter(|condition| condition.held || condition.failed).filter_map(
             |condition| {
                 let module = &self.graph.nodes[condition.node as usize].module;
-                let span = place(module, module.conditions[condition.id as usize].expression?)?;
-                Some(constant(span, condition.held))
+                let span =
+                    expression_span(module, module.conditions[condition.id as usize].expression?)?;
+                Some(constant_condition(span, condition.held))
             },
         )
     }
 }
 
 /// The warning about a condition that always had the same value.
-pub fn constant(span: Span, held: bool) -> Diagnostic {
+pub fn constant_condition(span: Span, held: bool) -> Diagnostic {
     let word = if held { "true" } else { "false" };
     let warning = Diagnostic::warning(
         codes::CONSTANT_CONDITION,
@@ -99,15 +101,15 @@ fn is_later(graph: &Graph, condition: &Condition) -> bool {
 }
 
 /// The conditions that ask for a setting; one like `@if(true)` is meant as it stands.
-fn conditions(module: &Module) -> impl Iterator<Item = ConditionId> {
+fn asked_conditions(module: &Module) -> impl Iterator<Item = ConditionId> {
     let asks = |(_, condition): &(usize, &crate::parse::wesl::Condition)| {
-        condition.expression.is_some_and(|root| place(module, root).is_some())
+        condition.expression.is_some_and(|root| expression_span(module, root).is_some())
     };
     module.conditions.iter().enumerate().filter(asks).map(|(id, _)| id as ConditionId)
 }
 
 /// From the first name of an expression to its last.
-fn place(module: &Module, root: ExpressionId) -> Option<Span> {
+fn expression_span(module: &Module, root: ExpressionId) -> Option<Span> {
     let mut range: Option<std::ops::Range<u32>> = None;
     let mut open = vec![root];
     while let Some(next) = open.pop() {

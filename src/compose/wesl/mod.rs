@@ -29,12 +29,12 @@ pub fn compose(
     options: &Options,
 ) -> Result<Composed, Diagnostics> {
     let mut evaluator = evaluate::Evaluator::new(graph, settings);
-    let reached = reach::reach(graph, &mut evaluator, options);
-    cycle::check(graph, &reached, &mut evaluator.errors);
-    let names = naming::choose(graph, &reached, options, &mut evaluator.errors);
-    let output = write::write(graph, &reached, &names, &mut evaluator);
+    let reached = reach::find_reached(graph, &mut evaluator, options);
+    cycle::check_cycles(graph, &reached, &mut evaluator.errors);
+    let names = naming::choose_names(graph, &reached, options, &mut evaluator.errors);
+    let output = write::write_reached(graph, &reached, &names, &mut evaluator);
     if !evaluator.errors.is_empty() {
-        return Err(traced(graph, evaluator.errors));
+        return Err(trace_imports(graph, evaluator.errors));
     }
     let warnings =
         reached.nodes().flat_map(|node| graph.nodes[node as usize].lints.iter().cloned()).collect();
@@ -66,7 +66,7 @@ impl<'a> Conditions<'a> {
     }
 }
 
-fn traced(graph: &Graph, errors: Diagnostics) -> Diagnostics {
+fn trace_imports(graph: &Graph, errors: Diagnostics) -> Diagnostics {
     // An error that occurs at several uses is reported once.
     let mut known = BTreeSet::new();
     let is_new = |error: &Diagnostic| {

@@ -39,33 +39,33 @@ enum Hold {
 }
 
 /// Chooses the names of all that is kept.
-pub fn choose(
+pub fn choose_names(
     graph: &Graph,
     reached: &Reached,
     options: &Options,
     errors: &mut Diagnostics,
 ) -> Renames {
-    let things = kept(graph, reached);
+    let things = kept_things(graph, reached);
     let mut table = Table::new(graph, reached, &things);
     let mut renames = Renames { indices: vec![0; reached.len()], texts: Vec::new() };
     let mut made = HashSet::new();
     for thing in &things {
         let name = name_of(graph, *thing);
-        let hold = hold(graph, *thing);
+        let hold = name_hold(graph, *thing);
         let taken = table.free[name.0 as usize] || reached.is_hidden(*thing);
         if hold == Hold::Fixed || (hold == Hold::Root && !taken) {
             let clash = table.firm[name.0 as usize].replace(*thing).filter(|_| !taken);
-            errors.extend(clash.map(|other| conflict(graph, *thing, other)));
-            errors.extend(taken.then(|| captured(graph, *thing)));
+            errors.extend(clash.map(|other| name_conflict(graph, *thing, other)));
+            errors.extend(taken.then(|| captured_name(graph, *thing)));
             continue;
         }
         let twin = table.loose[name.0 as usize]
             .replace(*thing)
             .filter(|twin| node_of(*twin) == node_of(*thing));
-        errors.extend(twin.map(|twin| conflict(graph, *thing, twin)));
+        errors.extend(twin.map(|twin| name_conflict(graph, *thing, twin)));
         let mangled = options.mangle == Mangle::Underscore && hold == Hold::Loose;
         if mangled || taken || table.claims[name.0 as usize] > 1 {
-            let text = table.unique(mangle(graph, *thing), &made);
+            let text = table.unique(mangled_name(graph, *thing), &made);
             made.insert(text.clone());
             renames.texts.push(text);
             renames.indices[reached.index(*thing)] = renames.texts.len() as u32;
@@ -75,7 +75,7 @@ pub fn choose(
 }
 
 /// Everything with a name, in the order of the output.
-fn kept(graph: &Graph, reached: &Reached) -> Vec<Thing> {
+fn kept_things(graph: &Graph, reached: &Reached) -> Vec<Thing> {
     let constants =
         (0..graph.constants.len() as u32).map(Thing::Constant).filter(|thing| reached.has(*thing));
     let mut things: Vec<Thing> = constants.collect();
@@ -89,7 +89,7 @@ fn kept(graph: &Graph, reached: &Reached) -> Vec<Thing> {
     things
 }
 
-fn hold(graph: &Graph, thing: Thing) -> Hold {
+fn name_hold(graph: &Graph, thing: Thing) -> Hold {
     let Thing::Item { node, item } = thing else { return Hold::Loose };
     let item = &graph.nodes[node as usize].module.items[item as usize];
     match item.kind {
@@ -164,7 +164,7 @@ impl<'a> Table<'a> {
 
 /// The underscore form of the WESL specification: the parts of the path joined by single
 /// underscores, with the underscores inside a part doubled.
-fn mangle(graph: &Graph, thing: Thing) -> String {
+fn mangled_name(graph: &Graph, thing: Thing) -> String {
     let name = graph.names.text(name_of(graph, thing));
     let label = match thing {
         Thing::Item { node, .. } => graph.nodes[node as usize].label.as_str(),
@@ -175,13 +175,13 @@ fn mangle(graph: &Graph, thing: Thing) -> String {
         if !text.is_empty() {
             text.push('_');
         }
-        text.extend(part.chars().flat_map(escaped));
+        text.extend(part.chars().flat_map(escape_letter));
     }
     text
 }
 
 /// A character of a part. Those that no identifier has, from file names, become underscores.
-fn escaped(letter: char) -> impl Iterator<Item = char> {
+fn escape_letter(letter: char) -> impl Iterator<Item = char> {
     let allowed = continues_word(letter) && letter != '_';
     [if allowed { letter } else { '_' }, '_'].into_iter().take(if allowed { 1 } else { 2 })
 }
@@ -193,26 +193,26 @@ fn node_of(thing: Thing) -> Option<u32> {
     }
 }
 
-fn conflict(graph: &Graph, thing: Thing, other: Thing) -> Diagnostic {
+fn name_conflict(graph: &Graph, thing: Thing, other: Thing) -> Diagnostic {
     let name = graph.names.text(name_of(graph, thing));
     let (code, message) = match node_of(thing) == node_of(other) {
         true => (codes::DUPLICATE_ITEM, format!("`{name}` is declared twice")),
         false => (codes::NAME_CONFLICT, format!("two declarations must both be named `{name}`")),
     };
-    declared(
+    label_declaration(
         graph,
         other,
-        declared(graph, thing, Diagnostic::error(code, message), "this one"),
+        label_declaration(graph, thing, Diagnostic::error(code, message), "this one"),
         "and this one",
     )
 }
 
-fn captured(graph: &Graph, thing: Thing) -> Diagnostic {
+fn captured_name(graph: &Graph, thing: Thing) -> Diagnostic {
     let name = graph.names.text(name_of(graph, thing));
     let message = format!(
         "`{name}` must keep its name, but something else that is kept means another thing by it"
     );
-    declared(
+    label_declaration(
         graph,
         thing,
         Diagnostic::error(codes::NAME_CONFLICT, message),
@@ -220,7 +220,7 @@ fn captured(graph: &Graph, thing: Thing) -> Diagnostic {
     )
 }
 
-fn declared(graph: &Graph, thing: Thing, error: Diagnostic, label: &str) -> Diagnostic {
+fn label_declaration(graph: &Graph, thing: Thing, error: Diagnostic, label: &str) -> Diagnostic {
     let Thing::Item { node, item } = thing else { return error };
     let module = &graph.nodes[node as usize].module;
     error.at(module.span(module.items[item as usize].name_range.clone()), label)

@@ -4,14 +4,14 @@ use super::evaluate::Evaluator;
 use super::reached::{Dependency, Meaning, Reached, Thing, name_of};
 use crate::compose::{Keep, Options};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::limits::count;
+use crate::limits::count_steps;
 use crate::parse::wesl::{Event, ItemKind, Name, Reference};
 use crate::permute::Setting;
 use crate::resolve::wesl::{Graph, PLACES, Target};
 use crate::source::Span;
 
 /// Finds what is kept. Errors are added to those of the evaluator.
-pub fn reach(graph: &Graph, evaluator: &mut Evaluator<'_>, options: &Options) -> Reached {
+pub fn find_reached(graph: &Graph, evaluator: &mut Evaluator<'_>, options: &Options) -> Reached {
     let things = graph.totals.items as usize + graph.constants.len();
     let reached = Reached {
         things: vec![false; things],
@@ -214,7 +214,7 @@ impl Walk<'_, '_, '_> {
         let graph = self.graph;
         let mut disabled = Vec::new();
         for candidate in &graph.nodes[node as usize].bindings[reference as usize] {
-            count(1);
+            count_steps(1);
             if !self.evaluator.all_hold(node, &candidate.conditions) {
                 continue;
             }
@@ -250,7 +250,7 @@ impl Walk<'_, '_, '_> {
         let mut chosen = None;
         for index in here.sets.get(&name).into_iter().flatten() {
             let item = &here.module.items[*index as usize];
-            count(1);
+            count_steps(1);
             if !item.condition.is_none_or(|condition| self.evaluator.holds(node, condition)) {
                 continue;
             }

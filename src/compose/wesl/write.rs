@@ -12,7 +12,7 @@ use crate::resolve::wesl::Graph;
 use crate::source::{LIMITS, Span};
 
 /// Writes what is kept, with the map back and the declarations.
-pub fn write(
+pub fn write_reached(
     graph: &Graph,
     reached: &Reached,
     names: &Renames,
@@ -152,7 +152,7 @@ impl Writer<'_> {
         }
         let mut last: Option<u32> = None;
         for index in items {
-            if last.is_some_and(|last| !adjacent(&here.module, last, index)) {
+            if last.is_some_and(|last| !are_adjacent(&here.module, last, index)) {
                 self.own("\n");
             }
             self.item(node, index, evaluator);
@@ -266,7 +266,7 @@ fn is_new(seen: &mut Vec<(Name, Vec<Name>)>, directive: &Directive) -> bool {
 
 /// Whether there is no blank line between two items in the author's text, or in what stands between
 /// them.
-fn adjacent(module: &Module, last: u32, next: u32) -> bool {
+fn are_adjacent(module: &Module, last: u32, next: u32) -> bool {
     module.items[last as usize..=next as usize].windows(2).all(|pair| {
         let gap = &module.text[pair[0].range.end as usize..pair[1].range.start as usize];
         gap.matches('\n').count() <= 1

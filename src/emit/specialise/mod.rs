@@ -44,22 +44,22 @@ impl Open {
 ///
 /// # Errors
 /// `dependent-override` for each, in the author's place where `composed` knows it.
-pub fn check(composed: &Composed, validated: &Validated) -> Result<(), Diagnostics> {
-    let found = dependent(&validated.module).map(|(name, span)| {
+pub fn check_overrides(composed: &Composed, validated: &Validated) -> Result<(), Diagnostics> {
+    let found = dependent_overrides(&validated.module).map(|(name, span)| {
         let place = span.to_range().and_then(|range| composed.map.lookup(range));
-        let error = refusal(name);
+        let error = override_refusal(name);
         place.into_iter().fold(error, |error, span| error.at(span, "its default is not a number"))
     });
     let found: Diagnostics = found.collect();
     if found.is_empty() { Ok(()) } else { Err(found) }
 }
 
-/// Fails as [`check`] does, but without places.
-pub fn refuse(module: &Module) -> Result<(), Diagnostic> {
-    dependent(module).next().map_or(Ok(()), |(name, _)| Err(refusal(name)))
+/// Fails as [`check_overrides`] does, but without places.
+pub fn refuse_overrides(module: &Module) -> Result<(), Diagnostic> {
+    dependent_overrides(module).next().map_or(Ok(()), |(name, _)| Err(override_refusal(name)))
 }
 
-fn refusal(name: &str) -> Diagnostic {
+fn override_refusal(name: &str) -> Diagnostic {
     Diagnostic::error(
         codes::DEPENDENT_OVERRIDE,
         format!("the default of override `{name}` depends on another override"),
@@ -67,17 +67,17 @@ fn refusal(name: &str) -> Diagnostic {
     .note("help: compute it where it is used: `let x = ...;` in a function may use any override")
 }
 
-fn dependent(module: &Module) -> impl Iterator<Item = (&str, naga::Span)> {
+fn dependent_overrides(module: &Module) -> impl Iterator<Item = (&str, naga::Span)> {
     let overrides = module.overrides.iter();
     let computed = overrides
-        .filter(|(_, found)| found.init.is_some_and(|init| literal(module, init).is_none()));
+        .filter(|(_, found)| found.init.is_some_and(|init| literal_of(module, init).is_none()));
     computed.map(|(handle, found)| {
         (found.name.as_deref().unwrap_or("without a name"), module.overrides.get_span(handle))
     })
 }
 
 /// A number, written as a literal or as the name of a constant.
-pub fn literal(module: &Module, expression: Handle<Expression>) -> Option<Literal> {
+pub fn literal_of(module: &Module, expression: Handle<Expression>) -> Option<Literal> {
     match module.global_expressions[expression] {
         Expression::Literal(literal) => Some(literal),
         // A constant can only use earlier ones, so this recursion ends.
@@ -97,14 +97,14 @@ fn literal_before(
     expression: Handle<Expression>,
     user: Handle<Expression>,
 ) -> Option<Literal> {
-    if expression < user { literal(module, expression) } else { None }
+    if expression < user { literal_of(module, expression) } else { None }
 }
 
 /// Writes an entry point with its overrides open; `None` where one of them is not a scalar with a
 /// default.
-pub fn write(source: &Source<'_>, writer: &Entry) -> Option<Result<Emitted, String>> {
-    let opens = opens(source.module)?;
-    Some(opened(source, &opens).and_then(|(module, info)| {
+pub fn write_open(source: &Source<'_>, writer: &Entry) -> Option<Result<Emitted, String>> {
+    let opens = open_overrides(source.module)?;
+    Some(opened_module(source, &opens).and_then(|(module, info)| {
         let point = module.entry_points.get(source.index).ok_or("the entry point was lost")?;
         let source = Source {
             module: &module,
@@ -114,22 +114,22 @@ pub fn write(source: &Source<'_>, writer: &Entry) -> Option<Result<Emitted, Stri
             index: source.index,
             clip: source.clip,
         };
-        finish((writer.write)(&source)?, &opens, writer.target)
+        finish_open((writer.write)(&source)?, &opens, writer.target)
     }))
 }
 
-fn finish(mut emitted: Emitted, opens: &[Open], target: Target) -> Result<Emitted, String> {
+fn finish_open(mut emitted: Emitted, opens: &[Open], target: Target) -> Result<Emitted, String> {
     // Writers leave out a variable that the entry point does not use.
     let choices = if target == Target::SPIRV {
-        spirv::open(&mut emitted.bytes, opens)?
+        spirv::open_words(&mut emitted.bytes, opens)?
     } else {
-        text::open(&mut emitted.bytes, opens, target)?
+        text::open_text(&mut emitted.bytes, opens, target)?
     };
     emitted.native.choices = choices;
     Ok(emitted)
 }
 
-fn choice(open: &Open, id: bool) -> Choice {
+fn choice_of(open: &Open, id: bool) -> Choice {
     Choice {
         name: open.name.clone(),
         id: id.then_some(open.id),
@@ -137,18 +137,18 @@ fn choice(open: &Open, id: bool) -> Choice {
     }
 }
 
-fn opens(module: &Module) -> Option<Vec<Open>> {
+fn open_overrides(module: &Module) -> Option<Vec<Open>> {
     let mut taken: Vec<u32> =
         module.overrides.iter().filter_map(|(_, found)| found.id).map(u32::from).collect();
-    module.overrides.iter().map(|(_, found)| open(module, found, &mut taken)).collect()
+    module.overrides.iter().map(|(_, found)| open_override(module, found, &mut taken)).collect()
 }
 
-fn open(module: &Module, found: &Override, taken: &mut Vec<u32>) -> Option<Open> {
+fn open_override(module: &Module, found: &Override, taken: &mut Vec<u32>) -> Option<Open> {
     let name = found.name.clone()?;
     let TypeInner::Scalar(Scalar { kind, width: 1 | 4 }) = module.types[found.ty].inner else {
         return None;
     };
-    let (bits, text) = match literal(module, found.init?)? {
+    let (bits, text) = match literal_of(module, found.init?)? {
         Literal::Bool(value) => (u32::from(value), value.to_string()),
         Literal::I32(value) => (
             value.cast_unsigned(),
@@ -175,7 +175,7 @@ fn open(module: &Module, found: &Override, taken: &mut Vec<u32>) -> Option<Open>
 
 /// The module with private variables for its overrides. It is written as WGSL for this, where only
 /// one word of each declaration changes.
-fn opened(
+fn opened_module(
     source: &Source<'_>,
     opens: &[Open],
 ) -> Result<(Module, naga::valid::ModuleInfo), String> {
@@ -186,7 +186,7 @@ fn opened(
     }
     let text = write_string(&named, source.info, WriterFlags::empty())
         .map_err(|error| error.to_string())?;
-    let text: Vec<String> = text.lines().map(variable).collect();
+    let text: Vec<String> = text.lines().map(declared_variable).collect();
     let mut module =
         naga::front::wgsl::parse_str(&text.join("\n")).map_err(|error| error.to_string())?;
     for (point, original) in module.entry_points.iter_mut().zip(&source.module.entry_points) {
@@ -198,7 +198,7 @@ fn opened(
     Ok((module, info))
 }
 
-fn variable(line: &str) -> String {
+fn declared_variable(line: &str) -> String {
     line.strip_prefix("override ")
         .map_or_else(|| line.to_owned(), |rest| format!("var<private> {rest}"))
 }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use naga::ScalarKind;
 
-use super::{Open, choice};
+use super::{Open, choice_of};
 use crate::bundle::Choice;
 use crate::emit::spirv::{self, HEADER_WORDS, Instruction, first_word, instructions, op, string};
 
@@ -16,9 +16,9 @@ const TYPES: std::ops::RangeInclusive<u16> = 19..=39;
 const SPEC_ID: u32 = 1;
 
 /// Opens the variables of overrides; returns how each is chosen.
-pub fn open(bytes: &mut Vec<u8>, opens: &[Open]) -> Result<Vec<Choice>, String> {
+pub fn open_words(bytes: &mut Vec<u8>, opens: &[Open]) -> Result<Vec<Choice>, String> {
     let words = spirv::words(bytes);
-    let variables = variables(&words, opens)?;
+    let variables = open_variables(&words, opens)?;
     let mut out = words.get(..HEADER_WORDS).ok_or("the module is too short")?.to_vec();
     let mut pointees = BTreeMap::new();
     let mut decorated = false;
@@ -35,7 +35,7 @@ pub fn open(bytes: &mut Vec<u8>, opens: &[Open]) -> Result<Vec<Choice>, String> 
             }
             (op::VARIABLE, [_, pointer, id, ..]) if variables.contains_key(id) => {
                 let ty = *pointees.get(pointer).ok_or("a pointer has no type")?;
-                constant(&mut out, ty, *id, variables[id]);
+                write_constant(&mut out, ty, *id, variables[id]);
                 continue;
             }
             (op::LOAD, [_, ty, result, id, ..]) if variables.contains_key(id) => {
@@ -49,10 +49,10 @@ pub fn open(bytes: &mut Vec<u8>, opens: &[Open]) -> Result<Vec<Choice>, String> 
     *bytes = spirv::bytes(&out);
     let written =
         opens.iter().filter(|open| variables.values().any(|found| found.name == open.name));
-    Ok(written.map(|open| choice(open, true)).collect())
+    Ok(written.map(|open| choice_of(open, true)).collect())
 }
 
-fn constant(out: &mut Vec<u32>, ty: u32, id: u32, open: &Open) {
+fn write_constant(out: &mut Vec<u32>, ty: u32, id: u32, open: &Open) {
     match (open.kind, open.bits) {
         (ScalarKind::Bool, 0) => out.extend([first_word(op::SPEC_CONSTANT_FALSE, 3), ty, id]),
         (ScalarKind::Bool, _) => out.extend([first_word(op::SPEC_CONSTANT_TRUE, 3), ty, id]),
@@ -61,7 +61,7 @@ fn constant(out: &mut Vec<u32>, ty: u32, id: u32, open: &Open) {
 }
 
 /// The overrides, by the id of their variable.
-fn variables<'a>(words: &[u32], opens: &'a [Open]) -> Result<BTreeMap<u32, &'a Open>, String> {
+fn open_variables<'a>(words: &[u32], opens: &'a [Open]) -> Result<BTreeMap<u32, &'a Open>, String> {
     let mut variables = BTreeMap::new();
     for Instruction { op, words } in instructions(words) {
         if let (op::NAME, [_, id, name @ ..]) = (op, words) {

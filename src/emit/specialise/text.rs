@@ -2,19 +2,24 @@
 
 use naga::ScalarKind;
 
-use super::{Open, choice};
+use super::{Open, choice_of};
 use crate::bundle::{Choice, Target};
 use crate::emit::is_header_line;
 
 /// Opens the variables that the text declares.
-pub fn open(bytes: &mut Vec<u8>, opens: &[Open], target: Target) -> Result<Vec<Choice>, String> {
+pub fn open_text(
+    bytes: &mut Vec<u8>,
+    opens: &[Open],
+    target: Target,
+) -> Result<Vec<Choice>, String> {
     let text = std::str::from_utf8(bytes).map_err(|error| error.to_string())?;
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     let mut choices = Vec::new();
     let mut declared = Vec::new();
     for open in opens {
-        let mut found =
-            lines.iter_mut().filter_map(|line| Some((initialiser(line, &open.variable)?, line)));
+        let mut found = lines
+            .iter_mut()
+            .filter_map(|line| Some((initialiser_index(line, &open.variable)?, line)));
         let Some((start, line)) = found.next() else { continue };
         if found.next().is_some() {
             return Err(format!("`{}` is declared twice", open.variable));
@@ -22,15 +27,15 @@ pub fn open(bytes: &mut Vec<u8>, opens: &[Open], target: Target) -> Result<Vec<C
         let value = if target == Target::MSL {
             value_name(open)
         } else {
-            format!("{}({})", name(open.kind), open.symbol())
+            format!("{}({})", scalar_name(open.kind), open.symbol())
         };
         *line = format!("{}= {value};", &line[..start]);
         declared.extend(if target == Target::MSL {
             function_constant(open)
         } else {
-            definition(open)
+            definition_lines(open)
         });
-        choices.push(choice(open, target == Target::MSL));
+        choices.push(choice_of(open, target == Target::MSL));
     }
     if !declared.is_empty() {
         let at = first_line(&lines, target);
@@ -41,7 +46,7 @@ pub fn open(bytes: &mut Vec<u8>, opens: &[Open], target: Target) -> Result<Vec<C
 }
 
 /// The index of the `=`, if the line declares the variable.
-fn initialiser(line: &str, variable: &str) -> Option<usize> {
+fn initialiser_index(line: &str, variable: &str) -> Option<usize> {
     let (before, _) = line.split_once('=')?;
     let mut words = before.split_whitespace();
     let last = words.next_back()?;
@@ -60,7 +65,7 @@ fn first_line(lines: &[String], target: Target) -> usize {
 }
 
 /// The lines that define the value: the host's macro if it is defined, the default otherwise.
-fn definition(open: &Open) -> Vec<String> {
+fn definition_lines(open: &Open) -> Vec<String> {
     let symbol = open.symbol();
     vec![
         format!("#ifndef {symbol}"),
@@ -70,7 +75,7 @@ fn definition(open: &Open) -> Vec<String> {
 }
 
 fn function_constant(open: &Open) -> Vec<String> {
-    let (symbol, ty, value) = (open.symbol(), name(open.kind), value_name(open));
+    let (symbol, ty, value) = (open.symbol(), scalar_name(open.kind), value_name(open));
     vec![
         format!("constant {ty} {symbol} [[function_constant({})]];", open.id),
         format!(
@@ -84,7 +89,7 @@ fn value_name(open: &Open) -> String {
     format!("{}_VALUE", open.symbol())
 }
 
-fn name(kind: ScalarKind) -> &'static str {
+fn scalar_name(kind: ScalarKind) -> &'static str {
     match kind {
         ScalarKind::Bool => "bool",
         ScalarKind::Uint => "uint",

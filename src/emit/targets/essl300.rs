@@ -30,5 +30,5 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     if source.module.global_variables.iter().any(|(_, variable)| is_line(variable.ty)) {
         return Err("the language has no textures of one dimension".to_owned());
     }
-    glsl::write(source, Version::new_gles(300), Numbering::Named)
+    glsl::write_glsl(source, Version::new_gles(300), Numbering::Named)
 }

@@ -22,5 +22,5 @@ pub const TARGET: Entry = Entry {
 };
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
-    glsl::write(source, Version::Desktop(330), Numbering::Named)
+    glsl::write_glsl(source, Version::Desktop(330), Numbering::Named)
 }

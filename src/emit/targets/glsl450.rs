@@ -23,5 +23,5 @@ pub const TARGET: Entry = Entry {
 };
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
-    glsl::write(source, Version::Desktop(450), Numbering::Explicit)
+    glsl::write_glsl(source, Version::Desktop(450), Numbering::Explicit)
 }

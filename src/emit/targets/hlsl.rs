@@ -13,9 +13,9 @@ use naga::back::hlsl::{
 };
 
 use crate::bundle::{HeapSampler, Kind, Native, Place, SamplerHeap, Semantic, Target};
-use crate::emit::reflect::{inputs, kind};
+use crate::emit::reflect::{entry_inputs, binding_kind};
 use crate::emit::{columns, lists, rename};
-use crate::emit::slots::{Numbering, assign, native};
+use crate::emit::slots::{Numbering, assign_slots, native_reflection};
 use crate::emit::text::Text;
 use crate::emit::{Emitted, Entry, Judge, Source, clip, setters, zeros};
 
@@ -63,8 +63,8 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     if columns::taken_from_values(source.module, source.info).next().is_some() {
         return Err(columns::TAKEN.to_owned());
     }
-    let options = options(source)?;
-    let changed = rename::renamed(source.module, &is_taken);
+    let options = writer_options(source)?;
+    let changed = rename::rename_taken(source.module, &is_taken);
     let module = changed.as_ref().unwrap_or(source.module);
     let entry = module.entry_points.get(source.index).ok_or("there is no entry point")?;
     let pipeline = PipelineOptions { entry_point: Some((source.stage, entry.name.clone())) };
@@ -79,10 +79,10 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
         .map_err(|error| error.to_string())?;
     let text = setters::by_reference(&lists::with_plain_constants(&text.0));
     let text = columns::without_casts(&zeros::without_casts(&text));
-    Ok(Emitted { bytes: text.into_bytes(), native: reflection(source, &name, &options) })
+    Ok(Emitted { bytes: text.into_bytes(), native: hlsl_reflection(source, &name, &options) })
 }
 
-fn options(source: &Source<'_>) -> Result<Options, String> {
+fn writer_options(source: &Source<'_>) -> Result<Options, String> {
     let mut options = Options {
         shader_model: ShaderModel::V5_1,
         fake_missing_bindings: false,
@@ -90,7 +90,7 @@ fn options(source: &Source<'_>) -> Result<Options, String> {
         force_loop_bounding: false,
         ..Options::default()
     };
-    for (binding, _, _) in assign(source, Numbering::Author) {
+    for (binding, _, _) in assign_slots(source, Numbering::Author) {
         let space = u8::try_from(binding.group)
             .ok()
             .filter(|space| *space < INDEX_SPACE)
@@ -108,9 +108,9 @@ fn options(source: &Source<'_>) -> Result<Options, String> {
     Ok(options)
 }
 
-fn reflection(source: &Source<'_>, entry: &str, options: &Options) -> Native {
-    let mut native = native(source, entry, Numbering::Author);
-    native.sampler_heaps = heaps(source, &options.sampler_heap_target);
+fn hlsl_reflection(source: &Source<'_>, entry: &str, options: &Options) -> Native {
+    let mut native = native_reflection(source, entry, Numbering::Author);
+    native.sampler_heaps = sampler_heaps(source, &options.sampler_heap_target);
     let in_heap = |group: u32, binding: u32| {
         native
             .sampler_heaps
@@ -120,18 +120,18 @@ fn reflection(source: &Source<'_>, entry: &str, options: &Options) -> Native {
     };
     native.slots.retain(|slot| !in_heap(slot.group, slot.binding));
     for slot in &mut native.slots {
-        slot.register = class(source, [slot.group, slot.binding]).map(str::to_owned);
+        slot.register = register_class(source, [slot.group, slot.binding]).map(str::to_owned);
     }
-    native.semantics = semantics(source);
+    native.semantics = vertex_semantics(source);
     native
 }
 
 /// The class of register that naga gives what is bound.
-fn class(source: &Source<'_>, place: Place) -> Option<&'static str> {
+fn register_class(source: &Source<'_>, place: Place) -> Option<&'static str> {
     let mut variables = source.module.global_variables.iter();
     let (_, variable) = variables
         .find(|(_, one)| one.binding.is_some_and(|one| [one.group, one.binding] == place))?;
-    Some(match (kind(source.module, variable)?, variable.space) {
+    Some(match (binding_kind(source.module, variable)?, variable.space) {
         (Kind::Uniform, _) => "b",
         (Kind::Storage, naga::AddressSpace::Storage { access })
             if access.contains(naga::StorageAccess::STORE) =>
@@ -144,8 +144,8 @@ fn class(source: &Source<'_>, place: Place) -> Option<&'static str> {
 }
 
 /// The heaps that the entry point takes samplers from.
-fn heaps(source: &Source<'_>, targets: &SamplerHeapBindTargets) -> Vec<SamplerHeap> {
-    let used = assign(source, Numbering::Author);
+fn sampler_heaps(source: &Source<'_>, targets: &SamplerHeapBindTargets) -> Vec<SamplerHeap> {
+    let used = assign_slots(source, Numbering::Author);
     let heap = |(name, wanted): (&str, Kind)| {
         let samplers: Vec<HeapSampler> = used
             .iter()
@@ -174,12 +174,12 @@ fn heaps(source: &Source<'_>, targets: &SamplerHeapBindTargets) -> Vec<SamplerHe
 }
 
 /// What an input layout calls each attribute.
-fn semantics(source: &Source<'_>) -> Vec<Semantic> {
+fn vertex_semantics(source: &Source<'_>) -> Vec<Semantic> {
     if source.stage != naga::ShaderStage::Vertex {
         return Vec::new();
     }
     let function = &source.module.entry_points[source.index].function;
-    let locations = inputs(source.module, function).into_iter().filter_map(|input| input.location);
+    let locations = entry_inputs(source.module, function).into_iter().filter_map(|input| input.location);
     locations
         .map(|location| Semantic { location, name: "LOC".to_owned(), index: location })
         .collect()

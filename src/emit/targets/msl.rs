@@ -10,7 +10,7 @@ use naga::back::msl::{
 };
 
 use crate::bundle::{BufferSizes, Kind, Target};
-use crate::emit::slots::{Numbering, assign, native};
+use crate::emit::slots::{Numbering, assign_slots, native_reflection};
 use crate::emit::text::Text;
 use crate::emit::{Emitted, Entry, Judge, Source, clip};
 
@@ -32,7 +32,7 @@ const SIZES_BUFFER: u8 = 30;
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
     let options = Options {
         lang_version: (2, 0),
-        per_entry_point_map: BTreeMap::from([(source.entry.to_owned(), resources(source)?)]),
+        per_entry_point_map: BTreeMap::from([(source.entry.to_owned(), entry_resources(source)?)]),
         fake_missing_bindings: false,
         force_loop_bounding: false,
         ..Options::default()
@@ -51,7 +51,7 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
         .next()
         .ok_or("no entry point was written")?
         .map_err(|error| error.to_string())?;
-    let mut native = native(source, &name, Numbering::PerKind);
+    let mut native = native_reflection(source, &name, Numbering::PerKind);
     native.buffer_sizes = buffer_sizes(source, &text);
     Ok(Emitted { bytes: text.into_bytes(), native })
 }
@@ -74,19 +74,19 @@ fn buffer_sizes(source: &Source<'_>, text: &str) -> Option<BufferSizes> {
     })
 }
 
-fn resources(source: &Source<'_>) -> Result<EntryPointResources, String> {
+fn entry_resources(source: &Source<'_>) -> Result<EntryPointResources, String> {
     let mut resources = EntryPointResources::default();
-    for (binding, kind, index) in assign(source, Numbering::PerKind) {
+    for (binding, kind, index) in assign_slots(source, Numbering::PerKind) {
         let slot = index
             .and_then(|index| u8::try_from(index).ok())
             .ok_or("more bindings than Metal has slots")?;
-        resources.resources.insert(binding, target(kind, slot));
+        resources.resources.insert(binding, bind_target(kind, slot));
     }
     resources.sizes_buffer = Some(SIZES_BUFFER);
     Ok(resources)
 }
 
-fn target(kind: Kind, slot: u8) -> BindTarget {
+fn bind_target(kind: Kind, slot: u8) -> BindTarget {
     match kind {
         Kind::Uniform => BindTarget { buffer: Some(slot), ..BindTarget::default() },
         Kind::Storage => BindTarget { buffer: Some(slot), mutable: true, ..BindTarget::default() },

@@ -7,7 +7,7 @@ use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 
 use crate::bundle::Target;
 use crate::emit::spirv::{HEADER_WORDS, Instruction, bytes, instructions, op};
-use crate::emit::slots::{Numbering, native};
+use crate::emit::slots::{Numbering, native_reflection};
 use crate::emit::{Emitted, Entry, Judge, Source, clip};
 
 /// The target, for the table of all.
@@ -32,13 +32,13 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
         PipelineOptions { shader_stage: source.stage, entry_point: source.entry.to_owned() };
     let words = write_vec(source.module, source.info, &options, Some(&pipeline))
         .map_err(|error| error.to_string())?;
-    let bytes = bytes(&ordered(&words));
-    Ok(Emitted { bytes, native: native(source, source.entry, Numbering::Author) })
+    let bytes = bytes(&order_variables(&words));
+    Ok(Emitted { bytes, native: native_reflection(source, source.entry, Numbering::Author) })
 }
 
 /// The module with the variables of each function in the order of their ids, which is the author's.
 /// naga writes them in the order of a hash map, which differs between processors.
-fn ordered(words: &[u32]) -> Vec<u32> {
+fn order_variables(words: &[u32]) -> Vec<u32> {
     const FUNCTION: u32 = 7;
     let is_local = |found: &Instruction<'_>| {
         found.op == op::VARIABLE && found.words.get(3) == Some(&FUNCTION)

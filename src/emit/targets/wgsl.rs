@@ -5,7 +5,7 @@
 use naga::back::wgsl::{Writer, WriterFlags};
 
 use crate::bundle::{Choice, Target};
-use crate::emit::slots::{Numbering, native};
+use crate::emit::slots::{Numbering, native_reflection};
 use crate::emit::text::Text;
 use crate::emit::{Emitted, Entry, Judge, Source, clip};
 
@@ -26,14 +26,14 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     written.map_err(|error| text.explain(error))?;
     let text = text.0;
     // naga does not tell the names that it wrote, and it appends to names that end with a digit.
-    let entry = named(&text, "fn", Some("@")).next().ok_or("no entry point was written")?;
-    let mut native = native(source, entry, Numbering::Author);
+    let entry = declared_names(&text, "fn", Some("@")).next().ok_or("no entry point was written")?;
+    let mut native = native_reflection(source, entry, Numbering::Author);
     let overrides = source.module.overrides.iter().map(|(_, constant)| constant);
-    native.choices = overrides.zip(named(&text, "override", None)).filter_map(choice).collect();
+    native.choices = overrides.zip(declared_names(&text, "override", None)).filter_map(override_choice).collect();
     Ok(Emitted { bytes: text.into_bytes(), native })
 }
 
-fn choice((constant, written): (&naga::Override, &str)) -> Option<Choice> {
+fn override_choice((constant, written): (&naga::Override, &str)) -> Option<Choice> {
     let name = constant.name.clone()?;
     let symbol = (name != written).then(|| written.to_owned());
     Some(Choice { name, id: constant.id.map(u32::from), symbol })
@@ -41,7 +41,7 @@ fn choice((constant, written): (&naga::Override, &str)) -> Option<Choice> {
 
 /// The names of declarations that begin with `keyword`, in the order of the text. With `after`,
 /// only those that follow a line which begins with it.
-fn named<'t>(
+fn declared_names<'t>(
     text: &'t str,
     word: &'static str,
     after: Option<&'static str>,

@@ -53,7 +53,7 @@ impl<'b, 'm> Body<'b, 'm> {
     pub(super) fn kind(&self, handle: Handle<Expression>) -> Result<Kind, Error> {
         let scalar = self.inner(handle).scalar();
         scalar
-            .and_then(crate::eval::layout::kind)
+            .and_then(crate::eval::layout::kind_of)
             .ok_or_else(|| Error::unsupported("an operation on this type"))
     }
 

@@ -38,14 +38,8 @@ impl Body<'_, '_> {
             Expression::Constant(constant) => {
                 self.global_value(self.build.module.constants[constant].init)
             }
-            Expression::Override(constant) => match self.build.module.overrides[constant].init {
-                Some(init) => self.global_value(init),
-                None => Err(Error::unsupported("overrides without a value")),
-            },
-            Expression::ZeroValue(ty) => Ok(Loc::dense(
-                self.build.layout.size(ty).and_then(|size| self.build.alloc(size))?,
-                true,
-            )),
+            Expression::Override(constant) => self.override_value(constant),
+            Expression::ZeroValue(ty) => self.zero_value(ty),
             Expression::Compose { ref components, .. } => self.compose(handle, components),
             Expression::Splat { value, .. } => self.splat(value),
             Expression::Swizzle { size, vector, pattern } => {
@@ -54,12 +48,7 @@ impl Body<'_, '_> {
             Expression::Access { base, index } => self.access(handle, base, index),
             Expression::AccessIndex { base, index } => self.access_index(base, index),
             Expression::FunctionArgument(index) => self.argument(handle, index),
-            Expression::GlobalVariable(variable) => self
-                .build
-                .globals
-                .get(variable.index())
-                .cloned()
-                .unwrap_or_else(|| Err(Error::unsupported("this variable"))),
+            Expression::GlobalVariable(variable) => self.global_variable(variable),
             Expression::LocalVariable(variable) => Ok(Loc::Place(self.locals[variable.index()])),
             Expression::Load { pointer } => self.load(handle, pointer),
             Expression::Unary { op, expr } => self.unary(handle, op, expr),
@@ -80,8 +69,25 @@ impl Body<'_, '_> {
             Expression::ImageSample { .. }
             | Expression::ImageLoad { .. }
             | Expression::ImageQuery { .. } => self.image(handle),
-            ref other => Err(Error::unsupported(name(other))),
+            ref other => Err(Error::unsupported(expression_name(other))),
         }
+    }
+
+    fn override_value(&mut self, constant: Handle<naga::Override>) -> Result<Loc, Error> {
+        match self.build.module.overrides[constant].init {
+            Some(init) => self.global_value(init),
+            None => Err(Error::unsupported("overrides without a value")),
+        }
+    }
+
+    fn zero_value(&mut self, ty: Handle<naga::Type>) -> Result<Loc, Error> {
+        let size = self.build.layout.size(ty)?;
+        Ok(Loc::dense(self.build.alloc(size)?, true))
+    }
+
+    fn global_variable(&self, variable: Handle<naga::GlobalVariable>) -> Result<Loc, Error> {
+        let known = self.build.globals.get(variable.index()).cloned();
+        known.unwrap_or_else(|| Err(Error::unsupported("this variable")))
     }
 
     /// Fresh slots for the value of an expression.
@@ -229,7 +235,7 @@ impl Body<'_, '_> {
     }
 }
 
-fn name(expression: &Expression) -> String {
+fn expression_name(expression: &Expression) -> String {
     let text = format!("{expression:?}");
     format!("the operation `{}`", text.split([' ', '(', '{']).next().unwrap_or("?"))
 }

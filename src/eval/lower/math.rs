@@ -27,14 +27,16 @@ impl Body<'_, '_> {
         arg: Handle<Expression>,
         rest: [Argument; 3],
     ) -> Result<Loc, Error> {
-        if let Some(op) = packing(fun) {
+        if let Some(op) = packing_of(fun) {
             let from = self.dense(arg)?;
             let (to, _) = self.fresh(handle)?;
             self.emit(Instruction::Pack { op, to, from });
             return Ok(Loc::dense(to, false));
         }
         match (self.kind(arg)?, fun) {
-            (Kind::Float, MathFunction::Outer) => self.outer(handle, arg, need(rest[0])?),
+            (Kind::Float, MathFunction::Outer) => {
+                self.outer(handle, arg, required_argument(rest[0])?)
+            }
             (Kind::Float, MathFunction::Transpose) => self.transpose(handle, arg),
             (Kind::Float, _) => self.on_floats(handle, fun, arg, rest),
             (kind, _) => self.on_words(handle, fun, kind == Kind::Sint, arg, rest),
@@ -50,13 +52,13 @@ impl Body<'_, '_> {
     ) -> Result<Loc, Error> {
         match on_floats(fun) {
             Some(OnFloats::One(op)) => self.float1(handle, op, arg),
-            Some(OnFloats::Two(op)) => self.float2(handle, op, arg, need(rest[0])?),
+            Some(OnFloats::Two(op)) => self.float2(handle, op, arg, required_argument(rest[0])?),
             Some(OnFloats::Three(op)) => {
                 let (to, n) = self.fresh(handle)?;
                 let (a, b, c) = (
                     self.spread(arg, n)?,
-                    self.spread(need(rest[0])?, n)?,
-                    self.spread(need(rest[1])?, n)?,
+                    self.spread(required_argument(rest[0])?, n)?,
+                    self.spread(required_argument(rest[1])?, n)?,
                 );
                 self.emit(Instruction::Float3 { op, n: n as u8, to, a, b, c });
                 Ok(Loc::dense(to, false))
@@ -124,14 +126,22 @@ impl Body<'_, '_> {
             if signed { (Word2::MinS, Word2::MaxS) } else { (Word2::MinU, Word2::MaxU) };
         match fun {
             MathFunction::Abs if !signed => self.loc(arg),
-            MathFunction::Min => self.word2(handle, min, arg, need(rest[0])?),
-            MathFunction::Max => self.word2(handle, max, arg, need(rest[0])?),
-            MathFunction::Clamp => {
-                self.clamp(handle, arg, need(rest[0])?, need(rest[1])?, (min, max))
-            }
+            MathFunction::Min => self.word2(handle, min, arg, required_argument(rest[0])?),
+            MathFunction::Max => self.word2(handle, max, arg, required_argument(rest[0])?),
+            MathFunction::Clamp => self.clamp(
+                handle,
+                arg,
+                required_argument(rest[0])?,
+                required_argument(rest[1])?,
+                (min, max),
+            ),
             MathFunction::Dot => self.geometry(handle, Geometry::DotWord, arg, rest),
-            MathFunction::Dot4I8Packed => self.word2(handle, Word2::DotBytesS, arg, need(rest[0])?),
-            MathFunction::Dot4U8Packed => self.word2(handle, Word2::DotBytesU, arg, need(rest[0])?),
+            MathFunction::Dot4I8Packed => {
+                self.word2(handle, Word2::DotBytesS, arg, required_argument(rest[0])?)
+            }
+            MathFunction::Dot4U8Packed => {
+                self.word2(handle, Word2::DotBytesU, arg, required_argument(rest[0])?)
+            }
             MathFunction::ExtractBits | MathFunction::InsertBits => {
                 self.bits(handle, fun, signed, arg, rest)
             }
@@ -168,7 +178,10 @@ impl Body<'_, '_> {
     ) -> Result<Loc, Error> {
         let (to, n) = self.fresh(handle)?;
         let (from, n) = (self.operand(arg)?, n as u8);
-        let (first, second) = (self.operand(need(rest[0])?)?, self.operand(need(rest[1])?)?.slot);
+        let (first, second) = (
+            self.operand(required_argument(rest[0])?)?,
+            self.operand(required_argument(rest[1])?)?.slot,
+        );
         let instruction = match rest[2] {
             Some(count) if fun == MathFunction::InsertBits => {
                 let count = self.operand(count)?.slot;
@@ -183,45 +196,23 @@ impl Body<'_, '_> {
     }
 }
 
-fn need(argument: Argument) -> Result<Handle<Expression>, Error> {
+fn required_argument(argument: Argument) -> Result<Handle<Expression>, Error> {
     argument.ok_or_else(|| Error::unsupported("a call with too few arguments"))
 }
 
 fn on_floats(fun: MathFunction) -> Option<OnFloats> {
     use OnFloats::{One, Three, Two, Whole};
+    if let Some(op) = unary_function(fun) {
+        return Some(One(op));
+    }
     Some(match fun {
-        MathFunction::Abs => One(Unary::Abs),
         MathFunction::Min => Two(Binary::Min),
         MathFunction::Max => Two(Binary::Max),
         MathFunction::Clamp => Three(Ternary::Clamp),
-        MathFunction::Saturate => One(Unary::Saturate),
-        MathFunction::Cos => One(Unary::Cos),
-        MathFunction::Cosh => One(Unary::Cosh),
-        MathFunction::Sin => One(Unary::Sin),
-        MathFunction::Sinh => One(Unary::Sinh),
-        MathFunction::Tan => One(Unary::Tan),
-        MathFunction::Tanh => One(Unary::Tanh),
-        MathFunction::Acos => One(Unary::Acos),
-        MathFunction::Asin => One(Unary::Asin),
-        MathFunction::Atan => One(Unary::Atan),
         MathFunction::Atan2 => Two(Binary::Atan2),
-        MathFunction::Asinh => One(Unary::Asinh),
-        MathFunction::Acosh => One(Unary::Acosh),
-        MathFunction::Atanh => One(Unary::Atanh),
-        MathFunction::Radians => One(Unary::Radians),
-        MathFunction::Degrees => One(Unary::Degrees),
-        MathFunction::Ceil => One(Unary::Ceil),
-        MathFunction::Floor => One(Unary::Floor),
-        MathFunction::Round => One(Unary::Round),
-        MathFunction::Fract => One(Unary::Fract),
-        MathFunction::Trunc => One(Unary::Trunc),
         MathFunction::Modf => Whole(Geometry::Modf),
         MathFunction::Frexp => Whole(Geometry::Frexp),
         MathFunction::Ldexp => Whole(Geometry::Ldexp),
-        MathFunction::Exp => One(Unary::Exp),
-        MathFunction::Exp2 => One(Unary::Exp2),
-        MathFunction::Log => One(Unary::Log),
-        MathFunction::Log2 => One(Unary::Log2),
         MathFunction::Pow => Two(Binary::Pow),
         MathFunction::Dot => Whole(Geometry::Dot),
         MathFunction::Cross => Whole(Geometry::Cross),
@@ -231,16 +222,48 @@ fn on_floats(fun: MathFunction) -> Option<OnFloats> {
         MathFunction::FaceForward => Whole(Geometry::FaceForward),
         MathFunction::Reflect => Whole(Geometry::Reflect),
         MathFunction::Refract => Whole(Geometry::Refract),
-        MathFunction::Sign => One(Unary::Sign),
         MathFunction::Fma => Three(Ternary::Fma),
         MathFunction::Mix => Three(Ternary::Mix),
         MathFunction::Step => Two(Binary::Step),
         MathFunction::SmoothStep => Three(Ternary::SmoothStep),
-        MathFunction::Sqrt => One(Unary::Sqrt),
-        MathFunction::InverseSqrt => One(Unary::InverseSqrt),
         MathFunction::Inverse => Whole(Geometry::Inverse),
         MathFunction::Determinant => Whole(Geometry::Determinant),
-        MathFunction::QuantizeToF16 => One(Unary::Quantize),
+        _ => return None,
+    })
+}
+
+/// The functions of one float.
+fn unary_function(fun: MathFunction) -> Option<Unary> {
+    Some(match fun {
+        MathFunction::Abs => Unary::Abs,
+        MathFunction::Saturate => Unary::Saturate,
+        MathFunction::Cos => Unary::Cos,
+        MathFunction::Cosh => Unary::Cosh,
+        MathFunction::Sin => Unary::Sin,
+        MathFunction::Sinh => Unary::Sinh,
+        MathFunction::Tan => Unary::Tan,
+        MathFunction::Tanh => Unary::Tanh,
+        MathFunction::Acos => Unary::Acos,
+        MathFunction::Asin => Unary::Asin,
+        MathFunction::Atan => Unary::Atan,
+        MathFunction::Asinh => Unary::Asinh,
+        MathFunction::Acosh => Unary::Acosh,
+        MathFunction::Atanh => Unary::Atanh,
+        MathFunction::Radians => Unary::Radians,
+        MathFunction::Degrees => Unary::Degrees,
+        MathFunction::Ceil => Unary::Ceil,
+        MathFunction::Floor => Unary::Floor,
+        MathFunction::Round => Unary::Round,
+        MathFunction::Fract => Unary::Fract,
+        MathFunction::Trunc => Unary::Trunc,
+        MathFunction::Exp => Unary::Exp,
+        MathFunction::Exp2 => Unary::Exp2,
+        MathFunction::Log => Unary::Log,
+        MathFunction::Log2 => Unary::Log2,
+        MathFunction::Sign => Unary::Sign,
+        MathFunction::Sqrt => Unary::Sqrt,
+        MathFunction::InverseSqrt => Unary::InverseSqrt,
+        MathFunction::QuantizeToF16 => Unary::Quantize,
         _ => return None,
     })
 }
@@ -260,7 +283,7 @@ fn word1(fun: MathFunction, signed: bool) -> Option<Word1> {
     })
 }
 
-fn packing(fun: MathFunction) -> Option<Packing> {
+fn packing_of(fun: MathFunction) -> Option<Packing> {
     Some(match fun {
         MathFunction::Pack4x8snorm => Packing::Pack4Snorm8,
         MathFunction::Pack4x8unorm => Packing::Pack4Unorm8,

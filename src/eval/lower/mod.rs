@@ -310,7 +310,7 @@ impl<'m> Build<'m> {
         results: usize,
         inputs: &mut Vec<Option<naga::Binding>>,
     ) -> Result<(Parameter, Vec<Kind>), Error> {
-        let pointee = pointee(&self.module.types[argument.ty].inner);
+        let pointee = pointed_type(&self.module.types[argument.ty].inner);
         let mut kinds = Vec::new();
         self.layout.kinds(pointee.unwrap_or(argument.ty), &mut kinds)?;
         let (slots, n) = (self.layout.size(argument.ty)?, kinds.len() as u32);
@@ -349,7 +349,7 @@ impl<'m> Build<'m> {
 }
 
 /// What a pointer parameter points to.
-fn pointee(inner: &TypeInner) -> Option<Handle<Type>> {
+fn pointed_type(inner: &TypeInner) -> Option<Handle<Type>> {
     match *inner {
         TypeInner::Pointer { base, .. } => Some(base),
         _ => None,

@@ -78,7 +78,7 @@ impl Body<'_, '_> {
         if let Some(loc) = product {
             return Ok(loc);
         }
-        if let (Kind::Float, Some(op)) = (kind, comparison(op)) {
+        if let (Kind::Float, Some(op)) = (kind, comparison_of(op)) {
             return self.compare(handle, op, left, right);
         }
         let meaning = MEANINGS.iter().find(|meaning| meaning.0 == op);
@@ -268,7 +268,7 @@ impl Body<'_, '_> {
     }
 }
 
-fn comparison(op: BinaryOperator) -> Option<Compare> {
+fn comparison_of(op: BinaryOperator) -> Option<Compare> {
     Some(match op {
         BinaryOperator::Equal => Compare::Equal,
         BinaryOperator::NotEqual => Compare::NotEqual,

@@ -10,30 +10,32 @@ use super::word::{extract_bits, insert_bits, word1, word2};
 #[inline(always)]
 pub(super) fn compute<N: Number>(instruction: &Instruction, m: &mut [N], doubt: &mut bool) {
     match *instruction {
-        Instruction::Copy { to, from, n } => copy(m, to, from, n),
+        Instruction::Copy { to, from, n } => copy_slots(m, to, from, n),
         Instruction::Fill { to, from, n } => {
             let value = m[from as usize];
             m[to as usize..(to + n) as usize].fill(value);
         }
         Instruction::Zero { to, n } => m[to as usize..(to + n) as usize].fill(N::default()),
         Instruction::Float1 { op, n, to, a } => {
-            each(m, n, to, |m, i| N::unary(op, m[a.at(i)], doubt))
+            each_component(m, n, to, |m, i| N::unary(op, m[a.at(i)], doubt))
         }
         Instruction::Float2 { op, n, to, a, b } => {
-            each(m, n, to, |m, i| N::binary(op, m[a.at(i)], m[b.at(i)], doubt))
+            each_component(m, n, to, |m, i| N::binary(op, m[a.at(i)], m[b.at(i)], doubt))
         }
-        Instruction::Float3 { op, n, to, a, b, c } => {
-            each(m, n, to, |m, i| N::ternary(op, m[a.at(i)], m[b.at(i)], m[c.at(i)], doubt))
-        }
+        Instruction::Float3 { op, n, to, a, b, c } => each_component(m, n, to, |m, i| {
+            N::ternary(op, m[a.at(i)], m[b.at(i)], m[c.at(i)], doubt)
+        }),
         Instruction::Compare { op, n, to, a, b } => {
-            words(m, n, to, |m, i| u32::from(N::compare(op, m[a.at(i)], m[b.at(i)], doubt)))
+            each_word(m, n, to, |m, i| u32::from(N::compare(op, m[a.at(i)], m[b.at(i)], doubt)))
         }
-        Instruction::Word1 { op, n, to, a } => words(m, n, to, |m, i| word1(op, m[a.at(i)].word())),
+        Instruction::Word1 { op, n, to, a } => {
+            each_word(m, n, to, |m, i| word1(op, m[a.at(i)].word()))
+        }
         Instruction::Word2 { op, n, to, a, b } => {
-            words(m, n, to, |m, i| word2(op, m[a.at(i)].word(), m[b.at(i)].word()))
+            each_word(m, n, to, |m, i| word2(op, m[a.at(i)].word(), m[b.at(i)].word()))
         }
         Instruction::ExtractBits { signed, n, to, from, offset, count } => {
-            words(m, n, to, |m, i| {
+            each_word(m, n, to, |m, i| {
                 extract_bits(
                     signed,
                     m[from.at(i)].word(),
@@ -43,7 +45,7 @@ pub(super) fn compute<N: Number>(instruction: &Instruction, m: &mut [N], doubt: 
             });
         }
         Instruction::InsertBits { n, to, from, new, offset, count } => {
-            words(m, n, to, |m, i| {
+            each_word(m, n, to, |m, i| {
                 insert_bits(
                     [m[from.at(i)], m[new.at(i)], m[offset as usize], m[count as usize]]
                         .map(N::word),
@@ -53,7 +55,7 @@ pub(super) fn compute<N: Number>(instruction: &Instruction, m: &mut [N], doubt: 
         Instruction::Convert { op, n, to, a } => convert(m, op, n, to, a, doubt),
         Instruction::Pack { op, to, from } => pack(m, op, to, from, doubt),
         Instruction::Select { n, to, condition, accept, reject } => {
-            each(m, n, to, |m, i| {
+            each_component(m, n, to, |m, i| {
                 if m[condition.at(i)].word() != 0 { m[accept.at(i)] } else { m[reject.at(i)] }
             });
         }
@@ -69,7 +71,7 @@ pub(super) fn compute<N: Number>(instruction: &Instruction, m: &mut [N], doubt: 
             geometry(m, op, usize::from(n), [to, a, b, c].map(|slot| slot as usize), doubt)
         }
         Instruction::Product { op, inner, rows, columns, to, a, b } => {
-            product(m, op, [inner, rows, columns], to, a, b)
+            matrix_product(m, op, [inner, rows, columns], to, a, b)
         }
         Instruction::Transpose { rows, columns, to, from } => {
             let (rows, columns) = (u32::from(rows), u32::from(columns));
@@ -86,20 +88,25 @@ pub(super) fn compute<N: Number>(instruction: &Instruction, m: &mut [N], doubt: 
             );
         }
         Instruction::Pick { to, from, index, size, count } => {
-            copy(m, to, from + m[index as usize].word().min(count.saturating_sub(1)) * size, size);
+            copy_slots(
+                m,
+                to,
+                from + m[index as usize].word().min(count.saturating_sub(1)) * size,
+                size,
+            );
         }
         Instruction::Load { to, pointer, offset, n } => {
-            copy(m, to, m[pointer as usize].word().wrapping_add(offset), n)
+            copy_slots(m, to, m[pointer as usize].word().wrapping_add(offset), n)
         }
         Instruction::Store { pointer, offset, from, n } => {
-            copy(m, m[pointer as usize].word().wrapping_add(offset), from, n)
+            copy_slots(m, m[pointer as usize].word().wrapping_add(offset), from, n)
         }
         _ => {}
     }
 }
 
 #[inline(always)]
-fn copy<N: Number>(m: &mut [N], to: u32, from: u32, n: u32) {
+fn copy_slots<N: Number>(m: &mut [N], to: u32, from: u32, n: u32) {
     let (to, from, n) = (to as usize, from as usize, n as usize);
     // An address outside the memory can only come from a buffer that is not bound. It reads
     // nothing.
@@ -109,23 +116,23 @@ fn copy<N: Number>(m: &mut [N], to: u32, from: u32, n: u32) {
 }
 
 #[inline(always)]
-fn each<N: Number>(m: &mut [N], n: u8, to: u32, mut f: impl FnMut(&[N], u32) -> N) {
+fn each_component<N: Number>(m: &mut [N], n: u8, to: u32, mut f: impl FnMut(&[N], u32) -> N) {
     for i in 0..u32::from(n) {
         m[(to + i) as usize] = f(m, i);
     }
 }
 
 #[inline(always)]
-fn words<N: Number>(m: &mut [N], n: u8, to: u32, mut f: impl FnMut(&[N], u32) -> u32) {
-    each(m, n, to, |m, i| N::from_word(f(m, i)));
+fn each_word<N: Number>(m: &mut [N], n: u8, to: u32, mut f: impl FnMut(&[N], u32) -> u32) {
+    each_component(m, n, to, |m, i| N::from_word(f(m, i)));
 }
 
 fn convert<N: Number>(m: &mut [N], op: Convert, n: u8, to: u32, a: Operand, doubt: &mut bool) {
-    each(m, n, to, |m, i| {
+    each_component(m, n, to, |m, i| {
         let x = m[a.at(i)];
         match op {
-            Convert::FloatFromS => whole(f64::from(x.word() as i32)),
-            Convert::FloatFromU => whole(f64::from(x.word())),
+            Convert::FloatFromS => whole_number(f64::from(x.word() as i32)),
+            Convert::FloatFromU => whole_number(f64::from(x.word())),
             Convert::SFromFloat => N::from_word(x.to_i32(doubt) as u32),
             Convert::UFromFloat => N::from_word(x.to_u32(doubt)),
             Convert::BoolFromFloat => N::from_word(u32::from(x.value() != 0.0)),
@@ -138,13 +145,13 @@ fn convert<N: Number>(m: &mut [N], op: Convert, n: u8, to: u32, a: Operand, doub
 }
 
 /// An integer as a number, rounded as an f32 must be.
-fn whole<N: Number>(value: f64) -> N {
+fn whole_number<N: Number>(value: f64) -> N {
     let rounded = f64::from(value as f32);
     N::with_error(value, 2.0 * (value - rounded).abs())
 }
 
 /// Products of matrices; a column of `b` at a time.
-fn product<N: Number>(
+fn matrix_product<N: Number>(
     m: &mut [N],
     op: Product,
     [inner, rows, columns]: [u8; 3],

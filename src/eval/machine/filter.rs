@@ -97,9 +97,9 @@ pub(super) fn combine<N: Number>(footprint: &Footprint<N>, doubt: &mut bool) -> 
         (0..4).for_each(|i| values[i] += weight * texel[i]);
     };
     match footprint.filter {
-        Filter::Linear => linear(footprint, level, &mut add),
+        Filter::Linear => add_linear(footprint, level, &mut add),
         Filter::Nearest => {
-            let (texel, is_open) = nearest(footprint, level);
+            let (texel, is_open) = nearest_texel(footprint, level);
             add(Tap { weight: 1.0, texel });
             *doubt |= is_open;
         }
@@ -107,9 +107,9 @@ pub(super) fn combine<N: Number>(footprint: &Footprint<N>, doubt: &mut bool) -> 
     if !N::BOUNDED || footprint.filter == Filter::Nearest {
         return values.map(|value| (value, 0.0));
     }
-    let reach = reach(footprint, level);
+    let reach = reach_of(footprint, level);
     let slack = reach.iter().sum::<f64>().min(1.0);
-    let spread = spread(footprint, level, reach, doubt);
+    let spread = spread_within(footprint, level, reach, doubt);
     std::array::from_fn(|i| {
         let error = if spread[i] == 0.0 {
             0.0
@@ -121,19 +121,19 @@ pub(super) fn combine<N: Number>(footprint: &Footprint<N>, doubt: &mut bool) -> 
 }
 
 /// How far from the place a device may look along each axis, in texels.
-fn reach<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
-    let (size, point) = (size(footprint, level), &footprint.point);
+fn reach_of<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
+    let (size, point) = (sizes_of(footprint, level), &footprint.point);
     std::array::from_fn(|i| if size[i] == 0.0 { 0.0 } else { point.error[i] * size[i] + SUBTEXEL })
 }
 
 /// The largest difference of two texels within reach, for each component.
-fn spread<N: Number>(
+fn spread_within<N: Number>(
     footprint: &Footprint<N>,
     level: &Level,
     reach: [f64; 3],
     doubt: &mut bool,
 ) -> [f64; 4] {
-    let (size, at) = (size(footprint, level), footprint.point.at);
+    let (size, at) = (sizes_of(footprint, level), footprint.point.at);
     let side = |i: usize, reach: f64| {
         if size[i] == 0.0 { 0 } else { (at[i] * size[i] - 0.5 + reach).floor() as i64 }
     };
@@ -158,13 +158,13 @@ fn spread<N: Number>(
 }
 
 /// One component of the four texels that are gathered: (0, 1), (1, 1), (1, 0), (0, 0).
-pub(super) fn gathered<N: Number>(
+pub(super) fn gathered_component<N: Number>(
     footprint: &Footprint<N>,
     component: usize,
     doubt: &mut bool,
 ) -> [(f64, f64); 4] {
     let level = &footprint.texture.levels[footprint.level];
-    let base = base(footprint, level);
+    let base = lowest_texel(footprint, level);
     [[0, 1], [1, 1], [1, 0], [0, 0]].map(|[x, y]| {
         let texel =
             footprint.texel(level, [base[0].saturating_add(x), base[1].saturating_add(y), base[2]]);
@@ -173,22 +173,22 @@ pub(super) fn gathered<N: Number>(
 }
 
 /// The sizes of the directions that are filtered; 0 for the others.
-fn size<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
+fn sizes_of<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
     let depth = if footprint.point.shape == Shape::D3 { level.layers } else { 0 };
     let height = if footprint.point.shape == Shape::D1 { 0 } else { level.height };
     [level.width, height, depth].map(f64::from)
 }
 
 /// The texel of the footprint with the lowest coordinates.
-fn base<N>(footprint: &Footprint<N>, level: &Level) -> [i64; 3] {
-    let size = size(footprint, level);
+fn lowest_texel<N>(footprint: &Footprint<N>, level: &Level) -> [i64; 3] {
+    let size = sizes_of(footprint, level);
     std::array::from_fn(|i| {
         if size[i] == 0.0 { 0 } else { (footprint.point.at[i] * size[i] - 0.5).floor() as i64 }
     })
 }
 
-fn linear<N>(footprint: &Footprint<N>, level: &Level, add: &mut impl FnMut(Tap)) {
-    let (size, base) = (size(footprint, level), base(footprint, level));
+fn add_linear<N>(footprint: &Footprint<N>, level: &Level, add: &mut impl FnMut(Tap)) {
+    let (size, base) = (sizes_of(footprint, level), lowest_texel(footprint, level));
     let share: [f64; 3] = std::array::from_fn(|i| {
         if size[i] == 0.0 { 0.0 } else { footprint.point.at[i] * size[i] - 0.5 - base[i] as f64 }
     });
@@ -208,8 +208,8 @@ fn linear<N>(footprint: &Footprint<N>, level: &Level, add: &mut impl FnMut(Tap))
 }
 
 /// The nearest texel, and whether the error reaches a texel that differs from it.
-fn nearest<N: Number>(footprint: &Footprint<N>, level: &Level) -> ([f64; 4], bool) {
-    let (size, point) = (size(footprint, level), &footprint.point);
+fn nearest_texel<N: Number>(footprint: &Footprint<N>, level: &Level) -> ([f64; 4], bool) {
+    let (size, point) = (sizes_of(footprint, level), &footprint.point);
     let at = |sides: [f64; 3]| {
         let coordinate = |i: usize| {
             let place = point.at[i] * size[i];
@@ -255,7 +255,7 @@ impl<N> Footprint<'_, N> {
         let place = match self.point.shape {
             Shape::Cube => self.around(level, moved),
             Shape::D3 => [0, 1, 2].map(|i| {
-                wrap(
+                wrap_address(
                     self.sampler.address[i],
                     moved[i],
                     [level.width, level.height, level.layers][i],
@@ -264,8 +264,8 @@ impl<N> Footprint<'_, N> {
             _ => {
                 let layer = i64::from(self.point.layer.min(level.layers - 1));
                 [
-                    wrap(self.sampler.address[0], moved[0], level.width),
-                    wrap(self.sampler.address[1], moved[1], level.height),
+                    wrap_address(self.sampler.address[0], moved[0], level.width),
+                    wrap_address(self.sampler.address[1], moved[1], level.height),
                     layer,
                 ]
             }
@@ -289,7 +289,7 @@ impl<N> Footprint<'_, N> {
     }
 }
 
-fn wrap(address: Address, at: i64, size: u32) -> i64 {
+fn wrap_address(address: Address, at: i64, size: u32) -> i64 {
     let size = i64::from(size);
     match address {
         Address::Clamp => at.clamp(0, size - 1),

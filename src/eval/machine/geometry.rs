@@ -54,7 +54,7 @@ pub(super) fn geometry<N: Number>(
             let (fraction, exponent) = frexp(m[a + i]);
             (m[to + i], m[to + n + i]) = (fraction, N::from_word(exponent as u32));
         }),
-        Geometry::Ldexp => (0..n).for_each(|i| m[to + i] = scale(m[a + i], m[b + i].word() as i32)),
+        Geometry::Ldexp => (0..n).for_each(|i| m[to + i] = ldexp(m[a + i], m[b + i].word() as i32)),
     }
 }
 
@@ -140,7 +140,7 @@ fn determinant<N: Number>(matrix: &[N], n: usize, doubt: &mut bool) -> N {
     let mut sum = N::default();
     for row in 0..n {
         let mut minor = [N::default(); 9];
-        remove(matrix, n, 0, row, &mut minor);
+        write_minor(matrix, n, 0, row, &mut minor);
         let part = determinant(&minor[..(n - 1) * (n - 1)], n - 1, doubt);
         let term = N::binary(Binary::Multiply, matrix[row], part, doubt);
         sum =
@@ -150,7 +150,7 @@ fn determinant<N: Number>(matrix: &[N], n: usize, doubt: &mut bool) -> N {
 }
 
 /// Writes the matrix without one column and one row.
-fn remove<N: Number>(matrix: &[N], n: usize, column: usize, row: usize, minor: &mut [N; 9]) {
+fn write_minor<N: Number>(matrix: &[N], n: usize, column: usize, row: usize, minor: &mut [N; 9]) {
     let kept = (0..n * n).filter(|i| i / n != column && i % n != row);
     kept.zip(minor).for_each(|(i, to)| *to = matrix[i]);
 }
@@ -163,7 +163,7 @@ fn inverse<N: Number>(m: &mut [N], n: usize, to: usize, from: usize, doubt: &mut
     for i in 0..n * n {
         let (column, row) = (i / n, i % n);
         let mut minor = [N::default(); 9];
-        remove(&matrix[..n * n], n, row, column, &mut minor);
+        write_minor(&matrix[..n * n], n, row, column, &mut minor);
         let part = determinant(&minor[..(n - 1) * (n - 1)], n - 1, doubt);
         let signed =
             if (column + row) % 2 == 0 { part } else { N::unary(Unary::Negate, part, doubt) };
@@ -181,11 +181,11 @@ fn frexp<N: Number>(x: N) -> (N, i32) {
     let raised = value.abs() < f64::MIN_POSITIVE;
     let bits = (if raised { value * 64f64.exp2() } else { value }).to_bits();
     let exponent = (bits >> 52 & 0x7ff) as i32 - 1022 - if raised { 64 } else { 0 };
-    (scale(x, -exponent), exponent)
+    (ldexp(x, -exponent), exponent)
 }
 
 /// `x * 2^exponent`, in two steps so that neither factor overflows.
-fn scale<N: Number>(x: N, exponent: i32) -> N {
+fn ldexp<N: Number>(x: N, exponent: i32) -> N {
     let exponent = exponent.clamp(-2100, 2100);
     let (first, second) = (exponent / 2, exponent - exponent / 2);
     let factor = |x: f64| x * f64::from(first).exp2() * f64::from(second).exp2();

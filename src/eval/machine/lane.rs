@@ -51,7 +51,7 @@ pub(super) enum Stop {
 }
 
 /// Runs until the function returns or needs its neighbours.
-pub(super) fn run<N: Number>(
+pub(super) fn run_lane<N: Number>(
     env: Env,
     lane: &mut Lane<N>,
     watch: &mut Watch,
@@ -67,11 +67,11 @@ pub(super) fn run<N: Number>(
             Instruction::Trip => {
                 lane.trips += 1;
                 if lane.trips > env.loop_limit {
-                    return Err(endless(env, at));
+                    return Err(endless_loop(env, at));
                 }
             }
             Instruction::Switch { selector, table } => {
-                lane.pc = target(env.program, table, lane.word(selector))
+                lane.pc = jump_target(env.program, table, lane.word(selector))
             }
             Instruction::Call { to } => {
                 lane.calls.push(lane.pc);
@@ -93,7 +93,7 @@ pub(super) fn run<N: Number>(
                 return Ok(Stop::Quad);
             }
             Instruction::Image { access } => {
-                texture::single(env, access, &mut lane.memory, at, watch)?
+                texture::run_single(env, access, &mut lane.memory, at, watch)?
             }
             _ => lane.compute(instruction, at, watch),
         }
@@ -106,12 +106,12 @@ impl<N: Number> Lane<N> {
     fn fetch<'e>(&mut self, env: Env<'e>) -> Result<&'e Instruction, Error> {
         let at = self.pc;
         let Some(instruction) = env.program.code.get(at as usize) else {
-            return Err(lost(env.program, at));
+            return Err(lost_place(env.program, at));
         };
         self.pc += 1;
         self.steps += instruction.steps();
         if self.steps > EVAL_STEPS {
-            return Err(overworked(env, at));
+            return Err(too_many_steps(env, at));
         }
         Ok(instruction)
     }
@@ -135,24 +135,24 @@ impl<N: Number> Lane<N> {
     }
 }
 
-fn target(program: &Program, table: u32, selector: u32) -> u32 {
+fn jump_target(program: &Program, table: u32, selector: u32) -> u32 {
     let table = &program.tables[table as usize];
     table.cases.iter().find(|case| case.0 == selector).map_or(table.default, |case| case.1)
 }
 
 #[cold]
-fn endless(env: Env, pc: u32) -> Error {
+fn endless_loop(env: Env, pc: u32) -> Error {
     let message = format!("the loops of this call made more than {} trips", env.loop_limit);
     Error::new(codes::EVAL_LOOP_LIMIT, message).or_at(env.span(pc))
 }
 
 #[cold]
-fn overworked(env: Env, pc: u32) -> Error {
+fn too_many_steps(env: Env, pc: u32) -> Error {
     let message = format!("this call takes more than {EVAL_STEPS} steps");
     Error::new(codes::EVAL_LOOP_LIMIT, message).or_at(env.span(pc))
 }
 
 #[cold]
-fn lost(program: &Program, pc: u32) -> Error {
+fn lost_place(program: &Program, pc: u32) -> Error {
     Error::new(codes::EVAL_INTERNAL, format!("no instruction {pc} of {}", program.code.len()))
 }

@@ -11,7 +11,7 @@ mod watch;
 mod word;
 
 use super::error::{Error, Finding};
-use super::layout::{Kind, decode};
+use super::layout::{Kind, decode_buffer};
 use super::number::Number;
 use super::program::{Constant, Function, FunctionId, Program, Role};
 use super::resources::Resources;
@@ -92,7 +92,7 @@ impl<'p, N: Number> Machine<'p, N> {
             };
             self.bound[index] = bytes.len() >= global.bytes as usize;
             let mut slots = Vec::new();
-            decode(&self.program.types, global.ty, bytes, &mut |kind, word| {
+            decode_buffer(&self.program.types, global.ty, bytes, &mut |kind, word| {
                 slots.push(slot_from_word::<N>(kind, word))
             });
             match global.role {
@@ -164,12 +164,12 @@ impl<'p, N: Number> Machine<'p, N> {
     /// function could not be lowered.
     pub fn call(&mut self, id: FunctionId, arguments: &[N]) -> Result<&[N], Error> {
         let program = self.program;
-        let function = callable(program, id, arguments.len())?;
+        let function = callable_function(program, id, arguments.len())?;
         self.check_buffers(function)?;
-        begin(program, &mut self.lane);
-        place(&mut self.lane, function, arguments);
+        begin_lane(program, &mut self.lane);
+        place_arguments(&mut self.lane, function, arguments);
         self.run(function.entry)?;
-        Ok(outcome(&self.lane, function))
+        Ok(result_slots(&self.lane, function))
     }
 
     /// As [`Self::call`], with every scalar as its 32 bits.
@@ -182,7 +182,7 @@ impl<'p, N: Number> Machine<'p, N> {
         arguments: &[u32],
         result: &mut Vec<u32>,
     ) -> Result<(), Error> {
-        let function = callable(self.program, id, arguments.len())?;
+        let function = callable_function(self.program, id, arguments.len())?;
         self.words.clear();
         self.words.extend(
             function
@@ -192,15 +192,15 @@ impl<'p, N: Number> Machine<'p, N> {
                 .map(|(kind, word)| slot_from_word::<N>(*kind, *word)),
         );
         self.check_buffers(function)?;
-        begin(self.program, &mut self.lane);
-        place(&mut self.lane, function, &self.words);
+        begin_lane(self.program, &mut self.lane);
+        place_arguments(&mut self.lane, function, &self.words);
         self.run(function.entry)?;
         result.clear();
         result.extend(
             function
                 .result
                 .iter()
-                .zip(outcome(&self.lane, function))
+                .zip(result_slots(&self.lane, function))
                 .map(|(kind, slot)| word_from_slot(*kind, *slot)),
         );
         Ok(())
@@ -217,7 +217,7 @@ impl<'p, N: Number> Machine<'p, N> {
             loop_limit: self.loop_limit,
             quad: false,
         };
-        match lane::run(env, &mut self.lane, &mut self.watch)? {
+        match lane::run_lane(env, &mut self.lane, &mut self.watch)? {
             Stop::Done => Ok(()),
             Stop::Quad => Err(needs_quad(self.program, self.lane.pc)),
         }
@@ -236,7 +236,7 @@ impl<'p, N: Number> Machine<'p, N> {
     /// The flattened result of the last call, which was of this function.
     pub fn result(&self, id: FunctionId) -> &[N] {
         let function = self.program.signature(id);
-        function.map_or(&[], |function| outcome(&self.lane, function))
+        function.map_or(&[], |function| result_slots(&self.lane, function))
     }
 
     /// Loop iterations of the last call.
@@ -266,7 +266,7 @@ impl<'p, N: Number> Machine<'p, N> {
     }
 }
 
-fn callable(program: &Program, id: FunctionId, given: usize) -> Result<&Function, Error> {
+fn callable_function(program: &Program, id: FunctionId, given: usize) -> Result<&Function, Error> {
     let function = program
         .signature(id)
         .ok_or_else(|| Error::new(codes::EVAL_ARGUMENTS, "no such function in this program"))?;
@@ -284,7 +284,7 @@ fn callable(program: &Program, id: FunctionId, given: usize) -> Result<&Function
 }
 
 /// Sets private variables to their initial values.
-fn begin<N: Number>(program: &Program, lane: &mut Lane<N>) {
+fn begin_lane<N: Number>(program: &Program, lane: &mut Lane<N>) {
     for global in &program.globals {
         let (to, n) = (global.slot as usize, global.slots as usize);
         match global.role {
@@ -297,7 +297,7 @@ fn begin<N: Number>(program: &Program, lane: &mut Lane<N>) {
     }
 }
 
-fn place<N: Number>(lane: &mut Lane<N>, function: &Function, arguments: &[N]) {
+fn place_arguments<N: Number>(lane: &mut Lane<N>, function: &Function, arguments: &[N]) {
     let mut rest = arguments;
     for parameter in &function.parameters {
         let (value, others) = rest.split_at(parameter.n as usize);
@@ -310,7 +310,7 @@ fn place<N: Number>(lane: &mut Lane<N>, function: &Function, arguments: &[N]) {
     }
 }
 
-fn outcome<'l, N>(lane: &'l Lane<N>, function: &Function) -> &'l [N] {
+fn result_slots<'l, N>(lane: &'l Lane<N>, function: &Function) -> &'l [N] {
     let first = function.result_slot as usize;
     &lane.memory[first..first + function.result.len()]
 }

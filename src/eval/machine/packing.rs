@@ -9,46 +9,53 @@ pub(super) fn pack<N: Number>(m: &mut [N], op: Packing, to: u32, from: u32, doub
     let word = m[from].word();
     match op {
         Packing::Pack4Snorm8 => {
-            m[to] = joined(8, (0..4).map(|i| norm(m[from + i], -1.0, 127.0, doubt)))
+            m[to] = join_parts(8, (0..4).map(|i| normalised_word(m[from + i], -1.0, 127.0, doubt)))
         }
         Packing::Pack4Unorm8 => {
-            m[to] = joined(8, (0..4).map(|i| norm(m[from + i], 0.0, 255.0, doubt)))
+            m[to] = join_parts(8, (0..4).map(|i| normalised_word(m[from + i], 0.0, 255.0, doubt)))
         }
         Packing::Pack2Snorm16 => {
-            m[to] = joined(16, (0..2).map(|i| norm(m[from + i], -1.0, 32767.0, doubt)))
+            m[to] =
+                join_parts(16, (0..2).map(|i| normalised_word(m[from + i], -1.0, 32767.0, doubt)))
         }
         Packing::Pack2Unorm16 => {
-            m[to] = joined(16, (0..2).map(|i| norm(m[from + i], 0.0, 65535.0, doubt)))
+            m[to] =
+                join_parts(16, (0..2).map(|i| normalised_word(m[from + i], 0.0, 65535.0, doubt)))
         }
         Packing::Pack2Half => {
-            m[to] = joined(16, (0..2).map(|i| u32::from(half_from(m[from + i].value()))))
+            m[to] = join_parts(16, (0..2).map(|i| u32::from(half_from(m[from + i].value()))))
         }
-        Packing::Pack4 => m[to] = joined(8, (0..4).map(|i| m[from + i].word())),
+        Packing::Pack4 => m[to] = join_parts(8, (0..4).map(|i| m[from + i].word())),
         Packing::PackClampS => {
-            m[to] = joined(8, (0..4).map(|i| (m[from + i].word() as i32).clamp(-128, 127) as u32))
+            m[to] =
+                join_parts(8, (0..4).map(|i| (m[from + i].word() as i32).clamp(-128, 127) as u32))
         }
-        Packing::PackClampU => m[to] = joined(8, (0..4).map(|i| m[from + i].word().min(255))),
-        Packing::Unpack4Snorm8 => (0..4).for_each(|i| m[to + i] = ratio(signed(word, 8, i), 127.0)),
-        Packing::Unpack4Unorm8 => {
-            (0..4).for_each(|i| m[to + i] = ratio(f64::from(part(word, 8, i)), 255.0))
+        Packing::PackClampU => m[to] = join_parts(8, (0..4).map(|i| m[from + i].word().min(255))),
+        Packing::Unpack4Snorm8 => {
+            (0..4).for_each(|i| m[to + i] = normalised_value(signed_part(word, 8, i), 127.0))
         }
+        Packing::Unpack4Unorm8 => (0..4).for_each(|i| {
+            m[to + i] = normalised_value(f64::from(unsigned_part(word, 8, i)), 255.0)
+        }),
         Packing::Unpack2Snorm16 => {
-            (0..2).for_each(|i| m[to + i] = ratio(signed(word, 16, i), 32767.0))
+            (0..2).for_each(|i| m[to + i] = normalised_value(signed_part(word, 16, i), 32767.0))
         }
-        Packing::Unpack2Unorm16 => {
-            (0..2).for_each(|i| m[to + i] = ratio(f64::from(part(word, 16, i)), 65535.0))
-        }
+        Packing::Unpack2Unorm16 => (0..2).for_each(|i| {
+            m[to + i] = normalised_value(f64::from(unsigned_part(word, 16, i)), 65535.0)
+        }),
         Packing::Unpack2Half => {
-            (0..2).for_each(|i| m[to + i] = N::from_f64(half_to(part(word, 16, i) as u16)))
+            (0..2).for_each(|i| m[to + i] = N::from_f64(half_to(unsigned_part(word, 16, i) as u16)))
         }
         Packing::Unpack4S => {
-            (0..4).for_each(|i| m[to + i] = N::from_word(signed(word, 8, i) as i32 as u32))
+            (0..4).for_each(|i| m[to + i] = N::from_word(signed_part(word, 8, i) as i32 as u32))
         }
-        Packing::Unpack4U => (0..4).for_each(|i| m[to + i] = N::from_word(part(word, 8, i))),
+        Packing::Unpack4U => {
+            (0..4).for_each(|i| m[to + i] = N::from_word(unsigned_part(word, 8, i)))
+        }
     }
 }
 
-fn joined<N: Number>(width: u32, parts: impl Iterator<Item = u32>) -> N {
+fn join_parts<N: Number>(width: u32, parts: impl Iterator<Item = u32>) -> N {
     let mask = (1 << width) - 1;
     N::from_word(
         parts
@@ -57,17 +64,17 @@ fn joined<N: Number>(width: u32, parts: impl Iterator<Item = u32>) -> N {
     )
 }
 
-fn part(word: u32, width: u32, index: usize) -> u32 {
+fn unsigned_part(word: u32, width: u32, index: usize) -> u32 {
     word >> (width * index as u32) & ((1 << width) - 1)
 }
 
-fn signed(word: u32, width: u32, index: usize) -> f64 {
-    f64::from((part(word, width, index) << (32 - width)) as i32 >> (32 - width))
+fn signed_part(word: u32, width: u32, index: usize) -> f64 {
+    f64::from((unsigned_part(word, width, index) << (32 - width)) as i32 >> (32 - width))
 }
 
 /// `floor(0.5 + scale * clamp(x, low, 1))`. There is doubt where the error reaches the next
 /// integer.
-fn norm<N: Number>(x: N, low: f64, scale: f64, doubt: &mut bool) -> u32 {
+fn normalised_word<N: Number>(x: N, low: f64, scale: f64, doubt: &mut bool) -> u32 {
     let clamped = x.value().clamp(low, 1.0);
     // The product and the sum are rounded, unless the exact values are f32.
     let exact = |value: f64| f64::from(value as f32) == value;
@@ -83,7 +90,7 @@ fn norm<N: Number>(x: N, low: f64, scale: f64, doubt: &mut bool) -> u32 {
 }
 
 /// One component of a normalised format, with an error of 3 ULP.
-fn ratio<N: Number>(value: f64, scale: f64) -> N {
+fn normalised_value<N: Number>(value: f64, scale: f64) -> N {
     let exact = (value / scale).max(-1.0);
     N::with_error(
         exact,

@@ -5,7 +5,7 @@ use super::super::error::{Error, Kind};
 use super::super::number::Number;
 use super::super::program::FunctionId;
 use super::lane::{self, Env, Lane, Stop};
-use super::{Machine, begin, callable, outcome, place, texture};
+use super::{Machine, begin_lane, callable_function, place_arguments, result_slots, texture};
 
 impl<N: Number> Machine<'_, N> {
     /// Runs a function on the four fragments of a quad, in the order (0, 0), (1, 0), (0, 1),
@@ -22,10 +22,10 @@ impl<N: Number> Machine<'_, N> {
         lanes.resize_with(4, || self.lane.clone());
         let mut entry = None;
         for (lane, arguments) in lanes.iter_mut().zip(arguments) {
-            let function = callable(program, id, arguments.len())?;
+            let function = callable_function(program, id, arguments.len())?;
             self.check_buffers(function)?;
-            begin(program, lane);
-            place(lane, function, arguments);
+            begin_lane(program, lane);
+            place_arguments(lane, function, arguments);
             (lane.pc, lane.trips, lane.killed) = (function.entry, 0, false);
             lane.steps = 0;
             lane.calls.clear();
@@ -36,7 +36,7 @@ impl<N: Number> Machine<'_, N> {
         let results = std::array::from_fn(|index| {
             entry
                 .zip(lanes.get(index))
-                .map_or(Vec::new(), |(function, lane)| outcome(lane, function).to_vec())
+                .map_or(Vec::new(), |(function, lane)| result_slots(lane, function).to_vec())
         });
         self.quad = lanes;
         outcomes.map(|()| results)
@@ -58,21 +58,24 @@ impl<N: Number> Machine<'_, N> {
         loop {
             let mut waiting = Vec::new();
             for index in (0..4).filter(|index| running[*index]).collect::<Vec<_>>() {
-                match lane::run(env, &mut lanes[index], &mut self.watch)? {
+                match lane::run_lane(env, &mut lanes[index], &mut self.watch)? {
                     Stop::Done => running[index] = false,
                     Stop::Quad => waiting.push(index),
                 }
             }
             // The lanes that are furthest behind go first, since the others may wait at a place
             // that those still reach.
-            let Some(&first) =
-                waiting.iter().min_by(|a, b| position(&lanes[**a]).cmp(position(&lanes[**b])))
+            let Some(&first) = waiting
+                .iter()
+                .min_by(|a, b| waiting_position(&lanes[**a]).cmp(waiting_position(&lanes[**b])))
             else {
                 return Ok(());
             };
             let group: Vec<usize> = waiting
                 .into_iter()
-                .filter(|index| position(&lanes[*index]).eq(position(&lanes[first])))
+                .filter(|index| {
+                    waiting_position(&lanes[*index]).eq(waiting_position(&lanes[first]))
+                })
                 .collect();
             let at = lanes[first].pc;
             if group.len() < 4 {
@@ -85,7 +88,7 @@ impl<N: Number> Machine<'_, N> {
                     }
                 }
                 Instruction::Image { access } => {
-                    texture::quad(env, access, lanes, &group, &mut self.watch)?
+                    texture::run_quad(env, access, lanes, &group, &mut self.watch)?
                 }
                 _ => {}
             }
@@ -95,12 +98,12 @@ impl<N: Number> Machine<'_, N> {
 }
 
 /// Where a lane waits: the calls that it is in, and the instruction.
-fn position<N>(lane: &Lane<N>) -> impl Iterator<Item = u32> + '_ {
+fn waiting_position<N>(lane: &Lane<N>) -> impl Iterator<Item = u32> + '_ {
     lane.calls.iter().copied().chain([lane.pc])
 }
 
 /// The two lanes whose difference is the derivative for a lane.
-pub(super) fn pair(lane: usize, axis: Axis, coarse: bool) -> (usize, usize) {
+pub(super) fn derivative_lanes(lane: usize, axis: Axis, coarse: bool) -> (usize, usize) {
     let lane = if coarse { 0 } else { lane };
     match axis {
         Axis::Y => (lane & 1, lane | 2),
@@ -121,7 +124,7 @@ fn derivative<N: Number>(
     let mut doubt = false;
     for &index in group {
         let mut along = |axis| {
-            let (low, high) = pair(index, axis, coarse);
+            let (low, high) = derivative_lanes(index, axis, coarse);
             match (values[low], values[high]) {
                 (Some(low), Some(high)) => N::binary(Binary::Subtract, high, low, &mut doubt),
                 _ => N::default(),

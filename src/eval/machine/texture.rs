@@ -4,9 +4,9 @@ use super::super::code::{Access, Ask, Axis, Level};
 use super::super::error::{Error, Kind};
 use super::super::number::Number;
 use super::super::resources::{Filter, Sampler, Shape, Texture};
-use super::filter::{Footprint, Point, combine, gathered, project};
+use super::filter::{Footprint, Point, combine, gathered_component, project};
 use super::lane::{Env, Lane};
-use super::quad::pair;
+use super::quad::derivative_lanes;
 use super::watch::Watch;
 use crate::diagnostic::codes;
 
@@ -20,7 +20,7 @@ type Gradient = [[f64; 3]; 2];
 type Notes<'w> = (u32, &'w mut Watch);
 
 /// Runs an access whose level depends on the neighbours, for the lanes that reached it.
-pub(super) fn quad<N: Number>(
+pub(super) fn run_quad<N: Number>(
     env: Env,
     index: u32,
     lanes: &mut [Lane<N>],
@@ -31,42 +31,42 @@ pub(super) fn quad<N: Number>(
     let coordinates: [Option<[f64; 3]>; 4] = std::array::from_fn(|lane| {
         group
             .contains(&lane)
-            .then(|| values(&lanes[lane].memory, access.coordinate, access.dimensions))
+            .then(|| values_at(&lanes[lane].memory, access.coordinate, access.dimensions))
     });
     for &lane in group {
         let gradient = [Axis::X, Axis::Y].map(|axis| {
-            let (low, high) = pair(lane, axis, false);
+            let (low, high) = derivative_lanes(lane, axis, false);
             coordinates[low]
                 .zip(coordinates[high])
                 .map_or([0.0; 3], |(low, high)| std::array::from_fn(|i| high[i] - low[i]))
         });
         let pc = lanes[lane].pc;
-        apply(env, access, &mut lanes[lane].memory, Some(gradient), (pc, watch))
+        apply_access(env, access, &mut lanes[lane].memory, Some(gradient), (pc, watch))
             .map_err(|error| error.or_at(env.span(pc)))?;
     }
     Ok(())
 }
 
 /// Runs an access of one lane.
-pub(super) fn single<N: Number>(
+pub(super) fn run_single<N: Number>(
     env: Env,
     index: u32,
     memory: &mut [N],
     pc: u32,
     watch: &mut Watch,
 ) -> Result<(), Error> {
-    apply(env, &env.program.images[index as usize], memory, None, (pc, watch))
+    apply_access(env, &env.program.images[index as usize], memory, None, (pc, watch))
         .map_err(|error| error.or_at(env.span(pc)))
 }
 
-fn apply<N: Number>(
+fn apply_access<N: Number>(
     env: Env,
     access: &Access,
     m: &mut [N],
     gradient: Option<Gradient>,
     notes: Notes,
 ) -> Result<(), Error> {
-    let texture = texture(env, m[access.image as usize].word())?;
+    let texture = bound_texture(env, m[access.image as usize].word())?;
     let size = |level: Option<u32>| {
         let level =
             level.map_or(0, |slot| m[slot as usize].word() as usize).min(texture.levels.len() - 1);
@@ -74,38 +74,38 @@ fn apply<N: Number>(
         [level.width, level.height, level.layers, 0]
     };
     match access.ask {
-        Ask::Sample { .. } => return sample(env, access, texture, m, gradient, notes),
-        Ask::Load { level } => load(access, texture, m, level, notes),
+        Ask::Sample { .. } => return sample_texture(env, access, texture, m, gradient, notes),
+        Ask::Load { level } => load_texel(access, texture, m, level, notes),
         Ask::Size { level } => {
             let size = size(level);
-            put(m, access, size.map(|size| (f64::from(size), 0.0)));
+            store_result(m, access, size.map(|size| (f64::from(size), 0.0)));
         }
-        Ask::Levels => put(m, access, [(texture.levels.len() as f64, 0.0); 4]),
-        Ask::Layers => put(
+        Ask::Levels => store_result(m, access, [(texture.levels.len() as f64, 0.0); 4]),
+        Ask::Layers => store_result(
             m,
             access,
             [(f64::from(size(None)[2] / if texture.shape == Shape::Cube { 6 } else { 1 }), 0.0); 4],
         ),
-        Ask::Samples => put(m, access, [(1.0, 0.0); 4]),
+        Ask::Samples => store_result(m, access, [(1.0, 0.0); 4]),
     }
     Ok(())
 }
 
-fn texture<'e>(env: Env<'e>, global: u32) -> Result<&'e Texture, Error> {
+fn bound_texture<'e>(env: Env<'e>, global: u32) -> Result<&'e Texture, Error> {
     let variable = env.program.globals.get(global as usize);
     let bound = variable.and_then(|variable| env.resources.textures.get(&variable.binding?));
     bound
         .filter(|texture| texture.is_complete())
-        .ok_or_else(|| unbound(variable.map(|variable| &*variable.name)))
+        .ok_or_else(|| unbound_resource(variable.map(|variable| &*variable.name)))
 }
 
-fn sampler<'e>(env: Env<'e>, global: u32) -> Result<&'e Sampler, Error> {
+fn bound_sampler<'e>(env: Env<'e>, global: u32) -> Result<&'e Sampler, Error> {
     let variable = env.program.globals.get(global as usize);
     let bound = variable.and_then(|variable| env.resources.samplers.get(&variable.binding?));
-    bound.ok_or_else(|| unbound(variable.map(|variable| &*variable.name)))
+    bound.ok_or_else(|| unbound_resource(variable.map(|variable| &*variable.name)))
 }
 
-fn unbound(name: Option<&str>) -> Error {
+fn unbound_resource(name: Option<&str>) -> Error {
     Error::new(
         codes::EVAL_UNBOUND,
         format!("no complete texture or sampler is given for `{}`", name.unwrap_or("?")),
@@ -113,7 +113,7 @@ fn unbound(name: Option<&str>) -> Error {
 }
 
 /// Reads one texel. Outside the texture it is zero, which is reported.
-fn load<N: Number>(
+fn load_texel<N: Number>(
     access: &Access,
     texture: &Texture,
     m: &mut [N],
@@ -132,10 +132,10 @@ fn load<N: Number>(
     if texel.is_none() {
         watch.note(Kind::OutOfBounds, pc);
     }
-    put(m, access, texel.unwrap_or_default().map(|value| (value, 0.0)));
+    store_result(m, access, texel.unwrap_or_default().map(|value| (value, 0.0)));
 }
 
-fn sample<N: Number>(
+fn sample_texture<N: Number>(
     env: Env,
     access: &Access,
     texture: &Texture,
@@ -147,45 +147,52 @@ fn sample<N: Number>(
     else {
         return Ok(());
     };
-    let sampler = sampler(env, m[slot as usize].word())?;
+    let sampler = bound_sampler(env, m[slot as usize].word())?;
     let sampler =
         if clamp_to_edge { Sampler { address: Default::default(), ..*sampler } } else { *sampler };
-    let coordinate = values(m, access.coordinate, access.dimensions);
+    let coordinate = values_at(m, access.coordinate, access.dimensions);
     let footprint = Footprint {
         texture,
         sampler: &sampler,
         level: 0,
         filter: Filter::Linear,
-        point: point(access, texture, m, coordinate),
-        shift: shift(access, m, offset),
+        point: sample_point(access, texture, m, coordinate),
+        shift: texel_offset(access, m, offset),
         reference: reference.map(|slot| m[slot as usize]),
     };
     let mut doubt = false;
     let result = if let Some(component) = gather {
-        gathered(&footprint, usize::from(component), &mut doubt)
+        gathered_component(&footprint, usize::from(component), &mut doubt)
     } else {
         let slopes = match level {
-            Level::Gradient(x, y) => Some([x, y].map(|slot| values(m, slot, access.dimensions))),
+            Level::Gradient(x, y) => Some([x, y].map(|slot| values_at(m, slot, access.dimensions))),
             _ => gradient,
         };
         let level = match level {
             Level::Zero => 0.0,
             _ if clamp_to_edge => 0.0,
             Level::Exact(slot) => m[slot as usize].value(),
-            Level::Bias(slot) => detail(texture, coordinate, slopes) + m[slot as usize].value(),
-            Level::Auto | Level::Gradient(..) => detail(texture, coordinate, slopes),
+            Level::Bias(slot) => {
+                detail_level(texture, coordinate, slopes) + m[slot as usize].value()
+            }
+            Level::Auto | Level::Gradient(..) => detail_level(texture, coordinate, slopes),
         };
         between_levels(&footprint, level, &mut doubt)
     };
     if doubt {
         notes.1.note(Kind::Ambiguous, notes.0);
     }
-    put(m, access, result);
+    store_result(m, access, result);
     Ok(())
 }
 
 /// The place that the coordinate and the layer of an access name.
-fn point<N: Number>(access: &Access, texture: &Texture, m: &[N], coordinate: [f64; 3]) -> Point {
+fn sample_point<N: Number>(
+    access: &Access,
+    texture: &Texture,
+    m: &[N],
+    coordinate: [f64; 3],
+) -> Point {
     let errors: [f64; 3] = std::array::from_fn(|i| {
         if i < usize::from(access.dimensions) {
             m[access.coordinate as usize + i].error()
@@ -198,7 +205,7 @@ fn point<N: Number>(access: &Access, texture: &Texture, m: &[N], coordinate: [f6
 }
 
 /// The offset of an access, in texels.
-fn shift<N: Number>(access: &Access, m: &[N], offset: Option<u32>) -> [i64; 3] {
+fn texel_offset<N: Number>(access: &Access, m: &[N], offset: Option<u32>) -> [i64; 3] {
     std::array::from_fn(|i| match offset {
         Some(slot) if i < usize::from(access.dimensions) => {
             i64::from(m[slot as usize + i].word() as i32)
@@ -208,7 +215,7 @@ fn shift<N: Number>(access: &Access, m: &[N], offset: Option<u32>) -> [i64; 3] {
 }
 
 /// The level of detail: log2 of the longer step in texels; 0 without neighbours.
-fn detail(texture: &Texture, coordinate: [f64; 3], slopes: Option<Gradient>) -> f64 {
+fn detail_level(texture: &Texture, coordinate: [f64; 3], slopes: Option<Gradient>) -> f64 {
     let Some(slopes) = slopes else { return 0.0 };
     let first = &texture.levels[0];
     let depth = if texture.shape == Shape::D3 { first.layers } else { 0 };
@@ -264,13 +271,13 @@ fn between_levels<N: Number>(
     })
 }
 
-fn values<N: Number>(m: &[N], slot: u32, dimensions: u8) -> [f64; 3] {
+fn values_at<N: Number>(m: &[N], slot: u32, dimensions: u8) -> [f64; 3] {
     std::array::from_fn(|i| {
         if i < usize::from(dimensions) { m[slot as usize + i].value() } else { 0.0 }
     })
 }
 
-fn put<N: Number>(m: &mut [N], access: &Access, result: [(f64, f64); 4]) {
+fn store_result<N: Number>(m: &mut [N], access: &Access, result: [(f64, f64); 4]) {
     for (i, (value, error)) in result.into_iter().take(usize::from(access.n)).enumerate() {
         m[access.to as usize + i] = if access.words {
             N::from_word(value as i64 as u32)

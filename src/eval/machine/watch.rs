@@ -66,7 +66,7 @@ impl Watch {
                 self.judge(None, memory, &[(a, n), (b, n), (c, n)], (to, n), pc)
             }
             Instruction::Convert { op, n, a, .. } => {
-                let wild = (0..u32::from(n)).any(|i| unfit(op, memory[a.at(i)].value()));
+                let wild = (0..u32::from(n)).any(|i| does_not_fit(op, memory[a.at(i)].value()));
                 self.note_if(wild, Kind::Conversion, pc);
             }
             Instruction::Word2 {
@@ -147,7 +147,7 @@ fn outside2(op: Binary, a: f64, b: f64) -> Option<Kind> {
 }
 
 /// Whether the number, truncated to an integer, does not fit the integer type.
-fn unfit(op: Convert, x: f64) -> bool {
+fn does_not_fit(op: Convert, x: f64) -> bool {
     let whole = x.trunc();
     match op {
         Convert::SFromFloat => !(-2147483648.0..=2147483647.0).contains(&whole),

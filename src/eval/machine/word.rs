@@ -58,10 +58,10 @@ pub(super) fn word2(op: Word2, a: u32, b: u32) -> u32 {
         Word2::MinU => a.min(b),
         Word2::MaxS => signed_a.max(signed_b) as u32,
         Word2::MaxU => a.max(b),
-        Word2::DotBytesS => {
-            bytes(a, b).map(|(a, b)| i32::from(a as i8) * i32::from(b as i8)).sum::<i32>() as u32
-        }
-        Word2::DotBytesU => bytes(a, b).map(|(a, b)| u32::from(a) * u32::from(b)).sum(),
+        Word2::DotBytesS => byte_pairs(a, b)
+            .map(|(a, b)| i32::from(a as i8) * i32::from(b as i8))
+            .sum::<i32>() as u32,
+        Word2::DotBytesU => byte_pairs(a, b).map(|(a, b)| u32::from(a) * u32::from(b)).sum(),
     }
 }
 
@@ -87,6 +87,6 @@ pub(super) fn insert_bits([word, new, offset, count]: [u32; 4]) -> u32 {
     word & !mask | new << offset & mask
 }
 
-fn bytes(a: u32, b: u32) -> impl Iterator<Item = (u8, u8)> {
+fn byte_pairs(a: u32, b: u32) -> impl Iterator<Item = (u8, u8)> {
     a.to_le_bytes().into_iter().zip(b.to_le_bytes())
 }

@@ -10,7 +10,7 @@ pub const EXECUTOR: Entry = Entry {
     before_threads: None,
     samples: Some(DEVICE_SAMPLES),
     open: || {
-        super::opened(Wanted {
+        super::open_gpu(Wanted {
             backend: wgpu::Backends::GL,
             named: Named::Without(swiftshader::NAME),
             shaders: Shaders::Translated,

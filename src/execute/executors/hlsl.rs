@@ -22,7 +22,7 @@ fn open() -> Result<Box<dyn Session>, Unavailable> {
         return Err(Unavailable { reason: format!("`{}` is not installed", tool.program) });
     }
     swiftshader::installed()?;
-    super::opened(Wanted {
+    super::open_gpu(Wanted {
         backend: wgpu::Backends::VULKAN,
         named: Named::With(swiftshader::NAME),
         shaders: Shaders::Emitted(Target::HLSL),

@@ -11,7 +11,7 @@ pub const EXECUTOR: Entry = Entry {
     before_threads: None,
     samples: None,
     open: || {
-        super::opened(Wanted {
+        super::open_gpu(Wanted {
             backend: wgpu::Backends::VULKAN,
             named: Named::Without(swiftshader::NAME),
             shaders: Shaders::Emitted(Target::SPIRV),
@@ -22,7 +22,7 @@ pub const EXECUTOR: Entry = Entry {
         // lavapipe crashes where a stage has four uniform blocks.
         open: || {
             swiftshader::installed()?;
-            super::opened(Wanted {
+            super::open_gpu(Wanted {
                 backend: wgpu::Backends::VULKAN,
                 named: Named::With(swiftshader::NAME),
                 shaders: Shaders::Emitted(Target::SPIRV),

@@ -22,7 +22,7 @@ pub const EXECUTOR: Entry = Entry {
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {
     installed()?;
-    super::opened(Wanted {
+    super::open_gpu(Wanted {
         backend: wgpu::Backends::VULKAN,
         named: Named::With(NAME),
         shaders: Shaders::Translated,
@@ -32,7 +32,7 @@ fn open() -> Result<Box<dyn Session>, Unavailable> {
 /// Whether the driver is installed. If so, it is announced to the loader.
 pub fn installed() -> Result<(), Unavailable> {
     announce();
-    manifest().map(|_| ()).ok_or(Unavailable { reason: format!("there is no {NAME} driver") })
+    driver_manifest().map(|_| ()).ok_or(Unavailable { reason: format!("there is no {NAME} driver") })
 }
 
 /// Part of the adapter's name.
@@ -52,7 +52,7 @@ const MANIFESTS: &[&str] = &[
 /// started: it is done once, and opening the executor does it too.
 pub fn announce() {
     static ONCE: Once = Once::new();
-    let Some(manifest) = manifest() else { return };
+    let Some(manifest) = driver_manifest() else { return };
     ONCE.call_once(|| {
         let known = std::env::var("VK_ADD_DRIVER_FILES").unwrap_or_default();
         let list =
@@ -64,6 +64,6 @@ pub fn announce() {
 }
 
 /// The path of the driver's manifest, if it is installed.
-fn manifest() -> Option<&'static str> {
+fn driver_manifest() -> Option<&'static str> {
     MANIFESTS.iter().copied().find(|path| Path::new(path).is_file())
 }

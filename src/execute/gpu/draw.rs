@@ -11,7 +11,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, StorageAccess};
 use wgpu::util::DeviceExt;
 
-use super::{Gpu, failed};
+use super::{Gpu, gpu_failed};
 use crate::diagnostic::Diagnostic;
 use crate::execute::frame::{
     Attribute, Drawing, EntryPoint, Frame, Mesh, Place, Side, State, VertexFormat,
@@ -37,9 +37,10 @@ impl Gpu {
     pub(super) fn frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
         let used: Vec<_> = std::iter::once(drawing.vertex)
             .chain(drawing.fragment)
-            .map(used)
+            .map(used_bindings)
             .collect::<Result<_, _>>()?;
-        let as_storage = if self.is_lavapipe() { spared(drawing, &used) } else { BTreeSet::new() };
+        let as_storage =
+            if self.is_lavapipe() { spared_blocks(drawing, &used) } else { BTreeSet::new() };
         let all: BTreeSet<Place> = used.into_iter().flatten().collect();
         let frames = self.guarded(|gpu| gpu.submit_frames(drawing, all, &as_storage))??;
         let detour = (!as_storage.is_empty()).then_some(LAVAPIPE_DETOUR);
@@ -102,7 +103,7 @@ impl Gpu {
         let buffers = if attributes.is_empty() { Vec::new() } else { vec![Some(vertices)] };
         let targets: Vec<_> = formats
             .iter()
-            .map(|format| Some(wgpu::ColorTargetState::from(target::format(*format))))
+            .map(|format| Some(wgpu::ColorTargetState::from(target::texture_format(*format))))
             .collect();
         let compilation_options = wgpu::PipelineCompilationOptions::default();
         self.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
@@ -114,7 +115,7 @@ impl Gpu {
                 compilation_options: compilation_options.clone(),
                 buffers: &buffers,
             },
-            primitive: primitive(drawing.state),
+            primitive: primitive_state(drawing.state),
             depth_stencil: drawing.state.depth_test.then(|| depth_state(drawing.state)),
             multisample: Default::default(),
             fragment: stages.fragment.map(|(module, entry)| wgpu::FragmentState {
@@ -137,7 +138,7 @@ impl Gpu {
     }
 }
 
-fn primitive(state: State) -> wgpu::PrimitiveState {
+fn primitive_state(state: State) -> wgpu::PrimitiveState {
     wgpu::PrimitiveState {
         front_face: if state.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
         cull_mode: state.cull.map(|side| match side {
@@ -211,7 +212,7 @@ struct Uploaded {
 impl Uploaded {
     fn new(gpu: &Gpu, mesh: &Mesh) -> Self {
         let buffer = |numbers: &[u32], usage| {
-            (!numbers.is_empty()).then(|| gpu.buffer(&words(numbers), usage))
+            (!numbers.is_empty()).then(|| gpu.buffer(&bytes_of_words(numbers), usage))
         };
         let count =
             if mesh.indices.is_empty() { mesh.vertices() } else { mesh.indices.len() as u32 };
@@ -238,7 +239,7 @@ impl Uploaded {
 
 /// The uniform blocks to bind as storage blocks, so that no stage has too many: as few of the plain
 /// ones as are enough, or all blocks.
-fn spared(drawing: &Drawing<'_>, stages: &[BTreeSet<Place>]) -> BTreeSet<Place> {
+fn spared_blocks(drawing: &Drawing<'_>, stages: &[BTreeSet<Place>]) -> BTreeSet<Place> {
     let blocks: Vec<BTreeSet<Place>> = stages
         .iter()
         .map(|used| used.iter().copied().filter(|place| drawing.is_buffer(*place)).collect())
@@ -269,17 +270,17 @@ fn storage_blocks(module: &naga::Module, places: &BTreeSet<Place>) -> naga::Modu
     module
 }
 
-fn words(words: &[u32]) -> Vec<u8> {
+fn bytes_of_words(words: &[u32]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
 /// The bindings that the entry point uses, which are those of the derived layout.
-fn used(stage: EntryPoint<'_>) -> Result<BTreeSet<Place>, Diagnostic> {
+fn used_bindings(stage: EntryPoint<'_>) -> Result<BTreeSet<Place>, Diagnostic> {
     let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(stage.module);
-    let info = info.map_err(|error| failed(format!("the program is not valid: {error}")))?;
+    let info = info.map_err(|error| gpu_failed(format!("the program is not valid: {error}")))?;
     let index = stage.module.entry_points.iter().position(|point| point.name == stage.entry);
-    let index =
-        index.ok_or_else(|| failed(format!("the program has no entry point `{}`", stage.entry)))?;
+    let index = index
+        .ok_or_else(|| gpu_failed(format!("the program has no entry point `{}`", stage.entry)))?;
     let variables = stage
         .module
         .global_variables

@@ -17,7 +17,11 @@ const DEPTH: &str = "
 }";
 
 /// Uploads a texture; returns a view of it.
-pub fn upload(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::TextureView {
+pub fn upload_texture(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    texture: &Texture,
+) -> wgpu::TextureView {
     upload_levels(device, queue, texture, &[])
 }
 
@@ -32,9 +36,9 @@ pub fn upload_levels(
     let dimension =
         if cube { wgpu::TextureViewDimension::Cube } else { wgpu::TextureViewDimension::D2 };
     let created = if texture.kind.is_depth() {
-        depth(device, queue, texture)
+        depth_texture(device, queue, texture)
     } else {
-        color(device, queue, texture, smaller)
+        color_texture(device, queue, texture, smaller)
     };
     created.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(dimension),
@@ -43,7 +47,7 @@ pub fn upload_levels(
 }
 
 /// The sampler of a fixture.
-pub fn sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler {
+pub fn create_sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler {
     let address = match sampler.address {
         Address::Clamp => wgpu::AddressMode::ClampToEdge,
         Address::Repeat => wgpu::AddressMode::Repeat,
@@ -75,7 +79,7 @@ pub fn sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler {
 
 /// A colour texture with all its levels. It has 32 bits a channel, or 16 where the device cannot
 /// filter 32 and 16 bits represent every value exactly.
-fn color(
+fn color_texture(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
     texture: &Texture,
@@ -87,8 +91,14 @@ fn color(
         && levels().all(|level| level.texels.iter().all(|texel| is_half(*texel)));
     let format =
         if half { wgpu::TextureFormat::Rgba16Float } else { wgpu::TextureFormat::Rgba32Float };
-    let created =
-        create(device, texture, texture.kind.layers(), 1 + smaller.len() as u32, format, usage);
+    let created = create_texture(
+        device,
+        texture,
+        texture.kind.layers(),
+        1 + smaller.len() as u32,
+        format,
+        usage,
+    );
     for (index, level) in levels().enumerate() {
         let bytes: Vec<u8> = match half {
             true => level
@@ -98,7 +108,7 @@ fn color(
                 .collect(),
             false => level.texels.iter().flat_map(|texel| texel.to_le_bytes()).collect(),
         };
-        write(queue, &created, level, index as u32, level.kind.layers(), &bytes);
+        write_level(queue, &created, level, index as u32, level.kind.layers(), &bytes);
     }
     created
 }
@@ -107,10 +117,16 @@ fn is_half(texel: f32) -> bool {
     half_to(half_from(f64::from(texel))) == f64::from(texel)
 }
 
-fn depth(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::Texture {
+fn depth_texture(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT;
-    let created =
-        create(device, texture, texture.kind.layers(), 1, wgpu::TextureFormat::Depth32Float, usage);
+    let created = create_texture(
+        device,
+        texture,
+        texture.kind.layers(),
+        1,
+        wgpu::TextureFormat::Depth32Float,
+        usage,
+    );
     let source = wgpu::ShaderSource::Wgsl(DEPTH.into());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
     let ty = wgpu::BindingType::Texture {
@@ -128,7 +144,7 @@ fn depth(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu:
         label: None,
         entries: &[entry],
     });
-    let drawing = pipeline::pipeline(
+    let drawing = pipeline::draw_pipeline(
         device,
         &[&layout],
         &module,
@@ -143,18 +159,18 @@ fn depth(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu:
 }
 
 /// The bits of a layer's depths, as a texture of words.
-fn staged(
+fn staged_depths(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
     texture: &Texture,
     layer: u32,
 ) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-    let staged = create(device, texture, 1, 1, wgpu::TextureFormat::R32Uint, usage);
+    let staged = create_texture(device, texture, 1, 1, wgpu::TextureFormat::R32Uint, usage);
     let size = (texture.width * texture.height) as usize;
     let texels = texture.texels.iter().skip(layer as usize * size).take(size);
     let bytes: Vec<u8> = texels.flat_map(|value| value.to_le_bytes()).collect();
-    write(queue, &staged, texture, 0, 1, &bytes);
+    write_level(queue, &staged, texture, 0, 1, &bytes);
     staged
 }
 
@@ -167,7 +183,7 @@ fn draw_layer(
     layout: &wgpu::BindGroupLayout,
     drawing: &wgpu::RenderPipeline,
 ) {
-    let stored = staged(device, queue, texture, layer).create_view(&Default::default());
+    let stored = staged_depths(device, queue, texture, layer).create_view(&Default::default());
     let entry =
         wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&stored) };
     let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -201,7 +217,7 @@ fn draw_layer(
     queue.submit([encoder.finish()]);
 }
 
-fn create(
+fn create_texture(
     device: &wgpu::Device,
     texture: &Texture,
     layers: u32,
@@ -226,7 +242,7 @@ fn create(
 }
 
 /// Copies bytes into one level of the texture; `texture` has the size of that level.
-fn write(
+fn write_level(
     queue: &wgpu::Queue,
     target: &wgpu::Texture,
     texture: &Texture,

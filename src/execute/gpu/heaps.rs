@@ -25,7 +25,7 @@ const FIRST: u32 = 5;
 const STEP: u32 = 7;
 
 /// The name of each heap and of each index buffer in the output, with its binding.
-pub fn bindings(heaps: &[SamplerHeap]) -> impl Iterator<Item = (String, u32)> {
+pub fn heap_bindings(heaps: &[SamplerHeap]) -> impl Iterator<Item = (String, u32)> {
     let samplers = heaps.iter().flat_map(|heap| &heap.samplers);
     let buffers = samplers.map(|sampler| {
         (format!("nagaGroup{}SamplerIndexArray", sampler.group), HEAPS + sampler.group)
@@ -35,7 +35,7 @@ pub fn bindings(heaps: &[SamplerHeap]) -> impl Iterator<Item = (String, u32)> {
 
 /// The bind group with the heaps of all stages, and its layout. `sampler` gives the sampler at a
 /// group and a binding.
-pub fn bind(
+pub fn bind_heaps(
     device: &wgpu::Device,
     heaps: &[SamplerHeap],
     sampler: &dyn Fn([u32; 2]) -> Option<Sampler>,
@@ -44,14 +44,14 @@ pub fn bind(
         label: None,
         entries: &layout_entries(heaps),
     });
-    let places = places(heaps);
+    let places = sampler_places(heaps);
     let arrays = [
-        array(device, heaps, false, &places, sampler)?,
-        array(device, heaps, true, &places, sampler)?,
+        heap_samplers(device, heaps, false, &places, sampler)?,
+        heap_samplers(device, heaps, true, &places, sampler)?,
     ];
     let arrays = arrays.each_ref().map(|array| array.iter().collect::<Vec<_>>());
     let buffers: Vec<_> =
-        numbers(heaps, &places).iter().map(|numbers| buffer(device, numbers)).collect();
+        index_numbers(heaps, &places).iter().map(|numbers| index_buffer(device, numbers)).collect();
     let of_arrays = arrays.iter().map(|array| wgpu::BindingResource::SamplerArray(array));
     let of_buffers = buffers.iter().map(wgpu::Buffer::as_entire_binding);
     let entries: Vec<_> = (0..)
@@ -69,14 +69,15 @@ pub fn bind(
 /// Bindings without gaps, as wgpu numbers them: both heaps, and an index buffer for each group up
 /// to the last.
 fn layout_entries(heaps: &[SamplerHeap]) -> Vec<wgpu::BindGroupLayoutEntry> {
-    let array = |kind| (wgpu::BindingType::Sampler(kind), NonZeroU32::new(size(heaps)));
+    let array = |kind| (wgpu::BindingType::Sampler(kind), NonZeroU32::new(heap_size(heaps)));
     let numbers = wgpu::BindingType::Buffer {
         ty: wgpu::BufferBindingType::Storage { read_only: true },
         has_dynamic_offset: false,
         min_binding_size: None,
     };
     let kinds = [wgpu::SamplerBindingType::Filtering, wgpu::SamplerBindingType::Comparison];
-    let types = kinds.map(array).into_iter().chain((0..groups(heaps)).map(|_| (numbers, None)));
+    let types =
+        kinds.map(array).into_iter().chain((0..group_count(heaps)).map(|_| (numbers, None)));
     let entry = |(binding, (ty, count))| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
@@ -87,49 +88,52 @@ fn layout_entries(heaps: &[SamplerHeap]) -> Vec<wgpu::BindGroupLayoutEntry> {
 }
 
 /// The samplers of one heap.
-fn array(
+fn heap_samplers(
     device: &wgpu::Device,
     heaps: &[SamplerHeap],
     comparison: bool,
     places: &BTreeMap<[u32; 2], u32>,
     sampler: &dyn Fn([u32; 2]) -> Option<Sampler>,
 ) -> Result<Vec<wgpu::Sampler>, String> {
-    let mut array = vec![fixtures::sampler(device, decoy(comparison)); size(heaps) as usize];
+    let mut array = vec![
+        fixtures::create_sampler(device, decoy_sampler(comparison));
+        heap_size(heaps) as usize
+    ];
     let own = heaps.iter().filter(|heap| heap.comparison == comparison);
     for HeapSampler { group, binding, .. } in own.flat_map(|heap| &heap.samplers) {
         let place = [*group, *binding];
         let settings = sampler(place)
             .ok_or_else(|| format!("no sampler for group {group}, binding {binding}"))?;
-        array[places[&place] as usize] = fixtures::sampler(device, settings);
+        array[places[&place] as usize] = fixtures::create_sampler(device, settings);
     }
     Ok(array)
 }
 
 /// How many elements each heap has.
-fn size(heaps: &[SamplerHeap]) -> u32 {
+fn heap_size(heaps: &[SamplerHeap]) -> u32 {
     heaps.iter().map(|heap| heap.size).max().unwrap_or(1)
 }
 
-fn samplers(heaps: &[SamplerHeap]) -> impl Iterator<Item = &HeapSampler> {
+fn all_samplers(heaps: &[SamplerHeap]) -> impl Iterator<Item = &HeapSampler> {
     heaps.iter().flat_map(|heap| &heap.samplers)
 }
 
 /// How many groups there are, up to the last one that has samplers.
-fn groups(heaps: &[SamplerHeap]) -> u32 {
-    samplers(heaps).map(|sampler| sampler.group + 1).max().unwrap_or(0)
+fn group_count(heaps: &[SamplerHeap]) -> u32 {
+    all_samplers(heaps).map(|sampler| sampler.group + 1).max().unwrap_or(0)
 }
 
 /// The place of each sampler in its heap.
-fn places(heaps: &[SamplerHeap]) -> BTreeMap<[u32; 2], u32> {
+fn sampler_places(heaps: &[SamplerHeap]) -> BTreeMap<[u32; 2], u32> {
     let all: BTreeSet<[u32; 2]> =
-        samplers(heaps).map(|sampler| [sampler.group, sampler.binding]).collect();
+        all_samplers(heaps).map(|sampler| [sampler.group, sampler.binding]).collect();
     all.into_iter().zip((FIRST..).step_by(STEP as usize)).collect()
 }
 
 /// The content of each group's index buffer, which has at least one number.
-fn numbers(heaps: &[SamplerHeap], places: &BTreeMap<[u32; 2], u32>) -> Vec<Vec<u32>> {
-    let mut numbers = vec![vec![0]; groups(heaps) as usize];
-    for sampler in samplers(heaps) {
+fn index_numbers(heaps: &[SamplerHeap], places: &BTreeMap<[u32; 2], u32>) -> Vec<Vec<u32>> {
+    let mut numbers = vec![vec![0]; group_count(heaps) as usize];
+    for sampler in all_samplers(heaps) {
         let own = &mut numbers[sampler.group as usize];
         own.resize(own.len().max(sampler.element as usize + 1), 0);
         own[sampler.element as usize] = places[&[sampler.group, sampler.binding]];
@@ -137,7 +141,7 @@ fn numbers(heaps: &[SamplerHeap], places: &BTreeMap<[u32; 2], u32>) -> Vec<Vec<u
     numbers
 }
 
-fn buffer(device: &wgpu::Device, numbers: &[u32]) -> wgpu::Buffer {
+fn index_buffer(device: &wgpu::Device, numbers: &[u32]) -> wgpu::Buffer {
     device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
         label: None,
         contents: &numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>(),
@@ -146,7 +150,7 @@ fn buffer(device: &wgpu::Device, numbers: &[u32]) -> wgpu::Buffer {
 }
 
 /// A sampler with settings that no case uses.
-fn decoy(comparison: bool) -> Sampler {
+fn decoy_sampler(comparison: bool) -> Sampler {
     let compare = comparison.then_some(Compare::Greater);
     Sampler { compare, linear: false, address: Address::Mirror }
 }

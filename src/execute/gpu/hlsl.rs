@@ -12,6 +12,9 @@ use crate::emit::spirv::{self, HEADER_WORDS, Instruction, instructions, op, stri
 use crate::parse::words::words;
 use crate::tools::{GLSLANG, SPIRV_OPT};
 
+/// Of the extension by which glslangValidator keeps semantics.
+const OP_DECORATE_STRING: u16 = 5632;
+const OP_MEMBER_DECORATE_STRING: u16 = 5633;
 const LOCATION: u32 = 30;
 const BINDING: u32 = 33;
 const DESCRIPTOR_SET: u32 = 34;
@@ -19,7 +22,7 @@ const USER_SEMANTIC: u32 = 5635;
 
 /// What in the text has another meaning to glslangValidator than to a compiler for Direct3D, so
 /// that the text cannot be run this way.
-pub fn lacks(text: &str) -> Option<&'static str> {
+pub fn hlsl_lacks(text: &str) -> Option<&'static str> {
     if is_misplaced(text) {
         return Some(
             "glslangValidator puts what follows a matrix of three rows or an array in a constant \
@@ -51,7 +54,12 @@ fn is_misplaced(text: &str) -> bool {
 ///
 /// # Errors
 /// The message of glslangValidator or spirv-opt, or which of them is not installed.
-pub fn spirv(text: &[u8], stage: Stage, native: &Native, group: u32) -> Result<Vec<u32>, String> {
+pub fn compile_hlsl(
+    text: &[u8],
+    stage: Stage,
+    native: &Native,
+    group: u32,
+) -> Result<Vec<u32>, String> {
     let stage = match stage {
         Stage::Vertex => "vert",
         Stage::Fragment => "frag",
@@ -78,18 +86,18 @@ pub fn spirv(text: &[u8], stage: Stage, native: &Native, group: u32) -> Result<V
     // The static samplers are still variables here, which Vulkan does not allow.
     let legal = SPIRV_OPT
         .pipe(&["--target-env=vulkan1.1", "--legalize-hlsl", "-o", "-", "-"], &compiled)?;
-    bound(&spirv::words(&legal), native, group)
+    bind_words(&spirv::words(&legal), native, group)
 }
 
 /// Writes locations after semantics, and bindings for heaps.
-fn bound(words: &[u32], native: &Native, group: u32) -> Result<Vec<u32>, String> {
-    let places = places(words, native);
-    let locations = locations(words)?;
+fn bind_words(words: &[u32], native: &Native, group: u32) -> Result<Vec<u32>, String> {
+    let places = heap_places(words, native);
+    let locations = semantic_locations(words)?;
     let header = words.get(..HEADER_WORDS).ok_or("glslangValidator wrote no module")?;
     let mut out = header.to_vec();
     for Instruction { op, words } in instructions(words) {
         match (op, words) {
-            (op::DECORATE_STRING | op::MEMBER_DECORATE_STRING, _) => {}
+            (OP_DECORATE_STRING | OP_MEMBER_DECORATE_STRING, _) => {}
             (op::EXTENSION, [_, name @ ..]) if string(name).starts_with("SPV_GOOGLE") => {}
             (op::DECORATE, [head, id, decoration, value]) => {
                 let value = match (*decoration, places.get(id), locations.get(id)) {
@@ -107,8 +115,8 @@ fn bound(words: &[u32], native: &Native, group: u32) -> Result<Vec<u32>, String>
 }
 
 /// The binding of each variable that is a heap or an index buffer, found by its name.
-fn places(words: &[u32], native: &Native) -> BTreeMap<u32, u32> {
-    let by_name: BTreeMap<String, u32> = heaps::bindings(&native.sampler_heaps).collect();
+fn heap_places(words: &[u32], native: &Native) -> BTreeMap<u32, u32> {
+    let by_name: BTreeMap<String, u32> = heaps::heap_bindings(&native.sampler_heaps).collect();
     let mut places = BTreeMap::new();
     let mut variables = Vec::new();
     for Instruction { op, words } in instructions(words) {
@@ -126,10 +134,10 @@ fn places(words: &[u32], native: &Native) -> BTreeMap<u32, u32> {
 }
 
 /// The location of each variable, from the number in its semantic `LOCn`.
-fn locations(words: &[u32]) -> Result<BTreeMap<u32, u32>, String> {
+fn semantic_locations(words: &[u32]) -> Result<BTreeMap<u32, u32>, String> {
     let mut locations = BTreeMap::new();
     for Instruction { op, words } in instructions(words) {
-        if let (op::DECORATE_STRING, [_, id, USER_SEMANTIC, name @ ..]) = (op, words)
+        if let (OP_DECORATE_STRING, [_, id, USER_SEMANTIC, name @ ..]) = (op, words)
             && let Some(number) = string(name).strip_prefix("LOC")
         {
             let number = number.parse().map_err(|_| format!("the semantic LOC{number}"))?;

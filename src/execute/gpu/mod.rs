@@ -10,7 +10,7 @@ mod passthrough;
 mod pipeline;
 
 pub use super::emitted;
-pub use open::{Named, Shaders, Wanted, open};
+pub use open::{Named, Shaders, Wanted, open_gpu};
 pub use opengl::{Api, OpenGl};
 
 use std::collections::HashMap;
@@ -51,7 +51,7 @@ impl Session for Gpu {
     }
 
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
-        batched(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
+        run_batches(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
     }
 
     fn draw_frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
@@ -72,7 +72,7 @@ impl Session for Gpu {
 
 /// Runs as many draws as the inputs need. `draw` is given the words and the number of invocations
 /// of one draw.
-pub fn batched(
+pub fn run_batches(
     kernel: &Kernel,
     inputs: &[u32],
     mut draw: impl FnMut(&[u32], u32) -> Result<Vec<u32>, Diagnostic>,
@@ -103,7 +103,7 @@ impl Gpu {
         let buffer =
             self.guarded(|gpu| gpu.submit(kernel, &input_texels(kernel, inputs, header), rows))??;
         let pixels = self.read(&buffer)?;
-        unpack(kernel, &pixels, header)
+        unpack_results(kernel, &pixels, header)
     }
 
     fn prepare(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
@@ -111,16 +111,16 @@ impl Gpu {
             let emitted = match self.shaders {
                 Shaders::Translated => None,
                 Shaders::Emitted(target) => {
-                    let Emitted { bytes, native } = emitted::emit(kernel, target)?;
+                    let Emitted { bytes, native } = emitted::emit_kernel(kernel, target)?;
                     let heaps = pipeline::HEAPS;
                     let binary = Binary::new(target, Stage::Fragment, &bytes, &native, heaps);
-                    Some(binary.map_err(failed)?)
+                    Some(binary.map_err(gpu_failed)?)
                 }
             };
             let prepared = self.guarded(|gpu| {
                 Prepared::new(&gpu.device, &gpu.queue, &gpu.vertex, kernel, emitted.as_ref())
             })?;
-            self.prepared.insert(kernel.id, prepared.map_err(failed)?);
+            self.prepared.insert(kernel.id, prepared.map_err(gpu_failed)?);
         }
         Ok(())
     }
@@ -131,8 +131,10 @@ impl Gpu {
         texels: &[u32],
         rows: u32,
     ) -> Result<wgpu::Buffer, Diagnostic> {
-        let prepared =
-            self.prepared.get(&kernel.id).ok_or_else(|| failed("the kernel was not prepared"))?;
+        let prepared = self
+            .prepared
+            .get(&kernel.id)
+            .ok_or_else(|| gpu_failed("the kernel was not prepared"))?;
         let inputs = self.inputs(texels);
         let target = self.texture(
             TARGET_WIDTH,
@@ -227,20 +229,21 @@ impl Gpu {
     fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<u32>, Diagnostic> {
         let outcome = Arc::new(Mutex::new(None));
         let sender = Arc::clone(&outcome);
-        buffer.map_async(wgpu::MapMode::Read, .., move |result| *lock(&sender) = Some(result));
+        buffer
+            .map_async(wgpu::MapMode::Read, .., move |result| *lock_mutex(&sender) = Some(result));
         let waited = self
             .device
             .poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) });
         waited.map_err(|error| {
-            failed(format!("no answer within {} s: {error}", PATIENCE.as_secs()))
+            gpu_failed(format!("no answer within {} s: {error}", PATIENCE.as_secs()))
         })?;
         self.check_faults()?;
-        match lock(&outcome).take() {
+        match lock_mutex(&outcome).take() {
             Some(Ok(())) => {}
-            Some(Err(error)) => return Err(failed(error.to_string())),
-            None => return Err(failed("the result was never handed over")),
+            Some(Err(error)) => return Err(gpu_failed(error.to_string())),
+            None => return Err(gpu_failed("the result was never handed over")),
         }
-        let view = buffer.get_mapped_range(..).map_err(|error| failed(format!("{error:?}")))?;
+        let view = buffer.get_mapped_range(..).map_err(|error| gpu_failed(format!("{error:?}")))?;
         let words =
             view.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
         drop(view);
@@ -259,16 +262,16 @@ impl Gpu {
         let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| calls(self)));
         let caught: Vec<_> =
             scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
-        let value = outcome.map_err(|_| failed("wgpu or naga panicked"))?;
+        let value = outcome.map_err(|_| gpu_failed("wgpu or naga panicked"))?;
         match caught.first() {
-            Some(error) => Err(failed(error.to_string())),
+            Some(error) => Err(gpu_failed(error.to_string())),
             None => self.check_faults().map(|()| value),
         }
     }
 
     fn check_faults(&self) -> Result<(), Diagnostic> {
-        match lock(&self.faults).first() {
-            Some(fault) => Err(failed(fault.clone())),
+        match lock_mutex(&self.faults).first() {
+            Some(fault) => Err(gpu_failed(fault.clone())),
             None => Ok(()),
         }
     }
@@ -291,13 +294,17 @@ pub fn input_texels(kernel: &Kernel, inputs: &[u32], header: [u32; 4]) -> Vec<u3
 }
 
 /// The result words, once the echo and the padding show that the target was written as intended.
-pub fn unpack(kernel: &Kernel, pixels: &[u32], header: [u32; 4]) -> Result<Vec<u32>, Diagnostic> {
+pub fn unpack_results(
+    kernel: &Kernel,
+    pixels: &[u32],
+    header: [u32; 4],
+) -> Result<Vec<u32>, Diagnostic> {
     let pixel = |index: usize| &pixels[index * 4..index * 4 + 4];
     let last = header[1] as usize - 1;
     for index in [0, last] {
         if pixel(index) != [header[0], header[1], header[2], ECHO ^ index as u32] {
             let found = pixel(index);
-            return Err(failed(format!(
+            return Err(gpu_failed(format!(
                 "pixel {index} of {last} echoes {found:08x?}: the target was not written as laid out"
             )));
         }
@@ -305,10 +312,10 @@ pub fn unpack(kernel: &Kernel, pixels: &[u32], header: [u32; 4]) -> Result<Vec<u
     let texels = kernel.result_texels() as usize;
     let end = 1 + header[0] as usize * texels;
     if (1..end).any(|index| pixel(index) == [SENTINEL; 4]) {
-        return Err(failed("a pixel was never written"));
+        return Err(gpu_failed("a pixel was never written"));
     }
     if (end..last).any(|index| pixel(index) != pixel(end - texels + (index - end) % texels)) {
-        return Err(failed("the padding does not repeat the last invocation"));
+        return Err(gpu_failed("the padding does not repeat the last invocation"));
     }
     let words = kernel.result_words() as usize;
     Ok((0..header[0] as usize)
@@ -316,10 +323,10 @@ pub fn unpack(kernel: &Kernel, pixels: &[u32], header: [u32; 4]) -> Result<Vec<u
         .collect())
 }
 
-fn failed(message: impl Into<String>) -> Diagnostic {
+fn gpu_failed(message: impl Into<String>) -> Diagnostic {
     Diagnostic::error(codes::EXECUTOR_FAILED, message)
 }
 
-fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+fn lock_mutex<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

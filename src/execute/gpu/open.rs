@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use glow::HasContext as _;
 use wgpu::hal::Instance as _;
 
-use super::{Gpu, lock};
+use super::{Gpu, lock_mutex};
 use crate::bundle::Target;
 
 /// The full-screen triangle.
@@ -66,13 +66,13 @@ impl Named {
 
 /// Opens the preferred adapter of a backend. A software adapter is preferred, since its numbers are
 /// the same on every machine. The error is a message.
-pub fn open(wanted: Wanted) -> Result<Gpu, String> {
+pub fn open_gpu(wanted: Wanted) -> Result<Gpu, String> {
     let descriptor = wgpu::InstanceDescriptor {
         backends: wanted.backend,
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     };
     let instance = wgpu::Instance::new(descriptor);
-    let mut adapters = adapters(&instance, wanted.backend);
+    let mut adapters = adapters_of(&instance, wanted.backend);
     adapters.retain(|adapter| wanted.named.allows(&adapter.get_info().name));
     adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
     let adapter = adapters.into_iter().next().ok_or("no adapter was found")?;
@@ -80,7 +80,7 @@ pub fn open(wanted: Wanted) -> Result<Gpu, String> {
     features |= wanted.shaders.features();
     if !adapter.features().contains(features) {
         let lacks = features - adapter.features();
-        return Err(format!("{} has no {lacks}", describe(&adapter.get_info())));
+        return Err(format!("{} has no {lacks}", describe_adapter(&adapter.get_info())));
     }
     let descriptor = wgpu::DeviceDescriptor {
         required_features: features,
@@ -89,11 +89,11 @@ pub fn open(wanted: Wanted) -> Result<Gpu, String> {
     };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
         .map_err(|error| error.to_string())?;
-    let faults = watch(&device);
+    let faults = watch_errors(&device);
     filter_seams(&device);
     let source = wgpu::ShaderSource::Wgsl(VERTEX.into());
     let vertex = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
-    let adapter = describe(&adapter.get_info());
+    let adapter = describe_adapter(&adapter.get_info());
     Ok(Gpu {
         adapter,
         shaders: wanted.shaders,
@@ -108,8 +108,9 @@ pub fn open(wanted: Wanted) -> Result<Gpu, String> {
 }
 
 /// The adapters of a backend.
-fn adapters(instance: &wgpu::Instance, backend: wgpu::Backends) -> Vec<wgpu::Adapter> {
-    let of_opengl = if backend == wgpu::Backends::GL { filtering(instance) } else { Vec::new() };
+fn adapters_of(instance: &wgpu::Instance, backend: wgpu::Backends) -> Vec<wgpu::Adapter> {
+    let of_opengl =
+        if backend == wgpu::Backends::GL { filtering_adapters(instance) } else { Vec::new() };
     if of_opengl.is_empty() {
         pollster::block_on(instance.enumerate_adapters(backend))
     } else {
@@ -119,7 +120,7 @@ fn adapters(instance: &wgpu::Instance, backend: wgpu::Backends) -> Vec<wgpu::Ada
 
 /// The adapters of OpenGL, marked as able to filter 32-bit floats. From version 3.0 on all can, but
 /// wgpu looks for extensions that a core profile need not list.
-fn filtering(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
+fn filtering_adapters(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
     // SAFETY: the instance is borrowed for as long as the handle is used.
     let Some(hal) = (unsafe { instance.as_hal::<wgpu::hal::api::Gles>() }) else {
         return Vec::new();
@@ -150,22 +151,22 @@ fn filter_seams(device: &wgpu::Device) {
 }
 
 /// Collects errors that would otherwise be panics.
-fn watch(device: &wgpu::Device) -> Arc<Mutex<Vec<String>>> {
+fn watch_errors(device: &wgpu::Device) -> Arc<Mutex<Vec<String>>> {
     let faults = Arc::new(Mutex::new(Vec::new()));
     let sink = Arc::clone(&faults);
     device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-        lock(&sink).push(error.to_string())
+        lock_mutex(&sink).push(error.to_string())
     }));
     let sink = Arc::clone(&faults);
     device.set_device_lost_callback(move |reason, message| {
         if !matches!(reason, wgpu::DeviceLostReason::Destroyed) {
-            lock(&sink).push(format!("the device was lost: {message}"));
+            lock_mutex(&sink).push(format!("the device was lost: {message}"));
         }
     });
     faults
 }
 
-fn describe(info: &wgpu::AdapterInfo) -> String {
+fn describe_adapter(info: &wgpu::AdapterInfo) -> String {
     let parts = [info.name.as_str(), info.driver.as_str(), info.driver_info.as_str()];
     parts.iter().filter(|part| !part.is_empty()).copied().collect::<Vec<_>>().join(", ")
 }

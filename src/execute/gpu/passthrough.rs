@@ -28,7 +28,7 @@ impl Binary {
     ) -> Result<Self, String> {
         let words = match target {
             Target::SPIRV => words(bytes),
-            Target::HLSL => hlsl::spirv(bytes, stage, native, heaps)?,
+            Target::HLSL => hlsl::compile_hlsl(bytes, stage, native, heaps)?,
             _ => return Err(format!("there is no SPIR-V of target `{target}`")),
         };
         let (entry, heaps) = (native.entry_name.clone(), native.sampler_heaps.clone());

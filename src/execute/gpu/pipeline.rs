@@ -32,7 +32,7 @@ impl Prepared {
         kernel: &Kernel,
         emitted: Option<&Binary>,
     ) -> Result<Self, String> {
-        let layout = layout(device, kernel);
+        let layout = bind_layout(device, kernel);
         let fragment = match emitted {
             Some(emitted) => emitted.module(device, &kernel.name),
             None => {
@@ -46,7 +46,7 @@ impl Prepared {
         };
         let heaps = match emitted {
             Some(emitted) if !emitted.heaps.is_empty() => {
-                Some(heaps::bind(device, &emitted.heaps, &|place| sampler(kernel, place))?)
+                Some(heaps::bind_heaps(device, &emitted.heaps, &|place| sampler_at(kernel, place))?)
             }
             _ => None,
         };
@@ -54,10 +54,10 @@ impl Prepared {
             std::iter::once(&layout).chain(heaps.as_ref().map(|(layout, _)| layout)).collect();
         let entry = emitted.map_or(ENTRY, Binary::entry);
         let pipeline =
-            pipeline(device, &layouts, vertex, (&fragment, entry), Some(TARGET_FORMAT), None);
+            draw_pipeline(device, &layouts, vertex, (&fragment, entry), Some(TARGET_FORMAT), None);
         let resources = kernel
             .resources()
-            .map(|resource| (resource.binding, bound(device, queue, &resource.fixture)))
+            .map(|resource| (resource.binding, bound_fixture(device, queue, &resource.fixture)))
             .collect();
         Ok(Self { pipeline, layout, resources, heaps: heaps.map(|(_, group)| group) })
     }
@@ -85,7 +85,7 @@ impl Prepared {
 }
 
 /// A pipeline that draws one full-screen triangle.
-pub fn pipeline(
+pub fn draw_pipeline(
     device: &wgpu::Device,
     layouts: &[&wgpu::BindGroupLayout],
     vertex: &wgpu::ShaderModule,
@@ -130,7 +130,7 @@ pub fn pipeline(
     })
 }
 
-fn sampler(kernel: &Kernel, [_, binding]: [u32; 2]) -> Option<Sampler> {
+fn sampler_at(kernel: &Kernel, [_, binding]: [u32; 2]) -> Option<Sampler> {
     let resource = kernel.resources().find(|resource| resource.binding == binding)?;
     match &*resource.fixture {
         Fixture::Sampler(settings) => Some(*settings),
@@ -140,7 +140,7 @@ fn sampler(kernel: &Kernel, [_, binding]: [u32; 2]) -> Option<Sampler> {
 
 /// The layout of the kernel's bindings. Samplers have a binding in any case, since wgpu numbers
 /// bindings without gaps and an emitted shader has the author's numbers.
-fn layout(device: &wgpu::Device, kernel: &Kernel) -> wgpu::BindGroupLayout {
+fn bind_layout(device: &wgpu::Device, kernel: &Kernel) -> wgpu::BindGroupLayout {
     let inputs = texture_type(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
     // Not every device can filter f32 textures, so filtering is asked for only where a kernel
     // filters colours.
@@ -205,9 +205,9 @@ pub fn texture_type(
     wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false }
 }
 
-fn bound(device: &wgpu::Device, queue: &wgpu::Queue, fixture: &Fixture) -> Bound {
+fn bound_fixture(device: &wgpu::Device, queue: &wgpu::Queue, fixture: &Fixture) -> Bound {
     match fixture {
-        Fixture::Texture(texture) => Bound::View(fixtures::upload(device, queue, texture)),
-        Fixture::Sampler(sampler) => Bound::Sampler(fixtures::sampler(device, *sampler)),
+        Fixture::Texture(texture) => Bound::View(fixtures::upload_texture(device, queue, texture)),
+        Fixture::Sampler(sampler) => Bound::Sampler(fixtures::create_sampler(device, *sampler)),
     }
 }

@@ -20,7 +20,7 @@ mod varying;
 mod wrap;
 
 pub use shape::Shape;
-pub use varying::varying;
+pub use varying::varying_modules;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -151,14 +151,14 @@ impl Kernel {
 ///
 /// It is an error if there is no such function, if a parameter or the result does not consist of
 /// 32-bit values, or if a fixture is missing.
-pub fn build(
+pub fn build_kernel(
     module: &Module,
     function: &str,
     fixtures: &BTreeMap<String, Arc<Fixture>>,
 ) -> Result<Kernel, Diagnostic> {
-    let handle = find(module, function)?;
-    let parameters = parameters(module, handle, fixtures)?;
-    let results = results(module, handle)?;
+    let handle = find_function(module, function)?;
+    let parameters = kernel_parameters(module, handle, fixtures)?;
+    let results = kernel_results(module, handle)?;
     let kernel = Kernel {
         id: next_id(),
         name: function.to_owned(),
@@ -174,7 +174,7 @@ pub fn build(
             format!("the words of `{function}` do not fit into a texture"),
         ));
     }
-    let (module, function) = wrap::wrap(module, &kernel)?;
+    let (module, function) = wrap::wrap_kernel(module, &kernel)?;
     Ok(Kernel { module, function, ..kernel })
 }
 
@@ -183,7 +183,7 @@ fn next_id() -> u64 {
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
-fn find(module: &Module, name: &str) -> Result<Handle<Function>, Diagnostic> {
+fn find_function(module: &Module, name: &str) -> Result<Handle<Function>, Diagnostic> {
     let named = |function: &Function| function.name.as_deref() == Some(name);
     module
         .functions
@@ -198,7 +198,7 @@ fn find(module: &Module, name: &str) -> Result<Handle<Function>, Diagnostic> {
         })
 }
 
-fn parameters(
+fn kernel_parameters(
     module: &Module,
     function: Handle<Function>,
     fixtures: &BTreeMap<String, Arc<Fixture>>,
@@ -213,12 +213,12 @@ fn parameters(
                 ParameterKind::Resource(Resource {
                     binding,
                     class,
-                    fixture: fixture(fixtures, &name, class)?,
+                    fixture: named_fixture(fixtures, &name, class)?,
                 })
             }
             None => {
-                let shape = Shape::of(module, pointee(module, argument.ty))
-                    .ok_or_else(|| untestable(&name))?;
+                let shape = Shape::of(module, pointed_type(module, argument.ty))
+                    .ok_or_else(|| untestable_function(&name))?;
                 let first = offset;
                 offset = shape.words().saturating_add(offset);
                 ParameterKind::Words { offset: first, shape }
@@ -229,17 +229,20 @@ fn parameters(
     Ok(found)
 }
 
-fn results(module: &Module, function: Handle<Function>) -> Result<Vec<Shape>, Diagnostic> {
+fn kernel_results(module: &Module, function: Handle<Function>) -> Result<Vec<Shape>, Diagnostic> {
     let function = &module.functions[function];
     let returned = function.result.as_ref().map(|result| result.ty);
-    let written =
-        function.arguments.iter().filter(|argument| pointee(module, argument.ty) != argument.ty);
-    let types = returned.into_iter().chain(written.map(|argument| pointee(module, argument.ty)));
-    types.map(|ty| Shape::of(module, ty).ok_or_else(|| untestable("result"))).collect()
+    let written = function
+        .arguments
+        .iter()
+        .filter(|argument| pointed_type(module, argument.ty) != argument.ty);
+    let types =
+        returned.into_iter().chain(written.map(|argument| pointed_type(module, argument.ty)));
+    types.map(|ty| Shape::of(module, ty).ok_or_else(|| untestable_function("result"))).collect()
 }
 
 /// The type behind a pointer to a local variable, or the type itself.
-fn pointee(module: &Module, ty: Handle<naga::Type>) -> Handle<naga::Type> {
+fn pointed_type(module: &Module, ty: Handle<naga::Type>) -> Handle<naga::Type> {
     match module.types[ty].inner {
         TypeInner::Pointer { base, space: naga::AddressSpace::Function } => base,
         _ => ty,
@@ -256,7 +259,7 @@ fn resource_class(module: &Module, ty: Handle<naga::Type>) -> Option<ResourceCla
     }
 }
 
-fn fixture(
+fn named_fixture(
     fixtures: &BTreeMap<String, Arc<Fixture>>,
     name: &str,
     class: ResourceClass,
@@ -272,14 +275,14 @@ fn fixture(
         let message = format!(
             "the fixture of `{name}` is {}, the shader declares {}",
             found.describe(),
-            describe(class)
+            describe_class(class)
         );
         return Err(Diagnostic::error(codes::FIXTURE_MISMATCH, message));
     }
     Ok(found.clone())
 }
 
-fn describe(class: ResourceClass) -> String {
+fn describe_class(class: ResourceClass) -> String {
     match class {
         ResourceClass::Texture { dim, arrayed, class } => {
             format!("a texture ({dim:?}, arrayed: {arrayed}, {class:?})")
@@ -289,7 +292,7 @@ fn describe(class: ResourceClass) -> String {
     }
 }
 
-fn untestable(name: &str) -> Diagnostic {
+fn untestable_function(name: &str) -> Diagnostic {
     Diagnostic::error(
         codes::UNTESTABLE_FUNCTION,
         format!("`{name}` has a type that is not made of 32-bit values"),
@@ -297,7 +300,7 @@ fn untestable(name: &str) -> Diagnostic {
 }
 
 /// One word as a number.
-pub fn number(word: u32, kind: ScalarKind) -> f64 {
+pub fn word_value(word: u32, kind: ScalarKind) -> f64 {
     match kind {
         ScalarKind::Sint => f64::from(word as i32),
         ScalarKind::Uint => f64::from(word),

@@ -19,7 +19,7 @@ pub enum Shape {
 }
 
 /// Columns of two to four rows.
-static COLUMNS: [Shape; 3] = [column(2), column(3), column(4)];
+static COLUMNS: [Shape; 3] = [column_shape(2), column_shape(3), column_shape(4)];
 static SCALARS: [Shape; 4] = [
     Shape::Scalar(ScalarKind::Float),
     Shape::Scalar(ScalarKind::Sint),
@@ -28,7 +28,7 @@ static SCALARS: [Shape; 4] = [
 ];
 const COMPONENTS: [&str; 4] = ["x", "y", "z", "w"];
 
-const fn column(size: u32) -> Shape {
+const fn column_shape(size: u32) -> Shape {
     Shape::Vector { size, kind: ScalarKind::Float }
 }
 
@@ -36,13 +36,12 @@ impl Shape {
     /// The shape of a naga type; `None` for a type whose values are not words.
     pub fn of(module: &Module, ty: Handle<Type>) -> Option<Self> {
         match module.types[ty].inner {
-            TypeInner::Scalar(scalar) => word(scalar).map(Self::Scalar),
+            TypeInner::Scalar(scalar) => word_kind(scalar).map(Self::Scalar),
             TypeInner::Vector { size, scalar } => {
-                Some(Self::Vector { size: size as u32, kind: word(scalar)? })
+                Some(Self::Vector { size: size as u32, kind: word_kind(scalar)? })
             }
-            TypeInner::Matrix { columns, rows, scalar } => {
-                word(scalar).map(|_| Self::Matrix { columns: columns as u32, rows: rows as u32 })
-            }
+            TypeInner::Matrix { columns, rows, scalar } => word_kind(scalar)
+                .map(|_| Self::Matrix { columns: columns as u32, rows: rows as u32 }),
             TypeInner::Array { base, size: ArraySize::Constant(count), .. } => {
                 Some(Self::Array { base: Box::new(Self::of(module, base)?), count: count.get() })
             }
@@ -113,7 +112,7 @@ impl Shape {
     }
 }
 
-fn word(scalar: naga::Scalar) -> Option<ScalarKind> {
+fn word_kind(scalar: naga::Scalar) -> Option<ScalarKind> {
     let is_bool = scalar.kind == ScalarKind::Bool;
     (is_bool || scalar.width == 4).then_some(scalar.kind)
 }

@@ -6,8 +6,8 @@ use naga::{
     Module, Sampling, ScalarKind, Span, Statement, VectorSize,
 };
 
-use super::wrap::{Body, Source, Value, entered};
-use super::{Shape, find, pointee, resource_class, untestable};
+use super::wrap::{Body, Source, Value, with_entry};
+use super::{Shape, find_function, pointed_type, resource_class, untestable_function};
 use crate::diagnostic::{Diagnostic, codes};
 
 /// The most vectors of four words that a stage can take: vertices have 32 attributes, and one of
@@ -24,8 +24,8 @@ const VECTORS: u32 = 31;
 /// # Errors
 /// There is no such function, or it has a parameter that is not made of 32-bit values, or more of
 /// them than a stage can take.
-pub fn varying(module: &Module, function: &str) -> Result<[Module; 2], Diagnostic> {
-    let handle = find(module, function)?;
+pub fn varying_modules(module: &Module, function: &str) -> Result<[Module; 2], Diagnostic> {
+    let handle = find_function(module, function)?;
     let (mut sources, mut words, mut binding) = (Vec::new(), 0_u32, 0);
     for (index, argument) in module.functions[handle].arguments.iter().enumerate() {
         sources.push(if resource_class(module, argument.ty).is_some() {
@@ -33,8 +33,8 @@ pub fn varying(module: &Module, function: &str) -> Result<[Module; 2], Diagnosti
             Source::Binding(binding)
         } else {
             let named = || argument.name.clone().unwrap_or_else(|| format!("parameter {index}"));
-            let shape = Shape::of(module, pointee(module, argument.ty))
-                .ok_or_else(|| untestable(&named()))?;
+            let shape = Shape::of(module, pointed_type(module, argument.ty))
+                .ok_or_else(|| untestable_function(&named()))?;
             let first = words;
             words = words.saturating_add(shape.words());
             Source::Words(first)
@@ -49,13 +49,13 @@ pub fn varying(module: &Module, function: &str) -> Result<[Module; 2], Diagnosti
             ),
         ));
     }
-    let called = entered(module, |body| {
+    let called = with_entry(module, |body| {
         let inputs = body.inputs_that_vary(words);
         let results = body.call(function, handle, &sources, &inputs)?;
         body.mix(&inputs, &results);
         Ok(())
     })?;
-    let empty = entered(module, |body| {
+    let empty = with_entry(module, |body| {
         let inputs = body.inputs_that_vary(words);
         body.mix(&inputs, &[]);
         Ok(())
@@ -69,7 +69,7 @@ impl Body<'_> {
         let ty = self.vector(VectorSize::Quad, ScalarKind::Float);
         let mut values = Vec::new();
         for location in 0..words.div_ceil(4) {
-            let binding = Some(at(location, Some(Interpolation::Perspective)));
+            let binding = Some(location_binding(location, Some(Interpolation::Perspective)));
             self.function.arguments.push(FunctionArgument { name: None, ty, binding });
             let vector = self.add(Expression::FunctionArgument(location));
             let kind = ScalarKind::Uint;
@@ -92,13 +92,13 @@ impl Body<'_> {
             *component = self.binary(Op::ExclusiveOr, *component, *word);
         }
         let value = Some(self.add(Expression::Compose { ty, components }));
-        let binding = at(0, None);
+        let binding = location_binding(0, None);
         self.function.result = Some(FunctionResult { ty, binding: Some(binding) });
         self.function.body.push(Statement::Return { value }, Span::UNDEFINED);
     }
 }
 
-fn at(location: u32, interpolation: Option<Interpolation>) -> Binding {
+fn location_binding(location: u32, interpolation: Option<Interpolation>) -> Binding {
     Binding::Location {
         location,
         interpolation,

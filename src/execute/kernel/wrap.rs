@@ -10,21 +10,26 @@ use naga::{
     Span, Statement, SwizzleComponent, Type, TypeInner, VectorSize,
 };
 
-use super::{ECHO, ENTRY, INPUT_WIDTH, Kernel, Parameter, ParameterKind, TARGET_WIDTH, pointee};
+use super::{
+    ECHO, ENTRY, INPUT_WIDTH, Kernel, Parameter, ParameterKind, TARGET_WIDTH, pointed_type,
+};
 use crate::diagnostic::{Diagnostic, codes};
 
 pub(super) type Value = Handle<Expression>;
 
 /// The module with its entry points replaced by the kernel's, and the function's handle in it.
-pub fn wrap(module: &Module, kernel: &Kernel) -> Result<(Module, Handle<Function>), Diagnostic> {
-    let module = entered(module, |body| body.main(kernel))?;
-    let function = called(&module).ok_or_else(|| lost(&kernel.name))?;
+pub fn wrap_kernel(
+    module: &Module,
+    kernel: &Kernel,
+) -> Result<(Module, Handle<Function>), Diagnostic> {
+    let module = with_entry(module, |body| body.main(kernel))?;
+    let function = called_function(&module).ok_or_else(|| lost_function(&kernel.name))?;
     Ok((module, function))
 }
 
 /// The module with one fragment stage as its only entry point, and without anything that this does
 /// not reach.
-pub(super) fn entered(
+pub(super) fn with_entry(
     module: &Module,
     write: impl FnOnce(&mut Body<'_>) -> Result<(), Diagnostic>,
 ) -> Result<Module, Diagnostic> {
@@ -49,14 +54,14 @@ pub(super) fn entered(
 }
 
 /// Finds the function that the entry point calls, since compaction changes handles.
-fn called(module: &Module) -> Option<Handle<Function>> {
+fn called_function(module: &Module) -> Option<Handle<Function>> {
     module.entry_points[0].function.body.iter().find_map(|statement| match statement {
         Statement::Call { function, .. } => Some(*function),
         _ => None,
     })
 }
 
-fn lost(name: &str) -> Diagnostic {
+fn lost_function(name: &str) -> Diagnostic {
     Diagnostic::error(codes::UNTESTABLE_FUNCTION, format!("`{name}` could not be wrapped"))
 }
 
@@ -216,10 +221,10 @@ impl Body<'_> {
                     self.global(name, argument.ty, *binding)
                 }
                 Source::Words(offset) => {
-                    let base = pointee(self.module, argument.ty);
+                    let base = pointed_type(self.module, argument.ty);
                     let value = self
                         .unflatten(base, &mut words[*offset as usize..].iter().copied())
-                        .ok_or_else(|| lost(name))?;
+                        .ok_or_else(|| lost_function(name))?;
                     if base == argument.ty {
                         value
                     } else {

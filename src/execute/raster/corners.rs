@@ -22,7 +22,7 @@ pub enum Source {
 }
 
 /// The source of each scalar, from the bindings of all scalars.
-pub fn sources(bindings: &[Option<Binding>]) -> Vec<Source> {
+pub fn scalar_sources(bindings: &[Option<Binding>]) -> Vec<Source> {
     let mut sources: Vec<Source> = Vec::with_capacity(bindings.len());
     for binding in bindings {
         let source = |component| match binding {
@@ -32,13 +32,14 @@ pub fn sources(bindings: &[Option<Binding>]) -> Vec<Source> {
         };
         let first = source(0);
         // The scalars of one vector follow each other.
-        let component = sources.iter().rev().take_while(|earlier| same(**earlier, first)).count();
+        let component =
+            sources.iter().rev().take_while(|earlier| same_source(**earlier, first)).count();
         sources.push(source(component));
     }
     sources
 }
 
-fn same(a: Source, b: Source) -> bool {
+fn same_source(a: Source, b: Source) -> bool {
     match (a, b) {
         (Source::Location(a, _), Source::Location(b, _)) => a == b,
         (Source::BuiltIn(a, _), Source::BuiltIn(b, _)) => a == b,
@@ -47,7 +48,7 @@ fn same(a: Source, b: Source) -> bool {
 }
 
 /// A component of a vertex attribute; 0 where the mesh has no such attribute.
-pub fn attribute(mesh: &Mesh, vertex: u32, location: u32, component: usize) -> u32 {
+pub fn vertex_attribute(mesh: &Mesh, vertex: u32, location: u32, component: usize) -> u32 {
     let sizes = mesh.attributes.iter().map(|attribute| attribute.format.words() as usize);
     let mut first = vertex as usize * sizes.clone().sum::<usize>();
     for (attribute, size) in mesh.attributes.iter().zip(sizes) {

@@ -4,12 +4,12 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Binding, BuiltIn};
 use rayon::prelude::*;
 
-use super::corners::{Corner, Source, attribute, sources};
+use super::corners::{Corner, Source, scalar_sources, vertex_attribute};
 use super::{Quad, Shaded, Shading};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::eval::{Function, FunctionId, Kind, Machine, Number, Program, Resources};
 use crate::execute::frame::{Buffers, Drawing, EntryPoint, Mesh};
-use crate::execute::interpreter::failed;
+use crate::execute::interpreter::eval_failed;
 
 /// How many quads are worth a task of their own.
 const CHUNK: usize = 64;
@@ -41,42 +41,43 @@ impl Lowered {
     fn new(stage: EntryPoint<'_>) -> Result<Self, Diagnostic> {
         let info: ModuleInfo = Validator::new(ValidationFlags::all(), Capabilities::all())
             .validate(stage.module)
-            .map_err(|error| unusable(format!("the program is not valid: {error}")))?;
-        let program = Program::new(stage.module, &info).map_err(failed)?;
+            .map_err(|error| unusable_stage(format!("the program is not valid: {error}")))?;
+        let program = Program::new(stage.module, &info).map_err(eval_failed)?;
         // GLSL also has a plain function of that name. Entry points come after functions, so the
         // last one is meant.
         let found = program.functions().filter(|(_, function)| function.name == stage.entry).last();
-        let missing = || unusable(format!("the program has no entry point `{}`", stage.entry));
+        let missing =
+            || unusable_stage(format!("the program has no entry point `{}`", stage.entry));
         let (function, signature) =
             found.map(|(id, function)| (id, function.clone())).ok_or_else(missing)?;
         Ok(Self { program, function, signature })
     }
 }
 
-fn unusable(message: String) -> Diagnostic {
+fn unusable_stage(message: String) -> Diagnostic {
     Diagnostic::error(codes::EXECUTOR_FAILED, message)
 }
 
 impl Shading for Evaluated {
     fn corners(&self, mesh: &Mesh, resources: Resources) -> Result<Vec<Corner>, Diagnostic> {
         let Lowered { program, function, signature } = &self.vertex;
-        let mut machine = Machine::<f32>::new(program).map_err(failed)?;
-        machine.bind(resources).map_err(failed)?;
-        let inputs = sources(&signature.inputs);
-        let outputs = sources(&signature.outputs);
+        let mut machine = Machine::<f32>::new(program).map_err(eval_failed)?;
+        machine.bind(resources).map_err(eval_failed)?;
+        let inputs = scalar_sources(&signature.inputs);
+        let outputs = scalar_sources(&signature.outputs);
         let mut corners = Vec::new();
         for index in 0..mesh.vertices() {
             let argument = |(source, kind): (&Source, &Kind)| match source {
                 Source::Location(location, component) => {
-                    slot(*kind, attribute(mesh, index, *location, *component))
+                    slot_of_word(*kind, vertex_attribute(mesh, index, *location, *component))
                 }
                 Source::BuiltIn(BuiltIn::VertexIndex, _) => f32::from_word(index),
                 _ => f32::from_word(0),
             };
             let arguments: Vec<f32> =
                 inputs.iter().zip(&signature.arguments).map(argument).collect();
-            let slots = machine.call(*function, &arguments).map_err(failed)?.to_vec();
-            corners.push(Corner { clip: position(&outputs, &slots), slots });
+            let slots = machine.call(*function, &arguments).map_err(eval_failed)?.to_vec();
+            corners.push(Corner { clip: clip_position(&outputs, &slots), slots });
         }
         Ok(corners)
     }
@@ -91,12 +92,12 @@ impl Shading for Evaluated {
             );
             says_so || result.get(slot) != Some(&Kind::Float)
         };
-        let sources = sources(outputs).into_iter().enumerate();
+        let sources = scalar_sources(outputs).into_iter().enumerate();
         sources.map(|(slot, source)| (source, is_flat(slot))).collect()
     }
 
     fn taken(&self) -> Option<Vec<Source>> {
-        Some(sources(&self.fragment.as_ref()?.signature.inputs))
+        Some(scalar_sources(&self.fragment.as_ref()?.signature.inputs))
     }
 
     fn shade(
@@ -108,23 +109,24 @@ impl Shading for Evaluated {
         let Some(Lowered { program, function, signature }) = &self.fragment else {
             return Ok(Vec::new());
         };
-        let outputs = sources(&signature.outputs);
+        let outputs = scalar_sources(&signature.outputs);
         let threads = rayon::current_num_threads().max(1);
         let shaded: Vec<Vec<Shaded>> = quads
             .par_chunks(quads.len().div_ceil(threads).max(CHUNK))
             .map(|quads| {
-                let mut machine = Machine::<f32>::new(program).map_err(failed)?;
+                let mut machine = Machine::<f32>::new(program).map_err(eval_failed)?;
                 machine
                     .bind(Resources { buffers: buffers.clone(), ..textures.clone() })
-                    .map_err(failed)?;
+                    .map_err(eval_failed)?;
                 quads
                     .iter()
                     .map(|quad| {
                         let arguments = quad.arguments.each_ref().map(Vec::as_slice);
-                        let results = machine.quad(*function, arguments).map_err(failed)?;
+                        let results = machine.quad(*function, arguments).map_err(eval_failed)?;
                         let discarded = machine.quad_discarded();
                         Ok([0, 1, 2, 3].map(|lane| {
-                            let targets = || targets(&outputs, &signature.result, &results[lane]);
+                            let targets =
+                                || target_words(&outputs, &signature.result, &results[lane]);
                             (!discarded[lane]).then(targets)
                         }))
                     })
@@ -136,11 +138,11 @@ impl Shading for Evaluated {
 }
 
 /// A word as a scalar of the machine.
-fn slot(kind: Kind, word: u32) -> f32 {
+fn slot_of_word(kind: Kind, word: u32) -> f32 {
     if kind == Kind::Float { f32::from_bits(word) } else { f32::from_word(word) }
 }
 
-fn position(outputs: &[Source], slots: &[f32]) -> [f64; 4] {
+fn clip_position(outputs: &[Source], slots: &[f32]) -> [f64; 4] {
     let mut clip = [0.0; 4];
     for (source, slot) in outputs.iter().zip(slots) {
         if let Source::BuiltIn(BuiltIn::Position { .. }, component) = source
@@ -153,7 +155,7 @@ fn position(outputs: &[Source], slots: &[f32]) -> [f64; 4] {
 }
 
 /// What is returned at each location, as words.
-fn targets(outputs: &[Source], kinds: &[Kind], slots: &[f32]) -> Vec<[u32; 4]> {
+fn target_words(outputs: &[Source], kinds: &[Kind], slots: &[f32]) -> Vec<[u32; 4]> {
     let mut targets: Vec<[u32; 4]> = Vec::new();
     for ((source, kind), slot) in outputs.iter().zip(kinds).zip(slots) {
         let Source::Location(location, component) = *source else { continue };

@@ -4,7 +4,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use naga::BuiltIn;
 
-use super::corners::{Corner, Source, attribute};
+use super::corners::{Corner, Source, vertex_attribute};
 use super::{Quad, Shaded, Shading};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::eval::{Number, Resources};
@@ -68,7 +68,7 @@ impl Compiled {
         is_watched: bool,
     ) -> Result<Vec<Frame>, Diagnostic> {
         let stage = |index: usize| {
-            let interface = self.program().interface(index).cloned().map_err(failed)?;
+            let interface = self.program().interface(index).cloned().map_err(raster_failed)?;
             Ok::<_, Diagnostic>(Stage { index, interface })
         };
         let (vertex, fragment) = (stage(vertex)?, fragment.map(stage).transpose()?);
@@ -91,7 +91,7 @@ impl Compiled {
     }
 }
 
-fn failed(message: String) -> Diagnostic {
+fn raster_failed(message: String) -> Diagnostic {
     Diagnostic::error(codes::EXECUTOR_FAILED, message)
 }
 
@@ -111,7 +111,7 @@ struct Pair<'c> {
 }
 
 /// The sources of the scalars of `locations` locations.
-fn located(locations: u32) -> impl Iterator<Item = Source> {
+fn located_sources(locations: u32) -> impl Iterator<Item = Source> {
     (0..locations).flat_map(|location| (0..4).map(move |i| Source::Location(location, i)))
 }
 
@@ -120,7 +120,7 @@ impl Shading for Pair<'_> {
         let taken = self.vertex.interface.locations().0;
         let vertex = |index: u32| {
             let location = |location: u32| {
-                std::array::from_fn(|component| attribute(mesh, index, location, component))
+                std::array::from_fn(|component| vertex_attribute(mesh, index, location, component))
             };
             Vertex { index, instance: 0, locations: (0..taken).map(location).collect() }
         };
@@ -131,7 +131,7 @@ impl Shading for Pair<'_> {
             clip: vertex.position.map(f64::from),
             slots: vertex.locations.into_iter().flatten().map(f32::from_bits).collect(),
         };
-        Ok(transformed.map_err(failed)?.into_iter().map(corner).collect())
+        Ok(transformed.map_err(raster_failed)?.into_iter().map(corner).collect())
     }
 
     fn given(&self) -> Vec<(Source, bool)> {
@@ -140,7 +140,7 @@ impl Shading for Pair<'_> {
             let is_it = |part: &&Part| part.role == Role::Location(location);
             output.iter().find(is_it).is_some_and(|part| part.is_flat)
         };
-        located(self.vertex.interface.locations().1)
+        located_sources(self.vertex.interface.locations().1)
             .map(|source| match source {
                 Source::Location(location, _) => (source, is_flat(location)),
                 other => (other, false),
@@ -153,7 +153,7 @@ impl Shading for Pair<'_> {
         let position = BuiltIn::Position { invariant: false };
         let built_in = (0..4).map(|i| Source::BuiltIn(position, i));
         let front = Source::BuiltIn(BuiltIn::FrontFacing, 0);
-        Some(located(locations).chain(built_in).chain([front]).collect())
+        Some(located_sources(locations).chain(built_in).chain([front]).collect())
     }
 
     fn shade(
@@ -167,16 +167,16 @@ impl Shading for Pair<'_> {
         let bound = self.compiled.bound(stage, &resources);
         let fragments: Vec<[Fragment; 4]> = quads
             .iter()
-            .map(|quad| quad.arguments.each_ref().map(|slots| fragment(slots)))
+            .map(|quad| quad.arguments.each_ref().map(|slots| make_fragment(slots)))
             .collect();
         let shaded = self.compiled.program().quads(stage.index, &bound, &fragments);
         let mut results: Vec<Shaded> = Vec::new();
-        for (given, shaded) in fragments.iter().zip(shaded.map_err(failed)?) {
+        for (given, shaded) in fragments.iter().zip(shaded.map_err(raster_failed)?) {
             results.push(std::array::from_fn(|lane| {
                 let mut targets = shaded[lane].targets.clone();
                 if let Some(drawn) = self.watched {
                     targets.resize(drawn, [0; 4]);
-                    targets.extend(told(&given[lane]));
+                    targets.extend(fragment_words(&given[lane]));
                 }
                 (!shaded[lane].is_discarded).then_some(targets)
             }));
@@ -187,7 +187,7 @@ impl Shading for Pair<'_> {
 
 /// A fragment from the scalars of [`Shading::taken`]: four for each location, four for the
 /// position, and one that says whether it belongs to a front face.
-fn fragment(slots: &[f32]) -> Fragment {
+fn make_fragment(slots: &[f32]) -> Fragment {
     let (four, rest) = slots.as_chunks::<4>();
     let (position, locations) =
         four.split_last().map_or(([0.0; 4], &[][..]), |(last, all)| (*last, all));
@@ -199,7 +199,7 @@ fn fragment(slots: &[f32]) -> Fragment {
 }
 
 /// What a fragment was given, as words of targets.
-fn told(fragment: &Fragment) -> impl Iterator<Item = [u32; 4]> + '_ {
+fn fragment_words(fragment: &Fragment) -> impl Iterator<Item = [u32; 4]> + '_ {
     let position = fragment.position.map(f32::to_bits);
     let front = [u32::from(fragment.front), 0, 0, 0];
     fragment.locations.iter().copied().chain([position, front])

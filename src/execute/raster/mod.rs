@@ -59,8 +59,8 @@ pub type Shaded = [Option<Vec<[u32; 4]>>; 4];
 
 /// Draws a frame for each view.
 pub fn draw_frames(drawing: &Drawing<'_>, shading: &dyn Shading) -> Result<Vec<Frame>, Diagnostic> {
-    let textures = textures(drawing);
-    drawing.views.iter().map(|view| frame(drawing, view, shading, &textures)).collect()
+    let textures = bound_textures(drawing);
+    drawing.views.iter().map(|view| draw_frame(drawing, view, shading, &textures)).collect()
 }
 
 /// What was drawn of a view, before shading.
@@ -71,19 +71,21 @@ struct Drawn {
     seen: Seen,
 }
 
-fn frame(
+fn draw_frame(
     drawing: &Drawing<'_>,
     view: &Buffers,
     shading: &dyn Shading,
     textures: &Resources,
 ) -> Result<Frame, Diagnostic> {
-    let resources =
-        |item: &Item<'_>| Resources { buffers: buffers(drawing, view, item), ..textures.clone() };
+    let resources = |item: &Item<'_>| Resources {
+        buffers: item_buffers(drawing, view, item),
+        ..textures.clone()
+    };
     let mut drawn =
         Drawn { corners: Vec::new(), triangles: Vec::new(), seen: Seen::new(drawing.size) };
     for (index, item) in drawing.items.iter().enumerate() {
         let mut corners = shading.corners(item.mesh, resources(item))?;
-        triangles::assemble(
+        triangles::assemble_triangles(
             item.mesh,
             index,
             &mut corners,
@@ -94,13 +96,13 @@ fn frame(
         drawn.corners.push(corners);
     }
     drawn.seen.draw(&drawn.triangles, drawing.state);
-    let targets = shade::run(drawing, view, shading, &drawn, textures)?;
+    let targets = shade::shade_frame(drawing, view, shading, &drawn, textures)?;
     let depth = if drawing.state.keep_depth { drawn.seen.depth } else { Vec::new() };
     Ok(Frame { targets, depth, detour: None })
 }
 
 /// The uniform buffers of one item in one view.
-fn buffers(
+fn item_buffers(
     drawing: &Drawing<'_>,
     view: &Buffers,
     item: &Item<'_>,
@@ -109,30 +111,30 @@ fn buffers(
     all.map(|(place, bytes)| (*place, bytes.clone())).collect()
 }
 
-fn textures(drawing: &Drawing<'_>) -> Resources {
+fn bound_textures(drawing: &Drawing<'_>) -> Resources {
     let mut resources = Resources::default();
     for (place, fixture) in drawing.fixtures {
         match &**fixture {
             Fixture::Texture(texture) => {
                 let mut texture = eval::Texture::from(texture);
                 let smaller = drawing.levels.get(place).map_or(&[][..], Vec::as_slice);
-                texture.levels.extend(smaller.iter().flat_map(levels));
+                texture.levels.extend(smaller.iter().flat_map(texture_levels));
                 resources.textures.insert(*place, texture);
             }
             Fixture::Sampler(sampler) => {
-                resources.samplers.insert(*place, mipped(eval::Sampler::from(*sampler)));
+                resources.samplers.insert(*place, with_levels(eval::Sampler::from(*sampler)));
             }
         }
     }
     resources
 }
 
-fn levels(texture: &Texture) -> Vec<Level> {
+fn texture_levels(texture: &Texture) -> Vec<Level> {
     eval::Texture::from(texture).levels
 }
 
 /// The sampler, with filtering between levels where a texture has levels.
-fn mipped(sampler: eval::Sampler) -> eval::Sampler {
+fn with_levels(sampler: eval::Sampler) -> eval::Sampler {
     let linear = sampler.min == Filter::Linear && sampler.compare.is_none();
     eval::Sampler {
         mipmap: if linear { Filter::Linear } else { Filter::Nearest },
@@ -142,6 +144,6 @@ fn mipped(sampler: eval::Sampler) -> eval::Sampler {
 }
 
 /// A target with nothing drawn into it.
-fn cleared([width, height]: [u32; 2]) -> Vec<u32> {
+fn cleared_target([width, height]: [u32; 2]) -> Vec<u32> {
     vec![SENTINEL; 4 * width as usize * height as usize]
 }

@@ -4,7 +4,7 @@ use naga::BuiltIn;
 
 use super::corners::Source;
 use super::triangles::{NONE, Triangle};
-use super::{Drawn, Quad, Shaded, Shading, buffers, cleared};
+use super::{Drawn, Quad, Shaded, Shading, cleared_target, item_buffers};
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Number, Resources};
 use crate::execute::frame::{Buffers, Drawing};
@@ -14,7 +14,7 @@ use crate::execute::frame::{Buffers, Drawing};
 const ROWS: u32 = 256;
 
 /// The targets of a frame.
-pub fn run(
+pub fn shade_frame(
     drawing: &Drawing<'_>,
     view: &Buffers,
     shading: &dyn Shading,
@@ -22,8 +22,8 @@ pub fn run(
     textures: &Resources,
 ) -> Result<Vec<Vec<u32>>, Diagnostic> {
     let Some(taken) = shading.taken() else { return Ok(Vec::new()) };
-    let mut targets = vec![cleared(drawing.size); drawing.targets as usize];
-    let wiring = wiring(&shading.given(), &taken);
+    let mut targets = vec![cleared_target(drawing.size); drawing.targets as usize];
+    let wiring = wire_stages(&shading.given(), &taken);
     let screen = Screen { drawn, size: drawing.size, wiring };
     for (index, item) in drawing.items.iter().enumerate() {
         for first in (0..drawing.size[1]).step_by(ROWS as usize) {
@@ -31,9 +31,9 @@ pub fn run(
             if quads.is_empty() {
                 continue;
             }
-            let shaded = shading.shade(buffers(drawing, view, item), textures, &quads)?;
+            let shaded = shading.shade(item_buffers(drawing, view, item), textures, &quads)?;
             for (quad, shaded) in quads.iter().zip(&shaded) {
-                store(&mut targets, drawing.size[0], quad, shaded);
+                store_quad(&mut targets, drawing.size[0], quad, shaded);
             }
         }
     }
@@ -51,7 +51,7 @@ enum Wire {
     Nothing,
 }
 
-fn wiring(given: &[(Source, bool)], taken: &[Source]) -> Vec<Wire> {
+fn wire_stages(given: &[(Source, bool)], taken: &[Source]) -> Vec<Wire> {
     let wire = |source: &Source| match source {
         Source::Location(..) => match given.iter().position(|(other, _)| other == source) {
             Some(slot) if given[slot].1 => Wire::Flat(slot),
@@ -121,7 +121,7 @@ impl Screen<'_> {
 }
 
 /// Writes the results of fragments to their pixels.
-fn store(targets: &mut [Vec<u32>], width: u32, quad: &Quad, shaded: &Shaded) {
+fn store_quad(targets: &mut [Vec<u32>], width: u32, quad: &Quad, shaded: &Shaded) {
     for lane in (0..4).filter(|lane| quad.covered[*lane]) {
         let (x, y) = quad.pixels[lane];
         let pixel = (y * width + x) as usize;

@@ -40,7 +40,7 @@ pub const NONE: u32 = u32::MAX;
 const SUBPIXELS: f64 = 256.0;
 
 /// Adds the triangles of a mesh. Clipping adds vertices.
-pub fn assemble(
+pub fn assemble_triangles(
     mesh: &Mesh,
     item: usize,
     corners: &mut Vec<Corner>,
@@ -54,16 +54,16 @@ pub fn assemble(
         if three.iter().any(|index| *index as usize >= corners.len()) {
             continue;
         }
-        let polygon = clipped(three, corners);
+        let polygon = clip_triangle(three, corners);
         for index in 2..polygon.len() {
             let fan = [polygon[0], polygon[index - 1], polygon[index]];
-            to.extend(placed(fan, three[0], item, corners, state, size));
+            to.extend(place_fan(fan, three[0], item, corners, state, size));
         }
     }
 }
 
 /// The part of a triangle between the near and the far plane, as vertices in order.
-fn clipped(three: &[u32; 3], corners: &mut Vec<Corner>) -> Vec<u32> {
+fn clip_triangle(three: &[u32; 3], corners: &mut Vec<Corner>) -> Vec<u32> {
     // Distances to the planes, negative outside.
     const PLANES: [fn(&[f64; 4]) -> f64; 3] =
         [|clip| clip[2], |clip| clip[3] - clip[2], |clip| clip[3] - 1e-9];
@@ -82,7 +82,7 @@ fn clipped(three: &[u32; 3], corners: &mut Vec<Corner>) -> Vec<u32> {
             }
             if (distances[here] >= 0.0) != (distances[next] >= 0.0) {
                 let share = distances[here] / (distances[here] - distances[next]);
-                let between = between(
+                let between = corner_between(
                     &corners[polygon[here] as usize],
                     &corners[polygon[next] as usize],
                     share,
@@ -96,7 +96,7 @@ fn clipped(three: &[u32; 3], corners: &mut Vec<Corner>) -> Vec<u32> {
     polygon
 }
 
-fn between(a: &Corner, b: &Corner, share: f64) -> Corner {
+fn corner_between(a: &Corner, b: &Corner, share: f64) -> Corner {
     let mix = |a: f64, b: f64| a + (b - a) * share;
     Corner {
         clip: std::array::from_fn(|index| mix(a.clip[index], b.clip[index])),
@@ -109,7 +109,7 @@ fn between(a: &Corner, b: &Corner, share: f64) -> Corner {
     }
 }
 
-fn placed(
+fn place_fan(
     fan: [u32; 3],
     first: u32,
     item: usize,
@@ -129,7 +129,7 @@ fn placed(
         }
     });
     let [a, b, c] = points;
-    let area = edge(a, b, c.x, c.y);
+    let area = edge_area(a, b, c.x, c.y);
     if area == 0.0 || !area.is_finite() {
         return None;
     }
@@ -144,7 +144,7 @@ fn placed(
 }
 
 /// Twice the area of a triangle, positive where the place is to the right of the way from a to b, y down.
-fn edge(a: Point, b: Point, x: f64, y: f64) -> f64 {
+fn edge_area(a: Point, b: Point, x: f64, y: f64) -> f64 {
     (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)
 }
 
@@ -152,7 +152,8 @@ impl Triangle {
     /// The barycentric coordinates of a point on the frame, without perspective; they add up to 1.
     fn shares(&self, x: f64, y: f64) -> [f64; 3] {
         let [a, b, c] = self.points;
-        [edge(b, c, x, y), edge(c, a, x, y), edge(a, b, x, y)].map(|share| share / self.area)
+        [edge_area(b, c, x, y), edge_area(c, a, x, y), edge_area(a, b, x, y)]
+            .map(|share| share / self.area)
     }
 
     /// The barycentric coordinates of a point in perspective, the depth there, and 1/w.
@@ -169,7 +170,7 @@ impl Triangle {
     fn covers(&self, x: f64, y: f64) -> bool {
         let [a, b, c] = self.points;
         [(b, c), (c, a), (a, b)].into_iter().all(|(from, to)| {
-            let side = edge(from, to, x, y);
+            let side = edge_area(from, to, x, y);
             side > 0.0 || side == 0.0 && ((from.y == to.y && to.x > from.x) || to.y < from.y)
         })
     }

@@ -4,7 +4,7 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
 
-use super::failed;
+use super::page_failed;
 use crate::bundle::Combined;
 use crate::diagnostic::Diagnostic;
 use crate::emit::Emitted;
@@ -15,54 +15,55 @@ use crate::execute::kernel::Kernel;
 const VERTEX_AND_FRAGMENT: u32 = 3;
 
 /// Bytes as base64.
-pub fn bytes(bytes: &[u8]) -> String {
+pub fn base64_of_bytes(bytes: &[u8]) -> String {
     BASE64_STANDARD.encode(bytes)
 }
 
 /// Words as base64.
-pub fn words(words: &[u32]) -> String {
+pub fn base64_of_words(words: &[u32]) -> String {
     let all: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    bytes(&all)
+    base64_of_bytes(&all)
 }
 
 /// The words of an answer.
-pub fn unpacked(value: &Value) -> Result<Vec<u32>, String> {
+pub fn words_of_answer(value: &Value) -> Result<Vec<u32>, String> {
     let text = value.as_str().ok_or_else(|| format!("no words: {value}"))?;
     let bytes = BASE64_STANDARD.decode(text).map_err(|error| error.to_string())?;
     Ok(bytes.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect())
 }
 
 /// A kernel with everything that it is bound to.
-pub fn kernel(kernel: &Kernel, emitted: &Emitted) -> Result<Value, Diagnostic> {
-    let code = str::from_utf8(&emitted.bytes).map_err(|error| failed(error.to_string()))?;
+pub fn kernel_json(kernel: &Kernel, emitted: &Emitted) -> Result<Value, Diagnostic> {
+    let code = str::from_utf8(&emitted.bytes).map_err(|error| page_failed(error.to_string()))?;
     let fixtures: Vec<((u32, u32), &Fixture)> =
         kernel.resources().map(|resource| ((0, resource.binding), &*resource.fixture)).collect();
-    let filters = filters(fixtures.iter().map(|(_, fixture)| *fixture));
+    let filters = are_filtered(fixtures.iter().map(|(_, fixture)| *fixture));
     let inputs = json!({
         "binding": 0,
         "visibility": VERTEX_AND_FRAGMENT,
         "texture": { "sampleType": "uint", "viewDimension": "2d" },
     });
-    let layout = fixtures.iter().map(|(place, fixture)| entry(*place, Some(fixture), filters));
-    let units: Vec<Value> = emitted.native.combined.iter().map(unit).collect();
+    let layout =
+        fixtures.iter().map(|(place, fixture)| layout_entry(*place, Some(fixture), filters));
+    let units: Vec<Value> = emitted.native.combined.iter().map(unit_json).collect();
     Ok(json!({
         "id": kernel.id,
         "code": code,
         "entry": emitted.native.entry_name,
         "layout": std::iter::once(inputs).chain(layout).collect::<Vec<_>>(),
-        "fixtures": fixtures.iter().map(|(place, one)| fixture(*place, one)).collect::<Vec<_>>(),
+        "fixtures": fixtures.iter().map(|(place, one)| fixture_json(*place, one)).collect::<Vec<_>>(),
         "units": units,
     }))
 }
 
 /// The key of a binding in the JSON for the scripts.
-pub fn key((group, binding): (u32, u32)) -> String {
+pub fn binding_key((group, binding): (u32, u32)) -> String {
     format!("{group}/{binding}")
 }
 
 /// A combined sampler of GLSL.
-pub fn unit(combined: &Combined) -> Value {
-    let key_of = |place: [u32; 2]| key((place[0], place[1]));
+pub fn unit_json(combined: &Combined) -> Value {
+    let key_of = |place: [u32; 2]| binding_key((place[0], place[1]));
     json!({
         "name": combined.name,
         "texture": key_of(combined.texture),
@@ -71,12 +72,12 @@ pub fn unit(combined: &Combined) -> Value {
 }
 
 /// Whether textures are filtered. Not every device can filter f32 textures.
-pub fn filters<'a>(mut fixtures: impl Iterator<Item = &'a Fixture>) -> bool {
+pub fn are_filtered<'a>(mut fixtures: impl Iterator<Item = &'a Fixture>) -> bool {
     fixtures.any(|one| matches!(one, Fixture::Sampler(one) if one.linear && one.compare.is_none()))
 }
 
 /// The layout of a binding in WebGPU. Without a fixture it is a uniform buffer.
-pub fn entry((_, binding): (u32, u32), fixture: Option<&Fixture>, filters: bool) -> Value {
+pub fn layout_entry((_, binding): (u32, u32), fixture: Option<&Fixture>, filters: bool) -> Value {
     let mut entry = json!({ "binding": binding, "visibility": VERTEX_AND_FRAGMENT });
     match fixture {
         Some(Fixture::Texture(texture)) => {
@@ -102,26 +103,30 @@ pub fn entry((_, binding): (u32, u32), fixture: Option<&Fixture>, filters: bool)
 }
 
 /// A texture or a sampler with its binding.
-pub fn fixture(place: (u32, u32), fixture: &Fixture) -> Value {
+pub fn fixture_json(place: (u32, u32), fixture: &Fixture) -> Value {
     match fixture {
-        Fixture::Texture(texture) => json!({ "place": key(place), "texture": image(texture) }),
-        Fixture::Sampler(one) => json!({ "place": key(place), "sampler": sampler(*one) }),
+        Fixture::Texture(texture) => {
+            json!({ "place": binding_key(place), "texture": image_json(texture) })
+        }
+        Fixture::Sampler(one) => {
+            json!({ "place": binding_key(place), "sampler": sampler_json(*one) })
+        }
     }
 }
 
-fn image(texture: &Texture) -> Value {
+fn image_json(texture: &Texture) -> Value {
     let texels: Vec<u32> = texture.texels.iter().map(|texel| texel.to_bits()).collect();
     json!({
         "width": texture.width,
         "height": texture.height,
         "layers": texture.kind.layers(),
         "depth": texture.kind.is_depth(),
-        "texels": words(&texels),
+        "texels": base64_of_words(&texels),
     })
 }
 
 /// The sampler in WebGPU's terms.
-fn sampler(sampler: Sampler) -> Value {
+fn sampler_json(sampler: Sampler) -> Value {
     let address = match sampler.address {
         Address::Clamp => "clamp-to-edge",
         Address::Repeat => "repeat",

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Map, Value, json};
 
-use super::{Api, asked, failed};
+use super::{Api, asked, page_failed};
 use crate::bundle::{ClipSpace, FrontFace, Target};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::Pair;
@@ -16,10 +16,14 @@ use crate::execute::shipped::{Format, Shipped};
 ///
 /// # Errors
 /// The drawing needs something that is not supported here.
-pub fn question(api: Api, pair: Pair<'_>, drawing: &Drawing<'_>) -> Result<Value, Diagnostic> {
+pub fn frames_question(
+    api: Api,
+    pair: Pair<'_>,
+    drawing: &Drawing<'_>,
+) -> Result<Value, Diagnostic> {
     for stage in [pair.vertex, pair.fragment] {
         if stage.target != api.target() {
-            return Err(failed(format!("this executor draws no {}", stage.target)));
+            return Err(page_failed(format!("this executor draws no {}", stage.target)));
         }
     }
     let lacks = pair.fragment.lacks_of_webgpu().filter(|_| api.target() == Target::WGSL);
@@ -28,68 +32,69 @@ pub fn question(api: Api, pair: Pair<'_>, drawing: &Drawing<'_>) -> Result<Value
     }
     if drawing.state != State::default() || !drawing.levels.is_empty() {
         let message = "shipped texts are drawn without depth test, culling and smaller levels";
-        return Err(failed(message));
+        return Err(page_failed(message));
     }
-    let formats = pair.fragment.targets().map_err(failed)?;
-    let places = places(pair);
+    let formats = pair.fragment.targets().map_err(page_failed)?;
+    let places = read_places(pair);
     let fixtures: Vec<(Place, &Fixture)> =
         places.iter().filter_map(|place| Some((*place, &**drawing.fixtures.get(place)?))).collect();
     let views = drawing.views.iter().map(|view| {
         let items = drawing.items.iter();
-        items.map(|item| buffers(drawing, view, item, &places)).collect::<Result<Vec<_>, _>>()
+        items.map(|item| buffers_json(drawing, view, item, &places)).collect::<Result<Vec<_>, _>>()
     });
-    let views = views.collect::<Result<Vec<_>, _>>().map_err(failed)?;
+    let views = views.collect::<Result<Vec<_>, _>>().map_err(page_failed)?;
     let reversed = |clip: &ClipSpace| clip.front_face == FrontFace::Reversed;
     Ok(json!({
         "size": drawing.size,
         "formats": formats.iter().map(|one| *one == Format::Float).collect::<Vec<_>>(),
-        "vertex": stage(pair.vertex),
-        "fragment": stage(pair.fragment),
-        "layout": layout(drawing, &places, &fixtures),
-        "fixtures": fixtures.iter().map(|(place, one)| asked::fixture(*place, one)).collect::<Vec<_>>(),
-        "units": units(pair),
-        "blocks": blocks(pair).map_err(failed)?,
+        "vertex": stage_json(pair.vertex),
+        "fragment": stage_json(pair.fragment),
+        "layout": layout_json(drawing, &places, &fixtures),
+        "fixtures": fixtures.iter().map(|(place, one)| asked::fixture_json(*place, one)).collect::<Vec<_>>(),
+        "units": units_json(pair),
+        "blocks": blocks_json(pair).map_err(page_failed)?,
         "reversed": pair.vertex.native.clip.as_ref().is_some_and(reversed),
-        "meshes": drawing.items.iter().map(|item| mesh(item.mesh)).collect::<Vec<_>>(),
+        "meshes": drawing.items.iter().map(|item| mesh_json(item.mesh)).collect::<Vec<_>>(),
         "views": views,
     }))
 }
 
 /// The frames in an answer: the words of each target for each view.
-pub fn answer(said: &Value) -> Result<Vec<Frame>, String> {
+pub fn frames_answer(said: &Value) -> Result<Vec<Frame>, String> {
     let list = |value: &Value| match value {
         Value::Array(list) => Ok(list.clone()),
         other => Err(format!("no frames: {other}")),
     };
     let frame = |said: &Value| {
-        let targets = list(said)?.iter().map(asked::unpacked).collect::<Result<_, String>>()?;
+        let targets =
+            list(said)?.iter().map(asked::words_of_answer).collect::<Result<_, String>>()?;
         Ok(Frame { targets, depth: Vec::new(), detour: None })
     };
     list(said)?.iter().map(frame).collect()
 }
 
-fn stage(shipped: &Shipped) -> Value {
+fn stage_json(shipped: &Shipped) -> Value {
     json!({ "code": shipped.text(), "entry": shipped.native.entry_name })
 }
 
 /// All bindings that one of the stages reads.
-fn places(pair: Pair<'_>) -> BTreeSet<Place> {
+fn read_places(pair: Pair<'_>) -> BTreeSet<Place> {
     let stages = [pair.vertex, pair.fragment].into_iter();
     let bindings = stages.flat_map(|stage| &stage.reflection.bindings);
     bindings.map(|binding| (binding.group, binding.binding)).collect()
 }
 
 /// The layout of each group, in order.
-fn layout(
+fn layout_json(
     drawing: &Drawing<'_>,
     places: &BTreeSet<Place>,
     fixtures: &[(Place, &Fixture)],
 ) -> Vec<Vec<Value>> {
-    let filters = asked::filters(fixtures.iter().map(|(_, fixture)| *fixture));
+    let filters = asked::are_filtered(fixtures.iter().map(|(_, fixture)| *fixture));
     let groups = places.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
     let entry = |place: &Place| {
         let fixture = drawing.fixtures.get(place).map(|fixture| &**fixture);
-        asked::entry(*place, fixture, filters)
+        asked::layout_entry(*place, fixture, filters)
     };
     (0..groups)
         .map(|group| places.iter().filter(|place| place.0 == group).map(entry).collect())
@@ -97,7 +102,7 @@ fn layout(
 }
 
 /// The uniform buffers of an item in a view.
-fn buffers(
+fn buffers_json(
     drawing: &Drawing<'_>,
     view: &Buffers,
     item: &Item<'_>,
@@ -107,19 +112,19 @@ fn buffers(
     for place in places.iter().filter(|place| !drawing.fixtures.contains_key(place)) {
         let bytes = drawing.buffer(view, item, *place);
         let bytes = bytes.ok_or_else(|| format!("nothing is given for {place:?}"))?;
-        found.insert(asked::key(*place), asked::bytes(bytes).into());
+        found.insert(asked::binding_key(*place), asked::base64_of_bytes(bytes).into());
     }
     Ok(Value::Object(found))
 }
 
 /// The combined samplers of both stages of GLSL.
-fn units(pair: Pair<'_>) -> Vec<Value> {
+fn units_json(pair: Pair<'_>) -> Vec<Value> {
     let stages = [pair.vertex, pair.fragment].into_iter();
-    stages.flat_map(|stage| &stage.native.combined).map(asked::unit).collect()
+    stages.flat_map(|stage| &stage.native.combined).map(asked::unit_json).collect()
 }
 
 /// The uniform blocks of both stages of GLSL by name, with a number for each group and binding.
-fn blocks(pair: Pair<'_>) -> Result<Vec<Value>, String> {
+fn blocks_json(pair: Pair<'_>) -> Result<Vec<Value>, String> {
     let mut numbers: BTreeMap<Place, usize> = BTreeMap::new();
     let mut found = Vec::new();
     for stage in [pair.vertex, pair.fragment] {
@@ -129,13 +134,15 @@ fn blocks(pair: Pair<'_>) -> Result<Vec<Value>, String> {
             let next = numbers.len();
             let number = *numbers.entry(place).or_insert(next);
             let name = slot.and_then(|slot| slot.name.as_deref());
-            found.push(json!({ "name": name, "place": asked::key(place), "number": number }));
+            found.push(
+                json!({ "name": name, "place": asked::binding_key(place), "number": number }),
+            );
         }
     }
     Ok(found)
 }
 
-fn mesh(mesh: &Mesh) -> Value {
+fn mesh_json(mesh: &Mesh) -> Value {
     let attribute = |(one, offset): (Attribute, u64)| {
         json!({
             "shaderLocation": one.location,
@@ -148,8 +155,8 @@ fn mesh(mesh: &Mesh) -> Value {
     json!({
         "stride": mesh.stride(),
         "attributes": mesh.layout().into_iter().map(attribute).collect::<Vec<_>>(),
-        "words": asked::words(&mesh.words),
-        "indices": asked::words(&mesh.indices),
+        "words": asked::base64_of_words(&mesh.words),
+        "indices": asked::base64_of_words(&mesh.indices),
         "count": if mesh.indices.is_empty() { mesh.vertices() } else { mesh.indices.len() as u32 },
     })
 }

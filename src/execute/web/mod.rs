@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 
 use super::emitted;
 use super::frame::{Drawing, Frame};
-use super::gpu::{batched, input_texels, unpack};
+use super::gpu::{input_texels, run_batches, unpack_results};
 use super::kernel::{Kernel, TARGET_WIDTH};
 use super::{Pair, Session};
 use crate::browser::serve::{Files, Server};
@@ -153,14 +153,14 @@ impl Web {
             Ok(Answer::Lacks(words)) => {
                 return Err(Failure::Of(Diagnostic::error(codes::EXECUTOR_LACKS, words)));
             }
-            Ok(Answer::Error(words)) => return Err(Failure::Of(failed(words))),
-            Err(Problem::Threw(words)) => return Err(Failure::Of(failed(words))),
-            Ok(Answer::Lost(words)) => Failure::Lost(failed(words)),
+            Ok(Answer::Error(words)) => return Err(Failure::Of(page_failed(words))),
+            Err(Problem::Threw(words)) => return Err(Failure::Of(page_failed(words))),
+            Ok(Answer::Lost(words)) => Failure::Lost(page_failed(words)),
             // A page that was slow once is slow again. Its work may continue in the process that
             // draws for all pages, where nothing stops it but the end of the browser.
             Err(problem @ Problem::Late { .. }) => {
                 page.end_browser();
-                Failure::Of(failed(problem.to_string()))
+                Failure::Of(page_failed(problem.to_string()))
             }
             Err(problem) => Failure::lost(problem),
         };
@@ -190,7 +190,9 @@ impl Web {
             kernels.iter().copied().filter(|kernel| !state.kept.contains_key(&kernel.id)).collect();
         let target = self.api.target();
         for some in new.chunks(AT_ONCE) {
-            let emit = |kernel: &&Kernel| asked::kernel(kernel, &emitted::emit(kernel, target)?);
+            let emit = |kernel: &&Kernel| {
+                asked::kernel_json(kernel, &emitted::emit_kernel(kernel, target)?)
+            };
             let made: Vec<Result<Value, Diagnostic>> =
                 on_large_stack(|| some.par_iter().map(emit).collect());
             let texts: Vec<&Value> = made.iter().flatten().collect();
@@ -199,17 +201,18 @@ impl Web {
                 false => self.ask(state, &format!("lamplight.prepare({})", json!(texts)))?,
             };
             let said: Vec<Answer> = serde_json::from_value(said)
-                .map_err(|error| Failure::Of(failed(error.to_string())))?;
+                .map_err(|error| Failure::Of(page_failed(error.to_string())))?;
             if let Some(Answer::Lost(words)) =
                 said.iter().find(|one| matches!(one, Answer::Lost(_)))
             {
-                let lost = failed(words.clone());
+                let lost = page_failed(words.clone());
                 *state = State::default();
                 return Err(Failure::Lost(lost));
             }
             let mut said = said.into_iter();
             for (kernel, made) in some.iter().zip(&made) {
-                let result = made.as_ref().map_err(Clone::clone).and_then(|_| kept(said.next()));
+                let result =
+                    made.as_ref().map_err(Clone::clone).and_then(|_| check_kept(said.next()));
                 state.kept.insert(kernel.id, result);
             }
         }
@@ -225,7 +228,7 @@ impl Web {
     ) -> Result<Vec<u32>, Diagnostic> {
         let rows = (count * kernel.result_texels() + 2).div_ceil(TARGET_WIDTH);
         let header = [count, rows * TARGET_WIDTH, run, 0];
-        let texels = asked::words(&input_texels(kernel, inputs, header));
+        let texels = asked::base64_of_words(&input_texels(kernel, inputs, header));
         let question = json!({ "id": kernel.id, "rows": rows, "texels": texels });
         let call = format!("lamplight.run({question})");
         let said = self.twice(|web, state| {
@@ -235,7 +238,7 @@ impl Web {
                 _ => web.ask(state, &call),
             }
         })?;
-        unpack(kernel, &asked::unpacked(&said).map_err(failed)?, header)
+        unpack_results(kernel, &asked::words_of_answer(&said).map_err(page_failed)?, header)
     }
 }
 
@@ -253,7 +256,7 @@ impl Session for Web {
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
         let web = &*self;
         let mut run = web.runs;
-        let results = batched(kernel, inputs, |batch, count| {
+        let results = run_batches(kernel, inputs, |batch, count| {
             run = run.wrapping_add(1);
             web.draw(kernel, batch, [count, run])
         });
@@ -266,20 +269,20 @@ impl Session for Web {
         pair: Pair<'_>,
         drawing: &Drawing<'_>,
     ) -> Result<Vec<Frame>, Diagnostic> {
-        let question = frames::question(self.api, pair, drawing)?;
+        let question = frames::frames_question(self.api, pair, drawing)?;
         let call = format!("lamplight.frames({question})");
         let said = self.twice(|web, state| web.ask(state, &call))?;
-        frames::answer(&said).map_err(failed)
+        frames::frames_answer(&said).map_err(page_failed)
     }
 }
 
 /// Whether the page has a kernel, or why not.
-fn kept(said: Option<Answer>) -> Result<(), Diagnostic> {
+fn check_kept(said: Option<Answer>) -> Result<(), Diagnostic> {
     match said {
         Some(Answer::Value(_)) => Ok(()),
         Some(Answer::Lacks(words)) => Err(Diagnostic::error(codes::EXECUTOR_LACKS, words)),
-        Some(Answer::Error(words) | Answer::Lost(words)) => Err(failed(words)),
-        None => Err(failed("the page has forgotten a kernel")),
+        Some(Answer::Error(words) | Answer::Lost(words)) => Err(page_failed(words)),
+        None => Err(page_failed("the page has forgotten a kernel")),
     }
 }
 
@@ -293,10 +296,10 @@ enum Failure {
 
 impl Failure {
     fn lost(problem: Problem) -> Self {
-        Self::Lost(failed(problem.to_string()))
+        Self::Lost(page_failed(problem.to_string()))
     }
 }
 
-fn failed(message: impl Into<String>) -> Diagnostic {
+fn page_failed(message: impl Into<String>) -> Diagnostic {
     Diagnostic::error(codes::EXECUTOR_FAILED, message)
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use rustc_hash::FxHashMap;
 
-use super::capabilities::{SHADER, extensions};
+use super::capabilities::{SHADER, required_extensions};
 use super::{DEPTH, HEADER, MEMORY_MODEL, Piece, Pool, Ref, SHELVES, Shelf, Text};
 use crate::emit::spirv::{first_word, op};
 
@@ -134,7 +134,7 @@ fn write_extension(name: &str, out: &mut Vec<u32>) {
 }
 
 /// Puts an entry point and the functions that it reaches together.
-pub fn assemble<'a>(
+pub fn assemble_module<'a>(
     pool: &Pool,
     entry: &'a Piece,
     function: &dyn Fn(&str) -> Option<&'a Piece>,
@@ -159,7 +159,7 @@ pub fn assemble<'a>(
     out.extend(HEADER);
     out.extend([bound, 0]);
     out.extend(needs.iter().flat_map(|&need| [first_word(op::CAPABILITY, 2), need]));
-    for name in extensions(&needs) {
+    for name in required_extensions(&needs) {
         write_extension(name, &mut out);
     }
     linker.write(&[Shelf::Import], |piece| &piece.body, &mut out);

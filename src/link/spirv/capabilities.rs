@@ -24,13 +24,13 @@ const EXTENSIONS: [(u32, &str); 7] = [
 ];
 
 /// The extensions that capabilities need, sorted by name.
-pub fn extensions(needs: &BTreeSet<u32>) -> BTreeSet<&'static str> {
+pub fn required_extensions(needs: &BTreeSet<u32>) -> BTreeSet<&'static str> {
     EXTENSIONS.iter().filter(|row| needs.contains(&row.0)).map(|row| row.1).collect()
 }
 
 /// Notes the capabilities that an instruction needs. Those that depend on another instruction are
 /// noted elsewhere.
-pub fn require(inst: &Inst, needs: &mut BTreeSet<u32>) -> Result<(), String> {
+pub fn require_capabilities(inst: &Inst, needs: &mut BTreeSet<u32>) -> Result<(), String> {
     match inst.op {
         op::TYPE_INT if inst.word(2)? == 8 => needs.extend([39]), // Int8
         op::TYPE_IMAGE => require_image(inst, needs)?,

@@ -13,8 +13,8 @@ mod module;
 mod operands;
 mod split;
 
-pub use assemble::assemble;
-pub use split::split;
+pub use assemble::assemble_module;
+pub use split::split_module;
 
 use rustc_hash::FxHashMap;
 

@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
-use super::capabilities::{self, SHADER, STORAGE_IMAGE_WRITE_WITHOUT_FORMAT, extensions};
+use super::capabilities::{self, SHADER, STORAGE_IMAGE_WRITE_WITHOUT_FORMAT, required_extensions};
 use super::operands::Inst;
 use super::operands::Section::{Body, Either, Global};
 use super::{HEADER, MEMORY_MODEL};
@@ -163,7 +163,7 @@ impl<'a> Module<'a> {
         if inst.op == op::IMAGE_WRITE && self.lacks_format(inst.word(1)?) {
             needs.insert(STORAGE_IMAGE_WRITE_WITHOUT_FORMAT);
         }
-        capabilities::require(inst, needs)
+        capabilities::require_capabilities(inst, needs)
     }
 
     /// Whether the type of an image has no format.
@@ -187,7 +187,7 @@ impl<'a> Module<'a> {
             .of(op::EXTENSION)
             .map(|inst| inst.string(1))
             .collect::<Result<BTreeSet<_>, _>>()?;
-        if !declared.iter().map(String::as_str).eq(extensions(&needs)) {
+        if !declared.iter().map(String::as_str).eq(required_extensions(&needs)) {
             return Err(format!("the extensions {declared:?} are not those of {needs:?}"));
         }
         Ok(())
@@ -207,7 +207,10 @@ pub struct Function {
 }
 
 /// The functions, in the order of the module. One of them is the entry point's.
-pub fn functions(module: &Module, is_user: &dyn Fn(&str) -> bool) -> Result<Vec<Function>, String> {
+pub fn find_functions(
+    module: &Module,
+    is_user: &dyn Fn(&str) -> bool,
+) -> Result<Vec<Function>, String> {
     let entry = module.entry_point()?.word(2)?;
     let (mut functions, mut entries, mut taken) = (vec![], 0, HashSet::new());
     for span in module.spans()? {

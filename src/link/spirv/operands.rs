@@ -19,7 +19,7 @@ use Section::{Body, Either, Global, Head};
 /// The section of an opcode and the layout of its operands: `i` an id, `r` the id that is defined, `l` a
 /// literal, `s` a string, `I` ids to the end, `L` literals to the end, `P` pairs of a literal and an id to
 /// the end, `m` image operands, and `a` a memory access.
-fn layout(op: u16) -> Option<(Section, &'static str)> {
+fn operand_layout(op: u16) -> Option<(Section, &'static str)> {
     Some(match op {
         1 => (Either, "ir"),                   // Undef
         59 => (Either, "irlI"),                // Variable
@@ -110,7 +110,8 @@ impl<'a> Inst<'a> {
     /// not be renumbered.
     pub fn new(instruction: Instruction<'a>) -> Result<Self, String> {
         let Instruction { op, words } = instruction;
-        let (section, layout) = layout(op).ok_or_else(|| format!("opcode {op} is not known"))?;
+        let (section, layout) =
+            operand_layout(op).ok_or_else(|| format!("opcode {op} is not known"))?;
         Ok(Self { op, section, words, layout })
     }
 

@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
-use super::module::{Function, Module, Role, functions};
+use super::module::{Function, Module, Role, find_functions};
 use super::operands::Inst;
 use super::{DEPTH, Declaration, Parts, Piece, Pool, Ref, Shelf, Text};
 use crate::emit::spirv::op;
@@ -13,7 +13,7 @@ use crate::emit::spirv::op;
 /// `is_user` says which named functions are the author's: calls to those are kept by name.
 /// `is_wanted` says which of them become pieces. The entry point becomes one by its own name, which
 /// a function may have too. Nothing that these do not need is looked at.
-pub fn split(
+pub fn split_module(
     words: &[u32],
     pool: &mut Pool,
     is_user: &dyn Fn(&str) -> bool,
@@ -21,7 +21,7 @@ pub fn split(
 ) -> Result<Parts, String> {
     let module = Module::read(words)?;
     let point = module.entry_point()?;
-    let functions = functions(&module, is_user)?;
+    let functions = find_functions(&module, is_user)?;
     module.check()?;
     let mut splitter = Splitter::new(&module, pool, &functions);
     let mut parts = Parts { functions: vec![], entry: None };

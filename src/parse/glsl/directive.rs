@@ -7,12 +7,12 @@ use crate::diagnostic::{Code, Diagnostic, codes};
 use crate::source::{LIMITS, Span};
 
 /// Reads the directive whose `#` is token `hash` and whose line ends before token `end`.
-pub fn push(module: &mut Module, hash: usize, end: usize, symbols: &Symbols) {
+pub fn push_directive(module: &mut Module, hash: usize, end: usize, symbols: &Symbols) {
     let span = Span::new(
         module.source,
         module.tokens[hash].start as usize..module.tokens[end - 1].end as usize,
     );
-    let directive = read(module, hash + 1, end, symbols)
+    let directive = read_directive(module, hash + 1, end, symbols)
         .unwrap_or_else(|error| Directive::Invalid(Box::new(error)));
     module.parts.push(Part::Directive(directive, span));
 }
@@ -25,7 +25,7 @@ struct Open {
 }
 
 /// Connects the branches of every conditional; unbalanced ones are errors of the module.
-pub fn link(module: &mut Module) {
+pub fn link_branches(module: &mut Module) {
     let mut open: Vec<Open> = Vec::new();
     for index in 0..module.parts.len() {
         let Part::Directive(directive, span) = &module.parts[index] else { continue };
@@ -36,13 +36,13 @@ pub fn link(module: &mut Module) {
             }
             Directive::Elif { .. } | Directive::Else { .. } => {
                 let otherwise = matches!(directive, Directive::Else { .. }).then_some(span);
-                let error = branch(open.last_mut(), index, span, otherwise).err();
+                let error = check_branch(open.last_mut(), index, span, otherwise).err();
                 module.errors.extend(error);
             }
             Directive::Endif => match open.pop() {
                 Some(mut last) => {
                     last.branches.push(index);
-                    connect(&mut module.parts, &last.branches);
+                    connect_branches(&mut module.parts, &last.branches);
                 }
                 None => module.errors.push(nothing_open(span)),
             },
@@ -58,7 +58,7 @@ pub fn link(module: &mut Module) {
     }
     for open in open {
         if let Part::Directive(_, span) = &module.parts[open.branches[0]] {
-            module.errors.push(unbalanced(
+            module.errors.push(unbalanced_directive(
                 "a conditional is never closed",
                 *span,
                 "without an `#endif`",
@@ -67,7 +67,7 @@ pub fn link(module: &mut Module) {
     }
 }
 
-fn branch(
+fn check_branch(
     open: Option<&mut Open>,
     index: usize,
     span: Span,
@@ -76,7 +76,7 @@ fn branch(
     let open = open.ok_or_else(|| nothing_open(span))?;
     if let Some(earlier) = open.otherwise {
         let message = "a branch follows the `#else` of its conditional";
-        return Err(unbalanced(message, span, "this branch").at(earlier, "the `#else`"));
+        return Err(unbalanced_directive(message, span, "this branch").at(earlier, "the `#else`"));
     }
     open.branches.push(index);
     open.otherwise = otherwise;
@@ -84,14 +84,14 @@ fn branch(
 }
 
 fn nothing_open(span: Span) -> Diagnostic {
-    unbalanced("no conditional is open here", span, "without an `#if` before it")
+    unbalanced_directive("no conditional is open here", span, "without an `#if` before it")
 }
 
-fn unbalanced(message: &str, span: Span, label: &str) -> Diagnostic {
+fn unbalanced_directive(message: &str, span: Span, label: &str) -> Diagnostic {
     Diagnostic::error(codes::UNBALANCED_CONDITIONAL, message).at(span, label)
 }
 
-fn connect(parts: &mut [Part], branches: &[usize]) {
+fn connect_branches(parts: &mut [Part], branches: &[usize]) {
     let last = branches[branches.len() - 1];
     for pair in branches.windows(2) {
         let Part::Directive(directive, _) = &mut parts[pair[0]] else { continue };
@@ -122,7 +122,7 @@ const NAMES: &[&str] = &[
 ];
 
 /// Reads the tokens `start..end` after the `#`.
-fn read(
+fn read_directive(
     module: &mut Module,
     start: usize,
     end: usize,

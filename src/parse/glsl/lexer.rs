@@ -66,7 +66,7 @@ pub fn tokenize(text: &str, symbols: &mut Symbols, limit: usize) -> Result<Vec<T
         if tokens.len() == limit {
             return Err(LexError::TooMany(start));
         }
-        let (kind, end) = scan(text, start);
+        let (kind, end) = scan_token(text, start);
         let spelling = &text[start..end];
         let spliced = spelling.contains('\\') && spelling.len() > 1;
         let symbol = if spliced {
@@ -94,7 +94,7 @@ pub fn line_end(text: &str, mut at: usize) -> usize {
     while at < bytes.len() {
         at = match bytes[at] {
             b'\n' => return at + 1,
-            b'\\' => at + splice(bytes, at).max(1),
+            b'\\' => at + splice_length(bytes, at).max(1),
             b'/' if bytes.get(at + 1) == Some(&b'/') => line_comment_end(bytes, at),
             b'/' if bytes.get(at + 1) == Some(&b'*') => {
                 block_comment_end(bytes, at).unwrap_or(bytes.len())
@@ -123,14 +123,14 @@ fn skip_gap(bytes: &[u8], mut at: usize) -> Result<Gap, LexError> {
             Some(b'/') if bytes.get(at + 1) == Some(&b'*') => {
                 block_comment_end(bytes, at).ok_or(LexError::OpenComment(at))?
             }
-            Some(b'\\') if splice(bytes, at) > 0 => at + splice(bytes, at),
+            Some(b'\\') if splice_length(bytes, at) > 0 => at + splice_length(bytes, at),
             _ => return Ok(Gap { end: at, newline }),
         };
     }
 }
 
 /// Length of a line continuation at this byte; 0 if there is none.
-fn splice(bytes: &[u8], at: usize) -> usize {
+fn splice_length(bytes: &[u8], at: usize) -> usize {
     match bytes.get(at..) {
         Some([b'\\', b'\r', b'\n', ..]) => 3,
         Some([b'\\', b'\n', ..]) => 2,
@@ -140,7 +140,7 @@ fn splice(bytes: &[u8], at: usize) -> usize {
 
 fn line_comment_end(bytes: &[u8], mut at: usize) -> usize {
     while at < bytes.len() && bytes[at] != b'\n' {
-        at += splice(bytes, at).max(1);
+        at += splice_length(bytes, at).max(1);
     }
     at
 }
@@ -157,7 +157,7 @@ fn without_splices(spelling: &str) -> String {
     spelling.replace("\\\r\n", "").replace("\\\n", "")
 }
 
-fn scan(text: &str, start: usize) -> (Kind, usize) {
+fn scan_token(text: &str, start: usize) -> (Kind, usize) {
     let bytes = text.as_bytes();
     match bytes[start] {
         b'a'..=b'z' | b'A'..=b'Z' | b'_' => (Kind::Identifier, word_end(bytes, start)),
@@ -165,7 +165,7 @@ fn scan(text: &str, start: usize) -> (Kind, usize) {
         b'.' if bytes.get(start + 1).is_some_and(u8::is_ascii_digit) => {
             (Kind::Number, number_end(bytes, start))
         }
-        _ => match punctuation(&bytes[start..]) {
+        _ => match punctuation_length(&bytes[start..]) {
             0 => (Kind::Other, start + text[start..].chars().next().map_or(1, char::len_utf8)),
             length => (Kind::Punctuation, start + length),
         },
@@ -176,7 +176,7 @@ fn word_end(bytes: &[u8], mut at: usize) -> usize {
     loop {
         match bytes.get(at) {
             Some(byte) if is_word_byte(*byte) => at += 1,
-            Some(b'\\') if splice(bytes, at) > 0 => at += splice(bytes, at),
+            Some(b'\\') if splice_length(bytes, at) > 0 => at += splice_length(bytes, at),
             _ => return at,
         }
     }
@@ -201,7 +201,7 @@ const PUNCTUATION: &[&str] = &[
     "/=", "%=", "&=", "|=", "^=", "<<", ">>",
 ];
 
-fn punctuation(rest: &[u8]) -> usize {
+fn punctuation_length(rest: &[u8]) -> usize {
     if let Some(long) = PUNCTUATION.iter().find(|text| rest.starts_with(text.as_bytes())) {
         return long.len();
     }
@@ -213,6 +213,6 @@ pub fn single_token(text: &str) -> Option<Kind> {
     if text.is_empty() {
         return None;
     }
-    let (kind, end) = scan(text, 0);
+    let (kind, end) = scan_token(text, 0);
     (end == text.len() && kind != Kind::Other).then_some(kind)
 }

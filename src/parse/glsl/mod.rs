@@ -167,8 +167,8 @@ pub fn parse(sources: &SourceSet, source: SourceId, symbols: &mut Symbols) -> Mo
         errors,
         line_starts,
     };
-    split(&mut module, symbols);
-    directive::link(&mut module);
+    split_parts(&mut module, symbols);
+    directive::link_branches(&mut module);
     module
 }
 
@@ -190,7 +190,7 @@ fn lex_error(source: SourceId, text: &str, error: lexer::LexError) -> Diagnostic
 }
 
 /// Cuts the tokens into text and directives.
-fn split(module: &mut Module, symbols: &Symbols) {
+fn split_parts(module: &mut Module, symbols: &Symbols) {
     let (mut token, mut byte) = (0, 0);
     while token < module.tokens.len() {
         let hash = find_from(&module.tokens, token, |token| {
@@ -203,7 +203,7 @@ fn split(module: &mut Module, symbols: &Symbols) {
         }
         module.tokens[hash].first_of_part = true;
         let end = find_from(&module.tokens, hash + 1, |token| token.first_of_line);
-        directive::push(module, hash, end, symbols);
+        directive::push_directive(module, hash, end, symbols);
         byte = lexer::line_end(&module.text, module.tokens[end - 1].end as usize);
         token = end;
     }

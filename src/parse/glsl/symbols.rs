@@ -19,8 +19,8 @@ macro_rules! known {
         /// Spellings that the composer itself uses. They have the same numbers in every
         /// [`Symbols`].
         pub mod known {
-            use super::{Symbol, position};
-            $(#[doc = $text] pub const $name: Symbol = position($text);)*
+            use super::{Symbol, known_position};
+            $(#[doc = $text] pub const $name: Symbol = known_position($text);)*
         }
 
         const KNOWN: &[&str] = &[$($text),*];
@@ -42,15 +42,15 @@ known! {
 }
 
 /// The number of one of the spellings in `KNOWN`; an error of the compiler if it is not there.
-const fn position(text: &str) -> Symbol {
+const fn known_position(text: &str) -> Symbol {
     let mut index = 0;
-    while !same(KNOWN[index].as_bytes(), text.as_bytes()) {
+    while !same_bytes(KNOWN[index].as_bytes(), text.as_bytes()) {
         index += 1;
     }
     Symbol(index as u32)
 }
 
-const fn same(left: &[u8], right: &[u8]) -> bool {
+const fn same_bytes(left: &[u8], right: &[u8]) -> bool {
     let mut index = 0;
     while index < left.len() && index < right.len() && left[index] == right[index] {
         index += 1;

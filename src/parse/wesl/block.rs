@@ -27,7 +27,7 @@ pub fn check_attributes(
 }
 
 /// The warning about braces without a condition.
-pub fn unreachable(tokens: Tokens<'_>, open: usize) -> Diagnostic {
+pub fn unreachable_braces(tokens: Tokens<'_>, open: usize) -> Diagnostic {
     let message = "a block of declarations without a condition";
     Diagnostic::warning(codes::BLOCK_READING, message)
         .at(tokens.span(open), "what is in these braces is in no permutation")
@@ -51,10 +51,10 @@ pub fn used_behind(tokens: Tokens<'_>, at: usize) -> Diagnostic {
 
 /// The text of a flattened block's head that is removed: from its first attribute to the brace, and
 /// whole lines if nothing else is on them.
-pub fn head(tokens: Tokens<'_>, start: usize, open: usize) -> Range<u32> {
+pub fn removed_head(tokens: Tokens<'_>, start: usize, open: usize) -> Range<u32> {
     let text = tokens.text;
     let bytes = tokens.range(start, open + 1);
-    let end = trivia::trailing(text, bytes.end, tokens.start(open + 1));
+    let end = trivia::trailing_end(text, bytes.end, tokens.start(open + 1));
     let start = line_start(text, bytes.start);
     match line_end(text, end) {
         Some(after) if at_line_start(text, start) => start..after,
@@ -64,12 +64,12 @@ pub fn head(tokens: Tokens<'_>, start: usize, open: usize) -> Range<u32> {
 
 /// The text that is removed with the closing brace of a flattened block: its whole line, if nothing
 /// else is on it.
-pub fn tail(tokens: Tokens<'_>, close: usize) -> Range<u32> {
+pub fn removed_tail(tokens: Tokens<'_>, close: usize) -> Range<u32> {
     let text = tokens.text;
     let bytes = tokens.range(close, close + 1);
     let start = line_start(text, bytes.start);
     let alone = at_line_start(text, start);
-    let end = trivia::trailing(text, bytes.end, tokens.start(close + 1));
+    let end = trivia::trailing_end(text, bytes.end, tokens.start(close + 1));
     match line_end(text, end) {
         Some(after) if alone => start..after,
         // `} @else {`: the line break before it is removed, and the one after it stays.

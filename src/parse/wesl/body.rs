@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::block;
 use super::condition::{self, Chain};
 use super::cursor::Tokens;
-use super::import::origin;
+use super::import::read_origin;
 use super::item::{Place, after_template};
 use super::module::{
     ConditionId, Event, ItemKind, LocalUse, Module, Origin, Parts, Path, Reference,
@@ -25,7 +25,7 @@ const EXPRESSION_ATTRIBUTES: &[&str] =
 /// Fills the events, locals and free names of the items at `places`.
 ///
 /// If uses are traced, also the places that name a parameter or a local.
-pub fn scan(
+pub fn scan_body(
     module: &mut Module,
     tokens: &[Token],
     names: &Names,
@@ -55,13 +55,13 @@ pub fn scan(
         scanner.scopes.leave(0);
         let item = &mut scanner.module.items[index];
         item.events = std::mem::take(&mut scanner.events);
-        item.locals = sorted(&mut scanner.locals);
-        item.free = sorted(&mut scanner.free);
+        item.locals = sorted_names(&mut scanner.locals);
+        item.free = sorted_names(&mut scanner.free);
         scanner.module.errors.extend(outcome.err());
     }
 }
 
-fn sorted(names: &mut Vec<Name>) -> Vec<Name> {
+fn sorted_names(names: &mut Vec<Name>) -> Vec<Name> {
     names.sort_unstable();
     names.dedup();
     std::mem::take(names)
@@ -142,7 +142,7 @@ impl Scanner<'_, '_> {
         let mut at = open + 1;
         while at < close {
             let start = at;
-            let attributes = condition::attributes(self.module, self.tokens, at, &mut chain);
+            let attributes = condition::read_attributes(self.module, self.tokens, at, &mut chain);
             let node = self.open_node(attributes.condition);
             self.attributes(start, attributes.end)?;
             self.tokens.identifier(attributes.end, "a name")?;
@@ -209,7 +209,7 @@ impl Scanner<'_, '_> {
     pub(super) fn close_node(&mut self, node: Option<usize>, start: usize, end: usize) {
         let Some(index) = node else { return };
         let before = self.tokens.tokens[..start].last().map_or(0, |token| token.end);
-        let range = trivia::lines(
+        let range = trivia::removed_lines(
             self.tokens.text,
             before,
             self.tokens.range(start, end),
@@ -259,7 +259,7 @@ impl Scanner<'_, '_> {
     fn stray_attribute(&mut self, at: usize) -> Result<usize, Diagnostic> {
         if condition::is_conditional(self.tokens, at) {
             let message = format!("`@{}` may not stand here", self.tokens.text(at + 1));
-            return Err(condition::illegal(
+            return Err(condition::illegal_attribute(
                 self.tokens,
                 at + 1,
                 &message,
@@ -309,7 +309,7 @@ impl Scanner<'_, '_> {
     }
 
     fn path(&mut self, at: usize) -> Result<usize, Diagnostic> {
-        let (origin, mut end) = origin(self.tokens, at)?;
+        let (origin, mut end) = read_origin(self.tokens, at)?;
         let first = end;
         let mut segments = Vec::new();
         loop {

@@ -41,7 +41,7 @@ pub struct Attributes {
 
 /// Reads the attributes that start at `at`, making a condition of the translate-time one.
 ///
-pub fn attributes(
+pub fn read_attributes(
     module: &mut Module,
     tokens: Tokens<'_>,
     at: usize,
@@ -54,7 +54,7 @@ pub fn attributes(
         let arguments = tokens.is(name_at + 1, b'(').then_some(name_at + 1);
         match tokens.word(name_at) {
             Some(Name::IF | Name::ELIF | Name::ELSE) if first.is_some() => {
-                let error = illegal(
+                let error = illegal_attribute(
                     tokens,
                     name_at,
                     "a node has two translate-time attributes",
@@ -64,11 +64,12 @@ pub fn attributes(
             }
             Some(word @ (Name::IF | Name::ELIF | Name::ELSE)) => {
                 first = Some(name_at);
-                match condition(module, tokens, name_at, word, arguments, *chain) {
+                match read_condition(module, tokens, name_at, word, arguments, *chain) {
                     Ok(id) => found.condition = Some(id),
                     Err(error) => {
                         module.errors.push(error);
-                        found.condition = (word == Name::IF).then(|| literal(module, true, chain));
+                        found.condition =
+                            (word == Name::IF).then(|| literal_condition(module, true, chain));
                     }
                 }
             }
@@ -97,20 +98,25 @@ pub fn is_conditional(tokens: Tokens<'_>, at: usize) -> bool {
 }
 
 /// The error for a translate-time attribute where none may be.
-pub fn illegal(tokens: Tokens<'_>, name_at: usize, message: &str, label: &str) -> Diagnostic {
+pub fn illegal_attribute(
+    tokens: Tokens<'_>,
+    name_at: usize,
+    message: &str,
+    label: &str,
+) -> Diagnostic {
     Diagnostic::error(codes::ILLEGAL_CONDITION, message).at(tokens.span(name_at), label)
 }
 
 /// A condition that nobody wrote. It replaces one that is wrong, so that an `@else` after it is not
 /// an error too, or stands for braces without a condition.
-pub fn literal(module: &mut Module, value: bool, chain: &Chain) -> ConditionId {
+pub fn literal_condition(module: &mut Module, value: bool, chain: &Chain) -> ConditionId {
     module.expressions.push(Expression::Literal(value));
     let expression = Some(module.expressions.len() as u32 - 1);
     module.conditions.push(Condition { expression, after: None, within: chain.within });
     module.conditions.len() as u32 - 1
 }
 
-fn condition(
+fn read_condition(
     module: &mut Module,
     tokens: Tokens<'_>,
     name_at: usize,
@@ -121,20 +127,25 @@ fn condition(
     let text = tokens.names.text(word);
     let expression = match arguments {
         Some(open) if word == Name::ELSE => {
-            return Err(illegal(tokens, open, "`@else` takes no condition", "not allowed")
-                .note("help: use `@elif(...)`"));
+            return Err(illegal_attribute(
+                tokens,
+                open,
+                "`@else` takes no condition",
+                "not allowed",
+            )
+            .note("help: use `@elif(...)`"));
         }
         None if word != Name::ELSE => {
             return Err(
                 tokens.expected(name_at + 1, &format!("`(` and the condition of `@{text}`"))
             );
         }
-        Some(open) => Some(parenthesised(module, tokens, open)?),
+        Some(open) => Some(read_parenthesised(module, tokens, open)?),
         None => None,
     };
     if word != Name::IF && chain.last.is_none() {
         let message = format!("`@{text}` without an `@if` before it");
-        return Err(illegal(
+        return Err(illegal_attribute(
             tokens,
             name_at,
             &message,
@@ -147,7 +158,7 @@ fn condition(
 }
 
 /// `( expression ,? )`.
-fn parenthesised(
+fn read_parenthesised(
     module: &mut Module,
     tokens: Tokens<'_>,
     open: usize,
@@ -158,10 +169,10 @@ fn parenthesised(
     if tokens.is(reader.at, b',') {
         reader.at += 1;
     }
-    if reader.at == close { Ok(expression) } else { Err(unexpected(tokens, reader.at)) }
+    if reader.at == close { Ok(expression) } else { Err(unexpected_token(tokens, reader.at)) }
 }
 
-fn unexpected(tokens: Tokens<'_>, at: usize) -> Diagnostic {
+fn unexpected_token(tokens: Tokens<'_>, at: usize) -> Diagnostic {
     Diagnostic::error(codes::CONDITION_SYNTAX, format!("unexpected `{}` in a condition", tokens.text(at)))
         .at(tokens.span(at), "not part of a translate-time expression")
         .note("a condition has names, `true`, `false`, `!`, `&&`, `||` and parentheses; declared axes may be compared")
@@ -229,7 +240,7 @@ impl Reader<'_, '_> {
             self.at += 1;
             let inner = self.expression()?;
             if self.at != close {
-                return Err(unexpected(self.tokens, self.at));
+                return Err(unexpected_token(self.tokens, self.at));
             }
             self.at = close + 1;
             return Ok(inner);
@@ -243,7 +254,7 @@ impl Reader<'_, '_> {
         let Some(operator) = self.comparison() else {
             return match left {
                 Operand::Name(name, range) => Ok(self.add(Expression::Flag(name, range))),
-                Operand::Integer(..) => Err(unexpected(self.tokens, start)),
+                Operand::Integer(..) => Err(unexpected_token(self.tokens, start)),
             };
         };
         let right = self.operand()?;
@@ -277,19 +288,18 @@ impl Reader<'_, '_> {
         self.at += 1;
         let range: Range<u32> = self.tokens.range(start, self.at.min(self.tokens.len()));
         match kind {
-            Some(Kind::Number) => match integer(self.tokens.text(self.at - 1), negative) {
+            Some(Kind::Number) => match parse_integer(self.tokens.text(self.at - 1), negative) {
                 Some(value) => Ok(Operand::Integer(value, range)),
-                None => {
-                    Err(unexpected(self.tokens, self.at - 1).note("only integers may be compared"))
-                }
+                None => Err(unexpected_token(self.tokens, self.at - 1)
+                    .note("only integers may be compared")),
             },
             Some(Kind::Word(name)) if !name.is_keyword() => Ok(Operand::Name(name, range)),
-            _ => Err(unexpected(self.tokens, start)),
+            _ => Err(unexpected_token(self.tokens, start)),
         }
     }
 }
 
-fn integer(text: &str, negative: bool) -> Option<i64> {
+fn parse_integer(text: &str, negative: bool) -> Option<i64> {
     let digits = text.strip_suffix(['i', 'u']).unwrap_or(text);
     let value: i64 = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
         Some(hexadecimal) => i64::from_str_radix(hexadecimal, 16).ok()?,

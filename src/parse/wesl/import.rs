@@ -7,14 +7,14 @@ use super::token::Kind;
 use crate::diagnostic::{Diagnostic, codes};
 
 /// Reads the statement whose `import` is at `at`; returns the index past its semicolon.
-pub fn import(
+pub fn read_import(
     module: &mut Module,
     tokens: Tokens<'_>,
     at: usize,
     condition: Option<ConditionId>,
 ) -> Result<usize, Diagnostic> {
     let first = at + 1;
-    let (origin, after) = origin(tokens, first)?;
+    let (origin, after) = read_origin(tokens, first)?;
     let nowhere = tokens.range(first, first);
     let parts = Parts { first: nowhere.clone(), parents: nowhere.clone(), last: nowhere.clone() };
     let path = Path { origin, segments: Vec::new(), range: nowhere, parts };
@@ -28,7 +28,7 @@ pub fn import(
 }
 
 /// `package ::`, repeated `super ::`, or nothing; and the index after it.
-pub fn origin(tokens: Tokens<'_>, at: usize) -> Result<(Origin, usize), Diagnostic> {
+pub fn read_origin(tokens: Tokens<'_>, at: usize) -> Result<(Origin, usize), Diagnostic> {
     let word = tokens.word(at);
     let mut end = at;
     let mut ups = 0;

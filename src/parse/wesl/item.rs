@@ -31,7 +31,7 @@ const KINDS: &[(Name, ItemKind)] = &[
 ];
 
 /// Fills the module's directives, imports and items. The items do not have their events yet.
-pub fn split(module: &mut Module, tokens: &[Token], names: &Names) -> Vec<Place> {
+pub fn split_items(module: &mut Module, tokens: &[Token], names: &Names) -> Vec<Place> {
     let text = std::sync::Arc::clone(&module.text);
     let tokens = Tokens { tokens, text: &text, names, source: module.source };
     let mut splitter = Splitter {
@@ -48,7 +48,7 @@ pub fn split(module: &mut Module, tokens: &[Token], names: &Names) -> Vec<Place>
 }
 
 /// The index after the next semicolon or closing brace that is outside of brackets.
-fn recover(tokens: Tokens<'_>, from: usize, limit: usize) -> usize {
+fn recover_from(tokens: Tokens<'_>, from: usize, limit: usize) -> usize {
     let mut at = from;
     while at < limit {
         if tokens.is(at, b';') {
@@ -85,12 +85,12 @@ impl Splitter<'_, '_> {
                 Ok(end) => end,
                 Err(error) => {
                     self.module.errors.push(error);
-                    recover(self.tokens, at, self.limit)
+                    recover_from(self.tokens, at, self.limit)
                 }
             };
             let tokens = self.tokens;
             self.behind =
-                trivia::trailing(tokens.text, tokens.range(at, end).end, tokens.start(end));
+                trivia::trailing_end(tokens.text, tokens.range(at, end).end, tokens.start(end));
             at = end;
         }
     }
@@ -99,7 +99,7 @@ impl Splitter<'_, '_> {
         if self.tokens.is(at, b';') {
             return Ok(at + 1);
         }
-        let attributes = condition::attributes(self.module, self.tokens, at, &mut self.chain);
+        let attributes = condition::read_attributes(self.module, self.tokens, at, &mut self.chain);
         let keyword = attributes.end;
         if self.tokens.is(keyword, b'{') {
             return self.block(at, attributes);
@@ -124,17 +124,17 @@ impl Splitter<'_, '_> {
         let condition = match attributes.condition {
             Some(condition) if attributes.conditional => condition,
             _ => {
-                self.module.warnings.push(block::unreachable(tokens, open));
-                condition::literal(self.module, false, &self.chain)
+                self.module.warnings.push(block::unreachable_braces(tokens, open));
+                condition::literal_condition(self.module, false, &self.chain)
             }
         };
         let (close, first) = (tokens.partner(open), self.module.items.len());
         let head = tokens.range(start, open + 1);
-        let above = trivia::leading(tokens.text, self.behind, head.start);
+        let above = trivia::leading_start(tokens.text, self.behind, head.start);
         let chain = std::mem::replace(&mut self.chain, Chain::within(Some(condition)));
         let limit = std::mem::replace(&mut self.limit, close);
         let declared = std::mem::replace(&mut self.declared, false);
-        self.behind = trivia::trailing(tokens.text, head.end, tokens.start(open + 1));
+        self.behind = trivia::trailing_end(tokens.text, head.end, tokens.start(open + 1));
         self.nodes(open + 1);
         (self.chain, self.limit, self.declared) = (chain, limit, declared || self.declared);
         if let Some(item) = self.module.items.get_mut(first).filter(|_| above < head.start) {
@@ -154,7 +154,7 @@ impl Splitter<'_, '_> {
                 .errors
                 .push(error.at(self.tokens.span(keyword), "imports come first in a file"));
         }
-        import::import(self.module, self.tokens, keyword, attributes.condition)
+        import::read_import(self.module, self.tokens, keyword, attributes.condition)
     }
 
     fn directive(
@@ -195,13 +195,13 @@ impl Splitter<'_, '_> {
         let end = self.end(keyword, kind)?;
         let text = self.tokens.text;
         let bytes = self.tokens.range(start, end);
-        let mut first = trivia::leading(text, self.behind, bytes.start);
+        let mut first = trivia::leading_start(text, self.behind, bytes.start);
         if self.chain.within.is_some() {
             // In a block every line keeps its indentation, the first one included.
             first = block::line_start(text, first).max(self.behind);
         }
         self.declared = true;
-        let last = trivia::trailing(text, bytes.end, self.tokens.start(end));
+        let last = trivia::trailing_end(text, bytes.end, self.tokens.start(end));
         self.module.items.push(Item {
             kind,
             name,

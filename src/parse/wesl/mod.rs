@@ -33,15 +33,15 @@ const ERRORS: usize = 50;
 /// Parses a file. Its errors are in [`Module::errors`]. Some of the text after an error may not be
 /// parsed.
 pub fn parse(source: SourceId, text: Arc<str>, names: &mut Names) -> Module {
-    parsed(source, text, names, false)
+    parse_with(source, text, names, false)
 }
 
 /// As [`parse`], with [`Module::local_uses`]: editors ask for those, composing does not.
 pub fn parse_for_editor(source: SourceId, text: Arc<str>, names: &mut Names) -> Module {
-    parsed(source, text, names, true)
+    parse_with(source, text, names, true)
 }
 
-fn parsed(source: SourceId, text: Arc<str>, names: &mut Names, locals: bool) -> Module {
+fn parse_with(source: SourceId, text: Arc<str>, names: &mut Names, locals: bool) -> Module {
     let mut module = Module {
         source,
         text: Arc::clone(&text),
@@ -58,8 +58,8 @@ fn parsed(source: SourceId, text: Arc<str>, names: &mut Names, locals: bool) -> 
     };
     match token::tokenise(&text, source, names) {
         Ok(tokens) => {
-            let found = item::split(&mut module, &tokens, names);
-            body::scan(&mut module, &tokens, names, found, locals);
+            let found = item::split_items(&mut module, &tokens, names);
+            body::scan_body(&mut module, &tokens, names, found, locals);
         }
         Err(error) => module.errors.push(error),
     }

@@ -59,7 +59,7 @@ pub fn is_keyword(word: &str) -> bool {
 
 macro_rules! words {
     ($($constant:ident = $text:literal),* $(,)?) => {
-        impl Name { $(#[doc = concat!("`", $text, "`.")] pub const $constant: Name = Name(position($text));)* }
+        impl Name { $(#[doc = concat!("`", $text, "`.")] pub const $constant: Name = Name(known_position($text));)* }
     };
 }
 
@@ -71,10 +71,10 @@ words! {
     CONSTANTS = "constants",
 }
 
-const fn position(word: &str) -> u32 {
+const fn known_position(word: &str) -> u32 {
     let mut index = 0;
     while index < WORDS.len() {
-        if same(WORDS[index].as_bytes(), word.as_bytes()) {
+        if same_bytes(WORDS[index].as_bytes(), word.as_bytes()) {
             return index as u32;
         }
         index += 1;
@@ -82,7 +82,7 @@ const fn position(word: &str) -> u32 {
     u32::MAX
 }
 
-const fn same(left: &[u8], right: &[u8]) -> bool {
+const fn same_bytes(left: &[u8], right: &[u8]) -> bool {
     let mut index = 0;
     while index < left.len() && index < right.len() && left[index] == right[index] {
         index += 1;

@@ -23,7 +23,7 @@ impl Scanner<'_, '_> {
 
     /// A statement with its attributes.
     fn node(&mut self, at: usize, limit: usize, chain: &mut Chain) -> Result<usize, Diagnostic> {
-        let attributes = condition::attributes(self.module, self.tokens, at, chain);
+        let attributes = condition::read_attributes(self.module, self.tokens, at, chain);
         let node = self.open_node(attributes.condition.filter(|_| attributes.conditional));
         let end = if node.is_some() && self.tokens.is(attributes.end, b'{') {
             self.flat_block(at, attributes)?
@@ -39,7 +39,7 @@ impl Scanner<'_, '_> {
     fn flat_block(&mut self, start: usize, attributes: Attributes) -> Result<usize, Diagnostic> {
         let open = attributes.end;
         block::check_attributes(self.tokens, start, attributes)?;
-        let head = block::head(self.tokens, start, open);
+        let head = block::removed_head(self.tokens, start, open);
         self.events.push(Event::Cut { start: head.start, end: head.end });
         let (close, mark) = (self.tokens.partner(open), self.scopes.enter());
         let mut chain = Chain::within(attributes.condition);
@@ -48,7 +48,7 @@ impl Scanner<'_, '_> {
             at = self.node(at, close, &mut chain)?;
         }
         self.scopes.end_block(mark);
-        let tail = block::tail(self.tokens, close);
+        let tail = block::removed_tail(self.tokens, close);
         self.events.push(Event::Cut { start: tail.start.max(head.end), end: tail.end });
         Ok(close + 1)
     }
@@ -81,7 +81,7 @@ impl Scanner<'_, '_> {
     fn misplaced_else(&self, at: usize) -> Diagnostic {
         let conditional = at > 0 && !self.tokens.is(at - 1, b'}');
         match conditional {
-            true => condition::illegal(
+            true => condition::illegal_attribute(
                 self.tokens,
                 at,
                 "an `else` clause cannot be conditional",
@@ -116,7 +116,8 @@ impl Scanner<'_, '_> {
         let mut chain = Chain::default();
         let mut clause = open + 1;
         while clause < close {
-            let attributes = condition::attributes(self.module, self.tokens, clause, &mut chain);
+            let attributes =
+                condition::read_attributes(self.module, self.tokens, clause, &mut chain);
             let node = self.open_node(attributes.condition);
             self.attributes(clause, attributes.end)?;
             if !matches!(self.tokens.word(attributes.end), Some(Name::CASE | Name::DEFAULT)) {

@@ -51,20 +51,20 @@ pub fn tokenise(text: &str, source: SourceId, names: &mut Names) -> Result<Vec<T
             .at(scanner.span(start), "the first one too many"));
         }
         match kind {
-            Kind::Mark(b'(' | b'[' | b'{') => push(&mut open, index, scanner.span(start))?,
+            Kind::Mark(b'(' | b'[' | b'{') => push_bracket(&mut open, index, scanner.span(start))?,
             Kind::Mark(mark @ (b')' | b']' | b'}')) => {
-                close(&mut tokens, &mut open, mark, &scanner, start)?
+                close_bracket(&mut tokens, &mut open, mark, &scanner, start)?
             }
             _ => {}
         }
     }
     match open.last() {
-        Some(index) => Err(unclosed(&tokens[*index as usize], source)),
+        Some(index) => Err(unclosed_bracket(&tokens[*index as usize], source)),
         None => Ok(tokens),
     }
 }
 
-fn push(open: &mut Vec<u32>, index: u32, span: Span) -> Result<(), Diagnostic> {
+fn push_bracket(open: &mut Vec<u32>, index: u32, span: Span) -> Result<(), Diagnostic> {
     open.push(index);
     if open.len() <= LIMITS.nesting {
         return Ok(());
@@ -76,7 +76,7 @@ fn push(open: &mut Vec<u32>, index: u32, span: Span) -> Result<(), Diagnostic> {
     .at(span, "here"))
 }
 
-fn close(
+fn close_bracket(
     tokens: &mut [Token],
     open: &mut Vec<u32>,
     mark: u8,
@@ -109,7 +109,7 @@ fn close(
     Ok(())
 }
 
-fn unclosed(token: &Token, source: SourceId) -> Diagnostic {
+fn unclosed_bracket(token: &Token, source: SourceId) -> Diagnostic {
     let mark = if let Kind::Mark(mark) = token.kind { mark as char } else { '{' };
     Diagnostic::error(codes::UNBALANCED_BRACKET, format!("`{mark}` is never closed"))
         .at(span_of(token, source), "opened here")

@@ -7,7 +7,7 @@ use super::blank::{block_comment, line_comment};
 /// Where an item's text starts: at the comments above it, if no blank line stands between.
 ///
 /// `from` is where the item before ended, its own trailing comment included.
-pub fn leading(text: &str, from: u32, start: u32) -> u32 {
+pub fn leading_start(text: &str, from: u32, start: u32) -> u32 {
     let bytes = text.as_bytes();
     let (mut at, end) = (from as usize, start as usize);
     let mut attached = None;
@@ -29,7 +29,7 @@ pub fn leading(text: &str, from: u32, start: u32) -> u32 {
 }
 
 /// Where an item's text ends: after a comment on the same line, if nothing else follows there.
-pub fn trailing(text: &str, end: u32, limit: u32) -> u32 {
+pub fn trailing_end(text: &str, end: u32, limit: u32) -> u32 {
     let rest = &text[end as usize..limit as usize];
     let line = &rest[..rest.find(['\n', '\r']).unwrap_or(rest.len())];
     let comment = line.trim_start_matches([' ', '\t']);
@@ -40,9 +40,9 @@ pub fn trailing(text: &str, end: u32, limit: u32) -> u32 {
 /// lines above.
 ///
 /// `before` and `after` are the ends of the neighbouring tokens.
-pub fn lines(text: &str, before: u32, node: Range<u32>, after: u32) -> Range<u32> {
+pub fn removed_lines(text: &str, before: u32, node: Range<u32>, after: u32) -> Range<u32> {
     let head = &text[before as usize..node.start as usize];
-    let end = trailing(text, node.end, after);
+    let end = trailing_end(text, node.end, after);
     let tail = &text[end as usize..after as usize];
     let indent = head.len() - head.trim_end_matches([' ', '\t']).len();
     let starts_line = head[..head.len() - indent].ends_with('\n');

@@ -30,7 +30,7 @@ const SIGNS: &[&str] =
     &["=>", "==", "!=", "<=", ">=", "&&", "||", "!", "(", ")", "[", "]", ",", "<", ">"];
 
 /// The tokens of the text, closed by one of kind [`Kind::End`].
-pub fn tokens(text: &str) -> Vec<Token<'_>> {
+pub fn constraint_tokens(text: &str) -> Vec<Token<'_>> {
     let mut tokens = Vec::new();
     let mut at = 0;
     while let Some(first) = text[at..].chars().next() {
@@ -38,7 +38,7 @@ pub fn tokens(text: &str) -> Vec<Token<'_>> {
             at += first.len_utf8();
             continue;
         }
-        let (kind, length) = next(&text[at..], first);
+        let (kind, length) = next_token(&text[at..], first);
         tokens.push(Token { kind, text: &text[at..at + length], range: at..at + length });
         at += length;
     }
@@ -46,7 +46,7 @@ pub fn tokens(text: &str) -> Vec<Token<'_>> {
     tokens
 }
 
-fn next(rest: &str, first: char) -> (Kind, usize) {
+fn next_token(rest: &str, first: char) -> (Kind, usize) {
     let run = |from: usize| word_end(rest, from);
     if let Some(sign) = SIGNS.iter().find(|sign| rest.starts_with(**sign)) {
         return (Kind::Sign, sign.len());

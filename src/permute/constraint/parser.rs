@@ -1,6 +1,6 @@
 //! Parses constraints by recursive descent. It ends at the first mistake.
 
-use super::lexer::{Kind as Token, tokens};
+use super::lexer::{Kind as Token, constraint_tokens};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::permute::Setting;
 use crate::permute::axis::{Axis, Kind, ValueSet};
@@ -14,7 +14,7 @@ const NESTING: usize = crate::limits::CONSTRAINT_NESTING;
 
 /// The condition that the text states about the axes.
 pub fn parse(axes: &[Axis], text: &Quoted) -> Result<Formula, Diagnostic> {
-    let mut parser = Parser { axes, text, tokens: tokens(&text.text), at: 0, depth: 0 };
+    let mut parser = Parser { axes, text, tokens: constraint_tokens(&text.text), at: 0, depth: 0 };
     let formula = parser.condition()?;
     match parser.kind() {
         Token::End => Ok(formula),
@@ -87,7 +87,7 @@ impl<'a> Parser<'a> {
         }
         let span = self.span();
         let name = self.next_text();
-        let axis = find_axis(self.axes, name, span).map_err(|unknown| hinted(unknown, name))?;
+        let axis = find_axis(self.axes, name, span).map_err(|unknown| with_hint(unknown, name))?;
         let set = self.values_of(axis, span)?;
         Ok(Formula::Is(axis, set))
     }
@@ -223,14 +223,14 @@ impl<'a> Parser<'a> {
             codes::CONSTRAINT_SYNTAX,
             format!("expected {expected}, found {found}"),
         );
-        hinted(
+        with_hint(
             diagnostic.at(self.span(), format!("expected {expected}")),
             self.tokens[self.at].text,
         )
     }
 }
 
-fn hinted(diagnostic: Diagnostic, found: &str) -> Diagnostic {
+fn with_hint(diagnostic: Diagnostic, found: &str) -> Diagnostic {
     match HINTS.iter().find(|(wrong, _)| *wrong == found) {
         Some((_, right)) => diagnostic.note(format!("help: write `{right}`")),
         None => diagnostic,

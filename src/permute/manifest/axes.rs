@@ -15,7 +15,7 @@ const AXIS_KEYS: &[&str] = &["values", "default", "mode", "doc"];
 const CONSTRAINT_KEYS: &[&str] = &["require", "doc"];
 
 /// The axes, by name; `None` if one of them could not be read.
-pub fn axes(reader: &mut Reader, value: &Value) -> Option<Vec<Axis>> {
+pub fn read_axes(reader: &mut Reader, value: &Value) -> Option<Vec<Axis>> {
     let table = reader.table(value, "`axis`")?;
     if table.len() > MAX {
         let message = format!("a program may have {MAX} axes, and this one has {}", table.len());
@@ -26,13 +26,13 @@ pub fn axes(reader: &mut Reader, value: &Value) -> Option<Vec<Axis>> {
         return None;
     }
     let axes: Vec<Axis> =
-        table.iter().filter_map(|(name, value)| axis(reader, name, value)).collect();
-    reader.problems.extend(names::collisions(&axes));
+        table.iter().filter_map(|(name, value)| read_axis(reader, name, value)).collect();
+    reader.problems.extend(names::macro_collisions(&axes));
     (axes.len() == table.len()).then_some(axes)
 }
 
 /// The constraints over the axes, in the order declared.
-pub fn constraints(reader: &mut Reader, axes: &[Axis], value: &Value) -> Vec<Constraint> {
+pub fn read_constraints(reader: &mut Reader, axes: &[Axis], value: &Value) -> Vec<Constraint> {
     let Some(array) = reader.array(value, "`constraint`") else { return Vec::new() };
     if array.len() > CONSTRAINTS {
         let message = format!("a program may have {CONSTRAINTS} constraints, not {}", array.len());
@@ -43,35 +43,35 @@ pub fn constraints(reader: &mut Reader, axes: &[Axis], value: &Value) -> Vec<Con
         );
         return Vec::new();
     }
-    array.iter().filter_map(|value| constraint(reader, axes, value)).collect()
+    array.iter().filter_map(|value| read_constraint(reader, axes, value)).collect()
 }
 
-fn axis(reader: &mut Reader, name: &Name, value: &Value) -> Option<Axis> {
+fn read_axis(reader: &mut Reader, name: &Name, value: &Value) -> Option<Axis> {
     let span = reader.span(name.span());
     let name = name.get_ref().to_string();
     let what = format!("axis `{name}`");
     reader.problems.extend(names::check_axis(&name, span));
     let table = reader.table(value, &what)?;
     reader.check_keys(table, AXIS_KEYS, &what);
-    let mode = table.get("mode").map_or(Some(Mode::Static), |value| mode(reader, value));
+    let mode = table.get("mode").map_or(Some(Mode::Static), |value| read_mode(reader, value));
     let doc = reader.doc(table);
     let list = reader.required(table, "values", &what, span)?;
-    let values = values(reader, &what, list)?;
+    let values = read_values(reader, &what, list)?;
     let kind = Kind::of(values.first()?);
     let mut axis = Axis { name, kind, values, default: 0, mode: mode?, doc, span };
     if let Some(value) = table.get("default") {
-        axis.default = default(reader, &axis, value)?;
+        axis.default = read_default(reader, &axis, value)?;
     }
     Some(axis)
 }
 
-fn default(reader: &mut Reader, axis: &Axis, value: &Value) -> Option<usize> {
+fn read_default(reader: &mut Reader, axis: &Axis, value: &Value) -> Option<usize> {
     let setting = reader.setting(value, "`default`")?;
     let span = reader.span(value.span());
     find_value(axis, &setting, span).map_err(|problem| reader.problems.push(problem)).ok()
 }
 
-fn mode(reader: &mut Reader, value: &Value) -> Option<Mode> {
+fn read_mode(reader: &mut Reader, value: &Value) -> Option<Mode> {
     let text = reader.string(value, "`mode`")?;
     let found = Mode::ALL.iter().find(|(name, _)| *name == text.text).map(|(_, mode)| *mode);
     if found.is_none() {
@@ -86,7 +86,7 @@ fn mode(reader: &mut Reader, value: &Value) -> Option<Mode> {
 }
 
 /// The values, if there is at least one and nothing is wrong with any.
-fn values(reader: &mut Reader, what: &str, list: &Value) -> Option<Vec<Setting>> {
+fn read_values(reader: &mut Reader, what: &str, list: &Value) -> Option<Vec<Setting>> {
     let array = reader.array(list, "`values`")?;
     let span = reader.span(list.span());
     if array.is_empty() || array.len() > MAX {
@@ -127,12 +127,12 @@ fn value_problem(what: &str, values: &[(Setting, Span)], index: usize) -> Option
         );
     }
     match value {
-        Setting::Name(name) => names::check(name, "a value", *span),
+        Setting::Name(name) => names::check_name(name, "a value", *span),
         Setting::Bool(_) | Setting::Int(_) => None,
     }
 }
 
-fn constraint(reader: &mut Reader, axes: &[Axis], value: &Value) -> Option<Constraint> {
+fn read_constraint(reader: &mut Reader, axes: &[Axis], value: &Value) -> Option<Constraint> {
     let table = reader.table(value, "a constraint")?;
     reader.check_keys(table, CONSTRAINT_KEYS, "a constraint");
     let doc = reader.doc(table);

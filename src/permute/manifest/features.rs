@@ -79,20 +79,20 @@ impl Features {
 pub fn read_file(sources: &SourceSet, id: SourceId) -> Result<Features, Diagnostics> {
     let (document, errors) = DeTable::parse_recoverable(&sources.get(id).text);
     if !errors.is_empty() {
-        return Err(errors.iter().map(|error| super::syntax(sources, id, error)).collect());
+        return Err(errors.iter().map(|error| super::syntax_error(sources, id, error)).collect());
     }
     let mut reader = Reader::new(sources, id);
-    let found = read(&mut reader, document.get_ref());
+    let found = read_features(&mut reader, document.get_ref());
     if reader.problems.is_empty() { Ok(found) } else { Err(reader.problems) }
 }
 
 /// The features of a document.
-pub fn read(reader: &mut Reader, document: &DeTable) -> Features {
+pub fn read_features(reader: &mut Reader, document: &DeTable) -> Features {
     let mut found = Features::default();
     let Some(value) = document.get("features") else { return found };
     let Some(table) = reader.table(value, "`features`") else { return found };
     for (name, value) in table.iter() {
-        if let Some(feature) = feature(reader, name, value) {
+        if let Some(feature) = read_feature(reader, name, value) {
             found.declared.insert(name.get_ref().to_string(), feature);
         }
     }
@@ -110,10 +110,10 @@ pub fn read(reader: &mut Reader, document: &DeTable) -> Features {
     found
 }
 
-fn feature(reader: &mut Reader, name: &Name, value: &Value) -> Option<Feature> {
+fn read_feature(reader: &mut Reader, name: &Name, value: &Value) -> Option<Feature> {
     let span = reader.span(name.span());
     let text = name.get_ref().to_string();
-    reader.problems.extend(names::check(&text, "a feature", span));
+    reader.problems.extend(names::check_name(&text, "a feature", span));
     if let Some(default) = value.get_ref().as_bool() {
         return Some(Feature { doc: None, default, excludes: Vec::new(), span });
     }

@@ -81,11 +81,11 @@ impl Manifest {
 pub fn parse(sources: &SourceSet, id: SourceId) -> Result<Manifest, Diagnostics> {
     let (document, errors) = DeTable::parse_recoverable(&sources.get(id).text);
     if !errors.is_empty() {
-        return Err(errors.iter().map(|error| syntax(sources, id, error)).collect());
+        return Err(errors.iter().map(|error| syntax_error(sources, id, error)).collect());
     }
     let mut reader = Reader::new(sources, id);
-    let programs = programs(&mut reader, document.get_ref());
-    let features = features::read(&mut reader, document.get_ref());
+    let programs = read_programs(&mut reader, document.get_ref());
+    let features = features::read_features(&mut reader, document.get_ref());
     let mut problems = reader.problems;
     problems.sort_by_key(|problem| problem.labels.first().map(|label| label.span));
     if problems.iter().any(|problem| problem.severity == Severity::Error) {
@@ -96,7 +96,7 @@ pub fn parse(sources: &SourceSet, id: SourceId) -> Result<Manifest, Diagnostics>
     Ok(manifest)
 }
 
-fn programs(reader: &mut Reader, document: &DeTable) -> Vec<Program> {
+fn read_programs(reader: &mut Reader, document: &DeTable) -> Vec<Program> {
     reader.check_keys(document, &["program", "features"], "a manifest");
     let Some(found) = document.get("program") else {
         if document.contains_key("features") {
@@ -110,10 +110,10 @@ fn programs(reader: &mut Reader, document: &DeTable) -> Vec<Program> {
         return Vec::new();
     };
     let Some(table) = reader.table(found, "`program`") else { return Vec::new() };
-    table.iter().filter_map(|(name, value)| program::read(reader, name, value)).collect()
+    table.iter().filter_map(|(name, value)| program::read_program(reader, name, value)).collect()
 }
 
-fn syntax(sources: &SourceSet, id: SourceId, error: &toml::de::Error) -> Diagnostic {
+fn syntax_error(sources: &SourceSet, id: SourceId, error: &toml::de::Error) -> Diagnostic {
     let length = sources.get(id).text.len();
     let range = error.span().unwrap_or(0..0);
     let span = Span::new(id, range.start.min(length)..range.end.min(length));

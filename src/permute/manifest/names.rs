@@ -18,8 +18,8 @@ const MACROS: &[&str] =
     &["VULKAN", "LAMPLIGHT_COMBINED_SAMPLERS", "LAMPLIGHT_PREFIX", "LAMPLIGHT_PREFIXED"];
 
 /// What a program or a value is called must be an identifier.
-pub fn check(name: &str, what: &str, span: Span) -> Option<Diagnostic> {
-    let problem = problem(name)?;
+pub fn check_name(name: &str, what: &str, span: Span) -> Option<Diagnostic> {
+    let problem = name_problem(name)?;
     Some(
         Diagnostic::error(codes::BAD_NAME, format!("{what} cannot be called `{name}`: {problem}"))
             .at(span, "not a usable name"),
@@ -33,7 +33,7 @@ pub fn check_axis(name: &str, span: Span) -> Option<Diagnostic> {
             .contains(&name)
             .then(|| "it is a reserved word of WGSL".to_owned())
     };
-    let problem = problem(name).or_else(reserved)?;
+    let problem = name_problem(name).or_else(reserved)?;
     Some(
         Diagnostic::error(codes::BAD_NAME, format!("an axis cannot be called `{name}`: {problem}"))
             .at(span, "not a usable name"),
@@ -41,11 +41,11 @@ pub fn check_axis(name: &str, span: Span) -> Option<Diagnostic> {
 }
 
 /// Reports axes whose GLSL macros are reserved or would mean two things.
-pub fn collisions(axes: &[Axis]) -> Vec<Diagnostic> {
+pub fn macro_collisions(axes: &[Axis]) -> Vec<Diagnostic> {
     let mut owners: BTreeMap<String, (String, Span)> = BTreeMap::new();
     let mut problems = Vec::new();
     for (name, meaning, span) in
-        axes.iter().filter(|axis| problem(&axis.name).is_none()).flat_map(macros)
+        axes.iter().filter(|axis| name_problem(&axis.name).is_none()).flat_map(axis_macros)
     {
         if name.starts_with("GL_") || name.contains("__") || MACROS.contains(&name.as_str()) {
             let message = format!("{meaning} would be the GLSL macro `{name}`, which is reserved");
@@ -54,7 +54,7 @@ pub fn collisions(axes: &[Axis]) -> Vec<Diagnostic> {
         }
         match owners.get(&name) {
             Some((other, first)) => {
-                problems.push(collision(&name, (&meaning, span), (other, *first)))
+                problems.push(macro_collision(&name, (&meaning, span), (other, *first)))
             }
             None => drop(owners.insert(name, (meaning, span))),
         }
@@ -62,7 +62,7 @@ pub fn collisions(axes: &[Axis]) -> Vec<Diagnostic> {
     problems
 }
 
-fn macros(axis: &Axis) -> Vec<(String, String, Span)> {
+fn axis_macros(axis: &Axis) -> Vec<(String, String, Span)> {
     let values = if axis.kind == Kind::Enum { axis.value_names() } else { Vec::new() };
     let values = values.into_iter().map(|value| format!("value `{value}` of axis `{}`", axis.name));
     let meanings = std::iter::once(format!("axis `{}`", axis.name)).chain(values);
@@ -73,14 +73,14 @@ fn macros(axis: &Axis) -> Vec<(String, String, Span)> {
         .collect()
 }
 
-fn collision(name: &str, second: (&str, Span), first: (&str, Span)) -> Diagnostic {
+fn macro_collision(name: &str, second: (&str, Span), first: (&str, Span)) -> Diagnostic {
     let message = format!("{} and {} would both be the GLSL macro `{name}`", first.0, second.0);
     let diagnostic =
         Diagnostic::error(codes::MACRO_COLLISION, message).at(second.1, "rename this one");
     if first.1 == second.1 { diagnostic } else { diagnostic.at(first.1, "or this one") }
 }
 
-fn problem(name: &str) -> Option<String> {
+fn name_problem(name: &str) -> Option<String> {
     if is_keyword(name) || name == IN {
         return Some("it is a keyword".to_owned());
     }

@@ -85,51 +85,54 @@ const KEYS: &[&str] = &[
 ];
 
 /// Reads a program; `None` once anything is wrong with it.
-pub fn read(reader: &mut Reader, name: &Name, value: &Value) -> Option<Program> {
-    let errors = errors(reader);
+pub fn read_program(reader: &mut Reader, name: &Name, value: &Value) -> Option<Program> {
+    let errors = error_count(reader);
     let span = reader.span(name.span());
     let name = name.get_ref().to_string();
     let what = format!("program `{name}`");
-    reader.problems.extend(names::check(&name, "a program", span));
+    reader.problems.extend(names::check_name(&name, "a program", span));
     let table = reader.table(value, &what)?;
     reader.check_keys(table, KEYS, &what);
     let doc = reader.doc(table);
-    let wesl = table.get("wesl").and_then(|value| file(reader, value, "`wesl`"));
-    let glsl = table.get("glsl").and_then(|value| glsl(reader, value));
+    let wesl = table.get("wesl").and_then(|value| read_file(reader, value, "`wesl`"));
+    let glsl = table.get("glsl").and_then(|value| read_glsl(reader, value));
     if !table.contains_key("wesl") && !table.contains_key("glsl") {
         let message = format!("{what} has no source");
         reader.problems.push(
             Diagnostic::error(codes::MISSING_KEY, message).at(span, "needs `wesl`, `glsl` or both"),
         );
     }
-    let usage = table.get("usage").and_then(|value| file(reader, value, "`usage`"));
-    let targets = table.get("targets").map_or(Target::ALL.to_vec(), |value| targets(reader, value));
-    let clip = table.get("clip").map_or(Some(Clip::default()), |value| clip(reader, value));
-    let limit = table.get("limit").map_or(Some(LIMITS.permutations), |value| limit(reader, value));
+    let usage = table.get("usage").and_then(|value| read_file(reader, value, "`usage`"));
+    let targets =
+        table.get("targets").map_or(Target::ALL.to_vec(), |value| read_targets(reader, value));
+    let clip = table.get("clip").map_or(Some(Clip::default()), |value| read_clip(reader, value));
+    let limit =
+        table.get("limit").map_or(Some(LIMITS.permutations), |value| read_limit(reader, value));
     let undeclared =
         table.get("features_default").and_then(|value| features_default(reader, value));
-    let mut space = space(reader, table, &what, span)?;
+    let mut space = read_space(reader, table, &what, span)?;
     space.undeclared = undeclared;
     let program =
         Program { name, doc, wesl, glsl, targets, clip: clip?, space, usage, limit: limit?, span };
     check_limit(reader, &program);
-    (self::errors(reader) == errors).then_some(program)
+    (self::error_count(reader) == errors).then_some(program)
 }
 
-fn errors(reader: &Reader) -> usize {
+fn error_count(reader: &Reader) -> usize {
     reader.problems.iter().filter(|problem| problem.severity == Severity::Error).count()
 }
 
-fn file(reader: &mut Reader, value: &Value, what: &str) -> Option<File> {
+fn read_file(reader: &mut Reader, value: &Value, what: &str) -> Option<File> {
     let text = reader.string(value, what)?;
     Some(File { path: text.text, span: text.span })
 }
 
-fn glsl(reader: &mut Reader, value: &Value) -> Option<Glsl> {
+fn read_glsl(reader: &mut Reader, value: &Value) -> Option<Glsl> {
     let table = reader.table(value, "`glsl`")?;
     reader.check_keys(table, &["vertex", "fragment"], "`glsl`");
-    let mut stage =
-        |name: &str| table.get(name).and_then(|value| file(reader, value, &format!("`{name}`")));
+    let mut stage = |name: &str| {
+        table.get(name).and_then(|value| read_file(reader, value, &format!("`{name}`")))
+    };
     let found = Glsl { vertex: stage("vertex"), fragment: stage("fragment") };
     if table.is_empty() {
         let place = reader.span(value.span());
@@ -141,17 +144,17 @@ fn glsl(reader: &mut Reader, value: &Value) -> Option<Glsl> {
     Some(found)
 }
 
-fn targets(reader: &mut Reader, value: &Value) -> Vec<Target> {
+fn read_targets(reader: &mut Reader, value: &Value) -> Vec<Target> {
     let Some(array) = reader.array(value, "`targets`") else { return Vec::new() };
     let mut found: Vec<Target> = Vec::new();
     for value in array.iter() {
-        let target = target(reader, value);
+        let target = read_target(reader, value);
         found.extend(target.filter(|target| !found.contains(target)));
     }
     found
 }
 
-fn target(reader: &mut Reader, value: &Value) -> Option<Target> {
+fn read_target(reader: &mut Reader, value: &Value) -> Option<Target> {
     let text = reader.string(value, "a target")?;
     let found = Target::find(&text.text);
     if found.is_none() {
@@ -168,7 +171,7 @@ fn target(reader: &mut Reader, value: &Value) -> Option<Target> {
     found
 }
 
-fn clip(reader: &mut Reader, value: &Value) -> Option<Clip> {
+fn read_clip(reader: &mut Reader, value: &Value) -> Option<Clip> {
     let text = reader.string(value, "`clip`")?;
     let found = Clip::find(&text.text);
     if found.is_none() {
@@ -197,7 +200,7 @@ fn features_default(reader: &mut Reader, value: &Value) -> Option<bool> {
     found.and_then(|(_, undeclared)| *undeclared)
 }
 
-fn limit(reader: &mut Reader, value: &Value) -> Option<usize> {
+fn read_limit(reader: &mut Reader, value: &Value) -> Option<usize> {
     let number = reader.integer(value, "`limit`")?;
     let found =
         usize::try_from(number).ok().filter(|limit| (1..=LIMITS.permutations).contains(limit));
@@ -214,16 +217,18 @@ fn limit(reader: &mut Reader, value: &Value) -> Option<usize> {
 
 /// Reads the axes first. If one of them is missing nothing else is read, since most errors would
 /// only follow from that.
-fn space(reader: &mut Reader, table: &DeTable, what: &str, place: Span) -> Option<Space> {
-    let before = errors(reader);
-    let axes = table.get("axis").map_or(Some(Vec::new()), |value| axes::axes(reader, value))?;
-    let constraints =
-        table.get("constraint").map_or(Vec::new(), |value| axes::constraints(reader, &axes, value));
-    let only = table.get("only").map_or(Vec::new(), |value| lists::only(reader, &axes, value));
+fn read_space(reader: &mut Reader, table: &DeTable, what: &str, place: Span) -> Option<Space> {
+    let before = error_count(reader);
+    let axes =
+        table.get("axis").map_or(Some(Vec::new()), |value| axes::read_axes(reader, value))?;
+    let constraints = table
+        .get("constraint")
+        .map_or(Vec::new(), |value| axes::read_constraints(reader, &axes, value));
+    let only = table.get("only").map_or(Vec::new(), |value| lists::read_only(reader, &axes, value));
     let exclude =
-        table.get("exclude").map_or(Vec::new(), |value| lists::exclude(reader, &axes, value));
+        table.get("exclude").map_or(Vec::new(), |value| lists::read_exclude(reader, &axes, value));
     let space =
-        listed(reader, table, axes, constraints, Lists { only, exclude, include: Vec::new() });
+        read_lists(reader, table, axes, constraints, Lists { only, exclude, include: Vec::new() });
     let Ok(space) = space else {
         let message = format!(
             "the constraints and lists of {what} are too complex to count its permutations"
@@ -233,7 +238,7 @@ fn space(reader: &mut Reader, table: &DeTable, what: &str, place: Span) -> Optio
             .push(Diagnostic::error(codes::SPACE_TOO_COMPLEX, message).at(place, "declared here"));
         return None;
     };
-    if errors(reader) > before {
+    if error_count(reader) > before {
         return None;
     }
     reader.problems.extend(lint::lint(&space, what, place));
@@ -241,7 +246,7 @@ fn space(reader: &mut Reader, table: &DeTable, what: &str, place: Span) -> Optio
 }
 
 /// Reads the lists. Keys can be read only once there is a space, which the lists then narrow.
-fn listed(
+fn read_lists(
     reader: &mut Reader,
     table: &DeTable,
     axes: Vec<Axis>,
@@ -250,7 +255,7 @@ fn listed(
 ) -> Result<Space, TooComplex> {
     let valid = Space::new(axes.clone(), constraints.clone(), Lists::default())?;
     lists.include =
-        table.get("include").map_or(Vec::new(), |value| lists::include(reader, &valid, value));
+        table.get("include").map_or(Vec::new(), |value| lists::read_include(reader, &valid, value));
     if lists == Lists::default() { Ok(valid) } else { Space::new(axes, constraints, lists) }
 }
 

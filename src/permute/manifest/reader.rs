@@ -80,7 +80,7 @@ impl<'s> Reader<'s> {
     }
 
     pub fn integer(&mut self, value: &Value, what: &str) -> Option<i64> {
-        let found = integer(value.get_ref());
+        let found = integer_value(value.get_ref());
         self.expect(found, value, what, "an integer of 64 bits")
     }
 
@@ -89,7 +89,7 @@ impl<'s> Reader<'s> {
         let found = match value.get_ref() {
             DeValue::Boolean(value) => Some(Setting::Bool(*value)),
             DeValue::String(value) => Some(Setting::Name(value.clone().into_owned())),
-            other => integer(other).map(Setting::Int),
+            other => integer_value(other).map(Setting::Int),
         };
         self.expect(found, value, what, "a boolean, an integer of 64 bits or a string")
     }
@@ -119,7 +119,7 @@ impl<'s> Reader<'s> {
     }
 }
 
-fn integer(value: &DeValue) -> Option<i64> {
+fn integer_value(value: &DeValue) -> Option<i64> {
     let integer = value.as_integer()?;
     i64::from_str_radix(integer.as_str(), integer.radix()).ok()
 }

@@ -55,7 +55,7 @@ impl Diagram {
 
     /// How many points it has; `u128::MAX` for that many or more.
     pub fn count(&self) -> u128 {
-        self.counts(|_, children, counts| Ok(sum(children, counts))).unwrap_or(0)
+        self.counts(|_, children, counts| Ok(sum_counts(children, counts))).unwrap_or(0)
     }
 
     /// How many points there are if those that differ only in one axis count as one.
@@ -63,7 +63,7 @@ impl Diagram {
         let mut known = HashMap::new();
         self.counts(|asked, children, counts| match asked == axis {
             true => self.merged(children.to_vec(), counts, &mut known),
-            false => Ok(sum(children, counts)),
+            false => Ok(sum_counts(children, counts)),
         })
     }
 
@@ -200,7 +200,7 @@ impl Diagram {
     }
 }
 
-fn sum(children: &[u32], counts: &[u128]) -> u128 {
+fn sum_counts(children: &[u32], counts: &[u128]) -> u128 {
     children.iter().fold(0, |sum: u128, child| sum.saturating_add(counts[*child as usize]))
 }
 

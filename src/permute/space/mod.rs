@@ -93,12 +93,12 @@ impl Space {
         constraints: Vec<Constraint>,
         lists: Lists,
     ) -> Result<Self, TooComplex> {
-        let order = order(axes.len(), &constraints);
-        let valid = diagram(&axes, &constraints, &Lists::default(), order.clone())?;
+        let order = axis_order(axes.len(), &constraints);
+        let valid = build_diagram(&axes, &constraints, &Lists::default(), order.clone())?;
         let wanted = if lists == Lists::default() {
             valid.clone()
         } else {
-            diagram(&axes, &constraints, &lists, order)?
+            build_diagram(&axes, &constraints, &lists, order)?
         };
         Ok(Self {
             axes,
@@ -189,7 +189,7 @@ impl Space {
         pins: &[(usize, usize)],
         choose: impl FnMut(usize, ValueSet) -> usize,
     ) -> Option<Assignment> {
-        let mut allowed = domains(&self.axes);
+        let mut allowed = axis_domains(&self.axes);
         pins.iter().for_each(|(axis, ordinal)| allowed[*axis] = ValueSet::single(*ordinal));
         self.valid.pick(&allowed, choose)
     }
@@ -206,7 +206,7 @@ impl Space {
 
     /// How many points of the full product satisfy one condition, within the steps that are left.
     pub fn satisfying(&self, formula: &Formula, steps: &mut Steps) -> Result<u128, TooComplex> {
-        let domains = domains(&self.axes);
+        let domains = axis_domains(&self.axes);
         // Every level of the diagram is made, whatever the condition is.
         steps.spend(domains.len() as u64).map_err(|Exhausted| TooComplex)?;
         let mut conditions = Conditions::new(domains.clone(), *steps);
@@ -255,13 +255,13 @@ impl Space {
     }
 }
 
-fn diagram(
+fn build_diagram(
     axes: &[Axis],
     constraints: &[Constraint],
     lists: &Lists,
     order: Vec<usize>,
 ) -> Result<Diagram, TooComplex> {
-    let domains = domains(axes);
+    let domains = axis_domains(axes);
     let mut conditions = Conditions::new(domains.clone(), Steps::new(SPACE_STEPS));
     let lists = lists.formula();
     let formulas = constraints.iter().map(|constraint| &constraint.formula).chain([&lists]);
@@ -270,16 +270,16 @@ fn diagram(
     Diagram::new(&mut conditions, condition, &domains, order)
 }
 
-fn domains(axes: &[Axis]) -> Vec<ValueSet> {
+fn axis_domains(axes: &[Axis]) -> Vec<ValueSet> {
     axes.iter().map(Axis::domain).collect()
 }
 
 /// The order in which a diagram asks the axes: always next the one that shares the most
 /// constraints with those already asked, then the one in most constraints, then by name. Axes
 /// that constrain each other are neighbours, which keeps the diagram narrow.
-fn order(count: usize, constraints: &[Constraint]) -> Vec<usize> {
+fn axis_order(count: usize, constraints: &[Constraint]) -> Vec<usize> {
     let mentions: Vec<Vec<bool>> =
-        constraints.iter().map(|constraint| mentioned(count, &constraint.formula)).collect();
+        constraints.iter().map(|constraint| mentioned_axes(count, &constraint.formula)).collect();
     let mut order: Vec<usize> = Vec::new();
     let mut near = vec![0usize; count];
     let involved: Vec<usize> =
@@ -302,7 +302,7 @@ fn order(count: usize, constraints: &[Constraint]) -> Vec<usize> {
     order
 }
 
-fn mentioned(count: usize, formula: &Formula) -> Vec<bool> {
+fn mentioned_axes(count: usize, formula: &Formula) -> Vec<bool> {
     let mut axes = vec![false; count];
     formula.mark(&mut axes);
     axes

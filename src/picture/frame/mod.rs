@@ -11,5 +11,5 @@ mod pack;
 pub mod probe;
 mod programs;
 
-pub use pack::pack;
+pub use pack::pack_buffer;
 pub use programs::{Composed, Programs, Stages};

@@ -11,7 +11,7 @@ pub type Numbers<'n> = dyn Fn(&str) -> Option<Vec<f64>> + 'n;
 ///
 /// # Errors
 /// A field that nothing knows, or for which there are too few numbers.
-pub fn pack(binding: &Binding, numbers: &Numbers<'_>) -> Result<Vec<u8>, Diagnostic> {
+pub fn pack_buffer(binding: &Binding, numbers: &Numbers<'_>) -> Result<Vec<u8>, Diagnostic> {
     let size = binding.size.unwrap_or(0);
     let mut packer = Packer { bytes: vec![0; size as usize], numbers };
     if binding.members.is_empty() {
@@ -54,7 +54,7 @@ impl Packer<'_> {
 
     fn leaf(&mut self, at: u32, ty: &str, size: u32, path: &str) -> Result<(), Diagnostic> {
         let values = (self.numbers)(path).ok_or_else(|| without_number(path, ty))?;
-        let offsets: Vec<u32> = offsets(ty, size).collect();
+        let offsets: Vec<u32> = scalar_offsets(ty, size).collect();
         if !values.is_empty() && values.len() < offsets.len() {
             let message = format!(
                 "the uniform `{path}: {ty}` was given {} of {} numbers",
@@ -66,7 +66,7 @@ impl Packer<'_> {
         for (offset, value) in offsets.into_iter().zip(values) {
             let from = (at + offset) as usize;
             if let Some(place) = self.bytes.get_mut(from..from + 4) {
-                place.copy_from_slice(&word(ty, value));
+                place.copy_from_slice(&word_bytes(ty, value));
             }
         }
         Ok(())
@@ -82,7 +82,7 @@ fn without_number(path: &str, ty: &str) -> Diagnostic {
 }
 
 /// The offsets of a value's scalars, column by column, each of `rows` scalars.
-fn offsets(ty: &str, size: u32) -> impl Iterator<Item = u32> {
+fn scalar_offsets(ty: &str, size: u32) -> impl Iterator<Item = u32> {
     let digit = |index: usize| {
         ty.as_bytes().get(index).map_or(1, |digit| u32::from(digit.saturating_sub(b'0')))
     };
@@ -94,7 +94,7 @@ fn offsets(ty: &str, size: u32) -> impl Iterator<Item = u32> {
     (0..size / 4).map(|index| index * 4).filter(move |offset| offset % step < 4 * rows)
 }
 
-fn word(ty: &str, value: f64) -> [u8; 4] {
+fn word_bytes(ty: &str, value: f64) -> [u8; 4] {
     match ty {
         _ if ty.contains("i32") || ty.ends_with('i') => (value as i32).to_le_bytes(),
         _ if ty.contains("u32") || ty.ends_with('u') => (value as u32).to_le_bytes(),

@@ -18,9 +18,9 @@ pub struct Watched {
 
 /// The module with a fragment entry point that also returns its inputs. `None` without such an
 /// entry point, or if that does not return four numbers at location 0.
-pub fn watched(module: &Module, entry: &str) -> Option<Watched> {
-    let (mut module, index) = (module.clone(), find(module, entry)?);
-    let inner = inner(&mut module, index)?;
+pub fn watch_entry(module: &Module, entry: &str) -> Option<Watched> {
+    let (mut module, index) = (module.clone(), find_entry(module, entry)?);
+    let inner = inner_function(&mut module, index)?;
     let mut body = Body::new(&mut module, index);
     let mut components = vec![body.colour(inner)?];
     components.extend(body.inputs());
@@ -29,13 +29,13 @@ pub fn watched(module: &Module, entry: &str) -> Option<Watched> {
     Some(Watched { module, targets })
 }
 
-/// The name of an entry point of [`told`].
+/// The name of an entry point of [`told_inputs`].
 pub const TELLS: &str = "lamplight_tells";
 
 /// The module with a fragment entry point, named [`TELLS`], that only returns its inputs, from
 /// location 0 on. `None` without a fragment entry point, or if that has no inputs.
-pub fn told(module: &Module, entry: &str) -> Option<Watched> {
-    let (mut module, index) = (module.clone(), find(module, entry)?);
+pub fn told_inputs(module: &Module, entry: &str) -> Option<Watched> {
+    let (mut module, index) = (module.clone(), find_entry(module, entry)?);
     let mut body = Body::new(&mut module, index);
     let components = body.inputs();
     let targets = components.len() as u32;
@@ -49,17 +49,17 @@ pub fn told(module: &Module, entry: &str) -> Option<Watched> {
 }
 
 /// The module with a fragment entry point that returns the bits of its colour as four words.
-/// `None` as for [`watched`].
-pub fn bits(module: &Module, entry: &str) -> Option<Module> {
-    let (mut module, index) = (module.clone(), find(module, entry)?);
-    let inner = inner(&mut module, index)?;
+/// `None` as for [`watch_entry`].
+pub fn bits_module(module: &Module, entry: &str) -> Option<Module> {
+    let (mut module, index) = (module.clone(), find_entry(module, entry)?);
+    let inner = inner_function(&mut module, index)?;
     let mut body = Body::new(&mut module, index);
     let colour = body.colour(inner)?;
     body.finish(vec![colour], index);
     Some(module)
 }
 
-fn find(module: &Module, entry: &str) -> Option<usize> {
+fn find_entry(module: &Module, entry: &str) -> Option<usize> {
     module
         .entry_points
         .iter()
@@ -67,7 +67,7 @@ fn find(module: &Module, entry: &str) -> Option<usize> {
 }
 
 /// Turns the entry point into a plain function.
-fn inner(module: &mut Module, index: usize) -> Option<Handle<Function>> {
+fn inner_function(module: &mut Module, index: usize) -> Option<Handle<Function>> {
     let mut function = module.entry_points[index].function.clone();
     function.result.as_mut()?.binding = None;
     function.arguments.iter_mut().for_each(|argument| argument.binding = None);

@@ -96,16 +96,18 @@ impl Programs {
         match (language, &program.wesl, &program.glsl) {
             (Language::Wesl, Some(file), _) => self.of_wesl(file, settings),
             (Language::Glsl, _, Some(glsl)) => {
-                let vertex = glsl.vertex.as_ref().ok_or_else(|| absent(program, language))?;
+                let vertex =
+                    glsl.vertex.as_ref().ok_or_else(|| absent_language(program, language))?;
                 let stage = |file: &File| {
-                    self.composed(file, settings, language).and_then(|text| ready(&text, "main"))
+                    self.composed(file, settings, language)
+                        .and_then(|text| ready_text(&text, "main"))
                 };
                 Ok(Stages {
                     vertex: stage(vertex)?,
                     fragment: glsl.fragment.as_ref().map(stage).transpose()?,
                 })
             }
-            _ => Err(absent(program, language)),
+            _ => Err(absent_language(program, language)),
         }
     }
 
@@ -113,8 +115,8 @@ impl Programs {
         let text = self.composed(file, settings, Language::Wesl)?;
         let mut points = text.validated.module.entry_points.iter();
         let has_fragment = points.any(|point| point.name == "fs_main");
-        let fragment = if has_fragment { Some(ready(&text, "fs_main")?) } else { None };
-        Ok(Stages { vertex: ready(&text, "vs_main")?, fragment })
+        let fragment = if has_fragment { Some(ready_text(&text, "fs_main")?) } else { None };
+        Ok(Stages { vertex: ready_text(&text, "vs_main")?, fragment })
     }
 
     fn composed(
@@ -126,7 +128,7 @@ impl Programs {
         let composed =
             compose::compose(&*self.graph(file, language)?, settings, &Options::default())?;
         let validated = Arc::new(validate(&composed)?);
-        let functions = functions(&composed, &self.kept().texts);
+        let functions = library_functions(&composed, &self.kept().texts);
         Ok(Text { text: composed.text.into(), functions, validated })
     }
 
@@ -154,7 +156,7 @@ struct Text {
 }
 
 /// The functions of a text that are in modules of the library, in the order of their paths.
-fn functions(composed: &compose::Composed, texts: &SourceSet) -> Arc<[String]> {
+fn library_functions(composed: &compose::Composed, texts: &SourceSet) -> Arc<[String]> {
     let functions = composed.parts.iter().filter(|part| part.kind == PartKind::Function);
     let path = |part: &compose::Part| {
         let file = &texts.get(composed.place_of(part)?.source).path;
@@ -166,7 +168,7 @@ fn functions(composed: &compose::Composed, texts: &SourceSet) -> Arc<[String]> {
     functions.filter_map(path).collect::<BTreeSet<_>>().into_iter().collect()
 }
 
-fn ready(text: &Text, entry: &'static str) -> Result<Composed, Diagnostics> {
+fn ready_text(text: &Text, entry: &'static str) -> Result<Composed, Diagnostics> {
     let reflection = reflect(&text.validated, entry).map_err(|problem| vec![problem])?;
     Ok(Composed {
         validated: text.validated.clone(),
@@ -177,7 +179,7 @@ fn ready(text: &Text, entry: &'static str) -> Result<Composed, Diagnostics> {
     })
 }
 
-fn absent(program: &Program, language: Language) -> Diagnostics {
+fn absent_language(program: &Program, language: Language) -> Diagnostics {
     let name = match language {
         Language::Wesl => "WESL",
         Language::Glsl => "GLSL",

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Card, SIZE, StripCard, THUMB, files, first_alike, strip_file};
+use super::{Card, SIZE, StripCard, THUMB, first_alike, picture_files, strip_file};
 
 const HEAD: &str = "<!doctype html>
 <html lang=\"en\">
@@ -35,105 +35,106 @@ pre { overflow: auto; padding: .6rem .8rem; border: 1px solid var(--edge); borde
 ";
 
 /// The page.
-pub fn page(cards: &[&Card], strips: &[StripCard]) -> String {
+pub fn html_page(cards: &[&Card], strips: &[StripCard]) -> String {
     let mut text = HEAD.to_owned();
     text.push_str("<nav>\n");
     let compared = strips.iter().map(|card| &card.comparison.name);
     for name in compared.chain(cards.iter().map(|card| &card.preset.name)) {
-        let name = escaped(name);
+        let name = escape_html(name);
         let _ = writeln!(text, "<a href=\"#{name}\">{name}</a>");
     }
     text.push_str("</nav>\n");
     text.push_str("<h2>Comparisons</h2>\n");
-    strips.iter().for_each(|card| strip(&mut text, card));
+    strips.iter().for_each(|card| write_strip(&mut text, card));
     let firsts = first_alike(cards);
     let mut here = "";
     for (card, first) in cards.iter().zip(firsts) {
         if card.preset.work() != here {
             here = card.preset.work();
-            let _ = writeln!(text, "<h2>{}</h2>", escaped(here));
+            let _ = writeln!(text, "<h2>{}</h2>", escape_html(here));
         }
-        article(&mut text, card, cards[first]);
+        write_article(&mut text, card, cards[first]);
     }
     text.push_str("</body>\n</html>\n");
     text
 }
 
-fn strip(text: &mut String, card: &StripCard) {
-    let (name, file) = (escaped(&card.comparison.name), strip_file(&card.comparison.name));
+fn write_strip(text: &mut String, card: &StripCard) {
+    let (name, file) = (escape_html(&card.comparison.name), strip_file(&card.comparison.name));
     let _ = writeln!(
         text,
         "<section id=\"{name}\">\n<h3>{name}</h3>\n<p>{}</p>\n<p class=\"look\">{}</p>\n\
          <a href=\"{file}\"><img alt=\"{name}\" src=\"{file}\" loading=\"lazy\"></a>\n\
          <pre>{}</pre>\n</section>",
-        prose(&card.comparison.doc),
-        prose(&card.comparison.look),
-        escaped(&card.command())
+        html_prose(&card.comparison.doc),
+        html_prose(&card.comparison.look),
+        escape_html(&card.command())
     );
 }
 
-fn article(text: &mut String, card: &Card, first: &Card) {
+fn write_article(text: &mut String, card: &Card, first: &Card) {
     let preset = &card.preset;
-    let name = escaped(&preset.name);
-    let [picture, thumb] = files(&name);
+    let name = escape_html(&preset.name);
+    let [picture, thumb] = picture_files(&name);
     let [width, height] = SIZE.map(|side| side / THUMB);
     let _ = writeln!(
         text,
         "<article id=\"{name}\">\n<a href=\"{picture}\"><img alt=\"{name}\" src=\"{thumb}\" \
          width=\"{width}\" height=\"{height}\" loading=\"lazy\"></a>\n<div>\n<h3>{name}</h3>\n\
          <p>{}</p>\n<p class=\"look\">{}</p>\n<pre>{}</pre>\n<ul>",
-        prose(&preset.doc),
-        prose(&preset.look),
-        escaped(&card.command())
+        html_prose(&preset.doc),
+        html_prose(&preset.look),
+        escape_html(&card.command())
     );
     for deviation in &preset.deviations {
-        let _ = writeln!(text, "<li>differs from the source: {}</li>", prose(deviation));
+        let _ = writeln!(text, "<li>differs from the source: {}</li>", html_prose(deviation));
     }
-    let _ = writeln!(text, "<li>{}</li>", escaped(&preset.source));
+    let _ = writeln!(text, "<li>{}</li>", escape_html(&preset.source));
     for (program, key) in card.passes() {
         let page =
-            link(&format!("../catalogue/programs.md#{}", program.replace('_', "-")), program);
-        let _ = writeln!(text, "<li>{page}: <code>{}</code></li>", escaped(&key));
+            html_link(&format!("../catalogue/programs.md#{}", program.replace('_', "-")), program);
+        let _ = writeln!(text, "<li>{page}: <code>{}</code></li>", escape_html(&key));
     }
-    let functions: Vec<String> = card.functions().map(|(name, page)| link(&page, name)).collect();
+    let functions: Vec<String> =
+        card.functions().map(|(name, page)| html_link(&page, name)).collect();
     if !functions.is_empty() {
         let _ = writeln!(text, "<li>functions: {}</li>", functions.join(", "));
     }
-    facts(text, card);
+    write_facts(text, card);
     for file in first.files() {
-        let _ = writeln!(text, "<li>composed text: {}</li>", link(&file, &file));
+        let _ = writeln!(text, "<li>composed text: {}</li>", html_link(&file, &file));
     }
     text.push_str("</ul>\n</div>\n</article>\n");
 }
 
 /// Scene, numbers, light probe.
-fn facts(text: &mut String, card: &Card) {
+fn write_facts(text: &mut String, card: &Card) {
     let preset = &card.preset;
-    let _ = writeln!(text, "<li>scene: {}</li>", escaped(&preset.scene));
+    let _ = writeln!(text, "<li>scene: {}</li>", escape_html(&preset.scene));
     for (group, fields) in &preset.numbers {
         for (field, value) in fields {
-            let name = escaped(&format!("{group}.{field}"));
+            let name = escape_html(&format!("{group}.{field}"));
             let _ = writeln!(text, "<li><code>{name} = {value}</code></li>");
         }
     }
     if let Some(probe) = &preset.probe {
-        let _ = writeln!(text, "<li>light probe: {}</li>", escaped(probe));
+        let _ = writeln!(text, "<li>light probe: {}</li>", escape_html(probe));
     }
 }
 
-fn link(page: &str, words: &str) -> String {
-    format!("<a href=\"{}\">{}</a>", escaped(page), escaped(words))
+fn html_link(page: &str, words: &str) -> String {
+    format!("<a href=\"{}\">{}</a>", escape_html(page), escape_html(words))
 }
 
 /// Text with its code marked as such.
-fn prose(text: &str) -> String {
+fn html_prose(text: &str) -> String {
     let part = |(index, part): (usize, &str)| match index % 2 {
-        1 => format!("<code>{}</code>", escaped(part)),
-        _ => escaped(part),
+        1 => format!("<code>{}</code>", escape_html(part)),
+        _ => escape_html(part),
     };
     text.split('`').enumerate().map(part).collect()
 }
 
-fn escaped(text: &str) -> String {
+fn escape_html(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

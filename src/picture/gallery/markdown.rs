@@ -2,26 +2,26 @@
 
 use std::fmt::Write as _;
 
-use super::{Card, StripCard, files, first_alike, strip_file};
+use super::{Card, StripCard, first_alike, picture_files, strip_file};
 
 /// Pictures in one row of the overview.
 const COLUMNS: usize = 4;
 
 /// The page. Pictures and their smaller forms are beside it.
-pub fn page(cards: &[&Card], strips: &[StripCard]) -> String {
+pub fn markdown_page(cards: &[&Card], strips: &[StripCard]) -> String {
     let mut text = "# Gallery\n\n`lamplight render --all` draws every published example and every \
                     comparison. Each picture here is a link to\nits large form. \
                     [adapters.txt](adapters.txt) says which driver drew which picture.\n"
         .to_owned();
     text.push_str("\n## Comparisons\n");
-    strips.iter().for_each(|card| strip(&mut text, card));
+    strips.iter().for_each(|card| write_strip(&mut text, card));
     let firsts = first_alike(cards);
     let mut at = 0;
     for group in cards.chunk_by(|a, b| a.preset.work() == b.preset.work()) {
         let _ = write!(text, "\n## {}\n\n", group[0].preset.work());
-        overview(&mut text, group);
+        write_overview(&mut text, group);
         for card in group {
-            section(&mut text, card, cards[firsts[at]]);
+            write_section(&mut text, card, cards[firsts[at]]);
             at += 1;
         }
     }
@@ -29,7 +29,7 @@ pub fn page(cards: &[&Card], strips: &[StripCard]) -> String {
 }
 
 /// A comparison, and the permutations or expressions of its panels.
-fn strip(text: &mut String, card: &StripCard) {
+fn write_strip(text: &mut String, card: &StripCard) {
     let (name, file) = (&card.comparison.name, strip_file(&card.comparison.name));
     let (doc, look) = (&card.comparison.doc, &card.comparison.look);
     let _ = write!(
@@ -53,23 +53,23 @@ fn strip(text: &mut String, card: &StripCard) {
     }
 }
 
-fn overview(text: &mut String, cards: &[&Card]) {
+fn write_overview(text: &mut String, cards: &[&Card]) {
     let columns = COLUMNS.min(cards.len());
     let _ = write!(text, "|{}\n|{}\n", " |".repeat(columns), "---|".repeat(columns));
     for row in cards.chunks(columns) {
         let cell = |card: &&Card| {
             let name = &card.preset.name;
-            let [_, thumb] = files(name);
+            let [_, thumb] = picture_files(name);
             format!(" [![{name}]({thumb})](#{name})<br>`{name}` |")
         };
         let _ = writeln!(text, "|{}", row.iter().map(cell).collect::<String>());
     }
 }
 
-fn section(text: &mut String, card: &Card, first: &Card) {
+fn write_section(text: &mut String, card: &Card, first: &Card) {
     let preset = &card.preset;
     let name = &preset.name;
-    let [picture, thumb] = files(name);
+    let [picture, thumb] = picture_files(name);
     let _ = write!(
         text,
         "\n### {name}\n\n[![{name}]({thumb})]({picture})\n\n{} **Look for:** {}\n\n",

@@ -3,15 +3,15 @@
 mod html;
 mod markdown;
 
-pub use html::page as html;
-pub use markdown::page as markdown;
+pub use html::html_page as html;
+pub use markdown::markdown_page as markdown;
 
 use std::sync::Arc;
 
 use super::pixels::Picture;
-use super::plan::{Pass, Plan, known};
+use super::plan::{Pass, Plan, known_program};
 use super::strip::{self, Comparison};
-use super::{Shot, prepare};
+use super::{Shot, prepare_passes};
 use crate::bundle::Language;
 use crate::catalogue::preset::Preset;
 use crate::diagnostic::Diagnostics;
@@ -58,7 +58,8 @@ impl Exhibit {
         shot: &Shot,
     ) -> Result<Self, Diagnostics> {
         let card = Card::new(programs, preset, shot.language)?;
-        let picture = prepare(painter, programs, plan, shot)?.photograph(painter, shot)?.develop();
+        let picture =
+            prepare_passes(painter, programs, plan, shot)?.photograph(painter, shot)?.develop();
         Ok(Self { card, picture, adapter: painter.adapter() })
     }
 }
@@ -75,15 +76,15 @@ impl Card {
     ) -> Result<Self, Diagnostics> {
         let plan = Plan::of_preset(programs, preset, &[])?;
         let mut hasher = blake3::Hasher::new();
-        hasher.update(settings(preset).as_bytes());
-        hasher.update(geometry(&preset.scene).as_bytes());
+        hasher.update(settings_text(preset).as_bytes());
+        hasher.update(geometry_text(&preset.scene).as_bytes());
         let all = composed_texts(programs, &plan, language)?;
         for text in all.concat() {
             hasher.update(text.as_bytes());
         }
         let own = all.into_iter().next_back().unwrap_or_default();
-        let last = plan.last().map(|pass| stages(programs, pass, language)).transpose()?;
-        let functions = last.map_or_else(Vec::new, |stages| named(&stages));
+        let last = plan.last().map(|pass| compiled_stages(programs, pass, language)).transpose()?;
+        let functions = last.map_or_else(Vec::new, |stages| named_functions(&stages));
         let fingerprint = hasher.finalize().to_hex()[..16].to_owned();
         Ok(Self { preset: preset.clone(), texts: own, functions, fingerprint })
     }
@@ -105,7 +106,7 @@ impl Card {
 
     /// The command that draws it.
     fn command(&self) -> String {
-        command(&self.preset.name)
+        render_command(&self.preset.name)
     }
 
     /// Each function of the library that its text has: the path, and its page of the catalogue.
@@ -116,9 +117,9 @@ impl Card {
         })
     }
 
-    /// How the line of [`adapters`] begins if the picture is up to date.
+    /// How the line of [`adapter_lines`] begins if the picture is up to date.
     pub fn current(&self, shot: &Shot) -> String {
-        current(&format!("{}.png", self.preset.name), shot, &self.fingerprint)
+        current_line(&format!("{}.png", self.preset.name), shot, &self.fingerprint)
     }
 }
 
@@ -141,9 +142,9 @@ impl StripCard {
         let mut hasher = blake3::Hasher::new();
         let Comparison { scene, code, inset, panels, .. } = &comparison;
         hasher.update(serde_json::json!([scene, code, inset, panels]).to_string().as_bytes());
-        hasher.update(geometry(scene).as_bytes());
+        hasher.update(geometry_text(scene).as_bytes());
         for panel in panels.iter().filter(|panel| panel.value.is_none()) {
-            let plan = strip::plan(programs, &comparison, panel)?;
+            let plan = strip::panel_plan(programs, &comparison, panel)?;
             for text in composed_texts(programs, &plan, language)?.concat() {
                 hasher.update(text.as_bytes());
             }
@@ -154,12 +155,12 @@ impl StripCard {
 
     /// How the line of `adapters.txt` begins if the picture is up to date.
     pub fn current(&self, shot: &Shot) -> String {
-        current(&strip_file(&self.comparison.name), shot, &self.fingerprint)
+        current_line(&strip_file(&self.comparison.name), shot, &self.fingerprint)
     }
 
     /// The command that draws it.
     fn command(&self) -> String {
-        command(&self.comparison.name)
+        render_command(&self.comparison.name)
     }
 }
 
@@ -168,12 +169,12 @@ pub fn strip_file(name: &str) -> String {
     format!("compared/{name}.png")
 }
 
-fn current(file: &str, shot: &Shot, fingerprint: &str) -> String {
+fn current_line(file: &str, shot: &Shot, fingerprint: &str) -> String {
     let ([width, height], samples) = (shot.size, shot.samples);
     format!("{file}  {width}x{height}, {samples} samples, of {fingerprint}")
 }
 
-fn command(name: &str) -> String {
+fn render_command(name: &str) -> String {
     let [width, height] = SIZE;
     format!("lamplight render {name} --size {width}x{height} --samples {SAMPLES}")
 }
@@ -184,23 +185,27 @@ fn composed_texts(
     plan: &Plan,
     language: Language,
 ) -> Result<Vec<Vec<Arc<str>>>, Diagnostics> {
-    let stages = |pass| Ok(texts(&stages(programs, pass, language)?));
+    let stages = |pass| Ok(stage_texts(&compiled_stages(programs, pass, language)?));
     plan.passes.iter().map(stages).collect()
 }
 
-fn stages(programs: &Programs, pass: &Pass, language: Language) -> Result<Stages, Diagnostics> {
-    programs.stages(known(programs, &pass.program)?, &pass.settings, language)
+fn compiled_stages(
+    programs: &Programs,
+    pass: &Pass,
+    language: Language,
+) -> Result<Stages, Diagnostics> {
+    programs.stages(known_program(programs, &pass.program)?, &pass.settings, language)
 }
 
 /// Everything of a preset that its picture depends on, as one text.
-fn settings(preset: &Preset) -> String {
+fn settings_text(preset: &Preset) -> String {
     let Preset { program, key, scene, probe, passes, numbers, .. } = preset;
     serde_json::json!([program, key, scene, probe, passes, numbers]).to_string()
 }
 
 /// Shapes, lamps and viewer of a scene as text, to the thousandth: the last digits of a sine differ
 /// from machine to machine.
-fn geometry(scene: &str) -> String {
+fn geometry_text(scene: &str) -> String {
     let Some(set) = sets::ALL.iter().find(|set| set.name == scene) else { return String::new() };
     let Scene {
         objects,
@@ -221,21 +226,21 @@ fn geometry(scene: &str) -> String {
     format!("{seen:.3?} {ambient} {sky} {ground} {haze} {haze_range:?} {map_size:?} {shows_lamps}")
 }
 
-fn texts(stages: &Stages) -> Vec<Arc<str>> {
+fn stage_texts(stages: &Stages) -> Vec<Arc<str>> {
     let vertex = stages.vertex.text.clone();
     let fragment = stages.fragment.iter().map(|stage| stage.text.clone());
     let other: Vec<_> = fragment.filter(|text| *text != vertex).collect();
     std::iter::once(vertex).chain(other).collect()
 }
 
-fn named(stages: &Stages) -> Vec<String> {
+fn named_functions(stages: &Stages) -> Vec<String> {
     let all = [Some(&stages.vertex), stages.fragment.as_ref()];
     let all = all.into_iter().flatten().flat_map(|stage| stage.functions.iter().cloned());
     all.collect::<std::collections::BTreeSet<_>>().into_iter().collect()
 }
 
 /// The path of a picture beside the page, and that of its small form, which the page shows.
-pub fn files(name: &str) -> [String; 2] {
+pub fn picture_files(name: &str) -> [String; 2] {
     [format!("{name}.png"), format!("thumbs/{name}.png")]
 }
 
@@ -254,7 +259,7 @@ fn first_alike(cards: &[&Card]) -> Vec<usize> {
 }
 
 /// Which driver drew which picture from what: a line for each picture, for people and for tests.
-pub fn adapters(exhibits: &[Exhibit], shot: &Shot) -> String {
+pub fn adapter_lines(exhibits: &[Exhibit], shot: &Shot) -> String {
     let line = |exhibit: &Exhibit| format!("{}, {}\n", exhibit.card.current(shot), exhibit.adapter);
     exhibits.iter().map(line).collect()
 }

@@ -40,7 +40,7 @@ pub struct Panel {
     /// A permutation of `forward`.
     #[serde(default)]
     pub key: String,
-    #[serde(default = "one")]
+    #[serde(default = "default_one")]
     pub cascades: u32,
     /// Numbers that replace those of the scene, by group and field, as in a preset.
     #[serde(default)]
@@ -50,7 +50,7 @@ pub struct Panel {
     pub value: Option<String>,
 }
 
-fn one() -> u32 {
+fn default_one() -> u32 {
     1
 }
 
@@ -72,19 +72,19 @@ struct Entry {
 ///
 /// # Errors
 /// Those of the file.
-pub fn library(sources: &mut SourceSet) -> Result<Vec<Comparison>, Diagnostics> {
+pub fn library_comparisons(sources: &mut SourceSet) -> Result<Vec<Comparison>, Diagnostics> {
     let package = Package { name: "lamplight".to_owned(), files: Box::new(Embedded) };
     let id = source::read(sources, &package, PATH).map_err(|error| vec![error.into()])?;
     let missing = || vec![Diagnostic::error(codes::UNREADABLE, format!("there is no `{PATH}`"))];
     let id = id.ok_or_else(missing)?;
-    let entries: BTreeMap<String, Entry> = reader::data(sources, id)?;
+    let entries: BTreeMap<String, Entry> = reader::read_data(sources, id)?;
     let mut problems = Vec::new();
     let comparison = |(name, entry): (String, Entry)| {
         if let Some(scene) = &entry.scene
             && !sets::ALL.iter().any(|set| set.name == scene.get_ref())
         {
             let message = format!("there is no scene `{}`", scene.get_ref());
-            problems.push(reader::invalid(Span::new(id, scene.span()), message));
+            problems.push(reader::invalid_data(Span::new(id, scene.span()), message));
         }
         let Entry { doc, look, scene, code, inset, differs, panels } = entry;
         let scene = scene.map_or_else(String::new, Spanned::into_inner);

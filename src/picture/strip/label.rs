@@ -15,7 +15,7 @@ use crate::picture::pixels::Picture;
 const INK: Rgb888 = Rgb888::new(232, 234, 238);
 
 /// Writes one line from a place to the right, as far as the width allows.
-pub fn write(picture: &mut Picture, text: &str, [left, top]: [u32; 2], width: u32) {
+pub fn write_label(picture: &mut Picture, text: &str, [left, top]: [u32; 2], width: u32) {
     let mut page = Page { picture, right: left + width };
     let style = MonoTextStyle::new(&FONT_10X20, INK);
     let place = Point::new(left as i32, top as i32);

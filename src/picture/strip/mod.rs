@@ -6,12 +6,12 @@ mod entry;
 mod label;
 mod painted;
 
-pub use entry::{Comparison, Panel, library};
-pub use painted::painted;
+pub use entry::{Comparison, Panel, library_comparisons};
+pub use painted::paint_expression;
 
 use super::pixels::Picture;
 use super::plan::Plan;
-use super::{Shot, prepare};
+use super::{Shot, prepare_passes};
 use crate::diagnostic::Diagnostics;
 use crate::execute::Session;
 use crate::picture::frame::Programs;
@@ -33,7 +33,7 @@ const FRAME: [u8; 3] = [255, 208, 64];
 ///
 /// # Errors
 /// Those of compositions and of the painter.
-pub fn panel(
+pub fn draw_panel(
     painter: &mut dyn Session,
     programs: &Programs,
     comparison: &Comparison,
@@ -41,18 +41,18 @@ pub fn panel(
     shot: &Shot,
 ) -> Result<Picture, Diagnostics> {
     if let Some(value) = &panel.value {
-        return Ok(painted(painter, &comparison.code, value, shot)?.develop());
+        return Ok(paint_expression(painter, &comparison.code, value, shot)?.develop());
     }
-    let plan = plan(programs, comparison, panel)?;
+    let plan = panel_plan(programs, comparison, panel)?;
     let shot = Shot { cascades: panel.cascades, ..shot.clone() };
-    Ok(prepare(painter, programs, &plan, &shot)?.photograph(painter, &shot)?.develop())
+    Ok(prepare_passes(painter, programs, &plan, &shot)?.photograph(painter, &shot)?.develop())
 }
 
 /// The passes and numbers of a panel that is drawn with a permutation.
 ///
 /// # Errors
 /// A key that the program does not have.
-pub fn plan(
+pub fn panel_plan(
     programs: &Programs,
     comparison: &Comparison,
     panel: &Panel,
@@ -65,7 +65,7 @@ pub fn plan(
 ///
 /// # Errors
 /// Those of its panels.
-pub fn draw(
+pub fn draw_strip(
     painter: &mut dyn Session,
     programs: &Programs,
     comparison: &Comparison,
@@ -73,7 +73,7 @@ pub fn draw(
 ) -> Result<Picture, Diagnostics> {
     let panels = comparison.panels.iter();
     let large: Vec<Picture> = panels
-        .map(|one| panel(painter, programs, comparison, one, shot))
+        .map(|one| draw_panel(painter, programs, comparison, one, shot))
         .collect::<Result<_, _>>()?;
     let [width, height] = shot.size.map(|side| side / ZOOM);
     let count = large.len() as u32;
@@ -90,7 +90,7 @@ pub fn draw(
         let left = index as u32 * (width + GAP);
         let mut small = picture.shrunk(ZOOM);
         small.outline(inset.map(|at| at / ZOOM), [width / ZOOM, height / ZOOM], FRAME);
-        label::write(&mut strip, &panel.label, [left + MARGIN, 4], width - 2 * MARGIN);
+        label::write_label(&mut strip, &panel.label, [left + MARGIN, 4], width - 2 * MARGIN);
         strip.place(&small, [left, LABEL]);
         strip.place(&picture.part(inset, [width, height]), [left, LABEL + height + GAP]);
     }

@@ -10,7 +10,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::{Session, kernel};
 use crate::picture::Shot;
 use crate::picture::pixels::Linear;
-use crate::picture::prepared::shift;
+use crate::picture::prepared::sample_shift;
 use crate::proof::library::Library;
 use crate::source::SourceSet;
 
@@ -24,7 +24,7 @@ const AT_ONCE: usize = 1 << 16;
 ///
 /// # Errors
 /// Those of the expression and of the executor.
-pub fn painted(
+pub fn paint_expression(
     painter: &mut dyn Session,
     code: &str,
     value: &str,
@@ -37,31 +37,32 @@ pub fn painted(
     let library = Library::embedded();
     let module =
         library.importing(&sources, ("picture.wesl", &text), Language::Wesl, FUNCTION)?.module;
-    let kernel = kernel::build(&module, FUNCTION, &BTreeMap::new()).map_err(|error| vec![error])?;
+    let kernel =
+        kernel::build_kernel(&module, FUNCTION, &BTreeMap::new()).map_err(|error| vec![error])?;
     if kernel.input_words() != 2 || kernel.result_words() != 3 {
         let message = format!("`{value}` is not a colour at a place");
         return Err(vec![Diagnostic::error(codes::UNTESTABLE_FUNCTION, message)]);
     }
     let mut picture = Linear::new(shot.size);
     for index in 0..shot.samples.max(1) {
-        let places = places(shot.size, shift(index, shot.samples));
+        let places = pixel_centres(shot.size, sample_shift(index, shot.samples));
         let mut colours = Vec::with_capacity(places.len() / 2);
         for some in places.chunks(2 * AT_ONCE) {
             let words = painter.run(&kernel, some).map_err(|error| vec![error])?;
-            colours.extend(words.chunks_exact(3).map(colour));
+            colours.extend(words.chunks_exact(3).map(colour_of_words));
         }
         picture.add_all(colours.into_iter(), shot.exposure);
     }
     Ok(picture)
 }
 
-fn colour(words: &[u32]) -> DVec3 {
+fn colour_of_words(words: &[u32]) -> DVec3 {
     let number = |index: usize| f64::from(f32::from_bits(words[index]));
     DVec3::new(number(0), number(1), number(2))
 }
 
 /// The centre of every pixel, moved by a part of a pixel, as words.
-fn places([width, height]: [u32; 2], shift: [f64; 2]) -> Vec<u32> {
+fn pixel_centres([width, height]: [u32; 2], shift: [f64; 2]) -> Vec<u32> {
     let (w, h) = (f64::from(width), f64::from(height));
     let place = |x: u32, y: u32| {
         let across = (2.0 * (f64::from(x) + 0.5 + shift[0]) - w) / h;

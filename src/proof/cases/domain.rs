@@ -2,7 +2,10 @@
 
 use super::random::Random;
 use super::reader::{Node, Value};
-use super::values::{around, grid, related, special_values, specials, steps, units};
+use super::values::{
+    even_steps, neighbours_of, related_directions, special_values, specials, unit_vectors,
+    value_grid,
+};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::execute::kernel::Shape;
 use crate::limits::CASE_ROWS;
@@ -32,36 +35,40 @@ const KINDS: &[Kind] = &[
     Kind {
         key: "grid",
         others: &["count"],
-        read: |value, all| Ok(Domain::Grid { range: value.pair()?, count: count(all)? }),
+        read: |value, all| Ok(Domain::Grid { range: value.pair()?, count: read_count(all)? }),
     },
-    Kind { key: "log", others: &["count"], read: log },
+    Kind { key: "log", others: &["count"], read: read_log },
     Kind {
         key: "random",
         others: &["count", "seed"],
         read: |value, all| {
-            Ok(Domain::Random { range: value.pair()?, count: count(all)?, seed: seed(all)? })
+            Ok(Domain::Random {
+                range: value.pair()?,
+                count: read_count(all)?,
+                seed: read_seed(all)?,
+            })
         },
     },
     Kind {
         key: "unit",
         others: &["seed"],
-        read: |value, all| Ok(Domain::Unit { count: value.count(1, MOST)?, seed: seed(all)? }),
+        read: |value, all| Ok(Domain::Unit { count: value.count(1, MOST)?, seed: read_seed(all)? }),
     },
     Kind {
         key: "hemisphere",
         others: &["count", "seed"],
-        read: |value, all| about(value, all, About::Hemisphere),
+        read: |value, all| read_about(value, all, About::Hemisphere),
     },
     Kind {
         key: "grazing",
         others: &["count", "seed"],
-        read: |value, all| about(value, all, About::Grazing),
+        read: |value, all| read_about(value, all, About::Grazing),
     },
     Kind {
         key: "same",
         others: &[],
         read: |value, _| {
-            Ok(Domain::About { of: path(value)?, kind: About::Same, count: 1, seed: 0 })
+            Ok(Domain::About { of: read_path(value)?, kind: About::Same, count: 1, seed: 0 })
         },
     },
     Kind {
@@ -121,7 +128,7 @@ pub enum Domain {
 }
 
 /// Reads the domains below a path: one for a plain parameter, one for each field of a struct.
-pub fn read(
+pub fn read_domains(
     path: &str,
     node: &Node,
     found: &mut Vec<(String, Domain, Node)>,
@@ -129,29 +136,31 @@ pub fn read(
     match &node.value {
         Value::Table(entries) if !is_domain(node) => {
             for (key, inner) in entries {
-                read(&format!("{path}.{}", key.name), inner, found)?;
+                read_domains(&format!("{path}.{}", key.name), inner, found)?;
             }
         }
-        _ => {
-            found.push((path.to_owned(), domain(node).map_err(|error| vec![error])?, node.clone()))
-        }
+        _ => found.push((
+            path.to_owned(),
+            read_domain(node).map_err(|error| vec![error])?,
+            node.clone(),
+        )),
     }
     Ok(())
 }
 
 /// Whether every key belongs to one kind of domain. If not, the table lists fields of a struct.
 fn is_domain(node: &Node) -> bool {
-    KINDS.iter().any(|kind| node.get(kind.key).is_some() && node.only(&keys(kind)).is_ok())
+    KINDS.iter().any(|kind| node.get(kind.key).is_some() && node.only(&domain_keys(kind)).is_ok())
 }
 
-fn keys(kind: &Kind) -> Vec<&'static str> {
+fn domain_keys(kind: &Kind) -> Vec<&'static str> {
     std::iter::once(kind.key).chain(kind.others.iter().copied()).collect()
 }
 
-fn domain(node: &Node) -> Result<Domain, Diagnostic> {
+fn read_domain(node: &Node) -> Result<Domain, Diagnostic> {
     match &node.value {
         Value::Array(elements) => {
-            elements.iter().map(part).collect::<Result<_, _>>().map(Domain::Union)
+            elements.iter().map(read_part).collect::<Result<_, _>>().map(Domain::Union)
         }
         Value::Table(_) => match KINDS.iter().find(|kind| node.get(kind.key).is_some()) {
             Some(kind) => (kind.read)(node.required(kind.key)?, node),
@@ -166,36 +175,41 @@ fn domain(node: &Node) -> Result<Domain, Diagnostic> {
 
 /// Reads an element of a union. An array there lists values; the value of a vector is an array
 /// itself.
-fn part(node: &Node) -> Result<Domain, Diagnostic> {
+fn read_part(node: &Node) -> Result<Domain, Diagnostic> {
     match &node.value {
         Value::Array(values) => {
             values.iter().map(Node::numbers).collect::<Result<_, _>>().map(Domain::Values)
         }
-        _ => domain(node),
+        _ => read_domain(node),
     }
 }
 
-fn count(all: &Node) -> Result<u32, Diagnostic> {
+fn read_count(all: &Node) -> Result<u32, Diagnostic> {
     all.required("count")?.count(1, MOST)
 }
 
-fn seed(all: &Node) -> Result<u64, Diagnostic> {
+fn read_seed(all: &Node) -> Result<u64, Diagnostic> {
     all.get("seed").map_or(Ok(1), |node| node.count(0, u32::MAX).map(u64::from))
 }
 
-fn log(value: &Node, all: &Node) -> Result<Domain, Diagnostic> {
+fn read_log(value: &Node, all: &Node) -> Result<Domain, Diagnostic> {
     let range = value.pair()?;
     if range.0 * range.1 <= 0.0 {
         return Err(value.error("a logarithmic range may not hold zero"));
     }
-    Ok(Domain::Log { range, count: count(all)? })
+    Ok(Domain::Log { range, count: read_count(all)? })
 }
 
-fn about(value: &Node, all: &Node, kind: About) -> Result<Domain, Diagnostic> {
-    Ok(Domain::About { of: path(value)?, kind, count: count(all)?, seed: seed(all)? })
+fn read_about(value: &Node, all: &Node, kind: About) -> Result<Domain, Diagnostic> {
+    Ok(Domain::About {
+        of: read_path(value)?,
+        kind,
+        count: read_count(all)?,
+        seed: read_seed(all)?,
+    })
 }
 
-fn path(value: &Node) -> Result<String, Diagnostic> {
+fn read_path(value: &Node) -> Result<String, Diagnostic> {
     value.text().map(str::to_owned)
 }
 
@@ -251,9 +265,9 @@ impl Domain {
                 (0..size).fold(1, |all: usize, _| all.saturating_mul(*count as usize))
             }
             Self::Random { count, .. } => *count as usize,
-            Self::Unit { count, .. } => direction(size).map(|()| *count as usize)?,
+            Self::Unit { count, .. } => check_direction(size).map(|()| *count as usize)?,
             Self::About { of, count, .. } => {
-                direction(size)?;
+                check_direction(size)?;
                 let given = other(of).map_or(0, |shape| shape.words() as usize);
                 if given != size {
                     return Err(format!("has {size} values, and `{of}` has {given}"));
@@ -268,7 +282,7 @@ impl Domain {
                 special_values(*special).len() * (1 + size * usize::from(size > 1))
             }
             Self::Union(parts) => {
-                unmistakable(parts, size)?;
+                check_unmistakable(parts, size)?;
                 let counts = parts.iter().map(|part| part.count(shape, other));
                 counts.sum::<Result<usize, String>>()?
             }
@@ -291,7 +305,7 @@ impl Domain {
                 .iter()
                 .enumerate()
                 .map(|(index, kind)| {
-                    word(value.get(if splat { 0 } else { index }).copied().unwrap_or(0.0), *kind)
+                    word_of(value.get(if splat { 0 } else { index }).copied().unwrap_or(0.0), *kind)
                 })
                 .collect()
         };
@@ -302,10 +316,10 @@ impl Domain {
         match self {
             Self::Values(values) => values.clone(),
             Self::Grid { range, count } => {
-                grid(size, &steps(*count, |t| range.0 + (range.1 - range.0) * t))
+                value_grid(size, &even_steps(*count, |t| range.0 + (range.1 - range.0) * t))
             }
             Self::Log { range, count } => {
-                grid(size, &steps(*count, |t| range.0 * (range.1 / range.0).powf(t)))
+                value_grid(size, &even_steps(*count, |t| range.0 * (range.1 / range.0).powf(t)))
             }
             Self::Random { range, count, seed } => {
                 let mut random = Random::new(seed ^ salt << 20);
@@ -313,11 +327,11 @@ impl Domain {
                     .map(|_| (0..size).map(|_| random.range(range.0, range.1)).collect())
                     .collect()
             }
-            Self::Unit { count, seed } => units(size, *count, *seed),
+            Self::Unit { count, seed } => unit_vectors(size, *count, *seed),
             Self::About { of, kind, count, seed } => {
-                related(&other(of), *kind, *count, seed ^ salt << 20)
+                related_directions(&other(of), *kind, *count, seed ^ salt << 20)
             }
-            Self::Around { value, ulps } => around(value, *ulps),
+            Self::Around { value, ulps } => neighbours_of(value, *ulps),
             Self::Special(special) => specials(*special, size),
             Self::Union(parts) => {
                 parts.iter().flat_map(|part| part.values(size, other, salt)).collect()
@@ -327,7 +341,7 @@ impl Domain {
 }
 
 /// Directions are drawn until one is near enough to the sphere, which in many dimensions none is.
-fn direction(size: usize) -> Result<(), String> {
+fn check_direction(size: usize) -> Result<(), String> {
     match size {
         1..=4 => Ok(()),
         _ => Err(format!("a direction has 1 to 4 values, and this has {size}")),
@@ -336,9 +350,9 @@ fn direction(size: usize) -> Result<(), String> {
 
 /// Refuses as many plain numbers as a vector has components. They would be vectors with equal
 /// components, but whoever writes them means one vector.
-fn unmistakable(parts: &[Domain], size: usize) -> Result<(), String> {
+fn check_unmistakable(parts: &[Domain], size: usize) -> Result<(), String> {
     let one = |part: &Domain| match part {
-        Domain::Values(values) => values.iter().map(|value| plain(value)).collect(),
+        Domain::Values(values) => values.iter().map(|value| plain_number(value)).collect(),
         _ => None,
     };
     let numbers: Option<Vec<Vec<f64>>> = parts.iter().map(one).collect();
@@ -353,7 +367,7 @@ fn unmistakable(parts: &[Domain], size: usize) -> Result<(), String> {
 }
 
 /// The number of a value that consists of one.
-fn plain(value: &[f64]) -> Option<f64> {
+fn plain_number(value: &[f64]) -> Option<f64> {
     match value {
         [number] => Some(*number),
         _ => None,
@@ -361,7 +375,7 @@ fn plain(value: &[f64]) -> Option<f64> {
 }
 
 /// The bits of a value of the kind.
-pub fn word(value: f64, kind: ScalarKind) -> u32 {
+pub fn word_of(value: f64, kind: ScalarKind) -> u32 {
     match kind {
         ScalarKind::Sint => value as i32 as u32,
         ScalarKind::Uint => value as u32,

@@ -34,21 +34,23 @@ struct Settings {
 }
 
 /// The fixture of a table.
-pub fn read(node: &Node) -> Result<Fixture, Diagnostics> {
-    let kind = node.required("kind").map_err(one)?;
-    if kind.text().map_err(one)? == "sampler" {
+pub fn read_fixture(node: &Node) -> Result<Fixture, Diagnostics> {
+    let kind = node.required("kind").map_err(one_error)?;
+    if kind.text().map_err(one_error)? == "sampler" {
         node.only(SAMPLER_KEYS)?;
-        return sampler(node).map(Fixture::Sampler).map_err(one);
+        return read_sampler(node).map(Fixture::Sampler).map_err(one_error);
     }
     node.only(TEXTURE_KEYS)?;
-    texture(node, kind.choice(TextureKind::NAMES).map_err(one)?).map(Fixture::Texture).map_err(one)
+    read_texture(node, kind.choice(TextureKind::NAMES).map_err(one_error)?)
+        .map(Fixture::Texture)
+        .map_err(one_error)
 }
 
-fn one(error: Diagnostic) -> Diagnostics {
+fn one_error(error: Diagnostic) -> Diagnostics {
     vec![error]
 }
 
-fn sampler(node: &Node) -> Result<Sampler, Diagnostic> {
+fn read_sampler(node: &Node) -> Result<Sampler, Diagnostic> {
     let compare = node.get("compare").map(|node| node.choice(Compare::NAMES)).transpose()?;
     let linear = node
         .get("filter")
@@ -58,7 +60,7 @@ fn sampler(node: &Node) -> Result<Sampler, Diagnostic> {
     Ok(Sampler { compare, linear, address })
 }
 
-fn texture(node: &Node, kind: TextureKind) -> Result<Texture, Diagnostic> {
+fn read_texture(node: &Node, kind: TextureKind) -> Result<Texture, Diagnostic> {
     let size = node.required("size")?;
     let (width, height) = match size.elements()? {
         [width, height] => (width.count(1, 1024)?, height.count(1, 1024)?),
@@ -69,8 +71,8 @@ fn texture(node: &Node, kind: TextureKind) -> Result<Texture, Diagnostic> {
     }
     let wanted = width as usize * height as usize * kind.layers() as usize * kind.channels();
     let texels = match node.get("texels") {
-        Some(texels) => explicit(texels, wanted)?,
-        None => patterned(node, kind, width, height)?,
+        Some(texels) => explicit_texels(texels, wanted)?,
+        None => patterned_texels(node, kind, width, height)?,
     };
     if kind.is_depth() && texels.iter().any(|depth| !(0.0..=1.0).contains(depth)) {
         return Err(node.error("depths lie in [0, 1]"));
@@ -78,7 +80,7 @@ fn texture(node: &Node, kind: TextureKind) -> Result<Texture, Diagnostic> {
     Ok(Texture { kind, width, height, texels })
 }
 
-fn explicit(node: &Node, wanted: usize) -> Result<Vec<f32>, Diagnostic> {
+fn explicit_texels(node: &Node, wanted: usize) -> Result<Vec<f32>, Diagnostic> {
     let texels: Vec<f32> = node.numbers()?.into_iter().map(|value| value as f32).collect();
     if texels.len() != wanted {
         return Err(node.error(format!("expected {wanted} values, found {}", texels.len())));
@@ -86,7 +88,7 @@ fn explicit(node: &Node, wanted: usize) -> Result<Vec<f32>, Diagnostic> {
     Ok(texels)
 }
 
-fn patterned(
+fn patterned_texels(
     node: &Node,
     kind: TextureKind,
     width: u32,

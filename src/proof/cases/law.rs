@@ -6,10 +6,11 @@ use crate::diagnostic::{Diagnostic, codes};
 use crate::proof::laws::{self, Albedo, Integral, Inverse, Law, Over, Takes, Wanted};
 
 /// Reads one law.
-pub fn read(node: &Node) -> Result<Law, Diagnostic> {
+pub fn read_law(node: &Node) -> Result<Law, Diagnostic> {
     let entries = node.entries()?;
-    let found =
-        entries.iter().find_map(|(key, value)| laws::find(&key.name).map(|kind| (kind, value)));
+    let found = entries
+        .iter()
+        .find_map(|(key, value)| laws::find_kind(&key.name).map(|kind| (kind, value)));
     let Some((kind, value)) = found else {
         let known: Vec<_> = laws::KINDS.iter().map(|kind| kind.name).collect();
         return Err(node
@@ -26,45 +27,45 @@ pub fn read(node: &Node) -> Result<Law, Diagnostic> {
             .at(key.span, "here")
             .suggest(&key.name, options.iter().copied()));
     }
-    filled(Law::new(kind, node.span), node, value)
+    fill_law(Law::new(kind, node.span), node, value)
 }
 
 /// The law with the values that its kind takes.
-fn filled(mut law: Law, node: &Node, value: &Node) -> Result<Law, Diagnostic> {
+fn fill_law(mut law: Law, node: &Node, value: &Node) -> Result<Law, Diagnostic> {
     match law.kind.takes {
         Takes::Numbers => law.numbers = value.numbers()?,
-        Takes::Names => law.names = texts(value)?,
+        Takes::Names => law.names = read_texts(value)?,
         Takes::Slope => {
-            law.names = texts(value)?;
+            law.names = read_texts(value)?;
             law.numbers = vec![node.required("slope")?.number()?];
         }
         Takes::Integral => {
-            law.names = texts(value)?;
+            law.names = read_texts(value)?;
             law.numbers =
                 node.get("at_most").map_or_else(|| node.required("gives"), Ok)?.numbers()?;
-            law.integral = Some(integral(node)?);
+            law.integral = Some(read_integral(node)?);
         }
         Takes::Point => {
             law.at = super::values_by_path("", value, &[])?;
             law.numbers = node.required("gives")?.numbers()?;
         }
         Takes::Albedo => {
-            law.partners = texts(value)?;
-            law.albedo = Some(albedo(node)?);
+            law.partners = read_texts(value)?;
+            law.albedo = Some(read_albedo(node)?);
         }
         Takes::Inverse => {
             law.partners = vec![value.text()?.to_owned()];
-            law.inverse = Some(inverse(node)?);
+            law.inverse = Some(read_inverse(node)?);
         }
     }
     Ok(law)
 }
 
-fn texts(node: &Node) -> Result<Vec<String>, Diagnostic> {
+fn read_texts(node: &Node) -> Result<Vec<String>, Diagnostic> {
     node.one_or_more().iter().map(|one| one.text().map(str::to_owned)).collect()
 }
 
-fn integral(node: &Node) -> Result<Integral, Diagnostic> {
+fn read_integral(node: &Node) -> Result<Integral, Diagnostic> {
     let about = node.get("about").map(|about| about.text().map(str::to_owned)).transpose()?;
     let cosine = node.get("cosine").is_some_and(|cosine| matches!(cosine.value, Value::Bool(true)));
     if cosine && about.is_none() {
@@ -73,23 +74,23 @@ fn integral(node: &Node) -> Result<Integral, Diagnostic> {
     Ok(Integral {
         about,
         cosine,
-        steps: steps(node)?,
+        steps: read_steps(node)?,
         within: node.required("within")?.number()?,
         at_most: node.get("at_most").is_some(),
     })
 }
 
-fn steps(node: &Node) -> Result<usize, Diagnostic> {
+fn read_steps(node: &Node) -> Result<usize, Diagnostic> {
     Ok(node.get("steps").map_or(Ok(16), |steps| steps.count(2, 128))? as usize)
 }
 
-fn albedo(node: &Node) -> Result<Albedo, Diagnostic> {
+fn read_albedo(node: &Node) -> Result<Albedo, Diagnostic> {
     let text = |name: &str| node.get(name).map(|node| node.text().map(str::to_owned)).transpose();
     let over =
         [("l", Over::Light), ("h", Over::Half), ("below", Over::Below), ("sphere", Over::Sphere)];
     let wanted = match (node.get("gives"), node.get("at_most")) {
-        (Some(gives), _) => Wanted::Exactly(formula(gives)?),
-        (None, Some(most)) => Wanted::AtMost(formula(most)?),
+        (Some(gives), _) => Wanted::Exactly(read_formula(gives)?),
+        (None, Some(most)) => Wanted::AtMost(read_formula(most)?),
         (None, None) => Wanted::Own,
     };
     Ok(Albedo {
@@ -97,25 +98,25 @@ fn albedo(node: &Node) -> Result<Albedo, Diagnostic> {
         view: text("view")?.unwrap_or_else(|| "nv".to_owned()),
         azimuth: node.get("azimuth").map_or(Ok(0.0), Node::number)?,
         peak: node.get("peak").map(Text::read).transpose()?,
-        with: node.get("with").map_or(Ok(Vec::new()), formulas)?,
+        with: node.get("with").map_or(Ok(Vec::new()), read_formulas)?,
         component: node
             .get("component")
             .map(|node| node.count(0, 3).map(|component| component as usize))
             .transpose()?,
-        steps: steps(node)?,
+        steps: read_steps(node)?,
         within: node.required("within")?.number()?,
         wanted,
     })
 }
 
 /// Formulas by name.
-fn formulas(node: &Node) -> Result<Vec<(String, Text)>, Diagnostic> {
+fn read_formulas(node: &Node) -> Result<Vec<(String, Text)>, Diagnostic> {
     let entries = node.entries()?.iter();
-    entries.map(|(key, value)| Ok((key.name.clone(), formula(value)?))).collect()
+    entries.map(|(key, value)| Ok((key.name.clone(), read_formula(value)?))).collect()
 }
 
 /// A formula, or plain numbers.
-fn formula(node: &Node) -> Result<Text, Diagnostic> {
+fn read_formula(node: &Node) -> Result<Text, Diagnostic> {
     if let Value::Text(_) = node.value {
         return Text::read(node);
     }
@@ -124,7 +125,7 @@ fn formula(node: &Node) -> Result<Text, Diagnostic> {
     Ok(Text { text: format!("vec({})", numbers.join(", ")), span: node.span })
 }
 
-fn inverse(node: &Node) -> Result<Inverse, Diagnostic> {
+fn read_inverse(node: &Node) -> Result<Inverse, Diagnostic> {
     let of = node.get("of").map(|of| of.text().map(str::to_owned)).transpose()?;
     Ok(Inverse { of, within: node.required("within")?.number()? })
 }

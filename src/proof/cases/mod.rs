@@ -55,8 +55,8 @@ mod reader;
 mod rows;
 mod values;
 
-pub use domain::{Domain, word};
-pub use rows::{Rows, numbers, rows, spend};
+pub use domain::{Domain, word_of};
+pub use rows::{Rows, case_rows, spend_steps, words_to_numbers};
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -173,8 +173,8 @@ impl Text {
 }
 
 /// Parses a case file.
-pub fn parse(sources: &SourceSet, id: SourceId) -> Result<File, Diagnostics> {
-    let root = reader::read(&sources.get(id).text, id).map_err(|error| vec![error])?;
+pub fn parse_cases(sources: &SourceSet, id: SourceId) -> Result<File, Diagnostics> {
+    let root = reader::read_toml(&sources.get(id).text, id).map_err(|error| vec![error])?;
     root.only(&["case", "fixture"])?;
     let fixtures = named_fixtures(&root)?;
     let nodes =
@@ -184,7 +184,7 @@ pub fn parse(sources: &SourceSet, id: SourceId) -> Result<File, Diagnostics> {
     }
     let (mut cases, mut errors) = (Vec::new(), Vec::new());
     for node in nodes {
-        match case(node, &fixtures) {
+        match read_case(node, &fixtures) {
             Ok(case) => cases.push(case),
             Err(found) => errors.extend(found),
         }
@@ -197,23 +197,23 @@ fn named_fixtures(root: &Node) -> Result<BTreeMap<String, Arc<Fixture>>, Diagnos
     let entries = node.entries().map_err(|error| vec![error])?;
     entries
         .iter()
-        .map(|(key, node)| Ok((key.name.clone(), Arc::new(fixtures::read(node)?))))
+        .map(|(key, node)| Ok((key.name.clone(), Arc::new(fixtures::read_fixture(node)?))))
         .collect()
 }
 
-fn case(node: &Node, fixtures: &BTreeMap<String, Arc<Fixture>>) -> Result<Case, Diagnostics> {
+fn read_case(node: &Node, fixtures: &BTreeMap<String, Arc<Fixture>>) -> Result<Case, Diagnostics> {
     node.only(CASE_KEYS)?;
     let mut inputs = Vec::new();
     if let Some(table) = node.get("inputs") {
         for (key, inner) in table.entries().map_err(|error| vec![error])? {
-            domain::read(&key.name, inner, &mut inputs)?;
+            domain::read_domains(&key.name, inner, &mut inputs)?;
         }
     }
     let inputs = inputs.into_iter().map(|(path, domain, node)| (path, domain, node.span)).collect();
-    simple(node, fixtures, inputs).map_err(|error| vec![error])
+    read_simple(node, fixtures, inputs).map_err(|error| vec![error])
 }
 
-fn simple(
+fn read_simple(
     node: &Node,
     fixtures: &BTreeMap<String, Arc<Fixture>>,
     inputs: Vec<(String, Domain, Span)>,
@@ -229,14 +229,14 @@ fn simple(
         zip: node
             .get("mode")
             .map_or(Ok(false), |node| node.choice(&[("product", false), ("zip", true)]))?,
-        oracle: oracle(node)?,
+        oracle: read_oracle(node)?,
         tolerance: node.get("tolerance").map_or(Ok(Vec::new()), tolerance_terms)?,
         filter: text("where")?,
         near: text("near")?.map(|near| (near, margin)),
         ambiguous: number("ambiguous", 0.02)?,
-        laws: node
-            .get("laws")
-            .map_or(Ok(Vec::new()), |laws| laws.one_or_more().iter().map(law::read).collect())?,
+        laws: node.get("laws").map_or(Ok(Vec::new()), |laws| {
+            laws.one_or_more().iter().map(law::read_law).collect()
+        })?,
         fixtures: chosen_fixtures(node, fixtures)?,
         fixture_names: fixture_names(node)?,
     })
@@ -273,7 +273,7 @@ type NamedOracle = (&'static str, fn() -> Oracle);
 const ORACLES: &[NamedOracle] =
     &[("reference", || Oracle::Reference), ("eval", || Oracle::Eval), ("none", || Oracle::None)];
 
-fn oracle(node: &Node) -> Result<Oracle, Diagnostic> {
+fn read_oracle(node: &Node) -> Result<Oracle, Diagnostic> {
     if let Some(formula) = node.get("formula") {
         return Text::read(formula).map(Oracle::Formula);
     }
@@ -314,7 +314,7 @@ fn tolerance_terms(node: &Node) -> Result<Vec<Term<Text>>, Diagnostic> {
     for table in node.one_or_more() {
         let only = table.get("for").map(|node| node.text().map(str::to_owned)).transpose()?;
         for (key, value) in table.entries()?.iter().filter(|(key, _)| key.name != "for") {
-            let kind = tolerance::find(&key.name).ok_or_else(|| {
+            let kind = tolerance::find_kind(&key.name).ok_or_else(|| {
                 let error = Diagnostic::error(
                     codes::CASE_INVALID,
                     format!("unknown error term `{}`", key.name),

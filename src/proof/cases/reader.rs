@@ -31,16 +31,16 @@ pub struct Key {
 }
 
 /// The whole file as a table.
-pub fn read(text: &str, source: SourceId) -> Result<Node, Diagnostic> {
+pub fn read_toml(text: &str, source: SourceId) -> Result<Node, Diagnostic> {
     let table = DeTable::parse(text).map_err(|error| {
         let span = Span::new(source, error.span().unwrap_or(0..0));
         Diagnostic::error(codes::CASE_SYNTAX, error.message().to_owned()).at(span, "here")
     })?;
     let span = Span::new(source, table.span());
-    Ok(Node { value: self::table(table.get_ref(), source), span })
+    Ok(Node { value: self::table_of(table.get_ref(), source), span })
 }
 
-fn node(value: &Spanned<DeValue<'_>>, source: SourceId) -> Node {
+fn node_of(value: &Spanned<DeValue<'_>>, source: SourceId) -> Node {
     let span = Span::new(source, value.span());
     let value = match value.get_ref() {
         DeValue::Boolean(value) => Value::Bool(*value),
@@ -50,20 +50,20 @@ fn node(value: &Spanned<DeValue<'_>>, source: SourceId) -> Node {
         DeValue::String(value) => Value::Text(value.to_string()),
         DeValue::Datetime(value) => Value::Text(value.to_string()),
         DeValue::Array(values) => {
-            Value::Array(values.iter().map(|value| node(value, source)).collect())
+            Value::Array(values.iter().map(|value| node_of(value, source)).collect())
         }
-        DeValue::Table(values) => table(values, source),
+        DeValue::Table(values) => table_of(values, source),
     };
     Node { value, span }
 }
 
-fn table(table: &DeTable<'_>, source: SourceId) -> Value {
+fn table_of(table: &DeTable<'_>, source: SourceId) -> Value {
     let key = |key: &Spanned<std::borrow::Cow<'_, str>>| Key {
         name: key.get_ref().to_string(),
         span: Span::new(source, key.span()),
     };
     let mut entries: Vec<_> =
-        table.iter().map(|(name, value)| (key(name), node(value, source))).collect();
+        table.iter().map(|(name, value)| (key(name), node_of(value, source))).collect();
     entries.sort_by_key(|(key, _)| key.span.start);
     Value::Table(entries)
 }

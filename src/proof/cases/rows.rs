@@ -4,7 +4,7 @@ use super::domain::{self, Domain};
 use super::{Case, Oracle, TableRow};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::kernel::Shape;
-use crate::execute::kernel::number;
+use crate::execute::kernel::word_value;
 use crate::limits::{CASE_ROWS, CASE_WORDS, Steps};
 use crate::proof::formula::Scope;
 use naga::ScalarKind;
@@ -35,7 +35,7 @@ struct Column<'a> {
 impl Rows {
     /// Rows of words of these kinds.
     pub fn of(words: Vec<u32>, kinds: Vec<ScalarKind>) -> Self {
-        let (numbers, stride) = (numbers(&words, &kinds), kinds.len().max(1));
+        let (numbers, stride) = (words_to_numbers(&words, &kinds), kinds.len().max(1));
         Self { words, numbers, stride, kinds, units: Vec::new() }
     }
 
@@ -61,7 +61,7 @@ impl Rows {
 
     /// Rows of the same columns from other words.
     pub fn with_words(&self, words: Vec<u32>) -> Self {
-        let numbers = numbers(&words, &self.kinds);
+        let numbers = words_to_numbers(&words, &self.kinds);
         Self {
             words,
             numbers,
@@ -73,17 +73,17 @@ impl Rows {
 }
 
 /// The rows of a case over a function's parameters, within the steps that are left to it.
-pub fn rows(case: &Case, scope: &Scope<'_>, steps: &mut Steps) -> Result<Rows, Diagnostic> {
+pub fn case_rows(case: &Case, scope: &Scope<'_>, steps: &mut Steps) -> Result<Rows, Diagnostic> {
     let kinds: Vec<ScalarKind> = scope.0.iter().flat_map(|(_, shape)| shape.kinds()).collect();
     let stride = kinds.len().max(1);
     let (words, units) = match &case.oracle {
         Oracle::Table(table) => (table_words(table, scope, stride)?, Vec::new()),
-        _ => generated(case, scope, &kinds, steps)?,
+        _ => generate_rows(case, scope, &kinds, steps)?,
     };
-    let rows = Rows { numbers: numbers(&words, &kinds), words, stride, kinds, units };
+    let rows = Rows { numbers: words_to_numbers(&words, &kinds), words, stride, kinds, units };
     let Some(filter) = &case.filter else { return Ok(rows) };
     let filter = filter.bind(scope)?;
-    spend(case, rows.len(), filter.parts(), steps)?;
+    spend_steps(case, rows.len(), filter.parts(), steps)?;
     let kept = (0..rows.len())
         .filter(|index| filter.scalar(rows.row(*index)) == 1.0)
         .flat_map(|index| rows.row_words(index).to_vec())
@@ -93,21 +93,21 @@ pub fn rows(case: &Case, scope: &Scope<'_>, steps: &mut Steps) -> Result<Rows, D
 
 type Generated = (Vec<u32>, Vec<std::ops::Range<usize>>);
 
-fn generated(
+fn generate_rows(
     case: &Case,
     scope: &Scope<'_>,
     kinds: &[ScalarKind],
     steps: &mut Steps,
 ) -> Result<Generated, Diagnostic> {
-    let columns = columns(case, scope)?;
+    let columns = ordered_columns(case, scope)?;
     let stride = kinds.len().max(1);
-    let count = bounded(case, &columns, stride)?;
+    let count = bounded_count(case, &columns, stride)?;
     let fresh = columns.iter().map(|column| match (column.domain.fresh(), case.zip) {
         (0, _) | (_, false) => 1,
         // All of them are made for each row, of which one is taken.
         (_, true) => column.count,
     });
-    spend(case, count, fresh.fold(stride, usize::saturating_add), steps)?;
+    spend_steps(case, count, fresh.fold(stride, usize::saturating_add), steps)?;
     let grid = Grid { kinds, scope, stride };
     let mut rows = vec![0u32; stride];
     for (index, column) in columns.iter().enumerate() {
@@ -128,7 +128,12 @@ fn generated(
 ///
 /// # Errors
 /// Where the case has fewer left.
-pub fn spend(case: &Case, rows: usize, each: usize, steps: &mut Steps) -> Result<(), Diagnostic> {
+pub fn spend_steps(
+    case: &Case,
+    rows: usize,
+    each: usize,
+    steps: &mut Steps,
+) -> Result<(), Diagnostic> {
     let message = || {
         let most = steps.most();
         format!("the {rows} rows of `{}` take {each} steps each, more than {most}", case.function)
@@ -144,7 +149,7 @@ pub fn spend(case: &Case, rows: usize, each: usize, steps: &mut Steps) -> Result
 }
 
 /// How many rows there will be. Refuses a case with too many, before any of them is made.
-fn bounded(case: &Case, columns: &[Column<'_>], stride: usize) -> Result<usize, Diagnostic> {
+fn bounded_count(case: &Case, columns: &[Column<'_>], stride: usize) -> Result<usize, Diagnostic> {
     let counts = columns.iter().map(|column| column.count);
     let rows = match case.zip {
         true => counts.max().unwrap_or(1),
@@ -161,7 +166,7 @@ fn bounded(case: &Case, columns: &[Column<'_>], stride: usize) -> Result<usize, 
 }
 
 /// The columns, each after those that it needs.
-fn columns<'a>(case: &'a Case, scope: &Scope<'_>) -> Result<Vec<Column<'a>>, Diagnostic> {
+fn ordered_columns<'a>(case: &'a Case, scope: &Scope<'_>) -> Result<Vec<Column<'a>>, Diagnostic> {
     let mut left: Vec<_> = case.inputs.iter().collect();
     let mut done: Vec<&str> = Vec::new();
     let mut columns = Vec::new();
@@ -178,10 +183,11 @@ fn columns<'a>(case: &'a Case, scope: &Scope<'_>) -> Result<Vec<Column<'a>>, Dia
             return Err(Diagnostic::error(codes::CASE_INVALID, message).at(*span, "needed here"));
         };
         let (path, domain, span) = left.remove(ready);
-        let (first, shape) =
-            scope.find(&parts(path)).ok_or_else(|| scope.unknown(path).at(*span, "given here"))?;
+        let (first, shape) = scope
+            .find(&path_parts(path))
+            .ok_or_else(|| scope.unknown(path).at(*span, "given here"))?;
         let count = domain
-            .count(shape, &|other| scope.find(&parts(other)).map(|(_, shape)| shape.clone()))
+            .count(shape, &|other| scope.find(&path_parts(other)).map(|(_, shape)| shape.clone()))
             .map_err(|message| {
                 Diagnostic::error(codes::CASE_INVALID, format!("`{path}`: {message}"))
                     .at(*span, "given here")
@@ -221,7 +227,7 @@ impl Grid<'_, '_> {
                 values = self.values(row, column, salt as u64);
             }
             for value in &values {
-                push(&mut grown, row, column.first, value);
+                push_row(&mut grown, row, column.first, value);
             }
         }
         grown
@@ -236,13 +242,13 @@ impl Grid<'_, '_> {
             let values = self.values(first, column, 0);
             for index in 0..rows.len().max(values.len()) {
                 let value = &values[index % values.len()];
-                push(&mut grown, rows[index % rows.len()], column.first, value);
+                push_row(&mut grown, rows[index % rows.len()], column.first, value);
             }
             return grown;
         }
         for (index, row) in rows.iter().enumerate() {
             let values = self.values(row, column, index as u64);
-            push(&mut grown, row, column.first, &values[index % values.len()]);
+            push_row(&mut grown, row, column.first, &values[index % values.len()]);
         }
         grown
     }
@@ -251,23 +257,23 @@ impl Grid<'_, '_> {
         let other = |path: &str| {
             let (first, count) = self
                 .scope
-                .find(&parts(path))
+                .find(&path_parts(path))
                 .map_or((0, 0), |(first, shape)| (first, shape.words() as usize));
-            numbers(&row[first..first + count], &self.kinds[first..first + count])
+            words_to_numbers(&row[first..first + count], &self.kinds[first..first + count])
         };
         column.domain.words(&column.shape, &other, salt)
     }
 }
 
 /// Adds a row with a value put into it.
-fn push(rows: &mut Vec<u32>, row: &[u32], first: usize, value: &[u32]) {
+fn push_row(rows: &mut Vec<u32>, row: &[u32], first: usize, value: &[u32]) {
     let start = rows.len() + first;
     rows.extend_from_slice(row);
     rows[start..start + value.len()].copy_from_slice(value);
 }
 
 /// The names of a path.
-fn parts(path: &str) -> Vec<String> {
+fn path_parts(path: &str) -> Vec<String> {
     path.split('.').map(str::to_owned).collect()
 }
 
@@ -286,7 +292,7 @@ fn table_words(
         let mut filled = vec![0; stride];
         for (path, value) in &row.values {
             let (first, shape) = scope
-                .find(&parts(path))
+                .find(&path_parts(path))
                 .ok_or_else(|| scope.unknown(path).at(row.span, "in this row"))?;
             let kinds = shape.kinds();
             if value.len() != kinds.len() {
@@ -296,7 +302,7 @@ fn table_words(
                 );
             }
             for (index, (value, kind)) in value.iter().zip(kinds).enumerate() {
-                filled[first + index] = domain::word(*value, kind);
+                filled[first + index] = domain::word_of(*value, kind);
             }
         }
         words.extend(filled);
@@ -305,6 +311,6 @@ fn table_words(
 }
 
 /// Words as numbers, by kind.
-pub fn numbers(words: &[u32], kinds: &[ScalarKind]) -> Vec<f64> {
-    words.iter().zip(kinds.iter().cycle()).map(|(word, kind)| number(*word, *kind)).collect()
+pub fn words_to_numbers(words: &[u32], kinds: &[ScalarKind]) -> Vec<f64> {
+    words.iter().zip(kinds.iter().cycle()).map(|(word, kind)| word_value(*word, *kind)).collect()
 }

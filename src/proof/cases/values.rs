@@ -3,12 +3,12 @@
 use super::domain::{About, Special};
 use super::random::Random;
 
-pub(super) fn steps(count: u32, f: impl Fn(f64) -> f64) -> Vec<f64> {
+pub(super) fn even_steps(count: u32, f: impl Fn(f64) -> f64) -> Vec<f64> {
     (0..count).map(|i| f(f64::from(i) / f64::from((count - 1).max(1)))).collect()
 }
 
 /// Every combination of the values in `size` components.
-pub(super) fn grid(size: usize, values: &[f64]) -> Vec<Vec<f64>> {
+pub(super) fn value_grid(size: usize, values: &[f64]) -> Vec<Vec<f64>> {
     (0..size).fold(vec![Vec::new()], |rows, _| {
         rows.iter()
             .flat_map(|row| values.iter().map(move |value| [row.as_slice(), &[*value]].concat()))
@@ -17,7 +17,7 @@ pub(super) fn grid(size: usize, values: &[f64]) -> Vec<Vec<f64>> {
 }
 
 /// The axes of both signs, then random directions.
-pub(super) fn units(size: usize, count: u32, seed: u64) -> Vec<Vec<f64>> {
+pub(super) fn unit_vectors(size: usize, count: u32, seed: u64) -> Vec<Vec<f64>> {
     let axes = (0..2 * size).map(|i| {
         (0..size).map(|c| if c == i / 2 { 1.0 - 2.0 * (i % 2) as f64 } else { 0.0 }).collect()
     });
@@ -26,7 +26,12 @@ pub(super) fn units(size: usize, count: u32, seed: u64) -> Vec<Vec<f64>> {
     axes.chain(rest).take(count as usize).collect()
 }
 
-pub(super) fn related(base: &[f64], kind: About, count: u32, seed: u64) -> Vec<Vec<f64>> {
+pub(super) fn related_directions(
+    base: &[f64],
+    kind: About,
+    count: u32,
+    seed: u64,
+) -> Vec<Vec<f64>> {
     let mut random = Random::new(seed);
     (0..count)
         .map(|i| match kind {
@@ -55,7 +60,7 @@ fn grazing(base: &[f64], index: u32, random: &mut Random) -> Vec<f64> {
 }
 
 /// The value and its neighbours in f32 on both sides. All components move together.
-pub(super) fn around(value: &[f64], ulps: u32) -> Vec<Vec<f64>> {
+pub(super) fn neighbours_of(value: &[f64], ulps: u32) -> Vec<Vec<f64>> {
     let neighbours = |x: f64| {
         let walk = |step: fn(f32) -> f32| {
             let next = std::iter::successors(Some(x as f32), move |at| Some(step(*at)));

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::partner::{self, Partner};
-use super::share::{Parts, Total, share};
+use super::share::{Parts, Total, steps_of_case};
 use super::{Options, Subjects};
 use crate::bundle::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::eval::{Bounded, FindingKind, Number};
 use crate::execute::fixture::Fixture;
-use crate::execute::interpreter::{Calls, Interpreter, value};
+use crate::execute::interpreter::{Calls, Interpreter, slot_value};
 use crate::execute::kernel::{self, Kernel, Shape};
 use crate::proof::cases::{self, Case, File, Oracle, Rows};
 use crate::proof::formula::{Formula, Scope};
@@ -89,7 +89,7 @@ impl Job<'_> {
                 Ok(Some(each(&|row| Expected::words(formula.eval(row)))))
             }
             BoundOracle::Eval(interpreter) => {
-                bounded(interpreter, rows, &self.kernel().result_kinds()).map(Some)
+                bounded_goals(interpreter, rows, &self.kernel().result_kinds()).map(Some)
             }
             BoundOracle::Fixed => Ok(None),
         }
@@ -102,7 +102,7 @@ impl Job<'_> {
 }
 
 /// The jobs of a module's case file.
-pub fn prepare<'a>(
+pub fn prepare_jobs<'a>(
     module: &str,
     file: &'a File,
     languages: &[Language],
@@ -121,15 +121,15 @@ pub fn prepare<'a>(
             for case in &file.cases {
                 first.entry(&case.function).or_insert(case);
             }
-            errors.into_iter().map(|error| placed(error, &first)).collect::<Vec<_>>()
+            errors.into_iter().map(|error| place_at_case(error, &first)).collect::<Vec<_>>()
         })?;
-    let (records, total) = (records(module, file), Total::default());
+    let (records, total) = (record_names(module, file), Total::default());
     let jobs: Vec<_> = records
         .par_iter()
         .enumerate()
         .map(|(index, record)| {
             let place = Place { file, index, record, total: &total };
-            job(module, place, &modules, (subjects, options))
+            make_job(module, place, &modules, (subjects, options))
         })
         .collect();
     total.check(file).map_err(|error| vec![error])?;
@@ -144,7 +144,7 @@ pub fn prepare<'a>(
 }
 
 /// Puts an error about a function at the first case that names the function.
-fn placed(error: Diagnostic, first: &HashMap<&str, &Case>) -> Diagnostic {
+fn place_at_case(error: Diagnostic, first: &HashMap<&str, &Case>) -> Diagnostic {
     match error.item.as_deref().and_then(|item| first.get(item)) {
         Some(case) if error.labels.is_empty() => error.at(case.span, "named here"),
         _ => error,
@@ -157,22 +157,22 @@ fn placed_at(error: Diagnostic, case: &Case) -> Diagnostic {
 }
 
 /// The function in each language, at least one. Its interface must be the same in all.
-fn kernels(
+fn build_kernels(
     case: &Case,
     modules: &[(Language, Arc<naga::Module>)],
 ) -> Result<Vec<(Language, Kernel)>, Diagnostic> {
     let build = |(language, naga): &(Language, Arc<naga::Module>)| {
-        Ok((*language, kernel::build(naga, &case.function, &case.fixtures)?))
+        Ok((*language, kernel::build_kernel(naga, &case.function, &case.fixtures)?))
     };
     let kernels: Vec<_> = modules.iter().map(build).collect::<Result<_, Diagnostic>>()?;
     if kernels.is_empty() {
         return Err(Diagnostic::error(codes::CASE_INVALID, "no language was chosen"));
     }
-    agree(&kernels)?;
+    check_agreement(&kernels)?;
     Ok(kernels)
 }
 
-fn job<'a>(
+fn make_job<'a>(
     module: &str,
     Place { file, index, record, total }: Place<'a, '_>,
     modules: &[(Language, Arc<naga::Module>)],
@@ -180,18 +180,18 @@ fn job<'a>(
 ) -> Result<Job<'a>, Diagnostic> {
     let case = &file.cases[index];
     let placed = |error: Diagnostic| placed_at(error, case);
-    let mut steps = share(file);
-    let mut kernels = kernels(case, modules).map_err(placed)?;
+    let mut steps = steps_of_case(file);
+    let mut kernels = build_kernels(case, modules).map_err(placed)?;
     kernels.iter_mut().for_each(|(_, kernel)| kernel.steps = steps.most());
     let first = &kernels[0].1;
     let scope = Scope(first.words().collect());
-    let rows = cases::rows(case, &scope, &mut steps)?;
+    let rows = cases::case_rows(case, &scope, &mut steps)?;
     total.add(&rows, case);
     total.check(file)?;
     if rows.is_empty() {
         return Err(placed(Diagnostic::error(codes::CASE_INVALID, "no row is left to try")));
     }
-    let terms = tolerance::bind(&case.tolerance, &scope, &first.results).map_err(placed)?;
+    let terms = tolerance::bind_terms(&case.tolerance, &scope, &first.results).map_err(placed)?;
     let languages: Vec<Language> = modules.iter().map(|(language, _)| *language).collect();
     let near = case
         .near
@@ -199,14 +199,15 @@ fn job<'a>(
         .map(|(text, margin)| Ok::<_, Diagnostic>((text.bind(&scope)?, *margin)))
         .transpose()?;
     let filter = case.filter().map(|text| text.bind(&scope)).transpose()?;
-    let oracle = judge(module, case, &scope, first, options)?;
+    let oracle = judge_case(module, case, &scope, first, options)?;
     let parts = Parts { terms: &terms, near: &near, filter: &filter, oracle: &oracle };
     parts.spend(case, &rows, &mut steps)?;
     let bound = |law| {
-        let mut partners = partner::prepare(law, module, &languages, subjects, &rows, &scope)?;
+        let mut partners =
+            partner::prepare_partners(law, module, &languages, subjects, &rows, &scope)?;
         let kernels = partners.iter_mut().flat_map(|partner| &mut partner.kernels);
         kernels.for_each(|(_, kernel)| kernel.steps = steps.most());
-        Ok(BoundLaw { law, rows: laws::transformed(law, &rows, &scope)?, partners })
+        Ok(BoundLaw { law, rows: laws::transform_rows(law, &rows, &scope)?, partners })
     };
     let laws = case
         .laws
@@ -229,7 +230,7 @@ fn job<'a>(
         rows,
         kernels,
     };
-    job.expected = expected(&job)?;
+    job.expected = expected_goals(&job)?;
     Ok(job)
 }
 
@@ -242,7 +243,7 @@ struct Place<'a, 't> {
 }
 
 /// `math::safe::saturate`, and from a function's second case on `math::safe::saturate#2`.
-fn records<'f>(module: &str, file: &'f File) -> Vec<String> {
+fn record_names<'f>(module: &str, file: &'f File) -> Vec<String> {
     let mut seen: HashMap<&'f str, usize> = HashMap::new();
     let record = |case: &'f Case| {
         let earlier = seen.entry(&case.function).or_default();
@@ -256,7 +257,7 @@ fn records<'f>(module: &str, file: &'f File) -> Vec<String> {
 }
 
 /// Both languages must have the same parameters and results.
-fn agree(kernels: &[(Language, Kernel)]) -> Result<(), Diagnostic> {
+fn check_agreement(kernels: &[(Language, Kernel)]) -> Result<(), Diagnostic> {
     let kinds =
         |kernel: &Kernel| kernel.words().flat_map(|(_, shape)| shape.kinds()).collect::<Vec<_>>();
     let differs = kernels.iter().find(|(_, kernel)| {
@@ -275,7 +276,7 @@ fn agree(kernels: &[(Language, Kernel)]) -> Result<(), Diagnostic> {
     }
 }
 
-fn judge(
+fn judge_case(
     module: &str,
     case: &Case,
     scope: &Scope<'_>,
@@ -283,7 +284,7 @@ fn judge(
     options: &Options<'_>,
 ) -> Result<BoundOracle, Diagnostic> {
     let reference = || {
-        references::find(module, &case.function)
+        references::find_reference(module, &case.function)
             .filter(|_| options.references)
             .map(BoundOracle::Reference)
     };
@@ -303,7 +304,7 @@ fn judge(
     }
 }
 
-fn expected(job: &Job<'_>) -> Result<Vec<Goal>, Diagnostic> {
+fn expected_goals(job: &Job<'_>) -> Result<Vec<Goal>, Diagnostic> {
     let expected: Vec<Goal> = match &job.case.oracle {
         Oracle::Table(table) => {
             table.iter().map(|row| Expected::words(row.expect.iter().copied()).into()).collect()
@@ -329,7 +330,7 @@ fn expected(job: &Job<'_>) -> Result<Vec<Goal>, Diagnostic> {
 const CHUNK: usize = 1024;
 
 /// The value of every row, with a bound of its error.
-pub fn bounded(
+pub fn bounded_goals(
     interpreter: &Interpreter,
     rows: &Rows,
     kinds: &[ScalarKind],
@@ -355,7 +356,8 @@ fn bounded_row(
 ) -> Result<Goal, Diagnostic> {
     calls.machine.forget();
     let found = calls.call(row)?;
-    let expected = Expected::words(found.iter().zip(kinds).map(|(slot, kind)| value(*slot, *kind)));
+    let expected =
+        Expected::words(found.iter().zip(kinds).map(|(slot, kind)| slot_value(*slot, *kind)));
     let errors = found
         .iter()
         .zip(kinds)

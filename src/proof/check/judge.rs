@@ -3,7 +3,7 @@
 use super::job::{Goal, Job};
 use super::law::LawVerdict;
 use super::profile::Profile;
-use crate::execute::kernel::number;
+use crate::execute::kernel::word_value;
 use crate::proof::cases::Rows;
 use crate::proof::tolerance;
 use naga::ScalarKind;
@@ -71,17 +71,17 @@ impl Worst {
 
     /// The error in units in the last place of the expected value.
     pub fn ulps(&self) -> f64 {
-        self.error / tolerance::ulp(self.expected)
+        self.error / tolerance::ulp_of(self.expected)
     }
 
     /// What is allowed, in units in the last place of the expected value.
     pub fn allowed_ulps(&self) -> f64 {
-        self.allowed / tolerance::ulp(self.expected)
+        self.allowed / tolerance::ulp_of(self.expected)
     }
 }
 
 /// Judges every row.
-pub fn judge(job: &Job<'_>, rows: &Rows, expected: &[Goal], results: &[u32]) -> Verdict {
+pub fn judge_rows(job: &Job<'_>, rows: &Rows, expected: &[Goal], results: &[u32]) -> Verdict {
     let kinds = job.kernel().result_kinds();
     let mut verdict = Verdict { inputs: rows.len(), ..Verdict::default() };
     for (index, (goal, found)) in
@@ -92,7 +92,7 @@ pub fn judge(job: &Job<'_>, rows: &Rows, expected: &[Goal], results: &[u32]) -> 
             verdict.indeterminate += 1;
             continue;
         }
-        let Some(worst) = compare(job, row, goal, found, &kinds, index) else { continue };
+        let Some(worst) = compare_goal(job, row, goal, found, &kinds, index) else { continue };
         let is_ambiguous = goal.doubtful || is_ambiguous(job, row);
         if worst.share() <= 1.0 || !is_ambiguous {
             verdict.largest = verdict.largest.max(worst.error);
@@ -115,7 +115,7 @@ pub fn judge(job: &Job<'_>, rows: &Rows, expected: &[Goal], results: &[u32]) -> 
 }
 
 /// Compares with each accepted value, and returns the worst component of the one that fits best.
-pub fn compare(
+pub fn compare_goal(
     job: &Job<'_>,
     row: &[f64],
     goal: &Goal,
@@ -138,14 +138,14 @@ fn compare_one(
     kinds: &[ScalarKind],
     index: usize,
 ) -> Option<Worst> {
-    let values = tolerance::values(&job.terms, row);
+    let values = tolerance::formula_values(&job.terms, row);
     let component = |word: usize| {
-        let found = number(found[word], kinds[word]);
+        let found = word_value(found[word], kinds[word]);
         let expected = of.0[word];
         let is_float = kinds[word] == ScalarKind::Float;
         let own = of.1.get(word).copied().unwrap_or(0.0);
         let allowed = if is_float {
-            tolerance::allowed(&job.terms, &values, word, expected) + own
+            tolerance::allowed_error(&job.terms, &values, word, expected) + own
         } else {
             0.0
         };
@@ -154,7 +154,7 @@ fn compare_one(
             word,
             found,
             expected,
-            error: distance(found, expected, is_float),
+            error: component_distance(found, expected, is_float),
             allowed,
         }
     };
@@ -163,7 +163,7 @@ fn compare_one(
 
 /// The error of a component. A subnormal result may have been flushed to zero. NaN has an infinite
 /// error.
-pub fn distance(found: f64, expected: f64, is_float: bool) -> f64 {
+pub fn component_distance(found: f64, expected: f64, is_float: bool) -> f64 {
     let error = if found == expected { 0.0 } else { (found - expected).abs() };
     if error.is_nan() {
         f64::INFINITY
@@ -187,14 +187,14 @@ pub fn is_ambiguous(job: &Job<'_>, row: &[f64]) -> bool {
 
 /// The distance between the results of two languages on one executor. It is infinite if values
 /// differ that are not f32.
-pub fn parity(job: &Job<'_>, first: &[u32], second: &[u32]) -> f64 {
+pub fn language_parity(job: &Job<'_>, first: &[u32], second: &[u32]) -> f64 {
     let kinds = job.kernel().result_kinds();
     let apart = |((a, b), kind): ((&u32, &u32), &ScalarKind)| {
-        let (x, y) = (number(*a, *kind), number(*b, *kind));
+        let (x, y) = (word_value(*a, *kind), word_value(*b, *kind));
         match kind {
             _ if a == b || x == y || (x.is_nan() && y.is_nan()) => 0.0,
             ScalarKind::Float if x.is_finite() && y.is_finite() => {
-                (x - y).abs() / tolerance::ulp(x)
+                (x - y).abs() / tolerance::ulp_of(x)
             }
             _ => f64::INFINITY,
         }

@@ -2,7 +2,7 @@
 
 use super::job::{Goal, Job};
 use super::{judge, profile};
-use crate::execute::kernel::number;
+use crate::execute::kernel::word_value;
 use crate::proof::cases::Rows;
 use crate::proof::laws::{self, Integral, Law};
 use crate::proof::tolerance;
@@ -39,17 +39,19 @@ impl LawVerdict {
 }
 
 /// Judges one law over all rows.
-pub fn judge(job: &Job<'_>, law: &Law, given: &Given<'_>) -> LawVerdict {
+pub fn judge_law(job: &Job<'_>, law: &Law, given: &Given<'_>) -> LawVerdict {
     let kinds = job.kernel().result_kinds();
     match (law.kind.name, &law.integral, given.transformed) {
-        ("reaches", ..) => reaches(law, given.results, &kinds),
-        (_, Some(rule), Some((rows, found))) => integral(job, law, rule, (rows, found), &kinds),
-        _ => each(job, law, given, &kinds),
+        ("reaches", ..) => judge_reaches(law, given.results, &kinds),
+        (_, Some(rule), Some((rows, found))) => {
+            judge_integral(job, law, rule, (rows, found), &kinds)
+        }
+        _ => judge_each(job, law, given, &kinds),
     }
 }
 
 /// Judges a law about single rows, or about a row and its transformed row.
-fn each(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> LawVerdict {
+fn judge_each(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> LawVerdict {
     let mut verdict = LawVerdict::new(law);
     for index in 0..given.rows.len() {
         let row = given.rows.row(index);
@@ -61,16 +63,16 @@ fn each(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> La
         if outside || goal.is_some_and(judge::is_indeterminate) || judge::is_ambiguous(job, row) {
             continue;
         }
-        let values = tolerance::values(&job.terms, row);
-        let moved = other_row.map_or(0.0, |other| apart(row, other));
+        let values = tolerance::formula_values(&job.terms, row);
+        let moved = other_row.map_or(0.0, |other| input_distance(row, other));
         for (word, kind) in kinds.iter().enumerate().filter(|(_, kind)| **kind != ScalarKind::Bool)
         {
             let at = index * kinds.len() + word;
-            let value = number(given.results[at], *kind);
-            let other = given.transformed.map(|(_, words)| number(words[at], *kind));
+            let value = word_value(given.results[at], *kind);
+            let other = given.transformed.map(|(_, words)| word_value(words[at], *kind));
             let allowed = if other.is_some() {
                 let own = goal.and_then(|goal| goal.errors.get(word)).copied().unwrap_or(0.0);
-                2.0 * (tolerance::allowed(&job.terms, &values, word, value) + own)
+                2.0 * (tolerance::allowed_error(&job.terms, &values, word, value) + own)
                     + f64::from(f32::MIN_POSITIVE)
             } else {
                 0.0
@@ -83,8 +85,8 @@ fn each(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> La
                     let compared = other.map_or(String::new(), |other| {
                         format!(", and {other} for the inputs that the law compares with")
                     });
-                    let (broken, allowed) = (amount(broken), amount(allowed));
-                    let row = profile::arguments(job, row);
+                    let (broken, allowed) = (amount_text(broken), amount_text(allowed));
+                    let row = profile::arguments_text(job, row);
                     format!("{row} gives {value}{compared}: off by {broken}, allowed {allowed}")
                 };
                 verdict.example.get_or_insert_with(text);
@@ -95,16 +97,16 @@ fn each(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> La
 }
 
 /// An error as people write it.
-pub fn amount(value: f64) -> String {
+pub fn amount_text(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value:.2e}") }
 }
 
 /// The distance between the inputs of two rows.
-fn apart(row: &[f64], other: &[f64]) -> f64 {
+fn input_distance(row: &[f64], other: &[f64]) -> f64 {
     row.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-fn integral(
+fn judge_integral(
     job: &Job<'_>,
     law: &Law,
     rule: &Integral,
@@ -118,7 +120,7 @@ fn integral(
     }
     for word in 0..kinds.len() {
         let values: Vec<f64> =
-            found.chunks(kinds.len()).map(|words| number(words[word], kinds[word])).collect();
+            found.chunks(kinds.len()).map(|words| word_value(words[word], kinds[word])).collect();
         for (index, sum) in rule.sums(&values).into_iter().enumerate() {
             let (wanted, off) = (law.number(word), rule.off(sum, law.number(word)));
             if off <= rule.within {
@@ -128,7 +130,7 @@ fn integral(
             let row = rows.row(index * rule.calls());
             let most = if rule.at_most { "at most " } else { "" };
             let text = || {
-                let (row, off) = (profile::arguments(job, row), amount(off));
+                let (row, off) = (profile::arguments_text(job, row), amount_text(off));
                 format!(
                     "over all `{}`, else with {row}, it is {sum}, expected {most}{wanted}: off by {off}",
                     law.names[0]
@@ -140,10 +142,10 @@ fn integral(
     verdict
 }
 
-fn reaches(law: &Law, results: &[u32], kinds: &[ScalarKind]) -> LawVerdict {
+fn judge_reaches(law: &Law, results: &[u32], kinds: &[ScalarKind]) -> LawVerdict {
     let mut verdict = LawVerdict::new(law);
     let values =
-        || results.iter().zip(kinds.iter().cycle()).map(|(word, kind)| number(*word, *kind));
+        || results.iter().zip(kinds.iter().cycle()).map(|(word, kind)| word_value(*word, *kind));
     let (least, most) =
         (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
     if let [low, high] = law.numbers[..]

@@ -15,8 +15,8 @@ pub use judge::{Verdict, Worst};
 pub use law::LawVerdict;
 pub use profile::{Axis, BINS, Bin, CELLS, Input, Map, Profile, Scale};
 pub use proof::{Parity, Proof, Spec, Value};
-pub use report::{lacking, language, short, stricter, table};
-pub use told::{failures, failures_as_text, of_outcome, of_proof};
+pub use report::{lacking_text, language_name, report_table, short_number, stricter_cases};
+pub use told::{failures_as_text, of_outcome, of_proof, report_failures};
 
 use std::sync::Arc;
 
@@ -187,7 +187,7 @@ pub fn check_with(
     let prepared: Vec<_> = on_large_stack(|| {
         files
             .par_iter()
-            .map(|(module, file)| job::prepare(module, file, languages, subjects, options))
+            .map(|(module, file)| job::prepare_jobs(module, file, languages, subjects, options))
             .collect()
     });
     let (mut jobs, mut errors) = (Vec::new(), Vec::new());
@@ -214,17 +214,17 @@ pub fn check_with(
         let columns = threads.into_iter().map(|thread| thread.ok()?.join().ok());
         columns
             .zip(names)
-            .map(|(column, name)| column.ok_or_else(|| vec![stopped(name)]))
+            .map(|(column, name)| column.ok_or_else(|| vec![executor_stopped(name)]))
             .collect::<Result<_, Diagnostics>>()
     })?;
     Ok(Report {
-        outcomes: interleaved(columns),
-        proofs: if options.prove { proof::prove(&jobs) } else { Vec::new() },
+        outcomes: interleave_outcomes(columns),
+        proofs: if options.prove { proof::prove_jobs(&jobs) } else { Vec::new() },
         untested: Vec::new(),
     })
 }
 
-fn stopped(executor: &str) -> Diagnostic {
+fn executor_stopped(executor: &str) -> Diagnostic {
     Diagnostic::error(
         codes::EXECUTOR_FAILED,
         format!("the executor `{executor}` stopped with an internal error"),
@@ -250,7 +250,13 @@ fn run_all(jobs: &[Job<'_>], open: &mut Open, options: &Options<'_>) -> Vec<Outc
                 case: job.index,
                 span: job.case.span,
                 record: job.record.clone(),
-                verdict: run(job, (*language, kernel), open.session.as_mut(), &mut first, options),
+                verdict: run_case(
+                    job,
+                    (*language, kernel),
+                    open.session.as_mut(),
+                    &mut first,
+                    options,
+                ),
                 recorded: options
                     .ratchet
                     .and_then(|ratchet| ratchet.share(&job.record, open.executor, &adapter)),
@@ -263,7 +269,7 @@ fn run_all(jobs: &[Job<'_>], open: &mut Open, options: &Options<'_>) -> Vec<Outc
 
 /// Runs one case in one language. `first` keeps the results of the first language, with which the
 /// others are compared.
-fn run(
+fn run_case(
     job: &Job<'_>,
     (language, kernel): (Language, &Kernel),
     session: &mut dyn Session,
@@ -271,16 +277,16 @@ fn run(
     options: &Options<'_>,
 ) -> Result<Verdict, Diagnostic> {
     let results = session.run(kernel, &job.rows.words)?;
-    let mut verdict = judge::judge(job, &job.rows, &job.expected, &results);
+    let mut verdict = judge::judge_rows(job, &job.rows, &job.expected, &results);
     for law in &job.laws {
-        if let Some(found) = partner::judge(job, law, language, &results, session)? {
+        if let Some(found) = partner::judge_partners(job, law, language, &results, session)? {
             verdict.laws.push(found);
             continue;
         }
         let transformed =
             law.rows.as_ref().map(|rows| session.run(kernel, &rows.words)).transpose()?;
         let transformed = law.rows.as_ref().zip(transformed.as_deref());
-        let mut found = law::judge(
+        let mut found = law::judge_law(
             job,
             law.law,
             &law::Given {
@@ -296,16 +302,16 @@ fn run(
         verdict.laws.push(found);
     }
     if let Some(row) = verdict.failing.first() {
-        verdict.smallest = Some(shrink::shrink(job, kernel, session, *row)?);
+        verdict.smallest = Some(shrink::shrink_row(job, kernel, session, *row)?);
     }
-    verdict.profile = options.profile.then(|| Box::new(profile::profile(job, &results)));
-    verdict.parity = first.as_ref().map(|first| judge::parity(job, first, &results));
+    verdict.profile = options.profile.then(|| Box::new(profile::make_profile(job, &results)));
+    verdict.parity = first.as_ref().map(|first| judge::language_parity(job, first, &results));
     first.get_or_insert(results);
     Ok(verdict)
 }
 
 /// Outcomes of all executors, side by side for each job.
-fn interleaved(columns: Vec<Vec<Outcome>>) -> Vec<Outcome> {
+fn interleave_outcomes(columns: Vec<Vec<Outcome>>) -> Vec<Outcome> {
     let mut columns: Vec<_> = columns.into_iter().map(Vec::into_iter).collect();
     let mut outcomes = Vec::new();
     loop {

@@ -7,8 +7,8 @@ use super::judge;
 use super::law::LawVerdict;
 use super::{Language, Session, Subjects};
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::execute::kernel::{self, Kernel, number};
-use crate::proof::cases::{Rows, word};
+use crate::execute::kernel::{self, Kernel, word_value};
+use crate::proof::cases::{Rows, word_of};
 use crate::proof::formula::{Formula, Scope};
 use crate::proof::laws::{Albedo, Inverse, Law, Wanted};
 
@@ -20,7 +20,7 @@ pub struct Partner {
 }
 
 /// The partners of a law, ready to run.
-pub fn prepare(
+pub fn prepare_partners(
     law: &Law,
     module: &str,
     languages: &[Language],
@@ -34,8 +34,8 @@ pub fn prepare(
             .iter()
             .map(|language| {
                 let found = subjects(module, *language, &[function.to_owned()])
-                    .map_err(|errors| first(errors, law, name))?;
-                let kernel = kernel::build(&found, function, &BTreeMap::new());
+                    .map_err(|errors| first_error(errors, law, name))?;
+                let kernel = kernel::build_kernel(&found, function, &BTreeMap::new());
                 Ok((*language, kernel.map_err(|error| error.at(law.span, "named here"))?))
             })
             .collect::<Result<Vec<_>, Diagnostic>>()?;
@@ -48,7 +48,7 @@ pub fn prepare(
     law.partners.iter().map(partner).collect()
 }
 
-fn first(errors: Diagnostics, law: &Law, name: &str) -> Diagnostic {
+fn first_error(errors: Diagnostics, law: &Law, name: &str) -> Diagnostic {
     let found = errors.into_iter().next();
     let error = found.unwrap_or_else(|| {
         let message = format!("there is no function `{name}`");
@@ -58,7 +58,7 @@ fn first(errors: Diagnostics, law: &Law, name: &str) -> Diagnostic {
 }
 
 /// Judges a law that has partners; `results` are those of the case's own rows.
-pub fn judge(
+pub fn judge_partners(
     job: &Job<'_>,
     bound: &BoundLaw<'_>,
     language: Language,
@@ -66,9 +66,11 @@ pub fn judge(
     session: &mut dyn Session,
 ) -> Result<Option<LawVerdict>, Diagnostic> {
     match (&bound.law.albedo, &bound.law.inverse, bound.partners.first()) {
-        (Some(rule), _, Some(_)) => albedo(job, bound, rule, language, results, session).map(Some),
+        (Some(rule), _, Some(_)) => {
+            judge_albedo(job, bound, rule, language, results, session).map(Some)
+        }
         (None, Some(rule), Some(partner)) => {
-            inverse(job, (bound.law, rule, partner), language, results, session).map(Some)
+            judge_inverse(job, (bound.law, rule, partner), language, results, session).map(Some)
         }
         _ => Ok(None),
     }
@@ -77,7 +79,7 @@ pub fn judge(
 /// The components of a function's values, one list for each call.
 type Values = Vec<Vec<f64>>;
 
-fn run(
+fn run_partner(
     partner: &Partner,
     language: Language,
     rows: &Rows,
@@ -89,13 +91,13 @@ fn run(
     let words = session.run(kernel, &rows.words)?;
     let kinds = kernel.result_kinds();
     let call = |words: &[u32]| -> Vec<f64> {
-        words.iter().zip(&kinds).map(|(word, kind)| number(*word, *kind)).collect()
+        words.iter().zip(&kinds).map(|(word, kind)| word_value(*word, *kind)).collect()
     };
     Ok(words.chunks(kinds.len().max(1)).map(call).collect())
 }
 
 /// The product, component by component. A single number is multiplied with every component.
-fn product(left: &Values, right: &Values) -> Values {
+fn component_product(left: &Values, right: &Values) -> Values {
     let pick = |values: &[f64], index: usize| values[if values.len() == 1 { 0 } else { index }];
     let one = |(a, b): (&Vec<f64>, &Vec<f64>)| {
         (0..a.len().max(b.len())).map(|index| pick(a, index) * pick(b, index)).collect()
@@ -103,7 +105,7 @@ fn product(left: &Values, right: &Values) -> Values {
     left.iter().zip(right).map(one).collect()
 }
 
-fn albedo(
+fn judge_albedo(
     job: &Job<'_>,
     bound: &BoundLaw<'_>,
     rule: &Albedo,
@@ -115,11 +117,11 @@ fn albedo(
     let mut values: Option<Values> = None;
     for partner in &bound.partners {
         let Some(rows) = &partner.rows else { continue };
-        let found = run(partner, language, rows, session)?;
-        values = Some(values.map_or(found.clone(), |values| product(&values, &found)));
+        let found = run_partner(partner, language, rows, session)?;
+        values = Some(values.map_or(found.clone(), |values| component_product(&values, &found)));
     }
     let values = values.unwrap_or_default();
-    let wanted = wanted(rule, &scope)?;
+    let wanted = wanted_formula(rule, &scope)?;
     let mut verdict = LawVerdict::new(bound.law);
     let components = match rule.component {
         Some(component) => component..component + 1,
@@ -132,7 +134,7 @@ fn albedo(
             let inputs = job.rows.row(row);
             let wanted = match &wanted {
                 Some(formula) => component_of(&formula.eval(inputs), component),
-                None => own(job, results, row, component),
+                None => own_component(job, results, row, component),
             };
             let at_most = matches!(rule.wanted, Wanted::AtMost(_));
             let off = if at_most { (sum - wanted).max(0.0) } else { (sum - wanted).abs() };
@@ -151,7 +153,7 @@ fn albedo(
     Ok(verdict)
 }
 
-fn wanted(rule: &Albedo, scope: &Scope<'_>) -> Result<Option<Formula>, Diagnostic> {
+fn wanted_formula(rule: &Albedo, scope: &Scope<'_>) -> Result<Option<Formula>, Diagnostic> {
     match &rule.wanted {
         Wanted::Own => Ok(None),
         Wanted::Exactly(text) | Wanted::AtMost(text) => text.bind(scope).map(Some),
@@ -165,15 +167,15 @@ fn component_of(values: &[f64], component: usize) -> f64 {
 }
 
 /// A component of what the case's function gave.
-fn own(job: &Job<'_>, results: &[u32], row: usize, component: usize) -> f64 {
+fn own_component(job: &Job<'_>, results: &[u32], row: usize, component: usize) -> f64 {
     let kinds = job.kernel().result_kinds();
     let component = if kinds.len() == 1 { 0 } else { component };
     results
         .get(row * kinds.len() + component)
-        .map_or(f64::NAN, |word| number(*word, kinds[component]))
+        .map_or(f64::NAN, |word| word_value(*word, kinds[component]))
 }
 
-fn inverse(
+fn judge_inverse(
     job: &Job<'_>,
     (law, rule, partner): (&Law, &Inverse, &Partner),
     language: Language,
@@ -186,8 +188,8 @@ fn inverse(
     let path = rule.of.clone().or_else(|| Some(scope.0.first()?.0.to_owned())).unwrap_or_default();
     let target = scope.find(std::slice::from_ref(&path));
     let (first, shape) = target.ok_or_else(|| scope.unknown(&path).at(law.span, "in this law"))?;
-    let rows = back(job, kernel, &scope, results);
-    let found = run(partner, language, &rows, session)?;
+    let rows = inverse_rows(job, kernel, &scope, results);
+    let found = run_partner(partner, language, &rows, session)?;
     for (row, found) in found.iter().enumerate() {
         let inputs = job.rows.row(row);
         let unknown = job.expected.get(row).is_some_and(judge::is_indeterminate);
@@ -213,13 +215,13 @@ fn nan_max(a: f64, b: f64) -> f64 {
 }
 
 /// The calls of the inverse: the value's words first, then parameters of the case by name.
-fn back(job: &Job<'_>, kernel: &Kernel, scope: &Scope<'_>, results: &[u32]) -> Rows {
+fn inverse_rows(job: &Job<'_>, kernel: &Kernel, scope: &Scope<'_>, results: &[u32]) -> Rows {
     let kinds: Vec<_> = kernel.words().flat_map(|(_, shape)| shape.kinds()).collect();
     let (count, own) = (job.kernel().result_words() as usize, job.kernel().result_kinds());
     let mut words = Vec::new();
     for (row, value) in results.chunks(count.max(1)).enumerate() {
         let mut call: Vec<f64> =
-            value.iter().zip(&own).map(|(word, kind)| number(*word, *kind)).collect();
+            value.iter().zip(&own).map(|(word, kind)| word_value(*word, *kind)).collect();
         for (name, shape) in kernel.words() {
             let at = scope.find(&[name.to_owned()]);
             if let Some((first, _)) = at.filter(|_| call.len() < kinds.len()) {
@@ -228,7 +230,7 @@ fn back(job: &Job<'_>, kernel: &Kernel, scope: &Scope<'_>, results: &[u32]) -> R
             }
         }
         call.resize(kinds.len(), 0.0);
-        words.extend(call.iter().zip(&kinds).map(|(value, kind)| word(*value, *kind)));
+        words.extend(call.iter().zip(&kinds).map(|(value, kind)| word_of(*value, *kind)));
     }
     Rows::of(words, kinds)
 }

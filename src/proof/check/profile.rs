@@ -115,7 +115,7 @@ impl Scale {
 }
 
 /// The profile of results of a job's rows.
-pub fn profile(job: &Job<'_>, results: &[u32]) -> Profile {
+pub fn make_profile(job: &Job<'_>, results: &[u32]) -> Profile {
     let kinds = job.kernel().result_kinds();
     let found: Vec<Worst> = job
         .expected
@@ -124,35 +124,35 @@ pub fn profile(job: &Job<'_>, results: &[u32]) -> Profile {
         .enumerate()
         .filter(|(_, (goal, _))| !judge::is_indeterminate(goal))
         .filter_map(|(index, (goal, found)): (usize, (&Goal, &[u32]))| {
-            judge::compare(job, job.rows.row(index), goal, found, &kinds, index)
+            judge::compare_goal(job, job.rows.row(index), goal, found, &kinds, index)
         })
         .collect();
     let is_doubtful =
         |row: usize| job.expected[row].doubtful || judge::is_ambiguous(job, job.rows.row(row));
     let found: Vec<Worst> =
         found.into_iter().filter(|worst| worst.share() <= 1.0 || !is_doubtful(worst.row)).collect();
-    let names = columns(job);
+    let names = column_names(job);
     let varying: Vec<(usize, Scale)> = (0..names.len().min(job.rows.stride))
-        .filter_map(|column| Some((column, varies(job, column)?)))
+        .filter_map(|column| Some((column, column_scale(job, column)?)))
         .collect();
     let axes = varying
         .iter()
-        .map(|(column, scale)| axis(job, &found, names[*column].clone(), *column, *scale))
+        .map(|(column, scale)| profile_axis(job, &found, names[*column].clone(), *column, *scale))
         .collect();
     let map = match varying[..] {
-        [(across, x), (up, y)] => Some(map(job, &found, (across, x), (up, y))),
+        [(across, x), (up, y)] => Some(profile_map(job, &found, (across, x), (up, y))),
         _ => None,
     };
-    Profile { axes, map, worst: worst(job, found, &names) }
+    Profile { axes, map, worst: worst_inputs(job, found, &names) }
 }
 
-fn varies(job: &Job<'_>, column: usize) -> Option<Scale> {
+fn column_scale(job: &Job<'_>, column: usize) -> Option<Scale> {
     let values = (0..job.rows.len()).map(|row| job.rows.row(row)[column]);
     let scale = Scale::of(values);
     (scale.low < scale.high).then_some(scale)
 }
 
-fn axis(job: &Job<'_>, found: &[Worst], name: String, column: usize, scale: Scale) -> Axis {
+fn profile_axis(job: &Job<'_>, found: &[Worst], name: String, column: usize, scale: Scale) -> Axis {
     let mut bins: Vec<Option<Bin>> = vec![None; BINS];
     for worst in found {
         let index = scale.index(job.rows.row(worst.row)[column], BINS);
@@ -164,7 +164,7 @@ fn axis(job: &Job<'_>, found: &[Worst], name: String, column: usize, scale: Scal
     Axis { name, scale, bins: bins.into_iter().flatten().collect() }
 }
 
-fn map(job: &Job<'_>, found: &[Worst], across: (usize, Scale), up: (usize, Scale)) -> Map {
+fn profile_map(job: &Job<'_>, found: &[Worst], across: (usize, Scale), up: (usize, Scale)) -> Map {
     let mut cells = vec![f64::NAN; CELLS * CELLS];
     for worst in found {
         let row = job.rows.row(worst.row);
@@ -175,7 +175,7 @@ fn map(job: &Job<'_>, found: &[Worst], across: (usize, Scale), up: (usize, Scale
     Map { across: 0, up: 1, cells }
 }
 
-fn worst(job: &Job<'_>, mut found: Vec<Worst>, names: &[String]) -> Vec<Input> {
+fn worst_inputs(job: &Job<'_>, mut found: Vec<Worst>, names: &[String]) -> Vec<Input> {
     found.sort_by(|a, b| b.share().total_cmp(&a.share()).then(a.row.cmp(&b.row)));
     let input = |worst: Worst| {
         let words = names.iter().zip(job.rows.row(worst.row)).zip(job.rows.row_words(worst.row));
@@ -188,17 +188,17 @@ fn worst(job: &Job<'_>, mut found: Vec<Worst>, names: &[String]) -> Vec<Input> {
 }
 
 /// The words of a row by their names: `d = 1.5, light.kind = 3`.
-pub fn arguments(job: &Job<'_>, row: &[f64]) -> String {
-    let named = columns(job).into_iter().zip(row);
+pub fn arguments_text(job: &Job<'_>, row: &[f64]) -> String {
+    let named = column_names(job).into_iter().zip(row);
     named.map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
 }
 
 /// The name of each word of a row.
-fn columns(job: &Job<'_>) -> Vec<String> {
-    job.kernel().words().flat_map(|(name, shape)| parts(name, shape)).collect()
+fn column_names(job: &Job<'_>) -> Vec<String> {
+    job.kernel().words().flat_map(|(name, shape)| part_names(name, shape)).collect()
 }
 
-fn parts(name: &str, shape: &Shape) -> Vec<String> {
+fn part_names(name: &str, shape: &Shape) -> Vec<String> {
     let letters = |size: u32| "xyzw".chars().take(size as usize);
     match shape {
         Shape::Scalar(_) => vec![name.to_owned()],
@@ -211,11 +211,11 @@ fn parts(name: &str, shape: &Shape) -> Vec<String> {
             })
             .collect(),
         Shape::Array { base, count } => {
-            (0..*count).flat_map(|index| parts(&format!("{name}[{index}]"), base)).collect()
+            (0..*count).flat_map(|index| part_names(&format!("{name}[{index}]"), base)).collect()
         }
         Shape::Struct { members } => members
             .iter()
-            .flat_map(|(member, shape)| parts(&format!("{name}.{member}"), shape))
+            .flat_map(|(member, shape)| part_names(&format!("{name}.{member}"), shape))
             .collect(),
     }
 }

@@ -100,11 +100,11 @@ impl Proof {
 }
 
 /// Proves what there is to prove of each job.
-pub fn prove(jobs: &[Job<'_>]) -> Vec<Proof> {
-    on_large_stack(|| jobs.par_iter().map(one).collect())
+pub fn prove_jobs(jobs: &[Job<'_>]) -> Vec<Proof> {
+    on_large_stack(|| jobs.par_iter().map(prove_one).collect())
 }
 
-fn one(job: &Job<'_>) -> Proof {
+fn prove_one(job: &Job<'_>) -> Proof {
     let text = |error: Diagnostic| error.message;
     let kinds = job.kernel().result_kinds();
     let bounded: Vec<Result<Vec<Goal>, String>> = job
@@ -112,24 +112,26 @@ fn one(job: &Job<'_>) -> Proof {
         .iter()
         .map(|(_, kernel)| {
             Interpreter::new(kernel)
-                .and_then(|interpreter| job::bounded(&interpreter, &job.rows, &kinds))
+                .and_then(|interpreter| job::bounded_goals(&interpreter, &job.rows, &kinds))
                 .map_err(text)
         })
         .collect();
     let parity = match &bounded[..] {
         [first, second, ..] => Some(match (first, second) {
-            (Ok(first), Ok(second)) => Ok(apart(first, second, &kinds)),
+            (Ok(first), Ok(second)) => Ok(parity_of(first, second, &kinds)),
             (Err(error), _) | (_, Err(error)) => Err(error.clone()),
         }),
         _ => None,
     };
-    let value =
-        bounded.first().and_then(|first| first.as_ref().ok()).and_then(|first| value(job, first));
+    let value = bounded
+        .first()
+        .and_then(|first| first.as_ref().ok())
+        .and_then(|first| value_proof(job, first));
     let apart = parity.iter().flatten().filter(|parity| parity.apart > 0).map(|parity| parity.row);
     let off = value.filter(|value| value.off > 0).map(|value| value.row);
     let row = apart.chain(off).next();
     let spec = match bounded.into_iter().next() {
-        Some(Ok(first)) => Ok(spec(job, &first, &kinds)),
+        Some(Ok(first)) => Ok(spec_proof(job, &first, &kinds)),
         Some(Err(error)) => Err(error),
         None => Err("no language was chosen".to_owned()),
     };
@@ -138,21 +140,21 @@ fn one(job: &Job<'_>) -> Proof {
         function: job.case.function.clone(),
         case: job.index,
         span: job.case.span,
-        arguments: row.map(|row| profile::arguments(job, job.rows.row(row))),
+        arguments: row.map(|row| profile::arguments_text(job, job.rows.row(row))),
         spec,
         value,
         parity,
     }
 }
 
-fn spec(job: &Job<'_>, bounds: &[Goal], kinds: &[ScalarKind]) -> Spec {
+fn spec_proof(job: &Job<'_>, bounds: &[Goal], kinds: &[ScalarKind]) -> Spec {
     let mut spec = Spec::default();
     for (index, (bound, goal)) in bounds.iter().zip(&job.expected).enumerate() {
         if bound.doubtful || judge::is_indeterminate(bound) || judge::is_indeterminate(goal) {
             continue;
         }
         spec.rows += 1;
-        let values = tolerance::values(&job.terms, job.rows.row(index));
+        let values = tolerance::formula_values(&job.terms, job.rows.row(index));
         let mut stricter = false;
         for (word, expected) in goal
             .expected
@@ -161,7 +163,7 @@ fn spec(job: &Job<'_>, bounds: &[Goal], kinds: &[ScalarKind]) -> Spec {
             .enumerate()
             .filter(|(word, _)| kinds[*word] == ScalarKind::Float)
         {
-            let stated = tolerance::allowed(&job.terms, &values, word, *expected)
+            let stated = tolerance::allowed_error(&job.terms, &values, word, *expected)
                 + goal.errors.get(word).copied().unwrap_or(0.0);
             let allowed = bound.errors[word];
             if allowed <= f64::from(f32::MIN_POSITIVE) {
@@ -170,7 +172,7 @@ fn spec(job: &Job<'_>, bounds: &[Goal], kinds: &[ScalarKind]) -> Spec {
             let share = stated / allowed;
             stricter |= share < 1.0;
             if spec.bound_ulps == 0.0 || share < spec.least {
-                let ulp = tolerance::ulp(*expected);
+                let ulp = tolerance::ulp_of(*expected);
                 spec = Spec {
                     least: share,
                     stated_ulps: stated / ulp,
@@ -184,7 +186,7 @@ fn spec(job: &Job<'_>, bounds: &[Goal], kinds: &[ScalarKind]) -> Spec {
     spec
 }
 
-fn value(job: &Job<'_>, found: &[Goal]) -> Option<Value> {
+fn value_proof(job: &Job<'_>, found: &[Goal]) -> Option<Value> {
     if matches!(job.oracle, BoundOracle::Eval(_)) || job.expected.is_empty() {
         return None;
     }
@@ -196,7 +198,7 @@ fn value(job: &Job<'_>, found: &[Goal]) -> Option<Value> {
             continue;
         }
         value.rows += 1;
-        let share = share(job, inputs, found, goal);
+        let share = error_share(job, inputs, found, goal);
         value.off += usize::from(share > limit);
         if share > value.share {
             value = Value { share, row, ..value };
@@ -207,15 +209,15 @@ fn value(job: &Job<'_>, found: &[Goal]) -> Option<Value> {
 
 /// The error divided by the tolerance: of the worst component, for the accepted value that fits
 /// best.
-fn share(job: &Job<'_>, inputs: &[f64], found: &Goal, goal: &Goal) -> f64 {
-    let values = tolerance::values(&job.terms, inputs);
+fn error_share(job: &Job<'_>, inputs: &[f64], found: &Goal, goal: &Goal) -> f64 {
+    let values = tolerance::formula_values(&job.terms, inputs);
     let of = |expected: &Vec<f64>| {
         let component = |(word, (found, expected)): (usize, (&f64, &f64))| {
-            let off = judge::distance(*found, *expected, false);
+            let off = judge::component_distance(*found, *expected, false);
             if off == 0.0 {
                 0.0
             } else {
-                off / tolerance::allowed(&job.terms, &values, word, *expected)
+                off / tolerance::allowed_error(&job.terms, &values, word, *expected)
             }
         };
         found.expected.value.iter().zip(expected).enumerate().map(component).fold(0.0, f64::max)
@@ -226,7 +228,7 @@ fn share(job: &Job<'_>, inputs: &[f64], found: &Goal, goal: &Goal) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-fn apart(first: &[Goal], second: &[Goal], kinds: &[ScalarKind]) -> Parity {
+fn parity_of(first: &[Goal], second: &[Goal], kinds: &[ScalarKind]) -> Parity {
     let mut parity = Parity::default();
     for (row, (a, b)) in first.iter().zip(second).enumerate() {
         if a.doubtful || b.doubtful || judge::is_indeterminate(a) || judge::is_indeterminate(b) {

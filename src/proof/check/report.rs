@@ -20,9 +20,9 @@ const HEADINGS: [&str; COLUMNS] = [
 const COLUMNS: usize = 12;
 
 /// One line for each function, language and executor.
-pub fn table(report: &Report) -> String {
+pub fn report_table(report: &Report) -> String {
     let rows: Vec<[String; COLUMNS]> = std::iter::once(HEADINGS.map(str::to_owned))
-        .chain(report.outcomes.iter().map(row))
+        .chain(report.outcomes.iter().map(table_row))
         .collect();
     let width =
         |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
@@ -40,9 +40,9 @@ pub fn table(report: &Report) -> String {
     rows.iter().map(line).collect()
 }
 
-fn row(outcome: &Outcome) -> [String; COLUMNS] {
+fn table_row(outcome: &Outcome) -> [String; COLUMNS] {
     let name = format!("{}::{}", outcome.module, outcome.function);
-    let head = [name, language(outcome.language).to_owned(), outcome.executor.to_owned()];
+    let head = [name, language_name(outcome.language).to_owned(), outcome.executor.to_owned()];
     let tail = match &outcome.verdict {
         Err(_) => {
             let headroom = if outcome.lacks().is_some() { "cannot run" } else { "not run" };
@@ -50,19 +50,19 @@ fn row(outcome: &Outcome) -> [String; COLUMNS] {
         }
         Ok(verdict) => {
             let share = if outcome.passed() {
-                verdict.worst.map_or("exact".to_owned(), |worst| headroom(worst.share()))
+                verdict.worst.map_or("exact".to_owned(), |worst| headroom_text(worst.share()))
             } else {
                 "FAILED".to_owned()
             };
             let number = |pick: fn(&super::Worst) -> f64| {
-                verdict.worst.as_ref().map_or("0".to_owned(), |worst| short(pick(worst)))
+                verdict.worst.as_ref().map_or("0".to_owned(), |worst| short_number(pick(worst)))
             };
             let percent = |rows: usize| {
                 format!("{:.2} %", 100.0 * rows as f64 / verdict.inputs.max(1) as f64)
             };
             [
                 verdict.inputs.to_string(),
-                short(verdict.largest),
+                short_number(verdict.largest),
                 number(|worst| worst.ulps()),
                 number(|worst| worst.allowed_ulps()),
                 share,
@@ -71,7 +71,7 @@ fn row(outcome: &Outcome) -> [String; COLUMNS] {
                     .map_or("-".to_owned(), |share| format!("{:.0} %", 100.0 * share)),
                 percent(verdict.ambiguous),
                 percent(verdict.indeterminate),
-                verdict.parity.map_or("-".to_owned(), short),
+                verdict.parity.map_or("-".to_owned(), short_number),
             ]
         }
     };
@@ -80,11 +80,11 @@ fn row(outcome: &Outcome) -> [String; COLUMNS] {
 }
 
 /// The cases whose tolerance is below what WGSL allows their code, one line for each.
-pub fn stricter(report: &Report) -> String {
+pub fn stricter_cases(report: &Report) -> String {
     let line = |proof: &Proof| {
         let spec = proof.spec.as_ref().ok().filter(|spec| spec.stricter > 0)?;
         let (name, rows) = (format!("{}::{}", proof.module, proof.function), spec.rows);
-        let (stated, bound) = (short(spec.stated_ulps), short(spec.bound_ulps));
+        let (stated, bound) = (short_number(spec.stated_ulps), short_number(spec.bound_ulps));
         Some(format!(
             "{name} (case {}): {stated} ULP are stated where WGSL allows {bound}, on {} of {rows} inputs less\n",
             proof.case + 1,
@@ -95,29 +95,29 @@ pub fn stricter(report: &Report) -> String {
 }
 
 /// What executors cannot run, with the reason, one line for each.
-pub fn lacking(report: &Report) -> String {
+pub fn lacking_text(report: &Report) -> String {
     let line = |outcome: &Outcome| {
         let (reason, case) = (&outcome.lacks()?.message, outcome.case + 1);
-        let (path, language) = (outcome.path(), language(outcome.language));
+        let (path, language) = (outcome.path(), language_name(outcome.language));
         Some(format!("{path} (case {case}, {language} on {}): {reason}\n", outcome.executor))
     };
     report.outcomes.iter().filter_map(line).collect()
 }
 
 /// Name of a language.
-pub fn language(language: Language) -> &'static str {
+pub fn language_name(language: Language) -> &'static str {
     match language {
         Language::Wesl => "wesl",
         Language::Glsl => "glsl",
     }
 }
 
-fn headroom(share: f64) -> String {
+fn headroom_text(share: f64) -> String {
     if share == 0.0 { "exact".to_owned() } else { format!("{:.0} %", 100.0 * (1.0 - share)) }
 }
 
 /// A few significant digits, without a long tail.
-pub fn short(value: f64) -> String {
+pub fn short_number(value: f64) -> String {
     if value == 0.0 {
         "0".to_owned()
     } else if (0.01..10_000.0).contains(&value.abs()) {

@@ -10,7 +10,7 @@ use crate::proof::formula::Formula;
 use crate::proof::tolerance::Bound;
 
 /// What a case may take of its file's steps: the same for every case, whatever order they run in.
-pub fn share(file: &File) -> Steps {
+pub fn steps_of_case(file: &File) -> Steps {
     Steps::new(CASE_WORK / file.cases.len().max(1) as u64)
 }
 
@@ -62,6 +62,6 @@ impl Parts<'_> {
         };
         let terms: usize = self.terms.iter().map(Bound::parts).sum();
         let each = (1 + case.laws.len()).saturating_mul(rows.stride + near + filter + terms);
-        cases::spend(case, rows.len(), each.saturating_add(oracle), steps)
+        cases::spend_steps(case, rows.len(), each.saturating_add(oracle), steps)
     }
 }

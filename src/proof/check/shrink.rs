@@ -7,7 +7,7 @@ use super::law::{self, Given};
 use crate::diagnostic::Diagnostic;
 use crate::execute::Session;
 use crate::execute::kernel::Kernel;
-use crate::execute::kernel::number;
+use crate::execute::kernel::word_value;
 use crate::proof::cases::Rows;
 use crate::proof::formula::Scope;
 use crate::proof::laws::{self, Law};
@@ -18,16 +18,16 @@ const ROUNDS: usize = 24;
 
 /// Simplifies a failing row. Returns text: the values in decimal and hexadecimal, and a case ready
 /// to paste.
-pub fn shrink(
+pub fn shrink_row(
     job: &Job<'_>,
     kernel: &Kernel,
     session: &mut dyn Session,
     failing: usize,
 ) -> Result<String, Diagnostic> {
-    let best = smallest(job, failing, &mut |rows| {
+    let best = smallest_input(job, failing, &mut |rows| {
         let Some(expected) = job.goals(rows)? else { return Ok(None) };
         let results = session.run(kernel, &rows.words)?;
-        Ok(judge::judge(job, rows, &expected, &results).failing.first().copied())
+        Ok(judge::judge_rows(job, rows, &expected, &results).failing.first().copied())
     })?;
     let found = session.run(kernel, &best)?;
     let goal = if best == job.rows.row_words(failing) {
@@ -36,7 +36,7 @@ pub fn shrink(
         job.goals(&job.rows.with_words(best.clone()))?
     };
     match goal.as_ref().and_then(|goals| goals.first()).or(job.expected.get(failing)) {
-        Some(goal) => Ok(describe(job, &best, goal, &found)),
+        Some(goal) => Ok(describe_input(job, &best, goal, &found)),
         None => Ok(String::new()),
     }
 }
@@ -50,14 +50,14 @@ pub fn shrink_law(
     failing: usize,
 ) -> Result<String, Diagnostic> {
     let scope = Scope(job.kernel().words().collect());
-    let best = smallest(job, failing, &mut |rows| {
-        let others = laws::transformed(law, rows, &scope)?;
+    let best = smallest_input(job, failing, &mut |rows| {
+        let others = laws::transform_rows(law, rows, &scope)?;
         let expected = job.goals(rows)?.unwrap_or_default();
         let results = session.run(kernel, &rows.words)?;
         let transformed =
             others.as_ref().map(|rows| session.run(kernel, &rows.words)).transpose()?;
         let transformed = others.as_ref().zip(transformed.as_deref());
-        Ok(law::judge(
+        Ok(law::judge_law(
             job,
             law,
             &Given { rows, expected: &expected, results: &results, transformed },
@@ -66,26 +66,28 @@ pub fn shrink_law(
     })?;
     let found = session.run(kernel, &best)?;
     let input = Input::new(job, &best);
-    let found = format!("  found {}\n\n", values(&found, &job.kernel().result_kinds()));
+    let found = format!("  found {}\n\n", decimal_words(&found, &job.kernel().result_kinds()));
     let head = format!("[[case]]\nfunction = {:?}\noracle = \"none\"\n", job.case.function);
-    let laws = format!("{}laws = [{}]\n# {}\n", fixtures(job), laws::toml(law), input.bits);
+    let laws =
+        format!("{}laws = [{}]\n# {}\n", fixtures_line(job), laws::law_toml(law), input.bits);
     Ok(format!("{}{found}{head}{laws}inputs = {{ {} }}\n", input.text, input.lists))
 }
 
 /// The simplest input found that still fails. `first_failing` gives the index of a row that does.
-fn smallest(
+fn smallest_input(
     job: &Job<'_>,
     failing: usize,
     first_failing: &mut dyn FnMut(&Rows) -> Result<Option<usize>, Diagnostic>,
 ) -> Result<Vec<u32>, Diagnostic> {
     let mut best = job.rows.row_words(failing).to_vec();
-    let ranges = ranges(job);
+    let ranges = column_ranges(job);
     for _ in 0..ROUNDS {
-        let mut candidates = candidates(job, &best);
+        let mut candidates = simpler_inputs(job, &best);
         candidates.retain(|candidate| {
-            complexity(job, candidate) < complexity(job, &best) && meant(job, &ranges, candidate)
+            row_complexity(job, candidate) < row_complexity(job, &best)
+                && is_meant(job, &ranges, candidate)
         });
-        candidates.sort_by_key(|candidate| complexity(job, candidate));
+        candidates.sort_by_key(|candidate| row_complexity(job, candidate));
         candidates.truncate(1024);
         if candidates.is_empty() {
             break;
@@ -99,7 +101,7 @@ fn smallest(
 }
 
 /// Inputs with one value, or one unit vector, made simpler.
-fn candidates(job: &Job<'_>, row: &[u32]) -> Vec<Vec<u32>> {
+fn simpler_inputs(job: &Job<'_>, row: &[u32]) -> Vec<Vec<u32>> {
     let mut found = Vec::new();
     for range in &job.rows.units {
         for axis in 0..2 * range.len() {
@@ -113,7 +115,7 @@ fn candidates(job: &Job<'_>, row: &[u32]) -> Vec<Vec<u32>> {
     // A function without parameters has rows of one word, which has no kind.
     for (index, (word, kind)) in row.iter().zip(&job.rows.kinds).enumerate() {
         if !job.rows.units.iter().any(|range| range.contains(&index)) {
-            found.extend(simpler(*word, *kind).into_iter().map(|value| {
+            found.extend(simpler_words(*word, *kind).into_iter().map(|value| {
                 let mut candidate = row.to_vec();
                 candidate[index] = value;
                 candidate
@@ -123,7 +125,7 @@ fn candidates(job: &Job<'_>, row: &[u32]) -> Vec<Vec<u32>> {
     found
 }
 
-fn simpler(word: u32, kind: ScalarKind) -> Vec<u32> {
+fn simpler_words(word: u32, kind: ScalarKind) -> Vec<u32> {
     if kind != ScalarKind::Float {
         return vec![0, 1, word / 2, word.saturating_sub(1)];
     }
@@ -133,7 +135,7 @@ fn simpler(word: u32, kind: ScalarKind) -> Vec<u32> {
 }
 
 /// The least and the largest value of each column.
-fn ranges(job: &Job<'_>) -> Vec<(f64, f64)> {
+fn column_ranges(job: &Job<'_>) -> Vec<(f64, f64)> {
     let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); job.rows.kinds.len()];
     for row in 0..job.rows.len() {
         ranges
@@ -145,8 +147,8 @@ fn ranges(job: &Job<'_>) -> Vec<(f64, f64)> {
 }
 
 /// Whether the case is about such an input: within the ranges of the columns, and not filtered out.
-fn meant(job: &Job<'_>, ranges: &[(f64, f64)], candidate: &[u32]) -> bool {
-    let row = crate::proof::cases::numbers(candidate, &job.rows.kinds);
+fn is_meant(job: &Job<'_>, ranges: &[(f64, f64)], candidate: &[u32]) -> bool {
+    let row = crate::proof::cases::words_to_numbers(candidate, &job.rows.kinds);
     let is_within =
         row.iter().zip(ranges).all(|(value, (low, high))| (*low..=*high).contains(value));
     is_within && job.filter.as_ref().is_none_or(|filter| filter.scalar(&row) == 1.0)
@@ -154,7 +156,7 @@ fn meant(job: &Job<'_>, ranges: &[(f64, f64)], candidate: &[u32]) -> bool {
 
 /// A measure of complexity, smaller is simpler: how many values are not 0, then mantissa bits, then
 /// magnitude.
-fn complexity(job: &Job<'_>, row: &[u32]) -> (u32, u32) {
+fn row_complexity(job: &Job<'_>, row: &[u32]) -> (u32, u32) {
     let cost = |(word, kind): (&u32, &ScalarKind)| match kind {
         ScalarKind::Float if *word & 0x7fff_ffff == 0 => (0, *word >> 31),
         ScalarKind::Float => {
@@ -182,7 +184,7 @@ struct Input {
 
 impl Input {
     fn new(job: &Job<'_>, words: &[u32]) -> Self {
-        let numbers = crate::proof::cases::numbers(words, &job.rows.kinds);
+        let numbers = crate::proof::cases::words_to_numbers(words, &job.rows.kinds);
         let (mut text, mut at) = (String::new(), 0);
         let (mut row, mut lists, mut bits) = (Vec::new(), Vec::new(), Vec::new());
         for (name, shape) in job.kernel().words() {
@@ -190,14 +192,14 @@ impl Input {
             at = range.end;
             text += &format!(
                 "  {name} = {}\n",
-                values(&words[range.clone()], &job.rows.kinds[range.clone()])
+                decimal_words(&words[range.clone()], &job.rows.kinds[range.clone()])
             );
-            bits.push(format!("{name} = {}", hex(&words[range.clone()])));
-            row.push(format!("{name} = {}", list(&numbers[range.clone()])));
+            bits.push(format!("{name} = {}", hex_words(&words[range.clone()])));
+            row.push(format!("{name} = {}", toml_list(&numbers[range.clone()])));
             lists.push(if range.len() == 1 {
                 row[row.len() - 1].clone()
             } else {
-                format!("{name} = [{}]", list(&numbers[range]))
+                format!("{name} = [{}]", toml_list(&numbers[range]))
             });
         }
         Self { text, row: row.join(", "), lists: lists.join(", "), bits: bits.join(", ") }
@@ -205,26 +207,32 @@ impl Input {
 }
 
 /// The input in decimal and hexadecimal, then a case to paste that fails in the same way.
-fn describe(job: &Job<'_>, words: &[u32], goal: &Goal, found: &[u32]) -> String {
+fn describe_input(job: &Job<'_>, words: &[u32], goal: &Goal, found: &[u32]) -> String {
     let input = Input::new(job, words);
-    let worst =
-        judge::judge(job, &job.rows.with_words(words.to_vec()), std::slice::from_ref(goal), found)
-            .worst;
+    let worst = judge::judge_rows(
+        job,
+        &job.rows.with_words(words.to_vec()),
+        std::slice::from_ref(goal),
+        found,
+    )
+    .worst;
     let allowed = worst.map_or(0.0, |worst| worst.allowed);
     let (found, expected) =
-        (values(found, &job.kernel().result_kinds()), list(&goal.expected.value));
-    let said =
-        format!("  found {found}\n  expected {expected}\n  allowed {}\n\n", law::amount(allowed));
-    input.text.clone() + &said + &pasted(job, &input, &expected, allowed)
+        (decimal_words(found, &job.kernel().result_kinds()), toml_list(&goal.expected.value));
+    let said = format!(
+        "  found {found}\n  expected {expected}\n  allowed {}\n\n",
+        law::amount_text(allowed)
+    );
+    input.text.clone() + &said + &case_to_paste(job, &input, &expected, allowed)
 }
 
 /// A case with the one row, and the fixtures that it names.
-fn pasted(job: &Job<'_>, input: &Input, expected: &str, allowed: f64) -> String {
+fn case_to_paste(job: &Job<'_>, input: &Input, expected: &str, allowed: f64) -> String {
     let mut text = format!("[[case]]\nfunction = {:?}\n", job.case.function);
     if allowed > 0.0 {
         text += &format!("tolerance = {{ abs = {allowed:e} }}\n");
     }
-    text += &fixtures(job);
+    text += &fixtures_line(job);
     if !input.bits.is_empty() {
         text += &format!("# {}\n", input.bits);
     }
@@ -233,7 +241,7 @@ fn pasted(job: &Job<'_>, input: &Input, expected: &str, allowed: f64) -> String 
 }
 
 /// The line that names them, if there are any.
-fn fixtures(job: &Job<'_>) -> String {
+fn fixtures_line(job: &Job<'_>) -> String {
     let names: Vec<String> = job
         .case
         .fixture_names
@@ -248,18 +256,18 @@ fn fixtures(job: &Job<'_>) -> String {
 }
 
 /// Numbers as TOML writes them.
-fn list(numbers: &[f64]) -> String {
+fn toml_list(numbers: &[f64]) -> String {
     let one = |number: &f64| if number.is_nan() { "nan".to_owned() } else { format!("{number:?}") };
     format!("[{}]", numbers.iter().map(one).collect::<Vec<_>>().join(", "))
 }
 
-fn hex(words: &[u32]) -> String {
+fn hex_words(words: &[u32]) -> String {
     let words: Vec<String> = words.iter().map(|word| format!("0x{word:08x}")).collect();
     if let [word] = &words[..] { word.clone() } else { format!("[{}]", words.join(", ")) }
 }
 
-fn values(words: &[u32], kinds: &[ScalarKind]) -> String {
+fn decimal_words(words: &[u32], kinds: &[ScalarKind]) -> String {
     let one =
-        |(word, kind): (&u32, &ScalarKind)| format!("{} (0x{word:08x})", number(*word, *kind));
+        |(word, kind): (&u32, &ScalarKind)| format!("{} (0x{word:08x})", word_value(*word, *kind));
     words.iter().zip(kinds).map(one).collect::<Vec<_>>().join(", ")
 }

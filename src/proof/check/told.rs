@@ -1,12 +1,12 @@
 //! Turns what failed in a check into diagnostics at the cases.
 
-use super::report::{language, short};
+use super::report::{language_name, short_number};
 use super::{Outcome, Proof, Report, Verdict};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::proof::ratchet::SLACK;
 
 /// What failed in a report, each with its simplest input; empty if nothing did.
-pub fn failures(report: &Report) -> Diagnostics {
+pub fn report_failures(report: &Report) -> Diagnostics {
     let proofs = report.proofs.iter().filter_map(of_proof);
     proofs.chain(report.outcomes.iter().filter_map(of_outcome)).collect()
 }
@@ -35,13 +35,13 @@ pub fn of_proof(proof: &Proof) -> Option<Diagnostic> {
         _ => {}
     }
     if let Some(value) = proof.value.filter(|value| value.off > 0) {
-        let (off, rows, share) = (value.off, value.rows, short(value.share));
+        let (off, rows, share) = (value.off, value.rows, short_number(value.share));
         reasons.push(format!(
             "the code in f64, without any rounding, is off on {off} of {rows} inputs, by up to {share} times what is allowed"
         ));
     }
     let mut reasons = reasons.into_iter();
-    let error = failed(format!("`{path}`: {}", reasons.next()?));
+    let error = failed_check(format!("`{path}`: {}", reasons.next()?));
     let error = reasons.fold(error, Diagnostic::note).at(proof.span, "in this case");
     Some(match &proof.arguments {
         Some(arguments) => error.note(format!("most with {arguments}")),
@@ -54,28 +54,32 @@ pub fn of_outcome(outcome: &Outcome) -> Option<Diagnostic> {
     if !outcome.failed() {
         return None;
     }
-    let of = format!("{}, {} on {}", language(outcome.language), outcome.executor, outcome.adapter);
+    let of =
+        format!("{}, {} on {}", language_name(outcome.language), outcome.executor, outcome.adapter);
     let error = match &outcome.verdict {
         Err(error) => {
             let message = format!("`{}` did not run ({of}): {}", outcome.path(), error.message);
-            error.notes.iter().fold(failed(message), |failure, note| failure.note(note.clone()))
+            error
+                .notes
+                .iter()
+                .fold(failed_check(message), |failure, note| failure.note(note.clone()))
         }
         Ok(verdict) => {
-            let mut reasons = reasons(outcome, verdict).into_iter();
+            let mut reasons = failure_reasons(outcome, verdict).into_iter();
             let first = reasons.next().unwrap_or_default();
-            let error = failed(format!("`{}` ({of}): {first}", outcome.path()));
-            smallest(verdict).fold(reasons.fold(error, Diagnostic::note), Diagnostic::note)
+            let error = failed_check(format!("`{}` ({of}): {first}", outcome.path()));
+            smallest_failing(verdict).fold(reasons.fold(error, Diagnostic::note), Diagnostic::note)
         }
     };
     Some(error.at(outcome.span, "in this case"))
 }
 
-fn failed(message: String) -> Diagnostic {
+fn failed_check(message: String) -> Diagnostic {
     Diagnostic::error(codes::CHECK_FAILED, message)
 }
 
 /// Why a verdict does not pass.
-fn reasons(outcome: &Outcome, verdict: &Verdict) -> Vec<String> {
+fn failure_reasons(outcome: &Outcome, verdict: &Verdict) -> Vec<String> {
     let mut reasons = Vec::new();
     if !verdict.failing.is_empty() {
         let (off, all) = (verdict.failing.len(), verdict.inputs);
@@ -86,7 +90,7 @@ fn reasons(outcome: &Outcome, verdict: &Verdict) -> Vec<String> {
         (outcome.exceeds_driver(), verdict.worst, outcome.recorded)
     {
         let (found, limit) = (worst.ulps(), worst.allowed_ulps() * recorded * SLACK);
-        let (found, limit) = (short(found), short(limit));
+        let (found, limit) = (short_number(found), short_number(limit));
         reasons.push(format!("{found} ULP, but this driver was recorded to need at most {limit}"));
     }
     if verdict.proves_nothing() {
@@ -110,13 +114,13 @@ fn reasons(outcome: &Outcome, verdict: &Verdict) -> Vec<String> {
 }
 
 /// The simplest inputs that fail, each with a case to paste.
-fn smallest(verdict: &Verdict) -> impl Iterator<Item = String> {
+fn smallest_failing(verdict: &Verdict) -> impl Iterator<Item = String> {
     let of_laws = verdict.laws.iter().filter_map(|law| law.smallest.as_deref());
     let texts = of_laws.chain(verdict.smallest.as_deref());
-    texts.flat_map(|text| text.trim_end().split("\n\n").map(part))
+    texts.flat_map(|text| text.trim_end().split("\n\n").map(first_part))
 }
 
-fn part(text: &str) -> String {
+fn first_part(text: &str) -> String {
     let text = text.trim_end();
     let what =
         if text.starts_with("[[case]]") { "to try it alone" } else { "simplest input found" };

@@ -17,7 +17,7 @@ use super::library::Library;
 use crate::bundle::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::Session;
-use crate::execute::kernel::{self, number};
+use crate::execute::kernel::{self, word_value};
 use crate::source::{SourceId, SourceSet, Span};
 use crate::validate::Validated;
 use rewrite::Rewritten;
@@ -39,13 +39,13 @@ impl fmt::Display for Value {
             .words
             .iter()
             .zip(&self.kinds)
-            .map(|(word, kind)| component(*word, *kind))
+            .map(|(word, kind)| component_text(*word, *kind))
             .collect();
         f.write_str(&texts.join(" "))
     }
 }
 
-fn component(word: u32, kind: ScalarKind) -> String {
+fn component_text(word: u32, kind: ScalarKind) -> String {
     match kind {
         ScalarKind::Float => {
             let value = f32::from_bits(word);
@@ -53,25 +53,26 @@ fn component(word: u32, kind: ScalarKind) -> String {
             if plain { value.to_string() } else { format!("{value:e}") }
         }
         ScalarKind::Bool => (word != 0).to_string(),
-        _ => number(word, kind).to_string(),
+        _ => word_value(word, kind).to_string(),
     }
 }
 
 /// The value of an expression. Errors point into it, as a source named `<expression>`.
-pub fn evaluate(
+pub fn evaluate_expression(
     library: &Library,
     sources: &Mutex<SourceSet>,
     text: &str,
     language: Language,
     session: &mut dyn Session,
 ) -> Result<Value, Diagnostics> {
-    let id = lock(sources).add("<expression>", text);
-    let module = module(library, sources, text, language).map_err(|(errors, wrapper)| {
-        errors
-            .into_iter()
-            .map(|error| relocated(error, &lock(sources), &wrapper, id))
-            .collect::<Vec<_>>()
-    })?;
+    let id = lock_sources(sources).add("<expression>", text);
+    let module =
+        expression_module(library, sources, text, language).map_err(|(errors, wrapper)| {
+            errors
+                .into_iter()
+                .map(|error| relocate_labels(error, &lock_sources(sources), &wrapper, id))
+                .collect::<Vec<_>>()
+        })?;
     let whole = |error: Diagnostic| {
         if error.labels.is_empty() {
             error.at(Span::new(id, 0..text.len()), "in this expression")
@@ -79,24 +80,24 @@ pub fn evaluate(
             error
         }
     };
-    let kernel =
-        kernel::build(&module, FUNCTION, &BTreeMap::new()).map_err(|error| vec![whole(error)])?;
+    let kernel = kernel::build_kernel(&module, FUNCTION, &BTreeMap::new())
+        .map_err(|error| vec![whole(error)])?;
     let words = session.run(&kernel, &[]).map_err(|error| vec![whole(error)])?;
     Ok(Value { words, kinds: kernel.result_kinds() })
 }
 
 type Failed = (Diagnostics, Rewritten);
 
-fn module(
+fn expression_module(
     library: &Library,
     sources: &Mutex<SourceSet>,
     text: &str,
     language: Language,
 ) -> Result<naga::Module, Failed> {
-    let wesl = rewrite::wesl(text, library);
+    let wesl = rewrite::rewrite_wesl(text, library);
     let typed = library
         .importing(sources, ("expression.wesl", &wesl.text), Language::Wesl, FUNCTION)
-        .and_then(|validated| returning(validated).map_err(|error| vec![error]));
+        .and_then(|validated| with_result(validated).map_err(|error| vec![error]));
     let (module, ty) = match typed {
         Ok(typed) => typed,
         Err(errors) => return Err((errors, wesl)),
@@ -104,7 +105,7 @@ fn module(
     if language == Language::Wesl {
         return Ok(module);
     }
-    let glsl = rewrite::glsl(text, library, &module, ty);
+    let glsl = rewrite::rewrite_glsl(text, library, &module, ty);
     match library.importing(sources, ("expression.frag.glsl", &glsl.text), Language::Glsl, FUNCTION)
     {
         Ok(validated) => Ok(validated.module),
@@ -113,7 +114,7 @@ fn module(
 }
 
 /// The module with the function returning the value it binds, and the value's type.
-fn returning(validated: Validated) -> Result<(naga::Module, Handle<naga::Type>), Diagnostic> {
+fn with_result(validated: Validated) -> Result<(naga::Module, Handle<naga::Type>), Diagnostic> {
     let Validated { mut module, info, .. } = validated;
     let nothing = || Diagnostic::error(codes::UNTESTABLE_FUNCTION, "the expression has no value");
     let handle = module
@@ -145,7 +146,7 @@ fn returning(validated: Validated) -> Result<(naga::Module, Handle<naga::Type>),
 }
 
 /// Moves the labels of a diagnostic from the wrapper to the expression.
-fn relocated(
+fn relocate_labels(
     mut error: Diagnostic,
     sources: &SourceSet,
     wrapper: &Rewritten,
@@ -159,6 +160,6 @@ fn relocated(
     error
 }
 
-fn lock(sources: &Mutex<SourceSet>) -> std::sync::MutexGuard<'_, SourceSet> {
+fn lock_sources(sources: &Mutex<SourceSet>) -> std::sync::MutexGuard<'_, SourceSet> {
     sources.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }

@@ -50,14 +50,14 @@ impl Rewritten {
 }
 
 /// `fn lamplight_eval() { let value = (...); }`, paths into the library made absolute.
-pub fn wesl(expression: &str, library: &Library) -> Rewritten {
+pub fn rewrite_wesl(expression: &str, library: &Library) -> Rewritten {
     let homes = Homes::new(library);
     let mut made = Rewritten {
         text: format!("fn {FUNCTION}() {{ let value = ("),
         pieces: Vec::new(),
         length: expression.len(),
     };
-    let tokens = tokens(expression);
+    let tokens = expression_tokens(expression);
     for (index, range) in tokens.iter().enumerate() {
         let text = &expression[range.clone()];
         let follows = |by: usize, wanted: &str| {
@@ -104,14 +104,19 @@ impl<'a> Homes<'a> {
 }
 
 /// The same in GLSL: `T lamplight_eval() { return (...); }` after the includes it needs.
-pub fn glsl(expression: &str, library: &Library, module: &Module, ty: Handle<Type>) -> Rewritten {
-    let tokens = tokens(expression);
+pub fn rewrite_glsl(
+    expression: &str,
+    library: &Library,
+    module: &Module,
+    ty: Handle<Type>,
+) -> Rewritten {
+    let tokens = expression_tokens(expression);
     let mut pieces = Vec::new();
     let mut includes = std::collections::BTreeSet::new();
     let homes = Homes::new(library);
     let mut at = 0;
     while at < tokens.len() {
-        let (text, used) = translate(expression, &tokens[at..], &homes, &mut includes);
+        let (text, used) = translate_tokens(expression, &tokens[at..], &homes, &mut includes);
         pieces.push((text, tokens[at].start..tokens[at + used - 1].end));
         at += used;
     }
@@ -132,7 +137,7 @@ pub fn glsl(expression: &str, library: &Library, module: &Module, ty: Handle<Typ
 }
 
 /// The GLSL for the first tokens, and how many tokens that covers.
-fn translate(
+fn translate_tokens(
     expression: &str,
     tokens: &[Range<usize>],
     homes: &Homes<'_>,
@@ -159,7 +164,7 @@ fn translate(
     let solid: Vec<usize> =
         (0..tokens.len().min(48)).filter(|index| !text(*index).trim().is_empty()).collect();
     let starts_here = solid.first() == Some(&0);
-    match constructor(&solid.iter().map(|index| text(*index)).collect::<Vec<_>>())
+    match type_constructor(&solid.iter().map(|index| text(*index)).collect::<Vec<_>>())
         .filter(|_| starts_here)
     {
         // GLSL has no constructor without arguments.
@@ -173,12 +178,12 @@ fn translate(
             (format!("{name}({zero})"), solid[used + 1] + 1)
         }
         Some((name, used)) => (name, solid[used - 1] + 1),
-        None => (literal(text(0)), 1),
+        None => (glsl_literal(text(0)), 1),
     }
 }
 
 /// A type at the start of the tokens, as GLSL names it.
-fn constructor(tokens: &[&str]) -> Option<(String, usize)> {
+fn type_constructor(tokens: &[&str]) -> Option<(String, usize)> {
     let scalar = |name: &str| SCALARS.iter().find(|(wgsl, ..)| *wgsl == name);
     let first = *tokens.first()?;
     if let Some((_, _, glsl)) = scalar(first) {
@@ -186,11 +191,11 @@ fn constructor(tokens: &[&str]) -> Option<(String, usize)> {
     }
     let generic = tokens.get(1) == Some(&"<");
     if first == "array" && generic {
-        let (base, used) = constructor(&tokens[2..])?;
+        let (base, used) = type_constructor(&tokens[2..])?;
         let (comma, count, close) =
             (tokens.get(2 + used)?, tokens.get(3 + used)?, tokens.get(4 + used)?);
         return (*comma == "," && *close == ">")
-            .then(|| (format!("{base}[{}]", literal(count)), 5 + used));
+            .then(|| (format!("{base}[{}]", glsl_literal(count)), 5 + used));
     }
     let (stem, suffix) = first.split_at_checked(if first.starts_with("mat") { 6 } else { 4 })?;
     let prefix = match (suffix, generic) {
@@ -213,7 +218,7 @@ const SCALARS: &[(&str, &str, &str)] =
 const SUFFIXES: &[(&str, &str)] = &[("f", ""), ("i", "i"), ("u", "u")];
 
 /// A number without WGSL's suffixes; other tokens as they are.
-fn literal(token: &str) -> String {
+fn glsl_literal(token: &str) -> String {
     let is_number = token.starts_with(|c: char| c.is_ascii_digit() || c == '.') && token.len() > 1;
     let is_hex = token.starts_with("0x");
     match token.strip_suffix(['f', 'i']) {
@@ -248,7 +253,7 @@ fn type_name(module: &Module, ty: Handle<Type>) -> String {
 }
 
 /// Words, numbers, `::`, blanks and other characters.
-fn tokens(text: &str) -> Vec<Range<usize>> {
+fn expression_tokens(text: &str) -> Vec<Range<usize>> {
     let mut tokens = Vec::new();
     let mut at = 0;
     while let Some(piece) = piece_at(text, at) {

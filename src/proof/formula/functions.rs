@@ -1,8 +1,8 @@
 //! The functions of formulas: those of WGSL that are about numbers, in f64, by component.
 
-use super::{Function, map, zip};
+use super::{Function, map_components, zip_components};
 
-const fn function(
+const fn make_function(
     name: &'static str,
     arity: usize,
     apply: fn(&[Vec<f64>]) -> Vec<f64>,
@@ -12,56 +12,64 @@ const fn function(
 
 /// Every function, by name.
 pub const ALL: &[Function] = &[
-    function("abs", 1, |a| map(&a[0], f64::abs)),
-    function("acos", 1, |a| map(&a[0], f64::acos)),
-    function("asin", 1, |a| map(&a[0], f64::asin)),
-    function("atan", 1, |a| map(&a[0], f64::atan)),
-    function("atan2", 2, |a| zip(&a[0], &a[1], f64::atan2)),
-    function("ceil", 1, |a| map(&a[0], f64::ceil)),
-    function("clamp", 3, |a| zip(&zip(&a[0], &a[1], f64::max), &a[2], f64::min)),
-    function("cos", 1, |a| map(&a[0], f64::cos)),
-    function("cosh", 1, |a| map(&a[0], f64::cosh)),
-    function("cross", 2, |a| cross(&a[0], &a[1])),
-    function("degrees", 1, |a| map(&a[0], f64::to_degrees)),
-    function("distance", 2, |a| vec![length(&minus(&a[0], &a[1]))]),
-    function("dot", 2, |a| vec![times(&a[0], &a[1]).iter().sum()]),
-    function("dot_abs", 2, |a| vec![zip(&a[0], &a[1], |x, y| (x * y).abs()).iter().sum()]),
-    function("exp", 1, |a| map(&a[0], f64::exp)),
-    function("exp2", 1, |a| map(&a[0], f64::exp2)),
-    function("floor", 1, |a| map(&a[0], f64::floor)),
-    function("fract", 1, |a| map(&a[0], |x| x - x.floor())),
-    function("inverseSqrt", 1, |a| map(&a[0], |x| 1.0 / x.sqrt())),
-    function("length", 1, |a| vec![length(&a[0])]),
-    function("log", 1, |a| map(&a[0], f64::ln)),
-    function("log2", 1, |a| map(&a[0], f64::log2)),
-    function("max", 2, |a| zip(&a[0], &a[1], f64::max)),
-    function("min", 2, |a| zip(&a[0], &a[1], f64::min)),
-    function("mix", 3, |a| mix(&a[0], &a[1], &a[2])),
-    function("normalize", 1, |a| map(&a[0], |x| x / length(&a[0]))),
-    function("pow", 2, |a| zip(&a[0], &a[1], f64::powf)),
-    function("radians", 1, |a| map(&a[0], f64::to_radians)),
-    function("reflect", 2, |a| reflect(&a[0], &a[1])),
-    function("round", 1, |a| map(&a[0], f64::round_ties_even)),
-    function("saturate", 1, |a| map(&a[0], saturate)),
-    function("select", 3, |a| if a[2][0] != 0.0 { a[1].clone() } else { a[0].clone() }),
-    function("sign", 1, |a| map(&a[0], |x| if x == 0.0 { 0.0 } else { x.signum() })),
-    function("sin", 1, |a| map(&a[0], f64::sin)),
-    function("sinh", 1, |a| map(&a[0], f64::sinh)),
-    function("smoothstep", 3, |a| smoothstep(&a[0], &a[1], &a[2])),
-    function("sqrt", 1, |a| map(&a[0], f64::sqrt)),
-    function("step", 2, |a| zip(&a[0], &a[1], |edge, x| f64::from(u8::from(edge <= x)))),
-    function("tan", 1, |a| map(&a[0], f64::tan)),
-    function("tanh", 1, |a| map(&a[0], f64::tanh)),
-    function("trunc", 1, |a| map(&a[0], f64::trunc)),
+    make_function("abs", 1, |a| map_components(&a[0], f64::abs)),
+    make_function("acos", 1, |a| map_components(&a[0], f64::acos)),
+    make_function("asin", 1, |a| map_components(&a[0], f64::asin)),
+    make_function("atan", 1, |a| map_components(&a[0], f64::atan)),
+    make_function("atan2", 2, |a| zip_components(&a[0], &a[1], f64::atan2)),
+    make_function("ceil", 1, |a| map_components(&a[0], f64::ceil)),
+    make_function("clamp", 3, |a| {
+        zip_components(&zip_components(&a[0], &a[1], f64::max), &a[2], f64::min)
+    }),
+    make_function("cos", 1, |a| map_components(&a[0], f64::cos)),
+    make_function("cosh", 1, |a| map_components(&a[0], f64::cosh)),
+    make_function("cross", 2, |a| cross(&a[0], &a[1])),
+    make_function("degrees", 1, |a| map_components(&a[0], f64::to_degrees)),
+    make_function("distance", 2, |a| vec![length(&minus(&a[0], &a[1]))]),
+    make_function("dot", 2, |a| vec![times(&a[0], &a[1]).iter().sum()]),
+    make_function("dot_abs", 2, |a| {
+        vec![zip_components(&a[0], &a[1], |x, y| (x * y).abs()).iter().sum()]
+    }),
+    make_function("exp", 1, |a| map_components(&a[0], f64::exp)),
+    make_function("exp2", 1, |a| map_components(&a[0], f64::exp2)),
+    make_function("floor", 1, |a| map_components(&a[0], f64::floor)),
+    make_function("fract", 1, |a| map_components(&a[0], |x| x - x.floor())),
+    make_function("inverseSqrt", 1, |a| map_components(&a[0], |x| 1.0 / x.sqrt())),
+    make_function("length", 1, |a| vec![length(&a[0])]),
+    make_function("log", 1, |a| map_components(&a[0], f64::ln)),
+    make_function("log2", 1, |a| map_components(&a[0], f64::log2)),
+    make_function("max", 2, |a| zip_components(&a[0], &a[1], f64::max)),
+    make_function("min", 2, |a| zip_components(&a[0], &a[1], f64::min)),
+    make_function("mix", 3, |a| mix(&a[0], &a[1], &a[2])),
+    make_function("normalize", 1, |a| map_components(&a[0], |x| x / length(&a[0]))),
+    make_function("pow", 2, |a| zip_components(&a[0], &a[1], f64::powf)),
+    make_function("radians", 1, |a| map_components(&a[0], f64::to_radians)),
+    make_function("reflect", 2, |a| reflect(&a[0], &a[1])),
+    make_function("round", 1, |a| map_components(&a[0], f64::round_ties_even)),
+    make_function("saturate", 1, |a| map_components(&a[0], saturate)),
+    make_function("select", 3, |a| if a[2][0] != 0.0 { a[1].clone() } else { a[0].clone() }),
+    make_function("sign", 1, |a| {
+        map_components(&a[0], |x| if x == 0.0 { 0.0 } else { x.signum() })
+    }),
+    make_function("sin", 1, |a| map_components(&a[0], f64::sin)),
+    make_function("sinh", 1, |a| map_components(&a[0], f64::sinh)),
+    make_function("smoothstep", 3, |a| smoothstep(&a[0], &a[1], &a[2])),
+    make_function("sqrt", 1, |a| map_components(&a[0], f64::sqrt)),
+    make_function("step", 2, |a| {
+        zip_components(&a[0], &a[1], |edge, x| f64::from(u8::from(edge <= x)))
+    }),
+    make_function("tan", 1, |a| map_components(&a[0], f64::tan)),
+    make_function("tanh", 1, |a| map_components(&a[0], f64::tanh)),
+    make_function("trunc", 1, |a| map_components(&a[0], f64::trunc)),
     Function { name: "vec", arity: None, apply: |a| a.concat() },
 ];
 
 fn minus(a: &[f64], b: &[f64]) -> Vec<f64> {
-    zip(a, b, |x, y| x - y)
+    zip_components(a, b, |x, y| x - y)
 }
 
 fn times(a: &[f64], b: &[f64]) -> Vec<f64> {
-    zip(a, b, |x, y| x * y)
+    zip_components(a, b, |x, y| x * y)
 }
 
 fn saturate(x: f64) -> f64 {
@@ -69,18 +77,19 @@ fn saturate(x: f64) -> f64 {
 }
 
 fn mix(a: &[f64], b: &[f64], t: &[f64]) -> Vec<f64> {
-    zip(&times(a, &map(t, |t| 1.0 - t)), &times(b, t), |x, y| x + y)
+    zip_components(&times(a, &map_components(t, |t| 1.0 - t)), &times(b, t), |x, y| x + y)
 }
 
 /// `n` is unit, as in WGSL.
 fn reflect(i: &[f64], n: &[f64]) -> Vec<f64> {
     let along: f64 = times(i, n).iter().sum();
-    minus(i, &map(n, |x| 2.0 * along * x))
+    minus(i, &map_components(n, |x| 2.0 * along * x))
 }
 
 fn smoothstep(low: &[f64], high: &[f64], x: &[f64]) -> Vec<f64> {
-    let t = zip(&minus(x, low), &minus(high, low), |above, width| saturate(above / width));
-    map(&t, |t| t * t * (3.0 - 2.0 * t))
+    let t =
+        zip_components(&minus(x, low), &minus(high, low), |above, width| saturate(above / width));
+    map_components(&t, |t| t * t * (3.0 - 2.0 * t))
 }
 
 fn length(a: &[f64]) -> f64 {

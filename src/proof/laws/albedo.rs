@@ -20,7 +20,7 @@ use std::f64::consts::PI;
 
 use super::integral::{MOST_CALLS, MOST_ROWS, gauss_legendre};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::proof::cases::{Rows, Text, word};
+use crate::proof::cases::{Rows, Text, word_of};
 use crate::proof::formula::{Formula, Scope};
 
 /// How an albedo is integrated, and what it must be.
@@ -128,11 +128,11 @@ impl Albedo {
             for (geometry, _) in self.nodes(rows.row(row), case)? {
                 let mut values = Vec::new();
                 for (name, shape) in &factor.0 {
-                    let found = value(name, &geometry, rows.row(row), (case, &with));
+                    let found = factor_value(name, &geometry, rows.row(row), (case, &with));
                     let value = found.filter(|value| value.len() == shape.words() as usize);
-                    values.extend(value.ok_or_else(|| unknown(name, span))?);
+                    values.extend(value.ok_or_else(|| unknown_factor(name, span))?);
                 }
-                words.extend(values.iter().zip(&kinds).map(|(value, kind)| word(*value, *kind)));
+                words.extend(values.iter().zip(&kinds).map(|(value, kind)| word_of(*value, *kind)));
             }
         }
         Ok(Rows::of(words, kinds))
@@ -147,14 +147,14 @@ impl Albedo {
         let alpha = peak.map(|peak| peak.scalar(row));
         let directions = match alpha {
             Some(alpha) => about_half(self.steps, alpha),
-            None => even(self.steps, if self.over == Over::Sphere { -1.0 } else { 0.0 }),
+            None => even_directions(self.steps, if self.over == Over::Sphere { -1.0 } else { 0.0 }),
         };
         let node = |(direction, weight)| match (self.over, alpha) {
-            (Over::Half, _) => half(v, direction, weight),
-            (Over::Light, Some(_)) => mirrored(v, direction, weight),
-            (Over::Light, None) => light(v, direction, weight * direction[2]),
-            (Over::Below, _) => light(v, direction.map(|x| -x), weight * direction[2]),
-            (Over::Sphere, _) => light(v, direction, weight),
+            (Over::Half, _) => facet_call(v, direction, weight),
+            (Over::Light, Some(_)) => mirrored_call(v, direction, weight),
+            (Over::Light, None) => light_call(v, direction, weight * direction[2]),
+            (Over::Below, _) => light_call(v, direction.map(|x| -x), weight * direction[2]),
+            (Over::Sphere, _) => light_call(v, direction, weight),
         };
         Ok(directions.into_iter().map(node).collect())
     }
@@ -185,7 +185,7 @@ impl Albedo {
 
 /// The value of a factor's parameter, from a row of the case or from the formulas that the law
 /// gives.
-fn value(
+fn factor_value(
     name: &str,
     geometry: &Geometry,
     row: &[f64],
@@ -203,7 +203,7 @@ fn value(
         .or_else(own)
 }
 
-fn unknown(name: &str, span: crate::source::Span) -> Diagnostic {
+fn unknown_factor(name: &str, span: crate::source::Span) -> Diagnostic {
     let message = format!("neither the geometry nor the case gives a `{name}` of this type");
     Diagnostic::error(codes::CASE_INVALID, message)
         .at(span, "in this law")
@@ -211,13 +211,13 @@ fn unknown(name: &str, span: crate::source::Span) -> Diagnostic {
 }
 
 /// Even azimuths and Gauss-Legendre in the cosine, from `low` to 1, with their solid angles.
-fn even(steps: usize, low: f64) -> Vec<(Vector, f64)> {
-    ring(steps, |x| (low + (1.0 - low) * x, 1.0 - low))
+fn even_directions(steps: usize, low: f64) -> Vec<(Vector, f64)> {
+    ring_directions(steps, |x| (low + (1.0 - low) * x, 1.0 - low))
 }
 
 /// Half vectors as GGX of the width alpha is distributed: tan^2 = alpha^2*u/(1 - u).
 fn about_half(steps: usize, alpha: f64) -> Vec<(Vector, f64)> {
-    ring(steps, |u| {
+    ring_directions(steps, |u| {
         let tan2 = alpha * alpha * u / (1.0 - u);
         let cosine = 1.0 / (1.0 + tan2).sqrt();
         (cosine, 0.5 * cosine.powi(3) * alpha * alpha / (1.0 - u).powi(2))
@@ -225,7 +225,7 @@ fn about_half(steps: usize, alpha: f64) -> Vec<(Vector, f64)> {
 }
 
 /// Directions at evenly spaced azimuths, whose cosine and its slope are functions on [0, 1].
-fn ring(steps: usize, cosine: impl Fn(f64) -> (f64, f64)) -> Vec<(Vector, f64)> {
+fn ring_directions(steps: usize, cosine: impl Fn(f64) -> (f64, f64)) -> Vec<(Vector, f64)> {
     let azimuths = 2 * steps;
     let mut found = Vec::new();
     for (x, weight) in gauss_legendre(steps) {
@@ -241,14 +241,14 @@ fn ring(steps: usize, cosine: impl Fn(f64) -> (f64, f64)) -> Vec<(Vector, f64)> 
 }
 
 /// A call for a light's direction.
-fn light(v: Vector, l: Vector, weight: f64) -> (Geometry, f64) {
+fn light_call(v: Vector, l: Vector, weight: f64) -> (Geometry, f64) {
     let sum = [0, 1, 2].map(|index| l[index] + v[index]);
     let length = dot(sum, sum).sqrt().max(1e-12);
     (Geometry { l, v, h: sum.map(|value| value / length) }, weight)
 }
 
 /// A call for the light that `h` mirrors towards the viewer: dl = 4*(v.h)*dh.
-fn mirrored(v: Vector, h: Vector, weight: f64) -> (Geometry, f64) {
+fn mirrored_call(v: Vector, h: Vector, weight: f64) -> (Geometry, f64) {
     let vh = dot(v, h);
     let l = [0, 1, 2].map(|index| 2.0 * vh * h[index] - v[index]);
     let seen = vh > 0.0 && l[2] > 0.0;
@@ -256,8 +256,8 @@ fn mirrored(v: Vector, h: Vector, weight: f64) -> (Geometry, f64) {
 }
 
 /// A call for a normal of the surface's facets.
-fn half(v: Vector, h: Vector, weight: f64) -> (Geometry, f64) {
-    let (geometry, _) = mirrored(v, h, weight);
+fn facet_call(v: Vector, h: Vector, weight: f64) -> (Geometry, f64) {
+    let (geometry, _) = mirrored_call(v, h, weight);
     (geometry, weight * h[2])
 }
 

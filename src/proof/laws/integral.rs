@@ -57,13 +57,14 @@ impl Integral {
     pub fn rows(&self, rows: &Rows, direction: Range<usize>, about: Option<Range<usize>>) -> Rows {
         let nodes = self.nodes();
         let chosen =
-            distinct(rows, &direction, &about, MOST_ROWS.min(MOST_CALLS / nodes.len()).max(1));
+            distinct_rows(rows, &direction, &about, MOST_ROWS.min(MOST_CALLS / nodes.len()).max(1));
         let mut words = Vec::new();
         for row in chosen {
-            let axis =
-                about.clone().map_or(Some([0.0, 0.0, 1.0]), |about| unit(&rows.row(row)[about]));
+            let axis = about
+                .clone()
+                .map_or(Some([0.0, 0.0, 1.0]), |about| unit_vector(&rows.row(row)[about]));
             let Some(axis) = axis else { continue };
-            let frame = frame(axis);
+            let frame = frame_around(axis);
             for node in &nodes {
                 let mut candidate = rows.row_words(row).to_vec();
                 for (word, component) in direction.clone().zip(0..3) {
@@ -99,7 +100,7 @@ impl Integral {
 }
 
 /// Rows that differ in more than the direction, at most `most` of them, spread over all rows.
-fn distinct(
+fn distinct_rows(
     rows: &Rows,
     direction: &Range<usize>,
     about: &Option<Range<usize>>,
@@ -111,14 +112,15 @@ fn distinct(
         words[direction.clone()].fill(0);
         seen.insert(words)
     };
-    let has_axis =
-        |row: &usize| about.clone().is_none_or(|about| unit(&rows.row(*row)[about]).is_some());
+    let has_axis = |row: &usize| {
+        about.clone().is_none_or(|about| unit_vector(&rows.row(*row)[about]).is_some())
+    };
     let all: Vec<usize> = (0..rows.len()).filter(has_axis).filter(differs).collect();
     let count = all.len().min(most);
     (0..count).map(|index| all[index * all.len() / count]).collect()
 }
 
-fn unit(vector: &[f64]) -> Option<[f64; 3]> {
+fn unit_vector(vector: &[f64]) -> Option<[f64; 3]> {
     let &[x, y, z] = vector else { return None };
     let length = (x * x + y * y + z * z).sqrt();
     (length.is_finite() && (length - 1.0).abs() < 1e-3)
@@ -126,7 +128,7 @@ fn unit(vector: &[f64]) -> Option<[f64; 3]> {
 }
 
 /// Three axes at right angles, the last of which is given.
-fn frame(z: [f64; 3]) -> [[f64; 3]; 3] {
+fn frame_around(z: [f64; 3]) -> [[f64; 3]; 3] {
     let other = if z[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
     let x = cross(other, z);
     let length = x.iter().map(|value| value * value).sum::<f64>().sqrt();

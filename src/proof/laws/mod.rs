@@ -127,7 +127,7 @@ impl std::fmt::Debug for Kind {
 
 /// The law as text for a case file. An integral is a property of many rows together, so no single
 /// row breaks it.
-pub fn toml(law: &Law) -> String {
+pub fn law_toml(law: &Law) -> String {
     let names = law.names.iter().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ");
     let point = || {
         law.at
@@ -172,17 +172,21 @@ impl Law {
 }
 
 /// The kind of that name.
-pub fn find(name: &str) -> Option<&'static Kind> {
+pub fn find_kind(name: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| kind.name == name)
 }
 
 /// The rows that the law compares the case's rows with; `None` for laws about single values.
-pub fn transformed(law: &Law, rows: &Rows, scope: &Scope<'_>) -> Result<Option<Rows>, Diagnostic> {
+pub fn transform_rows(
+    law: &Law,
+    rows: &Rows,
+    scope: &Scope<'_>,
+) -> Result<Option<Rows>, Diagnostic> {
     if !law.partners.is_empty() {
         return Ok(None);
     }
     if let Some(integral) = &law.integral {
-        let direction = |name: &String| direction(law, name, scope);
+        let direction = |name: &String| direction_words(law, name, scope);
         let over = law.names.first().map(direction).transpose()?.unwrap_or_default();
         return Ok(Some(integral.rows(
             rows,
@@ -192,25 +196,25 @@ pub fn transformed(law: &Law, rows: &Rows, scope: &Scope<'_>) -> Result<Option<R
     }
     let mut words = rows.words.clone();
     let places: Vec<_> =
-        law.names.iter().map(|name| place(law, name, scope)).collect::<Result<_, _>>()?;
+        law.names.iter().map(|name| argument_place(law, name, scope)).collect::<Result<_, _>>()?;
     for row in words.chunks_mut(rows.stride) {
         match law.kind.name {
             "rising" | "falling" => {
-                words_of(&places).for_each(|word| raise(&mut row[word], rows.kinds[word]))
+                words_of(&places).for_each(|word| raise_word(&mut row[word], rows.kinds[word]))
             }
             "continuous" => {
-                words_of(&places).for_each(|word| nudge(&mut row[word], rows.kinds[word]))
+                words_of(&places).for_each(|word| nudge_word(&mut row[word], rows.kinds[word]))
             }
             "even" => words_of(&places).for_each(|word| row[word] ^= 0x8000_0000),
-            "swap" => swap(row, &places),
-            "at" => set(law, row, scope)?,
+            "swap" => swap_arguments(row, &places),
+            "at" => set_arguments(law, row, scope)?,
             _ => return Ok(None),
         }
     }
     Ok(Some(rows.with_words(words)))
 }
 
-fn place<'a>(
+fn argument_place<'a>(
     law: &Law,
     name: &str,
     scope: &'a Scope<'_>,
@@ -220,8 +224,8 @@ fn place<'a>(
 }
 
 /// Words of three floats.
-fn direction(law: &Law, name: &str, scope: &Scope<'_>) -> Result<Range<usize>, Diagnostic> {
-    let (first, shape) = place(law, name, scope)?;
+fn direction_words(law: &Law, name: &str, scope: &Scope<'_>) -> Result<Range<usize>, Diagnostic> {
+    let (first, shape) = argument_place(law, name, scope)?;
     if shape.kinds() == [ScalarKind::Float; 3] {
         return Ok(first..first + 3);
     }
@@ -237,7 +241,7 @@ fn words_of<'a>(places: &'a [(usize, &Shape)]) -> impl Iterator<Item = usize> + 
 }
 
 /// A slightly larger value. The step is large enough to pass an edge that the case approaches.
-fn nudge(word: &mut u32, kind: ScalarKind) {
+fn nudge_word(word: &mut u32, kind: ScalarKind) {
     if kind == ScalarKind::Float {
         let value = f32::from_bits(*word);
         *word = (value + value.abs() / 256.0 + 1.0 / 4096.0).to_bits();
@@ -245,7 +249,7 @@ fn nudge(word: &mut u32, kind: ScalarKind) {
 }
 
 /// A value that is larger by one part in sixteen, at least by the smallest normal number.
-fn raise(word: &mut u32, kind: ScalarKind) {
+fn raise_word(word: &mut u32, kind: ScalarKind) {
     *word = match kind {
         ScalarKind::Float => {
             let value = f32::from_bits(*word);
@@ -255,7 +259,7 @@ fn raise(word: &mut u32, kind: ScalarKind) {
     };
 }
 
-fn swap(row: &mut [u32], places: &[(usize, &Shape)]) {
+fn swap_arguments(row: &mut [u32], places: &[(usize, &Shape)]) {
     if let [(first, shape), (second, other)] = places {
         for word in 0..shape.words().min(other.words()) as usize {
             row.swap(first + word, second + word);
@@ -263,13 +267,13 @@ fn swap(row: &mut [u32], places: &[(usize, &Shape)]) {
     }
 }
 
-fn set(law: &Law, row: &mut [u32], scope: &Scope<'_>) -> Result<(), Diagnostic> {
+fn set_arguments(law: &Law, row: &mut [u32], scope: &Scope<'_>) -> Result<(), Diagnostic> {
     for (name, values) in &law.at {
-        let (first, shape) = place(law, name, scope)?;
+        let (first, shape) = argument_place(law, name, scope)?;
         for (index, kind) in shape.kinds().into_iter().enumerate() {
             let value =
                 values.get(if values.len() == 1 { 0 } else { index }).copied().unwrap_or(0.0);
-            row[first + index] = super::cases::word(value, kind);
+            row[first + index] = super::cases::word_of(value, kind);
         }
     }
     Ok(())

@@ -2,41 +2,50 @@
 
 use naga::{Block, Expression, Function, Handle, Range, Statement, TypeInner};
 
-use super::site::{Edit, Site, same};
+use super::site::{Edit, Site, equal_value};
 
 /// Changes the function; `false` where the site is not in it.
-pub fn apply(
+pub fn apply_mutation(
     function: &mut Function,
     site: &Site,
     inner: impl Fn(Handle<Expression>) -> Option<TypeInner>,
 ) -> bool {
     match &site.edit {
-        Edit::Expression { at, with, .. } => replace(function, *at, with.clone()),
-        Edit::Negated { statement, .. } => change(&mut function.body, *statement, &mut |found| {
-            if let Statement::If { accept, reject, .. } = found {
-                std::mem::swap(accept, reject);
-            }
-        }),
-        Edit::NoExit { statement, .. } => change(&mut function.body, *statement, &mut |found| {
-            if let Statement::If { reject, .. } = found {
-                *found = Statement::Block(std::mem::take(reject));
-            }
-        }),
-        Edit::NoStore { statement } => change(&mut function.body, *statement, &mut |found| {
-            *found = Statement::Block(Block::new())
-        }),
+        Edit::Expression { at, with, .. } => replace_expression(function, *at, with.clone()),
+        Edit::Negated { statement, .. } => {
+            change_statement(&mut function.body, *statement, &mut |found| {
+                if let Statement::If { accept, reject, .. } = found {
+                    std::mem::swap(accept, reject);
+                }
+            })
+        }
+        Edit::NoExit { statement, .. } => {
+            change_statement(&mut function.body, *statement, &mut |found| {
+                if let Statement::If { reject, .. } = found {
+                    *found = Statement::Block(std::mem::take(reject));
+                }
+            })
+        }
+        Edit::NoStore { statement } => {
+            change_statement(&mut function.body, *statement, &mut |found| {
+                *found = Statement::Block(Block::new())
+            })
+        }
         Edit::Argument { statement, result, argument } => {
-            let Some(with) = inner(*argument).and_then(|inner| same(&inner, *argument)) else {
+            let Some(with) = inner(*argument).and_then(|inner| equal_value(&inner, *argument))
+            else {
                 return false;
             };
             let emit = Statement::Emit(Range::new_from_bounds(*result, *result));
-            replace(function, *result, with)
-                && change(&mut function.body, *statement, &mut |found| *found = emit.clone())
+            replace_expression(function, *result, with)
+                && change_statement(&mut function.body, *statement, &mut |found| {
+                    *found = emit.clone()
+                })
         }
     }
 }
 
-fn replace(function: &mut Function, at: Handle<Expression>, with: Expression) -> bool {
+fn replace_expression(function: &mut Function, at: Handle<Expression>, with: Expression) -> bool {
     let there = at.index() < function.expressions.len();
     if there {
         function.expressions[at] = with;
@@ -45,12 +54,20 @@ fn replace(function: &mut Function, at: Handle<Expression>, with: Expression) ->
 }
 
 /// Changes the statement of that number, in the order of the text.
-fn change(block: &mut Block, wanted: usize, edit: &mut dyn FnMut(&mut Statement)) -> bool {
+fn change_statement(
+    block: &mut Block,
+    wanted: usize,
+    edit: &mut dyn FnMut(&mut Statement),
+) -> bool {
     let mut left = wanted;
-    walk(block, &mut left, edit)
+    walk_statements(block, &mut left, edit)
 }
 
-fn walk(block: &mut Block, left: &mut usize, edit: &mut dyn FnMut(&mut Statement)) -> bool {
+fn walk_statements(
+    block: &mut Block,
+    left: &mut usize,
+    edit: &mut dyn FnMut(&mut Statement),
+) -> bool {
     for statement in block.iter_mut() {
         if *left == 0 {
             edit(statement);
@@ -58,15 +75,15 @@ fn walk(block: &mut Block, left: &mut usize, edit: &mut dyn FnMut(&mut Statement
         }
         *left -= 1;
         let found = match statement {
-            Statement::Block(block) => walk(block, left, edit),
+            Statement::Block(block) => walk_statements(block, left, edit),
             Statement::If { accept, reject, .. } => {
-                walk(accept, left, edit) || walk(reject, left, edit)
+                walk_statements(accept, left, edit) || walk_statements(reject, left, edit)
             }
             Statement::Switch { cases, .. } => {
-                cases.iter_mut().any(|case| walk(&mut case.body, left, edit))
+                cases.iter_mut().any(|case| walk_statements(&mut case.body, left, edit))
             }
             Statement::Loop { body, continuing, .. } => {
-                walk(body, left, edit) || walk(continuing, left, edit)
+                walk_statements(body, left, edit) || walk_statements(continuing, left, edit)
             }
             _ => false,
         };

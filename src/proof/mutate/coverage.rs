@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use super::suite::{self, Subject, Suite};
-use super::words::author;
+use super::words::author_span;
 use crate::diagnostic::Diagnostics;
 use crate::eval::{Branch, FunctionId, Machine, Point, Program};
 use crate::execute::interpreter::Interpreter;
@@ -38,21 +38,21 @@ type Key = (String, u32, u32, u8);
 ///
 /// # Errors
 /// Mistakes in modules and case files.
-pub fn coverage(
+pub fn measure_coverage(
     library: &Library,
     sources: &Mutex<SourceSet>,
     modules: &[String],
 ) -> Result<Vec<Coverage>, Diagnostics> {
     on_large_stack(|| {
-        let files = suite::files(library, sources, modules)?;
-        let suites = suite::suites(library, sources, &files)?;
+        let files = suite::case_files(library, sources, modules)?;
+        let suites = suite::make_suites(library, sources, &files)?;
         let texts = sources.lock().map(|sources| sources.clone()).unwrap_or_default();
-        Ok(suites.iter().map(|suite| of(suite, &texts)).collect())
+        Ok(suites.iter().map(|suite| suite_coverage(suite, &texts)).collect())
     })
 }
 
-fn of(suite: &Suite<'_>, sources: &SourceSet) -> Coverage {
-    let reached = reached(suite);
+fn suite_coverage(suite: &Suite<'_>, sources: &SourceSet) -> Coverage {
+    let reached = reached_blocks(suite);
     let mut blocks = 0;
     let mut uncovered = Vec::new();
     let Ok(program) = Program::new(&suite.whole, &suite.info) else {
@@ -62,21 +62,21 @@ fn of(suite: &Suite<'_>, sources: &SourceSet) -> Coverage {
         let own = |point: &&Point| point.function == FunctionId::from(subject.function);
         for point in program.points().iter().filter(own) {
             blocks += 1;
-            if !reached.contains_key(&key(&subject.name, point)) {
-                uncovered.push(place(suite, sources, subject, point));
+            if !reached.contains_key(&coverage_key(&subject.name, point)) {
+                uncovered.push(block_place(suite, sources, subject, point));
             }
         }
     }
     Coverage { module: suite.module.clone(), blocks, uncovered }
 }
 
-fn key(function: &str, point: &Point) -> Key {
+fn coverage_key(function: &str, point: &Point) -> Key {
     let range = point.span.to_range().unwrap_or_default();
     (function.to_owned(), range.start as u32, range.end as u32, point.branch as u8)
 }
 
 /// How often each block was reached.
-fn reached(suite: &Suite<'_>) -> BTreeMap<Key, u64> {
+fn reached_blocks(suite: &Suite<'_>) -> BTreeMap<Key, u64> {
     let mut reached = BTreeMap::new();
     for case in &suite.cases {
         let Ok(interpreter) = Interpreter::new(case.job.kernel()) else { continue };
@@ -84,14 +84,18 @@ fn reached(suite: &Suite<'_>) -> BTreeMap<Key, u64> {
         let name = |point: &Point| {
             program.signature(point.function).map_or("", |function| function.name.as_str())
         };
-        if program.points().iter().all(|point| reached.contains_key(&key(name(point), point))) {
+        if program
+            .points()
+            .iter()
+            .all(|point| reached.contains_key(&coverage_key(name(point), point)))
+        {
             continue;
         }
         let mut count = |machine: &Machine<'_, f32>| {
             for (point, hits) in
                 program.points().iter().zip(machine.hits()).filter(|(_, hits)| **hits > 0)
             {
-                *reached.entry(key(name(point), point)).or_insert(0) += hits;
+                *reached.entry(coverage_key(name(point), point)).or_insert(0) += hits;
             }
         };
         // A case that cannot be run reaches nothing. Checking it reports why.
@@ -102,8 +106,8 @@ fn reached(suite: &Suite<'_>) -> BTreeMap<Key, u64> {
     reached
 }
 
-fn place(suite: &Suite<'_>, sources: &SourceSet, subject: &Subject, point: &Point) -> Place {
-    let span = author(&suite.map, point.span);
+fn block_place(suite: &Suite<'_>, sources: &SourceSet, subject: &Subject, point: &Point) -> Place {
+    let span = author_span(&suite.map, point.span);
     let place = span.map_or("?".to_owned(), |span| {
         format!(
             "{}:{}",

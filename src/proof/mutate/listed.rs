@@ -48,7 +48,7 @@ impl fmt::Display for Listed {
 }
 
 /// The entries of the package's list; none if there is no file.
-pub fn read(library: &Library) -> Result<Vec<Listed>, Diagnostics> {
+pub fn read_list(library: &Library) -> Result<Vec<Listed>, Diagnostics> {
     let Some(text) = library.text(FILE) else { return Ok(Vec::new()) };
     let invalid =
         |message: String| vec![Diagnostic::error(codes::CASE_SYNTAX, format!("{FILE}: {message}"))];
@@ -60,12 +60,12 @@ pub fn read(library: &Library) -> Result<Vec<Listed>, Diagnostics> {
     kinds
         .iter()
         .flat_map(|(key, equivalent)| {
-            entries(key).iter().map(|entry| listed(entry, *equivalent).map_err(invalid))
+            entries(key).iter().map(|entry| read_entry(entry, *equivalent).map_err(invalid))
         })
         .collect()
 }
 
-fn listed(entry: &toml::Value, equivalent: bool) -> Result<Listed, String> {
+fn read_entry(entry: &toml::Value, equivalent: bool) -> Result<Listed, String> {
     let text = |key: &str| match entry.get(key).and_then(toml::Value::as_str) {
         Some(text) if !text.is_empty() => Ok(text.to_owned()),
         _ => Err(format!("an entry has no `{key}`: {entry}")),

@@ -19,7 +19,7 @@ mod site;
 mod suite;
 mod words;
 
-pub use coverage::{Coverage, Place, coverage};
+pub use coverage::{Coverage, Place, measure_coverage};
 pub use report::{Fate, Outcome, Report};
 
 use std::sync::Mutex;
@@ -38,35 +38,38 @@ use suite::{Subject, Suite};
 ///
 /// # Errors
 /// Mistakes in modules and case files, and cases that fail without any mutation.
-pub fn mutate(
+pub fn run_mutants(
     library: &Library,
     sources: &Mutex<SourceSet>,
     modules: &[String],
 ) -> Result<Report, Diagnostics> {
-    let listed = listed::read(library)?;
+    let listed = listed::read_list(library)?;
     on_large_stack(|| {
-        let files = suite::files(library, sources, modules)?;
-        let suites = suite::suites(library, sources, &files)?;
+        let files = suite::case_files(library, sources, modules)?;
+        let suites = suite::make_suites(library, sources, &files)?;
         suites
             .par_iter()
             .map(Suite::check)
             .collect::<Result<(), _>>()
             .map_err(|error| vec![error])?;
-        let mutants: Vec<(&Suite<'_>, &Subject, Site)> = suites.iter().flat_map(mutants).collect();
+        let mutants: Vec<(&Suite<'_>, &Subject, Site)> =
+            suites.iter().flat_map(all_mutants).collect();
         let texts = sources.lock().map(|sources| sources.clone()).unwrap_or_default();
         let outcomes = mutants
             .par_iter()
-            .filter_map(|(suite, subject, site)| outcome(&texts, &listed, suite, subject, site))
+            .filter_map(|(suite, subject, site)| {
+                mutant_outcome(&texts, &listed, suite, subject, site)
+            })
             .collect();
-        Ok(report::report(outcomes, &listed))
+        Ok(report::make_report(outcomes, &listed))
     })
 }
 
-fn mutants<'a, 'f>(
+fn all_mutants<'a, 'f>(
     suite: &'a Suite<'f>,
 ) -> impl Iterator<Item = (&'a Suite<'f>, &'a Subject, Site)> {
     let sites = |subject: &'a Subject| {
-        site::sites(&suite.whole, &suite.info, subject.function)
+        site::mutation_sites(&suite.whole, &suite.info, subject.function)
             .into_iter()
             .map(move |site| (subject, site))
     };
@@ -74,7 +77,7 @@ fn mutants<'a, 'f>(
 }
 
 /// The fate of one mutant; `None` if it is not valid.
-fn outcome(
+fn mutant_outcome(
     sources: &SourceSet,
     listed: &[Listed],
     suite: &Suite<'_>,

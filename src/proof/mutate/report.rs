@@ -42,7 +42,7 @@ pub struct Report {
     reasons: Vec<String>,
 }
 
-pub fn report(outcomes: Vec<Outcome>, listed: &[Listed]) -> Report {
+pub fn make_report(outcomes: Vec<Outcome>, listed: &[Listed]) -> Report {
     let used = |index: usize| {
         outcomes.iter().any(|outcome| {
             [Fate::Equivalent(index), Fate::Explained(index)].contains(&outcome.fate)

@@ -73,7 +73,7 @@ const SIDED_MATH: &[Math] =
     &[Math::Pow, Math::Atan2, Math::Step, Math::Cross, Math::Reflect, Math::Mix, Math::SmoothStep];
 
 /// The sites of a function of the module.
-pub fn sites(module: &Module, info: &ModuleInfo, handle: Handle<Function>) -> Vec<Site> {
+pub fn mutation_sites(module: &Module, info: &ModuleInfo, handle: Handle<Function>) -> Vec<Site> {
     let function = &module.functions[handle];
     let finder = Finder { module, info: &info[handle], function };
     let mut sites = Vec::new();
@@ -90,7 +90,7 @@ pub fn sites(module: &Module, info: &ModuleInfo, handle: Handle<Function>) -> Ve
 
 /// A value that equals an operand, to replace another expression: the minimum of the operand and
 /// itself.
-pub fn same(inner: &TypeInner, of: Handle<Expression>) -> Option<Expression> {
+pub fn equal_value(inner: &TypeInner, of: Handle<Expression>) -> Option<Expression> {
     match inner {
         TypeInner::Scalar(scalar) | TypeInner::Vector { scalar, .. }
             if scalar.kind != ScalarKind::Bool =>
@@ -123,10 +123,10 @@ impl Finder<'_> {
 
     fn expression(&self, expression: &Expression) -> Changed {
         match *expression {
-            Expression::Literal(literal) => number(literal).into_iter().collect(),
+            Expression::Literal(literal) => wrong_literal(literal).into_iter().collect(),
             Expression::Constant(constant) => {
                 match self.module.global_expressions[self.module.constants[constant].init] {
-                    Expression::Literal(literal) => number(literal).into_iter().collect(),
+                    Expression::Literal(literal) => wrong_literal(literal).into_iter().collect(),
                     _ => Vec::new(),
                 }
             }
@@ -209,14 +209,17 @@ impl Finder<'_> {
     }
 
     fn kept(&self, operand: Handle<Expression>) -> Changed {
-        same(self.ty(operand), operand).map(|with| (with, How::Kept(operand))).into_iter().collect()
+        equal_value(self.ty(operand), operand)
+            .map(|with| (with, How::Kept(operand)))
+            .into_iter()
+            .collect()
     }
 
     fn block(&self, block: &Block, count: &mut usize, sites: &mut Vec<Site>) {
         for (statement, span) in block.span_iter() {
             self.statement(statement, *span, *count, sites);
             *count += 1;
-            inner(statement).into_iter().for_each(|block| self.block(block, count, sites));
+            inner_blocks(statement).into_iter().for_each(|block| self.block(block, count, sites));
         }
     }
 
@@ -252,9 +255,9 @@ impl Finder<'_> {
             }
             Statement::Call { arguments, result: Some(result), .. } => {
                 let ty = self.ty(*result);
-                let argument = arguments
-                    .iter()
-                    .find(|argument| self.ty(**argument) == ty && same(ty, **argument).is_some());
+                let argument = arguments.iter().find(|argument| {
+                    self.ty(**argument) == ty && equal_value(ty, **argument).is_some()
+                });
                 sites.extend(argument.map(|argument| Site {
                     span: self.function.expressions.get_span(*result),
                     edit: Edit::Argument { statement: at, result: *result, argument: *argument },
@@ -266,7 +269,7 @@ impl Finder<'_> {
 }
 
 /// The blocks within a statement, in order.
-fn inner(statement: &Statement) -> Vec<&Block> {
+fn inner_blocks(statement: &Statement) -> Vec<&Block> {
     match statement {
         Statement::Block(block) => vec![block],
         Statement::If { accept, reject, .. } => vec![accept, reject],
@@ -278,7 +281,7 @@ fn inner(statement: &Statement) -> Vec<&Block> {
 
 /// A literal with a mistake: a float changed by one part in a hundred, an integer by one, a boolean
 /// negated.
-fn number(literal: Literal) -> Option<(Expression, How)> {
+fn wrong_literal(literal: Literal) -> Option<(Expression, How)> {
     let (literal, how) = match literal {
         Literal::F32(value) => {
             let off = if value == 0.0 { 0.01 } else { value * 1.01 };

@@ -6,16 +6,16 @@ use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Expression, Function, Handle, Module, ScalarKind};
 use rayon::prelude::*;
 
-use super::apply::apply;
+use super::apply::apply_mutation;
 use super::report::Fate;
 use super::runner::Runner;
 use super::site::Site;
-use super::words::author;
+use super::words::author_span;
 use crate::bundle::Language;
 use crate::compose::SourceMap;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::eval::Machine;
-use crate::execute::interpreter::{Calls, Interpreter, value};
+use crate::execute::interpreter::{Calls, Interpreter, slot_value};
 use crate::proof::cases::{File, Rows};
 use crate::proof::check::Options;
 use crate::proof::check::job::{self, BoundOracle, Goal, Job};
@@ -76,7 +76,7 @@ struct Batch {
 pub type Named = (String, Option<File>);
 
 /// The case files of the modules.
-pub fn files(
+pub fn case_files(
     library: &Library,
     sources: &Mutex<SourceSet>,
     modules: &[String],
@@ -93,15 +93,18 @@ pub fn files(
 }
 
 /// Composes the modules and prepares their cases.
-pub fn suites<'f>(
+pub fn make_suites<'f>(
     library: &Library,
     sources: &Mutex<SourceSet>,
     files: &'f [Named],
 ) -> Result<Vec<Suite<'f>>, Diagnostics> {
-    files.par_iter().map(|(module, file)| suite(library, sources, module, file.as_ref())).collect()
+    files
+        .par_iter()
+        .map(|(module, file)| make_suite(library, sources, module, file.as_ref()))
+        .collect()
 }
 
-fn suite<'f>(
+fn make_suite<'f>(
     library: &Library,
     sources: &Mutex<SourceSet>,
     module: &str,
@@ -111,10 +114,10 @@ fn suite<'f>(
     let mut whole = validated.module;
     let parsed = Arc::new(whole.clone());
     naga::compact::compact(&mut whole, naga::compact::KeepUnused::Yes);
-    let info = info(&whole).ok_or_else(|| vec![internal(module)])?;
-    let subjects = subjects(sources, module, &composed.map, &whole);
+    let info = module_info(&whole).ok_or_else(|| vec![internal_error(module)])?;
+    let subjects = find_subjects(sources, module, &composed.map, &whole);
     let jobs = match file {
-        Some(file) => job::prepare(
+        Some(file) => job::prepare_jobs(
             module,
             file,
             &[Language::Wesl],
@@ -125,19 +128,19 @@ fn suite<'f>(
         )?,
         None => Vec::new(),
     };
-    let cases = jobs.into_par_iter().map(ready).collect::<Result<_, _>>()?;
+    let cases = jobs.into_par_iter().map(ready_job).collect::<Result<_, _>>()?;
     Ok(Suite { module: module.to_owned(), map: composed.map, whole, info, subjects, cases })
 }
 
-fn internal(name: &str) -> Diagnostic {
+fn internal_error(name: &str) -> Diagnostic {
     Diagnostic::error(codes::EVAL_INTERNAL, format!("`{name}` is not valid after compaction"))
 }
 
-pub fn info(module: &Module) -> Option<ModuleInfo> {
+pub fn module_info(module: &Module) -> Option<ModuleInfo> {
     Validator::new(ValidationFlags::all(), Capabilities::all()).validate(module).ok()
 }
 
-fn subjects(
+fn find_subjects(
     sources: &Mutex<SourceSet>,
     module: &str,
     map: &SourceMap,
@@ -146,7 +149,7 @@ fn subjects(
     let Ok(sources) = sources.lock() else { return Vec::new() };
     let file = format!("{}.wesl", module.replace("::", "/"));
     let own = |handle| {
-        author(map, whole.functions.get_span(handle))
+        author_span(map, whole.functions.get_span(handle))
             .is_some_and(|span| is_file(&sources.get(span.source).path, &file))
     };
     let named = whole.functions.iter().filter(|(handle, _)| own(*handle));
@@ -159,8 +162,8 @@ fn is_file(path: &str, file: &str) -> bool {
     path == file || path.strip_suffix(file).is_some_and(|rest| rest.ends_with('/'))
 }
 
-fn ready(job: Job<'_>) -> Result<Ready<'_>, Diagnostics> {
-    let order = order(&job.rows);
+fn ready_job(job: Job<'_>) -> Result<Ready<'_>, Diagnostics> {
+    let order = row_order(&job.rows);
     let interpreter = Interpreter::new(job.kernel()).map_err(|error| vec![error])?;
     let mut calls = interpreter.calls::<f64>().map_err(|error| vec![error])?;
     let mut batches = Vec::new();
@@ -172,7 +175,7 @@ fn ready(job: Job<'_>) -> Result<Ready<'_>, Diagnostics> {
             job.rows.with_words(words),
             chosen.iter().map(|row| job.expected[*row].clone()).collect::<Vec<_>>(),
         );
-        let slack = slack(&job, &rows, &expected, &mut calls).map_err(|error| vec![error])?;
+        let slack = row_slack(&job, &rows, &expected, &mut calls).map_err(|error| vec![error])?;
         batches.push(Batch { rows, expected, slack });
         (from, size) = (from + size, size * 4);
     }
@@ -180,7 +183,7 @@ fn ready(job: Job<'_>) -> Result<Ready<'_>, Diagnostics> {
     Ok(Ready { order, batches, job })
 }
 
-fn slack(
+fn row_slack(
     job: &Job<'_>,
     rows: &Rows,
     expected: &[Goal],
@@ -189,14 +192,14 @@ fn slack(
     let kinds = job.kernel().result_kinds();
     let mut slack = Vec::new();
     for (index, goal) in expected.iter().enumerate() {
-        let found = exact(calls, rows.row_words(index), &kinds)?;
-        let values = tolerance::values(&job.terms, rows.row(index));
+        let found = exact_result(calls, rows.row_words(index), &kinds)?;
+        let values = tolerance::formula_values(&job.terms, rows.row(index));
         let is_known =
             !matches!(job.oracle, BoundOracle::Eval(_)) && !judge::is_indeterminate(goal);
         slack.extend((0..kinds.len()).map(|word| {
             let value = goal.expected.value[word];
-            let stated = tolerance::allowed(&job.terms, &values, word, value);
-            let off = nearest(goal, &found, word);
+            let stated = tolerance::allowed_error(&job.terms, &values, word, value);
+            let off = nearest_distance(goal, &found, word);
             let own = 2.0 * off + RELATIVE * value.abs() + OF_STATED * stated;
             if is_known && off <= stated { own } else { f64::INFINITY }
         }));
@@ -205,16 +208,16 @@ fn slack(
 }
 
 /// The result of one row in f64.
-fn exact(
+fn exact_result(
     calls: &mut Calls<'_, f64>,
     row: &[u32],
     kinds: &[ScalarKind],
 ) -> Result<Vec<f64>, Diagnostic> {
-    Ok(calls.call(row)?.iter().zip(kinds).map(|(slot, kind)| value(*slot, *kind)).collect())
+    Ok(calls.call(row)?.iter().zip(kinds).map(|(slot, kind)| slot_value(*slot, *kind)).collect())
 }
 
 /// The distance of a word from the nearest accepted value.
-fn nearest(goal: &Goal, found: &[f64], word: usize) -> f64 {
+fn nearest_distance(goal: &Goal, found: &[f64], word: usize) -> f64 {
     let all = std::iter::once(&goal.expected.value).chain(&goal.expected.alternatives);
     all.map(
         |value| if found[word] == value[word] { 0.0 } else { (found[word] - value[word]).abs() },
@@ -224,7 +227,7 @@ fn nearest(goal: &Goal, found: &[f64], word: usize) -> f64 {
 
 /// An order of the rows in which rows with simple values, or at the ends of their columns,
 /// alternate with rows from everywhere.
-fn order(rows: &Rows) -> Vec<usize> {
+fn row_order(rows: &Rows) -> Vec<usize> {
     let column = |index: usize| (0..rows.len()).map(move |row| rows.row(row)[index]);
     let ends: Vec<(f64, f64)> = (0..rows.stride.min(rows.row(0).len()))
         .map(|index| {
@@ -275,7 +278,8 @@ impl Suite<'_> {
 
     /// Whether a case notices the mistake; `None` if the mutant is not valid.
     pub fn fate(&self, subject: &Subject, site: &Site) -> Option<Fate> {
-        let reaching = |case: &&Ready<'_>| find(&case.job.kernel().module, &subject.name).is_some();
+        let reaching =
+            |case: &&Ready<'_>| find_function(&case.job.kernel().module, &subject.name).is_some();
         let (own, others): (Vec<_>, Vec<_>) = self
             .cases
             .iter()
@@ -299,15 +303,15 @@ impl Suite<'_> {
             let ty = |handle: Handle<Expression>| {
                 Some(self.info[subject.function][handle].ty.inner_with(&self.whole.types).clone())
             };
-            let function = find(&module, &subject.name)?;
-            apply(module.functions.get_mut(function), site, ty).then_some(())?;
+            let function = find_function(&module, &subject.name)?;
+            apply_mutation(module.functions.get_mut(function), site, ty).then_some(())?;
         }
         let interpreter = Interpreter::of(kernel, &module).ok()?;
         Some(if case.notices(&interpreter).unwrap_or(true) { Fate::Killed } else { Fate::Survived })
     }
 }
 
-fn find(module: &Module, name: &str) -> Option<Handle<Function>> {
+fn find_function(module: &Module, name: &str) -> Option<Handle<Function>> {
     module
         .functions
         .iter()
@@ -328,10 +332,10 @@ impl Ready<'_> {
         calls.machine.loop_limit = TRIPS;
         for batch in &self.batches {
             for (index, goal) in batch.expected.iter().enumerate() {
-                let found = exact(&mut calls, batch.rows.row_words(index), &kinds)?;
+                let found = exact_result(&mut calls, batch.rows.row_words(index), &kinds)?;
                 let slack = &batch.slack[index * kinds.len()..];
                 // NaN is infinitely far from every value, unless the oracle accepts every result.
-                if (0..kinds.len()).any(|word| nearest(goal, &found, word) > slack[word]) {
+                if (0..kinds.len()).any(|word| nearest_distance(goal, &found, word) > slack[word]) {
                     return Ok(true);
                 }
             }
@@ -347,7 +351,7 @@ impl Ready<'_> {
         let mut order = self.order.iter();
         for Batch { rows, expected, .. } in &self.batches {
             let found = runner.run(&rows.words)?;
-            if !judge::judge(&self.job, rows, expected, &found).failing.is_empty() {
+            if !judge::judge_rows(&self.job, rows, expected, &found).failing.is_empty() {
                 return Ok(true);
             }
             found.chunks(words).zip(&mut order).for_each(|(found, row)| {
@@ -357,7 +361,8 @@ impl Ready<'_> {
         if self.batches.is_empty() {
             results = runner.run(&self.job.rows.words)?;
         }
-        if judge::judge(&self.job, &self.job.rows, &self.job.expected, &results).too_ambiguous {
+        if judge::judge_rows(&self.job, &self.job.rows, &self.job.expected, &results).too_ambiguous
+        {
             return Ok(true);
         }
         for law in &self.job.laws {
@@ -369,7 +374,7 @@ impl Ready<'_> {
                 results: &results,
                 transformed,
             };
-            if law::judge(&self.job, law.law, &given).broken > 0 {
+            if law::judge_law(&self.job, law.law, &given).broken > 0 {
                 return Ok(true);
             }
         }

@@ -20,7 +20,9 @@ pub struct Text<'a> {
 impl Text<'_> {
     /// `file:line` and the trimmed line.
     pub fn place(&self, span: Span) -> (String, String) {
-        let Some(found) = author(self.map, span) else { return ("?".to_owned(), String::new()) };
+        let Some(found) = author_span(self.map, span) else {
+            return ("?".to_owned(), String::new());
+        };
         let source = self.sources.get(found.source);
         let (line, _) = self.sources.position(found.source, found.start as usize);
         let text = source.text.lines().nth(line - 1).unwrap_or_default().trim();
@@ -84,7 +86,7 @@ impl Text<'_> {
 
     /// The author's text, with white space replaced by single blanks.
     fn excerpt(&self, span: Span) -> String {
-        let text = author(self.map, span).map_or("?", |found| self.whole_call(found));
+        let text = author_span(self.map, span).map_or("?", |found| self.whole_call(found));
         let spaced = text.split_whitespace().collect::<Vec<_>>().join(" ");
         match spaced.char_indices().nth(LONGEST) {
             Some((end, _)) => format!("{}...", &spaced[..end]),
@@ -109,6 +111,6 @@ impl Text<'_> {
 }
 
 /// The author's span of a span of the composed text.
-pub fn author(map: &SourceMap, span: Span) -> Option<source::Span> {
+pub fn author_span(map: &SourceMap, span: Span) -> Option<source::Span> {
     map.lookup(span.to_range()?)
 }

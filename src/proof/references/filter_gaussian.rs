@@ -19,7 +19,7 @@ fn blur(a: &mut Arguments<'_>) -> Expected {
     let (uv, direction) = (a.vec2(), a.vec2());
     let step = direction / DVec2::new(f64::from(map.width), f64::from(map.height));
     let tap = |i: i32, channel| {
-        weight(i) * sampling::read(map, sampler, uv + f64::from(i) * step, channel)
+        weight(i) * sampling::read_channel(map, sampler, uv + f64::from(i) * step, channel)
     };
     Expected::words((0..4).map(|channel| (-10..=10).map(|i| tap(i, channel)).sum()))
 }

@@ -53,7 +53,7 @@ fn size(map: &Texture) -> DVec2 {
 /// The share of the texels around a place that pass; places off the map are lit.
 fn compare(map: &Texture, sampler: Sampler, uv: DVec2, depth: f64) -> f64 {
     let is_on_map = uv.min_element() >= 0.0 && uv.max_element() <= 1.0;
-    if is_on_map { sampling::compare(map, sampler, uv, depth) } else { 1.0 }
+    if is_on_map { sampling::compare_depth(map, sampler, uv, depth) } else { 1.0 }
 }
 
 fn compare_tap(a: &mut Arguments<'_>) -> Expected {
@@ -136,7 +136,7 @@ fn castano_row(a: &mut Arguments<'_>) -> Expected {
 fn depths_around(map: &Texture, sampler: Sampler, uv: DVec2, off: f64) -> Vec<f64> {
     let sides = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
     let mut depths: Vec<f64> = sides
-        .map(|(x, y)| sampling::read(map, sampler, uv + off * DVec2::new(x, y) / size(map), 0))
+        .map(|(x, y)| sampling::read_channel(map, sampler, uv + off * DVec2::new(x, y) / size(map), 0))
         .into();
     depths.sort_by(f64::total_cmp);
     depths.dedup();

@@ -21,7 +21,7 @@ const COLUMNS: &[(&str, &str)] = &[
 ];
 
 /// The head of a table, and the start of its body.
-pub fn heading(html: &mut String) {
+pub fn write_heading(html: &mut String) {
     html.push_str("<table><thead><tr>");
     for (name, meaning) in COLUMNS {
         let _ = write!(html, "<th title=\"{meaning}\">{name}</th>");
@@ -30,7 +30,7 @@ pub fn heading(html: &mut String) {
 }
 
 /// What the columns say, for readers without a pointer.
-pub fn legend(html: &mut String) {
+pub fn write_legend(html: &mut String) {
     html.push_str("<section id=\"columns\"><h2>columns</h2>\n<table><tbody>\n");
     for (name, meaning) in COLUMNS {
         let _ = writeln!(html, "<tr><td>{name}</td><td class=\"words\">{meaning}</td></tr>");

@@ -12,7 +12,7 @@ pub const ROOT: usize = 0;
 pub const EXTENSIONS: &[&str] = &["glsl", "vert", "frag", "comp", "h"];
 
 /// The package of that number.
-pub fn package(packages: &Packages, number: usize) -> &Package {
+pub fn package_at(packages: &Packages, number: usize) -> &Package {
     number
         .checked_sub(1)
         .and_then(|index| packages.dependencies.get(index))
@@ -21,7 +21,7 @@ pub fn package(packages: &Packages, number: usize) -> &Package {
 
 /// The places to look at, in order: `"path"` is relative to the includer, then to its package's
 /// root; `<name/path>` is in the package of that name, then relative to the root package's root.
-pub fn candidates(
+pub fn include_candidates(
     packages: &Packages,
     includer: &Place,
     path: &str,
@@ -30,26 +30,28 @@ pub fn candidates(
     let mut places = Vec::new();
     if angled {
         if let Some((name, rest)) = path.split_once('/')
-            && let Some(number) = named(packages, name)
+            && let Some(number) = named_package(packages, name)
         {
-            places.push((number, normalize("", rest).ok_or_else(|| outside(path))?));
+            places.push((number, normalize_path("", rest).ok_or_else(|| outside_package(path))?));
         }
-        places.push((ROOT, normalize("", path).ok_or_else(|| outside(path))?));
+        places.push((ROOT, normalize_path("", path).ok_or_else(|| outside_package(path))?));
     } else {
-        places
-            .push((includer.0, normalize(folder(&includer.1), path).ok_or_else(|| outside(path))?));
-        places.extend(normalize("", path).map(|path| (includer.0, path)));
+        places.push((
+            includer.0,
+            normalize_path(folder_of(&includer.1), path).ok_or_else(|| outside_package(path))?,
+        ));
+        places.extend(normalize_path("", path).map(|path| (includer.0, path)));
     }
     Ok(places)
 }
 
 /// The packages whose files an `#include` can name.
-pub fn searched(packages: &Packages, includer: usize, angled: bool) -> Vec<usize> {
+pub fn searched_packages(packages: &Packages, includer: usize, angled: bool) -> Vec<usize> {
     if angled { (0..=packages.dependencies.len()).collect() } else { vec![includer] }
 }
 
 /// How the includer would write a file.
-pub fn spelling(
+pub fn include_spelling(
     packages: &Packages,
     includer: &Place,
     (number, file): (usize, &str),
@@ -57,18 +59,18 @@ pub fn spelling(
 ) -> String {
     match (angled, number) {
         (true, ROOT) => file.to_owned(),
-        (true, _) => format!("{}/{file}", package(packages, number).name),
-        (false, _) => relative(folder(&includer.1), file),
+        (true, _) => format!("{}/{file}", package_at(packages, number).name),
+        (false, _) => relative_path(folder_of(&includer.1), file),
     }
 }
 
 /// The error for a path that leaves its package.
-pub fn outside(path: &str) -> Diagnostic {
+pub fn outside_package(path: &str) -> Diagnostic {
     Diagnostic::error(codes::OUTSIDE_ROOT, format!("`{path}` leads out of its package's root"))
 }
 
 /// `path` seen from `folder`, without `.` and `..`; `None` if it is absolute or leaves the root.
-pub fn normalize(folder: &str, path: &str) -> Option<String> {
+pub fn normalize_path(folder: &str, path: &str) -> Option<String> {
     if path.starts_with('/') || path.contains(['\\', ':']) {
         return None;
     }
@@ -83,7 +85,7 @@ pub fn normalize(folder: &str, path: &str) -> Option<String> {
     Some(parts.join("/"))
 }
 
-fn named(packages: &Packages, name: &str) -> Option<usize> {
+fn named_package(packages: &Packages, name: &str) -> Option<usize> {
     let dependency = packages
         .dependencies
         .iter()
@@ -92,11 +94,11 @@ fn named(packages: &Packages, name: &str) -> Option<usize> {
     dependency.or((packages.root.name == name).then_some(ROOT))
 }
 
-fn folder(path: &str) -> &str {
+fn folder_of(path: &str) -> &str {
     path.rsplit_once('/').map_or("", |(folder, _)| folder)
 }
 
-fn relative(folder: &str, file: &str) -> String {
+fn relative_path(folder: &str, file: &str) -> String {
     let (mut from, mut to) =
         (folder.split('/').filter(|part| !part.is_empty()).peekable(), file.split('/').peekable());
     while from.peek().is_some() && from.peek() == to.peek() {

@@ -113,7 +113,8 @@ pub fn load(
         known: HashMap::new(),
         listings: HashMap::new(),
     };
-    let path = include::normalize("", root).ok_or_else(|| vec![include::outside(root)])?;
+    let path =
+        include::normalize_path("", root).ok_or_else(|| vec![include::outside_package(root)])?;
     let place = (include::ROOT, path);
     if loader.module(&place).map_err(|error| vec![*error])?.is_none() {
         return Err(vec![Diagnostic::error(
@@ -153,10 +154,11 @@ impl Loader<'_> {
     }
 
     fn target(&mut self, module: usize, path: &str, angled: bool, span: Span) -> Target {
-        let places = match include::candidates(self.packages, &self.places[module], path, angled) {
-            Ok(places) => places,
-            Err(error) => return Target::Missing(Box::new(error.at(span, "this path"))),
-        };
+        let places =
+            match include::include_candidates(self.packages, &self.places[module], path, angled) {
+                Ok(places) => places,
+                Err(error) => return Target::Missing(Box::new(error.at(span, "this path"))),
+            };
         for place in places {
             match self.module(&place) {
                 Ok(Some(found)) => return Target::Module(found),
@@ -172,15 +174,13 @@ impl Loader<'_> {
             .at(span, "no such file");
         let includer = self.places[module].clone();
         let mut spellings = Vec::new();
-        for package in include::searched(self.packages, includer.0, angled) {
+        for package in include::searched_packages(self.packages, includer.0, angled) {
             let files = self.listings.entry(package).or_insert_with(|| {
-                include::package(self.packages, package).files.list(include::EXTENSIONS)
+                include::package_at(self.packages, package).files.list(include::EXTENSIONS)
             });
-            spellings.extend(
-                files.iter().map(|file| {
-                    include::spelling(self.packages, &includer, (package, file), angled)
-                }),
-            );
+            spellings.extend(files.iter().map(|file| {
+                include::include_spelling(self.packages, &includer, (package, file), angled)
+            }));
         }
         error.suggest(path, spellings.iter().map(String::as_str))
     }
@@ -190,7 +190,7 @@ impl Loader<'_> {
         if let Some(known) = self.known.get(place) {
             return known.clone();
         }
-        let package = include::package(self.packages, place.0);
+        let package = include::package_at(self.packages, place.0);
         let read =
             source::read(self.sources, package, &place.1).map_err(|error| Box::new(error.into()));
         let found = read.map(|source| source.map(|source| self.add(place, source)));

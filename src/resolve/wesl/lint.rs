@@ -11,13 +11,13 @@ use crate::source::Span;
 
 /// Warnings about a module's imports. Modules of dependencies have none, since their users cannot
 /// change them.
-pub fn lints(loader: &Loader<'_>, node: &Node) -> Vec<Diagnostic> {
+pub fn import_lints(loader: &Loader<'_>, node: &Node) -> Vec<Diagnostic> {
     if node.package != 0 {
         return Vec::new();
     }
     let names = &loader.names;
     let mut found = node.module.warnings.clone();
-    let used = used(node);
+    let used = used_names(node);
     for import in &node.module.imports {
         let (text, span) = (names.text(import.alias), node.module.span(import.alias_range.clone()));
         let own = node
@@ -70,7 +70,7 @@ pub fn is_harmless(loader: &mut Loader<'_>, node: u32, alias: Name, failure: u32
 
 /// Reports declarations of one name that the same settings keep, whether or not anything reaches
 /// them: those without a condition, and those of one block.
-pub fn duplicates(loader: &mut Loader<'_>, node: u32) {
+pub fn report_duplicates(loader: &mut Loader<'_>, node: u32) {
     let here = &loader.nodes[node as usize];
     let mut first: HashMap<(Name, Option<ConditionId>), usize> = HashMap::new();
     let mut found = Vec::new();
@@ -94,12 +94,16 @@ pub fn duplicates(loader: &mut Loader<'_>, node: u32) {
 }
 
 /// Reports unconditional imports of different things under one name.
-pub fn clashes(loader: &mut Loader<'_>, node: u32, imported: &HashMap<Name, Vec<Candidate>>) {
+pub fn report_clashes(
+    loader: &mut Loader<'_>,
+    node: u32,
+    imported: &HashMap<Name, Vec<Candidate>>,
+) {
     let mut failures = Vec::new();
     let here = &loader.nodes[node as usize];
     let clashing: HashSet<Name> = imported
         .iter()
-        .filter(|(_, candidates)| differ(candidates))
+        .filter(|(_, candidates)| candidates_differ(candidates))
         .map(|(alias, _)| *alias)
         .collect();
     let mut first: HashMap<Name, usize> = HashMap::new();
@@ -131,7 +135,7 @@ pub fn clashes(loader: &mut Loader<'_>, node: u32, imported: &HashMap<Name, Vec<
 }
 
 /// Whether candidates lead to different things, without those that lead nowhere.
-fn differ(candidates: &[Candidate]) -> bool {
+fn candidates_differ(candidates: &[Candidate]) -> bool {
     let mut targets = candidates
         .iter()
         .map(|candidate| candidate.target)
@@ -142,7 +146,7 @@ fn differ(candidates: &[Candidate]) -> bool {
 
 /// The names with which references and paths of imports start. If an import's own path starts with
 /// the name that it imports, that means a package.
-pub fn used(node: &Node) -> HashSet<Name> {
+pub fn used_names(node: &Node) -> HashSet<Name> {
     let start =
         |path: &Path| path.segments.first().copied().filter(|_| path.origin == Origin::Scope);
     let named = node.module.references.iter().filter_map(|reference| match reference {
@@ -161,7 +165,7 @@ pub fn used(node: &Node) -> HashSet<Name> {
 pub const PLACES: usize = 12;
 
 /// Every place of a condition that names a flag, by flag, dependencies' included.
-pub fn places(graph: &Graph) -> HashMap<Name, Vec<Span>> {
+pub fn flag_places(graph: &Graph) -> HashMap<Name, Vec<Span>> {
     let mut places: HashMap<Name, Vec<Span>> = HashMap::new();
     for node in &graph.nodes {
         for expression in &node.module.expressions {
@@ -188,7 +192,7 @@ pub fn shown_at(error: Diagnostic, mut places: Vec<Span>, label: &str) -> Diagno
 /// Warnings about flags in conditions of the root package that no axis declares: one for each flag,
 /// with its places. Asking for such a flag is an error of the composition; these were not reached,
 /// since another condition was decided first.
-pub fn undeclared(graph: &Graph, settings: &Settings) -> Diagnostics {
+pub fn undeclared_flags(graph: &Graph, settings: &Settings) -> Diagnostics {
     let mut found: BTreeMap<&str, Vec<Span>> = BTreeMap::new();
     for node in graph.nodes.iter().filter(|node| node.package == 0) {
         for expression in &node.module.expressions {

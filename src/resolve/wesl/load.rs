@@ -280,7 +280,7 @@ impl<'a> Loader<'a> {
         let known = self.used.take().filter(|(known, _)| *known == node);
         let (_, names) = self
             .used
-            .insert(known.unwrap_or_else(|| (node, lint::used(&self.nodes[node as usize]))));
+            .insert(known.unwrap_or_else(|| (node, lint::used_names(&self.nodes[node as usize]))));
         names.contains(&name)
     }
 
@@ -326,9 +326,9 @@ impl<'a> Loader<'a> {
         let bindings =
             references.iter().map(|reference| self.binding(node, reference, &imported)).collect();
         self.nodes[node as usize].bindings = bindings;
-        lint::clashes(self, node, &imported);
-        lint::duplicates(self, node);
-        self.nodes[node as usize].lints = lint::lints(self, &self.nodes[node as usize]);
+        lint::report_clashes(self, node, &imported);
+        lint::report_duplicates(self, node);
+        self.nodes[node as usize].lints = lint::import_lints(self, &self.nodes[node as usize]);
     }
 
     fn binding(

@@ -132,7 +132,7 @@ impl Loader<'_> {
             let import = &module.imports[*index];
             visiting.push(*index);
             if visiting.len() > LIMITS.include_depth {
-                return Err(cyclic(module.span(path.range.clone())));
+                return Err(cyclic_import(module.span(path.range.clone())));
             }
             for mut absolute in self.absolute(node, &import.path, visiting)? {
                 absolute.conditions.extend(import.condition);
@@ -192,7 +192,7 @@ impl Loader<'_> {
             Some(index) => Some(index + 1),
             None if own => Some(self.nodes[node as usize].package),
             None if segments[0] == Name::CONSTANTS => None,
-            None if in_circle => return Err(cyclic(places.whole)),
+            None if in_circle => return Err(cyclic_import(places.whole)),
             None => return Err(self.unknown_package(node, first, places.first)),
         };
         Ok(Absolute { package, segments: segments[1..].to_vec(), conditions: Vec::new() })
@@ -340,7 +340,7 @@ impl Loader<'_> {
     }
 }
 
-fn cyclic(span: Span) -> Diagnostic {
+fn cyclic_import(span: Span) -> Diagnostic {
     Diagnostic::error(codes::CYCLIC_IMPORT, "imported names that stand for each other")
         .at(span, "leads back to itself")
 }

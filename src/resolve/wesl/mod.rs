@@ -7,7 +7,7 @@ mod load;
 mod locate;
 
 pub use graph::{Candidate, Constant, Graph, Node, Target};
-pub use lint::{PLACES, places, shown_at, undeclared};
+pub use lint::{PLACES, flag_places, shown_at, undeclared_flags};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::SourceSet;

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3};
 
 use super::floor::tiles;
 use super::palette::{self, AMBER, CHALK, CORAL, TEAL};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
 /// The scene, for the table of all.
@@ -22,14 +22,14 @@ pub fn scene() -> Scene {
     let floor = tiles(10, 1.4, [CHALK, CHALK * 0.8], 2);
     let matt = Material::default().glossy(0.08).shiny(20.0);
     let glossy = Material::default().glossy(0.4).shiny(60.0);
-    let ring = placed(0.1, 1.0, 1.9, 0.5) * DMat4::from_rotation_x(1.25);
+    let ring = placed_at(0.1, 1.0, 1.9, 0.5) * DMat4::from_rotation_x(1.25);
     let objects = vec![
         Object::new(floor, DMat4::IDENTITY, DVec3::ONE).of(matt, 7),
-        Object::new(Shape::sphere(1.0, (48, 24)), placed(-2.0, 1.0, -0.5, 0.0), CORAL)
+        Object::new(Shape::sphere(1.0, (48, 24)), placed_at(-2.0, 1.0, -0.5, 0.0), CORAL)
             .of(glossy, 0),
         Object::new(
             Shape::cuboid(DVec3::new(0.75, 1.1, 0.75), 1),
-            placed(1.8, 1.1, -0.5, 0.5),
+            placed_at(1.8, 1.1, -0.5, 0.5),
             TEAL,
         )
         .of(matt, 9),
@@ -49,5 +49,5 @@ pub fn scene() -> Scene {
         half_angle: 0.46,
         kind: LampKind::Spot,
     };
-    base(objects, eye, palette::lamps(key, 4.0, 3.5, 0.25))
+    base_scene(objects, eye, palette::lamps(key, 4.0, 3.5, 0.25))
 }

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec2, DVec3};
 
 use super::floor::tiles;
 use super::palette;
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
 /// Radius and height of a profile, from the bottom up; two points near each other are an edge.
@@ -153,7 +153,7 @@ pub const SET: Set = Set {
     make: scene,
 };
 
-fn piece(profile: Profile, x: f64, z: f64, (color, share): (DVec3, f64)) -> Object {
+fn chess_piece(profile: Profile, x: f64, z: f64, (color, share): (DVec3, f64)) -> Object {
     let points: Vec<DVec2> = profile.iter().map(|(r, h)| DVec2::new(*r, *h)).collect();
     let mut shape = Shape::lathe(&points, (56, 7 * points.len() as u32));
     if std::ptr::eq(profile, KING) {
@@ -166,7 +166,7 @@ fn piece(profile: Profile, x: f64, z: f64, (color, share): (DVec3, f64)) -> Obje
     }
     let polish = Material::default().glossy(share).shiny(180.0);
     let polish = Material { roughness: 0.24, ..polish };
-    Object::new(shape, placed(x, 0.0, z, 0.35), color).of(polish, 9)
+    Object::new(shape, placed_at(x, 0.0, z, 0.35), color).of(polish, 9)
 }
 
 /// The scene itself.
@@ -178,12 +178,12 @@ pub fn scene() -> Scene {
     let matt = Material { roughness: 0.6, ..Material::default().glossy(0.03) };
     let mut objects = vec![
         Object::new(tiles(8, 1.0, squares, 1), DMat4::IDENTITY, DVec3::ONE).of(board, 3),
-        Object::new(frame, placed(0.0, -0.165, 0.0, 0.0), DVec3::new(0.13, 0.055, 0.03))
+        Object::new(frame, placed_at(0.0, -0.165, 0.0, 0.0), DVec3::new(0.13, 0.055, 0.03))
             .of(board, 3),
         Object::new(table, DMat4::IDENTITY, DVec3::new(0.2, 0.22, 0.24)).of(matt, 8),
     ];
     objects.extend(GAME.iter().map(|(profile, is_white, x, z)| {
-        piece(profile, *x, *z, if *is_white { IVORY } else { EBONY })
+        chess_piece(profile, *x, *z, if *is_white { IVORY } else { EBONY })
     }));
     let eye = Eye {
         position: DVec3::new(2.9, 3.6, 7.7),
@@ -199,5 +199,5 @@ pub fn scene() -> Scene {
         half_angle: 0.62,
         kind: LampKind::Spot,
     };
-    base(objects, eye, palette::lamps(key, 5.0, 4.5, 0.12))
+    base_scene(objects, eye, palette::lamps(key, 5.0, 4.5, 0.12))
 }

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 
 use super::palette::{self, AMBER, TEAL};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
 /// The scene, for the table of all.
@@ -16,9 +16,9 @@ pub const SET: Set = Set {
 /// The scene itself.
 pub fn scene() -> Scene {
     let glossy = Material::default().glossy(0.7).shiny(48.0);
-    let ring = placed(2.0, -0.5, 0.3, -0.5) * DMat4::from_rotation_x(0.9);
+    let ring = placed_at(2.0, -0.5, 0.3, -0.5) * DMat4::from_rotation_x(0.9);
     let objects = vec![
-        Object::new(Shape::sphere(1.6, (12, 7)), placed(-1.1, 0.1, 0.0, 0.2), TEAL).of(glossy, 9),
+        Object::new(Shape::sphere(1.6, (12, 7)), placed_at(-1.1, 0.1, 0.0, 0.2), TEAL).of(glossy, 9),
         Object::new(Shape::torus(0.95, 0.36, (13, 8)), ring, AMBER).of(glossy, 1),
     ];
     let eye = Eye {
@@ -35,5 +35,5 @@ pub fn scene() -> Scene {
         half_angle: 0.6,
         kind: LampKind::Point,
     };
-    base(objects, eye, palette::lamps(key, 5.0, 4.0, 0.22))
+    base_scene(objects, eye, palette::lamps(key, 5.0, 4.0, 0.22))
 }

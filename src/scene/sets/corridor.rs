@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec2, DVec3};
 
 use super::palette::{self, CHALK};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
 /// Columns of the row, and the distance between them.
@@ -66,7 +66,7 @@ pub fn scene() -> Scene {
     let objects = vec![
         Object::new(floor, DMat4::IDENTITY, CHALK).of(matt, 7),
         Object::new(wall, DMat4::IDENTITY, CHALK * DVec3::new(1.0, 0.9, 0.8)).of(matt, 7),
-        Object::new(beam, placed(-HALF, 3.9, 4.0 - 0.5 * length, 0.0), CHALK).of(matt, 7),
+        Object::new(beam, placed_at(-HALF, 3.9, 4.0 - 0.5 * length, 0.0), CHALK).of(matt, 7),
         Object::new(row, DMat4::IDENTITY, CHALK).of(matt, 7),
     ];
     let eye = Eye {
@@ -83,7 +83,7 @@ pub fn scene() -> Scene {
         half_angle: 0.6,
         kind: LampKind::Directional,
     };
-    let mut scene = base(objects, eye, palette::lamps(key, 5.0, 4.0, 0.2));
+    let mut scene = base_scene(objects, eye, palette::lamps(key, 5.0, 4.0, 0.2));
     scene.ambient = DVec3::new(0.16, 0.19, 0.25);
     scene.haze_range = (10.0, 60.0);
     scene.map_size = Some(512);

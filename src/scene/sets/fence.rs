@@ -4,7 +4,7 @@ use glam::{DMat4, DVec2, DVec3};
 
 use super::floor::tiles;
 use super::palette::{self, AMBER, CHALK, LEAF};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
 /// The scene, for the table of all.
@@ -20,12 +20,12 @@ const BARS: i32 = 8;
 const LEAVES: i32 = 4;
 
 /// Bars on two rails, along x.
-fn fence() -> Shape {
+fn fence_shape() -> Shape {
     let bar = |index: i32| {
         let x = 0.42 * (f64::from(index) - 0.5 * f64::from(BARS - 1));
         let body = Shape::cuboid(DVec3::new(0.11, 0.62, 0.05), 1);
         let body = body.transformed(DMat4::from_translation(DVec3::new(x, 0.72, 0.0)));
-        body.with(top().transformed(DMat4::from_translation(DVec3::new(x, 1.34, 0.0))))
+        body.with(bar_top().transformed(DMat4::from_translation(DVec3::new(x, 1.34, 0.0))))
     };
     let rail = |y: f64| {
         let length = 0.21 * f64::from(BARS);
@@ -36,7 +36,7 @@ fn fence() -> Shape {
 }
 
 /// The point of a bar: a prism on its upper side.
-fn top() -> Shape {
+fn bar_top() -> Shape {
     let (left, right, tip) = (DVec3::X * -0.11, DVec3::X * 0.11, DVec3::Y * 0.2);
     let depth = DVec3::Z * 0.05;
     // The upper edge of a side is a point, so its patch is drawn twice over along the edge.
@@ -54,7 +54,7 @@ fn top() -> Shape {
 }
 
 /// A bent twig with leaves to both sides: thin, and closed all around.
-fn twig() -> Shape {
+fn twig_shape() -> Shape {
     let line = [(-1.0, 0.05), (-0.3, 0.16), (0.4, 0.12), (1.1, -0.02)];
     let radii = [0.05, 0.04, 0.03, 0.015];
     let points: Vec<_> =
@@ -82,8 +82,8 @@ pub fn scene() -> Scene {
     let objects = vec![
         Object::new(tiles(12, 1.4, [CHALK, CHALK * 0.86], 2), DMat4::IDENTITY, DVec3::ONE)
             .of(matt, 7),
-        Object::new(fence(), placed(-0.75, 0.0, -0.45, 0.25), AMBER * 0.9).of(matt, 1),
-        Object::new(twig(), placed(1.75, 0.95, 0.85, -0.5) * DMat4::from_rotation_x(0.2), LEAF)
+        Object::new(fence_shape(), placed_at(-0.75, 0.0, -0.45, 0.25), AMBER * 0.9).of(matt, 1),
+        Object::new(twig_shape(), placed_at(1.75, 0.95, 0.85, -0.5) * DMat4::from_rotation_x(0.2), LEAF)
             .of(matt, 12),
     ];
     let eye = Eye {
@@ -101,5 +101,5 @@ pub fn scene() -> Scene {
         kind: LampKind::Spot,
     };
     let lamps = palette::lamps(key, 4.0, 3.5, 0.25);
-    Scene { map_size: Some(512), ..base(objects, eye, lamps) }
+    Scene { map_size: Some(512), ..base_scene(objects, eye, lamps) }
 }

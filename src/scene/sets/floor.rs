@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::palette::{self, CHALK, SLATE};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene};
 use crate::scene::shape::Shape;
 use glam::DMat4;
 
@@ -47,5 +47,5 @@ pub fn scene() -> Scene {
         half_angle: 0.5,
         kind: LampKind::Spot,
     };
-    base(objects, eye, palette::lamps(key, 5.6, 2.2, 0.55))
+    base_scene(objects, eye, palette::lamps(key, 5.6, 2.2, 0.55))
 }

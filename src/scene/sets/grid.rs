@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::palette::{self, INDIGO};
-use super::{Eye, Material, Object, Scene, Set, base, placed};
+use super::{Eye, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
 /// Balls in a row, and rows.
@@ -25,7 +25,7 @@ pub fn scene() -> Scene {
         // The last row has one ball less.
         let columns = COLUMNS.min(BALLS - row * COLUMNS) as f64;
         let x = 1.4 * (column as f64 - 0.5 * (columns - 1.0));
-        let place = placed(x, 1.4 * (1.0 - row as f64), 0.0, 0.0);
+        let place = placed_at(x, 1.4 * (1.0 - row as f64), 0.0, 0.0);
         let shininess = 4.0 * 1.55_f64.powi(index as i32);
         let own = Material { ambient: INDIGO, diffuse: INDIGO, ..Material::default() };
         let material = own.glossy(0.3).shiny(shininess);
@@ -39,5 +39,5 @@ pub fn scene() -> Scene {
         near: 0.5,
         far: 40.0,
     };
-    base(objects, eye, palette::over_the_shoulder())
+    base_scene(objects, eye, palette::over_the_shoulder())
 }

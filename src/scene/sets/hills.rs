@@ -4,7 +4,7 @@
 use glam::{DMat4, DVec3};
 
 use super::palette;
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, maps};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, maps};
 use crate::scene::shape::Shape;
 
 /// Quads along each side, and the side, scene units.
@@ -18,7 +18,7 @@ pub const SET: Set = Set {
     make: scene,
 };
 
-fn height(x: f64, z: f64) -> f64 {
+fn hill_height(x: f64, z: f64) -> f64 {
     0.55 * (0.9 * x + 0.4).sin() * (0.8 * z - 0.3).cos() + 0.25 * (0.5 * x - 1.1 * z).sin()
 }
 
@@ -26,7 +26,7 @@ fn height(x: f64, z: f64) -> f64 {
 pub fn scene() -> Scene {
     let at = |u: f64, v: f64| {
         let (x, z) = (SIDE * (u - 0.5), SIDE * (0.5 - v));
-        DVec3::new(x, height(x, z), z)
+        DVec3::new(x, hill_height(x, z), z)
     };
     let land = Shape::surface(CELLS, CELLS, at);
     let matt = Material::default().glossy(0.3).shiny(30.0);
@@ -45,5 +45,5 @@ pub fn scene() -> Scene {
         half_angle: 0.7,
         kind: LampKind::Point,
     };
-    Scene { maps: maps::soil, ..base(objects, eye, palette::lamps(key, 6.0, 4.0, 0.4)) }
+    Scene { maps: maps::soil, ..base_scene(objects, eye, palette::lamps(key, 6.0, 4.0, 0.4)) }
 }

@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3};
 
 use super::floor::tiles;
 use super::palette::{self, AMBER, CHALK, CORAL, INDIGO, LEAF, TEAL};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
 const COLORS: [DVec3; 8] = [CORAL, AMBER, LEAF, TEAL, INDIGO, CORAL, AMBER, TEAL];
@@ -31,7 +31,7 @@ pub fn scene() -> Scene {
         } else {
             (Shape::cuboid(DVec3::new(0.26, 0.8, 0.26), 1), 0.8)
         };
-        Object::new(shape, placed(x, height, z, -angle), *color).of(matt, index as u32)
+        Object::new(shape, placed_at(x, height, z, -angle), *color).of(matt, index as u32)
     };
     let mut objects =
         vec![Object::new(floor, DMat4::IDENTITY, DVec3::ONE).of(matt, 7)];
@@ -50,5 +50,5 @@ pub fn scene() -> Scene {
         half_angle: 0.9,
         kind: LampKind::Point,
     };
-    Scene { shows_lamps: true, ..base(objects, eye, palette::lamps(key, 4.0, 3.0, 0.2)) }
+    Scene { shows_lamps: true, ..base_scene(objects, eye, palette::lamps(key, 4.0, 3.0, 0.2)) }
 }

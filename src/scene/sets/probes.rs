@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 
 use super::palette;
-use super::{Eye, Material, Object, Scene, Set, base, placed};
+use super::{Eye, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
 const WHITE: DVec3 = DVec3::splat(0.85);
@@ -18,10 +18,10 @@ pub const SET: Set = Set {
 /// The scene itself.
 pub fn scene() -> Scene {
     let matt = Material::default().glossy(0.1).shiny(20.0);
-    let box_place = placed(2.2, -0.25, -0.9, 0.7) * DMat4::from_rotation_x(0.25);
-    let ring_place = placed(1.5, -0.75, 1.5, 0.5) * DMat4::from_rotation_x(1.1);
+    let box_place = placed_at(2.2, -0.25, -0.9, 0.7) * DMat4::from_rotation_x(0.25);
+    let ring_place = placed_at(1.5, -0.75, 1.5, 0.5) * DMat4::from_rotation_x(1.1);
     let objects = vec![
-        Object::new(Shape::sphere(1.55, (96, 48)), placed(-1.1, 0.0, 0.0, 0.0), WHITE).of(matt, 7),
+        Object::new(Shape::sphere(1.55, (96, 48)), placed_at(-1.1, 0.0, 0.0, 0.0), WHITE).of(matt, 7),
         Object::new(Shape::cuboid(DVec3::splat(0.85), 1), box_place, WHITE).of(matt, 7),
         Object::new(Shape::torus(0.6, 0.22, (80, 32)), ring_place, WHITE).of(matt, 7),
     ];
@@ -32,5 +32,5 @@ pub fn scene() -> Scene {
         near: 0.5,
         far: 40.0,
     };
-    base(objects, eye, palette::over_the_shoulder())
+    base_scene(objects, eye, palette::over_the_shoulder())
 }

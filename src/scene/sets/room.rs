@@ -6,7 +6,7 @@ use glam::{DMat4, DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::palette::{self, AMBER, CHALK, CORAL, LEAF};
-use super::{Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base, maps, placed};
+use super::{Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base_scene, maps, placed_at};
 use crate::scene::shape::Shape;
 
 /// Half of the room along each axis, its middle at the origin.
@@ -20,7 +20,7 @@ const BALL: (DVec3, f64) = (DVec3::new(-1.35, -1.4, -0.2), 0.8);
 const PANEL: (f64, f64) = (1.0, 0.7);
 
 /// The walls that are seen: a corner, along, up, the colour, and repetitions of the texture.
-fn walls() -> [(DVec3, DVec3, DVec3, DVec3, DVec2); 5] {
+fn room_walls() -> [(DVec3, DVec3, DVec3, DVec3, DVec2); 5] {
     let (x, y, z) = (DVec3::X * HALF.x, DVec3::Y * HALF.y, DVec3::Z * HALF.z);
     [
         (-x - y + z, 2.0 * x, -2.0 * z, CHALK * 0.85, DVec2::new(3.0, 3.0)),
@@ -32,7 +32,7 @@ fn walls() -> [(DVec3, DVec3, DVec3, DVec3, DVec2); 5] {
 }
 
 /// The faces of the crate in its own space: a corner, along, up.
-fn sides() -> [(DVec3, DVec3, DVec3); 6] {
+fn crate_sides() -> [(DVec3, DVec3, DVec3); 6] {
     [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z].map(|normal| {
         let along = if normal.y == 0.0 { DVec3::Y.cross(normal) } else { DVec3::X };
         let up = normal.cross(along);
@@ -42,7 +42,7 @@ fn sides() -> [(DVec3, DVec3, DVec3); 6] {
 
 fn crate_place() -> DMat4 {
     let (middle, _, turn) = CRATE;
-    placed(middle.x, middle.y, middle.z, turn)
+    placed_at(middle.x, middle.y, middle.z, turn)
 }
 
 /// Charts of the lightmap, in rows: the walls, the ball, the crate's sides.
@@ -53,7 +53,7 @@ const CRATE_CHART: usize = 6;
 const CHART: usize = 48;
 
 /// A place of a chart in the whole map.
-fn chart(index: usize, uv: DVec2) -> DVec2 {
+fn place_in_map(index: usize, uv: DVec2) -> DVec2 {
     // A margin of a texel and a half, so that filtering stays inside.
     let margin = 1.5 / CHART as f64;
     let inside = DVec2::splat(margin) + uv * (1.0 - 2.0 * margin);
@@ -71,26 +71,26 @@ pub const SET: Set = Set {
 /// The scene itself.
 pub fn scene() -> Scene {
     let plaster = Material::default().glossy(0.08);
-    let mut objects: Vec<Object> = walls()
+    let mut objects: Vec<Object> = room_walls()
         .into_iter()
         .enumerate()
         .map(|(index, (corner, along, up, color, times))| {
-            let shape = charted(Shape::patch(corner, along, up, (16, 16)), index).tiled(times);
+            let shape = charted_shape(Shape::patch(corner, along, up, (16, 16)), index).tiled(times);
             Object::new(shape, DMat4::IDENTITY, color).of(plaster, 7)
         })
         .collect();
     let wood = Material::default().glossy(0.2);
-    let sides = sides().into_iter().enumerate();
+    let sides = crate_sides().into_iter().enumerate();
     let sides = sides.map(|(index, (corner, along, up))| {
-        charted(Shape::patch(corner, along, up, (6, 6)), CRATE_CHART + index)
+        charted_shape(Shape::patch(corner, along, up, (6, 6)), CRATE_CHART + index)
     });
     objects.push(
         Object::new(sides.fold(Shape::default(), Shape::with), crate_place(), AMBER).of(wood, 3),
     );
     let (middle, radius) = BALL;
-    let ball = charted(Shape::sphere(radius, (40, 20)), BALL_CHART).tiled(DVec2::new(3.0, 2.0));
+    let ball = charted_shape(Shape::sphere(radius, (40, 20)), BALL_CHART).tiled(DVec2::new(3.0, 2.0));
     objects.push(
-        Object::new(ball, placed(middle.x, middle.y, middle.z, 0.0), CHALK)
+        Object::new(ball, placed_at(middle.x, middle.y, middle.z, 0.0), CHALK)
             .of(Material::default().glossy(0.5), 5),
     );
     let eye = Eye {
@@ -107,41 +107,41 @@ pub fn scene() -> Scene {
         half_angle: 0.75,
         kind: LampKind::Point,
     };
-    Scene { maps: textures, ..base(objects, eye, palette::lamps(key, 2.6, 1.6, 0.2)) }
+    Scene { maps: room_textures, ..base_scene(objects, eye, palette::lamps(key, 2.6, 1.6, 0.2)) }
 }
 
-fn charted(shape: Shape, index: usize) -> Shape {
-    shape.map(|vertex| vertex.light_uv = chart(index, vertex.uv))
+fn charted_shape(shape: Shape, index: usize) -> Shape {
+    shape.map(|vertex| vertex.light_uv = place_in_map(index, vertex.uv))
 }
 
-fn textures() -> Maps {
-    Maps { light: baked(), ..maps::bricks() }
+fn room_textures() -> Maps {
+    Maps { light: baked_light(), ..maps::bricks() }
 }
 
 /// The light of the panel on every surface, and a little from everywhere.
-fn baked() -> Map {
+fn baked_light() -> Map {
     let (width, height) = (CHARTS.0 * CHART, CHARTS.1 * CHART);
     let texel = |index: usize| {
         let (column, row) = (index % width, index / width);
         let chart = column / CHART + CHARTS.0 * (row / CHART);
         let place = |at: usize| ((at % CHART) as f64 + 0.5 - 1.5) / (CHART as f64 - 3.0);
         let (point, normal) =
-            surface(chart, DVec2::new(place(column), place(row)).clamp(DVec2::ZERO, DVec2::ONE));
-        arriving(point, normal).extend(1.0)
+            surface_at(chart, DVec2::new(place(column), place(row)).clamp(DVec2::ZERO, DVec2::ONE));
+        arriving_light(point, normal).extend(1.0)
     };
     Map { width, height, texels: (0..width * height).into_par_iter().map(texel).collect() }
 }
 
 /// The point and the normal at a chart's place.
-fn surface(chart: usize, uv: DVec2) -> (DVec3, DVec3) {
+fn surface_at(chart: usize, uv: DVec2) -> (DVec3, DVec3) {
     let flat = |corner: DVec3, along: DVec3, up: DVec3| {
         (corner + along * uv.x + up * uv.y, along.cross(up).normalize())
     };
-    if let Some((corner, along, up, _, _)) = walls().get(chart) {
+    if let Some((corner, along, up, _, _)) = room_walls().get(chart) {
         return flat(*corner, *along, *up);
     }
     if let Some((corner, along, up)) =
-        chart.checked_sub(CRATE_CHART).and_then(|side| sides().get(side).copied())
+        chart.checked_sub(CRATE_CHART).and_then(|side| crate_sides().get(side).copied())
     {
         let (point, normal) = flat(corner, along, up);
         return (crate_place().transform_point3(point), crate_place().transform_vector3(normal));
@@ -153,7 +153,7 @@ fn surface(chart: usize, uv: DVec2) -> (DVec3, DVec3) {
 }
 
 /// Light from the panel, by a grid of places on it, and from everywhere.
-fn arriving(point: DVec3, normal: DVec3) -> DVec3 {
+fn arriving_light(point: DVec3, normal: DVec3) -> DVec3 {
     const SIDE: usize = 8;
     let mut sum = 0.0;
     for index in 0..SIDE * SIDE {

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 
 use super::palette::{self, CHALK};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
 /// The scene, for the table of all.
@@ -20,7 +20,7 @@ pub fn scene() -> Scene {
         let (turn, radius) = (7.6 * u - 0.35, 0.45 + 1.55 * u);
         DVec3::new(radius * turn.cos(), 2.0 * v - 1.0, -radius * turn.sin())
     });
-    let place = placed(0.0, 0.0, 0.0, 0.15) * DMat4::from_rotation_x(0.55);
+    let place = placed_at(0.0, 0.0, 0.0, 0.15) * DMat4::from_rotation_x(0.55);
     let objects = vec![
         Object::new(curl, place, CHALK * 1.2).of(Material::default().glossy(0.5).shiny(40.0), 9),
     ];
@@ -38,5 +38,5 @@ pub fn scene() -> Scene {
         half_angle: 0.55,
         kind: LampKind::Directional,
     };
-    base(objects, eye, palette::lamps(key, 4.5, 2.8, 0.22))
+    base_scene(objects, eye, palette::lamps(key, 4.5, 2.8, 0.22))
 }

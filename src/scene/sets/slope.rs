@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 
 use super::palette::{self, CHALK, CORAL, TEAL};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene};
 use crate::scene::shape::Shape;
 
 /// The slope falls towards +x by this angle, radians.
@@ -46,5 +46,5 @@ pub fn scene() -> Scene {
         kind: LampKind::Spot,
     };
     let lamps = palette::lamps(key, 4.0, 3.5, 0.25);
-    Scene { map_size: Some(512), ..base(objects, eye, lamps) }
+    Scene { map_size: Some(512), ..base_scene(objects, eye, lamps) }
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::palette::{self, AMBER, CORAL, INDIGO, LEAF, TEAL};
-use super::{Eye, Material, Object, Scene, Set, base, placed};
+use super::{Eye, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
 const COLORS: [DVec3; 5] = [CORAL, AMBER, LEAF, TEAL, INDIGO];
@@ -21,7 +21,7 @@ pub fn scene() -> Scene {
     let object = |(index, color): (usize, &DVec3)| {
         // Away from the viewer and upwards, from the left to the right.
         let step = index as f64 - 2.0;
-        let place = placed(1.38 * step, 0.57 * step, -1.1 * step, 0.0);
+        let place = placed_at(1.38 * step, 0.57 * step, -1.1 * step, 0.0);
         let material = Material::default().glossy(0.55).shiny(16.0 * 2.2_f64.powi(index as i32));
         Object::new(ball.clone(), place, *color).of(material, index as u32)
     };
@@ -33,5 +33,5 @@ pub fn scene() -> Scene {
         near: 0.5,
         far: 40.0,
     };
-    base(objects, eye, palette::over_the_shoulder())
+    base_scene(objects, eye, palette::over_the_shoulder())
 }

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3};
 
 use super::floor::tiles;
 use super::palette::{self, CHALK, CORAL, SLATE, TEAL};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, placed};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
 /// The scene, for the table of all.
@@ -19,7 +19,7 @@ pub fn scene() -> Scene {
     let floor = tiles(14, 1.0, [CHALK, SLATE * 1.4], 5);
     let glossy = Material::default().glossy(0.3).shiny(60.0);
     let ball = |x: f64, z: f64, color| {
-        Object::new(Shape::sphere(0.45, (64, 32)), placed(x, 0.45, z, 0.0), color).of(glossy, 0)
+        Object::new(Shape::sphere(0.45, (64, 32)), placed_at(x, 0.45, z, 0.0), color).of(glossy, 0)
     };
     let objects = vec![
         Object::new(floor, DMat4::IDENTITY, DVec3::ONE).of(glossy, 7),
@@ -41,5 +41,5 @@ pub fn scene() -> Scene {
         kind: LampKind::Spot,
     };
     let lamps = palette::lamps(key, 5.0, 2.1, 0.55);
-    Scene { shows_lamps: true, ..base(objects, eye, lamps) }
+    Scene { shows_lamps: true, ..base_scene(objects, eye, lamps) }
 }

@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 
 use super::palette;
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base, maps};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, maps};
 use crate::scene::shape::Shape;
 
 /// Along each side, scene units.
@@ -57,7 +57,7 @@ pub fn scene() -> Scene {
         half_angle: 0.7,
         kind: LampKind::Directional,
     };
-    let mut scene = base(objects, eye, palette::lamps(key, 6.0, 4.0, 0.4));
+    let mut scene = base_scene(objects, eye, palette::lamps(key, 6.0, 4.0, 0.4));
     scene.haze_range = (6.0, 30.0);
     scene.maps = maps::meadow;
     scene

@@ -3,10 +3,13 @@
 use naga::valid::{EntryPointError, VaryingError};
 use naga::{Function, Module};
 
-use super::{Said, foreign, function, inner, lacking, spaced, stage_name, ty};
+use super::{
+    Said, foreign_words, function, inner_type_text, lacking_words, spaced_name, stage_name,
+    type_text,
+};
 use crate::diagnostic::codes;
 
-pub fn entry(module: &Module, of: Option<&Function>, error: &EntryPointError) -> Said {
+pub fn entry_words(module: &Module, of: Option<&Function>, error: &EntryPointError) -> Said {
     let text = match error {
         EntryPointError::Conflict => "two entry points of one stage have this name".to_owned(),
         EntryPointError::MissingVertexOutputPosition => {
@@ -25,20 +28,22 @@ pub fn entry(module: &Module, of: Option<&Function>, error: &EntryPointError) ->
                 .to_owned()
         }
         EntryPointError::InvalidGlobalUsage(handle, _) => {
-            format!("{} is used in a way that it does not allow", variable(module, *handle))
+            format!("{} is used in a way that it does not allow", variable_words(module, *handle))
         }
-        EntryPointError::BindingCollision(handle) => return collision(module, *handle),
+        EntryPointError::BindingCollision(handle) => return collision_words(module, *handle),
         EntryPointError::Argument(index, error) => {
-            return varying(module, error)
+            return varying_words(module, error)
                 .note(format!("argument {} of the entry point", index + 1));
         }
-        EntryPointError::Result(error) => return varying(module, error),
+        EntryPointError::Result(error) => return varying_words(module, error),
         EntryPointError::Function(error) => {
             let nothing = Function::default();
-            return function::function(module, of.unwrap_or(&nothing), error);
+            return function::function_words(module, of.unwrap_or(&nothing), error);
         }
-        EntryPointError::UnsupportedCapability(capabilities) => return lacking(*capabilities),
-        EntryPointError::MoreThanOneImmediateUsed => return foreign("immediate data"),
+        EntryPointError::UnsupportedCapability(capabilities) => {
+            return lacking_words(*capabilities);
+        }
+        EntryPointError::MoreThanOneImmediateUsed => return foreign_words("immediate data"),
         EntryPointError::ExpectedMeshShaderAttributes
         | EntryPointError::UnexpectedMeshShaderAttributes
         | EntryPointError::UnexpectedTaskPayload
@@ -52,14 +57,16 @@ pub fn entry(module: &Module, of: Option<&Function>, error: &EntryPointError) ->
         | EntryPointError::InvalidMeshOutputType
         | EntryPointError::InvalidMeshPrimitiveOutputType
         | EntryPointError::WrongMeshOutputAddressSpace
-        | EntryPointError::TaskPayloadTooSmall(_) => return foreign("mesh and task shaders"),
+        | EntryPointError::TaskPayloadTooSmall(_) => return foreign_words("mesh and task shaders"),
         EntryPointError::RayPayloadInInvalidStage(_)
-        | EntryPointError::IncomingRayPayloadInInvalidStage(_) => return foreign("ray tracing"),
+        | EntryPointError::IncomingRayPayloadInInvalidStage(_) => {
+            return foreign_words("ray tracing");
+        }
     };
     Said::plain(text)
 }
 
-fn variable(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> String {
+fn variable_words(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> String {
     module.global_variables[handle]
         .name
         .as_ref()
@@ -67,18 +74,18 @@ fn variable(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> Stri
 }
 
 /// Both variables, and the place that they share.
-fn collision(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> Said {
+fn collision_words(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> Said {
     let binding = module.global_variables[handle].binding;
     let other = module.global_variables.iter().find(|(other, found)| {
         *other != handle && found.binding.is_some() && found.binding == binding
     });
-    let name = variable(module, handle);
+    let name = variable_words(module, handle);
     let place = binding.map_or(String::new(), |binding| {
         format!(" `@group({}) @binding({})`", binding.group, binding.binding)
     });
     let message = match other {
         Some((other, _)) => {
-            format!("{name} and {} have the same place:{place}", variable(module, other))
+            format!("{name} and {} have the same place:{place}", variable_words(module, other))
         }
         None => format!("{name} has a place that something else has:{place}"),
     };
@@ -88,11 +95,11 @@ fn collision(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> Sai
     Said { beside, ..Said::coded(codes::BINDING_CONFLICT, message) }
 }
 
-pub fn varying(module: &Module, error: &VaryingError) -> Said {
+pub fn varying_words(module: &Module, error: &VaryingError) -> Said {
     let text = match error {
         VaryingError::InvalidType(handle) | VaryingError::NotIOShareableType(handle) => format!(
             "{} cannot enter or leave a stage: scalars and vectors of numbers can",
-            ty(module, *handle)
+            type_text(module, *handle)
         ),
         VaryingError::InvalidInterpolationInStage(_, stage) => {
             format!("this `@interpolate` is only allowed in {} shaders", stage_name(*stage))
@@ -110,7 +117,7 @@ pub fn varying(module: &Module, error: &VaryingError) -> Said {
             format!("this stage has no `{}`", built_in_name(*built_in))
         }
         VaryingError::InvalidBuiltInType(built_in, found) => {
-            let found = inner(module, found);
+            let found = inner_type_text(module, found);
             format!("`{}` does not have the type {found}", built_in_name(*built_in))
         }
         VaryingError::MissingBinding => {
@@ -134,7 +141,7 @@ pub fn varying(module: &Module, error: &VaryingError) -> Said {
         VaryingError::DuplicateBuiltIn(built_in) => {
             format!("`{}` occurs twice", built_in_name(*built_in))
         }
-        VaryingError::UnsupportedCapability(capabilities) => return lacking(*capabilities),
+        VaryingError::UnsupportedCapability(capabilities) => return lacking_words(*capabilities),
         VaryingError::InvalidInputAttributeInStage(name, stage) => {
             format!("`@{name}` is for what leaves {} shaders", stage_name(*stage))
         }
@@ -150,12 +157,12 @@ pub fn varying(module: &Module, error: &VaryingError) -> Said {
              type, at location 0"
                 .to_owned()
         }
-        VaryingError::InvalidMultiDimensionalSubgroupBuiltIn => return foreign("subgroups"),
+        VaryingError::InvalidMultiDimensionalSubgroupBuiltIn => return foreign_words("subgroups"),
         VaryingError::InvalidPerPrimitive | VaryingError::MissingPerPrimitive => {
-            return foreign("mesh and task shaders");
+            return foreign_words("mesh and task shaders");
         }
         VaryingError::PerVertexNotArrayOfThree | VaryingError::InvalidPerVertexSampling => {
-            return foreign("inputs for each vertex of a triangle");
+            return foreign_words("inputs for each vertex of a triangle");
         }
     };
     Said::plain(text)
@@ -166,5 +173,5 @@ fn built_in_name(built_in: naga::BuiltIn) -> String {
     use naga::common::wgsl::TryToWgsl;
     built_in
         .try_to_wgsl()
-        .map_or_else(|| spaced(&format!("{built_in:?}")).replace(' ', "_"), str::to_owned)
+        .map_or_else(|| spaced_name(&format!("{built_in:?}")).replace(' ', "_"), str::to_owned)
 }

@@ -3,11 +3,11 @@
 use naga::valid::ExpressionError;
 use naga::{BinaryOperator, Module, UnaryOperator};
 
-use super::function::mismatch;
-use super::{Said, foreign, inner, lacking, spaced, ty, types};
+use super::function::mismatch_words;
+use super::{Said, foreign_words, inner_type_text, lacking_words, spaced_name, type_text, types};
 use crate::diagnostic::codes;
 
-pub fn expression(module: &Module, error: &ExpressionError) -> Said {
+pub fn expression_words(module: &Module, error: &ExpressionError) -> Said {
     use ExpressionError as E;
     let text = match error {
         E::InvalidBaseType(_) => "this has no members and no elements",
@@ -21,32 +21,42 @@ pub fn expression(module: &Module, error: &ExpressionError) -> Said {
         E::InvalidSplatType(_) => "only a scalar can fill all components of a vector",
         E::InvalidVectorType(_) => "only vectors have components such as `xyz`",
         E::InvalidSwizzleComponent(component, _) => {
-            let name = spaced(&format!("{component:?}"));
+            let name = spaced_name(&format!("{component:?}"));
             return Said::plain(format!("the vector has no component `{name}`"));
         }
-        E::Compose(error) => return types::compose(module, error),
+        E::Compose(error) => return types::compose_words(module, error),
         E::InvalidZeroValue(handle) => {
-            return Said::plain(format!("there is no zero of {}", ty(module, *handle)));
+            return Said::plain(format!("there is no zero of {}", type_text(module, *handle)));
         }
         E::IndexableLength(_) => "the length of this is not known",
         E::InvalidUnaryOperandType(operator, _) => {
-            let operator = unary(*operator);
-            return mismatch(format!("`{operator}` does not work with this type"));
+            let operator = unary_sign(*operator);
+            return mismatch_words(format!("`{operator}` does not work with this type"));
         }
         E::InvalidBinaryOperandTypes { op, lhs_type, rhs_type, .. } => {
-            let (left, right) = (inner(module, lhs_type), inner(module, rhs_type));
-            return mismatch(format!("`{}` does not work with {left} and {right}", binary(*op)));
+            let (left, right) =
+                (inner_type_text(module, lhs_type), inner_type_text(module, rhs_type));
+            return mismatch_words(format!(
+                "`{}` does not work with {left} and {right}",
+                binary_sign(*op)
+            ));
         }
         E::SelectValuesTypeMismatch { accept, reject } => {
-            let (accept, reject) = (inner(module, accept), inner(module, reject));
-            return mismatch(format!("the two choices have different types: {accept}, {reject}"));
+            let (accept, reject) =
+                (inner_type_text(module, accept), inner_type_text(module, reject));
+            return mismatch_words(format!(
+                "the two choices have different types: {accept}, {reject}"
+            ));
         }
         E::SelectConditionNotABool { actual } => {
-            return mismatch(format!("the condition is {}, not `bool`", inner(module, actual)));
+            return mismatch_words(format!(
+                "the condition is {}, not `bool`",
+                inner_type_text(module, actual)
+            ));
         }
-        E::InvalidBooleanVector(_) => return mismatch("this needs booleans"),
-        E::InvalidFloatArgument(_) => return mismatch("this needs floating-point numbers"),
-        E::Type(_) => return mismatch("the types of this expression do not go together"),
+        E::InvalidBooleanVector(_) => return mismatch_words("this needs booleans"),
+        E::InvalidFloatArgument(_) => return mismatch_words("this needs floating-point numbers"),
+        E::Type(_) => return mismatch_words("the types of this expression do not go together"),
         E::ExpectedGlobalVariable | E::ExpectedGlobalOrArgument => {
             "a texture or sampler must be named directly"
         }
@@ -77,30 +87,33 @@ pub fn expression(module: &Module, error: &ExpressionError) -> Said {
         | E::InvalidSampleLevelBiasType(_)
         | E::InvalidSampleLevelBiasDimension(_)
         | E::InvalidSampleLevelGradientType(..)
-        | E::InvalidSampleClampCoordinateToEdge(_) => return texture(error),
-        E::InvalidCastArgument => return mismatch("this cannot be converted to that type"),
+        | E::InvalidSampleClampCoordinateToEdge(_) => return texture_words(error),
+        E::InvalidCastArgument => return mismatch_words("this cannot be converted to that type"),
         E::WrongArgumentCount(function) => {
-            let name = spaced(&format!("{function:?}"));
+            let name = spaced_name(&format!("{function:?}"));
             let message = format!("`{name}` takes another number of arguments");
             return Said::coded(codes::CALL_MISMATCH, message);
         }
         E::InvalidArgumentType(function, index, _) => {
-            let name = spaced(&format!("{function:?}"));
+            let name = spaced_name(&format!("{function:?}"));
             let message =
                 format!("argument {} of `{name}` has a type that it does not take", index + 1);
             return Said::coded(codes::CALL_MISMATCH, message);
         }
-        E::MissingCapabilities(capabilities) => return lacking(*capabilities),
-        E::Literal(error) => return types::literal(error),
+        E::MissingCapabilities(capabilities) => return lacking_words(*capabilities),
+        E::Literal(error) => return types::literal_words(error),
         E::UnsupportedWidth(_, _, width) => {
-            return foreign(&format!("this function for {} bits", u32::from(*width) * 8));
+            return foreign_words(&format!("this function for {} bits", u32::from(*width) * 8));
         }
         E::ShiftAmountTooLarge { lhs_type, .. } => {
-            return Said::plain(format!("{} has fewer bits than that", inner(module, lhs_type)));
+            return Said::plain(format!(
+                "{} has fewer bits than that",
+                inner_type_text(module, lhs_type)
+            ));
         }
         E::DivideByZero => "this divides by zero",
-        E::InvalidRayQueryType(_) => return foreign("ray tracing"),
-        E::InvalidCooperativeOperand(_) => return foreign("cooperative matrices"),
+        E::InvalidRayQueryType(_) => return foreign_words("ray tracing"),
+        E::InvalidCooperativeOperand(_) => return foreign_words("cooperative matrices"),
         E::NotInScope | E::FunctionArgumentDoesntExist(_) => {
             "naga's parser gave the expression a form that naga's validator refuses"
         }
@@ -112,7 +125,7 @@ pub fn expression(module: &Module, error: &ExpressionError) -> Said {
 }
 
 /// Lookups of textures, each by what does not fit the texture.
-fn texture(error: &ExpressionError) -> Said {
+fn texture_words(error: &ExpressionError) -> Said {
     use ExpressionError as E;
     let text = match error {
         E::InvalidImageArrayIndex => {
@@ -151,7 +164,7 @@ fn texture(error: &ExpressionError) -> Said {
     Said::coded(codes::CALL_MISMATCH, text)
 }
 
-fn unary(operator: UnaryOperator) -> &'static str {
+fn unary_sign(operator: UnaryOperator) -> &'static str {
     match operator {
         UnaryOperator::Negate => "-",
         UnaryOperator::LogicalNot => "!",
@@ -159,7 +172,7 @@ fn unary(operator: UnaryOperator) -> &'static str {
     }
 }
 
-fn binary(operator: BinaryOperator) -> &'static str {
+fn binary_sign(operator: BinaryOperator) -> &'static str {
     match operator {
         BinaryOperator::Add => "+",
         BinaryOperator::Subtract => "-",

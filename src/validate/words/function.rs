@@ -3,14 +3,16 @@
 use naga::valid::{CallError, FunctionError, LocalVariableError, SubgroupError};
 use naga::{Function, Handle, Module};
 
-use super::{Said, expression, foreign, inner, lacking, ty};
+use super::{Said, expression, foreign_words, inner_type_text, lacking_words, type_text};
 use crate::diagnostic::codes;
 
-pub fn function(module: &Module, of: &Function, error: &FunctionError) -> Said {
+pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> Said {
     let text = match error {
-        FunctionError::Expression { source, .. } => return expression::expression(module, source),
+        FunctionError::Expression { source, .. } => {
+            return expression::expression_words(module, source);
+        }
         FunctionError::LocalVariable { handle, name, source } => {
-            return local(module, of, *handle, name, source);
+            return local_words(module, of, *handle, name, source);
         }
         FunctionError::InvalidArgumentType { name, .. } => {
             format!("`{name}` has a type that no function can take")
@@ -27,7 +29,7 @@ pub fn function(module: &Module, of: &Function, error: &FunctionError) -> Said {
         FunctionError::ContinueOutsideOfLoop => "`continue` is outside of a loop".to_owned(),
         FunctionError::InvalidReturnSpot => "`return` is in a `continuing` block".to_owned(),
         FunctionError::InvalidReturnType { expected_ty, .. } => {
-            return returned(module, *expected_ty);
+            return returned_words(module, *expected_ty);
         }
         FunctionError::InvalidIfType(_) => "the condition of `if` is not a `bool`".to_owned(),
         FunctionError::InvalidSwitchType(_) => "`switch` needs an integer".to_owned(),
@@ -41,17 +43,20 @@ pub fn function(module: &Module, of: &Function, error: &FunctionError) -> Said {
             "only storage textures can be written to".to_owned()
         }
         FunctionError::InvalidStoreValue { actual_ty, expected_ty, .. } => {
-            let (actual, expected) = (inner(module, actual_ty), inner(module, expected_ty));
-            return mismatch(format!("the texture stores {expected}, and this is {actual}"));
+            let (actual, expected) =
+                (inner_type_text(module, actual_ty), inner_type_text(module, expected_ty));
+            return mismatch_words(format!("the texture stores {expected}, and this is {actual}"));
         }
         FunctionError::InvalidStoreTypes { .. } => {
-            return mismatch("the value does not have the type of what it is assigned to");
+            return mismatch_words("the value does not have the type of what it is assigned to");
         }
         FunctionError::InvalidImageStore(error) | FunctionError::InvalidImageAtomic(error) => {
-            return expression::expression(module, error);
+            return expression::expression_words(module, error);
         }
-        FunctionError::InvalidCall { function, error } => return call(module, *function, error),
-        FunctionError::MissingCapability(capabilities) => return lacking(*capabilities),
+        FunctionError::InvalidCall { function, error } => {
+            return call_words(module, *function, error);
+        }
+        FunctionError::MissingCapability(capabilities) => return lacking_words(*capabilities),
         FunctionError::NonUniformControlFlow(..) => {
             "neighbouring fragments may have taken different branches here".to_owned()
         }
@@ -78,7 +83,7 @@ pub fn function(module: &Module, of: &Function, error: &FunctionError) -> Said {
             "this operation on an atomic does not exist, or its operands have other types"
                 .to_owned()
         }
-        FunctionError::InvalidSubgroup(error) => return subgroup(error),
+        FunctionError::InvalidSubgroup(error) => return subgroup_words(error),
         FunctionError::InvalidRayQueryExpression(_)
         | FunctionError::InvalidAccelerationStructure(_)
         | FunctionError::MissingAccelerationStructureVertexReturn(..)
@@ -89,34 +94,36 @@ pub fn function(module: &Module, of: &Function, error: &FunctionError) -> Said {
         | FunctionError::InvalidPayloadType
         | FunctionError::InvalidPayloadAddressSpace(_)
         | FunctionError::MismatchedPayloadType(..)
-        | FunctionError::PayloadPointerNotGlobal => return foreign("ray tracing"),
+        | FunctionError::PayloadPointerNotGlobal => return foreign_words("ray tracing"),
         FunctionError::InvalidCooperativeStoreTarget(_)
         | FunctionError::InvalidCooperativeDataPointer(_) => {
-            return foreign("cooperative matrices");
+            return foreign_words("cooperative matrices");
         }
         FunctionError::InvalidMeshFunctionCall(_)
         | FunctionError::ConflictingMeshOutputTypes(..)
         | FunctionError::ConflictingTaskPayloadVariables(..)
-        | FunctionError::InvalidMeshShaderOutputType(_) => return foreign("mesh and task shaders"),
+        | FunctionError::InvalidMeshShaderOutputType(_) => {
+            return foreign_words("mesh and task shaders");
+        }
     };
     Said::plain(text)
 }
 
-pub fn mismatch(message: impl Into<String>) -> Said {
+pub fn mismatch_words(message: impl Into<String>) -> Said {
     Said::coded(codes::TYPE_MISMATCH, message)
 }
 
-fn returned(module: &Module, expected: Option<Handle<naga::Type>>) -> Said {
+fn returned_words(module: &Module, expected: Option<Handle<naga::Type>>) -> Said {
     match expected {
-        Some(expected) => mismatch(format!(
+        Some(expected) => mismatch_words(format!(
             "the function returns {}, and this has another type",
-            ty(module, expected)
+            type_text(module, expected)
         )),
-        None => mismatch("the function returns nothing"),
+        None => mismatch_words("the function returns nothing"),
     }
 }
 
-fn local(
+fn local_words(
     module: &Module,
     of: &Function,
     handle: Handle<naga::LocalVariable>,
@@ -125,14 +132,14 @@ fn local(
 ) -> Said {
     match error {
         LocalVariableError::InvalidType(handle) => {
-            Said::plain(format!("`{name}` cannot have the type {}", ty(module, *handle)))
+            Said::plain(format!("`{name}` cannot have the type {}", type_text(module, *handle)))
         }
         LocalVariableError::InitializerType => {
             let declared = of.local_variables.iter().find(|(found, _)| *found == handle);
             let declared = declared.map_or(String::new(), |(_, variable)| {
-                format!(", which is {}", ty(module, variable.ty))
+                format!(", which is {}", type_text(module, variable.ty))
             });
-            mismatch(format!("the first value of `{name}` does not fit its type{declared}"))
+            mismatch_words(format!("the first value of `{name}` does not fit its type{declared}"))
         }
         LocalVariableError::NonConstOrOverrideInitializer => {
             Said::plain(format!("the first value of `{name}` must be a constant"))
@@ -140,7 +147,7 @@ fn local(
     }
 }
 
-fn call(module: &Module, handle: Handle<Function>, error: &CallError) -> Said {
+fn call_words(module: &Module, handle: Handle<Function>, error: &CallError) -> Said {
     let called = &module.functions[handle];
     let name = called.name.as_deref().unwrap_or("the function");
     let said = match error {
@@ -153,22 +160,22 @@ fn call(module: &Module, handle: Handle<Function>, error: &CallError) -> Said {
             format!(
                 "argument {} of `{name}` is {}, and this has another type",
                 index + 1,
-                ty(module, *required)
+                type_text(module, *required)
             ),
         ),
-        CallError::Argument { source, .. } => return expression::expression(module, source),
+        CallError::Argument { source, .. } => return expression::expression_words(module, source),
         CallError::ResultAlreadyInScope(_)
         | CallError::ResultAlreadyPopulated(_)
         | CallError::ExpressionMismatch(_) => {
             Said::plain("naga's parser gave the call a form that naga's validator refuses")
         }
     };
-    said.note(format!("declared: {}", signature(module, called)))
+    said.note(format!("declared: {}", signature_text(module, called)))
 }
 
 /// A function as its callers see it.
-fn signature(module: &Module, of: &Function) -> String {
-    let plain = |handle| ty(module, handle).replace('`', "");
+fn signature_text(module: &Module, of: &Function) -> String {
+    let plain = |handle| type_text(module, handle).replace('`', "");
     let arguments: Vec<String> = of
         .arguments
         .iter()
@@ -182,12 +189,12 @@ fn signature(module: &Module, of: &Function) -> String {
     format!("`{}({}){result}`", of.name.as_deref().unwrap_or_default(), arguments.join(", "))
 }
 
-fn subgroup(error: &SubgroupError) -> Said {
+fn subgroup_words(error: &SubgroupError) -> Said {
     match error {
         SubgroupError::InvalidOperand(_)
         | SubgroupError::ResultTypeMismatch(_)
         | SubgroupError::UnsupportedOperation(_)
         | SubgroupError::UnknownOperation
-        | SubgroupError::InvalidInvocationIdExprType(_) => foreign("subgroups"),
+        | SubgroupError::InvalidInvocationIdExprType(_) => foreign_words("subgroups"),
     }
 }

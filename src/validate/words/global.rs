@@ -3,9 +3,9 @@
 use naga::valid::GlobalVariableError;
 use naga::{AddressSpace, Module};
 
-use super::{Said, foreign, lacking, ty};
+use super::{Said, foreign_words, lacking_words, type_text};
 
-pub fn variable(module: &Module, name: &str, error: &GlobalVariableError) -> Said {
+pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) -> Said {
     let text = match error {
         GlobalVariableError::InvalidUsage(space) => {
             format!("`{name}` is used in a way that {} does not allow", space_name(*space))
@@ -14,12 +14,14 @@ pub fn variable(module: &Module, name: &str, error: &GlobalVariableError) -> Sai
             format!("`{name}` has a type that {} cannot hold", space_name(*space))
         }
         GlobalVariableError::InvalidBindingArray(handle) => {
-            format!("there are no arrays of bindings of {}", ty(module, *handle))
+            format!("there are no arrays of bindings of {}", type_text(module, *handle))
         }
         GlobalVariableError::MissingTypeFlags { .. } => format!(
             "`{name}` has a type that cannot be in a buffer: booleans, textures and pointers cannot"
         ),
-        GlobalVariableError::UnsupportedCapability(capabilities) => return lacking(*capabilities),
+        GlobalVariableError::UnsupportedCapability(capabilities) => {
+            return lacking_words(*capabilities);
+        }
         GlobalVariableError::InvalidBinding => format!(
             "`{name}` needs `@group` and `@binding`, or must not have them: resources have them, \
              other variables do not"
@@ -27,7 +29,7 @@ pub fn variable(module: &Module, name: &str, error: &GlobalVariableError) -> Sai
         GlobalVariableError::Alignment(_, handle, disalignment) => {
             return Said::plain(format!(
                 "the layout of {} does not fit a uniform buffer",
-                ty(module, *handle)
+                type_text(module, *handle)
             ))
             .note(disalignment.to_string().to_lowercase());
         }
@@ -48,7 +50,7 @@ pub fn variable(module: &Module, name: &str, error: &GlobalVariableError) -> Sai
         | GlobalVariableError::InvalidMemoryDecorationsAddressSpace
         | GlobalVariableError::CoherentNotSupported
         | GlobalVariableError::VolatileNotSupported => {
-            return foreign(&format!("the kind of variable that `{name}` is"));
+            return foreign_words(&format!("the kind of variable that `{name}` is"));
         }
     };
     Said::plain(text)

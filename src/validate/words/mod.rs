@@ -11,7 +11,7 @@ mod global;
 mod tokens;
 mod types;
 
-pub use tokens::glsl;
+pub use tokens::glsl_words;
 
 use naga::common::wgsl::TypeContext;
 use naga::valid::{Capabilities, ValidationError};
@@ -45,7 +45,7 @@ impl Said {
 }
 
 /// What is wrong with a module.
-pub fn validation(module: &Module, error: &ValidationError) -> Said {
+pub fn validation_words(module: &Module, error: &ValidationError) -> Said {
     match error {
         ValidationError::InvalidHandle(_) | ValidationError::Corrupted => {
             Said::plain("naga's parser gave the text a form that naga's validator refuses")
@@ -54,7 +54,7 @@ pub fn validation(module: &Module, error: &ValidationError) -> Said {
             Said::plain("a type has no layout in memory: its size is not known, or too large")
         }
         ValidationError::Type { name, source, .. } => types::type_of(module, name, source),
-        ValidationError::ConstExpression { source, .. } => types::constant(module, source),
+        ValidationError::ConstExpression { source, .. } => types::constant_words(module, source),
         ValidationError::ArraySizeError { .. } => {
             Said::plain("the size of an array must be above 0")
         }
@@ -63,22 +63,22 @@ pub fn validation(module: &Module, error: &ValidationError) -> Said {
         }
         ValidationError::Override { name, source, .. } => types::of_override(module, name, source),
         ValidationError::GlobalVariable { name, source, .. } => {
-            global::variable(module, name, source)
+            global::variable_words(module, name, source)
         }
         ValidationError::Function { handle, name, source } => {
-            let said = function::function(module, &module.functions[*handle], source);
+            let said = function::function_words(module, &module.functions[*handle], source);
             said.note(format!("in function `{name}`"))
         }
         ValidationError::EntryPoint { stage, name, source } => {
             let point = module.entry_points.iter().find(|point| point.name == *name);
-            let said = entry::entry(module, point.map(|point| &point.function), source);
+            let said = entry::entry_words(module, point.map(|point| &point.function), source);
             said.note(format!("in entry point `{name}` ({})", stage_name(*stage)))
         }
     }
 }
 
 /// A type as WGSL spells it.
-fn ty(module: &Module, handle: Handle<Type>) -> String {
+fn type_text(module: &Module, handle: Handle<Type>) -> String {
     let mut text = String::new();
     match module.to_ctx().write_type(handle, &mut text) {
         Ok(()) if !text.is_empty() => format!("`{text}`"),
@@ -86,7 +86,7 @@ fn ty(module: &Module, handle: Handle<Type>) -> String {
     }
 }
 
-fn inner(module: &Module, inner: &TypeInner) -> String {
+fn inner_type_text(module: &Module, inner: &TypeInner) -> String {
     let mut text = String::new();
     match module.to_ctx().write_type_inner(inner, &mut text) {
         Ok(()) if !text.is_empty() => format!("`{text}`"),
@@ -95,7 +95,7 @@ fn inner(module: &Module, inner: &TypeInner) -> String {
 }
 
 /// What needs a capability that not every target has.
-fn lacking(capabilities: Capabilities) -> Said {
+fn lacking_words(capabilities: Capabilities) -> Said {
     let names: Vec<String> =
         capabilities.iter_names().map(|(name, _)| name.to_lowercase().replace('_', " ")).collect();
     Said::coded(
@@ -119,12 +119,12 @@ fn stage_name(stage: naga::ShaderStage) -> &'static str {
 }
 
 /// Something that belongs to stages or devices which no target has.
-fn foreign(what: &str) -> Said {
+fn foreign_words(what: &str) -> Said {
     Said::coded(codes::NOT_PORTABLE, format!("no target has {what}"))
 }
 
 /// A name from naga's enums, such as `SampleCount`, as words: `sample count`.
-fn spaced(debug: &str) -> String {
+fn spaced_name(debug: &str) -> String {
     let mut text = String::with_capacity(debug.len() + 4);
     for (index, letter) in debug.chars().enumerate() {
         if letter.is_uppercase() && index > 0 && !text.ends_with(' ') {

@@ -2,11 +2,11 @@
 
 use naga::front::glsl::{ErrorKind, ExpectedToken, TokenValue};
 
-use super::spaced;
+use super::spaced_name;
 
 /// What the parser expected.
-fn expected(tokens: &[ExpectedToken]) -> String {
-    let words: Vec<String> = tokens.iter().map(wanted).collect();
+fn expected_words(tokens: &[ExpectedToken]) -> String {
+    let words: Vec<String> = tokens.iter().map(wanted_words).collect();
     match words.split_last() {
         Some((last, [])) => last.clone(),
         Some((last, before)) => format!("{} or {last}", before.join(", ")),
@@ -14,9 +14,9 @@ fn expected(tokens: &[ExpectedToken]) -> String {
     }
 }
 
-fn wanted(token: &ExpectedToken) -> String {
+fn wanted_words(token: &ExpectedToken) -> String {
     match token {
-        ExpectedToken::Token(value) => self::token(value),
+        ExpectedToken::Token(value) => self::token_text(value),
         ExpectedToken::TypeName => "a type".to_owned(),
         ExpectedToken::Identifier => "a name".to_owned(),
         ExpectedToken::IntLiteral => "an integer".to_owned(),
@@ -27,7 +27,7 @@ fn wanted(token: &ExpectedToken) -> String {
 }
 
 /// A token, in backticks if it is text from the file.
-fn token(value: &TokenValue) -> String {
+fn token_text(value: &TokenValue) -> String {
     use TokenValue as T;
     let text = match value {
         T::Identifier(name) => return format!("`{name}`"),
@@ -112,7 +112,7 @@ fn token(value: &TokenValue) -> String {
 }
 
 /// What naga's GLSL parser reports, as a sentence.
-pub fn glsl(kind: &ErrorKind) -> String {
+pub fn glsl_words(kind: &ErrorKind) -> String {
     match kind {
         ErrorKind::EndOfFile => "the file ends too early".to_owned(),
         ErrorKind::InvalidProfile(profile) => format!("there is no profile `{profile}`"),
@@ -120,7 +120,7 @@ pub fn glsl(kind: &ErrorKind) -> String {
             format!("`#version {version}` is not read: 440, 450 and 460 are")
         }
         ErrorKind::InvalidToken(found, wanted) => {
-            format!("expected {}, found {}", expected(wanted), token(found))
+            format!("expected {}, found {}", expected_words(wanted), token_text(found))
         }
         ErrorKind::NotImplemented(what) => format!("naga does not read this yet: {what}"),
         ErrorKind::UnknownVariable(name) => format!("there is no variable `{name}`"),
@@ -138,7 +138,7 @@ pub fn glsl(kind: &ErrorKind) -> String {
         ErrorKind::VariableAlreadyDeclared(name) => format!("`{name}` is declared twice"),
         ErrorKind::SemanticError(text) => text.to_string(),
         // The type of this error belongs to a crate that is not a dependency of ours.
-        ErrorKind::PreprocessorError(error) => spaced(&format!("{error:?}")),
+        ErrorKind::PreprocessorError(error) => spaced_name(&format!("{error:?}")),
         ErrorKind::InternalError(text) => format!("naga stopped: {text}"),
     }
 }

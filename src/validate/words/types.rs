@@ -6,28 +6,28 @@ use naga::valid::{
     WidthError,
 };
 
-use super::{Said, entry, foreign, lacking, ty};
+use super::{Said, entry, foreign_words, lacking_words, type_text};
 use crate::diagnostic::codes;
 
 pub fn type_of(module: &Module, name: &str, error: &TypeError) -> Said {
     let what = if name.is_empty() { "this type".to_owned() } else { format!("`{name}`") };
     match error {
-        TypeError::MissingCapability(capabilities) => lacking(*capabilities),
+        TypeError::MissingCapability(capabilities) => lacking_words(*capabilities),
         TypeError::InvalidAtomicWidth(..) => {
             Said::plain(format!("{what} is no type that an atomic can have: `u32` and `i32` are"))
         }
         TypeError::InvalidPointerBase(base) => {
-            Said::plain(format!("there are no pointers to {}", ty(module, *base)))
+            Said::plain(format!("there are no pointers to {}", type_text(module, *base)))
         }
         TypeError::InvalidPointerToUnsized { base, .. } => Said::plain(format!(
             "the size of {} is not known, so it can only be in a storage buffer",
-            ty(module, *base)
+            type_text(module, *base)
         )),
         TypeError::InvalidData(base) => {
-            Said::plain(format!("{} cannot be a member here", ty(module, *base)))
+            Said::plain(format!("{} cannot be a member here", type_text(module, *base)))
         }
         TypeError::InvalidArrayBaseType(base) => {
-            Said::plain(format!("there are no arrays of {}", ty(module, *base)))
+            Said::plain(format!("there are no arrays of {}", type_text(module, *base)))
         }
         TypeError::MatrixElementNotFloat => {
             Said::plain("the elements of a matrix are floating-point numbers")
@@ -37,7 +37,7 @@ pub fn type_of(module: &Module, name: &str, error: &TypeError) -> Said {
         }
         TypeError::UnsupportedImageType { arrayed, .. } => {
             let many = if *arrayed { "arrays of such textures" } else { "such textures" };
-            foreign(many)
+            foreign_words(many)
         }
         TypeError::InvalidArrayStride { stride, expected } => Said::plain(format!(
             "the elements of {what} are {stride} bytes apart, and must be {expected}"
@@ -46,7 +46,7 @@ pub fn type_of(module: &Module, name: &str, error: &TypeError) -> Said {
             Said::plain(format!("`{field}` has no fixed size, so it must be the last member"))
         }
         TypeError::BindingArrayBaseTypeNotStruct(_)
-        | TypeError::BindingArrayBaseExternalTextures => foreign("arrays of such bindings"),
+        | TypeError::BindingArrayBaseExternalTextures => foreign_words("arrays of such bindings"),
         TypeError::MemberOverlap { index, offset } => Said::plain(format!(
             "member {} of {what}, at byte {offset}, overlaps the member before it",
             index + 1
@@ -56,18 +56,18 @@ pub fn type_of(module: &Module, name: &str, error: &TypeError) -> Said {
             index + 1
         )),
         TypeError::EmptyStruct => Said::plain(format!("{what} needs at least one member")),
-        TypeError::InvalidBlendSrc(error) => entry::varying(module, error),
-        TypeError::WidthError(error) => width(error),
+        TypeError::InvalidBlendSrc(error) => entry::varying_words(module, error),
+        TypeError::WidthError(error) => width_words(error),
         TypeError::UnresolvedOverride(_) | TypeError::InvalidArraySize(_) => {
             Said::plain(format!("the size of {what} must be a constant above 0"))
         }
     }
 }
 
-pub fn width(error: &WidthError) -> Said {
+pub fn width_words(error: &WidthError) -> Said {
     match error {
         WidthError::Invalid(_, bytes) => {
-            foreign(&format!("numbers of {} bits", u32::from(*bytes) * 8))
+            foreign_words(&format!("numbers of {} bits", u32::from(*bytes) * 8))
         }
         WidthError::MissingCapability { name, .. } => {
             Said::coded(codes::NOT_PORTABLE, format!("not every target has the type `{name}`"))
@@ -76,18 +76,18 @@ pub fn width(error: &WidthError) -> Said {
     }
 }
 
-pub fn literal(error: &LiteralError) -> Said {
+pub fn literal_words(error: &LiteralError) -> Said {
     match error {
         LiteralError::NaN => Said::plain("a constant is not a number"),
         LiteralError::Infinity => Said::plain("a constant is infinite"),
-        LiteralError::Width(error) => width(error),
+        LiteralError::Width(error) => width_words(error),
     }
 }
 
-pub fn compose(module: &Module, error: &ComposeError) -> Said {
+pub fn compose_words(module: &Module, error: &ComposeError) -> Said {
     match error {
         ComposeError::Type(handle) => {
-            Said::plain(format!("{} has no constructor of components", ty(module, *handle)))
+            Said::plain(format!("{} has no constructor of components", type_text(module, *handle)))
         }
         ComposeError::ComponentCount { given, expected } => Said::coded(
             codes::CALL_MISMATCH,
@@ -100,18 +100,18 @@ pub fn compose(module: &Module, error: &ComposeError) -> Said {
     }
 }
 
-pub fn constant(module: &Module, error: &ConstExpressionError) -> Said {
+pub fn constant_words(module: &Module, error: &ConstExpressionError) -> Said {
     match error {
         ConstExpressionError::NonConstOrOverride | ConstExpressionError::NonFullyEvaluatedConst => {
             Said::plain("this must be known when the shader is compiled")
         }
-        ConstExpressionError::Compose(error) => compose(module, error),
+        ConstExpressionError::Compose(error) => compose_words(module, error),
         ConstExpressionError::InvalidSplatType(_) => {
             Said::plain("only a scalar can fill all components of a vector")
         }
         ConstExpressionError::Type(_) => Said::plain("the type of a constant cannot be found out"),
-        ConstExpressionError::Literal(error) => literal(error),
-        ConstExpressionError::Width(error) => width(error),
+        ConstExpressionError::Literal(error) => literal_words(error),
+        ConstExpressionError::Width(error) => width_words(error),
     }
 }
 
@@ -140,7 +140,7 @@ pub fn of_override(module: &Module, name: &str, error: &OverrideError) -> Said {
         }
         OverrideError::NotAllowed => "there are no overrides here".to_owned(),
         OverrideError::UninitializedOverride => format!("`{name}` needs a default"),
-        OverrideError::ConstExpression { source, .. } => return constant(module, source),
+        OverrideError::ConstExpression { source, .. } => return constant_words(module, source),
     };
     Said::plain(text)
 }

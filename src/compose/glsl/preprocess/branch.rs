@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use super::super::always;
-use super::super::condition::evaluate;
+use super::super::condition::evaluate_condition;
 use super::super::expand::{Fatal, Input};
 use super::State;
 use crate::compose::Decision;
 use crate::diagnostic::Diagnostics;
-use crate::limits::count;
+use crate::limits::count_steps;
 use crate::parse::glsl::{Directive, Part};
 use crate::source::Span;
 
@@ -19,8 +19,8 @@ impl State<'_, '_> {
         while let Some(Part::Directive(directive, span)) =
             self.graph.modules[module].parts.get(index)
         {
-            count(1);
-            self.warnings.extend(always::warning(
+            count_steps(1);
+            self.warnings.extend(always::always_warning(
                 &self.expander,
                 &self.graph.modules[module],
                 index,
@@ -86,7 +86,7 @@ impl State<'_, '_> {
         if self.expander.errors.len() > before {
             return Ok(Err(self.expander.errors.split_off(before)));
         }
-        Ok(evaluate(&mut self.expander, &tokens, span).map_err(|error| vec![error]))
+        Ok(evaluate_condition(&mut self.expander, &tokens, span).map_err(|error| vec![error]))
     }
 
     /// Continues at the `#endif` of a conditional; `next` is one of its later branches.

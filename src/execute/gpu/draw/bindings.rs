@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::super::{Gpu, failed, fixtures, pipeline};
+use super::super::{Gpu, fixtures, gpu_failed, pipeline};
 use super::Groups;
 use crate::diagnostic::Diagnostic;
 use crate::execute::fixture::{Address, Fixture, Sampler};
@@ -29,7 +29,7 @@ impl Bindings {
     ) -> Result<Self, Diagnostic> {
         let mut kept = BTreeMap::new();
         for place in used.iter().filter(|place| !drawing.is_buffer(**place)) {
-            kept.insert(*place, fixture(gpu, drawing, *place)?);
+            kept.insert(*place, bound_fixture(gpu, drawing, *place)?);
         }
         Ok(Self { used, kept })
     }
@@ -68,7 +68,7 @@ impl Bindings {
         for place in last.iter().flat_map(|(group, last)| (0..*last).map(|one| (*group, one))) {
             if !self.used.contains(&place) {
                 let settings = Sampler { compare: None, linear: false, address: Address::Clamp };
-                let sampler = fixtures::sampler(&gpu.device, settings);
+                let sampler = fixtures::create_sampler(&gpu.device, settings);
                 self.kept.insert(place, Kept::Sampler(sampler));
             }
         }
@@ -116,7 +116,8 @@ impl Bindings {
     ) -> Result<BTreeMap<Place, Kept>, Diagnostic> {
         let places = self.used.iter().filter(|place| !self.kept.contains_key(place));
         let buffer = |place: &Place| {
-            let bytes = drawing.buffer(view, item, *place).ok_or_else(|| missing(*place))?;
+            let bytes =
+                drawing.buffer(view, item, *place).ok_or_else(|| missing_binding(*place))?;
             Ok((
                 *place,
                 Kept::Buffer(
@@ -163,19 +164,19 @@ fn binding_type(fixture: &Fixture, filterable: bool) -> wgpu::BindingType {
     }
 }
 
-fn fixture(gpu: &Gpu, drawing: &Drawing<'_>, place: Place) -> Result<Kept, Diagnostic> {
+fn bound_fixture(gpu: &Gpu, drawing: &Drawing<'_>, place: Place) -> Result<Kept, Diagnostic> {
     match drawing.fixtures.get(&place).map(|fixture| &**fixture) {
         Some(Fixture::Texture(texture)) => {
             let levels = drawing.levels.get(&place).map_or(&[][..], Vec::as_slice);
             Ok(Kept::View(fixtures::upload_levels(&gpu.device, &gpu.queue, texture, levels)))
         }
         Some(Fixture::Sampler(sampler)) => {
-            Ok(Kept::Sampler(fixtures::sampler(&gpu.device, *sampler)))
+            Ok(Kept::Sampler(fixtures::create_sampler(&gpu.device, *sampler)))
         }
-        None => Err(missing(place)),
+        None => Err(missing_binding(place)),
     }
 }
 
-fn missing(place: Place) -> Diagnostic {
-    failed(format!("nothing is given for group {}, binding {}", place.0, place.1))
+fn missing_binding(place: Place) -> Diagnostic {
+    gpu_failed(format!("nothing is given for group {}, binding {}", place.0, place.1))
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::super::passthrough::Binary;
-use super::super::{Gpu, Shaders, failed, heaps, hlsl, lock};
+use super::super::{Gpu, Shaders, gpu_failed, heaps, hlsl, lock_mutex};
 use super::bindings::Bindings;
 use super::{LAVAPIPE_BLOCKS, Meshes, Stages};
 use crate::bundle::{SamplerHeap, Stage, Target};
@@ -28,7 +28,7 @@ impl Gpu {
         drawing: &Drawing<'_>,
     ) -> Result<Vec<Frame>, Diagnostic> {
         self.can_draw(pair)?;
-        let formats = pair.fragment.targets().map_err(failed)?;
+        let formats = pair.fragment.targets().map_err(gpu_failed)?;
         let frames = self.guarded(|gpu| gpu.submit_shipped(pair, drawing, &formats))??;
         frames.into_iter().map(|frame| frame.read(self, None)).collect()
     }
@@ -40,9 +40,9 @@ impl Gpu {
         };
         let stages = [pair.vertex, pair.fragment];
         if let Some(stage) = stages.iter().find(|stage| stage.target != own) {
-            return Err(failed(format!("this executor draws no {}", stage.target)));
+            return Err(gpu_failed(format!("this executor draws no {}", stage.target)));
         }
-        if let Some(reason) = lacks(pair.fragment) {
+        if let Some(reason) = stage_lacks(pair.fragment) {
             return Err(Diagnostic::error(codes::EXECUTOR_LACKS, reason));
         }
         if self.is_lavapipe() && stages.iter().any(|one| one.blocks().count() > LAVAPIPE_BLOCKS) {
@@ -58,7 +58,7 @@ impl Gpu {
         drawing: &Drawing<'_>,
         formats: &[Format],
     ) -> Result<Vec<super::target::Pending>, Diagnostic> {
-        let used = places(pair);
+        let used = read_places(pair);
         let group = used.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
         let vertex = self.loaded(pair.vertex, group)?;
         let fragment = self.loaded(pair.fragment, group)?;
@@ -68,8 +68,8 @@ impl Gpu {
         let heaps = match all.is_empty() {
             true => None,
             false => {
-                let sampler = |place: [u32; 2]| sampler(drawing, place);
-                Some(heaps::bind(&self.device, &all, &sampler).map_err(failed)?)
+                let sampler = |place: [u32; 2]| sampler_at(drawing, place);
+                Some(heaps::bind_heaps(&self.device, &all, &sampler).map_err(gpu_failed)?)
             }
         };
         let mut in_order: Vec<Option<&wgpu::BindGroupLayout>> =
@@ -125,28 +125,28 @@ impl Gpu {
     /// translating HLSL runs two programs.
     fn binary(&self, shipped: &Shipped, heaps: u32) -> Result<Binary, Diagnostic> {
         let key = (shipped.bytes.clone(), heaps);
-        if let Some(known) = lock(&self.binaries).get(&key) {
+        if let Some(known) = lock_mutex(&self.binaries).get(&key) {
             return Ok(known.clone());
         }
         let Shipped { target, bytes, native, reflection } = shipped;
         let binary = Binary::new(*target, reflection.stage, bytes, native, heaps);
-        let binary = binary.map_err(failed)?;
-        lock(&self.binaries).insert(key, binary.clone());
+        let binary = binary.map_err(gpu_failed)?;
+        lock_mutex(&self.binaries).insert(key, binary.clone());
         Ok(binary)
     }
 }
 
 /// What cannot be done with a fragment stage on this way to the device.
-fn lacks(stage: &Shipped) -> Option<&'static str> {
+fn stage_lacks(stage: &Shipped) -> Option<&'static str> {
     match stage.target {
         Target::WGSL => stage.lacks_of_webgpu(),
-        Target::HLSL => hlsl::lacks(&stage.text()),
+        Target::HLSL => hlsl::hlsl_lacks(&stage.text()),
         _ => None,
     }
 }
 
 /// All bindings that one of the stages reads.
-fn places(pair: Pair<'_>) -> BTreeSet<Place> {
+fn read_places(pair: Pair<'_>) -> BTreeSet<Place> {
     let stages = [pair.vertex, pair.fragment].into_iter();
     stages
         .flat_map(|stage| &stage.reflection.bindings)
@@ -154,7 +154,7 @@ fn places(pair: Pair<'_>) -> BTreeSet<Place> {
         .collect()
 }
 
-fn sampler(drawing: &Drawing<'_>, [group, binding]: [u32; 2]) -> Option<Sampler> {
+fn sampler_at(drawing: &Drawing<'_>, [group, binding]: [u32; 2]) -> Option<Sampler> {
     match drawing.fixtures.get(&(group, binding)).map(|fixture| &**fixture) {
         Some(Fixture::Sampler(settings)) => Some(*settings),
         _ => None,

@@ -44,12 +44,12 @@ impl Targets {
             size,
             color: formats
                 .iter()
-                .map(|one| (create(device, size, format(*one), usage), *one))
+                .map(|one| (create_target(device, size, texture_format(*one), usage), *one))
                 .collect(),
             depth: drawing
                 .state
                 .depth_test
-                .then(|| create(device, size, DEPTH_FORMAT, depth_usage)),
+                .then(|| create_target(device, size, DEPTH_FORMAT, depth_usage)),
             keep_depth: drawing.state.keep_depth,
         }
     }
@@ -87,12 +87,15 @@ impl Targets {
 
     /// Copies everything to where it can be read.
     pub fn download(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Pending {
-        let color =
-            self.color.iter().map(|(target, _)| copied(gpu, encoder, target, self.size)).collect();
+        let color = self
+            .color
+            .iter()
+            .map(|(target, _)| copy_to_buffer(gpu, encoder, target, self.size))
+            .collect();
         let kept = self.depth.as_ref().filter(|_| self.keep_depth);
         let depth = kept.map(|depth| {
             let target = as_words(gpu, encoder, depth, self.size);
-            copied(gpu, encoder, &target, self.size)
+            copy_to_buffer(gpu, encoder, &target, self.size)
         });
         Pending { size: self.size, color, depth }
     }
@@ -104,7 +107,7 @@ impl Pending {
         let read = |buffer: &wgpu::Buffer| -> Result<Vec<u32>, Diagnostic> {
             let words = gpu.read(buffer)?;
             Ok(words
-                .chunks(padded(self.size[0]) as usize / 4)
+                .chunks(padded_row(self.size[0]) as usize / 4)
                 .flat_map(|words| &words[..row])
                 .copied()
                 .collect())
@@ -120,7 +123,7 @@ impl Pending {
 }
 
 /// The texture format of a target.
-pub fn format(of: Format) -> wgpu::TextureFormat {
+pub fn texture_format(of: Format) -> wgpu::TextureFormat {
     match of {
         Format::Float => wgpu::TextureFormat::Rgba32Float,
         Format::Uint => TARGET_FORMAT,
@@ -145,17 +148,17 @@ fn color_attachment(
 }
 
 /// Bytes of a row in a buffer, with its padding.
-fn padded(width: u32) -> u32 {
+fn padded_row(width: u32) -> u32 {
     (width * 16).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }
 
-fn copied(
+fn copy_to_buffer(
     gpu: &Gpu,
     encoder: &mut wgpu::CommandEncoder,
     target: &wgpu::Texture,
     [width, height]: [u32; 2],
 ) -> wgpu::Buffer {
-    let row = padded(width);
+    let row = padded_row(width);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: u64::from(row) * u64::from(height),
@@ -174,7 +177,7 @@ fn copied(
 }
 
 /// A pipeline that reads the bits of a depth texture, and the layout of its bindings.
-fn reader(device: &wgpu::Device) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline) {
+fn depth_reader(device: &wgpu::Device) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline) {
     let source = wgpu::ShaderSource::Wgsl(DEPTH.into());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
     let ty = wgpu::BindingType::Texture {
@@ -192,7 +195,7 @@ fn reader(device: &wgpu::Device) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline
         label: None,
         entries: &[entry],
     });
-    let pipeline = pipeline::pipeline(
+    let pipeline = pipeline::draw_pipeline(
         device,
         &[&layout],
         &module,
@@ -211,7 +214,7 @@ fn as_words(
     size: [u32; 2],
 ) -> wgpu::Texture {
     let device = &gpu.device;
-    let (layout, pipeline) = reader(device);
+    let (layout, pipeline) = depth_reader(device);
     let view = depth.create_view(&Default::default());
     let entry =
         wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) };
@@ -220,7 +223,7 @@ fn as_words(
         layout: &layout,
         entries: &[entry],
     });
-    let target = create(
+    let target = create_target(
         device,
         size,
         TARGET_FORMAT,
@@ -239,7 +242,7 @@ fn as_words(
     target
 }
 
-fn create(
+fn create_target(
     device: &wgpu::Device,
     [width, height]: [u32; 2],
     format: wgpu::TextureFormat,

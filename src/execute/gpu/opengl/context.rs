@@ -51,7 +51,7 @@ impl Context {
     pub fn open(api: Api) -> Result<Self, String> {
         // SAFETY: the library with that name is EGL.
         let egl = unsafe { Egl::load_required() }.map_err(|error| format!("EGL: {error}"))?;
-        let display = display(&egl)?;
+        let display = open_display(&egl)?;
         let failed = |error: egl::Error| format!("EGL: {error}");
         egl.initialize(display).map_err(failed)?;
         egl.bind_api(api.bound()).map_err(failed)?;
@@ -68,7 +68,7 @@ impl Context {
                 egl.get_proc_address(name).map_or(std::ptr::null(), |found| found as *const c_void)
             })
         };
-        let adapter = describe(&gl);
+        let adapter = describe_context(&gl);
         egl.make_current(display, None, None, None).map_err(failed)?;
         Ok(Self { egl, display, context, gl, api, adapter })
     }
@@ -140,8 +140,8 @@ impl std::fmt::Display for Api {
 }
 
 /// The display of the software device, or else one without a window system.
-fn display(egl: &Egl) -> Result<egl::Display, String> {
-    let (platform, native) = match software(egl) {
+fn open_display(egl: &Egl) -> Result<egl::Display, String> {
+    let (platform, native) = match software_device(egl) {
         Some(device) => (PLATFORM_DEVICE, device),
         None => (PLATFORM_SURFACELESS, std::ptr::null_mut()),
     };
@@ -151,7 +151,7 @@ fn display(egl: &Egl) -> Result<egl::Display, String> {
 }
 
 /// The device that renders on the CPU, if EGL can list devices.
-fn software(egl: &Egl) -> Option<egl::NativeDisplayType> {
+fn software_device(egl: &Egl) -> Option<egl::NativeDisplayType> {
     let query_devices = egl.get_proc_address("eglQueryDevicesEXT")?;
     let query_string = egl.get_proc_address("eglQueryDeviceStringEXT")?;
     // SAFETY: these are the signatures of `EGL_EXT_device_base`.
@@ -174,7 +174,7 @@ fn software(egl: &Egl) -> Option<egl::NativeDisplayType> {
     devices.iter().take(count as usize).find(is_software).copied()
 }
 
-fn describe(gl: &glow::Context) -> String {
+fn describe_context(gl: &glow::Context) -> String {
     // SAFETY: the context is current.
     let (renderer, version) = unsafe {
         (gl.get_parameter_string(glow::RENDERER), gl.get_parameter_string(glow::VERSION))

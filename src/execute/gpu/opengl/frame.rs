@@ -22,7 +22,7 @@ struct Ready {
 }
 
 /// Draws the frame of each view. Errors are messages.
-pub fn draw(
+pub fn draw_frames(
     gl: &glow::Context,
     api: Api,
     pair: Pair<'_>,
@@ -32,7 +32,7 @@ pub fn draw(
         return Err("shipped texts are drawn without depth test, culling and smaller levels".into());
     }
     let formats = pair.fragment.targets()?;
-    let ready = prepare(gl, pair, drawing)?;
+    let ready = prepare_frame(gl, pair, drawing)?;
     let turned = pair.vertex.native.clip.is_some_and(|clip| clip.front_face == FrontFace::Reversed);
     plain_state(gl, api);
     // SAFETY: the context is current.
@@ -40,7 +40,7 @@ pub fn draw(
     let frames = drawing
         .views
         .iter()
-        .map(|view| frame(gl, &ready, drawing, view, &formats))
+        .map(|view| draw_frame(gl, &ready, drawing, view, &formats))
         .collect::<Result<_, _>>();
     // SAFETY: the context is current and every name is of it.
     unsafe {
@@ -50,16 +50,20 @@ pub fn draw(
             unit.sampler.into_iter().for_each(|sampler| gl.delete_sampler(sampler));
         }
     }
-    program::check(gl)?;
+    program::check_error(gl)?;
     frames
 }
 
-fn prepare(gl: &glow::Context, pair: Pair<'_>, drawing: &Drawing<'_>) -> Result<Ready, String> {
-    let program = program::link(gl, &pair.vertex.text(), &pair.fragment.text())?;
+fn prepare_frame(
+    gl: &glow::Context,
+    pair: Pair<'_>,
+    drawing: &Drawing<'_>,
+) -> Result<Ready, String> {
+    let program = program::link_program(gl, &pair.vertex.text(), &pair.fragment.text())?;
     let (mut blocks, mut units) = (BTreeMap::new(), Vec::new());
     for stage in [pair.vertex, pair.fragment] {
         for place in stage.blocks() {
-            let slot = slot(stage, place)?;
+            let slot = find_slot(stage, place)?;
             let next = blocks.len() as u32;
             let number = *blocks.entry(place).or_insert(slot.index.unwrap_or(next));
             if let (None, Some(name)) = (slot.index, &slot.name) {
@@ -68,14 +72,14 @@ fn prepare(gl: &glow::Context, pair: Pair<'_>, drawing: &Drawing<'_>) -> Result<
         }
         for combined in &stage.native.combined {
             let next = units.len() as u32;
-            units.push(unit(gl, program, stage, combined, next, drawing)?);
+            units.push(texture_unit(gl, program, stage, combined, next, drawing)?);
         }
     }
-    program::check(gl)?;
+    program::check_error(gl)?;
     Ok(Ready { program, units, blocks })
 }
 
-fn slot(stage: &Shipped, (group, binding): Place) -> Result<&Slot, String> {
+fn find_slot(stage: &Shipped, (group, binding): Place) -> Result<&Slot, String> {
     let mut slots = stage.native.slots.iter();
     slots
         .find(|slot| (slot.group, slot.binding) == (group, binding))
@@ -84,7 +88,7 @@ fn slot(stage: &Shipped, (group, binding): Place) -> Result<&Slot, String> {
 
 /// The unit of a combined sampler: the one that the text declares. Where the language has no such
 /// declaration, the next free one is assigned by name.
-fn unit(
+fn texture_unit(
     gl: &glow::Context,
     program: glow::Program,
     stage: &Shipped,
@@ -97,24 +101,24 @@ fn unit(
     let Some(Fixture::Texture(fixture)) = fixture else {
         return Err(format!("`{}` has no fixture", combined.name));
     };
-    let index = slot(stage, (group, binding))?.index.unwrap_or_else(|| {
+    let index = find_slot(stage, (group, binding))?.index.unwrap_or_else(|| {
         program::set_unit(gl, program, &combined.name, next);
         next
     });
-    let settings = combined.sampler.and_then(|place| sampler(drawing, place));
-    let sampler = settings.map(|settings| texture::sampler(gl, settings)).transpose()?;
-    let (target, texture) = texture::upload(gl, fixture)?;
+    let settings = combined.sampler.and_then(|place| sampler_at(drawing, place));
+    let sampler = settings.map(|settings| texture::create_sampler(gl, settings)).transpose()?;
+    let (target, texture) = texture::upload_fixture(gl, fixture)?;
     Ok(Unit { index, target, texture, sampler })
 }
 
-fn sampler(drawing: &Drawing<'_>, [group, binding]: [u32; 2]) -> Option<Sampler> {
+fn sampler_at(drawing: &Drawing<'_>, [group, binding]: [u32; 2]) -> Option<Sampler> {
     match drawing.fixtures.get(&(group, binding)).map(|fixture| &**fixture) {
         Some(Fixture::Sampler(settings)) => Some(*settings),
         _ => None,
     }
 }
 
-fn frame(
+fn draw_frame(
     gl: &glow::Context,
     ready: &Ready,
     drawing: &Drawing<'_>,
@@ -123,7 +127,7 @@ fn frame(
 ) -> Result<Frame, String> {
     let targets = formats
         .iter()
-        .map(|format| texture::target(gl, drawing.size, *format == Format::Float))
+        .map(|format| texture::target_texture(gl, drawing.size, *format == Format::Float))
         .collect::<Result<Vec<_>, _>>()?;
     let [width, height] = drawing.size.map(|size| size as i32);
     // SAFETY: the context is current, and every name is of it.
@@ -141,7 +145,7 @@ fn frame(
             return Err("the driver draws into no such targets".to_owned());
         }
         gl.viewport(0, 0, width, height);
-        clear(gl, formats);
+        clear_targets(gl, formats);
         gl.use_program(Some(ready.program));
         for unit in &ready.units {
             gl.active_texture(glow::TEXTURE0 + unit.index);
@@ -153,18 +157,18 @@ fn frame(
         }
         let read = points.iter().zip(formats).map(|(point, format)| {
             gl.read_buffer(*point);
-            read(gl, [width, height], *format)
+            read_target(gl, [width, height], *format)
         });
         let words = read.collect();
         gl.bind_framebuffer(glow::FRAMEBUFFER, None);
         gl.delete_framebuffer(framebuffer);
         targets.into_iter().for_each(|target| gl.delete_texture(target));
-        program::check(gl)?;
+        program::check_error(gl)?;
         Ok(Frame { targets: words, depth: Vec::new(), detour: None })
     }
 }
 
-unsafe fn clear(gl: &glow::Context, formats: &[Format]) {
+unsafe fn clear_targets(gl: &glow::Context, formats: &[Format]) {
     for (index, format) in (0..).zip(formats) {
         // SAFETY: a framebuffer with so many targets is bound.
         unsafe {
@@ -181,7 +185,7 @@ unsafe fn clear(gl: &glow::Context, formats: &[Format]) {
 
 /// The words of the bound target, row by row in the order of memory. The top row is first, since
 /// outputs turn their positions over.
-unsafe fn read(gl: &glow::Context, [width, height]: [i32; 2], format: Format) -> Vec<u32> {
+unsafe fn read_target(gl: &glow::Context, [width, height]: [i32; 2], format: Format) -> Vec<u32> {
     let mut bytes = vec![0u8; width as usize * height as usize * 16];
     let (format, ty) = match format {
         Format::Float => (glow::RGBA, glow::FLOAT),
@@ -208,17 +212,21 @@ unsafe fn draw_item(
         for (place, number) in &ready.blocks {
             let bytes = drawing.buffer(view, item, *place);
             let bytes = bytes.ok_or_else(|| format!("nothing is given for {place:?}"))?;
-            let buffer = buffer(gl, glow::UNIFORM_BUFFER, bytes)?;
+            let buffer = create_buffer(gl, glow::UNIFORM_BUFFER, bytes)?;
             gl.bind_buffer_base(glow::UNIFORM_BUFFER, *number, Some(buffer));
             made.push(buffer);
         }
         let array = gl.create_vertex_array()?;
         gl.bind_vertex_array(Some(array));
-        made.extend(attributes(gl, item.mesh)?);
+        made.extend(bind_attributes(gl, item.mesh)?);
         if item.mesh.indices.is_empty() {
             gl.draw_arrays(glow::TRIANGLES, 0, item.mesh.vertices() as i32);
         } else {
-            made.push(buffer(gl, glow::ELEMENT_ARRAY_BUFFER, &bytes(&item.mesh.indices))?);
+            made.push(create_buffer(
+                gl,
+                glow::ELEMENT_ARRAY_BUFFER,
+                &bytes_of_words(&item.mesh.indices),
+            )?);
             let count = item.mesh.indices.len() as i32;
             gl.draw_elements(glow::TRIANGLES, count, glow::UNSIGNED_INT, 0);
         }
@@ -230,14 +238,14 @@ unsafe fn draw_item(
 }
 
 /// Describes the attributes of a mesh to the bound vertex array; returns the buffer with the data.
-unsafe fn attributes(gl: &glow::Context, mesh: &Mesh) -> Result<Option<glow::Buffer>, String> {
+unsafe fn bind_attributes(gl: &glow::Context, mesh: &Mesh) -> Result<Option<glow::Buffer>, String> {
     if mesh.attributes.is_empty() {
         return Ok(None);
     }
     let stride = mesh.stride() as i32;
     // SAFETY: the offsets are within the interleaved words.
     unsafe {
-        let vertices = buffer(gl, glow::ARRAY_BUFFER, &bytes(&mesh.words))?;
+        let vertices = create_buffer(gl, glow::ARRAY_BUFFER, &bytes_of_words(&mesh.words))?;
         for (attribute, offset) in mesh.layout() {
             let size = attribute.format.words() as i32;
             let (location, offset) = (attribute.location, offset as i32);
@@ -253,7 +261,7 @@ unsafe fn attributes(gl: &glow::Context, mesh: &Mesh) -> Result<Option<glow::Buf
     }
 }
 
-unsafe fn buffer(gl: &glow::Context, of: u32, bytes: &[u8]) -> Result<glow::Buffer, String> {
+unsafe fn create_buffer(gl: &glow::Context, of: u32, bytes: &[u8]) -> Result<glow::Buffer, String> {
     // SAFETY: the context is current.
     unsafe {
         let buffer = gl.create_buffer()?;
@@ -263,6 +271,6 @@ unsafe fn buffer(gl: &glow::Context, of: u32, bytes: &[u8]) -> Result<glow::Buff
     }
 }
 
-fn bytes(words: &[u32]) -> Vec<u8> {
+fn bytes_of_words(words: &[u32]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_ne_bytes()).collect()
 }

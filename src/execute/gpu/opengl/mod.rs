@@ -15,7 +15,7 @@ use std::collections::HashMap;
 
 use glow::HasContext as _;
 
-use super::{emitted, failed, input_texels, unpack};
+use super::{emitted, gpu_failed, input_texels, unpack_results};
 use crate::bundle::{Combined, Target};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::emit::Emitted;
@@ -59,7 +59,7 @@ impl OpenGl {
 
     fn has_extensions(&self, text: &[u8]) -> Result<(), Diagnostic> {
         let missing = self.context.with(|gl| Ok(program::missing_extension(gl, text)));
-        match missing.map_err(failed)? {
+        match missing.map_err(gpu_failed)? {
             None => Ok(()),
             Some(name) => {
                 let message = format!("the driver has no {name}, which the emitted text requires");
@@ -70,11 +70,11 @@ impl OpenGl {
 
     fn prepare(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
         if !self.kept.contains_key(&kernel.id) {
-            let emitted = emitted::emit(kernel, self.target)?;
+            let emitted = emitted::emit_kernel(kernel, self.target)?;
             self.has_extensions(&emitted.bytes)?;
-            let vertex = program::triangle(self.context.api());
-            let kept = self.context.with(|gl| keep(gl, kernel, &vertex, &emitted));
-            self.kept.insert(kernel.id, kept.map_err(failed)?);
+            let vertex = program::triangle_stage(self.context.api());
+            let kept = self.context.with(|gl| keep_kernel(gl, kernel, &vertex, &emitted));
+            self.kept.insert(kernel.id, kept.map_err(gpu_failed)?);
         }
         Ok(())
     }
@@ -90,10 +90,10 @@ impl OpenGl {
         let header = [count, rows * TARGET_WIDTH, self.runs, 0];
         self.prepare(kernel)?;
         let kept =
-            self.kept.get(&kernel.id).ok_or_else(|| failed("the kernel was not prepared"))?;
+            self.kept.get(&kernel.id).ok_or_else(|| gpu_failed("the kernel was not prepared"))?;
         let (texels, api) = (input_texels(kernel, inputs, header), self.context.api());
-        let pixels = self.context.with(|gl| draw(gl, api, kept, &texels, rows));
-        unpack(kernel, &pixels.map_err(failed)?, header)
+        let pixels = self.context.with(|gl| draw_kernel(gl, api, kept, &texels, rows));
+        unpack_results(kernel, &pixels.map_err(gpu_failed)?, header)
     }
 }
 
@@ -103,7 +103,7 @@ impl Session for OpenGl {
     }
 
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
-        super::batched(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
+        super::run_batches(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
     }
 
     fn draw_shipped(
@@ -113,47 +113,47 @@ impl Session for OpenGl {
     ) -> Result<Vec<Frame>, Diagnostic> {
         for stage in [pair.vertex, pair.fragment] {
             if stage.target != self.target {
-                return Err(failed(format!("this executor draws no {}", stage.target)));
+                return Err(gpu_failed(format!("this executor draws no {}", stage.target)));
             }
             self.has_extensions(&stage.bytes)?;
         }
         let api = self.context.api();
-        self.context.with(|gl| frame::draw(gl, api, pair, drawing)).map_err(failed)
+        self.context.with(|gl| frame::draw_frames(gl, api, pair, drawing)).map_err(gpu_failed)
     }
 }
 
-fn keep(
+fn keep_kernel(
     gl: &glow::Context,
     kernel: &Kernel,
     vertex: &str,
     emitted: &Emitted,
 ) -> Result<Kept, String> {
     let text = str::from_utf8(&emitted.bytes).map_err(|error| error.to_string())?;
-    let program = program::link(gl, vertex, text)?;
+    let program = program::link_program(gl, vertex, text)?;
     let (mut inputs, mut units) = (0, Vec::new());
     for (order, combined) in emitted.native.combined.iter().enumerate() {
-        let index = unit(gl, program, emitted, combined, order as u32);
+        let index = texture_unit(gl, program, emitted, combined, order as u32);
         if combined.texture == INPUTS {
             inputs = index;
             continue;
         }
-        let Some(Fixture::Texture(fixture)) = fixture(kernel, combined.texture) else {
+        let Some(Fixture::Texture(fixture)) = fixture_at(kernel, combined.texture) else {
             return Err(format!("`{}` has no fixture", combined.name));
         };
         let sampler = match combined.sampler.and_then(|place| fixture_of_sampler(kernel, place)) {
-            Some(settings) => Some(texture::sampler(gl, settings)?),
+            Some(settings) => Some(texture::create_sampler(gl, settings)?),
             None => None,
         };
-        let (target, texture) = texture::upload(gl, fixture)?;
+        let (target, texture) = texture::upload_fixture(gl, fixture)?;
         units.push(Unit { index, target, texture, sampler });
     }
-    program::check(gl)?;
+    program::check_error(gl)?;
     Ok(Kept { program, inputs, units })
 }
 
 /// The unit that the text declares. Where the language has no such declaration, the next free one
 /// is assigned by name.
-fn unit(
+fn texture_unit(
     gl: &glow::Context,
     program: glow::Program,
     emitted: &Emitted,
@@ -168,18 +168,18 @@ fn unit(
     })
 }
 
-fn fixture(kernel: &Kernel, [_, binding]: [u32; 2]) -> Option<&Fixture> {
+fn fixture_at(kernel: &Kernel, [_, binding]: [u32; 2]) -> Option<&Fixture> {
     kernel.resources().find(|other| other.binding == binding).map(|resource| &*resource.fixture)
 }
 
 fn fixture_of_sampler(kernel: &Kernel, place: [u32; 2]) -> Option<Sampler> {
-    match fixture(kernel, place)? {
+    match fixture_at(kernel, place)? {
         Fixture::Sampler(settings) => Some(*settings),
         Fixture::Texture(_) => None,
     }
 }
 
-fn draw(
+fn draw_kernel(
     gl: &glow::Context,
     api: Api,
     kept: &Kept,
@@ -191,9 +191,9 @@ fn draw(
     let (width, height) = (TARGET_WIDTH as i32, rows as i32);
     // SAFETY: the context is current, every name is of it, and `pixels` holds the whole target.
     unsafe {
-        let target = texture::words(gl, [TARGET_WIDTH, rows], None)?;
+        let target = texture::words_texture(gl, [TARGET_WIDTH, rows], None)?;
         let height_of_inputs = texels.len() as u32 / 4 / INPUT_WIDTH;
-        let inputs = texture::words(gl, [INPUT_WIDTH, height_of_inputs], Some(&bytes))?;
+        let inputs = texture::words_texture(gl, [INPUT_WIDTH, height_of_inputs], Some(&bytes))?;
         let (frame, array) = (gl.create_framebuffer()?, gl.create_vertex_array()?);
         gl.bind_framebuffer(glow::FRAMEBUFFER, Some(frame));
         gl.framebuffer_texture_2d(
@@ -208,7 +208,7 @@ fn draw(
         plain_state(gl, api);
         gl.viewport(0, 0, width, height);
         gl.clear_buffer_u32_slice(glow::COLOR, 0, &[SENTINEL; 4]);
-        bind(gl, kept, inputs);
+        bind_inputs(gl, kept, inputs);
         gl.bind_vertex_array(Some(array));
         gl.use_program(Some(kept.program));
         gl.draw_arrays(glow::TRIANGLES, 0, 3);
@@ -220,7 +220,7 @@ fn draw(
         gl.delete_texture(target);
         gl.delete_texture(inputs);
     }
-    program::check(gl)?;
+    program::check_error(gl)?;
     Ok(pixels.as_chunks::<4>().0.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect())
 }
 
@@ -240,7 +240,7 @@ fn plain_state(gl: &glow::Context, api: Api) {
 }
 
 /// Binds the inputs and the fixtures to their units.
-fn bind(gl: &glow::Context, kept: &Kept, inputs: glow::Texture) {
+fn bind_inputs(gl: &glow::Context, kept: &Kept, inputs: glow::Texture) {
     // SAFETY: the context is current and every name is of it.
     unsafe {
         gl.active_texture(glow::TEXTURE0 + kept.inputs);

@@ -13,7 +13,7 @@ void main() {
 ";
 
 /// A vertex stage that draws one triangle over everything.
-pub fn triangle(api: Api) -> String {
+pub fn triangle_stage(api: Api) -> String {
     let version = match api {
         Api::Core(major, minor) => format!("{major}{minor}0 core"),
         Api::Embedded(major, minor) => format!("{major}{minor}0 es"),
@@ -32,7 +32,11 @@ pub fn missing_extension(gl: &glow::Context, text: &[u8]) -> Option<String> {
 }
 
 /// Compiles and links both stages.
-pub fn link(gl: &glow::Context, vertex: &str, fragment: &str) -> Result<glow::Program, String> {
+pub fn link_program(
+    gl: &glow::Context,
+    vertex: &str,
+    fragment: &str,
+) -> Result<glow::Program, String> {
     // SAFETY: the context is current; every name is of this context.
     unsafe {
         let program = gl.create_program()?;
@@ -79,7 +83,7 @@ pub fn set_block(gl: &glow::Context, program: glow::Program, name: &str, binding
 }
 
 /// The first error since the last call, as a message.
-pub fn check(gl: &glow::Context) -> Result<(), String> {
+pub fn check_error(gl: &glow::Context) -> Result<(), String> {
     // SAFETY: the context is current.
     match unsafe { gl.get_error() } {
         glow::NO_ERROR => Ok(()),

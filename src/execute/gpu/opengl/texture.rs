@@ -5,7 +5,10 @@ use glow::HasContext as _;
 use crate::execute::fixture::{Address, Compare, Sampler, Texture};
 
 /// Uploads the fixture as a texture; also returns its target.
-pub fn upload(gl: &glow::Context, texture: &Texture) -> Result<(u32, glow::Texture), String> {
+pub fn upload_fixture(
+    gl: &glow::Context,
+    texture: &Texture,
+) -> Result<(u32, glow::Texture), String> {
     let (internal, format) = if texture.kind.is_depth() {
         (glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT)
     } else {
@@ -36,29 +39,33 @@ pub fn upload(gl: &glow::Context, texture: &Texture) -> Result<(u32, glow::Textu
                 glow::PixelUnpackData::Slice(Some(texels)),
             );
         }
-        nearest(gl, target);
+        set_nearest(gl, target);
         Ok((target, made))
     }
 }
 
 /// A texture of words, bound to unit 0.
-pub fn words(
+pub fn words_texture(
     gl: &glow::Context,
     size: [u32; 2],
     texels: Option<&[u8]>,
 ) -> Result<glow::Texture, String> {
-    made(gl, size, (glow::RGBA32UI, glow::RGBA_INTEGER, glow::UNSIGNED_INT), texels)
+    make_texture(gl, size, (glow::RGBA32UI, glow::RGBA_INTEGER, glow::UNSIGNED_INT), texels)
 }
 
 /// A texture to draw into, with four floats or four words for each texel.
-pub fn target(gl: &glow::Context, size: [u32; 2], is_float: bool) -> Result<glow::Texture, String> {
+pub fn target_texture(
+    gl: &glow::Context,
+    size: [u32; 2],
+    is_float: bool,
+) -> Result<glow::Texture, String> {
     match is_float {
-        true => made(gl, size, (glow::RGBA32F, glow::RGBA, glow::FLOAT), None),
-        false => words(gl, size, None),
+        true => make_texture(gl, size, (glow::RGBA32F, glow::RGBA, glow::FLOAT), None),
+        false => words_texture(gl, size, None),
     }
 }
 
-fn made(
+fn make_texture(
     gl: &glow::Context,
     [width, height]: [u32; 2],
     (internal, format, ty): (u32, u32, u32),
@@ -80,13 +87,13 @@ fn made(
             ty,
             glow::PixelUnpackData::Slice(texels),
         );
-        nearest(gl, glow::TEXTURE_2D);
+        set_nearest(gl, glow::TEXTURE_2D);
         Ok(made)
     }
 }
 
 /// Sets what a texture with one level needs to be complete, where no sampler object is bound.
-pub unsafe fn nearest(gl: &glow::Context, target: u32) {
+pub unsafe fn set_nearest(gl: &glow::Context, target: u32) {
     // SAFETY: a texture is bound to the target.
     unsafe {
         gl.tex_parameter_i32(target, glow::TEXTURE_MIN_FILTER, glow::NEAREST as i32);
@@ -96,7 +103,7 @@ pub unsafe fn nearest(gl: &glow::Context, target: u32) {
 }
 
 /// A sampler object with these settings.
-pub fn sampler(gl: &glow::Context, settings: Sampler) -> Result<glow::Sampler, String> {
+pub fn create_sampler(gl: &glow::Context, settings: Sampler) -> Result<glow::Sampler, String> {
     let filter = if settings.linear { glow::LINEAR } else { glow::NEAREST };
     let wrap = match settings.address {
         Address::Clamp => glow::CLAMP_TO_EDGE,

@@ -77,10 +77,10 @@ impl Body<'_> {
         let zero = self.literal(0);
         let mut chosen = self.add(Expression::Compose {
             ty,
-            components: padded(words.get(..4).unwrap_or(words), zero),
+            components: padded_words(words.get(..4).unwrap_or(words), zero),
         });
         for (index, four) in words.chunks(4).enumerate().skip(1) {
-            let accept = self.add(Expression::Compose { ty, components: padded(four, zero) });
+            let accept = self.add(Expression::Compose { ty, components: padded_words(four, zero) });
             let index = self.literal(index as u32);
             let condition = self.binary(Op::Equal, part, index);
             chosen = self.add(Expression::Select { condition, accept, reject: chosen });
@@ -89,6 +89,6 @@ impl Body<'_> {
     }
 }
 
-fn padded(words: &[Value], zero: Value) -> Vec<Value> {
+fn padded_words(words: &[Value], zero: Value) -> Vec<Value> {
     words.iter().copied().chain(std::iter::repeat(zero)).take(4).collect()
 }
