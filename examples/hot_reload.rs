@@ -1,5 +1,6 @@
-//! Draws frames while a bundle is rebuilt, and swaps its pipeline when the bundle's shader changed.
-//! Without a window: it prints the colour that it drew whenever that is another one.
+//! Draws frames while a bundle is rebuilt, and swaps its pipeline when a shader of the pipeline has
+//! changed. The example opens no window. It prints the colour that it drew whenever the colour
+//! changes.
 //!
 //! The shaders are those of the guide's page "Hot reload":
 //!
@@ -20,7 +21,7 @@ use lamplight::bundle::{Bundle, Target};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
-/// The permutation on the screen.
+/// The program, the entry point and the key of the permutation that is drawn.
 const PROGRAM: &str = "surface";
 const ENTRY: &str = "fs_main";
 const KEY: &str = "shadowed";
@@ -28,7 +29,7 @@ const KEY: &str = "shadowed";
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 const FRAME: Duration = Duration::from_millis(16);
 
-/// The engine's own half of the pipeline: a triangle over the whole picture, fully lit.
+/// The vertex shader, which is the engine's own: a triangle over the whole picture, fully lit.
 const VERTEX: &str = "
 struct Corner { @builtin(position) position: vec4f, @location(0) light: f32 }
 
@@ -44,10 +45,11 @@ pub fn main() -> Outcome<()> {
     draw(Path::new(&path), swaps, &mut |line| println!("{line}"))
 }
 
-/// Draws until the pipeline was swapped so often, and tells what happens.
+/// Draws frames until the pipeline was swapped `swaps` times. Each event is reported to `tell`.
 pub fn draw(path: &Path, swaps: usize, tell: &mut dyn FnMut(String)) -> Outcome<()> {
     let gpu = Gpu::open()?;
-    // The time first: a change in between is then a change still.
+    // The time of the file is read before its contents. A change between the two is then noticed
+    // after the next frame.
     let mut written = modified(path)?;
     let mut bundle = Bundle::open(path)?;
     let mut pipeline = gpu.pipeline(&bundle)?;
@@ -77,7 +79,7 @@ fn modified(path: &Path) -> std::io::Result<SystemTime> {
     std::fs::metadata(path)?.modified()
 }
 
-/// Reads the next generation; whether the permutation on the screen is another one in it.
+/// Reads the bundle again. Returns whether the permutation that is drawn has changed.
 fn is_changed(bundle: &mut Bundle, tell: &mut dyn FnMut(String)) -> bool {
     let difference = match bundle.reload() {
         Ok(difference) => difference,
@@ -99,12 +101,12 @@ fn is_changed(bundle: &mut Bundle, tell: &mut dyn FnMut(String)) -> bool {
 struct Gpu {
     device: wgpu::Device,
     queue: wgpu::Queue,
-    /// One pixel.
+    /// The picture that is drawn into, of one pixel.
     picture: wgpu::Texture,
 }
 
 impl Gpu {
-    /// A device, on a software adapter where there is one.
+    /// Opens a device, on a software adapter if there is one.
     fn open() -> Outcome<Self> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
@@ -124,8 +126,8 @@ impl Gpu {
         Ok(Self { device, queue, picture })
     }
 
-    /// The pipeline of the permutation on the screen. A shader that the driver refuses is an
-    /// error here, so that the pipeline before can go on.
+    /// The pipeline of the permutation that is drawn. If the driver refuses the shader, this is an
+    /// error, and the caller goes on with the pipeline that it had.
     fn pipeline(&self, bundle: &Bundle) -> Outcome<wgpu::RenderPipeline> {
         let found = bundle.program(PROGRAM)?.shader(ENTRY)?.get(KEY, Target::WGSL)?;
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -160,7 +162,7 @@ impl Gpu {
         }
     }
 
-    /// Draws a frame; its colour.
+    /// Draws a frame and returns its colour.
     fn frame(&self, pipeline: &wgpu::RenderPipeline) -> Outcome<[u8; 4]> {
         let view = self.picture.create_view(&Default::default());
         let mut encoder = self.device.create_command_encoder(&Default::default());

@@ -1,4 +1,5 @@
-//! Loads one permutation from a bundle and draws a triangle with it, without a window.
+//! Loads one permutation from a bundle and draws a triangle with it. The example opens no window. It
+//! prints the colour of one pixel.
 //!
 //! ```text
 //! cargo run -- gen --manifest shaderlib/lamplight.toml --program forward --out shaders.lamplight
@@ -12,14 +13,15 @@ use std::sync::mpsc;
 
 use lamplight::bundle::{Bundle, Found, Target};
 
-/// Width and height of the picture: a row of 64 RGBA pixels is as long as copies must be.
+/// Width and height of the picture. A row of 64 RGBA pixels has 256 bytes, and wgpu copies textures
+/// into buffers only in rows of a multiple of 256 bytes.
 const SIZE: u32 = 64;
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// A surface's colour as it is: the first of the book's examples.
+/// The permutation that draws a surface in its own colour, without light.
 const KEY: &str = "ambient=none,lights=none";
 
-/// Position, normal and colour of a corner, as `forward` reads them.
+/// The attributes of a vertex at the locations where `forward` reads them: position, normal, colour.
 const CORNER: [wgpu::VertexAttribute; 3] =
     wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4];
 
@@ -29,7 +31,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The pixel in the middle of an orange triangle.
+/// Draws an orange triangle and returns the pixel in the middle of the picture.
 pub fn draw(path: &str) -> Result<[u8; 4], Box<dyn Error>> {
     let bundle = Bundle::open(path)?;
     let program = bundle.program("forward")?;
@@ -69,7 +71,7 @@ pub fn draw(path: &str) -> Result<[u8; 4], Box<dyn Error>> {
     Ok([pixels[middle], pixels[middle + 1], pixels[middle + 2], pixels[middle + 3]])
 }
 
-/// A device, on a software adapter where there is one.
+/// Opens a device, on a software adapter if there is one.
 fn open() -> Result<(wgpu::Device, wgpu::Queue), Box<dyn Error>> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     let mut adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
@@ -78,7 +80,7 @@ fn open() -> Result<(wgpu::Device, wgpu::Queue), Box<dyn Error>> {
     Ok(pollster::block_on(adapter.request_device(&Default::default()))?)
 }
 
-/// The pipeline of two shaders of the bundle.
+/// The pipeline of a vertex shader and a fragment shader of the bundle.
 fn pipeline(
     device: &wgpu::Device,
     vertex: &Found,
@@ -115,7 +117,7 @@ fn pipeline(
     }))
 }
 
-/// A buffer with numbers in it.
+/// A buffer that is filled with the numbers.
 fn filled(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -133,7 +135,7 @@ fn filled(
     buffer
 }
 
-/// What is drawn into.
+/// The picture that is drawn into.
 fn picture(device: &wgpu::Device) -> wgpu::Texture {
     device.create_texture(&wgpu::TextureDescriptor {
         label: None,
@@ -147,7 +149,7 @@ fn picture(device: &wgpu::Device) -> wgpu::Texture {
     })
 }
 
-/// A pass over a picture that begins black.
+/// A render pass that clears the picture to black first.
 fn cleared<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     view: &wgpu::TextureView,
@@ -202,7 +204,7 @@ fn identity() -> [f32; 16] {
     std::array::from_fn(|index| if index % 5 == 0 { 1.0 } else { 0.0 })
 }
 
-/// Three corners around the middle, orange.
+/// The vertices of an orange triangle around the middle of the picture.
 fn corners() -> Vec<f32> {
     let corner = |[x, y]: [f32; 2]| [x, y, 0.5, 0.0, 0.0, 1.0, 1.0, 0.5, 0.0, 1.0];
     [[-0.8, -0.8], [0.8, -0.8], [0.0, 0.8]].into_iter().flat_map(corner).collect()

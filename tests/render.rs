@@ -1,5 +1,6 @@
-//! Pictures: every preset on each driver against the reviewed picture and against the evaluator,
-//! and whole frames against closed forms.
+//! Pictures. Every preset, drawn on each driver, looks like its reviewed picture, and a sample of its
+//! fragments has the colours that the evaluator computes. Whole frames are compared with closed
+//! forms.
 
 mod accounted;
 mod closed_forms;
@@ -29,18 +30,19 @@ use libtest_mimic::{Failed, Trial};
 
 use crate::fragments::{self, Tally, Watched};
 
-/// Each driver draws in a language of its own, so that both are seen.
+/// The drivers. Each draws in another language, so that both languages are drawn.
 const BACKENDS: [(&str, Language); 2] = [("vulkan", Language::Wesl), ("gl", Language::Glsl)];
-/// The reviewed pictures: small, so that drawing them takes no time.
+/// The folder of the reviewed pictures. They are small, so that drawing them is quick.
 const REVIEWED: &str = "tests/render/reviewed";
 const SIZE: [u32; 2] = [160, 120];
 const SAMPLES: u32 = 4;
-/// Of the frames whose fragments are computed again.
+/// The size of the frames whose fragments are computed again.
 const SMALL: [u32; 2] = [96, 96];
-/// About so many quads of each are taken; at least so many fragments there must be, and the
-/// largest share of those that stay open.
+/// About how many quads of each frame are computed again.
 const QUADS: usize = 130;
+/// The least number of fragments that must be compared.
 const LEAST: usize = 500;
+/// The largest share of fragments that may be open (see [`crate::fragments`]).
 const OPEN: f64 = 0.05;
 
 pub fn trials() -> Vec<Trial> {
@@ -93,7 +95,7 @@ pub fn library() -> &'static Library {
     })
 }
 
-/// Runs a trial with a painter, on a thread that drivers can be torn down on.
+/// Runs a trial with an executor, on a thread of its own. Drivers drop their state when it ends.
 pub fn on_device(
     name: &str,
     run: impl FnOnce(&dyn Session) -> Result<(), String> + Send,
@@ -126,7 +128,7 @@ pub fn plan(preset: &Preset) -> Result<Plan, String> {
     Plan::of_preset(&library().programs, preset, &library().probes).map_err(said)
 }
 
-/// A preset looks as it did when it was reviewed, and its fragments are what the evaluator computes.
+/// A preset looks like its reviewed picture, and its fragments have the evaluator's colours.
 fn shown(
     painter: &dyn Session,
     preset: &Preset,
@@ -143,11 +145,12 @@ fn shown(
     Ok(())
 }
 
-/// Sampled fragments of the objects of one material, then of the next, until there are enough.
+/// Computes a sample of the fragments again, of the objects of one material after the other, until
+/// there are enough.
 fn recomputed(painter: &dyn Session, plan: &Plan, language: Language) -> Result<Tally, String> {
     let small = shot(SMALL, 1, language);
     let mut prepared = prepare_passes(painter, &library().programs, plan, &small).map_err(said)?;
-    // How far between two levels a texture is read, drivers decide as they like.
+    // Drivers may choose how they blend two mip levels, so the textures have only one here.
     prepared.levels.clear();
     let (items, own) = (prepared.items.clone(), fragment_buffers(&prepared));
     let mut tally = Tally::default();
@@ -160,15 +163,17 @@ fn recomputed(painter: &dyn Session, plan: &Plan, language: Language) -> Result<
         recomputed_of(painter, &prepared, material, &mut tally)?;
     }
     match tally {
-        Tally { tried, .. } if tried < LEAST => Err(format!("only {tried} fragments")),
+        Tally { tried, .. } if tried < LEAST => {
+            Err(format!("{tried} fragments were compared, expected at least {LEAST}"))
+        }
         Tally { tried, open, .. } if open as f64 > OPEN * tried as f64 => {
-            Err(format!("{open} of {tried} fragments are open"))
+            Err(format!("{open} of {tried} fragments are open, at most {OPEN} of them may be"))
         }
         tally => Ok(tally),
     }
 }
 
-/// Sampled fragments of a frame whose objects share the material's buffers.
+/// Computes a sample of the fragments of a frame again. Its objects share the material's buffers.
 fn recomputed_of(
     painter: &dyn Session,
     prepared: &Prepared,
@@ -187,7 +192,7 @@ fn recomputed_of(
     fragments::recompute(stage, resources, &watched, step, tally)
 }
 
-/// What the fragment stage reads of each object.
+/// The buffers of each object that the fragment stage reads.
 fn fragment_buffers(prepared: &Prepared) -> Vec<Buffers> {
     let bindings = prepared.stages.fragment.iter().flat_map(|stage| &stage.reflection.bindings);
     let used: Vec<_> = bindings.map(|binding| (binding.group, binding.binding)).collect();
@@ -201,7 +206,7 @@ fn fragment_buffers(prepared: &Prepared) -> Vec<Buffers> {
     prepared.items.iter().map(|(_, buffers)| of(buffers)).collect()
 }
 
-/// The targets of one frame: colours, and what each fragment was given.
+/// The targets of one frame: the colours, then the inputs of each fragment.
 pub fn watched(
     painter: &dyn Session,
     prepared: &Prepared,
@@ -216,7 +221,7 @@ pub fn watched(
     Ok(frames.into_iter().next().ok_or("no frame")?.targets)
 }
 
-/// The reviewed picture of a preset.
+/// The path of a preset's reviewed picture.
 pub fn reviewed_path(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(REVIEWED).join(format!("{name}.png"))
 }

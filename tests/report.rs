@@ -1,5 +1,5 @@
-//! `lamplight check --report` on a user's own module, with no Rust written: a page, JSON and JUnit,
-//! and a failure as a case to paste that fails alike.
+//! `lamplight check --report` on a user's own module writes a page, JSON and JUnit. A failure is
+//! printed as a case that can be pasted into the case file, and fails again with the same values.
 
 use std::fs;
 use std::process::{Command, Output};
@@ -23,7 +23,7 @@ pub fn trials() -> Vec<Trial> {
     cases.into_iter().map(|(name, case)| Trial::test(format!("report::{name}"), case)).collect()
 }
 
-/// A fade that forgets its lower bound, and a threshold that is right.
+/// A fade that lacks its lower bound, and functions that are right.
 const MODULE: &str = "\
 fn fade(d: f32, reach: f32) -> f32 {
     return min(1.0 - d / reach, 1.0);
@@ -80,22 +80,26 @@ impl Checked {
         String::from_utf8_lossy(&self.output.stderr).into_owned()
     }
 
+    #[track_caller]
     fn exits(&self, code: i32) -> Outcome {
+        let place = std::panic::Location::caller();
         if self.output.status.code() == Some(code) {
             Ok(())
         } else {
-            Err(format!("{}: {}", self.output.status, self.errors()).into())
+            let found = format!("{}: {}", self.output.status, self.errors());
+            Err(format!("{place}: expected exit code {code}, found {found}").into())
         }
     }
 }
 
+/// All three forms have the failure, and are well formed.
 fn forms_list_the_failure() -> Outcome {
     let checked = Checked::new(MODULE, CASES)?;
     checked.exits(3)?;
     json_lists(&checked.read("report.json")?)?;
     let xml = checked.read("junit.xml")?;
     well_formed(&xml, &[])?;
-    // The run in f32, and the code in f64.
+    // Each function has two tests: the run in f32, and the code in f64.
     contains(
         &xml,
         &[
@@ -142,12 +146,13 @@ fn json_lists(text: &str) -> Outcome {
         || !smallest.contains("[[case]]")
         || verdict["worst_inputs"].as_array().is_none_or(Vec::is_empty)
     {
-        return Err(format!("{verdict:#}").into());
+        let what = "expected 100 failing inputs, a case to paste, and the worst inputs";
+        return Err(format!("{what}: {verdict:#}").into());
     }
     Ok(())
 }
 
-/// The case that is printed fails with the same values, in a file of its own.
+/// The printed case, in a file of its own, fails with the same values.
 fn pasted_case_fails_alike() -> Outcome {
     let checked = Checked::new(MODULE, CASES)?;
     let errors = checked.errors();
@@ -161,11 +166,13 @@ fn pasted_case_fails_alike() -> Outcome {
     if found(&again.errors()) == found(&errors) {
         Ok(())
     } else {
-        Err(format!("{errors}\nagain:\n{}", again.errors()).into())
+        let again = again.errors();
+        Err(format!("first:\n{errors}\nthe pasted case fails otherwise:\n{again}").into())
     }
 }
 
-/// Each law with one that is broken; whether one input breaks it, which is then shrunk.
+/// A function, a law that it breaks, the inputs, and whether a single input breaks it. Such an input
+/// is shrunk and printed as a case.
 const BROKEN: &[(&str, &str, &str, bool)] = &[
     ("threshold", "{ range = [0, 0.5] }", "{ x = { grid = [0, 1], count = 9 } }", true),
     ("threshold", "{ falling = \"x\" }", "{ x = { around = 0.5, ulps = 9 } }", true),
@@ -194,7 +201,8 @@ const BROKEN: &[(&str, &str, &str, bool)] = &[
     ),
 ];
 
-/// Laws that do not hold are told, with a small input that breaks them where one does, as a case.
+/// Broken laws are reported. If a single input breaks a law, the report has a case that can be
+/// pasted.
 fn broken_laws() -> Outcome {
     for (function, law, inputs, is_of_one_input) in BROKEN {
         let name = law.trim_start_matches("{ ").split(' ').next().unwrap_or_default();
@@ -214,13 +222,16 @@ fn broken_laws() -> Outcome {
                 contains(&again.errors(), &[&said])?;
             }
             None if !is_of_one_input => {}
-            _ => return Err(errors.into()),
+            _ => {
+                let what = format!("{law}: a case to paste should be printed: {is_of_one_input}");
+                return Err(format!("{what}; found:\n{errors}").into());
+            }
         }
     }
     Ok(())
 }
 
-/// Laws that hold of the same functions.
+/// Laws that hold for the same functions are not reported.
 fn kept_laws() -> Outcome {
     let laws = [
         ("lobe", "{ integral = \"l\", about = \"n\", gives = 3.141592653589793, within = 1e-6 }"),
@@ -241,7 +252,7 @@ fn kept_laws() -> Outcome {
     Ok(())
 }
 
-/// What the tolerance of f32 hides is found in f64.
+/// A mistake that is smaller than the tolerance for f32 is found in f64.
 fn off_before_rounding() -> Outcome {
     let cases = "[[case]]\nfunction = \"threshold\"\nformula = \"select(0, 0.75, x > 0.5)\"\ntolerance = { abs = 0.3 }\ninputs = { x = { grid = [0, 1], count = 9 } }\n";
     let checked = Checked::new(MODULE, cases)?;
@@ -256,6 +267,7 @@ fn off_before_rounding() -> Outcome {
     )
 }
 
+/// All three forms of a report say if everything passes.
 fn passing_report() -> Outcome {
     let start = CASES.rfind("[[case]]").ok_or("no case")?;
     let checked = Checked::new(MODULE, &CASES[start..])?;
@@ -266,14 +278,17 @@ fn passing_report() -> Outcome {
     contains(&checked.read("index.html")?, &["all hold"])
 }
 
+/// Fails, with the place of the call, unless a text contains all parts.
+#[track_caller]
 fn contains(text: &str, expected: &[&str]) -> Outcome {
+    let place = std::panic::Location::caller();
     match expected.iter().find(|expected| !text.contains(**expected)) {
         None => Ok(()),
-        Some(missing) => Err(format!("`{missing}` is missing in\n{text}").into()),
+        Some(missing) => Err(format!("{place}: expected `{missing}` in\n{text}").into()),
     }
 }
 
-/// Whether tags are closed in order, attributes quoted, and no letter stands bare that has a meaning.
+/// Fails unless tags are closed in order, attributes have closing quotes, and `&` is escaped.
 fn well_formed(text: &str, void: &[&str]) -> Outcome {
     let mut open: Vec<&str> = Vec::new();
     let mut parts = text.split('<');
@@ -296,7 +311,7 @@ fn well_formed(text: &str, void: &[&str]) -> Outcome {
             open.push(name);
         }
     }
-    if open.is_empty() { Ok(()) } else { Err(format!("{open:?} stay open").into()) }
+    if open.is_empty() { Ok(()) } else { Err(format!("tags are not closed: {open:?}").into()) }
 }
 
 fn bare(text: &str) -> Outcome {
@@ -306,6 +321,7 @@ fn bare(text: &str) -> Outcome {
         .skip(1)
         .find(|rest| !entities.iter().any(|entity| rest.starts_with(entity)));
     wrong.map_or(Ok(()), |rest| {
-        Err(format!("a bare `&` before `{}`", rest.chars().take(20).collect::<String>()).into())
+        let start = rest.chars().take(20).collect::<String>();
+        Err(format!("an `&` that is not escaped, before `{start}`").into())
     })
 }

@@ -1,5 +1,6 @@
-//! What can go wrong around a bundle: killed, at once, no place, no room, damaged. The bundle that
-//! was there stays whole, and the exit code says whose fault it is.
+//! Failures while a bundle is written: the run is killed, two runs write at once, there is no place
+//! or no room, or the bundle is damaged. An older bundle stays whole. The exit code tells wrong input
+//! from a wrong environment.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -13,6 +14,7 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 const LAMPLIGHT: &str = env!("CARGO_BIN_EXE_lamplight");
+/// The number of runs that must have been killed.
 const KILLS: u32 = 50;
 
 pub fn trials() -> Vec<Trial> {
@@ -36,7 +38,7 @@ color = { values = ["red", "green", "blue", "grey"] }
 count = { values = [1, 2, 3, 4] }
 "#;
 
-/// A package of sixteen permutations, whose outputs a number makes different.
+/// A package of sixteen permutations. A number in the shader changes all outputs.
 struct Package {
     folder: TempDir,
 }
@@ -78,7 +80,7 @@ impl Package {
         command
     }
 
-    /// How many blobs the bundle has.
+    /// How many blobs the bundle names.
     fn blobs(&self) -> Result<usize, Failed> {
         Ok(lamplight::bundle::blob_files(self.bundle())?.len())
     }
@@ -88,12 +90,15 @@ impl Package {
         if output.status.success() { Ok(()) } else { Err(said(&output).into()) }
     }
 
-    /// Opens, has every permutation, and every byte is as written.
+    /// Fails unless the bundle can be opened, has every permutation, and all checksums are right.
     fn check(&self) -> Outcome {
         let bundle = Bundle::open(self.bundle())?;
         bundle.verify()?;
         let keys = bundle.program("small")?.shader("fs_main")?.keys()?.len();
-        if keys == 16 { Ok(()) } else { Err(format!("{keys} permutations").into()) }
+        match keys {
+            16 => Ok(()),
+            _ => Err(format!("the bundle has {keys} permutations, expected 16").into()),
+        }
     }
 }
 
@@ -101,18 +106,23 @@ fn said(output: &Output) -> String {
     format!("{:?}: {}", output.status.code(), String::from_utf8_lossy(&output.stderr))
 }
 
-/// Fails with the code, in words, without a panic.
+/// Fails, with the place of the call, unless a command ended with a code and a message, and did not
+/// panic.
+#[track_caller]
 fn fails(output: &Output, code: i32, words: &str) -> Outcome {
+    let place = std::panic::Location::caller();
     let error = String::from_utf8_lossy(&output.stderr);
     let as_told =
         output.status.code() == Some(code) && error.contains(words) && !error.contains("panicked");
     if as_told {
         Ok(())
     } else {
-        Err(format!("expected {code} and `{words}`, got {}", said(output)).into())
+        let expected = format!("expected exit code {code} and `{words}`");
+        Err(format!("{place}: {expected}, found {}", said(output)).into())
     }
 }
 
+/// Runs are killed at random times. After each, the bundle is whole: the older or the newer one.
 fn killed() -> Outcome {
     let package = Package::new()?;
     let start = Instant::now();
@@ -123,13 +133,13 @@ fn killed() -> Outcome {
     let whole = start.elapsed() / 4;
     let mut state = 0x9e37_79b9_u32;
     let (mut died, mut round) = (0, 0);
-    // Some runs are over before they are killed.
+    // Some runs end before they are killed. These do not count.
     while died < KILLS && round < 10 * KILLS {
         round += 1;
         package.change(round)?;
         let mut child = package.command(&package.bundle()).spawn()?;
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        // Most of a run is over before anything is written: aim at its second half.
+        // The kill comes at a random time within a run, from a tenth to nine tenths of it.
         std::thread::sleep(whole.mul_f64(0.1 + 0.8 * f64::from(state) / f64::from(u32::MAX)));
         child.kill()?;
         died += u32::from(!child.wait()?.success());
@@ -137,8 +147,8 @@ fn killed() -> Outcome {
     }
     package.generate()?;
     package.check()?;
-    // One more run after the last that was killed: nothing of those is left, nor any blob that
-    // the last two bundles do not name.
+    // After two more runs, no temporary files of the killed runs are left, and no blobs that neither
+    // of the last two bundles names.
     let blobs = || Ok::<_, Failed>(std::fs::read_dir(package.bundle().join("blobs"))?.count());
     package.change(round + 1)?;
     package.generate()?;
@@ -150,12 +160,13 @@ fn killed() -> Outcome {
     println!("{died} of {round} runs of {whole:.0?} killed");
     match (died, left) {
         (KILLS, 0) => Ok(()),
-        (KILLS, _) => Err(format!("{left} temporary files are left").into()),
-        _ => Err(format!("only {died} of {round} runs were killed").into()),
+        (KILLS, _) => Err(format!("{left} files of killed runs are left").into()),
+        _ => Err(format!("{died} of {round} runs were killed, expected {KILLS}").into()),
     }
 }
 
-/// Runs of different sources into one folder: each waits for the other to finish writing.
+/// Two runs over different sources write to one folder at once. Each waits until the other has
+/// finished writing, and the bundle is whole.
 fn at_once() -> Outcome {
     let packages = [Package::new()?, Package::new()?];
     let bundle = packages[0].bundle();
@@ -176,20 +187,25 @@ fn at_once() -> Outcome {
     Ok(())
 }
 
+/// A bundle that cannot be written to its place is an error, and a file in the place is kept.
 fn no_place() -> Outcome {
     let package = Package::new()?;
     let file = package.folder.path().join("file");
     std::fs::write(&file, "in the way")?;
     fails(&package.command(&file).output()?, 1, "cannot write")?;
     fails(&package.command(&file.join("below")).output()?, 1, "cannot write")?;
-    // Nobody may write there, not even the superuser.
+    // Nobody may write to /proc, not even the superuser.
     fails(&package.command(Path::new("/proc/lamplight")).output()?, 4, "cannot write")?;
     fails(&package.command(Path::new("/proc/bundle.lamplight")).output()?, 4, "cannot write")?;
     let kept = std::fs::read_to_string(&file)?;
-    if kept == "in the way" { Ok(()) } else { Err("a file was overwritten".into()) }
+    match kept.as_str() {
+        "in the way" => Ok(()),
+        _ => Err(format!("the file in the bundle's place was overwritten: {kept:?}").into()),
+    }
 }
 
-/// A limit on file sizes stands for a disk that is full.
+/// A full disk, for which a limit on file sizes stands, is an error that leaves the older bundle
+/// whole.
 fn no_room() -> Outcome {
     let package = Package::new()?;
     package.generate()?;
@@ -215,6 +231,7 @@ fn no_room() -> Outcome {
     package.check()
 }
 
+/// Commands that read a damaged bundle say so.
 fn damaged() -> Outcome {
     let package = Package::new()?;
     let file = package.folder.path().join("small.lamplight");
@@ -239,6 +256,7 @@ fn damaged() -> Outcome {
     if output.status.success() { Ok(()) } else { Err(said(&output).into()) }
 }
 
+/// A bundle of another version is refused, and the next run replaces it.
 fn versions() -> Outcome {
     let package = Package::new()?;
     package.generate()?;
@@ -246,7 +264,7 @@ fn versions() -> Outcome {
     let text = std::fs::read_to_string(&manifest)?;
     std::fs::write(&manifest, text.replacen("\"version\": 1", "\"version\": 99", 1))?;
     fails(&inspect("list", &package.bundle())?, 1, "version 99")?;
-    // The next run replaces what it cannot read.
+    // The next run replaces the bundle, which it cannot read.
     package.generate()?;
     package.check()
 }
@@ -257,6 +275,6 @@ fn inspect(command: &str, bundle: &Path) -> Result<Output, Failed> {
     if start.elapsed() < Duration::from_secs(10) {
         Ok(output)
     } else {
-        Err("it took too long".into())
+        Err(format!("`bundle {command}` took {:?}, at most 10 s", start.elapsed()).into())
     }
 }

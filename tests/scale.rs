@@ -1,4 +1,4 @@
-//! Memory stays flat, however many permutations there are.
+//! The memory that `gen` needs grows little with the number of permutations.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -13,15 +13,16 @@ type Outcome = Result<(), Failed>;
 pub fn trials() -> Vec<Trial> {
     vec![
         Trial::test("scale::memory_is_flat", flat),
-        // Half a minute, and ten times that in the development profile.
+        // This takes half a minute, and ten times as long in the development profile.
         Trial::test("scale::one_hundred_thousand_permutations", all).with_ignored_flag(true),
     ]
 }
 
-/// What 100,000 permutations may take.
+/// The most memory that 100,000 permutations may take, in bytes.
 const BOUND: f64 = (1u64 << 30) as f64;
 
-/// A program with so many values of each axis; their product is the number of permutations.
+/// Writes a program with five axes. The product of their numbers of values is the number of
+/// permutations.
 fn package(folder: &Path, counts: [usize; 5]) -> Outcome {
     let axes = ["a", "b", "c", "d", "e"];
     let mut manifest = String::from(
@@ -43,7 +44,7 @@ fn package(folder: &Path, counts: [usize; 5]) -> Outcome {
     Ok(fs::write(folder.join("large.wesl"), root)?)
 }
 
-/// The most memory that generating took, in bytes, and how long it took.
+/// The most memory that `gen` took, in bytes, and its time.
 fn peak(counts: [usize; 5]) -> Result<(f64, Duration), Failed> {
     let folder = tempfile::tempdir()?;
     package(folder.path(), counts)?;
@@ -56,7 +57,7 @@ fn peak(counts: [usize; 5]) -> Result<(f64, Duration), Failed> {
         .spawn()?;
     let mut most = 0.0;
     let status = loop {
-        // The kernel keeps the high-water mark, so that seldom looking is enough.
+        // The kernel keeps the highest value, so it is enough to read it now and then.
         let status = fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
         let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
         most = line
@@ -70,10 +71,11 @@ fn peak(counts: [usize; 5]) -> Result<(f64, Duration), Failed> {
     if status.success() && most > 0.0 {
         Ok((most, start.elapsed()))
     } else {
-        Err("no memory was measured".into())
+        Err(format!("`gen` ended with {status}, and {most} bytes were measured").into())
     }
 }
 
+/// Extrapolated from 1,000 and 4,000 permutations, 100,000 take less memory than the bound.
 fn flat() -> Outcome {
     let ((few, _), (many, _)) = (peak([10, 10, 10, 1, 1])?, peak([10, 10, 10, 4, 1])?);
     let each = (many - few) / 3_000.0;
@@ -82,12 +84,17 @@ fn flat() -> Outcome {
     if expected < BOUND {
         Ok(())
     } else {
-        Err(format!("100,000 permutations would take {:.0} MB", expected / 1e6).into())
+        let bound = BOUND / 1e6;
+        let expected = expected / 1e6;
+        Err(format!("100,000 permutations would take {expected:.0} MB of {bound:.0} MB").into())
     }
 }
 
 fn all() -> Outcome {
     let (peak, elapsed) = peak([10, 10, 10, 10, 10])?;
     println!("100,000 permutations: {:.0} MB at most, {:.1} s", peak / 1e6, elapsed.as_secs_f64());
-    if peak < BOUND { Ok(()) } else { Err(format!("it took {:.0} MB", peak / 1e6).into()) }
+    match peak < BOUND {
+        true => Ok(()),
+        false => Err(format!("took {:.0} MB, at most {:.0} MB", peak / 1e6, BOUND / 1e6).into()),
+    }
 }

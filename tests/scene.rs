@@ -1,4 +1,5 @@
-//! Host-side mathematics against closed forms.
+//! Compares the mathematics for the host with closed forms: matrices, cascades, normals, kernels,
+//! spherical harmonics.
 
 mod sets;
 
@@ -57,6 +58,7 @@ fn close(what: &str, found: DVec3, wanted: DVec3, error: f64) -> Outcome {
     }
 }
 
+/// A view matrix maps the eye to the origin and the target to -z, also for views along `up`.
 fn views() -> Outcome {
     let (eye, target) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, -2.0, 3.0));
     let view = scene::look_at(eye, target, DVec3::Z);
@@ -76,6 +78,7 @@ fn views() -> Outcome {
     )
 }
 
+/// A view from angles is the inverse of the object's placement.
 fn angles() -> Outcome {
     let (origin, turn) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(0.3, -0.7, 1.1));
     let place = DMat4::from_translation(origin)
@@ -106,7 +109,7 @@ fn perspective() -> Outcome {
         let (first, last) = depth_of(clip, depth);
         near("near", projection.project_point3(DVec3::new(0.0, 0.0, -0.5)).z, first, 1e-12)?;
         near("far", projection.project_point3(DVec3::new(0.0, 0.0, -20.0)).z, last, 1e-12)?;
-        // The upper edge stands 30 degrees above the axis, the right one twice as far.
+        // The upper edge is 30 degrees above the axis, and the right one twice as far from it.
         let height = 4.0 * (FRAC_PI_3 / 2.0).tan();
         let edge = projection.project_point3(DVec3::new(2.0 * height, height, -4.0));
         near("right", edge.x, 1.0, 1e-12)?;
@@ -115,6 +118,7 @@ fn perspective() -> Outcome {
     near("offset", scene::polygon_offset(2.0, 4.0, 0.25, 0.125), 1.0, 0.0)
 }
 
+/// The corners of a frustum are where its angle and its planes put them.
 fn frusta() -> Outcome {
     let view = scene::look_at(DVec3::new(3.0, 1.0, -2.0), DVec3::ZERO, DVec3::Y);
     for (clip, depth) in CLIPS.into_iter().flat_map(|clip| DEPTHS.map(|depth| (clip, depth))) {
@@ -124,7 +128,7 @@ fn frusta() -> Outcome {
             depth,
         );
         for (index, corner) in corners.into_iter().enumerate() {
-            // At 90 degrees a plane reaches as far to the side as it is away.
+            // With an angle of 90 degrees, a plane is as wide to each side as it is away.
             let away = if index < 4 { 1.0 } else { 10.0 };
             let y = if (index & 2 == 0) == (clip != Clip::Vulkan) { -away } else { away };
             let wanted = DVec3::new(if index & 1 == 0 { -away } else { away }, y, -away);
@@ -137,6 +141,7 @@ fn frusta() -> Outcome {
     Ok(())
 }
 
+/// An orthographic projection that is fitted to points touches them on all six sides.
 fn tight() -> Outcome {
     let view = scene::look_along(DVec3::ZERO, DVec3::new(1.0, -2.0, 0.5), DVec3::Y);
     let points: Vec<DVec3> = (0..8)
@@ -160,10 +165,13 @@ fn tight() -> Outcome {
             .ok_or("none")?;
         near("the nearest", projection.project_point3(*nearest).z, first, 1e-12)?;
     }
-    if scene::fit(view, &[]).is_none() { Ok(()) } else { Err("bounds of nothing".into()) }
+    match scene::fit(view, &[]) {
+        None => Ok(()),
+        Some(_) => Err("no points should have no bounds".into()),
+    }
 }
 
-/// Every direction falls on one face, at the texel from which that face's direction comes back.
+/// Every texel's direction is seen on the texel's face only, at the texel's place.
 fn faces() -> Outcome {
     let (size, light) = (8, DVec3::new(1.0, -2.0, 0.5));
     for clip in [Clip::Wgpu, Clip::OpenGl] {
@@ -188,7 +196,7 @@ fn faces() -> Outcome {
             near("row", -seen.y, middle(row), 1e-12)?;
         }
     }
-    // As APIs define it: on +x, columns run to -z and rows to -y.
+    // Graphics APIs define that on the face +x columns run to -z and rows to -y.
     close("+x", CubeMap::direction(2, 0, 1, 1), DVec3::new(1.0, -0.5, -0.5).normalize(), 1e-12)?;
     close("-y", CubeMap::direction(2, 3, 1, 1), DVec3::new(0.5, -1.0, -0.5).normalize(), 1e-12)
 }
@@ -200,7 +208,7 @@ fn shadow_matrices() -> Outcome {
     for clip in CLIPS {
         let matrix =
             scene::shadow_matrix(scene::orthographic(&bounds, clip, Depth::Normal), view, clip);
-        // A quarter from the left, an eighth from the top, half way.
+        // The point is a quarter from the left, an eighth from the top, and halfway in depth.
         let point = back.transform_point3(DVec3::new(-2.0, 1.5, -5.0));
         let v = if clip == Clip::OpenGl { 0.875 } else { 0.125 };
         close("a place", matrix.project_point3(point), DVec3::new(0.25, v, 0.5), 1e-12)?;
@@ -216,10 +224,11 @@ fn shadow_matrices() -> Outcome {
     Ok(())
 }
 
+/// Cascades are split evenly, logarithmically, or by a mix of both.
 fn cascades() -> Outcome {
     let even = scene::cascade_splits(1.0, 101.0, 4, 0.0);
     if even != [26.0, 51.0, 76.0, 101.0] {
-        return Err(format!("even: {even:?}").into());
+        return Err(format!("even splits should be 26, 51, 76, 101, found {even:?}").into());
     }
     let logarithmic = scene::cascade_splits(1.0, 10_000.0, 4, 1.0);
     for (found, wanted) in logarithmic.iter().zip([10.0, 100.0, 1000.0, 10_000.0]) {
@@ -229,12 +238,12 @@ fn cascades() -> Outcome {
     if mixed.is_sorted() && mixed.last() == Some(&250.0) && mixed[0] > 0.1 {
         Ok(())
     } else {
-        Err(format!("mixed: {mixed:?}").into())
+        Err(format!("mixed splits should rise from above 0.1 to 250, found {mixed:?}").into())
     }
 }
 
 fn normals() -> Outcome {
-    // A roof of two faces that share an edge, an unused vertex, and a degenerate face.
+    // The mesh is a roof of two faces that share an edge, an unused vertex, and a degenerate face.
     let positions = [
         DVec3::new(0.0, 0.0, 0.0),
         DVec3::new(0.0, 0.0, -2.0),
@@ -264,10 +273,11 @@ fn normals() -> Outcome {
             Err(MeshError::Incomplete { corners: 2 }),
             Err(MeshError::Beyond { index: 5, vertices: 5 }),
         ) => Ok(()),
-        other => Err(format!("{other:?}").into()),
+        other => Err(format!("expected 2 corners and index 5 to be refused: {other:?}").into()),
     }
 }
 
+/// A normal stays perpendicular to its surface under any scale.
 fn normal_matrix() -> Outcome {
     let model = DMat4::from_rotation_y(0.4)
         * DMat4::from_scale(DVec3::new(1.0, 3.0, -0.5))
@@ -281,6 +291,7 @@ fn normal_matrix() -> Outcome {
     close("flattened", flat * DVec3::new(0.3, 1.0, 0.2), DVec3::Y, 0.0)
 }
 
+/// The kernel adds up to 1, is symmetric, and has the published weights.
 fn gaussian() -> Outcome {
     let kernel = scene::gaussian(10, 8.0);
     near("the sum", kernel.iter().sum(), 1.0, 1e-15)?;
@@ -293,8 +304,9 @@ fn gaussian() -> Outcome {
     Ok(())
 }
 
-/// Irradiance of a constant sky is pi; of a cosine lobe it is 2 pi / 3 towards it, and what bands 0
-/// to 2 leave of it elsewhere; a harmonic gives itself alone.
+/// The irradiance of a constant sky is pi. That of 1 + y is pi + 2 pi / 3 towards y. Each basis
+/// function has the coefficient 1 for itself and 0 for the others. A cosine lobe has the irradiance
+/// that bands 0 to 2 keep of it.
 fn harmonics() -> Outcome {
     let of = |sky: &scene::Sky<'_>| {
         scene::sh9_project(
@@ -328,7 +340,8 @@ fn harmonics() -> Outcome {
             near("orthonormal", coefficient.x, f64::from(u8::from(index == other)), 1e-12)?;
         }
     }
-    // max(cos, 0) = 1/4 + cos/2 + 5/32 (3 cos^2 - 1) + ...: irradiance by pi, 2 pi/3 and pi/4.
+    // max(cos, 0) = 1/4 + cos/2 + 5/32 (3 cos^2 - 1) + ...; irradiance multiplies the three bands by
+    // pi, 2 pi/3 and pi/4.
     let lobe = of(&|d| DVec3::splat(d.y.max(0.0)));
     near(
         "a cosine sky",
@@ -364,11 +377,12 @@ fn images() -> Outcome {
     if Equirect::new(2, 2, vec![DVec3::ZERO; 3]).is_none() {
         Ok(())
     } else {
-        Err("an image of missing pixels".into())
+        Err("an image with too few pixels was accepted".into())
     }
 }
 
-/// A constant stays; the lobe of exponent k over 1 + y has the mean 1 + n.y (k + 1) / (k + 2).
+/// Filtering leaves a constant sky as it is. Over the sky 1 + y, the lobe of exponent k around n has
+/// the mean 1 + n.y (k + 1) / (k + 2).
 fn filtered() -> Outcome {
     for exponent in [1.0, 50.0] {
         let constant = scene::prefilter(&|_| DVec3::new(0.5, 1.0, 2.0), exponent, 4, 24);

@@ -1,4 +1,5 @@
-//! Every module of the shader library, by itself: valid in both languages, the same in both, and documented.
+//! Every module of the shader library is valid in both languages, has the same functions in both, and
+//! is documented.
 
 mod documented;
 mod emits;
@@ -23,7 +24,7 @@ pub use documented::undocumented;
 use documented::functions_are_documented;
 use twins::{same, twins_agree};
 
-/// What one trial checks of a module, given its path without extension, such as `lighting/spot`.
+/// A check of a module. It is given the module's path without extension, such as `lighting/spot`.
 type Check = fn(&str) -> Result<(), Failed>;
 
 const CHECKS: &[(&str, Check)] = &[
@@ -39,7 +40,8 @@ const CHECKS: &[(&str, Check)] = &[
     ("doc", functions_are_documented),
 ];
 
-/// A version of GLSL: what comes before the module, what declares an output, and glslang's options.
+/// A version of GLSL: the lines before the module, the declaration of an output, and the options of
+/// glslangValidator.
 struct Dialect {
     head: &'static str,
     output: &'static str,
@@ -64,7 +66,7 @@ const DIALECTS: [Dialect; 4] = [
 const ES_300: &str = "#version 300 es\n#define LAMPLIGHT_COMBINED_SAMPLERS 1\nprecision highp float;\nprecision highp int;\n";
 const ES_310: &str = "#version 310 es\n#define LAMPLIGHT_COMBINED_SAMPLERS 1\nprecision highp float;\nprecision highp int;\n";
 
-/// One trial for each module and check, and those about the library as a whole.
+/// One trial for each module and check, and trials for the whole library.
 pub fn trials() -> Vec<Trial> {
     let mut trials = vec![
         Trial::test("shaderlib::pairs", every_module_has_its_twin),
@@ -83,7 +85,7 @@ pub fn trials() -> Vec<Trial> {
     trials
 }
 
-/// Paths of the modules, without extension.
+/// The paths of the modules, without extension.
 pub fn modules() -> Vec<String> {
     stems("wesl")
 }
@@ -99,25 +101,26 @@ fn stems(extension: &str) -> Vec<String> {
 
 fn every_module_has_its_twin() -> Result<(), Failed> {
     let mut glsl = stems("glsl");
-    // What only GLSL needs: two spellings of textures, and names that do not clash.
+    // Only GLSL needs these two: one for its two forms of textures, one for the prefix of names.
     glsl.retain(|path| path != "filter/sampling" && path != "prefix");
     same("modules", &modules(), &glsl)
 }
 
-/// GLSL has no modules: no two of the library may declare the same name.
+/// No two modules declare a function of the same name, since GLSL has no modules to keep them apart.
 fn names_are_unique() -> Result<(), Failed> {
     let mut owners = BTreeMap::new();
     for module in modules() {
         for function in functions(&read(&format!("{module}.wesl"))) {
             if let Some(other) = owners.insert(function.name.clone(), module.clone()) {
-                return Err(format!("`{}` is in `{other}` and in `{module}`", function.name).into());
+                let what = format!("`{other}` and `{module}` both declare `{}`", function.name);
+                return Err(what.into());
             }
         }
     }
     Ok(())
 }
 
-/// GLSL that includes every module compiles: structures and constants have names of their own too.
+/// GLSL that includes every module compiles. So names of structures and constants are distinct too.
 fn modules_go_together() -> Result<(), Failed> {
     let all = modules().iter().map(|module| include(module)).collect::<String>();
     for dialect in &DIALECTS {
@@ -126,7 +129,8 @@ fn modules_go_together() -> Result<(), Failed> {
     Ok(())
 }
 
-/// With `LAMPLIGHT_PREFIX` all modules compile beside a host that has a function of each name.
+/// With `LAMPLIGHT_PREFIX`, all modules compile in a shader that declares a function of each of their
+/// names itself.
 fn modules_go_beside_names() -> Result<(), Failed> {
     let includes = modules().iter().map(|module| include(module)).collect::<String>();
     let all = format!("#define LAMPLIGHT_PREFIX\n{includes}{}", of_the_host()?);
@@ -136,7 +140,7 @@ fn modules_go_beside_names() -> Result<(), Failed> {
     Ok(())
 }
 
-/// The same without our composer.
+/// The same with glslangValidator's own includes, without our composer.
 fn modules_go_beside_names_elsewhere() -> Result<(), Failed> {
     let path = concat!("-I", env!("CARGO_MANIFEST_DIR"), "/shaderlib");
     let includes: String =
@@ -147,20 +151,21 @@ fn modules_go_beside_names_elsewhere() -> Result<(), Failed> {
              {includes}{}{output}void main() {{\n    colour = vec4(1.0);\n}}\n",
             of_the_host()?
         );
-        // Without linking, glslangValidator reads includes for Vulkan alone.
+        // glslangValidator reads includes only for Vulkan or when it links.
         let with_includes: &[&str] = if options.is_empty() { &[path, "-l"] } else { &[path] };
         run_glslang(&text, &[options, with_includes].concat())?;
     }
     Ok(())
 }
 
-/// A function of each name that the library has in GLSL, and a call of one of the library's own.
+/// A function for each name that the library declares, and a call of one of the library's own.
 fn of_the_host() -> Result<String, Failed> {
     let items = lamplight::catalogue::library_modules().into_iter().flat_map(|module| module.items);
     let mut names: Vec<String> = items.map(|item| item.name).collect();
     names.sort();
     if names.len() < 150 || !names.iter().any(|name| name == "wrap") {
-        return Err(format!("the library declares {names:?}").into());
+        let what = format!("expected 150 names with `wrap` among them, found {names:?}");
+        return Err(format!("the library's declarations: {what}").into());
     }
     let own = names.iter().map(|name| format!("float {name}(bool on) {{ return 1.0; }}\n"));
     let call = "float both(lamplight_Material material) {\n    return wrap(true) + material.wrap\n        \
@@ -172,8 +177,8 @@ fn wesl_is_valid(module: &str) -> Result<(), Failed> {
     parse_wesl(module).map(|_| ())
 }
 
-/// As 450: naga's front end refuses every other version but 440 and 460. For those glslangValidator
-/// judges the modules, and what naga writes for those versions.
+/// naga accepts the module in GLSL 4.50. It refuses versions other than 440, 450 and 460. For other
+/// versions, glslangValidator judges the modules and what naga writes.
 fn glsl_is_valid(module: &str) -> Result<(), Failed> {
     parse_glsl(module).map(|_| ())
 }
@@ -187,7 +192,7 @@ fn every_target_writes(module: &str) -> Result<(), Failed> {
     Ok(())
 }
 
-/// A function as its text has it.
+/// A function as it is declared in the text.
 struct Function {
     name: String,
     parameters: Vec<String>,
@@ -195,7 +200,7 @@ struct Function {
     doc: Vec<String>,
 }
 
-/// The functions of a module in either language; the names of parameters in WESL only.
+/// The functions of a module in either language. Parameters are found in WESL only.
 fn functions(text: &str) -> Vec<Function> {
     let mut found = Vec::new();
     let mut doc = Vec::new();
@@ -226,7 +231,8 @@ fn is_declaration(line: &str) -> bool {
     line.starts_with(|first: char| first.is_ascii_alphabetic()) && line.ends_with(['{', '('])
 }
 
-/// Names and types. A comma is followed by a parameter's name and colon, or belongs to a type.
+/// The names and types of parameters. A comma before a name and a colon separates parameters. Any
+/// other comma belongs to a type.
 fn parameters(declaration: &str) -> (Vec<String>, Vec<String>) {
     let list = declaration
         .split_once('(')
@@ -250,7 +256,7 @@ fn read(path: &str) -> String {
         .unwrap_or_else(|| panic!("no `{path}` in the library"))
 }
 
-/// A text of WESL composed with the library: `lamplight` is a dependency, as it is for a user.
+/// A WESL text, composed with the library as the dependency `lamplight`, as for a user.
 fn composed_wesl(text: String) -> Result<String, Failed> {
     let (mut sources, packages) = beside("main.wesl", text);
     let composed = resolve::wesl::load(&mut sources, &packages, "main.wesl").and_then(|graph| {
@@ -259,7 +265,7 @@ fn composed_wesl(text: String) -> Result<String, Failed> {
     written(&sources, composed)
 }
 
-/// The same for GLSL, with everything that is included.
+/// A GLSL text, composed with all that it includes.
 fn composed_glsl(text: String) -> Result<String, Failed> {
     let (mut sources, packages) = beside("main.frag.glsl", text);
     let options = Options { keep: Keep::All, ..Options::default() };
@@ -285,7 +291,7 @@ fn written(
     if composed.warnings.is_empty() { Ok(composed.text) } else { Err(shown(&composed.warnings)) }
 }
 
-/// The module, reached from an entry point that calls each of its functions.
+/// A module, composed for an entry point that calls each of its functions.
 fn called_wesl(module: &str) -> Result<String, Failed> {
     composed_wesl(entry_wesl(module))
 }
@@ -301,7 +307,7 @@ pub fn entry_wesl(module: &str) -> String {
     emits::entry(&functions)
 }
 
-/// A structure's name with its module before it; any other type as it is.
+/// A type. If it is a structure of the library, its name has its module in front.
 fn qualified(ty: &str) -> String {
     let declares =
         |module: &String| read(&format!("{module}.wesl")).contains(&format!("\nstruct {ty} {{"));
@@ -346,7 +352,7 @@ fn glslang(module: &str, dialect: &Dialect) -> Result<(), Failed> {
     run_glslang(&fragment(&include(module), dialect)?, dialect.options)
 }
 
-/// Without our composer: any GLSL compiler with an include path will do.
+/// The module compiles without our composer, with the include path of glslangValidator.
 fn glslang_includes(module: &str) -> Result<(), Failed> {
     let path = concat!("-I", env!("CARGO_MANIFEST_DIR"), "/shaderlib");
     let Dialect { head, output, options } = &DIALECTS[0];

@@ -1,5 +1,5 @@
-//! Shadows from the light's matrix to the visibility: properties of whole lookups, in both
-//! languages, on every executor.
+//! Properties of whole shadow lookups, from the light's matrix to the visibility. They are tested in
+//! both languages, on every executor.
 
 mod bias;
 mod cube;
@@ -28,7 +28,8 @@ use filters::{
 };
 use lights::{octants, outside_is_lit, spot};
 
-/// What a property asks of results: each call runs one function on one executor in one language.
+/// A property of the results of functions. Each call of a function runs on one executor in one
+/// language.
 type Property = fn(&mut Run<'_>) -> Result<(), String>;
 
 const PROPERTIES: &[(&str, Property)] = &[
@@ -179,7 +180,7 @@ struct Run<'a> {
     language: Language,
 }
 
-/// The property in both languages on every executor; all that fail are named.
+/// Tests a property in both languages on every executor. The error names all that fail.
 fn everywhere(property: Property) -> Result<(), Failed> {
     let outcome = on_thread(|| {
         let files = [("scene.wesl", WESL), ("scene.glsl", GLSL)]
@@ -205,7 +206,7 @@ fn everywhere(property: Property) -> Result<(), Failed> {
 }
 
 impl Run<'_> {
-    /// Results of a function of the scene for rows of f32 arguments.
+    /// Runs a function of the text above on rows of f32 arguments.
     fn call(
         &mut self,
         function: &str,
@@ -243,7 +244,7 @@ fn said(errors: &[Diagnostic]) -> String {
     errors.iter().map(|error| error.message.clone()).collect::<Vec<_>>().join("; ")
 }
 
-/// Texels of a square depth map from the place of their centres.
+/// A square depth map. The depth of a texel is a function of its centre.
 fn depths(side: u32, depth: impl Fn(f64, f64) -> f64) -> Texture {
     let centre = |index: u32| (f64::from(index) + 0.5) / f64::from(side);
     let texels = (0..side)
@@ -261,12 +262,12 @@ fn plain(linear: bool) -> Sampler {
     Sampler { compare: None, linear, address: Address::Clamp }
 }
 
-/// From depths that rise with the distance to depths that fall.
+/// The matrix that turns depths that rise with the distance into depths that fall.
 fn flip() -> DMat4 {
     DMat4::from_cols(DVec4::X, DVec4::Y, -DVec4::Z, DVec4::new(0.0, 0.0, 1.0, 1.0))
 }
 
-/// A depth as a map of either kind holds it, and the comparison that goes with it.
+/// For a map with reversed or plain depth: the stored form of a depth, and the comparison.
 fn reversal(reversed: bool) -> (fn(f64) -> f64, Compare) {
     if reversed {
         (|depth| 1.0 - depth, Compare::GreaterEqual)

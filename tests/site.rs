@@ -1,6 +1,6 @@
-//! The site in a browser: its pages open, its pictures are those of `lamplight render`, its controls
-//! change them, mistakes are underlined where they are, and links keep what is chosen.
-//! `cargo xtask test` builds it first.
+//! The site in a browser. Its pages open, its pictures are those of `lamplight render`, its controls
+//! change them, mistakes are underlined at their place, and links keep the user's choices.
+//! `cargo xtask test` builds the site first.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -23,7 +23,8 @@ use serde_json::{Value, json};
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
-/// Software draws, and other trials run beside: what a page shows may come late.
+/// The longest wait for a page. It is large, since software draws and other trials run at the same
+/// time.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 pub fn trials() -> Vec<Trial> {
@@ -45,7 +46,7 @@ fn site() -> Result<PathBuf, Failed> {
     }
 }
 
-/// The site with a browser.
+/// The served site, and a browser.
 struct Opened {
     server: Server,
     browser: Arc<Browser>,
@@ -57,7 +58,7 @@ impl Opened {
         Ok(Self { server, browser: Browser::shared()? })
     }
 
-    /// A page at the address, once it shows something.
+    /// Opens a page, and waits until it is ready.
     fn page(&self, address: &str) -> Result<Page, Failed> {
         let page = self.browser.open(&self.server.address(address))?;
         page.until("document.body?.dataset.ready !== undefined", PATIENCE)?;
@@ -73,11 +74,12 @@ fn text(page: &Page, expression: &str) -> Result<String, Failed> {
 fn without_errors(page: &mut Page) -> Outcome {
     match page.errors() {
         [] => Ok(()),
-        errors => Err(errors.join("\n").into()),
+        errors => Err(format!("the page has errors:\n{}", errors.join("\n")).into()),
     }
 }
 
-/// Every entry opens, shows its source, and where it has a plot a plot; the search finds.
+/// Every entry of the catalogue opens and shows its source. A plot changes with its slider, and the
+/// search finds an entry.
 fn catalogue() -> Outcome {
     let opened = Opened::new()?;
     let mut page = opened.page("#/catalogue")?;
@@ -105,7 +107,7 @@ fn catalogue() -> Outcome {
         }})()",
         Value::from(paths)
     );
-    assert_eq!(page.evaluate(&script, PATIENCE)?, json!([]));
+    assert_eq!(page.evaluate(&script, PATIENCE)?, json!([]), "these entries do not open");
     page.evaluate("location.hash = '#/catalogue/brdf::specular::blinn_phong'", PATIENCE)?;
     page.until("document.querySelectorAll('.live .curve').length > 0", PATIENCE)?;
     let curve = "document.querySelector('.live .curve').getAttribute('points')";
@@ -128,14 +130,16 @@ fn catalogue() -> Outcome {
     without_errors(&mut page)
 }
 
-/// Presets of several kinds: no shadow, a map, moments that are blurred, a cube map.
+/// Presets of several kinds: without shadow, with a shadow map, with blurred moments, with a cube
+/// map.
 const PRESETS: [&str; 4] = ["oglpg_7_4", "hpg_5_shadow", "hpg_7_vsm", "oglpg_7_13"];
 
-/// Of all channels of all pixels: the mean distance, and the share that is farther than eight steps.
-/// Edges are drawn by other rules on every device.
+/// The largest mean distance over all channels of all pixels, in steps of 255, and the largest share
+/// of channels that differ by more than eight. Devices draw edges by different rules.
 const TOLERANCE: (f64, f64) = (1.0, 0.02);
 
-/// What the page draws is what `lamplight render` draws, on WebGPU and on WebGL2; without both it says so.
+/// The page's pictures look like those of `lamplight render`, on WebGPU and on WebGL2. Without either,
+/// the page says so.
 fn pictures() -> Outcome {
     let opened = Opened::new()?;
     for (address, device) in [("#/gallery", "WebGPU"), ("?device=webgl2#/gallery", "WebGL2")] {
@@ -173,12 +177,15 @@ fn compare(name: &str, data: &str, preset: &str) -> Outcome {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/tmp/site");
         std::fs::create_dir_all(&folder)?;
         found.save(folder.join(format!("wrong-{preset}.png")))?;
-        return Err(format!("{name}: mean {mean:.3}, {:.2} % far", 100.0 * far).into());
+        let (most, share) = TOLERANCE;
+        let what = format!("the mean distance is {mean:.3}, at most {most}");
+        let what = format!("{what}; {:.2} % are farther than 8, at most {share}", 100.0 * far);
+        return Err(format!("{name}: {what}; see target/tmp/site/wrong-{preset}.png").into());
     }
     Ok(())
 }
 
-/// What `lamplight render PRESET --size 192x192 --samples 4` draws.
+/// The picture of `lamplight render PRESET --size 192x192 --samples 4`.
 fn rendered(preset: &str) -> Result<Picture, Failed> {
     let drawn = on_thread(|| {
         let programs = Programs::load().map_err(|(_, problems)| problems)?;
@@ -202,8 +209,8 @@ fn rendered(preset: &str) -> Result<Picture, Failed> {
     drawn.map_err(|problems: Diagnostics| format!("{preset}: {problems:?}").into())
 }
 
-/// A switched axis changes the picture and the outputs; what is impossible says why; the link holds
-/// the choice, and another page that is opened with it shows the same.
+/// Switching an axis changes the picture and the outputs. Values that are impossible say why. The
+/// link has the choices, and a page that is opened with it shows the same picture.
 fn programs() -> Outcome {
     let opened = Opened::new()?;
     let mut page = opened.page("#/programs/forward?scene=casters")?;
@@ -221,8 +228,8 @@ fn programs() -> Outcome {
     };
     page.evaluate(&choose("shadow", "hard"), PATIENCE)?;
     page.until("document.querySelector('canvas').dataset.key?.includes('shadow=hard')", PATIENCE)?;
-    assert_ne!(before, text(&page, picture)?, "a shadow changes the picture");
-    assert!(page.evaluate(greyed, PATIENCE)?.as_u64() > Some(0), "nothing is impossible");
+    assert_ne!(before, text(&page, picture)?, "the shadow does not change the picture");
+    assert!(page.evaluate(greyed, PATIENCE)?.as_u64() > Some(0), "no value says why it is greyed");
     page.until(
         "document.querySelector('.texts pre')?.textContent.includes('fn vs_main')",
         PATIENCE,
@@ -241,7 +248,8 @@ fn programs() -> Outcome {
     Ok(())
 }
 
-/// Typing: outputs, a value, and a mistake underlined at its column.
+/// The playground shows outputs and a value for the typed text, and underlines a mistake at its
+/// column.
 fn playground() -> Outcome {
     let opened = Opened::new()?;
     let mut page = opened.page("#/playground")?;
@@ -250,7 +258,7 @@ fn playground() -> Outcome {
         PATIENCE,
     )?;
     page.until("document.querySelector('.eval output').textContent === '0.25'", PATIENCE)?;
-    // Another function is called from the end of the line that `let n` is in.
+    // Types a text at the end of the line with `let n`.
     let typed = |text: &str| {
         format!(
             "(() => {{ const it = document.querySelector('.cm-content'); it.focus();
@@ -266,12 +274,12 @@ fn playground() -> Outcome {
     let mark = "document.querySelector('.cm-lintRange-error')?.textContent";
     page.until(&format!("{mark} === 'nowhere'"), PATIENCE)?;
     let problem = text(&page, "document.querySelector('.problems').textContent")?;
-    assert!(problem.contains("lit.wesl:7:40: "), "{problem}");
+    assert!(problem.contains("lit.wesl:7:40: "), "expected lit.wesl:7:40 in `{problem}`");
     without_errors(&mut page)
 }
 
-/// The main pages at the widths of a phone and of a desk, as pictures in `target/tmp/site/`: nothing
-/// is wider than the screen, everything that can be used has a name.
+/// The main pages at the widths of a phone and of a desktop screen. No page is wider than the screen,
+/// and every control has a name for screen readers. Screenshots are left in `target/tmp/site/`.
 fn seen() -> Outcome {
     let opened = Opened::new()?;
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/tmp/site");
@@ -295,7 +303,7 @@ fn seen() -> Outcome {
         page.until(&format!("!!{there}"), PATIENCE)?;
         let nameless = "[...document.querySelectorAll('input, select, button, a, canvas')].filter((it) =>
             !(it.getAttribute('aria-label') || it.labels?.length || it.textContent.trim())).map((it) => it.outerHTML)";
-        assert_eq!(page.evaluate(nameless, PATIENCE)?, json!([]), "{name}");
+        assert_eq!(page.evaluate(nameless, PATIENCE)?, json!([]), "{name}: controls without name");
         for width in [360, 1280] {
             let bytes = page.screenshot(Screenshot { width, height: 900, whole: false })?;
             std::fs::write(folder.join(format!("{name}-{width}.png")), bytes)?;
@@ -304,7 +312,7 @@ fn seen() -> Outcome {
         let wide = "document.documentElement.scrollWidth";
         assert!(
             page.evaluate(wide, PATIENCE)?.as_u64() <= Some(360),
-            "{name} is wider than a phone"
+            "{name} is wider than a screen of 360 pixels"
         );
         without_errors(&mut page)?;
     }

@@ -1,4 +1,4 @@
-//! Snapshots, kept by insta under `snapshots/` in the folders of what they show.
+//! Snapshots, which insta keeps in the folders of `snapshots/`.
 //!
 //! Review changes with `cargo insta review`, or accept them with `INSTA_UPDATE=always`.
 
@@ -9,7 +9,7 @@ pub fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Compares with `snapshots/FOLDER/NAME.snap`; a difference fails with insta's own words.
+/// Compares a text with `snapshots/FOLDER/NAME.snap`. insta prints the difference.
 pub fn check(folder: &str, name: &str, text: &str) -> Result<(), libtest_mimic::Failed> {
     let mut settings = insta::Settings::new();
     settings.set_snapshot_path(root().join("snapshots").join(folder));
@@ -17,10 +17,10 @@ pub fn check(folder: &str, name: &str, text: &str) -> Result<(), libtest_mimic::
     settings.set_omit_expression(true);
     settings
         .bind(|| std::panic::catch_unwind(|| insta::assert_snapshot!(name, text)))
-        .map_err(|_| format!("snapshots/{folder}/{name}.snap differs").into())
+        .map_err(|_| format!("snapshots/{folder}/{name}.snap differs, as printed above").into())
 }
 
-/// The folders below `tests/FOLDER`, each a case, sorted by name.
+/// The cases of `tests/FOLDER`, which are its folders, sorted by name.
 pub fn cases(folder: &str) -> Vec<(String, PathBuf)> {
     let mut found: Vec<(String, PathBuf)> = std::fs::read_dir(root().join("tests").join(folder))
         .into_iter()

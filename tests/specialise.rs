@@ -1,4 +1,5 @@
-//! Axes that the pipeline chooses: one shader for all their values, in every target.
+//! Axes of the mode `spec`, whose value is chosen when the pipeline is made. Every target has one
+//! shader for all their values.
 
 mod drawing;
 
@@ -77,6 +78,7 @@ fn check(condition: bool, what: &str) -> Outcome {
     if condition { Ok(()) } else { Err(what.into()) }
 }
 
+/// Keys that differ only in `spec` axes share a shader, and the bundle has their values as constants.
 fn shared() -> Outcome {
     let bundle = bundle()?;
     let shader = bundle.program("spec")?.shader("fs_main")?;
@@ -86,7 +88,7 @@ fn shared() -> Outcome {
     units.dedup();
     check(
         keys.len() == 12 && units.len() == 2,
-        &format!("{} keys, {} shaders", keys.len(), units.len()),
+        &format!("{} keys, {} shaders, expected 12 and 2", keys.len(), units.len()),
     )?;
     for target in Target::ALL {
         let found = shader.get("taps=16,negative", *target)?;
@@ -95,16 +97,18 @@ fn shared() -> Outcome {
             .iter()
             .map(|constant| format!("{}={}", constant.name, constant.value))
             .collect();
-        check(values == ["negative=true", "taps=16"], &format!("{values:?}"))?;
+        let what = format!("{target}: expected negative=true and taps=16, found {values:?}");
+        check(values == ["negative=true", "taps=16"], &what)?;
         let mut choices: Vec<&str> =
             found.native.choices.iter().map(|choice| choice.name.as_str()).collect();
         choices.sort_unstable();
-        check(choices == ["negative", "taps"], &format!("{target}: {choices:?}"))?;
+        let what = format!("{target}: expected choices for negative and taps, found {choices:?}");
+        check(choices == ["negative", "taps"], &what)?;
     }
     Ok(())
 }
 
-/// Runs a tool of the distribution.
+/// Runs a tool, which must succeed, and gives its output.
 fn run(tool: &str, arguments: &[&str]) -> Result<String, Failed> {
     let output =
         Command::new(tool).args(arguments).output().map_err(|error| format!("{tool}: {error}"))?;
@@ -112,6 +116,8 @@ fn run(tool: &str, arguments: &[&str]) -> Result<String, Failed> {
     if output.status.success() { Ok(said) } else { Err(format!("{tool}: {said}").into()) }
 }
 
+/// In SPIR-V the axes are specialisation constants. spirv-opt can set them by the ids in the
+/// reflection, and the result is valid.
 fn spirv() -> Outcome {
     let found = found("default", Target::SPIRV)?;
     let folder = tempfile::tempdir()?;
@@ -144,17 +150,19 @@ fn spirv() -> Outcome {
     let text = run("spirv-dis", &["--raw-id", &path("a.spv")])?;
     check(
         text.matches("OpSpecConstant").count() == 2 && text.matches("SpecId").count() == 2,
-        &text,
+        &format!("expected two specialisation constants in\n{text}"),
     )?;
     check(
         !text.lines().any(|line| line.contains("OpVariable") && line.contains("Private")),
-        &text,
+        &format!("expected no private variables in\n{text}"),
     )?;
     let text = run("spirv-dis", &["--raw-id", &path("b.spv")])?;
-    check(!text.contains("OpSpecConstant"), &text)
+    let what = format!("expected no specialisation constants once they are frozen in\n{text}");
+    check(!text.contains("OpSpecConstant"), &what)
 }
 
-/// The pixel that the shader draws, by its override in WGSL and by its constant in SPIR-V.
+/// The pixel of a drawn shader has the value that was chosen, by the override in WGSL and by the
+/// specialisation constant in SPIR-V.
 fn values() -> Outcome {
     let device = Drawing::open()?;
     for (key, expected) in [("default", 198.0), ("taps=5", 60.0), ("negative,taps=16", -632.0)] {
@@ -170,13 +178,17 @@ fn values() -> Outcome {
             .device
             .create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
         let drawn = device.draw(&module, &constants)?;
-        check(drawn == [expected, 1.0, 0.0, 1.0], &format!("WGSL {key}: {drawn:?}"))?;
+        let what = format!("WGSL {key}: expected {expected}, found {drawn:?}");
+        check(drawn == [expected, 1.0, 0.0, 1.0], &what)?;
         let drawn = device.draw(&device.chosen(key)?, &[])?;
-        check(drawn == [expected, 1.0, 0.0, 1.0], &format!("SPIR-V {key}: {drawn:?}"))?;
+        let what = format!("SPIR-V {key}: expected {expected}, found {drawn:?}");
+        check(drawn == [expected, 1.0, 0.0, 1.0], &what)?;
     }
     Ok(())
 }
 
+/// In GLSL the axes are macros with defaults. The text compiles with the defaults and with other
+/// values.
 fn glsl() -> Outcome {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("a.frag").to_string_lossy().into_owned();
@@ -192,6 +204,7 @@ fn glsl() -> Outcome {
     Ok(())
 }
 
+/// The texts with these axes are those of the snapshots.
 fn texts() -> Outcome {
     for target in [Target::WGSL, Target::GLSL330, Target::HLSL, Target::MSL] {
         let text = String::from_utf8(found("default", target)?.bytes)?;
@@ -200,7 +213,7 @@ fn texts() -> Outcome {
     Ok(())
 }
 
-/// A text in GLSL is composed for each value, and `variants` says so.
+/// A GLSL source is composed for each value of a `spec` axis, and `variants` says so.
 fn static_in_glsl() -> Outcome {
     let folder = tempfile::tempdir()?;
     let manifest = MANIFEST.replace(
@@ -218,15 +231,17 @@ fn static_in_glsl() -> Outcome {
         let text = String::from_utf8(found.bytes)?;
         check(
             found.constants.is_empty() && found.native.choices.is_empty() && text.contains(value),
-            &text,
+            &format!("`{key}`: expected no constants, and {value} in\n{text}"),
         )?;
     }
     let manifest = folder.path().join("lamplight.toml").to_string_lossy().into_owned();
     let said = run(env!("CARGO_BIN_EXE_lamplight"), &["variants", "--manifest", &manifest])?;
-    check(said.contains("static in GLSL, which is composed for each value: negative, taps"), &said)
+    let words = "static in GLSL, which is composed for each value: negative, taps";
+    check(said.contains(words), &format!("expected `{words}` in\n{said}"))
 }
 
-/// Exactly what was asked for is generated; keys and programs that are none any more are told.
+/// With a usage list, exactly its keys are generated. Keys and programs that do not exist any more
+/// give warnings.
 fn usage() -> Outcome {
     let folder = tempfile::tempdir()?;
     let used = "spec tint=green\nspec taps=16\nspec gone=1\nspec tint=mauve\nother x\n";
@@ -237,7 +252,8 @@ fn usage() -> Outcome {
     std::fs::write(folder.path().join("spec.wesl"), TEXT)?;
     std::fs::write(folder.path().join("spec.used"), used)?;
     let keys = bundle_of(folder.path())?.program("spec")?.shader("fs_main")?.keys()?;
-    check(keys == ["taps=16", "tint=green"], &format!("{keys:?}"))?;
+    let what = format!("expected the keys taps=16 and tint=green, found {keys:?}");
+    check(keys == ["taps=16", "tint=green"], &what)?;
     let mut sources = SourceSet::default();
     let manifest = project::read_manifest(&folder.path().join("lamplight.toml"), &mut sources)
         .map_err(|_| "no manifest")?;
@@ -245,5 +261,5 @@ fn usage() -> Outcome {
         manifest.warnings.iter().map(|warning| warning.message.as_str()).collect();
     let names = ["`gone=1`", "`tint=mauve`", "no program `other`"];
     let all = told.len() == 3 && told.iter().zip(names).all(|(told, name)| told.contains(name));
-    check(all, &format!("{told:?}"))
+    check(all, &format!("expected a warning for each of {names:?}, found {told:?}"))
 }

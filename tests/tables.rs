@@ -1,4 +1,4 @@
-//! The tables of `shaderlib/tables`, checked by rules that do not share their generator's code.
+//! Checks the tables of `shaderlib/tables` with formulas that do not share code with the generator.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -25,18 +25,19 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("shaderlib/tables")
 }
 
-/// The values of a table, so many to a cell.
+/// The values of a table, `channels` for each cell.
 fn values(name: &str, channels: usize) -> Result<Vec<f64>, Failed> {
     let bytes = fs::read(folder().join(format!("{name}.bin")))?;
     if bytes.len() != 4 * channels * SIDE * SIDE {
-        return Err(format!("{name}.bin has {} bytes", bytes.len()).into());
+        let expected = 4 * channels * SIDE * SIDE;
+        return Err(format!("{name}.bin has {} bytes, expected {expected}", bytes.len()).into());
     }
     let (words, _) = bytes.as_chunks::<4>();
     Ok(words.iter().map(|word| f64::from(f32::from_le_bytes(*word))).collect())
 }
 
-/// The texture has the values of the `.bin`, and another reader takes it; the header tells the
-/// same number of channels.
+/// The texture `.ktx2` has the values of the `.bin`, read with the crate `ktx2`. The description
+/// `.toml` has the same number of channels, and an error.
 fn files_agree() -> Outcome {
     let formats = [
         ("blue_noise", 1, ktx2::Format::R32_SFLOAT),
@@ -52,7 +53,7 @@ fn files_agree() -> Outcome {
         let level = reader.levels().next().ok_or("no level")?;
         let wanted = fs::read(folder().join(format!("{name}.bin")))?;
         if head.format != Some(format) || size != [SIDE; 2] || level.data != wanted {
-            return Err(format!("{name}.ktx2 is not {name}.bin: {head:?}").into());
+            return Err(format!("{name}.ktx2 differs from {name}.bin: {head:?}").into());
         }
         let text = fs::read_to_string(folder().join(format!("{name}.toml")))?;
         let told: toml::Table = text.parse()?;
@@ -64,13 +65,13 @@ fn files_agree() -> Outcome {
     Ok(())
 }
 
-/// A cell: its width of the lobe and its cosine of the viewer.
+/// The parameters of a cell: the width of the lobe, and the cosine of the viewer.
 fn cell(column: usize, row: usize) -> (f64, f64) {
     let share = |index: usize| index as f64 / (SIDE - 1) as f64;
     (share(column).powi(2), 1.0 - share(row).powi(2))
 }
 
-/// Cells whose lobes are wide enough for a rule over the light's directions.
+/// Cells whose lobes are wide enough for a sum over the light's directions.
 fn wide_cells() -> impl Iterator<Item = (usize, usize)> {
     let columns = [24, 32, 40, 51, 63];
     columns.into_iter().flat_map(|column| [0, 13, 29, 47, 57].map(|row| (column, row)))
@@ -80,7 +81,8 @@ fn viewer(nv: f64) -> Direction {
     [(1.0 - nv * nv).sqrt(), 0.0, nv]
 }
 
-/// Middles of cells of the hemisphere that are equally large, half of a turn, with their size.
+/// Directions that divide the hemisphere into equal parts, with the size of a part. They cover half a
+/// turn, and stand for the other half by symmetry.
 fn directions() -> impl Iterator<Item = (Direction, f64)> {
     let (rings, azimuths) = (300, 300);
     (0..rings * azimuths).map(move |index| {
@@ -97,7 +99,7 @@ fn half(v: Direction, l: Direction) -> (f64, f64) {
     (h[2] / length, (v[0] * h[0] + v[1] * h[1] + v[2] * h[2]) / length)
 }
 
-/// GGX with Smith's correlated masking from its lambda, times the light's cosine.
+/// GGX with Smith's height-correlated masking, computed from lambda, times the light's cosine.
 fn ggx(v: Direction, l: Direction, alpha: f64) -> f64 {
     let (nh, _) = half(v, l);
     let tan2 = (1.0 - nh * nh) / (nh * nh);
@@ -107,6 +109,7 @@ fn ggx(v: Direction, l: Direction, alpha: f64) -> f64 {
     distribution / ((1.0 + lambda(v[2]) + lambda(l[2])) * 4.0 * v[2])
 }
 
+/// The albedo of GGX, in two parts, is that of a sum over the light's directions.
 fn dfg() -> Outcome {
     let table = values("dfg", 2)?;
     for (column, row) in wide_cells() {
@@ -121,20 +124,22 @@ fn dfg() -> Outcome {
         let start = 2 * (row * SIDE + column);
         for (wanted, found) in wanted.iter().zip(&table[start..start + 2]) {
             if (wanted - found).abs() > 5e-4 {
-                return Err(format!("{column}, {row}: {found}, not {wanted}").into());
+                return Err(format!("cell {column}, {row}: {found}, expected {wanted}").into());
             }
         }
     }
-    // Nothing gives more light than arrives, and a mirror gives all of it.
+    // No surface reflects more light than it receives, and a mirror reflects all of it.
     let sums = table.chunks(2).map(|pair| pair[0] + pair[1]);
     let most = sums.clone().fold(0.0, f64::max);
     let mirror = sums.step_by(SIDE).take(SIDE - 1).fold(1.0, f64::min);
     if most > 1.0 + 1e-4 || mirror < 0.999 {
-        return Err(format!("albedo up to {most}, of a mirror down to {mirror}").into());
+        let what = format!("the albedo is up to {most}, and down to {mirror} for a mirror");
+        return Err(format!("{what}, expected at most 1 and at least 0.999").into());
     }
     Ok(())
 }
 
+/// The albedo of both sheen lobes is that of a sum over the light's directions.
 fn sheen() -> Outcome {
     let table = values("sheen", 2)?;
     let curve = |x: f64, t: f64| {
@@ -162,14 +167,14 @@ fn sheen() -> Outcome {
         let start = 2 * (row * SIDE + column);
         for (wanted, found) in wanted.iter().zip(&table[start..start + 2]) {
             if (wanted - found).abs() > 2e-3 * (1.0 + wanted) {
-                return Err(format!("{column}, {row}: {found}, not {wanted}").into());
+                return Err(format!("cell {column}, {row}: {found}, expected {wanted}").into());
             }
         }
     }
     Ok(())
 }
 
-/// A fitted lobe has the place and the shape of the one it stands for.
+/// A fitted lobe has about the direction and the shape of the GGX lobe that it replaces.
 fn ltc() -> Outcome {
     let (table, albedos) = (values("ltc", 4)?, values("dfg", 2)?);
     for (column, row) in wide_cells() {
@@ -192,23 +197,26 @@ fn ltc() -> Outcome {
         let misplaced = 0.5 * apart / albedo;
         if misplaced > 0.21 || (wanted - fit).abs() > 0.2 {
             return Err(format!(
-                "{column}, {row}: {misplaced:.3} of the light elsewhere, its mean off by {:.3} rad",
+                "cell {column}, {row}: {misplaced:.3} of the light is elsewhere (at most 0.21), \
+                 the mean direction is off by {:.3} rad (at most 0.2)",
                 (wanted - fit).abs()
             )
             .into());
         }
     }
-    // Smooth lobes seen from above are narrow: the inverse widens them to a cosine.
+    // Lobes of smooth surfaces are narrow, and the table has the inverse, which widens a lobe to a
+    // cosine. So seen from above, its numbers fall with the roughness.
     let from_above = |column: usize| table[4 * column];
     let widths: Vec<f64> = (1..SIDE).map(from_above).collect();
     if widths.is_sorted_by(|smooth, rough| smooth >= rough) {
         Ok(())
     } else {
-        Err(format!("widths seen from above are not in order: {widths:?}").into())
+        Err(format!("seen from above, these should fall with the roughness: {widths:?}").into())
     }
 }
 
-/// Every rank is there once, and the cells below a threshold have hardly any low frequencies.
+/// Blue noise: every rank occurs once, and the cells below a threshold have hardly any low
+/// frequencies.
 fn blue_noise() -> Outcome {
     let table = values("blue_noise", 1)?;
     let count = SIDE * SIDE;
@@ -225,17 +233,18 @@ fn blue_noise() -> Outcome {
         };
         let frequencies = [(1, 0), (0, 1), (1, 1), (2, 1), (1, 3), (4, 0), (0, 4), (3, 3)];
         let sum: f64 = frequencies.iter().map(|(x, y)| power(*x, *y)).sum();
-        // Of cells that are chosen at random.
+        // The power of white noise, in which cells are chosen at random.
         let white = count as f64 * threshold * (1.0 - threshold);
         sum / frequencies.len() as f64 / white
     };
     let shares = [0.1, 0.25, 0.5, 0.75].map(low);
     ranks.sort_unstable();
     if ranks != (0..count).collect::<Vec<_>>() {
-        return Err("the ranks are no permutation".into());
+        return Err("every rank from 0 to 4095 should occur once".into());
     }
     if shares.iter().any(|share| *share > 0.1) {
-        return Err(format!("low frequencies have {shares:?} of white noise's power").into());
+        let what = format!("low frequencies have {shares:?} of white noise's power");
+        return Err(format!("{what}, expected at most 0.1").into());
     }
     Ok(())
 }

@@ -1,5 +1,5 @@
-//! The toolchain as WebAssembly, in Node through its npm package: it gives the bytes that the
-//! native tool gives. `cargo xtask test` makes the package first.
+//! Runs the toolchain that is compiled to WebAssembly, in Node through its npm package. Its answers
+//! must have the same bytes as those of the native tool. `cargo xtask test` builds the package first.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -24,14 +24,14 @@ use lamplight::{catalogue, lint};
 use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
 
-/// Permutations of `forward` that are compared, half of them in GLSL.
+/// About as many permutations of each program are compared at most; every second one in GLSL.
 const PERMUTATIONS: usize = 300;
 
 pub fn trials() -> Vec<Trial> {
     vec![Trial::test("toolchain::same_bytes", same_bytes)]
 }
 
-/// Requests for the package, and what the native tool answers.
+/// The requests to the package, and the answers of the native tool, which are expected of it.
 struct Asked {
     linker: Linker<'static>,
     shaders: Vec<Value>,
@@ -68,6 +68,7 @@ fn same_bytes() -> Result<(), Failed> {
     ];
     let hostile: Vec<Value> = hostile.iter().map(|text| json!({ "a.wesl": text })).collect();
     for index in 0..hostile.len() {
+        // After each hostile text the script asks for `1.0 + 2.0`, which must still be answered.
         asked.expected.push((format!("after hostile text {index}"), b"3".to_vec()));
     }
     let scratch = tempfile::tempdir()?;
@@ -86,6 +87,7 @@ fn same_bytes() -> Result<(), Failed> {
     compare(&std::fs::read(&answers)?, &expected)
 }
 
+/// The folder of the npm package.
 fn package() -> Result<PathBuf, Failed> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/toolchain");
     match folder.join("toolchain_bg.wasm").is_file() {
@@ -94,23 +96,30 @@ fn package() -> Result<PathBuf, Failed> {
     }
 }
 
+/// Fails unless the answers of the package are the expected ones, in their order. Each begins with
+/// its length in four bytes.
 fn compare(answers: &[u8], expected: &[(String, Vec<u8>)]) -> Result<(), Failed> {
     let mut rest = answers;
     for (name, wanted) in expected {
-        let (length, after) = rest.split_first_chunk::<4>().ok_or("the answers end early")?;
-        let (found, after) = after
-            .split_at_checked(u32::from_le_bytes(*length) as usize)
-            .ok_or("the answers end early")?;
+        let short = || format!("the package's answers end before that to `{name}`");
+        let (length, after) = rest.split_first_chunk::<4>().ok_or_else(short)?;
+        let (found, after) =
+            after.split_at_checked(u32::from_le_bytes(*length) as usize).ok_or_else(short)?;
         rest = after;
         if found != wanted {
             let [found, wanted] = [found, wanted].map(String::from_utf8_lossy);
-            return Err(format!("{name}: the package says\n{found}\nand the tool\n{wanted}").into());
+            let what = format!("the package answers\n{found}\nand the native tool\n{wanted}");
+            return Err(format!("{name}: {what}").into());
         }
     }
-    if rest.is_empty() { Ok(()) } else { Err("there are more answers than requests".into()) }
+    match rest.len() {
+        0 => Ok(()),
+        left => Err(format!("{left} bytes follow the answer to the last request").into()),
+    }
 }
 
-/// Spread over all that ship, in both languages; the other programs, and the published examples.
+/// Asks for permutations of every program of the library, spread over all its permutations and in
+/// both languages, and for the permutations of the published examples.
 fn permutations(asked: &mut Asked) -> Result<(), Failed> {
     let (mut sources, manifest) = library_manifest().map_err(|_| "the library's manifest")?;
     for program in &manifest.programs {
@@ -125,7 +134,8 @@ fn permutations(asked: &mut Asked) -> Result<(), Failed> {
     let (presets, _) = catalogue::library_examples(&mut sources, &manifest).map_err(told)?;
     let mut seen = BTreeSet::new();
     for preset in &presets {
-        let program = manifest.program(&preset.program).ok_or("a preset without a program")?;
+        let missing = || format!("an example names the unknown program `{}`", preset.program);
+        let program = manifest.program(&preset.program).ok_or_else(missing)?;
         if seen.insert((preset.program.clone(), preset.key.clone())) {
             permutation(asked, program, &preset.key, false)?;
         }
@@ -133,6 +143,7 @@ fn permutations(asked: &mut Asked) -> Result<(), Failed> {
     Ok(())
 }
 
+/// Asks for the roots of a permutation in one language.
 fn permutation(
     asked: &mut Asked,
     program: &Program,
@@ -158,6 +169,7 @@ fn permutation(
     Ok(())
 }
 
+/// The value of a setting in a request.
 fn value(setting: &Setting) -> Value {
     match setting {
         Setting::Bool(value) => json!(value),
@@ -170,7 +182,8 @@ fn targets() -> Vec<&'static str> {
     Target::ALL.iter().map(|target| target.name()).collect()
 }
 
-/// What the native tool makes of a root file.
+/// Expects what the native tool makes of a root file: the composed text, and for each entry point its
+/// name, its reflection and its text in every target.
 fn shader(
     asked: &mut Asked,
     name: &str,
@@ -203,13 +216,15 @@ fn shader(
     Ok(())
 }
 
+/// A package of the files in memory, which can import the library.
 fn own(files: &BTreeMap<String, String>) -> Packages {
     let library = Package { name: project::LIBRARY.to_owned(), files: Box::new(Embedded) };
     let files = Box::new(Memory(files.clone()));
     Packages { root: Package { name: "package".to_owned(), files }, dependencies: vec![library] }
 }
 
-/// The packages in `examples/`: one with a manifest, in all its permutations, and one without.
+/// Asks for the packages in `examples/`: one with a manifest, in all its permutations, and one
+/// without a manifest.
 fn examples(asked: &mut Asked) -> Result<(), Failed> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let read = |path: &str| std::fs::read_to_string(folder.join(path));
@@ -244,7 +259,8 @@ fn example(
     shader(asked, name, &own(files), name, settings)
 }
 
-/// The plots of the library at three places, in both languages.
+/// Asks for the values of the expressions that the library's plots draw, at three places of each
+/// plot. At the second place the expression is read as GLSL, elsewhere as WESL.
 fn expressions(asked: &mut Asked) -> Result<(), Failed> {
     let (library, mut session) =
         (Library::embedded(), EXECUTOR.start().map_err(|_| "no evaluator")?);
@@ -274,11 +290,12 @@ fn expressions(asked: &mut Asked) -> Result<(), Failed> {
     }
     match asked.expressions.len() {
         300.. => Ok(()),
-        few => Err(format!("only {few} expressions have a value").into()),
+        few => Err(format!("{few} expressions have a value, expected 300 or more").into()),
     }
 }
 
-/// A plot's expression with numbers in the place of its variables.
+/// A plot's expression with numbers in place of its variables, and with the whole path in place of
+/// the function's name.
 fn substituted(
     text: &str,
     name: &str,
@@ -306,7 +323,8 @@ fn substituted(
     made.trim_end().to_owned()
 }
 
-/// Texts with mistakes: the same words, at the same places.
+/// Asks for the compilation of texts with mistakes. The package must report the same messages at the
+/// same places as the native tool.
 fn mistakes(asked: &mut Asked) -> Result<(), Failed> {
     let texts = [
         "import lamplight::brdf::diffuse::lambrt;\n@fragment fn f() -> @location(0) vec4f { return vec4f(lambrt()); }",
@@ -319,7 +337,7 @@ fn mistakes(asked: &mut Asked) -> Result<(), Failed> {
         let mut sources = SourceSet::default();
         let found = problems(&mut sources, &own(&files));
         if !found.iter().any(|one| one.severity == Severity::Error) {
-            return Err(format!("nothing is wrong with {text}").into());
+            return Err(format!("the native tool finds no error in\n{text}").into());
         }
         let told: String = found
             .iter()
@@ -330,6 +348,7 @@ fn mistakes(asked: &mut Asked) -> Result<(), Failed> {
     Ok(())
 }
 
+/// The diagnostics of the native tool for `a.wesl`.
 fn problems(sources: &mut SourceSet, packages: &Packages) -> Diagnostics {
     let settings = Default::default();
     let options = Options::default();
@@ -350,15 +369,16 @@ fn problems(sources: &mut SourceSet, packages: &Packages) -> Diagnostics {
     made.map_or_else(|errors| graph.traced(errors), |_| Diagnostics::new())
 }
 
-/// Published formulas in f64: exact where only additions and multiplications are in them.
+/// Asks for the values of two published formulas in f64. They have the same bits on both sides, since
+/// only operations whose rounding IEEE 754 prescribes are in them.
 fn formulas(asked: &mut Asked) -> Result<(), Failed> {
     let calls = [
         ("brdf::diffuse", "lambert", vec![0.0, 0.6, 0.8, 0.0, 0.0, 1.0]),
         ("brdf::specular", "f_schlick", vec![0.25, 0.04, 1.0]),
     ];
     for (module, function, words) in calls {
-        let formula =
-            references::find_reference(module, function).ok_or("a reference is missing")?;
+        let missing = || format!("`{module}` has no reference for `{function}`");
+        let formula = references::find_reference(module, function).ok_or_else(missing)?;
         let value = formula(&mut references::Arguments::new(&words, &[])).value;
         let path = format!("{module}::{function}");
         let mut call = vec![json!(path)];
@@ -370,6 +390,7 @@ fn formulas(asked: &mut Asked) -> Result<(), Failed> {
     Ok(())
 }
 
+/// The first message as a failure.
 fn told(problems: Diagnostics) -> Failed {
     format!("{:?}", problems.first().map(|one| &one.message)).into()
 }

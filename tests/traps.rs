@@ -1,5 +1,6 @@
-//! Every command that writes, beside every kind of thing that is not ours. What is there stays as
-//! it is, or is written to where it is a stream; nothing is deleted; the exit code says so.
+//! Runs every command that writes files, where something that Lamplight did not make is in the way.
+//! A foreign file, folder or link must stay as it is, and the exit code must say that the command
+//! wrote nothing. A pipe or a device is written to. Nothing is ever deleted.
 
 mod file;
 mod folder;
@@ -15,13 +16,14 @@ use tempfile::TempDir;
 
 type Outcome = Result<(), Failed>;
 
-/// A command that writes; `OUT` stands for the place.
+/// A command that writes. `OUT` in its arguments stands for the place that it writes to.
 struct Writer {
     name: &'static str,
     arguments: &'static [&'static str],
-    /// Files that it writes, where finding out by running it would take too long.
+    /// Names of files that it writes. If there are none, a run of the command finds them; for a
+    /// slow command they are listed here.
     files: &'static [&'static str],
-    /// It does not end by itself: its first line says that it wrote.
+    /// Whether the command does not end by itself. Its first line then says that it wrote.
     endless: bool,
 }
 
@@ -68,10 +70,12 @@ const FILES: &[Writer] = &[
     writer("keys_ts", &["keys", "--manifest", "lamplight.toml", "--lang", "ts", "-o", "OUT"]),
 ];
 
+/// The name of a trap, and a trial of it with a command and a file that the command writes.
 type FolderTrap = (&'static str, fn(&Writer, &str) -> Outcome);
+/// The name of a trap, and a trial of it with a command.
 type FileTrap = (&'static str, fn(&Writer) -> Outcome);
 
-/// Traps at the place of a file below a folder.
+/// Things that are in the place of a file that a command writes into its folder.
 const FOLDER_TRAPS: &[FolderTrap] = &[
     ("foreign_file", folder::foreign_file),
     ("link_to_a_file", folder::link_to_file),
@@ -80,7 +84,7 @@ const FOLDER_TRAPS: &[FolderTrap] = &[
     ("folder_in_the_way", folder::in_the_way),
 ];
 
-/// Traps at the place of the file that the user names.
+/// Things that are in the place of the file that the user names.
 const FILE_TRAPS: &[FileTrap] = &[
     ("foreign_file", file::foreign),
     ("own_file", file::own),
@@ -127,9 +131,10 @@ const MAIN: &str = "@fragment fn fs_main(@location(0) x: f32) -> @location(0) ve
 const HALF: &str = "fn half(x: f32) -> f32 { return 0.5 * x; }\n";
 const CASES: &str = "[[case]]\nfunction = \"half\"\nformula = \"0.5 * x\"\n\
     [case.inputs]\nx = [1.0, 2.0]\n";
+/// The bytes of a user's file, which no command may change without `--force`.
 const MINE: &[u8] = b"{ \"mine\": true }\n";
 
-/// A package and a bundle of it.
+/// A new folder with a package, and with a bundle of it if the command reads one.
 struct Place(TempDir);
 
 impl Place {
@@ -155,12 +160,14 @@ impl Place {
         self.0.path().join(name)
     }
 
+    /// The arguments of a command that writes to `out`.
     fn command_line(writer: &Writer, out: &str, force: bool) -> Vec<String> {
         let words = writer.arguments.iter().map(|word| word.replace("OUT", out));
         words.chain(force.then(|| "--force".to_owned())).collect()
     }
 
-    /// Exit code and what was said; an endless command is over when it has said something.
+    /// The exit code of a command and what it said on standard error. An endless command is stopped
+    /// after its first line on standard output.
     fn run(&self, words: &[String], endless: bool) -> Result<(i32, String), Failed> {
         let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
         command.args(words).current_dir(self.0.path()).stdin(Stdio::null());
@@ -182,23 +189,25 @@ impl Place {
         Ok((output.status.code().unwrap_or(-1), said))
     }
 
+    /// Fails unless the command ends with exit code 0.
     fn succeeds(&self, words: &[String], endless: bool) -> Outcome {
         match self.run(words, endless)? {
             (0, _) => Ok(()),
-            (code, said) => Err(format!("{words:?}: {code}: {said}").into()),
+            (code, said) => Err(format!("{words:?} should succeed: exit {code}: {said}").into()),
         }
     }
 
-    /// Ends with exit code 1 and names the place.
+    /// Fails unless the command ends with exit code 1, says that it cannot write, and gives help.
     fn refuses(&self, words: &[String], endless: bool) -> Outcome {
         match self.run(words, endless)? {
             (1, said) if said.contains("cannot write") && said.contains("help: ") => Ok(()),
-            (code, said) => Err(format!("{words:?} should refuse: {code}: {said}").into()),
+            (code, said) => Err(format!("{words:?} should refuse: exit {code}: {said}").into()),
         }
     }
 }
 
-/// Everything below a folder: files with their bytes, and what else there is. Links aside.
+/// Everything below a folder by its name: files with their bytes, and folders, links and pipes
+/// without any. Links are not followed.
 fn listed(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>, Failed> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
@@ -217,11 +226,12 @@ fn listed(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>, Failed> {
     Ok(found)
 }
 
+/// Fails with the message unless the condition holds.
 fn ensure(holds: bool, message: impl Into<String>) -> Outcome {
     if holds { Ok(()) } else { Err(message.into().into()) }
 }
 
-/// A few files that the command writes: the first and last of each folder.
+/// A few files that the command writes: the first and the last of each of up to three folders.
 fn places(writer: &Writer) -> Result<Vec<String>, Failed> {
     if !writer.files.is_empty() {
         return Ok(writer.files.iter().map(|name| (*name).to_owned()).collect());
@@ -237,7 +247,7 @@ fn places(writer: &Writer) -> Result<Vec<String>, Failed> {
             by_folder.entry(folder).or_default().push(name);
         }
     }
-    ensure(!by_folder.is_empty(), "it wrote nothing")?;
+    ensure(!by_folder.is_empty(), format!("`{}` wrote no file", writer.name))?;
     let mut places: Vec<String> = Vec::new();
     for (_, names) in by_folder.into_iter().take(3) {
         places.extend(names.first().cloned());
@@ -246,6 +256,7 @@ fn places(writer: &Writer) -> Result<Vec<String>, Failed> {
     Ok(places)
 }
 
+/// Sets the trap at a few of the files that the command writes, one after the other.
 fn each_place(writer: &Writer, trap: fn(&Writer, &str) -> Outcome) -> Outcome {
     for name in places(writer)? {
         trap(writer, &name).map_err(|failed| format!("`{name}`: {failed:?}"))?;
@@ -253,11 +264,13 @@ fn each_place(writer: &Writer, trap: fn(&Writer, &str) -> Outcome) -> Outcome {
     Ok(())
 }
 
-/// The cache is no result: what cannot be kept costs time and nothing else.
+/// Whether the folder is a cache. A command that cannot write to its cache succeeds nevertheless and
+/// only takes longer the next time.
 fn is_cache(writer: &Writer) -> bool {
     writer.name == "cache"
 }
 
+/// Fails unless the command refuses to write to `out`, or succeeds if `out` is its cache.
 fn refused(place: &Place, writer: &Writer, force: bool) -> Outcome {
     let words = Place::command_line(writer, "out", force);
     match is_cache(writer) {
@@ -271,7 +284,7 @@ fn pipe(path: &Path) -> Outcome {
     ensure(made.success(), "mkfifo failed")
 }
 
-/// `-o /dev/stdout` goes to standard output, wherever that leads.
+/// `-o /dev/stdout` writes to standard output, also if that is redirected to the end of a file.
 fn standard_output() -> Outcome {
     let writer = FILES.iter().find(|writer| writer.name == "get").ok_or("no such command")?;
     let place = Place::new(writer)?;
@@ -279,15 +292,19 @@ fn standard_output() -> Outcome {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
     command.args(&words).current_dir(place.0.path());
     let piped = command.output()?;
-    ensure(piped.status.success() && !piped.stdout.is_empty(), "nothing was written")?;
+    let said = String::from_utf8_lossy(&piped.stderr);
+    let wrote = piped.status.success() && !piped.stdout.is_empty();
+    ensure(wrote, format!("nothing came through standard output: {said}"))?;
     let file = place.at("redirected");
     fs::write(&file, "before\n")?;
     let status = command.stdout(fs::OpenOptions::new().append(true).open(&file)?).status()?;
     let found = fs::read(&file)?;
-    ensure(status.success() && found == [b"before\n".as_slice(), &piped.stdout].concat(), "lost")
+    let appended = status.success() && found == [b"before\n".as_slice(), &piped.stdout].concat();
+    ensure(appended, format!("{status}; the output should follow `before` in the file"))
 }
 
-/// The issue as it was seen: `blobs` is a folder of somebody else's.
+/// A folder of another program that has a folder `blobs` and a file `manifest.json`, which are also
+/// names in a bundle. `gen` refuses to write there; with `--force` it keeps the files in `blobs`.
 fn foreign_blobs() -> Outcome {
     let place = Place::new(&FOLDERS[0])?;
     fs::create_dir_all(place.at("app/blobs"))?;
@@ -295,12 +312,13 @@ fn foreign_blobs() -> Outcome {
     fs::write(place.at("app/manifest.json"), "{ \"name\": \"An app\", \"icons\": [] }")?;
     let before = listed(&place.at("app"))?;
     place.refuses(&Place::command_line(&FOLDERS[0], "app", false), false)?;
-    ensure(listed(&place.at("app"))? == before, "something changed")?;
+    ensure(listed(&place.at("app"))? == before, "the refusing command changed `app`")?;
     place.succeeds(&Place::command_line(&FOLDERS[0], "app", true), false)?;
-    ensure(fs::read(place.at("app/blobs/picture.png"))? == MINE, "`--force` deleted a file")
+    let kept = fs::read(place.at("app/blobs/picture.png"))? == MINE;
+    ensure(kept, "`--force` changed `app/blobs/picture.png`")
 }
 
-/// One permutation does not replace all of them unless it is told to.
+/// A run that makes only a part of a bundle does not replace the whole bundle without `--force`.
 fn parts() -> Outcome {
     let place = Place::new(&FOLDERS[0])?;
     place.succeeds(&Place::command_line(&FOLDERS[0], "out", false), false)?;
@@ -312,13 +330,14 @@ fn parts() -> Outcome {
             words
         };
         let (code, said) = place.run(&words(false), false)?;
-        ensure(code == 1 && said.contains("this run would"), format!("{part:?}: {code} {said}"))?;
-        ensure(listed(&place.at("out"))? == before, "something changed")?;
+        let told = format!("{part:?} should refuse with `this run would`: exit {code}: {said}");
+        ensure(code == 1 && said.contains("this run would"), told)?;
+        ensure(listed(&place.at("out"))? == before, format!("{part:?} changed the bundle"))?;
     }
     Ok(())
 }
 
-/// `merge --manifest` looks before it writes.
+/// `merge --manifest` finds that a shard is missing before it writes anything.
 fn incomplete_merge() -> Outcome {
     let place = Place::new(&FOLDERS[0])?;
     place.succeeds(&Place::command_line(&FOLDERS[0], "whole", false), false)?;
@@ -327,6 +346,7 @@ fn incomplete_merge() -> Outcome {
     let before = listed(&place.at("whole"))?;
     let merge = ["merge", "whole", "part", "--manifest", "lamplight.toml"].map(str::to_owned);
     let (code, said) = place.run(&merge, false)?;
-    ensure(code == 3 && said.contains("a shard is missing"), format!("{code} {said}"))?;
-    ensure(listed(&place.at("whole"))? == before, "something was written")
+    let told = format!("expected exit 3 and `a shard is missing`, found {code}: {said}");
+    ensure(code == 3 && said.contains("a shard is missing"), told)?;
+    ensure(listed(&place.at("whole"))? == before, "the failing merge changed the folder `whole`")
 }

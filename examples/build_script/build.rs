@@ -1,4 +1,4 @@
-//! Compiles every permutation of `shaders/lamplight.toml` into one file beside the program.
+//! Compiles every permutation of `shaders/lamplight.toml` into one file, which the program embeds.
 
 use std::error::Error;
 use std::path::Path;
@@ -15,7 +15,8 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     compile(Path::new("shaders"), &Path::new(&out).join("shaders.lamplight"))
 }
 
-/// Writes the bundle of a package that has a manifest; an error has the diagnostics as text.
+/// Writes the bundle of a package that has a manifest. If the package does not compile, the error
+/// contains the diagnostics as text.
 pub fn compile(package: &Path, bundle: &Path) -> Result<(), Box<dyn Error>> {
     let mut sources = SourceSet::default();
     let generated = generated(package, &mut sources)

@@ -1,11 +1,12 @@
-//! Links a shader of one's own with the library by the `wesl` crate.
+//! Links a shader of your own with the library, using the `wesl` crate.
 //!
 //! ```text
 //! cargo run --example wesl_crate
 //! ```
 //!
-//! The library is read from its folder here. Its published form, the crate `lamplight_wgsl`, takes
-//! one line in place of the router: `compiler.add_package(&lamplight_wgsl::lamplight::PACKAGE)`.
+//! This example reads the library from its folder. If you use its published form, the crate
+//! `lamplight_wgsl`, one line replaces the router:
+//! `compiler.add_package(&lamplight_wgsl::lamplight::PACKAGE)`.
 
 #![allow(clippy::print_stdout)]
 
@@ -20,7 +21,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The shader with what it imports, as WGSL.
+/// The shader with everything that it imports, as WGSL.
 pub fn link() -> Result<String, Box<dyn Error>> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut files = Router::new();

@@ -1,7 +1,8 @@
-//! What hostile input goes into: each kind takes any bytes and answers with text, and must not
-//! panic, take long, or answer twice in different ways.
+//! The functions that hostile input is given to. Each takes any bytes and answers with text. It must
+//! not panic, not take long, and give the same answer to the same bytes.
 //!
-//! `cargo xtask fuzz`, the tests of `tests/regressions/` and the targets of cargo-fuzz share this.
+//! `cargo xtask fuzz`, the tests of `tests/regressions/` and the targets of cargo-fuzz share this
+//! module.
 
 #[path = "seal.rs"]
 pub mod seal;
@@ -21,13 +22,13 @@ use lamplight::resolve::{self, Packages};
 use lamplight::source::{Embedded, Memory, Package, SourceSet};
 use lamplight::validate::validate;
 
-/// A part of the crate that reads what others wrote.
+/// A part of the crate that reads input that others wrote.
 pub struct Kind {
-    /// Also the folder of its regressions.
+    /// The name of the kind, and of its folder in `tests/regressions/`.
     pub name: &'static str,
     /// Folders with valid inputs, and how the names of their files end.
     pub corpus: &'static [(&'static str, &'static str)],
-    /// Words that mean something here.
+    /// Words that have a meaning in inputs of this kind. Mutations insert them.
     pub words: &'static str,
     /// The answer to an input.
     pub run: fn(&[u8]) -> String,
@@ -95,7 +96,7 @@ const LOCK: &str = "forward shadow max_lights two_sided + # \n none hard true fa
 const RECORD: &str = "{ } [ ] : , \" is_warning code message labels notes has_warnings reflection \
     targets bytes extension native true false null 0 1 -1 4294967295 \u{1b} \u{0}";
 
-/// Several files in one input: lines `%% PATH` start all but the first, which is the root.
+/// The files of an input. The input begins with the root file; a line `%% PATH` begins the next file.
 fn files(root: &str, text: &str) -> Memory {
     let mut files = Memory::default();
     let mut path = root;
@@ -117,6 +118,7 @@ fn glsl(bytes: &[u8]) -> String {
     composed(bytes, "main.frag.glsl", Language::Glsl)
 }
 
+/// Composes and validates a text, with its entry points only and with everything in it.
 fn composed(bytes: &[u8], root: &str, language: Language) -> String {
     let text = String::from_utf8_lossy(bytes);
     let own = Package { name: "package".to_owned(), files: Box::new(files(root, &text)) };
@@ -140,7 +142,7 @@ fn composed(bytes: &[u8], root: &str, language: Language) -> String {
     answer
 }
 
-/// Every entry point in every target, each as it would ship.
+/// Compiles the first two entry points to every target, as for a bundle.
 fn compile(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let own = Package { name: "package".to_owned(), files: Box::new(files("main.wesl", &text)) };
@@ -171,11 +173,12 @@ fn compile(bytes: &[u8]) -> String {
             Err(problems) => told(&sources, &problems),
         };
     }
-    assert!(!answer.contains("[naga-internal]"), "an internal error of naga");
+    assert!(!answer.contains("[naga-internal]"), "an internal error of naga: {answer}");
     answer
 }
 
-/// A value for every name that a condition may ask for, and the axes of the library.
+/// Values for the axes of `forward`, and for the names in the conditions of the text. What a name is
+/// set to depends on its length.
 fn settings(text: &str) -> Settings {
     let mut settings =
         forward().map(|space| space.settings(&space.default_assignment())).unwrap_or_default();
@@ -194,6 +197,7 @@ fn settings(text: &str) -> Settings {
     settings
 }
 
+/// Reads a manifest and describes the permutations of its programs.
 fn manifest(bytes: &[u8]) -> String {
     let mut sources = SourceSet::default();
     let id = sources.add("lamplight.toml", String::from_utf8_lossy(bytes).into_owned());
@@ -208,6 +212,7 @@ fn manifest(bytes: &[u8]) -> String {
     }
 }
 
+/// The counts of a program's permutations. A program of at most 2,000 is also enumerated.
 fn space(space: &Space) -> String {
     let counts = format!("{} {} {}", space.full_count(), space.valid_count(), space.count());
     if space.count() > 2_000 {
@@ -218,7 +223,7 @@ fn space(space: &Space) -> String {
     format!("{counts} {} {}", keys.join(";"), cover::pairwise(space).points.len())
 }
 
-/// The largest program of the library, read once.
+/// The permutations of `forward`, the largest program of the library. They are read once.
 fn forward() -> Option<&'static Space> {
     static SPACE: OnceLock<Option<Space>> = OnceLock::new();
     let read = || {
@@ -228,6 +233,7 @@ fn forward() -> Option<&'static Space> {
     SPACE.get_or_init(read).as_ref()
 }
 
+/// Reads a key of `forward` as the compiler does, and as the loader of bundles does.
 fn key(bytes: &[u8]) -> String {
     let Some(space) = forward() else { return String::new() };
     let mut sources = SourceSet::default();
@@ -240,6 +246,7 @@ fn key(bytes: &[u8]) -> String {
     format!("{text}\n{:?}", lamplight::bundle::canonical(&axes, &sources.get(id).text))
 }
 
+/// An axis as a bundle describes it.
 fn shipped(axis: &lamplight::permute::Axis) -> lamplight::bundle::Axis {
     let values = axis.value_names();
     let default = values.get(axis.default).cloned().unwrap_or_default();
@@ -251,6 +258,7 @@ fn shipped(axis: &lamplight::permute::Axis) -> lamplight::bundle::Axis {
     }
 }
 
+/// Reads a lock file, extends it for `forward`, and turns some numbers into permutations.
 fn lock(bytes: &[u8]) -> String {
     let Some(space) = forward() else { return String::new() };
     let mut sources = SourceSet::default();
@@ -268,6 +276,7 @@ fn lock(bytes: &[u8]) -> String {
     format!("{lock}{dense:?} {points:?}")
 }
 
+/// Opens a single-file bundle, verifies it, and reads shaders from it.
 fn bundle(bytes: &[u8]) -> String {
     let bundle = match Bundle::from_bytes(bytes.to_vec()) {
         Ok(bundle) => bundle,
@@ -294,7 +303,7 @@ fn bundle(bytes: &[u8]) -> String {
     answer + &format!("{:?}", bundle.contents().map(|contents| contents.programs.len()))
 }
 
-/// In every form, since each walks the spans in its own way.
+/// The diagnostics in every form, since each form reads the spans in its own way.
 fn told(sources: &SourceSet, problems: &Diagnostics) -> String {
     [Form::Human, Form::Short, Form::Json].map(|form| render(sources, problems, form)).concat()
 }

@@ -1,4 +1,5 @@
-//! The targets of cargo-fuzz; what they call is in `kinds.rs` and `proofs.rs`.
+//! The function that the targets of cargo-fuzz call. The kinds of input are in `kinds.rs` and
+//! `proofs.rs`.
 
 mod kinds;
 mod proofs;
@@ -8,9 +9,10 @@ pub use kinds::{KINDS, Kind};
 /// Runs an input of a kind twice.
 ///
 /// # Panics
-/// Where the crate does, and where the two answers differ.
+/// If the crate panics, or if the two answers differ.
 pub fn judge(kind: &str, bytes: &[u8]) {
     for kind in KINDS.iter().chain(proofs::KINDS).filter(|known| known.name == kind) {
-        assert!((kind.run)(bytes) == (kind.run)(bytes), "two answers to one input");
+        let same = (kind.run)(bytes) == (kind.run)(bytes);
+        assert!(same, "the kind `{}` gave two answers to one input", kind.name);
     }
 }

@@ -1,5 +1,6 @@
-//! What goes into numeric cases, pictures and the language server. The crate needs its harness for these, which `cargo
-//! xtask` does without: it fuzzes the same from outside.
+//! The kinds of input for numeric cases, pictures, models and the language server. They need the
+//! crate with its feature for the harness. `cargo xtask` is built without this feature and fuzzes
+//! these kinds through the tool.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
@@ -56,7 +57,7 @@ pub const KINDS: &[Kind] = &[
 const MODULE: &str = "fn one(x: f32) -> f32 { return x; }\n\
     fn four(v: vec4f) -> f32 { return v.x; }\nfn nothing() -> f32 { return 1.0; }\n";
 
-/// A case file over a module of three functions, on the evaluator.
+/// Runs the input as a case file for a module of three functions, on the evaluator.
 fn cases(bytes: &[u8]) -> String {
     let files = [("m.wesl", MODULE.to_owned()), ("m.toml", text(bytes))];
     let files: BTreeMap<String, String> =
@@ -85,7 +86,7 @@ fn picture(bytes: &[u8]) -> String {
     Equirect::from_radiance(bytes).err().unwrap_or_default()
 }
 
-/// The document of a model, over a square and an image of one pixel.
+/// Reads a glTF model whose JSON is the input and whose binary part has a square and an image.
 fn model(bytes: &[u8]) -> String {
     let mut text = bytes.to_vec();
     text.resize(text.len().next_multiple_of(4), b' ');
@@ -100,7 +101,8 @@ fn model(bytes: &[u8]) -> String {
     }
 }
 
-/// Four corners with coordinates, two triangles, an image.
+/// The binary part of a model: four vertices with a position and texture coordinates, the indices of
+/// two triangles, and an image of one pixel.
 fn square() -> Vec<u8> {
     let corners: [[f32; 5]; 4] = [
         [-1.0, 1.0, 0.0, 0.0, 0.0],
@@ -120,7 +122,7 @@ fn square() -> Vec<u8> {
 
 const URI: &str = "file:///no/such/folder/lamp.wesl";
 
-/// What is asked after each new text, at places all over it.
+/// The requests that are made at places all over each new text.
 const QUESTIONS: &[&str] = &[
     "textDocument/hover",
     "textDocument/completion",
@@ -130,7 +132,7 @@ const QUESTIONS: &[&str] = &[
     "textDocument/prepareRename",
 ];
 
-/// What is asked after each new text about all of it.
+/// The requests that are made about each new text as a whole.
 const VIEWS: &[&str] = &[
     "textDocument/documentSymbol",
     "textDocument/formatting",
@@ -138,11 +140,11 @@ const VIEWS: &[&str] = &[
     "textDocument/codeLens",
 ];
 
-/// Places of a text at which questions are asked.
+/// The number of places in a text at which requests are made.
 const PLACES: usize = 4;
 
-/// A conversation: a line that is a JSON object is a message of the editor, and the lines between
-/// two of them are a new text of its file.
+/// Runs the input as a conversation with an editor. A line that is a JSON object is a message of the
+/// editor. The lines between two such messages are a new text of the editor's file.
 fn lsp(bytes: &[u8]) -> String {
     let mut server = Server::new(Box::new(|_| None));
     let mut answers = String::new();
@@ -166,7 +168,7 @@ fn lsp(bytes: &[u8]) -> String {
     answers
 }
 
-/// A new text, what is wrong with it, and questions about it.
+/// Sends a new text, waits for its diagnostics, and makes the requests about it.
 fn converse(server: &mut Server, new: &str, answers: &mut String) {
     let document = json!({ "uri": URI, "version": 1, "text": new });
     let opened =
@@ -193,6 +195,7 @@ fn ask(server: &mut Server, methods: &[&str], parameters: &Value, answers: &mut 
     }
 }
 
+/// Sends a message to the server and appends its answers.
 fn say(server: &mut Server, message: &Value, answers: &mut String) {
     server.receive(message).iter().for_each(|answer| answers.push_str(&answer.to_string()));
 }

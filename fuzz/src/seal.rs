@@ -1,9 +1,10 @@
-//! Checksums that are right again after a mutation, so that they do not hide what lies behind.
+//! Corrects the checksums of an input after a mutation. Otherwise the checksums would refuse the
+//! input, and the code behind them would never see it.
 
 const HEADER: usize = 24 + 6 * 32 + 16;
 
-/// A single-file bundle with the checksums of its header, sections and groups put right, as far as
-/// its tables are where they say.
+/// A single-file bundle with correct checksums of its header, sections and groups. A checksum stays
+/// as it is if the range that it belongs to lies outside of the file.
 pub fn bundle(bytes: &[u8]) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     if bytes.len() < HEADER {
@@ -27,8 +28,9 @@ pub fn bundle(bytes: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The checksum of each group, which the last 32 bytes of its record end with. How many groups
-/// there are is in the text of the first section.
+/// Corrects the checksum of each group, which is in the last 16 of the 32 bytes of the group's
+/// record. The records are at the end of the fifth section. The text of the first section says how
+/// many groups there are.
 fn groups(bytes: &mut [u8]) {
     let (Some(meta), Some(table), Some(data)) =
         (range(bytes, 24), range(bytes, 24 + 4 * 32), range(bytes, 24 + 5 * 32))
@@ -58,20 +60,21 @@ fn groups(bytes: &mut [u8]) {
     }
 }
 
-/// The bytes of the section whose record is there.
+/// The range of the section whose record is at `at`.
 fn range(bytes: &[u8], at: usize) -> Option<std::ops::Range<usize>> {
     let (start, length) = (number(bytes, at, 8)?, number(bytes, at + 8, 8)?);
     let end = start.checked_add(length)?;
     (end <= bytes.len()).then_some(start..end)
 }
 
+/// The little-endian number of `length` bytes at `at`.
 fn number(bytes: &[u8], at: usize, length: usize) -> Option<usize> {
     let bytes = bytes.get(at..at.checked_add(length)?)?;
     let value = bytes.iter().rev().fold(0u64, |value, byte| value << 8 | u64::from(*byte));
     usize::try_from(value).ok()
 }
 
-/// A record of the cache under a name.
+/// A record of the cache with the checksum that belongs to its name and its contents.
 pub fn record(name: &str, packed: &[u8]) -> Vec<u8> {
     let mut hasher = blake3::Hasher::new();
     hasher.update(&(name.len() as u64).to_le_bytes());

@@ -1,4 +1,5 @@
-//! What comes from stores: bundles whose checksums are right, and records of a cache.
+//! The kinds of input that are read from stores: bundles with correct checksums, and records of a
+//! cache.
 
 use std::sync::{Arc, Mutex};
 
@@ -10,7 +11,7 @@ use lamplight::source::SourceSet;
 
 use super::seal;
 
-/// A bundle whose checksums are put right: opened, verified, and copied into another.
+/// Corrects the checksums of a bundle, then opens it, verifies it, and merges it into a new bundle.
 pub fn sealed(bytes: &[u8]) -> String {
     let bundle = match Bundle::from_bytes(seal::bundle(bytes)) {
         Ok(bundle) => bundle,
@@ -30,11 +31,12 @@ pub fn sealed(bytes: &[u8]) -> String {
     let contents = bundle.contents();
     answer += &format!("{:?}\n", contents.as_ref().map(|contents| contents.programs.len()));
     let merged = merge(&[bundle]);
-    assert!(verified.is_ok() || merged.is_err(), "what `verify` refuses is merged");
+    let consistent = verified.is_ok() || merged.is_err();
+    assert!(consistent, "`verify` refuses the bundle, but `merge` accepts it: {verified:?}");
     answer + &format!("{:?}", merged.and_then(|all| pack(&all)).map(|bytes| bytes.len()))
 }
 
-/// One record for every name that is asked for.
+/// A storage that has the same record under every name, and keeps the names that it is asked for.
 struct Fixed {
     packed: Vec<u8>,
     asked: Arc<Mutex<Vec<String>>>,
@@ -53,7 +55,7 @@ impl Storage for Fixed {
     }
 }
 
-/// A record of a cache with the right checksum, whatever name it is asked for under.
+/// Reads the input as a record of a cache, with the correct checksum for the name it is asked for.
 pub fn record(bytes: &[u8]) -> String {
     let asked = Arc::<Mutex<Vec<String>>>::default();
     let cache = Cache::new(vec![Box::new(Fixed { packed: bytes.to_vec(), asked: asked.clone() })]);

@@ -1,6 +1,7 @@
 //! Ten times the input takes about ten times the steps, or one of our limits ends it. If a loop took
 //! quadratic time, a small file could occupy the tool for hours. The loops count their steps
-//! (`lamplight::limits::taken`). These do not depend on the speed of the machine, as times would.
+//! (`lamplight::limits::steps_taken`). These do not depend on the speed of the machine, as times
+//! would.
 
 use lamplight::bundle::Language;
 use lamplight::compose::{self, Options};

@@ -1,4 +1,5 @@
-//! Every number that a preset's picture depends on is the source's, or is marked as left open.
+//! Every number that a preset's picture depends on comes from the preset's source, or is marked as
+//! one that the source leaves open.
 
 use std::collections::BTreeSet;
 
@@ -11,8 +12,8 @@ use naga::{Expression, Function, Module, TypeInner};
 
 use super::{library, plan, said};
 
-/// Structures of uniforms, the group of a preset's numbers, and fields that are no numbers of a
-/// source: how a program is told of the scene.
+/// Structures of uniforms, the group of a preset's numbers for each, and fields that describe the
+/// scene, which a source does not give.
 const STRUCTURES: &[(&str, &str, &[&str])] = &[
     ("Light", "light", &["kind", "shadow_layer"]),
     ("Material", "material", &[]),
@@ -22,9 +23,9 @@ const STRUCTURES: &[(&str, &str, &[&str])] = &[
     ("Moments", "moments", &[]),
 ];
 
-/// What a flat shadow map from a place is drawn with.
+/// The numbers with which the shadow map of a spot light is drawn.
 const FRUSTUM: &[&str] = &["fov", "near", "far"];
-/// What can be done against acne where the map is drawn.
+/// The numbers that avoid shadow acne when the map is drawn.
 const BIAS: &[&str] = &["polygon_offset", "cull_front"];
 
 pub fn trials() -> Vec<Trial> {
@@ -34,7 +35,7 @@ pub fn trials() -> Vec<Trial> {
     ]
 }
 
-/// Numbers that the passes of a preset read, as `group.field`.
+/// The numbers that the passes of a preset read, as group and field.
 fn numbers_read(preset: &Preset) -> Result<BTreeSet<(&'static str, String)>, String> {
     let (library, plan) = (library(), plan(preset)?);
     let mut found = BTreeSet::new();
@@ -55,7 +56,7 @@ fn numbers_read(preset: &Preset) -> Result<BTreeSet<(&'static str, String)>, Str
     Ok(found)
 }
 
-/// Fields of the structures that any function of the module reads by themselves.
+/// Adds the fields of the structures that a function of the module reads one by one.
 fn read_by(
     validated: &lamplight::validate::Validated,
     found: &mut BTreeSet<(&'static str, String)>,
@@ -95,7 +96,7 @@ fn fields(
     }
 }
 
-/// What is neither given nor left open, and what is left open and not read.
+/// The numbers that are read and neither given nor open, and those that are open and not read.
 fn unaccounted(preset: &Preset) -> Result<(Vec<String>, Vec<String>), String> {
     let read = numbers_read(preset)?;
     let missing = read.iter().filter(|(group, field)| !preset.accounts_for(group, field));
@@ -114,13 +115,13 @@ fn all_accounted() -> Result<(), Failed> {
             wrong += &format!("{}: neither given nor open: {missing:?}\n", preset.name);
         }
         if !unread.is_empty() {
-            wrong += &format!("{}: open, and not read: {unread:?}\n", preset.name);
+            wrong += &format!("{}: marked as open, but not read: {unread:?}\n", preset.name);
         }
     }
     if wrong.is_empty() { Ok(()) } else { Err(wrong.into()) }
 }
 
-/// A preset that loses a number, or the mark that it is open, is told.
+/// The check notices a preset without a number or a mark, and a mark that is not needed.
 fn missing_is_noticed() -> Result<(), Failed> {
     let known = library().presets.iter().find(|preset| preset.name == "hpg_5_shadow");
     let mut preset = known.ok_or("no such preset")?.clone();
@@ -133,6 +134,10 @@ fn missing_is_noticed() -> Result<(), Failed> {
         missing.contains(&"light.color".to_owned()),
     ) {
         (true, true) if unread == ["haze.density"] => Ok(()),
-        _ => Err(format!("missing {missing:?}, unread {unread:?}").into()),
+        _ => Err(format!(
+            "expected caster.min_w and light.color to be missing, found {missing:?}; \
+             expected haze.density to be unread, found {unread:?}"
+        )
+        .into()),
     }
 }

@@ -1,4 +1,4 @@
-//! Light without shadows, against its formulas.
+//! Compares whole frames of light without shadows with its formulas.
 
 use glam::DVec3;
 use lamplight::scene::irradiance_sh9;
@@ -6,7 +6,7 @@ use lamplight::scene::irradiance_sh9;
 use super::frames::{Bench, Fragment, close};
 use super::{library, plan};
 
-/// What is asked of the frames of one painter.
+/// A property of the frames that an executor draws.
 pub type Form = fn(&Bench<'_>) -> Result<(), String>;
 
 pub const FORMS: &[(&str, Form)] = &[
@@ -16,10 +16,11 @@ pub const FORMS: &[(&str, Form)] = &[
     ("sh9", sh9),
 ];
 
-/// Pixels across and down.
+/// The width and the height of a frame, in pixels.
 const SIZE: u32 = 128;
 
-/// A cone of a hard edge straight down: a disk on the floor, as wide as its angle says.
+/// A spot light with a hard edge that points straight down lights a disk on the floor. The radius
+/// follows from its angle.
 fn spot_edge(bench: &Bench<'_>) -> Result<(), String> {
     let (height, angle) = (4.0, 0.5_f64);
     let light = DVec3::new(0.3, height, 0.2);
@@ -59,7 +60,8 @@ fn spot_edge(bench: &Bench<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// Each falloff over the whole floor, and falling along a line.
+/// Each attenuation has the values of its formula on the whole floor, and falls along a line away
+/// from the light.
 fn attenuation(bench: &Bench<'_>) -> Result<(), String> {
     type Falloff = fn(f64) -> f64;
     const RANGE: f64 = 9.0;
@@ -95,7 +97,8 @@ fn attenuation(bench: &Bench<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// The share of the sky by the normal: .95 at 26 degrees from the pole, one half at the horizon, one quarter below it.
+/// The share of the sky depends on the normal: it is 0.95 at 26 degrees from the pole, one half at
+/// the horizon, and one quarter 30 degrees below it.
 fn hemisphere(bench: &Bench<'_>) -> Result<(), String> {
     let (sky, ground) = (DVec3::new(0.2, 0.5, 1.0), DVec3::new(0.4, 0.3, 0.1));
     let numbers: super::frames::Numbers<'_> =
@@ -113,12 +116,13 @@ fn hemisphere(bench: &Bench<'_>) -> Result<(), String> {
         let found = nearest.ok_or("nothing was drawn")?;
         let weight = (found.colour / found.base - ground).dot(sky - ground)
             / (sky - ground).length_squared();
-        close(&format!("the sky's share where the normal is {height} high"), weight, share, 0.01)?;
+        close(&format!("the sky's share where the normal's y is {height}"), weight, share, 0.01)?;
     }
     Ok(())
 }
 
-/// The book's example: irradiance by the normal, and the values of its six axes.
+/// The example of the book: irradiance by the normal has the evaluated formula's values, and those
+/// that were recorded for five of the six axes.
 fn sh9(bench: &Bench<'_>) -> Result<(), String> {
     const AXES: [(DVec3, DVec3); 5] = [
         (DVec3::X, DVec3::new(0.705119, 0.669402, 0.628144)),
@@ -140,7 +144,7 @@ fn sh9(bench: &Bench<'_>) -> Result<(), String> {
         let nearest =
             fragments.iter().max_by(|a, b| a.normal.dot(axis).total_cmp(&b.normal.dot(axis)));
         let found = nearest.ok_or("nothing was drawn")?;
-        // As much as the light changes over the angle that is missing.
+        // The nearest fragment's normal is this far from the axis. The light may change that much.
         let missing = found.normal.dot(axis).clamp(-1.0, 1.0).acos();
         close(
             &format!("{axis}"),

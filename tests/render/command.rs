@@ -1,4 +1,4 @@
-//! `lamplight render` as scripts see it: files, exit codes, what is said.
+//! `lamplight render` as scripts see it: files, exit codes and messages.
 
 use std::process::{Command, Output};
 
@@ -6,7 +6,7 @@ use libtest_mimic::{Failed, Trial};
 
 use super::read;
 
-/// Arguments, the exit code, and a part of what is said on standard error.
+/// Wrong arguments, the exit code, and a part of the message on standard error.
 const WRONG: &[(&[&str], i32, &str)] = &[
     (&["oglpg_7_99"], 1, "did you mean `oglpg_7_1`?"),
     (&["hpg_4_spot", "--scene", "flor"], 1, "did you mean `floor`?"),
@@ -44,7 +44,7 @@ fn ends_with(output: &Output, code: i32, part: &str) -> Result<(), String> {
     if output.status.code() == Some(code) && said.contains(part) {
         Ok(())
     } else {
-        Err(format!("{}: {said}", output.status))
+        Err(format!("expected exit code {code} and `{part}`, {}: {said}", output.status))
     }
 }
 
@@ -56,7 +56,7 @@ fn wrong() -> Result<(), Failed> {
     Ok(())
 }
 
-/// Without a Vulkan driver the command says what to install.
+/// Without a Vulkan driver, the command ends with exit code 4 and says what to install.
 fn missing_driver() -> Result<(), Failed> {
     let output = lamplight(&["hpg_4_spot", "--size", "8x8"])
         .env("VK_DRIVER_FILES", "/nowhere.json")
@@ -64,7 +64,7 @@ fn missing_driver() -> Result<(), Failed> {
     Ok(ends_with(&output, 4, "apt-get install mesa-vulkan-drivers")?)
 }
 
-/// A picture of the size asked for, the same each time, and another with other settings.
+/// A picture has the size that was asked for, is the same each time, and differs with other settings.
 fn file() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     let draw = |name: &str, more: &[&str]| -> Result<_, String> {
@@ -95,6 +95,7 @@ fn file() -> Result<(), Failed> {
     if size && first == again && first != other {
         Ok(())
     } else {
-        Err("the pictures are not as asked for".into())
+        let what = format!("of the size 48 x 32: {size}, same twice: {}", first == again);
+        Err(format!("{what}, differs without a shadow: {}", first != other).into())
     }
 }

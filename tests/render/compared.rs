@@ -1,4 +1,5 @@
-//! Comparisons show differences: neighbours differ in as many pixels as they say.
+//! Comparisons show visible differences: neighbouring panels differ in at least the share of pixels
+//! that the comparison's table demands.
 
 use lamplight::bundle::Language;
 use lamplight::picture::strip::{self, Comparison};
@@ -7,9 +8,9 @@ use libtest_mimic::Trial;
 use super::difference::Difference;
 use super::{library, on_device, said, shot};
 
-/// Of a panel.
+/// The size of a panel.
 const SIZE: [u32; 2] = [320, 240];
-/// Twice what is just noticeable.
+/// A distance in CIELAB that is visible: twice the one that is just noticeable.
 const VISIBLE: f64 = 4.0;
 
 pub fn trials() -> Vec<Trial> {
@@ -38,5 +39,9 @@ fn neighbours_differ(comparison: &Comparison) -> Result<(), String> {
             alike.push(format!("{} and {}: {share:.4}", panels[0].label, panels[1].label));
         }
     }
-    if alike.is_empty() { Ok(()) } else { Err(format!("alike: {}", alike.join(", "))) }
+    if alike.is_empty() {
+        return Ok(());
+    }
+    let what = format!("differ in less than the share {} of the pixels", comparison.differs);
+    Err(format!("these neighbours {what}: {}", alike.join(", ")))
 }

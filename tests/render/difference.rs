@@ -1,7 +1,7 @@
-//! How different two pictures look.
+//! Measures how different two pictures look.
 //!
-//! Both are blurred by three pixels, since nobody sees a rim that moved by part of a pixel, and
-//! compared in CIELAB (1976, D65), where a distance of about 2 is just noticeable.
+//! Both are blurred over three by three pixels, since nobody sees an edge that moved by part of a
+//! pixel. They are compared in CIELAB (1976, D65), where a distance of about 2 is just noticeable.
 
 use std::path::PathBuf;
 
@@ -9,11 +9,12 @@ use lamplight::picture::Picture;
 
 use super::{read, reviewed_path};
 
-/// Largest mean distance, and the largest distance that all but a hundredth of the pixels keep.
+/// The largest mean distance of pictures that look alike.
 const MEAN: f64 = 0.6;
+/// The largest distance of pixels in pictures that look alike, apart from 1 % of the pixels.
 const MOST: f64 = 4.0;
 
-/// The distance of each pixel.
+/// The distances of the pixels of two pictures.
 pub struct Difference {
     width: u32,
     height: u32,
@@ -24,7 +25,7 @@ impl Difference {
     pub fn new(a: &Picture, b: &Picture) -> Result<Self, String> {
         if (a.width, a.height) != (b.width, b.height) {
             return Err(format!(
-                "{} x {} pixels, not {} x {}",
+                "one picture has {} x {} pixels, the other {} x {}",
                 a.width, a.height, b.width, b.height
             ));
         }
@@ -40,14 +41,14 @@ impl Difference {
         self.distances.iter().sum::<f64>() / self.distances.len() as f64
     }
 
-    /// What all but a hundredth keep.
+    /// The distance that 99 % of the pixels do not exceed.
     pub fn most(&self) -> f64 {
         let mut sorted = self.distances.clone();
         sorted.sort_by(f64::total_cmp);
         sorted[sorted.len() * 99 / 100]
     }
 
-    /// The share of the pixels that are farther apart than a distance.
+    /// The share of the pixels whose distance is larger than another.
     pub fn share(&self, distance: f64) -> f64 {
         let count = self.distances.iter().filter(|found| **found > distance).count();
         count as f64 / self.distances.len() as f64
@@ -57,7 +58,7 @@ impl Difference {
         !(self.mean() <= MEAN && self.most() <= MOST)
     }
 
-    /// White where the distance is 10 and more.
+    /// The distances as a picture, which is white where the distance is 10 or more.
     fn picture(&self) -> Picture {
         let byte = |distance: &f64| [(distance * 25.5).min(255.0) as u8; 3];
         Picture {
@@ -68,7 +69,7 @@ impl Difference {
     }
 }
 
-/// Blurred, in CIELAB.
+/// The blurred picture in CIELAB.
 fn seen(picture: &Picture) -> Vec<[f64; 3]> {
     let linear: Vec<[f64; 3]> =
         picture.pixels.chunks(3).map(|rgb| [0, 1, 2].map(|i| decoded(rgb[i]))).collect();
@@ -102,14 +103,14 @@ fn lab([r, g, b]: [f64; 3]) -> [f64; 3] {
     [116.0 * f(y) - 16.0, 500.0 * (f(x) - f(y)), 200.0 * (f(y) - f(z))]
 }
 
-/// Whether what is found is to be recorded.
+/// Whether pictures and pages that differ are recorded.
 pub fn is_recorded() -> bool {
     std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always")
 }
 
-/// A picture looks like the reviewed one of its name; where it does not, a picture of both and of
-/// their difference is left beside the test's other files. `INSTA_UPDATE=always` takes Vulkan's as
-/// the reviewed one.
+/// Fails unless a picture looks like the reviewed one of its name. Then it leaves a picture of both,
+/// and of their difference, in the folder of temporary files. `INSTA_UPDATE=always` records Vulkan's
+/// picture as the reviewed one.
 pub fn reviewed(picture: &Picture, name: &str, backend: &str) -> Result<(), String> {
     let known = read(&reviewed_path(name));
     let is_known = known.as_ref().is_ok_and(|known| {
@@ -137,7 +138,7 @@ pub fn reviewed(picture: &Picture, name: &str, backend: &str) -> Result<(), Stri
     ))
 }
 
-/// Pictures of one size, from left to right.
+/// Pictures of the same size, side by side.
 fn beside(pictures: &[&Picture]) -> Picture {
     let (width, height) = (pictures[0].width, pictures[0].height);
     let row = |y: u32| {

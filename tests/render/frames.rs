@@ -1,4 +1,4 @@
-//! Frames as numbers: what each fragment was given, and its colour.
+//! Frames as numbers: the inputs and the colour of each fragment.
 
 use glam::DVec3;
 use lamplight::bundle::Language;
@@ -11,7 +11,7 @@ use lamplight::source::SourceSet;
 use super::{library, said, shot, watched};
 use crate::fragments::{Watched, places};
 
-/// A painter with the language it draws in.
+/// An executor, and the language in which it draws.
 pub struct Bench<'a> {
     pub painter: &'a dyn Session,
     pub language: Language,
@@ -20,24 +20,24 @@ pub struct Bench<'a> {
 /// A fragment of `forward`.
 #[derive(Debug, Clone, Copy)]
 pub struct Fragment {
-    /// In the world.
+    /// The position in the world.
     pub position: DVec3,
-    /// Of unit length; the corner's where light is computed there.
+    /// The normal, of unit length. It is the vertex's if light is computed at vertices.
     pub normal: DVec3,
-    /// The surface's own colour.
+    /// The colour of the surface.
     pub base: DVec3,
-    /// As drawn, neither clamped nor encoded.
+    /// The drawn colour, neither clamped nor encoded.
     pub colour: DVec3,
 }
 
 impl Fragment {
-    /// Green over that of the surface: what white light leaves of it.
+    /// The drawn green over the surface's green. For white light, this is the light.
     pub fn light(&self) -> f64 {
         self.colour.y / self.base.y
     }
 }
 
-/// Numbers by group and field, over those of the scene.
+/// Numbers by group and field, which go before those of the scene.
 pub type Numbers<'a> = &'a [(&'a str, &'a str, &'a [f64])];
 
 impl Bench<'_> {
@@ -67,7 +67,7 @@ impl Bench<'_> {
             .map_err(said)
     }
 
-    /// With a shadow map for each of so many parts of the depth.
+    /// Prepares a frame with several shadow cascades.
     pub fn cascaded(&self, plan: &Plan, size: u32, cascades: u32) -> Result<Prepared, String> {
         let shot = Shot { cascades, ..shot([size; 2], 1, self.language) };
         prepare_passes(self.painter, &library().programs, plan, &shot).map_err(said)
@@ -114,11 +114,11 @@ pub fn uniform(prepared: &Prepared, block: &str, field: &str) -> Option<f64> {
     Some(f64::from(f32::from_le_bytes(word.try_into().ok()?)))
 }
 
-/// Fails where two numbers are further apart than a tolerance, relative above 1.
+/// Fails if two numbers differ by more than a tolerance, which is relative for numbers above 1.
 pub fn close(what: &str, found: f64, wanted: f64, tolerance: f64) -> Result<(), String> {
     if (found - wanted).abs() <= tolerance * wanted.abs().max(1.0) {
         Ok(())
     } else {
-        Err(format!("{what}: found {found}, wanted {wanted}"))
+        Err(format!("{what}: found {found}, wanted {wanted} within {tolerance:e}"))
     }
 }

@@ -1,4 +1,4 @@
-//! Models of users: files that the trials write, drawn by the command.
+//! Models of users. The trials write binary glTF files, and `lamplight render --model` draws them.
 
 mod wrong;
 
@@ -39,7 +39,8 @@ fn glb(document: &Value, buffer: &[u8]) -> Vec<u8> {
     [b"glTF".as_slice(), &2_u32.to_le_bytes(), &length, &body].concat()
 }
 
-/// A square in the plane of x and y that looks along z, its image's upper left corner at (-1, 1).
+/// A square in the plane of x and y that faces along z. The upper left corner of its image is at
+/// (-1, 1). The numbers are the position and the coordinates in the image.
 const CORNERS: [[f32; 5]; 4] = [
     [-1.0, 1.0, 0.0, 0.0, 0.0],
     [-1.0, -1.0, 0.0, 0.0, 1.0],
@@ -48,7 +49,7 @@ const CORNERS: [[f32; 5]; 4] = [
 ];
 const TRIANGLES: [u16; 6] = [0, 1, 2, 0, 2, 3];
 
-/// What a square's accessors read, with images behind.
+/// The document and the buffer of a square. The images come after the square in the buffer.
 fn square(images: &[Vec<u8>]) -> (Value, Vec<u8>) {
     let mut buffer: Vec<u8> =
         CORNERS.iter().flatten().flat_map(|number| number.to_le_bytes()).collect();
@@ -103,7 +104,7 @@ fn render(folder: &Path, file: &[u8], arguments: &[&str]) -> Result<Output, Fail
     Ok(command.output()?)
 }
 
-/// A picture of a model, and what was said on standard error.
+/// The picture of a model, and the text on standard error.
 fn drawn(file: &[u8], arguments: &[&str]) -> Result<(Picture, String), Failed> {
     let folder = TempDir::new()?;
     let output = render(folder.path(), file, arguments)?;
@@ -114,7 +115,7 @@ fn drawn(file: &[u8], arguments: &[&str]) -> Result<(Picture, String), Failed> {
     Ok((super::read(&folder.path().join("out.png"))?, said))
 }
 
-/// Right before the square, so that it fills the middle half of the picture.
+/// A camera in front of the square, which then fills the middle half of the picture.
 const BEFORE: [&str; 2] = ["--camera", "0,0,5.5,0,0,0"];
 
 fn pixel(picture: &Picture, x: f64, y: f64) -> [u8; 3] {
@@ -132,8 +133,8 @@ fn demand(holds: bool, otherwise: impl FnOnce() -> String) -> Result<(), Failed>
     if holds { Ok(()) } else { Err(otherwise().into()) }
 }
 
-/// Without light a surface has the colour that the file says: 0.25 is 137 of 255 in sRGB, 0.5 is
-/// 188, 1 is 255.
+/// An unlit surface has exactly the colour in the file: in sRGB 0.25 is 137 of 255, 0.5 is 188, and
+/// 1 is 255.
 fn unlit_colour_is_exact() -> Result<(), Failed> {
     let (mut document, buffer) = square(&[]);
     document["extensionsUsed"] = json!(["KHR_materials_unlit"]);
@@ -143,10 +144,13 @@ fn unlit_colour_is_exact() -> Result<(), Failed> {
     }]);
     let (picture, _) = drawn(&glb(&document, &buffer), &BEFORE)?;
     let found = pixel(&picture, 0.5, 0.5);
-    demand(is_near(found, [137, 188, 255], 1), || format!("{found:?}"))
+    demand(is_near(found, [137, 188, 255], 1), || {
+        format!("expected [137, 188, 255] in the middle, found {found:?}")
+    })
 }
 
-/// Wherever a model is and however large: its own view shows all of it, and not from afar.
+/// The view that is chosen for a model shows all of it, and fills a good part of the picture,
+/// wherever the model is and however large it is.
 fn all_of_it_is_seen() -> Result<(), Failed> {
     for (scale, place) in [(1.0, [0.0; 3]), (250.0, [1e4, -300.0, 77.0]), (1e-3, [0.0, 2.0, 0.0])] {
         let (mut document, buffer) = square(&[]);
@@ -165,7 +169,10 @@ fn all_of_it_is_seen() -> Result<(), Failed> {
         let covered: Vec<(u32, u32)> = covered.filter(|(x, y)| differs(*x, *y)).collect();
         let cut = covered.iter().filter(|(x, y)| [*x, *y].iter().any(|at| *at == 0 || *at == 47));
         let (all, cut) = (covered.len(), cut.count());
-        demand(cut == 0 && all > 350, || format!("{scale}: {all} pixels, {cut} at the edge"))?;
+        demand(cut == 0 && all > 350, || {
+            let found = format!("{all} pixels, {cut} of them at the edge");
+            format!("scale {scale}: {found}; expected more than 350, none at the edge")
+        })?;
     }
     Ok(())
 }
@@ -175,7 +182,7 @@ const GREEN: [u8; 3] = [0, 255, 0];
 const BLUE: [u8; 3] = [0, 0, 255];
 const WHITE: [u8; 3] = [255; 3];
 
-/// Which of red, green and blue there is, but for the white of a highlight.
+/// Which of red, green and blue a pixel has. A channel far below the largest is a highlight's white.
 fn hue(pixel: [u8; 3]) -> [bool; 3] {
     let most = pixel.into_iter().max().unwrap_or(0);
     pixel.map(|part| u32::from(part) * 4 > u32::from(most) * 3)
@@ -185,11 +192,14 @@ fn has_quarters(picture: &Picture, quarters: [[u8; 3]; 4]) -> Result<(), Failed>
     let places = [(0.4, 0.4), (0.6, 0.4), (0.4, 0.6), (0.6, 0.6)];
     for ((x, y), expected) in places.into_iter().zip(quarters) {
         let found = pixel(picture, x, y);
-        demand(hue(found) == hue(expected), || format!("({x}, {y}): {found:?}, not {expected:?}"))?;
+        demand(hue(found) == hue(expected), || {
+            format!("at ({x}, {y}): found {found:?}, expected the hue of {expected:?}")
+        })?;
     }
     Ok(())
 }
 
+/// An image is neither turned nor mirrored on the square.
 fn textures_stand_upright() -> Result<(), Failed> {
     let (mut document, buffer) = square(&[image([RED, GREEN, BLUE, WHITE])?]);
     document["materials"] =
@@ -198,7 +208,8 @@ fn textures_stand_upright() -> Result<(), Failed> {
     has_quarters(&picture, [RED, GREEN, BLUE, WHITE])
 }
 
-/// Several materials share a sheet: each square shows its own image, up to its corners.
+/// The images of several materials are packed into one texture. Each square still shows only its own
+/// image.
 fn cells_of_textures() -> Result<(), Failed> {
     let images = [image([RED; 4])?, image([GREEN; 4])?, image([BLUE; 4])?, image([WHITE; 4])?];
     let (mut document, buffer) = square(&images);
@@ -220,7 +231,7 @@ fn cells_of_textures() -> Result<(), Failed> {
     has_quarters(&picture, [RED, GREEN, BLUE, WHITE])
 }
 
-/// A mirrored square still looks at the viewer, with its image mirrored.
+/// A square that a negative scale mirrors still faces the viewer, with its image mirrored.
 fn mirrored_is_the_same() -> Result<(), Failed> {
     let (mut document, buffer) = square(&[image([RED, GREEN, BLUE, WHITE])?]);
     document["materials"] =
@@ -230,8 +241,8 @@ fn mirrored_is_the_same() -> Result<(), Failed> {
     has_quarters(&picture, [GREEN, RED, WHITE, BLUE])
 }
 
-/// The green part of a texture of normals points up in its image: lit from above, a normal that
-/// leans up is brighter than one that leans down. The file has no tangents.
+/// The green channel of a normal map points up in its image. So under light from above, a normal
+/// that leans up is brighter than one that leans down. The file has no tangents.
 fn bumps_rise() -> Result<(), Failed> {
     let (up, down) = ([128, 218, 218], [128, 37, 218]);
     let (mut document, buffer) = square(&[image([up, up, down, down])?]);
@@ -240,7 +251,7 @@ fn bumps_rise() -> Result<(), Failed> {
     document["extensions"] = json!({ "KHR_lights_punctual": { "lights": [
         { "type": "directional", "intensity": 3.0 },
     ] } });
-    // Turned about x by -45 degrees: it shines down and away from the viewer.
+    // The light is turned about x by -45 degrees, so it shines down and away from the viewer.
     let (sin, cos) = (std::f64::consts::PI / 8.0).sin_cos();
     let turn = [-sin, 0.0, 0.0, cos];
     document["nodes"] = json!([
@@ -250,10 +261,13 @@ fn bumps_rise() -> Result<(), Failed> {
     document["scenes"] = json!([{ "nodes": [0, 1] }]);
     let (picture, _) = drawn(&glb(&document, &buffer), &BEFORE)?;
     let (above, below) = (pixel(&picture, 0.5, 0.4), pixel(&picture, 0.5, 0.6));
-    demand(above[1] > below[1] + 40, || format!("{above:?} above, {below:?} below"))
+    demand(above[1] > below[1] + 40, || {
+        format!("{above:?} above should be brighter than {below:?} below, by more than 40")
+    })
 }
 
-/// The file's own lamp and camera are taken: a lamp behind the square leaves it in the dark.
+/// The lamp and the camera of the file are used. A lamp in front of the square lights it, and one
+/// behind it does not.
 fn lamp_and_camera() -> Result<(), Failed> {
     let lit = |z: f64| -> Result<[u8; 3], Failed> {
         let (mut document, buffer) = square(&[]);
@@ -274,21 +288,26 @@ fn lamp_and_camera() -> Result<(), Failed> {
         Ok(pixel(&picture, 0.5, 0.5))
     };
     let (before, behind) = (lit(3.0)?, lit(-3.0)?);
-    demand(before[0] > 60 && before[1] < 20, || format!("{before:?} before it"))?;
-    demand(behind.iter().all(|part| *part < 20), || format!("{behind:?} behind it"))
+    demand(before[0] > 60 && before[1] < 20, || {
+        format!("a red lamp in front should light the square red, found {before:?}")
+    })?;
+    demand(behind.iter().all(|part| *part < 20), || {
+        format!("a lamp behind should leave the square dark, found {behind:?}")
+    })
 }
 
+/// A note names the parts of the file that are not drawn.
 fn what_is_left_out_is_said() -> Result<(), Failed> {
     let (mut document, buffer) = square(&[image([WHITE; 4])?]);
     document["materials"] = json!([{ "emissiveTexture": { "index": 0 }, "alphaMode": "BLEND" }]);
     let (_, said) = drawn(&glb(&document, &buffer), &[])?;
     for part in ["note: `model.glb`: ", "textures of emission", "transparency"] {
-        demand(said.contains(part), || format!("`{part}` is not in `{said}`"))?;
+        demand(said.contains(part), || format!("expected `{part}` in `{said}`"))?;
     }
     Ok(())
 }
 
-/// The user's axes go before those of the model, also where they exclude these.
+/// The user's settings go before those that the model asks for, even if they exclude these.
 fn choices_of_the_user() -> Result<(), Failed> {
     let (document, buffer) = square(&[]);
     let folder = TempDir::new()?;
@@ -296,7 +315,10 @@ fn choices_of_the_user() -> Result<(), Failed> {
         let output = render(folder.path(), &glb(&document, &buffer), &["--set", set])?;
         let told = String::from_utf8_lossy(&output.stdout).into_owned();
         let is_taken = output.status.success() && told.contains(key);
-        demand(is_taken, || format!("{told}{}", String::from_utf8_lossy(&output.stderr)))?;
+        demand(is_taken, || {
+            let found = format!("{told}{}", String::from_utf8_lossy(&output.stderr));
+            format!("expected success and `{key}`, {}: {found}", output.status)
+        })?;
     }
     Ok(())
 }

@@ -1,5 +1,6 @@
-//! What pictures take from axes is complete: a value without a row and a uniform without a number
-//! are errors that name it.
+//! `shaderlib/pictures.toml` says what pictures need for each value of an axis. A value without a row
+//! and a uniform without a number are errors that name it. Otherwise a picture would silently be
+//! drawn with zeros.
 
 use lamplight::bundle::{Binding, Kind, Member};
 use lamplight::diagnostic::render::{Form, render};
@@ -9,7 +10,7 @@ use libtest_mimic::{Failed, Trial};
 
 use super::library;
 
-/// A change of `pictures.toml`, and what is said of it.
+/// A mistake in `pictures.toml` (a text and what replaces it), and a part of the error.
 const MISTAKES: &[(&str, &str, &str)] = &[
     ("evsm]", "evms]", "axis `shadow` has no value `evms`"),
     ("exp2 = { background = \"haze\" }", "", "no row for `fog=exp2`"),
@@ -26,6 +27,7 @@ pub fn trials() -> Vec<Trial> {
     ]
 }
 
+/// Each mistake in the table gives its error.
 fn rows_are_demanded() -> Result<(), Failed> {
     let right = std::fs::read_to_string("shaderlib/pictures.toml")?;
     for (from, to, expected) in MISTAKES {
@@ -36,12 +38,17 @@ fn rows_are_demanded() -> Result<(), Failed> {
         let said = problems.map(|problems| render(&texts, &problems, Form::Short));
         match said {
             Some(said) if wrong != right && said.contains(expected) => {}
-            other => return Err(format!("`{from}` as `{to}`: {other:?}").into()),
+            other => {
+                let what = format!("expected `{expected}`, found {other:?}");
+                return Err(format!("`{from}` replaced by `{to}`: {what}").into());
+            }
         }
     }
     Ok(())
 }
 
+/// A uniform without a number, or with too few components, is an error. Otherwise the numbers are in
+/// their places, with zeros only as padding.
 fn numbers_are_demanded() -> Result<(), Failed> {
     let member = |name: &str, offset| Member {
         name: name.to_owned(),
@@ -64,14 +71,19 @@ fn numbers_are_demanded() -> Result<(), Failed> {
     let numbers = |count: usize| {
         move |path: &str| (count > 0 || path == "haze.color").then(|| vec![1.0; count.max(3)])
     };
-    let unknown = pack_buffer(&binding, &numbers(0)).err().ok_or("a field is left 0")?;
+    let unknown =
+        pack_buffer(&binding, &numbers(0)).err().ok_or("`haze.tint` without a number is 0")?;
     let enough = pack_buffer(&binding, &numbers(3)).map_err(|problem| problem.message)?;
-    let short =
-        pack_buffer(&binding, &|_| Some(vec![1.0; 2])).err().ok_or("a component is left 0")?;
+    let short = pack_buffer(&binding, &|_| Some(vec![1.0; 2])).err();
+    let short = short.ok_or("the third of three components is 0, without an error")?;
     let is_one = |at: usize| enough[at..at + 4] == 1.0_f32.to_le_bytes();
     let is_packed = is_one(8) && is_one(24) && enough[12..16] == [0; 4];
     match unknown.message.contains("haze.tint") && short.message.contains("2 of 3") && is_packed {
         true => Ok(()),
-        false => Err(format!("{}; {}; {enough:?}", unknown.message, short.message).into()),
+        false => {
+            let errors = format!("`{}`, `{}`", unknown.message, short.message);
+            let what = "expected errors with `haze.tint` and `2 of 3`, and ones at 8 and 24";
+            Err(format!("{what}; found {errors} and the bytes {enough:?}").into())
+        }
     }
 }

@@ -10,8 +10,8 @@ use libtest_mimic::{Failed, Trial};
 use super::difference::{Difference, is_recorded};
 use super::{library, on_device, plan, read, reviewed_path, said, shot, start};
 
-/// Presets that the evaluator draws too: shading at vertices and fragments, textures, cube maps, a
-/// flat and a cube shadow map, blurred moments, both sides.
+/// Presets that the evaluator draws too. They have shading at vertices and at fragments, textures,
+/// cube maps, flat and cube shadow maps, blurred moments, and surfaces with two sides.
 const DRAWN: &[&str] = &[
     "hpg_1_vertex",
     "hpg_5_shadow",
@@ -36,7 +36,7 @@ pub fn trials() -> Vec<Trial> {
     drawn.chain(others).collect()
 }
 
-/// The evaluator's picture is that of Vulkan.
+/// The evaluator's picture looks like Vulkan's.
 fn without_driver(name: &str) -> Result<(), Failed> {
     let preset =
         library().presets.iter().find(|preset| preset.name == name).ok_or("no such preset")?;
@@ -47,25 +47,27 @@ fn without_driver(name: &str) -> Result<(), Failed> {
             .map_err(said)?;
         let difference = Difference::new(&wanted, &found)?;
         let (mean, most) = (difference.mean(), difference.most());
-        // Edges are drawn once, so that a pixel may fall to either side.
+        // There is one sample for each pixel, so a pixel at an edge may belong to either side.
         if mean < 0.3 && most < 8.0 {
             Ok(())
         } else {
-            Err(format!("{mean:.2} apart on average, {most:.1} for all but 1 %"))
+            let found = format!("{mean:.2} on average, {most:.1} for all but 1 %");
+            Err(format!("the pictures differ by {found}, expected below 0.3 and 8"))
         }
     })
 }
 
-/// The large pictures that people look at.
+/// The folder of the large pictures.
 const GALLERY: &str = "docs/gallery";
-/// How often a reviewed picture goes into the smaller form of a large one.
+/// The smaller form of a large picture is three times as wide as the reviewed picture.
 const TIMES: u32 = 3;
-/// A large picture has finer edges, and where its shadow map is finer, finer shadows.
+/// The largest mean distance, and the largest distance of 99 % of the pixels. They are larger than
+/// for reviewed pictures, since large pictures have finer edges and some have finer shadows.
 const FINER: (f64, f64) = (2.0, 14.0);
 
-/// The committed pages say what the presets are and compose to now. Every large picture was drawn
-/// from the settings and texts of now, and looks as the reviewed small one does.
-/// `INSTA_UPDATE=always` writes the pages, and no picture.
+/// The gallery is current: its pages have the presets and their composed texts, and every large
+/// picture was drawn from the present settings and texts and looks like the reviewed small one.
+/// `INSTA_UPDATE=always` writes the pages, but no picture.
 fn gallery_is_current() -> Result<(), Failed> {
     let cards = library()
         .presets
@@ -88,7 +90,7 @@ fn gallery_is_current() -> Result<(), Failed> {
         if found != wanted && is_recorded() {
             lamplight::output::write(&folder.join(&path), wanted.as_bytes())?;
         } else if found != wanted {
-            stale.push(format!("{path} has another text"));
+            stale.push(format!("{path} should have another text"));
         }
     }
     let adapters = std::fs::read_to_string(folder.join("adapters.txt"))?;
@@ -113,7 +115,8 @@ fn gallery_is_current() -> Result<(), Failed> {
     Err(format!("the gallery is not current, run `{command}`:\n{}", stale.join("\n")).into())
 }
 
-/// How the large picture and its smaller form differ from the reviewed one.
+/// The difference of a large picture and its smaller form from the reviewed picture, if it is too
+/// large.
 fn changed(folder: &Path, name: &str) -> Result<Option<String>, String> {
     let [large, thumb] = gallery::picture_files(name).map(|file| folder.join(file));
     let head = std::fs::read(&large).map_err(|error| format!("{}: {error}", large.display()))?;
@@ -121,7 +124,9 @@ fn changed(folder: &Path, name: &str) -> Result<Option<String>, String> {
     let number = |at: usize| head.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
     let size = [16, 20].map(|at| number(at).map_or(0, u32::from_be_bytes));
     if size != gallery::SIZE || !is_own_png(&head) {
-        return Ok(Some(format!("{name}.png has {size:?} pixels")));
+        let expected = gallery::SIZE;
+        let what = format!("expected {expected:?} and a picture of `render`");
+        return Ok(Some(format!("{name}.png has {size:?} pixels, {what}")));
     }
     let wanted = read(&reviewed_path(name))?;
     let difference = Difference::new(&wanted, &read(&thumb)?.shrunk(TIMES))?;
@@ -139,7 +144,8 @@ fn png_round_trip() -> Result<(), Failed> {
     if read == picture { Ok(()) } else { Err("the picture came back changed".into()) }
 }
 
-/// A Radiance file of two by one pixels, written by hand: a shared exponent for each.
+/// A Radiance file of two by one pixels, written by hand, has its radiance: three mantissas and one
+/// shared exponent for each pixel. Files that are cut or too large are refused.
 fn radiance_file() -> Result<(), Failed> {
     let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n".to_vec();
     bytes.extend([128, 64, 32, 129, 128, 128, 128, 132]);
@@ -151,19 +157,21 @@ fn radiance_file() -> Result<(), Failed> {
         .zip(&wanted)
         .all(|(a, b)| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 0.01 * b));
     if radiance.len() != 2 || !close {
-        return Err(format!("{radiance:?}").into());
+        return Err(format!("expected {wanted:?}, found {radiance:?}").into());
     }
     for wrong in
         [&bytes[..20], &bytes[..bytes.len() - 3], b"", b"#?RADIANCE\n\n-Y 99999999 +X 99999999\n"]
     {
         if Equirect::from_radiance(wrong).is_ok() {
-            return Err(format!("{} bytes were taken for an image", wrong.len()).into());
+            let text = String::from_utf8_lossy(wrong);
+            return Err(format!("a broken file was read as an image: {text:?}").into());
         }
     }
     Ok(())
 }
 
-/// The comparison sees a shadow that is missing, and does not see a rim that is moved a little.
+/// The comparison of pictures notices a shadow that is missing, and does not notice an edge that is
+/// moved by a fifth of a pixel.
 fn difference_is_seen() -> Result<(), Failed> {
     let disk = |middle: f64, shade: u8| {
         let inside =
@@ -180,6 +188,8 @@ fn difference_is_seen() -> Result<(), Failed> {
     if seen && unseen && same {
         Ok(())
     } else {
-        Err(format!("seen {seen}, unseen {unseen}, same {same}").into())
+        let what = format!("a missing shadow is noticed: {seen}");
+        let what = format!("{what}, a moved edge is not: {unseen}");
+        Err(format!("{what}, equal pictures are equal: {same}; all should be true").into())
     }
 }

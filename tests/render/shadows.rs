@@ -1,4 +1,4 @@
-//! Shadows of whole frames, against rays.
+//! Compares shadows in whole frames with rays from fragments to the light.
 
 use glam::{DMat4, DVec3};
 use lamplight::picture::Prepared;
@@ -15,12 +15,12 @@ pub const FORMS: &[(&str, Form)] = &[
     ("cascades", cascades),
 ];
 
-/// Pixels across and down.
+/// The width and the height of a frame, in pixels.
 const SIZE: u32 = 128;
 const DIRECTIONAL: &str =
     "ambient=none,lights=directional,max_lights=1,shadow_light=directional,specular=none";
 
-/// The casters as rays meet them.
+/// The objects of the scene `casters`, in the form in which rays are tested against them.
 struct Casters {
     floor_half: f64,
     ball: DVec3,
@@ -29,7 +29,7 @@ struct Casters {
     ring: DVec3,
 }
 
-/// Whether something stands in the way, where that is certain.
+/// Whether an object blocks a ray. Near the edge of an object that is unclear.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Way {
     Clear,
@@ -58,7 +58,7 @@ impl Casters {
         }
     }
 
-    /// How near the ray passes to the middle of the ball, where it goes towards it.
+    /// The distance at which a ray passes the centre of the ball, if it goes towards it.
     fn beside_ball(&self, from: DVec3, towards: DVec3) -> Option<f64> {
         let to = self.ball - from;
         (to.dot(towards) > 0.0).then(|| to.cross(towards).length())
@@ -89,7 +89,7 @@ impl Casters {
         }
     }
 
-    /// The ring is between its middle and the ball around it.
+    /// The ring lies within a ball around its centre. A ray that meets this ball is unclear.
     fn of_ring(&self, from: DVec3, towards: DVec3) -> Way {
         let to = self.ring - from;
         let near = to.cross(towards).length() < 1.1 && (to.dot(towards) > 0.0 || to.length() < 1.1);
@@ -101,7 +101,7 @@ impl Casters {
             return Way::Clear;
         }
         if from.y < margin {
-            // Where a caster touches the floor, the place that is looked up may be below it.
+            // Near the floor, the place that is looked up in the map may be below the floor.
             return Way::Unclear;
         }
         let at = from - towards * (from.y / towards.y);
@@ -123,7 +123,7 @@ impl Casters {
             self.of_box(from, towards, margin),
             self.of_ring(from, towards),
         ];
-        // What lies on a caster is not asked of the same: it is lit on this side.
+        // An object does not shadow itself here: only fragments that face the light are tested.
         let on_ball = from.distance(self.ball) < 1.02;
         let on_floor = fragment.position.y < 1e-3;
         let on_box = !on_floor
@@ -144,12 +144,12 @@ fn casters() -> Result<Casters, String> {
     sets::scene("casters").map(|scene| Casters::new(&scene)).ok_or_else(|| "no casters".to_owned())
 }
 
-/// What a shadow leaves of the light: the colour over that without it.
+/// The share of the light that a shadow leaves.
 fn visibility(fragment: &Fragment, towards: DVec3) -> f64 {
     fragment.light() / fragment.normal.dot(towards)
 }
 
-/// Directional light from all eight octants: every fragment is lit or not as its ray says.
+/// With light from each of the eight octants, every fragment is lit or dark as its ray says.
 fn octants(bench: &Bench<'_>) -> Result<(), String> {
     let casters = casters()?;
     for index in 0..8 {
@@ -178,23 +178,23 @@ fn octants(bench: &Bench<'_>) -> Result<(), String> {
                 wrong.push(*fragment);
             }
         }
-        // From below, the floor is before everything.
+        // From below, the floor is in front of everything, so hardly anything is lit.
         let enough = counts[0] > 100 && (towards.y < 0.0 || counts[1] > 1000);
         if !wrong.is_empty() || !enough {
             let [dark, lit] = counts;
             return Err(format!(
-                "light from {towards}: of {dark} dark and {lit} lit fragments are wrong {wrong:.3?}"
+                "light from {towards}: {dark} dark and {lit} lit fragments, wrong are {wrong:.3?}"
             ));
         }
     }
     Ok(())
 }
 
-/// The light of the following: from the left, so that the ball's shadow is on the floor alone.
+/// The direction to the light in the trials below. The ball's shadow then falls only on the floor.
 const TOWARDS: DVec3 = DVec3::new(-0.3, 0.8, 0.25);
 
-/// Fragments of the floor that the ball alone may shadow, each with its distance from the border
-/// in the map and its visibility.
+/// The fragments of the floor that only the ball can shadow, each with its distance from the border
+/// of the shadow and its visibility; and the size of a texel of the map.
 fn around_ball(
     bench: &Bench<'_>,
     shadow: &str,
@@ -224,11 +224,11 @@ fn around_ball(
     Ok((measured.collect(), texel))
 }
 
-/// The border of a hard shadow is where the ball's rim is, within a texel of the map.
+/// The border of a hard shadow is at the ball's outline, within a texel of the map.
 fn border(bench: &Bench<'_>) -> Result<(), String> {
     let numbers: Numbers<'_> = &[("depth_pass", "polygon_offset", &[1.0, 4.0])];
     let (measured, texel) = around_ball(bench, "hard", numbers)?;
-    // The ball has corners: its faces are this much inside.
+    // The ball is a polyhedron, whose faces are this much inside of the sphere.
     let faces = 1.0 - (std::f64::consts::PI / 48.0).cos();
     let wrong = measured.iter().filter(|(distance, visible)| match distance {
         d if *d > texel => *visible < 0.99,
@@ -247,8 +247,8 @@ fn border(bench: &Bench<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// A plane that nothing shadows is lit all over, whichever way its depth is kept apart; without any
-/// it is not.
+/// A plane that nothing shadows is lit everywhere, with each of the ways to avoid shadow acne.
+/// Without any of them it is not.
 fn acne(bench: &Bench<'_>) -> Result<(), String> {
     const WAYS: [(&str, Numbers<'_>); 5] = [
         ("nothing", &[("depth_pass", "polygon_offset", &[0.0, 0.0])]),
@@ -287,13 +287,14 @@ fn acne(bench: &Bench<'_>) -> Result<(), String> {
             lit.iter().filter(|fragment| visibility(fragment, towards(fragment)) < 0.999).count();
         let fails = if name == "nothing" { dark < lit.len() / 20 } else { dark > 0 };
         if lit.len() < 1000 || fails {
-            return Err(format!("with {name}, {dark} of {} fragments are in shadow", lit.len()));
+            let found = format!("{dark} of {} fragments are in shadow", lit.len());
+            return Err(format!("with {name}, {found}: expected none, with `nothing` 5 %"));
         }
     }
     Ok(())
 }
 
-/// From the dark to the light, filtered shadows never get darker.
+/// Filtered shadows never get darker on the way from the dark to the lit side.
 fn penumbra(bench: &Bench<'_>) -> Result<(), String> {
     for shadow in ["pcf_3x3", "pcf_5x5", "pcf_castano_5", "vsm"] {
         let (measured, texel) = around_ball(bench, shadow, &[])?;
@@ -311,14 +312,15 @@ fn penumbra(bench: &Bench<'_>) -> Result<(), String> {
             (means.first().copied().unwrap_or(1.0), means.last().copied().unwrap_or(0.0));
         let between = means.iter().filter(|mean| **mean > 0.02 && **mean < 0.98).count();
         if !rises || first > 0.05 || last < 0.95 || between < 3 {
-            return Err(format!("{shadow} goes from dark to light by {means:.3?}"));
+            return Err(format!("{shadow} should rise from 0 to 1 over the border: {means:.3?}"));
         }
     }
     Ok(())
 }
 
-/// Each part of the viewer's depth has a map of its own, finer than one of the whole scene, in
-/// which every fragment is lit or not as its ray says; together they are the picture.
+/// With cascades, each part of the viewer's depth has a map of its own, and the nearest is finer than
+/// one map of the whole scene. In each part, every fragment is lit or dark as its ray says. Together
+/// the parts give the picture.
 fn cascades(bench: &Bench<'_>) -> Result<(), String> {
     let (casters, towards) = (casters()?, TOWARDS.normalize());
     let axis = (-towards).to_array();
@@ -338,7 +340,8 @@ fn cascades(bench: &Bench<'_>) -> Result<(), String> {
         (texel(&nearest)?, texel(&single)?, bench.fragments_of(&single, SIZE)?.len());
     if slices.len() != 3 || fine > 0.8 * coarse || fragments < whole {
         return Err(format!(
-            "{} slices, texels of {fine} and {coarse}, {fragments} of {whole} fragments",
+            "{} cascades, expected 3; texels of {fine}, {coarse} with one map; {fragments} \
+             fragments of {whole}",
             slices.len()
         ));
     }
@@ -349,7 +352,7 @@ fn texel(prepared: &Prepared) -> Result<f64, &'static str> {
     uniform(prepared, "caster", "texel").ok_or("no texel")
 }
 
-/// Fragments that face the light are lit exactly where the way to the light is clear.
+/// Fails unless fragments that face the light are lit exactly if the ray to the light is clear.
 fn judge_slice(
     casters: &Casters,
     seen: &[Fragment],
@@ -367,13 +370,12 @@ fn judge_slice(
         wrong += usize::from((visibility(fragment, towards) - wanted as f64).abs() > 0.01);
     }
     if wrong > 0 || counts[1] < 100 {
-        return Err(format!("of {counts:?} dark and lit fragments of a slice {wrong} are wrong"));
+        return Err(format!("of {counts:?} dark and lit fragments of a cascade {wrong} are wrong"));
     }
     Ok(())
 }
 
-/// The picture with several maps is that with one map, but for the borders of shadows, which are
-/// elsewhere within a texel.
+/// Fails unless the picture with cascades is that with one map, apart from the borders of shadows.
 fn compare_pictures(
     bench: &Bench<'_>,
     nearest: &Prepared,
@@ -391,7 +393,7 @@ fn compare_pictures(
         apart += usize::from(!is_alike);
     }
     if 25 * apart > drawn {
-        Err(format!("{apart} of {drawn} pixels differ from those with one map"))
+        Err(format!("{apart} of {drawn} pixels differ from one map's, at most 4 % may"))
     } else {
         Ok(())
     }

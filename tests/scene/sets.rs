@@ -1,4 +1,4 @@
-//! Shapes, scenes and environments are what they say.
+//! Shapes, scenes and environments are valid: volumes, normals, radiance.
 
 use std::f64::consts::PI;
 
@@ -8,7 +8,7 @@ use lamplight::scene::{Shape, sets};
 
 use super::{Outcome, close, near};
 
-/// Shapes have the volume of what they are, which is negative where they are inside out.
+/// Shapes have the volumes of their formulas. The volume would be negative if faces were inside out.
 pub fn volumes() -> Outcome {
     let volume = |shape: &Shape| -> f64 {
         let corner = |index: u32| shape.vertices[index as usize].position;
@@ -23,7 +23,8 @@ pub fn volumes() -> Outcome {
     near("a ball", volume(&Shape::sphere(2.0, (96, 48))), 4.0 / 3.0 * PI * 8.0, 0.1)?;
     near("a ring", volume(&Shape::torus(2.0, 0.5, (96, 48))), 2.0 * PI * PI * 2.0 * 0.25, 0.05)?;
     near("a box", volume(&Shape::cuboid(DVec3::new(1.0, 2.0, 3.0), 3)), 48.0, 1e-9)?;
-    // Open at their ends, of which one is at the origin and the other is missing a cone.
+    // These two are open at their ends. One end is at the origin, where it adds nothing; at the other
+    // the sum lacks a cone, a third of the volume.
     near("a can", volume(&Shape::lathe(&can, (96, 24))), PI * 2.0 * 2.0 / 3.0, 0.02)?;
     near("a pipe", volume(&Shape::tube(&pipe, (96, 24))), PI * 0.25 * 2.0 * 2.0 / 3.0, 0.02)?;
     let moved = Shape::sphere(1.0, (24, 12))
@@ -31,13 +32,15 @@ pub fn volumes() -> Outcome {
     near("a larger ball", volume(&moved), 4.0 / 3.0 * PI * 8.0, 1.5)
 }
 
-/// A scene has something to show.
+/// What is wrong with a scene that has nothing to show.
 pub fn nothing_is_shown(objects: &[sets::Object]) -> Option<String> {
     let corners: usize = objects.iter().map(|object| object.shape.vertices.len()).sum();
-    (corners < 3).then(|| format!("{} objects have {corners} corners", objects.len()))
+    (corners < 3).then(|| {
+        format!("its {} objects have {corners} vertices, expected at least 3", objects.len())
+    })
 }
 
-/// Normals of corners are of unit length and look where the faces around them do.
+/// Normals of vertices have unit length, and point to the same side as the faces around them.
 pub fn scenes() -> Outcome {
     for sets::Set { name, make, .. } in sets::ALL {
         if let Some(problem) = nothing_is_shown(&make().objects) {
@@ -54,7 +57,7 @@ pub fn scenes() -> Outcome {
                     near(name, vertex.normal.length(), 1.0, 1e-9)?;
                     if vertex.normal.dot(*face) < 0.0 {
                         return Err(format!(
-                            "{name}: at {} the normal looks to the other side of the face",
+                            "{name}: at {} the normal points to the back of its face",
                             vertex.position
                         )
                         .into());
@@ -68,13 +71,15 @@ pub fn scenes() -> Outcome {
     Ok(())
 }
 
-/// Environments shine, are finite, and the constant one has the coefficients of a constant.
+/// Environments have positive, finite radiance from everywhere, and the constant one has the
+/// irradiance of a constant sky.
 pub fn environments() -> Outcome {
     for (name, _, environment) in scene::ENVIRONMENTS {
         for (direction, _) in scene::directions(24) {
             let radiance = environment(direction);
             if !(radiance.is_finite() && radiance.min_element() > 0.0) {
-                return Err(format!("{name}: {radiance} from {direction}").into());
+                let what = "should be positive and finite";
+                return Err(format!("{name}: {radiance} from {direction} {what}").into());
             }
         }
     }

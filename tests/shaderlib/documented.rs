@@ -1,10 +1,10 @@
-//! Every function says what it computes, of what, and where that is from.
+//! Every function's documentation says what it computes, from which parameters, and by which source.
 
 use libtest_mimic::Failed;
 
 use super::{Function, functions, read};
 
-/// The parts every function's documentation has, each at the start of a line.
+/// The parts that every function's documentation has. Each starts a line.
 const DOC_PARTS: [&str; 5] = ["Parameters: ", "Returns: ", "Source: ", "Edges: ", "Error model: "];
 
 pub fn functions_are_documented(module: &str) -> Result<(), Failed> {
@@ -16,7 +16,7 @@ pub fn functions_are_documented(module: &str) -> Result<(), Failed> {
     if faults.is_empty() { Ok(()) } else { Err(faults.join("\n").into()) }
 }
 
-/// What the comments of a module's functions lack.
+/// The parts that the documentation of a module's functions lacks.
 pub fn undocumented(module: &str) -> Vec<String> {
     functions(module).iter().flat_map(faults).collect()
 }

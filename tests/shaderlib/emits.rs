@@ -1,4 +1,4 @@
-//! Every function of a module, reached from an entry point and written for every kind of target.
+//! Writes a module for every kind of target, with an entry point that calls every function.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use naga::proc::BoundsCheckPolicies;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 
-/// Writes a module, given its text in WGSL, for every kind of target. Gives the GLSL texts with their versions.
+/// Writes a module, given as WGSL, for every kind of target. Gives the GLSL texts with their versions.
 pub fn emits(text: &str) -> Result<Vec<(glsl::Version, String)>, Failed> {
     let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
@@ -56,7 +56,7 @@ fn write_glsl(
     Ok(text)
 }
 
-/// An entry point that calls each function with zeros, and the textures and samplers they take.
+/// An entry point that calls each function with zeros, or with textures and samplers.
 pub fn entry(functions: &[(String, Vec<String>)]) -> String {
     let mut resources = BTreeMap::new();
     let mut calls = String::new();
@@ -78,7 +78,8 @@ pub fn entry(functions: &[(String, Vec<String>)]) -> String {
     )
 }
 
-/// A zero, or the name of a texture or sampler. A position takes one of its own: GL pairs each texture with one sampler.
+/// A zero, or the name of a texture or sampler. Each position in a list of parameters has its own,
+/// because GL pairs each texture with only one sampler.
 fn argument(ty: &str, index: usize, resources: &mut BTreeMap<String, String>) -> String {
     if !ty.starts_with("texture") && !ty.starts_with("sampler") {
         return format!("{ty}()");

@@ -1,4 +1,4 @@
-//! Both languages have the same functions.
+//! The twins of a module, in WESL and in GLSL, have the same functions.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,8 @@ use naga::{Handle, Module, Type, TypeInner};
 
 use super::{functions, parse_glsl, parse_wesl, read};
 
-/// Structures are compared where a function takes or gives them.
+/// The functions of a module have the same comments and signatures in both languages. Structures are
+/// compared as part of signatures.
 pub fn twins_agree(module: &str) -> Result<(), Failed> {
     let documented = |path: String| -> Vec<(String, Vec<String>)> {
         functions(&read(&path)).into_iter().map(|f| (f.name, f.doc)).collect()
@@ -23,7 +24,7 @@ pub fn twins_agree(module: &str) -> Result<(), Failed> {
     same("signatures", &own(parse_wesl(module)?), &own(parse_glsl(module)?))
 }
 
-/// Each function's parameters and result, by its name.
+/// The parameters and the result of each function, by name.
 fn signatures(module: &Module) -> BTreeMap<String, String> {
     let functions = module.functions.iter().map(|(_, function)| {
         let name = |name: &Option<String>| name.clone().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! What keeps a surface from shadowing itself.
+//! Ways to keep a surface from shadowing itself, which is called shadow acne.
 
 use glam::{DVec3, DVec4};
 use lamplight::execute::fixture::Compare;
@@ -6,7 +6,8 @@ use lamplight::execute::fixture::Compare;
 use super::lights::{look_at, orthographic};
 use super::{Run, comparing, depths, flip, reversal};
 
-/// The depth that is stored is lit; its neighbours in f32 fall on their sides.
+/// A receiver at exactly the stored depth is lit. The next f32 numbers above and below it are lit or
+/// dark as their side demands.
 pub fn equal_depth_is_lit(run: &mut Run<'_>) -> Result<(), String> {
     let map = depths(8, |u, v| (u * 7.31 + v * 3.77).fract() * 0.9 + 0.05);
     for (compare, nearer, farther) in
@@ -25,7 +26,7 @@ pub fn equal_depth_is_lit(run: &mut Run<'_>) -> Result<(), String> {
         let found = run.call("stored", Some((map.clone(), comparing(compare, false))), &rows)?;
         if let Some(wrong) = (0..rows.len()).find(|index| found[*index] != expected[*index]) {
             return Err(format!(
-                "{compare:?} {:?}: {}, not {}",
+                "{compare:?} with u, v, depth {:?}: found {}, expected {}",
                 rows[wrong], found[wrong], expected[wrong]
             ));
         }
@@ -33,8 +34,8 @@ pub fn equal_depth_is_lit(run: &mut Run<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// A sloped receiver shadows itself without a bias, and not with half a texel's bias along its
-/// slope; what is well behind it stays dark.
+/// A sloped receiver shadows itself without a bias. With a bias of half a texel along its slope it
+/// does not, and a receiver well behind it stays dark.
 pub fn bias_removes_acne(run: &mut Run<'_>) -> Result<(), String> {
     for slope in [0.1, 0.4, 0.6] {
         let receiver = |u: f64| 0.3 + slope * u;
@@ -57,21 +58,22 @@ pub fn bias_removes_acne(run: &mut Run<'_>) -> Result<(), String> {
         };
         let counts = [dark(0.0, 0.0)?, dark(0.0, 0.501)?, dark(0.08, 0.501)?];
         if counts != [64, 0, 128] {
-            return Err(format!("slope {slope}: {counts:?} of 128 are dark, not 64, 0 and 128"));
+            let what = "of 128 are dark (no bias, bias, behind), expected 64, 0 and 128";
+            return Err(format!("slope {slope}: {counts:?} {what}"));
         }
     }
     Ok(())
 }
 
-/// A floor under slanting light shadows itself; moved along its normal by three quarters of a
-/// texel it does not, and what is under something else stays dark.
+/// A floor under slanting light shadows itself. If the lookup is moved along the normal by three
+/// quarters of a texel it does not, and a floor below an occluder stays dark.
 pub fn normal_offset_removes_acne(run: &mut Run<'_>) -> Result<(), String> {
     const SIDE: u32 = 16;
     let direction = DVec3::new(0.7, 0.6, 0.3).normalize();
     let plain_matrix =
         orthographic(4.0, 0.1, 20.0) * look_at(direction * 10.0, DVec3::ZERO, DVec3::Y);
     let from_map = plain_matrix.inverse();
-    // Along a ray of parallel light the height falls evenly with the depth.
+    // The depth of the floor: along a ray of parallel light, the height falls linearly with depth.
     let floor = |u: f64, v: f64| {
         let height =
             |depth: f64| (from_map * DVec4::new(2.0 * u - 1.0, 1.0 - 2.0 * v, depth, 1.0)).y;
@@ -104,19 +106,21 @@ pub fn normal_offset_removes_acne(run: &mut Run<'_>) -> Result<(), String> {
         let counts = [dark(0.0, 0.0)?, dark(0.0, 0.75)?, dark(0.05, 0.75)?];
         if !(36..108).contains(&counts[0]) || counts[1..] != [0, 144] {
             return Err(format!(
-                "reversed {reversed}: {counts:?} of 144 are dark, not about half, 0 and 144"
+                "reversed {reversed}: {counts:?} of 144 are dark (no offset, offset, below an \
+                 occluder), expected about half, 0 and 144"
             ));
         }
     }
     Ok(())
 }
 
-/// A wide filter over a slope: with one depth for all taps some are dark, with depths that follow
-/// the slope none; what is well behind stays dark.
+/// A wide filter over a sloped receiver. With one depth for all taps, some taps are dark. With depths
+/// that follow the slope, none are, and a receiver well behind stays dark.
 pub fn receiver_plane_follows_slope(run: &mut Run<'_>) -> Result<(), String> {
     const SLOPE: [f64; 2] = [0.2, -0.15];
     let receiver = |u: f64, v: f64| 0.4 + SLOPE[0] * u + SLOPE[1] * v;
-    // The taps read whole texels: half of one along each axis is left.
+    // A tap reads a whole texel, so its depth may be off by half a texel along each axis. The bias
+    // covers that.
     let bias = 0.51 / 32.0 * (SLOPE[0].abs() + SLOPE[1].abs());
     for reversed in [false, true] {
         let (held, compare) = reversal(reversed);
@@ -148,7 +152,8 @@ pub fn receiver_plane_follows_slope(run: &mut Run<'_>) -> Result<(), String> {
         let (followed, level, behind) = (lit(0.0, 1.0)?, lit(0.0, 0.0)?, lit(0.1, 1.0)?);
         if followed != [1.0, 1.0] || level[1] > 0.9 || behind != [0.0, 0.0] {
             return Err(format!(
-                "reversed {reversed}: least and most {followed:?}, {level:?}, {behind:?}"
+                "reversed {reversed}: least and most visibility {followed:?} along the slope, \
+                 {level:?} with one depth, {behind:?} behind; expected 1, below 0.9, and 0"
             ));
         }
     }

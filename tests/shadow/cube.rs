@@ -5,11 +5,11 @@ use lamplight::execute::fixture::{Texture, TextureKind};
 
 use super::{Run, comparing, reversal};
 
-/// Directions within an octant, each nearest to another axis.
+/// Directions within an octant. Each is nearest to another axis, so it falls on another face.
 const SHAPES: [DVec3; 3] =
     [DVec3::new(1.0, 0.6, 0.5), DVec3::new(0.5, 1.0, 0.6), DVec3::new(0.6, 0.5, 1.0)];
 
-/// A point light with something before one octant: what is behind it is dark, all else is lit.
+/// A point light with an occluder in one octant: only points behind the occluder are dark.
 pub fn cube_octants(run: &mut Run<'_>) -> Result<(), String> {
     const SIDE: u32 = 8;
     let (near, far) = (0.1, 20.0);
@@ -44,7 +44,7 @@ pub fn cube_octants(run: &mut Run<'_>) -> Result<(), String> {
             let found = run.call("cube", Some((map, comparing(compare, true))), &rows)?;
             if found != expected {
                 return Err(format!(
-                    "reversed {reversed}, octant {covered}: {found:?}, not {expected:?}"
+                    "reversed {reversed}, octant {covered}: found {found:?}, expected {expected:?}"
                 ));
             }
         }
@@ -52,7 +52,8 @@ pub fn cube_octants(run: &mut Run<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// Where a place on a face of a cube map looks, both from -1 to 1, to the right and down.
+/// The direction of a place on a face of a cube map. `x` runs to the right and `y` down, both from
+/// -1 to 1.
 fn face_direction(face: u32, x: f64, y: f64) -> DVec3 {
     match face {
         0 => DVec3::new(1.0, -y, -x),

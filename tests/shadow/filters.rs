@@ -1,10 +1,11 @@
-//! Filters over the edges of shadows.
+//! Filters at the edges of shadows.
 
 use lamplight::execute::fixture::{Compare, Texture, TextureKind};
 
 use super::{Run, comparing, depths, plain};
 
-/// Dark and lit on texel centres, half lit on the border between them, in both directions.
+/// A filtered comparison is 0 and 1 at the centres of texels, and one half on the border between
+/// them, across and down.
 pub fn texel_borders(run: &mut Run<'_>) -> Result<(), String> {
     let across = depths(8, |u, _| if u < 0.5 { 0.25 } else { 0.75 });
     let down = depths(8, |_, v| if v < 0.5 { 0.25 } else { 0.75 });
@@ -14,13 +15,14 @@ pub fn texel_borders(run: &mut Run<'_>) -> Result<(), String> {
         let rows: Vec<_> = steps.iter().map(|(at, _)| place(*at)).collect();
         let found = run.call("stored", Some((map, comparing(Compare::LessEqual, true))), &rows)?;
         if found.iter().zip(steps).any(|(found, (_, expected))| (found - expected).abs() > 1e-6) {
-            return Err(format!("down {is_down}: {found:?}"));
+            let expected = steps.map(|(_, lit)| lit);
+            return Err(format!("down {is_down}: found {found:?}, expected {expected:?}"));
         }
     }
     Ok(())
 }
 
-/// From the dark to the lit side of an edge every filter only rises, from 0 to 1.
+/// Every filter only rises, from 0 to 1, on the way from the dark to the lit side of an edge.
 pub fn penumbra_is_monotone(run: &mut Run<'_>) -> Result<(), String> {
     let map = depths(32, |u, _| if u < 0.5 { 0.25 } else { 0.75 });
     let rows: Vec<_> = (0..=256).map(|i| vec![0.25 + 0.5 * i as f32 / 256.0, 0.47, 0.5]).collect();
@@ -30,7 +32,7 @@ pub fn penumbra_is_monotone(run: &mut Run<'_>) -> Result<(), String> {
         let falls = values.windows(2).any(|pair| pair[1] < pair[0] - 1e-5);
         let (first, last) = (values[0], values[256]);
         if falls || first.abs() > 1e-5 || (last - 1.0).abs() > 1e-5 {
-            return Err(format!("filter {filter}: {values:?}"));
+            return Err(format!("filter {filter} should rise from 0 to 1: {values:?}"));
         }
     }
     Ok(())
@@ -47,8 +49,9 @@ pub fn warped_moments_of_two_depths(run: &mut Run<'_>) -> Result<(), String> {
     })
 }
 
-/// A filtered edge between an occluder and the receiver behind it: Chebyshev's bound is the lit
-/// share itself there, so the penumbra is a straight line; and it is an upper bound everywhere.
+/// A map of moments that is filtered between an occluder and the receiver behind it. For that
+/// receiver, Chebyshev's bound is exactly the lit share, so the penumbra is a straight line. For other
+/// depths it is an upper bound of the lit share.
 fn two_depths(
     run: &mut Run<'_>,
     function: &str,
@@ -79,13 +82,15 @@ fn two_depths(
         let exact =
             t != 0.75 || values.iter().enumerate().all(|(x, value)| (value - lit(x)).abs() < error);
         if !(bounds && rises && exact) {
-            return Err(format!("depth {t}: {values:?}"));
+            let what = format!("is a bound: {bounds}, rises: {rises}, is exact: {exact}");
+            return Err(format!("depth {t}: {what}: {values:?}"));
         }
     }
     Ok(())
 }
 
-/// The recipe's taps lie to one side: its shadows move by 0.125/w. Centred taps do not move.
+/// The taps of the published recipe all lie to one side, so its shadows move by 0.125/w. The centred
+/// taps of the safe form do not move them.
 pub fn random_taps_shift(run: &mut Run<'_>) -> Result<(), String> {
     let map = depths(64, |u, _| if u < 0.5 { 0.25 } else { 0.75 });
     let (places, pixels) = (128u32, 64u32);
@@ -106,7 +111,7 @@ pub fn random_taps_shift(run: &mut Run<'_>) -> Result<(), String> {
         }
         let found =
             run.call("random", Some((map.clone(), comparing(Compare::LessEqual, true))), &rows)?;
-        // Where the shadow ends on average, from its area.
+        // The mean position of the shadow's edge, computed from the shadow's area.
         let edge = |form: usize| {
             0.7 - 0.6 * found.iter().skip(form).step_by(2).sum::<f64>() / f64::from(places * pixels)
         };
@@ -115,7 +120,7 @@ pub fn random_taps_shift(run: &mut Run<'_>) -> Result<(), String> {
             || (edge(1) - (0.5 - shift)).abs() > 0.01 * f64::from(1.0 / w)
         {
             return Err(format!(
-                "w {w}: the edges are at {} and {}, not 0.5 and {}",
+                "w {w}: the edges are at {} and {}, expected 0.5 and {}",
                 edge(0),
                 edge(1),
                 0.5 - shift
@@ -125,7 +130,8 @@ pub fn random_taps_shift(run: &mut Run<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// The 21 weights add up to 1, and are the same to both sides.
+/// The 21 weights of the Gaussian kernel add up to 1, are symmetric, and have the variance of the
+/// kernel.
 pub fn kernel_adds_up(run: &mut Run<'_>) -> Result<(), String> {
     let words: Vec<u32> = (-10..=10i32).map(|i| i as u32).collect();
     let weights = run.call_words("weight", None, &words)?;
@@ -136,6 +142,7 @@ pub fn kernel_adds_up(run: &mut Run<'_>) -> Result<(), String> {
     if (sum - 1.0).abs() < 1e-6 && mirrored && (7.9..8.0).contains(&variance) {
         Ok(())
     } else {
-        Err(format!("{sum}, {variance}: {weights:?}"))
+        let what = format!("the sum is {sum}, the variance {variance}, symmetric: {mirrored}");
+        Err(format!("{what}, expected 1, 7.9 to 8, and true: {weights:?}"))
     }
 }

@@ -1,12 +1,13 @@
-//! Something between a light and what it lights, seen from every side.
+//! An occluder between a light and points that the light reaches, for lights from every side.
 
 use glam::{DMat4, DVec3, DVec4};
 use lamplight::execute::fixture::{Compare, Texture, TextureKind};
 
 use super::{Run, comparing, depths, flip, plain};
 
-/// The upper left quarter of the map, seen from the light, is covered by a plane across the light's
-/// direction; points before it and behind it, over all quarters, for both directions of depth.
+/// An occluder covers the upper left quarter of the map, seen from the light. Points in all quarters,
+/// in front of it and behind it, are lit or dark as they should be. This is tested with plain and with
+/// reversed depth.
 fn covered(
     run: &mut Run<'_>,
     view: DMat4,
@@ -26,7 +27,7 @@ fn covered(
             comparing(if reversed { Compare::GreaterEqual } else { Compare::LessEqual }, true);
         let (mut rows, mut expected) = (Vec::new(), Vec::new());
         for (x, y, z) in places(planes) {
-            // From a place on the map and a distance to the world: the inverse of what the shader does.
+            // The point in the world that the shader maps to this place and distance.
             let depth = DVec4::new(0.0, 0.0, -z, 1.0);
             let w = (projection * depth).w;
             let ndc = DVec4::new(x * w, y * w, depth_at(z) * w, w);
@@ -44,20 +45,20 @@ fn covered(
         }
         let found = run.call("lit", Some((map, sampler)), &rows)?;
         if found != expected {
-            return Err(format!("reversed {reversed}: {found:?}, not {expected:?}"));
+            return Err(format!("reversed {reversed}: found {found:?}, expected {expected:?}"));
         }
     }
     Ok(())
 }
 
-/// The middles of the quarters, before and behind the occluder.
+/// The centres of the quarters, in front of and behind the occluder.
 fn places(planes: [f64; 3]) -> impl Iterator<Item = (f64, f64, f64)> {
     let sides = [-0.5, 0.5];
     let corners = sides.into_iter().flat_map(move |x| sides.into_iter().map(move |y| (x, y)));
     corners.flat_map(move |(x, y)| [planes[0], planes[2]].into_iter().map(move |z| (x, y, z)))
 }
 
-/// The view of an eye that looks along -z.
+/// The view matrix of an eye. In view space the eye looks along -z.
 pub fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
     let back = (eye - target).normalize();
     let right = up.cross(back).normalize();
@@ -70,7 +71,7 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3) -> DMat4 {
     world.inverse()
 }
 
-/// A box from -half to half, depths from 0 to 1 between the planes.
+/// The projection of a box from `-half` to `half`. Depth is 0 at the near plane and 1 at the far.
 pub fn orthographic(half: f64, near: f64, far: f64) -> DMat4 {
     let depth = 1.0 / (near - far);
     DMat4::from_cols(
@@ -81,7 +82,7 @@ pub fn orthographic(half: f64, near: f64, far: f64) -> DMat4 {
     )
 }
 
-/// A square cone of the angle, depths from 0 to 1 between the planes.
+/// The projection of a square frustum. Depth is 0 at the near plane and 1 at the far.
 fn perspective(angle: f64, near: f64, far: f64) -> DMat4 {
     let (scale, depth) = (1.0 / (angle / 2.0).tan(), far / (near - far));
     DMat4::from_cols(
@@ -116,8 +117,8 @@ pub fn spot(run: &mut Run<'_>) -> Result<(), String> {
     covered(run, view, perspective(1.2, 0.5, 30.0), [2.0, 4.0, 9.0])
 }
 
-/// Over a map that covers everything: dark inside the frustum, lit on every side of it and behind
-/// the light.
+/// With a map that is covered everywhere, points inside the frustum are dark. Points on every side of
+/// it, and behind the light, are lit.
 pub fn outside_is_lit(run: &mut Run<'_>) -> Result<(), String> {
     const CLIPS: &[([f32; 4], f32, f64)] = &[
         ([0.0, 0.0, 0.5, 1.0], 0.0, 0.0),
@@ -146,9 +147,9 @@ pub fn outside_is_lit(run: &mut Run<'_>) -> Result<(), String> {
     )?;
     let expected: Vec<_> = CLIPS.iter().map(|(_, _, lit)| *lit).collect();
     if found != expected {
-        return Err(format!("{found:?}, not {expected:?}"));
+        return Err(format!("found {found:?}, expected {expected:?}"));
     }
-    // A map of moments, as `forward` reads it: the least variance leaves a millionth of the light.
+    // A map of moments, read as in `forward`. The least variance leaves a millionth of the light.
     let map = Texture {
         kind: TextureKind::Color2d,
         width: 4,
@@ -160,6 +161,6 @@ pub fn outside_is_lit(run: &mut Run<'_>) -> Result<(), String> {
     if found.iter().zip(&expected).all(near) {
         Ok(())
     } else {
-        Err(format!("moments: {found:?}, not {expected:?}"))
+        Err(format!("moments: found {found:?}, expected {expected:?}"))
     }
 }

@@ -1,4 +1,4 @@
-//! Draws one pixel, to see which value a shader has.
+//! Draws one pixel, whose colour shows the value that a shader has.
 
 use lamplight::bundle::Target;
 use libtest_mimic::Failed;
@@ -47,8 +47,8 @@ impl Drawing {
         Ok(Self { device, queue, vertex })
     }
 
-    /// The SPIR-V of a key with its constants set, as a driver would when it makes a pipeline:
-    /// wgpu has no way to pass them to a shader it does not translate.
+    /// The SPIR-V of a key with its constants set by spirv-opt. A driver does so when it makes a
+    /// pipeline, but wgpu cannot pass constants to a shader that it does not translate.
     pub fn chosen(&self, key: &str) -> Result<wgpu::ShaderModule, Failed> {
         let found = found(key, Target::SPIRV)?;
         let folder = tempfile::tempdir()?;
@@ -94,7 +94,7 @@ impl Drawing {
         Ok(unsafe { self.device.create_shader_module_passthrough(descriptor) })
     }
 
-    /// The numbers of the pixel.
+    /// Draws the pixel and gives its numbers.
     pub fn draw(
         &self,
         fragment: &wgpu::ShaderModule,

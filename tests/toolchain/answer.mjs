@@ -1,4 +1,5 @@
-// Answers requests with the npm package: `node answer.mjs PACKAGE REQUESTS ANSWERS`.
+// Answers the requests of the trial `toolchain::same_bytes` with the npm package and writes each
+// answer after its length: `node answer.mjs PACKAGE REQUESTS ANSWERS`.
 import { readFileSync, writeFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";
 
@@ -39,11 +40,12 @@ for (const { files, root } of asked.mistakes) {
 for (const [path, ...words] of asked.references) {
     text(Array.from(lamplight.reference(path, words)).map(String).join(" "));
 }
-// What cuts the toolchain off is told, and the next call is answered.
+// A text that exhausts the stack or the memory gives an error of the class `Stopped`. The next call
+// must be answered nevertheless.
 for (const files of asked.hostile) {
     try {
         const made = lamplight.compile({ files, root: "a.wesl", targets: ["wgsl"] });
-        if (made.ok) throw new Error("a hostile text was taken");
+        if (made.ok) throw new Error(`a hostile text compiled: ${files["a.wesl"].slice(0, 80)}`);
     } catch (error) {
         if (!(error instanceof Stopped)) throw error;
     }

@@ -1,4 +1,4 @@
-//! Traps for commands that write into a folder.
+//! Things that are in the place of files that a command writes into its folder.
 
 use std::fs;
 use std::os::unix::fs::{FileTypeExt as _, symlink};
@@ -8,6 +8,8 @@ use super::{
     CASES, MAIN, MINE, Outcome, Place, Writer, ensure, is_cache, listed, pipe, places, refused,
 };
 
+/// A file that Lamplight did not make: the command refuses and writes no other file either. With
+/// `--force` it replaces the file.
 pub fn foreign_file(writer: &Writer, name: &str) -> Outcome {
     let place = Place::new(writer)?;
     let path = place.at("out").join(name);
@@ -15,15 +17,16 @@ pub fn foreign_file(writer: &Writer, name: &str) -> Outcome {
     fs::write(&path, MINE)?;
     let before = listed(&place.at("out"))?;
     refused(&place, writer, false)?;
-    ensure(fs::read(&path)? == MINE, "it was overwritten")?;
+    ensure(fs::read(&path)? == MINE, "the foreign file was overwritten")?;
     if is_cache(writer) || !writer.files.is_empty() {
         return Ok(());
     }
-    ensure(listed(&place.at("out"))? == before, "something was written all the same")?;
+    ensure(listed(&place.at("out"))? == before, "the refusing command changed the folder")?;
     place.succeeds(&Place::command_line(writer, "out", true), writer.endless)?;
-    ensure(fs::read(&path)? != MINE, "`--force` did not replace it")
+    ensure(fs::read(&path)? != MINE, "`--force` did not replace the foreign file")
 }
 
+/// A link to a foreign file: the command refuses, also with `--force`.
 pub fn link_to_file(writer: &Writer, name: &str) -> Outcome {
     let place = Place::new(writer)?;
     let path = place.at("out").join(name);
@@ -32,12 +35,14 @@ pub fn link_to_file(writer: &Writer, name: &str) -> Outcome {
     symlink(place.at("victim"), &path)?;
     for force in [false, true] {
         refused(&place, writer, force)?;
-        ensure(fs::read(place.at("victim"))? == MINE, "the link was followed")?;
+        ensure(fs::read(place.at("victim"))? == MINE, "the link's target was changed")?;
         ensure(fs::symlink_metadata(&path)?.is_symlink(), "the link was replaced")?;
     }
     Ok(())
 }
 
+/// A link in place of a folder below the command's: nothing is written to the link's target or
+/// deleted there, even if its files have names that a bundle's files have.
 pub fn link_to_folder(writer: &Writer, name: &str) -> Outcome {
     let Some(folder) = Path::new(name).parent().filter(|folder| folder != &Path::new("")) else {
         return Ok(());
@@ -53,11 +58,13 @@ pub fn link_to_folder(writer: &Writer, name: &str) -> Outcome {
     let before = listed(&place.at("victims"))?;
     for force in [false, true] {
         refused(&place, writer, force)?;
-        ensure(listed(&place.at("victims"))? == before, "the link was followed")?;
+        let unchanged = listed(&place.at("victims"))? == before;
+        ensure(unchanged, "the folder that the link names was changed")?;
     }
     Ok(())
 }
 
+/// A pipe: the command refuses, also with `--force`.
 pub fn a_pipe(writer: &Writer, name: &str) -> Outcome {
     let place = Place::new(writer)?;
     let path = place.at("out").join(name);
@@ -70,6 +77,7 @@ pub fn a_pipe(writer: &Writer, name: &str) -> Outcome {
     Ok(())
 }
 
+/// A folder in place of a file: the command refuses, also with `--force`.
 pub fn in_the_way(writer: &Writer, name: &str) -> Outcome {
     let place = Place::new(writer)?;
     let path = place.at("out").join(name);
@@ -77,12 +85,14 @@ pub fn in_the_way(writer: &Writer, name: &str) -> Outcome {
     fs::write(path.join("notes.txt"), MINE)?;
     for force in [false, true] {
         refused(&place, writer, force)?;
-        ensure(fs::read(path.join("notes.txt"))? == MINE, "it was removed")?;
+        let kept = fs::read(path.join("notes.txt")).is_ok_and(|found| found == MINE);
+        ensure(kept, "a file in the folder was changed or removed")?;
     }
     Ok(())
 }
 
-/// What a user puts beside our files stays; what a killed run left goes.
+/// The files that a user puts beside those of the command stay, even if their names look like
+/// temporary files. The temporary folder that a killed run left is deleted.
 pub fn neighbours(writer: &Writer) -> Outcome {
     let place = Place::new(writer)?;
     let out = place.at("out");
@@ -107,7 +117,8 @@ pub fn neighbours(writer: &Writer) -> Outcome {
     fs::write(place.at("half.toml"), CASES.replace("2.0", "3.0"))?;
     place.succeeds(&Place::command_line(writer, "out", false), writer.endless)?;
     for path in &kept {
-        ensure(fs::read(path).is_ok_and(|found| found == MINE), format!("{path:?} is gone"))?;
+        let kept = fs::read(path).is_ok_and(|found| found == MINE);
+        ensure(kept, format!("{path:?} was changed or removed"))?;
     }
-    ensure(!left.exists(), "what a killed run left is still there")
+    ensure(!left.exists(), format!("{left:?}, which a killed run left, is still there"))
 }

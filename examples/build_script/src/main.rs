@@ -1,4 +1,4 @@
-//! Loads what the build script made.
+//! Loads the bundle that the build script made, and prints the size of each permutation.
 
 use lamplight::bundle::{Bundle, Error, Target};
 

@@ -4,20 +4,20 @@ use std::fmt::Write as _;
 
 /// Heading and meaning.
 const COLUMNS: &[(&str, &str)] = &[
-    ("executor", "what ran it"),
-    ("language", "which module was called: WESL or GLSL"),
-    ("inputs", "how many inputs were tried"),
+    ("executor", "the executor that ran the function"),
+    ("language", "the language of the module that was called: WESL or GLSL"),
+    ("inputs", "the number of inputs"),
     ("worst error", "the largest absolute error of all inputs"),
     (
         "ULP",
         "the error of the input that came nearest to its tolerance, in units in the last place",
     ),
-    ("of allowed", "what the tolerance allows that input, in the same units"),
-    ("headroom", "the part of the tolerance that was left, below 0 under a waiver"),
-    ("of driver", "how much of what was recorded for this driver was needed"),
-    ("ambiguous", "inputs that are off where a comparison is too close to call"),
-    ("free", "inputs for which nothing is promised: the expected value is not a finite f32"),
-    ("parity ULP", "the largest distance from the results of the first language"),
+    ("of allowed", "the error that the tolerance allows for that input, in the same units"),
+    ("headroom", "the part of the tolerance that was left, which is negative under a waiver"),
+    ("of driver", "the needed part of the error that is recorded for this driver"),
+    ("ambiguous", "the share of inputs with a wrong result where rounding may change a comparison"),
+    ("free", "the share of inputs without a requirement, since the expected value is not finite"),
+    ("parity ULP", "the largest difference from the results of the first language"),
 ];
 
 /// The head of a table, and the start of its body.

@@ -1,4 +1,5 @@
-//! Models that are broken, too large, or not one: each is an error with a place, and no picture.
+//! Files that are broken, too large, or not a model. Each gives an error with its place, and no
+//! picture is written.
 
 use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
@@ -12,7 +13,7 @@ pub fn trials() -> impl Iterator<Item = Trial> {
     })
 }
 
-/// A name, a file, and what is said of it.
+/// A name, a file, and a part of the error.
 type Wrong = (&'static str, fn() -> Vec<u8>, &'static str);
 
 const WRONG: &[Wrong] = &[
@@ -87,8 +88,12 @@ fn refused(file: &[u8], words: &str) -> Result<(), Failed> {
         && said.contains(words)
         && said.contains("model.glb")
         && !said.contains("panicked");
-    demand(is_told, || format!("{}: {said}", output.status))?;
-    demand(!folder.path().join("out.png").exists(), || "a picture was written".to_owned())
+    demand(is_told, || {
+        format!("expected exit code 1, `{words}` and model.glb, {}: {said}", output.status)
+    })?;
+    demand(!folder.path().join("out.png").exists(), || {
+        format!("a picture was written, expected only the error `{words}`")
+    })
 }
 
 fn changed(change: impl FnOnce(&mut Value)) -> Vec<u8> {
@@ -97,7 +102,7 @@ fn changed(change: impl FnOnce(&mut Value)) -> Vec<u8> {
     glb(&document, &buffer)
 }
 
-/// Thirty nodes, each with the next one twice.
+/// Thirty nodes that each have the next node as two children: 2^30 nodes when they are followed.
 fn tower() -> Vec<u8> {
     changed(|document| {
         let node = |index: usize| json!({ "children": [index + 1, index + 1] });
@@ -119,7 +124,7 @@ fn pictured(image: Vec<u8>) -> Vec<u8> {
     glb(&document, &buffer)
 }
 
-/// A PNG whose header says 65,535 by 65,535 pixels.
+/// A PNG whose header claims 65,535 by 65,535 pixels.
 fn huge_image() -> Vec<u8> {
     let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\xff\xff\0\0\xff\xff\x08\x06\0\0\0".to_vec();
     png.extend([0xba, 0x58, 0x9b, 0x6b]);

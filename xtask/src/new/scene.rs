@@ -23,7 +23,7 @@ const TEXT: &str = r#"//! NAME.
 
 use glam::DVec3;
 
-use super::{Eye, Lamp, LampKind, Scene, Set, base, palette};
+use super::{Eye, Lamp, LampKind, Scene, Set, base_scene, palette};
 
 /// The scene, for the table of all.
 pub const SET: Set = Set { name: "NAME", about: "", make: scene };
@@ -45,6 +45,6 @@ pub fn scene() -> Scene {
         half_angle: 0.5,
         kind: LampKind::Directional,
     };
-    base(objects, eye, palette::lamps(key, 4.5, 2.8, 0.22))
+    base_scene(objects, eye, palette::lamps(key, 4.5, 2.8, 0.22))
 }
 "#;
