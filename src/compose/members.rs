@@ -52,9 +52,8 @@ fn new_names(composed: &Composed) -> BTreeMap<String, String> {
 /// Whether a part is a block with an instance name: one that declares that name only.
 fn is_block(composed: &Composed, part: &Part) -> bool {
     let text = &composed.text[part.range.clone()];
-    let first = text.find(['{', '=', ';']).map(|at| text.as_bytes()[at]);
     let behind = text.rsplit_once('}').map_or("", |(_, behind)| behind);
-    part.kind == PartKind::Variable && first == Some(b'{') && words(behind).next().is_some()
+    part.kind == PartKind::Variable && words(behind).next().is_some()
 }
 
 /// The words between a block's braces. Types are among them, and no variable has their name.

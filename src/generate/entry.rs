@@ -102,7 +102,12 @@ fn of_permutation(errors: Diagnostics, program: &Program, point: &Assignment) ->
     errors.into_iter().map(|error| error.note(note.as_str())).collect()
 }
 
-fn entry_label(before: &[Entry], language: Language, name: &str, stage: naga::ShaderStage) -> String {
+fn entry_label(
+    before: &[Entry],
+    language: Language,
+    name: &str,
+    stage: naga::ShaderStage,
+) -> String {
     let twin = before.iter().find(|entry| entry.language != language && entry.stage == stage);
     match (language, twin) {
         (Language::Wesl, _) => name.to_owned(),

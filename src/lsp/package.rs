@@ -66,7 +66,12 @@ pub struct Opened {
 /// Opens the package of a root folder. A manifest with errors is as good as none, and told.
 pub fn open_package(root: &Path, texts: &Texts) -> Result<Opened, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
-    let mut packages = match project::packages(root, &mut sources) {
+    let packages = match root.exists() {
+        true => project::packages(root, &mut sources),
+        // An editor may have a file whose folder is not there yet.
+        false => Ok(project::packages_without_folder()),
+    };
+    let mut packages = match packages {
         Ok(packages) => packages,
         Err(problems) => return Err((sources, problems)),
     };

@@ -15,7 +15,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::manifest::Features;
 use crate::permute::{Lock, Manifest, lock, manifest, usage};
 use crate::resolve::Packages;
-use crate::source::{self, Disk, Embedded, Package, SourceId, SourceSet};
+use crate::source::{self, Disk, Embedded, Files, Memory, Package, SourceId, SourceSet};
 
 /// Import name of the shader library, which every package may use without declaring it.
 pub const LIBRARY: &str = "lamplight";
@@ -52,20 +52,29 @@ pub fn packages(root: &Path, sources: &mut SourceSet) -> Result<Packages, Diagno
     let disk = Disk::new(root).map_err(|error| vec![unreadable_file(root, &error)])?;
     let mut dependencies = wesl_toml::dependencies(root, sources)?;
     if !dependencies.iter().any(|package| package.name == LIBRARY) {
-        dependencies.push(Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) });
+        dependencies.push(library_package());
     }
-    Ok(Packages {
-        root: Package { name: "package".to_owned(), files: Box::new(disk) },
-        dependencies,
-    })
+    Ok(Packages { root: root_package(Box::new(disk)), dependencies })
+}
+
+/// A package that has no folder yet, with the library beside it. Its files come from elsewhere, such
+/// as an editor.
+pub fn packages_without_folder() -> Packages {
+    let files = Box::new(Memory::default());
+    Packages { root: root_package(files), dependencies: vec![library_package()] }
+}
+
+fn root_package(files: Box<dyn Files>) -> Package {
+    Package { name: "package".to_owned(), files }
+}
+
+fn library_package() -> Package {
+    Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) }
 }
 
 /// The shader library itself as a package, from the binary.
 pub fn library() -> Packages {
-    Packages {
-        root: Package { name: "package".to_owned(), files: Box::new(Embedded) },
-        dependencies: Vec::new(),
-    }
+    Packages { root: root_package(Box::new(Embedded)), dependencies: Vec::new() }
 }
 
 /// The path of `file` relative to `root`, `/`-separated.

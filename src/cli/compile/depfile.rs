@@ -21,7 +21,8 @@ pub fn write_depfile(
         .collect();
     let outputs: Vec<String> =
         outputs.map(|path| escape_for_make(&path.to_string_lossy())).collect::<Result<_, _>>()?;
-    let inputs: Vec<String> = inputs.iter().map(|path| escape_for_make(path)).collect::<Result<_, _>>()?;
+    let inputs: Vec<String> =
+        inputs.iter().map(|path| escape_for_make(path)).collect::<Result<_, _>>()?;
     let inputs: String = inputs.iter().map(|path| format!(" \\\n  {path}")).collect();
     let rule = format!("{}:{inputs}\n", outputs.join(" "));
     // A file that is there may be replaced if it is a rule for the same outputs.
