@@ -300,7 +300,12 @@ impl<'d> Body<'d> {
         match choice {
             1 => {
                 let other = self.value(&Type::Vector(size, Scalar::Float), depth);
-                format!("{name}({other})")
+                match scalar {
+                    // As for single numbers: GLSL leaves open what a negative one becomes.
+                    Scalar::Uint if self.has("abs") => format!("{name}(abs({other}))"),
+                    Scalar::Uint => one,
+                    _ => format!("{name}({other})"),
+                }
             }
             2 | 3 => {
                 let other = self.value(&ty, depth);

@@ -86,7 +86,12 @@ impl Body<'_> {
             }
             4 | 5 => {
                 let number = self.value(&FLOAT, depth);
-                format!("{name}({number})")
+                match scalar {
+                    // GLSL leaves open what a negative number becomes, and naga passes that on.
+                    Scalar::Uint if self.has("abs") => format!("{name}(abs({number}))"),
+                    Scalar::Uint => one,
+                    _ => format!("{name}({number})"),
+                }
             }
             6 if scalar == Scalar::Int => format!("(-{one})"),
             7 if scalar == Scalar::Int && self.has("abs") => format!("abs({one})"),
