@@ -2,6 +2,7 @@
 //! were translated for it or taken from other texts. A text that cannot be divided into functions is
 //! compiled as a whole, with a reason.
 
+mod glsl;
 mod texts;
 mod writers;
 
@@ -21,6 +22,7 @@ use libtest_mimic::{Failed, Trial};
 
 use crate::link_compare as compare;
 
+use glsl::{constants_like_members, unused_functions};
 use texts::{NAMES, NAMES_MANIFEST, ROWS, ROWS_MANIFEST, TRAPS, TRAPS_MANIFEST};
 use writers::{
     blocks_beside_structures, entry_points, kept_matrices, kept_names, lacking,
@@ -189,71 +191,6 @@ fn traps() -> Outcome {
 /// Names with a meaning to a writer have the same bytes alone and together.
 fn names() -> Outcome {
     alone_and_together("names", NAMES_MANIFEST, NAMES)
-}
-
-/// A GLSL function that nothing calls does not ship. Whether naga takes it must not decide about
-/// a permutation, neither alone nor as the first of all.
-fn unused_functions() -> Outcome {
-    const MANIFEST: &str = "[program.one]\nglsl = { fragment = \"one.frag.glsl\" }\n\
-        [program.one.axis]\nrows = { values = [false, true], default = true }\n";
-    // The local variable makes the function look as if it were used.
-    const TEXT: &str = "#version 450
-layout(location = 0) out vec4 color;
-#if ROWS
-void unused() {
-    float half_way = undeclared;
-}
-#endif
-void main() {
-    float unused = 0.5;
-    color = vec4(unused);
-}
-";
-    let folder = tempfile::tempdir()?;
-    std::fs::write(folder.path().join("one.frag.glsl"), TEXT)?;
-    let (mut sources, packages, manifest) = package(folder.path(), "one", MANIFEST, "")?;
-    let together = agree(&mut sources, &packages, &manifest, 1)?;
-    assert_eq!(together.summary.programs[0].permutations, 2);
-    all_linked(&together)
-}
-
-/// A constant and a variable of GLSL may have the name of a block's member, whichever is declared
-/// first, and are not read from the block.
-fn constants_like_members() -> Outcome {
-    const MANIFEST: &str = "[program.one]\nglsl = { fragment = \"one.frag.glsl\" }\n\
-        targets = [\"wgsl\"]\n[program.one.axis]\nfirst = { values = [false, true] }\n";
-    const TEXT: &str = "#version 450
-#if FIRST
-const float bias = 0.25;
-const int rows = 2;
-#endif
-struct Light { float bias; };
-layout(set = 0, binding = 0) uniform Shadow {
-    vec4 tint;
-    float bias, strength[2];
-    vec4 rows;
-} shadow;
-#if !FIRST
-const float bias = 0.25;
-const int rows = 2;
-#endif
-float strength = 0.5;
-layout(location = 0) out vec4 color;
-float shaded(float x) { Light light = Light(bias); return x * light.bias + float(rows); }
-void main() { color = shadow.tint * shaded(bias) * strength; }
-";
-    let folder = tempfile::tempdir()?;
-    std::fs::write(folder.path().join("one.frag.glsl"), TEXT)?;
-    let (mut sources, packages, manifest) = package(folder.path(), "one", MANIFEST, "")?;
-    let together = agree(&mut sources, &packages, &manifest, 1)?;
-    for ((_, key), unit) in units(&together) {
-        let text = String::from_utf8_lossy(&unit.targets["wgsl"].bytes);
-        let is_read = |member: &&&str| text.contains(&format!("shadow.{member}"));
-        if let Some(member) = ["bias", "strength", "rows"].iter().find(is_read) {
-            return Err(format!("[{key}] reads the member `{member}`:\n{text}").into());
-        }
-    }
-    all_linked(&together)
 }
 
 fn alone_and_together(name: &str, manifest: &str, text: &str) -> Outcome {

@@ -1,5 +1,6 @@
 //! The language server: a process that is asked over its protocol, and Neovim as a real client.
 
+mod folders;
 mod session;
 
 use std::fs;
@@ -7,6 +8,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::Command;
 
+use folders::folder_that_is_not_there;
 use lamplight::source::{Embedded, Files as _};
 use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
@@ -205,7 +207,7 @@ fn actions() -> Outcome {
     let import = "import lamplight::brdf::specular::phong;\n";
     let title = "Import `lamplight::brdf::specular::phong`";
     expect(edit(title) == Some(json!(import)), &(&found, &told))?;
-    // An unused import is told, and can be removed, once there are no errors.
+    // The server warns of an unused import, and offers to remove it.
     session.change(&MAIN.replace("diffuse::lambert;", "diffuse::{lambert, oren_nayar};"))?;
     let told = session.told("main.wesl")?;
     let parameters = json!({
@@ -308,27 +310,6 @@ fn symbols_and_signature() -> Outcome {
 }
 
 /// After any wrong message and any broken text, the server answers the next request.
-/// An editor may open a new file in a folder that it has not made yet. The file is looked at all the
-/// same.
-fn folder_that_is_not_there() -> Outcome {
-    let mut session = Session::new(MAIN)?;
-    let text = "import lamplight::brdf::diffuse::lambert;\nfn f(n: vec3f) -> vec4f { return lambert(n, n); }\n";
-    session.open("not/there/new.wesl", text)?;
-    let found = session.told("not/there/new.wesl")?;
-    let is_type = |found: &Value| found["code"] == "type-mismatch";
-    expect(found.len() == 1 && found.iter().all(is_type), &found)?;
-    let alone = session.uri("../no folder/of/new.wesl")?.replace(' ', "%20");
-    let document = json!({ "uri": alone, "languageId": "wesl", "version": 1, "text": text });
-    session.tell("textDocument/didOpen", json!({ "textDocument": document }))?;
-    loop {
-        let message = session.receive()?;
-        if message["params"]["uri"].as_str().is_some_and(|uri| uri.ends_with("of/new.wesl")) {
-            let found = &message["params"]["diagnostics"];
-            return expect(is_type(&found[0]), found);
-        }
-    }
-}
-
 fn survives() -> Outcome {
     let mut session = Session::new(MAIN)?;
     session.told("main.wesl")?;

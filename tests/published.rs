@@ -62,7 +62,8 @@ const FORMS: &[(&str, f64, &str, f64)] = &[
         "ambient::hemisphere::hemisphere_weight_sine(vec3f(0.8660254, 0.5, 0), vec3f(0, 1, 0))",
         0.5669873,
     ),
-    // In the published form the pole is a position. Beside it, the sky is to the side.
+    // The published form takes the position of the sky's pole, not its direction. Here the pole is
+    // beside the surface, at a right angle to the normal.
     (
         "ambient::hemisphere::hemisphere(vec3f(0, 1, 0), vec3f(0, 1, 0), vec3f(1), vec3f(0)).x",
         1.0,

@@ -196,8 +196,8 @@ pub struct Native {
     /// Combined samplers, in targets that do not have separate textures and samplers.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub combined: Vec<Combined>,
-    /// How the overrides of the reflection are chosen here. Those that are not listed have their
-    /// defaults.
+    /// How this target takes the values of overrides. An override that is not listed has its
+    /// default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub choices: Vec<Choice>,
     /// Semantics of a vertex stage's inputs, in targets that match attributes by them (HLSL).

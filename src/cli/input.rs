@@ -147,7 +147,7 @@ pub struct Context {
     pub graph: Graph,
     pub settings: Settings,
     pub options: Options,
-    /// Of the program that the file belongs to.
+    /// The clip space of the file's program, or else the default.
     pub clip: Clip,
     permutation: Option<String>,
 }

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Composed, Part, PartKind};
 use crate::bundle::Language;
-use crate::parse::words::{PieceKind, pieces, words};
+use crate::parse::words::{PieceKind, has_word, pieces, words};
 
 /// The text with such variables and constants renamed in every place. Members keep their names,
 /// since engines see them.
@@ -79,10 +79,20 @@ fn renamed(composed: &Composed, names: &BTreeMap<String, String>) -> Composed {
         append(&composed.text[part.range.clone()], names, declares_members, &mut text);
         let new = |name: &String| names.get(name).unwrap_or(name).clone();
         let own = part.names.iter().map(new).collect();
-        parts.push(Part { names: own, range: start..text.len(), ..part.clone() });
+        let mut uses = part.uses.clone();
+        if declares_members {
+            uses.retain(|used| is_named(&text[start..], &composed.parts[*used as usize], names));
+        }
+        parts.push(Part { names: own, range: start..text.len(), uses, ..part.clone() });
     }
     text.push_str(&composed.text[end..]);
     Composed { text, parts, ..composed.clone() }
+}
+
+/// Whether a renamed declaration of members names a part. The composer takes a member for a use of
+/// the variable that has its name.
+fn is_named(text: &str, part: &Part, names: &BTreeMap<String, String>) -> bool {
+    part.names.iter().all(|name| names.get(name).is_none_or(|new| has_word(text, new)))
 }
 
 /// Appends a part. Names behind a point are members. So are those of a structure or block, except

@@ -13,7 +13,7 @@ pub struct Program {
     pub(super) code: Vec<Instruction>,
     /// Place of each instruction in the text naga parsed.
     pub(super) spans: Vec<Span>,
-    /// Slots of the memory.
+    /// How many slots the memory has before buffers of runtime size are added.
     pub(super) slots: u32,
     pub(super) pool: Vec<(Slot, Constant)>,
     /// Where the instructions begin that compute constants and overrides, once per machine.

@@ -85,7 +85,8 @@ fn mark_values(marked: &mut Module, names: &mut Names) {
     }
 }
 
-/// Marks functions. Names inside a stub all get the scratch mark, since no output keeps them.
+/// Replaces the names of functions by marks. No output keeps the body of a stub, so its local
+/// variables all get the scratch mark, and its arguments get no name.
 fn mark_functions(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reason {
-    /// The text was not written by the composer, which tells its declarations.
+    /// The text was not written by the composer, so its declarations are not listed.
     NoParts,
     /// There is not exactly one entry point, or it is a compute shader.
     EntryPoint,

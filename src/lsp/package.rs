@@ -19,6 +19,7 @@ pub type Texts = Arc<BTreeMap<String, String>>;
 
 /// Files of a package with those in the place of some that an editor has open.
 struct Overlay {
+    root: PathBuf,
     below: Box<dyn Files>,
     open: Texts,
 }
@@ -43,12 +44,16 @@ impl Files for Overlay {
         found
     }
 
+    // An open file has its address in the editor, whether or not it was ever saved.
     fn display(&self, path: &str) -> String {
-        self.below.display(path)
+        match self.open.contains_key(path) {
+            true => self.root.join(path).to_string_lossy().into_owned(),
+            false => self.below.display(path),
+        }
     }
 
     fn on_disk(&self, path: &str) -> bool {
-        self.below.on_disk(path)
+        self.open.contains_key(path) || self.below.on_disk(path)
     }
 }
 
@@ -76,7 +81,8 @@ pub fn open_package(root: &Path, texts: &Texts) -> Result<Opened, (SourceSet, Di
         Err(problems) => return Err((sources, problems)),
     };
     let below = std::mem::replace(&mut packages.root.files, Box::new(crate::source::Embedded));
-    packages.root.files = Box::new(Overlay { below, open: Arc::clone(texts) });
+    packages.root.files =
+        Box::new(Overlay { root: root.to_owned(), below, open: Arc::clone(texts) });
     let (manifest, mut problems) = match project::manifest(root, &mut sources) {
         Ok(manifest) => (manifest, Vec::new()),
         Err(problems) => (None, problems),

@@ -213,7 +213,8 @@ fn without_imports(
     choice
 }
 
-/// What `import` has to be followed by for each part of a directive: nothing where WESL needs none.
+/// The paths of the WESL imports that replace a directive, without the keyword `import`. Names that
+/// need no import, or that their module lacks, are left out.
 pub fn import_statements(
     text: &str,
     tree: &Leaf,

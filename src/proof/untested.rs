@@ -41,7 +41,7 @@ fn named_functions(file: &File) -> impl Iterator<Item = &str> {
     })
 }
 
-/// What is named, and everything that this uses.
+/// The given names and all that they use, directly or through others.
 fn reached_from<N: Copy + Ord>(mut open: Vec<N>, uses: impl Fn(N) -> Vec<N>) -> BTreeSet<N> {
     let mut reached = BTreeSet::new();
     while let Some(name) = open.pop() {

@@ -100,7 +100,7 @@ fn page() -> Outcome {
     at("lamplight 0.")?;
     at("<code>lamplight check light.toml --report out</code>")?;
     at("case 2, light.toml:6")?;
-    at("<th title=\"what ran it\">executor</th>")?;
+    at("<th title=\"the executor that ran the function\">executor</th>")?;
     Ok(())
 }
 

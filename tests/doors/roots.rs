@@ -80,7 +80,7 @@ fn without_wesl_toml() -> Outcome {
     equal(shipped.ends(0)?.out, alone.ends(0)?.out)
 }
 
-/// A manifest cannot name a file outside of the package's root.
+/// A manifest cannot name a file outside of the root folder that `wesl.toml` declares.
 fn outside() -> Outcome {
     let package = package(&[("lamplight.toml", &MANIFEST.replace("shaders/", ""))])?;
     let run = package.run("gen --no-cache")?.ends(1)?;

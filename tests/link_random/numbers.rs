@@ -54,6 +54,17 @@ impl Body<'_> {
         format!("{}({number})", self.draft.spelling.scalar(Scalar::Float))
     }
 
+    /// A float as an integer. GLSL leaves open what a negative one becomes without a sign, and naga
+    /// passes that on.
+    fn whole(&mut self, scalar: Scalar, one: String, depth: usize) -> String {
+        let (name, number) = (self.draft.spelling.scalar(scalar), self.value(&FLOAT, depth));
+        match scalar {
+            Scalar::Uint if self.has("abs") => format!("{name}(abs({number}))"),
+            Scalar::Uint => one,
+            _ => format!("{name}({number})"),
+        }
+    }
+
     fn dot(&mut self, depth: usize) -> String {
         let ty = Type::Vector(2 + self.below(3), Scalar::Float);
         let (one, other) = (self.value(&ty, depth), self.value(&ty, depth));
@@ -84,15 +95,7 @@ impl Body<'_> {
                 let other = self.value(&ty, depth);
                 format!("({one} % ({other} | {some}))")
             }
-            4 | 5 => {
-                let number = self.value(&FLOAT, depth);
-                match scalar {
-                    // GLSL leaves open what a negative number becomes, and naga passes that on.
-                    Scalar::Uint if self.has("abs") => format!("{name}(abs({number}))"),
-                    Scalar::Uint => one,
-                    _ => format!("{name}({number})"),
-                }
-            }
+            4 | 5 => self.whole(scalar, one, depth),
             6 if scalar == Scalar::Int => format!("(-{one})"),
             7 if scalar == Scalar::Int && self.has("abs") => format!("abs({one})"),
             8 if self.has("clamp") => {

@@ -302,27 +302,28 @@ fn of_point(
     programs: &Programs,
     arguments: &Arguments,
     program: &Program,
-    over: Option<&str>,
+    base: Option<&str>,
 ) -> Result<Plan, Failure> {
-    let point = chosen_point(programs, arguments, program, over)?;
+    let point = chosen_point(programs, arguments, program, base)?;
     Plan::of_point(programs, program, &point).map_err(|problems| input_failure(programs, problems))
 }
 
-/// The point of the program's space that is asked for, over the point of a key.
+/// The permutation that `--set` chooses. Axes that it leaves out have their values from the key
+/// `base`, or else their defaults.
 fn chosen_point(
     programs: &Programs,
     arguments: &Arguments,
     program: &Program,
-    over: Option<&str>,
+    base: Option<&str>,
 ) -> Result<Assignment, Failure> {
     let chosen: Vec<String> =
         arguments.set.iter().map(|(axis, value)| format!("{axis}={value}")).collect();
     let mut texts = programs.texts();
-    let base = texts.add("preset", over.unwrap_or_default());
+    let base = texts.add("preset", base.unwrap_or_default());
     let id = texts.add("--set", chosen.join(","));
-    let (base, over) = (Quoted::whole(&texts, base), Quoted::whole(&texts, id));
+    let (base, chosen) = (Quoted::whole(&texts, base), Quoted::whole(&texts, id));
     let point = key::parse(&program.space, &base)
-        .and_then(|base| key::parse_over(&program.space, base, &over));
+        .and_then(|base| key::parse_over(&program.space, base, &chosen));
     let checked = point.and_then(|point| {
         let problems = super::input::broken_constraint(program, &point, &texts, id);
         if problems.is_empty() { Ok(point) } else { Err(problems) }

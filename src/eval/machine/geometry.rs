@@ -1,10 +1,11 @@
-//! Functions of whole vectors and matrices. They are written with the operations of [`Number`], so
-//! that their errors follow from the definitions in WGSL.
+//! Functions of whole vectors and matrices, and those that return a number in two parts. Most are
+//! written with the operations of [`Number`], so that their errors follow from the definitions in
+//! WGSL.
 
 use super::super::code::{Binary, Compare, Geometry, Unary};
 use super::super::number::Number;
 
-/// A vector of up to four numbers, or a matrix of up to sixteen.
+/// A vector of up to four numbers.
 type Vector<N> = [N; 4];
 
 /// Runs one function on the slots `[to, a, b, c]`.

@@ -62,7 +62,7 @@ pub struct Manifest {
 }
 
 impl Manifest {
-    /// Adds the features of the package; what the manifest says of one is not changed.
+    /// Adds features. One that the manifest already has stays as it is.
     pub fn adopt(&mut self, features: Features) {
         self.features.extend(features);
         for program in &mut self.programs {

@@ -104,7 +104,8 @@ impl Package {
 
     /// What is wrong unless each of the three shaders of a bundle has this number.
     fn lacks(&self, bundle: &Path, number: usize) -> Result<Option<String>, Failure> {
-        let words = format!("{number}.0");
+        // naga writes a whole number in this way.
+        let words = format!("{number}f");
         let mut found = 0;
         for blob in fs::read_dir(bundle.join("blobs")).map_err(environment)? {
             let text = fs::read(blob.map_err(environment)?.path()).unwrap_or_default();

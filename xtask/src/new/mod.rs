@@ -18,7 +18,7 @@ pub struct Kind {
     pub name: &'static str,
     /// What its names look like.
     pub example: &'static str,
-    /// The files for a name, from the repository as it is.
+    /// Makes the texts of new and of extended files for a name. It only reads the repository.
     pub make: fn(&Repository<'_>, &str) -> Result<Made, String>,
 }
 

@@ -1,0 +1,68 @@
+//! What naga's front end for GLSL does to names, and what follows for a permutation.
+
+use super::{Outcome, agree, all_linked, package, units};
+
+/// A GLSL function that nothing calls does not ship. Whether naga takes it must not decide about
+/// a permutation, neither alone nor as the first of all.
+pub fn unused_functions() -> Outcome {
+    const MANIFEST: &str = "[program.one]\nglsl = { fragment = \"one.frag.glsl\" }\n\
+        [program.one.axis]\nrows = { values = [false, true], default = true }\n";
+    // The local variable makes the function look as if it were used.
+    const TEXT: &str = "#version 450
+layout(location = 0) out vec4 color;
+#if ROWS
+void unused() {
+    float half_way = undeclared;
+}
+#endif
+void main() {
+    float unused = 0.5;
+    color = vec4(unused);
+}
+";
+    let folder = tempfile::tempdir()?;
+    std::fs::write(folder.path().join("one.frag.glsl"), TEXT)?;
+    let (mut sources, packages, manifest) = package(folder.path(), "one", MANIFEST, "")?;
+    let together = agree(&mut sources, &packages, &manifest, 1)?;
+    assert_eq!(together.summary.programs[0].permutations, 2);
+    all_linked(&together)
+}
+
+/// A constant and a variable of GLSL may have the name of a block's member, whichever is declared
+/// first, and are not read from the block.
+pub fn constants_like_members() -> Outcome {
+    const MANIFEST: &str = "[program.one]\nglsl = { fragment = \"one.frag.glsl\" }\n\
+        targets = [\"wgsl\"]\n[program.one.axis]\nfirst = { values = [false, true] }\n";
+    const TEXT: &str = "#version 450
+#if FIRST
+const float bias = 0.25;
+const int rows = 2;
+#endif
+struct Light { float bias; };
+layout(set = 0, binding = 0) uniform Shadow {
+    vec4 tint;
+    float bias, strength[2];
+    vec4 rows;
+} shadow;
+#if !FIRST
+const float bias = 0.25;
+const int rows = 2;
+#endif
+float strength = 0.5;
+layout(location = 0) out vec4 color;
+float shaded(float x) { Light light = Light(bias); return x * light.bias + float(rows); }
+void main() { color = shadow.tint * shaded(bias) * strength; }
+";
+    let folder = tempfile::tempdir()?;
+    std::fs::write(folder.path().join("one.frag.glsl"), TEXT)?;
+    let (mut sources, packages, manifest) = package(folder.path(), "one", MANIFEST, "")?;
+    let together = agree(&mut sources, &packages, &manifest, 1)?;
+    for ((_, key), unit) in units(&together) {
+        let text = String::from_utf8_lossy(&unit.targets["wgsl"].bytes);
+        let is_read = |member: &&&str| text.contains(&format!("shadow.{member}"));
+        if let Some(member) = ["bias", "strength", "rows"].iter().find(is_read) {
+            return Err(format!("[{key}] reads the member `{member}`:\n{text}").into());
+        }
+    }
+    all_linked(&together)
+}
