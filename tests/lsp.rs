@@ -12,7 +12,7 @@ use folders::folder_that_is_not_there;
 use lamplight::source::{Embedded, Files as _};
 use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
-use session::{MANIFEST, Session, UTIL};
+use session::{MAIN, MANIFEST, Session, UTIL};
 
 type Outcome = Result<(), Failed>;
 
@@ -38,27 +38,6 @@ pub fn trials() -> Vec<Trial> {
     let trial = |(name, run): &(&str, Run)| Trial::test(format!("lsp::{name}"), *run);
     TRIALS.iter().map(trial).collect()
 }
-
-const MAIN: &str = "import package::util::half;
-import lamplight::brdf::diffuse::lambert;
-
-@if(fog)
-fn fade(x: f32) -> f32 {
-    return x;
-}
-
-@fragment
-fn fs_main(@location(0) n: vec3f) -> @location(0) vec4f {
-    let up = vec3f(0.0, 1.0, 0.0);
-    var sum = lambert(n, up);
-    @if(fog) {
-        sum = fade(sum);
-    }
-    @if(TINT) sum = half(sum);
-    @if(cone == soft) sum = half(sum);
-    return vec4f(sum);
-}
-";
 
 /// Fails unless a condition holds, with the place of the call and what the server answered.
 #[track_caller]

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::session::Session;
-use super::{MAIN, Outcome, expect};
+use super::session::{MAIN, Session};
+use super::{Outcome, expect};
 
 /// An editor may open a new file in a folder that it has not made yet. The file is looked at all the
 /// same.

@@ -11,6 +11,28 @@ use tempfile::TempDir;
 
 use super::Outcome;
 
+/// The module that most trials ask about.
+pub const MAIN: &str = "import package::util::half;
+import lamplight::brdf::diffuse::lambert;
+
+@if(fog)
+fn fade(x: f32) -> f32 {
+    return x;
+}
+
+@fragment
+fn fs_main(@location(0) n: vec3f) -> @location(0) vec4f {
+    let up = vec3f(0.0, 1.0, 0.0);
+    var sum = lambert(n, up);
+    @if(fog) {
+        sum = fade(sum);
+    }
+    @if(TINT) sum = half(sum);
+    @if(cone == soft) sum = half(sum);
+    return vec4f(sum);
+}
+";
+
 pub const MANIFEST: &str = r#"[program.lamp]
 wesl = "main.wesl"
 
