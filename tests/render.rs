@@ -6,11 +6,14 @@ mod accounted;
 mod closed_forms;
 mod command;
 mod compared;
+mod deferred;
 mod difference;
 mod frames;
 mod models;
 mod needs;
+mod occlusion;
 mod pages;
+mod prefiltered;
 mod shadows;
 
 use std::path::PathBuf;
@@ -67,6 +70,9 @@ pub fn trials() -> Vec<Trial> {
         .chain(forms)
         .chain(accounted::trials())
         .chain(compared::trials())
+        .chain(deferred::trials())
+        .chain(occlusion::trials())
+        .chain(prefiltered::trials())
         .chain(pages::trials())
         .chain(command::trials())
         .chain(models::trials())

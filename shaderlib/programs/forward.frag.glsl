@@ -122,18 +122,7 @@ vec3 shade(vec3 base) {
 #else
 #include "../surface/normal.glsl"
 #include "forward/lamps.glsl"
-
-#if AMBIENT == AMBIENT_IBL
-/// The sums with the light of the environment maps.
-Accum add_environment(Accum sum, Surface surface) {
-    vec3 diffuse = texture(samplerCube(sky_diffuse, sky_sampler), surface.normal).rgb;
-    vec3 specular = texture(samplerCube(sky_specular, sky_sampler), reflect(-surface.view, surface.normal)).rgb;
-    return Accum(
-        sum.scattered + surface.material.ambient * diffuse * surroundings.diffuse_share,
-        sum.reflected + surface.material.specular * specular * surroundings.specular_share
-    );
-}
-#endif
+#include "forward/environment.glsl"
 
 /// The colour of the surface.
 vec3 shade(vec3 base) {

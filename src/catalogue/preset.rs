@@ -17,8 +17,8 @@
 //! ```
 //!
 //! `look` says what to look for in the picture. The tables `light`, `material`, `surroundings`,
-//! `haze`, `caster`, `moments` and `display` have the numbers that the source publishes, named
-//! after the fields of the uniform they go to. `depth_pass` has what the shadow map is drawn with:
+//! `haze`, `caster`, `moments`, `display`, `march` and `lobe` have the numbers that the source
+//! publishes, named after the fields of the uniform they go to. `depth_pass` has what the shadow map is drawn with:
 //! `polygon_offset`, `cull_front`, and of a spot light the whole angle `fov` in degrees and the
 //! planes `near` and `far` in scene units. `open` names the numbers that the source leaves to its
 //! reader, or to models of its own: the scene and the renderer choose them. Every number that the
@@ -152,6 +152,10 @@ struct Entry {
     #[serde(default)]
     display: Group,
     #[serde(default)]
+    march: Group,
+    #[serde(default)]
+    lobe: Group,
+    #[serde(default)]
     depth_pass: Group,
     #[serde(default)]
     open: Vec<Spanned<String>>,
@@ -225,6 +229,8 @@ impl Checker<'_> {
             ("caster", entry.caster),
             ("moments", entry.moments),
             ("display", entry.display),
+            ("march", entry.march),
+            ("lobe", entry.lobe),
             ("depth_pass", entry.depth_pass),
         ];
         for name in &entry.open {

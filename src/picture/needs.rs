@@ -222,9 +222,9 @@ impl Needs {
         self.uniforms.get(block)?.get(field).map(Number::to_vec)
     }
 
-    /// Whether something casts a shadow.
+    /// Whether something casts a shadow: a pass before draws the map of a light.
     pub fn has_shadow(&self) -> bool {
-        !self.before.is_empty()
+        self.before.len() > usize::from(self.screen)
     }
 
     /// Whether the shadow map may be one of several, for parts of the viewer's depth.

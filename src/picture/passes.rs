@@ -20,7 +20,7 @@ use crate::execute::fixture::{Fixture, Texture, TextureKind};
 use crate::execute::frame::{Buffers, Frame, Mesh, Side, State};
 use crate::picture::frame::{Composed, Programs, Stages, pack_buffer};
 use crate::scene::sets::{self, Eye, LampKind, Scene};
-use crate::scene::{Clip, Depth, cascade_splits, depth_range, perspective};
+use crate::scene::{cascade_splits, depth_range};
 
 /// What all objects and views of a pass share, by group and binding.
 #[derive(Default)]
@@ -88,8 +88,8 @@ pub fn prepare_passes(
     let mut slices = Vec::new();
     for (near, far) in slices_of(&scene, shot.cascades) {
         scene.eye = Eye { near, far, ..whole };
-        let light =
-            LightView::cascade(&scene, &key, viewer_camera(&scene.eye, shot).clip_from_world, size);
+        let clip_from_world = Camera::of_viewer(&scene.eye, shot).clip_from_world;
+        let light = LightView::cascade(&scene, &key, clip_from_world, size);
         slices.push(slice(&scene, light)?);
     }
     let mut slices = slices.into_iter();
@@ -142,18 +142,6 @@ fn no_cascades(pass: &Pass) -> Diagnostic {
         .note("choose `shadow_light=directional` and a `shadow`")
 }
 
-/// The viewer's camera.
-fn viewer_camera(eye: &Eye, shot: &Shot) -> Camera {
-    let [width, height] = shot.size;
-    let aspect = f64::from(width) / f64::from(height.max(1));
-    // A picture that is higher than wide still shows everything that a square one shows.
-    let fov =
-        if aspect < 1.0 { 2.0 * ((0.5 * eye.fov_y).tan() / aspect).atan() } else { eye.fov_y };
-    let view = eye.view();
-    let projection = perspective(fov, aspect, eye.near, eye.far, Clip::Wgpu, Depth::Normal);
-    Camera { clip_from_world: projection * view, world_from_view: view.inverse() }
-}
-
 impl Studio<'_> {
     /// Draws a pass before the last one, and keeps what later passes read.
     fn draw(&self, pass: &Pass, left: &mut Left) -> Result<(), Diagnostics> {
@@ -179,7 +167,7 @@ impl Studio<'_> {
         }
         let frames = prepared.draw_colors(self.painter, &views, [side; 2], 0)?;
         let cleared = self.values.cleared_moments();
-        left.colors = vec![color_texture(&frames, [side; 2], |_| cleared)?];
+        left.moments = Some(color_texture(&frames, [side; 2], |_| cleared)?);
         Ok(())
     }
 
@@ -225,12 +213,14 @@ impl Studio<'_> {
         let stages = self.programs.stages(program, &pass.settings, self.values.shot.language)?;
         let bindings = stage_bindings(&stages);
         let camera = bindings.iter().find(|binding| binding.name == "camera").cloned();
-        let Bound { buffers, fixtures, levels } = self.bound(&bindings, left)?;
+        let has_objects = !vertex_attributes(&stages.vertex.reflection).is_empty();
+        let shared = bindings.iter().filter(|binding| !is_own(&binding.name, has_objects));
+        let Bound { buffers, fixtures, levels } = self.bound(shared, left)?;
         let plain =
             PLAIN.iter().filter_map(|name| bindings.iter().find(|binding| binding.name == *name));
         let plain = plain.map(|binding| (binding.group, binding.binding)).collect();
         let items = self.items(pass, &stages, &bindings).map_err(|problem| vec![problem])?;
-        let eye = viewer_camera(&self.values.scene.eye, self.values.shot);
+        let eye = Camera::of_viewer(&self.values.scene.eye, self.values.shot);
         let background = Background::new(&self.values, eye);
         let state = self.state(pass, camera.is_some());
         let encoded = pass.needs.encoded;
@@ -251,10 +241,14 @@ impl Studio<'_> {
     }
 
     /// What all objects and views of a pass share.
-    fn bound(&self, bindings: &[Binding], left: &Left) -> Result<Bound, Diagnostics> {
+    fn bound<'b>(
+        &self,
+        bindings: impl Iterator<Item = &'b Binding>,
+        left: &Left,
+    ) -> Result<Bound, Diagnostics> {
         let mut bound = Bound::default();
         let mut library = Library::new(&self.values, left);
-        for binding in bindings.iter().filter(|binding| !is_own(&binding.name)) {
+        for binding in bindings {
             let place = (binding.group, binding.binding);
             match binding.kind {
                 Kind::Uniform => {
@@ -327,9 +321,10 @@ impl Studio<'_> {
 /// Blocks of `forward` that only affect colours.
 const PLAIN: &[&str] = &["materials", "haze", "surroundings"];
 
-/// Whether each view or each object fills the block.
-fn is_own(name: &str) -> bool {
-    matches!(name, "camera" | "object" | "materials")
+/// Whether each view or each object fills the block. A pass over the screen has no objects, so that
+/// all materials are in one block.
+fn is_own(name: &str, has_objects: bool) -> bool {
+    name == "camera" || has_objects && matches!(name, "object" | "materials")
 }
 
 /// The first of the frames as a texture. What is in the texels that nothing was drawn into depends

@@ -15,17 +15,23 @@ use crate::scene::{CubeMap, FACES, prefilter};
 pub struct Left {
     /// The depths that the light sees: of six faces, or of one. And the texels along an edge.
     pub map: Option<(Vec<Vec<f32>>, u32)>,
+    /// Moments of the depths that the light sees.
+    pub moments: Option<Texture>,
     /// The depths that the viewer sees, and the size.
     pub seen: Option<(Vec<f32>, [u32; 2])>,
-    /// The colour targets of the last pass that has some.
+    /// The colour targets of the last pass that the viewer sees.
     pub colors: Vec<Texture>,
 }
+
+/// Samplers of textures that are not filtered.
+const NEAREST: [&str; 2] = ["depth_sampler", "surface_sampler"];
 
 /// The sampler of a binding.
 pub fn binding_sampler(binding: &Binding) -> Fixture {
     let compare = (binding.kind == Kind::ComparisonSampler).then_some(Compare::LessEqual);
     let address = if binding.name == "map_sampler" { Address::Repeat } else { Address::Clamp };
-    Fixture::Sampler(Sampler { compare, linear: binding.name != "depth_sampler", address })
+    let linear = !NEAREST.contains(&binding.name.as_str());
+    Fixture::Sampler(Sampler { compare, linear, address })
 }
 
 /// Textures by the name of their binding.
@@ -35,7 +41,9 @@ pub struct Library<'a> {
     maps: Option<Arc<Maps>>,
 }
 
-/// The edges of the environment's cube maps, and the rows of the quadratures that fill them.
+/// Texels along an edge of the environment's own cube map.
+const ENVIRONMENT: usize = 64;
+/// The edges of the environment's filtered cube maps, and the rows of the quadratures that fill them.
 const DIFFUSE: (usize, usize) = (12, 24);
 const SPECULAR: (usize, usize) = (32, 36);
 /// The exponent of the specular map.
@@ -53,6 +61,9 @@ impl<'a> Library<'a> {
             surroundings.with_sky(|sky| cube_texture(&prefilter(sky, exponent, size, rows)))
         };
         let found = match name {
+            "environment" => Some(vec![
+                surroundings.with_sky(|sky| cube_texture(&CubeMap::of(sky, ENVIRONMENT))),
+            ]),
             "sky_diffuse" => Some(vec![sky(1.0, DIFFUSE)]),
             "sky_specular" => Some(vec![sky(LOBE, SPECULAR)]),
             "base_map" => Some(color_textures(self.maps().base.clone().levels())),
@@ -85,8 +96,13 @@ impl Left {
                     self.map.as_ref().and_then(|(faces, size)| Some((faces.first()?, *size)));
                 one(face.map(|(face, size)| as_color(face, [size; 2])))
             }
-            "shadow_moments" => color(0).map(with_levels),
-            "blurred" | "light" => one(color(0)),
+            "blurred" => one(self.moments.clone()),
+            "shadow_moments" => self.moments.clone().map(with_levels),
+            "light" | "surface_color" => one(color(0)),
+            "surface_normal" => one(color(1)),
+            "surface_depth" | "depth_buffer" => {
+                one(self.seen.as_ref().map(|(depths, size)| as_color(depths, *size)))
+            }
             _ => None,
         }
     }

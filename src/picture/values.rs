@@ -2,14 +2,14 @@
 
 use std::f64::consts::PI;
 
-use glam::{DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec3};
 
 use super::light::LightView;
 use super::needs::Falloff;
 use super::plan::{LAMPS, Pass, Plan};
 use super::{Shot, Surroundings};
-use crate::scene::sets::{Lamp, LampKind, Material, Object, Scene};
-use crate::scene::{directions, normal_matrix, sh9_project};
+use crate::scene::sets::{Eye, Lamp, LampKind, Material, Object, Scene};
+use crate::scene::{Clip, Depth, directions, normal_matrix, perspective, sh9_project};
 
 /// What the uniforms of one pass are filled from.
 pub struct Values<'a> {
@@ -37,6 +37,8 @@ const GROUPS: &[(&str, &str)] = &[
     ("caster", "caster"),
     ("terms", "moments"),
     ("display", "display"),
+    ("lobe", "lobe"),
+    ("march", "march"),
 ];
 
 /// The range of falloffs that have one, as a multiple of the target's distance.
@@ -60,6 +62,12 @@ impl<'p> Path<'p> {
 }
 
 impl Camera {
+    /// The viewer's.
+    pub fn of_viewer(eye: &Eye, shot: &Shot) -> Self {
+        let view = eye.view();
+        Self { clip_from_world: eye_projection(eye, shot) * view, world_from_view: view.inverse() }
+    }
+
     /// The numbers of a field of the block `camera`.
     pub fn number(&self, path: &str) -> Option<Vec<f64>> {
         match Path::new(path).field {
@@ -82,6 +90,9 @@ impl Values<'_> {
             "surroundings" => self.surroundings(&path),
             "haze" => self.haze(path.field),
             "caster" | "planes" => self.caster(path.field),
+            "lobe" if path.field == "world_from_clip" => Some(matrix_columns(self.sky_from_clip())),
+            "eye" | "screen" => self.screen(path.field),
+            "march" if path.field == "lamp" => Some(vector_values(self.marched_light())),
             _ => None,
         };
         self.published(&path)
@@ -230,6 +241,38 @@ impl Values<'_> {
         })
     }
 
+    /// How the viewer's screen and the scene belong together.
+    fn screen(&self, field: &str) -> Option<Vec<f64>> {
+        let eye = &self.scene.eye;
+        let projection = eye_projection(eye, self.shot);
+        Some(match field {
+            "world_from_clip" => matrix_columns((projection * eye.view()).inverse()),
+            "clip_from_view" => matrix_columns(projection),
+            "view_from_clip" => matrix_columns(projection.inverse()),
+            "view_from_world" => matrix_columns(eye.view()),
+            "near" => vec![eye.near],
+            "far" => vec![eye.far],
+            _ => return None,
+        })
+    }
+
+    /// From the screen to directions that the viewer sees.
+    fn sky_from_clip(&self) -> DMat4 {
+        let eye = &self.scene.eye;
+        let turned = DMat4::from_mat3(DMat3::from_mat4(eye.view()));
+        (eye_projection(eye, self.shot) * turned).inverse()
+    }
+
+    /// The first lamp in the view's space: where it is, or where its light comes from.
+    fn marched_light(&self) -> DVec3 {
+        let Some(lamp) = self.scene.lamps.first() else { return DVec3::Y };
+        let view = self.scene.eye.view();
+        match self.lit.needs.caster {
+            Some(LampKind::Directional) => view.transform_vector3(-lamp.axis()).normalize(),
+            _ => view.transform_point3(lamp.position),
+        }
+    }
+
     fn caster(&self, field: &str) -> Option<Vec<f64>> {
         // If the source avoids acne in its own way, no offset is added.
         let offset =
@@ -281,6 +324,16 @@ impl Values<'_> {
         let (positive, negative) = (exponent(0).exp(), -(-exponent(1)).exp());
         [positive, positive * positive, negative, negative * negative].map(|moment| moment as f32)
     }
+}
+
+/// The projection of the viewer.
+fn eye_projection(eye: &Eye, shot: &Shot) -> DMat4 {
+    let [width, height] = shot.size;
+    let aspect = f64::from(width) / f64::from(height.max(1));
+    // A picture that is higher than wide still shows everything that a square one shows.
+    let fov =
+        if aspect < 1.0 { 2.0 * ((0.5 * eye.fov_y).tan() / aspect).atan() } else { eye.fov_y };
+    perspective(fov, aspect, eye.near, eye.far, Clip::Wgpu, Depth::Normal)
 }
 
 fn projected_light(surroundings: &Surroundings) -> [[f64; 3]; 9] {

@@ -113,6 +113,15 @@ pub struct CubeMap {
 }
 
 impl CubeMap {
+    /// An environment as it is, sampled in the middle of each texel.
+    pub fn of(sky: &Sky<'_>, size: usize) -> Self {
+        let texel = |index: usize| {
+            let (face, row, column) = (index / (size * size), index / size % size, index % size);
+            sky(Self::direction(size, face, column, row))
+        };
+        Self { size, texels: (0..6 * size * size).map(texel).collect() }
+    }
+
     /// The direction through the middle of a texel, as every graphics API reads cube maps.
     pub fn direction(size: usize, face: usize, column: usize, row: usize) -> DVec3 {
         let (forward, up) = FACES[face.min(5)];

@@ -68,9 +68,10 @@ fn program(program: &Program) -> Result<(), Failed> {
     let own = text(&file.path).replace("package::", "lamplight::");
     let mut files = package("lamplight");
     let root = ("".to_owned(), "main.wesl".to_owned());
-    files.insert(root.clone(), own.clone());
-    let mut translated = files.clone();
-    translated.insert(root, booleans(&own));
+    files.insert(root, own);
+    // A program may import from another one, whose conditions are translated too.
+    let mut translated: Files =
+        files.iter().map(|(place, text)| (place.clone(), booleans(text))).collect();
     let points = cover::pairwise(&program.space).points;
     for point in points.iter().step_by(points.len().div_ceil(POINTS)) {
         let settings = program.space.settings(point);
@@ -148,8 +149,15 @@ fn flag(axis: &str, value: &str) -> String {
     format!("{axis}_is_{value}")
 }
 
+/// The flags of a permutation. Those of other programs, which this one may import from, are off.
 fn flags(program: &Program, point: &Assignment) -> Flags {
     let mut flags = Flags::new();
+    let manifest = project::library_manifest().map(|(_, manifest)| manifest.programs);
+    let others = manifest.unwrap_or_default();
+    for axis in others.iter().flat_map(|other| other.space.axes()) {
+        flags.insert(axis.name.clone(), false);
+        flags.extend(axis.values.iter().map(|value| (flag(&axis.name, &value.to_string()), false)));
+    }
     for (index, axis) in program.space.axes().iter().enumerate() {
         let chosen = program.space.value(index, point);
         match chosen {

@@ -1,7 +1,9 @@
 //! What the uniforms, textures and samplers of a frame hold.
 
+use glam::DMat4;
 use lamplight::bundle::Kind as BindingKind;
 use lamplight::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use lamplight::scene::{Clip, Depth, perspective};
 
 /// Values for any uniform. Those that the picture depends on are chosen, the others vary.
 pub fn number(path: &str) -> Vec<f64> {
@@ -14,20 +16,10 @@ pub fn number(path: &str) -> Vec<f64> {
         };
         (0..count).map(|i| low + (high - low) * step(i)).collect()
     };
+    if let Some(columns) = matrix(path, name) {
+        return columns;
+    }
     match name {
-        "world_from_view" => vec![1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0.2, 0.3, 3., 1.],
-        "clip_from_world" if path.starts_with("camera") => {
-            vec![0.9, 0., 0., 0., 0., 0.9, 0., 0., 0., 0., 0.2, 0.1, 0., 0., 0.5, 1.]
-        }
-        "clip_from_world" => {
-            vec![0.5, 0., 0., 0., 0., 0.5, 0., 0.05, 0.1, 0., -0.3, 0., 0.03, 0.02, 0.5, 1.]
-        }
-        "world_from_object" => {
-            vec![1.05, 0., 0., 0., 0., 1.05, 0., 0., 0., 0., 1.05, 0., 0., 0., 0., 1.]
-        }
-        "normal_from_object" => {
-            vec![1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.]
-        }
         "count" => vec![3.0],
         "kind" => vec![index + 1.0],
         "light" => vec![0.0],
@@ -51,8 +43,37 @@ pub fn number(path: &str) -> Vec<f64> {
         "end" => vec![6.0],
         "exponents" => vec![5.0, 5.0],
         "radius" => vec![2.0],
+        "level" => vec![0.0],
         _ => vary(0.1, 0.9, 4),
     }
+}
+
+/// The columns of a matrix, by its name.
+fn matrix(path: &str, name: &str) -> Option<Vec<f64>> {
+    Some(match name {
+        "world_from_view" => vec![1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0.2, 0.3, 3., 1.],
+        "clip_from_world" if path.starts_with("camera") => {
+            vec![0.9, 0., 0., 0., 0., 0.9, 0., 0., 0., 0., 0.2, 0.1, 0., 0., 0.5, 1.]
+        }
+        "clip_from_world" => {
+            vec![0.5, 0., 0., 0., 0., 0.5, 0., 0.05, 0.1, 0., -0.3, 0., 0.03, 0.02, 0.5, 1.]
+        }
+        "world_from_clip" | "view_from_world" => DMat4::IDENTITY.to_cols_array().to_vec(),
+        "clip_from_view" => view_projection().to_cols_array().to_vec(),
+        "view_from_clip" => view_projection().inverse().to_cols_array().to_vec(),
+        "world_from_object" => {
+            vec![1.05, 0., 0., 0., 0., 1.05, 0., 0., 0., 0., 1.05, 0., 0., 0., 0., 1.]
+        }
+        "normal_from_object" => {
+            vec![1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.]
+        }
+        _ => return None,
+    })
+}
+
+/// The projection of the viewer, for places on the screen.
+fn view_projection() -> DMat4 {
+    perspective(1.2, 1.0, 0.1, 12.0, Clip::Wgpu, Depth::Normal)
 }
 
 /// A texture or a sampler for a binding. Colours vary smoothly, and depths have an edge.

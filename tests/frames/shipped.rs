@@ -19,21 +19,21 @@ use lamplight::permute::axis::ValueSet;
 use lamplight::picture::frame::probe;
 use libtest_mimic::{Failed, Trial};
 
-use super::{PROGRAMS, Scene, Sources, bundle, points};
+use super::{PROGRAMS, Scene, Sources, bundle, most_open, points};
 use crate::fragments::{self, Tally, Watched};
 
 /// The number of permutations of each language. All pairs of values are among them.
 const LEAST_POINTS: usize = 200;
 /// How many of them the tests draw. `cargo xtask frames` draws all.
 const DRAWN_POINTS: usize = 12;
+/// How many of programs that are smaller than `forward`.
+const DRAWN_OF_SMALL: usize = 4;
 /// The size of a frame in pixels.
 const SIZE: [u32; 2] = [96, 48];
 /// Every 29th quad is computed again.
 const STEP: usize = 29;
 /// The least number of fragments of a permutation that must be compared.
 const LEAST: usize = 80;
-/// The largest share of a permutation's fragments that may be open (see [`crate::fragments`]).
-const OPEN: f64 = 0.01;
 /// How many failures of a driver are printed.
 const MOST_FAILURES: usize = 20;
 
@@ -76,17 +76,18 @@ fn drivers(targets: &[Target]) -> Result<Vec<Driver>, String> {
 }
 
 /// How many permutations are drawn: the number in the environment, or [`DRAWN_POINTS`].
-fn most_points() -> Result<usize, String> {
+fn most_points(program: &str) -> Result<usize, String> {
     match std::env::var("LAMPLIGHT_FRAMES_PERMUTATIONS") {
         Ok(text) => text.parse().map_err(|_| format!("`{text}` is not a number")),
-        Err(_) => Ok(DRAWN_POINTS),
+        Err(_) if program == "forward" => Ok(DRAWN_POINTS),
+        Err(_) => Ok(DRAWN_OF_SMALL),
     }
 }
 
 fn drawn(program: &'static str, language: Language) -> Result<(), String> {
     let (targets, sources) = (targets()?, Sources::load(program, language)?);
     let mut points = points(&sources.space, LEAST_POINTS);
-    points.truncate(most_points()?);
+    points.truncate(most_points(program)?);
     let start = Instant::now();
     let bundle = bundle(&sources, &points, &targets)?;
     let mut drivers = drivers(&targets)?;
@@ -181,6 +182,8 @@ impl Driver {
         let (vertex, fragment) = (vertex.map_err(lost)?, fragment.map_err(lost)?);
         let tells = self.tells(scene)?;
         let mut targets = self.draw(&vertex, &fragment, scene)?;
+        // Of several colour targets, the first one is compared.
+        targets.truncate(1);
         targets.extend(self.draw(&vertex, &tells, scene)?);
         Ok(targets)
     }
@@ -224,14 +227,14 @@ impl Driver {
         Ok(self.session.draw_shipped(Pair { vertex, fragment }, &drawing)?.remove(0).targets)
     }
 
-    fn count(&mut self, key: &str, found: Result<Tally, String>) {
+    fn count(&mut self, program: &str, key: &str, found: Result<Tally, String>) {
         match found {
             Ok(tally) if tally.tried < LEAST => {
                 let what = format!("{} fragments, expected at least {LEAST}", tally.tried);
                 let text = format!("{} [{key}] compared {what}", self.name);
                 self.failures.push(text);
             }
-            Ok(tally) if tally.open as f64 > OPEN * tally.tried as f64 => {
+            Ok(tally) if tally.open as f64 > most_open(program) * tally.tried as f64 => {
                 let Tally { tried, open, .. } = tally;
                 let text = format!("{} [{key}] {open} of {tried} fragments are open", self.name);
                 self.failures.push(text);
@@ -288,7 +291,7 @@ fn permutation(
     let resources = fragments::resources(scene.buffers.clone(), &scene.fixtures, &BTreeMap::new());
     let tallies = fragments::recompute_each(&scene.fragment, resources, &watched, STEP)?;
     for (owner, tally) in owners.into_iter().zip(tallies) {
-        drivers[owner].count(key, tally);
+        drivers[owner].count(of.0, key, tally);
     }
     Ok(())
 }

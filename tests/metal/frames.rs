@@ -13,9 +13,10 @@ use libtest_mimic::{Failed, Trial};
 use naga::{Binding, BuiltIn};
 
 use crate::fragments::{self, Tally, Watched};
-use crate::frames::{PROGRAMS, Scene, Sources, bundle, points};
+use crate::frames::{PROGRAMS, Scene, Sources, bundle, most_open, points};
 
-/// The number of permutations of each language. All pairs of values are among them.
+/// The number of permutations of `forward` in each language. All pairs of values are among them, as
+/// they are of the other programs.
 const LEAST_POINTS: usize = 200;
 /// The size of a frame in pixels.
 const SIZE: [u32; 2] = [128, 64];
@@ -23,8 +24,6 @@ const SIZE: [u32; 2] = [128, 64];
 const STEP: usize = 29;
 /// The least number of fragments of a permutation that must be compared.
 const LEAST: usize = 200;
-/// The largest share of a permutation's fragments that may be open (see [`crate::fragments`]).
-const OPEN: f64 = 0.01;
 /// The number of permutations whose stages are compiled together.
 const BATCH: usize = 64;
 
@@ -42,7 +41,7 @@ pub fn trials() -> Vec<Trial> {
 
 fn drawn(program: &'static str, language: Language) -> Result<(), String> {
     let sources = Sources::load(program, language)?;
-    let points = points(&sources.space, LEAST_POINTS);
+    let points = points(&sources.space, if program == "forward" { LEAST_POINTS } else { 1 });
     let bundle = bundle(&sources, &points, &[Target::MSL])?;
     let (mut total, mut failures) = (Tally::default(), Vec::new());
     for points in points.chunks(BATCH) {
@@ -58,7 +57,7 @@ fn drawn(program: &'static str, language: Language) -> Result<(), String> {
             .collect::<Result<Vec<_>, _>>()?;
         let compiled = Compiled::new(stages.shipped).map_err(|missing| missing.reason)?;
         for ((scene, key), pair) in scenes.iter().zip(&keys).zip(pairs) {
-            match agrees(&compiled, pair, scene) {
+            match agrees(&compiled, pair, scene, most_open(program)) {
                 Ok(tally) => total.add(&tally),
                 Err(error) => failures.push(format!("[{key}] {error}")),
             }
@@ -104,7 +103,12 @@ impl Stages {
     }
 }
 
-fn agrees(compiled: &Compiled, pair: [usize; 2], scene: &Scene) -> Result<Tally, String> {
+fn agrees(
+    compiled: &Compiled,
+    pair: [usize; 2],
+    scene: &Scene,
+    most: f64,
+) -> Result<Tally, String> {
     let Scene { vertex, fragment, mesh, buffers, fixtures, .. } = scene;
     let drawing = Drawing {
         vertex: stage(vertex),
@@ -131,8 +135,8 @@ fn agrees(compiled: &Compiled, pair: [usize; 2], scene: &Scene) -> Result<Tally,
         Tally { tried, .. } if tried < LEAST => {
             Err(format!("{tried} fragments were compared, expected at least {LEAST}"))
         }
-        Tally { tried, open, .. } if open as f64 > OPEN * tried as f64 => {
-            Err(format!("{open} of {tried} fragments are open, at most {OPEN} of them may be"))
+        Tally { tried, open, .. } if open as f64 > most * tried as f64 => {
+            Err(format!("{open} of {tried} fragments are open, at most {most} of them may be"))
         }
         tally => Ok(tally),
     }

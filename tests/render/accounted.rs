@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 
 use lamplight::bundle::Language;
 use lamplight::catalogue::preset::Preset;
+use lamplight::picture::Pass;
 use lamplight::picture::frame::Stages;
 use libtest_mimic::{Failed, Trial};
 use naga::proc::TypeResolution;
@@ -22,6 +23,8 @@ const STRUCTURES: &[(&str, &str, &[&str])] = &[
     ("Caster", "caster", &["clip_from_world", "light", "texel", "near", "far"]),
     ("Moments", "moments", &[]),
     ("Display", "display", &[]),
+    ("March", "march", &[]),
+    ("Lobe", "lobe", &["world_from_clip"]),
 ];
 
 /// The numbers with which the shadow map of a spot light is drawn.
@@ -48,7 +51,11 @@ fn numbers_read(preset: &Preset) -> Result<BTreeSet<(&'static str, String)>, Str
             read_by(&composed.validated, &mut found);
         }
     }
-    let has_map = plan.passes.iter().any(|pass| ["depth", "moments"].contains(&&*pass.program));
+    // Depths that the viewer sees are no map of a light.
+    let last = plan.last().ok_or("no pass")?;
+    let before = plan.passes.len() - 1 - usize::from(last.needs.screen);
+    let is_map = |pass: &Pass| ["depth", "moments"].contains(&&*pass.program);
+    let has_map = plan.passes[..before].iter().any(is_map);
     let is_of_spot = !preset.key.contains("shadow_light=");
     let has_moments = plan.passes.iter().any(|pass| pass.program == "moments");
     let of_map = BIAS.iter().filter(|_| has_map && !has_moments);

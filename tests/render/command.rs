@@ -12,7 +12,7 @@ const WRONG: &[(&[&str], i32, &str)] = &[
     (&["hpg_4_spot", "--scene", "flor"], 1, "did you mean `floor`?"),
     (&["--set", "shadow=har"], 1, "shadow"),
     (&["--set", "lights=none,shadow=hard"], 1, "break this constraint"),
-    (&["--program", "blur"], 1, "depth_view, forward"),
+    (&["--program", "blur"], 1, "contact_shadows, deferred, depth_view, forward, gtao, prefilter"),
     (&["hpg_4_spot", "--environment", "nowhere.hdr"], 1, "nowhere.hdr"),
     (
         &["hpg_4_spot", "--executor", "eval", "--size", "8x8", "-o", "/proc/no/such.png"],

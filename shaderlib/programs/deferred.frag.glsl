@@ -1,0 +1,72 @@
+#version 450
+//! Light for what `gbuffer` has drawn: the fragment stage. Bindings are tabulated in deferred.wesl.
+
+#include "../ambient/octahedral.glsl"
+#include "../math/safe.glsl"
+#include "forward/ambient.glsl"
+#if LIGHTS != LIGHTS_NONE
+#include "forward/lamps.glsl"
+#include "forward/environment.glsl"
+#endif
+
+layout(location = 0) in vec2 in_uv;
+layout(location = 0) out vec4 out_color;
+
+#if LIGHTS != LIGHTS_NONE
+/// The viewer, for places on the screen.
+layout(std140, set = 2, binding = 1) uniform Eye {
+    /// The inverse of the matrix that the surfaces were drawn with.
+    mat4 world_from_clip;
+} eye;
+
+layout(set = 2, binding = 4) uniform texture2D surface_depth;
+#endif
+
+layout(set = 2, binding = 2) uniform texture2D surface_color;
+layout(set = 2, binding = 3) uniform texture2D surface_normal;
+layout(set = 2, binding = 5) uniform sampler surface_sampler;
+
+#if LIGHTS != LIGHTS_NONE
+/// The colour of the surface.
+vec3 shade(vec3 base, vec3 normal, uint material) {
+    float depth = textureLod(sampler2D(surface_depth, surface_sampler), in_uv, 0.0).x;
+    vec4 place = eye.world_from_clip * vec4(2.0 * in_uv.x - 1.0, 1.0 - 2.0 * in_uv.y, depth, 1.0);
+    Surface surface;
+    surface.position = place.xyz / place.w;
+    surface.normal = normal;
+#if NEEDS_VIEW
+    surface.view = towards_viewer(surface.position);
+#endif
+#if MATERIAL == MATERIAL_ARRAY
+    surface.material = materials.items[min(material, uint(MATERIALS - 1))];
+#else
+    surface.material = materials.items[0];
+#endif
+#if SHADOW != SHADOW_NONE
+    surface.visibility = visibility(surface, gl_FragCoord.xy);
+#endif
+    Accum sum = lit(surface);
+#if AMBIENT == AMBIENT_IBL
+    sum = add_environment(sum, surface);
+#endif
+    return resolve(base, surface.material, sum);
+}
+#endif
+
+void main() {
+    vec4 packed_normal = textureLod(sampler2D(surface_normal, surface_sampler), in_uv, 0.0);
+    if (packed_normal.a < 0.5) {
+        discard;
+    }
+    vec4 base = textureLod(sampler2D(surface_color, surface_sampler), in_uv, 0.0);
+    vec3 normal = octahedral_decode(2.0 * packed_normal.xy - 1.0);
+#if LIGHTS == LIGHTS_NONE
+    vec3 color = base.rgb * ambient_light(normal);
+#else
+    vec3 color = shade(base.rgb, normal, uint(255.0 * packed_normal.z + 0.5));
+#endif
+#if SATURATE
+    color = saturate_color(color);
+#endif
+    out_color = vec4(color, base.a);
+}

@@ -1,0 +1,95 @@
+//! Deferred shading gives the colours of forward shading: `gbuffer` and `deferred` are drawn after
+//! each other, and compared with `forward` pixel by pixel. Moments of shadows are not compared: their
+//! map has levels, and at the edges of things the level depends on neighbouring pixels.
+
+use lamplight::execute::Session;
+use lamplight::picture::{Linear, Plan, prepare_passes};
+use libtest_mimic::Trial;
+
+use super::{BACKENDS, library, on_device, said, shot};
+use lamplight::bundle::Language;
+
+/// Keys of `deferred`, and of `forward` for the same picture.
+const KEYS: &[(&str, &str, &str)] = &[
+    ("classic", "default", "material=array"),
+    ("two_sided", "max_lights=10,two_sided", "material=array,max_lights=10,two_sided"),
+    (
+        "shadowed",
+        "ambient=ibl,shadow=pcf_vogel,specular=ggx",
+        "ambient=ibl,material=array,shadow=pcf_vogel,specular=ggx",
+    ),
+    (
+        "rough",
+        "ambient=hemisphere,diffuse=oren_nayar,shadow=pcf_5x5",
+        "ambient=hemisphere,diffuse=oren_nayar,material=array,shadow=pcf_5x5",
+    ),
+    ("unlit", "ambient=sh9,lights=none", "ambient=sh9,lights=none"),
+];
+
+/// The size of the frames.
+const SIZE: [u32; 2] = [128, 96];
+/// The largest difference of a channel: positions and normals pass through textures of f32, which
+/// moves them by some parts in a million, and highlights and edges of shadows enlarge this.
+const TOLERANCE: f64 = 1e-3;
+/// The share of the pixels that may differ by more. A point on the edge of a shadow or of a lamp's
+/// cone may be on either side of it.
+const BEYOND: f64 = 0.002;
+/// The least share of the pixels that show a surface.
+const SEEN: f64 = 0.3;
+
+pub fn trials() -> Vec<Trial> {
+    let on = |(backend, language): (&'static str, Language)| {
+        KEYS.iter().map(move |(name, deferred, forward)| {
+            Trial::test(format!("render/deferred_is_forward/{name}/{backend}"), move || {
+                on_device(backend, |painter| same(painter, language, deferred, forward))
+            })
+        })
+    };
+    BACKENDS.into_iter().flat_map(on).collect()
+}
+
+fn same(
+    painter: &dyn Session,
+    language: Language,
+    deferred: &str,
+    forward: &str,
+) -> Result<(), String> {
+    let found = drawn(painter, language, "deferred", deferred)?;
+    let wanted = drawn(painter, language, "forward", forward)?;
+    let [width, height] = SIZE;
+    let (mut seen, mut beyond, mut largest) = (0, 0, 0.0_f64);
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let (found, wanted) = match (found.drawn(x, y), wanted.drawn(x, y)) {
+            (Some(found), Some(wanted)) => (found, wanted),
+            (None, None) => continue,
+            _ => return Err(format!("only one of them shows a surface at {x}, {y}")),
+        };
+        let error = (found - wanted).abs().max_element();
+        // A number that is none is no small error.
+        let is_near = error <= TOLERANCE * wanted.abs().max_element().max(1.0);
+        (seen, beyond) = (seen + 1, beyond + usize::from(!is_near));
+        largest = largest.max(error);
+    }
+    let pixels = f64::from(width * height);
+    println!("{deferred}: {beyond} of {seen} pixels differ, the largest difference is {largest:e}");
+    if (seen as f64) < SEEN * pixels || beyond as f64 > BEYOND * seen as f64 {
+        let what = format!("{beyond} of {seen} pixels differ by more than {TOLERANCE:e}");
+        return Err(format!("{what}, at most {BEYOND} of them may; the largest is {largest:e}"));
+    }
+    Ok(())
+}
+
+/// The colours of a permutation of a program, neither clamped nor encoded.
+fn drawn(
+    painter: &dyn Session,
+    language: Language,
+    program: &str,
+    key: &str,
+) -> Result<Linear, String> {
+    let programs = &library().programs;
+    let mut plan = Plan::of_key(programs, program, key).map_err(said)?;
+    plan.scene = "casters".to_owned();
+    let shot = shot(SIZE, 1, language);
+    let prepared = prepare_passes(painter, programs, &plan, &shot).map_err(said)?;
+    prepared.photograph(painter, &shot).map_err(said)
+}
