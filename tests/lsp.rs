@@ -1,5 +1,6 @@
 //! The language server: a process that is asked over its protocol, and Neovim as a real client.
 
+mod editors;
 mod folders;
 mod session;
 
@@ -32,6 +33,11 @@ const TRIALS: &[(&str, Run)] = &[
     ("folder_that_is_not_there", folder_that_is_not_there),
     ("survives", survives),
     ("neovim", neovim),
+    ("editors::guide", editors::guide),
+    ("editors::helix", editors::helix),
+    ("editors::neovim", editors::neovim),
+    ("editors::vscode", editors::vscode),
+    ("editors::zed", editors::zed),
 ];
 
 pub fn trials() -> Vec<Trial> {
