@@ -49,10 +49,15 @@ pub fn run() -> Outcome {
     Ok(())
 }
 
-/// What naga reads in a text, in any order.
+/// What naga reads in a text, in any order. `wesl` keeps the braces of blocks in functions, which
+/// then are blocks of WGSL.
 fn declarations(text: &str) -> Result<std::collections::BTreeSet<String>, String> {
     let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
-    Ok(alike::normalised(module, &[]))
+    let flat = |declaration: String| {
+        let lines = declaration.lines().map(str::trim).filter(|line| !["{", "}"].contains(line));
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    Ok(alike::normalised(module, &[]).into_iter().map(flat).collect())
 }
 
 type Texts = (Vec<String>, Duration);
