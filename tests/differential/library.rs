@@ -76,6 +76,9 @@ fn program(program: &Program) -> Result<(), Failed> {
     for point in points.iter().step_by(points.len().div_ceil(POINTS)) {
         let settings = program.space.settings(point);
         translated.insert(("constants".to_owned(), String::new()), constants(&settings));
+        // A program of the package that is imported from asks for them in its own package.
+        let of_package = ("lamplight".to_owned(), "constants.wesl".to_owned());
+        translated.insert(of_package, constants(&settings));
         let ours = lamplight_with(&files, "main.wesl", &settings, Mangle::Collisions)?;
         let theirs = Peer::new(&translated).compose("main.wesl", &flags(program, point))?;
         let (our_meaning, their_meaning) = (normal(&ours)?, normal(&theirs)?);

@@ -58,12 +58,12 @@ fn same(painter: &dyn Session, language: Language, key: &str) -> Result<(), Stri
     let found = drawn(painter, language, key, "casters")?;
     let evaluator = start("eval")?;
     let wanted = drawn(evaluator.as_ref(), language, key, "casters")?;
-    // A number that is none is no small error.
-    let is_far = |(found, wanted): &(&Option<f64>, &Option<f64>)| match (found, wanted) {
-        (Some(found), Some(wanted)) => !((found - wanted).abs() <= TOLERANCE),
-        (found, wanted) => found.is_some() != wanted.is_some(),
+    // A number that is none is not near.
+    let is_near = |(found, wanted): &(&Option<f64>, &Option<f64>)| match (found, wanted) {
+        (Some(found), Some(wanted)) => (found - wanted).abs() <= TOLERANCE,
+        (found, wanted) => found.is_some() == wanted.is_some(),
     };
-    let far = found.iter().zip(&wanted).filter(is_far).count();
+    let far = found.len() - found.iter().zip(&wanted).filter(is_near).count();
     let seen: Vec<f64> = found.iter().flatten().copied().collect();
     let least = seen.iter().copied().fold(f64::INFINITY, f64::min);
     let mean = seen.iter().sum::<f64>() / seen.len() as f64;

@@ -115,7 +115,8 @@ fn split_sum(painter: &dyn Session, language: Language) -> Result<(), String> {
         }
         let (scale, offset) = albedo(nv, roughness.powi(2));
         let error = (found - DVec3::new(scale, offset, 0.0)).abs().max_element();
-        if !(error <= OF_TABLE) {
+        let is_near = error <= OF_TABLE;
+        if !is_near {
             let what = format!("expected {scale}, {offset}, found {found}");
             return Err(format!("n.v {nv}, roughness {roughness}: {what}"));
         }
