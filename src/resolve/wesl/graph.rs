@@ -1,9 +1,10 @@
 //! The resolved modules.
 
 use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
-use crate::parse::wesl::{ConditionId, Expression, Module, Name, Names};
+use crate::parse::wesl::{ConditionId, Expression, Name, Names, Placed};
 use crate::source::{SourceId, Span};
 
 /// Imports that a diagnostic lists, of those that led to its file.
@@ -12,7 +13,7 @@ const TRACED: usize = 16;
 /// Every module that a root module may reach, ready to be composed any number of times.
 #[derive(Debug)]
 pub struct Graph {
-    pub(crate) names: Names,
+    pub(crate) names: Arc<Names>,
     /// The root module first.
     pub(crate) nodes: Vec<Node>,
     /// The nodes in the order of the output: by label, with the root module last.
@@ -83,7 +84,7 @@ pub struct Bases {
 #[derive(Debug)]
 pub struct Node {
     /// Its items, imports and conditions.
-    pub module: Module,
+    pub module: Placed,
     /// 0 for the root package, else one more than the dependency's index.
     pub package: usize,
     /// Names from the package's root.
