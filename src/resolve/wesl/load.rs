@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 use super::Kept;
-use super::graph::{Bases, Candidate, Constant, Graph, Importer, Node, Target};
+use super::graph::{Bases, Candidate, Constant, Graph, Importer, Node, Target, certain_errors};
 use super::lint;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::limits::{LINK_FACTOR, LINK_STEPS, Steps};
@@ -374,37 +374,4 @@ pub fn too_entangled(module: &Placed, most: u64) -> Diagnostic {
     let message = format!("what names mean here takes more than {most} steps to find");
     Diagnostic::error(codes::LIMIT_EXCEEDED, message)
         .at(module.span(0..0), "in this file and what it imports")
-}
-
-/// The errors that every composition has: those of the root module, and of what it imports without
-/// a condition.
-fn certain_errors(graph: &Graph) -> Diagnostics {
-    let mut certain = vec![false; graph.nodes.len()];
-    let mut failed = vec![false; graph.failures.len()];
-    let mut errors = Vec::new();
-    let mut open = vec![0];
-    while let Some(index) = open.pop() {
-        if std::mem::replace(&mut certain[index], true) {
-            continue;
-        }
-        let node = &graph.nodes[index];
-        let broken = node.broken_imports.iter().filter(|(conditions, _)| conditions.is_empty());
-        let broken =
-            broken.filter(|(_, failure)| !std::mem::replace(&mut failed[*failure as usize], true));
-        let found = node
-            .module
-            .errors
-            .iter()
-            .chain(broken.map(|(_, failure)| &graph.failures[*failure as usize]));
-        errors.extend(found.map(|error| graph.traced(error.clone())));
-        let certainly =
-            node.bindings.iter().flatten().filter(|candidate| candidate.conditions.is_empty());
-        open.extend(certainly.filter_map(|candidate| match candidate.target {
-            Target::Items { node, .. } => Some(node as usize),
-            _ => None,
-        }));
-    }
-    errors.sort_by_key(|error| error.labels.first().map(|label| label.span));
-    errors.dedup();
-    errors
 }
