@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use super::graph::{Bases, Candidate, Constant, Graph, Importer, Node, Target};
 use super::lint;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::limits::{LINK_FACTOR, LINK_STEPS, Steps};
+use crate::limits::{RESOLVE_FACTOR, RESOLVE_STEPS, Steps};
 use crate::parse::wesl::{self, ConditionId, Module, Name, Names, Path, Reference};
 use crate::resolve::Packages;
 use crate::source::{self, LIMITS, Package, SourceId, SourceSet, Span};
@@ -49,7 +49,7 @@ impl<'a> Loader<'a> {
             for_editor: false,
             known: HashMap::new(),
             listings: HashMap::new(),
-            steps: Cell::new(Steps::new(LINK_STEPS)),
+            steps: Cell::new(Steps::new(RESOLVE_STEPS)),
             positions: HashMap::new(),
             used: None,
         }
@@ -108,6 +108,9 @@ impl<'a> Loader<'a> {
         while at < self.nodes.len() {
             self.resolve(at as u32);
             at += 1;
+        }
+        if self.steps.get().is_exhausted() {
+            return None;
         }
         (!self.nodes.is_empty()).then(|| self.graph())
     }
@@ -211,7 +214,7 @@ impl<'a> Loader<'a> {
     ) -> u32 {
         let text = self.sources.get(source).text.clone();
         let mut steps = self.steps.get();
-        steps.grant(LINK_FACTOR.saturating_mul(text.len() as u64));
+        steps.grant(RESOLVE_FACTOR.saturating_mul(text.len() as u64));
         self.steps.set(steps);
         let parse = if self.for_editor { wesl::parse_for_editor } else { wesl::parse };
         let module = parse(source, text, &mut self.names);
@@ -269,7 +272,7 @@ impl<'a> Loader<'a> {
         format!("imported by {}:{line}:{column}", self.sources.get(span.source).path)
     }
 
-    /// Files of a package, for suggestions.
+    /// Files of a package, sorted.
     pub(super) fn listing(&mut self, package: usize) -> &[String] {
         let files = &self.package(package).files;
         self.listings.entry(package).or_insert_with(|| files.list(&["wesl", "wgsl"]))
