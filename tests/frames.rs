@@ -1,7 +1,9 @@
-//! Draws permutations of `forward` on each driver, and computes a sample of the fragments again with
-//! the evaluator. Trials named `shipped` draw the WGSL of a bundle, which was linked from functions
-//! of many permutations, and compute from the composed text.
+//! Draws permutations of `forward`, and of programs that are drawn over the screen, on each driver,
+//! and computes a sample of the fragments again with the evaluator. Trials named `shipped` draw the
+//! WGSL of a bundle, which was linked from functions of many permutations, and compute from the
+//! composed text.
 
+mod given;
 mod shipped;
 
 use std::collections::BTreeMap;
@@ -11,7 +13,7 @@ use lamplight::bundle::{
     Bundle, Kind as BindingKind, Language, Reflection, Target, pack as pack_bundle,
 };
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use lamplight::execute::fixture::Fixture;
 use lamplight::execute::frame::{
     Attribute, Buffers, Drawing, EntryPoint, Item, Mesh, State, VertexFormat,
 };
@@ -27,6 +29,8 @@ use libtest_mimic::{Failed, Trial};
 
 use crate::fragments::{self, Tally, Watched};
 use crate::metal::scrambled;
+pub use given::fixture;
+use given::number;
 
 /// The size of a frame in pixels.
 const WIDTH: u32 = 256;
@@ -45,24 +49,30 @@ const SHIPPED: &str = "shipped";
 
 type Place = (u32, u32);
 
+/// The programs whose frames are compared.
+pub const PROGRAMS: [&str; 2] = ["forward", "tonemap"];
+
 pub fn trials() -> Vec<Trial> {
-    let pairs = LANGUAGES
-        .iter()
-        .flat_map(|language| BACKENDS.iter().map(move |backend| (language, *backend)));
-    pairs
-        .map(|(language, backend)| {
-            Trial::test(format!("frames/forward/{}/{backend}", language.0), move || {
-                run(language, backend)
+    let on = |program: &'static str| {
+        LANGUAGES.iter().flat_map(move |language| {
+            BACKENDS.iter().map(move |backend| {
+                Trial::test(format!("frames/{program}/{}/{backend}", language.0), move || {
+                    run(program, language, backend)
+                })
             })
         })
-        .chain(shipped::trials())
-        .collect()
+    };
+    PROGRAMS.into_iter().flat_map(on).chain(shipped::trials()).collect()
 }
 
-fn run((name, language): &(&str, Language), backend: &'static str) -> Result<(), Failed> {
+fn run(
+    program: &'static str,
+    (name, language): &(&str, Language),
+    backend: &'static str,
+) -> Result<(), Failed> {
     let outcome = on_thread(|| {
         let renderer = executors::find_executor(backend).ok_or("no such executor")?.start()?;
-        let mut sources = Sources::load(*language)?;
+        let mut sources = Sources::load(program, *language)?;
         let points = covering(&sources.space);
         if *name == SHIPPED {
             sources.bundle = Some(bundle(&sources, &points, &[Target::WGSL])?);
@@ -74,7 +84,7 @@ fn run((name, language): &(&str, Language), backend: &'static str) -> Result<(),
                 Err(error) => failures.push(format!("[{}] {error}", sources.space.key(point))),
             }
         }
-        println!("{name} on {backend}: {} permutations, {total}", points.len());
+        println!("{program}, {name} on {backend}: {} permutations, {total}", points.len());
         if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
     });
     outcome.ok_or("panicked")?.map_err(Failed::from)
@@ -107,11 +117,19 @@ pub fn covering(space: &Space) -> Vec<Assignment> {
     points
 }
 
-/// Permutations that cover all pairs of values, and random ones until there are `least`.
+/// How many random permutations are tried for each that is wanted.
+const TRIES: usize = 8;
+
+/// Permutations that cover all pairs of values, and random ones until there are `least`, or until
+/// most of the space is among them.
 pub fn points(space: &Space, least: usize) -> Vec<Assignment> {
     let mut points = cover::pairwise(space).points;
     let mut seed = 1;
-    while points.len() < least {
+    // A small space has fewer, so that most of the tries give a permutation again.
+    for _ in 0..TRIES * least {
+        if points.len() >= least {
+            break;
+        }
         let choose = |axis: usize, allowed: ValueSet| {
             seed += 1;
             let turn = scrambled(seed + axis as u32) as usize % allowed.len();
@@ -129,6 +147,7 @@ pub fn points(space: &Space, least: usize) -> Vec<Assignment> {
 /// The library's programs, in one language.
 pub struct Sources {
     programs: Programs,
+    pub program: &'static str,
     language: Language,
     pub space: Space,
     /// The bundle whose outputs are drawn; without one, the composed texts are drawn.
@@ -147,15 +166,15 @@ pub struct Scene {
 }
 
 impl Sources {
-    pub fn load(language: Language) -> Result<Self, String> {
+    pub fn load(program: &'static str, language: Language) -> Result<Self, String> {
         let programs = Programs::load()
             .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
-        let space = programs.manifest().program("forward").ok_or("no forward")?.space.clone();
-        Ok(Self { programs, language, space, bundle: None })
+        let space = programs.manifest().program(program).ok_or("no such program")?.space.clone();
+        Ok(Self { programs, program, language, space, bundle: None })
     }
 
     pub fn scene(&self, point: &Assignment) -> Result<Scene, String> {
-        let program = self.programs.manifest().program("forward").ok_or("no forward")?;
+        let program = self.programs.manifest().program(self.program).ok_or("no such program")?;
         let stages = self.programs.stages(program, &self.space.settings(point), self.language);
         let Stages { vertex, fragment } =
             stages.map_err(|problems| render(&self.programs.texts(), &problems, Form::Human))?;
@@ -178,7 +197,8 @@ impl Sources {
             None => [vertex.validated.clone(), fragment.validated.clone()],
             Some(bundle) => {
                 let key = self.space.key(point).to_string();
-                [shipped(bundle, vertex.entry, &key)?, shipped(bundle, fragment.entry, &key)?]
+                let stage = |entry| shipped(bundle, self.program, entry, &key);
+                [stage(vertex.entry)?, stage(fragment.entry)?]
             }
         };
         Ok(Scene { mesh: mesh(&vertex.reflection), vertex, fragment, drawn, buffers, fixtures })
@@ -195,8 +215,8 @@ pub fn bundle(
     let program = manifest
         .programs
         .iter_mut()
-        .find(|program| program.name == "forward")
-        .ok_or("no forward")?;
+        .find(|program| program.name == sources.program)
+        .ok_or("no such program")?;
     program.targets = targets.to_vec();
     match sources.language {
         Language::Wesl => program.glsl = None,
@@ -212,7 +232,7 @@ pub fn bundle(
     program.space =
         Space::new(sources.space.axes().to_vec(), sources.space.constraints().to_vec(), lists)
             .map_err(|_| "no space")?;
-    let request = Request { program: Some("forward".to_owned()), ..Request::default() };
+    let request = Request { program: Some(sources.program.to_owned()), ..Request::default() };
     let made =
         in_memory(&mut sources.programs.texts(), &project::library(), &manifest, &request, &|_| ());
     let made =
@@ -225,102 +245,17 @@ pub fn bundle(
 }
 
 /// One stage, from the WGSL in the bundle.
-fn shipped(bundle: &Bundle, entry: &str, key: &str) -> Result<Arc<Validated>, String> {
-    let found = || bundle.program("forward")?.entry(Language::Wesl, entry)?.get(key, Target::WGSL);
+fn shipped(
+    bundle: &Bundle,
+    program: &str,
+    entry: &str,
+    key: &str,
+) -> Result<Arc<Validated>, String> {
+    let found = || bundle.program(program)?.entry(Language::Wesl, entry)?.get(key, Target::WGSL);
     let found = found().map_err(|error: lamplight::bundle::Error| error.to_string())?;
     let text = String::from_utf8(found.bytes.to_vec()).map_err(|error| error.to_string())?;
     let composed = lamplight::compose::Composed::of_text(Language::Wesl, None, text);
     validate(&composed).map(Arc::new).map_err(|problems| format!("{problems:?}"))
-}
-
-/// Values for any uniform. Those that the picture depends on are chosen, the others vary.
-fn number(path: &str) -> Vec<f64> {
-    let (_, name) = path.rsplit_once('.').unwrap_or(("", path));
-    let index =
-        path.split(['[', ']']).nth(1).and_then(|index| index.parse::<f64>().ok()).unwrap_or(0.0);
-    let vary = |low: f64, high: f64, count: usize| -> Vec<f64> {
-        let step = |i: usize| {
-            ((i as f64 + 1.0) * 0.618 + index * 0.271 + path.len() as f64 * 0.137).fract()
-        };
-        (0..count).map(|i| low + (high - low) * step(i)).collect()
-    };
-    match name {
-        "world_from_view" => vec![1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0.2, 0.3, 3., 1.],
-        "clip_from_world" if path.starts_with("camera") => {
-            vec![0.9, 0., 0., 0., 0., 0.9, 0., 0., 0., 0., 0.2, 0.1, 0., 0., 0.5, 1.]
-        }
-        "clip_from_world" => {
-            vec![0.5, 0., 0., 0., 0., 0.5, 0., 0.05, 0.1, 0., -0.3, 0., 0.03, 0.02, 0.5, 1.]
-        }
-        "world_from_object" => {
-            vec![1.05, 0., 0., 0., 0., 1.05, 0., 0., 0., 0., 1.05, 0., 0., 0., 0., 1.]
-        }
-        "normal_from_object" => {
-            vec![1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.]
-        }
-        "count" => vec![3.0],
-        "kind" => vec![index + 1.0],
-        "light" => vec![0.0],
-        "range" | "far" => vec![12.0],
-        "near" => vec![0.1],
-        "position" => vec![0.7 - index, 0.5, 1.5 + 0.3 * index],
-        "axis" => [vec![-0.36, -0.48, -0.8], vec![0.0, -0.28, -0.96], vec![0.6, 0.0, -0.8]]
-            [index as usize % 3]
-            .clone(),
-        "exponent" => vec![4.0 + index],
-        "shininess" => vec![16.0],
-        "cutoff" => vec![0.5],
-        "inner" => vec![0.9],
-        "outer" => vec![0.45],
-        "attenuation" => vec![1.0, 0.1, 0.05],
-        "roughness" => vec![0.45],
-        "up" => vec![0.0, 1.0, 0.0],
-        "min_w" | "min_variance" | "texel" => vec![0.01],
-        "bias" => vec![0.003],
-        "start" => vec![1.0],
-        "end" => vec![6.0],
-        "exponents" => vec![5.0, 5.0],
-        "radius" => vec![2.0],
-        _ => vary(0.1, 0.9, 4),
-    }
-}
-
-/// A texture or a sampler for a binding. Colours vary smoothly, and depths have an edge.
-pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
-    let sampler =
-        |linear, compare| Fixture::Sampler(Sampler { compare, linear, address: Address::Clamp });
-    match kind {
-        BindingKind::ComparisonSampler => sampler(true, Some(Compare::LessEqual)),
-        BindingKind::Sampler => sampler(name != "depth_sampler", None),
-        _ => {
-            let kind = match (ty.contains("depth"), ty.contains("cube")) {
-                (true, true) => TextureKind::DepthCube,
-                (true, false) => TextureKind::Depth2d,
-                (false, true) => TextureKind::ColorCube,
-                (false, false) => TextureKind::Color2d,
-            };
-            // `shadow_depth` is the depth map too, read as a colour texture.
-            let is_depth = kind.is_depth() || name == "shadow_depth";
-            let value = |index: usize| {
-                let (x, y) = ((index % 8) as f32, (index / 8 % 8) as f32);
-                if is_depth {
-                    if x < 4.0 { 0.25 } else { 0.875 }
-                } else {
-                    (20.0 + 3.0 * x + 2.0 * y) / 64.0
-                }
-            };
-            let texels = 8 * 8 * kind.layers() as usize;
-            let channel = |index: usize| {
-                (0..kind.channels()).map(move |channel| value(index) + channel as f32 / 16.0)
-            };
-            Fixture::Texture(Texture {
-                kind,
-                width: 8,
-                height: 8,
-                texels: (0..texels).flat_map(channel).collect(),
-            })
-        }
-    }
 }
 
 /// A bumpy sheet of 8 x 8 squares in front of the viewer, from -1 to 1.

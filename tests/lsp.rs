@@ -1,6 +1,9 @@
 //! The language server: a process that is asked over its protocol, and Neovim as a real client.
 
+mod cost;
+mod editors;
 mod folders;
+mod glsl;
 mod session;
 
 use std::fs;
@@ -32,6 +35,17 @@ const TRIALS: &[(&str, Run)] = &[
     ("folder_that_is_not_there", folder_that_is_not_there),
     ("survives", survives),
     ("neovim", neovim),
+    ("cost", cost::recorded),
+    ("glsl::hover", glsl::hover),
+    ("glsl::definition", glsl::definition),
+    ("glsl::completion", glsl::completion),
+    ("glsl::symbols", glsl::symbols),
+    ("glsl::library", glsl::library),
+    ("editors::guide", editors::guide),
+    ("editors::helix", editors::helix),
+    ("editors::neovim", editors::neovim),
+    ("editors::vscode", editors::vscode),
+    ("editors::zed", editors::zed),
 ];
 
 pub fn trials() -> Vec<Trial> {

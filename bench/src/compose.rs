@@ -21,7 +21,7 @@ use naga_oil::compose::{
 
 use crate::Outcome;
 use crate::corpus::{self, Dialect, FLAGS, MODULES, ROOTS};
-use crate::library;
+use crate::{library, packages};
 
 /// Permutations of each root.
 const PERMUTATIONS: usize = 8;
@@ -58,6 +58,7 @@ pub fn run() -> Outcome {
     let whole = Timed { value: (), elapsed: ours.elapsed + naga.parse + naga.validate, jobs: JOBS };
     println!("to a validated module: lamplight {}, naga_oil {}", whole.rate(), oil.rate());
     library::run()?;
+    packages::run()?;
     println!(
         "compose: {:.1}x wesl, {:.2}x naga_oil",
         ours.times_faster(&theirs),

@@ -238,23 +238,23 @@ fn name(module: usize, function: usize) -> String {
 }
 
 /// Names without digits, since naga_oil renames those that end in a digit.
-fn letters(number: usize) -> String {
+pub fn letters(number: usize) -> String {
     let digit = |value: usize| char::from(b'a' + value as u8);
     [digit(number / 26 % 26), digit(number % 26)].iter().collect()
 }
 
 /// A small linear congruential generator. Its quality does not matter, only that its sequence never
 /// changes.
-struct Random(u64);
+pub struct Random(u64);
 
 impl Random {
-    fn new(seed: u64) -> Self {
+    pub fn new(seed: u64) -> Self {
         let mut random = Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         random.below(2);
         random
     }
 
-    fn below(&mut self, bound: usize) -> usize {
+    pub fn below(&mut self, bound: usize) -> usize {
         self.0 =
             self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((self.0 >> 33) as usize) % bound

@@ -12,6 +12,7 @@ mod library;
 mod load;
 mod lsp;
 mod migrate;
+mod packages;
 mod scale;
 
 use std::error::Error;

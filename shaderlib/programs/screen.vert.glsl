@@ -1,5 +1,5 @@
 #version 450
-//! One triangle over the whole target, without vertex buffers: the vertex stage of `blur` and `depth_view`.
+//! One triangle over the whole target, without vertex buffers: the vertex stage of the full-screen programs.
 
 layout(location = 0) out vec2 out_uv;
 

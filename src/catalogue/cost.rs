@@ -126,7 +126,12 @@ pub fn is_record(head: &[u8]) -> bool {
 /// The library's record; empty if there is none.
 pub fn library_costs(sources: &mut SourceSet) -> Result<Costs, Diagnostics> {
     let library = Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) };
-    match source::read(sources, &library, PATH).map_err(|error| vec![error.into()])? {
+    package_costs(sources, &library)
+}
+
+/// The record of a package; empty if there is none.
+pub fn package_costs(sources: &mut SourceSet, package: &Package) -> Result<Costs, Diagnostics> {
+    match source::read(sources, package, PATH).map_err(|error| vec![error.into()])? {
         Some(id) => reader::read_data(sources, id),
         None => Ok(Costs::default()),
     }

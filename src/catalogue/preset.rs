@@ -17,8 +17,8 @@
 //! ```
 //!
 //! `look` says what to look for in the picture. The tables `light`, `material`, `surroundings`,
-//! `haze`, `caster` and `moments` have the numbers that the source publishes, named after the
-//! fields of the uniform they go to. `depth_pass` has what the shadow map is drawn with:
+//! `haze`, `caster`, `moments` and `display` have the numbers that the source publishes, named
+//! after the fields of the uniform they go to. `depth_pass` has what the shadow map is drawn with:
 //! `polygon_offset`, `cull_front`, and of a spot light the whole angle `fov` in degrees and the
 //! planes `near` and `far` in scene units. `open` names the numbers that the source leaves to its
 //! reader, or to models of its own: the scene and the renderer choose them. Every number that the
@@ -150,6 +150,8 @@ struct Entry {
     #[serde(default)]
     moments: Group,
     #[serde(default)]
+    display: Group,
+    #[serde(default)]
     depth_pass: Group,
     #[serde(default)]
     open: Vec<Spanned<String>>,
@@ -222,6 +224,7 @@ impl Checker<'_> {
             ("haze", entry.haze),
             ("caster", entry.caster),
             ("moments", entry.moments),
+            ("display", entry.display),
             ("depth_pass", entry.depth_pass),
         ];
         for name in &entry.open {

@@ -6,24 +6,27 @@ use serde_json::{Value, json};
 
 use super::package::{Modules, Opened};
 use super::place::{self, Lines};
-use super::{Server, act};
+use super::{Server, act, glsl};
 use crate::catalogue::Kind;
 use crate::parse::wesl::{ItemKind, Name, keywords};
 use crate::permute::Setting;
 use crate::source::Files;
 
 /// The protocol's numbers of what a completion is.
-const FUNCTION: u32 = 3;
-const FIELD: u32 = 5;
-const VARIABLE: u32 = 6;
-const MODULE: u32 = 9;
-const VALUE: u32 = 12;
-const KEYWORD: u32 = 14;
-const CONSTANT: u32 = 21;
-const STRUCT: u32 = 22;
+pub const FUNCTION: u32 = 3;
+pub const FIELD: u32 = 5;
+pub const VARIABLE: u32 = 6;
+pub const MODULE: u32 = 9;
+pub const VALUE: u32 = 12;
+pub const KEYWORD: u32 = 14;
+pub const CONSTANT: u32 = 21;
+pub const STRUCT: u32 = 22;
 
 /// `textDocument/completion`.
 pub fn complete_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    if glsl::is_asked(server, parameters) {
+        return glsl::complete_at(server, parameters);
+    }
     let (document, byte) = server.asked(parameters)?;
     let (root, path, text) = (document.root.clone(), document.path.clone(), document.text.clone());
     let word = place::word_at_byte(&text, byte).start;
@@ -44,7 +47,7 @@ pub fn complete_at(server: &mut Server, parameters: &Value) -> Result<Value, Str
     Ok(complete_names(server, &modules, &path, &text, word..byte))
 }
 
-fn completion_entry(label: &str, kind: u32, detail: &str) -> Value {
+pub fn completion_entry(label: &str, kind: u32, detail: &str) -> Value {
     json!({ "label": label, "kind": kind, "detail": detail })
 }
 
@@ -310,7 +313,7 @@ fn completion_kind(kind: ItemKind) -> u32 {
     }
 }
 
-fn of_library(kind: Kind) -> u32 {
+pub fn of_library(kind: Kind) -> u32 {
     match kind {
         Kind::Function => FUNCTION,
         Kind::Struct => STRUCT,

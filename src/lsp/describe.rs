@@ -6,13 +6,17 @@ use serde_json::{Value, json};
 
 use super::package::{Modules, Opened, Symbol};
 use super::place::{self, Lines};
-use super::{Server, look};
-use crate::catalogue::{self, Item};
+use super::{Server, glsl, look};
+use crate::catalogue::{self, Item, cost, pages};
 use crate::parse::wesl::ItemKind;
 use crate::project::LIBRARY;
+use crate::source::SourceSet;
 
 /// `textDocument/hover`.
 pub fn hover_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    if glsl::is_asked(server, parameters) {
+        return glsl::hover_at(server, parameters);
+    }
     let Some((modules, symbol, span)) = server.symbol(parameters)? else { return Ok(Value::Null) };
     let document = server.document(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
@@ -55,7 +59,7 @@ fn describe_item(modules: &Modules, symbol: Symbol, known: &[catalogue::Module])
         let module = known.iter().find(|module| module.path == path);
         let item = module.and_then(|module| module.items.iter().find(|item| item.name == name));
         if let Some(item) = item {
-            return Some(of_library(item));
+            return Some(of_library(item, "wgsl", &item.wesl, &item.import()));
         }
     }
     let text = &node.module.text[found.range.start as usize..found.range.end as usize];
@@ -72,8 +76,8 @@ fn describe_item(modules: &Modules, symbol: Symbol, known: &[catalogue::Module])
 }
 
 /// Signature, documentation, formula and error model.
-fn of_library(item: &Item) -> String {
-    let mut text = format!("```wgsl\n{}\n```\n", item.wesl.trim_end_matches(['{', ' ', '\n']));
+pub fn of_library(item: &Item, language: &str, code: &str, usage: &str) -> String {
+    let mut text = format!("```{language}\n{}\n```\n", code.trim_end_matches(['{', ' ', '\n']));
     for paragraph in item.paragraphs() {
         text += &format!("\n{paragraph}\n");
     }
@@ -82,16 +86,18 @@ fn of_library(item: &Item) -> String {
             text += &format!("\n**{section}**: {words}\n");
         }
     }
-    text + &format!("\n`{}`", item.import())
+    text + &format!("\n`{usage}`")
 }
 
-/// An axis with its values and what it multiplies, or a feature.
-fn describe_flag(server: &Server, opened: &Opened, path: &str, name: &str) -> String {
+/// An axis with its values, what it multiplies and what it costs, or a feature.
+pub fn describe_flag(server: &Server, opened: &Opened, path: &str, name: &str) -> String {
     let (settings, _) = look::module_settings(opened, path, &server.choice(&opened.root));
     let value = settings.values.get(name).map(ToString::to_string);
     let value = value.or_else(|| settings.constants.get(name).cloned());
     let shown = value.map_or("no value".to_owned(), |value| format!("`{value}`"));
     let mut text = format!("`{name}`: {shown} here\n");
+    let mut apart = SourceSet::default();
+    let costs = cost::package_costs(&mut apart, &opened.packages.root).ok();
     let programs = opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     for program in programs {
         let Some(axis) = program.space.axis(name) else { continue };
@@ -103,6 +109,9 @@ fn describe_flag(server: &Server, opened: &Opened, path: &str, name: &str) -> St
             axis.values.len(),
             program.space.count()
         );
+        let cost =
+            costs.as_ref().and_then(|costs| pages::cost::of_axis(&program.name, name, costs));
+        text += &cost.map_or(String::new(), |cost| format!("\n{cost}"));
     }
     if let Some(feature) = opened.features.declared.get(name) {
         let default = if feature.default { "on" } else { "off" };

@@ -10,6 +10,7 @@ mod choose;
 mod complete;
 mod describe;
 mod format;
+mod glsl;
 mod look;
 mod navigate;
 mod package;

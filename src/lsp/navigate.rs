@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::package::{Modules, Symbol};
 use super::place::Lines;
-use super::{Server, told};
+use super::{Server, glsl, told};
 use crate::parse::wesl::{ItemKind, Name, is_keyword};
 use crate::parse::words::is_word;
 use crate::source::Span;
@@ -40,6 +40,9 @@ impl Server {
 
 /// `textDocument/definition`.
 pub fn definition_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    if glsl::is_asked(server, parameters) {
+        return glsl::definition_at(server, parameters);
+    }
     let Some((modules, symbol, _)) = server.symbol(parameters)? else { return Ok(Value::Null) };
     let places = modules.declarations(symbol);
     Ok(places.into_iter().filter_map(|span| server.location(&modules, span)).collect())
@@ -151,6 +154,9 @@ pub(super) fn symbol_kind(kind: ItemKind) -> u32 {
 
 /// `textDocument/documentSymbol`.
 pub fn document_symbols(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    if glsl::is_asked(server, parameters) {
+        return glsl::document_symbols(server, parameters);
+    }
     let document = server.document(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
     let Some(modules) = server.modules(&root) else { return Ok(json!([])) };

@@ -33,6 +33,7 @@ pub struct Table {
 #[derive(Debug)]
 struct ProgramNeeds {
     scene: Option<String>,
+    screen: bool,
     before: Vec<String>,
     /// By axis and value.
     axes: BTreeMap<String, BTreeMap<String, Row>>,
@@ -43,6 +44,10 @@ struct ProgramNeeds {
 pub struct Needs {
     /// The passes before it: programs, and keys where these are not the default.
     pub before: Vec<(String, String)>,
+    /// Whether it is drawn over the screen, from what the viewer sees in the pass right before it.
+    pub screen: bool,
+    /// Whether the colours are code values of a display. A picture shows them as they are.
+    pub encoded: bool,
     /// How many texels to each side a shadow lookup reads.
     pub reach: f64,
     /// The kind of all lamps. With `None` lamps keep the kinds that the scene gives them.
@@ -121,6 +126,7 @@ struct Row {
     sides: bool,
     background: Background,
     cleared: Option<Cleared>,
+    encoded: bool,
     near: Option<f64>,
     uniforms: Uniforms,
 }
@@ -136,6 +142,8 @@ struct FileEntry {
 #[serde(deny_unknown_fields)]
 struct ProgramEntry {
     scene: Option<String>,
+    #[serde(default)]
+    screen: bool,
     #[serde(default)]
     before: Vec<String>,
     #[serde(default)]
@@ -197,6 +205,7 @@ impl Table {
         let mut needs = Needs { reach: 1.0, uniforms: self.uniforms.clone(), ..Needs::default() };
         let Some(found) = self.programs.get(program) else { return needs };
         needs.draw_before(&found.before);
+        needs.screen = found.screen;
         for (axis, rows) in &found.axes {
             let value = settings.values.get(axis).map(ToString::to_string);
             if let Some(row) = value.and_then(|value| rows.get(&value)) {
@@ -216,6 +225,11 @@ impl Needs {
     /// Whether something casts a shadow.
     pub fn has_shadow(&self) -> bool {
         !self.before.is_empty()
+    }
+
+    /// Whether the shadow map may be one of several, for parts of the viewer's depth.
+    pub fn has_cascades(&self) -> bool {
+        !self.screen && self.has_shadow() && self.caster == Some(LampKind::Directional)
     }
 
     fn draw_before(&mut self, passes: &[String]) {
@@ -238,6 +252,7 @@ impl Needs {
         self.sides |= row.sides;
         self.background = self.background.max(row.background);
         self.exponential |= row.cleared.is_some();
+        self.encoded |= row.encoded;
         self.near = row.near.or(self.near);
         for (block, fields) in &row.uniforms {
             let all = self.uniforms.entry(block.clone()).or_default();
@@ -252,7 +267,12 @@ impl From<ProgramEntry> for ProgramNeeds {
             rows.into_iter().map(|(value, row)| (value.into_inner(), row)).collect()
         };
         let axes = entry.axis.into_iter().map(|(axis, table)| (axis.into_inner(), rows(table)));
-        Self { scene: entry.scene, before: entry.before, axes: axes.collect() }
+        Self {
+            scene: entry.scene,
+            screen: entry.screen,
+            before: entry.before,
+            axes: axes.collect(),
+        }
     }
 }
 

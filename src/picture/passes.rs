@@ -17,7 +17,7 @@ use crate::bundle::{Binding, Kind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::Session;
 use crate::execute::fixture::{Fixture, Texture, TextureKind};
-use crate::execute::frame::{Buffers, Mesh, Side, State};
+use crate::execute::frame::{Buffers, Frame, Mesh, Side, State};
 use crate::picture::frame::{Composed, Programs, Stages, pack_buffer};
 use crate::scene::sets::{self, Eye, LampKind, Scene};
 use crate::scene::{Clip, Depth, cascade_splits, depth_range, perspective};
@@ -53,7 +53,7 @@ pub fn prepare_passes(
     shot: &Shot,
 ) -> Result<Prepared, Diagnostics> {
     let scene = plan.model.as_deref().cloned().or_else(|| sets::scene(&plan.scene));
-    let (Some(last), Some(mut scene)) = (plan.last(), scene) else {
+    let (Some(last), Some(lit), Some(mut scene)) = (plan.last(), plan.lit(), scene) else {
         return Err(vec![Diagnostic::error(
             codes::EXECUTOR_FAILED,
             format!("there is no scene `{}`", plan.scene),
@@ -66,21 +66,21 @@ pub fn prepare_passes(
     let twice = (2 * shot.size[0].max(shot.size[1])).next_power_of_two();
     let size = scene.map_size.unwrap_or_else(|| twice.clamp(MAP_SIZES.0, MAP_SIZES.1));
     let slice = |scene: &Scene, light: LightView| {
-        let lit = with_bulbs(scene, plan, last, &light, shot);
-        let values =
-            Values { plan, scene: lit.as_ref().unwrap_or(scene), last, light: &light, shot };
+        let with_lamps = with_bulbs(scene, plan, lit, &light, shot);
+        let scene = with_lamps.as_ref().unwrap_or(scene);
+        let values = Values { plan, scene, lit, light: &light, shot };
         let studio = Studio { painter, programs, values };
-        let mut left = Left::Nothing;
+        let mut left = Left::default();
         for pass in &plan.passes[..plan.passes.len() - 1] {
-            left = studio.draw(pass, &left)?;
+            studio.draw(pass, &mut left)?;
         }
         studio.ready(last, &left)
     };
     if shot.cascades <= 1 {
-        let light = LightView::new(&scene, &key, plan, last, size);
+        let light = LightView::new(&scene, &key, plan, lit, size);
         return slice(&scene, light);
     }
-    if last.needs.caster != Some(LampKind::Directional) || !last.needs.has_shadow() {
+    if !last.needs.has_cascades() {
         return Err(vec![no_cascades(last)]);
     }
     // Each part of the viewer's depth is a separate frame, clipped by its planes.
@@ -101,14 +101,14 @@ pub fn prepare_passes(
 fn with_bulbs(
     scene: &Scene,
     plan: &Plan,
-    last: &Pass,
+    lit: &Pass,
     light: &LightView,
     shot: &Shot,
 ) -> Option<Scene> {
-    if !scene.shows_lamps || last.needs.unlit {
+    if !scene.shows_lamps || lit.needs.unlit {
         return None;
     }
-    let values = Values { plan, scene, last, light, shot };
+    let values = Values { plan, scene, lit, light, shot };
     let shining = scene.lamps.iter().enumerate().take(values.lamps().unwrap_or(0));
     let kinds = shining.map(|(index, lamp)| (lamp, values.kind(index, lamp)));
     let bulbs = kinds.filter(|(_, kind)| *kind != LampKind::Directional);
@@ -155,9 +155,12 @@ fn viewer_camera(eye: &Eye, shot: &Shot) -> Camera {
 }
 
 impl Studio<'_> {
-    /// Draws a pass before the last one.
-    fn draw(&self, pass: &Pass, left: &Left) -> Result<Left, Diagnostics> {
+    /// Draws a pass before the last one, and keeps what later passes read.
+    fn draw(&self, pass: &Pass, left: &mut Left) -> Result<(), Diagnostics> {
         let prepared = self.ready(pass, left)?;
+        if self.values.plan.is_of_viewer(pass) {
+            return self.draw_seen(&prepared, left);
+        }
         let light = self.values.light;
         let views: Vec<Buffers> = match prepared.camera {
             Some(_) => light
@@ -169,18 +172,41 @@ impl Studio<'_> {
             None => vec![Buffers::new()],
         };
         let side = if pass.program == "depth" { light.size } else { (light.size / 2).max(1) };
-        let size = [side; 2];
         if prepared.stages.fragment.is_none() {
-            let frames = prepared.draw(self.painter, &views, size, None)?;
-            return Ok(Left::Depth(frames.into_iter().map(|frame| frame.depth).collect(), side));
+            let frames = prepared.draw(self.painter, &views, [side; 2], None)?;
+            left.map = Some((frames.into_iter().map(|frame| frame.depth).collect(), side));
+            return Ok(());
         }
-        let frames = prepared.draw_colors(self.painter, &views, size)?;
+        let frames = prepared.draw_colors(self.painter, &views, [side; 2], 0)?;
         let cleared = self.values.cleared_moments();
-        let frame = frames.into_iter().next().ok_or_else(|| vec![no_frame()])?;
-        let texels = frame.targets.iter().flatten().copied().collect::<Vec<u32>>();
-        let texels =
-            texels.chunks(4).flat_map(|pixel| pixel_colour(pixel).unwrap_or(cleared)).collect();
-        Ok(Left::Color(Texture { kind: TextureKind::Color2d, width: side, height: side, texels }))
+        left.colors = vec![color_texture(&frames, [side; 2], |_| cleared)?];
+        Ok(())
+    }
+
+    /// Draws what the viewer sees: depths, colours, or several targets. Where nothing is drawn, a
+    /// picture has its background, and other targets have zeros.
+    fn draw_seen(&self, prepared: &Prepared, left: &mut Left) -> Result<(), Diagnostics> {
+        let size = self.values.shot.size;
+        let views = [prepared.eye_view([0.0; 2], size).map_err(|problem| vec![problem])?];
+        let targets = prepared.targets();
+        let [width, height] = size.map(f64::from);
+        let behind = |index: usize| {
+            let (x, y) = (index as u32 % size[0], index as u32 / size[0]);
+            let (u, v) = ((f64::from(x) + 0.5) / width, (f64::from(y) + 0.5) / height);
+            prepared.background.colour(u, v).extend(1.0).as_vec4().to_array()
+        };
+        let cleared = |index| if targets == 1 { behind(index) } else { [0.0; 4] };
+        left.colors.clear();
+        if targets == 0 {
+            let frames = prepared.draw(self.painter, &views, size, None)?;
+            left.seen = frames.into_iter().next().map(|frame| (frame.depth, size));
+        }
+        for location in 0..targets {
+            let frames = prepared.draw_colors(self.painter, &views, size, location)?;
+            left.colors.push(color_texture(&frames, size, cleared)?);
+            left.seen = frames.into_iter().next().map(|frame| (frame.depth, size));
+        }
+        Ok(())
     }
 
     fn light_camera(&self, clip_from_world: DMat4) -> Camera {
@@ -207,6 +233,7 @@ impl Studio<'_> {
         let eye = viewer_camera(&self.values.scene.eye, self.values.shot);
         let background = Background::new(&self.values, eye);
         let state = self.state(pass, camera.is_some());
+        let encoded = pass.needs.encoded;
         Ok(Prepared {
             stages,
             items,
@@ -218,6 +245,7 @@ impl Studio<'_> {
             camera,
             eye,
             background,
+            encoded,
             farther: Vec::new(),
         })
     }
@@ -249,9 +277,11 @@ impl Studio<'_> {
     }
 
     fn state(&self, pass: &Pass, has_camera: bool) -> State {
-        let of_light = !std::ptr::eq(pass, self.values.last) && has_camera;
-        if !of_light {
-            return State { depth_test: has_camera, ..State::default() };
+        let of_viewer = self.values.plan.is_of_viewer(pass);
+        if of_viewer || !has_camera {
+            // A pass over the screen may read the depths of the pass before it.
+            let is_read = of_viewer && !self.values.plan.is_last(pass);
+            return State { depth_test: has_camera, keep_depth: is_read, ..State::default() };
         }
         let is_map = pass.program == "depth";
         State {
@@ -288,7 +318,7 @@ impl Studio<'_> {
             let buffers = own.iter().map(buffer).collect::<Result<_, Diagnostic>>()?;
             Ok((mesh::object_mesh(object, vertex, faceted), buffers))
         };
-        let of_light = !std::ptr::eq(pass, self.values.last);
+        let of_light = !self.values.plan.is_of_viewer(pass);
         let objects = self.values.scene.objects.iter();
         objects.filter(|object| object.casts || !of_light).map(item).collect()
     }
@@ -300,6 +330,22 @@ const PLAIN: &[&str] = &["materials", "haze", "surroundings"];
 /// Whether each view or each object fills the block.
 fn is_own(name: &str) -> bool {
     matches!(name, "camera" | "object" | "materials")
+}
+
+/// The first of the frames as a texture. What is in the texels that nothing was drawn into depends
+/// on their index.
+fn color_texture(
+    frames: &[Frame],
+    [width, height]: [u32; 2],
+    cleared: impl Fn(usize) -> [f32; 4],
+) -> Result<Texture, Diagnostics> {
+    let words = frames.first().and_then(|frame| frame.targets.first());
+    let words = words.ok_or_else(|| vec![no_frame()])?;
+    let texels = words.chunks(4).enumerate();
+    let texels = texels
+        .flat_map(|(index, pixel)| pixel_colour(pixel).unwrap_or_else(|| cleared(index)))
+        .collect();
+    Ok(Texture { kind: TextureKind::Color2d, width, height, texels })
 }
 
 /// The bindings of both stages, each once, with the members that either of them has.

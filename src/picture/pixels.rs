@@ -51,7 +51,7 @@ enum Seen {
 impl Background {
     /// The background that fits the light of the last pass.
     pub fn new(values: &Values<'_>, eye: Camera) -> Self {
-        let needs = &values.last.needs;
+        let needs = &values.lit.needs;
         let kind = match needs.background {
             needs::Background::Haze => Seen::Haze(values.scene.haze),
             needs::Background::Surroundings => Seen::Around(values.shot.surroundings.clone()),
@@ -69,7 +69,7 @@ impl Background {
 
     /// The background at a place of the picture. Both coordinates are in [0, 1], from the upper
     /// left.
-    fn colour(&self, u: f64, v: f64) -> DVec3 {
+    pub(super) fn colour(&self, u: f64, v: f64) -> DVec3 {
         let at = |depth: f64| {
             self.world_from_clip.project_point3(DVec3::new(2.0 * u - 1.0, 1.0 - 2.0 * v, depth))
         };

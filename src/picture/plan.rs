@@ -15,6 +15,9 @@ use crate::picture::frame::Programs;
 use crate::scene::sets::{Lamp, Scene};
 use crate::source::SourceSet;
 
+/// The axis of programs that have lamps: how many.
+pub(super) const LAMPS: &str = "max_lights";
+
 /// Everything about a picture, except how it is taken.
 #[derive(Debug, Clone)]
 pub struct Plan {
@@ -117,6 +120,24 @@ impl Plan {
     /// The pass that draws the picture.
     pub fn last(&self) -> Option<&Pass> {
         self.passes.last()
+    }
+
+    pub(super) fn is_last(&self, pass: &Pass) -> bool {
+        self.last().is_some_and(|last| std::ptr::eq(last, pass))
+    }
+
+    /// The pass whose axes say how the scene is lit: the last one that has lamps, or else the one
+    /// that draws the picture.
+    pub(super) fn lit(&self) -> Option<&Pass> {
+        let mut passes = self.passes.iter().rev();
+        passes.find(|pass| pass.integer(LAMPS).is_some()).or_else(|| self.last())
+    }
+
+    /// Whether a pass shows what the viewer sees, and not what the light sees: the last one, and the
+    /// one right before it if that is drawn over the screen.
+    pub(super) fn is_of_viewer(&self, pass: &Pass) -> bool {
+        let over = usize::from(self.last().is_some_and(|last| last.needs.screen));
+        self.passes.iter().rev().take(1 + over).any(|one| std::ptr::eq(one, pass))
     }
 
     /// Moves a lamp to where the source has it, so that its shadow falls from there.

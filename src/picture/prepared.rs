@@ -15,6 +15,7 @@ use crate::execute::fixture::{Fixture, Texture};
 use crate::execute::frame::{Buffers, Drawing, EntryPoint, Frame, Item, Mesh, State};
 use crate::execute::kernel::SENTINEL;
 use crate::picture::frame::{Stages, pack_buffer, probe};
+use crate::scene::linear_from_srgb;
 
 /// A pass with everything that it is drawn with.
 pub struct Prepared {
@@ -29,6 +30,8 @@ pub struct Prepared {
     pub(super) camera: Option<Binding>,
     pub(super) eye: Camera,
     pub(super) background: Background,
+    /// Whether the colours are code values of a display.
+    pub(super) encoded: bool,
     /// The same pass for the farther parts of the viewer's depth, nearest first. They are visible
     /// where no nearer part drew anything.
     pub farther: Vec<Self>,
@@ -93,15 +96,22 @@ impl Prepared {
         painter.draw_frames(&drawing).map_err(|problem| vec![problem])
     }
 
-    /// Draws the bits of the colours.
+    /// How many colour targets the fragment stage writes.
+    pub(super) fn targets(&self) -> u32 {
+        let outputs = self.stages.fragment.iter().flat_map(|stage| &stage.reflection.outputs);
+        outputs.filter_map(|output| output.location).map(|location| location + 1).max().unwrap_or(0)
+    }
+
+    /// Draws the bits of the colours of one target.
     pub(super) fn draw_colors(
         &self,
         painter: &dyn Session,
         views: &[Buffers],
         size: [u32; 2],
+        location: u32,
     ) -> Result<Vec<Frame>, Diagnostics> {
         let stage = self.stages.fragment.as_ref().ok_or_else(|| vec![no_frame()])?;
-        let module = probe::bits_module(&stage.validated.module, stage.entry)
+        let module = probe::bits_module(&stage.validated.module, stage.entry, location)
             .ok_or_else(|| vec![no_frame()])?;
         self.draw(
             painter,
@@ -156,9 +166,10 @@ impl Prepared {
                 .map_or(&[][..], Vec::as_slice)
                 .chunks(4)
                 .map(pixel_colour)
+                .map(|colour| if self.encoded { colour.map(decoded_colour) } else { colour })
                 .collect()
         };
-        Ok(self.draw_colors(painter, views, size)?.into_iter().map(colours).collect())
+        Ok(self.draw_colors(painter, views, size, 0)?.into_iter().map(colours).collect())
     }
 }
 
@@ -184,6 +195,12 @@ pub(super) fn sample_shift(index: u32, samples: u32) -> [f64; 2] {
 pub(super) fn pixel_colour(pixel: &[u32]) -> Option<[f32; 4]> {
     let words: [u32; 4] = pixel.try_into().ok()?;
     (words != [SENTINEL; 4]).then(|| words.map(f32::from_bits))
+}
+
+/// The linear colour that a picture, which is sRGB, shows as these code values.
+fn decoded_colour([r, g, b, a]: [f32; 4]) -> [f32; 4] {
+    let [r, g, b] = [r, g, b].map(|code| linear_from_srgb(f64::from(code)) as f32);
+    [r, g, b, a]
 }
 
 pub(super) fn no_frame() -> Diagnostic {

@@ -10,12 +10,15 @@ use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, Textu
 use crate::scene::sets::{Map, Maps};
 use crate::scene::{CubeMap, FACES, prefilter};
 
-/// The result of a pass, which the next one reads.
-pub enum Left {
-    Nothing,
-    /// Six faces, or one.
-    Depth(Vec<Vec<f32>>, u32),
-    Color(Texture),
+/// What earlier passes have drawn.
+#[derive(Default)]
+pub struct Left {
+    /// The depths that the light sees: of six faces, or of one. And the texels along an edge.
+    pub map: Option<(Vec<Vec<f32>>, u32)>,
+    /// The depths that the viewer sees, and the size.
+    pub seen: Option<(Vec<f32>, [u32; 2])>,
+    /// The colour targets of the last pass that has some.
+    pub colors: Vec<Texture>,
 }
 
 /// The sampler of a binding.
@@ -49,34 +52,43 @@ impl<'a> Library<'a> {
         let sky = |exponent, (size, rows)| {
             surroundings.with_sky(|sky| cube_texture(&prefilter(sky, exponent, size, rows)))
         };
-        match (name, self.left) {
-            ("shadow_map", Left::Depth(faces, size)) => {
-                Ok(vec![flat_texture(TextureKind::Depth2d, faces, *size)])
-            }
-            ("shadow_cube", Left::Depth(faces, size)) => {
-                Ok(vec![flat_texture(TextureKind::DepthCube, faces, *size)])
-            }
-            ("shadow_depth" | "depths", Left::Depth(faces, size)) => {
-                Ok(vec![as_color(faces, *size)])
-            }
-            ("blurred", Left::Color(texture)) => Ok(vec![texture.clone()]),
-            ("shadow_moments", Left::Color(texture)) => Ok(with_levels(texture.clone())),
-            ("sky_diffuse", _) => Ok(vec![sky(1.0, DIFFUSE)]),
-            ("sky_specular", _) => Ok(vec![sky(LOBE, SPECULAR)]),
-            ("base_map", _) => Ok(color_textures(self.maps().base.clone().levels())),
-            ("normal_map", _) => Ok(color_textures(self.maps().normal.clone().levels())),
-            ("light_map", _) => Ok(color_textures(vec![self.maps().light.clone()])),
-            _ => Err(vec![Diagnostic::error(
-                codes::EXECUTOR_FAILED,
-                format!("no pass before has drawn what `{name}` reads"),
-            )]),
-        }
+        let found = match name {
+            "sky_diffuse" => Some(vec![sky(1.0, DIFFUSE)]),
+            "sky_specular" => Some(vec![sky(LOBE, SPECULAR)]),
+            "base_map" => Some(color_textures(self.maps().base.clone().levels())),
+            "normal_map" => Some(color_textures(self.maps().normal.clone().levels())),
+            "light_map" => Some(color_textures(vec![self.maps().light.clone()])),
+            _ => self.left.texture(name),
+        };
+        let missing = || format!("no pass before has drawn what `{name}` reads");
+        found.ok_or_else(|| vec![Diagnostic::error(codes::EXECUTOR_FAILED, missing())])
     }
 
     fn maps(&mut self) -> &Maps {
         let scene = self.values.scene;
         let make = || scene.own_maps.clone().unwrap_or_else(|| Arc::new((scene.maps)()));
         self.maps.get_or_insert_with(make)
+    }
+}
+
+impl Left {
+    /// The levels of a texture that an earlier pass has drawn.
+    fn texture(&self, name: &str) -> Option<Vec<Texture>> {
+        let map = |kind| self.map.as_ref().map(|(faces, size)| flat_texture(kind, faces, *size));
+        let color = |index: usize| self.colors.get(index).cloned();
+        let one = |texture: Option<Texture>| texture.map(|texture| vec![texture]);
+        match name {
+            "shadow_map" => one(map(TextureKind::Depth2d)),
+            "shadow_cube" => one(map(TextureKind::DepthCube)),
+            "shadow_depth" | "depths" => {
+                let face =
+                    self.map.as_ref().and_then(|(faces, size)| Some((faces.first()?, *size)));
+                one(face.map(|(face, size)| as_color(face, [size; 2])))
+            }
+            "shadow_moments" => color(0).map(with_levels),
+            "blurred" | "light" => one(color(0)),
+            _ => None,
+        }
     }
 }
 
@@ -90,9 +102,9 @@ fn flat_texture(kind: TextureKind, faces: &[Vec<f32>], size: u32) -> Texture {
 }
 
 /// Depths in the form of a colour texture, for passes that read them so.
-fn as_color(faces: &[Vec<f32>], size: u32) -> Texture {
-    let texels = faces.iter().take(1).flatten().flat_map(|depth| [*depth, 0.0, 0.0, 1.0]).collect();
-    Texture { kind: TextureKind::Color2d, width: size, height: size, texels }
+fn as_color(depths: &[f32], [width, height]: [u32; 2]) -> Texture {
+    let texels = depths.iter().flat_map(|depth| [*depth, 0.0, 0.0, 1.0]).collect();
+    Texture { kind: TextureKind::Color2d, width, height, texels }
 }
 
 fn cube_texture(map: &CubeMap) -> Texture {

@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3};
 
 use super::light::LightView;
 use super::needs::Falloff;
-use super::plan::{Pass, Plan};
+use super::plan::{LAMPS, Pass, Plan};
 use super::{Shot, Surroundings};
 use crate::scene::sets::{Lamp, LampKind, Material, Object, Scene};
 use crate::scene::{directions, normal_matrix, sh9_project};
@@ -15,8 +15,8 @@ use crate::scene::{directions, normal_matrix, sh9_project};
 pub struct Values<'a> {
     pub plan: &'a Plan,
     pub scene: &'a Scene,
-    /// The pass that draws the picture, whichever pass these values are for.
-    pub last: &'a Pass,
+    /// The pass that lights the scene, whichever pass these values are for.
+    pub lit: &'a Pass,
     pub light: &'a LightView,
     pub shot: &'a Shot,
 }
@@ -36,6 +36,7 @@ const GROUPS: &[(&str, &str)] = &[
     ("haze", "haze"),
     ("caster", "caster"),
     ("terms", "moments"),
+    ("display", "display"),
 ];
 
 /// The range of falloffs that have one, as a multiple of the target's distance.
@@ -85,7 +86,7 @@ impl Values<'_> {
         };
         self.published(&path)
             .or_else(of_scene)
-            .or_else(|| self.last.needs.uniform(path.block, path.field))
+            .or_else(|| self.lit.needs.uniform(path.block, path.field))
     }
 
     /// The numbers of an object's own blocks.
@@ -97,7 +98,7 @@ impl Values<'_> {
                 Some(matrix_columns(DMat4::from_mat3(normal_matrix(object.world_from_object))))
             }
             ("object", "color") => Some(object.color.extend(1.0).to_array().to_vec()),
-            ("materials", field) if !self.last.needs.material_array => {
+            ("materials", field) if !self.lit.needs.material_array => {
                 self.published(&parsed).or_else(|| material_value(&object.material, field))
             }
             _ => self.number(path),
@@ -113,13 +114,13 @@ impl Values<'_> {
 
     /// How many lamps shine: those of the scene, as far as the array has room.
     pub fn lamps(&self) -> Option<usize> {
-        let most = usize::try_from(self.last.integer("max_lights")?).ok()?;
+        let most = usize::try_from(self.lit.integer(LAMPS)?).ok()?;
         Some(self.scene.lamps.len().min(most))
     }
 
     /// The kind of a lamp in this permutation.
     pub fn kind(&self, index: usize, lamp: &Lamp) -> LampKind {
-        let needs = &self.last.needs;
+        let needs = &self.lit.needs;
         // The first lamp casts the shadow.
         let caster = if index == 0 && needs.has_shadow() { needs.caster } else { None };
         needs.lamps.or(caster).unwrap_or(lamp.kind)
@@ -166,11 +167,11 @@ impl Values<'_> {
         }
         let d = lamp.reach();
         let published = |field| self.plan.number("light", field);
-        let falloff = match self.last.needs.falloff {
+        let falloff = match self.lit.needs.falloff {
             Falloff::None => 1.0,
             Falloff::Polynomial => {
                 let coefficients = published("attenuation")
-                    .or_else(|| self.last.needs.uniform("lamps", "attenuation"))
+                    .or_else(|| self.lit.needs.uniform("lamps", "attenuation"))
                     .unwrap_or_else(|| vec![1.0]);
                 1.0 / coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * d + coefficient)
             }
@@ -187,14 +188,14 @@ impl Values<'_> {
     }
 
     fn materials(&self, index: usize, field: &str) -> Option<Vec<f64>> {
-        let (pair, side) = if self.last.needs.sides { (index / 2, index % 2) } else { (index, 0) };
+        let (pair, side) = if self.lit.needs.sides { (index / 2, index % 2) } else { (index, 0) };
         // An array that is longer than the scene has materials ends with zeros.
         let Some(sides) = self.scene.materials.get(pair) else { return Some(Vec::new()) };
         material_value(&sides[side], field)
     }
 
     fn surroundings(&self, path: &Path<'_>) -> Option<Vec<f64>> {
-        let lit = !self.last.needs.unlit;
+        let lit = !self.lit.needs.unlit;
         let dimmed = if lit { 0.35 } else { 1.0 };
         Some(match path.field {
             "color" => {
@@ -232,7 +233,7 @@ impl Values<'_> {
     fn caster(&self, field: &str) -> Option<Vec<f64>> {
         // If the source avoids acne in its own way, no offset is added.
         let offset =
-            if self.is_biased_by_source() { 0.0 } else { 1.0 + 0.5 * self.last.needs.reach };
+            if self.is_biased_by_source() { 0.0 } else { 1.0 + 0.5 * self.lit.needs.reach };
         Some(match field {
             // A point light has a matrix for each face, and its stage reads none.
             "clip_from_world" => matrix_columns(*self.light.clip_from_world.first()?),
@@ -247,7 +248,7 @@ impl Values<'_> {
     /// The polygon offset of the depth pass: the source's, or as much as the filter needs.
     pub fn offset(&self) -> [f32; 2] {
         if !self.is_biased_by_source() {
-            return [1.0 + self.last.needs.reach as f32, 4.0];
+            return [1.0 + self.lit.needs.reach as f32, 4.0];
         }
         let published = self.plan.number("depth_pass", "polygon_offset").unwrap_or_default();
         [0, 1].map(|index| published.get(index).map_or(0.0, |value| *value as f32))
@@ -268,13 +269,13 @@ impl Values<'_> {
 
     /// The moments of depth 1, which the last pass reads where nothing was drawn.
     pub fn cleared_moments(&self) -> [f32; 4] {
-        if !self.last.needs.exponential {
+        if !self.lit.needs.exponential {
             return [1.0, 1.0, 0.0, 0.0];
         }
         let exponents = self
             .plan
             .number("caster", "exponents")
-            .or_else(|| self.last.needs.uniform("terms", "exponents"))
+            .or_else(|| self.lit.needs.uniform("terms", "exponents"))
             .unwrap_or_default();
         let exponent = |index: usize| exponents.get(index).copied().unwrap_or(0.0);
         let (positive, negative) = (exponent(0).exp(), -(-exponent(1)).exp());

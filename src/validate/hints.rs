@@ -107,6 +107,11 @@ const GLSL: &[&str] = &[
     "uvec4",
 ];
 
+/// Functions and types of GLSL that are used often.
+pub fn glsl_words() -> impl Iterator<Item = &'static str> {
+    SHARED.iter().chain(GLSL).copied()
+}
+
 /// Adds the import that is missing, or the nearest name.
 pub fn hint_unknown(error: Diagnostic, composed: &Composed, name: &str) -> Diagnostic {
     if let Some(modules) = library_names().get(name) {

@@ -17,6 +17,7 @@ mod words;
 
 pub use every::every;
 pub use guard::{caught, guard, on_large_stack};
+pub use hints::glsl_words;
 pub use limits::{LIMITS, Limits};
 #[doc(hidden)]
 pub use rehearsal::{Job, Outputs, STAGE, rehearse};

@@ -1,4 +1,4 @@
-//! Draws permutations of `forward` from exactly the bytes that a bundle holds for each target, and
+//! Draws permutations of programs from exactly the bytes that a bundle holds for each target, and
 //! computes a sample of the fragments again with the evaluator, from the composed text.
 //!
 //! Each permutation is drawn twice with its vertex stage: with its own fragment stage, and with one
@@ -19,7 +19,7 @@ use lamplight::permute::axis::ValueSet;
 use lamplight::picture::frame::probe;
 use libtest_mimic::{Failed, Trial};
 
-use super::{Scene, Sources, bundle, points};
+use super::{PROGRAMS, Scene, Sources, bundle, points};
 use crate::fragments::{self, Tally, Watched};
 
 /// The number of permutations of each language. All pairs of values are among them.
@@ -38,15 +38,19 @@ const OPEN: f64 = 0.01;
 const MOST_FAILURES: usize = 20;
 
 pub fn trials() -> Vec<Trial> {
-    let drawn = [("wesl", Language::Wesl), ("glsl", Language::Glsl)].map(|(name, language)| {
-        Trial::test(format!("frames/shipped/{name}"), move || {
-            on_thread(|| drawn(language)).ok_or("panicked")?.map_err(Failed::from)
+    let languages = [("wesl", Language::Wesl), ("glsl", Language::Glsl)];
+    let drawn = PROGRAMS.into_iter().flat_map(|program| {
+        languages.map(|(name, language)| {
+            let of = if program == "forward" { String::new() } else { format!("{program}/") };
+            Trial::test(format!("frames/shipped/{of}{name}"), move || {
+                on_thread(|| drawn(program, language)).ok_or("panicked")?.map_err(Failed::from)
+            })
         })
     });
     let others = Trial::test("frames/shipped/others_are_noticed", || {
         on_thread(others_are_noticed).ok_or("panicked")?.map_err(Failed::from)
     });
-    drawn.into_iter().chain([others]).collect()
+    drawn.chain([others]).collect()
 }
 
 /// The targets that the environment names, or all except MSL.
@@ -79,8 +83,8 @@ fn most_points() -> Result<usize, String> {
     }
 }
 
-fn drawn(language: Language) -> Result<(), String> {
-    let (targets, sources) = (targets()?, Sources::load(language)?);
+fn drawn(program: &'static str, language: Language) -> Result<(), String> {
+    let (targets, sources) = (targets()?, Sources::load(program, language)?);
     let mut points = points(&sources.space, LEAST_POINTS);
     points.truncate(most_points()?);
     let start = Instant::now();
@@ -88,12 +92,12 @@ fn drawn(language: Language) -> Result<(), String> {
     let mut drivers = drivers(&targets)?;
     for point in &points {
         let (key, scene) = (sources.space.key(point).to_string(), sources.scene(point)?);
-        permutation(&bundle, language, &key, &scene, &mut drivers)?;
+        permutation(&bundle, (program, language), &key, &scene, &mut drivers)?;
     }
-    println!("{language:?}: all in {:.1} s", start.elapsed().as_secs_f64());
+    println!("{program}, {language:?}: all in {:.1} s", start.elapsed().as_secs_f64());
     let mut failures = Vec::new();
     for driver in &drivers {
-        println!("{language:?} {driver}");
+        println!("{program}, {language:?} {driver}");
         failures.extend(driver.failures.iter().take(MOST_FAILURES).cloned());
         // A permutation that cannot be drawn is a failure, since today all can be.
         failures.extend(driver.lacks.keys().map(|reason| format!("{}: {reason}", driver.name)));
@@ -104,7 +108,7 @@ fn drawn(language: Language) -> Result<(), String> {
 /// The comparison fails if the bytes of another permutation, with another diffuse term, are drawn.
 /// Otherwise it would prove nothing.
 fn others_are_noticed() -> Result<(), String> {
-    let sources = Sources::load(Language::Wesl)?;
+    let sources = Sources::load("forward", Language::Wesl)?;
     let space = &sources.space;
     let usual = space.default_assignment();
     let axis = space.axes().iter().position(|axis| axis.name == "diffuse").ok_or("no axis")?;
@@ -118,7 +122,7 @@ fn others_are_noticed() -> Result<(), String> {
     let scene = sources.scene(&usual)?;
     for (point, is_right) in [(&usual, true), (&other, false)] {
         let key = space.key(point).to_string();
-        let targets = driver.frame(&bundle, Language::Wesl, &key, &scene);
+        let targets = driver.frame(&bundle, ("forward", Language::Wesl), &key, &scene);
         let targets = targets.map_err(|error| error.message)?;
         let watched = [Watched { size: SIZE, targets: &targets }];
         let resources =
@@ -160,18 +164,18 @@ impl Driver {
     fn frame(
         &mut self,
         bundle: &Bundle,
-        language: Language,
+        of: (&str, Language),
         key: &str,
         scene: &Scene,
     ) -> Result<Vec<Vec<u32>>, Diagnostic> {
         let stages = ["vertex", "fragment"].map(|stage| {
-            let entry = match (language, stage) {
+            let entry = match (of.1, stage) {
                 // Entry points of GLSL are all called `main`, so a bundle names them by their stage.
                 (Language::Glsl, _) => stage,
                 (_, "vertex") => scene.vertex.entry,
                 _ => scene.fragment.entry,
             };
-            shipped(bundle, language, entry, key, self.target)
+            shipped(bundle, of, entry, key, self.target)
         });
         let [vertex, fragment] = stages;
         let (vertex, fragment) = (vertex.map_err(lost)?, fragment.map_err(lost)?);
@@ -255,7 +259,7 @@ impl std::fmt::Display for Driver {
 /// all drivers.
 fn permutation(
     bundle: &Bundle,
-    language: Language,
+    of: (&str, Language),
     key: &str,
     scene: &Scene,
     drivers: &mut [Driver],
@@ -263,7 +267,7 @@ fn permutation(
     let (mut frames, mut owners) = (Vec::new(), Vec::new());
     for (index, driver) in drivers.iter_mut().enumerate() {
         let start = Instant::now();
-        let found = driver.frame(bundle, language, key, scene);
+        let found = driver.frame(bundle, of, key, scene);
         driver.time += start.elapsed();
         match found {
             Ok(targets) => {
@@ -292,13 +296,13 @@ fn permutation(
 /// One stage, with the bytes that the bundle holds for a target.
 fn shipped(
     bundle: &Bundle,
-    language: Language,
+    (program, language): (&str, Language),
     entry: &str,
     key: &str,
     target: Target,
 ) -> Result<Shipped, String> {
     let found = bundle
-        .program("forward")
+        .program(program)
         .and_then(|program| program.entry(language, entry)?.get(key, target))
         .map_err(|error| error.to_string())?;
     let (native, reflection) = ((*found.native).clone(), (*found.reflection).clone());

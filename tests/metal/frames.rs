@@ -1,4 +1,4 @@
-//! Draws permutations of `forward` on the CPU from the MSL that a bundle holds, and computes a sample
+//! Draws permutations of programs on the CPU from the MSL that a bundle holds, and computes a sample
 //! of the fragments again with the evaluator, from the composed text.
 
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ use libtest_mimic::{Failed, Trial};
 use naga::{Binding, BuiltIn};
 
 use crate::fragments::{self, Tally, Watched};
-use crate::frames::{Scene, Sources, bundle, points};
+use crate::frames::{PROGRAMS, Scene, Sources, bundle, points};
 
 /// The number of permutations of each language. All pairs of values are among them.
 const LEAST_POINTS: usize = 200;
@@ -29,17 +29,19 @@ const OPEN: f64 = 0.01;
 const BATCH: usize = 64;
 
 pub fn trials() -> Vec<Trial> {
-    [("wesl", Language::Wesl), ("glsl", Language::Glsl)]
-        .map(|(name, language)| {
-            Trial::test(format!("metal::frames::forward::{name}"), move || {
-                drawn(language).map_err(Failed::from)
+    let languages = [("wesl", Language::Wesl), ("glsl", Language::Glsl)];
+    let of = |program: &'static str| {
+        languages.map(|(name, language)| {
+            Trial::test(format!("metal::frames::{program}::{name}"), move || {
+                drawn(program, language).map_err(Failed::from)
             })
         })
-        .into()
+    };
+    PROGRAMS.into_iter().flat_map(of).collect()
 }
 
-fn drawn(language: Language) -> Result<(), String> {
-    let sources = Sources::load(language)?;
+fn drawn(program: &'static str, language: Language) -> Result<(), String> {
+    let sources = Sources::load(program, language)?;
     let points = points(&sources.space, LEAST_POINTS);
     let bundle = bundle(&sources, &points, &[Target::MSL])?;
     let (mut total, mut failures) = (Tally::default(), Vec::new());
@@ -52,7 +54,7 @@ fn drawn(language: Language) -> Result<(), String> {
         let pairs = scenes
             .iter()
             .zip(&keys)
-            .map(|(scene, key)| stages.pair(&bundle, language, scene, key))
+            .map(|(scene, key)| stages.pair(&bundle, (program, language), scene, key))
             .collect::<Result<Vec<_>, _>>()?;
         let compiled = Compiled::new(stages.shipped).map_err(|missing| missing.reason)?;
         for ((scene, key), pair) in scenes.iter().zip(&keys).zip(pairs) {
@@ -62,7 +64,7 @@ fn drawn(language: Language) -> Result<(), String> {
             }
         }
     }
-    println!("{language:?} as MSL on the CPU: {} permutations, {total}", points.len());
+    println!("{program}, {language:?} as MSL on the CPU: {} permutations, {total}", points.len());
     if failures.is_empty() { Ok(()) } else { Err(failures.join("\n")) }
 }
 
@@ -77,13 +79,13 @@ impl Stages {
     fn pair(
         &mut self,
         bundle: &Bundle,
-        language: Language,
+        (program, language): (&str, Language),
         scene: &Scene,
         key: &str,
     ) -> Result<[usize; 2], String> {
         let mut index = |entry: &str| -> Result<usize, String> {
             let found = bundle
-                .program("forward")
+                .program(program)
                 .and_then(|program| program.entry(language, entry)?.get(key, Target::MSL))
                 .map_err(|error| error.to_string())?;
             let bytes = found.bytes;

@@ -21,6 +21,7 @@ const STRUCTURES: &[(&str, &str, &[&str])] = &[
     ("Haze", "haze", &[]),
     ("Caster", "caster", &["clip_from_world", "light", "texel", "near", "far"]),
     ("Moments", "moments", &[]),
+    ("Display", "display", &[]),
 ];
 
 /// The numbers with which the shadow map of a spot light is drawn.

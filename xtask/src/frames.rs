@@ -1,11 +1,11 @@
-//! `cargo xtask frames`: permutations of `forward`, drawn from the bytes that a bundle holds of
+//! `cargo xtask frames`: permutations of programs, drawn from the bytes that a bundle holds of
 //! each target, by the trials `frames/shipped` and `metal::frames` of the tests.
 
 use crate::{Failure, Outcome, test};
 
 const USAGE: &str = "usage: cargo xtask frames [--permutations N] [--target T[,T]]
 
-  --permutations N  how many of each language (all: 200 or more, with all pairs of values)
+  --permutations N  how many of each program and language (all: 200 or more, with all pairs of values)
   --target T        of spirv, glsl450, glsl330, essl300, hlsl, wgsl and msl (all)";
 
 /// Runs the trials. A wrong picture gives exit code 3.

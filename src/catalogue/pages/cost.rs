@@ -86,8 +86,33 @@ pub fn of_program(text: &mut String, program: &str, costs: &Costs) {
         text,
         "\nHow each value changes a stage on `{SHOWN}`, compared with the default of its axis: the median over all\n\
          pairs of permutations that differ in that axis alone, and the range of the instructions.\n\
-         Values that change nothing are left out.\n\n\
-         | axis and value | stage | pairs | instructions | range | VGPRs | waves | inverse throughput |\n\
+         Values that change nothing are left out.\n\n"
+    );
+    write_changes(text, &rows);
+}
+
+/// What the values of one axis change: a paragraph and a table, or that they change nothing.
+/// Nothing where this was not measured.
+pub fn of_axis(program: &str, axis: &str, costs: &Costs) -> Option<String> {
+    let measured = costs.axes.iter().filter(|row| row.program == program && row.axis == axis);
+    let (free, rows): (Vec<&AxisCost>, Vec<&AxisCost>) = measured.partition(|row| row.is_free());
+    if rows.is_empty() {
+        let words = format!("Its values cost nothing on `{SHOWN}`, by {}.\n", costs.driver);
+        return (!free.is_empty()).then_some(words);
+    }
+    let mut text = format!(
+        "What its values change on `{SHOWN}`, compared with the default, by {}. The other values \
+         cost nothing.\n\n",
+        costs.driver
+    );
+    write_changes(&mut text, &rows);
+    Some(text)
+}
+
+fn write_changes(text: &mut String, rows: &[&AxisCost]) {
+    let _ = write!(
+        text,
+        "| axis and value | stage | pairs | instructions | range | VGPRs | waves | inverse throughput |\n\
          |---|---|---:|---:|---:|---:|---:|---:|\n"
     );
     for row in rows {

@@ -1,7 +1,7 @@
 //! Writes the catalogue as Markdown: an index, a page for each module, one for programs, one for
 //! presets.
 
-mod cost;
+pub mod cost;
 mod markdown;
 mod module;
 mod preset;

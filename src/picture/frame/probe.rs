@@ -22,7 +22,7 @@ pub fn watch_entry(module: &Module, entry: &str) -> Option<Watched> {
     let (mut module, index) = (module.clone(), find_entry(module, entry)?);
     let inner = inner_function(&mut module, index)?;
     let mut body = Body::new(&mut module, index);
-    let mut components = vec![body.colour(inner)?];
+    let mut components = vec![body.colour(inner, 0)?];
     components.extend(body.inputs());
     let targets = components.len() as u32;
     body.finish(components, index);
@@ -48,13 +48,13 @@ pub fn told_inputs(module: &Module, entry: &str) -> Option<Watched> {
     Some(Watched { module, targets })
 }
 
-/// The module with a fragment entry point that returns the bits of its colour as four words.
-/// `None` as for [`watch_entry`].
-pub fn bits_module(module: &Module, entry: &str) -> Option<Module> {
+/// The module with a fragment entry point that returns, at location 0, the bits of what it returned
+/// at a location. `None` as for [`watch_entry`].
+pub fn bits_module(module: &Module, entry: &str, location: u32) -> Option<Module> {
     let (mut module, index) = (module.clone(), find_entry(module, entry)?);
     let inner = inner_function(&mut module, index)?;
     let mut body = Body::new(&mut module, index);
-    let colour = body.colour(inner)?;
+    let colour = body.colour(inner, location)?;
     body.finish(vec![colour], index);
     Some(module)
 }
@@ -109,14 +109,14 @@ impl<'a> Body<'a> {
         words.chunks(4).map(|words| self.add(four(words))).collect()
     }
 
-    /// The bits of what the function returns at location 0.
-    fn colour(&mut self, inner: Handle<Function>) -> Option<Value> {
+    /// The bits of what the function returns at a location.
+    fn colour(&mut self, inner: Handle<Function>, location: u32) -> Option<Value> {
         let arguments = self.arguments();
         let ty = self.module.functions[inner].result.as_ref()?.ty;
         let member = match &self.module.types[ty].inner {
             TypeInner::Vector { size: VectorSize::Quad, .. } => None,
             TypeInner::Struct { members, .. } => {
-                Some(members.iter().position(|member| is_colour(self.module, member))?)
+                Some(members.iter().position(|member| is_colour(self.module, member, location))?)
             }
             _ => return None,
         };
@@ -209,7 +209,7 @@ impl<'a> Body<'a> {
     }
 }
 
-fn is_colour(module: &Module, member: &StructMember) -> bool {
-    matches!(member.binding, Some(Binding::Location { location: 0, .. }))
+fn is_colour(module: &Module, member: &StructMember, location: u32) -> bool {
+    matches!(member.binding, Some(Binding::Location { location: found, .. }) if found == location)
         && matches!(module.types[member.ty].inner, TypeInner::Vector { size: VectorSize::Quad, .. })
 }

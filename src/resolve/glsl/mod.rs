@@ -132,6 +132,20 @@ pub fn load(
     Ok(Graph { root: root.to_owned(), modules, targets, symbols, paths, packages })
 }
 
+/// How a file of the root package may name the files that it can include, in quotes or in angles.
+pub fn include_spellings(packages: &Packages, includer: &str, angled: bool) -> Vec<String> {
+    let place = (include::ROOT, includer.to_owned());
+    let mut found = Vec::new();
+    for package in include::searched_packages(packages, include::ROOT, angled) {
+        let files = include::package_at(packages, package).files.list(include::EXTENSIONS);
+        let files = files.iter().filter(|file| package != include::ROOT || *file != includer);
+        found.extend(
+            files.map(|file| include::include_spelling(packages, &place, (package, file), angled)),
+        );
+    }
+    found
+}
+
 impl Loader<'_> {
     /// Resolves every include of a module that was read.
     fn targets(&mut self, module: usize) -> Result<Vec<Target>, Diagnostics> {

@@ -1,0 +1,193 @@
+//! Names of GLSL: what they are, where they are declared, and what may be written.
+
+mod complete;
+mod names;
+mod outline;
+mod tokens;
+
+use std::ops::Range;
+
+use serde_json::{Value, json};
+
+pub use complete::complete_at;
+use names::{Meaning, Names};
+use outline::{Declaration, Kind};
+
+use super::package::Opened;
+use super::place::Lines;
+use super::{Server, describe, look, told};
+use crate::bundle::Language;
+use crate::lint;
+use crate::project::LIBRARY;
+use crate::resolve::{Graph, glsl};
+
+/// Lines of a declaration that are shown.
+const SHOWN: usize = 40;
+
+/// A file of GLSL with its names, in its package.
+struct Asked {
+    opened: Opened,
+    names: Names,
+    path: String,
+}
+
+/// Whether parameters name a document of GLSL.
+pub fn is_asked(server: &Server, parameters: &Value) -> bool {
+    let document = server.document(parameters);
+    document.is_ok_and(|document| lint::language(&document.path) == Some(Language::Glsl))
+}
+
+fn read_names(server: &Server, parameters: &Value) -> Result<Option<Asked>, String> {
+    let document = server.document(parameters)?;
+    let path = document.path.clone();
+    let Some(mut opened) = server.opened(&document.root) else { return Ok(None) };
+    let Ok(Graph::Glsl(graph)) = look::module_graph(&mut opened, &path) else { return Ok(None) };
+    Ok(Some(Asked { opened, names: Names::new(graph), path }))
+}
+
+impl Asked {
+    fn package_of(&self, file: usize) -> Option<&str> {
+        let index = self.names.graph.packages[file].checked_sub(1)?;
+        Some(&self.opened.packages.dependencies[index].name)
+    }
+
+    fn location(&self, server: &Server, file: usize, range: &Range<u32>) -> Option<Value> {
+        let module = &self.names.graph.modules[file];
+        let uri = told::address_of(&self.opened.sources, module.source, &*server.library)?;
+        let range = Lines::new(&module.text).range(range.start as usize..range.end as usize);
+        Some(json!({ "uri": uri, "range": range }))
+    }
+
+    /// The library's item that a declaration is.
+    fn library_item(&self, server: &mut Server, file: usize, name: &str) -> Option<String> {
+        let path =
+            self.names.graph.paths[file].strip_prefix("lamplight/")?.strip_suffix(".glsl")?;
+        let path = path.replace('/', "::");
+        let known = server.items();
+        let module = known.iter().find(|module| module.path == path)?;
+        let item = module.items.iter().find(|item| item.name == name)?;
+        let code = item.glsl.as_deref()?;
+        Some(describe::of_library(item, "glsl", code, &item.include()))
+    }
+
+    fn describe_declared(
+        &self,
+        server: &mut Server,
+        found: &[(usize, &Declaration)],
+    ) -> Option<String> {
+        let (file, first) = found.first()?;
+        if self.package_of(*file) == Some(LIBRARY) {
+            let name = self.names.graph.symbols.text(first.name);
+            if let Some(text) = self.library_item(server, *file, name) {
+                return Some(text);
+            }
+        }
+        let code: Vec<String> = found
+            .iter()
+            .map(|(file, declaration)| {
+                let text = text_of(&self.names.graph.modules[*file], &declaration.range);
+                text.lines().take(SHOWN).collect::<Vec<_>>().join("\n")
+            })
+            .collect();
+        let comment = comment_above(&self.names.graph.modules[*file].text, first.range.start);
+        let path = &self.names.graph.paths[*file];
+        Some(format!("```glsl\n{}\n```\n{comment}\n\n`{path}`", code.join("\n")))
+    }
+}
+
+fn text_of<'m>(module: &'m crate::parse::glsl::Module, range: &Range<u32>) -> &'m str {
+    module.text.get(range.start as usize..range.end as usize).unwrap_or_default()
+}
+
+/// The lines of comments right above a byte's line, without their marks.
+fn comment_above(text: &str, byte: u32) -> String {
+    let before = text.get(..byte as usize).unwrap_or_default();
+    let before = &before[..before.rfind('\n').map_or(0, |end| end + 1)];
+    let lines = before.lines().rev().take(SHOWN);
+    let comments = lines.map_while(|line| line.trim().strip_prefix("//"));
+    let mut found: Vec<&str> = comments.map(|line| line.trim_start_matches('/').trim()).collect();
+    found.reverse();
+    found.join("\n")
+}
+
+/// `textDocument/hover`.
+pub fn hover_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    let (_, byte) = server.asked(parameters)?;
+    let Some(asked) = read_names(server, parameters)? else { return Ok(Value::Null) };
+    let Some((meaning, place)) = asked.names.meaning(byte as u32) else { return Ok(Value::Null) };
+    let module = &asked.names.graph.modules[0];
+    let text = match meaning {
+        Meaning::Local(local) => Some(format!("```glsl\n{}\n```", text_of(module, &local.range))),
+        Meaning::Declared(found) => asked.describe_declared(server, &found),
+        Meaning::File(file) => Some(format!("`{}`", asked.names.graph.paths[file])),
+        Meaning::Macro(name) => describe_macro(server, &asked, name),
+    };
+    let Some(text) = text else { return Ok(Value::Null) };
+    let range = Lines::new(&module.text).range(place.start as usize..place.end as usize);
+    Ok(json!({ "contents": { "kind": "markdown", "value": text }, "range": range }))
+}
+
+/// The axis that a macro is, or that it names a value of.
+fn describe_macro(server: &Server, asked: &Asked, name: &str) -> Option<String> {
+    let programs = asked.opened.manifest.iter().flat_map(|manifest| &manifest.programs);
+    let axes = programs.flat_map(|program| program.space.axes());
+    let mut fitting = axes.filter(|axis| {
+        let own = axis.name.to_uppercase();
+        let is_value =
+            |rest: &str| axis.values.iter().any(|value| value.to_string().to_uppercase() == rest);
+        let rest = name.strip_prefix(&own).map(|rest| rest.strip_prefix('_'));
+        name == own || rest.flatten().is_some_and(is_value)
+    });
+    let axis = fitting.next()?;
+    Some(describe::describe_flag(server, &asked.opened, &asked.path, &axis.name))
+}
+
+/// `textDocument/definition`.
+pub fn definition_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    let (_, byte) = server.asked(parameters)?;
+    let Some(asked) = read_names(server, parameters)? else { return Ok(Value::Null) };
+    let Some((meaning, _)) = asked.names.meaning(byte as u32) else { return Ok(Value::Null) };
+    let places: Vec<(usize, Range<u32>)> = match meaning {
+        Meaning::Local(local) => vec![(0, local.place.clone())],
+        Meaning::Declared(found) => {
+            found.iter().map(|(file, declaration)| (*file, declaration.place.clone())).collect()
+        }
+        Meaning::File(file) => vec![(file, 0..0)],
+        Meaning::Macro(_) => Vec::new(),
+    };
+    let found = places.iter().filter_map(|(file, place)| asked.location(server, *file, place));
+    Ok(found.collect())
+}
+
+/// `textDocument/documentSymbol`.
+pub fn document_symbols(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    let Some(asked) = read_names(server, parameters)? else { return Ok(json!([])) };
+    let lines = Lines::new(&asked.names.graph.modules[0].text);
+    let range = |range: &Range<u32>| lines.range(range.start as usize..range.end as usize);
+    let own = asked.names.outlines[0].declarations.iter();
+    let symbols = own.filter(|found| found.kind != Kind::Member).map(|found| {
+        json!({
+            "name": asked.names.graph.symbols.text(found.name),
+            "kind": symbol_kind(found.kind),
+            "range": range(&found.whole),
+            "selectionRange": range(&found.place),
+        })
+    });
+    Ok(symbols.collect())
+}
+
+/// The protocol's number of what a declaration is.
+fn symbol_kind(kind: Kind) -> u32 {
+    match kind {
+        Kind::Function => 12,
+        Kind::Struct => 23,
+        Kind::Constant | Kind::Macro => 14,
+        Kind::Variable => 13,
+        Kind::Member => 8,
+    }
+}
+
+/// How a file may be named in an `#include` of the root file.
+fn spellings(asked: &Asked, angled: bool) -> Vec<String> {
+    glsl::include_spellings(&asked.opened.packages, &asked.path, angled)
+}

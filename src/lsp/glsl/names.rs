@@ -1,0 +1,123 @@
+//! What stands at a place of a GLSL file.
+
+use std::ops::Range;
+
+use super::outline::{Declaration, Kind, Local, Outline, outline_of};
+use crate::parse::glsl::{Directive, Kind as Class, Part, Symbol, known};
+use crate::resolve::glsl::{Graph, Target};
+
+/// The library's prefix for names, which `LAMPLIGHT_PREFIX` asks for.
+const PREFIX: &str = "lamplight_";
+
+/// A file, all that it may include, and what each of these declares.
+pub struct Names {
+    pub graph: Graph,
+    pub outlines: Vec<Outline>,
+}
+
+/// What a name stands for.
+pub enum Meaning<'n> {
+    /// A parameter or a local variable of the file itself.
+    Local(&'n Local),
+    /// Declarations by the number of their file: several if a function has several forms.
+    Declared(Vec<(usize, &'n Declaration)>),
+    /// A file that is included, by its number.
+    File(usize),
+    /// The name of a macro that no file defines. It may be an axis.
+    Macro(&'n str),
+}
+
+impl Names {
+    pub fn new(graph: Graph) -> Self {
+        let outline = |module| outline_of(module, &graph.symbols);
+        let outlines = graph.modules.iter().map(outline).collect();
+        Self { graph, outlines }
+    }
+
+    /// What the identifier or the path of an `#include` at a byte of the root file stands for, with
+    /// its place.
+    pub fn meaning(&self, byte: u32) -> Option<(Meaning<'_>, Range<u32>)> {
+        let module = self.graph.modules.first()?;
+        let has = |range: &Range<u32>| range.start <= byte && byte <= range.end;
+        for (include, target) in module.includes.iter().zip(self.graph.targets.first()?) {
+            let place = include.span.start..include.span.end;
+            if let (true, Target::Module(file)) = (has(&place), target) {
+                return Some((Meaning::File(*file), place));
+            }
+        }
+        let after = module.tokens.partition_point(|token| token.start <= byte);
+        // Between two tokens, the name before counts if the other is none.
+        let near = module.tokens[after.saturating_sub(2)..after].iter().rev();
+        let token =
+            near.filter(|token| token.kind == Class::Identifier && has(&(token.start..token.end)));
+        let token = token.copied().next()?;
+        let place = token.start..token.end;
+        let before = module.tokens.partition_point(|other| other.start < token.start);
+        let before = before.checked_sub(1).map(|index| module.tokens[index].symbol);
+        if before == Some(known::DOT) {
+            // A member, unless it is the swizzle of a vector.
+            let members = self.declared(token.symbol, |kind| kind == Kind::Member);
+            return (!members.is_empty()).then_some((Meaning::Declared(members), place));
+        }
+        if let Some(local) = self.local(token.symbol, token.start) {
+            return Some((Meaning::Local(local), place));
+        }
+        let found = self.global(token.symbol);
+        if !found.is_empty() {
+            return Some((Meaning::Declared(found), place));
+        }
+        let text = self.graph.symbols.text(token.symbol);
+        self.is_in_directive(token.start).then_some((Meaning::Macro(text), place))
+    }
+
+    /// The local of that name that is known at a byte and was declared last before it.
+    fn local(&self, name: Symbol, byte: u32) -> Option<&Local> {
+        let locals = self.outlines.first()?.locals.iter().rev();
+        let is_known =
+            |local: &&Local| local.name == name && local.place.start <= byte && byte < local.end;
+        locals.into_iter().find(is_known)
+    }
+
+    /// Locals that are known at a byte.
+    pub fn locals_at(&self, byte: u32) -> impl Iterator<Item = &Local> {
+        let locals = self.outlines.first().into_iter().flat_map(|outline| &outline.locals);
+        locals.filter(move |local| local.place.end <= byte && byte < local.end)
+    }
+
+    /// Declarations of a name for all code: those of the file itself, or else of what it includes,
+    /// or else those of the library's name without its prefix.
+    fn global(&self, name: Symbol) -> Vec<(usize, &Declaration)> {
+        let found = self.declared(name, |kind| kind != Kind::Member);
+        if !found.is_empty() {
+            return found;
+        }
+        let bare = self.graph.symbols.text(name).strip_prefix(PREFIX);
+        let bare = bare.and_then(|bare| self.graph.symbols.find(bare));
+        bare.map(|bare| self.declared(bare, |kind| kind != Kind::Member)).unwrap_or_default()
+    }
+
+    fn declared(&self, name: Symbol, fits: impl Fn(Kind) -> bool) -> Vec<(usize, &Declaration)> {
+        let all = self.outlines.iter().enumerate().flat_map(|(file, outline)| {
+            outline.declarations.iter().map(move |declaration| (file, declaration))
+        });
+        let mut found: Vec<_> = all
+            .filter(|(_, declaration)| declaration.name == name && fits(declaration.kind))
+            .collect();
+        // The library's file of prefixes defines a macro for each of its names.
+        if found.iter().any(|(_, declaration)| declaration.kind != Kind::Macro) {
+            found.retain(|(_, declaration)| declaration.kind != Kind::Macro);
+        }
+        if found.iter().any(|(file, _)| *file == 0) {
+            found.retain(|(file, _)| *file == 0);
+        }
+        found
+    }
+
+    fn is_in_directive(&self, byte: u32) -> bool {
+        let parts = self.graph.modules.first().into_iter().flat_map(|module| &module.parts);
+        parts.into_iter().any(|part| match part {
+            Part::Directive(Directive::Include(_), _) | Part::Text(_) => false,
+            Part::Directive(_, span) => span.start <= byte && byte < span.end,
+        })
+    }
+}

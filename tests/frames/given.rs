@@ -1,0 +1,94 @@
+//! What the uniforms, textures and samplers of a frame hold.
+
+use lamplight::bundle::Kind as BindingKind;
+use lamplight::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+
+/// Values for any uniform. Those that the picture depends on are chosen, the others vary.
+pub fn number(path: &str) -> Vec<f64> {
+    let (_, name) = path.rsplit_once('.').unwrap_or(("", path));
+    let index =
+        path.split(['[', ']']).nth(1).and_then(|index| index.parse::<f64>().ok()).unwrap_or(0.0);
+    let vary = |low: f64, high: f64, count: usize| -> Vec<f64> {
+        let step = |i: usize| {
+            ((i as f64 + 1.0) * 0.618 + index * 0.271 + path.len() as f64 * 0.137).fract()
+        };
+        (0..count).map(|i| low + (high - low) * step(i)).collect()
+    };
+    match name {
+        "world_from_view" => vec![1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0.2, 0.3, 3., 1.],
+        "clip_from_world" if path.starts_with("camera") => {
+            vec![0.9, 0., 0., 0., 0., 0.9, 0., 0., 0., 0., 0.2, 0.1, 0., 0., 0.5, 1.]
+        }
+        "clip_from_world" => {
+            vec![0.5, 0., 0., 0., 0., 0.5, 0., 0.05, 0.1, 0., -0.3, 0., 0.03, 0.02, 0.5, 1.]
+        }
+        "world_from_object" => {
+            vec![1.05, 0., 0., 0., 0., 1.05, 0., 0., 0., 0., 1.05, 0., 0., 0., 0., 1.]
+        }
+        "normal_from_object" => {
+            vec![1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.]
+        }
+        "count" => vec![3.0],
+        "kind" => vec![index + 1.0],
+        "light" => vec![0.0],
+        "range" | "far" => vec![12.0],
+        "near" => vec![0.1],
+        "position" => vec![0.7 - index, 0.5, 1.5 + 0.3 * index],
+        "axis" => [vec![-0.36, -0.48, -0.8], vec![0.0, -0.28, -0.96], vec![0.6, 0.0, -0.8]]
+            [index as usize % 3]
+            .clone(),
+        "exponent" => vec![4.0 + index],
+        "shininess" => vec![16.0],
+        "cutoff" => vec![0.5],
+        "inner" => vec![0.9],
+        "outer" => vec![0.45],
+        "attenuation" => vec![1.0, 0.1, 0.05],
+        "roughness" => vec![0.45],
+        "up" => vec![0.0, 1.0, 0.0],
+        "min_w" | "min_variance" | "texel" => vec![0.01],
+        "bias" => vec![0.003],
+        "start" => vec![1.0],
+        "end" => vec![6.0],
+        "exponents" => vec![5.0, 5.0],
+        "radius" => vec![2.0],
+        _ => vary(0.1, 0.9, 4),
+    }
+}
+
+/// A texture or a sampler for a binding. Colours vary smoothly, and depths have an edge.
+pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
+    let sampler =
+        |linear, compare| Fixture::Sampler(Sampler { compare, linear, address: Address::Clamp });
+    match kind {
+        BindingKind::ComparisonSampler => sampler(true, Some(Compare::LessEqual)),
+        BindingKind::Sampler => sampler(name != "depth_sampler", None),
+        _ => {
+            let kind = match (ty.contains("depth"), ty.contains("cube")) {
+                (true, true) => TextureKind::DepthCube,
+                (true, false) => TextureKind::Depth2d,
+                (false, true) => TextureKind::ColorCube,
+                (false, false) => TextureKind::Color2d,
+            };
+            // `shadow_depth` is the depth map too, read as a colour texture.
+            let is_depth = kind.is_depth() || name == "shadow_depth";
+            let value = |index: usize| {
+                let (x, y) = ((index % 8) as f32, (index / 8 % 8) as f32);
+                if is_depth {
+                    if x < 4.0 { 0.25 } else { 0.875 }
+                } else {
+                    (20.0 + 3.0 * x + 2.0 * y) / 64.0
+                }
+            };
+            let texels = 8 * 8 * kind.layers() as usize;
+            let channel = |index: usize| {
+                (0..kind.channels()).map(move |channel| value(index) + channel as f32 / 16.0)
+            };
+            Fixture::Texture(Texture {
+                kind,
+                width: 8,
+                height: 8,
+                texels: (0..texels).flat_map(channel).collect(),
+            })
+        }
+    }
+}
