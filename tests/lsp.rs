@@ -4,6 +4,7 @@ mod cost;
 mod editors;
 mod folders;
 mod glsl;
+mod incremental;
 mod session;
 
 use std::fs;
@@ -36,6 +37,7 @@ const TRIALS: &[(&str, Run)] = &[
     ("survives", survives),
     ("neovim", neovim),
     ("cost", cost::recorded),
+    ("incremental", incremental::as_fresh),
     ("glsl::hover", glsl::hover),
     ("glsl::definition", glsl::definition),
     ("glsl::completion", glsl::completion),

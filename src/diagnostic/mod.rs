@@ -12,7 +12,7 @@ pub mod render;
 
 pub use obeyed::{escape_obeyed, is_obeyed};
 
-use crate::source::Span;
+use crate::source::{SourceId, Span};
 
 /// A kind of diagnostic, with its explanation.
 #[derive(Debug, PartialEq, Eq)]
@@ -79,6 +79,14 @@ pub struct Diagnostic {
 pub type Diagnostics = Vec<Diagnostic>;
 
 impl Diagnostic {
+    /// The same about another file with the same text.
+    pub fn moved(mut self, from: SourceId, to: SourceId) -> Self {
+        for label in self.labels.iter_mut().filter(|label| label.span.source == from) {
+            label.span.source = to;
+        }
+        self
+    }
+
     /// An error without a place yet.
     pub fn error(code: &'static Code, message: impl Into<String>) -> Self {
         Self {

@@ -63,6 +63,17 @@ pub fn code_actions(server: &mut Server, parameters: &Value) -> Result<Value, St
 
 /// The edit that adds an import behind those that are there, or else on the first line.
 pub fn import_edit(text: &str, lines: &Lines<'_>, path: &str) -> Value {
+    import_edit_at(text, lines, import_place(text), path)
+}
+
+/// The edit that adds an import at a place of [`import_place`].
+pub fn import_edit_at(text: &str, lines: &Lines<'_>, at: usize, path: &str) -> Value {
+    let before = if at > 0 && !text[..at].ends_with('\n') { "\n" } else { "" };
+    json!({ "range": lines.range(at..at), "newText": format!("{before}import {path};\n") })
+}
+
+/// Behind the imports that are there, or else the first byte.
+pub fn import_place(text: &str) -> usize {
     let mut at = 0;
     let mut start = 0;
     for line in text.split_inclusive('\n') {
@@ -72,8 +83,7 @@ pub fn import_edit(text: &str, lines: &Lines<'_>, path: &str) -> Value {
         }
         start += line.len();
     }
-    let before = if at > 0 && !text[..at].ends_with('\n') { "\n" } else { "" };
-    json!({ "range": lines.range(at..at), "newText": format!("{before}import {path};\n") })
+    at
 }
 
 /// What goes with an imported name: its statement, or its part of the braces.

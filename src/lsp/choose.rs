@@ -61,7 +61,8 @@ pub fn execute_command(server: &mut Server, parameters: &Value) -> Result<Value,
             let (root, path) = (document.root.clone(), document.path.clone());
             let mut opened = server.opened(&root).ok_or("the package cannot be read")?;
             let (settings, _) = look::module_settings(&opened, &path, &server.choice(&root));
-            let text = look::module_graph(&mut opened, &path)
+            let text = server
+                .graph(&mut opened, &path)
                 .and_then(|graph| look::composed_text(&graph, &settings));
             let first = |errors: Vec<crate::diagnostic::Diagnostic>| {
                 errors.first().map_or("no module".to_owned(), |error| error.message.clone())

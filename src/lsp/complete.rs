@@ -240,9 +240,10 @@ fn complete_names(
         add(name, value);
     }
     if !prefix.is_empty() {
-        let lines = Lines::new(text);
-        for (path, name, kind) in importable_items(server, modules, here) {
-            let edit = act::import_edit(text, &lines, &path);
+        let (lines, place) = (Lines::new(text), act::import_place(text));
+        let items = importable_items(server, modules, here).into_iter();
+        for (path, name, kind) in items.filter(|(_, name, _)| fits(name)) {
+            let edit = act::import_edit_at(text, &lines, place, &path);
             let value = json!({
                 "label": name,
                 "kind": kind,
@@ -269,8 +270,9 @@ fn in_scope<'m>(modules: &'m Modules, here: &str, at: u32) -> Vec<(&'m str, Valu
     };
     let named = |name| modules.graph.names.text(name);
     let around = node.module.items.iter().find(|item| item.range.contains(&at));
-    let locals = around.into_iter().flat_map(|item| &item.locals);
-    let locals = locals.map(|local| (named(*local), VARIABLE, "local"));
+    let locals: BTreeSet<&str> =
+        around.into_iter().flat_map(|item| &item.locals).map(|local| named(*local)).collect();
+    let locals = locals.into_iter().map(|local| (local, VARIABLE, "local"));
     let items = node.module.items.iter().filter(|item| item.name != Name::UNDERSCORE);
     let items = items.map(|item| (named(item.name), completion_kind(item.kind), &*node.label));
     let imports = node.module.imports.iter();

@@ -6,11 +6,13 @@ use std::ops::Range;
 
 use super::package::Opened;
 
+use crate::bundle::Language;
 use crate::compose::{self, Options};
 use crate::diagnostic::Diagnostics;
 use crate::lint;
 use crate::parse::wesl::Event;
 use crate::permute::{Program, Setting, Settings};
+use crate::resolve::wesl::{self, Kept};
 use crate::resolve::{self, Graph};
 
 /// What was chosen for a package, by axis or feature.
@@ -45,9 +47,17 @@ pub fn module_settings(opened: &Opened, path: &str, choice: &Choice) -> (Setting
 }
 
 /// A graph with the module as its root, and what is wrong so far.
-pub fn module_graph(opened: &mut Opened, path: &str) -> Result<Graph, Diagnostics> {
-    let Some(language) = lint::language(path) else { return Err(Vec::new()) };
-    resolve::load(&mut opened.sources, &opened.packages, path, language)
+pub fn module_graph(
+    opened: &mut Opened,
+    path: &str,
+    kept: &mut Kept,
+) -> Result<Graph, Diagnostics> {
+    let (sources, packages) = (&mut opened.sources, &opened.packages);
+    match lint::language(path) {
+        Some(Language::Wesl) => wesl::load_kept(sources, packages, path, kept).map(Graph::Wesl),
+        Some(language) => resolve::load(sources, packages, path, language),
+        None => Err(Vec::new()),
+    }
 }
 
 /// What is wrong with a module under the settings: names, conditions, then what naga says.

@@ -19,6 +19,7 @@ mod shade;
 mod told;
 pub mod wire;
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -26,8 +27,11 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use crate::catalogue;
+use crate::diagnostic::Diagnostics;
 use crate::limits::{EDIT_STEPS, Steps};
 use crate::project;
+use crate::resolve::Graph;
+use crate::resolve::wesl::Kept;
 use look::Choice;
 use package::{Modules, Opened, Texts};
 use wire::{
@@ -51,6 +55,8 @@ pub struct Server {
     documents: BTreeMap<PathBuf, Document>,
     /// By root folder of a package.
     choices: BTreeMap<PathBuf, Choice>,
+    /// By root folder of a package: what was parsed, which a keystroke in one file does not change.
+    kept: RefCell<BTreeMap<PathBuf, Kept>>,
     /// Of the package that was asked about last, until a document changes.
     modules: Option<(PathBuf, Arc<Modules>)>,
     /// Documents to look at, the one that was edited last first.
@@ -90,6 +96,7 @@ impl Server {
         Self {
             documents: BTreeMap::new(),
             choices: BTreeMap::new(),
+            kept: RefCell::default(),
             modules: None,
             changed: VecDeque::new(),
             items: None,
@@ -220,6 +227,9 @@ impl Server {
         let others =
             self.documents.keys().map(PathBuf::as_path).filter(|path| Some(*path) != edited);
         self.changed = edited.into_iter().chain(others).map(Path::to_owned).collect();
+        let documents = &self.documents;
+        let is_open = |root: &PathBuf| documents.values().any(|document| document.root == *root);
+        self.kept.get_mut().retain(|root, _| is_open(root));
     }
 
     /// Whether every document was looked at since it changed.
@@ -264,7 +274,7 @@ impl Server {
         }
         let (settings, note) =
             look::module_settings(&opened, &document.path, &self.choice(&document.root));
-        match look::module_graph(&mut opened, &document.path) {
+        match self.graph(&mut opened, &document.path) {
             Ok(graph) => {
                 let found = look::module_problems(&graph, &settings, &document.path);
                 let mut told = shown(&opened.sources, &found, Some(&note));
@@ -289,12 +299,25 @@ impl Server {
         package::open_package(root, &self.texts(root)).ok()
     }
 
+    /// A graph with a module as its root.
+    fn graph(&self, opened: &mut Opened, path: &str) -> Result<Graph, Diagnostics> {
+        let root = opened.root.clone();
+        self.with_kept(&root, |kept| look::module_graph(opened, path, kept))
+    }
+
+    fn with_kept<T>(&self, root: &Path, work: impl FnOnce(&mut Kept) -> T) -> T {
+        let mut all = self.kept.borrow_mut();
+        work(all.entry(root.to_owned()).or_default())
+    }
+
     /// All modules of a package, read again once a document changed.
     fn modules(&mut self, root: &Path) -> Option<Arc<Modules>> {
         if let Some((_, known)) = self.modules.as_ref().filter(|(known, _)| known == root) {
             return Some(Arc::clone(known));
         }
-        let modules = Arc::new(package::read_modules(&mut self.opened(root)?)?);
+        let mut opened = self.opened(root)?;
+        let modules = self.with_kept(root, |kept| package::read_modules(&mut opened, kept))?;
+        let modules = Arc::new(modules);
         self.modules = Some((root.to_owned(), Arc::clone(&modules)));
         Some(modules)
     }

@@ -11,7 +11,7 @@ use crate::permute::Manifest;
 use crate::permute::manifest::Features;
 use crate::project;
 use crate::resolve::Packages;
-use crate::resolve::wesl::{Graph, Node, Target, load_all};
+use crate::resolve::wesl::{Graph, Kept, Node, Target, load_all};
 use crate::source::{Files, ReadError, SourceSet, Span};
 
 /// Texts of open documents by their path below a package's root.
@@ -117,9 +117,9 @@ pub struct Modules {
 }
 
 /// Reads all modules of the opened package.
-pub fn read_modules(opened: &mut Opened) -> Option<Modules> {
+pub fn read_modules(opened: &mut Opened, kept: &mut Kept) -> Option<Modules> {
     let paths = opened.packages.root.files.list(&["wesl", "wgsl"]);
-    let graph = load_all(&mut opened.sources, &opened.packages, &paths)?;
+    let graph = load_all(&mut opened.sources, &opened.packages, &paths, kept)?;
     Some(Modules { graph, sources: opened.sources.clone() })
 }
 

@@ -16,7 +16,7 @@ impl Server {
         let found = self.opened(&document.root).and_then(|mut opened| {
             let choice = self.choice(&document.root);
             let (settings, _) = look::module_settings(&opened, &document.path, &choice);
-            let graph = look::module_graph(&mut opened, &document.path).ok()?;
+            let graph = self.graph(&mut opened, &document.path).ok()?;
             Some(look::inactive_ranges(&graph, &settings))
         });
         Ok((&document.text, found.unwrap_or_default()))

@@ -15,6 +15,7 @@ mod uses;
 mod write;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::parse::wesl;
@@ -68,6 +69,7 @@ pub fn naga_oil(sources: &SourceSet, files: &[(String, SourceId)]) -> Migrated {
 /// The text, if it is WESL as far as the parser can tell.
 fn parse_result(id: SourceId, text: String) -> Result<String, Diagnostic> {
     let module = wesl::parse(id, text.as_str().into(), &mut wesl::Names::default());
+    let module = wesl::Placed::new(Arc::new(module), id);
     match module.errors.first() {
         None => Ok(text),
         Some(error) => {

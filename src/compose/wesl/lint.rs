@@ -2,7 +2,7 @@
 
 use super::evaluate::Evaluator;
 use crate::diagnostic::{Diagnostic, codes};
-use crate::parse::wesl::{ConditionId, Expression, ExpressionId, Module};
+use crate::parse::wesl::{ConditionId, Expression, ExpressionId, Placed};
 use crate::permute::Settings;
 use crate::resolve::wesl::Graph;
 use crate::source::Span;
@@ -101,7 +101,7 @@ fn is_later(graph: &Graph, condition: &Condition) -> bool {
 }
 
 /// The conditions that ask for a setting; one like `@if(true)` is meant as it stands.
-fn asked_conditions(module: &Module) -> impl Iterator<Item = ConditionId> {
+fn asked_conditions(module: &Placed) -> impl Iterator<Item = ConditionId> {
     let asks = |(_, condition): &(usize, &crate::parse::wesl::Condition)| {
         condition.expression.is_some_and(|root| expression_span(module, root).is_some())
     };
@@ -109,7 +109,7 @@ fn asked_conditions(module: &Module) -> impl Iterator<Item = ConditionId> {
 }
 
 /// From the first name of an expression to its last.
-fn expression_span(module: &Module, root: ExpressionId) -> Option<Span> {
+fn expression_span(module: &Placed, root: ExpressionId) -> Option<Span> {
     let mut range: Option<std::ops::Range<u32>> = None;
     let mut open = vec![root];
     while let Some(next) = open.pop() {

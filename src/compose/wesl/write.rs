@@ -7,7 +7,7 @@ use super::naming::Renames;
 use super::reached::{Meaning, Reached, Thing};
 use crate::compose::{Part, PartKind, Segment, SourceMap};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::parse::wesl::{Directive, Event, ItemKind, Module, Name};
+use crate::parse::wesl::{Directive, Event, ItemKind, Name, Placed};
 use crate::resolve::wesl::Graph;
 use crate::source::{LIMITS, Span};
 
@@ -64,7 +64,7 @@ impl Writer<'_> {
         self.text.push_str(text);
     }
 
-    fn copy(&mut self, module: &Module, range: Range<u32>) {
+    fn copy(&mut self, module: &Placed, range: Range<u32>) {
         if range.start >= range.end || self.text.len() > LIMITS.expansion_bytes {
             return;
         }
@@ -222,7 +222,7 @@ impl Writer<'_> {
     }
 
     /// Writes a name. Where it does not change, it is copied together with the text around it.
-    fn name(&mut self, module: &Module, thing: Thing, at: &mut u32, range: Range<u32>) {
+    fn name(&mut self, module: &Placed, thing: Thing, at: &mut u32, range: Range<u32>) {
         let names = self.names;
         let name = names.text(self.graph, self.reached, thing);
         if &module.text[range.start as usize..range.end as usize] != name {
@@ -266,7 +266,7 @@ fn is_new(seen: &mut Vec<(Name, Vec<Name>)>, directive: &Directive) -> bool {
 
 /// Whether there is no blank line between two items in the author's text, or in what stands between
 /// them.
-fn are_adjacent(module: &Module, last: u32, next: u32) -> bool {
+fn are_adjacent(module: &Placed, last: u32, next: u32) -> bool {
     module.items[last as usize..=next as usize].windows(2).all(|pair| {
         let gap = &module.text[pair[0].range.end as usize..pair[1].range.start as usize];
         gap.matches('\n').count() <= 1

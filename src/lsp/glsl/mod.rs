@@ -15,7 +15,7 @@ use outline::{Declaration, Kind};
 
 use super::package::Opened;
 use super::place::Lines;
-use super::{Server, describe, look, told};
+use super::{Server, describe, told};
 use crate::bundle::Language;
 use crate::lint;
 use crate::project::LIBRARY;
@@ -41,7 +41,7 @@ fn read_names(server: &Server, parameters: &Value) -> Result<Option<Asked>, Stri
     let document = server.document(parameters)?;
     let path = document.path.clone();
     let Some(mut opened) = server.opened(&document.root) else { return Ok(None) };
-    let Ok(Graph::Glsl(graph)) = look::module_graph(&mut opened, &path) else { return Ok(None) };
+    let Ok(Graph::Glsl(graph)) = server.graph(&mut opened, &path) else { return Ok(None) };
     Ok(Some(Asked { opened, names: Names::new(graph), path }))
 }
 

@@ -19,7 +19,7 @@ mod trivia;
 
 pub use module::{
     Comparison, Condition, ConditionId, Directive, Event, Expression, ExpressionId, Guard, Import,
-    Item, ItemKind, LocalUse, Module, Operand, Origin, Parts, Path, Reference,
+    Item, ItemKind, LocalUse, Module, Operand, Origin, Parts, Path, Placed, Reference,
 };
 pub use name::{Name, Names, is_keyword, keywords};
 

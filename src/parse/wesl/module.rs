@@ -1,6 +1,6 @@
 //! One WESL file, split into items, with every identifier that could mean another item marked.
 
-use std::ops::Range;
+use std::ops::{Deref, Range};
 use std::sync::Arc;
 
 use super::name::Name;
@@ -10,7 +10,9 @@ use crate::source::{SourceId, Span};
 /// A parsed file. Indices are into its own tables.
 #[derive(Debug)]
 pub struct Module {
-    pub source: SourceId,
+    /// The file it was parsed as. The same text may stand in another file or be read again: spans
+    /// are made by what knows the file.
+    pub(in crate::parse::wesl) source: SourceId,
     pub text: Arc<str>,
     pub directives: Vec<Directive>,
     pub imports: Vec<Import>,
@@ -22,15 +24,42 @@ pub struct Module {
     /// Each place that names a parameter or a local; only where these were asked for.
     pub local_uses: Vec<LocalUse>,
     /// Errors in parts of the file that could not be parsed.
+    pub(in crate::parse::wesl) errors: Vec<Diagnostic>,
+    /// Warnings about code that other tools refuse, or that looks as if it meant something else.
+    pub(in crate::parse::wesl) warnings: Vec<Diagnostic>,
+}
+
+/// A parsed text as that of one file. The same parsed text serves each time that the file is read.
+#[derive(Debug)]
+pub struct Placed {
+    pub source: SourceId,
+    /// Errors in parts of the file that could not be parsed.
     pub errors: Vec<Diagnostic>,
     /// Warnings about code that other tools refuse, or that looks as if it meant something else.
     pub warnings: Vec<Diagnostic>,
+    module: Arc<Module>,
 }
 
-impl Module {
+impl Placed {
+    /// The parsed text as that of the file.
+    pub fn new(module: Arc<Module>, source: SourceId) -> Self {
+        let moved = |found: &[Diagnostic]| {
+            found.iter().map(|one| one.clone().moved(module.source, source)).collect()
+        };
+        Self { source, errors: moved(&module.errors), warnings: moved(&module.warnings), module }
+    }
+
     /// A place in this file.
     pub fn span(&self, range: Range<u32>) -> Span {
         Span { source: self.source, start: range.start, end: range.end }
+    }
+}
+
+impl Deref for Placed {
+    type Target = Module;
+
+    fn deref(&self) -> &Module {
+        &self.module
     }
 }
 

@@ -1,9 +1,10 @@
 //! The resolved modules.
 
 use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
 
-use crate::diagnostic::Diagnostic;
-use crate::parse::wesl::{ConditionId, Expression, Module, Name, Names};
+use crate::diagnostic::{Diagnostic, Diagnostics};
+use crate::parse::wesl::{ConditionId, Expression, Name, Names, Placed};
 use crate::source::{SourceId, Span};
 
 /// Imports that a diagnostic lists, of those that led to its file.
@@ -12,7 +13,7 @@ const TRACED: usize = 16;
 /// Every module that a root module may reach, ready to be composed any number of times.
 #[derive(Debug)]
 pub struct Graph {
-    pub(crate) names: Names,
+    pub(crate) names: Arc<Names>,
     /// The root module first.
     pub(crate) nodes: Vec<Node>,
     /// The nodes in the order of the output: by label, with the root module last.
@@ -83,7 +84,7 @@ pub struct Bases {
 #[derive(Debug)]
 pub struct Node {
     /// Its items, imports and conditions.
-    pub module: Module,
+    pub module: Placed,
     /// 0 for the root package, else one more than the dependency's index.
     pub package: usize,
     /// Names from the package's root.
@@ -153,4 +154,37 @@ pub struct Constant {
     pub name: Name,
     /// Its first use.
     pub span: Span,
+}
+
+/// The errors that every composition has: those of the root module, and of what it imports without
+/// a condition.
+pub fn certain_errors(graph: &Graph) -> Diagnostics {
+    let mut certain = vec![false; graph.nodes.len()];
+    let mut failed = vec![false; graph.failures.len()];
+    let mut errors = Vec::new();
+    let mut open = vec![0];
+    while let Some(index) = open.pop() {
+        if std::mem::replace(&mut certain[index], true) {
+            continue;
+        }
+        let node = &graph.nodes[index];
+        let broken = node.broken_imports.iter().filter(|(conditions, _)| conditions.is_empty());
+        let broken =
+            broken.filter(|(_, failure)| !std::mem::replace(&mut failed[*failure as usize], true));
+        let found = node
+            .module
+            .errors
+            .iter()
+            .chain(broken.map(|(_, failure)| &graph.failures[*failure as usize]));
+        errors.extend(found.map(|error| graph.traced(error.clone())));
+        let certainly =
+            node.bindings.iter().flatten().filter(|candidate| candidate.conditions.is_empty());
+        open.extend(certainly.filter_map(|candidate| match candidate.target {
+            Target::Items { node, .. } => Some(node as usize),
+            _ => None,
+        }));
+    }
+    errors.sort_by_key(|error| error.labels.first().map(|label| label.span));
+    errors.dedup();
+    errors
 }

@@ -2,12 +2,14 @@
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, HashSet};
+use std::sync::Arc;
 
-use super::graph::{Bases, Candidate, Constant, Graph, Importer, Node, Target};
+use super::Kept;
+use super::graph::{Bases, Candidate, Constant, Graph, Importer, Node, Target, certain_errors};
 use super::lint;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::limits::{RESOLVE_FACTOR, RESOLVE_STEPS, Steps};
-use crate::parse::wesl::{self, ConditionId, Module, Name, Names, Path, Reference};
+use crate::parse::wesl::{self, ConditionId, Name, Names, Path, Placed, Reference};
 use crate::resolve::Packages;
 use crate::source::{self, LIMITS, Package, SourceId, SourceSet, Span};
 
@@ -21,8 +23,8 @@ pub struct Loader<'a> {
     /// Where each of them is.
     pub(super) constant_places: HashMap<Name, u32>,
     pub(super) failures: Vec<Diagnostic>,
-    /// Whether modules are read for an editor.
-    pub(super) for_editor: bool,
+    /// Parsed texts of earlier readings, for editors.
+    kept: Option<&'a mut Kept>,
     /// By package and path: the node of a file, `None` if there is no such file, or why it cannot
     /// be read.
     known: HashMap<(usize, String), Result<Option<u32>, Diagnostic>>,
@@ -46,13 +48,20 @@ impl<'a> Loader<'a> {
             constants: Vec::new(),
             constant_places: HashMap::new(),
             failures: Vec::new(),
-            for_editor: false,
+            kept: None,
             known: HashMap::new(),
             listings: HashMap::new(),
             steps: Cell::new(Steps::new(RESOLVE_STEPS)),
             positions: HashMap::new(),
             used: None,
         }
+    }
+
+    /// With the parsed texts of earlier readings. The loader gives back what it took.
+    pub fn with_kept(mut self, kept: &'a mut Kept) -> Self {
+        self.names = kept.begin();
+        self.kept = Some(kept);
+        self
     }
 
     /// Reads the root module; false if there is no such file.
@@ -91,7 +100,6 @@ impl<'a> Loader<'a> {
     /// Everything that the modules at some paths of the root package lead to, errors and all;
     /// those that cannot be read are left out.
     pub fn every(mut self, paths: &[String]) -> Option<Graph> {
-        self.for_editor = true;
         for path in paths {
             let stem = path.rsplit_once('.').map_or(path.as_str(), |(stem, _)| stem);
             if self.known.contains_key(&(0, stem.to_owned())) || self.nodes.len() >= LIMITS.files {
@@ -115,9 +123,9 @@ impl<'a> Loader<'a> {
         (!self.nodes.is_empty()).then(|| self.graph())
     }
 
-    fn graph(self) -> Graph {
+    fn graph(mut self) -> Graph {
         let mut totals = Bases::default();
-        let mut nodes = self.nodes;
+        let mut nodes = std::mem::take(&mut self.nodes);
         let mut by_source = BTreeMap::new();
         for (index, node) in nodes.iter_mut().enumerate() {
             node.bases = totals;
@@ -129,8 +137,12 @@ impl<'a> Loader<'a> {
         let mut order: Vec<u32> = (1..nodes.len() as u32).collect();
         order.sort_by(|left, right| nodes[*left as usize].label.cmp(&nodes[*right as usize].label));
         order.push(0);
+        let names = Arc::new(std::mem::take(&mut self.names));
+        if let Some(kept) = &mut self.kept {
+            kept.end(Arc::clone(&names));
+        }
         Graph {
-            names: self.names,
+            names,
             nodes,
             order,
             constants: self.constants,
@@ -216,8 +228,11 @@ impl<'a> Loader<'a> {
         let mut steps = self.steps.get();
         steps.grant(RESOLVE_FACTOR.saturating_mul(text.len() as u64));
         self.steps.set(steps);
-        let parse = if self.for_editor { wesl::parse_for_editor } else { wesl::parse };
-        let module = parse(source, text, &mut self.names);
+        let module = match &mut self.kept {
+            Some(kept) => kept.parse(source, text, &mut self.names),
+            None => Arc::new(wesl::parse(source, text, &mut self.names)),
+        };
+        let module = Placed::new(module, source);
         let mut sets: HashMap<Name, Vec<u32>> = HashMap::new();
         for (index, item) in
             module.items.iter().enumerate().filter(|(_, item)| item.name != Name::UNDERSCORE)
@@ -358,41 +373,8 @@ impl<'a> Loader<'a> {
 }
 
 /// What many names may mean is more than can be looked at.
-pub fn too_entangled(module: &Module, most: u64) -> Diagnostic {
+pub fn too_entangled(module: &Placed, most: u64) -> Diagnostic {
     let message = format!("what names mean here takes more than {most} steps to find");
     Diagnostic::error(codes::LIMIT_EXCEEDED, message)
         .at(module.span(0..0), "in this file and what it imports")
-}
-
-/// The errors that every composition has: those of the root module, and of what it imports without
-/// a condition.
-fn certain_errors(graph: &Graph) -> Diagnostics {
-    let mut certain = vec![false; graph.nodes.len()];
-    let mut failed = vec![false; graph.failures.len()];
-    let mut errors = Vec::new();
-    let mut open = vec![0];
-    while let Some(index) = open.pop() {
-        if std::mem::replace(&mut certain[index], true) {
-            continue;
-        }
-        let node = &graph.nodes[index];
-        let broken = node.broken_imports.iter().filter(|(conditions, _)| conditions.is_empty());
-        let broken =
-            broken.filter(|(_, failure)| !std::mem::replace(&mut failed[*failure as usize], true));
-        let found = node
-            .module
-            .errors
-            .iter()
-            .chain(broken.map(|(_, failure)| &graph.failures[*failure as usize]));
-        errors.extend(found.map(|error| graph.traced(error.clone())));
-        let certainly =
-            node.bindings.iter().flatten().filter(|candidate| candidate.conditions.is_empty());
-        open.extend(certainly.filter_map(|candidate| match candidate.target {
-            Target::Items { node, .. } => Some(node as usize),
-            _ => None,
-        }));
-    }
-    errors.sort_by_key(|error| error.labels.first().map(|label| label.span));
-    errors.dedup();
-    errors
 }

@@ -3,7 +3,7 @@
 use super::graph::{Candidate, Constant, Target};
 use super::load::Loader;
 use crate::diagnostic::{Diagnostic, codes};
-use crate::parse::wesl::{ConditionId, Module, Name, Origin, Path};
+use crate::parse::wesl::{ConditionId, Name, Origin, Path, Placed};
 use crate::source::{LIMITS, Span};
 
 /// A path from a package's root.
@@ -32,7 +32,7 @@ struct Places {
 }
 
 impl Places {
-    fn new(module: &Module, path: &Path) -> Self {
+    fn new(module: &Placed, path: &Path) -> Self {
         let whole = module.span(path.range.clone());
         let parents = Some(path.parts.parents.clone()).filter(|range| range.start < range.end);
         Self {

@@ -2,11 +2,13 @@
 //! use resolved to the items that it may mean.
 
 mod graph;
+mod kept;
 mod lint;
 mod load;
 mod locate;
 
 pub use graph::{Candidate, Constant, Graph, Node, Target};
+pub use kept::Kept;
 pub use lint::{PLACES, flag_places, shown_at, undeclared_flags};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -23,10 +25,23 @@ pub fn load(
     packages: &Packages,
     root: &str,
 ) -> Result<Graph, Diagnostics> {
-    let mut loader = load::Loader::new(sources, packages);
+    load_with(load::Loader::new(sources, packages), root)
+}
+
+/// As [`load`], with the parsed texts of an earlier reading.
+pub fn load_kept(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    root: &str,
+    kept: &mut Kept,
+) -> Result<Graph, Diagnostics> {
+    load_with(load::Loader::new(sources, packages).with_kept(kept), root)
+}
+
+fn load_with(mut loader: load::Loader<'_>, root: &str) -> Result<Graph, Diagnostics> {
     match loader.root(root) {
         Ok(true) => loader.finish(),
-        Ok(false) => Err(vec![missing_root(packages, root)]),
+        Ok(false) => Err(vec![missing_root(loader.packages, root)]),
         Err(error) => Err(vec![error]),
     }
 }
@@ -34,8 +49,13 @@ pub fn load(
 /// Reads every module of the root package at one of the paths, and all that they lead to. This is
 /// for editors, which ask who uses what. Errors are in the graph. `None` where no module can be
 /// read, or where names take more steps than are allowed: some would have no meaning.
-pub fn load_all(sources: &mut SourceSet, packages: &Packages, paths: &[String]) -> Option<Graph> {
-    load::Loader::new(sources, packages).every(paths)
+pub fn load_all(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    paths: &[String],
+    kept: &mut Kept,
+) -> Option<Graph> {
+    load::Loader::new(sources, packages).with_kept(kept).every(paths)
 }
 
 fn missing_root(packages: &Packages, root: &str) -> Diagnostic {

@@ -1,0 +1,307 @@
+//! A server that keeps what a keystroke does not change answers as one that begins with the same
+//! texts: after each of many random edits, both are asked the same.
+//!
+//! `LAMPLIGHT_LSP_EDITS` gives another number of edits, `LAMPLIGHT_LSP_SEED` another seed.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::PathBuf;
+
+use lamplight::lsp::Server;
+use libtest_mimic::Failed;
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+use super::Outcome;
+
+const EDITS: usize = 60;
+const MODULES: usize = 6;
+
+const MANIFEST: &str = r#"[program.lamp]
+wesl = "module_5.wesl"
+
+[program.lamp.axis]
+fog = { values = [false, true] }
+cone = { values = ["hard", "soft"] }
+
+[features]
+TINT = {}
+"#;
+
+/// What edits put into texts: parts of programs, whole and broken.
+const PIECES: &[&str] = &[
+    "x",
+    ";",
+    "{",
+    "}",
+    "(",
+    "\n",
+    "// note\n",
+    "/*",
+    "*/",
+    "@if(fog) ",
+    "@if(cone == soft) {\n",
+    "} @else {\n",
+    "@if(MIST) ",
+    "let y = 2.0;\n",
+    "term_1(x)",
+    "import package::module_0::term_0;\n",
+    "import package::none::term;\n",
+    "import lamplight::brdf::diffuse::lambert;\n",
+    "fn extra(x: f32) -> f32 { return x; }\n",
+    "const LIMIT: f32 = 3.0;\n",
+    "struct Share { a: f32 }\n",
+    "import super::module_2::{Share_2 as Part, term_2};\n",
+    "constants::fog",
+    "é",
+    "\"",
+    "super",
+];
+
+const QUESTIONS: &[&str] = &[
+    "textDocument/hover",
+    "textDocument/definition",
+    "textDocument/references",
+    "textDocument/completion",
+    "textDocument/signatureHelp",
+    "textDocument/prepareRename",
+];
+
+const OF_FILES: &[&str] = &[
+    "textDocument/documentSymbol",
+    "textDocument/semanticTokens/full",
+    "textDocument/inlayHint",
+    "textDocument/codeLens",
+    "textDocument/formatting",
+];
+
+fn source(index: usize) -> String {
+    let mut text = String::new();
+    let used: Vec<usize> = [1, 2].iter().filter_map(|back| index.checked_sub(*back)).collect();
+    for other in &used {
+        text += &format!("import package::module_{other}::{{term_{other}, Share_{other}}};\n");
+    }
+    text += &format!(
+        "\n/// What module {index} hands on.\nstruct Share_{index} {{\n    value: f32,\n}}\n\n\
+         @if(fog) {{\nconst GAIN_{index}: f32 = 2.0;\n}} @else {{\nconst GAIN_{index}: f32 = 1.0;\n}}\n\n\
+         fn term_{index}(x: f32) -> f32 {{\n    var sum = x * GAIN_{index};\n"
+    );
+    for other in &used {
+        text += &format!(
+            "    let part_{other} = Share_{other}(sum);\n    sum += term_{other}(part_{other}.value);\n"
+        );
+    }
+    text + "    @if(TINT) {\n        sum *= 0.5;\n    }\n    return sum;\n}\n"
+}
+
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963);
+        ((self.0 >> 33) as usize) % bound.max(1)
+    }
+}
+
+/// A server in this process, with what it told last of each file.
+struct Editor {
+    server: Server,
+    told: BTreeMap<String, Value>,
+}
+
+impl Editor {
+    fn new() -> Self {
+        Self { server: Server::new(Box::new(|_| None)), told: BTreeMap::new() }
+    }
+
+    fn tell(&mut self, method: &str, parameters: Value) {
+        self.server.receive(&json!({ "jsonrpc": "2.0", "method": method, "params": parameters }));
+    }
+
+    fn open(&mut self, uri: &str, text: &str) {
+        let document = json!({ "uri": uri, "languageId": "wesl", "version": 1, "text": text });
+        self.tell("textDocument/didOpen", json!({ "textDocument": document }));
+    }
+
+    fn ask(&mut self, method: &str, parameters: &Value) -> Value {
+        let message = json!({ "jsonrpc": "2.0", "id": 1, "method": method, "params": parameters });
+        self.server.receive(&message).pop().unwrap_or_default()
+    }
+
+    /// What is wrong with each file, once every file was looked at.
+    fn look(&mut self) {
+        while !self.server.is_idle() {
+            for message in self.server.look() {
+                let uri = message["params"]["uri"].as_str().unwrap_or_default().to_owned();
+                self.told.insert(uri, message["params"]["diagnostics"].clone());
+            }
+        }
+    }
+}
+
+/// A package, a server that has been asked about it all the time, and the texts of the editor.
+struct Trial {
+    folder: TempDir,
+    editor: Editor,
+    open: BTreeMap<usize, String>,
+    chosen: Option<&'static str>,
+    random: Random,
+}
+
+impl Trial {
+    fn new(seed: u64) -> Result<Self, Failed> {
+        let folder = tempfile::tempdir()?;
+        fs::write(folder.path().join("lamplight.toml"), MANIFEST)?;
+        for index in 0..MODULES {
+            fs::write(folder.path().join(format!("module_{index}.wesl")), source(index))?;
+        }
+        let random = Random(seed);
+        let mut trial =
+            Self { folder, editor: Editor::new(), open: BTreeMap::new(), chosen: None, random };
+        for index in [5, 3] {
+            trial.open.insert(index, source(index));
+            let uri = trial.uri(index)?;
+            trial.editor.open(&uri, &source(index));
+        }
+        Ok(trial)
+    }
+
+    fn path(&self, index: usize) -> Result<PathBuf, Failed> {
+        Ok(self.folder.path().canonicalize()?.join(format!("module_{index}.wesl")))
+    }
+
+    fn uri(&self, index: usize) -> Result<String, Failed> {
+        Ok(format!("file://{}", self.path(index)?.display()))
+    }
+
+    /// A text with something put in, taken out, or written anew.
+    fn edited(&mut self, text: &str, index: usize) -> String {
+        let places: Vec<usize> =
+            text.char_indices().map(|(at, _)| at).chain([text.len()]).collect();
+        let at = places[self.random.below(places.len())];
+        let piece = PIECES[self.random.below(PIECES.len())];
+        match self.random.below(8) {
+            0 => source(index),
+            1 | 2 => {
+                let end = places[self.random.below(places.len())].max(at);
+                let end = text.floor_char_boundary(end.min(at + 12));
+                format!("{}{}", &text[..at], &text[end..])
+            }
+            3 => {
+                let line = text[..at].rfind('\n').map_or(0, |end| end + 1);
+                format!("{}{piece}{}", &text[..line], &text[line..])
+            }
+            _ => format!("{}{piece}{}", &text[..at], &text[at..]),
+        }
+    }
+
+    fn step(&mut self) -> Outcome {
+        let index = self.random.below(MODULES);
+        let uri = self.uri(index)?;
+        match (self.random.below(12), self.open.get(&index).cloned()) {
+            (0, _) => {
+                self.chosen = Some(["fog=true", "cone=soft,TINT=true", ""][self.random.below(3)]);
+                let (first, set) = (self.first_uri()?, self.chosen);
+                self.editor.ask("lamplight/permutation", &json!({ "uri": first, "set": set }));
+            }
+            (1, Some(_)) if self.open.len() > 1 => {
+                self.open.remove(&index);
+                let document = json!({ "textDocument": { "uri": uri } });
+                self.editor.tell("textDocument/didClose", document);
+                self.editor.told.remove(&uri);
+            }
+            (2..=4, None) => {
+                let text = fs::read_to_string(self.path(index)?)?;
+                self.editor.open(&uri, &text);
+                self.open.insert(index, text);
+            }
+            (_, None) => {
+                let text = fs::read_to_string(self.path(index)?)?;
+                let text = self.edited(&text, index);
+                fs::write(self.path(index)?, &text)?;
+                self.editor.tell("workspace/didChangeWatchedFiles", json!({ "changes": [] }));
+            }
+            (_, Some(text)) => {
+                let text = self.edited(&text, index);
+                let change = json!({
+                    "textDocument": { "uri": uri, "version": 2 },
+                    "contentChanges": [{ "text": text }],
+                });
+                self.editor.tell("textDocument/didChange", change);
+                self.open.insert(index, text);
+            }
+        }
+        Ok(())
+    }
+
+    fn first_uri(&self) -> Result<String, Failed> {
+        self.uri(*self.open.keys().next().ok_or("nothing is open")?)
+    }
+
+    /// A server that has seen nothing but the texts of now.
+    fn fresh(&self) -> Result<Editor, Failed> {
+        let mut fresh = Editor::new();
+        for (index, text) in &self.open {
+            fresh.open(&self.uri(*index)?, text);
+        }
+        if let Some(set) = self.chosen {
+            fresh.ask("lamplight/permutation", &json!({ "uri": self.first_uri()?, "set": set }));
+        }
+        Ok(fresh)
+    }
+
+    fn compare(&mut self, step: usize) -> Outcome {
+        let mut fresh = self.fresh()?;
+        self.editor.look();
+        fresh.look();
+        let open = self.open.clone();
+        for (index, text) in &open {
+            let uri = self.uri(*index)?;
+            let (kept, new) = (self.editor.told.get(&uri), fresh.told.get(&uri));
+            differs(step, "diagnostics", text, kept, new)?;
+            let line = self.random.below(text.lines().count() + 1);
+            let character = self.random.below(30);
+            let parameters = json!({
+                "textDocument": { "uri": uri },
+                "position": { "line": line, "character": character },
+                "context": { "includeDeclaration": true },
+            });
+            for method in QUESTIONS.iter().chain(OF_FILES) {
+                let kept = self.editor.ask(method, &parameters);
+                differs(step, method, text, Some(&kept), Some(&fresh.ask(method, &parameters)))?;
+            }
+        }
+        let query = json!({ "query": "term" });
+        let kept = self.editor.ask("workspace/symbol", &query);
+        differs(step, "symbols", "", Some(&kept), Some(&fresh.ask("workspace/symbol", &query)))
+    }
+}
+
+fn differs(
+    step: usize,
+    what: &str,
+    text: &str,
+    kept: Option<&Value>,
+    new: Option<&Value>,
+) -> Outcome {
+    if kept == new {
+        return Ok(());
+    }
+    Err(format!("step {step}, {what} of\n{text}\nkept: {kept:#?}\nnew: {new:#?}").into())
+}
+
+fn number(name: &str) -> Result<Option<u64>, Failed> {
+    let found = std::env::var(name).ok();
+    found.map(|text| text.parse().map_err(|_| format!("{name} is no number").into())).transpose()
+}
+
+pub fn as_fresh() -> Outcome {
+    let edits = number("LAMPLIGHT_LSP_EDITS")?.map_or(EDITS, |edits| edits as usize);
+    let seed = number("LAMPLIGHT_LSP_SEED")?.unwrap_or(16);
+    let mut trial = Trial::new(seed)?;
+    for step in 0..edits {
+        trial.step()?;
+        trial.compare(step)?;
+    }
+    Ok(())
+}
