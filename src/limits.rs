@@ -57,7 +57,7 @@ pub struct Steps {
 }
 
 thread_local! {
-    /// Steps that stages took on this thread, for trials: what time depends on and is not time.
+    /// Steps that stages took on this thread. Trials compare these counts, since times vary.
     static TAKEN: Cell<u64> = const { Cell::new(0) };
 }
 
@@ -76,12 +76,12 @@ pub fn count_steps(steps: u64) {
 pub struct Exhausted;
 
 impl Steps {
-    /// None taken yet.
+    /// A bound of `most` steps, of which none is taken.
     pub const fn new(most: u64) -> Self {
         Self { most, left: most, is_exhausted: false }
     }
 
-    /// Takes so many.
+    /// Takes this many steps.
     ///
     /// # Errors
     /// Where fewer are left. Nothing is left afterwards.
@@ -106,7 +106,7 @@ impl Steps {
         self.is_exhausted
     }
 
-    /// Steps that there were.
+    /// The bound, with all that was granted.
     pub fn most(self) -> u64 {
         self.most
     }
@@ -143,9 +143,9 @@ limits! {
     EXPANSION_BYTES: usize = 16 << 20, Bytes, "bytes of one composed text",
         "memory, against macros and includes that multiply",
         "`expansion-too-large`, `output-too-large`";
-    LINK_STEPS: u64 = 1 << 18, Count, "steps to resolve the names of a package", "time",
+    RESOLVE_STEPS: u64 = 1 << 18, Count, "steps to resolve the names of a package", "time",
         "`limit-exceeded`";
-    LINK_FACTOR: u64 = 16, Count, "further such steps for each byte that was read", "time",
+    RESOLVE_FACTOR: u64 = 16, Count, "further such steps for each byte that was read", "time",
         "`limit-exceeded`";
     COMPILED_BYTES: usize = 4 << 20, Bytes, "bytes of a composed text that naga compiles",
         "the stack and time of naga", "`limit-exceeded`";

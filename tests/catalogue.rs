@@ -96,12 +96,24 @@ fn every_item_has_a_twin() -> Result<(), Failed> {
     if alone.is_empty() { Ok(()) } else { Err(format!("not in GLSL: {alone:?}").into()) }
 }
 
-/// Every parameter of a function and every field of a struct has a description.
+/// Every parameter of a function and every field of a struct has a description, and no part of the
+/// line `Parameters:` is missing from them.
 fn every_member_is_described() -> Result<(), Failed> {
     let items = catalogue::library_modules().into_iter().flat_map(|module| module.items);
     let silent = |item: &catalogue::Item| -> Vec<String> {
         let members = item.members.iter().filter(|member| member.doc.is_empty());
-        members.map(|member| format!("{}: `{}`", item.path(), member.name)).collect()
+        let silent = members.map(|member| format!("{}: `{}`", item.path(), member.name));
+        let section = item.section("Parameters").unwrap_or_default();
+        let pieces = section.trim_end_matches('.').split("; ");
+        let is_lost = |piece: &&str| {
+            let words = piece.rsplit('`').next().unwrap_or_default().trim();
+            item.members.iter().all(|member| !member.doc.contains(words))
+        };
+        let has_members = !item.members.is_empty();
+        let lost = pieces
+            .filter(|piece| has_members && is_lost(piece))
+            .map(|piece| format!("{}: {piece}", item.path()));
+        silent.chain(lost).collect()
     };
     let silent: Vec<String> = items.flat_map(|item| silent(&item)).collect();
     if silent.is_empty() { Ok(()) } else { Err(format!("not described: {silent:?}").into()) }

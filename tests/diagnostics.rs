@@ -74,9 +74,9 @@ fn copy(from: &Path, to: &Path) -> Result<(), Failed> {
     Ok(())
 }
 
-/// Codes that have no case, because no input is known that leads to them. They are reported instead
-/// of a panic if a stage of ours gives the next one something wrong. `executor-failed` needs a
-/// device that fails.
+/// Codes that have no recorded case. For most of them, no input is known that leads to them: they are
+/// reported instead of a panic if a stage of ours gives the next one something wrong.
+/// `executor-failed` needs a device that fails.
 const INTERNAL: &[&str] = &[
     // No kernel of the library uses what a target lacks.
     "executor-lacks",

@@ -148,8 +148,8 @@ fn run<N: Number>(program: &Program, call: &Call) -> Result<Vec<N>, Failed> {
     Ok(result)
 }
 
-/// Fails unless the results are the wanted ones: floats within a relative tolerance, integers and
-/// booleans exactly.
+/// Fails unless the results are the wanted ones: floats within a tolerance that is relative above 1
+/// and absolute below, integers and booleans exactly.
 pub fn near(
     function: &Function,
     found: &[f64],

@@ -26,7 +26,8 @@ use glsl::{constants_like_members, unused_functions};
 use texts::{NAMES, NAMES_MANIFEST, ROWS, ROWS_MANIFEST, TRAPS, TRAPS_MANIFEST};
 use writers::{
     blocks_beside_structures, entry_points, kept_matrices, kept_names, lacking,
-    matrices_from_values, matrices_of_two_rows, variables_named_after_structures,
+    matrices_from_values, matrices_of_two_rows, types_like_members,
+    variables_named_after_structures,
 };
 
 type Outcome = Result<(), Failed>;
@@ -36,7 +37,7 @@ type Case = (&'static str, fn() -> Outcome);
 const STEP: usize = 23;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 17] = [
+    let cases: [Case; 18] = [
         ("forward_alone_and_together", forward),
         ("traps_alone_and_together", traps),
         ("names_alone_and_together", names),
@@ -49,6 +50,7 @@ pub fn trials() -> Vec<Trial> {
         ("constants_of_glsl_like_members", constants_like_members),
         ("names_of_hlsl_and_glsl", kept_names),
         ("blocks_beside_structures", blocks_beside_structures),
+        ("types_like_members", types_like_members),
         ("variables_named_after_structures", variables_named_after_structures),
         ("functions_that_old_glsl_lacks", lacking),
         ("arrays_of_matrices_of_two_rows", matrices_of_two_rows),

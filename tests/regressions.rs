@@ -34,14 +34,17 @@ fn all() -> impl Iterator<Item = &'static Kind> {
     KINDS.iter().chain(proofs::KINDS)
 }
 
-/// Every kind of fuzzing has valid inputs to start from, and words to insert. Without them, fuzzing
-/// would hardly get past the first check of an input.
+/// Every kind of fuzzing has valid inputs to start from and, except for the binary `bundle`, words to
+/// insert. Without them, fuzzing would hardly get past the first check of an input.
 fn seeded(kind: &Kind) -> Result<(), Failed> {
-    let is_there =
-        |(folder, _): &&(&str, &str)| Path::new(env!("CARGO_MANIFEST_DIR")).join(folder).is_dir();
+    let is_there = |(folder, ending): &&(&str, &str)| {
+        let mut found = Vec::new();
+        mutate::collect(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder), ending, &mut found);
+        !found.is_empty()
+    };
     match kind.corpus.iter().find(|folder| !is_there(folder)) {
         Some((folder, ending)) => {
-            let what = format!("the folder {folder} with files `{ending}` does not exist");
+            let what = format!("the folder {folder} has no files `{ending}`");
             Err(format!("{}: {what}", kind.name).into())
         }
         None if kind.words.is_empty() && kind.name != "bundle" => {

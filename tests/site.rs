@@ -226,14 +226,14 @@ fn programs() -> Outcome {
                 it.dispatchEvent(new Event('change')); }})()"
         )
     };
+    let outputs = "[...document.querySelectorAll('.texts pre')].map((it) => it.textContent).join()";
+    page.until(&format!("{outputs}.includes('fn vs_main')"), PATIENCE)?;
+    let written = text(&page, outputs)?;
     page.evaluate(&choose("shadow", "hard"), PATIENCE)?;
     page.until("document.querySelector('canvas').dataset.key?.includes('shadow=hard')", PATIENCE)?;
     assert_ne!(before, text(&page, picture)?, "the shadow does not change the picture");
     assert!(page.evaluate(greyed, PATIENCE)?.as_u64() > Some(0), "no value says why it is greyed");
-    page.until(
-        "document.querySelector('.texts pre')?.textContent.includes('fn vs_main')",
-        PATIENCE,
-    )?;
+    page.until(&format!("{outputs} !== {}", Value::from(written)), PATIENCE)?;
     let shadowed = text(&page, picture)?;
     page.evaluate(
         "document.querySelector('canvas').dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft' }))",
@@ -248,8 +248,8 @@ fn programs() -> Outcome {
     Ok(())
 }
 
-/// The playground shows outputs and a value for the typed text, and underlines a mistake at its
-/// column.
+/// The playground shows outputs and a value for its first text, and underlines a mistake that is
+/// typed, at its column.
 fn playground() -> Outcome {
     let opened = Opened::new()?;
     let mut page = opened.page("#/playground")?;
@@ -311,7 +311,7 @@ fn seen() -> Outcome {
         page.screenshot(Screenshot { width: 360, height: 900, whole: false })?;
         let wide = "document.documentElement.scrollWidth";
         assert!(
-            page.evaluate(wide, PATIENCE)?.as_u64() <= Some(360),
+            page.evaluate(wide, PATIENCE)?.as_u64().is_some_and(|found| found <= 360),
             "{name} is wider than a screen of 360 pixels"
         );
         without_errors(&mut page)?;

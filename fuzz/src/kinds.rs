@@ -71,7 +71,7 @@ pub const KINDS: &[Kind] = &[
     },
     Kind {
         name: "compile",
-        corpus: &[("tests/emit", ".wgsl"), ("tests/emit", ".wesl"), ("examples", ".wesl")],
+        corpus: &[("tests/emit", ".wgsl"), ("examples", ".wesl")],
         words: WESL,
         run: compile,
     },

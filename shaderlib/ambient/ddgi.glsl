@@ -1,4 +1,4 @@
-//! Weights of the probes around a point: irradiance fields that know how far their probes see.
+//! Weights of the light probes around a point in an irradiance field (DDGI), from the distances that the probes see.
 
 #ifndef LAMPLIGHT_AMBIENT_DDGI_GLSL
 #define LAMPLIGHT_AMBIENT_DDGI_GLSL
@@ -9,7 +9,7 @@
 
 /// The share of a probe's light that reaches a distance, from the mean distances that the probe sees.
 ///
-/// Parameters: `mean`, `mean2` mean of the distance and of its square towards the point, scene units; `dist` distance of the point from the probe, scene units; `least` value that is left where all is hidden, [0, 1].
+/// Parameters: `mean`, `mean2` mean of the distance and of its square towards the point, scene units and scene units^2; `dist` distance of the point from the probe, scene units; `least` value that is left where all is hidden, [0, 1].
 /// Returns: Chebyshev's bound cubed, [least, 1]; 1 up to the mean.
 /// Source: Majercik, Guertin, Nowrouzezahrai, McGuire, "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields", 2019, section 5.2.
 /// Edges: `least` beyond a mean without variance.
@@ -38,9 +38,9 @@ float ddgi_crushed(vec3 n, vec3 dir, float tri, float visibility) {
     return crushed * max(tri, 0.001);
 }
 
-/// The weight of one probe of the eight around a point, before the sum of all is divided out.
+/// The weight of one of the eight probes around a point, not normalised: divide by the sum of the eight weights.
 ///
-/// Parameters: `n` unit normal of the surface; `dir` unit, from the point to the probe, the same space; `tri` the probe's trilinear share, [0, 1]; `mean`, `mean2` mean of the distance and of its square that the probe sees towards the point, scene units; `dist` distance of the point from the probe, scene units.
+/// Parameters: `n` unit normal of the surface; `dir` unit, from the point to the probe, the same space; `tri` the probe's trilinear share, [0, 1]; `mean`, `mean2` mean of the distance and of its square that the probe sees towards the point, scene units and scene units^2; `dist` distance of the point from the probe, scene units.
 /// Returns: the weight, above 0.
 /// Source: Majercik, Guertin, Nowrouzezahrai, McGuire, "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields", 2019, section 5.2 and its listing: a wrapped cosine, visibility, and small weights crushed.
 /// Edges: never 0, so that the sum of eight is not; a share below 0.001 counts as that.
@@ -49,9 +49,9 @@ float ddgi_weight(vec3 n, vec3 dir, float tri, float mean, float mean2, float di
     return ddgi_crushed(n, dir, tri, ddgi_chebyshev(mean, mean2, dist, 0.0));
 }
 
-/// `ddgi_weight` with a twentieth of the light left where the probe sees nothing of the point.
+/// `ddgi_weight` with a visibility of at least 0.05, even where the probe does not see the point.
 ///
-/// Parameters: `n` unit normal of the surface; `dir` unit, from the point to the probe; `tri` trilinear share, [0, 1]; `mean`, `mean2` mean of the distance and of its square, scene units; `dist` distance of the point, scene units.
+/// Parameters: `n` unit normal of the surface; `dir` unit, from the point to the probe; `tri` trilinear share, [0, 1]; `mean`, `mean2` mean of the distance and of its square, scene units and scene units^2; `dist` distance of the point, scene units.
 /// Returns: the weight, above 0.
 /// Source: NVIDIA, RTXGI SDK 1.3, 2022, `DDGIGetVolumeIrradiance`: a floor of 0.05 for the cubed bound.
 /// Edges: as for `ddgi_weight`.

@@ -1,4 +1,4 @@
-//! Ambient light from images of the surroundings. The caller reads the maps; these functions say where and combine.
+//! Ambient light from images of the surroundings. The caller reads the maps. These functions give directions and mip levels, and combine the results.
 
 #ifndef LAMPLIGHT_AMBIENT_IBL_GLSL
 #define LAMPLIGHT_AMBIENT_IBL_GLSL
@@ -43,9 +43,9 @@ vec3 split_sum(vec3 f0, vec2 dfg, vec3 prefiltered) {
     return prefiltered * (f0 * dfg.x + dfg.y);
 }
 
-/// The direction in which a local environment map shows what a mirror in a box shows.
+/// The parallax-corrected direction for the lookup in a local environment map, whose surroundings are a box.
 ///
-/// Parameters: `r` mirrored direction, world space, any length; `p` the mirroring point; `lo`, `hi` corners of the box; `c` where the map was taken; all world space, scene units.
+/// Parameters: `r` mirror direction, world space, any length; `p` the reflecting point, world space, scene units; `lo`, `hi` lowest and highest corner of the box, world space, scene units; `c` position from which the map was captured, world space, scene units.
 /// Returns: from `c` to where the ray from `p` leaves the box, world space, scene units.
 /// Source: Lagarde, Zanuttini, "Local Image-Based Lighting with Parallax-Corrected Cubemaps", 2012.
 /// Edges: for a point beyond the box in the ray's direction the ray ends at the point; `p - c` for a zero direction.

@@ -1,4 +1,4 @@
-//! Ambient occlusion: what it takes from reflections, what light between surfaces gives back, and its parts.
+//! Ambient occlusion: specular and horizon occlusion, multiple bounces of light, and the terms of GTAO and SSAO.
 
 #ifndef LAMPLIGHT_AMBIENT_OCCLUSION_GLSL
 #define LAMPLIGHT_AMBIENT_OCCLUSION_GLSL

@@ -90,12 +90,12 @@ float geomerics_channel(vec3 n, float constant, vec3 axis) {
     return mean * (base + (1.0 - base) * (power + 1.0) * safe_pow(q, power));
 }
 
-/// Irradiance from four coefficients without negative light: a lobe in place of a plane.
+/// Irradiance from four coefficients that is never negative: a nonlinear lobe in place of the linear band.
 ///
 /// Parameters: `n` unit normal in the space of the coefficients; `sh` four linear RGB coefficients of the radiance: L00, L1m1, L10, L11.
 /// Returns: irradiance, linear, at least 0; its mean over all directions is `0.886227*L00`, its largest value four times that.
 /// Source: Hazel, "Reconstructing Diffuse Lighting from Spherical Harmonic Data", Geomerics, 2015: `R0*(a + (1 - a)*(p + 1)*q^p)`, each channel about its own axis.
-/// Edges: the constant term where a channel has no direction; 0 where its constant is 0 or less; the linear band counts as no longer than light from one direction has it.
+/// Edges: the constant term where a channel has no direction; 0 where its constant is 0 or less; a linear band that is longer than that of light from one direction counts as that long.
 /// Error model: relative 2^-18.
 vec3 sh4_irradiance_geomerics(vec3 n, vec3 sh[4]) {
     vec3 axis_r = vec3(sh[3].x, sh[1].x, sh[2].x);

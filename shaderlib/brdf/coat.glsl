@@ -23,7 +23,7 @@ vec3 coat_mix(vec3 base, vec3 coat, float cc, float fr) {
 ///
 /// Parameters: `f0` linear reflectance of the base in air, [0, 1]; `ior` index of refraction of the coat, at least 0, 1.5 for lacquer.
 /// Returns: `((A + B*sqrt(f0))/(B + A*sqrt(f0)))^2` with `A = 1 - ior`, `B = 1 + ior`, [0, 1].
-/// Source: Fresnel's equation at normal incidence, for the index that `ior_from_f0` gives, divided by the coat's; Guy, Agopian, "Physically Based Rendering in Filament", section 4.9.3, has a fit of it for 1.5.
+/// Source: Fresnel's equation at normal incidence, for the index of `ior_from_f0` divided by the coat's index; Guy, Agopian, "Physically Based Rendering in Filament", section 4.9.4 "Base layer modification", has the case of 1.5.
 /// Edges: `f0` for an index of 1; a reflectance outside [0, 1] is clamped to it; a negative index counts as 0.
 /// Error model: absolute 16*2^-23.
 vec3 coat_f0(vec3 f0, float ior) {

@@ -1,5 +1,5 @@
-//! Diffuse reflection. `lambert`, `half_lambert`, `wrap` and `oren_nayar` are shares of a white Lambert surface:
-//! the cosine is in them, 1/pi is not. `burley` takes cosines and is a BRDF: 1/pi is in it, the cosine is not.
+//! Diffuse reflection. `lambert`, `half_lambert`, `wrap` and `oren_nayar` include the cosine n.l, but not the factor 1/pi.
+//! `burley` and `eon` are BRDFs: they include 1/pi, but not the cosine. `diffuse_transmission` includes both.
 
 #ifndef LAMPLIGHT_BRDF_DIFFUSE_GLSL
 #define LAMPLIGHT_BRDF_DIFFUSE_GLSL
@@ -43,10 +43,10 @@ float wrap(vec3 n, vec3 l, float w) {
     return max((dot(n, l) + amount) / (1.0 + amount), 0.0);
 }
 
-/// Diffuse reflection of a rough surface of Lambert facets, in the authors' short form.
+/// Oren and Nayar's qualitative model: diffuse reflection of a rough surface of Lambert facets.
 ///
 /// Parameters: `n`, `l`, `v` unit, one space, `l` and `v` away from the surface; `sigma` standard deviation of the facets' slope, radians, at least 0.
-/// Returns: `n.l*(A + B*max(cos(phi), 0)*sin(a)*tan(b))`, at least 0; Lambert's cosine for sigma 0.
+/// Returns: `n.l*(A + B*max(cos(phi), 0)*sin(a)*tan(b))`, at least 0, with `A = 1 - 0.5*sigma^2/(sigma^2 + 0.33)`, `B = 0.45*sigma^2/(sigma^2 + 0.09)`, a and b the larger and the smaller angle of `l` and `v` to `n`, phi the azimuth between `l` and `v`; Lambert's cosine for sigma 0.
 /// Source: Oren, Nayar, "Generalization of Lambert's Reflectance Model", 1994, equation 30, without albedo/pi.
 /// Edges: 0 where the light is at or behind the horizon; a viewer behind the surface counts as at the horizon.
 /// Error model: absolute 2^-18, from the dot products; the quotient is of a cosine by a larger one.
@@ -80,7 +80,7 @@ float burley(float nl, float nv, float lh, float roughness) {
     return (1.0 + rise * (x2 * x2 * x)) * (1.0 + rise * (y2 * y2 * y)) * 0.31830989;
 }
 
-/// What rough facets send in a direction beyond a share that does not depend on it, in the energy-preserving Oren-Nayar model.
+/// The part of the directional albedo that depends on the direction, in the energy-preserving Oren-Nayar model (EON).
 ///
 /// Parameters: `mu` cosine of the direction, [0, 1].
 /// Returns: G/pi, [0, 0.289].
@@ -92,7 +92,7 @@ float eon_g(float mu) {
     return m * (0.057108529 + m * (0.49188187 + m * (0.071442995 * m - 0.33218144)));
 }
 
-/// The share of light that white rough facets reflect once, into all directions.
+/// The directional albedo of white rough facets after one reflection, in the energy-preserving Oren-Nayar model (EON).
 ///
 /// Parameters: `mu` cosine of the light's or of the viewer's direction, [0, 1]; `roughness` of the model, [0, 1].
 /// Returns: directional albedo, [0, 1]; 1 for a roughness of 0.
@@ -105,7 +105,7 @@ float eon_albedo(float mu, float roughness) {
     return min((1.0 + r * eon_g(mu)) / (1.0 + 0.28779341 * r), 1.0);
 }
 
-/// Diffuse reflection of a rough surface that keeps all the light: the energy-preserving Oren-Nayar model.
+/// The energy-preserving Oren-Nayar model (EON): a rough diffuse surface that loses no light if it is white.
 ///
 /// Parameters: `albedo` linear colour of the facets, [0, 1]; `roughness` of the model, [0, 1]; `nl`, `nv`, `lv` cosines n.l, n.v and l.v.
 /// Returns: a BRDF, 1/sr, at least 0; `albedo/pi` for a roughness of 0; the caller multiplies by `nl`.

@@ -1,4 +1,4 @@
-//! Energy of microfacet surfaces: how much a lobe reflects in all, and how the light that facets reflect several times is put back.
+//! Energy of microfacet surfaces: the directional albedo of a lobe, and compensation for multiple scattering between facets.
 //!
 //! A pair `dfg` has the scale and the offset of the reflectance at normal incidence, in this order: some engines store the offset and the sum.
 
@@ -11,9 +11,9 @@
 
 /// The light that a microfacet surface reflects of a white environment, in the two parts that depend on the material.
 struct SplitSum {
-    /// Of light that met the facets once: for the environment prefiltered by roughness.
+    /// Single scattering: the factor of the environment prefiltered by roughness.
     vec3 single;
-    /// Of light that met the facets more often: for the diffuse environment.
+    /// Multiple scattering: the factor of the diffuse environment.
     vec3 multiple;
 };
 

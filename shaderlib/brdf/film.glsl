@@ -10,9 +10,9 @@
 #include "../prefix.glsl"
 #endif
 
-/// How the eye's three responses see a wave of a given path difference, as linear Rec. 709.
+/// The interference term for an optical path difference, integrated over the eye's three responses, as linear Rec. 709.
 ///
-/// Three Gaussians over the frequency, and a fourth for the second lobe of the red response, turned into cosines with Gaussian envelopes. The constants are in turns and in nanometres, where the published ones, in metres, leave the range that half the digits of 32 bits keep.
+/// Each response is a Gaussian over the frequency, and the red one has a second lobe. Their Fourier transforms are cosines with Gaussian envelopes. The constants here are in turns and nanometres; the published ones are in metres.
 ///
 /// Parameters: `difference` optical path difference, nanometres, [0, 1e6]; `phase` 1 or -1 for each channel: the sign of a cosine shifted by an even or odd number of half waves.
 /// Returns: the interference term, (1.205, 0.948, 0.909) for no difference: the responses' own white.

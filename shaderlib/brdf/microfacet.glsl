@@ -1,4 +1,4 @@
-//! Microfacet terms beyond one roughness: anisotropy, and roughness that grows with what a pixel covers.
+//! Anisotropic microfacet terms, and geometric specular antialiasing.
 //!
 //! Cosines are named by their two directions: `th` is the tangent's and the half vector's, `bv` the bitangent's and the viewer's.
 
@@ -59,9 +59,9 @@ vec2 alpha_aniso(float alpha, float strength) {
     return vec2(a + (1.0 - a) * (s * s), a);
 }
 
-/// The alpha of a pixel within which the normal turns, so that highlights do not flicker.
+/// Geometric specular antialiasing: alpha grows where the normal changes within a pixel, so that highlights do not flicker.
 ///
-/// Parameters: `alpha` squared perceptual roughness, [0, 1]; `dx`, `dy` change of the unit normal from this pixel to the next, across and down; `sigma2` variance of the pixel's filter, 0.25 or 1/(2*pi) by source; `limit` most that is added to alpha squared, 0.18 in the source.
+/// Parameters: `alpha` squared perceptual roughness, [0, 1]; `dx`, `dy` change of the unit normal from this pixel to the next, across and down; `sigma2` variance of the pixel's filter, pixels^2, at least 0: 0.25 or 1/(2*pi), by publication; `limit` largest number that is added to alpha squared, 0.18 in the source.
 /// Returns: `sqrt(alpha^2 + min(2*sigma2*(dx.dx + dy.dy), limit))`, [0, 1].
 /// Source: Tokuyoshi, Kaplanyan, "Improved Geometric Specular Antialiasing", 2019.
 /// Edges: alpha itself for a flat surface; sums outside [0, 1] are clamped to it.

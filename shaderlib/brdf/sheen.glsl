@@ -26,7 +26,7 @@ float d_charlie(float nh, float alpha) {
 
 /// A visibility of fibres that needs no roughness.
 ///
-/// It is not bounded: with the Charlie distribution it reflects up to 1.7 times the light of grazing directions, so scale by `sheen_scale`.
+/// It does not conserve energy: with the Charlie distribution, up to 1.7 times the light from grazing directions is reflected. Scale the material below by `sheen_scale`.
 ///
 /// Parameters: `nl`, `nv` cosines n.l and n.v, [0, 1].
 /// Returns: `1/(4*(nl + nv - nl*nv))`, at least 0.
@@ -92,7 +92,7 @@ float v_charlie(float nl, float nv, float alpha) {
 ///
 /// Parameters: `nv` cosine n.v, [0, 1]; `alpha` squared perceptual roughness, [0, 1].
 /// Returns: directional albedo of a white sheen, [0, 1].
-/// Source: Academy Software Foundation, MaterialX shader library, 2020: a rational fit, of the roughness that is alpha here.
+/// Source: Academy Software Foundation, MaterialX shader library, 2020: a rational fit. What it calls roughness is `alpha` here.
 /// Edges: parameters outside [0, 1] are clamped to it.
 /// Error model: relative 2^-18; the fit is within 0.04 of the integral for alpha from 0.3 on, within 0.08 for alpha from 0.1 on.
 float sheen_albedo(float nv, float alpha) {

@@ -1,4 +1,4 @@
-//! Subsurface scattering by normalised diffusion: how far from where it entered light leaves a body.
+//! Subsurface scattering by normalised diffusion: the distance between the points where light enters and leaves a body.
 
 #ifndef LAMPLIGHT_BRDF_SUBSURFACE_GLSL
 #define LAMPLIGHT_BRDF_SUBSURFACE_GLSL
@@ -9,7 +9,7 @@
 
 /// The profile of normalised diffusion.
 ///
-/// Parameters: `r` distance on the surface, scene units, at least 0; `s` of `diffusion_s` over the mean free path, 1/scene unit, above 0.
+/// Parameters: `r` distance on the surface, scene units, at least 0; `s` the result of `diffusion_s` divided by the mean free path, 1/scene unit, above 0.
 /// Returns: `s*(exp(-s*r) + exp(-s*r/3))/(8*pi*r)`, 1/scene unit^2: its integral over the plane is 1.
 /// Source: Christensen, Burley, "Approximate Reflectance Profiles for Efficient Subsurface Scattering", 2015.
 /// Edges: a product `s*r` below 0.0001 counts as 0.0001, so the peak is finite; a negative `r` counts as 0, `s` is clamped to [0, 1e6].
@@ -20,7 +20,7 @@ float diffusion_profile(float r, float s) {
     return k * k * (exp(-x) + exp(-x / 3.0)) / x * 0.039788736;
 }
 
-/// The share of light that leaves a body within a distance.
+/// The share of light that leaves a body within a distance of the point where it entered.
 ///
 /// Parameters: `r` distance on the surface, scene units, at least 0; `s` as for `diffusion_profile`.
 /// Returns: `1 - exp(-s*r)/4 - 3*exp(-s*r/3)/4`, [0, 1].
@@ -36,7 +36,7 @@ float diffusion_cdf(float r, float s) {
 ///
 /// Parameters: `albedo` linear albedo of the surface, [0, 1].
 /// Returns: `1.85 - A + 7*|A - 0.8|^3`, to be divided by the mean free path.
-/// Source: Christensen, Burley, "Approximate Reflectance Profiles for Efficient Subsurface Scattering", 2015, equation 5: for searchlights; diffuse light and paths given as diffuse means have other fits.
+/// Source: Christensen, Burley, "Approximate Reflectance Profiles for Efficient Subsurface Scattering", 2015, equation 5, for light that enters in one direction (a searchlight). The paper has other fits for diffuse light and for the diffuse mean free path.
 /// Edges: an albedo outside [0, 1] is clamped to it.
 /// Error model: 4 ULP.
 vec3 diffusion_s(vec3 albedo) {

@@ -13,7 +13,7 @@
 
 /// The reflectance of a dielectric at normal incidence with an artist's weight and colour.
 ///
-/// The reflectance at grazing incidence is the weight. What is below gets `1 - max(F)` of the light, the largest channel for all.
+/// The reflectance at grazing incidence is the weight. The layer below gets `1 - max(F)` of the light in every channel, with `max(F)` the largest channel of the Fresnel term.
 ///
 /// Parameters: `ior` index of refraction, from 1 on, or 0 for a full reflection; `weight` of the reflection, [0, 1]; `color` linear, at least 0.
 /// Returns: `min(f0_from_ior(ior)*color, 1)*weight`, [0, 1].
@@ -26,10 +26,10 @@ vec3 specular_f0(float ior, float weight, vec3 color) {
 
 /// The share of light that a volume lets through.
 ///
-/// Parameters: `color` linear colour that white light has after the distance `d`, [0, 1]; `x` length of the way, scene units; `d` distance, scene units.
+/// Parameters: `color` linear colour that white light has after the distance `d`, [0, 1]; `x` length of the path through the volume, scene units; `d` distance at which white light has this colour, scene units.
 /// Returns: `color^(x/d)`, [0, 1].
 /// Source: Beer's law; Khronos Group, KHR_materials_volume, 2021.
-/// Edges: 1 for a way of 0 or below, and for a distance of 0 or below, which counts as infinite; colours outside [0, 1] are clamped to it; x/d is at most 1e6.
+/// Edges: 1 for a path of 0 or below, and for a distance of 0 or below, which counts as infinite; colours outside [0, 1] are clamped to it; x/d is at most 1e6.
 /// Error model: that of `safe_pow` with an exponent of relative error 2^-22.
 vec3 volume_transmittance(vec3 color, float x, float d) {
     if (!(x > 0.0 && d > 0.0)) {
@@ -43,7 +43,7 @@ vec3 volume_transmittance(vec3 color, float x, float d) {
 /// The way of a refracted view ray to the far side of a body.
 ///
 /// Parameters: `v`, `n` unit, one space, `v` away from the surface, on the side of `n`; `ior` index of refraction, from 1 on; `thickness` length of the way, scene units.
-/// Returns: `refract(-v, n, 1/ior)*thickness`, that space.
+/// Returns: `refract(-v, n, 1/ior)*thickness`, the space of `v`, scene units.
 /// Source: Khronos Group, KHR_materials_volume, 2021, as the glTF Sample Viewer reads it.
 /// Edges: straight on for an index of 1, or below, which counts as 1; `-n*thickness*sqrt(1 - 1/ior^2)` for a zero `v`.
 /// Error model: absolute 8*2^-23*thickness.
@@ -92,7 +92,7 @@ float btdf_thin(vec3 n, vec3 l, vec3 v, float alpha) {
 /// Three indices of refraction, for the red, green and blue part of a spectrum.
 ///
 /// Parameters: `ior` index of refraction in the middle of the spectrum, from 1 on; `dispersion` 20 over the Abbe number, at least 0.
-/// Returns: `ior` less, with and plus half the spread `(ior - 1)*0.025*dispersion` on both sides, at least 1.
+/// Returns: `(ior - h, ior, ior + h)`, each at least 1, with half the spread `h = (ior - 1)*0.025*dispersion`.
 /// Source: Khronos Group, KHR_materials_dispersion, 2024.
 /// Edges: red is never below 1; an index below 1 and a negative dispersion count as 1 and 0.
 /// Error model: 3 ULP.

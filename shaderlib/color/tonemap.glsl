@@ -13,9 +13,9 @@
 
 /// The tone curve of AgX: a line through middle grey with a toe and a shoulder.
 ///
-/// Parameters: `x` logarithm of the light, scaled to [0, 1] over 16.5 stops; 20/33 is middle grey.
+/// Parameters: `x` binary logarithm of the light, scaled so that 16.5 stops fill [0, 1] and middle grey is at 20/33.
 /// Returns: from 0 to 1 but for rounding: 0.5 for middle grey, where its slope is 2.
-/// Source: Sobotka, AgX, 2022: sigmoids of the powers 3 and 3.25 that reach the corners; in closed form, of which others carry polynomials that are off by 0.006 and 0.018.
+/// Source: Sobotka, AgX, 2022: sigmoids of the powers 3 and 3.25 that reach the corners. This is the closed form; common polynomial fits of it are off by 0.006 and 0.018.
 /// Edges: `x` outside [0, 1] is clamped.
 /// Error model: absolute 2^-19.
 float agx_curve(float x) {
@@ -29,12 +29,12 @@ float agx_curve(float x) {
     return 0.5 + 0.54146416 * w / pow(1.0 + safe_pow(w, 3.25), 0.30769231);
 }
 
-/// The AgX picture: contrasts of the film, colours that go to white as they grow bright.
+/// The AgX view transform: the contrast of film, and colours that fade to white as they become brighter.
 ///
-/// Parameters: `c` linear colour, Rec. 709, at least 0; 0.18 is middle grey.
+/// Parameters: `c` linear colour, Rec. 709, at least 0, with middle grey at 0.18.
 /// Returns: linear colour, Rec. 709, [0, 1].
 /// Source: Sobotka, AgX, 2022, with the matrices of Blender 4 over Rec. 2020 as three.js and Filament carry them, and the curve in closed form.
-/// Edges: channels below 0 count as 0; light is black 12.5 stops below middle grey's 0.18 and white 6.5 above.
+/// Edges: channels below 0 count as 0; light is black 10 stops below the middle grey of 0.18, and white 6.5 stops above it.
 /// Error model: absolute 2^-16.
 vec3 agx(vec3 c) {
     vec3 wide = mat3(
@@ -106,9 +106,9 @@ vec3 neutral_inverse(vec3 c) {
     return base + offset;
 }
 
-/// The ACES picture by a fit of its reference transforms with their colours.
+/// A fit to the ACES reference rendering and output transforms, with their colour matrices.
 ///
-/// Parameters: `c` linear colour, Rec. 709, at least 0; often divided by 0.6 before, for the exposure of other curves.
+/// Parameters: `c` linear colour, Rec. 709, at least 0, often divided by 0.6 before to match the exposure of other curves.
 /// Returns: linear colour, Rec. 709, [0, 1].
 /// Source: Hill, "BakingLab", 2016: the reference rendering and output transforms fitted between two matrices.
 /// Edges: channels below 0 count as 0, above 1e6 as that; black, which the fit makes -0.0004, is 0.
@@ -168,7 +168,7 @@ vec3 reinhard_extended(vec3 c, float white) {
 /// A curve of a toe, a line and a shoulder, one channel.
 ///
 /// Parameters: `x` linear light, at least 0.
-/// Returns: [0, 1]: a line of slope 1 from 0.22 on, over 0.312.
+/// Returns: a number in [0, 1]: a toe below `x` = 0.22, a line of slope 1 up to `x` = 0.532, a shoulder above.
 /// Source: Uchimura, "HDR Theory and Practice", CEDEC, 2017: P 1, a 1, m 0.22, l 0.4, c 1.33, b 0.
 /// Edges: light below 0 counts as 0.
 /// Error model: absolute 2^-20.

@@ -11,7 +11,7 @@
 
 /// The sRGB code of one linear channel.
 ///
-/// Parameters: `x` linear, [0, 1]; above 1 the curve goes on.
+/// Parameters: `x` linear, [0, 1], and above 1, where the curve continues.
 /// Returns: sRGB code, [0, 1] for inputs in [0, 1].
 /// Source: IEC 61966-2-1:1999.
 /// Edges: a negative input counts as 0.
@@ -25,7 +25,7 @@ float srgb_from_linear_channel(float x) {
 
 /// The linear value of one sRGB channel.
 ///
-/// Parameters: `x` sRGB code, [0, 1]; above 1 the curve goes on.
+/// Parameters: `x` sRGB code, [0, 1], and above 1, where the curve continues.
 /// Returns: linear, [0, 1] for inputs in [0, 1].
 /// Source: IEC 61966-2-1:1999.
 /// Edges: a negative input counts as 0.
@@ -39,7 +39,7 @@ float linear_from_srgb_channel(float x) {
 
 /// The sRGB code of a linear colour.
 ///
-/// Parameters: `c` linear colour, [0, 1]; above 1 the curve goes on.
+/// Parameters: `c` linear colour, [0, 1], and above 1, where the curve continues.
 /// Returns: sRGB colour, [0, 1] for inputs in [0, 1].
 /// Source: IEC 61966-2-1:1999.
 /// Edges: a negative channel counts as 0.
@@ -50,7 +50,7 @@ vec3 srgb_from_linear(vec3 c) {
 
 /// The linear value of an sRGB colour.
 ///
-/// Parameters: `c` sRGB colour, [0, 1]; above 1 the curve goes on.
+/// Parameters: `c` sRGB colour, [0, 1], and above 1, where the curve continues.
 /// Returns: linear colour, [0, 1] for inputs in [0, 1].
 /// Source: IEC 61966-2-1:1999.
 /// Edges: a negative channel counts as 0.
@@ -73,7 +73,7 @@ vec3 tonemap_reinhard(vec3 c) {
 
 /// A fit to the filmic tone curve of ACES, per channel.
 ///
-/// Parameters: `c` linear colour, at least 0; the fit is for an exposure of 0.6.
+/// Parameters: `c` linear colour, at least 0, multiplied by 0.6 before for the original exposure of ACES.
 /// Returns: `(c*(2.51*c + 0.03))/(c*(2.43*c + 0.59) + 0.14)`, linear, clamped to [0, 1].
 /// Source: Narkowicz, "ACES Filmic Tone Mapping Curve", 2016.
 /// Edges: a negative channel counts as 0; above 65504 the input counts as that, where the curve is 1.

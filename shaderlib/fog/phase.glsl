@@ -1,6 +1,6 @@
 //! Phase functions: how much of the light that a particle scatters goes into each direction.
 //!
-//! `cos_theta` is the cosine of the angle by which the light is turned, 1 straight on: `dot(-l, v)` for `l` towards the light and `v` towards the viewer. All are shares per steradian: their integral over the sphere is 1.
+//! `cos_theta` is the cosine of the scattering angle, by which the light is turned, with 1 straight on: `dot(-l, v)` for `l` towards the light and `v` towards the viewer. All are shares per steradian: their integral over the sphere is 1.
 
 #ifndef LAMPLIGHT_FOG_PHASE_GLSL
 #define LAMPLIGHT_FOG_PHASE_GLSL
@@ -9,7 +9,7 @@
 #include "../prefix.glsl"
 #endif
 
-/// Scattering by particles of a mean cosine.
+/// Henyey and Greenstein's phase function, for particles with a given mean cosine of the scattering angle.
 ///
 /// Parameters: `cos_theta` cosine of the angle by which the light is turned, [-1, 1]; `g` mean cosine, (-1, 1): above 0 forwards, 0 evenly.
 /// Returns: `(1 - g^2)/(4*pi*(1 + g^2 - 2*g*cos_theta)^1.5)`, 1/sr.
@@ -39,7 +39,7 @@ float rayleigh_phase(float cos_theta) {
 
 /// Henyey and Greenstein's function with a share of Rayleigh's shape.
 ///
-/// Parameters: `cos_theta` cosine of the angle by which the light is turned, [-1, 1]; `g` asymmetry, (-1, 1); `alpha` share of the shape, at least 0: 0 is `hg`, 1 `cornette_shanks`.
+/// Parameters: `cos_theta` cosine of the angle by which the light is turned, [-1, 1]; `g` asymmetry, (-1, 1); `alpha` weight of Rayleigh's shape, at least 0: 0 gives `hg`, 1 gives `cornette_shanks`.
 /// Returns: `hg*(1 + alpha*cos_theta^2)/(1 + alpha*(1 + 2*g^2)/3)`, 1/sr.
 /// Source: Draine, "Scattering by Interstellar Dust Grains. I. Optical and Ultraviolet", 2003, equation 5.
 /// Edges: as for `hg`; a negative `alpha` counts as 0, above 1e6 as that.
@@ -51,7 +51,7 @@ float draine(float cos_theta, float g, float alpha) {
     return hg(c, a) * (1.0 + share * c * c) / (1.0 + share * (1.0 + 2.0 * a * a) / 3.0);
 }
 
-/// Henyey and Greenstein's function with the backward half of Rayleigh's: haze and small drops.
+/// Cornette and Shanks' phase function: Henyey and Greenstein's with Rayleigh's shape, for haze and small drops.
 ///
 /// Parameters: `cos_theta` cosine of the angle by which the light is turned, [-1, 1]; `g` asymmetry, (-1, 1): 0 is Rayleigh's function.
 /// Returns: `hg*3/2*(1 + cos_theta^2)/(2 + g^2)`, 1/sr.

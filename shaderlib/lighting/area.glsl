@@ -21,7 +21,7 @@ vec3 ltc_edge(vec3 a, vec3 b) {
     float x = dot(a, b);
     float y = abs(x);
     float fit = (0.8543985 + (0.4965155 + 0.0145206 * y) * y) / (3.417594 + (4.1616724 + y) * y);
-    // The fit is of acute angles; the obtuse one is what is left of a half turn.
+    // The fit is for acute angles. An obtuse angle is a half turn minus its supplement, which is acute.
     float obtuse = 0.5 / sqrt(max(dot(c, c), 1e-14)) - fit;
     return c * (x > 0.0 ? fit : obtuse);
 }
@@ -38,12 +38,12 @@ vec3 any_tangent(vec3 n) {
     return safe_normalize(cross(n, axis), vec3(1.0, 0.0, 0.0));
 }
 
-/// The share of a linearly transformed cosine that falls onto a rectangle.
+/// The integral of a linearly transformed cosine over a rectangle.
 ///
 /// With the identity for `minv` it is the rectangle's form factor: irradiance over pi of a light of radiance 1.
 ///
 /// Parameters: `n`, `v` unit, one space, `v` away from the surface; `p` the lit point, that space, scene units; `minv` inverse of the lobe's matrix in the frame of `n` and `v`, as from `ltc_matrix`, with a positive determinant; `quad` corners of a plane convex quadrilateral, the space of `p`: it shines to the side that sees them counter-clockwise.
-/// Returns: the share, from 0 to 1 but for rounding; times the light's radiance and the lobe's albedo it is radiance.
+/// Returns: the integral, in [0, 1] up to rounding. Multiply it by the light's radiance and the lobe's albedo to get the reflected radiance.
 /// Source: Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016; the polygon is cut exactly at the horizon.
 /// Edges: 0 from behind the light, below the horizon, and for a rectangle without area; the frame's azimuth is any where `v` is along `n`.
 /// Error model: absolute 2^-17 for a light that is as large as it is far away; differences of corners and `p` cancel for a point far from the origin.
@@ -97,7 +97,7 @@ vec2 ltc_uv(float nv, float roughness) {
 /// The inverse matrix of a lobe from the four numbers that a table holds of it.
 ///
 /// Parameters: `t` entries of the inverse, column by column: x of the first column, z of the first, x of the third, z of the third.
-/// Returns: the matrix for `ltc_rect`: its middle entry is 1, the others are 0.
+/// Returns: the matrix for `ltc_rect`. Of the entries that `t` does not hold, the middle one is 1 and the others are 0.
 /// Source: Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016, code of the supplement.
 /// Edges: (1, 0, 0, 1) is the identity: a cosine lobe.
 /// Error model: exact.
@@ -107,7 +107,7 @@ mat3 ltc_matrix(vec4 t) {
 
 /// Irradiance from a sphere of radiance 1, the part below the horizon cut off.
 ///
-/// Parameters: `mu` cosine of the angle between the normal and the direction to the centre, [-1, 1]; `sin2` squared sine of the angle that the sphere's radius is seen under, [0, 1]: `R^2/d^2`, 1 on the sphere and within it.
+/// Parameters: `mu` cosine of the angle between the normal and the direction to the centre, [-1, 1]; `sin2` squared sine of half the angle that the sphere subtends, [0, 1]: `R^2/d^2` for its radius `R` and the distance `d` of its centre, 1 on the sphere and within it.
 /// Returns: irradiance, [0, pi].
 /// Source: Lagarde, de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 4.7.2.1 "Sphere area lights".
 /// Edges: 0 for `sin2` of 0 or less; parameters beyond their ranges are clamped; (1 + mu)*pi/2 on the sphere.
@@ -127,7 +127,7 @@ float sphere_irradiance(float mu, float sin2) {
 
 /// Irradiance from a disk of radiance 1, the part below the horizon cut off.
 ///
-/// Parameters: `mu` cosine of the angle between the normal and the direction to the centre, [-1, 1]; `facing` cosine of the angle between the disk's normal and the direction from it, [-1, 1]; `sin2` squared sine of the angle that its radius is seen under from straight ahead: `R^2/(R^2 + d^2)`, [0, 1].
+/// Parameters: `mu` cosine of the angle between the normal and the direction to the centre, [-1, 1]; `facing` cosine of the angle between the disk's normal and the direction from its centre to the point, [-1, 1]; `sin2` squared sine of half the angle that the disk subtends for a point on its axis, [0, 1]: `R^2/(R^2 + d^2)` for its radius `R` and the distance `d` of its centre.
 /// Returns: irradiance, [0, pi].
 /// Source: Lagarde, de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 4.7.2.2 "Disk area lights".
 /// Edges: 0 from behind; as for `sphere_irradiance`; exact for a disk that faces the point.
@@ -136,10 +136,10 @@ float disk_irradiance(float mu, float facing, float sin2) {
     return sphere_irradiance(mu, sin2) * clamp(facing, 0.0, 1.0);
 }
 
-/// The point of a sphere that stands for it in a reflection.
+/// The representative point of a spherical light for a reflection.
 ///
-/// Parameters: `l` vector from the lit point to the centre, scene units, any length; `r` unit, the viewer's direction mirrored; `radius` of the sphere, scene units, at least 0.
-/// Returns: vector from the lit point to that point: where `r` meets the sphere the nearest point of the ray, else the sphere's point nearest to it.
+/// Parameters: `l` vector from the lit point to the centre, scene units, any length; `r` unit mirror direction, the space of `l`: the direction to the viewer, mirrored at the normal; `radius` of the sphere, scene units, at least 0.
+/// Returns: vector from the lit point to that point, scene units. If the mirror ray meets the sphere, it is the ray's point nearest to the centre, else the sphere's point nearest to the ray.
 /// Source: Karis, "Real Shading in Unreal Engine 4", 2013, "Representative Point Method"; for a mirrored direction away from the light the ray ends at the lit point.
 /// Edges: `l` for a radius of 0 or less, and where the ray goes through the centre.
 /// Error model: absolute 2^-20*|l|.
@@ -153,9 +153,9 @@ vec3 nearest_sphere(vec3 l, vec3 r, float radius) {
     return l + c * (reach / far);
 }
 
-/// The point of a tube that stands for it in a reflection.
+/// The representative point of a tubular light for a reflection.
 ///
-/// Parameters: `l0`, `l1` vectors from the lit point to the ends of its axis, scene units; `r` unit, the viewer's direction mirrored; `radius` of the tube, scene units, at least 0.
+/// Parameters: `l0`, `l1` vectors from the lit point to the ends of the tube's axis, scene units; `r` unit mirror direction, the same space; `radius` of the tube, scene units, at least 0.
 /// Returns: vector from the lit point to that point, as from `nearest_sphere` at the axis' point nearest to the line of `r`.
 /// Source: Karis, "Real Shading in Unreal Engine 4", 2013, "Tube lights": the smallest distance of the axis to the line.
 /// Edges: the sphere at `l0` for an axis along `r` or without length.
@@ -174,7 +174,7 @@ vec3 nearest_tube(vec3 l0, vec3 l1, vec3 r, float radius) {
 ///
 /// Parameters: `alpha` squared perceptual roughness, [0, 1]; `radius` of the light, scene units, at least 0; `d` distance to it, scene units, above 0.
 /// Returns: `alpha + radius/(2*d)`, clamped to [0, 1].
-/// Source: Karis, "Real Shading in Unreal Engine 4", 2013, "Specular D Modification": half the tangent; published with a third too.
+/// Source: Karis, "Real Shading in Unreal Engine 4", 2013, "Specular D Modification": half of `radius/d`, of which other versions take a third.
 /// Edges: 1 for a distance of 0 or less from a light with a size; `alpha` for no size.
 /// Error model: 3 ULP.
 float area_alpha(float alpha, float radius, float d) {
@@ -186,10 +186,10 @@ float area_alpha(float alpha, float radius, float d) {
     return clamp(alpha + 0.5 * size / d, 0.0, 1.0);
 }
 
-/// What keeps the energy of a lobe widened by the size of a light.
+/// The normalisation factor of a lobe that was widened by the size of a light.
 ///
 /// Parameters: `alpha` squared perceptual roughness, at least 0; `wide` the same after `area_alpha`.
-/// Returns: `(alpha/wide)^2`, [0, 1], a factor of the distribution for a sphere; its root is that for a tube.
+/// Returns: `(alpha/wide)^2`, [0, 1]. Multiply the distribution by it for a sphere, and by its square root for a tube.
 /// Source: Karis, "Real Shading in Unreal Engine 4", 2013, "Specular D Modification".
 /// Edges: 1 where `wide` is not larger than `alpha`; 0 for an `alpha` of 0 or less that was widened.
 /// Error model: 6 ULP.

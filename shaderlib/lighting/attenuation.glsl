@@ -51,7 +51,7 @@ float inverse_square(float d2, float min_d2) {
 
 /// A smooth window that brings any falloff to 0 at the range.
 ///
-/// Parameters: `d2` squared distance to the light, scene units^2, at least 0; `inv_range2` 1/range^2, 1/scene units^2; 0 means no range.
+/// Parameters: `d2` squared distance to the light, scene units^2, at least 0; `inv_range2` 1/range^2, 1/scene units^2, at least 0, where 0 means no range.
 /// Returns: `saturate(1 - (d/range)^4)^2`, in [0, 1], with slope 0 at the range.
 /// Source: Karis, "Real Shading in Unreal Engine 4", 2013, equation 9; Lagarde, de Rousiers, 2014, section 4.5.
 /// Edges: 1 at the light; exactly 0 at and beyond the range.
@@ -66,7 +66,7 @@ float window(float d2, float inv_range2) {
 ///
 /// It is `window` before squaring, so its slope is not 0 at the range. Multiply it by `inverse_square`.
 ///
-/// Parameters: `d` distance to the light, scene units, at least 0; `range` reach of the light, scene units; 0 or less means no range.
+/// Parameters: `d` distance to the light, scene units, at least 0; `range` reach of the light, scene units, where 0 or less means no range.
 /// Returns: `clamp(1 - (d/range)^4, 0, 1)`.
 /// Source: Khronos Group, glTF extension KHR_lights_punctual, "Range Property".
 /// Edges: 1 where there is no range; exactly 0 at and beyond the range.

@@ -29,7 +29,7 @@ struct Accum {
 /// Parameters: `accum` sums so far; `material` reflectances; `light` colours and strength; `lit` factors at the point; `ambient` factor on ambient light, [0, 1]; `diffuse` and `specular` terms of the reflection, at least 0, as from `lambert` and `blinn_phong`; `visibility` unshadowed share, [0, 1].
 /// Returns: sums with the light's terms added, linear.
 /// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, examples 7.8 and 7.10.
-/// Edges: a light that is off adds nothing when `lit` comes from `sample_light`, but for its ambient part where `ambient` says otherwise.
+/// Edges: if `lit` comes from `sample_light`, a light that is off adds nothing but its ambient light, which is 0 if `ambient` is 0.
 /// Error model: 4 ULP + absolute 8*2^-23 of the largest term.
 Accum accumulate(
     Accum accum,

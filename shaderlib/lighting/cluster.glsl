@@ -1,4 +1,4 @@
-//! The cell of a view frustum that a point lies in, for lists of lights by cell.
+//! Clustered shading: the cell of the view frustum that contains a point. Each cell has its own list of lights.
 
 #ifndef LAMPLIGHT_LIGHTING_CLUSTER_GLSL
 #define LAMPLIGHT_LIGHTING_CLUSTER_GLSL

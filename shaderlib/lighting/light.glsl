@@ -79,7 +79,7 @@ LightSample sample_directional(Light light) {
 
 /// What arrives from a light at a position, with polynomial attenuation.
 ///
-/// Another falloff replaces `attenuation` from `distance`, by a function of `lighting::attenuation`.
+/// For another falloff, replace `attenuation` with the result of a function of `lighting::attenuation` for `distance`.
 ///
 /// Parameters: `light` the light: `position` and `attenuation` are read; `p` the lit point, scene units, in the light's space.
 /// Returns: direction, distance, attenuation as `polynomial` gives it, cone factor 1.
@@ -94,7 +94,7 @@ LightSample sample_point(Light light, vec3 p) {
 
 /// What arrives from a spot light, with polynomial attenuation and a power of the cosine.
 ///
-/// Another cone replaces `spot` from `dot(-l, axis)`, by a function of `lighting::spot`.
+/// For another cone, replace `spot` with the result of a function of `lighting::spot` for `dot(-l, axis)`.
 ///
 /// Parameters: `light` the light: `position`, `attenuation`, `axis`, `cutoff` and `exponent` are read; `p` the lit point, scene units, in the light's space.
 /// Returns: as `sample_point`, with the cone factor of `cone_exponent`.

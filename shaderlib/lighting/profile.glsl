@@ -7,7 +7,7 @@
 #include "../prefix.glsl"
 #endif
 
-/// Where a photometric profile about the light's axis is read.
+/// The texture coordinate for a photometric profile that is symmetric about the light's axis.
 ///
 /// Parameters: `c` cosine of the angle between the light's axis and the direction from it to the point: `dot(-l, axis)`, [-1, 1].
 /// Returns: the angle over pi, [0, 1]: a coordinate of the profile's texture, 0 on the axis.
@@ -19,7 +19,7 @@ float ies_u(float c) {
     return 0.31830987 * atan(sqrt((1.0 - x) * (1.0 + x)), x);
 }
 
-/// Where a photometric profile of both angles is read.
+/// The texture coordinates for a photometric profile over the vertical and the horizontal angle.
 ///
 /// Parameters: `l` unit, from the point to the light; `axis` unit, the light's direction into the scene, the same space; `right` unit, at right angles to `axis`: the half plane of the horizontal angle 0.
 /// Returns: `ies_u` in x; in y the horizontal angle over 2*pi, [0, 1], from `right` towards `cross(axis, right)`.
@@ -38,9 +38,9 @@ vec2 ies_uv(vec3 l, vec3 axis, vec3 right) {
     return vec2(ies_u(dot(away, axis)), (turn < 0.0 ? turn + 1.0 : turn));
 }
 
-/// Where the picture that a light projects is read.
+/// The texture coordinates for a light cookie: a picture that a light projects.
 ///
-/// Parameters: `p` the lit point; `m` from the space of `p` to the light's texture coordinates: a projection, then a scale of 0.5 and an offset of 0.5.
+/// Parameters: `p` the lit point, scene units; `m` from the space of `p` to the light's texture coordinates: a projection, then a scale of 0.5 and an offset of 0.5.
 /// Returns: the coordinates in xy; z is 1 before the light and 0 behind it, where nothing is projected.
 /// Source: Segal et al., "Fast Shadows and Lighting Effects Using Texture Mapping", 1992, section 3.
 /// Edges: zero where the last homogeneous coordinate is 1e-30 or less.

@@ -33,9 +33,9 @@ float intensity_spot(float lm, float cos_outer) {
 
 /// The luminous intensity of a spot light whose brightness does not change with its cone.
 ///
-/// Parameters: `lm` luminous power, lumens, at least 0: that of a lamp of which the cone's reflector takes three quarters away.
+/// Parameters: `lm` luminous power, lumens, at least 0: the power that a cone with a half angle of 60 degrees, and so a solid angle of pi, would emit.
 /// Returns: `lm/pi`, candelas.
-/// Source: Guy, Agopian, "Physically Based Rendering in Filament", 2018, section 4.7.2: the spot light of artists.
+/// Source: Guy, Agopian, "Physically Based Rendering in Filament", 2018, section 5.2.2.2 "Spot lights": the spot light with a light absorber.
 /// Edges: 0 for no power.
 /// Error model: 1.5 ULP.
 float intensity_spot_filament(float lm) {

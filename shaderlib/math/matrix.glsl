@@ -25,7 +25,7 @@ mat3 inverse3(mat3 m) {
     return transpose(mat3(yz / det, cross(m[2], m[0]) / det, cross(m[0], m[1]) / det));
 }
 
-/// The matrix that takes normals where `model` takes points: the inverse, transposed, of its upper 3x3 part.
+/// The normal matrix of a model matrix: the inverse transpose of its upper left 3x3 part.
 ///
 /// Parameters: `model` an affine transform, for column vectors.
 /// Returns: the normal matrix; its results are not unit. A rotation with one scale for all axes may use the 3x3 part itself.

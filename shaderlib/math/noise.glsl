@@ -33,7 +33,7 @@ uint hash_pcg(uint seed) {
 
 /// A seed for `hash_pcg` from a pixel.
 ///
-/// Parameters: `pixel` framebuffer position, pixels, at least 0; fractions are dropped.
+/// Parameters: `pixel` framebuffer position, pixels, at least 0, of which fractions are dropped.
 /// Returns: a number of 32 bits.
 /// Source: the nested hash of Jarzynski, Olano, "Hash Functions for GPU Rendering", 2020.
 /// Edges: a negative position counts as 0.

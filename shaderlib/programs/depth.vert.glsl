@@ -1,6 +1,6 @@
 #version 450
 //! Depth only, as a light sees it: the pass before a lookup by `shadow::compare`.
-//! There is no fragment stage; bias is the pipeline's, or the lookup's.
+//! There is no fragment stage. The pipeline or the lookup applies the bias.
 //! Bindings as in depth.wesl.
 
 layout(location = 0) in vec3 in_position;

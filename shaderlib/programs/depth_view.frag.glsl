@@ -10,7 +10,7 @@ layout(set = 0, binding = 0) uniform texture2D depths;
 layout(set = 0, binding = 1) uniform sampler depth_sampler;
 
 #if CURVE == CURVE_LINEAR
-/// Of the projection that the depths were drawn with, in scene units; swapped for reversed depth.
+/// Distances of the planes of the projection that the depths were drawn with, in scene units. Swap them for reversed depth.
 layout(std140, set = 0, binding = 2) uniform Planes {
     float near;
     float far;

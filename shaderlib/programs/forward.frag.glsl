@@ -47,12 +47,12 @@ layout(set = 1, binding = 4) uniform sampler map_sampler;
 #if FOG != FOG_NONE
 #include "../color/transfer.glsl"
 
-/// What distance fades into.
+/// The fog that colours fade into with distance.
 layout(std140, set = 0, binding = 3) uniform Haze {
     vec3 color;
     /// `exp2`: per scene unit.
     float density;
-    /// `linear`: distances of the first and of the full fog, in scene units.
+    /// `linear`: distances at which the fog begins and at which it hides everything, in scene units.
     float start;
     float end;
 } haze;
@@ -106,7 +106,7 @@ vec3 shade(vec3 base) {
 #include "../lighting/classic.glsl"
 #include "forward/materials.glsl"
 
-/// The colour of the surface, from the light summed up at the corners.
+/// The colour of the surface, from the light summed up at the vertices.
 vec3 shade(vec3 base) {
 #if MATERIAL == MATERIAL_ARRAY
     Material material = materials.items[in_material];

@@ -9,8 +9,8 @@
 
 /// The index of the cascade that covers a distance.
 ///
-/// Parameters: `view_depth` distance along the view axis, scene units; `splits` far ends of the four cascades, rising, scene units; repeat the last for fewer.
-/// Returns: 0 to 3, or 4 beyond the last: no cascade, lit.
+/// Parameters: `view_depth` distance along the view axis, scene units; `splits` far ends of the four cascades, rising, scene units, of which the last is repeated if there are fewer.
+/// Returns: 0 to 3, or 4 beyond the last cascade, where points are lit.
 /// Source: Zhang, Sun, Xu, Lun, "Parallel-Split Shadow Maps for Large-Scale Virtual Environments", 2006.
 /// Edges: a distance at a cascade's end belongs to the next one.
 /// Error model: exact.
@@ -29,7 +29,7 @@ int cascade_index(float view_depth, vec4 splits) {
 
 /// The share of the next cascade near the end of the one that covers a distance.
 ///
-/// After the last cascade the next one is none: mix with 1.
+/// There is no cascade after the last one: blend the last one with 1, which is lit.
 ///
 /// Parameters: `view_depth` and `splits` as for `cascade_index`; `overlap` distance before a cascade's end over which the next one fades in, scene units.
 /// Returns: 0 to 1, rising over the overlap.
@@ -77,7 +77,7 @@ vec2 cascade_snap(vec2 origin, float size) {
 /// The smallest sphere around a slice of a view frustum: a map of its size fits however the camera turns.
 ///
 /// Parameters: `near`, `far` ends of the slice, scene units, `0 <= near <= far`; `tangents` tangents of half the angles of view, across and up, at least 0.
-/// Returns: distance of the centre from the eye along the view, and radius, scene units.
+/// Returns: x the distance of the centre from the eye along the view axis, y the radius, scene units.
 /// Source: Valient, "Stable Rendering of Cascaded Shadow Maps", ShaderX 6, 2008; Zhang, Zaprjagaev, Bentham, "Practical Cascaded Shadow Maps", ShaderX 7, 2009.
 /// Edges: a wide slice's centre is at its far end, not beyond it.
 /// Error model: 2^-21 of the centre, 2^-21*(far + radius) of the radius.

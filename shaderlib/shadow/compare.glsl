@@ -242,7 +242,7 @@ float mean_blocker(LAMPLIGHT_COLOR_MAP(depths, depths_smp), ShadowUv at, float r
 /// A shadow that is sharp near its caster and soft far from it.
 ///
 /// The map is read in two ways, so it is bound twice: some targets cannot compare and read through one binding.
-/// The penumbra takes the map's depths as distances from the light: exact for a linear depth, a guess for a perspective one.
+/// The penumbra's width is computed as if the map's depths were distances from the light. This is exact for linear depths, and an approximation for perspective ones.
 ///
 /// Parameters: `map`, `smp` depth map and comparison sampler; `depths`, `depths_smp` the same map as a plain texture, with a sampler that does not filter; `at` place in the map; `light_size` width of the light, texels of the map; `phi` turn of the disks, radians.
 /// Returns: visibility, [0, 1].
@@ -270,7 +270,7 @@ float pcss(
 
 /// One comparison with a cube map: the shadow of a point light.
 ///
-/// Parameters: `cube`, `smp` depth cube map and comparison sampler; `offset` from the light to the point, in the cube's space, any length above 0; `depth` reference, [0, 1], in the measure the faces hold: `cube_depth` for perspective faces.
+/// Parameters: `cube`, `smp` depth cube map and comparison sampler; `offset` from the light to the point, in the cube's space, any length above 0; `depth` reference, [0, 1], computed as for the faces: by `cube_depth` for perspective faces.
 /// Returns: visibility, [0, 1].
 /// Source: Gerasimov, "Omnidirectional Shadow Mapping", GPU Gems, 2004, chapter 12; Igalia, "Working with lights and shadows", part II, whose faces must be 90 degrees wide, not 45.
 /// Edges: 1 for a reference outside [0, 1].

@@ -9,7 +9,7 @@
 
 /// Whether a point of the march is behind what the depth buffer shows, and not far behind.
 ///
-/// Parameters: `ray`, `scene` linear distances along the view axis of the point and of the surface seen there, scene units; `bias` least distance behind, scene units, at least 0; `thickness` what surfaces are taken to be deep, scene units.
+/// Parameters: `ray`, `scene` linear distances along the view axis of the point and of the surface seen there, scene units; `bias` least distance behind, scene units, at least 0; `thickness` assumed thickness of surfaces, scene units.
 /// Returns: whether `bias < ray - scene < thickness`.
 /// Source: Sousa, Kasyan, Schulz, "Secrets of CryENGINE 3 Graphics Technology", 2011: screen space local shadows.
 /// Edges: false where the thickness is not above the bias.

@@ -59,7 +59,7 @@ float vsm_visibility(vec2 m, float t, float min_variance, float least, float ble
     return max(chebyshev(m, t, min_variance, bleed), least);
 }
 
-/// A depth bent by two exponentials, one for each sign.
+/// A depth warped by a positive and by a negative exponential.
 ///
 /// Parameters: `d` depth, [0, 1] from near to far; `exponents` positive and negative, above 0: up to 42 for moments of 32 bits, 5.5 for 16.
 /// Returns: `(exp(x*z), -exp(-y*z))` with `z = 2*d - 1`: both rise with the depth.
@@ -71,7 +71,7 @@ vec2 evsm_warp(float d, vec2 exponents) {
     return vec2(exp(exponents.x * z), -exp(-exponents.y * z));
 }
 
-/// The four moments of a bent depth.
+/// The four moments of a warped depth: two for each exponential.
 ///
 /// Parameters: `d` and `exponents` as for `evsm_warp`.
 /// Returns: `(p, p^2, q, q^2)` for `(p, q) = evsm_warp(d, exponents)`, to be stored and filtered.
@@ -132,12 +132,12 @@ vec4 msm_moments(float d) {
     return vec4(d, d2, d * d2, d2 * d2);
 }
 
-/// Four moments turned so that 16 bits each keep as much of them as can be.
+/// Four moments transformed so that 16 bits for each keep as much precision as possible.
 ///
-/// The map is linear but for an offset: filters may run on either form.
+/// The transform is affine, so moments can be filtered before or after it.
 ///
 /// Parameters: `m` moments of depths in [0, 1].
-/// Returns: the quantised form, [0, 1] but for 0.5 % below it.
+/// Returns: the quantised form, in [0, 1] up to rounding.
 /// Source: Peters, Klein, "Moment Shadow Mapping", 2015, section 3.5 and its listing: a row vector times the matrix.
 /// Edges: none.
 /// Error model: absolute 2^-23 times the sum of the terms' magnitudes, at most 2e-5.
@@ -163,9 +163,9 @@ vec4 msm_dequantise(vec4 q) {
 
 /// Visibility from four filtered moments: the largest that depths of these moments allow.
 ///
-/// Of all ways to put three depths, the lit point's among them, so that they have these moments, there is one; what lies before the point shadows it.
+/// There is one distribution of three depths, of which one is the lit point's, that has these moments. Its share nearer than the lit point is the shadow.
 ///
-/// Parameters: `m` filtered moments of depths in [0, 1]; `t` depth of the lit point; `bias` share of the moments of an even spread that is mixed in, against rounding: 3e-5 for moments in 32 bits, 6e-5 for 16.
+/// Parameters: `m` filtered moments of depths in [0, 1]; `t` depth of the lit point; `bias` weight, [0, 1], of the moments (0.5, 0.5, 0.5, 0.5) that are mixed in against rounding: 3e-5 for moments in 32 bits, 6e-5 for 16.
 /// Returns: visibility, [0, 1].
 /// Source: Peters, Klein, "Moment Shadow Mapping", 2015, algorithm 3, by Cholesky's factors of the Hankel matrix.
 /// Edges: where the moments are of a single depth, 1 up to it and 0 beyond; for moments that no depths have, some number in [0, 1].

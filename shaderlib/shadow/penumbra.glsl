@@ -1,4 +1,4 @@
-//! How wide a shadow's soft edge is, and how contact and cones soften it.
+//! The width of a penumbra, the soft edge of a shadow.
 
 #ifndef LAMPLIGHT_SHADOW_PENUMBRA_GLSL
 #define LAMPLIGHT_SHADOW_PENUMBRA_GLSL
@@ -7,7 +7,7 @@
 #include "../prefix.glsl"
 #endif
 
-/// The width of the penumbra of a light with a size and a place.
+/// The width of the penumbra of an area light at a finite distance.
 ///
 /// Parameters: `receiver`, `blocker` linear distances from the light to the lit point and to what shadows it, scene units, above 0; `size` of the light, scene units, at least 0.
 /// Returns: `(receiver - blocker)*size/blocker`, scene units at the lit point.

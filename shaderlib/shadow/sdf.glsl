@@ -7,14 +7,14 @@
 #include "../prefix.glsl"
 #endif
 
-/// One step of a march to the light: the least share of its cone that was free so far.
+/// One step of a ray march to the light: the smallest unoccluded share of the light's cone so far.
 ///
-/// Begin with `res` 1 and `ph` 0; step by `h`; pass the result's y as the next `ph`.
+/// Begin with `res` = 1 and `ph` = 0. After each step, advance the ray by `h`, and pass x and y of the result as the next `res` and `ph`.
 ///
-/// Parameters: `res` the least share so far, [0, 1]; `h` distance of the scene here, scene units; `ph` distance at the step before, which was as long; `t` distance along the ray, scene units; `k` sharpness: the distance of the light over its radius, at least 0.
+/// Parameters: `res` the least share so far, [0, 1]; `h` signed distance from this point of the ray to the scene, scene units; `ph` that distance at the previous step, which is also the length of that step, scene units; `t` distance of this point along the ray, scene units; `k` sharpness: the distance of the light over its radius, at least 0.
 /// Returns: x the least share, [0, 1]; y the distance here, at least 0, for the next step.
 /// Source: Quilez, "Soft Shadows in Raymarched SDFs", 2010, with the nearest point between two steps: Aaltonen, "GPU-Based Clay Simulation and Ray-Tracing Tech in Claybook", 2018.
-/// Edges: 0 within something; without a step before, the distance here alone; `res` where the nearest point is behind the start.
+/// Edges: 0 inside an object; without a previous step, only the distance at this point counts; `res` where the nearest point is behind the start.
 /// Error model: 6 ULP, and 2^-22*k*h^2/((t - y)*d).
 vec2 sdf_soft_step(float res, float h, float ph, float t, float k) {
     float here = max(h, 0.0);
@@ -33,9 +33,9 @@ vec2 sdf_soft_step(float res, float h, float ph, float t, float k) {
     return vec2(sharp * apart / along, here);
 }
 
-/// A share of a cone that was free, as light: a smooth step for lights that are round.
+/// The visibility of a round light from the unoccluded share of its cone: a smooth step.
 ///
-/// Parameters: `share` free part, [-1, 1]: 0 where the ray touches, -1 where the cone is full.
+/// Parameters: `share` unoccluded share, [-1, 1]: 0 where the ray touches an object, -1 where the cone is fully blocked.
 /// Returns: `(1 + share)^2*(2 - share)/4`, [0, 1].
 /// Source: Quilez, "Soft Shadows in Raymarched SDFs", 2010: the part of the penumbra behind the edge.
 /// Edges: clamped to [-1, 1].

@@ -35,7 +35,7 @@ vec3 face_normal(vec3 a, vec3 b, vec3 c) {
 
 /// The normal bent by a normal map.
 ///
-/// Parameters: `n` unit normal; `tangent` unit tangent in `xyz`, the same space, with the bitangent's sign, 1 or -1, in `w`; `texel` what the map holds, [0, 1]: 0.5 is 0.
+/// Parameters: `n` unit normal; `tangent` unit tangent in `xyz`, the same space, with the bitangent's sign, 1 or -1, in `w`; `texel` value of the normal map, [0, 1] in each channel, where 0.5 stands for 0.
 /// Returns: unit normal, in that space.
 /// Source: Blinn, "Simulation of Wrinkled Surfaces", 1978; the tangent's sign as in Khronos Group, glTF 2.0, "Meshes".
 /// Edges: `n` where the tangent is zero or along `n`, and for a texel of 0.5, 0.5, 0.5.
@@ -54,7 +54,7 @@ vec3 perturb_normal(vec3 n, vec4 tangent, vec3 texel) {
 ///
 /// Parameters: `n` unit normal of the front; `front` whether the front side is visible.
 /// Returns: `n` in front, `-n` behind.
-/// Source: stands beside Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.11, which leaves the normal and so has no diffuse light behind.
+/// Source: an addition to Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.11. The example does not flip the normal, so its back faces have no diffuse light.
 /// Edges: none.
 /// Error model: exact.
 vec3 flip_if_back(vec3 n, bool front) {

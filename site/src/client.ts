@@ -4,7 +4,7 @@ import type { Toolchain } from "@lamplight/toolchain";
 type Answer = { id?: number; value?: unknown; error?: string; milliseconds?: number; ready?: boolean; failed?: string };
 type Waiting = { resolve: (value: unknown) => void; reject: (error: Error) => void; start: () => void };
 
-/** What typed text may take before the toolchain is begun anew. */
+/** Milliseconds that a call about typed text may take before the toolchain is restarted. */
 export const TYPED = 1000;
 /** What the library's own programs may take: nobody typed them. */
 export const OWN = 20000;
@@ -74,7 +74,7 @@ export class Client {
                 timer = window.setTimeout(() => {
                     this.#worker.terminate();
                     this.replaced++;
-                    this.#drop(new TooLong(`no answer within ${limit / 1000} s: the toolchain was begun anew`));
+                    this.#drop(new TooLong(`no answer within ${limit / 1000} s: the toolchain was restarted`));
                     this.#begin();
                 }, this.#warm ? limit : Math.max(limit, COLD));
             };

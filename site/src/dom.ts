@@ -51,7 +51,7 @@ export function route(): Route {
 
 /** Puts the state of a page into the address without a step of its own in the history. */
 export function remember(page: string, path: string, query: Record<string, string | undefined>) {
-    // Who has gone on meanwhile is not called back.
+    // If the user has gone to another page meanwhile, the address stays as it is.
     if (location.hash !== known) return;
     const given = Object.entries(query).filter((pair): pair is [string, string] => !!pair[1]);
     const text = new URLSearchParams(given).toString();

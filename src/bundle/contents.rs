@@ -181,7 +181,8 @@ pub(super) fn to_json<T: Serialize>(value: &T) -> Result<Vec<u8>, Error> {
     serde_json::to_vec(value).map_err(|error| Error::Io(error.to_string()))
 }
 
-pub(super) fn shortened_hash(hash: &blake3::Hash) -> Hash {
+/// The first 128 bits.
+pub(crate) fn shortened_hash(hash: &blake3::Hash) -> Hash {
     let mut short = [0; 16];
     short.copy_from_slice(&hash.as_bytes()[..16]);
     short
@@ -193,7 +194,7 @@ pub(super) fn checksum(bytes: &[u8]) -> Hash {
 }
 
 /// Lower-case hexadecimal.
-pub(super) fn to_hex(bytes: &[u8]) -> String {
+pub(crate) fn to_hex(bytes: &[u8]) -> String {
     bytes
         .iter()
         .flat_map(|byte| [byte >> 4, byte & 15])

@@ -106,11 +106,11 @@ pub struct BlobFile {
 /// Every distinct blob of a directory bundle: for tools that take files.
 pub fn blob_files(path: impl AsRef<Path>) -> Result<BTreeSet<BlobFile>, Error> {
     let path = path.as_ref();
-    packed_from_manifest(&read_manifest(path)?, &|name| path.join(BLOBS).join(name))
+    blob_files_of_manifest(&read_manifest(path)?, &|name| path.join(BLOBS).join(name))
 }
 
-/// The same for a manifest whose blobs are where `place` says.
-pub(super) fn packed_from_manifest(
+/// The distinct blobs of a manifest, which are where `place` says.
+pub(super) fn blob_files_of_manifest(
     manifest: &Manifest,
     place: &dyn Fn(&str) -> PathBuf,
 ) -> Result<BTreeSet<BlobFile>, Error> {

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::directory::{
-    BLOBS, BlobFile, MANIFEST, MOST_MANIFEST_BYTES, packed_from_manifest, read_manifest,
+    BLOBS, BlobFile, MANIFEST, MOST_MANIFEST_BYTES, blob_files_of_manifest, read_manifest,
 };
 use super::manifest::{self, Before, Manifest, ManifestArtifact};
 use super::{Contents, Digest, Error, Unit};
@@ -156,7 +156,7 @@ impl DirectoryWriter {
             true => self.scratch.path(name),
             false => self.path.join(BLOBS).join(name),
         };
-        packed_from_manifest(&self.manifest(), &place)
+        blob_files_of_manifest(&self.manifest(), &place)
     }
 
     /// Writes the manifest for the programs and keys of `contents`; units in `contents` are

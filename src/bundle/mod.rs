@@ -6,7 +6,7 @@
 //! and nothing else.
 
 mod clip;
-mod contents;
+pub(crate) mod contents;
 mod diff;
 mod directory;
 mod directory_writer;

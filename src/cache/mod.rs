@@ -16,6 +16,7 @@ pub use record::MOST_RECORD_BYTES;
 use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use crate::bundle::contents::{shortened_hash, to_hex};
 use crate::bundle::{Clip, Hash, Target, Unit};
 use crate::compose::{Composed, Options};
 use crate::diagnostic::Diagnostics;
@@ -176,14 +177,6 @@ fn record_name(kind: &str, key: Hash) -> String {
     format!("{kind}/{}/{}", &hex[..2], &hex[2..])
 }
 
-pub(crate) fn to_hex(bytes: &[u8]) -> String {
-    bytes
-        .iter()
-        .flat_map(|byte| [byte >> 4, byte & 15])
-        .filter_map(|digit| char::from_digit(u32::from(digit), 16))
-        .collect()
-}
-
 fn unit_key(job: Job<'_>) -> Hash {
     let Job { text, composed, entry, options, targets, clip } = job;
     let names: Vec<&str> = targets.iter().map(|target| target.name()).collect();
@@ -208,10 +201,4 @@ pub(crate) fn hash_parts(parts: &[&str]) -> Hash {
         hasher.update(part.as_bytes());
     }
     shortened_hash(&hasher.finalize())
-}
-
-pub(crate) fn shortened_hash(hash: &blake3::Hash) -> Hash {
-    let mut short = [0; 16];
-    short.copy_from_slice(&hash.as_bytes()[..16]);
-    short
 }

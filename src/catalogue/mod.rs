@@ -251,7 +251,15 @@ fn make_item(
 /// Gives each parameter its text from the section `Parameters`.
 fn describe_parameters(item: &mut Item) {
     let Some(section) = item.section(SECTIONS[0]) else { return };
-    for entry in section.trim_end_matches('.').split("; ") {
+    let mut entries: Vec<String> = Vec::new();
+    for piece in section.trim_end_matches('.').split("; ") {
+        match entries.last_mut() {
+            // A description may have a semicolon itself. Each begins with its names.
+            Some(entry) if !piece.starts_with('`') => *entry += &format!("; {piece}"),
+            _ => entries.push(piece.to_owned()),
+        }
+    }
+    for entry in &entries {
         let (names, words) = split_description(entry);
         for member in item.members.iter_mut().filter(|member| names.contains(&member.name)) {
             member.doc = words.clone();

@@ -1,7 +1,7 @@
 //! Finds the declarations at the top level of a module's text, with their doc comments.
 
 use super::{Kind, Member};
-use crate::parse::words::{continues_word, word_at};
+use crate::parse::words::{continues_word, leading_word};
 
 /// A declaration without its body.
 pub struct Declaration {
@@ -137,15 +137,15 @@ fn wesl_name(line: &str) -> Option<(Kind, String)> {
     let words = [("fn ", Kind::Function), ("struct ", Kind::Struct), ("const ", Kind::Constant)];
     words
         .iter()
-        .find_map(|(word, kind)| Some((*kind, word_at(line.strip_prefix(word)?).to_owned())))
+        .find_map(|(word, kind)| Some((*kind, leading_word(line.strip_prefix(word)?).to_owned())))
 }
 
 fn glsl_name(line: &str) -> Option<(Kind, String)> {
     if let Some(rest) = line.strip_prefix("struct ") {
-        return Some((Kind::Struct, word_at(rest).to_owned()));
+        return Some((Kind::Struct, leading_word(rest).to_owned()));
     }
     if let Some((_, name)) = line.strip_prefix("const ").and_then(|rest| rest.split_once(' ')) {
-        return Some((Kind::Constant, word_at(name).to_owned()));
+        return Some((Kind::Constant, leading_word(name).to_owned()));
     }
     // An indented line continues the list of parameters.
     let (before, _) = line.split_once('(').filter(|_| !line.starts_with(' '))?;

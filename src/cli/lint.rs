@@ -10,6 +10,7 @@ use super::features;
 use super::input::{self, parse_feature};
 use crate::cli::terminal::stdout;
 use crate::diagnostic::{Diagnostics, Severity};
+use crate::generate::summary::counted_words;
 use crate::lint::{self, EXTENSIONS, Request};
 use crate::permute::{Setting, Settings};
 use crate::project;
@@ -57,11 +58,6 @@ pub fn run_lint(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failur
     writeln!(stdout(), "{}", counted.map(|(count, what)| counted_words(count, what)).join(", "))?;
     // The errors have been printed already.
     if errors == 0 { Ok(()) } else { Err(Failure::Input(last, Vec::new())) }
-}
-
-/// `1 module`, `2 modules`.
-pub fn counted_words(count: usize, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// Roots of packages, each with what was asked for below it.

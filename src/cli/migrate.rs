@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::failure::{DiagnosticForm, Failure, print_warnings};
-use super::lint::counted_words;
 use super::overwrite::Overwrite;
 use crate::cli::terminal::stdout;
 use crate::diagnostic::{Diagnostic, Severity, codes};
+use crate::generate::summary::counted_words;
 use crate::limits::FILE_BYTES;
 use crate::migrate::{self, Migrated};
 use crate::output;

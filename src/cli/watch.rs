@@ -8,10 +8,10 @@ use std::time::{Duration, Instant};
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure};
-use super::lint::counted_words;
 use super::terminal::stdout;
 use super::work::{Places, Work};
 use crate::generate::Request;
+use crate::generate::summary::counted_words;
 use crate::input;
 use crate::permute::Quoted;
 use crate::source::LIMITS;

@@ -5,7 +5,6 @@
 //! all the same, and of two declarations with one name the later one wins. So a constant before the
 //! block would be read from the block.
 
-use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Composed, Part, PartKind};
@@ -25,8 +24,7 @@ pub fn rename_like_members(composed: Composed) -> Composed {
 /// The new name of each variable and constant that needs one.
 fn new_names(composed: &Composed) -> BTreeMap<String, String> {
     let blocks = composed.parts.iter().filter(|part| is_block(composed, part));
-    let members: BTreeSet<&str> =
-        blocks.flat_map(|block| members(composed, block)).map(|member| member.text).collect();
+    let members: BTreeSet<&str> = blocks.flat_map(|block| members(composed, block)).collect();
     let is_plain = |part: &&Part| {
         matches!(part.kind, PartKind::Variable | PartKind::Constant) && !is_block(composed, part)
     };
@@ -35,14 +33,14 @@ fn new_names(composed: &Composed) -> BTreeMap<String, String> {
     if alike.is_empty() {
         return BTreeMap::new();
     }
-    let mut taken: BTreeSet<Cow<'_, str>> =
-        words(&composed.text).map(|word| word.text.into()).collect();
-    let mut names = BTreeMap::new();
+    let taken: BTreeSet<&str> = words(&composed.text).map(|word| word.text).collect();
+    let mut names: BTreeMap<String, String> = BTreeMap::new();
     for name in alike {
         let mut numbered = (1..u32::MAX).map(|number| format!("{name}_{number}"));
-        let free = numbered.find(|new| !taken.contains(new.as_str()));
-        if let Some(new) = free {
-            taken.insert(new.clone().into());
+        let is_free = |new: &String| {
+            !taken.contains(new.as_str()) && names.values().all(|known| known != new)
+        };
+        if let Some(new) = numbered.find(is_free) {
             names.insert(name.clone(), new);
         }
     }
@@ -56,15 +54,33 @@ fn is_block(composed: &Composed, part: &Part) -> bool {
     part.kind == PartKind::Variable && words(behind).next().is_some()
 }
 
-/// The words between a block's braces. Types are among them, and no variable has their name.
-fn members<'c>(
-    composed: &'c Composed,
-    block: &Part,
-) -> impl Iterator<Item = crate::parse::words::Word<'c>> {
+/// The words between a block's braces, but those within brackets, which are lengths of arrays. Types
+/// are among them, and no variable has the name of a type.
+fn members<'c>(composed: &'c Composed, block: &Part) -> impl Iterator<Item = &'c str> {
     let text = &composed.text[block.range.clone()];
     let open = text.find('{').map_or(text.len(), |at| at + 1);
     let close = text.rfind('}').unwrap_or(text.len());
-    words(text.get(open..close).unwrap_or_default())
+    let mut brackets = Brackets::default();
+    pieces(text.get(open..close).unwrap_or_default()).filter_map(move |piece| {
+        let is_outside = brackets.is_outside(piece.text);
+        (is_outside && piece.kind == PieceKind::Word).then_some(piece.text)
+    })
+}
+
+/// Whether a text is within brackets.
+#[derive(Default)]
+struct Brackets(u32);
+
+impl Brackets {
+    /// Goes on to the next piece; whether that is outside.
+    fn is_outside(&mut self, piece: &str) -> bool {
+        match piece {
+            "[" => self.0 += 1,
+            "]" => self.0 = self.0.saturating_sub(1),
+            _ => {}
+        }
+        self.0 == 0
+    }
 }
 
 fn renamed(composed: &Composed, names: &BTreeMap<String, String>) -> Composed {
@@ -99,17 +115,16 @@ fn is_named(text: &str, part: &Part, names: &BTreeMap<String, String>) -> bool {
 /// within brackets, where the length of an array stands. A qualifier of a layout is no name either,
 /// but what it is set to may be one.
 fn append(text: &str, names: &BTreeMap<String, String>, declares_members: bool, out: &mut String) {
-    let (mut before, mut brackets, mut in_layout) = (' ', 0_u32, false);
+    let (mut before, mut brackets, mut in_layout) = (' ', Brackets::default(), false);
     for piece in pieces(text) {
         match piece.text {
-            "[" => brackets += 1,
-            "]" => brackets = brackets.saturating_sub(1),
             "layout" => in_layout = true,
             ")" => in_layout = false,
             _ => {}
         }
+        let is_outside = brackets.is_outside(piece.text);
         let is_member =
-            before == '.' || declares_members && brackets == 0 || in_layout && before != '=';
+            before == '.' || declares_members && is_outside || in_layout && before != '=';
         let new = names.get(piece.text).filter(|_| piece.kind == PieceKind::Word && !is_member);
         out.push_str(new.map_or(piece.text, String::as_str));
         if piece.kind != PieceKind::Blank {

@@ -170,7 +170,7 @@ impl Shape {
     }
 }
 
-/// Where such an array is taken from a structure that is no variable: naga writes columns where
+/// Where such an array is taken from a structure that is not a variable: naga writes columns where
 /// matrices are needed.
 pub fn taken_from_values<'m>(
     module: &'m Module,

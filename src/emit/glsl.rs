@@ -136,8 +136,10 @@ fn name_blocks(source: &Source<'_>, text: &mut String, info: &mut ReflectionInfo
             let own = format!("{}{BLOCK}{group}_{binding}{stage}", before_block(ty));
             // A structure of the author may have the name that naga gave the block.
             for keyword in BLOCK_KEYWORDS {
-                let (old, new) = (format!("{keyword} {name} {{"), format!("{keyword} {own} {{"));
-                *text = text.replacen(&old, &new, 1);
+                if let Some(at) = text.find(&format!("{keyword} {name} {{")) {
+                    let start = at + keyword.len() + 1;
+                    text.replace_range(start..start + name.len(), &own);
+                }
             }
             *name = own;
         }

@@ -1,6 +1,6 @@
 //! Renames declarations whose names a writer uses for something else.
 
-use naga::{Function, Module, Type, TypeInner};
+use naga::{Function, Module, StructMember, Type, TypeInner};
 
 /// The module with other names for those that are taken; `None` where none is. The entry point's
 /// name is changed too.
@@ -47,6 +47,38 @@ pub fn rename_taken(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<
     Some(module)
 }
 
+/// The module with other names for structures that are called as a member; `None` where none is. In
+/// C++ and HLSL, the name means the member in all that follows within the structure.
+pub fn rename_types_like_members(module: &Module) -> Option<Module> {
+    let alike: Vec<_> = module.types.iter().filter(|(_, ty)| is_like_member(module, ty)).collect();
+    if alike.is_empty() {
+        return None;
+    }
+    let mut changed = module.clone();
+    for (handle, ty) in alike {
+        let mut ty = ty.clone();
+        while is_like_member(module, &ty) {
+            ty.name.get_or_insert_default().push_str("_type");
+        }
+        changed.types.replace(handle, ty);
+    }
+    Some(changed)
+}
+
+fn is_like_member(module: &Module, ty: &Type) -> bool {
+    let (TypeInner::Struct { .. }, Some(name)) = (&ty.inner, &ty.name) else { return false };
+    // naga drops underscores at the end.
+    let is_it = |member: &str| member.trim_end_matches('_') == name.trim_end_matches('_');
+    members_of(module).filter_map(|member| member.name.as_deref()).any(is_it)
+}
+
+fn members_of(module: &Module) -> impl Iterator<Item = &StructMember> {
+    module.types.iter().flat_map(|(_, ty)| match &ty.inner {
+        TypeInner::Struct { members, .. } => members.as_slice(),
+        _ => &[],
+    })
+}
+
 /// A name as naga writes it, without the number that it may append.
 fn plain_name(name: &str) -> String {
     let mut plain = String::with_capacity(name.len());
@@ -60,17 +92,13 @@ fn plain_name(name: &str) -> String {
 
 /// Every name of a module.
 fn names_of(module: &Module) -> impl Iterator<Item = &str> {
-    let members = module.types.iter().flat_map(|(_, ty)| match &ty.inner {
-        TypeInner::Struct { members, .. } => members.as_slice(),
-        _ => &[],
-    });
     let types = module.types.iter().map(|(_, ty)| &ty.name);
     let constants = module.constants.iter().map(|(_, constant)| &constant.name);
     let variables = module.global_variables.iter().map(|(_, variable)| &variable.name);
     let points = module.entry_points.iter();
     let functions = module.functions.iter().map(|(_, function)| function);
     let functions = functions.chain(points.clone().map(|point| &point.function));
-    let declared = types.chain(members.map(|member| &member.name)).chain(constants);
+    let declared = types.chain(members_of(module).map(|member| &member.name)).chain(constants);
     let declared = declared.chain(variables).filter_map(Option::as_deref);
     declared.chain(functions.flat_map(of_function)).chain(points.map(|point| point.name.as_str()))
 }

@@ -15,7 +15,7 @@ mod permutation;
 mod shader;
 mod shard;
 mod sink;
-mod summary;
+pub(crate) mod summary;
 mod trace;
 
 pub use permutation::{Named, Permutation, permutation};

@@ -160,7 +160,7 @@ impl Summary {
 }
 
 /// `1 text`, `2 texts`.
-fn counted_words(count: usize, what: &str) -> String {
+pub fn counted_words(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 

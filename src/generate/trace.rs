@@ -8,7 +8,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use serde::{Deserialize, Serialize};
 
 use super::{Request, Summary};
-use crate::cache::{BUILD, Cache, hash_parts, shortened_hash, to_hex};
+use crate::bundle::contents::{shortened_hash, to_hex};
+use crate::cache::{BUILD, Cache, hash_parts};
 use crate::diagnostic::Diagnostic;
 use crate::diagnostic::render::{Form, render};
 use crate::input;

@@ -214,7 +214,10 @@ impl Server {
     fn close_overloaded(&mut self, path: &Path) -> Vec<Value> {
         self.documents.remove(path);
         self.forget(None);
-        let words = "one message edits this document too often: close it and open it again";
+        let words = format!(
+            "the edits of one message to `{}` are too large: close the file and open it again",
+            path.display()
+        );
         vec![notification_message("window/showMessage", json!({ "type": 1, "message": words }))]
     }
 

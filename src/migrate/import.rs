@@ -4,7 +4,7 @@ use super::condition::Condition;
 use super::names::{Modules, Place};
 use super::scan::comment_length;
 use super::tree::{Bytes, Choice, Import, Leaf, Node, Path};
-use crate::parse::words::word_at;
+use crate::parse::words::leading_word;
 
 /// The text without its comments, byte for byte.
 pub fn without_comments(text: &str) -> String {
@@ -90,7 +90,7 @@ impl Reader<'_> {
 
     fn word(&mut self) -> Option<String> {
         self.skip();
-        let found = word_at(&self.bare[self.at..]);
+        let found = leading_word(&self.bare[self.at..]);
         self.at += found.len();
         (!found.is_empty()).then(|| found.to_owned())
     }

@@ -187,7 +187,7 @@ fn place_of(path: &str) -> Result<String, String> {
     for segment in bare.split('/') {
         let fits = is_word(segment) && !wesl::is_keyword(segment);
         if !fits {
-            return Err(format!("`{segment}` of `{path}` is no name, so nothing can import it"));
+            return Err(format!("`{segment}` of `{path}` is not a name, so nothing can import it"));
         }
         place.push_str("::");
         place.push_str(segment);

@@ -5,8 +5,8 @@ use super::condition::Condition;
 use super::import;
 use super::tree::{Branch, Bytes, Choice, Import, Kind, Line, Node, Scanned, Token};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::parse::wesl::blank::block_comment;
-use crate::parse::words::{begins_word, continues_word, number_end, word_at};
+use crate::parse::wesl::blank::{block_comment, line_comment};
+use crate::parse::words::{begins_word, continues_word, leading_word, number_end};
 use crate::source::{LIMITS, SourceId, Span};
 
 /// Cuts up a file. The error is the first thing that cannot be understood.
@@ -110,7 +110,7 @@ impl Scanner<'_> {
         {
             return None;
         }
-        let word = word_at(self.rest()[1..].trim_start());
+        let word = leading_word(self.rest()[1..].trim_start());
         DIRECTIVES.contains(&word).then(|| word.to_owned())
     }
 
@@ -187,7 +187,7 @@ impl Scanner<'_> {
         let kind = words.next().unwrap_or_default();
         let name = words.next().unwrap_or_default();
         let found = match kind {
-            _ if word_at(name) != name || name.is_empty() => None,
+            _ if leading_word(name) != name || name.is_empty() => None,
             "ifdef" => Some(Condition::defined(name)),
             "ifndef" => Some(Condition::defined(name).not()),
             _ => {
@@ -303,7 +303,7 @@ impl Scanner<'_> {
         let length = first.len_utf8();
         let dotted = first == '.' && rest[1..].starts_with(|next: char| next.is_ascii_digit());
         match first {
-            _ if begins_word(first) => Ok((Kind::Word, word_at(rest).len())),
+            _ if begins_word(first) => Ok((Kind::Word, leading_word(rest).len())),
             _ if first.is_ascii_digit() || dotted => Ok((Kind::Number, number_end(rest, 0))),
             ':' if rest.starts_with("::") => Ok((Kind::Path, 2)),
             '#' => self.def(),
@@ -322,15 +322,15 @@ impl Scanner<'_> {
         let after = rest[1..].trim_start();
         let (name, length) = match after.strip_prefix('{') {
             Some(inner) => {
-                let name = word_at(inner);
+                let name = leading_word(inner);
                 let closed = inner[name.len()..].starts_with('}');
                 (if closed { name } else { "" }, rest.len() - inner.len() + name.len() + 1)
             }
-            None => (word_at(after), rest.len() - after.len() + word_at(after).len()),
+            None => (leading_word(after), rest.len() - after.len() + leading_word(after).len()),
         };
         let place = self.at..self.at + length.min(rest.len());
         if name.is_empty() {
-            return Err(self.wrong("a `#` that is no directive", self.at..self.at + 1));
+            return Err(self.wrong("a `#` that is not a directive", self.at..self.at + 1));
         }
         let pasted = self.text[..self.at].ends_with(continues_word);
         if pasted {
@@ -357,7 +357,7 @@ pub fn trivia_length(text: &str) -> usize {
 /// Bytes of the comment that a text starts with.
 pub fn comment_length(text: &str) -> usize {
     match () {
-        () if text.starts_with("//") => text.find('\n').unwrap_or(text.len()),
+        () if text.starts_with("//") => line_comment(text),
         () if text.starts_with("/*") => block_comment(text).0,
         () => 0,
     }

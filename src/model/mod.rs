@@ -71,7 +71,7 @@ pub fn read_model(bytes: &[u8], view: View) -> Result<Model, String> {
 fn document_and_bytes(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
     const HEADER: usize = 12;
     if !bytes.starts_with(b"glTF") {
-        return Err("the file is no binary glTF (`.glb`)".to_owned());
+        return Err("the file is not a binary glTF file (`.glb`)".to_owned());
     }
     let version = word_at(bytes, 4)?;
     if version != 2 {

@@ -31,11 +31,11 @@ pub fn is_word_byte(byte: u8) -> bool {
 
 /// Whether the whole text is one identifier, or a keyword.
 pub fn is_word(text: &str) -> bool {
-    text.starts_with(begins_word) && word_at(text).len() == text.len()
+    text.starts_with(begins_word) && leading_word(text).len() == text.len()
 }
 
 /// The letters, digits and underscores that a text starts with.
-pub fn word_at(text: &str) -> &str {
+pub fn leading_word(text: &str) -> &str {
     &text[..word_end(text, 0)]
 }
 
@@ -171,6 +171,15 @@ pub fn words(text: &str) -> impl Iterator<Item = Word<'_>> {
 /// Whether a text has a word.
 pub fn has_word(text: &str, word: &str) -> bool {
     words(text).any(|found| found.text == word)
+}
+
+/// Whether both are the same, in constants too.
+pub const fn same_bytes(left: &[u8], right: &[u8]) -> bool {
+    let mut index = 0;
+    while index < left.len() && index < right.len() && left[index] == right[index] {
+        index += 1;
+    }
+    index == left.len() && index == right.len()
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-use super::library::Library;
+use super::library::{Library, lock_sources};
 use super::plots;
 use crate::catalogue::pages::{Contents, catalogue_pages as written};
 use crate::catalogue::{self, Module, cost, plot, prefix, preset, probe};
@@ -107,8 +107,4 @@ fn draw_plot(
 
 fn drawing_stopped() -> Diagnostic {
     Diagnostic::error(codes::EVAL_INTERNAL, "the plots stopped with an internal error")
-}
-
-fn lock_sources(sources: &Mutex<SourceSet>) -> std::sync::MutexGuard<'_, SourceSet> {
-    sources.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }

@@ -9,8 +9,8 @@ use super::plot::{Series, error_plot, heat_map};
 use super::{Origin, escape_markup};
 use crate::bundle::Language;
 use crate::proof::check::{
-    Input, Outcome, Proof, Report, Verdict, failures_as_text, language_name, of_outcome,
-    short_number,
+    Input, Outcome, Proof, Report, Verdict, failures_as_text, headroom_text, language_name,
+    of_outcome, short_number,
 };
 
 const STYLE: &str = include_str!("style.css");
@@ -229,10 +229,6 @@ fn worst_share(outcome: &Outcome) -> f64 {
         .ok()
         .and_then(|verdict| verdict.worst)
         .map_or(0.0, |worst| worst.share())
-}
-
-fn headroom_text(share: f64) -> String {
-    if share == 0.0 { "exact".to_owned() } else { format!("{:.0} %", 100.0 * (1.0 - share)) }
 }
 
 /// A table cell, with a bar that shows how much of the tolerance is used.

@@ -62,7 +62,8 @@ pub trait Files: Send + Sync {
     /// The text of a file; `None` where there is none.
     fn read(&self, path: &str) -> Result<Option<String>, ReadError>;
 
-    /// Every file with one of the extensions, sorted: for suggestions and listings.
+    /// Every file with one of the extensions, sorted by bytes. Modules are looked up in it, so the
+    /// order matters.
     fn list(&self, extensions: &[&str]) -> Vec<String>;
 
     /// How diagnostics name a file of this package.

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use crate::bundle::Language;
 use crate::compose::{Composed, PartKind};
 use crate::diagnostic::{Diagnostic, nearest_name};
-use crate::parse::words::word_at;
+use crate::parse::words::leading_word;
 use crate::source::{Embedded, Files};
 
 /// Functions and types of both languages that are often misspelt.
@@ -169,7 +169,7 @@ fn library_names() -> &'static BTreeMap<String, Vec<String>> {
 /// The name that a line at the top of a module declares.
 fn declared_name(line: &str) -> Option<&str> {
     let rest = ["fn ", "const ", "struct "].iter().find_map(|word| line.strip_prefix(word))?;
-    Some(word_at(rest))
+    Some(leading_word(rest))
 }
 
 /// Adds a note with each declaration of a function, for a call whose arguments fit none of them.

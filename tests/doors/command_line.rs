@@ -118,7 +118,7 @@ fn standard_input() -> Outcome {
     Ok(())
 }
 
-/// A pipe with a path is read like standard input: `/dev/stdin`, or `<(...)` of a shell.
+/// A pipe with a path is read like standard input.
 fn pipes() -> Outcome {
     let package = Package::new(&[("half.wesl", HALF)])?;
     package.fed("compose /dev/stdin --lang wesl", BOTH)?.ends(0)?.says(&["fn half(x: f32)"])?;

@@ -103,8 +103,8 @@ fn conversions() -> Outcome {
     Ok(())
 }
 
-/// A misspelt package or module is reported once, at the wrong name, although two names are imported
-/// from it.
+/// A misspelt package or module is reported once, at its path, although two names are imported from
+/// it.
 fn packages() -> Outcome {
     let use_it = "@fragment fn m() -> @location(0) vec4f { return vec4f(a() + b()); }\n";
     let wrong = [

@@ -193,7 +193,7 @@ fn works(package: &Package, example: &str) -> Outcome {
     Err(format!("`{example}`: {}", String::from_utf8_lossy(&output.stderr)).into())
 }
 
-/// There are completions for five shells, and a manual page for each command.
+/// There are completions for five shells. `man` prints manual pages, and writes them with `-o`.
 fn completions() -> Outcome {
     let package = Package::new(&[])?;
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {

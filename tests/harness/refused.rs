@@ -85,7 +85,7 @@ const CASE_ERRORS: &[(&str, &str)] = &[
     ),
     (
         "[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\nformula = \"x\"\nlaws = { integral = \"x\", gives = 1, within = 1 }\n",
-        "mine.toml:5:8: error[case-invalid]: `x` is no direction",
+        "mine.toml:5:8: error[case-invalid]: `x` is not a direction",
     ),
     ("[[case]]\nfunction = \"hal\"\ninputs = { x = 1 }\n", "mine.toml:2:12: error["),
     (

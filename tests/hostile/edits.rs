@@ -30,11 +30,18 @@ fn many() -> Outcome {
     let few = changed(&mut server, 10);
     let many = changed(&mut server, EDITS);
     let told = many.iter().any(|message| message["method"] == "window/showMessage");
-    match (few.is_empty(), told) {
-        (true, true) => Ok(()),
+    let asked = server.receive(&json!({
+        "id": 1,
+        "method": "textDocument/documentSymbol",
+        "params": { "textDocument": { "uri": URI } },
+    }));
+    let refused = asked.iter().any(|message| message["error"].is_object());
+    match (few.is_empty(), told, refused) {
+        (true, true, true) => Ok(()),
         _ => {
             let what = format!("10 edits should give no message: {few:?}");
-            Err(format!("{what}; {EDITS} should give `showMessage`: {many:?}").into())
+            let what = format!("{what}; {EDITS} should give `showMessage`: {many:?}");
+            Err(format!("{what}; a question after them should give an error: {asked:?}").into())
         }
     }
 }

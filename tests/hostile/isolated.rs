@@ -1,5 +1,5 @@
 //! Shaders that are within every limit and still exhaust naga: it takes too long or too much memory.
-//! naga runs in a process of its own for them. Each gives an error, and other shaders are compiled.
+//! naga runs in a process of its own for them. Each gives an error.
 
 use std::fs;
 use std::io::Write as _;
@@ -51,7 +51,7 @@ fn values(count: usize) -> String {
     )
 }
 
-/// The error has a place in its file, and the other file is compiled.
+/// The error has a place in its file. The other file alone compiles within the same limit.
 fn refused(large: &str, kib: u64, words: &str) -> Outcome {
     let folder = tempfile::tempdir()?;
     fs::write(folder.path().join("large.wgsl"), large)?;

@@ -26,6 +26,17 @@ fn entangled(count: usize) -> impl Iterator<Item = String> {
     })
 }
 
+/// Constraints of which each alone takes more steps to count than are allowed. Together they are
+/// simple, since the last of them fix most of the axes.
+fn costly_in_turn(count: usize) -> impl Iterator<Item = String> {
+    let pair = |i: usize| format!("a{i} == 1 && a{} == 1", i + 60);
+    let costly = move |skipped: usize| {
+        let pairs: Vec<String> = (0..60).filter(|i| *i != skipped % 60).map(pair).collect();
+        format!("a0 == 0 || {}", pairs.join(" || "))
+    };
+    (0..count).map(costly).chain((0..110).map(|i| format!("a{i} == 0")))
+}
+
 /// A dependency that declares a root outside of its own folder.
 fn foreign_root() -> Files {
     let declared = |name: &str, rest: &str| {
@@ -54,6 +65,13 @@ pub const CASES: &[Hostile] = &[
         program(100, 2, (0..20_000).map(|_| "a1 != 1 || a2 != 1".to_owned()))
     }),
     gen_of("entangled_constraints", "too complex", || program(120, 2, entangled(3000))),
+    Hostile {
+        name: "constraints_that_are_costly_in_turn",
+        files: || program(120, 2, costly_in_turn(400)),
+        arguments: "variants --manifest lamplight.toml",
+        code: 0,
+        words: "1,024",
+    },
     gen_of("long_constraint", "its limit is 1,000,000", || {
         let terms: Vec<String> = (0..20_000).map(|i| format!("a{} == 1", i % 20)).collect();
         program(20, 2, [terms.join(" || ")].into_iter())

@@ -34,6 +34,7 @@ pub fn constants_like_members() -> Outcome {
     const MANIFEST: &str = "[program.one]\nglsl = { fragment = \"one.frag.glsl\" }\n\
         targets = [\"wgsl\"]\n[program.one.axis]\nfirst = { values = [false, true] }\n";
     const TEXT: &str = "#version 450
+const int SIZE = 2;
 #if FIRST
 const float bias = 0.25;
 const int rows = 2;
@@ -43,6 +44,7 @@ layout(set = 0, binding = 0) uniform Shadow {
     vec4 tint;
     float bias, strength[2];
     vec4 rows;
+    vec4 ramp[SIZE];
 } shadow;
 #if !FIRST
 const float bias = 0.25;
@@ -51,7 +53,8 @@ const int rows = 2;
 float strength = 0.5;
 layout(location = 0) out vec4 color;
 float shaded(float x) { Light light = Light(bias); return x * light.bias + float(rows); }
-void main() { color = shadow.tint * shaded(bias) * strength; }
+float counted(int count) { return float(count); }
+void main() { color = shadow.tint * shaded(bias) * strength * counted(SIZE); }
 ";
     let folder = tempfile::tempdir()?;
     std::fs::write(folder.path().join("one.frag.glsl"), TEXT)?;
@@ -62,6 +65,10 @@ void main() { color = shadow.tint * shaded(bias) * strength; }
         let is_read = |member: &&&str| text.contains(&format!("shadow.{member}"));
         if let Some(member) = ["bias", "strength", "rows"].iter().find(is_read) {
             return Err(format!("[{key}] reads the member `{member}`:\n{text}").into());
+        }
+        // The length of an array is no member.
+        if !text.contains("const SIZE:") {
+            return Err(format!("[{key}] has no `SIZE`:\n{text}").into());
         }
     }
     all_linked(&together)

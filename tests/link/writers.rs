@@ -191,7 +191,7 @@ pub fn lacking() -> Outcome {
 }
 
 /// naga calls the block of a uniform that is no structure `type_block_0Fragment`, also where the
-/// author has a structure of that name. The structure keeps its name, and blocks get their own.
+/// author has a structure of that name. The judges must accept the outputs.
 pub fn blocks_beside_structures() -> Outcome {
     let text = "
 struct type_block_0Fragment { half: vec4f }
@@ -202,7 +202,31 @@ fn Zqbqz(x: vec4f) -> vec4f { return x; }
 @fragment fn fs_main() -> @location(0) vec4f { return Zqbqz(own.half) + plain; }
 @vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
 ";
-    judged(text, "").map(|_| ())
+    match judged(text, "")?.summary.whole.is_empty() {
+        true => Err("the text should be compiled as a whole".into()),
+        false => Ok(()),
+    }
+}
+
+/// Within a structure, C++ takes the name of a member for the member, so that a structure of that name
+/// cannot be the type of another member.
+pub fn types_like_members() -> Outcome {
+    let text = "
+struct size { width: vec4f, height: f32 }
+struct Outer { size: size, other: size }
+@group(0) @binding(0) var<uniform> outer: Outer;
+// A name like this one is not linked, so that naga writes the text as a whole.
+fn Zqbqz(x: vec4f) -> vec4f { return x; }
+@fragment fn fs_main() -> @location(0) vec4f {
+    let own = size(outer.size.width, 1.0);
+    return Zqbqz(own.width) * outer.other.height;
+}
+@vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
+";
+    match judged(text, "")?.summary.whole.is_empty() {
+        true => Err("the text should be compiled as a whole".into()),
+        false => Ok(()),
+    }
 }
 
 /// HLSL has two variables for a structure that an entry point returns, which naga names after the

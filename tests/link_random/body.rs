@@ -302,6 +302,7 @@ impl<'d> Body<'d> {
                 let other = self.value(&Type::Vector(size, Scalar::Float), depth);
                 match scalar {
                     // As for single numbers: GLSL leaves open what a negative one becomes.
+                    Scalar::Uint if self.draft.has_two_rows => format!("{name}({other})"),
                     Scalar::Uint if self.has("abs") => format!("{name}(abs({other}))"),
                     Scalar::Uint => one,
                     _ => format!("{name}({other})"),

@@ -55,10 +55,11 @@ impl Body<'_> {
     }
 
     /// A float as an integer. GLSL leaves open what a negative one becomes without a sign, and naga
-    /// passes that on.
+    /// passes that on. A program with matrices of two rows has no target in GLSL.
     fn whole(&mut self, scalar: Scalar, one: String, depth: usize) -> String {
         let (name, number) = (self.draft.spelling.scalar(scalar), self.value(&FLOAT, depth));
         match scalar {
+            Scalar::Uint if self.draft.has_two_rows => format!("{name}({number})"),
             Scalar::Uint if self.has("abs") => format!("{name}(abs({number}))"),
             Scalar::Uint => one,
             _ => format!("{name}({number})"),

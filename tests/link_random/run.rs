@@ -48,6 +48,14 @@ pub struct Runnable {
     pub unit: Unit,
 }
 
+impl Runnable {
+    /// Whether naga accepts all of its text, with functions that the entry point does not need. WGSL
+    /// was validated with all of them before.
+    pub fn is_valid_as_a_whole(&self) -> bool {
+        self.composed.language == Language::Wesl || validate(&lean(&self.composed)).is_ok()
+    }
+}
+
 /// The results of the stages on one executor.
 #[derive(Debug, Default, Clone)]
 pub struct Ran {
@@ -289,7 +297,10 @@ impl<'r> Ready<'r> {
             Ok(evaluator) => evaluator,
             Err(error) => {
                 let finding = Finding::new(format!("evaluator: {error}"), error);
-                return frames.first().map(|frame| (frame.target, finding)).into_iter().collect();
+                // The finding is one of the evaluator, not of a target. WGSL is never excused by
+                // other numbers of ids.
+                let target = frames.first().map_or(Target::WGSL, |frame| frame.target);
+                return vec![(target, finding)];
             }
         };
         let mut findings = Vec::new();

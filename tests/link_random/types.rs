@@ -34,7 +34,7 @@ pub struct When {
 /// The values of an axis; none for a boolean axis.
 pub type Axis = &'static [&'static str];
 
-/// The axes of a program. Their names are numbers.
+/// The axes of a program. The name of the first is `axis_0`.
 pub const AXES: [Axis; 4] = [&[], &[], &["one", "two", "three"], &["low", "high", "none", "all"]];
 
 /// A structure, of which some members may exist only under a condition.

@@ -40,8 +40,8 @@ for (const { files, root } of asked.mistakes) {
 for (const [path, ...words] of asked.references) {
     text(Array.from(lamplight.reference(path, words)).map(String).join(" "));
 }
-// A text that exhausts the stack or the memory gives an error of the class `Stopped`. The next call
-// must be answered nevertheless.
+// A hostile text is refused, or it stops the toolchain with an error of the class `Stopped`. The next
+// call must be answered nevertheless.
 for (const files of asked.hostile) {
     try {
         const made = lamplight.compile({ files, root: "a.wesl", targets: ["wgsl"] });

@@ -170,7 +170,7 @@ Accum add_lamp(Accum sum, Surface surface, uint i) {
 #endif
 }
 
-/// All light that leaves the point towards the viewer, but for the environment maps'.
+/// The sums of the light that leaves the point towards the viewer, without that of the environment maps.
 Accum lit(Surface surface) {
 #if AMBIENT == AMBIENT_NONE || AMBIENT == AMBIENT_IBL
     Accum sum = Accum(vec3(0.0), vec3(0.0));

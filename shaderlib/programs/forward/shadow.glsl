@@ -16,7 +16,7 @@ layout(std140, set = 0, binding = 4) uniform Caster {
     float far;
     /// Which of the lamps, below `max_lights`.
     uint light;
-    /// Points this near to the light and nearer are lit; the w of its clip space.
+    /// Points whose w in the light's clip space is at most this are lit.
     float min_w;
     /// Subtracted from the depth that is compared.
     float bias;

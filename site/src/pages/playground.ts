@@ -74,7 +74,7 @@ export async function page(into: HTMLElement) {
         ],
     }));
     function changed() {
-        // Before anything is computed: what was typed is there after a reload, whatever happens.
+        // Saved before anything is computed, so that a reload restores what was typed.
         localStorage.setItem(KEPT, JSON.stringify(state));
         run();
     }
@@ -135,7 +135,7 @@ export async function page(into: HTMLElement) {
         URL.revokeObjectURL(link.href);
     };
     const restart = () => {
-        if (!confirm("Begin with the first example again?")) return;
+        if (!confirm("Discard your files, and begin with the first example again?")) return;
         Object.assign(state, structuredClone(FIRST));
         begin(); files(); changed();
     };

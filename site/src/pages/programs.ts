@@ -69,7 +69,7 @@ export async function page(into: HTMLElement) {
         Object.assign(state, change);
         update();
     }
-    // The light moves on a half sphere over the scene.
+    // The light moves in the plane z = 2.5 of the scene.
     const move = (x: number, y: number) => {
         const place = [3 * (2 * x - 1), 3 * (1.2 - y), 2.5];
         set({ light: place.map((one) => one.toFixed(2)).join(",") });

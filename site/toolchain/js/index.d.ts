@@ -27,8 +27,8 @@ export interface Toolchain {
     pictureFrames: typeof raw.pictureFrames;
 }
 
-/** An input for which the toolchain stopped; the next call finds it begun anew. */
+/** An input stopped the toolchain. The next call finds it restarted. */
 export declare class Stopped extends Error {}
 
-/** Loads the toolchain, by itself from beside this file. */
+/** Loads the toolchain. Without a source, it loads the WebAssembly beside this file. */
 export declare function load(source?: Source): Promise<Toolchain>;

@@ -34,7 +34,7 @@ pub fn write_depfile(
 /// A name in the syntax of make. A line end in a name would begin a rule of its own, and make has no
 /// way to write one.
 fn escape_for_make(path: &str) -> Result<String, Failure> {
-    if path.contains(['\n', '\r', '\0']) {
+    if path.contains(['\n', '\r']) {
         return Err(Failure::input(format!(
             "the file name {path:?} has a line end, which a rule for make cannot hold"
         )));

@@ -2,6 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
+use rustc_hash::FxHashMap;
+
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::limits::count_steps;
 use crate::parse::wesl::{Comparison, ConditionId, Event, Expression, ExpressionId, Name, Operand};
@@ -31,7 +33,7 @@ pub struct Evaluator<'a> {
     /// Where flags are named, once one of them has no value.
     places: Option<HashMap<Name, Vec<Span>>>,
     /// By module and guard: whether it or one behind it holds.
-    guards: HashMap<(u32, u32), bool>,
+    guards: FxHashMap<(u32, u32), bool>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -45,7 +47,7 @@ impl<'a> Evaluator<'a> {
             errors: Vec::new(),
             unknown: HashSet::new(),
             places: None,
-            guards: HashMap::new(),
+            guards: FxHashMap::default(),
         }
     }
 
@@ -81,27 +83,28 @@ impl<'a> Evaluator<'a> {
 
     /// Visits the events of an item under these settings: uses of globals, cuts, and removed nodes.
     pub fn live(&mut self, node: u32, events: &[Event], mut visit: impl FnMut(&mut Self, Event)) {
-        let mut at = 0;
+        let (mut at, mut steps) = (0, 0);
         while let Some(event) = events.get(at) {
             at += 1;
-            count_steps(1);
+            steps += 1;
             match *event {
                 Event::Node { condition, .. } if self.holds(node, condition) => {}
                 Event::Node { next, .. } => {
                     visit(self, *event);
                     at = next as usize;
                 }
-                Event::Use { guard, .. } if self.is_local(node, guard) => {}
+                Event::Use { guard: Some(guard), .. } if self.is_local(node, guard) => {}
                 _ => visit(self, *event),
             }
         }
+        count_steps(steps);
     }
 
     /// Whether a use means a local declaration whose condition holds. Uses share the guards behind
     /// theirs, and each is looked at once.
-    fn is_local(&mut self, node: u32, mut guard: Option<u32>) -> bool {
+    fn is_local(&mut self, node: u32, guard: u32) -> bool {
         let graph = self.graph;
-        let (mut passed, mut answer) = (Vec::new(), false);
+        let (mut guard, mut passed, mut answer) = (Some(guard), Vec::new(), false);
         while let Some(index) = guard {
             if let Some(known) = self.guards.get(&(node, index)) {
                 answer = *known;

@@ -64,8 +64,10 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
         return Err(columns::TAKEN.to_owned());
     }
     let options = writer_options(source)?;
-    let changed = rename::rename_taken(source.module, &is_taken);
-    let module = changed.as_ref().unwrap_or(source.module);
+    let unlike = rename::rename_types_like_members(source.module);
+    let module = unlike.as_ref().unwrap_or(source.module);
+    let changed = rename::rename_taken(module, &is_taken);
+    let module = changed.as_ref().unwrap_or(module);
     let entry = module.entry_points.get(source.index).ok_or("there is no entry point")?;
     let pipeline = PipelineOptions { entry_point: Some((source.stage, entry.name.clone())) };
     let mut text = Text::default();

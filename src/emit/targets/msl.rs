@@ -12,7 +12,7 @@ use naga::back::msl::{
 use crate::bundle::{BufferSizes, Kind, Target};
 use crate::emit::slots::{Numbering, assign_slots, native_reflection};
 use crate::emit::text::Text;
-use crate::emit::{Emitted, Entry, Judge, Source, clip};
+use crate::emit::{Emitted, Entry, Judge, Source, clip, rename};
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -41,8 +41,10 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
         entry_point: Some((source.stage, source.entry.to_owned())),
         ..PipelineOptions::default()
     };
+    let unlike = rename::rename_types_like_members(source.module);
+    let module = unlike.as_ref().unwrap_or(source.module);
     let mut text = Text::default();
-    let written = Writer::new(&mut text).write(source.module, source.info, &options, &pipeline);
+    let written = Writer::new(&mut text).write(module, source.info, &options, &pipeline);
     let info = written.map_err(|error| text.explain(error))?;
     let text = text.0;
     let name = info

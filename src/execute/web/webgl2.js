@@ -240,28 +240,24 @@ void main() {
     return found;
   }
 
-  function buffer(target, text) {
+  function buffer(target, bytes) {
     const made = gl.createBuffer();
     gl.bindBuffer(target, made);
-    gl.bufferData(target, bytesOf(text), gl.STATIC_DRAW);
+    gl.bufferData(target, bytes, gl.STATIC_DRAW);
     return made;
   }
 
-  // The buffer of a block. std140 rounds the size of a block up to 16 bytes, and WebGL draws nothing
-  // from a buffer that is smaller.
-  function block(text) {
-    const given = bytesOf(text);
-    const bytes = new Uint8Array(Math.ceil(given.length / 16) * 16);
-    bytes.set(given);
-    const made = gl.createBuffer();
-    gl.bindBuffer(gl.UNIFORM_BUFFER, made);
-    gl.bufferData(gl.UNIFORM_BUFFER, bytes, gl.STATIC_DRAW);
-    return made;
+  // std140 rounds the size of a block up to 16 bytes, and WebGL draws nothing from a buffer that is
+  // smaller.
+  function padded(bytes) {
+    const whole = new Uint8Array(Math.ceil(bytes.length / 16) * 16);
+    whole.set(bytes);
+    return whole;
   }
 
   function attributes({ stride, attributes, words }) {
     if (!attributes.length) return [];
-    const vertices = buffer(gl.ARRAY_BUFFER, words);
+    const vertices = buffer(gl.ARRAY_BUFFER, bytesOf(words));
     for (const { shaderLocation, offset, format, words } of attributes) {
       gl.enableVertexAttribArray(shaderLocation);
       if (format.startsWith("uint")) {
@@ -276,7 +272,7 @@ void main() {
   function drawItem(mesh, blocks, buffers) {
     const used = new Map(blocks.map(({ place, number }) => [place, number]));
     const kept = [...used].map(([place, number]) => {
-      const made = block(buffers[place]);
+      const made = buffer(gl.UNIFORM_BUFFER, padded(bytesOf(buffers[place])));
       gl.bindBufferBase(gl.UNIFORM_BUFFER, number, made);
       return made;
     });
@@ -284,7 +280,7 @@ void main() {
     gl.bindVertexArray(array);
     kept.push(...attributes(mesh));
     if (mesh.indices) {
-      kept.push(buffer(gl.ELEMENT_ARRAY_BUFFER, mesh.indices));
+      kept.push(buffer(gl.ELEMENT_ARRAY_BUFFER, bytesOf(mesh.indices)));
       gl.drawElements(gl.TRIANGLES, mesh.count, gl.UNSIGNED_INT, 0);
     } else {
       gl.drawArrays(gl.TRIANGLES, 0, mesh.count);

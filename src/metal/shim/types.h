@@ -175,6 +175,14 @@ template <class Element, class Vector> struct packed3 {
   __LL_OPERATOR(-)
   __LL_OPERATOR(*)
   __LL_OPERATOR(/)
+  // Of whole numbers. No body is compiled before it is used.
+  friend Vector operator~(packed3 a) { return ~Vector(a); }
+  __LL_OPERATOR(%)
+  __LL_OPERATOR(&)
+  __LL_OPERATOR(|)
+  __LL_OPERATOR(^)
+  __LL_OPERATOR(<<)
+  __LL_OPERATOR(>>)
 #undef __LL_OPERATOR
 #define __LL_OPERATOR(op)                                                          \
   friend mask3 operator op(packed3 a, packed3 b) { return Vector(a) op Vector(b); } \
@@ -192,6 +200,15 @@ template <class Element, class Vector> struct packed3 {
 using packed_float3 = packed3<float, float3>;
 using packed_int3 = packed3<wchar_t, int3>;
 using packed_uint3 = packed3<unsigned int, uint3>;
+
+// A number with a sign is shifted by one without.
+#define __LL_OPERATOR(op)                                                                   \
+  inline int3 operator op(packed_int3 a, uint3 b) { return int3(a) op b; }                  \
+  inline int3 operator op(packed_int3 a, packed_uint3 b) { return int3(a) op uint3(b); }    \
+  inline int3 operator op(int3 a, packed_uint3 b) { return a op uint3(b); }
+__LL_OPERATOR(<<)
+__LL_OPERATOR(>>)
+#undef __LL_OPERATOR
 
 }  // namespace __lamplight
 

@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use crate::parse::words::same_bytes;
+
 /// Index of a spelling in its [`Symbols`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Symbol(pub u32);
@@ -48,14 +50,6 @@ const fn known_position(text: &str) -> Symbol {
         index += 1;
     }
     Symbol(index as u32)
-}
-
-const fn same_bytes(left: &[u8], right: &[u8]) -> bool {
-    let mut index = 0;
-    while index < left.len() && index < right.len() && left[index] == right[index] {
-        index += 1;
-    }
-    index == left.len() && index == right.len()
 }
 
 /// A table of spellings and their numbers.

@@ -210,11 +210,12 @@ impl Space {
         // Every level of the diagram is made, whatever the condition is.
         steps.spend(domains.len() as u64).map_err(|Exhausted| TooComplex)?;
         let mut conditions = Conditions::new(domains.clone(), *steps);
-        let condition = conditions.add(formula)?;
         let order = (0..self.axes.len()).collect();
-        let diagram = Diagram::new(&mut conditions, condition, &domains, order)?;
+        let diagram = conditions
+            .add(formula)
+            .and_then(|condition| Diagram::new(&mut conditions, condition, &domains, order));
         *steps = conditions.steps();
-        Ok(diagram.count())
+        Ok(diagram?.count())
     }
 
     /// Every axis at its default.

@@ -134,18 +134,15 @@ pub fn spend_steps(
     each: usize,
     steps: &mut Steps,
 ) -> Result<(), Diagnostic> {
-    let message = || {
-        let most = steps.most();
-        format!("the {rows} rows of `{}` take {each} steps each, more than {most}", case.function)
-    };
-    let mut left = *steps;
-    left.spend(rows as u64 * each as u64).map_err(|_| {
-        Diagnostic::error(codes::CASE_INVALID, message())
+    let most = steps.most();
+    steps.spend(rows as u64 * each as u64).map_err(|_| {
+        let function = &case.function;
+        let message =
+            format!("the {rows} rows of `{function}` take {each} steps each, more than {most}");
+        Diagnostic::error(codes::CASE_INVALID, message)
             .at(case.span, "of this function")
             .note("its domains, formulas, laws and tolerances are counted for every row")
-    })?;
-    *steps = left;
-    Ok(())
+    })
 }
 
 /// How many rows there will be. Refuses a case with too many, before any of them is made.

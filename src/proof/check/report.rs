@@ -112,7 +112,8 @@ pub fn language_name(language: Language) -> &'static str {
     }
 }
 
-fn headroom_text(share: f64) -> String {
+/// How much of the tolerance the error leaves, in percent.
+pub fn headroom_text(share: f64) -> String {
     if share == 0.0 { "exact".to_owned() } else { format!("{:.0} %", 100.0 * (1.0 - share)) }
 }
 

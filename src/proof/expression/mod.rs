@@ -13,7 +13,7 @@ use std::sync::Mutex;
 use naga::proc::TypeResolution;
 use naga::{Expression, Handle, ScalarKind, Statement};
 
-use super::library::Library;
+use super::library::{Library, lock_sources};
 use crate::bundle::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::Session;
@@ -158,8 +158,4 @@ fn relocate_labels(
         }
     }
     error
-}
-
-fn lock_sources(sources: &Mutex<SourceSet>) -> std::sync::MutexGuard<'_, SourceSet> {
-    sources.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }

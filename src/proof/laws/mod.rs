@@ -231,7 +231,7 @@ fn direction_words(law: &Law, name: &str, scope: &Scope<'_>) -> Result<Range<usi
     }
     Err(Diagnostic::error(
         codes::CASE_INVALID,
-        format!("`{name}` is no direction: it has not three floats"),
+        format!("`{name}` is not a direction: it does not have three floats"),
     )
     .at(law.span, "in this law"))
 }

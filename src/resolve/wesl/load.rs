@@ -8,7 +8,7 @@ use super::Kept;
 use super::graph::{Bases, Candidate, Constant, Graph, Importer, Node, Target, certain_errors};
 use super::lint;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::limits::{LINK_FACTOR, LINK_STEPS, Steps};
+use crate::limits::{RESOLVE_FACTOR, RESOLVE_STEPS, Steps};
 use crate::parse::wesl::{self, ConditionId, Name, Names, Path, Placed, Reference};
 use crate::resolve::Packages;
 use crate::source::{self, LIMITS, Package, SourceId, SourceSet, Span};
@@ -51,7 +51,7 @@ impl<'a> Loader<'a> {
             kept: None,
             known: HashMap::new(),
             listings: HashMap::new(),
-            steps: Cell::new(Steps::new(LINK_STEPS)),
+            steps: Cell::new(Steps::new(RESOLVE_STEPS)),
             positions: HashMap::new(),
             used: None,
         }
@@ -116,6 +116,9 @@ impl<'a> Loader<'a> {
         while at < self.nodes.len() {
             self.resolve(at as u32);
             at += 1;
+        }
+        if self.steps.get().is_exhausted() {
+            return None;
         }
         (!self.nodes.is_empty()).then(|| self.graph())
     }
@@ -223,7 +226,7 @@ impl<'a> Loader<'a> {
     ) -> u32 {
         let text = self.sources.get(source).text.clone();
         let mut steps = self.steps.get();
-        steps.grant(LINK_FACTOR.saturating_mul(text.len() as u64));
+        steps.grant(RESOLVE_FACTOR.saturating_mul(text.len() as u64));
         self.steps.set(steps);
         let module = match &mut self.kept {
             Some(kept) => kept.parse(source, text, &mut self.names),
@@ -284,7 +287,7 @@ impl<'a> Loader<'a> {
         format!("imported by {}:{line}:{column}", self.sources.get(span.source).path)
     }
 
-    /// Files of a package, for suggestions.
+    /// Files of a package, sorted.
     pub(super) fn listing(&mut self, package: usize) -> &[String] {
         let files = &self.package(package).files;
         self.listings.entry(package).or_insert_with(|| files.list(&["wesl", "wgsl"]))

@@ -48,7 +48,7 @@ fn load_with(mut loader: load::Loader<'_>, root: &str) -> Result<Graph, Diagnost
 
 /// Reads every module of the root package at one of the paths, and all that they lead to. This is
 /// for editors, which ask who uses what. Errors are in the graph. `None` where no module can be
-/// read.
+/// read, or where names take more steps than are allowed: some would have no meaning.
 pub fn load_all(
     sources: &mut SourceSet,
     packages: &Packages,

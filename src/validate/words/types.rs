@@ -13,9 +13,9 @@ pub fn type_of(module: &Module, name: &str, error: &TypeError) -> Said {
     let what = if name.is_empty() { "this type".to_owned() } else { format!("`{name}`") };
     match error {
         TypeError::MissingCapability(capabilities) => lacking_words(*capabilities),
-        TypeError::InvalidAtomicWidth(..) => {
-            Said::plain(format!("{what} is no type that an atomic can have: `u32` and `i32` are"))
-        }
+        TypeError::InvalidAtomicWidth(..) => Said::plain(format!(
+            "{what} is not a type that an atomic can have: `u32` and `i32` are"
+        )),
         TypeError::InvalidPointerBase(base) => {
             Said::plain(format!("there are no pointers to {}", type_text(module, *base)))
         }

@@ -14,6 +14,8 @@ struct Drawn {
     @builtin(frag_depth) depth: f32,
     @builtin(sample_mask) mask: u32,
 }
+// Metal packs these vectors, so that the number behind each has room.
+struct Packed { a: vec3u, b: u32, c: vec3i, d: i32 }
 struct Inner { a: vec3f, b: f32, c: array<mat3x3f, 2>, d: mat4x2f }
 override scale: f32 = 1.5;
 override count: i32 = -3;
@@ -22,6 +24,7 @@ const LIST = array<vec3f, 3>(vec3f(1.0), vec3f(0.5, 1.0, -2.0), vec3f());
 @group(0) @binding(0) var<uniform> inner: Inner;
 @group(0) @binding(1) var map: texture_2d<f32>;
 @group(0) @binding(2) var smp: sampler;
+@group(0) @binding(3) var<uniform> numbers: Packed;
 
 @vertex fn moved(
     @builtin(vertex_index) index: u32,
@@ -69,6 +72,8 @@ fn changed(at: ptr<function, vec3f>, by: f32) -> f32 {
     let packed = pack4xI8(vec4i(1, -2, 3, whole.x)) ^ pack4xU8Clamp(vec4u(300u)) ^ pack4xU8(vec4u(4u)) ^ pack4xI8Clamp(vec4i(-300));
     let words = vec4u(unpack4xI8(packed) + vec4i(unpack4xU8(packed)));
     let bits = firstLeadingBit(words) + firstTrailingBit(words) + vec4u(firstLeadingBit(vec4i(words)));
-    let chosen = countLeadingZeros(words.xyz) + reverseBits(words.xyz) + countOneBits(words.yzw);
+    let masked = (words.xyz ^ numbers.a) | (~numbers.a >> vec3u(numbers.b)) & numbers.a;
+    let shifted = ((numbers.c << numbers.a) >> masked) % vec3i(numbers.d) + (whole << numbers.a);
+    let chosen = countLeadingZeros(words.xyz) + reverseBits(words.xyz) + countOneBits(words.yzw) + vec3u(shifted);
     return Drawn(sum * dpdxFine(sum) + fwidthCoarse(sum), bits + vec4u(chosen, u32((moved.across < sum.xy).y)), at.xy, at.z, mask | sample);
 }

@@ -17,7 +17,7 @@ pub fn trials() -> impl Iterator<Item = Trial> {
 type Wrong = (&'static str, fn() -> Vec<u8>, &'static str);
 
 const WRONG: &[Wrong] = &[
-    ("text", || b"solid cube".to_vec(), "no binary glTF"),
+    ("text", || b"solid cube".to_vec(), "not a binary glTF file"),
     ("version", || [b"glTF".as_slice(), &[1, 0, 0, 0]].concat(), "version 1"),
     ("cut_short", || changed(|_| ())[..40].to_vec(), "more than the file"),
     ("no_document", || glb(&json!([1]), &[]), "model.glb"),

@@ -152,8 +152,8 @@ fn at_once(package: &Package, clock: &Clock, days: i64) -> Result<Option<String>
         command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().map_err(environment)
     };
     let (one, other) = (start(days)?, start(-days)?);
-    for child in [one, other] {
-        let output = child.wait_with_output().map_err(environment)?;
+    for output in [one, other].map(Child::wait_with_output) {
+        let output = output.map_err(environment)?;
         if let Some(reason) = package.current(&output, number)? {
             return Ok(Some(reason));
         }
