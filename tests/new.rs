@@ -32,7 +32,7 @@ pub fn trials() -> Vec<Trial> {
         ("axis_value", axis_value),
         ("diagnostic", diagnostic),
         ("executor", || rust("executor", "src/execute/executors/fresh.rs")),
-        ("target", || rust("target", "src/emit/targets/fresh.rs")),
+        ("target", target),
         ("scene", || rust("scene", "src/scene/sets/fresh.rs")),
         ("examples", examples),
         ("mistakes", mistakes),
@@ -41,8 +41,8 @@ pub fn trials() -> Vec<Trial> {
 }
 
 /// The files that the command would write, by path. Nothing is written here.
-fn make(kind: &str, name: &str) -> Result<BTreeMap<String, String>, Failed> {
-    let made = made::make(&root(), kind, name)?;
+fn make(kind: &str, name: &str, rest: &[&str]) -> Result<BTreeMap<String, String>, Failed> {
+    let made = made::make(&root(), kind, name, rest)?;
     match made.next.is_empty() {
         true => Err(format!("`new {kind} {name}` does not say what to do next").into()),
         false => Ok(made.files.into_iter().collect()),
@@ -68,7 +68,7 @@ fn parsed<T>(
 /// compiles, and its documentation is demanded.
 fn function() -> Outcome {
     for module in ["brdf::diffuse", "brdf::fresh", "optics::fresh"] {
-        let files = make("function", &format!("{module}::minnaert"))?;
+        let files = make("function", &format!("{module}::minnaert"), &[])?;
         let stem = format!("shaderlib/{}", module.replace("::", "/"));
         let cases = parsed(text(&files, &format!("{stem}.toml"))?, cases::parse_cases)?;
         if !cases.cases.iter().any(|case| case.function == "minnaert") {
@@ -148,7 +148,7 @@ fn compiles(files: &BTreeMap<String, String>, stem: &str) -> Outcome {
 
 /// A new value of an axis is in the manifest, in the lock file and in the table of pictures.
 fn axis_value() -> Outcome {
-    let files = make("axis-value", "forward::fog=height")?;
+    let files = make("axis-value", "forward::fog=height", &[])?;
     let manifest = parsed(text(&files, "shaderlib/lamplight.toml")?, manifest::parse)?;
     let program = manifest.program("forward").ok_or("no program `forward`")?;
     let axis = program.space.axis("fog").ok_or("no axis `fog`")?;
@@ -180,7 +180,7 @@ fn axis_value() -> Outcome {
 
 /// A new diagnostic has an empty title and page, which trials then demand.
 fn diagnostic() -> Outcome {
-    let files = make("diagnostic", "unknown-swizzle")?;
+    let files = make("diagnostic", "unknown-swizzle", &[])?;
     let text = text(&files, "src/diagnostic/codes/unknown-swizzle.md")?;
     match text == "#\n\nPage: \n" {
         true => Ok(()),
@@ -188,9 +188,45 @@ fn diagnostic() -> Outcome {
     }
 }
 
+/// A new version of a language is complete, except for what is unlike the version that it is made
+/// after: the target with its version, an executor, and the guide. Nothing of it names the other.
+fn target() -> Outcome {
+    for (name, rest, like, version) in [
+        ("glsl460", &[][..], "glsl450", "Version::Desktop(460)"),
+        ("essl310", &[], "essl300", "Version::new_gles(310)"),
+        ("glsl400", &["glsl330"], "glsl330", "Version::Desktop(400)"),
+        ("msl24", &[], "msl", "extension: \"msl24.metal\""),
+        ("wgsl2", &["wgsl"], "wgsl", "extension: \"wgsl2\""),
+    ] {
+        let files = make("target", name, rest)?;
+        let constant = format!("Target::{}", name.to_uppercase());
+        let other = format!("Target::{}", like.to_uppercase());
+        let wanted = [
+            (format!("src/emit/targets/{name}.rs"), version.to_owned()),
+            (format!("src/execute/executors/{name}.rs"), format!("name: \"{name}\"")),
+        ];
+        for (path, part) in wanted {
+            let text = text(&files, &path)?;
+            if !text.contains(&part)
+                || !text.contains(&constant)
+                || text.replace(&constant, "").contains(&other)
+            {
+                return Err(format!("{path} should have `{part}`, not `{other}`:\n{text}").into());
+            }
+        }
+        let page = text(&files, "docs/guide/targets.md")?;
+        let unnamed = |line: &&str| line.starts_with('|') && line.contains(&format!("`{like}`"));
+        let lost = page.lines().filter(unnamed).find(|line| !line.contains(&format!("`{name}`")));
+        if let Some(line) = lost {
+            return Err(format!("docs/guide/targets.md has no `{name}` in `{line}`").into());
+        }
+    }
+    Ok(())
+}
+
 /// A new entry is a Rust file with the entry's name. Its description is empty, which trials notice.
 fn rust(kind: &str, path: &str) -> Outcome {
-    let files = make(kind, "fresh")?;
+    let files = make(kind, "fresh", &[])?;
     let text = text(&files, path)?;
     balanced(text)?;
     if house::undescribed("fresh", "").is_none() || house::undescribed("fresh", "What.").is_some() {
@@ -227,10 +263,14 @@ fn balanced(text: &str) -> Outcome {
     }
 }
 
-/// The example of each kind in the usage can be made.
+/// The example of each kind in the usage can be made. Further arguments are in brackets.
 fn examples() -> Outcome {
     for kind in made::KINDS {
-        make(kind.name, kind.example).map_err(|problem| format!("{}: {problem:?}", kind.name))?;
+        if !(kind.rest.is_empty() || kind.rest.starts_with('[') && kind.rest.ends_with(']')) {
+            return Err(format!("{}: `{}` should be in brackets", kind.name, kind.rest).into());
+        }
+        let [name, rest @ ..] = kind.example else { return Err("an example has no name".into()) };
+        make(kind.name, name, rest).map_err(|problem| format!("{}: {problem:?}", kind.name))?;
     }
     Ok(())
 }
@@ -247,13 +287,14 @@ fn mistakes() -> Outcome {
         ("axis-value", "forward::mist=linear", "has no `[program.forward.axis.mist]`"),
         ("axis-value", "forward::max_lights=many", "has no list of names"),
         ("target", "hlsl", "exists already"),
+        ("target", "dxil", "no target is like `dxil`: name one of essl300, glsl330"),
         ("executor", "eval", "exists already"),
         ("scene", "Room", "must be small letters"),
         ("diagnostic", "unknown_axis", "must be small letters"),
         ("diagnostic", "unknown-axis", "exists already"),
     ];
     for (kind, name, expected) in wrong {
-        match made::make(Path::new(&root()), kind, name) {
+        match made::make(Path::new(&root()), kind, name, &[]) {
             Err(said) if said.contains(expected) => {}
             Err(said) => {
                 let what = format!("expected `{expected}`, found `{said}`");

@@ -32,7 +32,9 @@ fn open() -> Result<Box<dyn Session>, Unavailable> {
 /// Whether the driver is installed. If so, it is announced to the loader.
 pub fn installed() -> Result<(), Unavailable> {
     announce();
-    driver_manifest().map(|_| ()).ok_or(Unavailable { reason: format!("there is no {NAME} driver") })
+    driver_manifest()
+        .map(|_| ())
+        .ok_or(Unavailable { reason: format!("there is no {NAME} driver") })
 }
 
 /// Part of the adapter's name.

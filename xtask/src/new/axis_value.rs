@@ -1,14 +1,16 @@
 //! A value of an axis of one of the library's programs.
 
-use super::{Kind, Made, Repository, check_name};
+use super::{Kind, Made, Repository, check_name, refuse_rest};
 
-pub const KIND: Kind = Kind { name: "axis-value", example: "forward::fog=height", make };
+pub const KIND: Kind =
+    Kind { name: "axis-value", example: &["forward::fog=height"], rest: "", make };
 
 const MANIFEST: &str = "shaderlib/lamplight.toml";
 const LOCK: &str = "shaderlib/lamplight.lock";
 const PICTURES: &str = "shaderlib/pictures.toml";
 
-fn make(repository: &Repository<'_>, text: &str) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, text: &str, rest: &[&str]) -> Result<Made, String> {
+    refuse_rest(rest)?;
     let parsed = text.split_once("::").and_then(|(program, rest)| {
         let (axis, value) = rest.split_once('=')?;
         Some((program, axis, value))

@@ -1,10 +1,11 @@
 //! A place where functions and frames run.
 
-use super::{Kind, Made, Repository, check_name};
+use super::{Kind, Made, Repository, check_name, refuse_rest};
 
-pub const KIND: Kind = Kind { name: "executor", example: "dx12", make };
+pub const KIND: Kind = Kind { name: "executor", example: &["dx12"], rest: "", make };
 
-fn make(repository: &Repository<'_>, name: &str) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, String> {
+    refuse_rest(rest)?;
     check_name(name, '_')?;
     let file = format!("src/execute/executors/{name}.rs");
     repository.refuse_existing(&file)?;

@@ -1,10 +1,12 @@
 //! A function of the shader library, in a module that exists or in a new one.
 
-use super::{Kind, Made, Repository, check_name};
+use super::{Kind, Made, Repository, check_name, refuse_rest};
 
-pub const KIND: Kind = Kind { name: "function", example: "brdf::diffuse::minnaert", make };
+pub const KIND: Kind =
+    Kind { name: "function", example: &["brdf::diffuse::minnaert"], rest: "", make };
 
-fn make(repository: &Repository<'_>, path: &str) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, String> {
+    refuse_rest(rest)?;
     let parts: Vec<&str> = path.split("::").collect();
     parts.iter().try_for_each(|part| check_name(part, '_'))?;
     let [folder, module, name] = parts[..] else {

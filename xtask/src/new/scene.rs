@@ -1,10 +1,11 @@
 //! A scene of the pictures.
 
-use super::{Kind, Made, Repository, check_name};
+use super::{Kind, Made, Repository, check_name, refuse_rest};
 
-pub const KIND: Kind = Kind { name: "scene", example: "staircase", make };
+pub const KIND: Kind = Kind { name: "scene", example: &["staircase"], rest: "", make };
 
-fn make(repository: &Repository<'_>, name: &str) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, String> {
+    refuse_rest(rest)?;
     check_name(name, '_')?;
     let file = format!("src/scene/sets/{name}.rs");
     repository.refuse_existing(&file)?;
