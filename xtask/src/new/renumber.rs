@@ -46,9 +46,9 @@ fn replace_word(text: &str, from: &str, to: &str) -> String {
     let mut rest = text;
     while let Some(at) = rest.find(from) {
         let (before, after) = (&rest[..at], &rest[at + from.len()..]);
-        let is_word = !(begins && before.ends_with(joins)) && !(ends && after.starts_with(joins));
+        let is_part = begins && before.ends_with(joins) || ends && after.starts_with(joins);
         made.push_str(before);
-        made.push_str(if is_word { to } else { from });
+        made.push_str(if is_part { from } else { to });
         rest = after;
     }
     made + rest
