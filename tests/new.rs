@@ -27,8 +27,9 @@ type Outcome = Result<(), Failed>;
 type Run = fn() -> Outcome;
 
 pub fn trials() -> Vec<Trial> {
-    let all: [(&str, Run); 8] = [
+    let all: [(&str, Run); 9] = [
         ("function", function),
+        ("function_types", function_types),
         ("axis_value", axis_value),
         ("diagnostic", diagnostic),
         ("executor", || rust("executor", "src/execute/executors/fresh.rs")),
@@ -68,7 +69,8 @@ fn parsed<T>(
 /// compiles, and its documentation is demanded.
 fn function() -> Outcome {
     for module in ["brdf::diffuse", "brdf::fresh", "optics::fresh"] {
-        let files = make("function", &format!("{module}::minnaert"), &[])?;
+        let parameters = "n: vec3f, nl: f32, k: f32 0..2";
+        let files = make("function", &format!("{module}::minnaert"), &[parameters, "f32"])?;
         let stem = format!("shaderlib/{}", module.replace("::", "/"));
         let cases = parsed(text(&files, &format!("{stem}.toml"))?, cases::parse_cases)?;
         if !cases.cases.iter().any(|case| case.function == "minnaert") {
@@ -78,7 +80,7 @@ fn function() -> Outcome {
         if !plots.contains_key("minnaert") {
             return Err(format!("{stem}.plot.toml has no plot for `minnaert`").into());
         }
-        compiles(&files, &stem)?;
+        compiles(&files, &stem, "minnaert(vec3f(), 0.5, 1.0)", "minnaert(vec3(0.0), 0.5, 1.0)")?;
         for extension in ["wesl", "glsl"] {
             let faults = shaderlib::undocumented(text(&files, &format!("{stem}.{extension}"))?);
             let wanted = ["in a sentence", "lacks `Source: `", "lacks `Error model: `"];
@@ -90,8 +92,35 @@ fn function() -> Outcome {
         let reference = format!("src/proof/references/{}.rs", module.replace("::", "_"));
         let text = text(&files, &reference)?;
         balanced(text)?;
-        if !text.contains("(\"minnaert\", |a| minnaert(a.f64()).into())") {
-            return Err(format!("{reference} has no row for `minnaert`:\n{text}").into());
+        let row = "(\"minnaert\", minnaert)";
+        let reads = "let (n, nl, k) = (a.vec3(), a.f64(), a.f64());";
+        if let Some(part) = [row, reads].iter().find(|part| !text.contains(**part)) {
+            return Err(format!("{reference} has no `{part}`:\n{text}").into());
+        }
+    }
+    Ok(())
+}
+
+/// A function may take and return each type that the command knows. Its plot calls it correctly.
+fn function_types() -> Outcome {
+    for ty in made::parameter::TYPES {
+        let parameters = format!("p: {}, q: f32 0..4", ty.wesl);
+        for parameters in [&parameters, parameters.trim_end_matches(", q: f32 0..4")] {
+            let files = make("function", "brdf::fresh::minnaert", &[parameters, ty.wesl])?;
+            let stem = "shaderlib/brdf/fresh";
+            let plots = parsed(text(&files, &format!("{stem}.plot.toml"))?, plot::parse_plots)?;
+            let plot = plots.get("minnaert").ok_or("no plot for `minnaert`")?;
+            let value = plot
+                .value
+                .replace(", q)", ", 0.5)")
+                .replace(", x)", ", 0.5)")
+                .replace("(x", "(0.5");
+            let second = if parameters.contains('q') { ", 0.5" } else { "" };
+            let glsl = format!("float(minnaert({}(0){second}) == {0}(0))", ty.glsl);
+            compiles(&files, stem, &value, &glsl)
+                .map_err(|problem| format!("{}: {value}: {problem:?}", ty.wesl))?;
+            parsed(text(&files, &format!("{stem}.toml"))?, cases::parse_cases)?;
+            balanced(text(&files, "src/proof/references/brdf_fresh.rs")?)?;
         }
     }
     Ok(())
@@ -113,8 +142,8 @@ impl Files for Overlay {
     }
 }
 
-/// Fails unless the module compiles in both languages.
-fn compiles(files: &BTreeMap<String, String>, stem: &str) -> Outcome {
+/// Fails unless the module compiles in both languages, called so.
+fn compiles(files: &BTreeMap<String, String>, stem: &str, wesl: &str, glsl: &str) -> Outcome {
     let below = |(path, text): (&String, &String)| {
         path.strip_prefix("shaderlib/").map(|path| (path.to_owned(), text.clone()))
     };
@@ -122,11 +151,11 @@ fn compiles(files: &BTreeMap<String, String>, stem: &str) -> Outcome {
     let path = module.replace('/', "::");
     let wesl = format!(
         "import lamplight::{path}::minnaert;\n@fragment fn main() -> @location(0) vec4f {{\n    \
-         return vec4f(minnaert(0.5));\n}}\n"
+         return vec4f({wesl});\n}}\n"
     );
     let glsl = format!(
         "#version 450\n#include <lamplight/{module}.glsl>\nlayout(location = 0) out vec4 colour;\n\
-         void main() {{\n    colour = vec4(minnaert(0.5));\n}}\n"
+         void main() {{\n    colour = vec4({glsl});\n}}\n"
     );
     let roots = [("main.wesl", wesl, Language::Wesl), ("main.frag.glsl", glsl, Language::Glsl)];
     for (root, text, language) in roots {
@@ -293,8 +322,20 @@ fn mistakes() -> Outcome {
         ("diagnostic", "unknown_axis", "must be small letters"),
         ("diagnostic", "unknown-axis", "exists already"),
     ];
+    for (parameters, result, expected) in [
+        ("x: f16", "f32", "`f16` is not one of the types f32, i32"),
+        ("x: f32, x: f32", "f32", "two parameters are called `x`"),
+        ("x: f32 0-1", "f32", "is not a parameter: NAME: TYPE"),
+        ("x: f32", "Light", "`Light` is not one of the types"),
+    ] {
+        let made = made::make(&root(), "function", "brdf::fresh::f", &[parameters, result]);
+        if !made.as_ref().is_err_and(|said| said.contains(expected)) {
+            return Err(format!("{parameters}: expected `{expected}`, found {made:?}").into());
+        }
+    }
     for (kind, name, expected) in wrong {
-        match made::make(Path::new(&root()), kind, name, &[]) {
+        let rest: &[&str] = if kind == "function" { &["x: f32", "f32"] } else { &[] };
+        match made::make(Path::new(&root()), kind, name, rest) {
             Err(said) if said.contains(expected) => {}
             Err(said) => {
                 let what = format!("expected `{expected}`, found `{said}`");

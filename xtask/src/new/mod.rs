@@ -7,6 +7,7 @@ mod axis_value;
 mod diagnostic;
 mod executor;
 mod function;
+pub mod parameter;
 mod renumber;
 mod scene;
 mod target;
