@@ -72,7 +72,7 @@ fn entries_are_described() -> Result<(), Failed> {
 }
 
 /// Two entries of a folder, such as a copy and what it was copied from, do not say the same.
-fn same_twice<'a>(
+pub fn same_twice<'a>(
     folder: &str,
     what: &str,
     all: impl Iterator<Item = (&'a str, String)>,

@@ -32,7 +32,7 @@ pub fn trials() -> Vec<Trial> {
         ("function_types", function_types),
         ("axis_value", axis_value),
         ("diagnostic", diagnostic),
-        ("executor", || rust("executor", "src/execute/executors/fresh.rs")),
+        ("executor", executor),
         ("target", target),
         ("scene", || rust("scene", "src/scene/sets/fresh.rs")),
         ("examples", examples),
@@ -251,6 +251,40 @@ fn target() -> Outcome {
         }
     }
     Ok(())
+}
+
+/// A new executor opens a device of wgpu, or is a copy of another one. Its description is empty, or
+/// that of the other, which trials notice.
+fn executor() -> Outcome {
+    rust("executor", "src/execute/executors/fresh.rs")?;
+    let copy = make("executor", "other", &["vulkan"])?;
+    let text = text(&copy, "src/execute/executors/other.rs")?;
+    let known = std::fs::read_to_string(root().join("src/execute/executors/vulkan.rs"))?;
+    if text != known.replace("name: \"vulkan\"", "name: \"other\"") {
+        return Err(
+            format!("expected a copy of vulkan.rs with another name, found:\n{text}").into()
+        );
+    }
+    let windows = make("executor", "dx12", &[])?;
+    for (path, part) in [
+        ("src/execute/executors/dx12.rs", "//! Runs on: windows\n"),
+        ("src/execute/executors/dx12.rs", "backend: wgpu::Backends::DX12"),
+        ("Cargo.toml", "\"naga-ir\", \"dx12\"] }"),
+    ] {
+        if !self::text(&windows, path)?.contains(part) {
+            return Err(format!("{path} of `new executor dx12` has no `{part}`").into());
+        }
+    }
+    match house::same_twice(
+        "folder",
+        "description",
+        [("a", "x".to_owned()), ("b", "x".to_owned())].into_iter(),
+    )
+    .len()
+    {
+        1 => Ok(()),
+        _ => Err("`same_twice` should notice a description that two entries have".into()),
+    }
 }
 
 /// A new entry is a Rust file with the entry's name. Its description is empty, which trials notice.

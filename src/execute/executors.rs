@@ -1,4 +1,5 @@
-//! Everything that can run a kernel: one file of `executors/` for each.
+//! Everything that can run a kernel: one file of `executors/` for each. The line `Runs on:` of a
+//! file says which systems have the executor. The build script reads it.
 
 use super::Session;
 use crate::bundle::Target;

@@ -1,4 +1,6 @@
 //! Runs the emitted GLSL ES 3.00 unchanged, on OpenGL ES 3.0.
+//!
+//! Runs on: every system but WebAssembly
 
 use super::{Entry, Shipping, Unavailable};
 use crate::bundle::Target;

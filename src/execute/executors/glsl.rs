@@ -1,4 +1,6 @@
 //! Runs the emitted GLSL 4.50 unchanged, on OpenGL 4.5.
+//!
+//! Runs on: every system but WebAssembly
 
 use super::{Entry, Shipping, Unavailable};
 use crate::bundle::Target;

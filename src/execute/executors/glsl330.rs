@@ -1,4 +1,6 @@
 //! Runs the emitted GLSL 3.30 unchanged, on OpenGL 3.3 with the core profile.
+//!
+//! Runs on: every system but WebAssembly
 
 use super::{Entry, Shipping, Unavailable};
 use crate::bundle::Target;

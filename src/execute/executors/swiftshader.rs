@@ -1,5 +1,7 @@
 //! wgpu on SwiftShader, the software Vulkan driver that comes with Chromium. Its compiler is not
 //! Mesa's.
+//!
+//! Runs on: every system but WebAssembly
 
 use std::path::Path;
 use std::sync::Once;
