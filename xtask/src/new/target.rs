@@ -4,7 +4,7 @@ use super::renumber::Renaming;
 use super::{Kind, Made, Repository, check_name};
 
 pub const KIND: Kind =
-    Kind { name: "target", example: &["glsl460"], rest: "[TARGET THAT IT IS LIKE]", make };
+    Kind { name: "target", example: &["essl310"], rest: "[TARGET THAT IT IS LIKE]", make };
 
 const TARGETS: &str = "src/emit/targets";
 const EXECUTORS: &str = "src/execute/executors";
