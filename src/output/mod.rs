@@ -1,5 +1,28 @@
 //! The one way to the disk. Every file that a command or the loader writes goes through here.
 //!
+//! | to write | call | it lives in |
+//! |---|---|---|
+//! | one file that the user names | [`write_file`], which asks whether a file there is ours | `file.rs` |
+//! | one file whose older content the caller has read | [`write()`] | `file.rs` |
+//! | a folder of files, each known by its hash | [`write_folder`], or [`Folder`] for one after the other | `folder.rs` |
+//! | many files that point to each other | [`Scratch`]: stage all, sync once, rename in the order of use | `scratch.rs`; `bundle` does so |
+//!
+//! A write takes these steps, in this order, so that a crash between two of them loses nothing:
+//!
+//! 1. A [`Scratch`] folder is made beside the place. Its random name, and a mark that the run keeps
+//!    locked, tell a later run whether its owner is dead.
+//! 2. The bytes go to a new file in it, and `sync_all` waits until they are on the disk.
+//! 3. The file gets the permissions of the one that it replaces, and is renamed into its place.
+//! 4. The folder is synced, so that the new name survives a loss of power.
+//! 5. The scratch folder is removed: by this run, or by the next one if this one was killed.
+//!
+//! For a folder, the record of hashes is written before the files, with the old and the new hash of
+//! each, and once more at the end. So a killed run leaves no file that the next one takes for a
+//! foreign one.
+//!
+//! A new command that writes needs one line in the tables of `tests/traps.rs`, which sets a trap at
+//! each of its files. `cargo xtask faults` makes calls of the system fail, and ends runs at them.
+//!
 //! What holds for all of it:
 //!
 //! - A file is written in a [`Scratch`] folder beside its place, synced, and renamed into it. A run
