@@ -239,11 +239,11 @@ pub fn bundle(
     program.space =
         Space::new(sources.space.axes().to_vec(), sources.space.constraints().to_vec(), lists)
             .map_err(|_| "no space")?;
+    program.space.undeclared = sources.space.undeclared;
     let request = Request { program: Some(sources.program.to_owned()), ..Request::default() };
-    let made =
-        in_memory(&mut sources.programs.texts(), &project::library(), &manifest, &request, &|_| ());
-    let made =
-        made.map_err(|problems| render(&sources.programs.texts(), &problems, Form::Human))?;
+    let mut texts = sources.programs.texts();
+    let made = in_memory(&mut texts, &project::library(), &manifest, &request, &|_| ());
+    let made = made.map_err(|problems| render(&texts, &problems, Form::Human))?;
     if let Some(whole) = made.summary.whole.first() {
         return Err(format!("expected every text to be linked; as a whole: {whole:?}"));
     }

@@ -325,7 +325,7 @@ fn growth() -> Outcome {
         .replace("values = [1, 4, 10]", "values = [1, 2, 4, 10, 32]")
         .replace(
             "[program.forward.axis.cone]",
-            "[program.forward.axis.anisotropy]\nvalues = [\"none\", \"hair\"]\n\n[program.forward.axis.cone]",
+            "[program.forward.axis.strands]\nvalues = [\"none\", \"hair\"]\n\n[program.forward.axis.cone]",
         );
     let new = parsed(&grown)?;
     let new_lock = extended(&lock, &new);

@@ -36,6 +36,10 @@ const REVIEWED: &[(&str, &str)] = &[
         "vertex_window",
         "ambient_attenuated,attenuation=inverse_square_window,cone=hard,frequency=vertex,lights=spot,viewer=infinite",
     ),
+    (
+        "gltf_glass",
+        "ambient=ibl,clearcoat,dispersion,lights=directional,metallic_roughness,specular=ggx,transmission,volume",
+    ),
     ("pcss_sun", "lights=directional,max_lights=1,shadow=pcss,shadow_light=directional"),
     (
         "hemisphere_materials",

@@ -47,9 +47,12 @@ pub const KINDS: &[Kind] = &[
             ("tests/regressions/lsp", ""),
             ("tests/compose_wesl", ".wesl"),
             ("shaderlib", ".wesl"),
+            ("tests/compose_glsl", ".glsl"),
+            ("shaderlib", ".glsl"),
         ],
         words: "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"textDocument/hover\",\"params\":{}} position line \
-            character -1 4294967295 import package:: lamplight:: @if( constants:: fn struct { } ( ) ;",
+            character -1 4294967295 import package:: lamplight:: @if( constants:: fn struct { } ( ) ; \
+            #include <lamplight/brdf/diffuse.glsl> #if #ifdef #define #endif #version vec3 float",
         run: lsp,
     },
 ];
@@ -120,7 +123,8 @@ fn square() -> Vec<u8> {
     buffer
 }
 
-const URI: &str = "file:///no/such/folder/lamp.wesl";
+const WESL: &str = "file:///no/such/folder/lamp.wesl";
+const GLSL: &str = "file:///no/such/folder/lamp.frag";
 
 /// The requests that are made at places all over each new text.
 const QUESTIONS: &[&str] = &[
@@ -144,7 +148,8 @@ const VIEWS: &[&str] = &[
 const PLACES: usize = 4;
 
 /// Runs the input as a conversation with an editor. A line that is a JSON object is a message of the
-/// editor. The lines between two such messages are a new text of the editor's file.
+/// editor. The lines between two such messages are a new text of one of the editor's two files: of
+/// the GLSL file if the text has a directive, which WESL does not know, and of the WESL file if not.
 fn lsp(bytes: &[u8]) -> String {
     let mut server = Server::new(Box::new(|_| None));
     let mut answers = String::new();
@@ -170,7 +175,9 @@ fn lsp(bytes: &[u8]) -> String {
 
 /// Sends a new text, waits for its diagnostics, and makes the requests about it.
 fn converse(server: &mut Server, new: &str, answers: &mut String) {
-    let document = json!({ "uri": URI, "version": 1, "text": new });
+    let is_glsl = new.lines().any(|line| line.trim_start().starts_with('#'));
+    let uri = if is_glsl { GLSL } else { WESL };
+    let document = json!({ "uri": uri, "version": 1, "text": new });
     let opened =
         json!({ "method": "textDocument/didOpen", "params": { "textDocument": document } });
     say(server, &opened, answers);
@@ -178,7 +185,7 @@ fn converse(server: &mut Server, new: &str, answers: &mut String) {
         server.look().iter().for_each(|message| answers.push_str(&message.to_string()));
     }
     let lines: Vec<&str> = new.lines().collect();
-    let document = json!({ "uri": URI });
+    let document = json!({ "uri": uri });
     for part in 0..PLACES {
         let line = lines.len() * part / PLACES;
         let length = lines.get(line).map_or(0, |line| line.chars().count());

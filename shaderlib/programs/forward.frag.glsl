@@ -18,7 +18,7 @@ layout(location = 3) in vec2 in_uv;
 #if LIGHTMAP
 layout(location = 4) in vec2 in_light_uv;
 #endif
-#if NORMAL_MAP
+#if NORMAL_MAP || ANISOTROPY
 layout(location = 5) in vec4 in_tangent;
 #endif
 #if MATERIAL == MATERIAL_ARRAY
@@ -132,6 +132,9 @@ vec3 shade(vec3 base) {
 #if TWO_SIDED
     surface.normal = flip_if_back(surface.normal, gl_FrontFacing);
 #endif
+#if CLEARCOAT
+    vec3 coat_normal = surface.normal;
+#endif
 #if NORMAL_MAP
     vec3 texel = texture(sampler2D(normal_map, map_sampler), in_uv).xyz;
     surface.normal = perturb_normal(surface.normal, in_tangent, texel);
@@ -149,14 +152,30 @@ vec3 shade(vec3 base) {
 #if SHADOW != SHADOW_NONE
     surface.visibility = visibility(surface, gl_FragCoord.xy);
 #endif
+#if METALLIC_ROUGHNESS
+    surface.layered = layered(base, surface.material.roughness, surface.normal, surface.view);
+#endif
+#if ANISOTROPY
+    surface.layered = brushed(surface.layered, in_tangent);
+#endif
+#if CLEARCOAT
+    surface.layered = coated(surface.layered, coat_normal);
+#endif
     Accum sum = lit(surface);
-#if LIGHTMAP
+#if LIGHTMAP && METALLIC_ROUGHNESS
+    sum.scattered += baked();
+#elif LIGHTMAP
     sum.scattered += surface.material.diffuse * baked();
 #endif
+#if METALLIC_ROUGHNESS
+    Around around = light_around(surface, sum.scattered);
+    return layered_ambient(surface.layered, around, surface.material.emission) + sum.reflected;
+#else
 #if AMBIENT == AMBIENT_IBL
     sum = add_environment(sum, surface);
 #endif
     return resolve(base, surface.material, sum);
+#endif
 }
 #endif
 

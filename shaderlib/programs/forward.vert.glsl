@@ -13,7 +13,7 @@ layout(location = 3) in vec2 in_uv;
 #if LIGHTMAP
 layout(location = 4) in vec2 in_light_uv;
 #endif
-#if NORMAL_MAP
+#if NORMAL_MAP || ANISOTROPY
 layout(location = 5) in vec4 in_tangent;
 #endif
 #if MATERIAL == MATERIAL_ARRAY
@@ -33,7 +33,7 @@ layout(location = 3) out vec2 out_uv;
 #if LIGHTMAP
 layout(location = 4) out vec2 out_light_uv;
 #endif
-#if NORMAL_MAP
+#if NORMAL_MAP || ANISOTROPY
 layout(location = 5) out vec4 out_tangent;
 #endif
 #if MATERIAL == MATERIAL_ARRAY
@@ -72,7 +72,7 @@ void main() {
 #if LIGHTMAP
     out_light_uv = in_light_uv;
 #endif
-#if NORMAL_MAP
+#if NORMAL_MAP || ANISOTROPY
     out_tangent = vec4((object.world_from_object * vec4(in_tangent.xyz, 0.0)).xyz, in_tangent.w);
 #endif
 #if MATERIAL == MATERIAL_ARRAY

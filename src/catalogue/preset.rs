@@ -16,8 +16,8 @@
 //! deviations = ["The map is compared with linear filtering, in the recipe with the nearest texel."]
 //! ```
 //!
-//! `look` says what to look for in the picture. The tables `light`, `material`, `surroundings`,
-//! `haze`, `caster`, `moments`, `display`, `march` and `lobe` have the numbers that the source
+//! `look` says what to look for in the picture. The tables `light`, `material`, `layers`,
+//! `surroundings`, `haze`, `caster`, `moments`, `display`, `march` and `lobe` have the numbers that the source
 //! publishes, named after the fields of the uniform they go to. `depth_pass` has what the shadow map is drawn with:
 //! `polygon_offset`, `cull_front`, and of a spot light the whole angle `fov` in degrees and the
 //! planes `near` and `far` in scene units. `open` names the numbers that the source leaves to its
@@ -142,6 +142,8 @@ struct Entry {
     #[serde(default)]
     material: Group,
     #[serde(default)]
+    layers: Group,
+    #[serde(default)]
     surroundings: Group,
     #[serde(default)]
     haze: Group,
@@ -224,6 +226,7 @@ impl Checker<'_> {
         let groups = [
             ("light", entry.light),
             ("material", entry.material),
+            ("layers", entry.layers),
             ("surroundings", entry.surroundings),
             ("haze", entry.haze),
             ("caster", entry.caster),

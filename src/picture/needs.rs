@@ -64,6 +64,8 @@ pub struct Needs {
     /// Whether that array has a material for each side.
     pub sides: bool,
     pub background: Background,
+    /// Whether the specular map of the surroundings has a level for each roughness.
+    pub levels: bool,
     /// Whether the moments of depth 1 are exponentials.
     pub exponential: bool,
     /// The near plane of a spot light's shadow map.
@@ -125,6 +127,7 @@ struct Row {
     materials: Option<Materials>,
     sides: bool,
     background: Background,
+    levels: bool,
     cleared: Option<Cleared>,
     encoded: bool,
     near: Option<f64>,
@@ -251,6 +254,7 @@ impl Needs {
         self.material_array |= row.materials.is_some();
         self.sides |= row.sides;
         self.background = self.background.max(row.background);
+        self.levels |= row.levels;
         self.exponential |= row.cleared.is_some();
         self.encoded |= row.encoded;
         self.near = row.near.or(self.near);

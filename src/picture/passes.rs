@@ -301,7 +301,7 @@ impl Studio<'_> {
         }
         let own: Vec<&Binding> = bindings
             .iter()
-            .filter(|binding| matches!(binding.name.as_str(), "object" | "materials"))
+            .filter(|binding| matches!(binding.name.as_str(), "object" | "materials" | "layers"))
             .collect();
         let faceted = pass.needs.faceted;
         let item = |object| {
@@ -319,12 +319,12 @@ impl Studio<'_> {
 }
 
 /// Blocks of `forward` that only affect colours.
-const PLAIN: &[&str] = &["materials", "haze", "surroundings"];
+const PLAIN: &[&str] = &["materials", "layers", "haze", "surroundings"];
 
 /// Whether each view or each object fills the block. A pass over the screen has no objects, so that
 /// all materials are in one block.
 fn is_own(name: &str, has_objects: bool) -> bool {
-    name == "camera" || has_objects && matches!(name, "object" | "materials")
+    name == "camera" || has_objects && matches!(name, "object" | "materials" | "layers")
 }
 
 /// The first of the frames as a texture. What is in the texels that nothing was drawn into depends

@@ -8,7 +8,7 @@ use crate::bundle::{Binding, Kind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
 use crate::scene::sets::{Map, Maps};
-use crate::scene::{CubeMap, FACES, prefilter};
+use crate::scene::{CubeMap, FACES, Sky, prefilter};
 
 /// What earlier passes have drawn.
 #[derive(Default)]
@@ -48,6 +48,11 @@ const DIFFUSE: (usize, usize) = (12, 24);
 const SPECULAR: (usize, usize) = (32, 36);
 /// The exponent of the specular map.
 const LOBE: f64 = 60.0;
+/// Levels of the specular map where it has one for each roughness, even in perceptual roughness. The
+/// first is the environment itself.
+pub const LEVELS: usize = 5;
+/// The rows of the quadratures for the others.
+const LEVEL_ROWS: [usize; LEVELS - 1] = [40, 24, 24, 24];
 
 impl<'a> Library<'a> {
     pub fn new(values: &'a Values<'a>, left: &'a Left) -> Self {
@@ -65,6 +70,7 @@ impl<'a> Library<'a> {
                 surroundings.with_sky(|sky| cube_texture(&CubeMap::of(sky, ENVIRONMENT))),
             ]),
             "sky_diffuse" => Some(vec![sky(1.0, DIFFUSE)]),
+            "sky_specular" if self.values.lit.needs.levels => Some(self.rough_levels()),
             "sky_specular" => Some(vec![sky(LOBE, SPECULAR)]),
             "base_map" => Some(color_textures(self.maps().base.clone().levels())),
             "normal_map" => Some(color_textures(self.maps().normal.clone().levels())),
@@ -73,6 +79,23 @@ impl<'a> Library<'a> {
         };
         let missing = || format!("no pass before has drawn what `{name}` reads");
         found.ok_or_else(|| vec![Diagnostic::error(codes::EXECUTOR_FAILED, missing())])
+    }
+
+    /// The surroundings, blurred for each roughness.
+    fn rough_levels(&self) -> Vec<Texture> {
+        let level = |sky: &Sky<'_>, index: usize| {
+            let size = ENVIRONMENT >> index;
+            let Some(rows) = index.checked_sub(1).and_then(|rough| LEVEL_ROWS.get(rough)) else {
+                return CubeMap::of(sky, size);
+            };
+            let alpha = (index as f64 / (LEVELS - 1) as f64).powi(2);
+            // The lobe around the mirror direction that is as wide as that of the facets.
+            prefilter(sky, (0.5 / (alpha * alpha)).max(1.0), size, *rows)
+        };
+        let surroundings = &self.values.shot.surroundings;
+        (0..LEVELS)
+            .map(|index| surroundings.with_sky(|sky| cube_texture(&level(sky, index))))
+            .collect()
     }
 
     fn maps(&mut self) -> &Maps {

@@ -7,6 +7,7 @@ use glam::{DMat3, DMat4, DVec3};
 use super::light::LightView;
 use super::needs::Falloff;
 use super::plan::{LAMPS, Pass, Plan};
+use super::textures::LEVELS;
 use super::{Shot, Surroundings};
 use crate::scene::sets::{Eye, Lamp, LampKind, Material, Object, Scene};
 use crate::scene::{Clip, Depth, directions, normal_matrix, perspective, sh9_project};
@@ -32,6 +33,7 @@ pub struct Camera {
 const GROUPS: &[(&str, &str)] = &[
     ("lamps", "light"),
     ("materials", "material"),
+    ("layers", "layers"),
     ("surroundings", "surroundings"),
     ("haze", "haze"),
     ("caster", "caster"),
@@ -89,6 +91,7 @@ impl Values<'_> {
             "materials" => self.materials(path.index, path.field),
             "surroundings" => self.surroundings(&path),
             "haze" => self.haze(path.field),
+            "layers" if path.field == "sky_levels" => Some(vec![self.sky_levels() as f64]),
             "caster" | "planes" => self.caster(path.field),
             "lobe" if path.field == "world_from_clip" => Some(matrix_columns(self.sky_from_clip())),
             "eye" | "screen" => self.screen(path.field),
@@ -112,8 +115,17 @@ impl Values<'_> {
             ("materials", field) if !self.lit.needs.material_array => {
                 self.published(&parsed).or_else(|| material_value(&object.material, field))
             }
+            ("layers", field) => self
+                .published(&parsed)
+                .or_else(|| object.material.layers?.number(field))
+                .or_else(|| self.number(path)),
             _ => self.number(path),
         }
+    }
+
+    /// How many levels the specular map of the surroundings has: one for each roughness, or one.
+    pub fn sky_levels(&self) -> usize {
+        if self.lit.needs.levels { LEVELS } else { 1 }
     }
 
     fn published(&self, path: &Path<'_>) -> Option<Vec<f64>> {

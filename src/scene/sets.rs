@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use glam::{DMat4, DVec3};
 
+use super::layers::Layers;
 use super::shape::Shape;
 use super::view::look_at;
 use super::{maps, palette};
@@ -120,6 +121,8 @@ pub struct Material {
     pub specular: DVec3,
     /// Roughness of Oren and Nayar, radians.
     pub sigma: f64,
+    /// What it has as a surface of glTF; without them, pictures choose.
+    pub layers: Option<Layers>,
 }
 
 impl Default for Material {
@@ -134,6 +137,7 @@ impl Default for Material {
             wrap: 0.4,
             specular: DVec3::splat(0.25),
             sigma: 0.6,
+            layers: None,
         }
     }
 }

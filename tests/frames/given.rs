@@ -36,6 +36,10 @@ pub fn number(path: &str) -> Vec<f64> {
         "outer" => vec![0.45],
         "attenuation" => vec![1.0, 0.1, 0.05],
         "roughness" => vec![0.45],
+        "ior" | "iridescence_ior" => vec![1.4],
+        "iridescence_thickness" => vec![380.0],
+        "anisotropy_direction" => vec![0.8, 0.6],
+        "sky_levels" => vec![1.0],
         "up" => vec![0.0, 1.0, 0.0],
         "min_w" | "min_variance" | "texel" => vec![0.01],
         "bias" => vec![0.003],
@@ -101,9 +105,15 @@ pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
                 }
             };
             let texels = 8 * 8 * kind.layers() as usize;
-            let channel = |index: usize| {
-                (0..kind.channels()).map(move |channel| value(index) + channel as f32 / 16.0)
+            // Normals are near that of the surface, so that the errors of their directions are small.
+            let is_normal = name == "normal_map";
+            let own = move |index: usize, channel: usize| match (is_normal, channel) {
+                (true, 0 | 1) => 0.25 + 0.5 * value(index + 5 * channel),
+                (true, _) => 0.96875,
+                _ => value(index) + channel as f32 / 16.0,
             };
+            let channel =
+                |index: usize| (0..kind.channels()).map(move |channel| own(index, channel));
             Fixture::Texture(Texture {
                 kind,
                 width: 8,

@@ -3,7 +3,7 @@
 //!
 //! `LAMPLIGHT_LSP_EDITS` gives another number of edits, `LAMPLIGHT_LSP_SEED` another seed.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::PathBuf;
 
@@ -91,7 +91,13 @@ fn source(index: usize) -> String {
             "    let part_{other} = Share_{other}(sum);\n    sum += term_{other}(part_{other}.value);\n"
         );
     }
-    text + "    @if(TINT) {\n        sum *= 0.5;\n    }\n    return sum;\n}\n"
+    text += "    @if(TINT) {\n        sum *= 0.5;\n    }\n    return sum;\n}\n";
+    if index == MODULES - 1 {
+        text += &format!(
+            "\n@fragment\nfn main() -> @location(0) vec4f {{\n    return vec4f(term_{index}(1.0));\n}}\n"
+        );
+    }
+    text
 }
 
 struct Random(u64);
@@ -146,6 +152,8 @@ struct Trial {
     open: BTreeMap<usize, String>,
     chosen: Option<&'static str>,
     random: Random,
+    /// What had an answer that is not empty at least once.
+    answered: BTreeSet<&'static str>,
 }
 
 impl Trial {
@@ -156,8 +164,14 @@ impl Trial {
             fs::write(folder.path().join(format!("module_{index}.wesl")), source(index))?;
         }
         let random = Random(seed);
-        let mut trial =
-            Self { folder, editor: Editor::new(), open: BTreeMap::new(), chosen: None, random };
+        let mut trial = Self {
+            folder,
+            editor: Editor::new(),
+            open: BTreeMap::new(),
+            chosen: None,
+            random,
+            answered: BTreeSet::new(),
+        };
         for index in [5, 3] {
             trial.open.insert(index, source(index));
             let uri = trial.uri(index)?;
@@ -257,8 +271,9 @@ impl Trial {
         let open = self.open.clone();
         for (index, text) in &open {
             let uri = self.uri(*index)?;
-            let (kept, new) = (self.editor.told.get(&uri), fresh.told.get(&uri));
-            differs(step, "diagnostics", text, kept, new)?;
+            let new = fresh.told.get(&uri).ok_or("a fresh server told nothing of an open file")?;
+            differs(step, "diagnostics", text, self.editor.told.get(&uri), new)?;
+            self.note_answer("diagnostics", new);
             let line = self.random.below(text.lines().count() + 1);
             let character = self.random.below(30);
             let parameters = json!({
@@ -268,23 +283,29 @@ impl Trial {
             });
             for method in QUESTIONS.iter().chain(OF_FILES) {
                 let kept = self.editor.ask(method, &parameters);
-                differs(step, method, text, Some(&kept), Some(&fresh.ask(method, &parameters)))?;
+                let new = fresh.ask(method, &parameters);
+                differs(step, method, text, Some(&kept), &new)?;
+                self.note_answer(method, &new["result"]);
             }
         }
         let query = json!({ "query": "term" });
         let kept = self.editor.ask("workspace/symbol", &query);
-        differs(step, "symbols", "", Some(&kept), Some(&fresh.ask("workspace/symbol", &query)))
+        let new = fresh.ask("workspace/symbol", &query);
+        differs(step, "workspace/symbol", "", Some(&kept), &new)?;
+        self.note_answer("workspace/symbol", &new["result"]);
+        Ok(())
+    }
+
+    fn note_answer(&mut self, question: &'static str, answer: &Value) {
+        let parts = answer.get("items").or_else(|| answer.get("data")).unwrap_or(answer);
+        if !parts.is_null() && parts.as_array().is_none_or(|parts| !parts.is_empty()) {
+            self.answered.insert(question);
+        }
     }
 }
 
-fn differs(
-    step: usize,
-    what: &str,
-    text: &str,
-    kept: Option<&Value>,
-    new: Option<&Value>,
-) -> Outcome {
-    if kept == new {
+fn differs(step: usize, what: &str, text: &str, kept: Option<&Value>, new: &Value) -> Outcome {
+    if kept == Some(new) {
         return Ok(());
     }
     Err(format!("step {step}, {what} of\n{text}\nkept: {kept:#?}\nnew: {new:#?}").into())
@@ -302,6 +323,11 @@ pub fn as_fresh() -> Outcome {
     for step in 0..edits {
         trial.step()?;
         trial.compare(step)?;
+    }
+    let asked = QUESTIONS.iter().chain(OF_FILES).chain(&["diagnostics", "workspace/symbol"]);
+    let unanswered: Vec<_> = asked.filter(|question| !trial.answered.contains(*question)).collect();
+    if edits >= EDITS && !unanswered.is_empty() {
+        return Err(format!("only empty answers to {unanswered:?} in {edits} edits").into());
     }
     Ok(())
 }

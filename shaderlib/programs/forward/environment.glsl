@@ -5,7 +5,90 @@
 
 #include "lamps.glsl"
 
+#if METALLIC_ROUGHNESS
+#include "../../ambient/ibl.glsl"
+
+#if AMBIENT != AMBIENT_NONE && AMBIENT != AMBIENT_CONSTANT
+/// The light of the surroundings on a side of the surface.
+vec3 surrounding_light(Surface surface, vec3 normal) {
 #if AMBIENT == AMBIENT_IBL
+    vec3 light = texture(samplerCube(sky_diffuse, sky_sampler), normal).rgb * surroundings.diffuse_share;
+#else
+    vec3 light = ambient_light(normal);
+#endif
+    return surface.material.ambient * light;
+}
+
+/// The light of the surroundings from a direction, blurred by a roughness if they have that.
+vec3 seen_light(Surface surface, vec3 direction, float roughness) {
+#if AMBIENT == AMBIENT_IBL
+    float level = prefilter_lod(roughness, layers.sky_levels);
+    return textureLod(samplerCube(sky_specular, sky_sampler), direction, level).rgb * surroundings.specular_share;
+#else
+    return surrounding_light(surface, direction);
+#endif
+}
+
+#if TRANSMISSION
+/// The light of the surroundings that is seen through the surface.
+vec3 light_through(Surface surface) {
+    mat3 directions = through_directions(surface.layered);
+    float roughness = through_roughness(surface.layered);
+#if DISPERSION
+    return vec3(
+        seen_light(surface, directions[0], roughness).x,
+        seen_light(surface, directions[1], roughness).y,
+        seen_light(surface, directions[2], roughness).z
+    );
+#else
+    return seen_light(surface, directions[1], roughness);
+#endif
+}
+#endif
+#endif
+
+/// The light around a layered surface. `scattered` is what falls onto the viewer's side of it
+/// without that of the environment maps.
+Around light_around(Surface surface, vec3 scattered) {
+    Around around;
+#if AMBIENT == AMBIENT_IBL
+    around.front = scattered + surrounding_light(surface, surface.normal);
+#else
+    around.front = scattered;
+#endif
+#if AMBIENT == AMBIENT_NONE || AMBIENT == AMBIENT_CONSTANT
+#if AMBIENT == AMBIENT_NONE
+    // What was computed beforehand has no direction.
+    vec3 everywhere = vec3(0.0);
+#else
+    vec3 everywhere = scattered;
+#endif
+    around.mirrored = everywhere;
+#if DIFFUSE_TRANSMISSION
+    around.back = everywhere;
+#endif
+#if CLEARCOAT
+    around.coated = everywhere;
+#endif
+#if TRANSMISSION
+    around.through = everywhere;
+#endif
+#else
+    around.mirrored = seen_light(surface, mirrored_direction(surface.layered), surface.layered.roughness);
+#if DIFFUSE_TRANSMISSION
+    around.back = surrounding_light(surface, -surface.normal);
+#endif
+#if CLEARCOAT
+    vec3 mirrored = reflect(-surface.view, surface.layered.coat_normal);
+    around.coated = seen_light(surface, mirrored, layers.clearcoat_roughness);
+#endif
+#if TRANSMISSION
+    around.through = light_through(surface);
+#endif
+#endif
+    return around;
+}
+#elif AMBIENT == AMBIENT_IBL
 /// The sums with the light of the environment maps.
 Accum add_environment(Accum sum, Surface surface) {
     vec3 diffuse = texture(samplerCube(sky_diffuse, sky_sampler), surface.normal).rgb;

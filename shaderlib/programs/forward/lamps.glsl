@@ -8,6 +8,9 @@
 #include "ambient.glsl"
 #include "materials.glsl"
 #include "viewer.glsl"
+#if METALLIC_ROUGHNESS
+#include "../layers.glsl"
+#endif
 
 /// The lights, of which the first `count` shine.
 layout(std140, set = 0, binding = 1) uniform Lamps {
@@ -27,6 +30,10 @@ struct Surface {
 #if SHADOW != SHADOW_NONE
     /// How much of the shadow caster's light arrives.
     float visibility;
+#endif
+#if METALLIC_ROUGHNESS
+    /// What `metallic_roughness` makes of the material.
+    Layered layered;
 #endif
 };
 
@@ -152,8 +159,10 @@ Accum add_lamp(Accum sum, Surface surface, uint i) {
     Light light = lamps.lights[i];
     LightSample arriving = sample_lamp(light, surface.position);
     float ambient = ambient_share(light, arriving);
+#if !METALLIC_ROUGHNESS
     float diffuse = diffuse_share(surface, arriving.l);
     float specular = specular_share(surface, arriving.l);
+#endif
 #if SHADOW == SHADOW_NONE
     float visibility = 1.0;
 #else
@@ -162,6 +171,12 @@ Accum add_lamp(Accum sum, Surface surface, uint i) {
 
 #if SPECULAR != SPECULAR_GGX
     return accumulate(sum, surface.material, light, arriving, ambient, diffuse, specular, visibility);
+#elif METALLIC_ROUGHNESS
+    vec3 radiance = light.color * (arriving.attenuation * arriving.spot * visibility);
+    return Accum(
+        sum.scattered + light.ambient * surface.material.ambient * ambient,
+        sum.reflected + radiance * layered_light(surface.layered, arriving.l, light.strength)
+    );
 #else
     Accum next = accumulate(sum, surface.material, light, arriving, ambient, diffuse, specular, visibility);
     vec3 radiance = light.color * (arriving.attenuation * arriving.spot * visibility * light.strength);

@@ -13,26 +13,9 @@ use crate::lsp::complete::{
     CONSTANT, FIELD, FUNCTION, KEYWORD, MODULE, STRUCT, VARIABLE, completion_entry, of_library,
 };
 use crate::lsp::place::{self, Lines};
+use crate::parse::glsl::DIRECTIVES;
 use crate::project::LIBRARY;
 use crate::validate::glsl_words;
-
-/// Words of directives, behind the `#`.
-const DIRECTIVES: &[&str] = &[
-    "define",
-    "elif",
-    "else",
-    "endif",
-    "error",
-    "extension",
-    "if",
-    "ifdef",
-    "ifndef",
-    "include",
-    "line",
-    "pragma",
-    "undef",
-    "version",
-];
 
 /// Words of statements and declarations.
 const WORDS: &[&str] = &[

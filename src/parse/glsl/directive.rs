@@ -1,7 +1,8 @@
 //! Reads directives.
 
 use super::{
-    BodyToken, Directive, Include, Kind, Macro, Module, Part, Symbol, Symbols, Token, known,
+    BodyToken, DIRECTIVES, Directive, Include, Kind, Macro, Module, Part, Symbol, Symbols, Token,
+    known,
 };
 use crate::diagnostic::{Code, Diagnostic, codes};
 use crate::source::{LIMITS, Span};
@@ -104,23 +105,6 @@ fn connect_branches(parts: &mut [Part], branches: &[usize]) {
     }
 }
 
-const NAMES: &[&str] = &[
-    "define",
-    "elif",
-    "else",
-    "endif",
-    "error",
-    "extension",
-    "if",
-    "ifdef",
-    "ifndef",
-    "include",
-    "line",
-    "pragma",
-    "undef",
-    "version",
-];
-
 /// Reads the tokens `start..end` after the `#`.
 fn read_directive(
     module: &mut Module,
@@ -160,7 +144,7 @@ fn read_directive(
             format!("unknown directive `#{}`", symbols.text(wrong)),
         )
         .at(line.span_of(&line.module.tokens[start]), "not a directive of GLSL")
-        .suggest(symbols.text(wrong), NAMES.iter().copied())),
+        .suggest(symbols.text(wrong), DIRECTIVES.iter().copied())),
     }
 }
 

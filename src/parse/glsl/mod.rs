@@ -15,6 +15,24 @@ pub use symbols::{Symbol, Symbols, known};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::source::{LIMITS, SourceId, SourceSet, Span};
 
+/// The words that may follow the `#` of a directive.
+pub const DIRECTIVES: &[&str] = &[
+    "define",
+    "elif",
+    "else",
+    "endif",
+    "error",
+    "extension",
+    "if",
+    "ifdef",
+    "ifndef",
+    "include",
+    "line",
+    "pragma",
+    "undef",
+    "version",
+];
+
 /// A tokenised file.
 #[derive(Debug)]
 pub struct Module {
