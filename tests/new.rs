@@ -1,6 +1,7 @@
 //! `cargo xtask new`: the crate's own parsers read the files that it writes, and trials fail until
 //! the parts that it leaves empty are written.
 
+mod contributing;
 mod functions;
 #[path = "../xtask/src/new/mod.rs"]
 mod made;
@@ -22,7 +23,7 @@ type Outcome = Result<(), Failed>;
 type Run = fn() -> Outcome;
 
 pub fn trials() -> Vec<Trial> {
-    let all: [(&str, Run); 10] = [
+    let all: [(&str, Run); 11] = [
         ("function", functions::in_modules),
         ("function_types", functions::of_types),
         ("axis_value", axis_value),
@@ -33,6 +34,7 @@ pub fn trials() -> Vec<Trial> {
         ("examples", examples),
         ("mistakes", mistakes),
         ("interface", interface),
+        ("contributing", contributing::is_true),
     ];
     all.into_iter().map(|(name, run)| Trial::test(format!("new::{name}"), run)).collect()
 }

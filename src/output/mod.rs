@@ -9,12 +9,14 @@
 //!
 //! A write takes these steps, in this order, so that a crash between two of them loses nothing:
 //!
-//! 1. A [`Scratch`] folder is made beside the place. Its random name, and a mark that the run keeps
-//!    locked, tell a later run whether its owner is dead.
-//! 2. The bytes go to a new file in it, and `sync_all` waits until they are on the disk.
-//! 3. The file gets the permissions of the one that it replaces, and is renamed into its place.
-//! 4. The folder is synced, so that the new name survives a loss of power.
-//! 5. The scratch folder is removed: by this run, or by the next one if this one was killed.
+//! 1. `Scratch::new` makes a folder beside the place. The run keeps a file in it locked, which tells
+//!    a later run whether this one is still alive.
+//! 2. `Scratch::write` writes the bytes to a new file in this folder, and waits until they are on
+//!    the disk.
+//! 3. `put_file` in `file.rs` gives the file the permissions of the one that it replaces, and renames
+//!    it into its place. In an output folder, `Folder::put` in `folder.rs` does this.
+//! 4. `sync_folder` in `scratch.rs` syncs the folder, so that the new name survives a loss of power.
+//! 5. The scratch folder is removed: when it is dropped, or by the next run if this one was killed.
 //!
 //! For a folder, the record of hashes is written before the files, with the old and the new hash of
 //! each, and once more at the end. So a killed run leaves no file that the next one takes for a

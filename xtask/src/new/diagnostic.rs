@@ -18,7 +18,7 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
         format!(
             "a case in tests/diagnostics/ that shows `[{name}]` (trial diagnostics every code has a case)"
         ),
-        "INSTA_UPDATE=always cargo xtask test guide; read the difference".to_owned(),
+        "cargo xtask record guide; read the difference".to_owned(),
     ];
     Ok(Made { files: vec![(file, "#\n\nPage: \n".to_owned())], next })
 }
