@@ -81,7 +81,7 @@ pub fn same_twice<'a>(
     for (name, said) in all {
         if let Some(other) = known.insert(said.clone(), name) {
             problems.push(format!(
-                "{folder}/{name}.rs has the {what} of `{other}`, {said:?}: give it its own"
+                "{folder}/{other}.rs and {name}.rs have the same {what} {said:?}: change the new one's"
             ));
         }
     }

@@ -67,8 +67,9 @@ fn shipping(text: String, program: &str, setting: &str) -> Result<(String, Strin
     let has = |keys: &[String]| keys.iter().filter(|key| has_setting(key, setting)).count();
     let (all, with) = (shipped.len(), has(&shipped));
     if with > 0 {
-        let said =
-            format!("{with} of {all} permutations that ship have `{setting}`, by slices with `*`");
+        let said = format!(
+            "complete; {with} of {all} permutations that ship have `{setting}`, by slices with `*`"
+        );
         return Ok((text, said));
     }
     // The setting alone, or else beside those that another value of the axis needs.
@@ -81,7 +82,7 @@ fn shipping(text: String, program: &str, setting: &str) -> Result<(String, Strin
         let included = in_include(&text, program, &key)?;
         if shipped_keys(&included, program).is_ok_and(|keys| has(&keys) > 0) {
             let said = format!(
-                "no slice has `{setting}`, so `include` has `{key}` now; a slice would ship more"
+                "complete; no slice has `{setting}`, so `include` has `{key}` now; a slice would ship more"
             );
             return Ok((included, said));
         }
