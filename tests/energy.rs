@@ -4,7 +4,7 @@
 //! The evaluator runs the fragment stage once for each direction of the light. The directions are
 //! those of several strategies, weighted by the balance heuristic (Veach, *Robust Monte Carlo
 //! Methods for Light Transport Simulation*, 1997, chapter 9), at points of a lattice. `docs/energy.md`
-//! has all results. The trial computes some of them again; `UPDATE_EXPECT=1` computes all.
+//! has all results. The trial computes some of them again, and all with `UPDATE_EXPECT=1`.
 
 mod page;
 
@@ -135,7 +135,7 @@ fn white_furnace() -> Result<(), Failed> {
     let recorded = page::read_cells(&text)?;
     if page::written(&recorded) != text {
         return Err(
-            "docs/energy.md is not what its own numbers give: UPDATE_EXPECT=1 writes it".into()
+            "docs/energy.md is not what its own numbers give: cargo xtask record energy::white_furnace writes it".into()
         );
     }
     let far = found.iter().filter(|(place, cell)| {

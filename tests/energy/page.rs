@@ -59,11 +59,9 @@ fn table(metal: bool, cells: &BTreeMap<&Place, &Cell>) -> String {
         }
         text += "\n";
     }
-    let kinds: [(&str, fn(&Cell) -> f64); 2] =
-        [("lamps", |cell| cell.lamps), ("ambient light", |cell| cell.ambient)];
-    let said = kinds.map(|(kind, value)| {
-        verdict(kind, &cells.values().map(|cell| value(cell)).collect::<Vec<_>>())
-    });
+    let lamps: Vec<f64> = cells.values().map(|cell| cell.lamps).collect();
+    let ambient: Vec<f64> = cells.values().map(|cell| cell.ambient).collect();
+    let said = [verdict("lamps", &lamps), verdict("ambient light", &ambient)];
     format!("{text}\nLight of {}; {}.\n\n", said[0], said[1])
 }
 
