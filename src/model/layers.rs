@@ -134,24 +134,33 @@ fn parsed_layers(
         layers.transmission =
             bounded(factor, 0.0, 1.0, &at(&format!("{name}.transmissionFactor")))?;
     }
-    if let Some(volume) = material.volume() {
-        let name = "KHR_materials_volume";
-        left_out(volume.thickness_texture().is_some(), name);
-        let thickness = volume.thickness_factor().into();
-        layers.thickness =
-            bounded(thickness, 0.0, f64::MAX, &at(&format!("{name}.thicknessFactor")))?;
-        let distance = f64::from(volume.attenuation_distance());
-        let place = at(&format!("{name}.attenuationDistance"));
-        // Infinity is the default: nothing is absorbed.
-        layers.attenuation_distance = if distance == f64::INFINITY {
-            0.0
-        } else {
-            bounded(distance, f64::MIN_POSITIVE, f64::MAX, &place)?
-        };
-        let color = volume.attenuation_color();
-        layers.attenuation_color = bounded_color(color, &at(&format!("{name}.attenuationColor")))?;
-    }
+    volume_layers(reader, material, place, &mut layers)?;
     Ok(layers)
+}
+
+/// What passes a body, and how long it is under way.
+fn volume_layers(
+    reader: &mut Reader<'_>,
+    material: &gltf::Material<'_>,
+    place: &str,
+    layers: &mut Layers,
+) -> Result<(), String> {
+    const NAME: &str = "KHR_materials_volume";
+    let Some(volume) = material.volume() else { return Ok(()) };
+    let at = |field: &str| format!("{place}.extensions.{NAME}.{field}");
+    if volume.thickness_texture().is_some() {
+        reader.notes.insert(textures_left_out(NAME));
+    }
+    let thickness = volume.thickness_factor().into();
+    layers.thickness = bounded(thickness, 0.0, f64::MAX, &at("thicknessFactor"))?;
+    // Infinity is the default: nothing is absorbed.
+    let distance = f64::from(volume.attenuation_distance());
+    if distance != f64::INFINITY {
+        let place = at("attenuationDistance");
+        layers.attenuation_distance = bounded(distance, f64::MIN_POSITIVE, f64::MAX, &place)?;
+    }
+    layers.attenuation_color = bounded_color(volume.attenuation_color(), &at("attenuationColor"))?;
+    Ok(())
 }
 
 fn textures_left_out(extension: &str) -> String {
