@@ -167,7 +167,7 @@ fn modules(folder: &Path, constant: &str, ty: &str) -> std::io::Result<String> {
     let mut entries = String::new();
     for path in files(folder, "rs")? {
         let name = stem(&path);
-        if folder.ends_with("executors") && !exists_here(&name) {
+        if folder.ends_with("executors") && !runs_here(&path)? {
             continue;
         }
         let _ = writeln!(table, "#[path = {:?}]\npub mod {name};", path);
@@ -180,11 +180,25 @@ fn modules(folder: &Path, constant: &str, ty: &str) -> std::io::Result<String> {
     Ok(table)
 }
 
-/// Whether an executor can be had on the machine that the crate is built for: WebAssembly has the
-/// evaluator alone, and its page draws.
-fn exists_here(executor: &str) -> bool {
+/// Whether an executor can be had on the system that the crate is built for. The line `Runs on:` of
+/// its file says so: `every system`, `every system but WebAssembly`, or names of systems as
+/// `target_os` has them.
+fn runs_here(file: &Path) -> std::io::Result<bool> {
+    println!("cargo::rerun-if-changed={}", file.display());
     let family = env::var("CARGO_CFG_TARGET_FAMILY").unwrap_or_default();
-    executor == "eval" || !family.split(',').any(|name| name == "wasm")
+    let is_wasm = family.split(',').any(|name| name == "wasm");
+    let system = env::var("CARGO_CFG_TARGET_OS").unwrap_or_default();
+    let text = fs::read_to_string(file)?;
+    let line = text.lines().find_map(|line| line.strip_prefix("//! Runs on: "));
+    match line {
+        Some("every system") => Ok(true),
+        Some("every system but WebAssembly") => Ok(!is_wasm),
+        Some(names) => Ok(names.split(", ").any(|name| name == system)),
+        None => {
+            let what = "no line `//! Runs on: every system but WebAssembly`, or another system";
+            Err(std::io::Error::other(format!("{}: {what}", file.display())))
+        }
+    }
 }
 
 /// The shader library as text, so that an installed binary carries it.

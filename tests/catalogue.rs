@@ -150,12 +150,23 @@ fn presets() -> Result<Vec<preset::Preset>, Failed> {
         .map_err(|problems| render(&sources, &problems, Form::Human).into())
 }
 
-/// There are presets enough. Reading them already checks their programs, keys, scenes and probes.
+/// There are presets enough, and each is described. Reading them already checks their programs, keys, scenes and probes.
 fn presets_ship() -> Result<(), Failed> {
-    let count = presets()?.len();
-    match count >= 40 {
+    let presets = presets()?;
+    let count = presets.len();
+    if count < 40 {
+        return Err(format!("found {count} presets, expected at least 40").into());
+    }
+    let mut problems = Vec::new();
+    for preset in &presets {
+        let preset::Preset { name, doc, look, source, .. } = preset;
+        let words = [("doc", doc), ("look", look), ("source", source)];
+        let empty = words.iter().filter(|(_, text)| text.trim().is_empty());
+        problems.extend(empty.map(|(key, _)| format!("`{name}` has no words for `{key}`")));
+    }
+    match problems.is_empty() {
         true => Ok(()),
-        false => Err(format!("found {count} presets, expected at least 40").into()),
+        false => Err(format!("shaderlib/presets.toml: {}", problems.join("; ")).into()),
     }
 }
 

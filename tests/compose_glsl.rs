@@ -1,6 +1,6 @@
 //! GLSL composition: one folder of `tests/compose_glsl/` for each case. A folder has the files of
 //! the root package, the packages that it depends on in `deps/`, and the expected result.
-//! `UPDATE_EXPECT=1` writes the result that was found: read it before committing.
+//! `cargo xtask record compose_` writes the result that was found: read it before committing.
 //!
 //! A file `settings` has one entry a line: `axis = value`; `enum axis = value value`; `root = FILE`;
 //! `keep = all` or `keep = name name`. `locate = text` adds to the result the place in the sources
@@ -21,6 +21,9 @@ use lamplight::permute::{Setting, Settings};
 use lamplight::resolve::{Packages, glsl::load};
 use lamplight::source::{Files, Memory, Package, SourceSet};
 use libtest_mimic::{Failed, Trial};
+
+/// How a failing case is accepted.
+const ACCEPT: &str = "\n(`cargo xtask record compose_` accepts this)";
 
 pub fn trials() -> Vec<Trial> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compose_glsl");
@@ -177,7 +180,7 @@ fn expect(folder: &Path, name: &str, other: &str, found: &str) -> Result<(), Fai
     if expected == found {
         Ok(())
     } else {
-        Err(format!("--- expected\n{expected}\n+++ found\n{found}").into())
+        Err(format!("--- expected\n{expected}\n+++ found\n{found}{ACCEPT}").into())
     }
 }
 

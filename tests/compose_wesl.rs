@@ -4,7 +4,7 @@
 //! root package, dependencies in `deps/NAME/`, and possibly `settings.txt`. The expected result is
 //! `expected.wgsl`, or `expected.err` with the diagnostics as users see them. `expected.warnings`
 //! has warnings if there are any, and `expected.reads` the settings that were read if the case asks
-//! for them. `UPDATE_EXPECT=1` writes the result that was found: read it before committing.
+//! for them. `cargo xtask record compose_` writes the result that was found: read it before committing.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -18,6 +18,9 @@ use lamplight::resolve::Packages;
 use lamplight::resolve::wesl::{Graph, load};
 use lamplight::source::{Files, Memory, Package, SourceSet};
 use libtest_mimic::{Failed, Trial};
+
+/// How a failing case is accepted.
+const ACCEPT: &str = "\n(`cargo xtask record compose_` accepts this)";
 
 pub fn trials() -> Vec<Trial> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compose_wesl");
@@ -139,7 +142,8 @@ fn compare(path: &Path, found: Option<String>) -> String {
         return String::new();
     }
     let shown = |text: Option<String>| text.unwrap_or_else(|| "(no such file)\n".to_owned());
-    format!("--- {}\n{}--- found\n{}", path.display(), shown(expected), shown(found))
+    let (expected, found) = (shown(expected), shown(found));
+    format!("--- {}\n{expected}--- found\n{found}{ACCEPT}", path.display())
 }
 
 /// What is wrong with the source map: a segment that claims to be a verbatim copy and is not.

@@ -24,10 +24,8 @@ pub fn trials() -> Vec<Trial> {
         ("slots", slots),
         ("guide", guide),
     ];
-    cases
-        .into_iter()
-        .map(|(name, case)| Trial::test(format!("conventions::{name}"), case))
-        .collect()
+    let trial = |(name, case): Case| Trial::test(format!("conventions::{name}"), case);
+    cases.map(trial).into()
 }
 
 const SHADER: &str = "
@@ -54,6 +52,12 @@ const MANIFEST: &str = "[program.one]\nwesl = \"one.wesl\"\n";
 const CONVERTS: &str =
     "    gl_Position.yz = vec2(-gl_Position.y, gl_Position.z * 2.0 - gl_Position.w);\n";
 
+/// The targets that are versions of GLSL.
+fn glsl_targets() -> Vec<Target> {
+    let entries = targets::ALL.iter().filter(|entry| entry.glsl.is_some());
+    entries.map(|entry| entry.target).collect()
+}
+
 fn found(package: &Package, out: &str, entry: &str, target: Target) -> Result<Found, Failed> {
     let bundle = Bundle::open(package.path(out))?;
     Ok(bundle.program("one")?.shader(entry)?.get("default", target)?)
@@ -75,7 +79,7 @@ fn clip_spaces() -> Outcome {
         }
     }
     for target in Target::ALL {
-        let is_glsl = ["glsl450", "glsl330", "essl300"].contains(&target.name());
+        let is_glsl = glsl_targets().contains(target);
         let [wgpu, native] =
             ["wgpu", "native"].map(|clip| found(&package, clip, "vs_main", *target));
         let (wgpu, native) = (wgpu?, native?);
@@ -134,10 +138,8 @@ fn clip_in_manifest_and_cache() -> Outcome {
             return Err(format!("compile {arguments:?}: expected converted: {expected}").into());
         }
     }
-    fs::write(
-        package.path("one.lamplight"),
-        pack(&Bundle::open(package.path("out"))?.contents()?)?,
-    )?;
+    let packed = pack(&Bundle::open(package.path("out"))?.contents()?)?;
+    fs::write(package.path("one.lamplight"), packed)?;
     if is_converted("one.lamplight")? {
         return Err("the single file has another clip space".into());
     }
@@ -228,7 +230,7 @@ fn registers_told(found: &Found, text: &str) -> Result<BTreeSet<Register>, Faile
     Ok(told)
 }
 
-/// The name and the number of everything that the text of an output binds.
+/// The name and the number of everything that a text in MSL or GLSL binds.
 fn bound(target: Target, text: &str) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     let last =
@@ -240,7 +242,6 @@ fn bound(target: Target, text: &str) -> BTreeMap<String, String> {
                 let name = last(line.split("[[").next()?.trim())?;
                 Some((name, format!("{kind}{number}")))
             }),
-            "wgsl" => after(line, "@group(", &['v']).map(|place| (place.to_owned(), String::new())),
             // In GLSL a block is known by its name, anything else by that of the variable.
             _ if !line.contains("uniform ") => None,
             _ => {
@@ -261,18 +262,14 @@ fn bound(target: Target, text: &str) -> BTreeMap<String, String> {
 fn slots() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     expect(&package.run(&["gen", "--no-cache"])?, 0, &[])?;
-    for target in [Target::MSL, Target::GLSL450, Target::GLSL330, Target::ESSL300] {
+    for target in [&[Target::MSL][..], &glsl_targets()].concat() {
         for entry in ["vs_main", "fs_main"] {
             let found = found(&package, "bundle", entry, target)?;
             let said = bound(target, &text(&found)?);
             let mut told = BTreeMap::new();
             for slot in &found.native.slots {
-                let binding = found
-                    .reflection
-                    .bindings
-                    .iter()
-                    .find(|one| (one.group, one.binding) == (slot.group, slot.binding))
-                    .ok_or("no binding")?;
+                let is_it = |one: &&Binding| (one.group, one.binding) == (slot.group, slot.binding);
+                let binding = found.reflection.bindings.iter().find(is_it).ok_or("no binding")?;
                 let kind = match binding.kind {
                     Kind::Uniform | Kind::Storage => "buffer(",
                     Kind::Texture | Kind::StorageTexture => "texture(",
@@ -310,7 +307,7 @@ fn first_instance() -> Outcome {
         if let Some(refusal) = judge::judge(&outputs, None, &|_, _| ())?.first() {
             return Err(format!("{refusal:?}").into());
         }
-        for target in [Target::GLSL450, Target::GLSL330, Target::ESSL300] {
+        for target in glsl_targets() {
             let found = found(&package, "bundle", "vs_main", target)?;
             let name = found.native.first_instance.clone().unwrap_or_default();
             if text(&found)?.contains("_first_instance;") != is_there
@@ -342,10 +339,10 @@ fn sizes() -> Outcome {
     if !text.contains(&argument) || members.matches("uint size").count() != sizes.buffers.len() {
         return Err(format!("the reflection has {sizes:?}, which is not in:\n{text}").into());
     }
-    if sizes.buffers != [[0, 1], [1, 0]] {
-        return Err(format!("expected the buffers [[0, 1], [1, 0]], found {sizes:?}").into());
+    match sizes.buffers == [[0, 1], [1, 0]] {
+        true => Ok(()),
+        false => Err(format!("expected the buffers [[0, 1], [1, 0]], found {sizes:?}").into()),
     }
-    Ok(())
 }
 
 /// The guide's table of clip spaces agrees with the targets' own.

@@ -100,4 +100,4 @@ fn accepts() -> bool {
 }
 
 /// The command that accepts differences.
-const ACCEPT: &str = "accept with: INSTA_UPDATE=always cargo test --test all -- guide::";
+const ACCEPT: &str = "accept with: cargo xtask record guide::";

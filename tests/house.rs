@@ -62,7 +62,30 @@ fn entries_are_described() -> Result<(), Failed> {
             problems.push(format!("there is no file {folder}/{name}.rs for `{name}`"));
         }
     }
+    let abouts = targets.iter().map(|entry| (entry.target.name(), entry.about.to_owned()));
+    problems.extend(same_twice("src/emit/targets", "description", abouts));
+    let endings = targets.iter().map(|entry| (entry.target.name(), entry.extension.to_owned()));
+    problems.extend(same_twice("src/emit/targets", "extension", endings));
+    let abouts = executors.iter().map(|entry| (entry.name, entry.about.to_owned()));
+    problems.extend(same_twice("src/execute/executors", "description", abouts));
     if problems.is_empty() { Ok(()) } else { Err(problems.join("\n").into()) }
+}
+
+/// Two entries of a folder, such as a copy and what it was copied from, do not say the same.
+pub fn same_twice<'a>(
+    folder: &str,
+    what: &str,
+    all: impl Iterator<Item = (&'a str, String)>,
+) -> Vec<String> {
+    let (mut known, mut problems) = (BTreeMap::new(), Vec::new());
+    for (name, said) in all {
+        if let Some(other) = known.insert(said.clone(), name) {
+            problems.push(format!(
+                "{folder}/{other}.rs and {name}.rs have the same {what} {said:?}: change the new one's"
+            ));
+        }
+    }
+    problems
 }
 
 /// What is wrong with an entry's description, which is one line.

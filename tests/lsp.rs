@@ -241,7 +241,9 @@ fn permutation() -> Outcome {
     let mut session = Session::new(MAIN)?;
     session.told("main.wesl")?;
     let uri = session.uri("main.wesl")?;
-    let parameters = json!({ "uri": uri, "set": "fog=true,cone=soft" });
+    let wrong = json!({ "uri": uri, "set": "fog,,cone" });
+    expect(session.answer("lamplight/permutation", wrong)?.is_err(), &"a part without an axis")?;
+    let parameters = json!({ "uri": uri, "set": "cone = soft , fog" });
     let chosen = session.ask("lamplight/permutation", parameters)?;
     expect(
         chosen["values"]["fog"] == "true" && chosen["axes"]["cone"]["values"][1] == "soft",

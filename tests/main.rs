@@ -21,6 +21,7 @@ mod diagnostics;
 mod differential;
 mod doors;
 mod emit;
+mod energy;
 mod eval;
 mod examples;
 mod fragments;
@@ -79,6 +80,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     differential::trials,
     doors::trials,
     emit::trials,
+    energy::trials,
     eval::trials,
     examples::trials,
     frames::trials,

@@ -1,48 +1,47 @@
 //! `cargo xtask new`: the crate's own parsers read the files that it writes, and trials fail until
 //! the parts that it leaves empty are written.
 
+mod contributing;
+mod functions;
 #[path = "../xtask/src/new/mod.rs"]
 mod made;
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use lamplight::bundle::Language;
-use lamplight::catalogue::plot;
-use lamplight::compose::{self, Keep, Options};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::permute::{Settings, lock, manifest};
+use lamplight::permute::{lock, manifest};
 use lamplight::picture::needs::Table;
-use lamplight::proof::cases;
-use lamplight::resolve::{self, Packages};
-use lamplight::source::{Embedded, Files, Memory, Package, ReadError, SourceId, SourceSet};
-use lamplight::validate::validate;
+use lamplight::source::{SourceId, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
+use crate::house;
 use crate::snapshot::root;
-use crate::{house, scene, shaderlib};
 
 type Outcome = Result<(), Failed>;
 type Run = fn() -> Outcome;
 
 pub fn trials() -> Vec<Trial> {
-    let all: [(&str, Run); 8] = [
-        ("function", function),
+    let all: [(&str, Run); 11] = [
+        ("function", functions::in_modules),
+        ("function_types", functions::of_types),
         ("axis_value", axis_value),
         ("diagnostic", diagnostic),
-        ("executor", || rust("executor", "src/execute/executors/fresh.rs")),
-        ("target", || rust("target", "src/emit/targets/fresh.rs")),
-        ("scene", || rust("scene", "src/scene/sets/fresh.rs")),
+        ("executor", executor),
+        ("target", target),
+        ("scene", scene),
         ("examples", examples),
         ("mistakes", mistakes),
+        ("interface", interface),
+        ("contributing", contributing::is_true),
     ];
     all.into_iter().map(|(name, run)| Trial::test(format!("new::{name}"), run)).collect()
 }
 
 /// The files that the command would write, by path. Nothing is written here.
-fn make(kind: &str, name: &str) -> Result<BTreeMap<String, String>, Failed> {
-    let made = made::make(&root(), kind, name)?;
+fn make(kind: &str, name: &str, rest: &[&str]) -> Result<BTreeMap<String, String>, Failed> {
+    let made = made::make(&root(), kind, name, rest)?;
     match made.next.is_empty() {
         true => Err(format!("`new {kind} {name}` does not say what to do next").into()),
         false => Ok(made.files.into_iter().collect()),
@@ -64,97 +63,15 @@ fn parsed<T>(
     parse(&sources, id).map_err(|problems| render(&sources, &problems, Form::Human).into())
 }
 
-/// A new function, in a module that exists and in new ones, has a case, a plot and a reference. It
-/// compiles, and its documentation is demanded.
-fn function() -> Outcome {
-    for module in ["brdf::diffuse", "brdf::fresh", "optics::fresh"] {
-        let files = make("function", &format!("{module}::minnaert"))?;
-        let stem = format!("shaderlib/{}", module.replace("::", "/"));
-        let cases = parsed(text(&files, &format!("{stem}.toml"))?, cases::parse_cases)?;
-        if !cases.cases.iter().any(|case| case.function == "minnaert") {
-            return Err(format!("{stem}.toml has no case for `minnaert`").into());
-        }
-        let plots = parsed(text(&files, &format!("{stem}.plot.toml"))?, plot::parse_plots)?;
-        if !plots.contains_key("minnaert") {
-            return Err(format!("{stem}.plot.toml has no plot for `minnaert`").into());
-        }
-        compiles(&files, &stem)?;
-        for extension in ["wesl", "glsl"] {
-            let faults = shaderlib::undocumented(text(&files, &format!("{stem}.{extension}"))?);
-            let wanted = ["in a sentence", "lacks `Source: `", "lacks `Error model: `"];
-            if !wanted.iter().all(|part| faults.iter().any(|fault| fault.contains(part))) {
-                let what = format!("expected the faults {wanted:?}, found {faults:?}");
-                return Err(format!("{stem}.{extension}: {what}").into());
-            }
-        }
-        let reference = format!("src/proof/references/{}.rs", module.replace("::", "_"));
-        let text = text(&files, &reference)?;
-        balanced(text)?;
-        if !text.contains("(\"minnaert\", |a| minnaert(a.f64()).into())") {
-            return Err(format!("{reference} has no row for `minnaert`:\n{text}").into());
-        }
-    }
-    Ok(())
-}
-
-/// The library, with some files replaced.
-struct Overlay(Memory);
-
-impl Files for Overlay {
-    fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
-        Ok(self.0.read(path)?.or(Embedded.read(path)?))
-    }
-
-    fn list(&self, extensions: &[&str]) -> Vec<String> {
-        let mut all = [self.0.list(extensions), Embedded.list(extensions)].concat();
-        all.sort();
-        all.dedup();
-        all
-    }
-}
-
-/// Fails unless the module compiles in both languages.
-fn compiles(files: &BTreeMap<String, String>, stem: &str) -> Outcome {
-    let below = |(path, text): (&String, &String)| {
-        path.strip_prefix("shaderlib/").map(|path| (path.to_owned(), text.clone()))
-    };
-    let module = stem.trim_start_matches("shaderlib/");
-    let path = module.replace('/', "::");
-    let wesl = format!(
-        "import lamplight::{path}::minnaert;\n@fragment fn main() -> @location(0) vec4f {{\n    \
-         return vec4f(minnaert(0.5));\n}}\n"
-    );
-    let glsl = format!(
-        "#version 450\n#include <lamplight/{module}.glsl>\nlayout(location = 0) out vec4 colour;\n\
-         void main() {{\n    colour = vec4(minnaert(0.5));\n}}\n"
-    );
-    let roots = [("main.wesl", wesl, Language::Wesl), ("main.frag.glsl", glsl, Language::Glsl)];
-    for (root, text, language) in roots {
-        let own = Memory([(root.to_owned(), text)].into());
-        let library = Overlay(Memory(files.iter().filter_map(below).collect()));
-        let packages = Packages {
-            root: Package { name: "user".into(), files: Box::new(own) },
-            dependencies: vec![Package { name: "lamplight".into(), files: Box::new(library) }],
-        };
-        let mut sources = SourceSet::default();
-        let options = Options { keep: Keep::EntryPoints, ..Options::default() };
-        resolve::load(&mut sources, &packages, root, language)
-            .and_then(|graph| compose::compose(&graph, &Settings::default(), &options))
-            .and_then(|composed| validate(&composed))
-            .map_err(|problems| render(&sources, &problems, Form::Human))?;
-    }
-    Ok(())
-}
-
 /// A new value of an axis is in the manifest, in the lock file and in the table of pictures.
 fn axis_value() -> Outcome {
-    let files = make("axis-value", "forward::fog=height")?;
+    let files = make("axis-value", "forward::fog=unheard_of", &[])?;
     let manifest = parsed(text(&files, "shaderlib/lamplight.toml")?, manifest::parse)?;
     let program = manifest.program("forward").ok_or("no program `forward`")?;
     let axis = program.space.axis("fog").ok_or("no axis `fog`")?;
-    if axis.value_names().last().map(String::as_str) != Some("height") {
+    if axis.value_names().last().map(String::as_str) != Some("unheard_of") {
         let values = axis.value_names();
-        return Err(format!("the last value of `fog` should be `height`: {values:?}").into());
+        return Err(format!("the last value of `fog` should be `unheard_of`: {values:?}").into());
     }
     let known =
         parsed(&std::fs::read_to_string(root().join("shaderlib/lamplight.lock"))?, lock::parse)?;
@@ -165,22 +82,39 @@ fn axis_value() -> Outcome {
     if extended.to_string() != text(&files, "shaderlib/lamplight.lock")? {
         return Err("the lock file differs from what `lamplight keys --lock` would write".into());
     }
+    ships("forward", "fog", "unheard_of")?;
+    ships("tonemap", "exposure", "automatic")?;
     let pictures = text(&files, "shaderlib/pictures.toml")?;
     parsed(pictures, |sources, id| Table::parse(sources, id, &manifest))?;
-    let without = pictures.replace("height = {}\n", "");
+    let without = pictures.replace("unheard_of = {}\n", "");
     match parsed(&without, |sources, id| Table::parse(sources, id, &manifest)) {
-        Err(problem) if problem.message().unwrap_or_default().contains("`fog=height`") => Ok(()),
+        Err(problem) if problem.message().unwrap_or_default().contains("`fog=unheard_of`") => {
+            Ok(())
+        }
         Err(problem) => {
             let found = problem.message().unwrap_or_default();
-            Err(format!("without a row, expected an error for `fog=height`, found {found}").into())
+            Err(format!("without a row, expected an error for `fog=unheard_of`, found {found}")
+                .into())
         }
-        Ok(_) => Err("a table of pictures without a row for `fog=height` is accepted".into()),
+        Ok(_) => Err("a table of pictures without a row for `fog=unheard_of` is accepted".into()),
+    }
+}
+
+/// Some permutation with a new value ships, by a slice or by a key that is added.
+fn ships(program: &str, axis: &str, value: &str) -> Outcome {
+    let files = make("axis-value", &format!("{program}::{axis}={value}"), &[])?;
+    let manifest = parsed(text(&files, "shaderlib/lamplight.toml")?, manifest::parse)?;
+    let space = &manifest.program(program).ok_or("the program is lost")?.space;
+    let has = |key: &str| key.split(',').any(|one| one == format!("{axis}={value}"));
+    match space.enumerate().iter().any(|point| has(&space.key(point).to_string())) {
+        true => Ok(()),
+        false => Err(format!("no permutation of {program} with {axis}={value} ships").into()),
     }
 }
 
 /// A new diagnostic has an empty title and page, which trials then demand.
 fn diagnostic() -> Outcome {
-    let files = make("diagnostic", "unknown-swizzle")?;
+    let files = make("diagnostic", "unknown-swizzle", &[])?;
     let text = text(&files, "src/diagnostic/codes/unknown-swizzle.md")?;
     match text == "#\n\nPage: \n" {
         true => Ok(()),
@@ -188,16 +122,110 @@ fn diagnostic() -> Outcome {
     }
 }
 
+/// A new version of a language is complete, except for what is unlike the version that it is made
+/// after: the target with its version, an executor, and the guide. Nothing of it names the other.
+fn target() -> Outcome {
+    for (name, rest, like, version) in [
+        ("glsl499", &[][..], "glsl450", "Version::Desktop(499)"),
+        ("essl399", &[], "essl300", "Version::new_gles(399)"),
+        ("glsl398", &["glsl330"], "glsl330", "Version::Desktop(398)"),
+        ("msl99", &[], "msl", "extension: \"msl99.metal\""),
+        ("wgsl99", &["wgsl"], "wgsl", "extension: \"wgsl99\""),
+    ] {
+        let files = make("target", name, rest)?;
+        let constant = format!("Target::{}", name.to_uppercase());
+        let other = format!("Target::{}", like.to_uppercase());
+        let wanted = [
+            (format!("src/emit/targets/{name}.rs"), version.to_owned()),
+            (format!("src/execute/executors/{name}.rs"), format!("name: \"{name}\"")),
+        ];
+        for (path, part) in wanted {
+            let text = text(&files, &path)?;
+            if !text.contains(&part)
+                || !text.contains(&constant)
+                || text.replace(&constant, "").contains(&other)
+            {
+                return Err(format!("{path} should have `{part}`, not `{other}`:\n{text}").into());
+            }
+        }
+        let page = text(&files, "docs/guide/targets.md")?;
+        let unnamed = |line: &&str| line.starts_with('|') && line.contains(&format!("`{like}`"));
+        let lost = page.lines().filter(unnamed).find(|line| !line.contains(&format!("`{name}`")));
+        if let Some(line) = lost {
+            return Err(format!("docs/guide/targets.md has no `{name}` in `{line}`").into());
+        }
+    }
+    Ok(())
+}
+
+/// A new executor opens a device of wgpu, or is a copy of another one. Its description is empty, or
+/// that of the other, which trials notice.
+fn executor() -> Outcome {
+    rust("executor", "src/execute/executors/fresh.rs")?;
+    let copy = make("executor", "other", &["vulkan"])?;
+    let text = text(&copy, "src/execute/executors/other.rs")?;
+    let known = std::fs::read_to_string(root().join("src/execute/executors/vulkan.rs"))?;
+    if text != known.replace("name: \"vulkan\"", "name: \"other\"") {
+        return Err(
+            format!("expected a copy of vulkan.rs with another name, found:\n{text}").into()
+        );
+    }
+    match house::same_twice(
+        "folder",
+        "description",
+        [("a", "x".to_owned()), ("b", "x".to_owned())].into_iter(),
+    )
+    .len()
+    {
+        1 => Ok(()),
+        _ => Err("`same_twice` should notice a description that two entries have".into()),
+    }
+}
+
+/// A new scene has objects, a lamp and a preset. The preset's words are missing, which is an error.
+fn scene() -> Outcome {
+    rust("scene", "src/scene/sets/fresh.rs")?;
+    if crate::scene::nothing_is_shown(&[]).is_none() {
+        return Err("`nothing_is_shown` should notice an empty scene".into());
+    }
+    let files = make("scene", "fresh", &[])?;
+    let scene = text(&files, "src/scene/sets/fresh.rs")?;
+    let presets = text(&files, "shaderlib/presets.toml")?;
+    let parts = ["Shape::cuboid(", "Lamp {", "Eye {"];
+    let lost = parts.iter().find(|part| !scene.contains(**part));
+    match (lost, presets.ends_with("deviations = []\n"), presets.contains("scene = \"fresh\"")) {
+        (None, true, true) => Ok(()),
+        _ => Err(format!("a scene lacks {lost:?}, or a preset at the end of:\n{presets}").into()),
+    }
+}
+
+/// An interface that only some systems have is for these systems, and is a feature of wgpu.
+fn interface() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let wgpu = "[dependencies]\nwgpu = { version = \"30\", features = [\"std\", \"gles\"] }\n";
+    std::fs::write(folder.path().join("Cargo.toml"), wgpu)?;
+    std::fs::create_dir_all(folder.path().join("src/execute/executors"))?;
+    let made = made::make(folder.path(), "executor", "dx12", &[])?;
+    let files: BTreeMap<String, String> = made.files.into_iter().collect();
+    for (path, part) in [
+        ("src/execute/executors/dx12.rs", "//! Runs on: windows\n"),
+        ("src/execute/executors/dx12.rs", "backend: wgpu::Backends::DX12"),
+        ("Cargo.toml", "\"gles\", \"dx12\"] }"),
+    ] {
+        if !text(&files, path)?.contains(part) {
+            return Err(format!("{path} of `new executor dx12` has no `{part}`").into());
+        }
+    }
+    Ok(())
+}
+
 /// A new entry is a Rust file with the entry's name. Its description is empty, which trials notice.
 fn rust(kind: &str, path: &str) -> Outcome {
-    let files = make(kind, "fresh")?;
+    let files = make(kind, "fresh", &[])?;
     let text = text(&files, path)?;
     balanced(text)?;
     if house::undescribed("fresh", "").is_none() || house::undescribed("fresh", "What.").is_some() {
         return Err("`undescribed` should notice an empty description, and no other".into());
-    }
-    if kind == "scene" && scene::nothing_is_shown(&[]).is_none() {
-        return Err("`nothing_is_shown` should notice an empty scene".into());
     }
     let has_name = text.contains("name: \"fresh\"") || text.contains("Target::FRESH");
     match has_name && text.contains("about: \"\"") {
@@ -227,10 +255,20 @@ fn balanced(text: &str) -> Outcome {
     }
 }
 
-/// The example of each kind in the usage can be made.
+/// The example of each kind in the usage can be made. Further arguments are in brackets.
 fn examples() -> Outcome {
     for kind in made::KINDS {
-        make(kind.name, kind.example).map_err(|problem| format!("{}: {problem:?}", kind.name))?;
+        if !(kind.rest.is_empty() || kind.rest.starts_with('[') && kind.rest.ends_with(']')) {
+            return Err(format!("{}: `{}` should be in brackets", kind.name, kind.rest).into());
+        }
+        let [name, rest @ ..] = kind.example else { return Err("an example has no name".into()) };
+        match made::make(&root(), kind.name, name, rest) {
+            // Somebody may have followed an example.
+            Err(problem) if !problem.contains("already") => {
+                return Err(format!("{}: {problem}", kind.name).into());
+            }
+            _ => {}
+        }
     }
     Ok(())
 }
@@ -247,13 +285,26 @@ fn mistakes() -> Outcome {
         ("axis-value", "forward::mist=linear", "has no `[program.forward.axis.mist]`"),
         ("axis-value", "forward::max_lights=many", "has no list of names"),
         ("target", "hlsl", "exists already"),
+        ("target", "dxil", "no target is like `dxil`: name one of essl300"),
         ("executor", "eval", "exists already"),
         ("scene", "Room", "must be small letters"),
         ("diagnostic", "unknown_axis", "must be small letters"),
         ("diagnostic", "unknown-axis", "exists already"),
     ];
+    for (parameters, result, expected) in [
+        ("x: f16", "f32", "`f16` is not one of the types f32, i32"),
+        ("x: f32, x: f32", "f32", "two parameters are called `x`"),
+        ("x: f32 0-1", "f32", "is not a parameter: NAME: TYPE"),
+        ("x: f32", "Light", "`Light` is not one of the types"),
+    ] {
+        let made = made::make(&root(), "function", "brdf::fresh::f", &[parameters, result]);
+        if !made.as_ref().is_err_and(|said| said.contains(expected)) {
+            return Err(format!("{parameters}: expected `{expected}`, found {made:?}").into());
+        }
+    }
     for (kind, name, expected) in wrong {
-        match made::make(Path::new(&root()), kind, name) {
+        let rest: &[&str] = if kind == "function" { &["x: f32", "f32"] } else { &[] };
+        match made::make(Path::new(&root()), kind, name, rest) {
             Err(said) if said.contains(expected) => {}
             Err(said) => {
                 let what = format!("expected `{expected}`, found `{said}`");

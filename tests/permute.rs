@@ -43,7 +43,7 @@ fn check(case: &Path) -> Result<(), Failed> {
     if found == expected {
         Ok(())
     } else {
-        Err(format!("--- expected\n{expected}\n--- found\n{found}\n(UPDATE_EXPECT=1 accepts this)")
+        Err(format!("--- expected\n{expected}\n--- found\n{found}\n(`cargo xtask record permute` accepts this)")
             .into())
     }
 }

@@ -158,8 +158,10 @@ fn covering(program: &Program) -> Space {
         span: program.span,
     };
     let lists = Lists { only: Vec::new(), exclude: vec![everything], include };
-    Space::new(space.axes().to_vec(), space.constraints().to_vec(), lists)
-        .unwrap_or_else(|_| space.clone())
+    let covering = Space::new(space.axes().to_vec(), space.constraints().to_vec(), lists);
+    let mut covering = covering.unwrap_or_else(|_| space.clone());
+    covering.undeclared = space.undeclared;
+    covering
 }
 
 /// The stages of one permutation in one language, in both targets.

@@ -8,6 +8,7 @@ use std::process::Command;
 
 use lamplight::bundle::{Bundle, Found, Target, pack};
 use lamplight::diagnostic::render::{Form, render};
+use lamplight::emit::targets;
 use lamplight::generate::{Request, in_memory};
 use lamplight::project;
 use lamplight::source::SourceSet;
@@ -192,8 +193,8 @@ fn values() -> Outcome {
 fn glsl() -> Outcome {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("a.frag").to_string_lossy().into_owned();
-    for target in [Target::GLSL450, Target::GLSL330, Target::ESSL300] {
-        let found = found("default", target)?;
+    for entry in targets::ALL.iter().filter(|entry| entry.glsl.is_some()) {
+        let found = found("default", entry.target)?;
         let text = String::from_utf8(found.bytes)?;
         let (version, rest) = text.split_once('\n').ok_or("no lines")?;
         for chosen in ["", "#define LAMPLIGHT_TAPS 16\n#define LAMPLIGHT_NEGATIVE 1\n"] {

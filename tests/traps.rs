@@ -1,6 +1,9 @@
 //! Runs every command that writes files, where something that Lamplight did not make is in the way.
 //! A foreign file, folder or link must stay as it is, and the exit code must say that the command
 //! wrote nothing. A pipe or a device is written to. Nothing is ever deleted.
+//!
+//! A new command that writes is one line in [`FOLDERS`] or [`FILES`]; a trial fails until it is
+//! there. A new trap is one line in [`FOLDER_TRAPS`] or [`FILE_TRAPS`].
 
 mod file;
 mod folder;
@@ -42,6 +45,7 @@ const FOLDERS: &[Writer] = &[
     ),
     writer("export", &["export", "OUT"]),
     writer("migrate", &["migrate", "--from", "naga_oil", "oil", "-o", "OUT"]),
+    writer("man", &["man", "-o", "OUT"]),
     writer("export_npm", &["export", "OUT", "--form", "npm"]),
     writer("catalogue", &["catalogue", "-o", "OUT"]),
     writer("report", &["check", "half.toml", "--report", "OUT"]),
@@ -67,6 +71,7 @@ const FILES: &[Writer] = &[
     writer("render", &["render", "hpg_4_spot", "--executor", "eval", "--size", "8x8", "-o", "OUT"]),
     writer("keys_rust", &["keys", "--manifest", "lamplight.toml", "--lang", "rust", "-o", "OUT"]),
     writer("keys_c", &["keys", "--manifest", "lamplight.toml", "--lang", "c", "-o", "OUT"]),
+    writer("cost", &["cost", "half.wesl", "--gpu", "navi21", "--record", "--baseline", "OUT"]),
     writer("keys_ts", &["keys", "--manifest", "lamplight.toml", "--lang", "ts", "-o", "OUT"]),
 ];
 
@@ -114,6 +119,7 @@ pub fn trials() -> Vec<Trial> {
             trials.push(Trial::test(name, move || run(writer)));
         }
     }
+    trials.push(Trial::test("traps::every_writer_is_listed", every_writer_is_listed));
     trials.push(Trial::test("traps::standard_output", standard_output));
     trials.push(Trial::test("traps::blobs_of_a_foreign_folder", foreign_blobs));
     trials.push(Trial::test("traps::parts_of_a_bundle", parts));
@@ -282,6 +288,34 @@ fn refused(place: &Place, writer: &Writer, force: bool) -> Outcome {
 fn pipe(path: &Path) -> Outcome {
     let made = Command::new("mkfifo").arg(path).status()?;
     ensure(made.success(), "mkfifo failed")
+}
+
+/// Each command that can replace files, which is one that takes `--force`, is in a table above.
+fn every_writer_is_listed() -> Outcome {
+    let help = |words: &[&str]| -> Result<String, Failed> {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
+        Ok(String::from_utf8(command.args(words).arg("--help").output()?.stdout)?)
+    };
+    let listed: Vec<&str> = FOLDERS
+        .iter()
+        .chain(FILES)
+        .filter_map(|writer| writer.arguments.first().copied())
+        .collect();
+    let all = help(&[])?;
+    let names = all.lines().filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
+    let names = names.filter(|name| name.starts_with(|letter: char| letter.is_ascii_lowercase()));
+    let (mut writers, mut missing) = (0, Vec::new());
+    for name in names.filter(|name| *name != "help") {
+        if help(&[name])?.contains("--force") {
+            writers += 1;
+            if !listed.contains(&name) {
+                missing.push(name);
+            }
+        }
+    }
+    ensure(writers > 5, format!("only {writers} commands have `--force`: is the help read?"))?;
+    let what = "a line in FOLDERS or in FILES of tests/traps.rs";
+    ensure(missing.is_empty(), format!("{missing:?} replace files, and each needs {what}"))
 }
 
 /// `-o /dev/stdout` writes to standard output, also if that is redirected to the end of a file.

@@ -1,8 +1,6 @@
 import type { ShaderResult } from "@lamplight/toolchain";
 import { code, h } from "./dom";
 
-export const TARGETS = ["wgsl", "glsl450", "glsl330", "essl300", "msl", "hlsl", "spirv"];
-
 /** What came of a shader: its text in a target, entry point by entry point, with the reflection. */
 export function output(made: ShaderResult, target: string): HTMLElement[] {
     if (target === "composed") return made.text === undefined ? [] : [code(made.text, "composed text")];

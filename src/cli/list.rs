@@ -172,7 +172,7 @@ fn target_table() -> Table {
         json!({
             "target": entry.target.name(),
             "extension": entry.extension,
-            "compiled": format!("*.{}", compile::file_ending(entry.target, "frag", entry.extension)),
+            "compiled": format!("*.{}", compile::file_ending(entry, "frag")),
             "summary": entry.about,
         })
     });

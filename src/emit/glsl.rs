@@ -14,6 +14,9 @@ use crate::bundle::{Clip, Combined, Kind, Native};
 /// The uniform that naga adds for WebGPU's first instance, which OpenGL does not count from.
 const FIRST_INSTANCE: &str = "naga_vs_first_instance";
 
+/// What lines before the first declaration begin with: directives, and precisions in GLSL ES.
+pub const HEADER: &[&str] = &["#", "precision "];
+
 /// Writes GLSL of one version.
 pub fn write_glsl(
     source: &Source<'_>,

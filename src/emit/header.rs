@@ -1,10 +1,10 @@
 //! The lines that begin an emitted text, before its first declaration.
 
-/// What such a line starts with in some target: a directive, a comment, a precision of GLSL ES, a
-/// namespace of Metal, or an extension of WGSL.
-const STARTS: [&str; 6] = ["#", "//", "precision ", "using ", "enable ", "requires "];
+use super::targets;
 
-/// Whether a line may stand before all declarations. A blank line may.
+/// Whether a line may stand before all declarations, in some target. A blank line and a comment
+/// may.
 pub fn is_header_line(line: &str) -> bool {
-    line.trim().is_empty() || STARTS.iter().any(|start| line.starts_with(start))
+    let mut starts = targets::ALL.iter().flat_map(|entry| entry.header);
+    line.trim().is_empty() || line.starts_with("//") || starts.any(|start| line.starts_with(start))
 }

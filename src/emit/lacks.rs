@@ -1,6 +1,6 @@
 //! Refuses what naga would write although the language lacks it, or gives it another meaning.
 //!
-//! GLSL 3.30 and GLSL ES 3.00 lack some newer functions, whose names naga writes all the same. For
+//! Older versions of GLSL lack some functions, whose names naga writes all the same. For
 //! `frexp` it writes a function of its own based on `log2`, which is wrong for negative numbers and
 //! for small ones. In std140 a column of a matrix of two rows takes 16 bytes, but 8 bytes in WGSL
 //! and in the reflection.
@@ -11,32 +11,74 @@ use naga::{
     MathFunction, Module, Span, Type, TypeInner, VectorSize,
 };
 
-use super::columns;
+use super::{columns, targets};
 use crate::bundle::Target;
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::validate::Validated;
 
-/// Functions of WGSL, with what GLSL calls that which naga writes for them. The newest GLSL has
-/// them all.
-const LATER: &[(MathFunction, &str)] = &[
-    (MathFunction::CountOneBits, "`bitCount`"),
-    (MathFunction::CountTrailingZeros, "`findLSB`"),
-    (MathFunction::Dot4I8Packed, "`bitfieldExtract`"),
-    (MathFunction::Dot4U8Packed, "`bitfieldExtract`"),
-    (MathFunction::ExtractBits, "`bitfieldExtract`"),
-    (MathFunction::FirstLeadingBit, "`findMSB`"),
-    (MathFunction::FirstTrailingBit, "`findLSB`"),
-    (MathFunction::Frexp, "`frexp`"),
-    (MathFunction::InsertBits, "`bitfieldInsert`"),
-    (MathFunction::Ldexp, "`ldexp`"),
-    (MathFunction::Pack4xI8, "`bitfieldInsert`"),
-    (MathFunction::Pack4xI8Clamp, "`bitfieldInsert`"),
-    (MathFunction::Pack4xU8, "`bitfieldInsert`"),
-    (MathFunction::Pack4xU8Clamp, "`bitfieldInsert`"),
-    (MathFunction::ReverseBits, "`bitfieldReverse`"),
-    (MathFunction::Unpack4xI8, "`bitfieldExtract`"),
-    (MathFunction::Unpack4xU8, "`bitfieldExtract`"),
+/// Something that GLSL did not have from the start.
+struct Later {
+    /// What GLSL calls it.
+    name: &'static str,
+    /// The first version of GLSL that has it.
+    desktop: u16,
+    /// The first version of GLSL ES that has it, if one does.
+    embedded: Option<u16>,
+}
+
+impl Later {
+    const fn since(name: &'static str, desktop: u16, embedded: Option<u16>) -> Self {
+        Self { name, desktop, embedded }
+    }
+
+    /// Its name, if a version lacks it.
+    fn lacking(&self, version: Version) -> Option<&'static str> {
+        let is_there = match version {
+            Version::Desktop(number) => number >= self.desktop,
+            Version::Embedded { version: number, .. } => {
+                self.embedded.is_some_and(|first| number >= first)
+            }
+        };
+        (!is_there).then_some(self.name)
+    }
+}
+
+const BIT_COUNT: Later = Later::since("`bitCount`", 400, Some(310));
+const EXTRACT: Later = Later::since("`bitfieldExtract`", 400, Some(310));
+const INSERT: Later = Later::since("`bitfieldInsert`", 400, Some(310));
+const REVERSE: Later = Later::since("`bitfieldReverse`", 400, Some(310));
+const LOWEST_BIT: Later = Later::since("`findLSB`", 400, Some(310));
+const HIGHEST_BIT: Later = Later::since("`findMSB`", 400, Some(310));
+const FREXP: Later = Later::since("`frexp`", 400, Some(310));
+const LDEXP: Later = Later::since("`ldexp`", 400, Some(310));
+const HALF: Later = Later::since("`unpackHalf2x16`", 420, Some(300));
+const GATHER: Later = Later::since("`textureGather`", 400, Some(310));
+const LEVELS: Later = Later::since("`textureQueryLevels`", 430, None);
+const SAMPLES: Later = Later::since("`textureSamples`", 450, None);
+const NESTED: Later = Later::since("array of arrays", 430, Some(310));
+const SAMPLE_ID: Later = Later::since("`gl_SampleID`", 400, Some(320));
+
+/// Functions of WGSL, with what naga writes for them.
+const LATER: &[(MathFunction, Later)] = &[
+    (MathFunction::CountOneBits, BIT_COUNT),
+    (MathFunction::CountTrailingZeros, LOWEST_BIT),
+    (MathFunction::Dot4I8Packed, EXTRACT),
+    (MathFunction::Dot4U8Packed, EXTRACT),
+    (MathFunction::ExtractBits, EXTRACT),
+    (MathFunction::FirstLeadingBit, HIGHEST_BIT),
+    (MathFunction::FirstTrailingBit, LOWEST_BIT),
+    (MathFunction::Frexp, FREXP),
+    (MathFunction::InsertBits, INSERT),
+    (MathFunction::Ldexp, LDEXP),
+    (MathFunction::Pack4xI8, INSERT),
+    (MathFunction::Pack4xI8Clamp, INSERT),
+    (MathFunction::Pack4xU8, INSERT),
+    (MathFunction::Pack4xU8Clamp, INSERT),
+    (MathFunction::QuantizeToF16, HALF),
+    (MathFunction::ReverseBits, REVERSE),
+    (MathFunction::Unpack4xI8, EXTRACT),
+    (MathFunction::Unpack4xU8, EXTRACT),
 ];
 
 const TWO_ROWS: &str =
@@ -49,7 +91,7 @@ const TWO_ROWS: &str =
 pub fn check_lacks(
     composed: &Composed,
     validated: &Validated,
-    targets: &[Target],
+    wanted: &[Target],
 ) -> Result<(), Diagnostics> {
     let (module, mut found) = (&validated.module, Diagnostics::new());
     let mut refuse = |message: String, span: Span, label: &str| {
@@ -57,27 +99,22 @@ pub fn check_lacks(
         let error = Diagnostic::error(codes::EMIT_FAILED, message);
         found.push(place.into_iter().fold(error, |error, span| error.at(span, label)));
     };
-    for (target, version) in VERSIONS.iter().filter(|(target, _)| targets.contains(target)) {
-        for (what, span) in lacking_features(module, *version) {
-            refuse(lack_message(*target, what), span, "it is written so");
+    let entries = targets::ALL.iter().filter(|entry| wanted.contains(&entry.target));
+    for (target, version) in entries.filter_map(|entry| Some((entry.target, entry.glsl?))) {
+        for (what, span) in lacking_features(module, version) {
+            refuse(lack_message(target, what), span, "it is written so");
         }
         for span in two_rows(module) {
             refuse(format!("target `{target}`: {TWO_ROWS}"), span, "it is in here");
         }
     }
-    if targets.contains(&Target::HLSL) {
+    if wanted.contains(&Target::HLSL) {
         for span in columns::taken_from_values(module, &validated.info) {
             refuse(format!("target `hlsl`: {}", columns::TAKEN), span, "it is taken here");
         }
     }
     if found.is_empty() { Ok(()) } else { Err(found) }
 }
-
-const VERSIONS: &[(Target, Version)] = &[
-    (Target::GLSL450, Version::Desktop(450)),
-    (Target::GLSL330, Version::Desktop(330)),
-    (Target::ESSL300, Version::new_gles(300)),
-];
 
 fn lack_message(target: Target, what: &str) -> String {
     format!("target `{target}`: the language has no {what}, which is needed here")
@@ -88,10 +125,8 @@ pub fn first_lack(module: &Module, version: Version) -> Option<String> {
     if two_rows(module).next().is_some() {
         return Some(TWO_ROWS.to_owned());
     }
-    if asks_for_sample(module, version) {
-        return Some("the language has no `gl_SampleID`, which is needed".to_owned());
-    }
-    let (what, _) = lacking_features(module, version).next()?;
+    let sample = SAMPLE_ID.lacking(version).filter(|_| asks_for_sample(module));
+    let what = sample.or_else(|| lacking_features(module, version).next().map(|(what, _)| what))?;
     Some(format!("the language has no {what}, which is needed"))
 }
 
@@ -135,11 +170,11 @@ fn arrays_of_arrays(
     module: &Module,
     version: Version,
 ) -> impl Iterator<Item = (&'static str, Span)> {
-    let types = module.types.iter().filter(move |_| version != NEWEST);
-    types.filter_map(|(handle, ty)| match &ty.inner {
+    let what = NESTED.lacking(version);
+    module.types.iter().filter_map(move |(handle, ty)| match &ty.inner {
         TypeInner::Array { base, .. } => {
             let is_array = matches!(module.types[*base].inner, TypeInner::Array { .. });
-            is_array.then(|| ("array of arrays", place_of(module, handle)))
+            what.filter(|_| is_array).map(|what| (what, place_of(module, handle)))
         }
         _ => None,
     })
@@ -175,31 +210,23 @@ fn later_builtin(
     version: Version,
     expression: &Expression,
 ) -> Option<&'static str> {
-    let is_old = version != NEWEST;
     match expression {
         Expression::ImageSample { image, depth_ref: None, .. }
             if is_depth(module, function, *image) =>
         {
             Some(PLAIN_DEPTH)
         }
-        Expression::Math { fun: MathFunction::QuantizeToF16, .. } => {
-            (version == Version::Desktop(330)).then_some("`unpackHalf2x16`")
+        Expression::Math { fun, .. } => {
+            let (_, later) = LATER.iter().find(|(known, _)| known == fun)?;
+            later.lacking(version)
         }
-        Expression::Math { fun, .. } if is_old => {
-            LATER.iter().find(|(known, _)| known == fun).map(|(_, name)| *name)
-        }
-        Expression::ImageSample { gather: Some(_), .. } if is_old => Some("`textureGather`"),
-        Expression::ImageQuery { query: ImageQuery::NumLevels, .. } if is_old => {
-            Some("`textureQueryLevels`")
-        }
-        Expression::ImageQuery { query: ImageQuery::NumSamples, .. } if is_old => {
-            Some("`textureSamples`")
-        }
+        Expression::ImageSample { gather: Some(_), .. } => GATHER.lacking(version),
+        Expression::ImageQuery { query: ImageQuery::NumLevels, .. } => LEVELS.lacking(version),
+        Expression::ImageQuery { query: ImageQuery::NumSamples, .. } => SAMPLES.lacking(version),
         _ => None,
     }
 }
 
-const NEWEST: Version = Version::Desktop(450);
 const PLAIN_DEPTH: &str = "depth texture that is sampled without a comparison";
 
 fn is_depth(module: &Module, function: &Function, image: Handle<Expression>) -> bool {
@@ -212,8 +239,8 @@ fn is_depth(module: &Module, function: &Function, image: Handle<Expression>) -> 
     matches!(&module.types[ty].inner, TypeInner::Image { class, .. } if *class == depth)
 }
 
-/// Whether an entry point uses the sample's index in GLSL ES 3.00.
-fn asks_for_sample(module: &Module, version: Version) -> bool {
+/// Whether an entry point uses the sample's index.
+fn asks_for_sample(module: &Module) -> bool {
     let is_it = |ty: Handle<Type>, binding: Option<&Binding>| match &module.types[ty].inner {
         TypeInner::Struct { members, .. } => {
             members.iter().any(|one| one.binding == Some(Binding::BuiltIn(BuiltIn::SampleIndex)))
@@ -221,7 +248,5 @@ fn asks_for_sample(module: &Module, version: Version) -> bool {
         _ => binding == Some(&Binding::BuiltIn(BuiltIn::SampleIndex)),
     };
     let mut points = module.entry_points.iter().map(|point| &point.function);
-    version != NEWEST
-        && points
-            .any(|one| one.arguments.iter().any(|given| is_it(given.ty, given.binding.as_ref())))
+    points.any(|one| one.arguments.iter().any(|given| is_it(given.ty, given.binding.as_ref())))
 }

@@ -4,7 +4,7 @@
 //! host-side path serves them: NDC depth is [0, 1], NDC y points up, texture and framebuffer rows
 //! start at the top.
 //! - `spirv`: as written; the host gives a viewport of negative height, as wgpu does.
-//! - `glsl450`, `glsl330`, `essl300`: a vertex stage ends with `y = -y, z = 2z - w`, so that under
+//! - GLSL in every version: a vertex stage ends with `y = -y, z = 2z - w`, so that under
 //!   GL's own clip space (leave `glClipControl` alone) depth values, shadow lookups, derivatives
 //!   and `gl_FragCoord` are those of the other targets. Images are stored top row first: the last
 //!   pass to the window flips them, and front faces wind the other way round for `glFrontFace`.
@@ -33,6 +33,7 @@ pub use names::type_name;
 pub use reflect::reflect;
 
 use naga::ShaderStage;
+use naga::back::glsl::Version;
 
 use crate::bundle::{self, Clip, Native, Target};
 use crate::compose::{Composed, Part, PartKind};
@@ -50,12 +51,31 @@ pub struct Entry {
     pub binary: bool,
     /// One line for listings.
     pub about: &'static str,
+    /// The version, if the language is GLSL. [`lacks`] refuses what this version does not have.
+    pub glsl: Option<Version>,
+    /// What lines before the first declaration begin with. Comments need not be listed.
+    pub header: &'static [&'static str],
+    /// What the language has for overrides.
+    pub overrides: Overrides,
     /// The tool that judges whether its outputs are well formed.
     pub judge: Judge,
     /// The clip spaces of its vertex stages.
     pub clip: &'static clip::Spaces,
     /// Writes the entry point of a module without overrides; only [`emit`] calls it.
     pub write: fn(&Source<'_>) -> Result<Emitted, String>,
+}
+
+/// How the host chooses the value of an override.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Overrides {
+    /// The language has overrides.
+    Kept,
+    /// Specialisation constants of SPIR-V.
+    Specialised,
+    /// Function constants of Metal.
+    FunctionConstants,
+    /// Macros, which the host defines before the text is compiled.
+    Macros,
 }
 
 /// The tool that judges the outputs of a target, from their bytes. Every target has one. `judge`
@@ -198,7 +218,7 @@ fn written_plainly(
         index,
         clip,
     };
-    if writer.target == Target::WGSL || validated.module.overrides.is_empty() {
+    if writer.overrides == Overrides::Kept || validated.module.overrides.is_empty() {
         return (writer.write)(&source).map_err(failed);
     }
     if let Some(written) = specialise::write_open(&source, writer) {

@@ -1,4 +1,5 @@
-//! Everything that can run a kernel: one file of `executors/` for each.
+//! Everything that can run a kernel: one file of `executors/` for each. The line `Runs on:` of a
+//! file says which systems have the executor. The build script reads it.
 
 use super::Session;
 use crate::bundle::Target;
@@ -69,10 +70,17 @@ fn open_gpu(wanted: super::gpu::Wanted) -> Result<Box<dyn Session>, Unavailable>
     }
 }
 
-/// A session on a context of OpenGL, for the texts of a target.
+/// A session on a context of OpenGL, for the texts of a target. The target's version of GLSL says
+/// which OpenGL that is.
 #[cfg(not(target_family = "wasm"))]
-fn opened_opengl(api: super::gpu::Api, target: Target) -> Result<Box<dyn Session>, Unavailable> {
-    match super::gpu::OpenGl::open(api, target) {
+fn opened_opengl(target: Target) -> Result<Box<dyn Session>, Unavailable> {
+    let version = crate::emit::targets::find(target).and_then(|entry| entry.glsl);
+    let not_glsl = || format!("`{target}` is not GLSL: its file has no version");
+    let opened = version.ok_or_else(not_glsl).and_then(|version| {
+        let api = super::gpu::Api::of_glsl(version);
+        super::gpu::OpenGl::open(api, target)
+    });
+    match opened {
         Ok(opengl) => Ok(Box::new(opengl)),
         Err(reason) => Err(Unavailable { reason }),
     }

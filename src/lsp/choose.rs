@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::place::Lines;
 use super::{Server, look};
+use crate::bundle::key;
 use crate::permute::{Setting, constant};
 
 const CHOOSE: &str = "lamplight.permutation";
@@ -17,15 +18,7 @@ pub fn choose_permutation(server: &mut Server, parameters: &Value) -> Result<Val
     let document = server.document(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
     if let Some(text) = parameters.get("set").and_then(Value::as_str) {
-        let mut choice = look::Choice::new();
-        for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
-            let (name, value) = part.split_once('=').unwrap_or((part, "true"));
-            if name.starts_with("constants::") {
-                constant::parse(value)?;
-            }
-            choice.insert(name.trim().to_owned(), Setting::parse(value.trim()));
-        }
-        server.choices.insert(root.clone(), choice);
+        server.choices.insert(root.clone(), read_choice(text)?);
         server.forget(None);
     }
     let opened = server.opened(&root).ok_or("the package cannot be read")?;
@@ -47,6 +40,21 @@ pub fn choose_permutation(server: &mut Server, parameters: &Value) -> Result<Val
         "axes": choices,
         "values": values.collect::<Map<String, Value>>(),
     }))
+}
+
+/// What a key chooses. Besides axes, it may name features and constants.
+fn read_choice(text: &str) -> Result<look::Choice, String> {
+    let one = |part: key::Part<'_>| {
+        let (name, value) = (part.axis.text, part.chosen());
+        if name.is_empty() || value.is_empty() {
+            return Err(format!("expected `axis=value`, or the name of a boolean axis: `{text}`"));
+        }
+        if name.starts_with("constants::") {
+            constant::parse(value)?;
+        }
+        Ok((name.to_owned(), Setting::parse(value)))
+    };
+    key::parts(text).map(one).collect()
 }
 
 /// `workspace/executeCommand`: the same, and the composed text.

@@ -39,7 +39,12 @@ pub fn mesh_objects(
         let shape = shape.transformed(part.world_from_mesh);
         let shape =
             if part.world_from_mesh.determinant() < 0.0 { mirror_winding(shape) } else { shape };
-        let (color, material) = read_surface(reader, &primitive.material());
+        let (color, mut material) = read_surface(reader, &primitive.material())?;
+        // Bodies are as thick as they are large.
+        let scale = part.world_from_mesh.determinant().abs().cbrt();
+        if let Some(layers) = &mut material.layers {
+            layers.thickness *= scale;
+        }
         objects.push(Object::made(shape, DMat4::IDENTITY, color, material));
     }
     Ok(objects)

@@ -6,6 +6,7 @@
 //! names its place in the document. All memory is bounded by [`limits`](crate::limits).
 
 mod accessor;
+mod layers;
 mod mesh;
 mod nodes;
 mod surface;
@@ -29,6 +30,8 @@ pub struct Model {
     pub notes: BTreeSet<String>,
     /// Values of the axes of `forward` that show it, such as `specular=ggx`.
     pub axes: Vec<String>,
+    /// Values of its axes that show the layers of the materials, such as `clearcoat=true`.
+    pub layers: Vec<String>,
 }
 
 /// From where a model is seen.
@@ -47,6 +50,8 @@ struct Reader<'b> {
     document: &'b gltf::Document,
     blob: &'b [u8],
     notes: BTreeSet<String>,
+    /// Whether no material that is drawn is lit.
+    all_unlit: bool,
 }
 
 /// Reads a binary glTF file.
@@ -62,7 +67,8 @@ pub fn read_model(bytes: &[u8], view: View) -> Result<Model, String> {
     let read = || -> Result<Model, String> {
         let document =
             gltf::Gltf::from_slice(json).map_err(|error| document_error(&error))?.document;
-        model_scene(&mut Reader { document: &document, blob, notes: BTreeSet::new() }, view)
+        let notes = BTreeSet::new();
+        model_scene(&mut Reader { document: &document, blob, notes, all_unlit: false }, view)
     };
     caught(read).unwrap_or_else(|reason| Err(format!("the document is broken: {reason}")))
 }
@@ -120,6 +126,7 @@ fn document_error(error: &gltf::Error) -> String {
 
 fn model_scene(reader: &mut Reader<'_>, view: View) -> Result<Model, String> {
     let placed = nodes::walk_scene(reader)?;
+    reader.all_unlit = drawn_materials(reader.document, &placed).all(|one| one.unlit());
     let sheet = texture::texture_sheet(reader, &placed)?;
     let mut objects = Vec::new();
     let mut corners = 0;
@@ -132,11 +139,21 @@ fn model_scene(reader: &mut Reader<'_>, view: View) -> Result<Model, String> {
     let bounds = nodes::bounding_ball(&objects);
     let eye = model_eye(&placed, &bounds, view)?;
     let lamps = nodes::model_lamps(&placed, &bounds, &eye);
-    let axes = model_axes(reader, &placed, &sheet, &lamps);
+    let layers = if reader.all_unlit { Vec::new() } else { layers::layer_axes(&objects) };
+    let axes = model_axes(reader, &placed, &sheet, (&lamps, &layers));
     let mut scene = Scene::of_model(objects, eye, lamps);
     scene.own_maps = sheet.maps.map(Arc::new);
     let notes = std::mem::take(&mut reader.notes);
-    Ok(Model { scene, notes, axes })
+    Ok(Model { scene, notes, axes, layers })
+}
+
+/// The materials of everything that is drawn.
+fn drawn_materials<'d>(
+    document: &'d gltf::Document,
+    placed: &nodes::Placed,
+) -> impl Iterator<Item = gltf::Material<'d>> {
+    let meshes = placed.parts.iter().filter_map(|part| document.meshes().nth(part.mesh));
+    meshes.flat_map(|mesh| mesh.primitives().map(|part| part.material()).collect::<Vec<_>>())
 }
 
 /// Microfacets as in glTF, as many lamps as there are, and textures where there are any.
@@ -144,23 +161,28 @@ fn model_axes(
     reader: &Reader<'_>,
     placed: &nodes::Placed,
     sheet: &Sheet,
-    lamps: &[Lamp],
+    (lamps, layers): (&[Lamp], &[String]),
 ) -> Vec<String> {
+    if reader.all_unlit {
+        let textured = if sheet.has_colors { "base_map=true" } else { "base_map=false" };
+        return ["lights=none", "ambient=none", textured].map(str::to_owned).to_vec();
+    }
     let most = [1, 4, 10].into_iter().find(|most| lamps.len() <= *most).unwrap_or(10);
     let shadow = match lamps.first().map(|lamp| lamp.kind) {
         Some(LampKind::Directional) => "shadow=pcf_3x3,shadow_light=directional",
         Some(LampKind::Spot) => "shadow=pcf_3x3,shadow_light=spot",
         _ => "shadow=none",
     };
-    let mut chosen = format!("specular=ggx,ambient=hemisphere,max_lights={most},{shadow}");
+    // Layers mirror their surroundings, or show them.
+    let ambient = if layers.len() > 1 { "ibl" } else { "hemisphere" };
+    let mut chosen = format!("specular=ggx,ambient={ambient},max_lights={most},{shadow}");
     if sheet.has_colors {
         chosen += ",base_map=true";
     }
     if sheet.has_normals {
         chosen += ",normal_map=true";
     }
-    let mut drawn = placed.parts.iter().filter_map(|part| reader.document.meshes().nth(part.mesh));
-    if drawn.any(|mesh| mesh.primitives().any(|part| part.material().double_sided())) {
+    if drawn_materials(reader.document, placed).any(|material| material.double_sided()) {
         chosen += ",two_sided=true";
     }
     chosen.split(',').map(str::to_owned).collect()

@@ -3,33 +3,41 @@
 use glam::DVec3;
 
 use super::Reader;
+use super::layers::read_layers;
+use crate::scene::Layers;
 use crate::scene::sets::Material;
 
 /// The colour of a surface, and what it does with light.
-pub fn read_surface(reader: &mut Reader<'_>, material: &gltf::Material<'_>) -> (DVec3, Material) {
+///
+/// # Errors
+/// A value of an extension that is none.
+pub fn read_surface(
+    reader: &mut Reader<'_>,
+    material: &gltf::Material<'_>,
+) -> Result<(DVec3, Material), String> {
     let own = material.pbr_metallic_roughness();
     let [red, green, blue, _] = own.base_color_factor().map(f64::from);
     let color = DVec3::new(red, green, blue);
-    let metal = f64::from(own.metallic_factor()).clamp(0.0, 1.0);
+    let layers = read_layers(reader, material)?;
+    let metal = layers.metallic;
     let rough = f64::from(own.roughness_factor()).clamp(0.0, 1.0);
     left_out(reader, material);
-    let strength = f64::from(material.emissive_strength().unwrap_or(1.0));
+    let strength = f64::from(material.emissive_strength().unwrap_or(1.0)).max(0.0);
     let emission = DVec3::from_array(material.emissive_factor().map(f64::from)) * strength;
     if material.unlit() {
-        let dark = Material { diffuse: DVec3::ZERO, ambient: DVec3::ZERO, ..Material::default() };
-        return (color, Material { emission: color, specular: DVec3::ZERO, ..dark });
+        if !reader.all_unlit && own.base_color_texture().is_some() {
+            let what = "left out: textures of unlit materials beside lit ones";
+            reader.notes.insert(what.to_owned());
+        }
+        return Ok(unlit_surface(reader.all_unlit, color));
     }
-    let ior = f64::from(material.ior().unwrap_or(1.5));
-    let share = material.specular().map_or(DVec3::ONE, |specular| {
-        let tint = DVec3::from_array(specular.specular_color_factor().map(f64::from));
-        tint * f64::from(specular.specular_factor())
-    });
-    let normal = (((ior - 1.0) / (ior + 1.0)).powi(2) * share).min(DVec3::ONE);
+    let share = layers.specular_color * layers.specular;
+    let normal = (((layers.ior - 1.0) / (layers.ior + 1.0)).powi(2) * share).min(DVec3::ONE);
     let specular = normal.lerp(color, metal);
     // Light of the surroundings is reflected by metals too, in their colour.
     let matt = DVec3::splat(1.0 - metal);
     let alpha = (rough * rough).max(1e-3);
-    (
+    Ok((
         color,
         Material {
             emission,
@@ -38,8 +46,22 @@ pub fn read_surface(reader: &mut Reader<'_>, material: &gltf::Material<'_>) -> (
             roughness: rough.max(0.045),
             diffuse: matt,
             specular,
+            layers: Some(layers),
             ..Material::default()
         },
+    ))
+}
+
+/// A surface that shows its colour and nothing else. If all are unlit, no lamp shines. Beside others,
+/// a black surface gives the colour off.
+fn unlit_surface(all_unlit: bool, color: DVec3) -> (DVec3, Material) {
+    if all_unlit {
+        return (color, Material::default());
+    }
+    let layers = Some(Layers { specular: 0.0, ..Layers::default() });
+    (
+        DVec3::ZERO,
+        Material { emission: color, specular: DVec3::ZERO, layers, ..Material::default() },
     )
 }
 

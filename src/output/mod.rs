@@ -1,5 +1,30 @@
 //! The one way to the disk. Every file that a command or the loader writes goes through here.
 //!
+//! | to write | call | it lives in |
+//! |---|---|---|
+//! | one file that the user names | [`write_file`], which asks whether a file there is ours | `file.rs` |
+//! | one file whose older content the caller has read | [`write()`] | `file.rs` |
+//! | a folder of files, each known by its hash | [`write_folder`], or [`Folder`] for one after the other | `folder.rs` |
+//! | many files that point to each other | [`Scratch`]: stage all, sync once, rename in the order of use | `scratch.rs`; `bundle` does so |
+//!
+//! A write takes these steps, in this order, so that a crash between two of them loses nothing:
+//!
+//! 1. `Scratch::new` makes a folder beside the place. The run keeps a file in it locked, which tells
+//!    a later run whether this one is still alive.
+//! 2. `Scratch::write` writes the bytes to a new file in this folder, and waits until they are on
+//!    the disk.
+//! 3. `put_file` in `file.rs` gives the file the permissions of the one that it replaces, and renames
+//!    it into its place. In an output folder, `Folder::put` in `folder.rs` does this.
+//! 4. `sync_folder` in `scratch.rs` syncs the folder, so that the new name survives a loss of power.
+//! 5. The scratch folder is removed: when it is dropped, or by the next run if this one was killed.
+//!
+//! For a folder, the record of hashes is written before the files, with the old and the new hash of
+//! each, and once more at the end. So a killed run leaves no file that the next one takes for a
+//! foreign one.
+//!
+//! A new command that writes needs one line in the tables of `tests/traps.rs`, which sets a trap at
+//! each of its files. `cargo xtask faults` makes calls of the system fail, and ends runs at them.
+//!
 //! What holds for all of it:
 //!
 //! - A file is written in a [`Scratch`] folder beside its place, synced, and renamed into it. A run

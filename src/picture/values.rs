@@ -230,6 +230,8 @@ impl Values<'_> {
             "ground" => vector_values(self.scene.ground * dimmed),
             "up" => vector_values(DVec3::Y),
             "diffuse_share" => vec![if lit { 0.35 } else { 1.0 }],
+            // Layers have a reflectance of their own for the surroundings.
+            "specular_share" if self.lit.needs.levels => vec![1.0],
             "specular_share" => vec![if lit { 0.25 } else { 0.4 }],
             "sh" => self.probe().get(path.index)?.to_vec(),
             _ => return None,

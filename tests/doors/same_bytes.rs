@@ -6,6 +6,7 @@ use std::process::Command;
 
 use lamplight::bundle::{Bundle, Language, Target, pack};
 use lamplight::diagnostic::render::{Form, render};
+use lamplight::emit::targets;
 use lamplight::generate::{Request, in_memory};
 use lamplight::permute::Quoted;
 use lamplight::project;
@@ -142,12 +143,10 @@ fn output(
 ) -> Result<Vec<u8>, Failed> {
     let stem = Path::new(file).file_name().unwrap_or_default().to_string_lossy().into_owned();
     let stem = stem.split('.').next().unwrap_or_default();
-    let ending = match target {
-        Target::SPIRV => format!("{stage}.spv"),
-        Target::WGSL => format!("{stage}.wgsl"),
-        Target::MSL => format!("{stage}.metal"),
-        Target::HLSL => format!("{stage}.hlsl"),
-        other => format!("{other}.{stage}"),
+    let known = targets::find(target).ok_or("the target has no file")?;
+    let ending = match known.glsl {
+        Some(_) => format!("{target}.{stage}"),
+        None => format!("{stage}.{}", known.extension),
     };
     let path = folder.join(format!("{stem}.{entry}.{ending}"));
     std::fs::read(&path).map_err(|error| format!("{}: {error}", path.display()).into())

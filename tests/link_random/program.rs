@@ -3,6 +3,8 @@
 use std::fmt::Write as _;
 
 use lamplight::bundle::{Language, Target};
+use lamplight::emit::targets;
+use naga::back::glsl::Version;
 
 use super::body::{Body, Local};
 use super::draft::{Draft, Parameter, Signature, Texture, TextureKind, Value};
@@ -44,11 +46,11 @@ impl Program {
         };
         let mut targets = Target::ALL.to_vec();
         if draft.is_modern {
-            targets.retain(|target| !matches!(*target, Target::GLSL330 | Target::ESSL300));
+            let is_new = |version| matches!(version, Version::Desktop(450..));
+            targets.retain(|target| glsl_version(*target).is_none_or(is_new));
         }
         if draft.has_two_rows {
-            let glsl = [Target::GLSL450, Target::GLSL330, Target::ESSL300];
-            targets.retain(|target| !glsl.contains(target));
+            targets.retain(|target| glsl_version(*target).is_none());
         }
         let manifest = manifest(key, &targets, draft.axes);
         let text = match language {
@@ -61,6 +63,11 @@ impl Program {
         };
         Self { seed, language, manifest, targets, file, text }
     }
+}
+
+/// The version of a target that is GLSL.
+fn glsl_version(target: Target) -> Option<Version> {
+    targets::find(target).and_then(|entry| entry.glsl)
 }
 
 fn manifest(files: &str, targets: &[Target], axes: usize) -> String {

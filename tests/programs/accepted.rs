@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use lamplight::bundle::{Language, Target};
 use lamplight::compose::Composed;
-use lamplight::emit::emit;
+use lamplight::emit::{GlslRules, Judge, emit, targets};
 use lamplight::permute::manifest::Program;
 use lamplight::permute::{Assignment, cover};
 use lamplight::validate::on_large_stack;
@@ -16,9 +16,6 @@ use super::{Sources, alone, report, texts};
 
 /// The number of files in one call of glslangValidator.
 const BATCH: usize = 64;
-
-/// The targets that glslangValidator reads as GLSL.
-const GLSL_TARGETS: [Target; 3] = [Target::GLSL450, Target::GLSL330, Target::ESSL300];
 
 /// glslangValidator accepts the composed GLSL of every permutation that ships.
 pub fn glslang_takes_sources(
@@ -98,14 +95,20 @@ fn accepted(
         Ok(path.to_string_lossy().into_owned())
     };
     run("spirv-val", &["--target-env", "vulkan1.1", &write(Target::SPIRV, "spv")?])?;
-    for target in GLSL_TARGETS {
-        run("glslangValidator", &["-S", extension, &write(target, extension)?])?;
+    for entry in targets::ALL {
+        let Judge::Glslang(rules) = entry.judge else { continue };
+        let path = write(entry.target, extension)?;
+        run("glslangValidator", &["-S", extension, &path])?;
+        // Engines use the text for ES 3.00 with later versions of ES too, so it must be valid there.
+        for rule in rules {
+            let GlslRules::Later(version) = rule else { continue };
+            let text = std::fs::read_to_string(&path).map_err(|error| error.to_string())?;
+            let (_, rest) = text.split_once('\n').ok_or("the text has one line")?;
+            let text = format!("#version {version}\n{rest}");
+            let name = format!("{}.later", entry.target);
+            run("glslangValidator", &[&save(&text, prefix, &name, extension)?])?;
+        }
     }
-    // Engines use the text for ES 3.00 with later versions of ES too, so it must be valid there.
-    let es_300 = std::fs::read_to_string(write(Target::ESSL300, extension)?)
-        .map_err(|error| error.to_string())?;
-    let es_310 = es_300.replacen("#version 300 es", "#version 310 es", 1);
-    run("glslangValidator", &[&save(&es_310, prefix, "es310", extension)?])?;
     if composed.language == Language::Glsl {
         run(
             "glslangValidator",

@@ -18,6 +18,7 @@ use super::{library, plan, said};
 const STRUCTURES: &[(&str, &str, &[&str])] = &[
     ("Light", "light", &["kind", "shadow_layer"]),
     ("Material", "material", &[]),
+    ("Layers", "layers", &["sky_levels"]),
     ("Surroundings", "surroundings", &["sh"]),
     ("Haze", "haze", &[]),
     ("Caster", "caster", &["clip_from_world", "light", "texel", "near", "far"]),

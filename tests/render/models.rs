@@ -1,5 +1,6 @@
 //! Models of users. The trials write binary glTF files, and `lamplight render --model` draws them.
 
+mod layers;
 mod wrong;
 
 use std::fs;
@@ -23,7 +24,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("render/model/what_is_left_out_is_said", what_is_left_out_is_said),
         Trial::test("render/model/choices_of_the_user", choices_of_the_user),
     ];
-    drawn.into_iter().chain(wrong::trials()).collect()
+    drawn.into_iter().chain(layers::trials()).chain(wrong::trials()).collect()
 }
 
 /// A binary glTF file.

@@ -103,7 +103,10 @@ fn gallery_is_current() -> Result<(), Failed> {
         if !adapters.lines().any(|line| line.starts_with(&current)) {
             stale.push(format!("{name}.png was drawn from other settings or texts"));
         }
-        stale.extend(changed(&folder, name)?);
+        match folder.join(format!("{name}.png")).exists() {
+            true => stale.extend(changed(&folder, name)?),
+            false => stale.push(format!("{name}.png is not there")),
+        }
     }
     for card in &strips {
         if !adapters.lines().any(|line| line.starts_with(&card.current(&shot))) {

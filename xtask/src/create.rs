@@ -6,8 +6,9 @@ use crate::{Failure, Outcome, new};
 
 /// Writes the files, and prints them with what remains to be done.
 pub fn run(arguments: &[String]) -> Outcome {
-    let [kind, name] = arguments else { return Err(Failure::usage(usage())) };
-    let made = new::make(&root(), kind, name).map_err(Failure::usage)?;
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let [kind, name, rest @ ..] = words.as_slice() else { return Err(Failure::usage(usage())) };
+    let made = new::make(&root(), kind, name, rest).map_err(Failure::usage)?;
     for (path, text) in &made.files {
         let file = root().join(path);
         lamplight::output::write(&file, text.as_bytes())
@@ -20,6 +21,15 @@ pub fn run(arguments: &[String]) -> Outcome {
 }
 
 fn usage() -> String {
-    let kinds = new::KINDS.iter().map(|kind| format!("\n  {:12}{}", kind.name, kind.example));
-    format!("usage: cargo xtask new KIND NAME\n{}", kinds.collect::<String>())
+    let line = |kind: &new::Kind| {
+        let example: Vec<String> = kind.example.iter().map(|word| quoted(word)).collect();
+        format!("\n  {:12}{} {}", kind.name, example.join(" "), kind.rest).trim_end().to_owned()
+    };
+    let kinds: String = new::KINDS.iter().map(line).collect();
+    format!("usage: cargo xtask new KIND NAME ...\n\nkinds, each with an example:{kinds}")
+}
+
+/// An argument as a shell reads it.
+fn quoted(word: &str) -> String {
+    if word.contains(' ') { format!("'{word}'") } else { word.to_owned() }
 }

@@ -1,23 +1,31 @@
 //! `cargo xtask frames`: permutations of programs, drawn from the bytes that a bundle holds of
 //! each target, by the trials `frames/shipped` and `metal::frames` of the tests.
 
+use lamplight::bundle::Target;
+
 use crate::{Failure, Outcome, test};
 
-const USAGE: &str = "usage: cargo xtask frames [--permutations N] [--target T[,T]]
+fn usage() -> Failure {
+    let targets: Vec<&str> = Target::ALL.iter().map(|target| target.name()).collect();
+    Failure::usage(format!(
+        "usage: cargo xtask frames [--permutations N] [--target T[,T]]
 
   --permutations N  how many of each program and language (all: 200 or more, with all pairs of values)
-  --target T        of spirv, glsl450, glsl330, essl300, hlsl, wgsl and msl (all)";
+  --target T        of {} (all)",
+        targets.join(", ")
+    ))
+}
 
 /// Runs the trials. A wrong picture gives exit code 3.
 pub fn run(arguments: &[String]) -> Outcome {
     let (mut permutations, mut targets) = ("100000".to_owned(), Vec::new());
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
-        let value = rest.next().ok_or_else(|| Failure::usage(USAGE))?;
+        let value = rest.next().ok_or_else(usage)?;
         match argument.as_str() {
             "--permutations" if value.parse::<usize>().is_ok() => permutations = value.clone(),
             "--target" => targets.extend(value.split(',').map(str::to_owned)),
-            _ => return Err(Failure::usage(USAGE)),
+            _ => return Err(usage()),
         }
     }
     // MSL has a trial of its own, which compiles many stages at once and draws all of them.

@@ -13,6 +13,7 @@ mod generate;
 mod machine;
 mod mutate;
 mod new;
+mod record;
 mod site;
 mod tables;
 mod test;
@@ -65,6 +66,11 @@ const COMMANDS: &[Command] = &[
         "new",
         "write the files for a new function, axis-value, target, executor, scene or diagnostic",
         create::run,
+    ),
+    (
+        "record",
+        "write down anew what tests compare with: [permute|compose_|diagnostics|emit|library::|guide]...",
+        record::run,
     ),
     ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),
     ("validate", "let the judges of all targets look at a bundle", validate::run),

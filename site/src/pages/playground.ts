@@ -3,9 +3,9 @@ import { type Diagnostic as Mark, lintGutter, setDiagnostics } from "@codemirror
 import { EditorState } from "@codemirror/state";
 import { EditorView, drawSelection, highlightActiveLine, keymap, lineNumbers } from "@codemirror/view";
 import type { Diagnostic } from "@lamplight/toolchain";
-import { TYPED, toolchain } from "../client";
+import { OWN, TYPED, toolchain } from "../client";
 import { choose, h, remember, route } from "../dom";
-import { TARGETS, output } from "../output";
+import { output } from "../output";
 import { packed, unpacked, zip } from "../pack";
 
 const FIRST = {
@@ -143,18 +143,24 @@ export async function page(into: HTMLElement) {
         value: state.expression, "aria-label": "Expression", spellcheck: "false",
         oninput: () => { state.expression = expression.value; changed(); },
     });
+    const choice = (names: string[]) => choose(
+        "output", [...new Set(["composed", ...names])], state.target, (target) => { state.target = target; changed(); },
+    );
+    // The toolchain knows all targets, and is not loaded yet.
+    const languages = choice([state.target]);
     into.replaceChildren(
         h("h1", { class: "quiet" }, "Playground"),
         h("div", { class: "columns wide" },
             h("div", {}, tabs, editor.dom.parentElement ?? editor.dom, told, problems),
             h("div", {},
                 h("div", { class: "row" },
-                    choose("output", ["composed", ...TARGETS], state.target, (target) => { state.target = target; changed(); }),
+                    languages,
                     h("button", { onclick: save }, "Save as zip"), h("button", { onclick: restart }, "Begin again")),
                 h("label", { class: "eval" }, h("span", {}, "value of"), expression, value), outputs)),
     );
     begin();
     files();
+    languages.replaceWith(choice(await toolchain.call(OWN, "targets")));
     await run();
     return () => editor.destroy();
 }

@@ -2,11 +2,11 @@ import type { Choice, Point, ProgramInfo } from "@lamplight/toolchain";
 import { OWN, toolchain } from "../client";
 import { choose, code, h, remember, route } from "../dom";
 import { device, picture, show } from "../draw";
-import { TARGETS, output } from "../output";
+import { output } from "../output";
 
 export async function page(into: HTMLElement) {
-    const [{ programs }, studio] = await Promise.all([
-        toolchain.call(OWN, "programs", {}), toolchain.call(OWN, "studio"),
+    const [{ programs }, studio, known] = await Promise.all([
+        toolchain.call(OWN, "programs", {}), toolchain.call(OWN, "studio"), toolchain.call(OWN, "targets"),
     ]);
     const { path, query } = route();
     const preset = query.get("preset") ?? "";
@@ -26,7 +26,7 @@ export async function page(into: HTMLElement) {
     const scene = choose("scene", ["", ...studio.scenes.map((one) => one.name)], state.scene, (value) => set({ scene: value }));
     const around = choose("environment", studio.environments, state.environment, (value) => set({ environment: value }));
     const programChoice = choose("program", programs.map((one) => one.name), state.program, (value) => set({ program: value, key: "", scene: "", preset: "" }));
-    const targets = choose("output", ["composed", ...TARGETS], state.target, (value) => set({ target: value }));
+    const targets = choose("output", ["composed", ...known], state.target, (value) => set({ target: value }));
     const info = h("p", { class: "note" });
 
     let turn = 0;

@@ -9,7 +9,7 @@ use crate::bundle::Target;
 use crate::cli::failure::Failure;
 use crate::cli::stream;
 use crate::cli::terminal::{is_terminal, stdout, write_data};
-use crate::emit::targets;
+use crate::emit::{Entry, targets};
 use crate::generate::Shader;
 use crate::output::{self, Replace};
 
@@ -47,7 +47,7 @@ pub fn files_of(stem: &str, shader: &Shader, wanted: &[Target], reflection: bool
         else {
             continue;
         };
-        let name = named(&file_ending(target, stage, entry.extension));
+        let name = named(&file_ending(entry, stage));
         files.push(File { name, binary: entry.binary, bytes: artifact.bytes.to_vec() });
     }
     if reflection {
@@ -76,10 +76,10 @@ fn stage_name(stage: naga::ShaderStage) -> &'static str {
 
 /// The ending of a file. Files of several targets must not share a name, and GLSL files end as
 /// glslang expects.
-pub fn file_ending(target: Target, stage: &str, extension: &str) -> String {
-    match target {
-        Target::GLSL450 | Target::GLSL330 | Target::ESSL300 => format!("{target}.{stage}"),
-        _ => format!("{stage}.{extension}"),
+pub fn file_ending(entry: &Entry, stage: &str) -> String {
+    match entry.glsl {
+        Some(_) => format!("{}.{stage}", entry.target),
+        None => format!("{stage}.{}", entry.extension),
     }
 }
 

@@ -28,7 +28,7 @@ pub struct Arguments {
     files: Vec<PathBuf>,
     #[command(flatten)]
     input: Input,
-    /// Output languages: spirv, glsl450, glsl330, essl300, msl, hlsl, wgsl, or all of them.
+    #[arg(help = target::wanted_help())]
     #[arg(long, value_name = "T,...|all", value_delimiter = ',', value_parser = wanted_one)]
     #[arg(required_unless_present = "reflection")]
     target: Vec<Wanted>,

@@ -10,6 +10,12 @@ pub enum Wanted {
     One(Target),
 }
 
+/// The help of an option that names targets.
+pub fn wanted_help() -> String {
+    let names: Vec<&str> = Target::ALL.iter().map(|target| target.name()).collect();
+    format!("Output languages: {}, or all of them", names.join(", "))
+}
+
 /// `all`, or a target.
 pub fn wanted_one(name: &str) -> Result<Wanted, String> {
     if name == "all" { Ok(Wanted::All) } else { parse_target(name).map(Wanted::One) }

@@ -15,13 +15,11 @@ use crate::cost::pipeline::Known;
 use crate::cost::{self, Subject, permutations};
 use crate::diagnostic::nearest_name;
 use crate::generate::{Memory, Request, Root, Tools, entry_points, generate};
+use crate::lint;
 use crate::permute::{Manifest, Quoted};
 use crate::proof::library::Library;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
-
-/// How names of shaders' files end.
-const EXTENSIONS: [&str; 6] = ["wesl", "wgsl", "glsl", "vert", "frag", "comp"];
 
 /// What was asked for, in order.
 pub fn asked_subjects(
@@ -84,7 +82,7 @@ fn is_below(path: &str, named: &str) -> bool {
 /// Whether a name is that of a shader's file: it ends as one does.
 fn is_file(name: &str) -> bool {
     let extension = Path::new(name).extension().and_then(|extension| extension.to_str());
-    extension.is_some_and(|extension| EXTENSIONS.contains(&extension))
+    extension.is_some_and(|extension| lint::EXTENSIONS.contains(&extension))
 }
 
 fn asked_language(arguments: &Arguments) -> Language {

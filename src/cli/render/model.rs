@@ -55,11 +55,19 @@ pub fn model_plan(
     if !is_forward || arguments.preset.is_some() {
         return super::permutation_plan(programs, arguments);
     }
-    let own = model.axes.iter().filter_map(|axis| axis_value(axis).ok());
     let is_chosen = |axis: &str| arguments.set.iter().any(|(chosen, _)| chosen == axis);
-    let free = own.filter(|(axis, _)| !is_chosen(axis));
-    let set = free.chain(arguments.set.iter().cloned()).collect();
+    let with = |own: &mut dyn Iterator<Item = &String>| {
+        let own = own.filter_map(|axis| axis_value(axis).ok());
+        let free = own.filter(|(axis, _)| !is_chosen(axis));
+        let set = free.chain(arguments.set.iter().cloned()).collect();
+        super::permutation_plan(programs, &Arguments { set, ..arguments.clone() })
+    };
     // What the user chose may exclude what the model would have.
-    super::permutation_plan(programs, &Arguments { set, ..arguments.clone() })
+    with(&mut model.axes.iter().chain(&model.layers))
+        .or_else(|_| {
+            let layers = model.layers.iter().filter(|axis| *axis != "dispersion=true");
+            with(&mut model.axes.iter().chain(layers))
+        })
+        .or_else(|_| with(&mut model.axes.iter()))
         .or_else(|_| super::permutation_plan(programs, arguments))
 }

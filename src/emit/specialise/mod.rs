@@ -12,8 +12,8 @@ use naga::back::wgsl::{WriterFlags, write_string};
 use naga::valid::{ValidationFlags, Validator};
 use naga::{Expression, Handle, Literal, Module, Override, Scalar, ScalarKind, TypeInner};
 
-use super::{Emitted, Entry, Source};
-use crate::bundle::{Choice, Target};
+use super::{Emitted, Entry, Overrides, Source};
+use crate::bundle::Choice;
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::validate::{CAPABILITIES, Validated};
@@ -114,16 +114,15 @@ pub fn write_open(source: &Source<'_>, writer: &Entry) -> Option<Result<Emitted,
             index: source.index,
             clip: source.clip,
         };
-        finish_open((writer.write)(&source)?, &opens, writer.target)
+        finish_open((writer.write)(&source)?, &opens, writer)
     }))
 }
 
-fn finish_open(mut emitted: Emitted, opens: &[Open], target: Target) -> Result<Emitted, String> {
+fn finish_open(mut emitted: Emitted, opens: &[Open], writer: &Entry) -> Result<Emitted, String> {
     // Writers leave out a variable that the entry point does not use.
-    let choices = if target == Target::SPIRV {
-        spirv::open_words(&mut emitted.bytes, opens)?
-    } else {
-        text::open_text(&mut emitted.bytes, opens, target)?
+    let choices = match writer.overrides {
+        Overrides::Specialised => spirv::open_words(&mut emitted.bytes, opens)?,
+        _ => text::open_text(&mut emitted.bytes, opens, writer)?,
     };
     emitted.native.choices = choices;
     Ok(emitted)

@@ -3,15 +3,16 @@
 use naga::ScalarKind;
 
 use super::{Open, choice_of};
-use crate::bundle::{Choice, Target};
-use crate::emit::is_header_line;
+use crate::bundle::Choice;
+use crate::emit::{Entry, Overrides, is_header_line};
 
 /// Opens the variables that the text declares.
 pub fn open_text(
     bytes: &mut Vec<u8>,
     opens: &[Open],
-    target: Target,
+    writer: &Entry,
 ) -> Result<Vec<Choice>, String> {
+    let is_constant = writer.overrides == Overrides::FunctionConstants;
     let text = std::str::from_utf8(bytes).map_err(|error| error.to_string())?;
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     let mut choices = Vec::new();
@@ -24,21 +25,19 @@ pub fn open_text(
         if found.next().is_some() {
             return Err(format!("`{}` is declared twice", open.variable));
         }
-        let value = if target == Target::MSL {
-            value_name(open)
-        } else {
-            format!("{}({})", scalar_name(open.kind), open.symbol())
+        let value = match is_constant {
+            true => value_name(open),
+            false => format!("{}({})", scalar_name(open.kind), open.symbol()),
         };
         *line = format!("{}= {value};", &line[..start]);
-        declared.extend(if target == Target::MSL {
-            function_constant(open)
-        } else {
-            definition_lines(open)
+        declared.extend(match is_constant {
+            true => function_constant(open),
+            false => definition_lines(open),
         });
-        choices.push(choice_of(open, target == Target::MSL));
+        choices.push(choice_of(open, is_constant));
     }
     if !declared.is_empty() {
-        let at = first_line(&lines, target);
+        let at = first_line(&lines, writer);
         lines.splice(at..at, declared);
         *bytes = (lines.join("\n") + "\n").into_bytes();
     }
@@ -57,9 +56,9 @@ fn initialiser_index(line: &str, variable: &str) -> Option<usize> {
 
 /// The index of the first line after those that must come first: `#version`, extensions and
 /// precisions, or Metal's headers.
-fn first_line(lines: &[String], target: Target) -> usize {
-    match target {
-        Target::HLSL => 0,
+fn first_line(lines: &[String], writer: &Entry) -> usize {
+    match writer.header {
+        [] => 0,
         _ => lines.iter().take_while(|line| is_header_line(line)).count(),
     }
 }

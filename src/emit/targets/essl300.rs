@@ -9,7 +9,9 @@ use naga::{Handle, ImageDimension, Type, TypeInner};
 use crate::bundle::Target;
 use crate::emit::glsl;
 use crate::emit::slots::Numbering;
-use crate::emit::{Emitted, Entry, GlslRules, Judge, Source, clip};
+use crate::emit::{Emitted, Entry, GlslRules, Judge, Overrides, Source, clip};
+
+const VERSION: Version = Version::new_gles(300);
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -17,6 +19,9 @@ pub const TARGET: Entry = Entry {
     extension: "essl300.glsl",
     binary: false,
     about: "GLSL ES 3.00, for OpenGL ES 3.0 and WebGL 2",
+    glsl: Some(VERSION),
+    header: glsl::HEADER,
+    overrides: Overrides::Macros,
     judge: Judge::Glslang(&[GlslRules::Own, GlslRules::Later("310 es")]),
     clip: &clip::OPENGL,
     write,
@@ -30,5 +35,5 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     if source.module.global_variables.iter().any(|(_, variable)| is_line(variable.ty)) {
         return Err("the language has no textures of one dimension".to_owned());
     }
-    glsl::write_glsl(source, Version::new_gles(300), Numbering::Named)
+    glsl::write_glsl(source, VERSION, Numbering::Named)
 }

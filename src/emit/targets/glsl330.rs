@@ -8,7 +8,9 @@ use naga::back::glsl::Version;
 use crate::bundle::Target;
 use crate::emit::glsl;
 use crate::emit::slots::Numbering;
-use crate::emit::{Emitted, Entry, GlslRules, Judge, Source, clip};
+use crate::emit::{Emitted, Entry, GlslRules, Judge, Overrides, Source, clip};
+
+const VERSION: Version = Version::Desktop(330);
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -16,11 +18,14 @@ pub const TARGET: Entry = Entry {
     extension: "glsl330.glsl",
     binary: false,
     about: "GLSL 3.30 core, for OpenGL 3.3",
+    glsl: Some(VERSION),
+    header: glsl::HEADER,
+    overrides: Overrides::Macros,
     judge: Judge::Glslang(&[GlslRules::Own]),
     clip: &clip::OPENGL,
     write,
 };
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
-    glsl::write_glsl(source, Version::Desktop(330), Numbering::Named)
+    glsl::write_glsl(source, VERSION, Numbering::Named)
 }

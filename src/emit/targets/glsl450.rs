@@ -9,7 +9,9 @@ use naga::back::glsl::Version;
 use crate::bundle::Target;
 use crate::emit::glsl;
 use crate::emit::slots::Numbering;
-use crate::emit::{Emitted, Entry, GlslRules, Judge, Source, clip};
+use crate::emit::{Emitted, Entry, GlslRules, Judge, Overrides, Source, clip};
+
+const VERSION: Version = Version::Desktop(450);
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -17,11 +19,14 @@ pub const TARGET: Entry = Entry {
     extension: "glsl450.glsl",
     binary: false,
     about: "GLSL 4.50 core, for OpenGL 4.5",
+    glsl: Some(VERSION),
+    header: glsl::HEADER,
+    overrides: Overrides::Macros,
     judge: Judge::Glslang(&[GlslRules::Own, GlslRules::Vulkan]),
     clip: &clip::OPENGL,
     write,
 };
 
 fn write(source: &Source<'_>) -> Result<Emitted, String> {
-    glsl::write_glsl(source, Version::Desktop(450), Numbering::Explicit)
+    glsl::write_glsl(source, VERSION, Numbering::Explicit)
 }

@@ -13,11 +13,11 @@ use naga::back::hlsl::{
 };
 
 use crate::bundle::{HeapSampler, Kind, Native, Place, SamplerHeap, Semantic, Target};
-use crate::emit::reflect::{entry_inputs, binding_kind};
-use crate::emit::{columns, lists, rename};
+use crate::emit::reflect::{binding_kind, entry_inputs};
 use crate::emit::slots::{Numbering, assign_slots, native_reflection};
 use crate::emit::text::Text;
-use crate::emit::{Emitted, Entry, Judge, Source, clip, setters, zeros};
+use crate::emit::{Emitted, Entry, Judge, Overrides, Source, clip, setters, zeros};
+use crate::emit::{columns, lists, rename};
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -25,6 +25,9 @@ pub const TARGET: Entry = Entry {
     extension: "hlsl",
     binary: false,
     about: "HLSL, shader model 5.1 (Direct3D 12)",
+    glsl: None,
+    header: &[],
+    overrides: Overrides::Macros,
     judge: Judge::GlslangHlsl,
     clip: &clip::SHARED,
     write,
@@ -52,8 +55,17 @@ const WORDS: &[&str] = &[
 
 /// How names begin that naga gives to functions and types of its own, and does not avoid. It does
 /// avoid `naga_`.
-const PREFIXES: &[&str] =
-    &["Construct", "GetMat", "Naga", "SetMat", "ZeroValue", "nagaComparison", "nagaGroup", "nagaSampler", "ret_"];
+const PREFIXES: &[&str] = &[
+    "Construct",
+    "GetMat",
+    "Naga",
+    "SetMat",
+    "ZeroValue",
+    "nagaComparison",
+    "nagaGroup",
+    "nagaSampler",
+    "ret_",
+];
 
 fn is_taken(name: &str) -> bool {
     WORDS.contains(&name) || PREFIXES.iter().any(|prefix| name.starts_with(prefix))
@@ -181,7 +193,8 @@ fn vertex_semantics(source: &Source<'_>) -> Vec<Semantic> {
         return Vec::new();
     }
     let function = &source.module.entry_points[source.index].function;
-    let locations = entry_inputs(source.module, function).into_iter().filter_map(|input| input.location);
+    let locations =
+        entry_inputs(source.module, function).into_iter().filter_map(|input| input.location);
     locations
         .map(|location| Semantic { location, name: "LOC".to_owned(), index: location })
         .collect()

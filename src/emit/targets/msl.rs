@@ -12,7 +12,7 @@ use naga::back::msl::{
 use crate::bundle::{BufferSizes, Kind, Target};
 use crate::emit::slots::{Numbering, assign_slots, native_reflection};
 use crate::emit::text::Text;
-use crate::emit::{Emitted, Entry, Judge, Source, clip, rename};
+use crate::emit::{Emitted, Entry, Judge, Overrides, Source, clip, rename};
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -20,6 +20,9 @@ pub const TARGET: Entry = Entry {
     extension: "metal",
     binary: false,
     about: "Metal Shading Language 2.0 (macOS 10.13, iOS 11)",
+    glsl: None,
+    header: &["#", "using "],
+    overrides: Overrides::FunctionConstants,
     judge: Judge::Clang,
     clip: &clip::SHARED,
     write,

@@ -6,9 +6,9 @@
 use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 
 use crate::bundle::Target;
-use crate::emit::spirv::{HEADER_WORDS, Instruction, bytes, instructions, op};
 use crate::emit::slots::{Numbering, native_reflection};
-use crate::emit::{Emitted, Entry, Judge, Source, clip};
+use crate::emit::spirv::{HEADER_WORDS, Instruction, bytes, instructions, op};
+use crate::emit::{Emitted, Entry, Judge, Overrides, Source, clip};
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -16,6 +16,9 @@ pub const TARGET: Entry = Entry {
     extension: "spv",
     binary: true,
     about: "SPIR-V 1.0 (Vulkan 1.0), little-endian words",
+    glsl: None,
+    header: &[],
+    overrides: Overrides::Specialised,
     judge: Judge::SpirvVal(&["vulkan1.0", "vulkan1.1"]),
     clip: &clip::VULKAN,
     write,
@@ -40,9 +43,8 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
 /// naga writes them in the order of a hash map, which differs between processors.
 fn order_variables(words: &[u32]) -> Vec<u32> {
     const FUNCTION: u32 = 7;
-    let is_local = |found: &Instruction<'_>| {
-        found.op == op::VARIABLE && found.words.get(3) == Some(&FUNCTION)
-    };
+    let is_local =
+        |found: &Instruction<'_>| found.op == op::VARIABLE && found.words.get(3) == Some(&FUNCTION);
     let mut made = words.get(..HEADER_WORDS).unwrap_or_default().to_vec();
     let mut run: Vec<&[u32]> = Vec::new();
     // The last one stands for the end.

@@ -7,7 +7,7 @@ use naga::back::wgsl::{Writer, WriterFlags};
 use crate::bundle::{Choice, Target};
 use crate::emit::slots::{Numbering, native_reflection};
 use crate::emit::text::Text;
-use crate::emit::{Emitted, Entry, Judge, Source, clip};
+use crate::emit::{Emitted, Entry, Judge, Overrides, Source, clip};
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -15,6 +15,9 @@ pub const TARGET: Entry = Entry {
     extension: "wgsl",
     binary: false,
     about: "WGSL (WebGPU)",
+    glsl: None,
+    header: &["enable ", "requires "],
+    overrides: Overrides::Kept,
     judge: Judge::NagaAndTint,
     clip: &clip::SHARED,
     write,
@@ -26,10 +29,14 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     written.map_err(|error| text.explain(error))?;
     let text = text.0;
     // naga does not tell the names that it wrote, and it appends to names that end with a digit.
-    let entry = declared_names(&text, "fn", Some("@")).next().ok_or("no entry point was written")?;
+    let entry =
+        declared_names(&text, "fn", Some("@")).next().ok_or("no entry point was written")?;
     let mut native = native_reflection(source, entry, Numbering::Author);
     let overrides = source.module.overrides.iter().map(|(_, constant)| constant);
-    native.choices = overrides.zip(declared_names(&text, "override", None)).filter_map(override_choice).collect();
+    native.choices = overrides
+        .zip(declared_names(&text, "override", None))
+        .filter_map(override_choice)
+        .collect();
     Ok(Emitted { bytes: text.into_bytes(), native })
 }
 
@@ -47,12 +54,15 @@ fn declared_names<'t>(
     after: Option<&'static str>,
 ) -> impl Iterator<Item = &'t str> {
     let before = std::iter::once("").chain(text.lines());
-    let lines = before.zip(text.lines()).filter(move |(before, _)| {
-        after.is_none_or(|after| before.starts_with(after))
-    });
+    let lines = before
+        .zip(text.lines())
+        .filter(move |(before, _)| after.is_none_or(|after| before.starts_with(after)));
     lines.filter_map(move |(_, line)| {
         // `@id(...)` may stand before an override.
-        let line = line.strip_prefix("@id(").and_then(|line| line.split_once(") ")).map_or(line, |(_, line)| line);
+        let line = line
+            .strip_prefix("@id(")
+            .and_then(|line| line.split_once(") "))
+            .map_or(line, |(_, line)| line);
         let rest = line.strip_prefix(word)?.strip_prefix(' ')?;
         rest.split(['(', ':', ' ']).next()
     })

@@ -1,9 +1,10 @@
 //! Runs the emitted GLSL ES 3.00 unchanged, on OpenGL ES 3.0.
+//!
+//! Runs on: every system but WebAssembly
 
 use super::{Entry, Shipping, Unavailable};
 use crate::bundle::Target;
 use crate::execute::Session;
-use crate::execute::gpu::Api;
 
 pub const EXECUTOR: Entry = Entry {
     name: "essl300",
@@ -16,5 +17,5 @@ pub const EXECUTOR: Entry = Entry {
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {
-    super::opened_opengl(Api::Embedded(3, 0), Target::ESSL300)
+    super::opened_opengl(Target::ESSL300)
 }

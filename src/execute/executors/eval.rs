@@ -1,5 +1,7 @@
 //! The evaluator of this crate in f32, with every operation rounded to nearest. It needs no device
 //! and no driver.
+//!
+//! Runs on: every system
 
 use super::{Entry, Unavailable};
 use crate::diagnostic::{Diagnostic, codes};

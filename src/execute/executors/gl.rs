@@ -1,4 +1,6 @@
 //! wgpu on OpenGL, through EGL and without a window. Without a GPU this is llvmpipe.
+//!
+//! Runs on: every system but WebAssembly
 
 use super::{DEVICE_SAMPLES, Entry, swiftshader};
 use crate::execute::gpu::{Named, Shaders, Wanted};

@@ -1,9 +1,10 @@
 //! Runs the emitted GLSL 4.50 unchanged, on OpenGL 4.5.
+//!
+//! Runs on: every system but WebAssembly
 
 use super::{Entry, Shipping, Unavailable};
 use crate::bundle::Target;
 use crate::execute::Session;
-use crate::execute::gpu::Api;
 
 pub const EXECUTOR: Entry = Entry {
     name: "glsl",
@@ -16,5 +17,5 @@ pub const EXECUTOR: Entry = Entry {
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {
-    super::opened_opengl(Api::Core(4, 5), Target::GLSL450)
+    super::opened_opengl(Target::GLSL450)
 }

@@ -1,9 +1,10 @@
 //! Runs the emitted GLSL 3.30 unchanged, on OpenGL 3.3 with the core profile.
+//!
+//! Runs on: every system but WebAssembly
 
 use super::{Entry, Shipping, Unavailable};
 use crate::bundle::Target;
 use crate::execute::Session;
-use crate::execute::gpu::Api;
 
 pub const EXECUTOR: Entry = Entry {
     name: "glsl330",
@@ -16,5 +17,5 @@ pub const EXECUTOR: Entry = Entry {
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {
-    super::opened_opengl(Api::Core(3, 3), Target::GLSL330)
+    super::opened_opengl(Target::GLSL330)
 }

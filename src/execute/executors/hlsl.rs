@@ -1,5 +1,7 @@
 //! Runs the emitted HLSL on SwiftShader, compiled to SPIR-V by glslangValidator. Its sampler heaps
 //! are arrays that are indexed with a number from a buffer, which lavapipe does not support.
+//!
+//! Runs on: every system but WebAssembly
 
 use super::{Entry, Shipping, Unavailable, swiftshader};
 use crate::bundle::Target;

@@ -1,4 +1,6 @@
 //! Runs the emitted MSL unchanged: clang compiles it for the CPU, with headers of our own.
+//!
+//! Runs on: every system but WebAssembly
 
 use super::{Entry, Shipping, Unavailable};
 use crate::bundle::Target;

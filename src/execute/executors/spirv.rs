@@ -1,4 +1,6 @@
 //! Runs the emitted SPIR-V unchanged, on the driver of `vulkan`.
+//!
+//! Runs on: every system but WebAssembly
 
 use super::{Entry, Shipping, swiftshader};
 use crate::bundle::Target;

@@ -1,5 +1,7 @@
 //! wgpu on SwiftShader, the software Vulkan driver that comes with Chromium. Its compiler is not
 //! Mesa's.
+//!
+//! Runs on: every system but WebAssembly
 
 use std::path::Path;
 use std::sync::Once;
@@ -32,7 +34,9 @@ fn open() -> Result<Box<dyn Session>, Unavailable> {
 /// Whether the driver is installed. If so, it is announced to the loader.
 pub fn installed() -> Result<(), Unavailable> {
     announce();
-    driver_manifest().map(|_| ()).ok_or(Unavailable { reason: format!("there is no {NAME} driver") })
+    driver_manifest()
+        .map(|_| ())
+        .ok_or(Unavailable { reason: format!("there is no {NAME} driver") })
 }
 
 /// Part of the adapter's name.

@@ -1,4 +1,6 @@
 //! wgpu on a Vulkan driver, which is lavapipe where that is installed.
+//!
+//! Runs on: every system but WebAssembly
 
 use super::{DEVICE_SAMPLES, Entry, swiftshader};
 use crate::execute::gpu::{Named, Shaders, Wanted};

@@ -1,5 +1,7 @@
 //! Runs the emitted GLSL ES 3.00 unchanged in a page of Chromium. It is compiled by ANGLE, which is
 //! independent of Mesa.
+//!
+//! Runs on: every system but WebAssembly
 
 use super::{Entry, Shipping, Unavailable};
 use crate::browser::PACKAGE;

@@ -1,5 +1,7 @@
 //! Runs the emitted WGSL unchanged in a page of Chromium. It is compiled by Tint and run by Dawn,
 //! which are independent of naga and wgpu.
+//!
+//! Runs on: every system but WebAssembly
 
 use super::{Entry, Shipping, Unavailable};
 use crate::browser::PACKAGE;

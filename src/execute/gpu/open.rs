@@ -1,6 +1,7 @@
 //! Finds an adapter and opens a device on it.
 
 use std::collections::HashMap;
+use std::fmt;
 use std::sync::{Arc, Mutex};
 
 use glow::HasContext as _;
@@ -64,6 +65,15 @@ impl Named {
     }
 }
 
+impl fmt::Display for Named {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::With(part) => write!(f, "whose name has `{part}`"),
+            Self::Without(part) => write!(f, "other than those whose name has `{part}`"),
+        }
+    }
+}
+
 /// Opens the preferred adapter of a backend. A software adapter is preferred, since its numbers are
 /// the same on every machine. The error is a message.
 pub fn open_gpu(wanted: Wanted) -> Result<Gpu, String> {
@@ -75,7 +85,8 @@ pub fn open_gpu(wanted: Wanted) -> Result<Gpu, String> {
     let mut adapters = adapters_of(&instance, wanted.backend);
     adapters.retain(|adapter| wanted.named.allows(&adapter.get_info().name));
     adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
-    let adapter = adapters.into_iter().next().ok_or("no adapter was found")?;
+    let none = || format!("wgpu found no adapter {}", wanted.named);
+    let adapter = adapters.into_iter().next().ok_or_else(none)?;
     let mut features = wgpu::Features::FLOAT32_FILTERABLE & adapter.features();
     features |= wanted.shaders.features();
     if !adapter.features().contains(features) {

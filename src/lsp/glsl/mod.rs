@@ -15,9 +15,10 @@ use outline::{Declaration, Kind};
 
 use super::package::Opened;
 use super::place::Lines;
-use super::{Server, describe, told};
+use super::{Server, describe, navigate, told};
 use crate::bundle::Language;
 use crate::lint;
+use crate::parse::wesl::ItemKind;
 use crate::project::LIBRARY;
 use crate::resolve::{Graph, glsl};
 
@@ -176,15 +177,14 @@ pub fn document_symbols(server: &mut Server, parameters: &Value) -> Result<Value
     Ok(symbols.collect())
 }
 
-/// The protocol's number of what a declaration is.
+/// The protocol's number of what a declaration is: that of the same in WESL. Members are not listed.
 fn symbol_kind(kind: Kind) -> u32 {
-    match kind {
-        Kind::Function => 12,
-        Kind::Struct => 23,
-        Kind::Constant | Kind::Macro => 14,
-        Kind::Variable => 13,
-        Kind::Member => 8,
-    }
+    navigate::symbol_kind(match kind {
+        Kind::Function => ItemKind::Function,
+        Kind::Struct => ItemKind::Struct,
+        Kind::Constant | Kind::Macro => ItemKind::Const,
+        Kind::Variable | Kind::Member => ItemKind::Var,
+    })
 }
 
 /// How a file may be named in an `#include` of the root file.

@@ -3,11 +3,9 @@
 use std::ops::Range;
 
 use super::outline::{Declaration, Kind, Local, Outline, outline_of};
+use crate::catalogue::prefix;
 use crate::parse::glsl::{Directive, Kind as Class, Part, Symbol, known};
 use crate::resolve::glsl::{Graph, Target};
-
-/// The library's prefix for names, which `LAMPLIGHT_PREFIX` asks for.
-const PREFIX: &str = "lamplight_";
 
 /// A file, all that it may include, and what each of these declares.
 pub struct Names {
@@ -91,7 +89,7 @@ impl Names {
         if !found.is_empty() {
             return found;
         }
-        let bare = self.graph.symbols.text(name).strip_prefix(PREFIX);
+        let bare = self.graph.symbols.text(name).strip_prefix(prefix::PREFIX);
         let bare = bare.and_then(|bare| self.graph.symbols.find(bare));
         bare.map(|bare| self.declared(bare, |kind| kind != Kind::Member)).unwrap_or_default()
     }

@@ -76,6 +76,46 @@ const WRONG: &[Wrong] = &[
         },
         "model.glb",
     ),
+    (
+        "share_beyond_one",
+        || layered(json!({ "KHR_materials_clearcoat": { "clearcoatFactor": 2.5 } })),
+        "materials[0].extensions.KHR_materials_clearcoat.clearcoatFactor: expected a number from 0 to 1, found 2.5",
+    ),
+    (
+        "word_for_a_number",
+        || layered(json!({ "KHR_materials_sheen": { "sheenRoughnessFactor": "rough" } })),
+        "KHR_materials_sheen.sheenRoughnessFactor: expected a number, found \"rough\"",
+    ),
+    (
+        "color_of_two_channels",
+        || layered(json!({ "KHR_materials_sheen": { "sheenColorFactor": [1.0, 0.5] } })),
+        "KHR_materials_sheen.sheenColorFactor: expected three numbers",
+    ),
+    (
+        "dark_color",
+        || layered(json!({ "KHR_materials_sheen": { "sheenColorFactor": [1.0, -0.5, 0.0] } })),
+        "KHR_materials_sheen.sheenColorFactor: expected a number of 0 or more, found -0.5",
+    ),
+    (
+        "film_thinner_than_nothing",
+        || layered(json!({ "KHR_materials_iridescence": { "iridescenceThicknessMaximum": -1 } })),
+        "KHR_materials_iridescence.iridescenceThicknessMaximum: expected a number of 0 or more",
+    ),
+    (
+        "no_distance",
+        || layered(json!({ "KHR_materials_volume": { "attenuationDistance": 0.0 } })),
+        "KHR_materials_volume.attenuationDistance: expected a number above 0, found 0",
+    ),
+    (
+        "thin_index",
+        || layered(json!({ "KHR_materials_ior": { "ior": 0.5 } })),
+        "KHR_materials_ior.ior: expected a number of 1 or more, found 0.5",
+    ),
+    (
+        "extension_that_is_a_number",
+        || layered(json!({ "KHR_materials_anisotropy": 3 })),
+        "materials[0].extensions.KHR_materials_anisotropy: expected an object, found 3",
+    ),
     ("image_of_gigapixels", huge_image, "images[0]"),
     ("image_that_is_none", || pictured(b"no image".to_vec()), "images[0]"),
 ];
@@ -100,6 +140,10 @@ fn changed(change: impl FnOnce(&mut Value)) -> Vec<u8> {
     let (mut document, buffer) = square(&[]);
     change(&mut document);
     glb(&document, &buffer)
+}
+
+fn layered(extensions: Value) -> Vec<u8> {
+    changed(|document| document["materials"][0]["extensions"] = extensions)
 }
 
 /// Thirty nodes that each have the next node as two children: 2^30 nodes when they are followed.

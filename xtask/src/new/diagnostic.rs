@@ -1,10 +1,11 @@
 //! A kind of diagnostic.
 
-use super::{Kind, Made, Repository, check_name};
+use super::{Kind, Made, Repository, check_name, refuse_rest};
 
-pub const KIND: Kind = Kind { name: "diagnostic", example: "unknown-swizzle", make };
+pub const KIND: Kind = Kind { name: "diagnostic", example: &["unknown-swizzle"], rest: "", make };
 
-fn make(repository: &Repository<'_>, name: &str) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, String> {
+    refuse_rest(rest)?;
     check_name(name, '-')?;
     let file = format!("src/diagnostic/codes/{name}.md");
     repository.refuse_existing(&file)?;
@@ -17,7 +18,7 @@ fn make(repository: &Repository<'_>, name: &str) -> Result<Made, String> {
         format!(
             "a case in tests/diagnostics/ that shows `[{name}]` (trial diagnostics every code has a case)"
         ),
-        "INSTA_UPDATE=always cargo xtask test guide; read the difference".to_owned(),
+        "cargo xtask record guide; read the difference".to_owned(),
     ];
     Ok(Made { files: vec![(file, "#\n\nPage: \n".to_owned())], next })
 }

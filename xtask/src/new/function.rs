@@ -1,14 +1,32 @@
 //! A function of the shader library, in a module that exists or in a new one.
 
+use super::parameter::{Parameter, Type, read_parameters, type_of};
 use super::{Kind, Made, Repository, check_name};
 
-pub const KIND: Kind = Kind { name: "function", example: "brdf::diffuse::minnaert", make };
+pub const KIND: Kind = Kind {
+    name: "function",
+    example: &["brdf::diffuse::minnaert", "nl: f32, nv: f32, k: f32 0..2", "f32"],
+    rest: "",
+    make,
+};
 
-fn make(repository: &Repository<'_>, path: &str) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, String> {
     let parts: Vec<&str> = path.split("::").collect();
     parts.iter().try_for_each(|part| check_name(part, '_'))?;
     let [folder, module, name] = parts[..] else {
         return Err(format!("`{path}` is not the path of a function: FOLDER::MODULE::NAME"));
+    };
+    let [parameters, result] = rest else {
+        return Err(
+            "after the name: the parameters and the type of the result, as in the usage".to_owned()
+        );
+    };
+    let signature = Signature {
+        folder,
+        module,
+        name,
+        parameters: read_parameters(parameters)?,
+        result: type_of(result)?,
     };
     let stem = format!("shaderlib/{folder}/{module}");
     let reference = format!("src/proof/references/{folder}_{module}.rs");
@@ -19,92 +37,160 @@ fn make(repository: &Repository<'_>, path: &str) -> Result<Made, String> {
         (format!("{stem}.plot.toml"), plot),
         (reference.clone(), reference_text),
     ];
-    let names = Names { folder, module, name };
     let mut files = Vec::new();
     for (file, edit) in edits {
-        let text = edit(repository.find(&file).as_deref(), &names)
+        let text = edit(repository.find(&file).as_deref(), &signature)
             .map_err(|problem| format!("`{file}`: {problem}"))?;
         files.push((file, text));
     }
-    let next = vec![
+    Ok(Made { files, next: steps(&stem, &reference, &signature) })
+}
+
+fn steps(stem: &str, reference: &str, signature: &Signature<'_>) -> Vec<String> {
+    let Signature { folder, module, .. } = signature;
+    vec![
         format!("{stem}.wesl: the formula, and each line of its comment (trial shaderlib::)"),
         format!("{stem}.glsl: the same comment and formula (trial shaderlib::)"),
         format!("{reference}: the formula in f64, from the source and not from the shader (check)"),
-        format!("{stem}.toml: inputs, tolerance and laws (check)"),
-        format!("cargo run -- check {folder}/{module}; cargo xtask docs"),
-    ];
-    Ok(Made { files, next })
+        format!(
+            "{stem}.toml: `tolerance`, such as {{ ulp = 2 }}, `check` measures it; `laws`, such as {{ range = [0, 1] }}, `check` lists them if one is wrong"
+        ),
+        format!("{stem}.plot.toml is complete, unless another parameter should be drawn"),
+        format!("cargo run -- check {folder}/{module}; cargo xtask docs --costs"),
+    ]
 }
 
-struct Names<'n> {
+struct Signature<'n> {
     folder: &'n str,
     module: &'n str,
     name: &'n str,
+    parameters: Vec<Parameter<'n>>,
+    result: Type,
+}
+
+impl Signature<'_> {
+    /// Something of each parameter, with commas between.
+    fn list(&self, of: impl Fn(&Parameter<'_>) -> String) -> String {
+        self.parameters.iter().map(of).collect::<Vec<_>>().join(", ")
+    }
+
+    /// What stands above the function. Each line wants its words.
+    fn comment(&self) -> String {
+        let names = self.list(|one| format!("`{}`", one.name));
+        format!(
+            "///\n///\n/// Parameters: {names}\n/// Returns:\n/// Source:\n/// Edges:\n/// Error model:\n"
+        )
+    }
 }
 
 /// The new text of a file from the old one, if there is one.
-type Edit = fn(Option<&str>, &Names<'_>) -> Result<String, String>;
+type Edit = fn(Option<&str>, &Signature<'_>) -> Result<String, String>;
 
-/// What stands above a function. Each line wants its words.
-const COMMENT: &str = "\
-///
-///
-/// Parameters: `x`
-/// Returns:
-/// Source:
-/// Edges:
-/// Error model:
-";
-
-fn wesl(old: Option<&str>, names: &Names<'_>) -> Result<String, String> {
-    let name = names.name;
+fn wesl(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
     let old = old.unwrap_or("//!\n");
-    refuse_known(old, &format!("fn {name}("))?;
-    Ok(format!("{old}\n{COMMENT}fn {name}(x: f32) -> f32 {{\n    return x;\n}}\n"))
+    refuse_known(old, &format!("fn {}(", new.name))?;
+    let parameters = new.list(|one| format!("{}: {}", one.name, one.ty.wesl));
+    let (comment, name, result) = (new.comment(), new.name, new.result.wesl);
+    Ok(format!(
+        "{old}\n{comment}fn {name}({parameters}) -> {result} {{\n    return {result}();\n}}\n"
+    ))
 }
 
 /// Gives names their prefix. It stands before the declarations and after them.
 const PREFIX: &str = "#ifdef LAMPLIGHT_PREFIX\n#include \"../prefix.glsl\"\n#endif\n";
 
-fn glsl(old: Option<&str>, names: &Names<'_>) -> Result<String, String> {
-    let Names { folder, module, name } = names;
-    let guard = format!("LAMPLIGHT_{}_{}_GLSL", folder.to_uppercase(), module.to_uppercase());
+fn glsl(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
+    let (folder, module) = (new.folder.to_uppercase(), new.module.to_uppercase());
+    let guard = format!("LAMPLIGHT_{folder}_{module}_GLSL");
     let end = format!("\n{PREFIX}\n#endif\n");
-    let new = format!("//!\n\n#ifndef {guard}\n#define {guard}\n\n{PREFIX}{end}");
-    let old = old.unwrap_or(&new);
-    refuse_known(old, &format!(" {name}("))?;
+    let fresh = format!("//!\n\n#ifndef {guard}\n#define {guard}\n\n{PREFIX}{end}");
+    let old = old.unwrap_or(&fresh);
+    refuse_known(old, &format!(" {}(", new.name))?;
     let before = old.strip_suffix(&end).ok_or_else(|| format!("does not end with\n{end}"))?;
-    Ok(format!("{before}\n{COMMENT}float {name}(float x) {{\n    return x;\n}}\n{end}"))
+    let parameters = new.list(|one| format!("{} {}", one.ty.glsl, one.name));
+    let (comment, name, result) = (new.comment(), new.name, new.result.glsl);
+    Ok(format!(
+        "{before}\n{comment}{result} {name}({parameters}) {{\n    return {result}(0);\n}}\n{end}"
+    ))
 }
 
-fn cases(old: Option<&str>, names: &Names<'_>) -> Result<String, String> {
+fn cases(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
+    let count = new.parameters.len();
+    let domains =
+        new.parameters.iter().map(|one| format!("{} = {}\n", one.name, one.domain(count)));
     let case = format!(
-        "[[case]]\nfunction = \"{}\"\noracle = \"reference\"\ntolerance = {{ ulp = 0 }}\nlaws = []\n\n\
-         [case.inputs]\nx = [{{ grid = [0, 1], count = 33 }}]\n",
-        names.name
+        "[[case]]\nfunction = \"{}\"\noracle = \"reference\"\ntolerance = {{ ulp = 0 }}\n\
+         laws = []\n\n[case.inputs]\n{}",
+        new.name,
+        domains.collect::<String>()
     );
     Ok(old.map_or(case.clone(), |old| format!("{old}\n{case}")))
 }
 
-fn plot(old: Option<&str>, names: &Names<'_>) -> Result<String, String> {
-    let name = names.name;
-    let plot =
-        format!("[{name}]\nvalue = \"{name}(x)\"\nx = {{ label = \"x\", from = 0, to = 1 }}\n");
+/// The first number is drawn from left to right, and the last one has a curve for each of three
+/// values. Without numbers, the last vector turns.
+fn plot(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
+    let numbers: Vec<&Parameter<'_>> =
+        new.parameters.iter().filter(|one| one.is_number()).collect();
+    let across = numbers.first().copied();
+    let curves = numbers.last().copied().filter(|_| numbers.len() > 1);
+    let turns = new
+        .parameters
+        .iter()
+        .rfind(|one| one.ty.wesl.starts_with("vec"))
+        .filter(|_| across.is_none());
+    let is_one = |one: &Parameter<'_>, other: Option<&Parameter<'_>>| {
+        other.is_some_and(|other| other.name == one.name)
+    };
+    let arguments = new.list(|one| match one.ty.wesl {
+        _ if is_one(one, across) => "x".to_owned(),
+        _ if is_one(one, curves) => one.name.to_owned(),
+        "vec2f" if is_one(one, turns) => "vec2f(sin(radians(x)), cos(radians(x)))".to_owned(),
+        "vec3f" if is_one(one, turns) => "vec3f(sin(radians(x)), 0.0, cos(radians(x)))".to_owned(),
+        "vec4f" if is_one(one, turns) => {
+            "vec4f(sin(radians(x)), 0.0, cos(radians(x)), 1.0)".to_owned()
+        }
+        "i32" | "u32" if across.is_none() && turns.is_none() => format!("{}(x)", one.ty.wesl),
+        _ => one.ty.plotted.to_owned(),
+    });
+    let value = new.result.number.replace('$', &format!("{}({arguments})", new.name));
+    let (label, [low, high]) = match (across, turns) {
+        (Some(across), _) => (across.name.to_owned(), across.range),
+        (None, Some(turns)) => (format!("angle of {}, degrees", turns.name), ["0", "90"]),
+        (None, None) => ("number".to_owned(), ["0", "4"]),
+    };
+    let mut plot = format!(
+        "[{}]\nvalue = \"{value}\"\nx = {{ label = \"{label}\", from = {low}, to = {high} }}\n",
+        new.name
+    );
+    if let Some(Parameter { name, range: [low, high], .. }) = curves {
+        let middle =
+            [low, high].iter().filter_map(|text| text.parse::<f64>().ok()).sum::<f64>() / 2.0;
+        plot += &format!("curves = {{ name = \"{name}\", values = [{low}, {middle}, {high}] }}\n");
+    }
     Ok(old.map_or(plot.clone(), |old| format!("{old}\n{plot}")))
 }
 
-fn reference_text(old: Option<&str>, names: &Names<'_>) -> Result<String, String> {
-    let Names { folder, module, name } = names;
-    let new = format!(
+fn reference_text(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
+    let Signature { folder, module, name, .. } = new;
+    let fresh = format!(
         "//! Sources:\n\nuse super::Entry;\n\npub const REFERENCES: Entry =\n    \
          Entry {{ module: \"{folder}::{module}\", functions: &[] }};\n"
     );
-    let old = old.unwrap_or(&new);
-    let row = format!("(\"{name}\", |a| {name}(a.f64()).into())");
-    let text = with_row(old, &row).ok_or("has no list `functions: &[...]`")?;
+    let old = old.unwrap_or(&fresh);
+    let text =
+        with_row(old, &format!("({name:?}, {name})")).ok_or("has no list `functions: &[...]`")?;
+    let names = new.list(|one| one.name.to_owned());
+    let reads = new.list(|one| format!("a.{}()", one.ty.read));
+    let (names, reads) = match new.parameters.len() {
+        1 => (names, reads),
+        _ => (format!("({names})"), format!("({reads})")),
+    };
     Ok(format!(
-        "{text}\n/// Not a number until the published formula stands here.\n\
-         fn {name}(x: f64) -> f64 {{\n    x * f64::NAN\n}}\n"
+        "{text}\n/// The formula of the source goes here. Until then, no result equals this one.\n\
+         fn {name}(a: &mut super::Arguments<'_>) -> super::Expected {{\n    let {names} = {reads};\n    \
+         {}.into()\n}}\n",
+        new.result.nothing
     ))
 }
 

@@ -7,6 +7,8 @@ mod axis_value;
 mod diagnostic;
 mod executor;
 mod function;
+pub mod parameter;
+mod renumber;
 mod scene;
 mod target;
 
@@ -16,11 +18,16 @@ use std::path::Path;
 pub struct Kind {
     /// As written on the command line.
     pub name: &'static str,
-    /// What its names look like.
-    pub example: &'static str,
+    /// Its name, and further arguments that it must have.
+    pub example: &'static [&'static str],
+    /// Arguments that it may have, for the usage.
+    pub rest: &'static str,
     /// Makes the texts of new and of extended files for a name. It only reads the repository.
-    pub make: fn(&Repository<'_>, &str) -> Result<Made, String>,
+    pub make: Make,
 }
+
+/// Makes one thing from its name and the arguments that follow it.
+pub type Make = fn(&Repository<'_>, &str, &[&str]) -> Result<Made, String>;
 
 /// Every kind.
 pub const KINDS: &[Kind] = &[
@@ -58,6 +65,17 @@ impl Repository<'_> {
         self.find(path).ok_or_else(|| format!("cannot read `{path}`"))
     }
 
+    /// The names of the Rust files of a folder, without their ending, in order.
+    fn stems(&self, folder: &str) -> Result<Vec<String>, String> {
+        let entries = std::fs::read_dir(self.root.join(folder));
+        let entries = entries.map_err(|_| format!("cannot read `{folder}`"))?;
+        let names = entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned());
+        let mut stems: Vec<String> =
+            names.filter_map(|name| name.strip_suffix(".rs").map(str::to_owned)).collect();
+        stems.sort();
+        Ok(stems)
+    }
+
     /// Fails if the file exists.
     fn refuse_existing(&self, path: &str) -> Result<(), String> {
         match self.root.join(path).exists() {
@@ -68,13 +86,21 @@ impl Repository<'_> {
 }
 
 /// The files for one thing of a kind.
-pub fn make(root: &Path, kind: &str, name: &str) -> Result<Made, String> {
+pub fn make(root: &Path, kind: &str, name: &str, rest: &[&str]) -> Result<Made, String> {
     let known: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
     let kind = KINDS
         .iter()
         .find(|known| known.name == kind)
         .ok_or_else(|| format!("there is no kind `{kind}`; kinds: {}", known.join(", ")))?;
-    (kind.make)(&Repository { root }, name)
+    (kind.make)(&Repository { root }, name, rest)
+}
+
+/// Fails if there are arguments that a kind does not take.
+fn refuse_rest(rest: &[&str]) -> Result<(), String> {
+    match rest.first() {
+        Some(word) => Err(format!("nothing may follow the name, found `{word}`")),
+        None => Ok(()),
+    }
 }
 
 /// Fails unless the name consists of lower-case letters, digits and `joint`, and begins with a

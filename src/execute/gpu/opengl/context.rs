@@ -7,6 +7,7 @@ use std::ffi::{CStr, c_char, c_void};
 
 use glow::HasContext as _;
 use khronos_egl as egl;
+use naga::back::glsl::Version;
 
 /// An interface, and the lowest version that a context must have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,6 +16,22 @@ pub enum Api {
     Core(i32, i32),
     /// OpenGL ES.
     Embedded(i32, i32),
+}
+
+impl Api {
+    /// The first version of OpenGL that has a version of GLSL. From 3.30 on the numbers are equal.
+    pub fn of_glsl(version: Version) -> Self {
+        match version {
+            Version::Desktop(140) => Self::Core(3, 1),
+            Version::Desktop(150) => Self::Core(3, 2),
+            Version::Desktop(number) => {
+                Self::Core((number / 100).into(), (number / 10 % 10).into())
+            }
+            Version::Embedded { version, .. } => {
+                Self::Embedded((version / 100).into(), (version / 10 % 10).into())
+            }
+        }
+    }
 }
 
 /// A context; it is current on a thread only while calls are made.

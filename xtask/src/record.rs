@@ -1,0 +1,28 @@
+//! `cargo xtask record`: writes down anew what tests compare with, such as messages, listings and
+//! outputs. Read the difference before you commit it.
+
+use crate::{Failure, Outcome, test};
+
+/// The tests that compare with a record. Pictures are not among them: those are drawn on purpose.
+const RECORDED: [&str; 7] =
+    ["permute", "compose_", "diagnostics", "specialise", "emit", "library::", "guide"];
+
+/// The variables that tell tests to write what they find.
+const VARIABLES: [(&str, &str); 2] = [("INSTA_UPDATE", "always"), ("UPDATE_EXPECT", "1")];
+
+/// Runs all of these tests, or only those that the arguments name.
+pub fn run(arguments: &[String]) -> Outcome {
+    let all = RECORDED.map(str::to_owned);
+    let chosen = if arguments.is_empty() { &all[..] } else { arguments };
+    let variables = VARIABLES.map(|(name, value)| (name.to_owned(), value.to_owned()));
+    let command = ["test", "--package", "lamplight", "--features", "store", "--test", "all"];
+    let record = |filter: &String| {
+        let filter = [filter.clone(), "--quiet".to_owned()];
+        test::cargo_with(&command, &filter, &variables).err().map(|failure| failure.message)
+    };
+    let failed: Vec<String> = chosen.iter().filter_map(record).collect();
+    match failed.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::check("some tests fail for another reason, as printed above")),
+    }
+}
