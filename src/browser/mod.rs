@@ -1,4 +1,4 @@
-//! A Chromium without windows, driven by its DevTools protocol.
+//! A headless Chromium, driven by its DevTools protocol.
 //!
 //! `Browser::start -> Browser::open -> Page::evaluate, until, errors, screenshot`
 //!

@@ -13,9 +13,9 @@ use crate::source::SourceSet;
 
 /// Why a command did not succeed.
 pub enum Failure {
-    /// The input is wrong: exit code 1, diagnostics into its text.
+    /// The input is wrong: exit code 1. Each diagnostic points into the input's text.
     Input(SourceSet, Diagnostics),
-    /// A check failed: exit code 3, diagnostics at its cases.
+    /// A check failed: exit code 3. Each diagnostic points to the numeric case that failed.
     Check(SourceSet, Diagnostics),
     /// A sentence, with its exit code.
     Message(u8, String),

@@ -1,4 +1,5 @@
-//! What `gen` and `watch` share: a package, its manifest, the cache, and runs over them.
+//! What `gen` and `watch` share: they open a package with its manifest and its cache, and generate its
+//! bundle.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

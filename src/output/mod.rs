@@ -22,8 +22,12 @@
 //! each, and once more at the end. So a killed run leaves no file that the next one takes for a
 //! foreign one.
 //!
-//! A new command that writes needs one line in the tables of `tests/traps.rs`, which sets a trap at
-//! each of its files. `cargo xtask faults` makes calls of the system fail, and ends runs at them.
+//! A command flattens `Overwrite` of `src/cli/overwrite.rs`, which adds `--force`, and passes
+//! `overwrite.replace()`; `src/cli/export/mod.rs` is an example. A command that writes has one line in
+//! the tables of `tests/traps.rs`, which set a trap at each of its files. A trial finds top-level
+//! commands with `--force` that have none; it does not see subcommands, further forms of a command,
+//! and commands that write without this module. `cargo xtask faults` makes calls of the system fail
+//! in `gen`, and ends it at them.
 //!
 //! What holds for all of it:
 //!

@@ -349,7 +349,8 @@ fn write_failing(html: &mut String, outcomes: &[&Outcome]) {
     }
 }
 
-/// The inputs with the largest share of what is allowed, from the run with the largest share.
+/// Lists the inputs whose error is largest in relation to the tolerance. They are from the run with
+/// the largest such ratio.
 fn write_inputs(html: &mut String, outcomes: &[&Outcome]) {
     let Some(outcome) = outcomes.iter().max_by(|a, b| worst_share(a).total_cmp(&worst_share(b)))
     else {

@@ -13,7 +13,7 @@ const RIGHT: f64 = 8.0;
 const BOTTOM: f64 = 16.0;
 /// Decades of the error that are shown.
 const DECADES: f64 = 9.0;
-/// How many steps of colour a map has.
+/// How many colours a map has for cells within the tolerance. Cells beyond it have one more colour.
 const LEVELS: usize = 8;
 
 /// One line of a plot: class of its colour, whether it is dashed, and where its numbers are.

@@ -89,8 +89,8 @@ fn asked_language(arguments: &Arguments) -> Language {
     arguments.input.chosen_language().unwrap_or(Language::Wesl)
 }
 
-/// The subjects of a file: its vertex and its fragment stage together, if it has one of each;
-/// otherwise each entry point.
+/// The subjects of a file. If the file has exactly one vertex stage, exactly one fragment stage and
+/// no other entry point, they are one subject. Otherwise each entry point is a subject.
 fn file_subjects(
     arguments: &Arguments,
     file: &Path,

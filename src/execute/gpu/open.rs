@@ -29,7 +29,9 @@ pub struct Wanted {
 /// A condition on an adapter's name.
 #[derive(Debug, Clone, Copy)]
 pub enum Named {
+    /// The name has this part. An empty part allows every name.
     With(&'static str),
+    /// The name does not have this part.
     Without(&'static str),
 }
 

@@ -1,5 +1,6 @@
-//! Sources: Lambert, "Photometria", 1760; Heitz, Dupuy, Hill and Neubelt, 2016; Lagarde and de
-//! Rousiers, 2014, section 4.7; Karis, 2013.
+//! Sources: Lambert, "Photometria", 1760; Heitz, Dupuy, Hill and Neubelt, "Real-Time Polygonal-Light
+//! Shading with Linearly Transformed Cosines", 2016; Lagarde and de Rousiers, "Moving Frostbite to
+//! Physically Based Rendering", 2014, section 4.7; Karis, "Real Shading in Unreal Engine 4", 2013.
 
 use super::{Arguments, Entry, Expected};
 use glam::{DMat3, DVec2, DVec3};

@@ -60,7 +60,9 @@ pub fn vogel_disk(i: f64, count: f64, phi: f64) -> DVec2 {
     ((i + 0.5) / count.max(1.0)).sqrt() * DVec2::from_angle(angle)
 }
 
-/// 1/2 + i*a modulo 1, with a cut to 32 bits and the result to 24.
+/// Point `i` of Roberts's sequence R2, in fixed point. Each coordinate is the fractional part of
+/// 1/2 + i*a, with a = 1/p or 1/p^2 and p^3 = p + 1. `a` is rounded to 32 bits, and the result is
+/// truncated to 24 bits.
 fn r2(i: f64) -> DVec2 {
     let whole = 1u64 << 32;
     let part = |a: u64| ((whole / 2 + i as u64 * a) % whole / 256) as f64 / 16777216.0;

@@ -86,6 +86,7 @@ pub const EXECUTOR: Entry = Entry {
     open: || {
         super::open_gpu(Wanted {
             backend: wgpu::Backends::BACKEND,
+            // A part of the adapter's name. An empty part allows every adapter.
             named: Named::With("PART"),
             shaders: Shaders::Translated,
         })

@@ -49,7 +49,9 @@ fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, 
 fn steps(stem: &str, reference: &str, signature: &Signature<'_>) -> Vec<String> {
     let Signature { folder, module, .. } = signature;
     vec![
-        format!("{stem}.wesl: the formula, and each line of its comment (trial shaderlib::)"),
+        format!(
+            "{stem}.wesl: the formula, and each line of its comment (trial shaderlib::); `Edges:` says what it returns for zero vectors and outside the domain, `Error model:` the bound that `tolerance` states"
+        ),
         format!("{stem}.glsl: the same comment and formula (trial shaderlib::)"),
         format!("{reference}: the formula in f64, from the source and not from the shader (check)"),
         format!(

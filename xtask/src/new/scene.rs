@@ -66,7 +66,8 @@ pub fn scene() -> Scene {
         DVec3::new(0.0, 0.0, -12.0),
         (24, 24),
     );
-    // A place is x, y, z and the turn about y. The last number is one of fourteen materials.
+    // A place is x, y, z and the turn about y. The last number is the object's index into the array of
+    // materials, for `material=array`: see `materials` in `palette.rs`.
     let objects = vec![
         Object::new(ground, DMat4::IDENTITY, CHALK).of(Material::default(), 7),
         Object::new(
