@@ -56,18 +56,36 @@ pub fn model_plan(
         return super::permutation_plan(programs, arguments);
     }
     let is_chosen = |axis: &str| arguments.set.iter().any(|(chosen, _)| chosen == axis);
-    let with = |own: &mut dyn Iterator<Item = &String>| {
-        let own = own.filter_map(|axis| axis_value(axis).ok());
-        let free = own.filter(|(axis, _)| !is_chosen(axis));
-        let set = free.chain(arguments.set.iter().cloned()).collect();
-        super::permutation_plan(programs, &Arguments { set, ..arguments.clone() })
-    };
-    // What the user chose may exclude what the model would have.
-    with(&mut model.axes.iter().chain(&model.layers))
-        .or_else(|_| {
-            let layers = model.layers.iter().filter(|axis| *axis != "dispersion=true");
-            with(&mut model.axes.iter().chain(layers))
-        })
-        .or_else(|_| with(&mut model.axes.iter()))
-        .or_else(|_| super::permutation_plan(programs, arguments))
+    let own = model.axes.iter().chain(&model.layers);
+    let own: Vec<&str> = own
+        .map(String::as_str)
+        .filter(|value| axis_value(value).is_ok_and(|(axis, _)| !is_chosen(&axis)))
+        .collect();
+    let is_layer = |value: &str| model.layers.iter().any(|layer| layer == value);
+    // What the user chose may exclude what the model would have. The kept part shrinks by steps.
+    let kept: [&dyn Fn(&str) -> bool; 3] =
+        [&|_| true, &|value| value != "dispersion=true", &|value| !is_layer(value)];
+    for keeps in kept {
+        let (set, left_out): (Vec<&str>, Vec<&str>) = own.iter().partition(|value| keeps(value));
+        let set = set.into_iter().filter_map(|value| axis_value(value).ok());
+        let set = set.chain(arguments.set.iter().cloned()).collect();
+        let chosen = Arguments { set, ..arguments.clone() };
+        if let Ok(plan) = super::permutation_plan(programs, &chosen) {
+            tell_left_out(&left_out)?;
+            return Ok(plan);
+        }
+    }
+    let plan = super::permutation_plan(programs, arguments)?;
+    tell_left_out(&own)?;
+    Ok(plan)
+}
+
+/// Says on standard error which values of axes the model asks for and the permutation does not have.
+fn tell_left_out(values: &[&str]) -> Result<(), Failure> {
+    if !values.is_empty() {
+        let values = values.join(", ");
+        let note = "the model asks for values that the permutation cannot have";
+        writeln!(terminal::stderr(), "note: {note}: {values}")?;
+    }
+    Ok(())
 }

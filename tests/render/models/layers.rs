@@ -44,11 +44,12 @@ pub fn trials() -> impl Iterator<Item = Trial> {
     let each = LAYERS
         .iter()
         .map(|layer| Trial::test(format!("render/model/layer/{}", layer.0), || is_drawn(layer)));
-    let others: [(_, fn() -> _); 4] = [
+    let others: [(_, fn() -> _); 5] = [
         ("none_is_chosen_for_nothing", nothing_is_chosen),
         ("emission_has_its_strength", emission_has_its_strength),
         ("unlit_beside_lit", unlit_beside_lit),
         ("what_is_left_out_is_said", what_is_left_out_is_said),
+        ("what_is_excluded_is_said", what_is_excluded_is_said),
     ];
     each.chain(others.map(|(name, run)| Trial::test(format!("render/model/layer/{name}"), run)))
 }
@@ -140,6 +141,34 @@ fn what_is_left_out_is_said() -> Result<(), Failed> {
     let (_, said) = drawn(&surface(&extensions), &[])?;
     for part in ["textures of KHR_materials_clearcoat", "EXT_materials_fur"] {
         demand(said.contains(part), || format!("expected `{part}` in `{said}`"))?;
+    }
+    Ok(())
+}
+
+/// Extensions, arguments, what is said, and what is not said.
+type Told<'a> = (&'a Value, &'a [&'a str], &'a [&'a str], &'a [&'a str]);
+
+/// Values of axes that the user's choice excludes are named, and only those.
+fn what_is_excluded_is_said() -> Result<(), Failed> {
+    let coat = json!({ "KHR_materials_clearcoat": { "clearcoatFactor": 1.0 } });
+    let colors = json!({ "KHR_materials_transmission": { "transmissionFactor": 1.0 },
+        "KHR_materials_volume": { "thicknessFactor": 1.0 },
+        "KHR_materials_dispersion": { "dispersion": 20.0 } });
+    let tried: [Told<'_>; 3] = [
+        (
+            &coat,
+            &["--set", "frequency=vertex"],
+            &["metallic_roughness=true", "clearcoat=true"],
+            &[],
+        ),
+        (&colors, &["--set", "ambient=constant"], &["dispersion=true"], &["volume=true"]),
+        (&coat, &[], &[], &["cannot have"]),
+    ];
+    for (extensions, arguments, named, unnamed) in tried {
+        let (_, said) = drawn(&surface(extensions), arguments)?;
+        let is_right = named.iter().all(|part| said.contains(part))
+            && !unnamed.iter().any(|part| said.contains(part));
+        demand(is_right, || format!("expected {named:?} and not {unnamed:?} in `{said}`"))?;
     }
     Ok(())
 }
