@@ -144,7 +144,7 @@ pub mod emit;
 pub mod eval;
 #[cfg(feature = "compile")]
 pub mod generate;
-#[cfg(feature = "eval")]
+#[cfg(feature = "compile")]
 pub mod judge;
 #[cfg(feature = "compile")]
 pub mod keys;
@@ -153,10 +153,10 @@ pub mod keys;
 pub mod link;
 #[cfg(feature = "compile")]
 pub mod lint;
-#[cfg(feature = "eval")]
+#[cfg(feature = "compile")]
 #[doc(hidden)]
 pub mod metal;
-#[cfg(feature = "compile")]
+#[cfg(feature = "migrate")]
 #[doc(hidden)]
 pub mod migrate;
 #[cfg(feature = "compile")]

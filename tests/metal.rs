@@ -16,8 +16,9 @@ mod references;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use lamplight::metal::request::{Bound, Fragment};
-use lamplight::metal::{Program, judge_texts};
+use lamplight::execute::compiled::request::{Bound, Fragment};
+use lamplight::execute::compiled::Program;
+use lamplight::metal::judge_texts;
 use libtest_mimic::{Failed, Trial};
 use references::{REFERENCES, Reference};
 

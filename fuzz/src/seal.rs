@@ -80,7 +80,7 @@ pub fn record(name: &str, packed: &[u8]) -> Vec<u8> {
     hasher.update(&(name.len() as u64).to_le_bytes());
     hasher.update(name.as_bytes());
     hasher.update(packed);
-    [b"LLC3".as_slice(), &hasher.finalize().as_bytes()[..16], packed].concat()
+    [b"LLC4".as_slice(), &hasher.finalize().as_bytes()[..16], packed].concat()
 }
 
 fn sum(bytes: &[u8]) -> [u8; 16] {

@@ -76,12 +76,25 @@ pub struct Artifact {
 }
 
 /// The hashes of a unit.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Digest {
     /// Equal for units with equal content, on any machine.
     pub unit: Hash,
-    /// The checksum and the length of each target's bytes, in the order of the targets.
-    pub blobs: Box<[(Hash, u32)]>,
+    /// The checksum of the reflection as JSON.
+    pub reflection: Hash,
+    /// What the targets have, in their order.
+    pub targets: Box<[TargetDigest]>,
+}
+
+/// The hashes of one target of a unit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TargetDigest {
+    /// The checksum of the bytes.
+    pub blob: Hash,
+    /// How many bytes there are.
+    pub length: u32,
+    /// The checksum of the target's own names and numbers as JSON.
+    pub native: Hash,
 }
 
 impl Unit {
@@ -95,19 +108,21 @@ impl Unit {
             hasher.update(&(bytes.len() as u64).to_le_bytes());
             hasher.update(bytes);
         };
-        part(&to_json(&*self.reflection)?);
-        let mut blobs = Vec::with_capacity(self.targets.len());
+        let reflection = to_json(&*self.reflection)?;
+        part(&reflection);
+        let mut targets = Vec::with_capacity(self.targets.len());
         for (target, artifact) in &self.targets {
             let length = u32::try_from(artifact.bytes.len())
                 .map_err(|_| Error::Io(format!("the shader for `{target}` is too large")))?;
-            let sum = checksum(&artifact.bytes);
+            let (blob, native) = (checksum(&artifact.bytes), to_json(&*artifact.native)?);
             part(target.as_bytes());
             part(artifact.extension.as_bytes());
-            part(&to_json(&*artifact.native)?);
-            part(&sum);
-            blobs.push((sum, length));
+            part(&native);
+            part(&blob);
+            targets.push(TargetDigest { blob, length, native: checksum(&native) });
         }
-        Ok(Digest { unit: shortened_hash(&hasher.finalize()), blobs: blobs.into() })
+        let (unit, reflection) = (shortened_hash(&hasher.finalize()), checksum(&reflection));
+        Ok(Digest { unit, reflection, targets: targets.into() })
     }
 
     /// Equal for units with equal content, on any machine.
@@ -194,12 +209,16 @@ pub(super) fn checksum(bytes: &[u8]) -> Hash {
 }
 
 /// Lower-case hexadecimal.
+const DIGITS: [char; 16] =
+    ['0', '1', '2', '3', '4', '5', '6', '7', '8', '9', 'a', 'b', 'c', 'd', 'e', 'f'];
+
 pub(crate) fn to_hex(bytes: &[u8]) -> String {
-    bytes
-        .iter()
-        .flat_map(|byte| [byte >> 4, byte & 15])
-        .filter_map(|digit| char::from_digit(u32::from(digit), 16))
-        .collect()
+    let mut text = String::with_capacity(2 * bytes.len());
+    for byte in bytes {
+        text.push(DIGITS[usize::from(byte >> 4)]);
+        text.push(DIGITS[usize::from(byte & 15)]);
+    }
+    text
 }
 
 /// Reads what [`to_hex`] wrote.

@@ -112,9 +112,9 @@ impl DirectoryWriter {
     /// Keeps the blobs of a unit for [`Self::finish`]; keys refer to it by the digest's hash.
     pub fn add(&self, unit: &Unit) -> Result<Digest, Error> {
         let digest = unit.digest()?;
-        if let Some((_, bytes)) =
-            digest.blobs.iter().find(|(_, bytes)| *bytes as usize > GROUP_BYTES)
+        if let Some(found) = digest.targets.iter().find(|found| found.length as usize > GROUP_BYTES)
         {
+            let bytes = found.length;
             return Err(Error::Io(format!(
                 "a blob of {bytes} bytes is larger than a bundle takes"
             )));

@@ -6,7 +6,7 @@ use std::io::{self, Write as _};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
-use super::contents::{checksum, shortened_hash, to_hex, to_json};
+use super::contents::{checksum, shortened_hash, to_hex};
 use super::{Axis, Contents, Digest, Error, Hash, Language, Native, Reflection, Unit, VERSION};
 
 /// The published JSON Schema of the manifest.
@@ -230,14 +230,14 @@ impl Manifest {
         if self.units.contains_key(&name) {
             return Ok(());
         }
-        let reflection = to_hex(&checksum(&to_json(&*unit.reflection)?));
+        let reflection = to_hex(&digest.reflection);
         self.reflections.entry(reflection.clone()).or_insert_with(|| (*unit.reflection).clone());
         let mut targets = BTreeMap::new();
-        for ((target, artifact), (blob, bytes)) in unit.targets.iter().zip(&digest.blobs) {
-            let native = to_hex(&checksum(&to_json(&*artifact.native)?));
+        for ((target, artifact), found) in unit.targets.iter().zip(&digest.targets) {
+            let native = to_hex(&found.native);
             self.natives.entry(native.clone()).or_insert_with(|| (*artifact.native).clone());
             let (blob, bytes, extension) =
-                (to_hex(blob), (*bytes).into(), artifact.extension.clone());
+                (to_hex(&found.blob), found.length.into(), artifact.extension.clone());
             targets.insert(target.clone(), ManifestArtifact { blob, extension, bytes, native });
         }
         self.units.insert(name, ManifestUnit { reflection, targets });

@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::bundle::contents::{shortened_hash, to_hex};
 use crate::bundle::{Clip, Hash, Target, Unit};
-use crate::compose::{Composed, Options};
+use crate::compose::{Composed, Options, Segment};
 use crate::diagnostic::Diagnostics;
 use crate::source::SourceId;
 
@@ -89,11 +89,11 @@ impl Cache {
     pub fn find(&self, job: Job<'_>) -> Option<Result<Made, Diagnostics>> {
         let key = unit_key(job);
         let told = |kind| {
+            let bytes = self.get(kind, told_key(key, job.composed))?;
             let segments = job.composed.map.segments().iter();
             let known: BTreeSet<SourceId> =
                 segments.filter_map(|segment| Some(segment.span?.source)).collect();
-            self.get(kind, told_key(key, job.composed))
-                .and_then(|bytes| record::decode_diagnostics(&bytes, |id| known.contains(&id)))
+            record::decode_diagnostics(&bytes, |id| known.contains(&id))
         };
         let found = match self.get("units", key).and_then(|bytes| record::decode_unit(&bytes)) {
             Some((unit, false)) => Some(Ok(Made { unit, warnings: Vec::new() })),
@@ -190,15 +190,27 @@ fn unit_key(job: Job<'_>) -> Hash {
 /// The key of a unit's diagnostics. They have places, so it covers where each part of the text came
 /// from.
 fn told_key(unit: Hash, composed: &Composed) -> Hash {
-    hash_parts(&["told", &to_hex(&unit), &composed.text, &format!("{:?}", composed.map.segments())])
+    let mut places = Vec::new();
+    for Segment { start, span, verbatim } in composed.map.segments() {
+        let from = span.map_or([u32::MAX; 3], |span| [span.source.0, span.start, span.end]);
+        for number in [*start, from[0], from[1], from[2], u32::from(*verbatim)] {
+            places.extend_from_slice(&number.to_le_bytes());
+        }
+    }
+    hash_bytes(&[b"told", &unit, composed.text.as_bytes(), &places])
 }
 
 /// 128 bits of a hash. Each part is hashed with its length, so parts cannot run into each other.
 pub(crate) fn hash_parts(parts: &[&str]) -> Hash {
+    let parts: Vec<&[u8]> = parts.iter().map(|part| part.as_bytes()).collect();
+    hash_bytes(&parts)
+}
+
+fn hash_bytes(parts: &[&[u8]]) -> Hash {
     let mut hasher = blake3::Hasher::new();
     for part in parts {
         hasher.update(&(part.len() as u64).to_le_bytes());
-        hasher.update(part.as_bytes());
+        hasher.update(part);
     }
     shortened_hash(&hasher.finalize())
 }

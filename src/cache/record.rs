@@ -1,10 +1,11 @@
 //! Results as bytes.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use lz4_flex::block;
 use serde::{Deserialize, Serialize};
+use snap::raw::{Decoder, Encoder, decompress_len};
 
 use super::shortened_hash;
 use crate::bundle::{Artifact, Hash, Native, Reflection, Unit};
@@ -12,15 +13,15 @@ use crate::diagnostic::{Diagnostic, Diagnostics, Label, Severity, codes};
 use crate::limits::CACHE_BYTES;
 use crate::source::{SourceId, Span};
 
-pub const MAGIC: &[u8; 4] = b"LLC3";
+pub const MAGIC: &[u8; 4] = b"LLC4";
 const SUM_BYTES: usize = 16;
 
 /// The most bytes of a record.
 pub const MOST_RECORD_BYTES: u64 = CACHE_BYTES as u64;
 
-/// The most bytes that a byte of LZ4 can expand to. A record that claims more was not written by
+/// The most bytes that a byte of Snappy can expand to. A record that claims more was not written by
 /// this crate.
-const MOST_RATIO: usize = 256;
+const MOST_RATIO: usize = 64;
 
 /// Packs a payload, with a checksum over it and over its name; `None` where it is too large to be
 /// kept.
@@ -28,7 +29,7 @@ pub fn seal_record(name: &str, payload: &[u8]) -> Option<Vec<u8>> {
     if payload.len() > CACHE_BYTES {
         return None;
     }
-    let packed = block::compress_prepend_size(payload);
+    let packed = Encoder::new().compress_vec(payload).ok()?;
     Some([MAGIC.as_slice(), &record_checksum(name, &packed), &packed].concat())
 }
 
@@ -39,8 +40,8 @@ pub fn open_record(name: &str, record: &[u8]) -> Option<Vec<u8>> {
         return None;
     }
     let most = CACHE_BYTES.min(packed.len().saturating_mul(MOST_RATIO));
-    let (size, packed) = block::uncompressed_size(packed).ok().filter(|(size, _)| *size <= most)?;
-    block::decompress(packed, size).ok()
+    decompress_len(packed).ok().filter(|size| *size <= most)?;
+    Decoder::new().decompress_vec(packed).ok()
 }
 
 /// The checksum of a record. It covers the name, so that a record that was moved to another name is
@@ -55,32 +56,31 @@ fn record_checksum(name: &str, packed: &[u8]) -> Hash {
 
 /// What is written before the bytes of a unit's targets.
 #[derive(Serialize, Deserialize)]
-struct Head {
+struct Head<'a> {
     /// Whether there are warnings. They have places, and so a record of their own.
     has_warnings: bool,
-    reflection: Reflection,
-    targets: BTreeMap<String, Part>,
+    reflection: Cow<'a, Reflection>,
+    targets: BTreeMap<Cow<'a, str>, Part<'a>>,
 }
 
 #[derive(Serialize, Deserialize)]
-struct Part {
-    extension: String,
-    native: Native,
+struct Part<'a> {
+    extension: Cow<'a, str>,
+    native: Cow<'a, Native>,
     bytes: usize,
 }
 
 /// The length of the head, the head, the bytes of each target.
 pub fn encode_unit(unit: &Unit, has_warnings: bool) -> Option<Vec<u8>> {
-    let part = |artifact: &Artifact| Part {
-        extension: artifact.extension.clone(),
-        native: (*artifact.native).clone(),
-        bytes: artifact.bytes.len(),
-    };
-    let targets =
-        unit.targets.iter().map(|(target, artifact)| (target.clone(), part(artifact))).collect();
-    let head =
-        serde_json::to_vec(&Head { has_warnings, reflection: (*unit.reflection).clone(), targets })
-            .ok()?;
+    let mut targets = BTreeMap::new();
+    for (target, artifact) in &unit.targets {
+        let extension = Cow::Borrowed(artifact.extension.as_str());
+        let native = Cow::Borrowed(&*artifact.native);
+        let part = Part { extension, native, bytes: artifact.bytes.len() };
+        targets.insert(Cow::Borrowed(target.as_str()), part);
+    }
+    let head = Head { has_warnings, reflection: Cow::Borrowed(&*unit.reflection), targets };
+    let head = serde_json::to_vec(&head).ok()?;
     let mut payload = u32::try_from(head.len()).ok()?.to_le_bytes().to_vec();
     payload.extend_from_slice(&head);
     unit.targets.values().for_each(|artifact| payload.extend_from_slice(&artifact.bytes));
@@ -95,17 +95,12 @@ pub fn decode_unit(payload: &[u8]) -> Option<(Unit, bool)> {
     for (target, part) in head.targets {
         let (bytes, after) = rest.split_at_checked(part.bytes)?;
         rest = after;
-        targets.insert(
-            target,
-            Artifact {
-                bytes: bytes.into(),
-                extension: part.extension,
-                native: Arc::new(part.native),
-            },
-        );
+        let native = Arc::new(part.native.into_owned());
+        let extension = part.extension.into_owned();
+        targets.insert(target.into_owned(), Artifact { bytes: bytes.into(), extension, native });
     }
     rest.is_empty()
-        .then_some((Unit { reflection: Arc::new(head.reflection), targets }, head.has_warnings))
+        .then_some((Unit { reflection: Arc::new(head.reflection.into_owned()), targets }, head.has_warnings))
 }
 
 #[derive(Serialize, Deserialize)]

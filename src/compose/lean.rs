@@ -27,7 +27,7 @@ const ALIAS_BYTES: usize = 1 << 16;
 pub fn lean(composed: &Composed) -> Composed {
     let mut text = String::with_capacity(composed.text.len() / 2);
     let mut parts = Vec::with_capacity(composed.parts.len());
-    let mut squeezer = Squeezer::new(composed);
+    let squeezer = Squeezer::new(composed);
     if composed.parts.is_empty() {
         squeezer.append(&composed.text, &mut text);
     }
@@ -64,22 +64,20 @@ struct Squeezer {
     language: Language,
     /// Whether some part may have lines that must stay as they are.
     has_odd_lines: bool,
-    /// The GLSL of one part without its comments; the memory is used again.
-    plain: String,
 }
 
 impl Squeezer {
     fn new(composed: &Composed) -> Self {
         let is_glsl = composed.language == Language::Glsl;
         let has_odd_lines = is_glsl && has_odd_lines(&composed.text);
-        Self { language: composed.language, has_odd_lines, plain: String::new() }
+        Self { language: composed.language, has_odd_lines }
     }
 
-    fn append(&mut self, text: &str, lean: &mut String) {
+    fn append(&self, text: &str, lean: &mut String) {
         match self.language {
             Language::Wesl => append_wgsl(text, lean),
             Language::Glsl if self.has_odd_lines && has_odd_lines(text) => lean.push_str(text),
-            Language::Glsl => append_glsl(text, &mut self.plain, lean),
+            Language::Glsl => append_glsl(text, lean),
         }
     }
 }
@@ -226,41 +224,143 @@ fn comment_length(text: &str) -> Option<usize> {
 /// do not nest.
 pub fn lean_glsl(text: &str) -> String {
     let mut lean = String::with_capacity(text.len());
-    append_glsl(text, &mut String::new(), &mut lean);
+    append_glsl(text, &mut lean);
     lean
 }
 
-fn append_glsl(text: &str, plain: &mut String, lean: &mut String) {
-    plain.clear();
-    let mut rest = text;
-    while let Some(start) = rest.find('/') {
-        let (before, comment) = rest.split_at(start);
-        plain.push_str(before);
-        let length = match comment.as_bytes() {
-            [_, b'/', ..] => comment.find(['\n', '\r']).unwrap_or(comment.len()),
-            [_, b'*', ..] => comment[2..].find("*/").map_or(comment.len(), |end| end + 4),
-            _ => 0,
-        };
-        plain.push(if length > 0 { ' ' } else { '/' });
-        rest = &comment[length.max(1)..];
-    }
-    plain.push_str(rest);
-    for line in plain.lines() {
-        let line = line.trim_ascii();
-        if line.is_empty() {
-            continue;
+/// Byte by byte, since a first generation runs this without optimisation, where iterators are slow.
+fn append_glsl(text: &str, lean: &mut String) {
+    let bytes = text.as_bytes();
+    let (mut at, mut line) = (0, Line::Empty);
+    while at < bytes.len() {
+        match bytes[at] {
+            b'\n' => {
+                at += 1;
+                line.end(lean);
+            }
+            b' ' | b'\t' | b'\r' | b'\x0c' => at += 1,
+            b'/' if glsl_comment_length(&text[at..]) > 0 => at += glsl_comment_length(&text[at..]),
+            _ => {
+                let end = glsl_word_end(text, at);
+                line.add(&text[at..end], lean);
+                at = end;
+            }
         }
-        let is_directive = line.starts_with('#');
-        for word in line.split_ascii_whitespace() {
+    }
+    line.end(lean);
+}
+
+/// What a line of lean GLSL has so far.
+enum Line {
+    Empty,
+    Code,
+    Directive,
+}
+
+impl Line {
+    fn add(&mut self, word: &str, lean: &mut String) {
+        match self {
             // A blank before a bracket matters in a directive: `#define F(x)` has a parameter,
             // `#define F (x)` does not.
-            if is_directive && !lean.ends_with('\n') && !lean.is_empty() {
-                lean.push(' ')
-            } else {
-                write_part(lean, word)
-            }
-            lean.push_str(word);
+            Self::Directive => lean.push(' '),
+            Self::Empty | Self::Code => write_part(lean, word),
         }
-        lean.push('\n');
+        if matches!(self, Self::Empty) {
+            *self = if word.starts_with('#') { Self::Directive } else { Self::Code };
+        }
+        lean.push_str(word);
+    }
+
+    fn end(&mut self, lean: &mut String) {
+        if !matches!(self, Self::Empty) {
+            lean.push('\n');
+        }
+        *self = Self::Empty;
+    }
+}
+
+/// The end of what has neither blanks nor comments, from its first byte on.
+fn glsl_word_end(text: &str, start: usize) -> usize {
+    let bytes = text.as_bytes();
+    let mut at = start;
+    while at < bytes.len() {
+        match bytes[at] {
+            b' ' | b'\n' | b'\t' | b'\r' | b'\x0c' => break,
+            b'/' if glsl_comment_length(&text[at..]) > 0 => break,
+            _ => at += 1,
+        }
+    }
+    at
+}
+
+/// Length of the comment at the start of the text; 0 where there is none. Block comments do not
+/// nest.
+fn glsl_comment_length(text: &str) -> usize {
+    match text.as_bytes() {
+        [_, b'/', ..] => text.find(['\n', '\r']).unwrap_or(text.len()),
+        [_, b'*', ..] => text[2..].find("*/").map_or(text.len(), |end| end + 4),
+        _ => 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{lean_glsl, stands_alone};
+
+    /// The same rule, in whole lines.
+    fn line_by_line(text: &str) -> String {
+        let (mut plain, mut rest) = (String::new(), text);
+        while let Some((before, comment)) = rest.split_once('/') {
+            plain.push_str(before);
+            let found = match comment.as_bytes().first() {
+                Some(b'/') => Some(comment.find(['\n', '\r']).unwrap_or(comment.len())),
+                Some(b'*') => {
+                    Some(comment[1..].find("*/").map_or(comment.len(), |end| end + 3))
+                }
+                _ => None,
+            };
+            plain.push(if found.is_some() { ' ' } else { '/' });
+            rest = &comment[found.unwrap_or(0)..];
+        }
+        plain.push_str(rest);
+        let mut lean = String::new();
+        for line in plain.split('\n') {
+            let words: Vec<&str> = line.split_ascii_whitespace().collect();
+            let is_directive = words.first().is_some_and(|word| word.starts_with('#'));
+            for (place, word) in words.iter().enumerate() {
+                let touches = |byte: Option<&u8>| byte.is_none_or(|byte| stands_alone(*byte));
+                let is_apart = touches(lean.as_bytes().last()) || touches(word.as_bytes().first());
+                if if is_directive && place > 0 { true } else { !is_apart } {
+                    lean.push(' ');
+                }
+                lean.push_str(word);
+            }
+            if !words.is_empty() {
+                lean.push('\n');
+            }
+        }
+        lean
+    }
+
+    #[test]
+    fn glsl_is_squeezed_as_line_by_line() {
+        const PARTS: &[&str] = &[
+            "a", "1.5", " ", "  ", "\t", "\n", "\r\n", "\r", "\x0c", "/", "//", "/*", "*/", "*",
+            "#define F", "#", "(", ")", ";", "{", "}", ",", "=", "é", "\u{a0}", "a/b",
+        ];
+        let mut state = 0x2545_f491_4f6c_dd1d_u64;
+        let mut squeezed = 0;
+        for _ in 0..20_000 {
+            let mut text = String::new();
+            for _ in 0..state % 24 {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                text.push_str(PARTS[(state >> 33) as usize % PARTS.len()]);
+            }
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let expected = line_by_line(&text);
+            squeezed += usize::from(expected.len() < text.len());
+            assert_eq!(lean_glsl(&text), expected, "{text:?}");
+        }
+        assert!(squeezed > 10_000, "{squeezed}");
     }
 }

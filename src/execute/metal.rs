@@ -5,6 +5,8 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
+use super::compiled::Program;
+use super::compiled::request::{Bound, Format, Fragment, Image, ImageLevel};
 use super::fixture::Fixture;
 use super::frame::{Drawing, EntryPoint, Frame};
 use super::gpu::{emitted, input_texels, run_batches, unpack_results};
@@ -16,8 +18,7 @@ use crate::bundle::{Native, Target};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::emit::Emitted;
 use crate::eval::{Sampler, Shape, Texture};
-use crate::metal::request::{Bound, Format, Fragment, Image, ImageLevel};
-use crate::metal::{Missing, Program, clang_version};
+use crate::metal::{Missing, clang_version};
 use crate::validate::on_large_stack;
 
 /// A session. It holds programs, each of which has many kernels.

@@ -6,8 +6,9 @@
 //! rows of arguments; [`fixture`] is what textures and samplers hold. Devices of wgpu are in
 //! `gpu`; the evaluator runs kernels in `interpreter`, compiled MSL in `metal`, and both draw
 //! [`frame`]s in [`raster`]. Pages of a browser are in [`web`]. Frames are drawn from the
-//! bytes of a bundle too: [`shipped`].
+//! bytes of a bundle too: [`shipped`]. MSL runs as a program of this machine: [`compiled`].
 
+pub mod compiled;
 pub mod emitted;
 pub mod executors;
 pub mod fixture;

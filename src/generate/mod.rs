@@ -222,7 +222,7 @@ pub fn survey(
     let entries = entry::entries(sources, packages, program, points.first())?;
     let one = || {
         Ok(Compiled {
-            digest: Digest { unit: [0; 16], blobs: Box::default() },
+            digest: Digest::default(),
             warnings: Vec::new(),
             whole: Vec::new(),
         })

@@ -114,8 +114,8 @@ pub(super) struct Outputs(BTreeMap<Target, BTreeMap<Hash, u32>>);
 impl Outputs {
     pub fn add(&mut self, targets: &[Target], results: &[EntryResult]) {
         for digest in results.iter().flat_map(|result| &result.made) {
-            for (target, (blob, length)) in targets.iter().zip(&digest.blobs) {
-                self.0.entry(*target).or_default().insert(*blob, *length);
+            for (target, found) in targets.iter().zip(&digest.targets) {
+                self.0.entry(*target).or_default().insert(found.blob, found.length);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Divides the output of a canonical text into what belongs to its unit and what units share.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::hash::{Hash, Hasher};
 
 use rustc_hash::FxHashMap;
@@ -122,14 +122,19 @@ fn shared_by_roots(
         let words = words(text).filter(|word| word.before != b'.');
         words.filter_map(|word| by_name.get(word.text)).flatten().copied().collect()
     };
-    let mut reached: BTreeSet<usize> = roots.iter().flat_map(|root| named(root)).collect();
-    let mut open: Vec<usize> = reached.iter().copied().collect();
+    // What each declaration that is reached names.
+    let mut reached: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
+    let mut open: Vec<usize> = roots.iter().flat_map(|root| named(root)).collect();
     while let Some(index) = open.pop() {
-        open.extend(named(declared[index].text).into_iter().filter(|used| reached.insert(*used)));
+        if !reached.contains_key(&index) {
+            let names = named(declared[index].text);
+            open.extend(names.iter().copied());
+            reached.insert(index, names);
+        }
     }
     let places: HashMap<usize, usize> =
-        reached.iter().enumerate().map(|(place, index)| (*index, place)).collect();
-    let one = |index: &usize| {
+        reached.keys().enumerate().map(|(place, index)| (*index, place)).collect();
+    let one = |(index, named): (&usize, &BTreeSet<usize>)| {
         let Declared { kind, name, text } = declared[*index];
         // Only an entry point's output declares the bound variables. A shared declaration that uses
         // one could not stand anywhere else.
@@ -138,8 +143,8 @@ fn shared_by_roots(
         }
         // A declaration can only name earlier ones. Functions of the same name are overloads, not
         // uses of each other.
-        let uses = named(text).into_iter().filter(|used| used < index);
-        let uses = uses.filter(|used| declared[*used].name != name).map(|used| places[&used]);
+        let uses = named.iter().filter(|used| *used < index);
+        let uses = uses.filter(|used| declared[**used].name != name).map(|used| places[used]);
         Ok(Shared {
             fragment: Fragment::read(text, names)?,
             kind,

@@ -26,8 +26,19 @@ pub fn continues_word(letter: char) -> bool {
 /// The ASCII part of [`continues_word`].
 #[inline]
 pub fn is_word_byte(byte: u8) -> bool {
-    byte.is_ascii_alphanumeric() || byte == b'_'
+    IS_WORD_BYTE[byte as usize]
 }
+
+/// A table, since the first generation asks for millions of bytes without optimisation.
+const IS_WORD_BYTE: [bool; 256] = {
+    let mut table = [false; 256];
+    let mut byte = 0;
+    while byte < 128 {
+        table[byte] = (byte as u8).is_ascii_alphanumeric() || byte as u8 == b'_';
+        byte += 1;
+    }
+    table
+};
 
 /// Whether the whole text is one identifier, or a keyword.
 pub fn is_word(text: &str) -> bool {
@@ -44,8 +55,8 @@ pub fn leading_word(text: &str) -> &str {
 pub fn word_end(text: &str, start: usize) -> usize {
     let bytes = text.as_bytes();
     let mut at = start;
-    while let Some(&byte) = bytes.get(at) {
-        if is_word_byte(byte) {
+    while at < bytes.len() {
+        if IS_WORD_BYTE[bytes[at] as usize] {
             at += 1;
         } else if let Some(letter) = beyond_ascii(text, at).filter(|found| continues_word(*found)) {
             at += letter.len_utf8();
@@ -128,6 +139,8 @@ pub fn piece_at(text: &str, at: usize) -> Option<Piece<'_>> {
         b'a'..=b'z' | b'A'..=b'Z' | b'_' => (PieceKind::Word, word_end(text, at)),
         b'0'..=b'9' => (PieceKind::Number, number_end(text, at)),
         b'.' if is_digit(at + 1) => (PieceKind::Number, number_end(text, at)),
+        b'!'..=b'~' => (PieceKind::Sign, at + 1),
+        b' ' if matches!(bytes.get(at + 1), Some(b'!'..=b'~')) => (PieceKind::Blank, at + 1),
         byte if byte.is_ascii() && !byte.is_ascii_whitespace() => (PieceKind::Sign, at + 1),
         _ => match text[at..].chars().next()? {
             letter if begins_word(letter) => (PieceKind::Word, word_end(text, at)),

@@ -10,8 +10,8 @@ use lamplight::emit;
 use lamplight::eval::{
     self, Address, Compare, Filter, Level, Machine, Number, Resources, Sampler, Shape, Texture,
 };
-use lamplight::metal::Program;
-use lamplight::metal::request::{Bound, Fragment};
+use lamplight::execute::compiled::Program;
+use lamplight::execute::compiled::request::{Bound, Fragment};
 use lamplight::validate::{Validated, validate};
 
 use super::{Outcome, scrambled, told};

@@ -8,11 +8,12 @@ use super::corners::{Corner, Source, vertex_attribute};
 use super::{Quad, Shaded, Shading};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::eval::{Number, Resources};
+use crate::execute::compiled::Program;
+use crate::execute::compiled::interface::{Interface, Part, Role};
+use crate::execute::compiled::request::{Bound, Fragment, Transformed, Vertex};
 use crate::execute::frame::{Buffers, Drawing, Frame, Mesh};
 use crate::execute::shipped::Shipped;
-use crate::metal::interface::{Interface, Part, Role};
-use crate::metal::request::{Bound, Fragment, Vertex};
-use crate::metal::{Missing, Program};
+use crate::metal::Missing;
 
 /// Stages of any number of programs, compiled together.
 pub struct Compiled {
@@ -127,7 +128,7 @@ impl Shading for Pair<'_> {
         let vertices: Vec<Vertex> = (0..mesh.vertices()).map(vertex).collect();
         let bound = self.compiled.bound(&self.vertex, &resources);
         let transformed = self.compiled.program().vertices(self.vertex.index, &bound, &vertices);
-        let corner = |vertex: crate::metal::request::Transformed| Corner {
+        let corner = |vertex: Transformed| Corner {
             clip: vertex.position.map(f64::from),
             slots: vertex.locations.into_iter().flatten().map(f32::from_bits).collect(),
         };

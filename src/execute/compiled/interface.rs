@@ -1,8 +1,8 @@
 //! Reads from a text what its entry point takes and returns.
 
-use super::attributes::{Attribute, attribute_list};
-use super::token::{Token, msl_tokens};
 use crate::bundle::Stage;
+use crate::metal::attributes::{Attribute, attribute_list};
+use crate::metal::token::{Token, msl_tokens};
 
 /// What a parameter or a member stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

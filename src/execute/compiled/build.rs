@@ -7,9 +7,9 @@ use std::process::Output;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use super::adapt::adapt_text;
-use super::clang::{Clang, Missing};
 use super::interface::{Interface, Part, Role};
+use crate::metal::adapt::adapt_text;
+use crate::metal::{Clang, Missing};
 
 /// Bytes of texts in a unit. It is large enough that the headers cost little, and small enough that
 /// all cores have work.

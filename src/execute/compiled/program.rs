@@ -4,9 +4,9 @@ use std::io::{Read as _, Write as _};
 use std::process::{Child, Command, Stdio};
 
 use super::build::{self, Built};
-use super::clang::Missing;
 use super::interface::{Interface, Role};
 use super::request::{Bound, Fragment, Shaded, Transformed, Vertex, Words, words};
+use crate::metal::Missing;
 
 /// Entry points, ready to run.
 #[derive(Debug)]
