@@ -22,6 +22,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("cost::gpus_named_twice_are_one", gpus_named_twice),
         Trial::test("cost::a_rise_fails", a_rise_fails),
         Trial::test("cost::functions_keep_their_budget", budget::functions),
+        Trial::test("cost::programs_keep_their_budget", budget::programs),
         Trial::test("cost::record_is_current", budget::record_is_current),
         Trial::test("cost::taps_are_counted", offline::taps_are_counted),
         Trial::test("cost::constants_are_settled", offline::constants_are_settled),

@@ -1,5 +1,7 @@
 //! Recorded costs: what the library may cost, and what the catalogue shows.
 
+use std::collections::BTreeSet;
+
 use lamplight::catalogue::cost;
 use lamplight::project;
 use lamplight::source::SourceSet;
@@ -7,21 +9,56 @@ use serde_json::Value;
 
 use super::{Outcome, lamplight, objects, said};
 
-/// No function of the library became more expensive by more than 2 %. `INSTA_UPDATE=always` records
-/// the costs again. With another version of Mesa nothing is compared, and the trial says so.
+/// No function of the library became more expensive by more than 2 %. `cargo xtask record _budget`
+/// records the costs again. With another version of Mesa nothing is compared, and the trial says so.
 pub fn functions() -> Outcome {
-    let recorded = crate::snapshot::root().join("snapshots/costs/functions.json");
+    keep_budget("functions", &["--gpu", "navi21,gfx1100"])
+}
+
+/// The same for a covering set of the permutations of every program, on one GPU.
+pub fn programs() -> Outcome {
+    keep_budget("programs", &["--cover", "--gpu", "navi21"])
+}
+
+fn keep_budget(name: &str, subjects: &[&str]) -> Outcome {
+    let recorded = crate::snapshot::root().join(format!("snapshots/costs/{name}.json"));
     let path = recorded.to_string_lossy().into_owned();
     let records = std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always");
-    let common = ["--gpu", "navi21,gfx1100", "--baseline", &path];
-    let output = lamplight(&[&common[..], if records { &["--record"] } else { &[] }].concat())?;
+    let record = if records { &["--record"][..] } else { &[] };
+    // Where nothing is recorded yet, the command would record instead of comparing.
+    if !records && !recorded.exists() {
+        return Err(format!("{path} is missing: run `cargo xtask record _budget`").into());
+    }
+    let common = ["--json", "--baseline", &path];
+    let output = lamplight(&[subjects, &common[..], record].concat())?;
     match output.status.code() {
-        Some(0) => Ok(()),
+        Some(0) => all_are_recorded(&output.stdout, &std::fs::read(&recorded)?),
         Some(4) if said(&output).contains("not comparable") => {
             eprintln!("not compared: {}", said(&output));
             Ok(())
         }
         code => Err(format!("exit code {code:?}: {}", said(&output)).into()),
+    }
+}
+
+/// What is measured is what is recorded. Otherwise something new would have no budget.
+fn all_are_recorded(measured: &[u8], recorded: &[u8]) -> Outcome {
+    let recorded: Value = serde_json::from_slice(recorded)?;
+    let recorded = recorded["costs"].as_object().ok_or("no costs are recorded")?;
+    let recorded: BTreeSet<String> = recorded.keys().cloned().collect();
+    let measured: Vec<Value> = serde_json::from_slice(measured)?;
+    let key = |object: &Value| {
+        let parts = ["name", "gpu", "stage"].map(|part| object[part].as_str().unwrap_or_default());
+        parts.join(" ").to_lowercase()
+    };
+    let measured: BTreeSet<String> = measured.iter().map(key).collect();
+    let differing: Vec<&String> = measured.symmetric_difference(&recorded).collect();
+    match differing.is_empty() {
+        true => Ok(()),
+        false => {
+            let what = "these are either measured or recorded, but not both";
+            Err(format!("{what}: {differing:#?}: run `cargo xtask record _budget`").into())
+        }
     }
 }
 

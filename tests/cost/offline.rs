@@ -19,7 +19,9 @@ fn count(object: &Value, form: &str, kind: &str) -> Result<i64, Failed> {
 /// with several ask for the size of the texture. The kinds add up to the total, and the table knows
 /// every instruction that the library's modules have.
 pub fn taps_are_counted() -> Outcome {
-    for (name, textures) in [("hard", 2), ("pcf_castano_3", 2 * 4 + 1), ("pcf_castano_5", 2 * 9 + 1)] {
+    for (name, textures) in
+        [("hard", 2), ("pcf_castano_3", 2 * 4 + 1), ("pcf_castano_5", 2 * 9 + 1)]
+    {
         let found = objects(&[&format!("shadow::compare::{name}"), "--spirv"])?;
         let object = found.first().ok_or("there is nothing")?;
         if !object["optimiser"].as_str().is_some_and(|version| version.contains("SPIRV-Tools")) {
@@ -162,7 +164,8 @@ pub fn mali_is_asked() -> Outcome {
     }
     let table = ask_mali(folder.path(), &[])?;
     let table = String::from_utf8_lossy(&table.stdout).into_owned();
-    let row = "Mali-G78  fragment  Main     1.5    0.75      ?        texture   19    4        100 %";
+    let row =
+        "Mali-G78  fragment  Main     1.5    0.75      ?        texture   19    4        100 %";
     match table.contains(row) {
         true => Ok(()),
         false => Err(format!("no `{row}` in\n{table}").into()),

@@ -59,7 +59,12 @@ pub struct Arguments {
     mali: Vec<String>,
     #[command(flatten)]
     input: Input,
-    /// The manifest of a key's program [default: that of the library].
+    /// Instead, a covering set of the permutations of each program, or of the one that `--program`
+    /// names: few permutations in which every pair of values occurs.
+    #[arg(long, conflicts_with = "subjects")]
+    cover: bool,
+    /// The manifest of a key's program [default: `lamplight.toml` here or in the nearest folder
+    /// above, else that of the library].
     #[arg(long, value_name = "FILE")]
     manifest: Option<PathBuf>,
     /// The program of a key [default: the manifest's only one, or `forward`].
