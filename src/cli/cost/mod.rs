@@ -43,8 +43,8 @@ const MOST_BYTES: u64 = 64 << 20;
 #[derive(Args)]
 pub struct Arguments {
     /// A function (`brdf::specular::blinn_phong`), a module (`brdf::specular`), a folder (`brdf`),
-    /// a permutation's key (`lights=spot,shadow=vsm`), or the file of a shader of your own
-    /// [default: every function].
+    /// a permutation's key (`lights=spot,shadow=vsm`), or the file of a shader of your own,
+    /// or of a module, whose functions are measured [default: every function].
     #[arg(value_name = "PATH|KEY|FILE")]
     subjects: Vec<String>,
     #[command(flatten)]

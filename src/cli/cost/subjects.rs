@@ -11,16 +11,18 @@ use super::Arguments;
 use crate::bundle::key::DEFAULT;
 use crate::bundle::{Axis, Clip, Language, Stage, Target};
 use crate::catalogue::{self, Item, Kind};
+use crate::compose::{Composed, PartKind};
 use crate::cost::pipeline::Known;
 use crate::cost::{self, Subject, permutations};
-use crate::diagnostic::nearest_name;
+use crate::diagnostic::{Diagnostics, nearest_name};
 use crate::generate::{Memory, Request, Root, Tools, entry_points, generate};
 use crate::lint;
 use crate::permute::{Manifest, Quoted, cover};
 use crate::project;
 use crate::proof::library::Library;
-use crate::resolve::Packages;
+use crate::resolve::{Graph, Packages};
 use crate::source::SourceSet;
+use crate::validate::every;
 
 /// What was asked for, in order.
 pub fn asked_subjects(
@@ -93,7 +95,8 @@ fn asked_language(arguments: &Arguments) -> Language {
 }
 
 /// The subjects of a file. If the file has exactly one vertex stage, exactly one fragment stage and
-/// no other entry point, they are one subject. Otherwise each entry point is a subject.
+/// no other entry point, they are one subject. Otherwise each entry point is a subject. A file
+/// without entry points is a module, whose functions are the subjects.
 fn file_subjects(
     arguments: &Arguments,
     file: &Path,
@@ -103,9 +106,12 @@ fn file_subjects(
         arguments.input.compose(file, SourceSet::default(), form)?;
     let Context { graph, settings, options, .. } = &context;
     let root = Root { graph, settings, options, clip: Clip::default() };
-    let shaders = entry_points(&composed)
-        .and_then(|entries| root.compile(&entries, &[Target::SPIRV]))
-        .map_err(|errors| Failure::Input(sources, context.explain(errors)))?;
+    let of_sources = |errors| Failure::Input(sources.clone(), context.explain(errors));
+    let entries = entry_points(&composed).map_err(of_sources)?;
+    if entries.is_empty() {
+        return module_subjects(file, graph, &composed).map_err(of_sources);
+    }
+    let shaders = root.compile(&entries, &[Target::SPIRV]).map_err(of_sources)?;
     let known = shaders.iter().map(|shader| {
         let artifact = shader.made.unit.targets.get(Target::SPIRV.name());
         let artifact = artifact.ok_or("there is no SPIR-V")?;
@@ -126,6 +132,22 @@ fn file_subjects(
         .into_iter()
         .map(|(entry, known)| cost::stages_subject(&format!("{name} {entry}"), vec![known]));
     each.collect::<Result<_, _>>().map_err(told)
+}
+
+/// The functions that a module declares itself.
+fn module_subjects(
+    file: &Path,
+    graph: &Graph,
+    composed: &Composed,
+) -> Result<Vec<Subject>, Diagnostics> {
+    let module = every(composed)?.module;
+    let own = graph.root_items();
+    let functions = composed.parts.iter().filter(|part| part.kind == PartKind::Function);
+    let functions = functions.flat_map(|part| &part.names).filter(|name| own.contains(*name));
+    let subject = |function: &String| {
+        cost::function_subject(&format!("{} {function}", file.display()), &module, function)
+    };
+    functions.map(|function| subject(function).map_err(|error| vec![error])).collect()
 }
 
 /// The subjects of functions, modules and folders; of all functions where none is named.
