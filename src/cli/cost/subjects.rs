@@ -17,7 +17,8 @@ use crate::cost::{self, Subject, permutations};
 use crate::diagnostic::{Diagnostics, nearest_name};
 use crate::generate::{Memory, Request, Root, Tools, entry_points, generate};
 use crate::lint;
-use crate::permute::{Manifest, Quoted};
+use crate::permute::{Manifest, Quoted, cover};
+use crate::project;
 use crate::proof::library::Library;
 use crate::resolve::{Graph, Packages};
 use crate::source::SourceSet;
@@ -28,6 +29,9 @@ pub fn asked_subjects(
     arguments: &Arguments,
     form: DiagnosticForm,
 ) -> Result<Vec<Subject>, Failure> {
+    if arguments.cover {
+        return covering_subjects(arguments);
+    }
     let mut subjects = Vec::new();
     let (files, named): (Vec<&String>, Vec<&String>) =
         arguments.subjects.iter().partition(|name| is_file(name));
@@ -67,8 +71,7 @@ fn separate_paths<'a>(
 /// Names of the axes of the program that keys are of.
 fn axis_names(arguments: &Arguments) -> Result<Vec<String>, Failure> {
     let mut sources = SourceSet::default();
-    let (manifest, _) = variants::open_manifest(arguments.manifest.as_deref(), &mut sources)
-        .map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
+    let (manifest, _) = chosen_manifest(arguments, &mut sources)?;
     let name = program_of_key(arguments, &manifest)?;
     let program = manifest.programs.iter().find(|program| program.name == name);
     let axes = program.into_iter().flat_map(|program| program.space.axes());
@@ -187,11 +190,46 @@ pub fn function_subjects(
     Ok(())
 }
 
+/// The manifest that the arguments name, or that of the folder, or the library's.
+fn chosen_manifest(
+    arguments: &Arguments,
+    sources: &mut SourceSet,
+) -> Result<(Manifest, Packages), Failure> {
+    let manifest = arguments.manifest.clone();
+    let manifest = manifest.or_else(|| project::manifest_above(Path::new("")));
+    variants::open_manifest(manifest.as_deref(), sources)
+        .map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))
+}
+
+/// The subjects of covering sets. Their names begin with the program.
+fn covering_subjects(arguments: &Arguments) -> Result<Vec<Subject>, Failure> {
+    let mut sources = SourceSet::default();
+    let (mut manifest, packages) = chosen_manifest(arguments, &mut sources)?;
+    for program in &mut manifest.programs {
+        program.space = cover::covering_space(program);
+    }
+    let names = match &arguments.program {
+        Some(program) => vec![program.clone()],
+        None => manifest.programs.iter().map(|program| program.name.clone()).collect(),
+    };
+    let mut subjects = Vec::new();
+    for name in names {
+        let targets = vec![Target::SPIRV];
+        let request = Request { program: Some(name.clone()), targets, ..Request::default() };
+        let language = asked_language(arguments);
+        let (_, found) = permutations_of(&mut sources, &packages, &manifest, &request, language)?;
+        subjects.extend(found.into_iter().map(|mut subject| {
+            subject.name = format!("{name} {}", subject.name);
+            subject
+        }));
+    }
+    Ok(subjects)
+}
+
 /// The subject of one permutation: its stages in SPIR-V, as a bundle has them.
 fn permutation_subject(arguments: &Arguments, key: &str) -> Result<Subject, Failure> {
     let mut sources = SourceSet::default();
-    let (manifest, packages) = variants::open_manifest(arguments.manifest.as_deref(), &mut sources)
-        .map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
+    let (manifest, packages) = chosen_manifest(arguments, &mut sources)?;
     let program = program_of_key(arguments, &manifest)?;
     let id = sources.add("KEY", key);
     let request = Request {
