@@ -1,11 +1,11 @@
 //! What `lamplight cost` says of functions and permutations, for GPUs that this machine lacks.
 
+mod budget;
+mod offline;
+
 use std::path::Path;
 use std::process::{Command, Output};
 
-use lamplight::catalogue::cost;
-use lamplight::project;
-use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 use serde_json::Value;
 
@@ -21,8 +21,14 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("cost::axes_by_what_they_add", axes),
         Trial::test("cost::gpus_named_twice_are_one", gpus_named_twice),
         Trial::test("cost::a_rise_fails", a_rise_fails),
-        Trial::test("cost::functions_keep_their_budget", budget),
-        Trial::test("cost::record_is_current", record_is_current),
+        Trial::test("cost::functions_keep_their_budget", budget::functions),
+        Trial::test("cost::programs_keep_their_budget", budget::programs),
+        Trial::test("cost::record_is_current", budget::record_is_current),
+        Trial::test("cost::taps_are_counted", offline::taps_are_counted),
+        Trial::test("cost::constants_are_settled", offline::constants_are_settled),
+        Trial::test("cost::missing_programs", offline::missing_programs),
+        Trial::test("cost::mali_is_asked", offline::mali_is_asked),
+        Trial::test("cost::bad_reports", offline::bad_reports),
         Trial::test("cost::wrong_names", wrong_names),
         Trial::test("cost::without_a_driver", without_a_driver),
     ]
@@ -289,67 +295,6 @@ fn a_rise_fails() -> Outcome {
         true => Ok(()),
         false => Err("a file that is not a baseline was replaced".into()),
     }
-}
-
-/// No function of the library became more expensive by more than 2 %. `INSTA_UPDATE=always` records
-/// the costs again. With another version of Mesa nothing is compared, and the trial says so.
-fn budget() -> Outcome {
-    let recorded = crate::snapshot::root().join("snapshots/costs/functions.json");
-    let path = recorded.to_string_lossy().into_owned();
-    let records = std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always");
-    let common = ["--gpu", "navi21,gfx1100", "--baseline", &path];
-    let output = lamplight(&[&common[..], if records { &["--record"] } else { &[] }].concat())?;
-    match output.status.code() {
-        Some(0) => Ok(()),
-        Some(4) if said(&output).contains("not comparable") => {
-            eprintln!("not compared: {}", said(&output));
-            Ok(())
-        }
-        code => Err(format!("exit code {code:?}: {}", said(&output)).into()),
-    }
-}
-
-/// The recorded costs, which the catalogue shows, are what is measured now. They are compared only
-/// if this machine has the driver that was recorded. Every recorded axis and value exists.
-fn record_is_current() -> Outcome {
-    let mut sources = SourceSet::default();
-    let library = cost::library_costs(&mut sources);
-    let recorded = library.map_err(|problems| format!("{problems:?}"))?;
-    let (_, manifest) =
-        project::library_manifest().map_err(|(_, problems)| format!("{problems:?}"))?;
-    for row in &recorded.axes {
-        let program = manifest.programs.iter().find(|program| program.name == row.program);
-        let mut axes = program.iter().flat_map(|program| program.space.axes());
-        let axis = axes.find(|axis| axis.name == row.axis);
-        if !axis.is_some_and(|axis| axis.value_names().contains(&row.value)) {
-            let what = format!("no axis of the library has this recorded value: {row:?}");
-            return Err(format!("{what}: run `cargo xtask docs --costs`").into());
-        }
-    }
-    let found = objects(&[])?;
-    let measured_by = found.first().map_or(&Value::Null, |object| &object["driver"]);
-    if *measured_by != recorded.driver.as_str() {
-        eprintln!("not compared: `{}` was recorded, this is {measured_by}", recorded.driver);
-        return Ok(());
-    }
-    if found.len() != recorded.functions.len() * recorded.gpus.len() {
-        let (functions, gpus) = (recorded.functions.len(), recorded.gpus.len());
-        let what = format!("recorded {functions} functions on {gpus} GPUs");
-        let what = format!("{what}, measured {} rows", found.len());
-        return Err(format!("{what}: run `cargo xtask docs --costs`").into());
-    }
-    for object in &found {
-        let (name, gpu) = (object["name"].as_str(), object["gpu"].as_str());
-        let at = recorded.gpus.iter().position(|chip| Some(chip.name.as_str()) == gpu);
-        let row = at.and_then(|at| recorded.functions.get(name?)?.get(at));
-        let keys = ["instructions", "vgprs", "latency", "inverse_throughput"];
-        let keys = keys.map(|key| object["net"][key].as_i64());
-        if row.map(|row| row.map(Some)) != Some(keys) {
-            let text = format!("{name:?} on {gpu:?}: recorded {row:?}, measured {keys:?}");
-            return Err(format!("{text}: run `cargo xtask docs --costs`").into());
-        }
-    }
-    Ok(())
 }
 
 /// Changes the driver and the numbers of instructions of recorded costs.

@@ -46,6 +46,7 @@ mod one_meaning;
 mod packages;
 mod permute;
 mod pipelines;
+mod plain;
 mod programs;
 mod published;
 mod regressions;
@@ -103,6 +104,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     packages::trials,
     permute::trials,
     pipelines::trials,
+    plain::trials,
     programs::trials,
     published::trials,
     regressions::trials,

@@ -12,10 +12,7 @@ use lamplight::bundle::{
 };
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{Request, in_memory};
-use lamplight::permute::axis::ValueSet;
-use lamplight::permute::manifest::Program;
-use lamplight::permute::space::{Lists, Slice};
-use lamplight::permute::{Assignment, Manifest, Space, cover};
+use lamplight::permute::{Manifest, cover};
 use lamplight::project;
 use libtest_mimic::{Failed, Trial};
 use pollster::block_on;
@@ -134,7 +131,7 @@ fn bundle(everything: bool) -> Result<Bundle, Failed> {
     for program in &mut manifest.programs {
         program.targets = vec![Target::WGSL, Target::SPIRV];
         if !everything {
-            program.space = covering(program);
+            program.space = cover::covering_space(program);
         }
     }
     let generated = generated(&mut sources, &manifest);
@@ -147,21 +144,6 @@ fn generated(
     manifest: &Manifest,
 ) -> Result<lamplight::bundle::Contents, lamplight::diagnostic::Diagnostics> {
     Ok(in_memory(sources, &project::library(), manifest, &Request::default(), &|_| ())?.contents)
-}
-
-/// The program's space, with only its covering set wanted.
-fn covering(program: &Program) -> Space {
-    let space = &program.space;
-    let include: Vec<Assignment> = cover::pairwise(space).points;
-    let everything = Slice {
-        values: space.axes().iter().map(|axis| ValueSet::full(axis.values.len())).collect(),
-        span: program.span,
-    };
-    let lists = Lists { only: Vec::new(), exclude: vec![everything], include };
-    let covering = Space::new(space.axes().to_vec(), space.constraints().to_vec(), lists);
-    let mut covering = covering.unwrap_or_else(|_| space.clone());
-    covering.undeclared = space.undeclared;
-    covering
 }
 
 /// The stages of one permutation in one language, in both targets.

@@ -111,7 +111,7 @@ impl Command {
     /// The GPUs that it asks for, opened while there is one thread.
     fn gpus(&self) -> cost::Opened {
         match self {
-            Self::Cost(arguments) => arguments.gpus.open(),
+            Self::Cost(arguments) => arguments.open_gpus(),
             Self::Variants(arguments) if arguments.cost => arguments.gpus.open(),
             Self::Catalogue(arguments) if arguments.costs.is_some() => {
                 cost::Gpus::of_each_generation()

@@ -5,13 +5,19 @@
 //! version, so they can be recorded and compared. Nothing is run.
 //!
 //! `subject -> pipeline -> device -> statistics`
+//!
+//! Two more compilers are programs of their own: `subject -> stages -> counts` asks `spirv-opt`, and
+//! `subject -> stages -> mali` asks Arm's compiler.
 
 pub mod baseline;
+pub mod counts;
 pub mod device;
 pub mod gpu;
 mod made;
+pub mod mali;
 pub mod permutations;
 pub mod pipeline;
+pub mod stages;
 pub mod statistics;
 
 use std::collections::HashMap;

@@ -6,7 +6,8 @@ use std::collections::BTreeSet;
 
 use super::axis::ValueSet;
 use super::key::Assignment;
-use super::space::Space;
+use super::manifest::Program;
+use super::space::{Lists, Slice, Space};
 
 /// Two axes, the first before the second, with the ordinal of a value of each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -49,6 +50,20 @@ pub fn pairwise(space: &Space) -> Cover {
         }
     }
     cover
+}
+
+/// The space of a program in which only a covering set ships.
+pub fn covering_space(program: &Program) -> Space {
+    let space = &program.space;
+    let values = space.axes().iter().map(|axis| ValueSet::full(axis.values.len())).collect();
+    let everything = Slice { values, span: program.span };
+    let include = pairwise(space).points;
+    let lists = Lists { only: Vec::new(), exclude: vec![everything], include };
+    let covering = Space::new(space.axes().to_vec(), space.constraints().to_vec(), lists);
+    // The axes and constraints were read without errors, and the points are valid.
+    let mut covering = covering.unwrap_or_else(|_| space.clone());
+    covering.undeclared = space.undeclared;
+    covering
 }
 
 /// The cover of a space with fewer than two axes: each valid value of its axis, or its only point.

@@ -69,7 +69,7 @@ const COMMANDS: &[Command] = &[
     ),
     (
         "record",
-        "write down anew what tests compare with: [permute|compose_|diagnostics|emit|library::|guide]...",
+        "write down anew what tests compare with: [permute|compose_|diagnostics|emit|library::|guide|_budget]...",
         record::run,
     ),
     ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),

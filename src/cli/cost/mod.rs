@@ -1,6 +1,7 @@
 //! `lamplight cost`: what functions and permutations cost on GPUs that are not there.
 
 mod axes;
+mod offline;
 mod record;
 mod subjects;
 
@@ -42,15 +43,28 @@ const MOST_BYTES: u64 = 64 << 20;
 #[derive(Args)]
 pub struct Arguments {
     /// A function (`brdf::specular::blinn_phong`), a module (`brdf::specular`), a folder (`brdf`),
-    /// a permutation's key (`lights=spot,shadow=vsm`), or the file of a shader of your own
-    /// [default: every function].
+    /// a permutation's key (`lights=spot,shadow=vsm`), or the file of a shader of your own,
+    /// or of a module, whose functions are measured [default: every function].
     #[arg(value_name = "PATH|KEY|FILE")]
     subjects: Vec<String>,
     #[command(flatten)]
-    pub gpus: Gpus,
+    gpus: Gpus,
+    /// Instead, count the instructions of SPIR-V by kind, after `spirv-opt -O`. This needs no
+    /// driver.
+    #[arg(long, conflicts_with_all = ["gpu", "mali", "baseline"])]
+    spirv: bool,
+    /// Instead, compile whole stages for these Mali GPUs, such as `Mali-G78`, with Arm's `malioc`,
+    /// which must be on PATH.
+    #[arg(long, value_name = "CORE,...", value_delimiter = ',', conflicts_with_all = ["gpu", "baseline", "whole"])]
+    mali: Vec<String>,
     #[command(flatten)]
     input: Input,
-    /// The manifest of a key's program [default: that of the library].
+    /// Instead, a covering set of the permutations of each program, or of the one that `--program`
+    /// names: few permutations in which every pair of values occurs.
+    #[arg(long, conflicts_with = "subjects")]
+    cover: bool,
+    /// The manifest of a key's program [default: `lamplight.toml` here or in the nearest folder
+    /// above, else that of the library].
     #[arg(long, value_name = "FILE")]
     manifest: Option<PathBuf>,
     /// The program of a key [default: the manifest's only one, or `forward`].
@@ -124,7 +138,17 @@ impl Gpus {
     }
 }
 
+impl Arguments {
+    /// Opens the GPUs that are asked for. Call this while the process has only one thread.
+    pub fn open_gpus(&self) -> Opened {
+        if self.spirv || !self.mali.is_empty() { Ok(Vec::new()) } else { self.gpus.open() }
+    }
+}
+
 pub fn run_cost(arguments: Arguments, opened: Opened, form: DiagnosticForm) -> Result<(), Failure> {
+    if arguments.spirv || !arguments.mali.is_empty() {
+        return offline::run_offline(&arguments, form);
+    }
     let recorded = arguments.baseline.as_deref().filter(|_| !arguments.record);
     let recorded = recorded.map(recorded_in).transpose()?.flatten();
     let subjects = subjects::asked_subjects(&arguments, form)?;

@@ -11,21 +11,27 @@ use super::Arguments;
 use crate::bundle::key::DEFAULT;
 use crate::bundle::{Axis, Clip, Language, Stage, Target};
 use crate::catalogue::{self, Item, Kind};
+use crate::compose::{Composed, PartKind};
 use crate::cost::pipeline::Known;
 use crate::cost::{self, Subject, permutations};
-use crate::diagnostic::nearest_name;
+use crate::diagnostic::{Diagnostics, nearest_name};
 use crate::generate::{Memory, Request, Root, Tools, entry_points, generate};
 use crate::lint;
-use crate::permute::{Manifest, Quoted};
+use crate::permute::{Manifest, Quoted, cover};
+use crate::project;
 use crate::proof::library::Library;
-use crate::resolve::Packages;
+use crate::resolve::{Graph, Packages};
 use crate::source::SourceSet;
+use crate::validate::every;
 
 /// What was asked for, in order.
 pub fn asked_subjects(
     arguments: &Arguments,
     form: DiagnosticForm,
 ) -> Result<Vec<Subject>, Failure> {
+    if arguments.cover {
+        return covering_subjects(arguments);
+    }
     let mut subjects = Vec::new();
     let (files, named): (Vec<&String>, Vec<&String>) =
         arguments.subjects.iter().partition(|name| is_file(name));
@@ -65,8 +71,7 @@ fn separate_paths<'a>(
 /// Names of the axes of the program that keys are of.
 fn axis_names(arguments: &Arguments) -> Result<Vec<String>, Failure> {
     let mut sources = SourceSet::default();
-    let (manifest, _) = variants::open_manifest(arguments.manifest.as_deref(), &mut sources)
-        .map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
+    let (manifest, _) = chosen_manifest(arguments, &mut sources)?;
     let name = program_of_key(arguments, &manifest)?;
     let program = manifest.programs.iter().find(|program| program.name == name);
     let axes = program.into_iter().flat_map(|program| program.space.axes());
@@ -90,7 +95,8 @@ fn asked_language(arguments: &Arguments) -> Language {
 }
 
 /// The subjects of a file. If the file has exactly one vertex stage, exactly one fragment stage and
-/// no other entry point, they are one subject. Otherwise each entry point is a subject.
+/// no other entry point, they are one subject. Otherwise each entry point is a subject. A file
+/// without entry points is a module, whose functions are the subjects.
 fn file_subjects(
     arguments: &Arguments,
     file: &Path,
@@ -100,9 +106,12 @@ fn file_subjects(
         arguments.input.compose(file, SourceSet::default(), form)?;
     let Context { graph, settings, options, .. } = &context;
     let root = Root { graph, settings, options, clip: Clip::default() };
-    let shaders = entry_points(&composed)
-        .and_then(|entries| root.compile(&entries, &[Target::SPIRV]))
-        .map_err(|errors| Failure::Input(sources, context.explain(errors)))?;
+    let of_sources = |errors| Failure::Input(sources.clone(), context.explain(errors));
+    let entries = entry_points(&composed).map_err(of_sources)?;
+    if entries.is_empty() {
+        return module_subjects(file, graph, &composed).map_err(of_sources);
+    }
+    let shaders = root.compile(&entries, &[Target::SPIRV]).map_err(of_sources)?;
     let known = shaders.iter().map(|shader| {
         let artifact = shader.made.unit.targets.get(Target::SPIRV.name());
         let artifact = artifact.ok_or("there is no SPIR-V")?;
@@ -123,6 +132,22 @@ fn file_subjects(
         .into_iter()
         .map(|(entry, known)| cost::stages_subject(&format!("{name} {entry}"), vec![known]));
     each.collect::<Result<_, _>>().map_err(told)
+}
+
+/// The functions that a module declares itself.
+fn module_subjects(
+    file: &Path,
+    graph: &Graph,
+    composed: &Composed,
+) -> Result<Vec<Subject>, Diagnostics> {
+    let module = every(composed)?.module;
+    let own = graph.root_items();
+    let functions = composed.parts.iter().filter(|part| part.kind == PartKind::Function);
+    let functions = functions.flat_map(|part| &part.names).filter(|name| own.contains(*name));
+    let subject = |function: &String| {
+        cost::function_subject(&format!("{} {function}", file.display()), &module, function)
+    };
+    functions.map(|function| subject(function).map_err(|error| vec![error])).collect()
 }
 
 /// The subjects of functions, modules and folders; of all functions where none is named.
@@ -165,11 +190,46 @@ pub fn function_subjects(
     Ok(())
 }
 
+/// The manifest that the arguments name, or that of the folder, or the library's.
+fn chosen_manifest(
+    arguments: &Arguments,
+    sources: &mut SourceSet,
+) -> Result<(Manifest, Packages), Failure> {
+    let manifest = arguments.manifest.clone();
+    let manifest = manifest.or_else(|| project::manifest_above(Path::new("")));
+    variants::open_manifest(manifest.as_deref(), sources)
+        .map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))
+}
+
+/// The subjects of covering sets. Their names begin with the program.
+fn covering_subjects(arguments: &Arguments) -> Result<Vec<Subject>, Failure> {
+    let mut sources = SourceSet::default();
+    let (mut manifest, packages) = chosen_manifest(arguments, &mut sources)?;
+    for program in &mut manifest.programs {
+        program.space = cover::covering_space(program);
+    }
+    let names = match &arguments.program {
+        Some(program) => vec![program.clone()],
+        None => manifest.programs.iter().map(|program| program.name.clone()).collect(),
+    };
+    let mut subjects = Vec::new();
+    for name in names {
+        let targets = vec![Target::SPIRV];
+        let request = Request { program: Some(name.clone()), targets, ..Request::default() };
+        let language = asked_language(arguments);
+        let (_, found) = permutations_of(&mut sources, &packages, &manifest, &request, language)?;
+        subjects.extend(found.into_iter().map(|mut subject| {
+            subject.name = format!("{name} {}", subject.name);
+            subject
+        }));
+    }
+    Ok(subjects)
+}
+
 /// The subject of one permutation: its stages in SPIR-V, as a bundle has them.
 fn permutation_subject(arguments: &Arguments, key: &str) -> Result<Subject, Failure> {
     let mut sources = SourceSet::default();
-    let (manifest, packages) = variants::open_manifest(arguments.manifest.as_deref(), &mut sources)
-        .map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
+    let (manifest, packages) = chosen_manifest(arguments, &mut sources)?;
     let program = program_of_key(arguments, &manifest)?;
     let id = sources.add("KEY", key);
     let request = Request {
