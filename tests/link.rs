@@ -3,6 +3,7 @@
 //! compiled as a whole, with a reason.
 
 mod glsl;
+mod parts;
 mod texts;
 mod writers;
 
@@ -37,7 +38,14 @@ type Case = (&'static str, fn() -> Outcome);
 const STEP: usize = 23;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 18] = [
+    let cases: [Case; 22] = [
+        ("marks_are_found_in_longer_names", parts::marks_are_found_in_longer_names),
+        ("sets_hold_what_was_put_in", parts::sets_hold_what_was_put_in),
+        ("a_fragment_is_written_with_other_names", parts::a_fragment_is_written_with_other_names),
+        (
+            "words_are_plain_where_no_reference_touches_them",
+            parts::words_are_plain_where_no_reference_touches_them,
+        ),
         ("forward_alone_and_together", forward),
         ("traps_alone_and_together", traps),
         ("names_alone_and_together", names),

@@ -61,6 +61,7 @@ mod site;
 mod snapshot;
 mod specialise;
 mod tables;
+mod texts;
 mod toolchain;
 mod traps;
 
@@ -118,6 +119,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     site::trials,
     specialise::trials,
     tables::trials,
+    texts::trials,
     toolchain::trials,
     traps::trials,
 ];

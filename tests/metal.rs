@@ -16,8 +16,8 @@ mod references;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use lamplight::execute::compiled::request::{Bound, Fragment};
 use lamplight::execute::compiled::Program;
+use lamplight::execute::compiled::request::{Bound, Fragment};
 use lamplight::metal::judge_texts;
 use libtest_mimic::{Failed, Trial};
 use references::{REFERENCES, Reference};

@@ -99,8 +99,10 @@ pub fn decode_unit(payload: &[u8]) -> Option<(Unit, bool)> {
         let extension = part.extension.into_owned();
         targets.insert(target.into_owned(), Artifact { bytes: bytes.into(), extension, native });
     }
-    rest.is_empty()
-        .then_some((Unit { reflection: Arc::new(head.reflection.into_owned()), targets }, head.has_warnings))
+    rest.is_empty().then_some((
+        Unit { reflection: Arc::new(head.reflection.into_owned()), targets },
+        head.has_warnings,
+    ))
 }
 
 #[derive(Serialize, Deserialize)]

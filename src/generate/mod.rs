@@ -220,13 +220,8 @@ pub fn survey(
 ) -> Result<ProgramSummary, Diagnostics> {
     let points = wanted_points(program, &Request::default())?;
     let entries = entry::entries(sources, packages, program, points.first())?;
-    let one = || {
-        Ok(Compiled {
-            digest: Digest::default(),
-            warnings: Vec::new(),
-            whole: Vec::new(),
-        })
-    };
+    let one =
+        || Ok(Compiled { digest: Digest::default(), warnings: Vec::new(), whole: Vec::new() });
     let nothing = |batch: &[(&Text, &Entry)]| batch.iter().map(|_| one()).collect();
     let results = on_large_stack(|| {
         compositions::compose_all(&entries, &program.space, &points, &nothing, progress)

@@ -1,5 +1,6 @@
 //! Divides the output of a canonical text into what belongs to its unit and what units share.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::hash::{Hash, Hasher};
 
@@ -126,10 +127,8 @@ fn shared_by_roots(
     let mut reached: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
     let mut open: Vec<usize> = roots.iter().flat_map(|root| named(root)).collect();
     while let Some(index) = open.pop() {
-        if !reached.contains_key(&index) {
-            let names = named(declared[index].text);
-            open.extend(names.iter().copied());
-            reached.insert(index, names);
+        if let Entry::Vacant(place) = reached.entry(index) {
+            open.extend(place.insert(named(declared[index].text)).iter().copied());
         }
     }
     let places: HashMap<usize, usize> =
@@ -257,19 +256,5 @@ impl Cut {
         let words: BTreeSet<&str> = self.body.words().collect();
         let locals = words.into_iter().filter(|word| is_local(word)).map(str::to_owned);
         self.body.locals = locals.collect();
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn words_are_plain_where_no_reference_touches_them() {
-        let names = ["".to_owned(), "author".to_owned()];
-        let mark = mark::write_mark(1);
-        let text = format!("a.b Make{mark} {mark}_1 c+{mark} d .{mark} e . f {mark}(g)h1{mark}x");
-        let fragment = Fragment::read(&text, &names).unwrap();
-        assert_eq!(fragment.words().collect::<Vec<_>>(), ["a", "c", "d", "e", "g"]);
     }
 }

@@ -56,20 +56,3 @@ pub fn find_mark(text: &str, from: usize) -> Option<Mark> {
 pub fn occurs_in(text: &str) -> bool {
     find_mark(text, 0).is_some()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn marks_are_found_in_longer_names() {
-        for number in [0, 1, 9, 10, 15, 16, 255, 4095] {
-            let text = format!("Construct{}_1 + x", write_mark(number));
-            let found = find_mark(&text, 0).unwrap();
-            assert_eq!((found.number, found.start, found.small), (number, 9, false));
-            let small = find_mark(&text.to_lowercase(), 3).unwrap();
-            assert_eq!((small.number, small.end, small.small), (number, found.end, true));
-        }
-        assert_eq!(find_mark("qz zqqz Zq1qz aqz", 0), None);
-    }
-}

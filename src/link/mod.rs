@@ -44,14 +44,14 @@
 
 mod canonical;
 mod compile;
-mod cut;
-mod mark;
+pub mod cut;
+pub mod mark;
 mod marked;
 mod module;
-mod names;
+pub mod names;
 mod outline;
 mod pool;
-mod ready;
+pub mod ready;
 mod reason;
 mod spirv;
 mod summary;

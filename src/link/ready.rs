@@ -94,7 +94,7 @@ pub struct Ready {
 pub struct Numbers(Vec<(u32, u64)>);
 
 impl Numbers {
-    fn new(sorted: &[u32]) -> Self {
+    pub fn new(sorted: &[u32]) -> Self {
         let mut blocks: Vec<(u32, u64)> = Vec::new();
         for number in sorted {
             let (block, bit) = (number / 64, 1 << (number % 64));
@@ -278,41 +278,4 @@ fn around_small(fragment: &Fragment, name: &str) -> BTreeSet<(String, String)> {
         (start, fragment.text[reference.at..place.end].to_owned())
     };
     fragment.references.iter().filter(is_it).map(around).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::bundle::Target;
-    use crate::link::mark::write_mark;
-
-    #[test]
-    fn sets_hold_what_was_put_in() {
-        let numbers = [0, 1, 63, 64, 127, 1000];
-        let mut bits = Bits::new(1001);
-        Numbers::new(&numbers).add_to(&mut bits);
-        assert_eq!(bits.numbers().collect::<Vec<_>>(), numbers.map(|number| number as usize));
-        assert!(Numbers::new(&[5, 64]).meets(&bits) && !Numbers::new(&[5, 999]).meets(&bits));
-        assert!(bits.insert(63) && !bits.insert(2) && bits.has(2));
-    }
-
-    /// A reference within a longer identifier is renamed too. A name cannot be an identifier that
-    /// the fragment declares itself.
-    #[test]
-    fn a_fragment_is_written_with_other_names() {
-        let mut names = Names::new(Target::WGSL);
-        let author = ["", "first", "second"].map(str::to_owned);
-        let text = format!("{}(own) = Make{}_1 + {1}.x;", write_mark(1), write_mark(2));
-        let mut fragment = Fragment::read(&text, &author).unwrap();
-        fragment.locals = vec!["own".to_owned()];
-        let ready = Ready::new(fragment, &mut names).unwrap();
-        assert_eq!(ready.template.text, "first(own) = Makesecond_1 + second.x;");
-        let renames = Renames::from([(names.number("second").unwrap(), "second_7".to_owned())]);
-        let mut written = String::new();
-        ready.template.write(&renames, &mut written);
-        assert_eq!(written, "first(own) = Makesecond_7_1 + second_7.x;");
-        let derived: Vec<Identifier> = ready.derived(&renames).collect();
-        assert!(matches!(&derived[..], [Identifier::Text(text)] if text == "Makesecond_7_1"));
-        assert_eq!((ready.captured.len(), ready.locals.len()), (0, 1));
-    }
 }

@@ -194,30 +194,3 @@ pub const fn same_bytes(left: &[u8], right: &[u8]) -> bool {
     }
     index == left.len() && index == right.len()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::{PieceKind, has_word, is_word, pieces, word_around, words};
-
-    #[test]
-    fn pieces_are_all_of_the_text() {
-        let text = "vec3f(.5e-3, 0x1p-2+größe)\u{a0} @x";
-        let found: Vec<&str> = pieces(text).map(|piece| piece.text).collect();
-        assert_eq!(found.concat(), text);
-        let solid: Vec<&str> = pieces(text)
-            .filter(|piece| piece.kind != PieceKind::Blank)
-            .map(|piece| piece.text)
-            .collect();
-        assert_eq!(solid, ["vec3f", "(", ".5e-3", ",", "0x1p-2", "+", "größe", ")", "@", "x"]);
-    }
-
-    #[test]
-    fn words_are_whole() {
-        let found: Vec<(&str, u8)> =
-            words("@fragment a.b 1e5 _c").map(|word| (word.text, word.before)).collect();
-        assert_eq!(found, [("fragment", b'@'), ("a", b't'), ("b", b'.'), ("_c", b'5')]);
-        assert!(has_word("x + größe", "größe") && !has_word("größer 1e5", "größe"));
-        assert!(is_word("_a1") && !is_word("1a") && !is_word("a-b") && !is_word(""));
-        assert_eq!(word_around("(größe)", 2..2), 1.."(größe".len());
-    }
-}
