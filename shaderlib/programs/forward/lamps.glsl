@@ -192,9 +192,16 @@ Accum lit(Surface surface) {
 #else
     Accum sum = Accum(surface.material.ambient * ambient_light(surface.normal), vec3(0.0));
 #endif
+#if METALLIC_ROUGHNESS && MAX_LIGHTS == 1
+    // Compilers unroll the loop only if its body is small, which that of the layers is not.
+    if (lamps.count > 0u) {
+        sum = add_lamp(sum, surface, 0u);
+    }
+#else
     for (uint i = 0u; i < min(lamps.count, uint(MAX_LIGHTS)); i++) {
         sum = add_lamp(sum, surface, i);
     }
+#endif
     return sum;
 }
 
