@@ -37,6 +37,9 @@ pub struct Costs {
     /// What values of axes change on [`SHOWN`].
     #[serde(default)]
     pub axes: Vec<AxisCost>,
+    /// The figures of expressions on [`SHOWN`], by the keys of [`super::quality`].
+    #[serde(default)]
+    pub expressions: BTreeMap<String, [i64; FIGURES.len()]>,
 }
 
 /// A GPU.
@@ -93,6 +96,15 @@ impl Costs {
         let _ = write!(text, "]\n\n# For each GPU: {}.\n[functions]\n", FIGURES.join(", "));
         for (path, rows) in &self.functions {
             let _ = writeln!(text, "{} = {rows:?}", toml_string(path));
+        }
+        if !self.expressions.is_empty() {
+            let _ = write!(
+                text,
+                "\n# The same of expressions in `quality.toml`, on `{SHOWN}`.\n[expressions]\n"
+            );
+        }
+        for (key, row) in &self.expressions {
+            let _ = writeln!(text, "{} = {row:?}", toml_string(key));
         }
         text
     }

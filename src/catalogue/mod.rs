@@ -13,6 +13,7 @@ pub mod plot;
 pub mod prefix;
 pub mod preset;
 pub mod probe;
+pub mod quality;
 pub(crate) mod reader;
 
 use crate::diagnostic::Diagnostics;

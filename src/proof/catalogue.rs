@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use super::library::{Library, lock_sources};
-use super::plots;
+use super::{plots, quality};
 use crate::catalogue::pages::{Contents, catalogue_pages as written};
+use crate::catalogue::quality::{self as groups, Measured};
 use crate::catalogue::{self, Module, cost, plot, prefix, preset, probe};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::{Session, executors, on_thread};
@@ -47,14 +48,26 @@ fn read_contents(sources: &Mutex<SourceSet>, manifest: &Manifest) -> Result<File
     let plots = draw_plots(sources, &modules)?;
     let probes = probe::library(&mut lock_sources(sources))?;
     let presets = preset::library_presets(&mut lock_sources(sources), manifest, &probes)?;
+    let costs = cost::library_costs(&mut lock_sources(sources))?;
+    let quality = measure_quality(sources)?;
     Ok(written(&Contents {
         modules: &modules,
         plots: &plots,
         manifest,
         presets: &presets,
         probes: &probes,
-        costs: &cost::library_costs(&mut lock_sources(sources))?,
+        costs: &costs,
+        quality: &quality,
     }))
+}
+
+/// The errors of everything in `quality.toml`.
+fn measure_quality(sources: &Mutex<SourceSet>) -> Result<Vec<Measured>, Diagnostics> {
+    let (executor, library) = (executors::eval::EXECUTOR, Library::embedded());
+    let mut session = executor.start().map_err(|_| vec![drawing_stopped()])?;
+    let found = groups::library_groups(&mut lock_sources(sources))?;
+    let measure = |group| quality::measure_group(&library, sources, group, session.as_mut());
+    found.into_iter().map(measure).collect()
 }
 
 /// The SVG of every plot, by the path of its function.

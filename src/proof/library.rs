@@ -316,6 +316,6 @@ impl Files for Overlay {
     }
 }
 
-pub(super) fn lock_sources(sources: &Mutex<SourceSet>) -> std::sync::MutexGuard<'_, SourceSet> {
+pub fn lock_sources(sources: &Mutex<SourceSet>) -> std::sync::MutexGuard<'_, SourceSet> {
     sources.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -16,6 +16,7 @@ pub mod laws;
 pub mod library;
 pub mod mutate;
 pub mod plots;
+pub mod quality;
 pub mod ratchet;
 pub mod references;
 pub mod tolerance;

@@ -5,6 +5,8 @@ use std::cmp::Reverse;
 use std::fmt::Write as _;
 
 use super::super::cost::{AxisCost, Costs, FIGURES, SHOWN, SORTED_BY};
+use super::super::plot::draw_scatter;
+use super::super::quality::{Entry, Measured, Row};
 use super::super::{Item, Module};
 use super::markdown::table_cell;
 use super::page_of;
@@ -38,7 +40,7 @@ pub fn of_function(text: &mut String, item: &Item, costs: &Costs) {
 }
 
 /// The page: the functions of each module, the most expensive first.
-pub fn cost_page(modules: &[Module], costs: &Costs) -> String {
+pub fn cost_page(modules: &[Module], costs: &Costs, quality: &[Measured]) -> String {
     let mut text = HEAD.to_owned();
     let Some(shown) = costs.shown() else { return text };
     let generation = &costs.gpus[shown].generation;
@@ -47,6 +49,9 @@ pub fn cost_page(modules: &[Module], costs: &Costs) -> String {
         "\nThe figures here are those of `{SHOWN}` ({generation}), {}.\n",
         costs.driver
     );
+    for measured in quality {
+        write_quality(&mut text, measured, costs);
+    }
     for module in modules {
         let mut rows: Vec<(&Item, &[i64; FIGURES.len()])> = module
             .items
@@ -73,6 +78,62 @@ pub fn cost_page(modules: &[Module], costs: &Costs) -> String {
     }
     text.push_str("\n---\n[Catalogue](README.md)\n");
     text
+}
+
+/// The entries whose cost is recorded, the cheapest first.
+fn quality_rows<'m>(measured: &'m Measured, costs: &'m Costs) -> Vec<Row<'m>> {
+    let group = &measured.group;
+    let row = |(entry, error): (&'m Entry, &f64)| {
+        Some((entry, *error, costs.expressions.get(&group.key(entry))?))
+    };
+    let mut rows: Vec<Row<'_>> =
+        group.entries.iter().zip(&measured.errors).filter_map(row).collect();
+    rows.sort_by_key(|(entry, _, figures)| (figures[SORTED_BY], &entry.name));
+    rows
+}
+
+/// Where the picture of a group is, below the catalogue's folder.
+pub fn picture_path(measured: &Measured) -> String {
+    format!("costs/{}.svg", measured.group.name)
+}
+
+/// The picture of a group: cost against error.
+pub fn quality_picture(measured: &Measured, costs: &Costs) -> Option<String> {
+    let rows = quality_rows(measured, costs);
+    let point =
+        |(entry, error, figures): &Row<'_>| (entry.name.clone(), figures[SORTED_BY] as f64, *error);
+    let points: Vec<(String, f64, f64)> = rows.iter().map(point).collect();
+    let cost = format!("inverse throughput on {SHOWN}, cycles of a wave");
+    let group = &measured.group;
+    (!points.is_empty()).then(|| draw_scatter(&group.title, [&cost, &group.label], &points))
+}
+
+/// A group: its picture, and its table sorted by cost.
+fn write_quality(text: &mut String, measured: &Measured, costs: &Costs) {
+    let (group, rows) = (&measured.group, quality_rows(measured, costs));
+    if rows.is_empty() {
+        return;
+    }
+    let has_taps = rows.iter().any(|(entry, ..)| entry.taps.is_some());
+    let (taps, rule) = if has_taps { ("taps | ", "---:|") } else { ("", "") };
+    let _ = write!(
+        text,
+        "\n## {title} by cost and quality\n\n{}\n\n![{title}: cost against error]({})\n\n\
+         | | {taps}{} | {} |\n|---|{rule}{}---:|\n",
+        group.doc,
+        picture_path(measured),
+        FIGURES.join(" | "),
+        group.label,
+        "---:|".repeat(FIGURES.len()),
+        title = group.title,
+    );
+    for (entry, error, figures) in rows {
+        let taps = entry.taps.map_or(String::new(), |taps| format!("{taps} | "));
+        let (module, function) = entry.function.rsplit_once("::").unwrap_or_default();
+        let link = format!("[{}]({}#{function})", entry.name, page_of(module));
+        let values = figures.map(|value| value.to_string()).join(" | ");
+        let _ = writeln!(text, "| {link} | {taps}{values} | {error:.3} |");
+    }
 }
 
 /// What the values of a program's axes change.

@@ -13,6 +13,7 @@ use std::fmt::Write as _;
 use super::cost::Costs;
 use super::preset::Preset;
 use super::probe::Probe;
+use super::quality::Measured;
 use super::{Kind, Module};
 use crate::permute::Manifest;
 use markdown::{escaped_prose, table_cell};
@@ -26,6 +27,7 @@ pub struct Contents<'c> {
     pub presets: &'c [Preset],
     pub probes: &'c [Probe],
     pub costs: &'c Costs,
+    pub quality: &'c [Measured],
 }
 
 /// The files of the catalogue: path below its folder and text.
@@ -33,7 +35,10 @@ pub fn catalogue_pages(contents: &Contents) -> BTreeMap<String, String> {
     let mut files = BTreeMap::from([
         ("README.md".to_owned(), index_page(contents)),
         ("programs.md".to_owned(), program::program_page(contents.manifest, contents.costs)),
-        ("costs.md".to_owned(), cost::cost_page(contents.modules, contents.costs)),
+        (
+            "costs.md".to_owned(),
+            cost::cost_page(contents.modules, contents.costs, contents.quality),
+        ),
         ("presets.md".to_owned(), preset::preset_page(contents.presets, contents.probes)),
     ]);
     for module in contents.modules {
@@ -44,6 +49,11 @@ pub fn catalogue_pages(contents: &Contents) -> BTreeMap<String, String> {
     }
     for (path, svg) in contents.plots {
         files.insert(format!("{}.svg", path.replace("::", "/")), svg.clone());
+    }
+    for measured in contents.quality {
+        if let Some(svg) = cost::quality_picture(measured, contents.costs) {
+            files.insert(cost::picture_path(measured), svg);
+        }
     }
     files
 }
@@ -73,7 +83,8 @@ Visibility is a factor from 0 to 1, where 1 is fully lit. Attenuation is a facto
 Depth is from 0 to 1, from near to far.
 
 There are also pages of the [programs](programs.md) with their axes, of the [presets](presets.md),
-one for each published example, and of the [costs](costs.md) of functions on GPUs.
+one for each published example, and of the [costs](costs.md) of functions on GPUs, with pictures of
+cost against quality.
 
 `cargo xtask docs` generates this catalogue from the library.
 ";

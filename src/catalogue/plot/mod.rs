@@ -13,8 +13,10 @@
 //! The values come from outside: `draw` takes them as curves and returns an SVG.
 
 mod scale;
+mod scatter;
 mod svg;
 
+pub use scatter::draw_scatter;
 pub use svg::draw_plot;
 
 use std::collections::BTreeMap;

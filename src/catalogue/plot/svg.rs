@@ -10,13 +10,13 @@ use super::{Plot, SAMPLES};
 
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 300.0;
-const LEFT: f64 = 56.0;
-const RIGHT: f64 = 544.0;
-const TOP: f64 = 40.0;
-const BOTTOM: f64 = 252.0;
+pub(super) const LEFT: f64 = 56.0;
+pub(super) const RIGHT: f64 = 544.0;
+pub(super) const TOP: f64 = 40.0;
+pub(super) const BOTTOM: f64 = 252.0;
 
 /// The colour of lines and letters.
-const INK: &str = "#7d8794";
+pub(super) const INK: &str = "#7d8794";
 /// A colour and a dash for each curve, in order.
 const CURVES: [(&str, &str); 4] =
     [("#3987e5", ""), ("#e0701b", "8 4"), ("#2da05a", "2 3"), ("#b05fd0", "10 3 2 3")];
@@ -41,7 +41,7 @@ pub fn draw_plot(title: &str, plot: &Plot, curves: &[Vec<f64>]) -> String {
     svg
 }
 
-fn svg_head(title: &str) -> String {
+pub(super) fn svg_head(title: &str) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" \
          role=\"img\" font-family=\"system-ui, sans-serif\" font-size=\"12\">\n<title>{}</title>\n",
@@ -195,11 +195,11 @@ fn keep_bends(points: &[(f64, f64)], kept: &mut [bool], first: usize, last: usiz
 }
 
 /// Rounded to a tenth of a unit: finer than can be seen, coarser than differences of rounding.
-fn rounded_place(value: f64) -> String {
+pub(super) fn rounded_place(value: f64) -> String {
     let rounded = (value * 10.0).round() / 10.0;
     rounded.to_string()
 }
 
-fn escape_xml(text: &str) -> String {
+pub(super) fn escape_xml(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

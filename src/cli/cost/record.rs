@@ -2,16 +2,19 @@
 //! every axis on one GPU.
 
 use std::collections::BTreeMap;
+use std::sync::Mutex;
 
 use super::super::failure::Failure;
 use super::{Opened, axis_changes, measure_costs, subjects};
 use crate::bundle::Language;
 use crate::catalogue::cost::{AxisCost, Chip, Costs, FIGURES, SHOWN};
-use crate::catalogue::{self, Item};
-use crate::cost::Cost;
+use crate::catalogue::{self, Item, quality};
 use crate::cost::device::Device;
 use crate::cost::permutations::Change;
+use crate::cost::{self, Cost};
 use crate::project;
+use crate::proof::library::{Library, lock_sources};
+use crate::proof::quality::{FUNCTION, quality_module};
 use crate::source::SourceSet;
 
 /// Measures all of it, of the library.
@@ -31,6 +34,7 @@ pub fn record_costs(opened: Opened) -> Result<Costs, Failure> {
         gpus: devices.iter().map(chip).collect(),
         functions: by_function(&devices, &measured),
         axes: of_axes(&devices)?,
+        expressions: of_expressions(&devices)?,
     })
 }
 
@@ -39,20 +43,46 @@ fn by_function(devices: &[Device], costs: &[Cost]) -> BTreeMap<String, Vec<[i64;
     let mut functions: BTreeMap<String, Vec<[i64; FIGURES.len()]>> = BTreeMap::new();
     for device in devices {
         for cost in costs.iter().filter(|cost| cost.gpu == device.gpu) {
-            let net = cost.figures();
-            let row = [net.instructions, net.vgprs, net.latency, net.inverse_throughput];
-            functions.entry(cost.name.clone()).or_default().push(row);
+            functions.entry(cost.name.clone()).or_default().push(figures_row(cost));
         }
     }
     functions
 }
 
+/// The expressions that the catalogue plots.
+fn of_expressions(devices: &[Device]) -> Result<BTreeMap<String, [i64; FIGURES.len()]>, Failure> {
+    let (library, sources) = (Library::embedded(), Mutex::new(SourceSet::default()));
+    let told = |problems| Failure::Input(lock_sources(&sources).clone(), problems);
+    let groups = quality::library_groups(&mut lock_sources(&sources)).map_err(told)?;
+    let mut subjects = Vec::new();
+    for (group, entry) in
+        groups.iter().flat_map(|group| group.entries.iter().map(move |entry| (group, entry)))
+    {
+        let module = quality_module(&library, &sources, group, &entry.value).map_err(told)?;
+        let subject = cost::function_subject(&group.key(entry), &module, FUNCTION);
+        subjects.push(subject.map_err(|error| told(vec![error]))?);
+    }
+    let costs = measure_costs(shown_device(devices), &subjects)?;
+    Ok(costs.iter().map(|cost| (cost.name.clone(), figures_row(cost))).collect())
+}
+
+/// The device of the GPU that tables show.
+fn shown_device(devices: &[Device]) -> &[Device] {
+    let at = devices.iter().position(|device| device.gpu.name == SHOWN);
+    at.map_or(&[], |at| &devices[at..=at])
+}
+
+fn figures_row(cost: &Cost) -> [i64; FIGURES.len()] {
+    let net = cost.figures();
+    [net.instructions, net.vgprs, net.latency, net.inverse_throughput]
+}
+
 /// What values of the axes of the library's programs change.
 fn of_axes(devices: &[Device]) -> Result<Vec<AxisCost>, Failure> {
-    let Some(at) = devices.iter().position(|device| device.gpu.name == SHOWN) else {
+    let shown = shown_device(devices);
+    if shown.is_empty() {
         return Ok(Vec::new());
-    };
-    let shown = &devices[at..=at];
+    }
     let library = project::library_manifest();
     let (mut sources, manifest): (SourceSet, _) =
         library.map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;

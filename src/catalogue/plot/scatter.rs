@@ -1,0 +1,110 @@
+//! Draws points with their names: cost to the right, on a logarithmic scale, and error upwards.
+
+use std::fmt::Write as _;
+
+use super::scale::{Scale, fitted_bounds, tick_label};
+use super::svg::{BOTTOM, INK, LEFT, RIGHT, TOP, escape_xml, rounded_place, svg_head};
+
+const POINT: &str = "#3987e5";
+/// The width of a letter and the height of a line.
+const LETTER: (f64, f64) = (5.8, 12.0);
+/// Places of a label beside its point: its anchor, and where it is.
+const PLACES: [(&str, f64, f64); 6] = [
+    ("start", 7.0, 4.0),
+    ("end", -7.0, 4.0),
+    ("middle", 0.0, -8.0),
+    ("middle", 0.0, 16.0),
+    ("start", 6.0, -9.0),
+    ("end", -6.0, -9.0),
+];
+
+/// The points: name, cost, error. The labels are those of the axes.
+pub fn draw_scatter(title: &str, labels: [&str; 2], points: &[(String, f64, f64)]) -> String {
+    let costs = || points.iter().map(|(_, cost, _)| cost.max(1.0).log2());
+    let (from, to) = (costs().fold(f64::MAX, f64::min), costs().fold(0.0, f64::max));
+    let x = Scale { from: from.min(to).floor(), to: (to + 0.3).ceil(), start: LEFT, end: RIGHT };
+    let (_, most) = fitted_bounds(points.iter().map(|(.., error)| *error).chain([0.0]));
+    let y = Scale { from: 0.0, to: most, start: BOTTOM, end: TOP };
+    let mut svg = svg_head(title);
+    draw_grid(&mut svg, &x, &y);
+    draw_points(&mut svg, &x, &y, points);
+    let middle = (LEFT + RIGHT) / 2.0;
+    let [cost, error] = labels.map(escape_xml);
+    let _ = writeln!(
+        svg,
+        "<text x=\"{LEFT}\" y=\"22\" fill=\"{INK}\" font-weight=\"600\">{}</text>\n\
+         <text x=\"{RIGHT}\" y=\"22\" fill=\"{INK}\" text-anchor=\"end\">{error}</text>\n\
+         <text x=\"{middle}\" y=\"290\" fill=\"{INK}\" text-anchor=\"middle\">{cost}</text>\n</svg>",
+        escape_xml(title)
+    );
+    svg
+}
+
+fn draw_grid(svg: &mut String, x: &Scale, y: &Scale) {
+    let mut lines = String::new();
+    let mut numbers = String::new();
+    for value in y.ticks(5.0) {
+        let at = y.place(value);
+        let _ = write!(lines, "M{LEFT} {}H{RIGHT}", rounded_place(at));
+        let place = (rounded_place(LEFT - 8.0), rounded_place(at + 4.0));
+        numbers += &number_text(place, "end", &tick_label(value));
+    }
+    for power in x.from as i32..=x.to as i32 {
+        let at = rounded_place(x.place(f64::from(power)));
+        let _ = write!(lines, "M{at} {BOTTOM}V{TOP}");
+        let place = (at, rounded_place(BOTTOM + 18.0));
+        numbers += &number_text(place, "middle", &tick_label(f64::from(power).exp2()));
+    }
+    let _ = write!(
+        svg,
+        "<path d=\"{lines}\" stroke=\"{INK}\" stroke-opacity=\"0.25\"/>\n\
+         <g fill=\"{INK}\">\n{numbers}</g>\n"
+    );
+}
+
+fn number_text((x, y): (String, String), anchor: &str, text: &str) -> String {
+    format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\">{text}</text>\n")
+}
+
+/// Each point with its name at the first place where it touches no other name and no point.
+fn draw_points(svg: &mut String, x: &Scale, y: &Scale, points: &[(String, f64, f64)]) {
+    let place = |cost: f64, error: f64| (x.place(cost.max(1.0).log2()), y.place(error));
+    let dots = points.iter().map(|(_, cost, error)| {
+        let (at, up) = place(*cost, *error);
+        [at - 4.0, up - 4.0, at + 4.0, up + 4.0]
+    });
+    let mut taken: Vec<[f64; 4]> = dots.collect();
+    for (name, cost, error) in points {
+        let (at, up) = place(*cost, *error);
+        let width = LETTER.0 * name.chars().count() as f64;
+        let boxed = |(anchor, across, down): (&str, f64, f64)| {
+            let left = match anchor {
+                "start" => at + across,
+                "end" => at + across - width,
+                _ => at + across - width / 2.0,
+            };
+            [left, up + down - LETTER.1 + 2.0, left + width, up + down + 2.0]
+        };
+        let is_free = |place: &&(&str, f64, f64)| {
+            let label = boxed(**place);
+            let within = label[0] >= LEFT && label[2] <= RIGHT + 14.0 && label[3] <= BOTTOM;
+            within && !taken.iter().any(|other| overlap(&label, other))
+        };
+        let (anchor, across, down) = *PLACES.iter().find(is_free).unwrap_or(&PLACES[0]);
+        taken.push(boxed((anchor, across, down)));
+        let _ = writeln!(
+            svg,
+            "<circle cx=\"{}\" cy=\"{}\" r=\"4\" fill=\"{POINT}\"/>\n\
+             <text x=\"{}\" y=\"{}\" fill=\"{INK}\" font-size=\"11\" text-anchor=\"{anchor}\">{}</text>",
+            rounded_place(at),
+            rounded_place(up),
+            rounded_place(at + across),
+            rounded_place(up + down),
+            escape_xml(name)
+        );
+    }
+}
+
+fn overlap(one: &[f64; 4], other: &[f64; 4]) -> bool {
+    one[0] < other[2] && other[0] < one[2] && one[1] < other[3] && other[1] < one[3]
+}

@@ -1,0 +1,109 @@
+//! Ways to compute the same thing, with their errors and costs: `quality.toml`, which explains its
+//! form. [`crate::proof`] computes the errors; the costs are recorded in `costs.toml`.
+
+use serde::Deserialize;
+
+use super::cost::FIGURES;
+use super::reader;
+use crate::diagnostic::Diagnostics;
+use crate::project::LIBRARY;
+use crate::source::{self, Embedded, Package, SourceSet};
+
+/// Path of the file below the library's root.
+pub const PATH: &str = "quality.toml";
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    group: Vec<Group>,
+}
+
+/// Functions that are compared with each other.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Group {
+    pub name: String,
+    pub title: String,
+    pub doc: String,
+    /// What the error is.
+    pub label: String,
+    /// Whether the error is in percent of what is exact.
+    #[serde(default)]
+    pub relative: bool,
+    /// Whether there is a depth map with an edge.
+    #[serde(default)]
+    pub edge: bool,
+    /// Of the entries that have none.
+    pub reference: Option<Reference>,
+    /// Paths below the library's root, with lists in braces.
+    pub imports: Vec<String>,
+    pub setup: String,
+    pub x: Samples,
+    pub y: Samples,
+    pub entries: Vec<Entry>,
+}
+
+/// One way to compute it.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Entry {
+    pub name: String,
+    /// The path of the function in question.
+    pub function: String,
+    pub taps: Option<u32>,
+    pub value: String,
+    pub exact: Option<String>,
+    pub reference: Option<Reference>,
+}
+
+/// What is computed in f64.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reference {
+    /// The mean of 1,024 comparisons over a disk of 4 texels.
+    #[serde(rename = "disk_1024")]
+    Disk,
+    /// The albedo of a white lobe of GGX, `x` the cosine and `y` the roughness.
+    GgxAlbedo,
+}
+
+/// Evenly spaced numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Samples {
+    pub from: f64,
+    pub to: f64,
+    pub count: u32,
+}
+
+impl Samples {
+    pub fn values(self) -> impl Iterator<Item = f64> {
+        let step = (self.to - self.from) / f64::from(self.count.max(2) - 1);
+        (0..self.count).map(move |index| self.from + step * f64::from(index))
+    }
+}
+
+impl Group {
+    /// The key of an entry's figures among the recorded costs.
+    pub fn key(&self, entry: &Entry) -> String {
+        format!("{}: {}", self.name, entry.name)
+    }
+}
+
+/// A group with the errors of its entries, in their order.
+pub struct Measured {
+    pub group: Group,
+    pub errors: Vec<f64>,
+}
+
+/// An entry with its error and its figures.
+pub type Row<'m> = (&'m Entry, f64, &'m [i64; FIGURES.len()]);
+
+/// The groups of the library.
+pub fn library_groups(sources: &mut SourceSet) -> Result<Vec<Group>, Diagnostics> {
+    let library = Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) };
+    match source::read(sources, &library, PATH).map_err(|error| vec![error.into()])? {
+        Some(id) => reader::read_data::<File>(sources, id).map(|file| file.group),
+        None => Ok(Vec::new()),
+    }
+}
