@@ -7,15 +7,23 @@ use super::svg::{BOTTOM, INK, LEFT, RIGHT, TOP, escape_xml, rounded_place, svg_h
 
 const POINT: &str = "#3987e5";
 /// The width of a letter and the height of a line.
-const LETTER: (f64, f64) = (5.8, 12.0);
+const LETTER: (f64, f64) = (5.8, 11.0);
+/// A name that is this far from its point is joined to it by a line.
+const APART: f64 = 18.0;
 /// Places of a label beside its point: its anchor, and where it is.
-const PLACES: [(&str, f64, f64); 6] = [
+const PLACES: [(&str, f64, f64); 12] = [
     ("start", 7.0, 4.0),
     ("end", -7.0, 4.0),
     ("middle", 0.0, -8.0),
     ("middle", 0.0, 16.0),
     ("start", 6.0, -9.0),
     ("end", -6.0, -9.0),
+    ("middle", 0.0, -20.0),
+    ("start", 6.0, -21.0),
+    ("end", -6.0, -21.0),
+    ("middle", 0.0, -32.0),
+    ("start", 6.0, -33.0),
+    ("end", -6.0, -33.0),
 ];
 
 /// The points: name, cost, error. The labels are those of the axes.
@@ -66,7 +74,8 @@ fn number_text((x, y): (String, String), anchor: &str, text: &str) -> String {
     format!("<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\">{text}</text>\n")
 }
 
-/// Each point with its name at the first place where it touches no other name and no point.
+/// Each point with its name at the first place where it touches no other name and no point. The
+/// points on the right come first: they have the least room.
 fn draw_points(svg: &mut String, x: &Scale, y: &Scale, points: &[(String, f64, f64)]) {
     let place = |cost: f64, error: f64| (x.place(cost.max(1.0).log2()), y.place(error));
     let dots = points.iter().map(|(_, cost, error)| {
@@ -74,6 +83,8 @@ fn draw_points(svg: &mut String, x: &Scale, y: &Scale, points: &[(String, f64, f
         [at - 4.0, up - 4.0, at + 4.0, up + 4.0]
     });
     let mut taken: Vec<[f64; 4]> = dots.collect();
+    let mut points: Vec<_> = points.iter().collect();
+    points.sort_by(|one, other| other.1.total_cmp(&one.1));
     for (name, cost, error) in points {
         let (at, up) = place(*cost, *error);
         let width = LETTER.0 * name.chars().count() as f64;
@@ -87,11 +98,19 @@ fn draw_points(svg: &mut String, x: &Scale, y: &Scale, points: &[(String, f64, f
         };
         let is_free = |place: &&(&str, f64, f64)| {
             let label = boxed(**place);
-            let within = label[0] >= LEFT && label[2] <= RIGHT + 14.0 && label[3] <= BOTTOM;
+            let within = label[0] >= LEFT && label[2] <= RIGHT + 6.0 && label[3] <= BOTTOM + 6.5;
             within && !taken.iter().any(|other| overlap(&label, other))
         };
         let (anchor, across, down) = *PLACES.iter().find(is_free).unwrap_or(&PLACES[0]);
         taken.push(boxed((anchor, across, down)));
+        if down < -APART {
+            let (from, to) = (rounded_place(up), rounded_place(up + down + 3.0));
+            let (at, beside) = (rounded_place(at), rounded_place(at + across));
+            let _ = writeln!(
+                svg,
+                "<path d=\"M{at} {from}L{beside} {to}\" stroke=\"{INK}\" stroke-opacity=\"0.5\"/>"
+            );
+        }
         let _ = writeln!(
             svg,
             "<circle cx=\"{}\" cy=\"{}\" r=\"4\" fill=\"{POINT}\"/>\n\
