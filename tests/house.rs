@@ -24,7 +24,6 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("house::detects", cycles_are_found),
         Trial::test("house::leftovers", nothing_is_left_behind),
         Trial::test("house::leftovers_are_seen", leftovers_are_seen),
-        Trial::test("house::tests_are_trials", tests_are_trials),
         Trial::test("house::paths", paths_are_short),
         Trial::test("house::one_way_to_the_terminal", one_way_to_the_terminal),
         Trial::test("house::needs_of_executors", needs_are_installed),
@@ -218,23 +217,6 @@ fn one_way_to_the_terminal() -> Result<(), Failed> {
     match found.is_empty() {
         true => Ok(()),
         false => Err(format!("use `cli::terminal` instead:\n{}", found.join("\n")).into()),
-    }
-}
-
-/// There is one test binary. A test within `src/` would never run.
-fn tests_are_trials() -> Result<(), Failed> {
-    let mut files = Vec::new();
-    rust_files(&Path::new(ROOT).join("src"), &mut files)?;
-    let mut found = Vec::new();
-    for file in files {
-        let text = std::fs::read_to_string(&file)?;
-        if text.lines().any(|line| matches!(line.trim(), "#[test]" | "#[cfg(test)]")) {
-            found.push(file.display().to_string());
-        }
-    }
-    match found.is_empty() {
-        true => Ok(()),
-        false => Err(format!("move these tests to `tests/`: {}", found.join(", ")).into()),
     }
 }
 
