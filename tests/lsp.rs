@@ -3,7 +3,9 @@
 mod cost;
 mod editors;
 mod folders;
+mod format;
 mod glsl;
+mod glsl_names;
 mod incremental;
 mod session;
 
@@ -13,7 +15,6 @@ use std::path::Path;
 use std::process::Command;
 
 use folders::folder_that_is_not_there;
-use lamplight::source::{Embedded, Files as _};
 use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
 use session::{MAIN, MANIFEST, Session, UTIL};
@@ -31,7 +32,7 @@ const TRIALS: &[(&str, Run)] = &[
     ("actions", actions),
     ("inactive", inactive),
     ("permutation", permutation),
-    ("formatting", formatting),
+    ("formatting", format::formatting),
     ("symbols_and_signature", symbols_and_signature),
     ("folder_that_is_not_there", folder_that_is_not_there),
     ("survives", survives),
@@ -43,10 +44,16 @@ const TRIALS: &[(&str, Run)] = &[
     ("glsl::completion", glsl::completion),
     ("glsl::symbols", glsl::symbols),
     ("glsl::library", glsl::library),
+    ("glsl::references", glsl_names::references),
+    ("glsl::rename", glsl_names::rename),
+    ("glsl::refused", glsl_names::refused),
+    ("glsl::signature", glsl_names::signature),
+    ("glsl::workspace", glsl_names::workspace),
     ("editors::guide", editors::guide),
     ("editors::helix", editors::helix),
     ("editors::neovim", editors::neovim),
     ("editors::vscode", editors::vscode),
+    ("editors::vsix", editors::vsix),
     ("editors::zed", editors::zed),
 ];
 
@@ -257,34 +264,6 @@ fn permutation() -> Outcome {
     let document = json!({ "textDocument": { "uri": uri } });
     let lenses = session.ask("textDocument/codeLens", document)?;
     expect(lenses[0]["command"]["title"] == "4 permutations: composed text", &lenses)
-}
-
-/// Formatting changes only blanks, and changes nothing the second time. This holds for a text with
-/// odd blanks and for every module of the library.
-fn formatting() -> Outcome {
-    let mut session = Session::new(MAIN)?;
-    let mut format = |text: &str| -> Result<String, Failed> {
-        session.change(text)?;
-        let document = json!({
-            "textDocument": { "uri": session.uri("main.wesl")? },
-            "options": { "tabSize": 4, "insertSpaces": true },
-        });
-        let edits = session.ask("textDocument/formatting", document)?;
-        Ok(edits[0]["newText"].as_str().unwrap_or(text).to_owned())
-    };
-    let words = |text: &str| text.split_whitespace().collect::<String>();
-    let odd = MAIN.replace("    ", "\t ");
-    let odd = odd.replace("return vec4f(sum);", "return   vec4f(\n\nsum\n);\n\n\n");
-    let once = format(&odd)?;
-    expect(words(&once) == words(&odd), &once)?;
-    expect(once.contains("    return   vec4f(\n        sum\n    );\n}\n"), &once)?;
-    expect(format(&once)? == once, &once)?;
-    for file in Embedded.list(&["wesl"]) {
-        let text = Embedded.read(&file).ok().flatten().ok_or("unreadable")?;
-        let once = format(&text)?;
-        expect(words(&once) == words(&text) && format(&once)? == once, &file)?;
-    }
-    Ok(())
 }
 
 fn symbols_and_signature() -> Outcome {

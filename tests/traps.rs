@@ -71,6 +71,7 @@ const FILES: &[Writer] = &[
     writer("render", &["render", "hpg_4_spot", "--executor", "eval", "--size", "8x8", "-o", "OUT"]),
     writer("keys_rust", &["keys", "--manifest", "lamplight.toml", "--lang", "rust", "-o", "OUT"]),
     writer("keys_c", &["keys", "--manifest", "lamplight.toml", "--lang", "c", "-o", "OUT"]),
+    writer("variants", &["variants", "--cost", "--gpu", "navi21", "--record", "OUT"]),
     writer("cost", &["cost", "half.wesl", "--gpu", "navi21", "--record", "--baseline", "OUT"]),
     writer("keys_ts", &["keys", "--manifest", "lamplight.toml", "--lang", "ts", "-o", "OUT"]),
 ];

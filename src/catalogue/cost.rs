@@ -1,5 +1,6 @@
 //! Recorded costs of functions and of the values of axes, from `costs.toml`. `cargo xtask docs
-//! --costs` measures and writes that file; [`super::pages`] shows it.
+//! --costs` measures and writes that of the library, `lamplight variants --cost --record` that of
+//! another package; [`super::pages`] shows them.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -78,10 +79,11 @@ impl Costs {
         self.gpus.iter().position(|gpu| gpu.name == SHOWN)
     }
 
-    /// The text of the record: a line for each function and each value.
-    pub fn text(&self) -> String {
+    /// The text of the record, which names the command that wrote it: a line for each function and
+    /// each value.
+    pub fn text(&self, command: &str) -> String {
         let mut text = format!(
-            "# What functions and axes cost. Measured by `cargo xtask docs --costs`: not edited by hand.\n\n\
+            "# What functions and axes cost. Measured by `{command}`: not edited by hand.\n\n\
              driver = {}\ngpus = [\n",
             toml_string(&self.driver)
         );

@@ -42,7 +42,7 @@ pub struct Arguments {
 
 pub fn run_catalogue(arguments: Arguments, gpus: cost::Opened) -> Result<(), Failure> {
     if let Some(path) = &arguments.costs {
-        let text = cost::record_costs(gpus)?.text();
+        let text = cost::record_costs(gpus)?.text("cargo xtask docs --costs");
         let replace = arguments.overwrite.replace();
         return Ok(output::write_file(path, text.as_bytes(), is_record, replace)?);
     }

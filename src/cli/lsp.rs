@@ -1,5 +1,6 @@
 //! `lamplight lsp`: a language server on standard input and output.
 
+use std::cell::OnceCell;
 use std::io::{BufReader, stdin};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -12,9 +13,10 @@ use serde_json::Value;
 
 use super::failure::Failure;
 use super::terminal;
-use crate::lsp::Server;
+use crate::input;
 use crate::lsp::wire::{self, Incoming};
-use crate::output;
+use crate::lsp::{Library, Server};
+use crate::output::{self, Replace};
 use crate::source::{Embedded, Files};
 
 /// Run a language server for WESL, WGSL and GLSL on standard input and output.
@@ -44,7 +46,7 @@ pub fn run_lsp(_: Arguments) -> Result<(), Failure> {
 
 /// Answers until the editor leaves; returns the exit code that the protocol demands.
 fn serve_editor(receiver: &Receiver<Incoming>) -> Result<u8, Failure> {
-    let mut server = Server::new(Box::new(library_file));
+    let mut server = Server::new(library_copy());
     let mut pause = PAUSE;
     loop {
         let next = match server.is_idle() {
@@ -87,18 +89,32 @@ fn guard_request(
     })
 }
 
-/// A copy of a file of the library where editors can open it.
-fn library_file(name: &str) -> Option<PathBuf> {
+/// A copy of the library where editors can open its files, written when the first one is asked for.
+/// It has all files, since each leads to others.
+fn library_copy() -> Library {
+    let copy = OnceCell::new();
+    Box::new(move |name| {
+        let folder: &Option<PathBuf> = copy.get_or_init(write_library);
+        Embedded.read(name).ok()??;
+        Some(folder.as_ref()?.join(name))
+    })
+}
+
+fn write_library() -> Option<PathBuf> {
     let variable =
         |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let cache = variable("XDG_CACHE_HOME").or_else(|| Some(variable("HOME")?.join(".cache")))?;
     let folder = cache.join("lamplight").join(env!("CARGO_PKG_VERSION"));
-    let file = folder.join(name);
-    let text = Embedded.read(name).ok()??;
-    if std::fs::read(&file).is_ok_and(|known| known == text.as_bytes()) {
-        return Some(file);
+    let names = Embedded.list(&["wesl", "wgsl", "glsl", "toml"]);
+    let text = |name: &String| Some((name.clone(), Embedded.read(name).ok()??));
+    let files: Vec<(String, String)> = names.iter().filter_map(text).collect();
+    let is_there = |(name, text): &(String, String)| {
+        let found = input::read_file(&folder.join(name), text.len() as u64);
+        found.is_ok_and(|known| known == text.as_bytes())
+    };
+    if !files.iter().all(is_there) {
+        let files = files.iter().map(|(name, text)| (name.as_str(), text.as_bytes()));
+        output::write_folder(&folder, files, Replace::Any).ok()?;
     }
-    output::make_folder(file.parent()?).ok()?;
-    output::write(&file, text.as_bytes()).ok()?;
-    Some(file)
+    Some(folder)
 }

@@ -9,11 +9,15 @@ use serde::Serialize;
 
 use super::cost;
 use super::failure::{DiagnosticForm, Failure, print_warnings};
+use super::overwrite::Overwrite;
 use super::progress::Bar;
 use super::terminal::stdout;
+use crate::catalogue::cost::{PATH, SHOWN, is_record, package_costs};
+use crate::cost::device::Device;
 use crate::cost::permutations::Change;
 use crate::diagnostic::{Diagnostics, nearest_name};
 use crate::generate::{self, Discard, Request, Tools};
+use crate::output;
 use crate::permute::axis::Mode;
 use crate::permute::report::{Report, StageCount, report};
 use crate::permute::{Manifest, Program};
@@ -46,6 +50,12 @@ pub struct Arguments {
     pub cost: bool,
     #[command(flatten)]
     pub gpus: cost::Gpus,
+    /// Write the costs on `navi21` to this file [default: `costs.toml` in the package's root, where
+    /// the language server reads what the values of an axis cost].
+    #[arg(long, value_name = "FILE", requires = "cost", num_args = 0..=1)]
+    record: Option<Option<PathBuf>>,
+    #[command(flatten)]
+    overwrite: Overwrite,
 }
 
 pub fn run_variants(
@@ -57,8 +67,9 @@ pub fn run_variants(
         return Err(Failure::usage("`--gpu` chooses what `--cost` compiles for: add `--cost`"));
     }
     let mut sources = SourceSet::default();
-    let manifest = arguments.manifest.clone().or_else(|| project::manifest_above(Path::new("")));
-    let read = open_manifest(manifest.as_deref(), &mut sources);
+    let manifest_path =
+        arguments.manifest.clone().or_else(|| project::manifest_above(Path::new("")));
+    let read = open_manifest(manifest_path.as_deref(), &mut sources);
     let (manifest, packages) =
         read.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
     print_warnings(&sources, &manifest.warnings, form);
@@ -66,6 +77,12 @@ pub fn run_variants(
         return print_keys(&manifest, name, arguments.json);
     }
     let devices = opened.map_err(Failure::environment)?;
+    let record = match &arguments.record {
+        Some(file) => {
+            Some(record_path(file.as_deref(), manifest_path.as_deref(), &packages, &devices)?)
+        }
+        None => None,
+    };
     let reports = manifest.programs.iter().map(|program| {
         let mut report = report(&program.name, &program.space);
         if program.glsl.is_some() {
@@ -88,11 +105,64 @@ pub fn run_variants(
         Ok(Told { report, changes })
     });
     let reports = reports.collect::<Result<Vec<Told>, Failure>>()?;
+    if let Some(path) = &record {
+        write_record(&arguments, path, &devices, &reports)?;
+    }
     if arguments.json {
         return Ok(writeln!(stdout(), "{:#}", serde_json::json!(reports))?);
     }
     let texts: Vec<String> = reports.iter().map(Told::text).collect();
     Ok(stdout().write_all(texts.join("\n").as_bytes())?)
+}
+
+/// Where the costs of a package's axes are recorded.
+///
+/// # Errors
+/// There is no package, the GPU that is recorded is not asked for, or the record has more than
+/// axes.
+fn record_path(
+    file: Option<&Path>,
+    manifest: Option<&Path>,
+    packages: &Packages,
+    devices: &[Device],
+) -> Result<PathBuf, Failure> {
+    if !devices.iter().any(|device| device.gpu.name == SHOWN) {
+        return Err(Failure::usage(format!(
+            "`--record` records the costs on `{SHOWN}`: add it to `--gpu`"
+        )));
+    }
+    if let Some(file) = file {
+        return Ok(file.to_owned());
+    }
+    let Some(manifest) = manifest else {
+        return Err(Failure::usage(
+            "`--record` writes into the package of a manifest, and there is no `lamplight.toml` \
+             here or in a folder above: add `--manifest`, or name a file",
+        ));
+    };
+    let folder = manifest.parent().unwrap_or(Path::new(""));
+    let path = project::root_beside(folder).join(PATH);
+    let known = package_costs(&mut SourceSet::default(), &packages.root).unwrap_or_default();
+    if !known.functions.is_empty() || !known.expressions.is_empty() {
+        return Err(Failure::input(format!(
+            "`{}` also has the costs of functions, which this command does not measure",
+            path.display()
+        )));
+    }
+    Ok(path)
+}
+
+/// Records what the values of axes change.
+fn write_record(
+    arguments: &Arguments,
+    path: &Path,
+    devices: &[Device],
+    reports: &[Told],
+) -> Result<(), Failure> {
+    let changes = reports.iter().map(|told| (told.report.program.as_str(), &*told.changes));
+    let Some(costs) = cost::axis_record(devices, changes) else { return Ok(()) };
+    let text = costs.text("lamplight variants --cost --record");
+    Ok(output::write_file(path, text.as_bytes(), is_record, arguments.overwrite.replace())?)
 }
 
 /// The report of one program.

@@ -126,6 +126,9 @@ pub fn describe_flag(server: &Server, opened: &Opened, path: &str, name: &str) -
 
 /// `textDocument/signatureHelp`: of the call that the position is in.
 pub fn signature_help(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    if glsl::is_asked(server, parameters) {
+        return glsl::signature_help(server, parameters);
+    }
     let (document, byte) = server.asked(parameters)?;
     let Some((name, argument)) = call_around(&document.text, byte) else { return Ok(Value::Null) };
     let (root, path) = (document.root.clone(), document.path.clone());
@@ -158,7 +161,7 @@ pub fn signature_help(server: &mut Server, parameters: &Value) -> Result<Value, 
 }
 
 /// The name of the call around a byte, and which of its arguments the byte is in.
-fn call_around(text: &str, byte: usize) -> Option<(std::ops::Range<usize>, usize)> {
+pub fn call_around(text: &str, byte: usize) -> Option<(std::ops::Range<usize>, usize)> {
     let (mut depth, mut argument) = (0, 0);
     for (at, letter) in text[..byte].char_indices().rev() {
         match letter {

@@ -13,10 +13,12 @@ mod format;
 mod glsl;
 mod look;
 mod navigate;
+mod offers;
 mod package;
 mod place;
 mod shade;
 mod told;
+mod unchanged;
 pub mod wire;
 
 use std::cell::RefCell;
@@ -32,6 +34,7 @@ use crate::limits::{EDIT_STEPS, Steps};
 use crate::project;
 use crate::resolve::Graph;
 use crate::resolve::wesl::Kept;
+use crate::source::SourceSet;
 use look::Choice;
 use package::{Modules, Opened, Texts};
 use wire::{
@@ -57,8 +60,11 @@ pub struct Server {
     choices: BTreeMap<PathBuf, Choice>,
     /// By root folder of a package: what was parsed, which a keystroke in one file does not change.
     kept: RefCell<BTreeMap<PathBuf, Kept>>,
+    unchanged: Arc<unchanged::Unchanged>,
     /// Of the package that was asked about last, until a document changes.
     modules: Option<(PathBuf, Arc<Modules>)>,
+    /// The same of GLSL files.
+    whole: Option<(PathBuf, Arc<glsl::Whole>)>,
     /// Documents to look at, the one that was edited last first.
     changed: VecDeque<PathBuf>,
     items: Option<Arc<Vec<catalogue::Module>>>,
@@ -97,7 +103,9 @@ impl Server {
             documents: BTreeMap::new(),
             choices: BTreeMap::new(),
             kept: RefCell::default(),
+            unchanged: Arc::default(),
             modules: None,
+            whole: None,
             changed: VecDeque::new(),
             items: None,
             library,
@@ -128,7 +136,7 @@ impl Server {
 
     fn request(&mut self, method: &str, id: &Value, parameters: &Value) -> Value {
         match method {
-            "initialize" => return answer_message(id, server_capabilities()),
+            "initialize" => return answer_message(id, offers::server_capabilities()),
             "shutdown" => {
                 self.is_shut_down = true;
                 return answer_message(id, Value::Null);
@@ -224,6 +232,7 @@ impl Server {
     /// Something changed: every open document is to be looked at again, the edited one first.
     fn forget(&mut self, edited: Option<&Path>) {
         self.modules = None;
+        self.whole = None;
         let others =
             self.documents.keys().map(PathBuf::as_path).filter(|path| Some(*path) != edited);
         self.changed = edited.into_iter().chain(others).map(Path::to_owned).collect();
@@ -265,7 +274,7 @@ impl Server {
             let told = |found| told::diagnostic_json(sources, found, note, &*self.library);
             here.filter_map(told).collect::<Vec<_>>()
         };
-        let mut opened = match package::open_package(&document.root, &self.texts(&document.root)) {
+        let mut opened = match self.open_package(&document.root) {
             Ok(opened) => opened,
             Err((sources, problems)) => return Some(shown(&sources, &problems, None)),
         };
@@ -296,7 +305,11 @@ impl Server {
     }
 
     fn opened(&self, root: &Path) -> Option<Opened> {
-        package::open_package(root, &self.texts(root)).ok()
+        self.open_package(root).ok()
+    }
+
+    fn open_package(&self, root: &Path) -> Result<Opened, (SourceSet, Diagnostics)> {
+        package::open_package(root, &self.texts(root), &self.unchanged)
     }
 
     /// A graph with a module as its root.
@@ -320,6 +333,16 @@ impl Server {
         let modules = Arc::new(modules);
         self.modules = Some((root.to_owned(), Arc::clone(&modules)));
         Some(modules)
+    }
+
+    /// All GLSL files of a package, read again once a document changed.
+    fn whole(&mut self, root: &Path) -> Option<Arc<glsl::Whole>> {
+        if let Some((_, known)) = self.whole.as_ref().filter(|(known, _)| known == root) {
+            return Some(Arc::clone(known));
+        }
+        let whole = Arc::new(glsl::read_whole(self.opened(root)?)?);
+        self.whole = Some((root.to_owned(), Arc::clone(&whole)));
+        Some(whole)
     }
 
     /// The library's items, as `show` tells them.
@@ -354,30 +377,4 @@ fn package_of_file(file: &Path) -> (PathBuf, String) {
     let root = root.filter(|root| real.starts_with(root)).unwrap_or_else(|| real.clone());
     let below = real.strip_prefix(&root).unwrap_or(Path::new("")).join(name);
     (root, below.to_string_lossy().replace('\\', "/"))
-}
-
-fn server_capabilities() -> Value {
-    json!({
-        "capabilities": {
-            "textDocumentSync": { "openClose": true, "change": 2, "save": true },
-            "hoverProvider": true,
-            "signatureHelpProvider": { "triggerCharacters": ["(", ","] },
-            "definitionProvider": true,
-            "referencesProvider": true,
-            "renameProvider": { "prepareProvider": true },
-            "documentSymbolProvider": true,
-            "workspaceSymbolProvider": true,
-            "completionProvider": { "triggerCharacters": [":", ".", "(", "@"] },
-            "codeActionProvider": { "codeActionKinds": ["quickfix"] },
-            "codeLensProvider": {},
-            "documentFormattingProvider": true,
-            "inlayHintProvider": true,
-            "semanticTokensProvider": {
-                "legend": { "tokenTypes": ["comment"], "tokenModifiers": [] },
-                "full": true,
-            },
-            "executeCommandProvider": { "commands": choose::COMMANDS },
-        },
-        "serverInfo": { "name": "lamplight", "version": env!("CARGO_PKG_VERSION") },
-    })
 }

@@ -1,6 +1,6 @@
 //! Where names are declared and used, and giving them others.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use serde_json::{Value, json};
@@ -10,6 +10,7 @@ use super::place::Lines;
 use super::{Server, glsl, told};
 use crate::parse::wesl::{ItemKind, Name, is_keyword};
 use crate::parse::words::is_word;
+use crate::project;
 use crate::source::Span;
 
 /// Names that a workspace's answer has at most.
@@ -50,6 +51,9 @@ pub fn definition_at(server: &mut Server, parameters: &Value) -> Result<Value, S
 
 /// `textDocument/references`.
 pub fn references_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    if glsl::is_asked(server, parameters) {
+        return glsl::references_at(server, parameters);
+    }
     let Some((modules, symbol, _)) = server.symbol(parameters)? else { return Ok(json!([])) };
     let declared = parameters.pointer("/context/includeDeclaration").and_then(Value::as_bool);
     let declarations = modules.declarations(symbol);
@@ -70,8 +74,20 @@ fn why_fixed(modules: &Modules, symbol: Symbol) -> Option<&'static str> {
     }
 }
 
+/// Fails for the copy of the library that editors are led to: it is written anew.
+fn refuse_copy(server: &Server, parameters: &Value) -> Result<(), String> {
+    let root = &server.document(parameters)?.root;
+    let copy = (server.library)(project::MANIFEST);
+    let is_copy = copy.and_then(|file| file.parent()?.canonicalize().ok()).as_ref() == Some(root);
+    if is_copy { Err("this is a copy of the library".to_owned()) } else { Ok(()) }
+}
+
 /// `textDocument/prepareRename`.
 pub fn prepare_rename(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    refuse_copy(server, parameters)?;
+    if glsl::is_asked(server, parameters) {
+        return glsl::prepare_rename(server, parameters);
+    }
     let Some((modules, symbol, span)) = server.symbol(parameters)? else {
         return Ok(Value::Null);
     };
@@ -92,6 +108,10 @@ fn last_name(text: &str, span: Span) -> Span {
 
 /// `textDocument/rename`: each place that writes the name; those that write an alias stay.
 pub fn rename_symbol(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    refuse_copy(server, parameters)?;
+    if glsl::is_asked(server, parameters) {
+        return glsl::rename_symbol(server, parameters);
+    }
     let new = parameters.get("newName").and_then(Value::as_str).ok_or_else(String::new)?.to_owned();
     let Some((modules, symbol, span)) = server.symbol(parameters)? else {
         return Err("there is no name here".to_owned());
@@ -183,10 +203,13 @@ pub fn document_symbols(server: &mut Server, parameters: &Value) -> Result<Value
 /// `workspace/symbol`: of the packages of all open documents, and of the library.
 pub fn workspace_symbols(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let query = parameters.get("query").and_then(Value::as_str).unwrap_or_default().to_lowercase();
-    let mut roots: Vec<_> = server.documents.values().map(|found| found.root.clone()).collect();
-    roots.dedup();
+    let roots: BTreeSet<_> = server.documents.values().map(|found| found.root.clone()).collect();
     let mut found = Vec::new();
     for root in roots {
+        if let Some(whole) = server.whole(&root) {
+            let most = SYMBOLS.saturating_sub(found.len());
+            found.extend(glsl::workspace_symbols(server, &whole, &query, most));
+        }
         let Some(modules) = server.modules(&root) else { continue };
         for node in &modules.graph.nodes {
             for item in node.module.items.iter().filter(|item| item.name != Name::UNDERSCORE) {

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use super::unchanged::Unchanged;
 use crate::diagnostic::Diagnostics;
 use crate::parse::wesl::{Event, Expression, Item, Name, Operand};
 use crate::permute::Manifest;
@@ -12,7 +13,7 @@ use crate::permute::manifest::Features;
 use crate::project;
 use crate::resolve::Packages;
 use crate::resolve::wesl::{Graph, Kept, Node, Target, load_all};
-use crate::source::{Files, ReadError, SourceSet, Span};
+use crate::source::{Files, Package, ReadError, SourceSet, Span};
 
 /// Texts of open documents by their path below a package's root.
 pub type Texts = Arc<BTreeMap<String, String>>;
@@ -22,12 +23,17 @@ struct Overlay {
     root: PathBuf,
     below: Box<dyn Files>,
     open: Texts,
+    unchanged: Arc<Unchanged>,
 }
 
 impl Files for Overlay {
     fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
         match self.open.get(path) {
             Some(text) => Ok(Some(text.clone())),
+            None if self.below.on_disk(path) => {
+                let file = PathBuf::from(self.below.display(path));
+                self.unchanged.or_read(&file, || self.below.read(path))
+            }
             None => self.below.read(path),
         }
     }
@@ -69,7 +75,11 @@ pub struct Opened {
 }
 
 /// Opens the package of a root folder. A manifest with errors is as good as none, and told.
-pub fn open_package(root: &Path, texts: &Texts) -> Result<Opened, (SourceSet, Diagnostics)> {
+pub fn open_package(
+    root: &Path,
+    texts: &Texts,
+    unchanged: &Arc<Unchanged>,
+) -> Result<Opened, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
     let packages = match root.exists() {
         true => project::packages(root, &mut sources),
@@ -80,9 +90,10 @@ pub fn open_package(root: &Path, texts: &Texts) -> Result<Opened, (SourceSet, Di
         Ok(packages) => packages,
         Err(problems) => return Err((sources, problems)),
     };
-    let below = std::mem::replace(&mut packages.root.files, Box::new(crate::source::Embedded));
-    packages.root.files =
-        Box::new(Overlay { root: root.to_owned(), below, open: Arc::clone(texts) });
+    cover_files(&mut packages.root, root, texts, unchanged);
+    for dependency in &mut packages.dependencies {
+        cover_files(dependency, root, &Texts::default(), unchanged);
+    }
     let (manifest, mut problems) = match project::manifest(root, &mut sources) {
         Ok(manifest) => (manifest, Vec::new()),
         Err(problems) => (None, problems),
@@ -95,6 +106,17 @@ pub fn open_package(root: &Path, texts: &Texts) -> Result<Opened, (SourceSet, Di
         }),
     };
     Ok(Opened { root: root.to_owned(), sources, packages, manifest, features, problems })
+}
+
+/// Puts open texts in the place of files, and those that were read before and have not changed.
+fn cover_files(package: &mut Package, root: &Path, texts: &Texts, unchanged: &Arc<Unchanged>) {
+    let below = std::mem::replace(&mut package.files, Box::new(crate::source::Embedded));
+    package.files = Box::new(Overlay {
+        root: root.to_owned(),
+        below,
+        open: Arc::clone(texts),
+        unchanged: Arc::clone(unchanged),
+    });
 }
 
 /// What a name stands for.

@@ -6,7 +6,7 @@ mod managers;
 mod place;
 mod wesl_toml;
 
-pub use place::{manifest_above, package_above, package_at, relative_folder, root_of};
+pub use place::{manifest_above, package_above, package_at, relative_folder, root_beside, root_of};
 pub use wesl_toml::{declared_name, home as wesl_home};
 
 use std::path::{Component, Path, PathBuf};

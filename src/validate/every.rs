@@ -3,8 +3,9 @@
 
 use super::{Validated, is_calm, validate};
 use crate::bundle::Language;
-use crate::compose::{Composed, PartKind};
+use crate::compose::{Composed, Part, PartKind};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, codes};
+use crate::source::SourceId;
 
 /// A text with this many declarations is searched only for its first mistake.
 const PARTS: usize = 500;
@@ -22,6 +23,21 @@ const STOPPING: [&Code; 4] =
 /// # Errors
 /// Each mistake once, in the order of the composed text's places.
 pub fn every(composed: &Composed) -> Result<Validated, Diagnostics> {
+    every_wanted(composed, |_| true)
+}
+
+/// As [`every`], for the mistakes in one file: after a mistake, naga runs only for its declarations.
+///
+/// # Errors
+/// Those of [`every`] in that file. Others may be among them.
+pub fn every_in(composed: &Composed, source: SourceId) -> Result<Validated, Diagnostics> {
+    every_wanted(composed, |part| composed.map.is_from(part.range.clone(), source))
+}
+
+fn every_wanted(
+    composed: &Composed,
+    is_wanted: impl Fn(&Part) -> bool,
+) -> Result<Validated, Diagnostics> {
     let first = match validate(composed) {
         Ok(validated) => return Ok(validated),
         Err(errors) => errors,
@@ -34,7 +50,7 @@ pub fn every(composed: &Composed) -> Result<Validated, Diagnostics> {
     }
     let mut found = first;
     let mut wrong = vec![false; composed.parts.len()];
-    for index in 0..composed.parts.len() {
+    for (index, _) in composed.parts.iter().enumerate().filter(|(_, part)| is_wanted(part)) {
         if found.len() >= MOST {
             break;
         }

@@ -138,6 +138,56 @@ pub fn vscode() -> Outcome {
     Ok(())
 }
 
+/// The commands of the guide make a `.vsix`, with the grammar and the client that the code needs.
+pub fn vsix() -> Outcome {
+    let scratch = tempfile::tempdir()?;
+    copy_folder(&folder("editors/vscode"), scratch.path())?;
+    let guide = read("docs/guide/editors.md")?;
+    for line in ["npm install", "npx @vscode/vsce package"] {
+        expect(guide.contains(&format!("\n{line}\n")), &line)?;
+        let mut words = line.split(' ');
+        let program = words.next().ok_or("no program")?;
+        let mut command = Command::new(program);
+        // npm asks nobody whether it may fetch what it runs.
+        command.args(words).env("npm_config_yes", "true").current_dir(scratch.path());
+        let output = command
+            .output()
+            .map_err(|error| format!("{program}: {error}; install it with: apt-get install npm"))?;
+        let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+        expect(output.status.success(), &(line, said))?;
+    }
+    let name = format!("lamplight-{}.vsix", env!("CARGO_PKG_VERSION"));
+    expect(guide.contains(&name), &name)?;
+    let bytes = fs::read(scratch.path().join(&name))?;
+    // The names of files are plain in an archive of this kind.
+    for file in [
+        "extension.js",
+        "package.json",
+        "language-configuration.json",
+        "syntaxes/wesl.tmLanguage.json",
+        "node_modules/vscode-languageclient/node.js",
+    ] {
+        let path = format!("extension/{file}");
+        expect(bytes.windows(path.len()).any(|found| found == path.as_bytes()), &path)?;
+    }
+    Ok(())
+}
+
+fn copy_folder(from: &Path, to: &Path) -> Outcome {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        let target = to.join(entry.file_name());
+        // What an author has installed here is installed anew.
+        match entry.file_type()?.is_dir() {
+            true if entry.file_name() == "node_modules" => {}
+            true => copy_folder(&entry.path(), &target)?,
+            false => drop(fs::copy(entry.path(), target)?),
+        }
+    }
+    Ok(())
+}
+
 /// Each rule that a grammar includes is there, and its brackets and groups close.
 fn check_grammar(part: &Value, rules: &Value) -> Outcome {
     match part {

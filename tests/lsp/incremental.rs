@@ -3,6 +3,8 @@
 //!
 //! `LAMPLIGHT_LSP_EDITS` gives another number of edits, `LAMPLIGHT_LSP_SEED` another seed.
 
+mod texts;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::PathBuf;
@@ -13,51 +15,9 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 
 use super::Outcome;
+use texts::{FILES, MANIFEST, MANIFESTS, PIECES, file_name, source};
 
 const EDITS: usize = 60;
-const MODULES: usize = 6;
-
-const MANIFEST: &str = r#"[program.lamp]
-wesl = "module_5.wesl"
-
-[program.lamp.axis]
-fog = { values = [false, true] }
-cone = { values = ["hard", "soft"] }
-
-[features]
-TINT = {}
-"#;
-
-/// What edits put into texts: parts of programs, whole and broken.
-const PIECES: &[&str] = &[
-    "x",
-    ";",
-    "{",
-    "}",
-    "(",
-    "\n",
-    "// note\n",
-    "/*",
-    "*/",
-    "@if(fog) ",
-    "@if(cone == soft) {\n",
-    "} @else {\n",
-    "@if(MIST) ",
-    "let y = 2.0;\n",
-    "term_1(x)",
-    "import package::module_0::term_0;\n",
-    "import package::none::term;\n",
-    "import lamplight::brdf::diffuse::lambert;\n",
-    "fn extra(x: f32) -> f32 { return x; }\n",
-    "const LIMIT: f32 = 3.0;\n",
-    "struct Share { a: f32 }\n",
-    "import super::module_2::{Share_2 as Part, term_2};\n",
-    "constants::fog",
-    "é",
-    "\"",
-    "super",
-];
-
 const QUESTIONS: &[&str] = &[
     "textDocument/hover",
     "textDocument/definition",
@@ -74,31 +34,6 @@ const OF_FILES: &[&str] = &[
     "textDocument/codeLens",
     "textDocument/formatting",
 ];
-
-fn source(index: usize) -> String {
-    let mut text = String::new();
-    let used: Vec<usize> = [1, 2].iter().filter_map(|back| index.checked_sub(*back)).collect();
-    for other in &used {
-        text += &format!("import package::module_{other}::{{term_{other}, Share_{other}}};\n");
-    }
-    text += &format!(
-        "\n/// What module {index} hands on.\nstruct Share_{index} {{\n    value: f32,\n}}\n\n\
-         @if(fog) {{\nconst GAIN_{index}: f32 = 2.0;\n}} @else {{\nconst GAIN_{index}: f32 = 1.0;\n}}\n\n\
-         fn term_{index}(x: f32) -> f32 {{\n    var sum = x * GAIN_{index};\n"
-    );
-    for other in &used {
-        text += &format!(
-            "    let part_{other} = Share_{other}(sum);\n    sum += term_{other}(part_{other}.value);\n"
-        );
-    }
-    text += "    @if(TINT) {\n        sum *= 0.5;\n    }\n    return sum;\n}\n";
-    if index == MODULES - 1 {
-        text += &format!(
-            "\n@fragment\nfn main() -> @location(0) vec4f {{\n    return vec4f(term_{index}(1.0));\n}}\n"
-        );
-    }
-    text
-}
 
 struct Random(u64);
 
@@ -160,8 +95,8 @@ impl Trial {
     fn new(seed: u64) -> Result<Self, Failed> {
         let folder = tempfile::tempdir()?;
         fs::write(folder.path().join("lamplight.toml"), MANIFEST)?;
-        for index in 0..MODULES {
-            fs::write(folder.path().join(format!("module_{index}.wesl")), source(index))?;
+        for index in 0..FILES {
+            fs::write(folder.path().join(file_name(index)), source(index))?;
         }
         let random = Random(seed);
         let mut trial = Self {
@@ -172,7 +107,7 @@ impl Trial {
             random,
             answered: BTreeSet::new(),
         };
-        for index in [5, 3] {
+        for index in [5, 3, FILES - 1] {
             trial.open.insert(index, source(index));
             let uri = trial.uri(index)?;
             trial.editor.open(&uri, &source(index));
@@ -181,7 +116,7 @@ impl Trial {
     }
 
     fn path(&self, index: usize) -> Result<PathBuf, Failed> {
-        Ok(self.folder.path().canonicalize()?.join(format!("module_{index}.wesl")))
+        Ok(self.folder.path().canonicalize()?.join(file_name(index)))
     }
 
     fn uri(&self, index: usize) -> Result<String, Failed> {
@@ -210,7 +145,7 @@ impl Trial {
     }
 
     fn step(&mut self) -> Outcome {
-        let index = self.random.below(MODULES);
+        let index = self.random.below(FILES);
         let uri = self.uri(index)?;
         match (self.random.below(12), self.open.get(&index).cloned()) {
             (0, _) => {
@@ -218,6 +153,12 @@ impl Trial {
                 let (first, set) = (self.first_uri()?, self.chosen);
                 self.editor.ask("lamplight/permutation", &json!({ "uri": first, "set": set }));
             }
+            (1, None) => {
+                let manifest = MANIFESTS[self.random.below(MANIFESTS.len())];
+                fs::write(self.folder.path().join("lamplight.toml"), manifest)?;
+                self.editor.tell("workspace/didChangeWatchedFiles", json!({ "changes": [] }));
+            }
+            (5..=7, None) => self.change_silently(index)?,
             (1, Some(_)) if self.open.len() > 1 => {
                 self.open.remove(&index);
                 let document = json!({ "textDocument": { "uri": uri } });
@@ -245,6 +186,28 @@ impl Trial {
                 self.open.insert(index, text);
             }
         }
+        Ok(())
+    }
+
+    /// Changes a file on the disk, often to one that is as long, and tells the server nothing of it.
+    /// The next keystroke in another file notices it.
+    fn change_silently(&mut self, index: usize) -> Outcome {
+        let text = fs::read_to_string(self.path(index)?)?;
+        let text = match self.random.below(4) {
+            0 => self.edited(&text, index),
+            1 => text.replace("sum", "sun"),
+            2 => text.replace("fog", "fug"),
+            _ => text.replace("term", "turn"),
+        };
+        fs::write(self.path(index)?, &text)?;
+        let (other, text) = self.open.iter().next().ok_or("nothing is open")?;
+        let (other, text) = (*other, format!("{text}\n"));
+        let change = json!({
+            "textDocument": { "uri": self.uri(other)?, "version": 3 },
+            "contentChanges": [{ "text": text }],
+        });
+        self.editor.tell("textDocument/didChange", change);
+        self.open.insert(other, text);
         Ok(())
     }
 

@@ -6,7 +6,7 @@ mod record;
 mod subjects;
 
 pub use axes::{axis_changes, changes_table};
-pub use record::record_costs;
+pub use record::{axis_record, record_costs};
 
 use std::collections::BTreeSet;
 use std::io::Write;

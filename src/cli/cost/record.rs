@@ -25,16 +25,35 @@ pub fn record_costs(opened: Opened) -> Result<Costs, Failure> {
     let mut functions = Vec::new();
     subjects::function_subjects(&items, &[], Language::Wesl, &mut functions)?;
     let measured = measure_costs(&devices, &functions)?;
-    let chip = |device: &Device| Chip {
-        name: device.gpu.name.to_owned(),
-        generation: device.gpu.generation.to_owned(),
-    };
     Ok(Costs {
         driver: devices.first().map_or_else(String::new, |device| device.driver.clone()),
-        gpus: devices.iter().map(chip).collect(),
+        gpus: devices.iter().map(chip_of).collect(),
         functions: by_function(&devices, &measured),
         axes: of_axes(&devices)?,
         expressions: of_expressions(&devices)?,
+    })
+}
+
+fn chip_of(device: &Device) -> Chip {
+    Chip { name: device.gpu.name.to_owned(), generation: device.gpu.generation.to_owned() }
+}
+
+/// The record of a package's axes, from the changes by program. Nothing where the GPU that is
+/// recorded is not one of those that were measured.
+pub fn axis_record<'c>(
+    devices: &[Device],
+    changes: impl Iterator<Item = (&'c str, &'c [Change])>,
+) -> Option<Costs> {
+    let shown = shown_device(devices).first()?;
+    let of_program = |(program, changes): (&'c str, &'c [Change])| {
+        let recorded = changes.iter().filter(|change| change.gpu == SHOWN);
+        recorded.map(|change| axis_cost(program, change.clone())).collect::<Vec<_>>()
+    };
+    Some(Costs {
+        driver: shown.driver.clone(),
+        gpus: vec![chip_of(shown)],
+        axes: changes.flat_map(of_program).collect(),
+        ..Costs::default()
     })
 }
 

@@ -3,7 +3,11 @@
 mod complete;
 mod names;
 mod outline;
+mod refer;
+mod rename;
 mod tokens;
+mod units;
+mod words;
 
 use std::ops::Range;
 
@@ -12,6 +16,8 @@ use serde_json::{Value, json};
 pub use complete::complete_at;
 use names::{Meaning, Names};
 use outline::{Declaration, Kind};
+pub use refer::{Whole, read_whole, references_at, signature_help, workspace_symbols};
+pub use rename::{prepare_rename, rename_symbol};
 
 use super::package::Opened;
 use super::place::Lines;
@@ -19,6 +25,7 @@ use super::{Server, describe, navigate, told};
 use crate::bundle::Language;
 use crate::lint;
 use crate::parse::wesl::ItemKind;
+use crate::permute::axis::Axis;
 use crate::project::LIBRARY;
 use crate::resolve::{Graph, glsl};
 
@@ -131,16 +138,18 @@ pub fn hover_at(server: &mut Server, parameters: &Value) -> Result<Value, String
 /// The axis that a macro is, or that it names a value of.
 fn describe_macro(server: &Server, asked: &Asked, name: &str) -> Option<String> {
     let programs = asked.opened.manifest.iter().flat_map(|manifest| &manifest.programs);
-    let axes = programs.flat_map(|program| program.space.axes());
-    let mut fitting = axes.filter(|axis| {
-        let own = axis.name.to_uppercase();
-        let is_value =
-            |rest: &str| axis.values.iter().any(|value| value.to_string().to_uppercase() == rest);
-        let rest = name.strip_prefix(&own).map(|rest| rest.strip_prefix('_'));
-        name == own || rest.flatten().is_some_and(is_value)
-    });
-    let axis = fitting.next()?;
+    let mut axes = programs.flat_map(|program| program.space.axes());
+    let axis = axes.find(|axis| is_macro_of(axis, name))?;
     Some(describe::describe_flag(server, &asked.opened, &asked.path, &axis.name))
+}
+
+/// Whether a macro stands for an axis or for one of its values.
+fn is_macro_of(axis: &Axis, name: &str) -> bool {
+    let own = axis.name.to_uppercase();
+    let is_value =
+        |rest: &str| axis.values.iter().any(|value| value.to_string().to_uppercase() == rest);
+    let rest = name.strip_prefix(&own).map(|rest| rest.strip_prefix('_'));
+    name == own || rest.flatten().is_some_and(is_value)
 }
 
 /// `textDocument/definition`.

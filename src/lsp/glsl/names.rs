@@ -43,21 +43,16 @@ impl Names {
                 return Some((Meaning::File(*file), place));
             }
         }
-        let after = module.tokens.partition_point(|token| token.start <= byte);
-        // Between two tokens, the name before counts if the other is none.
-        let near = module.tokens[after.saturating_sub(2)..after].iter().rev();
-        let token =
-            near.filter(|token| token.kind == Class::Identifier && has(&(token.start..token.end)));
-        let token = token.copied().next()?;
+        let at = self.token_at(0, byte)?;
+        let token = module.tokens[at];
         let place = token.start..token.end;
-        let before = module.tokens.partition_point(|other| other.start < token.start);
-        let before = before.checked_sub(1).map(|index| module.tokens[index].symbol);
+        let before = at.checked_sub(1).map(|index| module.tokens[index].symbol);
         if before == Some(known::DOT) {
             // A member, unless it is the swizzle of a vector.
             let members = self.declared(token.symbol, |kind| kind == Kind::Member);
             return (!members.is_empty()).then_some((Meaning::Declared(members), place));
         }
-        if let Some(local) = self.local(token.symbol, token.start) {
+        if let Some(local) = self.local(0, token.symbol, token.start) {
             return Some((Meaning::Local(local), place));
         }
         let found = self.global(token.symbol);
@@ -68,18 +63,26 @@ impl Names {
         self.is_in_directive(token.start).then_some((Meaning::Macro(text), place))
     }
 
-    /// The local of that name that is known at a byte and was declared last before it.
-    fn local(&self, name: Symbol, byte: u32) -> Option<&Local> {
-        let locals = self.outlines.first()?.locals.iter().rev();
-        let is_known =
-            |local: &&Local| local.name == name && local.place.start <= byte && byte < local.end;
-        locals.into_iter().find(is_known)
+    /// The local of that name that is known at a byte of a file and was declared last before it.
+    pub fn local(&self, file: usize, name: Symbol, byte: u32) -> Option<&Local> {
+        let locals = &self.outlines.get(file)?.locals;
+        let before = locals.partition_point(|local| local.place.start <= byte);
+        locals[..before].iter().rev().find(|local| local.name == name && local.is_known(byte))
+    }
+
+    /// The identifier at a byte of a file, as the number of its token.
+    pub fn token_at(&self, file: usize, byte: u32) -> Option<usize> {
+        let tokens = &self.graph.modules.get(file)?.tokens;
+        let after = tokens.partition_point(|token| token.start <= byte);
+        // Between two tokens, the name before counts if the other is none.
+        let mut near = (after.saturating_sub(2)..after).rev();
+        near.find(|at| tokens[*at].kind == Class::Identifier && byte <= tokens[*at].end)
     }
 
     /// Locals that are known at a byte.
     pub fn locals_at(&self, byte: u32) -> impl Iterator<Item = &Local> {
         let locals = self.outlines.first().into_iter().flat_map(|outline| &outline.locals);
-        locals.filter(move |local| local.place.end <= byte && byte < local.end)
+        locals.filter(move |local| local.start <= byte && byte < local.end)
     }
 
     /// Declarations of a name for all code: those of the file itself, or else of what it includes,

@@ -3,7 +3,8 @@
 
 use std::ops::Range;
 
-use super::tokens::{Placed, matching_parentheses, text_tokens};
+use super::tokens::{Placed, ends_of_blocks, matching_parentheses, text_tokens};
+use super::words::{QUALIFIERS, STATEMENTS};
 use crate::parse::glsl::{Directive, Kind as Class, Module, Part, Symbol, Symbols, known};
 
 /// What a declaration is.
@@ -37,8 +38,17 @@ pub struct Local {
     pub place: Range<u32>,
     /// From its type to its name.
     pub range: Range<u32>,
+    /// Behind its initial value, which does not know it yet.
+    pub start: u32,
     /// The end of the block that it is known in.
     pub end: u32,
+}
+
+impl Local {
+    /// Whether its name stands for it at a byte, if no other local of the name was declared since.
+    pub fn is_known(&self, byte: u32) -> bool {
+        byte == self.place.start || (self.start <= byte && byte < self.end)
+    }
 }
 
 /// What a file declares, in its order.
@@ -48,57 +58,15 @@ pub struct Outline {
     pub locals: Vec<Local>,
 }
 
-/// Words of a declaration that are no types.
-const QUALIFIERS: &[&str] = &[
-    "attribute",
-    "buffer",
-    "centroid",
-    "coherent",
-    "const",
-    "flat",
-    "highp",
-    "in",
-    "inout",
-    "invariant",
-    "lowp",
-    "mediump",
-    "noperspective",
-    "out",
-    "precise",
-    "readonly",
-    "restrict",
-    "sample",
-    "shared",
-    "smooth",
-    "uniform",
-    "varying",
-    "volatile",
-    "writeonly",
-];
-
-/// Words that begin a statement, before which no type can be.
-const STATEMENTS: &[&str] = &[
-    "break",
-    "case",
-    "continue",
-    "default",
-    "discard",
-    "do",
-    "else",
-    "for",
-    "if",
-    "layout",
-    "precision",
-    "return",
-    "switch",
-    "while",
-];
+/// Headers of one statement that are followed; one with more ends where its function does.
+const HEADERS: usize = 64;
 
 /// Reads the tokens of a file.
 pub fn outline_of(module: &Module, symbols: &Symbols) -> Outline {
     let tokens = text_tokens(module);
     let closes = matching_parentheses(&tokens);
-    let mut reader = Reader { tokens: &tokens, closes, symbols, found: Outline::default() };
+    let ends = ends_of_blocks(&tokens);
+    let mut reader = Reader { tokens: &tokens, closes, ends, symbols, found: Outline::default() };
     for part in &module.parts {
         if let Part::Directive(Directive::Define(found), span) = part {
             let place = found.name_span.start..found.name_span.end;
@@ -118,6 +86,8 @@ pub fn outline_of(module: &Module, symbols: &Symbols) -> Outline {
 struct Reader<'t> {
     tokens: &'t [Placed],
     closes: Vec<Option<usize>>,
+    /// For each opening brace the first token that is not within it.
+    ends: Vec<usize>,
     symbols: &'t Symbols,
     found: Outline,
 }
@@ -159,9 +129,7 @@ impl Reader<'_> {
 
     /// The brace that closes the one at a token, or the last token before the end of its branch.
     fn close_of(&self, open: usize) -> usize {
-        let depth = self.tokens[open].depth;
-        let inside = self.tokens[open + 1..].iter().take_while(|placed| placed.depth > depth);
-        let next = open + 1 + inside.count();
+        let next = self.ends[open];
         let is_brace = self.symbol(next) == Some(known::CLOSE_BRACE);
         if is_brace { next } else { next - 1 }
     }
@@ -304,23 +272,24 @@ impl Reader<'_> {
     }
 
     /// Parameters and variables between two tokens of a function. A variable is known to the end of
-    /// its block, a parameter to that of the function.
+    /// its block, or of the statement whose header declares it; a parameter to that of the function.
     fn read_locals(&mut self, first: usize, last: usize) {
         let mut start = first;
-        // For each open parenthesis whether statements begin within it.
-        let mut open: Vec<bool> = Vec::new();
+        // For each open parenthesis the end of its statement, if statements begin within it.
+        let mut open: Vec<Option<usize>> = Vec::new();
         let mut waiting: Vec<(u32, usize)> = Vec::new();
         for at in first..=last {
             let Placed { token, depth } = self.tokens[at];
             while let Some((_, local)) = waiting.pop_if(|(known, _)| *known > depth) {
                 self.found.locals[local].end = token.end;
             }
+            let header = open.last().copied().flatten();
             let ends = match token.symbol {
                 known::OPEN => {
-                    open.push(self.opens_header(at));
-                    open.last() == Some(&true)
+                    open.push(self.opens_header(at).then(|| self.statement_of_header(at, last)));
+                    open.last().is_some_and(Option::is_some)
                 }
-                known::CLOSE => open.pop() != Some(false),
+                known::CLOSE => open.pop() != Some(None),
                 known::COMMA => depth == 0 && open.is_empty(),
                 known::OPEN_BRACE | known::CLOSE_BRACE => {
                     open.clear();
@@ -332,16 +301,62 @@ impl Reader<'_> {
                 continue;
             }
             for name in self.names_declared(start, at) {
-                waiting.push((self.tokens[name].depth, self.found.locals.len()));
+                if header.is_none() {
+                    waiting.push((self.tokens[name].depth, self.found.locals.len()));
+                }
                 self.found.locals.push(Local {
                     name: self.tokens[name].token.symbol,
                     place: self.place(name),
                     range: self.bytes(start, name),
-                    end: self.tokens[last].token.end,
+                    start: self.end_of_value(name, at),
+                    end: self.tokens[header.unwrap_or(last)].token.end,
                 });
             }
             start = at + 1;
         }
+    }
+
+    /// The first byte behind the initial value of a name that is declared, in a statement that ends
+    /// at a token.
+    fn end_of_value(&self, name: usize, end: usize) -> u32 {
+        let mut nested = 0_i32;
+        for at in name + 1..end {
+            match self.tokens[at].token.symbol {
+                known::OPEN | known::OPEN_BRACKET | known::OPEN_BRACE => nested += 1,
+                known::CLOSE | known::CLOSE_BRACKET | known::CLOSE_BRACE => nested -= 1,
+                known::COMMA if nested == 0 => return self.tokens[at].token.start,
+                _ => {}
+            }
+        }
+        self.tokens[end].token.start
+    }
+
+    /// The last token of the statement whose header begins at a parenthesis.
+    fn statement_of_header(&self, open: usize, last: usize) -> usize {
+        let mut at = self.closes[open].map_or(last, |close| close + 1);
+        // Those that follow the header are part of its statement: `for (...) if (...) x; else y;`.
+        for _ in 0..HEADERS {
+            let end = match self.symbol(at) {
+                Some(known::OPEN_BRACE) => self.close_of(at),
+                Some(known::ELSE) => {
+                    at += 1;
+                    continue;
+                }
+                Some(_)
+                    if self.symbol(at + 1) == Some(known::OPEN) && self.opens_header(at + 1) =>
+                {
+                    at = self.closes[at + 1].map_or(last, |close| close + 1);
+                    continue;
+                }
+                Some(_) => self.statement_end(at),
+                None => return last,
+            };
+            if self.symbol(end + 1) != Some(known::ELSE) {
+                return end.min(last);
+            }
+            at = end + 2;
+        }
+        last
     }
 
     /// Whether a parenthesis belongs to a `for`, `while`, `if` or `switch`.

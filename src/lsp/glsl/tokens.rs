@@ -53,3 +53,19 @@ pub fn matching_parentheses(tokens: &[Placed]) -> Vec<Option<usize>> {
     }
     found
 }
+
+/// For each opening brace the first token behind it that is not within it.
+pub fn ends_of_blocks(tokens: &[Placed]) -> Vec<usize> {
+    let (mut found, mut open) = (vec![tokens.len(); tokens.len()], Vec::new());
+    for (at, placed) in tokens.iter().enumerate() {
+        while let Some(start) =
+            open.pop_if(|start: &mut usize| tokens[*start].depth >= placed.depth)
+        {
+            found[start] = at;
+        }
+        if placed.token.symbol == known::OPEN_BRACE {
+            open.push(at);
+        }
+    }
+    found
+}

@@ -103,16 +103,7 @@ pub fn load(
     packages: &Packages,
     root: &str,
 ) -> Result<Graph, Diagnostics> {
-    let mut loader = Loader {
-        sources,
-        packages,
-        symbols: Symbols::default(),
-        modules: Vec::new(),
-        paths: Vec::new(),
-        places: Vec::new(),
-        known: HashMap::new(),
-        listings: HashMap::new(),
-    };
+    let mut loader = Loader::new(sources, packages);
     let path =
         include::normalize_path("", root).ok_or_else(|| vec![include::outside_package(root)])?;
     let place = (include::ROOT, path);
@@ -122,14 +113,22 @@ pub fn load(
             format!("there is no file `{root}`"),
         )]);
     }
-    let mut targets = Vec::new();
-    while targets.len() < loader.modules.len() {
-        let resolved = loader.targets(targets.len())?;
-        targets.push(resolved);
+    loader.finish(root)
+}
+
+/// Reads the files of the root package at some paths, and all that they may include. This is for
+/// editors, which ask who uses what. Those that cannot be read are left out.
+pub fn load_all(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    paths: &[String],
+) -> Result<Graph, Diagnostics> {
+    let mut loader = Loader::new(sources, packages);
+    for path in paths {
+        // What is wrong with a file is told where it is looked at alone.
+        let _ = loader.module(&(include::ROOT, path.clone()));
     }
-    let Loader { modules, symbols, paths, places, .. } = loader;
-    let packages = places.into_iter().map(|(package, _)| package).collect();
-    Ok(Graph { root: root.to_owned(), modules, targets, symbols, paths, packages })
+    loader.finish("")
 }
 
 /// How a file of the root package may name the files that it can include, in quotes or in angles.
@@ -146,7 +145,32 @@ pub fn include_spellings(packages: &Packages, includer: &str, angled: bool) -> V
     found
 }
 
-impl Loader<'_> {
+impl<'a> Loader<'a> {
+    fn new(sources: &'a mut SourceSet, packages: &'a Packages) -> Self {
+        Self {
+            sources,
+            packages,
+            symbols: Symbols::default(),
+            modules: Vec::new(),
+            paths: Vec::new(),
+            places: Vec::new(),
+            known: HashMap::new(),
+            listings: HashMap::new(),
+        }
+    }
+
+    /// Reads what the files lead to that were read so far.
+    fn finish(mut self, root: &str) -> Result<Graph, Diagnostics> {
+        let mut targets = Vec::new();
+        while targets.len() < self.modules.len() {
+            let resolved = self.targets(targets.len())?;
+            targets.push(resolved);
+        }
+        let Loader { modules, symbols, paths, places, .. } = self;
+        let packages = places.into_iter().map(|(package, _)| package).collect();
+        Ok(Graph { root: root.to_owned(), modules, targets, symbols, paths, packages })
+    }
+
     /// Resolves every include of a module that was read.
     fn targets(&mut self, module: usize) -> Result<Vec<Target>, Diagnostics> {
         let includes: Vec<_> = self.modules[module]

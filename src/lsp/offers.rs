@@ -1,0 +1,31 @@
+//! What the server tells an editor that it can do.
+
+use serde_json::{Value, json};
+
+use super::choose;
+
+pub fn server_capabilities() -> Value {
+    json!({
+        "capabilities": {
+            "textDocumentSync": { "openClose": true, "change": 2, "save": true },
+            "hoverProvider": true,
+            "signatureHelpProvider": { "triggerCharacters": ["(", ","] },
+            "definitionProvider": true,
+            "referencesProvider": true,
+            "renameProvider": { "prepareProvider": true },
+            "documentSymbolProvider": true,
+            "workspaceSymbolProvider": true,
+            "completionProvider": { "triggerCharacters": [":", ".", "(", "@"] },
+            "codeActionProvider": { "codeActionKinds": ["quickfix"] },
+            "codeLensProvider": {},
+            "documentFormattingProvider": true,
+            "inlayHintProvider": true,
+            "semanticTokensProvider": {
+                "legend": { "tokenTypes": ["comment"], "tokenModifiers": [] },
+                "full": true,
+            },
+            "executeCommandProvider": { "commands": choose::COMMANDS },
+        },
+        "serverInfo": { "name": "lamplight", "version": env!("CARGO_PKG_VERSION") },
+    })
+}
