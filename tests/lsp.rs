@@ -38,6 +38,7 @@ const TRIALS: &[(&str, Run)] = &[
     ("survives", survives),
     ("neovim", neovim),
     ("cost", cost::recorded),
+    ("cost_written", cost::written),
     ("incremental", incremental::as_fresh),
     ("glsl::hover", glsl::hover),
     ("glsl::definition", glsl::definition),

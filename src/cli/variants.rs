@@ -77,18 +77,12 @@ pub fn run_variants(
         return print_keys(&manifest, name, arguments.json);
     }
     let devices = opened.map_err(Failure::environment)?;
-    let record = match &arguments.record {
-        Some(file) => {
-            Some(record_path(file.as_deref(), manifest_path.as_deref(), &packages, &devices)?)
-        }
-        None => None,
-    };
-    let reports = manifest.programs.iter().map(|program| {
-        let mut report = report(&program.name, &program.space);
-        if program.glsl.is_some() {
-            let spec = program.space.axes().iter().filter(|axis| axis.mode == Mode::Spec);
-            report.static_in_glsl = spec.map(|axis| axis.name.clone()).collect();
-        }
+    let path = manifest_path.as_deref();
+    let record = arguments.record.as_ref();
+    let record =
+        record.map(|file| record_path(file.as_deref(), path, &packages, &devices)).transpose()?;
+    let tell = |program: &Program| {
+        let mut report = counted_report(program);
         if arguments.compose || arguments.compile {
             let bar = Bar::new();
             let composed =
@@ -103,8 +97,8 @@ pub fn run_variants(
             }
         };
         Ok(Told { report, changes })
-    });
-    let reports = reports.collect::<Result<Vec<Told>, Failure>>()?;
+    };
+    let reports = manifest.programs.iter().map(tell).collect::<Result<Vec<Told>, Failure>>()?;
     if let Some(path) = &record {
         write_record(&arguments, path, &devices, &reports)?;
     }
@@ -113,6 +107,16 @@ pub fn run_variants(
     }
     let texts: Vec<String> = reports.iter().map(Told::text).collect();
     Ok(stdout().write_all(texts.join("\n").as_bytes())?)
+}
+
+/// What the axes of a program multiply to.
+fn counted_report(program: &Program) -> Report {
+    let mut report = report(&program.name, &program.space);
+    if program.glsl.is_some() {
+        let spec = program.space.axes().iter().filter(|axis| axis.mode == Mode::Spec);
+        report.static_in_glsl = spec.map(|axis| axis.name.clone()).collect();
+    }
+    report
 }
 
 /// Where the costs of a package's axes are recorded.

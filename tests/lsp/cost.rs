@@ -1,6 +1,7 @@
 //! Costs that a package has recorded.
 
 use std::fs;
+use std::process::Command;
 
 use serde_json::{Value, json};
 
@@ -34,4 +35,33 @@ pub fn recorded() -> Outcome {
     fs::write(session.folder.path().join("costs.toml"), "driver = 3")?;
     let broken = text(&session.at("textDocument/hover", MAIN, "cone ==", json!({}))?);
     expect(broken.contains("`hard`, `soft`") && !broken.contains("navi21"), &broken)
+}
+
+/// What `lamplight variants --cost --record` writes is what hover tells.
+pub fn written() -> Outcome {
+    let mut session = Session::new(MAIN)?;
+    let valid = MAIN.replace("@if(TINT) sum = half(sum);", "").replace("half(sum)", "half(sum.x)");
+    let valid = valid
+        .replace("sum = half(sum.x)", "sum = vec3f(half(sum.x))")
+        .replace("var sum = lambert(n, up);", "var sum = vec3f(lambert(n, up));")
+        .replace("sum = fade(sum)", "sum = vec3f(fade(sum.x))")
+        .replace("vec4f(sum)", "vec4f(sum, 1.0)");
+    fs::write(session.folder.path().join("main.wesl"), &valid)?;
+    let util = "fn half(x: f32) -> f32 {\n    return sqrt(abs(x)) * 0.5;\n}\n";
+    fs::write(session.folder.path().join("util.wesl"), util)?;
+    let variants = |arguments: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
+        command.args(["variants", "--cost"]).args(arguments).current_dir(session.folder.path());
+        command.output()
+    };
+    let other = variants(&["--gpu", "navi10", "--record"])?;
+    let said = String::from_utf8_lossy(&other.stderr).into_owned();
+    expect(other.status.code() == Some(2) && said.contains("add it to `--gpu`"), &said)?;
+    let done = variants(&["--gpu", "navi21", "--record"])?;
+    expect(done.status.success(), &String::from_utf8_lossy(&done.stderr))?;
+    let record = fs::read_to_string(session.folder.path().join("costs.toml"))?;
+    expect(record.contains("axis = \"cone\", value = \"soft\""), &record)?;
+    let hover = session.at("textDocument/hover", MAIN, "cone ==", json!({}))?;
+    let text = hover["contents"]["value"].as_str().unwrap_or_default();
+    expect(text.contains("| `cone=soft` | fragment | 2 |"), &hover)
 }
