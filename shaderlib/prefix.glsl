@@ -24,6 +24,9 @@
 #define agx(p0) lamplight_agx(p0)
 #define agx_curve(p0) lamplight_agx_curve(p0)
 #define alpha_aniso(p0, p1) lamplight_alpha_aniso(p0, p1)
+#define alpha_aniso_disney(p0, p1) lamplight_alpha_aniso_disney(p0, p1)
+#define alpha_aniso_filament(p0, p1) lamplight_alpha_aniso_filament(p0, p1)
+#define alpha_aniso_openpbr(p0, p1) lamplight_alpha_aniso_openpbr(p0, p1)
 #define any_tangent(p0) lamplight_any_tangent(p0)
 #define area_alpha(p0, p1, p2) lamplight_area_alpha(p0, p1, p2)
 #define area_energy(p0, p1) lamplight_area_energy(p0, p1)
@@ -83,6 +86,7 @@
 #define diffusion_s(p0) lamplight_diffusion_s(p0)
 #define disk_irradiance(p0, p1, p2) lamplight_disk_irradiance(p0, p1, p2)
 #define dispersion_ior(p0, p1) lamplight_dispersion_ior(p0, p1)
+#define dither(p0, p1, p2) lamplight_dither(p0, p1, p2)
 #define draine(p0, p1, p2) lamplight_draine(p0, p1, p2)
 #define edge_fade(p0, p1) lamplight_edge_fade(p0, p1)
 #define energy_compensation(p0, p1) lamplight_energy_compensation(p0, p1)
@@ -133,6 +137,7 @@
 #define ibl_mix(p0, p1, p2, p3, p4) lamplight_ibl_mix(p0, p1, p2, p3, p4)
 #define ies_u(p0) lamplight_ies_u(p0)
 #define ies_uv(p0, p1, p2) lamplight_ies_uv(p0, p1, p2)
+#define ign_time(p0, p1) lamplight_ign_time(p0, p1)
 #define intensity_point(p0) lamplight_intensity_point(p0)
 #define intensity_spot(p0, p1) lamplight_intensity_spot(p0, p1)
 #define intensity_spot_filament(p0) lamplight_intensity_spot_filament(p0)
@@ -158,6 +163,7 @@
 #define material_index(p0, p1) lamplight_material_index(p0, p1)
 #define material_index_oglpg(p0, p1) lamplight_material_index_oglpg(p0, p1)
 #define mean_blocker(p0, p1, p2, p3) lamplight_mean_blocker(p0, p1, p2, p3)
+#define micro_shadow(p0, p1) lamplight_micro_shadow(p0, p1)
 #define msm_dequantise(p0) lamplight_msm_dequantise(p0)
 #define msm_moments(p0) lamplight_msm_moments(p0)
 #define msm_quantise(p0) lamplight_msm_quantise(p0)
@@ -192,6 +198,7 @@
 #define polynomial(p0, p1) lamplight_polynomial(p0, p1)
 #define pq_from_nits(p0) lamplight_pq_from_nits(p0)
 #define prefilter_lod(p0, p1) lamplight_prefilter_lod(p0, p1)
+#define prefilter_lod_filament(p0, p1) lamplight_prefilter_lod_filament(p0, p1)
 #define probe_breezeway() lamplight_probe_breezeway()
 #define probe_campus_sunset() lamplight_probe_campus_sunset()
 #define probe_eucalyptus_grove() lamplight_probe_eucalyptus_grove()
@@ -217,6 +224,7 @@
 #define safe_normalize(p0, p1) lamplight_safe_normalize(p0, p1)
 #define safe_pow(p0, p1) lamplight_safe_pow(p0, p1)
 #define sample_directional(p0) lamplight_sample_directional(p0)
+#define sample_ggx_visible(p0, p1, p2, p3) lamplight_sample_ggx_visible(p0, p1, p2, p3)
 #define sample_light(p0, p1) lamplight_sample_light(p0, p1)
 #define sample_point(p0, p1) lamplight_sample_point(p0, p1)
 #define sample_spot(p0, p1) lamplight_sample_spot(p0, p1)
@@ -254,6 +262,7 @@
 #define uchimura_channel(p0) lamplight_uchimura_channel(p0)
 #define unit_float(p0) lamplight_unit_float(p0)
 #define v_charlie(p0, p1, p2) lamplight_v_charlie(p0, p1, p2)
+#define v_kelemen(p0) lamplight_v_kelemen(p0)
 #define v_neubelt(p0, p1) lamplight_v_neubelt(p0, p1)
 #define v_smith_ggx(p0, p1, p2) lamplight_v_smith_ggx(p0, p1, p2)
 #define v_smith_ggx_aniso(p0, p1, p2, p3, p4, p5, p6, p7) lamplight_v_smith_ggx_aniso(p0, p1, p2, p3, p4, p5, p6, p7)
@@ -286,6 +295,9 @@
 #undef agx
 #undef agx_curve
 #undef alpha_aniso
+#undef alpha_aniso_disney
+#undef alpha_aniso_filament
+#undef alpha_aniso_openpbr
 #undef any_tangent
 #undef area_alpha
 #undef area_energy
@@ -345,6 +357,7 @@
 #undef diffusion_s
 #undef disk_irradiance
 #undef dispersion_ior
+#undef dither
 #undef draine
 #undef edge_fade
 #undef energy_compensation
@@ -395,6 +408,7 @@
 #undef ibl_mix
 #undef ies_u
 #undef ies_uv
+#undef ign_time
 #undef intensity_point
 #undef intensity_spot
 #undef intensity_spot_filament
@@ -420,6 +434,7 @@
 #undef material_index
 #undef material_index_oglpg
 #undef mean_blocker
+#undef micro_shadow
 #undef msm_dequantise
 #undef msm_moments
 #undef msm_quantise
@@ -454,6 +469,7 @@
 #undef polynomial
 #undef pq_from_nits
 #undef prefilter_lod
+#undef prefilter_lod_filament
 #undef probe_breezeway
 #undef probe_campus_sunset
 #undef probe_eucalyptus_grove
@@ -479,6 +495,7 @@
 #undef safe_normalize
 #undef safe_pow
 #undef sample_directional
+#undef sample_ggx_visible
 #undef sample_light
 #undef sample_point
 #undef sample_spot
@@ -516,6 +533,7 @@
 #undef uchimura_channel
 #undef unit_float
 #undef v_charlie
+#undef v_kelemen
 #undef v_neubelt
 #undef v_smith_ggx
 #undef v_smith_ggx_aniso

@@ -87,6 +87,82 @@ vec3 bent_reflection(vec3 v, vec3 n, vec3 b, float strength, float roughness) {
     return reflect(-v, safe_normalize(bent + (n - bent) * share, n));
 }
 
+/// The two alphas of a brushed surface as Filament has them.
+///
+/// It differs from `alpha_aniso` in that the highlight gets narrower across the tangent while it gets wider along it.
+///
+/// Parameters: `alpha` squared perceptual roughness, [0, 1]; `strength` of the anisotropy, [-1, 1], below 0 along the bitangent.
+/// Returns: alpha along the tangent, `alpha*(1 + strength)`, and along the bitangent, `alpha*(1 - strength)`; [0, 2].
+/// Source: Guy, Agopian, "Physically Based Rendering in Filament", section 4.10.1.
+/// Edges: parameters outside their ranges are clamped; one alpha is 0 at the ends of the strength, where `d_ggx_aniso` is 0.
+/// Error model: 2 ULP.
+vec2 alpha_aniso_filament(float alpha, float strength) {
+    float a = clamp(alpha, 0.0, 1.0);
+    float s = clamp(strength, -1.0, 1.0);
+    return vec2(a * (1.0 + s), a * (1.0 - s));
+}
+
+/// The two alphas of a brushed surface as Disney's BRDF has them.
+///
+/// It differs from `alpha_aniso` in that the product of both alphas stays the same, and in that no strength makes the highlight longer than ten times its width.
+///
+/// Parameters: `alpha` squared perceptual roughness, [0, 1]; `strength` of the anisotropy, [0, 1].
+/// Returns: alpha along the tangent, `alpha/aspect`, and along the bitangent, `alpha*aspect`, with `aspect = sqrt(1 - 0.9*strength)`; [0, 3.2].
+/// Source: Burley, "Physically-Based Shading at Disney", 2012, section 5.4.
+/// Edges: parameters outside [0, 1] are clamped to it.
+/// Error model: 24 ULP: an aspect of a strength near 1 has lost some digits.
+vec2 alpha_aniso_disney(float alpha, float strength) {
+    float a = clamp(alpha, 0.0, 1.0);
+    float aspect = sqrt(1.0 - 0.9 * clamp(strength, 0.0, 1.0));
+    return vec2(a / aspect, a * aspect);
+}
+
+/// The two alphas of a brushed surface as OpenPBR has them.
+///
+/// It differs from `alpha_aniso` in that the mean of both squares stays that of `alpha`.
+///
+/// Parameters: `alpha` squared perceptual roughness, [0, 1]; `strength` of the anisotropy, [0, 1].
+/// Returns: alpha along the tangent, `alpha*sqrt(2/(1 + (1 - strength)^2))`, and along the bitangent, `1 - strength` times that; [0, 1.42].
+/// Source: Academy Software Foundation, OpenPBR Surface specification 1.1, 2024, "Microfacet model".
+/// Edges: parameters outside [0, 1] are clamped to it; the second alpha is 0 for a strength of 1, where `d_ggx_aniso` is 0.
+/// Error model: 10 ULP.
+vec2 alpha_aniso_openpbr(float alpha, float strength) {
+    float share = 1.0 - clamp(strength, 0.0, 1.0);
+    float along = clamp(alpha, 0.0, 1.0) * sqrt(2.0 / (1.0 + share * share));
+    return vec2(along, share * along);
+}
+
+/// Kelemen's visibility, a cheap one for smooth coats.
+///
+/// Parameters: `lh` cosine l.h, [0, 1].
+/// Returns: `1/(4*lh^2)`, at least 0.25.
+/// Source: Kelemen, Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model with Importance Sampling", 2001; Filament uses it for its clear coat.
+/// Edges: a square below 2^-126 counts as that, so that the value is finite.
+/// Error model: 4 ULP.
+float v_kelemen(float lh) {
+    return 0.25 / max(lh * lh, SMALLEST_NORMAL);
+}
+
+/// A normal of a GGX surface's facets, as often as the viewer sees it.
+///
+/// Mirror the viewer at it, `reflect(-v, h)`, for a direction of light. Its weight is then `F*G2/G1`: Fresnel's term, and `4*V*nl*nv` over the masking of the viewer alone.
+///
+/// Parameters: `v` unit, towards the viewer, z along the normal, at least 0; `at`, `ab` alpha along x and y, [0, 1]; `u` two independent numbers in [0, 1).
+/// Returns: unit vector, z at least 0.
+/// Source: Dupuy, Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023, listing 3, with the azimuth `2*pi*(u.x - 1/2)`.
+/// Edges: the normal for alphas of 0, and where the sum of the facet and the viewer is zero; a viewer below the horizon counts as one at it; a facet at the horizon for a second number above 1.
+/// Error model: absolute 2^-9*max(at, ab)/(1 - u.y): the sine and cosine may be off by 2^-11.
+vec3 sample_ggx_visible(vec3 v, float at, float ab, vec2 u) {
+    vec3 up = vec3(0.0, 0.0, 1.0);
+    vec3 w = safe_normalize(vec3(at * v.x, ab * v.y, max(v.z, 0.0)), up);
+    float phi = 6.2831853 * (u.x - 0.5);
+    // The directions that the stretched surface mirrors to the viewer fill a cap of the sphere.
+    float z = (1.0 - u.y) * (1.0 + w.z) - w.z;
+    float r = sqrt(max(1.0 - z * z, 0.0));
+    vec3 h = vec3(r * cos(phi), r * sin(phi), z) + w;
+    return safe_normalize(vec3(at * h.x, ab * h.y, max(h.z, 0.0)), up);
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

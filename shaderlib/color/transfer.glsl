@@ -175,6 +175,17 @@ float linear_from_hlg(float code) {
     return (x <= 0.5 ? x * x / 3.0 : (exp((x - 0.55991073) / 0.17883277) + 0.28466892) / 12.0);
 }
 
+/// A colour with noise that rounding turns into the right mean: without it, smooth gradients have bands.
+///
+/// Parameters: `c` colour as the display codes it, [0, 1]; `noise` a number in [0, 1), another for each pixel; `steps` how many steps the display has from 0 to 1: 255 for eight bits.
+/// Returns: `c + (noise - 1/2)/steps`, clamped to [0, 1]; where it is not clamped, the mean of what it is rounded to is `c`.
+/// Source: Roberts, "Picture Coding Using Pseudo-Random Noise", 1962: noise of one step, evenly distributed.
+/// Edges: fewer than one step count as one.
+/// Error model: absolute 3*2^-24.
+vec3 dither(vec3 c, float noise, float steps) {
+    return clamp(c + (noise - 0.5) / max(steps, 1.0), vec3(0.0), vec3(1.0));
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

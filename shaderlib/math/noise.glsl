@@ -91,6 +91,17 @@ vec2 r2_sequence(uint i) {
     return vec2(unit_float(2147483648u + i * 3242174889u), unit_float(2147483648u + i * 2447445414u));
 }
 
+/// Interleaved gradient noise that is another in each frame, for a filter over time.
+///
+/// Parameters: `pixel` framebuffer position, pixels, at least 0; `frame` number of the frame.
+/// Returns: `interleaved_gradient_noise` at a pixel that moves by 5.588238 to the right and down in each of 64 frames, [0, 1).
+/// Source: Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014; Wolfe, "Interleaved Gradient Noise: A Different Kind of Low Discrepancy Sequence", 2022, has the step.
+/// Edges: `interleaved_gradient_noise` for frame 0; frames repeat after 64.
+/// Error model: absolute 80*2^-23*(0.067*pixel.x + 0.0058*pixel.y + 28), modulo 1.
+float ign_time(vec2 pixel, uint frame) {
+    return interleaved_gradient_noise(pixel + 5.588238 * float(frame % 64u));
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

@@ -2,13 +2,14 @@
 
 use crate::{Outcome, test};
 
-/// Runs `lamplight mutate` over the library's sources. Arguments (modules, `--coverage`) are passed
-/// on.
+/// Runs `lamplight mutate` over the library's sources, in release: it makes thousands of mutants.
+/// Arguments (modules, `--coverage`) are passed on.
 pub fn run(arguments: &[String]) -> Outcome {
-    let all: Vec<&str> =
-        ["run", "--quiet", "--package", "lamplight", "--", "mutate", "--root", "shaderlib"]
-            .into_iter()
-            .chain(arguments.iter().map(String::as_str))
-            .collect();
+    let command = ["run", "--quiet", "--release", "--package", "lamplight", "--", "mutate"];
+    let all: Vec<&str> = command
+        .into_iter()
+        .chain(["--root", "shaderlib"])
+        .chain(arguments.iter().map(String::as_str))
+        .collect();
     test::cargo(&all, &[])
 }

@@ -26,6 +26,16 @@ pub fn apply_mutation(
                 }
             })
         }
+        Edit::Decided { statement, holds, .. } => {
+            change_statement(&mut function.body, *statement, &mut |found| decide(found, *holds))
+        }
+        Edit::Exchanged { statement, first, .. } => {
+            change_statement(&mut function.body, *statement, &mut |found| {
+                if let Statement::Call { arguments, .. } = found {
+                    arguments.swap(*first, *first + 1);
+                }
+            })
+        }
         Edit::NoStore { statement } => {
             change_statement(&mut function.body, *statement, &mut |found| {
                 *found = Statement::Block(Block::new())
@@ -42,6 +52,14 @@ pub fn apply_mutation(
                     *found = emit.clone()
                 })
         }
+    }
+}
+
+/// Only one branch of an `if` remains.
+fn decide(found: &mut Statement, holds: bool) {
+    if let Statement::If { accept, reject, .. } = found {
+        let kept = if holds { accept } else { reject };
+        *found = Statement::Block(std::mem::take(kept));
     }
 }
 

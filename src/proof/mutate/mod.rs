@@ -13,6 +13,7 @@
 mod apply;
 mod coverage;
 mod listed;
+mod operators;
 mod report;
 mod runner;
 mod site;

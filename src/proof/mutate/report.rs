@@ -3,7 +3,7 @@
 use super::listed::Listed;
 
 /// The share of the mutants that the cases must kill.
-pub const LEAST_SHARE: f64 = 0.97;
+pub const LEAST_SHARE: f64 = 0.99;
 
 /// The fate of one mutant, and where its mistake is.
 #[derive(Debug, Clone, PartialEq, Eq)]

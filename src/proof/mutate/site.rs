@@ -3,8 +3,11 @@
 use naga::valid::{FunctionInfo, ModuleInfo};
 use naga::{
     BinaryOperator as Op, Block, Expression, Function, Handle, Literal, MathFunction as Math,
-    Module, ScalarKind, Span, Statement, TypeInner, UnaryOperator,
+    Module, ScalarKind, Span, Statement, SwizzleComponent, Type, TypeInner, UnaryOperator,
+    VectorSize,
 };
+
+use super::operators::{BUILT_INS, OPERATORS, SIDED, SIDED_MATH};
 
 /// One mistake: where, what, and the place in the composed text.
 #[derive(Debug, Clone)]
@@ -22,10 +25,14 @@ pub enum Edit {
     Negated { statement: usize, condition: Handle<Expression> },
     /// An `if` that leaves the function is removed.
     NoExit { statement: usize, condition: Handle<Expression> },
+    /// Another `if` is removed, except for one of its branches.
+    Decided { statement: usize, condition: Handle<Expression>, holds: bool },
     /// An assignment is removed.
     NoStore { statement: usize },
     /// A call is replaced by its argument.
     Argument { statement: usize, result: Handle<Expression>, argument: Handle<Expression> },
+    /// Two arguments of a call change places.
+    Exchanged { statement: usize, first: usize, arguments: [Handle<Expression>; 2] },
 }
 
 /// How an expression was changed, for a description.
@@ -41,36 +48,11 @@ pub enum How {
     Whole(i64),
     Flipped,
     Function(&'static str),
+    /// These two neighbours change places.
+    Exchanged(Handle<Expression>, Handle<Expression>),
+    /// Another component of a vector.
+    Component(usize),
 }
-
-/// Operators that authors confuse. Swapped operands are a mistake of their own.
-const OPERATORS: &[(Op, &[(Op, &str)])] = &[
-    (Op::Add, &[(Op::Subtract, "-")]),
-    (Op::Subtract, &[(Op::Add, "+")]),
-    (Op::Multiply, &[(Op::Divide, "/")]),
-    (Op::Divide, &[(Op::Multiply, "*")]),
-    (Op::Modulo, &[(Op::Divide, "/")]),
-    (Op::Less, &[(Op::LessEqual, "<="), (Op::Greater, ">")]),
-    (Op::LessEqual, &[(Op::Less, "<"), (Op::Greater, ">")]),
-    (Op::Greater, &[(Op::GreaterEqual, ">="), (Op::Less, "<")]),
-    (Op::GreaterEqual, &[(Op::Greater, ">"), (Op::Less, "<")]),
-    (Op::Equal, &[(Op::NotEqual, "!=")]),
-    (Op::NotEqual, &[(Op::Equal, "==")]),
-    (Op::LogicalAnd, &[(Op::LogicalOr, "||")]),
-    (Op::LogicalOr, &[(Op::LogicalAnd, "&&")]),
-    (Op::And, &[(Op::InclusiveOr, "|")]),
-    (Op::InclusiveOr, &[(Op::And, "&")]),
-    (Op::ExclusiveOr, &[(Op::And, "&")]),
-    (Op::ShiftLeft, &[(Op::ShiftRight, ">>")]),
-    (Op::ShiftRight, &[(Op::ShiftLeft, "<<")]),
-];
-
-/// Operators whose operands cannot be swapped, apart from comparisons.
-const SIDED: &[Op] = &[Op::Subtract, Op::Divide, Op::Modulo, Op::ShiftLeft, Op::ShiftRight];
-
-/// Built-ins of two arguments that cannot be swapped.
-const SIDED_MATH: &[Math] =
-    &[Math::Pow, Math::Atan2, Math::Step, Math::Cross, Math::Reflect, Math::Mix, Math::SmoothStep];
 
 /// The sites of a function of the module.
 pub fn mutation_sites(module: &Module, info: &ModuleInfo, handle: Handle<Function>) -> Vec<Site> {
@@ -79,7 +61,7 @@ pub fn mutation_sites(module: &Module, info: &ModuleInfo, handle: Handle<Functio
     let mut sites = Vec::new();
     for (at, expression) in function.expressions.iter() {
         let span = function.expressions.get_span(at);
-        let changed = finder.expression(expression).into_iter();
+        let changed = finder.expression(at, expression).into_iter();
         sites.extend(
             changed.map(|(with, how)| Site { span, edit: Edit::Expression { at, with, how } }),
         );
@@ -121,7 +103,7 @@ impl Finder<'_> {
         self.info[handle].ty.inner_with(&self.module.types)
     }
 
-    fn expression(&self, expression: &Expression) -> Changed {
+    fn expression(&self, at: Handle<Expression>, expression: &Expression) -> Changed {
         match *expression {
             Expression::Literal(literal) => wrong_literal(literal).into_iter().collect(),
             Expression::Constant(constant) => {
@@ -130,16 +112,18 @@ impl Finder<'_> {
                     _ => Vec::new(),
                 }
             }
-            Expression::Binary { op, left, right } => self.binary(op, left, right),
+            Expression::Binary { op, left, right } => self.binary(at, op, left, right),
             Expression::Unary { op: UnaryOperator::Negate | UnaryOperator::LogicalNot, expr } => {
                 self.kept(expr)
             }
             Expression::Select { condition, accept, reject } => {
-                vec![(
-                    Expression::Select { condition, accept: reject, reject: accept },
-                    How::Swapped,
-                )]
+                let swapped = Expression::Select { condition, accept: reject, reject: accept };
+                let kept = [accept, reject].map(|side| self.kept(side)).concat();
+                std::iter::once((swapped, How::Swapped)).chain(kept).collect()
             }
+            Expression::Compose { ty, ref components } => self.exchanged(ty, components),
+            Expression::AccessIndex { base, index } => self.component(base, index),
+            Expression::Swizzle { size, vector, pattern } => swapped_swizzle(size, vector, pattern),
             Expression::Math { fun, arg, arg1, arg2, arg3 } => {
                 self.math(fun, arg, [arg1, arg2, arg3])
             }
@@ -147,7 +131,46 @@ impl Finder<'_> {
         }
     }
 
-    fn binary(&self, op: Op, left: Handle<Expression>, right: Handle<Expression>) -> Changed {
+    /// Neighbours of one type change places.
+    fn exchanged(&self, ty: Handle<Type>, components: &[Handle<Expression>]) -> Changed {
+        let pairs = components.windows(2).enumerate().filter(|(_, pair)| self.can_exchange(pair));
+        pairs
+            .map(|(index, pair)| {
+                let mut components = components.to_vec();
+                components.swap(index, index + 1);
+                (Expression::Compose { ty, components }, How::Exchanged(pair[0], pair[1]))
+            })
+            .collect()
+    }
+
+    /// Whether both have one type, and may differ.
+    fn can_exchange(&self, pair: &[Handle<Expression>]) -> bool {
+        let written = [pair[0], pair[1]].map(|side| &self.function.expressions[side]);
+        let are_same = match written {
+            [Expression::Literal(one), Expression::Literal(other)] => one == other,
+            _ => pair[0] == pair[1],
+        };
+        !are_same && self.ty(pair[0]) == self.ty(pair[1])
+    }
+
+    /// The next component of a vector, in a circle.
+    fn component(&self, base: Handle<Expression>, index: u32) -> Changed {
+        let vector = match *self.ty(base) {
+            TypeInner::Pointer { base, .. } => &self.module.types[base].inner,
+            ref inner => inner,
+        };
+        let TypeInner::Vector { size, .. } = *vector else { return Vec::new() };
+        let next = (index + 1) % size as u32;
+        vec![(Expression::AccessIndex { base, index: next }, How::Component(next as usize))]
+    }
+
+    fn binary(
+        &self,
+        at: Handle<Expression>,
+        op: Op,
+        left: Handle<Expression>,
+        right: Handle<Expression>,
+    ) -> Changed {
         let others =
             OPERATORS.iter().find(|(known, _)| *known == op).map_or(&[][..], |(_, others)| others);
         let mut found: Changed = others
@@ -160,6 +183,8 @@ impl Finder<'_> {
         if SIDED.contains(&op) || (op == Op::Multiply && matrices) {
             found.push((Expression::Binary { op, left: right, right: left }, How::Swapped));
         }
+        let same = [left, right].into_iter().filter(|side| self.ty(*side) == self.ty(at));
+        found.extend(same.flat_map(|side| self.kept(side)));
         found
     }
 
@@ -181,15 +206,14 @@ impl Finder<'_> {
                 How::Swapped,
             ));
         }
-        match fun {
-            Math::Clamp => found.extend([
+        if fun == Math::Clamp {
+            found.extend([
                 (two(Math::Min, arg, arg2), How::NoLowerBound),
                 (two(Math::Max, arg, arg1), How::NoUpperBound),
-            ]),
-            Math::Min => found.push((two(Math::Max, arg, arg1), How::Function("max"))),
-            Math::Max => found.push((two(Math::Min, arg, arg1), How::Function("min"))),
-            _ => {}
+            ]);
         }
+        let others = BUILT_INS.iter().filter(|(known, ..)| *known == fun);
+        found.extend(others.map(|(_, other, name)| (two(*other, arg, arg1), How::Function(name))));
         let gives_argument = !matches!(
             fun,
             Math::Dot
@@ -223,9 +247,7 @@ impl Finder<'_> {
         }
     }
 
-    /// Whether it is a variable that naga made for `&&` or `
-    ///
-    /// `. Mistakes in its branches are covered by mistakes in the operator.
+    /// Whether it is a variable that naga made for `&&` or `||`. Mistakes in its branches are covered by mistakes in the operator.
     fn is_unnamed(&self, pointer: Handle<Expression>) -> bool {
         match self.function.expressions[pointer] {
             Expression::LocalVariable(variable) => {
@@ -237,35 +259,81 @@ impl Finder<'_> {
 
     fn statement(&self, statement: &Statement, span: Span, at: usize, sites: &mut Vec<Site>) {
         match statement {
-            Statement::If { condition, accept, .. } => {
-                let place = self.function.expressions.get_span(*condition);
-                sites.push(Site {
-                    span: place,
-                    edit: Edit::Negated { statement: at, condition: *condition },
-                });
-                if matches!(accept.last(), Some(Statement::Return { .. } | Statement::Kill)) {
-                    sites.push(Site {
-                        span: place,
-                        edit: Edit::NoExit { statement: at, condition: *condition },
-                    });
-                }
+            Statement::If { condition, accept, reject } => {
+                sites.extend(self.conditions(at, *condition, accept, reject));
             }
             Statement::Store { pointer, .. } if !self.is_unnamed(*pointer) => {
                 sites.push(Site { span, edit: Edit::NoStore { statement: at } })
             }
             Statement::Call { arguments, result: Some(result), .. } => {
-                let ty = self.ty(*result);
-                let argument = arguments.iter().find(|argument| {
-                    self.ty(**argument) == ty && equal_value(ty, **argument).is_some()
-                });
-                sites.extend(argument.map(|argument| Site {
-                    span: self.function.expressions.get_span(*result),
-                    edit: Edit::Argument { statement: at, result: *result, argument: *argument },
-                }));
+                sites.extend(self.call(at, arguments, *result));
             }
             _ => {}
         }
     }
+
+    fn conditions(
+        &self,
+        statement: usize,
+        condition: Handle<Expression>,
+        accept: &Block,
+        reject: &Block,
+    ) -> Vec<Site> {
+        let span = self.function.expressions.get_span(condition);
+        let mut edits = vec![Edit::Negated { statement, condition }];
+        if matches!(accept.last(), Some(Statement::Return { .. } | Statement::Kill)) {
+            edits.push(Edit::NoExit { statement, condition });
+        } else if !ends_flow(accept) && !ends_flow(reject) {
+            let decided = [true, false].map(|holds| Edit::Decided { statement, condition, holds });
+            edits.extend(decided);
+        }
+        edits.into_iter().map(|edit| Site { span, edit }).collect()
+    }
+
+    fn call(
+        &self,
+        statement: usize,
+        arguments: &[Handle<Expression>],
+        result: Handle<Expression>,
+    ) -> Vec<Site> {
+        let (span, ty) = (self.function.expressions.get_span(result), self.ty(result));
+        let argument = arguments
+            .iter()
+            .find(|argument| self.ty(**argument) == ty && equal_value(ty, **argument).is_some())
+            .map(|argument| Edit::Argument { statement, result, argument: *argument });
+        let pairs = arguments.windows(2).enumerate().filter(|(_, pair)| self.can_exchange(pair));
+        let exchanged = pairs.map(|(first, pair)| Edit::Exchanged {
+            statement,
+            first,
+            arguments: [pair[0], pair[1]],
+        });
+        argument.into_iter().chain(exchanged).map(|edit| Site { span, edit }).collect()
+    }
+}
+
+/// Whether nothing behind the block runs.
+fn ends_flow(block: &Block) -> bool {
+    let ends = |statement: &Statement| {
+        matches!(
+            statement,
+            Statement::Return { .. } | Statement::Kill | Statement::Break | Statement::Continue
+        )
+    };
+    block.last().is_some_and(ends)
+}
+
+/// The first two components of a swizzle change places.
+fn swapped_swizzle(
+    size: VectorSize,
+    vector: Handle<Expression>,
+    pattern: [SwizzleComponent; 4],
+) -> Changed {
+    let [first, second, rest @ ..] = pattern;
+    if first == second {
+        return Vec::new();
+    }
+    let pattern = [second, first, rest[0], rest[1]];
+    vec![(Expression::Swizzle { size, vector, pattern }, How::Swapped)]
 }
 
 /// The blocks within a statement, in order.

@@ -2,6 +2,7 @@
 
 use naga::{Expression, Function, Handle, Span};
 
+use super::operators::COMPONENTS;
 use super::site::{Edit, How, Site};
 use crate::compose::SourceMap;
 use crate::parse::words::is_word;
@@ -38,6 +39,10 @@ impl Text<'_> {
             Edit::NoExit { condition, .. } => {
                 format!("no early exit at `{}`", self.operand(*condition))
             }
+            Edit::Decided { condition, holds, .. } => {
+                format!("`{holds}` instead of `{}`", self.operand(*condition))
+            }
+            Edit::Exchanged { arguments: [one, other], .. } => self.exchange(*one, *other, &whole),
             Edit::NoStore { .. } => format!("no assignment `{whole}`"),
             Edit::Argument { argument, .. } => {
                 format!("`{}` instead of `{whole}`", self.operand(*argument))
@@ -56,7 +61,17 @@ impl Text<'_> {
             How::Whole(value) => format!("`{value}` instead of `{whole}`"),
             How::Flipped => format!("the opposite of `{whole}`"),
             How::Function(name) => format!("`{name}` in `{whole}`"),
+            How::Exchanged(one, other) => self.exchange(one, other, whole),
+            How::Component(index) => {
+                let name = COMPONENTS.get(index).copied().unwrap_or('?');
+                format!("component `{name}` in `{whole}`")
+            }
         }
+    }
+
+    fn exchange(&self, one: Handle<Expression>, other: Handle<Expression>, whole: &str) -> String {
+        let [one, other] = [one, other].map(|side| self.operand(side));
+        format!("`{one}` and `{other}` exchanged in `{whole}`")
     }
 
     fn operand(&self, handle: Handle<Expression>) -> String {

@@ -11,6 +11,7 @@ pub const REFERENCES: Entry = Entry {
         ("reflect_world", reflect_world),
         ("split_sum", split_sum),
         ("box_project", box_project),
+        ("prefilter_lod_filament", |a| lod_filament(a.f64(), a.f64()).into()),
         ("prefilter_lod", |a| (a.f64().clamp(0.0, 1.0) * (a.f64() - 1.0).max(0.0)).into()),
     ],
 };
@@ -47,4 +48,9 @@ fn box_project(a: &mut Arguments<'_>) -> Expected {
     let y = axis(r.y, p.y, lo.y, hi.y);
     let z = axis(r.z, p.z, lo.z, hi.z);
     (p + r * x.min(y).min(z) - c).into()
+}
+
+/// Even in the square root of what is left to full roughness.
+fn lod_filament(roughness: f64, mips: f64) -> f64 {
+    (1.0 - (1.0 - roughness.clamp(0.0, 1.0)).powi(2)) * (mips - 1.0).max(0.0)
 }

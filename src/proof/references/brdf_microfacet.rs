@@ -1,9 +1,10 @@
 //! Sources: Burley, 2012, appendix B.2; Heitz, 2014, equations 72, 86 and 99; Khronos Group,
-//! KHR_materials_anisotropy, 2023; Tokuyoshi and Kaplanyan, 2019.
+//! KHR_materials_anisotropy, 2023; Tokuyoshi and Kaplanyan, 2019; Filament, section 4.10.1; OpenPBR
+//! 1.1; Kelemen and Szirmay-Kalos, 2001; Dupuy and Benyoub, 2023.
 
 use super::{Arguments, Entry, Expected};
 use glam::{DVec2, DVec3};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 pub const REFERENCES: Entry = Entry {
     module: "brdf::microfacet",
@@ -13,6 +14,11 @@ pub const REFERENCES: Entry = Entry {
         ("alpha_aniso", alpha_aniso),
         ("specular_aa", specular_aa),
         ("bent_reflection", bent_reflection),
+        ("alpha_aniso_filament", alpha_filament),
+        ("alpha_aniso_disney", alpha_disney),
+        ("alpha_aniso_openpbr", alpha_openpbr),
+        ("v_kelemen", |a| (1.0 / (4.0 * a.f64().powi(2).max(f64::from(f32::MIN_POSITIVE)))).into()),
+        ("sample_ggx_visible", sample_visible),
     ],
 };
 
@@ -60,4 +66,35 @@ fn bent_reflection(a: &mut Arguments<'_>) -> Expected {
     let bent = b.cross(v).cross(b).try_normalize().unwrap_or(n);
     let m = bent.lerp(n, (1.0 - strength * (1.0 - roughness)).powi(4)).try_normalize().unwrap_or(n);
     (2.0 * m.dot(v) * m - v).into()
+}
+
+fn alpha_filament(a: &mut Arguments<'_>) -> Expected {
+    let (alpha, strength) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(-1.0, 1.0));
+    (alpha * DVec2::new(1.0 + strength, 1.0 - strength)).into()
+}
+
+/// The aspect is the fourth root of the ratio of the squares.
+fn alpha_disney(a: &mut Arguments<'_>) -> Expected {
+    let (alpha, strength) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));
+    let aspect = (1.0 - 0.9 * strength).sqrt();
+    DVec2::new(alpha / aspect, alpha * aspect).into()
+}
+
+/// Both alphas have the ratio 1 - s, and the mean of their squares is that of `alpha`.
+fn alpha_openpbr(a: &mut Arguments<'_>) -> Expected {
+    let (alpha, strength) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));
+    let ratio = DVec2::new(1.0, 1.0 - strength);
+    (alpha * ratio * (2.0 / ratio.length_squared()).sqrt()).into()
+}
+
+/// A point of the cap that the stretched viewer's direction cuts off, its height even in the second
+/// number; the facet is half way between both, and is squeezed back.
+fn sample_visible(a: &mut Arguments<'_>) -> Expected {
+    let (v, alpha, u) = (a.vec3(), a.vec2(), a.vec2());
+    let stretch = alpha.extend(1.0);
+    let w = (DVec3::new(v.x, v.y, v.z.max(0.0)) * stretch).try_normalize().unwrap_or(DVec3::Z);
+    let theta = (1.0 - u.y * (1.0 + w.z)).clamp(-1.0, 1.0).acos();
+    let (sine, cosine) = (TAU * u.x - PI).sin_cos();
+    let cap = DVec3::new(theta.sin() * cosine, theta.sin() * sine, theta.cos());
+    ((cap + w) * stretch).try_normalize().unwrap_or(DVec3::Z).into()
 }

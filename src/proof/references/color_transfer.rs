@@ -1,5 +1,5 @@
 //! Sources: IEC 61966-2-1:1999; Reinhard et al., 2002, equation 3; Narkowicz, 2016; OpenGL 2.1
-//! specification, section 3.10 (fog); SMPTE ST 2084:2014; ITU-R BT.2100-2.
+//! specification, section 3.10 (fog); SMPTE ST 2084:2014; ITU-R BT.2100-2; Roberts, 1962.
 
 use super::{Entry, Expected};
 use glam::DVec3;
@@ -17,6 +17,7 @@ pub const REFERENCES: Entry = Entry {
         ("nits_from_pq", |a| nits(a.f64()).into()),
         ("hlg_from_linear", |a| hlg(a.f64()).into()),
         ("linear_from_hlg", |a| from_hlg(a.f64()).into()),
+        ("dither", |a| dither(a.vec3(), a.f64(), a.f64()).into()),
         ("fog_linear", |a| fog_linear(a.f64(), a.f64(), a.f64()).into()),
         ("fog_exp", |a| (-(a.f64() * a.f64()).max(0.0)).exp().into()),
         ("fog_exp2", |a| (-(a.f64() * a.f64()).powi(2)).exp().into()),
@@ -88,4 +89,10 @@ fn hlg(e: f64) -> f64 {
 fn from_hlg(code: f64) -> f64 {
     let ([a, b, c], x) = (log_gamma(), code.clamp(0.0, 1.0));
     if x <= 0.5 { x * x / 3.0 } else { (((x - c) / a).exp() + b) / 12.0 }
+}
+
+/// Noise of one step about the colour.
+fn dither(c: DVec3, noise: f64, steps: f64) -> DVec3 {
+    let step = 1.0 / steps.max(1.0);
+    (c + DVec3::splat(step * noise - step / 2.0)).clamp(DVec3::ZERO, DVec3::ONE)
 }

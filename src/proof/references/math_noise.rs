@@ -2,14 +2,15 @@
 //! GPU Rendering", 2020 (one step of PCG); OpenGL: Build High Performance Graphics, recipe 6 (the
 //! sine); Vogel, 1979 (the golden angle); Roberts, 2018 (the sequence R2).
 
-use super::{Arguments, Entry, Expected};
+use super::{Entry, Expected};
 use glam::{DVec2, DVec4};
 use std::f64::consts::{PI, TAU};
 
 pub const REFERENCES: Entry = Entry {
     module: "math::noise",
     functions: &[
-        ("interleaved_gradient_noise", gradient_noise),
+        ("interleaved_gradient_noise", |a| gradient_noise(a.vec2())),
+        ("ign_time", |a| gradient_noise(a.vec2() + 5.588238 * (a.f64() % 64.0))),
         ("hash_pcg", |a| f64::from(hash(a.f64() as u32)).into()),
         ("pixel_seed", |a| f64::from(pixel_seed(a.vec2())).into()),
         ("unit_float", |a| unit(a.f64() as u32).into()),
@@ -21,8 +22,8 @@ pub const REFERENCES: Entry = Entry {
 
 /// fract(52.9829189*fract(dot(pixel, (0.06711056, 0.00583715)))), on the circle: near a whole
 /// number either end is right.
-fn gradient_noise(a: &mut Arguments<'_>) -> Expected {
-    let inner = a.vec2().dot(DVec2::new(0.06711056, 0.00583715));
+fn gradient_noise(pixel: DVec2) -> Expected {
+    let inner = pixel.dot(DVec2::new(0.06711056, 0.00583715));
     let noise = |inner: f64| (52.9829189 * inner).rem_euclid(1.0);
     let (value, part) = (noise(inner.rem_euclid(1.0)), inner.rem_euclid(1.0));
     let expected = Expected::from(value).or(value - 1.0).or(value + 1.0);

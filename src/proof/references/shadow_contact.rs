@@ -1,10 +1,15 @@
-//! Source: Sousa, Kasyan and Schulz, 2011.
+//! Sources: Sousa, Kasyan and Schulz, 2011; Chan, 2018.
 
 use super::{Arguments, Entry, Expected};
 
 pub const REFERENCES: Entry = Entry {
     module: "shadow::contact",
-    functions: &[("contact_hit", hit), ("march_point", march_point), ("edge_fade", edge_fade)],
+    functions: &[
+        ("contact_hit", hit),
+        ("march_point", march_point),
+        ("edge_fade", edge_fade),
+        ("micro_shadow", |a| micro_shadow(a.f64(), a.f64()).into()),
+    ],
 };
 
 fn hit(a: &mut Arguments<'_>) -> Expected {
@@ -26,4 +31,10 @@ fn edge_fade(a: &mut Arguments<'_>) -> Expected {
         return 0.0.into();
     }
     if nearest >= border { 1.0.into() } else { (nearest / border).into() }
+}
+
+/// The square of the cosine over that of the cone's edge.
+fn micro_shadow(visibility: f64, nl: f64) -> f64 {
+    let edge = (1.0 - visibility.clamp(0.0, f64::from(0.9999f32))).sqrt();
+    (nl.max(0.0) / edge).min(1.0).powi(2)
 }
