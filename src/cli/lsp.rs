@@ -24,7 +24,7 @@ use crate::source::{Embedded, Files};
 pub struct Arguments {}
 
 /// How long to wait for more keystrokes before looking at documents.
-const PAUSE: Duration = Duration::from_millis(2);
+const PAUSE: Duration = Duration::from_millis(1);
 
 pub fn run_lsp(_: Arguments) -> Result<(), Failure> {
     let (sender, receiver) = channel();

@@ -52,14 +52,6 @@ impl SourceMap {
         Some(Span { source: span.source, start, end })
     }
 
-    /// Whether anything in a range came from a source.
-    pub fn is_from(&self, range: Range<usize>, source: crate::source::SourceId) -> bool {
-        let first = self.segments.partition_point(|segment| segment.start as usize <= range.start);
-        let segments = self.segments[first.saturating_sub(1)..].iter();
-        let mut within = segments.take_while(|segment| (segment.start as usize) < range.end);
-        within.any(|segment| segment.span.is_some_and(|span| span.source == source))
-    }
-
     /// Where the last byte before `end` came from, if in the same source at or after segment `first`.
     fn end(&self, first: usize, end: usize, source: crate::source::SourceId) -> Option<u32> {
         let last = self

@@ -12,7 +12,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::permute::{Manifest, Settings};
 use crate::resolve::{self, Graph, Packages};
 use crate::source::SourceSet;
-use crate::validate::{self, Validated};
+use crate::validate;
 
 /// What to check, and with which settings.
 pub struct Request<'a> {
@@ -137,29 +137,8 @@ pub fn options(graph: &Graph, path: &str) -> Options {
 
 /// The warnings from composing a text, then what naga finds in it.
 pub fn text(graph: &Graph, composed: &Composed) -> Diagnostics {
-    validated_text(graph, composed, validate::every(composed))
-}
-
-/// As [`text`], but of several mistakes only those in the root module count.
-pub fn text_of_root(graph: &Graph, composed: &Composed) -> Diagnostics {
-    let root = match graph {
-        Graph::Wesl(graph) => graph.nodes.first().map(|node| node.module.source),
-        Graph::Glsl(graph) => graph.modules.first().map(|module| module.source),
-    };
-    let validated = match root {
-        Some(source) => validate::every_in(composed, source),
-        None => validate::every(composed),
-    };
-    validated_text(graph, composed, validated)
-}
-
-fn validated_text(
-    graph: &Graph,
-    composed: &Composed,
-    validated: Result<Validated, Diagnostics>,
-) -> Diagnostics {
     let warnings = graph.own(composed.warnings.clone());
-    match validated {
+    match validate::every(composed) {
         Ok(validated) => {
             let more = graph.own(validate::lint(composed, &validated));
             warnings.into_iter().chain(more).collect()

@@ -66,7 +66,7 @@ pub fn module_problems(graph: &Graph, settings: &Settings, path: &str) -> Diagno
     // What nothing declares is told on its own; what else is wrong is looked for without it.
     let settings = Settings { undeclared: settings.undeclared.or(Some(false)), ..settings.clone() };
     match compose::compose(graph, &settings, &lint::options(graph, path)) {
-        Ok(composed) => found.extend(lint::text_of_root(graph, &composed)),
+        Ok(composed) => found.extend(lint::text(graph, &composed)),
         Err(errors) => found.extend(errors),
     }
     found

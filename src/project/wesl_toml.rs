@@ -1,7 +1,10 @@
 //! Reads `wesl.toml`. In the community's specification "wesl.toml file format" its keys are in the
 //! table `package`. Older tools read them at the top level, so both are accepted.
 
+use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use toml::{Table, Value};
 
@@ -26,10 +29,31 @@ pub fn declared_root(folder: &Path) -> Option<PathBuf> {
     is_inside(declared_in(&table)).then(|| root_in(folder, &table))
 }
 
+thread_local! {
+    /// The texts that were read last, with their tables. To find a package, one file is read up to
+    /// eight times, and an editor finds it with each keystroke.
+    static LAST: RefCell<VecDeque<(String, Rc<Table>)>> = const { RefCell::new(VecDeque::new()) };
+}
+
+/// Texts that are kept.
+const KEPT: usize = 8;
+
+fn read_table(text: &str) -> Result<Rc<Table>, toml::de::Error> {
+    LAST.with_borrow_mut(|last| {
+        if let Some((_, table)) = last.iter().find(|(known, _)| known == text) {
+            return Ok(Rc::clone(table));
+        }
+        let table: Rc<Table> = Rc::new(text.parse()?);
+        last.push_front((text.to_owned(), Rc::clone(&table)));
+        last.truncate(KEPT);
+        Ok(table)
+    })
+}
+
 /// The tables of a folder's file, if it is one that can be read.
-fn table_of(folder: &Path) -> Option<Table> {
+fn table_of(folder: &Path) -> Option<Rc<Table>> {
     let text = input::read_file(&folder.join(NAME), LIMITS.file_bytes as u64).ok()?;
-    String::from_utf8(text).ok()?.parse().ok()
+    read_table(std::str::from_utf8(&text).ok()?).ok()
 }
 
 /// The name that the root's `wesl.toml` gives its package.
@@ -105,7 +129,7 @@ fn parse_tables(
     folder: &Path,
     shown: &Path,
     sources: &mut SourceSet,
-) -> Result<(Table, SourceId), Diagnostic> {
+) -> Result<(Rc<Table>, SourceId), Diagnostic> {
     let disk = Disk::new(folder).map_err(|error| {
         Diagnostic::error(codes::UNREADABLE, format!("cannot read `{}`: {error}", shown.display()))
     })?;
@@ -119,7 +143,7 @@ fn parse_tables(
     };
     let id = source::read(sources, &package, NAME)?.ok_or_else(missing)?;
     let text = sources.get(id).text.clone();
-    let table: Table = text.parse().map_err(|error: toml::de::Error| {
+    let table = read_table(&text).map_err(|error| {
         let range = error.span().unwrap_or(0..0);
         let span = Span::new(id, range.start.min(text.len())..range.end.min(text.len()));
         Diagnostic::error(codes::WESL_TOML, "`wesl.toml` is not valid TOML")

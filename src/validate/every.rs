@@ -1,11 +1,11 @@
-//! Finds several mistakes of one text. naga stops at the first one, so each declaration is also
-//! validated alone, with only the declarations that it needs.
+//! Finds several mistakes of one text. naga stops at the first one, so the text is validated again
+//! without the declaration that has it. Where that is not known, each declaration is validated
+//! alone, with only the declarations that it needs.
 
 use super::{Validated, is_calm, validate};
 use crate::bundle::Language;
-use crate::compose::{Composed, Part, PartKind};
+use crate::compose::{Composed, PartKind};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, codes};
-use crate::source::SourceId;
 
 /// A text with this many declarations is searched only for its first mistake.
 const PARTS: usize = 500;
@@ -18,26 +18,11 @@ const STOPPING: [&Code; 4] =
     [codes::NAGA_INTERNAL, codes::NAGA_EXHAUSTED, codes::LIMIT_EXCEEDED, codes::NO_ENTRY_POINT];
 
 /// As [`validate`], but continues after the first mistake. This is for a text that is probably
-/// wrong, since after a mistake naga runs once for each declaration.
+/// wrong, since naga runs again for each mistake.
 ///
 /// # Errors
 /// Each mistake once, in the order of the composed text's places.
 pub fn every(composed: &Composed) -> Result<Validated, Diagnostics> {
-    every_wanted(composed, |_| true)
-}
-
-/// As [`every`], for the mistakes in one file: after a mistake, naga runs only for its declarations.
-///
-/// # Errors
-/// Those of [`every`] in that file. Others may be among them.
-pub fn every_in(composed: &Composed, source: SourceId) -> Result<Validated, Diagnostics> {
-    every_wanted(composed, |part| composed.map.is_from(part.range.clone(), source))
-}
-
-fn every_wanted(
-    composed: &Composed,
-    is_wanted: impl Fn(&Part) -> bool,
-) -> Result<Validated, Diagnostics> {
     let first = match validate(composed) {
         Ok(validated) => return Ok(validated),
         Err(errors) => errors,
@@ -48,29 +33,110 @@ fn every_wanted(
     if !is_calm || composed.parts.len() > PARTS || first.iter().any(stops) {
         return Err(first);
     }
-    let mut found = first;
-    let mut wrong = vec![false; composed.parts.len()];
-    for (index, _) in composed.parts.iter().enumerate().filter(|(_, part)| is_wanted(part)) {
-        if found.len() >= MOST {
-            break;
-        }
-        let needed = needed_parts(composed, index);
-        // A mistake in a part is reported for that part, and not again for every part that needs
-        // it.
-        if needed.iter().zip(&wrong).any(|(needed, wrong)| *needed && *wrong) {
-            continue;
-        }
-        let Err(errors) = validate(&only_needed(composed, &needed)) else { continue };
-        wrong[index] = true;
-        let new = errors.into_iter().filter(|error| {
-            !stops(error)
-                && !error.labels.is_empty()
-                && !found.iter().any(|known| same_mistake(known, error))
-        });
-        found.extend(new.collect::<Vec<_>>());
+    let mut search = Search { composed, wrong: vec![false; composed.parts.len()], found: first };
+    if !search.without_wrong() {
+        search.one_by_one();
     }
-    found.sort_by_key(|error| error.labels.first().map(|label| label.span));
-    Err(found)
+    search.found.sort_by_key(|error| error.labels.first().map(|label| label.span));
+    Err(search.found)
+}
+
+/// The mistakes that were found so far, and the parts that have them.
+struct Search<'c> {
+    composed: &'c Composed,
+    wrong: Vec<bool>,
+    found: Diagnostics,
+}
+
+impl Search<'_> {
+    /// Reads the text again and again, each time without the parts whose mistakes are known and
+    /// those that need them, until nothing is wrong. False if a mistake has no part.
+    fn without_wrong(&mut self) -> bool {
+        let mut errors = self.found.clone();
+        while self.found.len() < MOST {
+            let parts: Vec<_> = errors.iter().map(|error| self.part_of(error)).collect();
+            let is_new = |part: &Option<usize>| part.is_some_and(|part| !self.wrong[part]);
+            if parts.is_empty() || !parts.iter().all(is_new) {
+                return false;
+            }
+            parts.into_iter().flatten().for_each(|part| self.wrong[part] = true);
+            let needed = self.without_dependents();
+            match validate(&only_needed(self.composed, &needed)) {
+                Ok(_) => return true,
+                Err(new) => errors = self.take_new(new),
+            }
+        }
+        true
+    }
+
+    /// The part that a mistake is in, if it is in one.
+    fn part_of(&self, error: &Diagnostic) -> Option<usize> {
+        let span = error.labels.first()?.span;
+        let parts = &self.composed.parts;
+        let segments = self.composed.map.segments().iter();
+        let here = segments.filter(|segment| {
+            let known = segment.span.filter(|known| known.source == span.source);
+            known.is_some_and(|known| known.start <= span.start && span.start < known.end)
+        });
+        let mut found = None;
+        for segment in here {
+            let start = segment.start as usize;
+            let part = parts.iter().position(|part| part.range.contains(&start))?;
+            let is_whole = matches!(parts[part].kind, PartKind::Directive | PartKind::Other);
+            if is_whole || found.is_some_and(|found| found != part) {
+                return None;
+            }
+            found = Some(part);
+        }
+        found
+    }
+
+    /// Whether each part neither is wrong nor needs one that is.
+    fn without_dependents(&self) -> Vec<bool> {
+        let parts = &self.composed.parts;
+        let mut users: Vec<Vec<usize>> = vec![Vec::new(); parts.len()];
+        for (user, part) in parts.iter().enumerate() {
+            part.uses.iter().for_each(|used| users[*used as usize].push(user));
+        }
+        let mut needed = vec![true; parts.len()];
+        let mut open: Vec<usize> = (0..parts.len()).filter(|part| self.wrong[*part]).collect();
+        while let Some(part) = open.pop() {
+            if std::mem::replace(&mut needed[part], false) {
+                open.extend(&users[part]);
+            }
+        }
+        needed
+    }
+
+    /// Reads each part alone, with what it needs.
+    fn one_by_one(&mut self) {
+        for index in 0..self.composed.parts.len() {
+            if self.found.len() >= MOST {
+                break;
+            }
+            let needed = needed_parts(self.composed, index);
+            // A mistake in a part is reported for that part, and not again for every part that
+            // needs it.
+            if needed.iter().zip(&self.wrong).any(|(needed, wrong)| *needed && *wrong) {
+                continue;
+            }
+            let Err(errors) = validate(&only_needed(self.composed, &needed)) else { continue };
+            self.wrong[index] = true;
+            self.take_new(errors);
+        }
+    }
+
+    /// Adds mistakes that are not known yet, and gives them.
+    fn take_new(&mut self, errors: Diagnostics) -> Diagnostics {
+        let is_new = |error: &Diagnostic| {
+            !STOPPING.contains(&error.code)
+                && !error.labels.is_empty()
+                && !self.found.iter().any(|known| same_mistake(known, error))
+        };
+        let new: Diagnostics = errors.into_iter().filter(is_new).collect();
+        self.found.extend(new.iter().cloned());
+        new
+    }
 }
 
 /// The same mistake at the same place.

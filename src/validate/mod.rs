@@ -15,7 +15,7 @@ mod sizes;
 mod uniformity;
 mod words;
 
-pub use every::{every, every_in};
+pub use every::every;
 pub use guard::{caught, guard, on_large_stack};
 pub use hints::glsl_words;
 pub use limits::{LIMITS, Limits};

@@ -1,6 +1,6 @@
 //! Evaluates conditions for one choice of settings, each at most once.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 use rustc_hash::FxHashMap;
 
@@ -31,7 +31,7 @@ pub struct Evaluator<'a> {
     pub errors: Diagnostics,
     unknown: HashSet<Name>,
     /// Where flags are named, once one of them has no value.
-    places: Option<HashMap<Name, Vec<Span>>>,
+    places: Option<FxHashMap<Name, Vec<Span>>>,
     /// By module and guard: whether it or one behind it holds.
     guards: FxHashMap<(u32, u32), bool>,
 }

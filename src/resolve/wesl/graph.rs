@@ -1,7 +1,9 @@
 //! The resolved modules.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::sync::Arc;
+
+use rustc_hash::FxHashMap;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::parse::wesl::{ConditionId, Expression, Name, Names, Placed};
@@ -92,9 +94,9 @@ pub struct Node {
     /// `package::a::b` or `lamplight::brdf::specular`.
     pub label: String,
     /// Item indices by name, in source order.
-    pub sets: HashMap<Name, Vec<u32>>,
+    pub sets: FxHashMap<Name, Vec<u32>>,
     /// Indices of imports, by the name that they bring into scope.
-    pub aliases: HashMap<Name, Vec<usize>>,
+    pub aliases: FxHashMap<Name, Vec<usize>>,
     /// For each import, what it may lead to.
     pub imports: Vec<Vec<Target>>,
     /// For each reference, what it may mean: the first candidate whose conditions hold.

@@ -1,6 +1,8 @@
 //! Warns of imports without effect, and reports names that are declared or imported twice.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::BTreeMap;
+
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::graph::{Candidate, Graph, Node, Target};
 use super::load::Loader;
@@ -72,7 +74,7 @@ pub fn is_harmless(loader: &mut Loader<'_>, node: u32, alias: Name, failure: u32
 /// them: those without a condition, and those of one block.
 pub fn report_duplicates(loader: &mut Loader<'_>, node: u32) {
     let here = &loader.nodes[node as usize];
-    let mut first: HashMap<(Name, Option<ConditionId>), usize> = HashMap::new();
+    let mut first: FxHashMap<(Name, Option<ConditionId>), usize> = FxHashMap::default();
     let mut found = Vec::new();
     for (index, item) in here.module.items.iter().enumerate() {
         let earlier = *first.entry((item.name, item.condition)).or_insert(index);
@@ -97,16 +99,16 @@ pub fn report_duplicates(loader: &mut Loader<'_>, node: u32) {
 pub fn report_clashes(
     loader: &mut Loader<'_>,
     node: u32,
-    imported: &HashMap<Name, Vec<Candidate>>,
+    imported: &FxHashMap<Name, Vec<Candidate>>,
 ) {
     let mut failures = Vec::new();
     let here = &loader.nodes[node as usize];
-    let clashing: HashSet<Name> = imported
+    let clashing: FxHashSet<Name> = imported
         .iter()
         .filter(|(_, candidates)| candidates_differ(candidates))
         .map(|(alias, _)| *alias)
         .collect();
-    let mut first: HashMap<Name, usize> = HashMap::new();
+    let mut first: FxHashMap<Name, usize> = FxHashMap::default();
     for (index, import) in
         here.module.imports.iter().enumerate().filter(|(_, import)| import.condition.is_none())
     {
@@ -146,7 +148,7 @@ fn candidates_differ(candidates: &[Candidate]) -> bool {
 
 /// The names with which references and paths of imports start. If an import's own path starts with
 /// the name that it imports, that means a package.
-pub fn used_names(node: &Node) -> HashSet<Name> {
+pub fn used_names(node: &Node) -> FxHashSet<Name> {
     let start =
         |path: &Path| path.segments.first().copied().filter(|_| path.origin == Origin::Scope);
     let named = node.module.references.iter().filter_map(|reference| match reference {
@@ -165,8 +167,8 @@ pub fn used_names(node: &Node) -> HashSet<Name> {
 pub const PLACES: usize = 12;
 
 /// Every place of a condition that names a flag, by flag, dependencies' included.
-pub fn flag_places(graph: &Graph) -> HashMap<Name, Vec<Span>> {
-    let mut places: HashMap<Name, Vec<Span>> = HashMap::new();
+pub fn flag_places(graph: &Graph) -> FxHashMap<Name, Vec<Span>> {
+    let mut places: FxHashMap<Name, Vec<Span>> = FxHashMap::default();
     for node in &graph.nodes {
         for expression in &node.module.expressions {
             if let Expression::Flag(name, range) = expression {

@@ -1,8 +1,10 @@
 //! Reads modules until no path leads to a new one.
 
 use std::cell::Cell;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
+
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Kept;
 use super::graph::{Bases, Candidate, Constant, Graph, Importer, Node, Target, certain_errors};
@@ -21,7 +23,7 @@ pub struct Loader<'a> {
     pub(super) nodes: Vec<Node>,
     pub(super) constants: Vec<Constant>,
     /// Where each of them is.
-    pub(super) constant_places: HashMap<Name, u32>,
+    pub(super) constant_places: FxHashMap<Name, u32>,
     pub(super) failures: Vec<Diagnostic>,
     /// Parsed texts of earlier readings, for editors.
     kept: Option<&'a mut Kept>,
@@ -29,13 +31,13 @@ pub struct Loader<'a> {
     /// be read.
     known: HashMap<(usize, String), Result<Option<u32>, Diagnostic>>,
     /// The files of a package, once a module of it is missing.
-    listings: HashMap<usize, Vec<String>>,
+    listings: FxHashMap<usize, Vec<String>>,
     /// Steps of looking names up.
     steps: Cell<Steps>,
     /// By file: the last byte whose line and column were asked for, and those.
-    positions: HashMap<SourceId, (usize, usize, usize)>,
+    positions: FxHashMap<SourceId, (usize, usize, usize)>,
     /// The names that the last module that was asked about uses.
-    used: Option<(u32, HashSet<Name>)>,
+    used: Option<(u32, FxHashSet<Name>)>,
 }
 
 impl<'a> Loader<'a> {
@@ -46,13 +48,13 @@ impl<'a> Loader<'a> {
             names: Names::default(),
             nodes: Vec::new(),
             constants: Vec::new(),
-            constant_places: HashMap::new(),
+            constant_places: FxHashMap::default(),
             failures: Vec::new(),
             kept: None,
             known: HashMap::new(),
-            listings: HashMap::new(),
+            listings: FxHashMap::default(),
             steps: Cell::new(Steps::new(RESOLVE_STEPS)),
-            positions: HashMap::new(),
+            positions: FxHashMap::default(),
             used: None,
         }
     }
@@ -233,13 +235,13 @@ impl<'a> Loader<'a> {
             None => Arc::new(wesl::parse(source, text, &mut self.names)),
         };
         let module = Placed::new(module, source);
-        let mut sets: HashMap<Name, Vec<u32>> = HashMap::new();
+        let mut sets: FxHashMap<Name, Vec<u32>> = FxHashMap::default();
         for (index, item) in
             module.items.iter().enumerate().filter(|(_, item)| item.name != Name::UNDERSCORE)
         {
             sets.entry(item.name).or_default().push(index as u32);
         }
-        let mut aliases: HashMap<Name, Vec<usize>> = HashMap::new();
+        let mut aliases: FxHashMap<Name, Vec<usize>> = FxHashMap::default();
         for (index, import) in module.imports.iter().enumerate() {
             aliases.entry(import.alias).or_default().push(index);
         }
@@ -323,7 +325,7 @@ impl<'a> Loader<'a> {
             .iter()
             .map(|import| (import.condition, import.path.clone(), import.alias))
             .collect();
-        let mut imported: HashMap<Name, Vec<Candidate>> = HashMap::new();
+        let mut imported: FxHashMap<Name, Vec<Candidate>> = FxHashMap::default();
         for (index, (condition, path, alias)) in imports.iter().enumerate() {
             let mut targets = Vec::new();
             for mut candidate in self.candidates(node, path, Some(index)) {
@@ -353,7 +355,7 @@ impl<'a> Loader<'a> {
         &mut self,
         node: u32,
         reference: &Reference,
-        imported: &HashMap<Name, Vec<Candidate>>,
+        imported: &FxHashMap<Name, Vec<Candidate>>,
     ) -> Vec<Candidate> {
         match reference {
             Reference::Path(path) => self.candidates(node, path, None),
