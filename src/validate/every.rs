@@ -2,6 +2,9 @@
 //! without the declaration that has it. Where that is not known, each declaration is validated
 //! alone, with only the declarations that it needs.
 
+use std::cell::RefCell;
+use std::collections::VecDeque;
+
 use super::{Validated, is_calm, validate};
 use crate::bundle::Language;
 use crate::compose::{Composed, PartKind};
@@ -61,8 +64,15 @@ impl Search<'_> {
             }
             parts.into_iter().flatten().for_each(|part| self.wrong[part] = true);
             let needed = self.without_dependents();
+            let rest = joined_parts(self.composed, &needed);
+            if was_accepted(&rest) {
+                return true;
+            }
             match validate(&only_needed(self.composed, &needed)) {
-                Ok(_) => return true,
+                Ok(_) => {
+                    keep_accepted(rest);
+                    return true;
+                }
                 Err(new) => errors = self.take_new(new),
             }
         }
@@ -137,6 +147,39 @@ impl Search<'_> {
         self.found.extend(new.iter().cloned());
         new
     }
+}
+
+thread_local! {
+    /// The rests of texts that naga accepted last. While an author writes a function, the rest stays
+    /// the same.
+    static ACCEPTED: RefCell<VecDeque<String>> = const { RefCell::new(VecDeque::new()) };
+}
+
+/// Rests that are kept.
+const KEPT: usize = 4;
+
+fn was_accepted(rest: &String) -> bool {
+    ACCEPTED.with_borrow(|accepted| accepted.contains(rest))
+}
+
+fn keep_accepted(rest: String) {
+    ACCEPTED.with_borrow_mut(|accepted| {
+        accepted.push_front(rest);
+        accepted.truncate(KEPT);
+    });
+}
+
+/// What naga reads of some parts, without the blanks in place of the others: they say nothing.
+fn joined_parts(composed: &Composed, needed: &[bool]) -> String {
+    let mut text = format!("{:?} {:?}\n", composed.language, composed.stage);
+    let mut at = 0;
+    for (part, _) in composed.parts.iter().zip(needed).filter(|(_, needed)| !**needed) {
+        let range = part.range.start.max(at)..part.range.end.max(at).min(composed.text.len());
+        text += composed.text.get(at..range.start).unwrap_or_default();
+        text.push('\n');
+        at = range.end;
+    }
+    text + composed.text.get(at..).unwrap_or_default()
 }
 
 /// The same mistake at the same place.
