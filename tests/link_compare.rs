@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use lamplight::bundle::{Language, Target};
+use lamplight::bundle::{Bounds, Conventions, Language, Target};
 use lamplight::compose::{Composed, Keep, Options, PartKind, compose, lean};
-use lamplight::emit::emit;
+use lamplight::emit::emit_for;
 use lamplight::link::{Linker, Text, compile};
 use lamplight::permute::Manifest;
 use lamplight::resolve::{self, Packages};
@@ -12,15 +12,31 @@ use lamplight::source::SourceSet;
 use lamplight::validate::validate;
 use libtest_mimic::Failed;
 
-/// Compares every `step`-th permutation of every program, in both languages.
+/// Compares every `step`-th permutation of every program, in both languages, with checks of bounds
+/// and without them.
 pub fn all(
     sources: &mut SourceSet,
     packages: &Packages,
     manifest: &Manifest,
     step: usize,
 ) -> Result<(), Failed> {
+    for bounds in [Bounds::Unchecked, Bounds::Restrict] {
+        let conventions = Conventions { bounds, ..Conventions::default() };
+        all_with(conventions, sources, packages, manifest, step)
+            .map_err(|error| format!("{bounds:?}: {}", error.message().unwrap_or_default()))?;
+    }
+    Ok(())
+}
+
+fn all_with(
+    conventions: Conventions,
+    sources: &mut SourceSet,
+    packages: &Packages,
+    manifest: &Manifest,
+    step: usize,
+) -> Result<(), Failed> {
     for program in &manifest.programs {
-        let linker = Linker::new(&program.targets);
+        let linker = Linker::with(&program.targets, conventions);
         let glsl = program.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
         let glsl = glsl.map(|file| (file, Language::Glsl));
         let wesl = program.wesl.iter().map(|file| (file, Language::Wesl));
@@ -42,7 +58,7 @@ pub fn all(
                     let options = Options { keep, ..Options::default() };
                     let composed = compose(&graph, &settings, &options)
                         .map_err(|errors| format!("{errors:?}"))?;
-                    one(&composed, entry, &program.targets, &linker)
+                    one(&composed, entry, &linker, conventions)
                         .map_err(|error| format!("[{}] {error}", program.space.key(point)))?;
                 }
             }
@@ -54,11 +70,12 @@ pub fn all(
 fn one(
     composed: &Composed,
     entry: &str,
-    targets: &[Target],
     linker: &Linker<'_>,
+    conventions: Conventions,
 ) -> Result<(), String> {
     let lean = lean(composed);
     let text = Text { composed, lean: &lean };
+    let targets = linker.targets();
     let made = compile(&text, entry, targets, linker).map_err(|errors| format!("{errors:?}"))?;
     if let Some(whole) = made.whole.first() {
         return Err(format!("{entry} is compiled as a whole: {whole:?}"));
@@ -68,7 +85,7 @@ fn one(
         functions.flat_map(|part| &part.names).map(|name| plain(name)).collect();
     let validated = validate(&lean).map_err(|errors| format!("{errors:?}"))?;
     for target in targets {
-        let whole = emit(&validated, entry, *target).map_err(|error| error.message)?.bytes;
+        let whole = emit_for(&validated, entry, *target, conventions).map_err(|error| error.message)?.bytes;
         let linked = &made.unit.targets[target.name()].bytes;
         let (whole, linked) = match *target {
             Target::SPIRV => (opcodes(&whole), opcodes(linked)),

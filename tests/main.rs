@@ -14,6 +14,7 @@ mod bundle;
 mod catalogue;
 mod compose_glsl;
 mod compose_wesl;
+mod bounds;
 mod conventions;
 mod cost;
 mod determinism;
@@ -75,6 +76,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     catalogue::trials,
     compose_glsl::trials,
     compose_wesl::trials,
+    bounds::trials,
     conventions::trials,
     cost::trials,
     determinism::trials,

@@ -196,7 +196,7 @@ fn shader(
     let graph = resolve::load(&mut sources, packages, root, language).map_err(told)?;
     let options = Options::default();
     let composed = compose(&graph, settings, &options).map_err(told)?;
-    let root = Root { graph: &graph, settings, options: &options, clip: Default::default() };
+    let root = Root { graph: &graph, settings, options: &options, conventions: Default::default() };
     let entries = entry_points(&composed).map_err(told)?;
     let shaders = root.compile_with(&entries, &asked.linker).map_err(told)?;
     let mut expect = |what: String, bytes: Vec<u8>| {
@@ -361,7 +361,7 @@ fn problems(sources: &mut SourceSet, packages: &Packages) -> Diagnostics {
             graph: &graph,
             settings: &settings,
             options: &options,
-            clip: Default::default(),
+            conventions: Default::default(),
         };
         let entries = entry_points(&composed)?;
         root.compile(&entries, &[Target::WGSL])

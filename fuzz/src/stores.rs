@@ -3,7 +3,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use lamplight::bundle::{Bundle, Clip, Language, Target, merge, pack};
+use lamplight::bundle::{Bundle, Conventions, Language, Target, merge, pack};
 use lamplight::cache::{Cache, Job, Storage};
 use lamplight::compose::{Composed, Options};
 use lamplight::diagnostic::render::{Form, render};
@@ -66,7 +66,7 @@ pub fn record(bytes: &[u8]) -> String {
         entry: "f",
         options: &Options::default(),
         targets: &[Target::WGSL],
-        clip: Clip::default(),
+        conventions: Conventions::default(),
     });
     let told = match &found {
         Some(Ok(made)) => format!("{} {:?}", made.unit.targets.len(), made.warnings),

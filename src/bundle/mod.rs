@@ -5,8 +5,8 @@
 //! Of the crate, this module uses the compression of the single file, the one way to write files,
 //! and nothing else.
 
-mod clip;
 pub(crate) mod contents;
+mod conventions;
 mod diff;
 mod directory;
 mod directory_writer;
@@ -24,7 +24,7 @@ mod store;
 mod target;
 mod usage;
 
-pub use clip::Clip;
+pub use conventions::{AskedConventions, Bounds, Clip, Convention, Conventions};
 pub use contents::{Artifact, Axis, Contents, Digest, EntryContents, Hash, ProgramContents, Unit};
 pub use diff::{Change, Difference, diff};
 pub use directory::{BlobFile, blob_files};

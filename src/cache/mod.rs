@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::bundle::contents::{shortened_hash, to_hex};
-use crate::bundle::{Clip, Hash, Target, Unit};
+use crate::bundle::{Conventions, Hash, Target, Unit};
 use crate::compose::{Composed, Options, Segment};
 use crate::diagnostic::Diagnostics;
 use crate::source::SourceId;
@@ -65,8 +65,8 @@ pub struct Job<'a> {
     pub options: &'a Options,
     /// Targets that are asked for, in order.
     pub targets: &'a [Target],
-    /// The clip space of its outputs.
-    pub clip: Clip,
+    /// What its outputs are asked for beyond their target.
+    pub conventions: Conventions,
 }
 
 /// The result of compiling a text: a unit, and the warnings for its author.
@@ -178,10 +178,10 @@ fn record_name(kind: &str, key: Hash) -> String {
 }
 
 fn unit_key(job: Job<'_>) -> Hash {
-    let Job { text, composed, entry, options, targets, clip } = job;
+    let Job { text, composed, entry, options, targets, conventions } = job;
     let names: Vec<&str> = targets.iter().map(|target| target.name()).collect();
     let rest = format!(
-        "{:?} {:?} {options:?} {entry:?} {names:?} {clip:?}",
+        "{:?} {:?} {options:?} {entry:?} {names:?} {conventions:?}",
         composed.language, composed.stage
     );
     hash_parts(&["unit", BUILD, &rest, text])

@@ -5,11 +5,10 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::compile::{Wanted, parse_clip, wanted_one, wanted_targets};
+use super::compile::{Asked, Wanted, wanted_one, wanted_targets};
 use super::failure::{DiagnosticForm, Failure};
 use super::terminal::stdout;
 use super::work::{Places, Work};
-use crate::bundle::Clip;
 use crate::generate::{Request, Shard, Summary};
 use crate::permute::Quoted;
 use crate::source::SourceSet;
@@ -28,10 +27,8 @@ pub struct Arguments {
     /// Compile only for these targets.
     #[arg(long, value_name = "T,...|all", value_delimiter = ',', value_parser = wanted_one)]
     target: Vec<Wanted>,
-    /// Clip space: `wgpu`, the same for all targets, or `native`, as each API has it [default: the
-    /// manifest's].
-    #[arg(long, value_name = "SPACE", value_parser = parse_clip)]
-    clip: Option<Clip>,
+    #[command(flatten)]
+    conventions: Asked,
     /// Compile only the k-th of n parts, which `lamplight merge` puts together.
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
@@ -74,7 +71,7 @@ fn make_request(arguments: &Arguments, sources: &mut SourceSet) -> Request {
         program: arguments.program.clone(),
         only,
         targets: wanted_targets(&arguments.target),
-        clip: arguments.clip,
+        conventions: arguments.conventions.chosen(),
         shard: arguments.shard,
     }
 }

@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::{features, stream};
-use crate::bundle::{Clip, Language, Stage};
+use crate::bundle::{Conventions, Language, Stage};
 use crate::compose::{self, Composed, Keep, Mangle, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use crate::parse::words::is_word;
@@ -147,8 +147,8 @@ pub struct Context {
     pub graph: Graph,
     pub settings: Settings,
     pub options: Options,
-    /// The clip space of the file's program, or else the default.
-    pub clip: Clip,
+    /// Those of the file's program, or else the defaults.
+    pub conventions: Conventions,
     permutation: Option<String>,
 }
 
@@ -172,7 +172,7 @@ fn of_permutation(diagnostics: Diagnostics, permutation: Option<&str>) -> Diagno
 /// The settings of a composition, as chosen.
 struct Chosen {
     settings: Settings,
-    clip: Clip,
+    conventions: Conventions,
     /// A note that names them.
     permutation: Option<String>,
     /// Whether the axes come from a manifest.
@@ -248,8 +248,8 @@ impl Input {
         }
         chosen.warnings.append(&mut composed.warnings);
         composed.warnings = chosen.warnings;
-        let Chosen { settings, clip, permutation, .. } = chosen;
-        Ok((composed, Context { graph, settings, options, clip, permutation }))
+        let Chosen { settings, conventions, permutation, .. } = chosen;
+        Ok((composed, Context { graph, settings, options, conventions, permutation }))
     }
 
     /// The language asked for.
@@ -349,7 +349,7 @@ impl Input {
             (!parts.is_empty()).then(|| format!("with the settings `{}`", parts.join(",")));
         Ok(Chosen {
             settings,
-            clip: Clip::default(),
+            conventions: Conventions::default(),
             permutation,
             declared: false,
             axes: Vec::new(),
@@ -386,7 +386,7 @@ impl Input {
             program.name
         ));
         let axes = program.space.axes().iter().map(|axis| axis.name.clone()).collect();
-        let (clip, warnings) = (program.clip, broken.chain(both).collect());
-        Ok(Chosen { settings, clip, permutation, declared: true, axes, warnings })
+        let (conventions, warnings) = (program.conventions, broken.chain(both).collect());
+        Ok(Chosen { settings, conventions, permutation, declared: true, axes, warnings })
     }
 }

@@ -41,7 +41,7 @@ pub fn write_glsl(
         source.info,
         &options,
         &pipeline,
-        BoundsCheckPolicies::default(),
+        bounds_policies(source, version),
     )
     .and_then(|mut writer| writer.write());
     let mut info = written.map_err(|error| text.explain(error))?;
@@ -52,6 +52,15 @@ pub fn write_glsl(
     let is_asked = text.contains(&format!("uniform uint {FIRST_INSTANCE};"));
     native.first_instance = is_asked.then(|| FIRST_INSTANCE.to_owned());
     Ok(Emitted { bytes: text.into_bytes(), native })
+}
+
+/// naga checks loads of textures, which needs the number of their levels. GLSL has a function for
+/// it from 4.30.
+fn bounds_policies(source: &Source<'_>, version: Version) -> BoundsCheckPolicies {
+    match version {
+        Version::Desktop(430..) => source.bounds_policies(),
+        _ => BoundsCheckPolicies::default(),
+    }
 }
 
 /// Words that extensions reserve, and that compilers of GLSL refuse whether an extension is enabled
@@ -94,7 +103,7 @@ fn writer_options(
 ) -> Result<Options, String> {
     let mut options = Options {
         version,
-        writer_flags: match source.clip {
+        writer_flags: match source.conventions.clip {
             Clip::Wgpu => WriterFlags::ADJUST_COORDINATE_SPACE,
             Clip::Native => WriterFlags::empty(),
         },

@@ -1,6 +1,6 @@
 //! Writes a valid module in each output language, one file a language.
 //!
-//! Unless [`Clip::Native`] is asked for, all targets keep WebGPU's conventions, so that one
+//! Unless [`Clip::Native`](crate::bundle::Clip) is asked for, all targets keep WebGPU's conventions, so that one
 //! host-side path serves them: NDC depth is [0, 1], NDC y points up, texture and framebuffer rows
 //! start at the top.
 //! - `spirv`: as written; the host gives a viewport of negative height, as wgpu does.
@@ -34,8 +34,9 @@ pub use reflect::reflect;
 
 use naga::ShaderStage;
 use naga::back::glsl::Version;
+use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 
-use crate::bundle::{self, Clip, Native, Target};
+use crate::bundle::{self, Bounds, Conventions, Native, Target};
 use crate::compose::{Composed, Part, PartKind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::validate::{Validated, guard, on_large_stack};
@@ -128,8 +129,27 @@ pub struct Source<'a> {
     pub entry: &'a str,
     /// Index of the entry point in the module.
     pub index: usize,
-    /// The clip space of the output.
-    pub clip: Clip,
+    /// What else the output is asked for.
+    pub conventions: Conventions,
+}
+
+impl Source<'_> {
+    /// Whether the output checks indices and loops.
+    pub fn is_restricted(&self) -> bool {
+        self.conventions.bounds == Bounds::Restrict
+    }
+
+    /// The checks, as naga names them.
+    pub fn bounds_policies(&self) -> BoundsCheckPolicies {
+        let policy = match self.conventions.bounds {
+            Bounds::Unchecked => BoundsCheckPolicy::Unchecked,
+            Bounds::Restrict => BoundsCheckPolicy::Restrict,
+        };
+        let (index, buffer, image_load) = (policy, policy, policy);
+        // Arrays of bindings have no length that an output could ask for.
+        let binding_array = BoundsCheckPolicy::Unchecked;
+        BoundsCheckPolicies { index, buffer, image_load, binding_array }
+    }
 }
 
 /// One shader in one output language.
@@ -162,10 +182,10 @@ pub fn check_targets(
 /// `emit-failed` with the writer's message, `naga-internal` where the writer panicked,
 /// `unknown-entry-point`, and `dependent-override`, whose place [`check_targets`] gives.
 pub fn emit(validated: &Validated, entry: &str, target: Target) -> Result<Emitted, Diagnostic> {
-    emit_for(validated, entry, target, Clip::default())
+    emit_for(validated, entry, target, Conventions::default())
 }
 
-/// [`emit()`] for a clip space.
+/// [`emit()`] with conventions.
 ///
 /// # Errors
 /// As of [`emit()`].
@@ -173,7 +193,7 @@ pub fn emit_for(
     validated: &Validated,
     entry: &str,
     target: Target,
-    clip: Clip,
+    conventions: Conventions,
 ) -> Result<Emitted, Diagnostic> {
     let index = find_target(validated, entry)?;
     let Some(writer) = targets::find(target) else {
@@ -182,7 +202,7 @@ pub fn emit_for(
             format!("there is no writer for target `{target}`"),
         ));
     };
-    on_large_stack(|| guard("", || write_entry(validated, index, writer, clip)))
+    on_large_stack(|| guard("", || write_entry(validated, index, writer, conventions)))
         .and_then(|result| result)
         .map_err(|error| error.note(format!("while writing `{entry}` for target `{target}`")))
 }
@@ -191,11 +211,11 @@ fn write_entry(
     validated: &Validated,
     index: usize,
     writer: &Entry,
-    clip: Clip,
+    conventions: Conventions,
 ) -> Result<Emitted, Diagnostic> {
-    let mut emitted = written_plainly(validated, index, writer, clip)?;
+    let mut emitted = written_plainly(validated, index, writer, conventions)?;
     let is_vertex = validated.module.entry_points[index].stage == ShaderStage::Vertex;
-    emitted.native.clip = is_vertex.then(|| writer.clip.of(clip));
+    emitted.native.clip = is_vertex.then(|| writer.clip.of(conventions.clip));
     Ok(emitted)
 }
 
@@ -203,7 +223,7 @@ fn written_plainly(
     validated: &Validated,
     index: usize,
     writer: &Entry,
-    clip: Clip,
+    conventions: Conventions,
 ) -> Result<Emitted, Diagnostic> {
     let failed = |reason: String| {
         Diagnostic::error(codes::EMIT_FAILED, format!("target `{}`: {reason}", writer.target))
@@ -216,7 +236,7 @@ fn written_plainly(
         stage: point.stage,
         entry: &point.name,
         index,
-        clip,
+        conventions,
     };
     if writer.overrides == Overrides::Kept || validated.module.overrides.is_empty() {
         return (writer.write)(&source).map_err(failed);

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::compositions::Text;
 use super::entry::Entry;
 use super::sink::Sink;
-use crate::bundle::{Clip, Digest, Target};
+use crate::bundle::{Conventions, Digest, Target};
 use crate::cache::{Cache, Job, Made};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::link::{self, Linker, Reason};
@@ -21,7 +21,7 @@ pub struct Compiled {
 /// Compiles texts for the same targets, and passes the units on.
 pub struct Compiler<'a> {
     pub targets: &'a [Target],
-    pub clip: Clip,
+    pub conventions: Conventions,
     pub sink: &'a dyn Sink,
     pub cache: Option<&'a Cache>,
     pub linker: Linker<'a>,
@@ -43,7 +43,7 @@ impl Compiler<'_> {
             entry: &entry.name,
             options: &entry.options,
             targets: self.targets,
-            clip: self.clip,
+            conventions: self.conventions,
         };
         if let Some(found) = self.cache.and_then(|cache| cache.find(job)) {
             return self.pass_on(found?, Vec::new());

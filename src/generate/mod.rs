@@ -28,7 +28,7 @@ pub use trace::{Observer, Run, Told, Trace};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use crate::bundle::{Axis, Clip, Contents, Digest, EntryContents, ProgramContents, Target};
+use crate::bundle::{AskedConventions, Axis, Contents, Digest, EntryContents, ProgramContents, Target};
 use crate::cache::Cache;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::link::Linker;
@@ -54,8 +54,8 @@ pub struct Request {
     pub only: Option<Quoted>,
     /// Only these targets; each program's own targets where none are given.
     pub targets: Vec<Target>,
-    /// The clip space of all programs, instead of what each declares.
-    pub clip: Option<Clip>,
+    /// Conventions of all programs, instead of what each declares.
+    pub conventions: AskedConventions,
     /// Only this part of each program's permutations.
     pub shard: Option<Shard>,
 }
@@ -126,13 +126,13 @@ pub fn generate(
     for (program, points, entries) in prepare_programs(sources, packages, manifest, request)? {
         let points = request.shard.map_or(&*points, |shard| shard.of(&points));
         let targets = request.targets_of(program);
-        let clip = request.clip.unwrap_or(program.clip);
+        let conventions = request.conventions.or(program.conventions);
         let compiler = Compiler {
             targets: &targets,
-            clip,
+            conventions,
             sink: tools.sink,
             cache: tools.cache,
-            linker: Linker::for_clip(&targets, clip),
+            linker: Linker::with(&targets, conventions),
         };
         let make = |batch: &[(&Text, &Entry)]| compiler.make(batch);
         let results = on_large_stack(|| {

@@ -1,7 +1,7 @@
 //! Compiles one root file for one choice of settings, without a manifest. The bytes are those that
 //! a run over a manifest gives for the same settings.
 
-use crate::bundle::{Clip, Language, Target};
+use crate::bundle::{Conventions, Language, Target};
 use crate::compose::{self, Composed, Keep, Options, lean};
 use crate::diagnostic::Diagnostics;
 use crate::link::{self, Linker, Made};
@@ -32,8 +32,8 @@ pub struct Root<'a> {
     pub settings: &'a Settings,
     /// How it is composed.
     pub options: &'a Options,
-    /// The clip space of its outputs.
-    pub clip: Clip,
+    /// What its outputs are asked for beyond their target.
+    pub conventions: Conventions,
 }
 
 /// Name and stage of each entry point of a composed root.
@@ -64,7 +64,7 @@ impl Root<'_> {
         entries: &[(String, naga::ShaderStage)],
         targets: &[Target],
     ) -> Result<Vec<Shader>, Diagnostics> {
-        self.compile_with(entries, &Linker::for_clip(targets, self.clip))
+        self.compile_with(entries, &Linker::with(targets, self.conventions))
     }
 
     /// As [`Self::compile`], with a linker that may have translated some functions before. The

@@ -152,8 +152,8 @@ impl Trace {
 
 fn trace_key(sources: &SourceSet, request: &Request) -> crate::bundle::Hash {
     let only = request.only.as_ref().map(|only| &only.text);
-    let Request { program, targets, clip, shard, .. } = request;
-    let asked = format!("{program:?} {only:?} {targets:?} {clip:?} {shard:?}");
+    let Request { program, targets, conventions, shard, .. } = request;
+    let asked = format!("{program:?} {only:?} {targets:?} {conventions:?} {shard:?}");
     let texts = sources.iter().map(|(_, source)| &*source.text);
     hash_parts(&["run", BUILD, &asked].into_iter().chain(texts).collect::<Vec<_>>())
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{Linker, Reason};
-use crate::bundle::{Artifact, Clip, Target, Unit};
+use crate::bundle::{Artifact, Bounds, Clip, Convention, Conventions, Target, Unit};
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::{self, targets};
@@ -76,8 +76,9 @@ fn rehearse_and_validate(
 ) -> Result<Validated, Diagnostics> {
     let outputs = || {
         let targets = targets.iter().map(|target| target.name().to_owned()).collect();
-        let clip = linker.clip.name().to_owned();
-        Some(validate::Outputs { entry: entry.to_owned(), targets, clip })
+        let Conventions { clip, bounds } = linker.conventions;
+        let [clip, bounds] = [clip.name(), bounds.name()].map(str::to_owned);
+        Some(validate::Outputs { entry: entry.to_owned(), targets, clip, bounds })
     };
     match validate::rehearse(text.lean, text.composed, outputs) {
         // The lean text is validated faster. Only the whole text has places for its mistakes.
@@ -103,7 +104,11 @@ pub fn perform_job(job: &validate::Job) {
     let targets: Vec<Target> =
         outputs.targets.iter().filter_map(|name| Target::find(name)).collect();
     let text = Text { composed: &composed, lean: &composed };
-    let linker = Linker::for_clip(&targets, Clip::find(&outputs.clip).unwrap_or_default());
+    let conventions = Conventions {
+        clip: Clip::find(&outputs.clip).unwrap_or_default(),
+        bounds: Bounds::find(&outputs.bounds).unwrap_or_default(),
+    };
+    let linker = Linker::with(&targets, conventions);
     let _ = on_large_stack(|| compile_whole(&text, &outputs.entry, &targets, &linker));
 }
 
@@ -158,7 +163,7 @@ fn compile_unit(
 ) -> Result<Unit, Diagnostic> {
     let reflection = Arc::new(emit::reflect(validated, entry)?);
     let artifacts = targets.iter().map(|&target| {
-        let artifact = compile_artifact(validated, entry, target, linker.clip);
+        let artifact = compile_artifact(validated, entry, target, linker.conventions);
         let artifact = artifact.map_err(|error| place_error(error, text, entry, target, linker))?;
         Ok((target.name().to_owned(), artifact))
     });
@@ -191,9 +196,9 @@ fn compile_artifact(
     validated: &Validated,
     entry: &str,
     target: Target,
-    clip: Clip,
+    conventions: Conventions,
 ) -> Result<Artifact, Diagnostic> {
-    let emitted = emit::emit_for(validated, entry, target, clip)?;
+    let emitted = emit::emit_for(validated, entry, target, conventions)?;
     let extension = targets::find(target).map_or("", |entry| entry.extension).to_owned();
     Ok(Artifact { bytes: emitted.bytes.into(), extension, native: Arc::new(emitted.native) })
 }

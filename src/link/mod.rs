@@ -69,7 +69,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, PoisonError, RwLock};
 
 use crate::bundle::Language;
-use crate::bundle::{Artifact, Clip, Reflection, Target};
+use crate::bundle::{Artifact, Conventions, Reflection, Target};
 use crate::compose::Composed;
 use crate::limits::LINKED_BYTES;
 use canonical::{Recipe, make_recipe};
@@ -89,7 +89,7 @@ const SIZE_UNSHARED: usize = 2 << 20;
 /// Keeps functions in some targets, each translated once.
 pub struct Linker<'a> {
     targets: &'a [Target],
-    clip: Clip,
+    conventions: Conventions,
     pool: RwLock<Pool>,
     /// Units asked for since the last batch, and how many of them were new.
     asked: AtomicUsize,
@@ -108,13 +108,13 @@ pub struct Linked {
 
 impl<'a> Linker<'a> {
     pub fn new(targets: &'a [Target]) -> Self {
-        Self::for_clip(targets, Clip::default())
+        Self::with(targets, Conventions::default())
     }
 
-    /// A linker whose outputs use the given clip space.
-    pub fn for_clip(targets: &'a [Target], clip: Clip) -> Self {
+    /// A linker whose outputs keep the given conventions.
+    pub fn with(targets: &'a [Target], conventions: Conventions) -> Self {
         let (asked, new) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        Self { targets, clip, pool: RwLock::new(Pool::new(targets)), asked, new }
+        Self { targets, conventions, pool: RwLock::new(Pool::new(targets)), asked, new }
     }
 
     /// The targets that it translates to.
@@ -198,7 +198,7 @@ impl<'a> Linker<'a> {
             return known;
         }
         self.new.fetch_add(1, Ordering::Relaxed);
-        let translated = translate_unit(outline, &recipe, self.targets, self.clip);
+        let translated = translate_unit(outline, &recipe, self.targets, self.conventions);
         let function = match unit {
             canonical::UnitId::Function(function) => Some(outline.declarations[function].name()),
             canonical::UnitId::Entry => None,

@@ -16,7 +16,7 @@ use super::reason::Reason;
 use super::summary::{Summary, summarise_function, used_globals};
 use super::uses::{call_function, show_stubs};
 use crate::bundle::Language;
-use crate::bundle::{Clip, Native, Reflection, Target};
+use crate::bundle::{Conventions, Native, Reflection, Target};
 use crate::compose::Composed;
 use crate::emit;
 use crate::emit::spirv::words;
@@ -57,7 +57,7 @@ pub fn translate_unit(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,
     targets: &[Target],
-    clip: Clip,
+    conventions: Conventions,
 ) -> Result<Translated, Reason> {
     let text = recipe.text(outline)?;
     let stage = Some(match outline.stage {
@@ -69,7 +69,7 @@ pub fn translate_unit(
         return Err(Reason::Large);
     }
     on_large_stack(|| {
-        guard(&composed.text, || translate_inner(outline, recipe, &composed, targets, clip))
+        guard(&composed.text, || translate_inner(outline, recipe, &composed, targets, conventions))
     })
     .unwrap_or(Err(Reason::Refused))
 }
@@ -79,7 +79,7 @@ fn translate_inner(
     recipe: &Recipe<'_>,
     composed: &Composed,
     targets: &[Target],
-    clip: Clip,
+    conventions: Conventions,
 ) -> Result<Translated, Reason> {
     let mut module = parse_recipe(outline, &composed.text)?;
     if !is_bounded(&module) {
@@ -103,7 +103,7 @@ fn translate_inner(
     let reflection = reflection.transpose().map_err(|_| Reason::Refused)?;
     let parsed = Parsed { validated, entry, names, marked };
     let targets =
-        targets.iter().map(|target| write_target(outline, recipe, &parsed, *target, clip));
+        targets.iter().map(|target| write_target(outline, recipe, &parsed, *target, conventions));
     Ok(Translated { summary, targets: targets.collect(), reflection })
 }
 
@@ -157,16 +157,16 @@ fn write_target(
     recipe: &Recipe<'_>,
     parsed: &Parsed,
     target: Target,
-    clip: Clip,
+    conventions: Conventions,
 ) -> Result<Written, Reason> {
     if target == Target::SPIRV {
-        let emitted = emit::emit_for(&parsed.validated, &parsed.entry, target, clip);
+        let emitted = emit::emit_for(&parsed.validated, &parsed.entry, target, conventions);
         let emitted = emitted.map_err(|_| Reason::Refused)?;
         let words = words(&emitted.bytes);
         return Ok(Written::Words { words, native: emitted.native });
     }
     let entry = parsed.marked.module.entry_points.first().map_or(IDLE, |point| &point.name);
-    let emitted = emit::emit_for(&parsed.marked, entry, target, clip);
+    let emitted = emit::emit_for(&parsed.marked, entry, target, conventions);
     let emitted = emitted.map_err(|_| Reason::Refused)?;
     let text = String::from_utf8(emitted.bytes).map_err(|_| Reason::Shape)?;
     let function = match recipe.unit {

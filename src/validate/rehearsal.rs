@@ -25,7 +25,7 @@ pub struct Job {
     pub outputs: Option<Outputs>,
 }
 
-/// An entry point, the targets to write it for, and the clip space, by their names.
+/// An entry point, the targets to write it for, and conventions, by their names.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Outputs {
     /// Name of the entry point.
@@ -34,6 +34,8 @@ pub struct Outputs {
     pub targets: Vec<String>,
     /// Name of the clip space.
     pub clip: String,
+    /// Name of the checks of indices and loops.
+    pub bounds: String,
 }
 
 /// Tries a text in another process if it exceeds the calm part of any limit. Errors have the places

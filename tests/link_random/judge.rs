@@ -171,7 +171,7 @@ impl Case {
             places.extend(own.map(|(entry, _)| (index, entry.clone())));
         }
         random.shuffle(&mut places);
-        let linker = Linker::new(&source.targets);
+        let linker = Linker::with(&source.targets, program.conventions);
         let (mut sound, mut seen) = (Sound::default(), BTreeMap::new());
         for (index, entry) in places {
             let point = &points[index];

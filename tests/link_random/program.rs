@@ -52,7 +52,11 @@ impl Program {
         if draft.has_two_rows {
             targets.retain(|target| glsl_version(*target).is_none());
         }
-        let manifest = manifest(key, &targets, draft.axes);
+        let mut manifest = manifest(key, &targets, draft.axes);
+        // The checks change what writers make of a program, and no result.
+        if seed % 3 == 1 {
+            manifest = manifest.replacen("targets", "bounds = \"restrict\"\ntargets", 1);
+        }
         let text = match language {
             Language::Glsl => format!("#version 450\n{}", draft.items.concat()),
             Language::Wesl => {

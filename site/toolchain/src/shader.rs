@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use lamplight::bundle::{Clip, Language, Native, Reflection, Target};
+use lamplight::bundle::{AskedConventions, Bounds, Convention, Conventions, Language, Native, Reflection, Target};
 use lamplight::compose::{self, Composed, Keep, Mangle, Options};
 use lamplight::diagnostic::{self, Diagnostics, Severity, codes};
 use lamplight::emit::targets;
@@ -44,6 +44,10 @@ pub struct ShaderRequest {
     #[serde(default)]
     #[tsify(optional)]
     pub clip: Option<String>,
+    /// `unchecked` or `restrict`; those of the program where it is left out.
+    #[serde(default)]
+    #[tsify(optional)]
+    pub bounds: Option<String>,
     /// Only this entry point.
     #[serde(default)]
     #[tsify(optional)]
@@ -163,7 +167,7 @@ fn made(request: &ShaderRequest) -> ShaderResult {
 /// What is chosen of a root file.
 struct Chosen {
     settings: Settings,
-    clip: Clip,
+    conventions: Conventions,
     key: Option<String>,
     warnings: Diagnostics,
 }
@@ -178,9 +182,9 @@ fn run(
     let language = language(&request.root);
     let loaded = graph(request.files.as_ref(), &request.root, language, sources)?;
     let graph = &loaded.1;
-    let Chosen { settings, clip, key, mut warnings } = chosen(request, manifest.get(), sources)?;
+    let Chosen { settings, conventions, key, mut warnings } = chosen(request, manifest.get(), sources)?;
     made.key = key;
-    let clip = request.clip.as_deref().map_or(Ok(clip), named_clip)?;
+    let conventions = asked(request)?.or(conventions);
     let options = options(request);
     let explain = |errors: Diagnostics| graph.traced(errors);
     let mut composed = compose::compose(graph, &settings, &options).map_err(explain)?;
@@ -189,7 +193,7 @@ fn run(
     if wanted.is_empty() {
         return Ok(warnings);
     }
-    let shaders = shaders(request, graph, &settings, &options, clip, &composed, &wanted);
+    let shaders = shaders(request, graph, &settings, &options, conventions, &composed, &wanted);
     let shaders = shaders.map_err(explain)?;
     for warning in shaders.iter().flat_map(|shader| &shader.made.warnings) {
         if !warnings.contains(warning) {
@@ -205,11 +209,11 @@ fn shaders(
     graph: &Graph,
     settings: &Settings,
     options: &Options,
-    clip: Clip,
+    conventions: Conventions,
     composed: &Composed,
     wanted: &[Target],
 ) -> Result<Vec<Shader>, Diagnostics> {
-    let root = Root { graph, settings, options, clip };
+    let root = Root { graph, settings, options, conventions };
     let mut entries = entry_points(composed)?;
     if let Some(wanted) = &request.entry {
         entries.retain(|(name, _)| name == wanted);
@@ -219,25 +223,26 @@ fn shaders(
         return Err(vec![diagnostic::Diagnostic::error(codes::NO_ENTRY_POINT, message)]);
     }
     LINKERS.with_borrow_mut(|linkers| {
-        let linker = linkers.of(wanted, clip);
+        let linker = linkers.of(wanted, conventions);
         let made = root.compile_with(&entries, linker);
         linker.forget();
         made
     })
 }
 
-/// Linkers with functions that were translated before, by targets and clip space. An output depends
+/// Linkers with functions that were translated before, by targets and conventions. An output depends
 /// on its text alone, so an edit costs only what it changes.
 #[derive(Default)]
-struct Linkers(Vec<(&'static [Target], Clip, Linker<'static>)>);
+struct Linkers(Vec<(&'static [Target], Conventions, Linker<'static>)>);
 
 impl Linkers {
     /// Lists of targets are few, so each is kept as long as the page.
-    fn of(&mut self, targets: &[Target], clip: Clip) -> &Linker<'static> {
-        let known = self.0.iter().position(|(known, space, _)| *known == targets && *space == clip);
+    fn of(&mut self, targets: &[Target], conventions: Conventions) -> &Linker<'static> {
+        let is_it = |(known, asked): (&[Target], Conventions)| known == targets && asked == conventions;
+        let known = self.0.iter().position(|(known, asked, _)| is_it((known, *asked)));
         let index = known.unwrap_or_else(|| {
             let kept: &'static [Target] = Box::leak(targets.to_vec().into_boxed_slice());
-            self.0.push((kept, clip, Linker::for_clip(kept, clip)));
+            self.0.push((kept, conventions, Linker::with(kept, conventions)));
             self.0.len() - 1
         });
         &self.0[index].2
@@ -275,7 +280,7 @@ fn chosen(
         manifest.features.complete(&mut settings);
         warnings = manifest.features.broken(&settings);
     }
-    Ok(Chosen { settings, clip: Clip::default(), key: None, warnings })
+    Ok(Chosen { settings, conventions: Conventions::default(), key: None, warnings })
 }
 
 fn of_program(
@@ -298,7 +303,7 @@ fn of_program(
     };
     let warnings = program.space.broken(&point).map(broken).collect();
     let key = Some(program.space.key(&point).to_string());
-    Ok(Chosen { settings, clip: program.clip, key, warnings })
+    Ok(Chosen { settings, conventions: program.conventions, key, warnings })
 }
 
 /// The language from the file's extension, as on the command line.
@@ -317,11 +322,23 @@ fn wanted(names: &[String]) -> Result<Vec<Target>, diagnostic::Diagnostic> {
     names.iter().map(one).collect()
 }
 
-fn named_clip(name: &str) -> Result<Clip, Diagnostics> {
-    Clip::find(name).ok_or_else(|| {
-        let message = format!("there is no clip space `{name}`");
-        vec![diagnostic::Diagnostic::error(codes::UNKNOWN_CLIP, message)]
-    })
+fn asked(request: &ShaderRequest) -> Result<AskedConventions, Diagnostics> {
+    let clip = named(&request.clip, codes::UNKNOWN_CLIP, "there is no clip space");
+    let bounds = named::<Bounds>(&request.bounds, codes::UNKNOWN_BOUNDS, "there are no checks");
+    Ok(AskedConventions { clip: clip?, bounds: bounds? })
+}
+
+fn named<C: Convention>(
+    name: &Option<String>,
+    code: &'static diagnostic::Code,
+    unknown: &str,
+) -> Result<Option<C>, Diagnostics> {
+    let Some(name) = name else { return Ok(None) };
+    let found = C::find(name).ok_or_else(|| {
+        let error = diagnostic::Diagnostic::error(code, format!("{unknown} `{name}`"));
+        vec![error.suggest(name, C::names())]
+    });
+    found.map(Some)
 }
 
 fn entry(shader: &Shader, wanted: &[Target]) -> EntryPoint {

@@ -1,11 +1,13 @@
 //! `lamplight compile FILE --target T`: shaders in the languages asked for.
 
+mod asked;
 mod depfile;
 mod files;
 mod target;
 
 pub use files::file_ending;
-pub use target::{Wanted, parse_clip, parse_target, wanted_one, wanted_targets};
+pub use asked::Asked;
+pub use target::{Wanted, parse_target, wanted_one, wanted_targets};
 
 use std::path::PathBuf;
 
@@ -14,7 +16,7 @@ use clap::Args;
 use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::input::{Context, Input, Ready};
 use super::overwrite::Overwrite;
-use crate::bundle::{Clip, Target};
+use crate::bundle::Target;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::generate::{Root, Shader, entry_points};
 use crate::source::SourceSet;
@@ -32,10 +34,8 @@ pub struct Arguments {
     #[arg(long, value_name = "T,...|all", value_delimiter = ',', value_parser = wanted_one)]
     #[arg(required_unless_present = "reflection")]
     target: Vec<Wanted>,
-    /// Clip space: `wgpu`, the same for all targets, or `native`, as each API has it [default: that
-    /// of the file's program in the manifest, or else `wgpu`].
-    #[arg(long, value_name = "SPACE", value_parser = parse_clip)]
-    clip: Option<Clip>,
+    #[command(flatten)]
+    conventions: Asked,
     /// Compile only this entry point; may be given several times.
     #[arg(long, value_name = "NAME")]
     entry: Vec<String>,
@@ -101,8 +101,8 @@ fn compile_file(
 ) -> Result<(SourceSet, Vec<File>), Failure> {
     let Ready { sources, composed, context } = ready;
     let Context { graph, settings, options, .. } = &context;
-    let clip = arguments.clip.unwrap_or(context.clip);
-    let root = Root { graph, settings, options, clip };
+    let conventions = arguments.conventions.chosen().or(context.conventions);
+    let root = Root { graph, settings, options, conventions };
     let shaders = entry_points(&composed).and_then(|entries| {
         let entries = chosen_entries(arguments, file, entries)?;
         root.compile(&entries, targets)

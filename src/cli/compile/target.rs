@@ -1,6 +1,6 @@
 //! Targets by name.
 
-use crate::bundle::{Clip, Target};
+use crate::bundle::Target;
 use crate::diagnostic::nearest_name;
 
 /// What `--target` may name.
@@ -41,13 +41,5 @@ pub fn parse_target(name: &str) -> Result<Target, String> {
         let hint = nearest_name(name, names.iter().copied())
             .map_or(String::new(), |near| format!("; did you mean `{near}`?"));
         format!("no such target{hint} (targets: {})", names.join(", "))
-    })
-}
-
-/// A clip space by name, as an option's value.
-pub fn parse_clip(name: &str) -> Result<Clip, String> {
-    Clip::find(name).ok_or_else(|| {
-        let names: Vec<&str> = Clip::ALL.iter().map(|(name, _)| *name).collect();
-        format!("no such clip space (clip spaces: {})", names.join(", "))
     })
 }

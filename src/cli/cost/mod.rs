@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
+use super::compile::Asked;
 use super::failure::{DiagnosticForm, Failure};
 use super::input::Input;
 use super::overwrite::Overwrite;
@@ -59,6 +60,8 @@ pub struct Arguments {
     mali: Vec<String>,
     #[command(flatten)]
     input: Input,
+    #[command(flatten)]
+    conventions: Asked,
     /// Instead, a covering set of the permutations of each program, or of the one that `--program`
     /// names: few permutations in which every pair of values occurs.
     #[arg(long, conflicts_with = "subjects")]

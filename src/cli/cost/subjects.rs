@@ -9,7 +9,7 @@ use super::super::progress::Bar;
 use super::super::variants;
 use super::Arguments;
 use crate::bundle::key::DEFAULT;
-use crate::bundle::{Axis, Clip, Language, Stage, Target};
+use crate::bundle::{Axis, Language, Stage, Target};
 use crate::catalogue::{self, Item, Kind};
 use crate::compose::{Composed, PartKind};
 use crate::cost::pipeline::Known;
@@ -105,7 +105,8 @@ fn file_subjects(
     let Ready { sources, composed, context } =
         arguments.input.compose(file, SourceSet::default(), form)?;
     let Context { graph, settings, options, .. } = &context;
-    let root = Root { graph, settings, options, clip: Clip::default() };
+    let conventions = arguments.conventions.chosen().or(context.conventions);
+    let root = Root { graph, settings, options, conventions };
     let of_sources = |errors| Failure::Input(sources.clone(), context.explain(errors));
     let entries = entry_points(&composed).map_err(of_sources)?;
     if entries.is_empty() {
@@ -214,8 +215,12 @@ fn covering_subjects(arguments: &Arguments) -> Result<Vec<Subject>, Failure> {
     };
     let mut subjects = Vec::new();
     for name in names {
-        let targets = vec![Target::SPIRV];
-        let request = Request { program: Some(name.clone()), targets, ..Request::default() };
+        let request = Request {
+            program: Some(name.clone()),
+            targets: vec![Target::SPIRV],
+            conventions: arguments.conventions.chosen(),
+            ..Request::default()
+        };
         let language = asked_language(arguments);
         let (_, found) = permutations_of(&mut sources, &packages, &manifest, &request, language)?;
         subjects.extend(found.into_iter().map(|mut subject| {
@@ -236,6 +241,7 @@ fn permutation_subject(arguments: &Arguments, key: &str) -> Result<Subject, Fail
         program: Some(program),
         only: Some(Quoted::whole(&sources, id)),
         targets: vec![Target::SPIRV],
+        conventions: arguments.conventions.chosen(),
         ..Request::default()
     };
     let subjects =

@@ -112,7 +112,7 @@ pub fn write_open(source: &Source<'_>, writer: &Entry) -> Option<Result<Emitted,
             stage: source.stage,
             entry: &point.name,
             index: source.index,
-            clip: source.clip,
+            conventions: source.conventions,
         };
         finish_open((writer.write)(&source)?, &opens, writer)
     }))

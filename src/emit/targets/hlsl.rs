@@ -100,8 +100,8 @@ fn writer_options(source: &Source<'_>) -> Result<Options, String> {
     let mut options = Options {
         shader_model: ShaderModel::V5_1,
         fake_missing_bindings: false,
-        restrict_indexing: false,
-        force_loop_bounding: false,
+        restrict_indexing: source.is_restricted(),
+        force_loop_bounding: source.is_restricted(),
         ..Options::default()
     };
     for (binding, _, _) in assign_slots(source, Numbering::Author) {
@@ -112,7 +112,12 @@ fn writer_options(source: &Source<'_>) -> Result<Options, String> {
         let group = SamplerIndexBufferKey { group: binding.group };
         options.binding_map.insert(
             binding,
-            BindTarget { space, register: binding.binding, ..BindTarget::default() },
+            BindTarget {
+                space,
+                register: binding.binding,
+                restrict_indexing: source.is_restricted(),
+                ..BindTarget::default()
+            },
         );
         options.sampler_buffer_binding_map.insert(
             group,

@@ -37,7 +37,8 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
         lang_version: (2, 0),
         per_entry_point_map: BTreeMap::from([(source.entry.to_owned(), entry_resources(source)?)]),
         fake_missing_bindings: false,
-        force_loop_bounding: false,
+        bounds_check_policies: source.bounds_policies(),
+        force_loop_bounding: source.is_restricted(),
         ..Options::default()
     };
     let pipeline = PipelineOptions {

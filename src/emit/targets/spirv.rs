@@ -1,11 +1,14 @@
 //! SPIR-V 1.0, for every version of Vulkan.
 //!
 //! Descriptor set and binding are the author's group and binding. Names are kept for debuggers;
-//! no source text and no path is. Loops and indices are as written, without inserted checks.
+//! no source text and no path is. Loops and indices are as written,
+//! unless [`Bounds::Restrict`] is asked for.
 
 use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 
 use crate::bundle::Target;
+#[cfg(doc)]
+use crate::bundle::Bounds;
 use crate::emit::slots::{Numbering, native_reflection};
 use crate::emit::spirv::{HEADER_WORDS, Instruction, bytes, instructions, op};
 use crate::emit::{Emitted, Entry, Judge, Overrides, Source, clip};
@@ -28,7 +31,8 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     let options = Options {
         lang_version: (1, 0),
         flags: WriterFlags::DEBUG | WriterFlags::LABEL_VARYINGS,
-        force_loop_bounding: false,
+        bounds_check_policies: source.bounds_policies(),
+        force_loop_bounding: source.is_restricted(),
         ..Options::default()
     };
     let pipeline =

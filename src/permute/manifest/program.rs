@@ -4,8 +4,8 @@ use toml::de::DeTable;
 
 use super::reader::{Name, Reader, Value};
 use super::{axes, lists, names};
-use crate::bundle::{Clip, Target};
-use crate::diagnostic::{Diagnostic, Severity, codes};
+use crate::bundle::{Bounds, Convention, Conventions, Target};
+use crate::diagnostic::{Code, Diagnostic, Severity, codes};
 use crate::permute::axis::Axis;
 use crate::permute::space::{Constraint, Lists, Space, TooComplex};
 use crate::permute::{lint, report};
@@ -24,8 +24,8 @@ pub struct Program {
     pub glsl: Option<Glsl>,
     /// In the order declared; all, where the manifest names none.
     pub targets: Vec<Target>,
-    /// The clip space of its outputs.
-    pub clip: Clip,
+    /// What its outputs are asked for beyond their target.
+    pub conventions: Conventions,
     /// Its permutations.
     pub space: Space,
     /// A list of the keys that engines asked for: only these are wanted, and those of `include`.
@@ -73,6 +73,7 @@ const KEYS: &[&str] = &[
     "glsl",
     "targets",
     "clip",
+    "bounds",
     "axis",
     "constraint",
     "include",
@@ -105,7 +106,7 @@ pub fn read_program(reader: &mut Reader, name: &Name, value: &Value) -> Option<P
     let usage = table.get("usage").and_then(|value| read_file(reader, value, "`usage`"));
     let targets =
         table.get("targets").map_or(Target::ALL.to_vec(), |value| read_targets(reader, value));
-    let clip = table.get("clip").map_or(Some(Clip::default()), |value| read_clip(reader, value));
+    let conventions = read_conventions(reader, table);
     let limit =
         table.get("limit").map_or(Some(LIMITS.permutations), |value| read_limit(reader, value));
     let undeclared =
@@ -113,7 +114,7 @@ pub fn read_program(reader: &mut Reader, name: &Name, value: &Value) -> Option<P
     let mut space = read_space(reader, table, &what, span)?;
     space.undeclared = undeclared;
     let program =
-        Program { name, doc, wesl, glsl, targets, clip: clip?, space, usage, limit: limit?, span };
+        Program { name, doc, wesl, glsl, targets, conventions, space, usage, limit: limit?, span };
     check_limit(reader, &program);
     (self::error_count(reader) == errors).then_some(program)
 }
@@ -171,15 +172,34 @@ fn read_target(reader: &mut Reader, value: &Value) -> Option<Target> {
     found
 }
 
-fn read_clip(reader: &mut Reader, value: &Value) -> Option<Clip> {
-    let text = reader.string(value, "`clip`")?;
-    let found = Clip::find(&text.text);
+/// The conventions of a program. Where a name is wrong, the error is kept and the default stands.
+fn read_conventions(reader: &mut Reader, table: &DeTable) -> Conventions {
+    let clip = table.get("clip").and_then(|value| {
+        let unknown = (codes::UNKNOWN_CLIP, "there is no clip space", "clip spaces");
+        read_convention(reader, value, "`clip`", unknown)
+    });
+    let bounds = table.get("bounds").and_then(|value| {
+        let unknown = (codes::UNKNOWN_BOUNDS, "there is no choice of checks", "checks");
+        read_convention::<Bounds>(reader, value, "`bounds`", unknown)
+    });
+    Conventions { clip: clip.unwrap_or_default(), bounds: bounds.unwrap_or_default() }
+}
+
+/// `unknown` is the code of an unknown name, the beginning of its message, and what the names are.
+fn read_convention<C: Convention>(
+    reader: &mut Reader,
+    value: &Value,
+    key: &str,
+    unknown: (&'static Code, &str, &str),
+) -> Option<C> {
+    let text = reader.string(value, key)?;
+    let found = C::find(&text.text);
     if found.is_none() {
-        let names = || Clip::ALL.iter().map(|(name, _)| *name);
-        let message = format!("there is no clip space `{}`", text.text);
-        let unknown = Diagnostic::error(codes::UNKNOWN_CLIP, message).at(text.span, "not one");
-        let known = format!("clip spaces: {}", names().collect::<Vec<_>>().join(", "));
-        reader.problems.push(unknown.suggest(&text.text, names()).note(known));
+        let (code, message, known) = unknown;
+        let known = format!("{known}: {}", C::names().collect::<Vec<_>>().join(", "));
+        let error = Diagnostic::error(code, format!("{message} `{}`", text.text));
+        let error = error.at(text.span, "not one").suggest(&text.text, C::names());
+        reader.problems.push(error.note(known));
     }
     found
 }

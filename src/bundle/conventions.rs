@@ -1,0 +1,81 @@
+//! What an output is asked for beyond its target.
+
+/// What an author chooses by name, in a manifest and on the command line.
+pub trait Convention: Copy + PartialEq + 'static {
+    /// All choices by their names. The first is the default.
+    const ALL: &'static [(&'static str, Self)];
+
+    /// The one of that name.
+    fn find(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, choice)| *choice)
+    }
+
+    /// Its name.
+    fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, choice)| *choice == self).map_or("", |(name, _)| name)
+    }
+
+    /// All names.
+    fn names() -> impl Iterator<Item = &'static str> {
+        Self::ALL.iter().map(|(name, _)| *name)
+    }
+}
+
+/// Clip space as an author may ask for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum Clip {
+    /// WebGPU's, in every target. Where an API has another one, the output converts positions.
+    #[default]
+    Wgpu,
+    /// The API's own. Outputs do not convert the author's positions.
+    Native,
+}
+
+impl Convention for Clip {
+    const ALL: &'static [(&'static str, Self)] = &[("wgpu", Self::Wgpu), ("native", Self::Native)];
+}
+
+/// What an output does about indices beyond the end of an array, texture coordinates beyond the
+/// texture of `textureLoad`, and loops that do not end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum Bounds {
+    /// Nothing beyond what the author wrote.
+    #[default]
+    Unchecked,
+    /// Indices and coordinates are clamped to the last element, and loops end after 2^64 rounds, as
+    /// far as naga's writer of the target has such checks.
+    Restrict,
+}
+
+impl Convention for Bounds {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("unchecked", Self::Unchecked), ("restrict", Self::Restrict)];
+}
+
+/// What an output is asked for beyond its target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub struct Conventions {
+    /// The clip space of vertex stages.
+    pub clip: Clip,
+    /// Checks of indices and loops.
+    pub bounds: Bounds,
+}
+
+/// Conventions that go before those of a program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub struct AskedConventions {
+    /// The clip space of vertex stages.
+    pub clip: Option<Clip>,
+    /// Checks of indices and loops.
+    pub bounds: Option<Bounds>,
+}
+
+impl AskedConventions {
+    /// What is asked for, and the program's own where nothing is.
+    pub fn or(self, own: Conventions) -> Conventions {
+        Conventions {
+            clip: self.clip.unwrap_or(own.clip),
+            bounds: self.bounds.unwrap_or(own.bounds),
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! The options for conventions of outputs.
+
+use crate::bundle::{AskedConventions, Bounds, Clip, Convention};
+
+#[derive(Debug, Clone, Copy, clap::Args)]
+pub struct Asked {
+    /// Clip space: `wgpu`, the same for all targets, or `native`, as each API has it [default: that
+    /// of the program in the manifest, or else `wgpu`].
+    #[arg(long, value_name = "SPACE", value_parser = parse_convention::<Clip>)]
+    clip: Option<Clip>,
+    /// Checks: `restrict` clamps indices and coordinates and ends endless loops, `unchecked` adds
+    /// nothing [default: those of the program in the manifest, or else `unchecked`].
+    #[arg(long, value_name = "CHECKS", value_parser = parse_convention::<Bounds>)]
+    bounds: Option<Bounds>,
+}
+
+impl Asked {
+    pub fn chosen(self) -> AskedConventions {
+        AskedConventions { clip: self.clip, bounds: self.bounds }
+    }
+}
+
+/// A convention by name, as an option's value.
+fn parse_convention<C: Convention>(name: &str) -> Result<C, String> {
+    C::find(name).ok_or_else(|| {
+        let names: Vec<&str> = C::names().collect();
+        format!("expected one of: {}", names.join(", "))
+    })
+}
