@@ -55,12 +55,7 @@ const SIGNS: [Signs; 6] = [
         load: Some(".get_width("),
         round: Some("loop_bound"),
     },
-    Signs {
-        target: Target::HLSL,
-        array: Some("min(uint("),
-        load: None,
-        round: Some("loop_bound"),
-    },
+    Signs { target: Target::HLSL, array: Some("min(uint("), load: None, round: Some("loop_bound") },
     Signs { target: Target::GLSL450, array: None, load: Some("clamp("), round: None },
     Signs { target: Target::GLSL330, array: None, load: None, round: None },
     Signs { target: Target::ESSL300, array: None, load: None, round: None },

@@ -1,6 +1,7 @@
 //! What `lamplight cost` says of functions and permutations, for GPUs that this machine lacks.
 
 mod budget;
+mod cached;
 mod offline;
 
 use std::path::Path;
@@ -24,6 +25,8 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("cost::functions_keep_their_budget", budget::functions),
         Trial::test("cost::programs_keep_their_budget", budget::programs),
         Trial::test("cost::record_is_current", budget::record_is_current),
+        Trial::test("cost::figures_are_kept", cached::figures_are_kept),
+        Trial::test("cost::cache_in_its_usual_place", cached::usual_place),
         Trial::test("cost::taps_are_counted", offline::taps_are_counted),
         Trial::test("cost::constants_are_settled", offline::constants_are_settled),
         Trial::test("cost::missing_programs", offline::missing_programs),
@@ -36,7 +39,7 @@ pub fn trials() -> Vec<Trial> {
 
 fn lamplight(arguments: &[&str]) -> Result<Output, Failed> {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
-    command.arg("cost").args(arguments).output().map_err(Failed::from)
+    command.args(["cost", "--no-cache"]).args(arguments).output().map_err(Failed::from)
 }
 
 fn said(output: &Output) -> String {

@@ -81,11 +81,12 @@ fn one(
         return Err(format!("{entry} is compiled as a whole: {whole:?}"));
     }
     let functions = lean.parts.iter().filter(|part| part.kind == PartKind::Function);
-    let functions: Vec<String> =
-        functions.flat_map(|part| &part.names).map(|name| plain(name)).collect();
+    let names = functions.flat_map(|part| &part.names);
+    let functions: Vec<String> = names.map(|name| plain(name)).collect();
     let validated = validate(&lean).map_err(|errors| format!("{errors:?}"))?;
     for target in targets {
-        let whole = emit_for(&validated, entry, *target, conventions).map_err(|error| error.message)?.bytes;
+        let whole = emit_for(&validated, entry, *target, conventions);
+        let whole = whole.map_err(|error| error.message)?.bytes;
         let linked = &made.unit.targets[target.name()].bytes;
         let (whole, linked) = match *target {
             Target::SPIRV => (opcodes(&whole), opcodes(linked)),
@@ -108,11 +109,8 @@ fn one(
         let missing = whole.difference(&linked).find(is_function);
         let more = linked.difference(&whole).next();
         if let Some(found) = missing.or(more) {
-            let which = match missing.is_some() {
-                true => "the linked output lacks this declaration of the whole one",
-                false => "only the linked output has this declaration",
-            };
-            return Err(format!("{entry} in {target}: {which}: {found}"));
+            let which = if missing.is_some() { "lacking" } else { "only" };
+            return Err(format!("{entry} in {target}: {which} in the linked output: {found}"));
         }
     }
     Ok(())

@@ -9,12 +9,12 @@
     clippy::wrong_self_convention
 )]
 
+mod bounds;
 mod browser;
 mod bundle;
 mod catalogue;
 mod compose_glsl;
 mod compose_wesl;
-mod bounds;
 mod conventions;
 mod cost;
 mod determinism;

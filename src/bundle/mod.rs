@@ -24,8 +24,8 @@ mod store;
 mod target;
 mod usage;
 
-pub use conventions::{AskedConventions, Bounds, Clip, Convention, Conventions};
 pub use contents::{Artifact, Axis, Contents, Digest, EntryContents, Hash, ProgramContents, Unit};
+pub use conventions::{AskedConventions, Bounds, Clip, Convention, Conventions};
 pub use diff::{Change, Difference, diff};
 pub use directory::{BlobFile, blob_files};
 pub use directory_writer::{DirectoryWriter, write_directory};

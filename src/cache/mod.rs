@@ -48,7 +48,7 @@ struct Counted {
 }
 
 /// The first words of the names of records.
-const KINDS: [&str; 5] = ["errors", "judged", "runs", "units", "warnings"];
+const KINDS: [&str; 6] = ["costs", "errors", "judged", "runs", "units", "warnings"];
 
 const MOST_FAILURES: usize = 8;
 

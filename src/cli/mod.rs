@@ -4,6 +4,7 @@
 //! comparison failed, 4 the environment lacks something.
 
 mod bundle;
+mod cached;
 mod catalogue;
 mod check;
 mod compile;

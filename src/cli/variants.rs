@@ -7,12 +7,14 @@ use clap::Args;
 
 use serde::Serialize;
 
+use super::cached::Cached;
 use super::cost;
 use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::overwrite::Overwrite;
 use super::progress::Bar;
 use super::terminal::stdout;
 use crate::catalogue::cost::{PATH, SHOWN, is_record, package_costs};
+use crate::cost::Meter;
 use crate::cost::device::Device;
 use crate::cost::permutations::Change;
 use crate::diagnostic::{Diagnostics, nearest_name};
@@ -55,6 +57,8 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", requires = "cost", num_args = 0..=1)]
     record: Option<Option<PathBuf>>,
     #[command(flatten)]
+    cached: Cached,
+    #[command(flatten)]
     overwrite: Overwrite,
 }
 
@@ -81,6 +85,7 @@ pub fn run_variants(
     let record = arguments.record.as_ref();
     let record =
         record.map(|file| record_path(file.as_deref(), path, &packages, &devices)).transpose()?;
+    let cache = arguments.cached.open(path)?;
     let tell = |program: &Program| {
         let mut report = counted_report(program);
         if arguments.compose || arguments.compile {
@@ -90,12 +95,8 @@ pub fn run_variants(
             bar.clear();
             composed.map_err(|diagnostics| Failure::Input(sources.clone(), diagnostics))?;
         }
-        let changes = match devices.as_slice() {
-            [] => Vec::new(),
-            devices => {
-                cost::axis_changes(&mut sources, &packages, &manifest, &program.name, devices)?
-            }
-        };
+        let meter = Meter { devices: &devices, cache: cache.as_ref() };
+        let changes = cost::axis_changes(&mut sources, &packages, &manifest, &program.name, meter)?;
         Ok(Told { report, changes })
     };
     let reports = manifest.programs.iter().map(tell).collect::<Result<Vec<Told>, Failure>>()?;

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::cached::Cached;
 use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::judged::{Inputs, Judges};
 use super::overwrite::{Overwrite, tell_waiting, write_failure};
@@ -13,7 +14,7 @@ use super::partial;
 use super::progress::Bar;
 use super::terminal::stderr;
 use crate::bundle::{self, Bundle, Contents, DirectoryWriter};
-use crate::cache::{Cache, Folder, Storage};
+use crate::cache::Cache;
 use crate::generate::{
     Generated, Judged, Memory, Observer, Request, Run, Sink, Summary, Told, Tools, Trace, generate,
 };
@@ -33,14 +34,9 @@ pub struct Places {
     /// The folder of the bundle, or a single file whose name ends in `.lamplight`.
     #[arg(short, long, value_name = "DIR", default_value = "bundle")]
     pub out: PathBuf,
-    /// Folder for results that later runs need not compute again [default: `lamplight-cache` in
-    /// the package's cargo target folder, or else in the user's cache folder].
-    #[arg(long, value_name = "DIR")]
-    cache: Option<PathBuf>,
-    /// Do not read or write the cache.
-    #[arg(long, conflicts_with_all = ["cache", "store"])]
-    no_cache: bool,
-    #[arg(long, value_name = "ADDRESS", help = store::HELP)]
+    #[command(flatten)]
+    cached: Cached,
+    #[arg(long, value_name = "ADDRESS", help = store::HELP, conflicts_with = "no_cache")]
     store: Option<String>,
     #[command(flatten)]
     overwrite: Overwrite,
@@ -88,7 +84,7 @@ impl Work {
             manifest,
             observer,
             cache: open_cache(places, &path)?,
-            cache_folder: places.cache.clone(),
+            cache_folder: places.cached.cache.clone(),
             judges: None,
             path,
             replace: places.overwrite.replace(),
@@ -237,14 +233,7 @@ impl Work {
 }
 
 fn open_cache(places: &Places, manifest: &Path) -> Result<Option<Cache>, Failure> {
-    if places.no_cache {
-        return Ok(None);
-    }
-    let folder = places.cache.clone().or_else(|| project::cache_folder(manifest));
-    let mut storages: Vec<Box<dyn Storage>> = Vec::new();
-    if let Some(folder) = folder {
-        storages.push(Box::new(Folder::new(folder)?));
-    }
+    let mut storages = places.cached.storages(Some(manifest))?;
     if let Some(address) = &places.store {
         storages.push(store::open(address).map_err(Failure::environment)?);
     }

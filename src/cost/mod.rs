@@ -13,6 +13,7 @@ pub mod baseline;
 pub mod counts;
 pub mod device;
 pub mod gpu;
+mod known;
 mod made;
 pub mod mali;
 pub mod permutations;
@@ -27,6 +28,7 @@ use naga::valid::{ValidationFlags, Validator};
 use rayon::prelude::*;
 
 use crate::bundle::{Language, Stage};
+use crate::cache::Cache;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::kernel::{ENTRY, varying_modules};
 use crate::validate::{CAPABILITIES, Validated, on_large_stack};
@@ -110,15 +112,25 @@ pub fn stages_subject(name: &str, mut known: Vec<Known>) -> Result<Subject, Stri
     Ok(Subject { name: name.to_owned(), stages, pipeline, empty: None })
 }
 
+/// What subjects are measured with.
+#[derive(Clone, Copy)]
+pub struct Meter<'a> {
+    /// The GPUs.
+    pub devices: &'a [Device],
+    /// What was measured before.
+    pub cache: Option<&'a Cache>,
+}
+
 /// Measures every subject on every device, in their order. Equal pipelines are compiled once.
 ///
 /// # Errors
 /// The driver's message where it refuses a pipeline, with the subject's name.
 pub fn measure_subjects(
-    devices: &[Device],
+    meter: Meter<'_>,
     subjects: &[Subject],
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Vec<Cost>, String> {
+    let Meter { devices, cache } = meter;
     let distinct = Distinct::of(subjects);
     let jobs: Vec<(&Device, &Pipeline, &str)> = devices
         .iter()
@@ -126,7 +138,7 @@ pub fn measure_subjects(
         .collect();
     let (done, total) = (AtomicUsize::new(0), jobs.len());
     let one = |(device, pipeline, name): &(&Device, &Pipeline, &str)| {
-        let figures = device.measure(pipeline);
+        let figures = known::figures(device, pipeline, cache);
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
         figures.map_err(|reason| format!("`{name}` on {}: {reason}", device.gpu.name))
     };

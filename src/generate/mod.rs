@@ -28,7 +28,9 @@ pub use trace::{Observer, Run, Told, Trace};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use crate::bundle::{AskedConventions, Axis, Contents, Digest, EntryContents, ProgramContents, Target};
+use crate::bundle::{
+    AskedConventions, Axis, Contents, Digest, EntryContents, ProgramContents, Target,
+};
 use crate::cache::Cache;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::link::Linker;

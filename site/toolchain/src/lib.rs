@@ -7,6 +7,7 @@
 mod choose;
 mod diagnostic;
 mod library;
+mod linkers;
 mod number;
 mod package;
 mod picture;

@@ -1,14 +1,14 @@
 //! Composition and outputs.
 
-use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use lamplight::bundle::{AskedConventions, Bounds, Convention, Conventions, Language, Native, Reflection, Target};
+use lamplight::bundle::{
+    AskedConventions, Bounds, Convention, Conventions, Language, Native, Reflection, Target,
+};
 use lamplight::compose::{self, Composed, Keep, Mangle, Options};
 use lamplight::diagnostic::{self, Diagnostics, Severity, codes};
 use lamplight::emit::targets;
 use lamplight::generate::{Root, Shader, entry_points};
-use lamplight::link::Linker;
 use lamplight::lint;
 use lamplight::permute::{Manifest, Program, Settings};
 use lamplight::resolve::Graph;
@@ -19,6 +19,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 
 use crate::choose::parsed;
 use crate::diagnostic::{Diagnostic, diagnostics};
+use crate::linkers::LINKERS;
 use crate::package::{Files, Value, graph, manifest, packages};
 use crate::{Answer, answer};
 
@@ -182,7 +183,8 @@ fn run(
     let language = language(&request.root);
     let loaded = graph(request.files.as_ref(), &request.root, language, sources)?;
     let graph = &loaded.1;
-    let Chosen { settings, conventions, key, mut warnings } = chosen(request, manifest.get(), sources)?;
+    let Chosen { settings, conventions, key, mut warnings } =
+        chosen(request, manifest.get(), sources)?;
     made.key = key;
     let conventions = asked(request)?.or(conventions);
     let options = options(request);
@@ -228,29 +230,6 @@ fn shaders(
         linker.forget();
         made
     })
-}
-
-/// Linkers with functions that were translated before, by targets and conventions. An output depends
-/// on its text alone, so an edit costs only what it changes.
-#[derive(Default)]
-struct Linkers(Vec<(&'static [Target], Conventions, Linker<'static>)>);
-
-impl Linkers {
-    /// Lists of targets are few, so each is kept as long as the page.
-    fn of(&mut self, targets: &[Target], conventions: Conventions) -> &Linker<'static> {
-        let is_it = |(known, asked): (&[Target], Conventions)| known == targets && asked == conventions;
-        let known = self.0.iter().position(|(known, asked, _)| is_it((known, *asked)));
-        let index = known.unwrap_or_else(|| {
-            let kept: &'static [Target] = Box::leak(targets.to_vec().into_boxed_slice());
-            self.0.push((kept, conventions, Linker::with(kept, conventions)));
-            self.0.len() - 1
-        });
-        &self.0[index].2
-    }
-}
-
-thread_local! {
-    static LINKERS: RefCell<Linkers> = RefCell::default();
 }
 
 fn options(request: &ShaderRequest) -> Options {

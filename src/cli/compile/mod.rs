@@ -5,8 +5,8 @@ mod depfile;
 mod files;
 mod target;
 
-pub use files::file_ending;
 pub use asked::Asked;
+pub use files::file_ending;
 pub use target::{Wanted, parse_target, wanted_one, wanted_targets};
 
 use std::path::PathBuf;

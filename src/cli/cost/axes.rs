@@ -5,28 +5,33 @@ use super::super::text;
 use super::measure_costs;
 use super::subjects::permutations_of;
 use crate::bundle::{Language, Target};
-use crate::cost::device::Device;
+use crate::cost::Meter;
 use crate::cost::permutations::{self, Change, Spread};
 use crate::generate::Request;
 use crate::permute::Manifest;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
 
-/// What each value of each axis of a program changes, over all its permutations.
+/// What each value of each axis of a program changes, over all its permutations. Nothing where no
+/// GPU is asked for.
 pub fn axis_changes(
     sources: &mut SourceSet,
     packages: &Packages,
     manifest: &Manifest,
     program: &str,
-    devices: &[Device],
+    meter: Meter<'_>,
 ) -> Result<Vec<Change>, Failure> {
+    if meter.devices.is_empty() {
+        return Ok(Vec::new());
+    }
     let request = Request {
         program: Some(program.to_owned()),
         targets: vec![Target::SPIRV],
         ..Request::default()
     };
-    let (axes, subjects) = permutations_of(sources, packages, manifest, &request, Language::Wesl)?;
-    Ok(permutations::value_changes(&axes, &measure_costs(devices, &subjects)?))
+    let (axes, subjects) =
+        permutations_of(sources, packages, manifest, &request, Language::Wesl, meter.cache)?;
+    Ok(permutations::value_changes(&axes, &measure_costs(meter, &subjects)?))
 }
 
 /// The table of changes: medians, and the range of the instructions.

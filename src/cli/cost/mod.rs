@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
+use super::cached::Cached;
 use super::compile::Asked;
 use super::failure::{DiagnosticForm, Failure};
 use super::input::Input;
@@ -27,7 +28,7 @@ use crate::cost::baseline::{Baseline, Rise};
 use crate::cost::device::Device;
 use crate::cost::gpu::{self, GPUS, Gpu};
 use crate::cost::statistics::FIGURES;
-use crate::cost::{self, Cost, Subject};
+use crate::cost::{self, Cost, Meter, Subject};
 use crate::diagnostic::nearest_name;
 use crate::generate::Progress;
 use crate::input::read_file;
@@ -89,6 +90,8 @@ pub struct Arguments {
     /// Print a JSON array of objects with both.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    cached: Cached,
     #[command(flatten)]
     overwrite: Overwrite,
 }
@@ -154,9 +157,11 @@ pub fn run_cost(arguments: Arguments, opened: Opened, form: DiagnosticForm) -> R
     }
     let recorded = arguments.baseline.as_deref().filter(|_| !arguments.record);
     let recorded = recorded.map(recorded_in).transpose()?.flatten();
+    let cache = arguments.cached.open(arguments.manifest.as_deref())?;
     let subjects = subjects::asked_subjects(&arguments, form)?;
     let devices = opened.map_err(Failure::environment)?;
-    let costs = measure_costs(&devices, &subjects)?;
+    let meter = Meter { devices: &devices, cache: cache.as_ref() };
+    let costs = measure_costs(meter, &subjects)?;
     let driver = devices.first().map_or("", |device| &device.driver);
     print_costs(&arguments, driver, &costs)?;
     let Some(path) = &arguments.baseline else { return Ok(()) };
@@ -171,10 +176,10 @@ pub fn run_cost(arguments: Arguments, opened: Opened, form: DiagnosticForm) -> R
     }
 }
 
-fn measure_costs(devices: &[Device], subjects: &[Subject]) -> Result<Vec<Cost>, Failure> {
+fn measure_costs(meter: Meter<'_>, subjects: &[Subject]) -> Result<Vec<Cost>, Failure> {
     let bar = Bar::new();
     let progress = |done, total| bar.show(Progress { stage: "compiling".to_owned(), done, total });
-    let costs = cost::measure_subjects(devices, subjects, &progress);
+    let costs = cost::measure_subjects(meter, subjects, &progress);
     bar.clear();
     costs.map_err(Failure::input)
 }

@@ -11,7 +11,7 @@ use crate::catalogue::cost::{AxisCost, Chip, Costs, FIGURES, SHOWN};
 use crate::catalogue::{self, Item, quality};
 use crate::cost::device::Device;
 use crate::cost::permutations::Change;
-use crate::cost::{self, Cost};
+use crate::cost::{self, Cost, Meter};
 use crate::project;
 use crate::proof::library::{Library, lock_sources};
 use crate::proof::quality::{FUNCTION, quality_module};
@@ -24,7 +24,7 @@ pub fn record_costs(opened: Opened) -> Result<Costs, Failure> {
     let items: Vec<&Item> = modules.iter().flat_map(|module| &module.items).collect();
     let mut functions = Vec::new();
     subjects::function_subjects(&items, &[], Language::Wesl, &mut functions)?;
-    let measured = measure_costs(&devices, &functions)?;
+    let measured = measure_costs(uncached(&devices), &functions)?;
     Ok(Costs {
         driver: devices.first().map_or_else(String::new, |device| device.driver.clone()),
         gpus: devices.iter().map(chip_of).collect(),
@@ -32,6 +32,11 @@ pub fn record_costs(opened: Opened) -> Result<Costs, Failure> {
         axes: of_axes(&devices)?,
         expressions: of_expressions(&devices)?,
     })
+}
+
+/// What is recorded is always measured.
+fn uncached(devices: &[Device]) -> Meter<'_> {
+    Meter { devices, cache: None }
 }
 
 fn chip_of(device: &Device) -> Chip {
@@ -81,7 +86,7 @@ fn of_expressions(devices: &[Device]) -> Result<BTreeMap<String, [i64; FIGURES.l
         let subject = cost::function_subject(&group.key(entry), &module, FUNCTION);
         subjects.push(subject.map_err(|error| told(vec![error]))?);
     }
-    let costs = measure_costs(shown_device(devices), &subjects)?;
+    let costs = measure_costs(uncached(shown_device(devices)), &subjects)?;
     Ok(costs.iter().map(|cost| (cost.name.clone(), figures_row(cost))).collect())
 }
 
@@ -109,7 +114,7 @@ fn of_axes(devices: &[Device]) -> Result<Vec<AxisCost>, Failure> {
     let mut axes = Vec::new();
     for program in &manifest.programs {
         let name = &program.name;
-        let changes = axis_changes(&mut sources, &packages, &manifest, name, shown)?;
+        let changes = axis_changes(&mut sources, &packages, &manifest, name, uncached(shown))?;
         axes.extend(changes.into_iter().map(|change| axis_cost(name, change)));
     }
     Ok(axes)

@@ -10,6 +10,7 @@ use super::super::variants;
 use super::Arguments;
 use crate::bundle::key::DEFAULT;
 use crate::bundle::{Axis, Language, Stage, Target};
+use crate::cache::Cache;
 use crate::catalogue::{self, Item, Kind};
 use crate::compose::{Composed, PartKind};
 use crate::cost::pipeline::Known;
@@ -222,7 +223,8 @@ fn covering_subjects(arguments: &Arguments) -> Result<Vec<Subject>, Failure> {
             ..Request::default()
         };
         let language = asked_language(arguments);
-        let (_, found) = permutations_of(&mut sources, &packages, &manifest, &request, language)?;
+        let (_, found) =
+            permutations_of(&mut sources, &packages, &manifest, &request, language, None)?;
         subjects.extend(found.into_iter().map(|mut subject| {
             subject.name = format!("{name} {}", subject.name);
             subject
@@ -244,8 +246,8 @@ fn permutation_subject(arguments: &Arguments, key: &str) -> Result<Subject, Fail
         conventions: arguments.conventions.chosen(),
         ..Request::default()
     };
-    let subjects =
-        permutations_of(&mut sources, &packages, &manifest, &request, asked_language(arguments));
+    let language = asked_language(arguments);
+    let subjects = permutations_of(&mut sources, &packages, &manifest, &request, language, None);
     subjects?.1.pop().ok_or_else(|| {
         Failure::input(format!("the permutation `{key}` has no stages in this language"))
     })
@@ -258,10 +260,11 @@ pub fn permutations_of(
     manifest: &Manifest,
     request: &Request,
     language: Language,
+    cache: Option<&Cache>,
 ) -> Result<(Vec<Axis>, Vec<Subject>), Failure> {
     let (memory, bar) = (Memory::default(), Bar::new());
     let progress = |progress| bar.show(progress);
-    let tools = Tools { sink: &memory, cache: None, progress: &progress };
+    let tools = Tools { sink: &memory, cache, progress: &progress };
     let generated = generate(sources, packages, manifest, request, &tools);
     bar.clear();
     let generated =

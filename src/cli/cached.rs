@@ -1,0 +1,39 @@
+//! The options for the cache.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::failure::Failure;
+use crate::cache::{Cache, Folder, Storage};
+use crate::project;
+
+#[derive(Debug, Args)]
+pub struct Cached {
+    /// Folder for results that later runs need not compute again [default: `lamplight-cache` in
+    /// the package's cargo target folder, or else in the user's cache folder].
+    #[arg(long, value_name = "DIR")]
+    pub cache: Option<PathBuf>,
+    /// Do not read or write the cache.
+    #[arg(long, conflicts_with = "cache")]
+    pub no_cache: bool,
+}
+
+impl Cached {
+    /// The cache of a package, or of the current folder where there is no manifest.
+    pub fn open(&self, manifest: Option<&Path>) -> Result<Option<Cache>, Failure> {
+        let storages = self.storages(manifest)?;
+        Ok((!storages.is_empty()).then(|| Cache::new(storages)))
+    }
+
+    /// The folder of the cache. There is none where nobody names one and there is no place for it.
+    pub fn storages(&self, manifest: Option<&Path>) -> Result<Vec<Box<dyn Storage>>, Failure> {
+        if self.no_cache {
+            return Ok(Vec::new());
+        }
+        let usual = || project::cache_folder(manifest.unwrap_or(Path::new(".")));
+        let folder = self.cache.clone().or_else(usual);
+        let storage = |folder| Ok::<Box<dyn Storage>, Failure>(Box::new(Folder::new(folder)?));
+        folder.map(storage).transpose().map(|storage| storage.into_iter().collect())
+    }
+}
