@@ -12,8 +12,8 @@ use crate::permute::Manifest;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
 
-/// What each value of each axis of a program changes, over all its permutations. Nothing where no
-/// GPU is asked for.
+/// What each value of each axis of a program changes, over all its permutations; in WESL where it
+/// has that. Nothing where no GPU is asked for.
 pub fn axis_changes(
     sources: &mut SourceSet,
     packages: &Packages,
@@ -29,8 +29,13 @@ pub fn axis_changes(
         targets: vec![Target::SPIRV],
         ..Request::default()
     };
+    let found = manifest.programs.iter().find(|known| known.name == program);
+    let language = match found.is_some_and(|program| program.wesl.is_none()) {
+        true => Language::Glsl,
+        false => Language::Wesl,
+    };
     let (axes, subjects) =
-        permutations_of(sources, packages, manifest, &request, Language::Wesl, meter.cache)?;
+        permutations_of(sources, packages, manifest, &request, language, meter.cache)?;
     Ok(permutations::value_changes(&axes, &measure_costs(meter, &subjects)?))
 }
 

@@ -108,6 +108,9 @@ pub fn workspace_symbols(server: &Server, whole: &Whole, query: &str, most: usiz
         });
         for declaration in shown {
             let name = units.spelt(declaration.name);
+            if is_guard(units, file, declaration) {
+                continue;
+            }
             if found.len() >= most || !name.to_lowercase().contains(query) {
                 continue;
             }
@@ -124,6 +127,12 @@ pub fn workspace_symbols(server: &Server, whole: &Whole, query: &str, most: usiz
         }
     }
     found
+}
+
+/// Whether a macro stands for nothing: it keeps a file from being included twice.
+fn is_guard(units: &Units, file: usize, declaration: &Declaration) -> bool {
+    let behind = declaration.place.end..declaration.range.end;
+    declaration.kind == Kind::Macro && text_of(units.module(file), &behind).trim().is_empty()
 }
 
 /// `textDocument/signatureHelp`: every form of the function or macro that is called.
