@@ -208,10 +208,10 @@ pub(super) fn checksum(bytes: &[u8]) -> Hash {
     shortened_hash(&blake3::hash(bytes))
 }
 
-/// Lower-case hexadecimal.
 const DIGITS: [char; 16] =
     ['0', '1', '2', '3', '4', '5', '6', '7', '8', '9', 'a', 'b', 'c', 'd', 'e', 'f'];
 
+/// Lower-case hexadecimal.
 pub(crate) fn to_hex(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(2 * bytes.len());
     for byte in bytes {

@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+
+use rayon::prelude::*;
 
 use super::adapt::adapt_text;
 use super::attributes;
@@ -30,33 +31,18 @@ pub fn judge_texts(texts: &[&str], progress: &(dyn Fn(usize) + Sync)) -> Refusal
     let clang = Clang::open()?;
     let texts: Vec<Text<'_>> = texts.iter().copied().enumerate().collect();
     let batches = divide_batches(&texts);
-    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let outcome = Mutex::new(Ok(Vec::new()));
-    std::thread::scope(|scope| {
-        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
-            scope.spawn(|| {
-                while let Some(batch) = batches.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    add_refusals(&outcome, judge_batch(&clang, batch));
-                    progress(done.fetch_add(batch.len(), Ordering::Relaxed) + batch.len());
-                }
-            });
-        }
+    let done = AtomicUsize::new(0);
+    let judged = batches.par_iter().map(|batch| {
+        let refusals = judge_batch(&clang, batch);
+        progress(done.fetch_add(batch.len(), Ordering::Relaxed) + batch.len());
+        refusals
     });
-    let mut refusals = outcome.into_inner().unwrap_or_else(PoisonError::into_inner)?;
+    let mut refusals = judged.collect::<Result<Vec<_>, Missing>>()?.concat();
     refusals.sort();
     Ok(refusals)
 }
 
 type Refusals = Result<Vec<Refusal>, Missing>;
-
-fn add_refusals(outcome: &Mutex<Refusals>, found: Refusals) {
-    let mut outcome = outcome.lock().unwrap_or_else(PoisonError::into_inner);
-    match (outcome.as_mut(), found) {
-        (Ok(refusals), Ok(found)) => refusals.extend(found),
-        (Ok(_), Err(missing)) => *outcome = Err(missing),
-        (Err(_), _) => {}
-    }
-}
 
 /// Judges some texts. Each has a number, by which refusals name it.
 ///

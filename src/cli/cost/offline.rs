@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use serde_json::json;
 
 use super::super::failure::{DiagnosticForm, Failure};
+use super::super::terminal::stdout;
 use super::super::text;
 use super::{Arguments, subjects};
-use crate::cli::terminal::stdout;
 use crate::cost::Subject;
 use crate::cost::counts::{Counts, KINDS, count_optimised};
 use crate::cost::mali::{self, MALIOC, Variant};

@@ -4,8 +4,8 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::Output;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+
+use rayon::prelude::*;
 
 use super::interface::{Interface, Part, Role};
 use crate::metal::adapt::adapt_text;
@@ -47,25 +47,16 @@ pub fn build_program(texts: &[&str]) -> Result<Built, Missing> {
     let clang = Clang::open()?;
     let mut entries: Vec<_> = texts.iter().map(|text| Interface::read(text)).collect();
     let units = text_units(texts, &entries);
-    let (next, objects) = (AtomicUsize::new(0), Mutex::new(Ok(Vec::new())));
-    std::thread::scope(|scope| {
-        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
-            scope.spawn(|| {
-                loop {
-                    let index = next.fetch_add(1, Ordering::Relaxed);
-                    let compiled = match (index, units.get(index.wrapping_sub(1))) {
-                        (0, _) => compile_runtime(&clang),
-                        (_, Some(unit)) => compile_unit(&clang, texts, unit),
-                        (_, None) => break,
-                    };
-                    add_objects(&objects, compiled);
-                }
-            });
-        }
+    // The first job is the program around the units.
+    let jobs: Vec<Option<&Vec<Text<'_>>>> =
+        [None].into_iter().chain(units.iter().map(Some)).collect();
+    let compiled = jobs.par_iter().map(|job| match job {
+        None => compile_runtime(&clang),
+        Some(unit) => compile_unit(&clang, texts, unit),
     });
-    let objects = objects.into_inner().unwrap_or_else(PoisonError::into_inner)?;
+    let objects = compiled.collect::<Result<Vec<_>, Missing>>()?;
     let mut names = Vec::new();
-    for object in objects {
+    for object in objects.into_iter().flatten() {
         match object {
             Object::Compiled(name) => names.push(name),
             Object::Refused(text, errors) => entries[text] = Err(errors),
@@ -84,15 +75,6 @@ enum Object {
 }
 
 type Objects = Result<Vec<Object>, Missing>;
-
-fn add_objects(all: &Mutex<Objects>, found: Objects) {
-    let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
-    match (all.as_mut(), found) {
-        (Ok(objects), Ok(found)) => objects.extend(found),
-        (Ok(_), Err(missing)) => *all = Err(missing),
-        (Err(_), _) => {}
-    }
-}
 
 /// A text that is compiled: its index, and its interface.
 type Text<'t> = (usize, &'t Interface);
