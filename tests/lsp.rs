@@ -7,6 +7,7 @@ mod format;
 mod glsl;
 mod glsl_names;
 mod incremental;
+mod members;
 mod session;
 
 use std::fs;
@@ -29,6 +30,7 @@ const TRIALS: &[(&str, Run)] = &[
     ("definition", definition),
     ("references_and_rename", references_and_rename),
     ("completion", completion),
+    ("members", members::found),
     ("actions", actions),
     ("inactive", inactive),
     ("permutation", permutation),

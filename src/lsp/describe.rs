@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
+use super::members::members_at;
 use super::package::{Modules, Opened, Symbol};
 use super::place::{self, Lines};
 use super::{Server, glsl, look};
@@ -17,7 +18,9 @@ pub fn hover_at(server: &mut Server, parameters: &Value) -> Result<Value, String
     if glsl::is_asked(server, parameters) {
         return glsl::hover_at(server, parameters);
     }
-    let Some((modules, symbol, span)) = server.symbol(parameters)? else { return Ok(Value::Null) };
+    let Some((modules, symbol, span)) = server.symbol(parameters)? else {
+        return hover_member(server, parameters);
+    };
     let document = server.document(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
     let text = match symbol {
@@ -44,6 +47,27 @@ pub fn hover_at(server: &mut Server, parameters: &Value) -> Result<Value, String
         }
     };
     let Some(text) = text else { return Ok(Value::Null) };
+    let lines = Lines::new(&modules.sources.get(span.source).text);
+    Ok(json!({
+        "contents": { "kind": "markdown", "value": text },
+        "range": lines.range(span.range()),
+    }))
+}
+
+/// The members that the name behind a point may mean, each with its struct.
+fn hover_member(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+    let Some((modules, node, byte)) = server.asked_module(parameters)? else {
+        return Ok(Value::Null);
+    };
+    let Some((span, found)) = members_at(&modules, node, byte) else { return Ok(Value::Null) };
+    if found.is_empty() {
+        return Ok(Value::Null);
+    }
+    let told = found.iter().map(|member| {
+        let owner = modules.graph.names.text(member.item.name);
+        format!("```wgsl\n{}\n```\n`{}::{owner}`", member.text, member.node.label)
+    });
+    let text = told.collect::<Vec<_>>().join("\n\n");
     let lines = Lines::new(&modules.sources.get(span.source).text);
     Ok(json!({
         "contents": { "kind": "markdown", "value": text },

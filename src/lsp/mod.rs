@@ -12,6 +12,7 @@ mod describe;
 mod format;
 mod glsl;
 mod look;
+mod members;
 mod navigate;
 mod offers;
 mod package;

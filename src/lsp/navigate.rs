@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
+use super::members::members_at;
 use super::package::{Modules, Symbol};
 use super::place::Lines;
 use super::{Server, glsl, told};
@@ -22,14 +23,23 @@ impl Server {
         &mut self,
         parameters: &Value,
     ) -> Result<Option<(Arc<Modules>, Symbol, Span)>, String> {
+        let Some((modules, node, byte)) = self.asked_module(parameters)? else { return Ok(None) };
+        let found = modules
+            .symbol(node, byte as u32)
+            .map(|(symbol, range)| (symbol, modules.graph.nodes[node as usize].module.span(range)));
+        Ok(found.map(|(symbol, span)| (modules, symbol, span)))
+    }
+
+    /// The modules of the package that parameters name, with the module and the byte in it.
+    pub(super) fn asked_module(
+        &mut self,
+        parameters: &Value,
+    ) -> Result<Option<(Arc<Modules>, u32, usize)>, String> {
         let (document, byte) = self.asked(parameters)?;
         let (root, path) = (document.root.clone(), document.path.clone());
         let Some(modules) = self.modules(&root) else { return Ok(None) };
-        let found = modules.node(&path).and_then(|node| {
-            let (symbol, range) = modules.symbol(node, byte as u32)?;
-            Some((symbol, modules.graph.nodes[node as usize].module.span(range)))
-        });
-        Ok(found.map(|(symbol, span)| (modules, symbol, span)))
+        let node = modules.node(&path);
+        Ok(node.map(|node| (modules, node, byte)))
     }
 
     fn location(&self, modules: &Modules, span: Span) -> Option<Value> {
@@ -44,7 +54,14 @@ pub fn definition_at(server: &mut Server, parameters: &Value) -> Result<Value, S
     if glsl::is_asked(server, parameters) {
         return glsl::definition_at(server, parameters);
     }
-    let Some((modules, symbol, _)) = server.symbol(parameters)? else { return Ok(Value::Null) };
+    let Some((modules, symbol, _)) = server.symbol(parameters)? else {
+        let Some((modules, node, byte)) = server.asked_module(parameters)? else {
+            return Ok(Value::Null);
+        };
+        let Some((_, found)) = members_at(&modules, node, byte) else { return Ok(Value::Null) };
+        let places = found.iter().map(|member| member.place);
+        return Ok(places.filter_map(|span| server.location(&modules, span)).collect());
+    };
     let places = modules.declarations(symbol);
     Ok(places.into_iter().filter_map(|span| server.location(&modules, span)).collect())
 }

@@ -159,7 +159,7 @@ fn named_by_macro(units: &Units, files: &BTreeSet<usize>, symbol: Symbol) -> Opt
 /// not known.
 fn why_member_fixed(units: &Units, name: &str, declared: &[Place]) -> Option<String> {
     let is_swizzle = |letters: &&str| name.chars().all(|letter| letters.contains(letter));
-    if name.len() <= 4 && SWIZZLES.iter().any(|letters| is_swizzle(letters)) {
+    if name.len() <= 4 && SWIZZLES.iter().any(is_swizzle) {
         return Some("it may also be a part of a vector".to_owned());
     }
     if name == "length" {
