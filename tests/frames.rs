@@ -5,6 +5,7 @@
 
 mod given;
 mod shipped;
+mod whole;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -66,7 +67,7 @@ pub fn trials() -> Vec<Trial> {
             })
         })
     };
-    PROGRAMS.into_iter().flat_map(on).chain(shipped::trials()).collect()
+    PROGRAMS.into_iter().flat_map(on).chain(shipped::trials()).chain(whole::trials()).collect()
 }
 
 fn run(

@@ -4,6 +4,7 @@
 #include "../color/tonemap.glsl"
 #include "../color/transfer.glsl"
 #include "../lighting/units.glsl"
+#include "../math/noise.glsl"
 
 layout(location = 0) in vec2 in_uv;
 layout(location = 0) out vec4 out_color;
@@ -11,8 +12,8 @@ layout(location = 0) out vec4 out_color;
 layout(set = 0, binding = 0) uniform texture2D light;
 layout(set = 0, binding = 1) uniform sampler light_sampler;
 
-#if EXPOSURE != EXPOSURE_NONE || CURVE == CURVE_REINHARD_EXTENDED || TRANSFER == TRANSFER_PQ
-/// The camera that took the light, and the display that shows it. Its layout is the same in every permutation.
+#if EXPOSURE != EXPOSURE_NONE || CURVE == CURVE_REINHARD_EXTENDED || TRANSFER == TRANSFER_PQ || DITHER
+/// The camera that took the light, and the display that shows it. The layout of the first four is the same in every permutation.
 layout(std140, set = 0, binding = 2) uniform Display {
     /// `exposure=factor`: multiplied with the light.
     float factor;
@@ -22,6 +23,12 @@ layout(std140, set = 0, binding = 2) uniform Display {
     float white;
     /// `transfer=pq`: luminance of white, candelas per square metre.
     float nits;
+#if DITHER
+    /// Steps of the target from 0 to 1: 255 for eight bits.
+    float steps;
+    /// Number of the frame, so that the noise of frames differs.
+    uint frame;
+#endif
 } display;
 #endif
 
@@ -75,5 +82,9 @@ vec3 coded(vec3 color) {
 
 void main() {
     vec4 texel = textureLod(sampler2D(light, light_sampler), in_uv, 0.0);
-    out_color = vec4(coded(toned(exposed(texel.rgb))), texel.a);
+    vec3 color = coded(toned(exposed(texel.rgb)));
+#if DITHER
+    color = dither(color, ign_time(gl_FragCoord.xy, display.frame), display.steps);
+#endif
+    out_color = vec4(color, texel.a);
 }

@@ -107,6 +107,13 @@ struct Head<'a> {
     stop: u8,
 }
 
+/// How long the brackets at the start of the text are, if a name follows them.
+fn array_of_result(text: &str) -> Option<usize> {
+    let end = text.find(']')? + 1;
+    let next = text[end..].trim_start().bytes().next()?;
+    (next == b'[' || next == b'_' || next.is_ascii_alphabetic()).then_some(end)
+}
+
 fn declaration_head(text: &str) -> Head<'_> {
     let bytes = text.as_bytes();
     let (mut at, mut words, mut is_attribute) = (0, Vec::new(), false);
@@ -117,6 +124,8 @@ fn declaration_head(text: &str) -> Head<'_> {
             b'(' if is_attribute => at += text[at..].find(')').map_or(0, |found| found + 1),
             b'<' => at += text[at..].find('>').map_or(0, |found| found + 1),
             b':' if bytes.get(at) == Some(&b':') => at += 1,
+            // GLSL has the length of what a function returns before the function's name.
+            b'[' if let Some(length) = array_of_result(&text[at..]) => at += length,
             b'(' | b'{' | b'=' | b'[' | b';' | b':' => return Head { words, stop: byte },
             // Attributes of WGSL and layouts of GLSL have arguments of their own, which are
             // skipped.

@@ -47,6 +47,9 @@ pub fn number(path: &str) -> Vec<f64> {
         "end" => vec![6.0],
         "exponents" => vec![5.0, 5.0],
         "radius" => vec![2.0],
+        "window" => vec![4.0],
+        "steps" => vec![255.0],
+        "frame" => vec![5.0],
         "level" => vec![0.0],
         _ => vary(0.1, 0.9, 4),
     }

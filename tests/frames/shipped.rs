@@ -29,7 +29,7 @@ const DRAWN_POINTS: usize = 12;
 /// How many of programs that are smaller than `forward`.
 const DRAWN_OF_SMALL: usize = 4;
 /// The size of a frame in pixels.
-const SIZE: [u32; 2] = [96, 48];
+pub const SIZE: [u32; 2] = [96, 48];
 /// Every 29th quad is computed again.
 const STEP: usize = 29;
 /// The least number of fragments of a permutation that must be compared.
@@ -54,7 +54,7 @@ pub fn trials() -> Vec<Trial> {
 }
 
 /// The targets that the environment names, or all except MSL.
-fn targets() -> Result<Vec<Target>, String> {
+pub fn targets() -> Result<Vec<Target>, String> {
     let Ok(names) = std::env::var("LAMPLIGHT_FRAMES_TARGETS") else {
         return Ok(Target::ALL.iter().copied().filter(|one| *one != Target::MSL).collect());
     };
@@ -63,7 +63,7 @@ fn targets() -> Result<Vec<Target>, String> {
 }
 
 /// Every driver and browser that draws the files of some targets.
-fn drivers(targets: &[Target]) -> Result<Vec<Driver>, String> {
+pub fn drivers(targets: &[Target]) -> Result<Vec<Driver>, String> {
     let mut drivers = Vec::new();
     for target in targets {
         let mut found = executors::shipping(*target).peekable();
@@ -138,7 +138,7 @@ fn others_are_noticed() -> Result<(), String> {
 }
 
 /// A driver that draws the files of a target, with the results so far.
-struct Driver {
+pub struct Driver {
     /// The name of the executor.
     name: &'static str,
     target: Target,
@@ -161,8 +161,13 @@ impl Driver {
         Ok(Self { name, target, session, drawn: 0, tally, failures, lacks, telling, time })
     }
 
+    /// What is drawn on what.
+    pub fn told(&self) -> String {
+        format!("as {} on {}", self.target, self.session.adapter())
+    }
+
     /// The targets of both draws: the colours first, then the inputs.
-    fn frame(
+    pub fn frame(
         &mut self,
         bundle: &Bundle,
         of: (&str, Language),
@@ -247,13 +252,9 @@ impl Driver {
 
 impl std::fmt::Display for Driver {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { target, drawn, tally, lacks, .. } = self;
-        write!(
-            f,
-            "as {target} on {}: {drawn} permutations in {:.1} s, {tally}",
-            self.session.adapter(),
-            self.time.as_secs_f64()
-        )?;
+        let Self { drawn, tally, lacks, .. } = self;
+        let (told, seconds) = (self.told(), self.time.as_secs_f64());
+        write!(f, "{told}: {drawn} permutations in {seconds:.1} s, {tally}")?;
         lacks.iter().try_for_each(|(reason, count)| write!(f, "; {count} not drawn: {reason}"))
     }
 }
