@@ -27,7 +27,7 @@ use glsl::{constants_like_members, unused_functions};
 use texts::{NAMES, NAMES_MANIFEST, ROWS, ROWS_MANIFEST, TRAPS, TRAPS_MANIFEST};
 use writers::{
     blocks_beside_structures, entry_points, kept_matrices, kept_names, lacking,
-    matrices_from_values, matrices_of_two_rows, types_like_members,
+    matrices_from_values, matrices_of_two_rows, returned_arrays, types_like_members,
     variables_named_after_structures,
 };
 
@@ -38,7 +38,7 @@ type Case = (&'static str, fn() -> Outcome);
 const STEP: usize = 23;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 22] = [
+    let cases: [Case; 23] = [
         ("marks_are_found_in_longer_names", parts::marks_are_found_in_longer_names),
         ("sets_hold_what_was_put_in", parts::sets_hold_what_was_put_in),
         ("a_fragment_is_written_with_other_names", parts::a_fragment_is_written_with_other_names),
@@ -64,6 +64,7 @@ pub fn trials() -> Vec<Trial> {
         ("arrays_of_matrices_of_two_rows", matrices_of_two_rows),
         ("arrays_of_matrices_are_kept", kept_matrices),
         ("arrays_of_matrices_from_values", matrices_from_values),
+        ("functions_that_return_arrays", returned_arrays),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("link::{name}"), case)).collect()
 }

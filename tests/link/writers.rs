@@ -165,6 +165,34 @@ fn made(at: vec2f) -> Turns { var turns: Turns; turns.all[1][0] = at; return tur
     }
 }
 
+/// GLSL has the lengths of arrays that a function returns before the function's name, and after the
+/// names of variables. Such functions are translated once, as all others are.
+pub fn returned_arrays() -> Outcome {
+    let text = "
+const WEIGHTS: array<f32, 2> = array<f32, 2>(0.25, 0.75);
+var<private> kept: array<vec2f, 3>;
+fn weights(x: f32) -> array<f32, 2> { return array<f32, 2>(x * WEIGHTS[0], x * WEIGHTS[1]); }
+fn pairs(x: f32) -> array<array<f32, 2>, 3> {
+    return array<array<f32, 2>, 3>(weights(x), weights(2.0 * x), weights(3.0 * x));
+}
+@fragment fn fs_main(@location(0) at: vec2f, @location(1) @interpolate(flat) i: u32) -> @location(0) vec4f {
+    var all = pairs(at.x);
+    kept[i % 3u] = at;
+    return vec4f(all[i % 3u][0], all[1][i % 2u], kept[1]);
+}
+@vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
+";
+    // GLSL 3.30 and GLSL ES 3.00 have no arrays of arrays.
+    let targets = r#"targets = ["spirv", "glsl450", "hlsl", "msl", "wgsl"]"#;
+    let made = judged(text, targets)?;
+    match made.summary.whole.first() {
+        None => Ok(()),
+        Some(whole) => {
+            Err(format!("expected every text to be linked; as a whole: {whole:?}").into())
+        }
+    }
+}
+
 /// Functions that GLSL 3.30 and GLSL ES 3.00 lack are refused at their line, for those targets only.
 pub fn lacking() -> Outcome {
     let text = "
