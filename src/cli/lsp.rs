@@ -18,6 +18,7 @@ use crate::lsp::wire::{self, Incoming};
 use crate::lsp::{Library, Server};
 use crate::output::{self, Replace};
 use crate::source::{Embedded, Files};
+use crate::validate::on_large_stack;
 
 /// Run a language server for WESL, WGSL and GLSL on standard input and output.
 #[derive(Args)]
@@ -38,7 +39,8 @@ pub fn run_lsp(_: Arguments) -> Result<(), Failure> {
             }
         }
     });
-    match serve_editor(&receiver)? {
+    // naga's stack, so that no keystroke waits for another thread to run.
+    match on_large_stack(move || serve_editor(&receiver))? {
         0 => Ok(()),
         _ => Err(Failure::input("the editor left without `shutdown`")),
     }

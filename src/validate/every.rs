@@ -5,7 +5,7 @@
 use std::cell::RefCell;
 use std::collections::VecDeque;
 
-use super::{Validated, is_calm, validate};
+use super::{Validated, is_calm, read_text, validate};
 use crate::bundle::Language;
 use crate::compose::{Composed, PartKind};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, codes};
@@ -26,13 +26,13 @@ const STOPPING: [&Code; 4] =
 /// # Errors
 /// Each mistake once, in the order of the composed text's places.
 pub fn every(composed: &Composed) -> Result<Validated, Diagnostics> {
-    let first = match validate(composed) {
+    // A large text is tried in another process, and so would be each of its parts.
+    let is_calm = is_calm(composed).unwrap_or(false);
+    let first = match if is_calm { read_text(composed) } else { validate(composed) } {
         Ok(validated) => return Ok(validated),
         Err(errors) => errors,
     };
     let stops = |error: &Diagnostic| STOPPING.contains(&error.code);
-    // A large text is tried in another process, and so would be each of its parts.
-    let is_calm = is_calm(composed).unwrap_or(false);
     if !is_calm || composed.parts.len() > PARTS || first.iter().any(stops) {
         return Err(first);
     }
