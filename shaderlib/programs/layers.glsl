@@ -71,7 +71,9 @@ layout(std140, set = 1, binding = 5) uniform Layers {
     float sky_levels;
 } layers;
 
-/// A point of a layered surface, as far as it does not depend on lights.
+/// A point of a layered surface, as far as it does not depend on lights. Every permutation has all
+/// members, so that functions are the same in all of them; without an extension, its members are
+/// neither set nor read, and drivers remove them.
 struct Layered {
     vec3 normal;
     vec3 view;
@@ -83,47 +85,35 @@ struct Layered {
     vec3 f0;
     /// Scale and offset of the base's albedo.
     vec2 dfg;
-#if ANISOTROPY
+    /// `anisotropy`: unit, along the brush.
     vec3 tangent;
     vec3 bitangent;
-    /// Along the tangent and the bitangent.
+    /// `anisotropy`: along the tangent and the bitangent.
     vec2 alphas;
-#endif
-#if CLEARCOAT
+    /// `clearcoat`: unit.
     vec3 coat_normal;
-    /// Share of the light that the coat reflects towards the viewer.
+    /// `clearcoat`: share of the light that the coat reflects towards the viewer.
     float coat_share;
-    /// What the coat's single scattering is multiplied by.
+    /// `clearcoat`: what the coat's single scattering is multiplied by.
     float coat_gain;
-#endif
-#if SHEEN
-    /// Albedo of a white sheen towards the viewer.
+    /// `sheen`: albedo of a white sheen towards the viewer.
     float sheen_view;
-#endif
-#if VOLUME
-    /// Share of the light that the volume lets through.
+    /// `volume`: share of the light that the volume lets through.
     vec3 passing;
-#endif
 };
 
 /// The light around a layered surface: irradiance over pi, or radiance blurred by the roughness.
 struct Around {
     /// Onto the viewer's side.
     vec3 front;
-#if DIFFUSE_TRANSMISSION
-    /// Onto the other side.
+    /// `diffuse_transmission`: onto the other side.
     vec3 back;
-#endif
     /// From the direction that the base mirrors.
     vec3 mirrored;
-#if CLEARCOAT
-    /// From the direction that the coat mirrors.
+    /// `clearcoat`: from the direction that the coat mirrors.
     vec3 coated;
-#endif
-#if TRANSMISSION
-    /// From the directions that are seen through the surface, one for each channel.
+    /// `transmission`: from the directions that are seen through the surface, one for each channel.
     vec3 through;
-#endif
 };
 
 /// The surface at a point.
