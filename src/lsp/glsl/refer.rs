@@ -19,6 +19,9 @@ use crate::resolve::glsl;
 /// Endings of files that are read without being included.
 const EXTENSIONS: &[&str] = &["glsl", "vert", "frag", "comp"];
 
+/// Places that an answer has at most.
+pub const PLACES: usize = 10_000;
+
 /// A package with all of its GLSL files.
 pub struct Whole {
     pub opened: Opened,
@@ -82,7 +85,7 @@ pub fn references_at(server: &mut Server, parameters: &Value) -> Result<Value, S
     let (all, declarations) = asked.whole.units.places(&asked.meant, asked.file);
     let places =
         all.iter().filter(|place| declared != Some(false) || !declarations.contains(place));
-    Ok(places.filter_map(|place| asked.whole.location(server, place)).collect())
+    Ok(places.take(PLACES).filter_map(|place| asked.whole.location(server, place)).collect())
 }
 
 /// Where the file is included whose `#include` stands at the position.

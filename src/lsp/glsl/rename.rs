@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Value, json};
 
-use super::refer::{Asked, asked_at};
+use super::refer::{Asked, PLACES, asked_at};
 use super::text_of;
 use super::units::{Meant, Place, Units, Use};
 use super::words::is_reserved;
@@ -49,6 +49,9 @@ pub fn rename_symbol(server: &mut Server, parameters: &Value) -> Result<Value, S
 fn renamed_places(asked: &Asked) -> Result<Vec<Place>, String> {
     let units = &asked.whole.units;
     let (all, declared) = units.places(&asked.meant, asked.file);
+    if all.len() > PLACES {
+        return Err(format!("more than {PLACES} places name it"));
+    }
     let Some(first) = declared.first() else {
         let is_axis = !all.is_empty();
         let axis = "it is a macro that no file defines, such as an axis, which is named in more \
