@@ -7,6 +7,7 @@ mod format;
 mod glsl;
 mod glsl_names;
 mod incremental;
+mod lines;
 mod members;
 mod session;
 
@@ -42,6 +43,7 @@ const TRIALS: &[(&str, Run)] = &[
     ("cost", cost::recorded),
     ("cost_written", cost::written),
     ("incremental", incremental::as_fresh),
+    ("long_lines", lines::long_lines),
     ("glsl::hover", glsl::hover),
     ("glsl::definition", glsl::definition),
     ("glsl::completion", glsl::completion),

@@ -61,23 +61,38 @@ pub fn byte_of_position(text: &str, position: &Value) -> Option<usize> {
     Some(start + line.len())
 }
 
-/// Lines of a text, so that many positions cost little.
+/// Bytes between two marks.
+const STEP: usize = 256;
+
+/// Lines of a text, so that many positions cost little, in long lines too.
 pub struct Lines<'t> {
     text: &'t str,
     starts: Vec<usize>,
+    /// For each step of the text, the character that it begins in, and the UTF-16 units before that
+    /// character. None in a text of ASCII, where each byte is a unit.
+    marks: Vec<(usize, usize)>,
 }
 
 impl<'t> Lines<'t> {
     pub fn new(text: &'t str) -> Self {
         let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1));
-        Self { text, starts: starts.collect() }
+        let marks = if text.is_ascii() { Vec::new() } else { unit_marks(text) };
+        Self { text, starts: starts.collect(), marks }
     }
 
     /// Line and UTF-16 unit of a byte.
     pub fn units(&self, byte: usize) -> (usize, usize) {
         let byte = self.text.floor_char_boundary(byte.min(self.text.len()));
         let line = self.starts.partition_point(|start| *start <= byte) - 1;
-        (line, self.text[self.starts[line]..byte].encode_utf16().count())
+        (line, self.units_before(byte) - self.units_before(self.starts[line]))
+    }
+
+    /// The UTF-16 units before a character of the text.
+    fn units_before(&self, byte: usize) -> usize {
+        match self.marks.get(byte / STEP) {
+            Some((at, units)) => units + self.text[*at..byte].encode_utf16().count(),
+            None => byte,
+        }
     }
 
     pub fn position(&self, byte: usize) -> Value {
@@ -88,6 +103,18 @@ impl<'t> Lines<'t> {
     pub fn range(&self, range: Range<usize>) -> Value {
         json!({ "start": self.position(range.start), "end": self.position(range.end) })
     }
+}
+
+/// A mark for each step of a text.
+fn unit_marks(text: &str) -> Vec<(usize, usize)> {
+    let (mut last, mut units) = (0, 0);
+    let mark = |step: usize| {
+        let at = text.floor_char_boundary(step);
+        units += text[last..at].encode_utf16().count();
+        last = at;
+        (at, units)
+    };
+    (0..=text.len()).step_by(STEP).map(mark).collect()
 }
 
 /// The identifier around a byte.
