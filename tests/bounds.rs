@@ -3,6 +3,7 @@
 use std::fs;
 
 use lamplight::bundle::{Bundle, Target, blob_files};
+use lamplight::emit::spirv::{Instruction, instructions, words};
 use lamplight::judge;
 use libtest_mimic::{Failed, Trial};
 
@@ -12,8 +13,9 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 2] = [
+    let cases: [Case; 3] = [
         ("checks_by_target", checks_by_target),
+        ("checks_are_measured", checks_are_measured),
         ("checks_are_those_of_the_manifest", checks_are_those_of_the_manifest),
     ];
     let trial = |(name, case): Case| Trial::test(format!("bounds::{name}"), case);
@@ -107,17 +109,13 @@ fn checks_by_target() -> Outcome {
 
 /// How often a module of SPIR-V takes the minimum of unsigned numbers, which clamps an index.
 fn minima(bytes: &[u8]) -> usize {
-    const EXTENDED: u32 = 12;
+    const EXTENDED: u16 = 12;
     const UNSIGNED_MINIMUM: u32 = 38;
-    let words: Vec<u32> =
-        bytes.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
-    let (mut at, mut found) = (5, 0);
-    while let Some(word) = words.get(at) {
-        let is_minimum = word & 0xffff == EXTENDED && words.get(at + 4) == Some(&UNSIGNED_MINIMUM);
-        found += usize::from(is_minimum);
-        at += (word >> 16).max(1) as usize;
-    }
-    found
+    let words = words(bytes);
+    let is_minimum = |found: &Instruction<'_>| {
+        found.op == EXTENDED && found.words.get(4) == Some(&UNSIGNED_MINIMUM)
+    };
+    instructions(&words).filter(is_minimum).count()
 }
 
 /// The option goes before the manifest, the cache keeps the two apart, and `compile` gives what
@@ -148,4 +146,24 @@ fn checks_are_those_of_the_manifest() -> Outcome {
     fs::write(package.path("lamplight.toml"), format!("{MANIFEST}bounds = \"restict\"\n"))?;
     let words = ["error[unknown-bounds]", "lamplight.toml:3:10", "did you mean `restrict`?"];
     expect(&package.run(&["gen"])?, 1, &words)
+}
+
+/// `cost` measures the outputs that are asked for: functions, and stages of files.
+fn checks_are_measured() -> Outcome {
+    let package = Package::new(MANIFEST, SHADER)?;
+    let function =
+        "fn pick(at: u32) -> f32 { var own = array(0.25, 0.5, 0.75); return own[at]; }\n";
+    fs::write(package.path("module.wesl"), function)?;
+    for file in ["module.wesl", "one.wesl"] {
+        let count = |bounds: &str| -> Result<String, Failed> {
+            let said = package.run(&["cost", file, "--spirv", "--bounds", bounds])?;
+            expect(&said, 0, &[])?;
+            Ok(String::from_utf8_lossy(&said.stdout).into_owned())
+        };
+        let counts = [count("unchecked")?, count("restrict")?];
+        if counts[0] == counts[1] {
+            return Err(format!("{file}: checks change nothing:\n{}", counts[0]).into());
+        }
+    }
+    Ok(())
 }

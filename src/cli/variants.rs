@@ -85,7 +85,7 @@ pub fn run_variants(
     let record = arguments.record.as_ref();
     let record =
         record.map(|file| record_path(file.as_deref(), path, &packages, &devices)).transpose()?;
-    let cache = arguments.cached.open(path)?;
+    let cache = if devices.is_empty() { None } else { arguments.cached.open(path)? };
     let tell = |program: &Program| {
         let mut report = counted_report(program);
         if arguments.compose || arguments.compile {

@@ -39,7 +39,8 @@ fn figures_key(device: &Device, pipeline: &Pipeline) -> Hash {
     shortened_hash(&hasher.0.finalize())
 }
 
-/// Hashes what implements [`std::hash::Hash`] with BLAKE3. Every part goes in with its length.
+/// Hashes what implements [`std::hash::Hash`] with BLAKE3. Parts cannot run into each other: a list
+/// begins with its length, and a string ends with a byte that no string has.
 struct Digest(blake3::Hasher);
 
 impl Hasher for Digest {

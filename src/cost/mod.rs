@@ -27,7 +27,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use naga::valid::{ValidationFlags, Validator};
 use rayon::prelude::*;
 
-use crate::bundle::{Language, Stage};
+use crate::bundle::{Conventions, Language, Stage};
 use crate::cache::Cache;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::kernel::{ENTRY, varying_modules};
@@ -75,9 +75,11 @@ pub fn function_subject(
     name: &str,
     module: &naga::Module,
     function: &str,
+    conventions: Conventions,
 ) -> Result<Subject, Diagnostic> {
     let [called, empty] = varying_modules(module, function)?;
-    let pipeline = |module| stage_alone(module).map_err(|reason| cannot_measure(name, &reason));
+    let pipeline =
+        |module| stage_alone(module, conventions).map_err(|reason| cannot_measure(name, &reason));
     Ok(Subject {
         name: name.to_owned(),
         stages: vec![Stage::Fragment],
@@ -86,11 +88,11 @@ pub fn function_subject(
     })
 }
 
-fn stage_alone(module: naga::Module) -> Result<Pipeline, String> {
+fn stage_alone(module: naga::Module, conventions: Conventions) -> Result<Pipeline, String> {
     let info = Validator::new(ValidationFlags::all(), CAPABILITIES).validate(&module);
     let info = info.map_err(|error| error.to_string())?;
     let validated = Validated { language: Language::Wesl, module, info };
-    Pipeline::new(Known::of_module(&validated, ENTRY)?, None)
+    Pipeline::new(Known::of_module(&validated, ENTRY, conventions)?, None)
 }
 
 fn cannot_measure(name: &str, reason: &str) -> Diagnostic {

@@ -5,7 +5,7 @@ use std::ffi::CString;
 
 use naga::ScalarKind;
 
-use crate::bundle::{Binding, Kind, Language, Reflection, Stage, Target, Varying};
+use crate::bundle::{Binding, Conventions, Kind, Language, Reflection, Stage, Target, Varying};
 use crate::diagnostic::Diagnostic;
 use crate::emit;
 use crate::emit::spirv;
@@ -70,14 +70,18 @@ impl Known {
         Ok(Self { words: Words { stage, entry, words, constants: Vec::new() }, reflection })
     }
 
-    /// From an entry point of a module.
+    /// From an entry point of a module, with these conventions.
     ///
     /// # Errors
     /// What the writer of SPIR-V says.
-    pub fn of_module(validated: &Validated, entry: &str) -> Result<Self, String> {
+    pub fn of_module(
+        validated: &Validated,
+        entry: &str,
+        conventions: Conventions,
+    ) -> Result<Self, String> {
         let told = |error: Diagnostic| error.message;
         let reflection = emit::reflect(validated, entry).map_err(told)?;
-        let emitted = emit::emit(validated, entry, Target::SPIRV).map_err(told)?;
+        let emitted = emit::emit_for(validated, entry, Target::SPIRV, conventions).map_err(told)?;
         Self::new(&emitted.native.entry_name, &emitted.bytes, reflection)
     }
 }
@@ -158,7 +162,7 @@ fn partner_stage(text: &str) -> Result<Known, String> {
     let info = naga::valid::Validator::new(flags, CAPABILITIES).validate(&module);
     let info = info.map_err(|error| told(&error))?;
     let validated = Validated { language: Language::Wesl, module, info };
-    Known::of_module(&validated, PARTNER)
+    Known::of_module(&validated, PARTNER, Conventions::default())
 }
 
 const PARTNER: &str = "lamplight_partner";

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 
 use super::super::failure::Failure;
 use super::{Opened, axis_changes, measure_costs, subjects};
-use crate::bundle::Language;
+use crate::bundle::{Conventions, Language};
 use crate::catalogue::cost::{AxisCost, Chip, Costs, FIGURES, SHOWN};
 use crate::catalogue::{self, Item, quality};
 use crate::cost::device::Device;
@@ -22,8 +22,8 @@ pub fn record_costs(opened: Opened) -> Result<Costs, Failure> {
     let devices = opened.map_err(Failure::environment)?;
     let modules = catalogue::library_modules();
     let items: Vec<&Item> = modules.iter().flat_map(|module| &module.items).collect();
-    let mut functions = Vec::new();
-    subjects::function_subjects(&items, &[], Language::Wesl, &mut functions)?;
+    let plain = Conventions::default();
+    let functions = subjects::function_subjects(&items, &[], Language::Wesl, plain)?;
     let measured = measure_costs(uncached(&devices), &functions)?;
     Ok(Costs {
         driver: devices.first().map_or_else(String::new, |device| device.driver.clone()),
@@ -83,7 +83,8 @@ fn of_expressions(devices: &[Device]) -> Result<BTreeMap<String, [i64; FIGURES.l
         groups.iter().flat_map(|group| group.entries.iter().map(move |entry| (group, entry)))
     {
         let module = quality_module(&library, &sources, group, &entry.value).map_err(told)?;
-        let subject = cost::function_subject(&group.key(entry), &module, FUNCTION);
+        let subject =
+            cost::function_subject(&group.key(entry), &module, FUNCTION, Conventions::default());
         subjects.push(subject.map_err(|error| told(vec![error]))?);
     }
     let costs = measure_costs(uncached(shown_device(devices)), &subjects)?;

@@ -9,7 +9,7 @@ use super::super::progress::Bar;
 use super::super::variants;
 use super::Arguments;
 use crate::bundle::key::DEFAULT;
-use crate::bundle::{Axis, Language, Stage, Target};
+use crate::bundle::{Axis, Conventions, Language, Stage, Target};
 use crate::cache::Cache;
 use crate::catalogue::{self, Item, Kind};
 use crate::compose::{Composed, PartKind};
@@ -40,7 +40,9 @@ pub fn asked_subjects(
     let items: Vec<&Item> = modules.iter().flat_map(|module| &module.items).collect();
     let (paths, keys) = separate_paths(arguments, &items, named)?;
     if arguments.subjects.is_empty() || !paths.is_empty() {
-        function_subjects(&items, &paths, asked_language(arguments), &mut subjects)?;
+        let conventions = arguments.conventions.chosen().or(Conventions::default());
+        let language = asked_language(arguments);
+        subjects = function_subjects(&items, &paths, language, conventions)?;
     }
     for key in keys {
         subjects.push(permutation_subject(arguments, key)?);
@@ -111,7 +113,7 @@ fn file_subjects(
     let of_sources = |errors| Failure::Input(sources.clone(), context.explain(errors));
     let entries = entry_points(&composed).map_err(of_sources)?;
     if entries.is_empty() {
-        return module_subjects(file, graph, &composed).map_err(of_sources);
+        return module_subjects(file, graph, &composed, conventions).map_err(of_sources);
     }
     let shaders = root.compile(&entries, &[Target::SPIRV]).map_err(of_sources)?;
     let known = shaders.iter().map(|shader| {
@@ -141,13 +143,15 @@ fn module_subjects(
     file: &Path,
     graph: &Graph,
     composed: &Composed,
+    conventions: Conventions,
 ) -> Result<Vec<Subject>, Diagnostics> {
     let module = every(composed)?.module;
     let own = graph.root_items();
     let functions = composed.parts.iter().filter(|part| part.kind == PartKind::Function);
     let functions = functions.flat_map(|part| &part.names).filter(|name| own.contains(*name));
     let subject = |function: &String| {
-        cost::function_subject(&format!("{} {function}", file.display()), &module, function)
+        let name = format!("{} {function}", file.display());
+        cost::function_subject(&name, &module, function, conventions)
     };
     functions.map(|function| subject(function).map_err(|error| vec![error])).collect()
 }
@@ -157,8 +161,8 @@ pub fn function_subjects(
     items: &[&Item],
     paths: &[&String],
     language: Language,
-    subjects: &mut Vec<Subject>,
-) -> Result<(), Failure> {
+    conventions: Conventions,
+) -> Result<Vec<Subject>, Failure> {
     let library = Library::embedded();
     let functions: Vec<&Item> =
         items.iter().copied().filter(|item| item.kind == Kind::Function).collect();
@@ -174,7 +178,7 @@ pub fn function_subjects(
         let named = |named: &&String| is_below(path, named);
         paths.is_empty() || paths.iter().any(named)
     };
-    let sources = Mutex::new(SourceSet::default());
+    let (sources, mut subjects) = (Mutex::new(SourceSet::default()), Vec::new());
     for item in functions.iter().filter(|item| is_wanted(&item.path())) {
         let path = item.path();
         let Some((module, name)) = path.rsplit_once("::") else { continue };
@@ -186,10 +190,10 @@ pub fn function_subjects(
         };
         let composed =
             library.module(&sources, module, language, &[name.to_owned()]).map_err(of_sources)?;
-        let subject = cost::function_subject(&path, &composed, name);
+        let subject = cost::function_subject(&path, &composed, name, conventions);
         subjects.push(subject.map_err(|diagnostic| of_sources(vec![diagnostic]))?);
     }
-    Ok(())
+    Ok(subjects)
 }
 
 /// The manifest that the arguments name, or that of the folder, or the library's.

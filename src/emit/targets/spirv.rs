@@ -1,14 +1,12 @@
 //! SPIR-V 1.0, for every version of Vulkan.
 //!
 //! Descriptor set and binding are the author's group and binding. Names are kept for debuggers;
-//! no source text and no path is. Loops and indices are as written,
-//! unless [`Bounds::Restrict`] is asked for.
+//! no source text and no path is. Loops and indices are as written, unless
+//! [`Bounds::Restrict`](crate::bundle::Bounds) is asked for.
 
 use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 
 use crate::bundle::Target;
-#[cfg(doc)]
-use crate::bundle::Bounds;
 use crate::emit::slots::{Numbering, native_reflection};
 use crate::emit::spirv::{HEADER_WORDS, Instruction, bytes, instructions, op};
 use crate::emit::{Emitted, Entry, Judge, Overrides, Source, clip};
