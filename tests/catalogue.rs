@@ -1,6 +1,8 @@
 //! The pages and modules that are generated from the library's files are up to date, and the
 //! presets and light probes are valid.
 
+mod plots;
+
 use std::collections::BTreeMap;
 
 use lamplight::catalogue::{self, Kind, preset, probe};
@@ -16,7 +18,7 @@ use crate::snapshot::root;
 const MEND: &str = "run: cargo xtask docs";
 
 pub fn trials() -> Vec<Trial> {
-    vec![
+    let mut trials = vec![
         Trial::test("catalogue::pages_are_up_to_date", pages_are_up_to_date),
         Trial::test("catalogue::modules_are_up_to_date", modules_are_up_to_date),
         Trial::test("catalogue::same_bytes_twice", same_bytes_twice),
@@ -27,7 +29,9 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("catalogue::preset_mistakes", preset_mistakes_are_reported),
         Trial::test("catalogue::preset_fields", preset_numbers_name_fields),
         Trial::test("catalogue::probe_forms_agree", probe_forms_agree),
-    ]
+    ];
+    trials.extend(plots::trials());
+    trials
 }
 
 /// `docs/catalogue` has exactly the pages that `cargo xtask docs` would write now.

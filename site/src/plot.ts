@@ -28,7 +28,7 @@ export function plot(info: PlotInfo, found: CurveResult, at: number): SVGElement
         svg.append(
             s("line", { class: "grid", x1: LEFT, x2: W - RIGHT, y1: y(vy), y2: y(vy) }),
             s("text", { x: LEFT - 6, y: y(vy) + 4, "text-anchor": "end" }, short(vy)),
-            s("text", { x: x(vx), y: H - 18, "text-anchor": "middle" }, short(vx)),
+            s("text", { x: x(vx), y: H - 18, "text-anchor": "middle" }, short(vx) + (info.unit === "degrees" ? "°" : "")),
         );
     }
     svg.append(s("text", { x: (LEFT + W) / 2, y: H - 3, "text-anchor": "middle" }, info.label));
@@ -38,6 +38,17 @@ export function plot(info: PlotInfo, found: CurveResult, at: number): SVGElement
         const band = [...points((i) => curve.double[i] + safe(curve.error[i])),
             ...points((i) => curve.double[i] - safe(curve.error[i])).reverse()];
         const colour = `var(--curve-${index % 5})`;
+        if (info.unit === "integers") {
+            const aside = 4 * (index - (found.curves.length - 1) / 2);
+            found.inputs.forEach((input, i) => {
+                const [px, py] = [x(input) + aside, y(curve.single[i])];
+                svg.append(
+                    s("line", { x1: px, x2: px, y1: y(Math.min(Math.max(0, low), high)), y2: py, stroke: colour }),
+                    s("circle", { cx: px, cy: py, r: 3, fill: colour, class: "stem" }),
+                );
+            });
+            return;
+        }
         svg.append(
             s("polygon", { points: band.join(" "), fill: colour, opacity: 0.18, class: "band" }),
             s("polyline", { points: points((i) => curve.single[i]).join(" "), stroke: colour, class: "curve" }),

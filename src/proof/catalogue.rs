@@ -5,7 +5,7 @@ use std::sync::Mutex;
 
 use super::library::{Library, lock_sources};
 use super::{plots, quality};
-use crate::catalogue::pages::{Contents, catalogue_pages as written};
+use crate::catalogue::pages::{Contents, Drawn, catalogue_pages as written};
 use crate::catalogue::quality::{self as groups, Measured};
 use crate::catalogue::{self, Module, cost, plot, prefix, preset, probe};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -70,11 +70,14 @@ fn measure_quality(sources: &Mutex<SourceSet>) -> Result<Vec<Measured>, Diagnost
     found.into_iter().map(measure).collect()
 }
 
-/// The SVG of every plot, by the path of its function.
-fn draw_plots(sources: &Mutex<SourceSet>, modules: &[Module]) -> Result<Files, Diagnostics> {
+/// Every plot, by the path of its function.
+fn draw_plots(
+    sources: &Mutex<SourceSet>,
+    modules: &[Module],
+) -> Result<BTreeMap<String, Drawn>, Diagnostics> {
     let (executor, library) = (executors::eval::EXECUTOR, Library::embedded());
     let mut session = executor.start().map_err(|_| vec![drawing_stopped()])?;
-    let mut found = Files::new();
+    let mut found = BTreeMap::new();
     for module in modules {
         for (name, plot) in read_plots(sources, &module.path)? {
             let path = format!("{}::{name}", module.path);
@@ -113,9 +116,10 @@ fn draw_plot(
     path: &str,
     plot: &plot::Plot,
     session: &mut dyn Session,
-) -> Result<String, Diagnostics> {
+) -> Result<Drawn, Diagnostics> {
     let curves = plots::plot_curves(library, sources, path, plot, session)?;
-    Ok(plot::draw_plot(path.rsplit("::").next().unwrap_or(path), plot, &curves))
+    let svg = plot::draw_plot(path.rsplit("::").next().unwrap_or(path), plot, &curves);
+    Ok(Drawn { svg, caption: plot.caption() })
 }
 
 fn drawing_stopped() -> Diagnostic {

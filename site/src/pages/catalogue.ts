@@ -77,23 +77,25 @@ async function entry(place: HTMLElement, item: ItemInfo) {
 async function curves(live: HTMLElement, item: ItemInfo) {
     const info = item.plot!;
     const [shown, numbers] = [h("div", { class: "plot" }), h("p", { class: "numbers", "aria-live": "polite" })];
-    const slider = (name: string, from: number, to: number, value: number) => h("input", {
-        type: "range", min: from, max: to, step: (to - from) / 320, value, "aria-label": name, oninput: () => draw(),
+    // Between whole numbers there is nothing to draw.
+    const steps = info.unit === "integers" ? info.to - info.from : 320;
+    const slider = (name: string, from: number, to: number, value: number, count = 320) => h("input", {
+        type: "range", min: from, max: to, step: (to - from) / count, value, "aria-label": name, oninput: () => draw(),
     });
     const span = info.values.length ? Math.max(...info.values) - Math.min(...info.values) || 1 : 1;
-    const x = slider(info.label, info.from, info.to, info.from + 0.4 * (info.to - info.from));
+    const x = slider(info.label, info.from, info.to, info.from + Math.round(0.4 * steps) / steps * (info.to - info.from), steps);
     const own = info.parameter && info.values.length
         ? slider(info.parameter, Math.min(...info.values), Math.max(...info.values, Math.min(...info.values) + span), info.values[Math.floor(info.values.length / 2)])
         : undefined;
     async function draw() {
         const values = own ? [Number(own.value), ...info.values] : info.values;
         const found = await toolchain.call(OWN, "curves", {
-            path: item.path, value: info.value, parameter: info.parameter, values, from: info.from, to: info.to, samples: 321,
+            path: item.path, value: info.value, parameter: info.parameter, values, from: info.from, to: info.to, samples: steps + 1,
         });
         if (!found.curves.length) return numbers.replaceChildren(found.diagnostics[0]?.message ?? "");
         const at = Number(x.value);
         shown.replaceChildren(plot(info, found, at));
-        const index = Math.round(((at - info.from) / (info.to - info.from)) * 320);
+        const index = Math.round(((at - info.from) / (info.to - info.from)) * steps);
         const curve = found.curves[0];
         const error = curve.error[index];
         numbers.textContent = `at ${Number(at.toPrecision(4))}${own ? `, ${info.parameter} ${Number(own.value).toPrecision(3)}` : ""}: `

@@ -76,6 +76,8 @@ pub struct PlotInfo {
     pub label: String,
     pub from: f64,
     pub to: f64,
+    /// `numbers`, `degrees`, or `integers`, between which there is nothing.
+    pub unit: String,
     /// The bounds of the vertical axis, where they are fixed.
     pub low: Option<f64>,
     pub high: Option<f64>,
@@ -138,6 +140,7 @@ fn plotted(plot: &Plot) -> PlotInfo {
         label: plot.x.label.clone(),
         from: plot.x.from,
         to: plot.x.to,
+        unit: plot.x.unit.name().to_owned(),
         low: plot.y.map(|range| range.from),
         high: plot.y.map(|range| range.to),
         parameter: plot.curves.as_ref().map(|curves| curves.name.clone()),

@@ -18,11 +18,18 @@ use super::{Kind, Module};
 use crate::permute::Manifest;
 use markdown::{escaped_prose, table_cell};
 
+/// A plot of a function.
+pub struct Drawn {
+    pub svg: String,
+    /// What is drawn, as Markdown.
+    pub caption: String,
+}
+
 /// What the catalogue shows.
 pub struct Contents<'c> {
     pub modules: &'c [Module],
-    /// SVG by the path of the function: `lighting::spot::cone_hard`.
-    pub plots: &'c BTreeMap<String, String>,
+    /// By the path of the function: `lighting::spot::cone_hard`.
+    pub plots: &'c BTreeMap<String, Drawn>,
     pub manifest: &'c Manifest,
     pub presets: &'c [Preset],
     pub probes: &'c [Probe],
@@ -47,8 +54,8 @@ pub fn catalogue_pages(contents: &Contents) -> BTreeMap<String, String> {
             module::module_page(module, contents.plots, contents.costs),
         );
     }
-    for (path, svg) in contents.plots {
-        files.insert(format!("{}.svg", path.replace("::", "/")), svg.clone());
+    for (path, plot) in contents.plots {
+        files.insert(format!("{}.svg", path.replace("::", "/")), plot.svg.clone());
     }
     for measured in contents.quality {
         if let Some(svg) = cost::quality_picture(measured, contents.costs) {

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use super::super::cost::Costs;
 use super::super::{Item, Kind, Module, SECTIONS};
+use super::Drawn;
 use super::cost;
 use super::markdown::{code_block, escaped_prose, table_cell};
 
@@ -12,7 +13,7 @@ use super::markdown::{code_block, escaped_prose, table_cell};
 const PARAGRAPHS: std::ops::RangeFrom<usize> = 1..;
 
 /// The page: the module's comment, a table of contents, every item.
-pub fn module_page(module: &Module, plots: &BTreeMap<String, String>, costs: &Costs) -> String {
+pub fn module_page(module: &Module, plots: &BTreeMap<String, Drawn>, costs: &Costs) -> String {
     let mut text = format!("# {}\n", module.path);
     for paragraph in &module.doc {
         let _ = write!(text, "\n{}\n", escaped_prose(paragraph));
@@ -24,7 +25,7 @@ pub fn module_page(module: &Module, plots: &BTreeMap<String, String>, costs: &Co
     }
     write_contents(&mut text, module);
     for item in &module.items {
-        write_item(&mut text, item, plots.contains_key(&item.path()));
+        write_item(&mut text, item, plots.get(&item.path()));
         cost::of_function(&mut text, item, costs);
     }
     let up = "../".repeat(module.path.matches("::").count());
@@ -50,7 +51,7 @@ fn write_contents(text: &mut String, module: &Module) {
     }
 }
 
-fn write_item(text: &mut String, item: &Item, plotted: bool) {
+fn write_item(text: &mut String, item: &Item, plot: Option<&Drawn>) {
     let _ = write!(text, "\n## {}\n", escaped_prose(&item.name));
     for paragraph in item.paragraphs() {
         let _ = write!(text, "\n{}\n", escaped_prose(&paragraph));
@@ -59,9 +60,13 @@ fn write_item(text: &mut String, item: &Item, plotted: bool) {
     if let Some(glsl) = &item.glsl {
         let _ = write!(text, "\n{}", code_block("glsl", glsl));
     }
-    if plotted {
+    if let Some(plot) = plot {
         let (_, module) = item.module.rsplit_once("::").unwrap_or(("", &item.module));
-        let _ = write!(text, "\n![{} plotted]({module}/{}.svg)\n", item.name, item.name);
+        let _ = write!(
+            text,
+            "\n![{} plotted]({module}/{}.svg)\n\nPlotted: {}\n",
+            item.name, item.name, plot.caption
+        );
     }
     write_members(text, item);
     for section in &SECTIONS[PARAGRAPHS] {

@@ -9,6 +9,10 @@
 //! note = "cutoff 0.5"                          # what was fixed
 //! ```
 //!
+//! `x`, `y` and `curves` may have a `unit`: `degrees`, or `integers` for `x`, whose values are drawn
+//! as stems. `labels` of `curves` stand for their values; curves that are called red, green and blue
+//! have these colours.
+//!
 //! Functions of the module are called by name, others by their path from the library's root.
 //! The values come from outside: `draw` takes them as curves and returns an SVG.
 
@@ -27,8 +31,30 @@ use super::reader;
 use crate::diagnostic::Diagnostics;
 use crate::source::{SourceId, SourceSet};
 
-/// Points at which a curve is computed.
+/// Points at which a curve over a continuous parameter is computed.
 pub const SAMPLES: usize = 321;
+
+/// What numbers count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Unit {
+    #[default]
+    Numbers,
+    Degrees,
+    /// Whole numbers, with nothing between them.
+    Integers,
+}
+
+impl Unit {
+    /// One word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Numbers => "numbers",
+            Self::Degrees => "degrees",
+            Self::Integers => "integers",
+        }
+    }
+}
 
 /// One plot.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -47,10 +73,12 @@ pub struct Plot {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Axis {
-    /// What is at it, with its unit.
+    /// What is at it, with its unit unless that is given apart.
     pub label: String,
     pub from: f64,
     pub to: f64,
+    #[serde(default)]
+    pub unit: Unit,
 }
 
 /// The bounds of the vertical axis.
@@ -59,6 +87,8 @@ pub struct Axis {
 pub struct Range {
     pub from: f64,
     pub to: f64,
+    #[serde(default)]
+    pub unit: Unit,
 }
 
 /// A second parameter.
@@ -68,13 +98,45 @@ pub struct Curves {
     /// A parameter of the expression.
     pub name: String,
     pub values: Vec<f64>,
+    #[serde(default)]
+    pub unit: Unit,
+    /// Words for the values, in their order.
+    #[serde(default)]
+    pub labels: Vec<String>,
+}
+
+impl Curves {
+    /// What a curve is called.
+    pub fn label(&self, index: usize) -> String {
+        let value = || scale::tick_label(*self.values.get(index)?, self.unit).into();
+        self.labels.get(index).cloned().or_else(value).unwrap_or_default()
+    }
+}
+
+impl Axis {
+    /// How many values it has, including both ends.
+    fn samples(&self) -> usize {
+        match self.unit {
+            Unit::Integers => (self.to - self.from).max(1.0) as usize + 1,
+            Unit::Numbers | Unit::Degrees => SAMPLES,
+        }
+    }
 }
 
 impl Plot {
     /// The main parameter at each sample, from the left.
     pub fn inputs(&self) -> impl Iterator<Item = f64> {
-        let (from, to) = (self.x.from, self.x.to);
-        (0..SAMPLES).map(move |index| from + (to - from) * index as f64 / (SAMPLES - 1) as f64)
+        let (from, to, samples) = (self.x.from, self.x.to, self.x.samples());
+        (0..samples).map(move |index| from + (to - from) * index as f64 / (samples - 1) as f64)
+    }
+
+    /// What is drawn, as Markdown: the expression, and what its variables are.
+    pub fn caption(&self) -> String {
+        let curves = self.curves.as_ref().map_or(String::new(), |curves| {
+            let labels: Vec<String> = (0..curves.values.len()).map(|at| curves.label(at)).collect();
+            format!(", for `{}` = {}", curves.name, labels.join(", "))
+        });
+        format!("`{}` over `x`{curves}", self.value)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use super::Unit;
 use super::scale::{Scale, fitted_bounds, tick_label};
 use super::svg::{BOTTOM, INK, LEFT, RIGHT, TOP, escape_xml, rounded_place, svg_head};
 
@@ -51,17 +52,18 @@ pub fn draw_scatter(title: &str, labels: [&str; 2], points: &[(String, f64, f64)
 fn draw_grid(svg: &mut String, x: &Scale, y: &Scale) {
     let mut lines = String::new();
     let mut numbers = String::new();
-    for value in y.ticks(5.0) {
+    for value in y.ticks(5.0, Unit::Numbers) {
         let at = y.place(value);
         let _ = write!(lines, "M{LEFT} {}H{RIGHT}", rounded_place(at));
         let place = (rounded_place(LEFT - 8.0), rounded_place(at + 4.0));
-        numbers += &number_text(place, "end", &tick_label(value));
+        numbers += &number_text(place, "end", &tick_label(value, Unit::Numbers));
     }
     for power in x.from as i32..=x.to as i32 {
         let at = rounded_place(x.place(f64::from(power)));
         let _ = write!(lines, "M{at} {BOTTOM}V{TOP}");
         let place = (at, rounded_place(BOTTOM + 18.0));
-        numbers += &number_text(place, "middle", &tick_label(f64::from(power).exp2()));
+        numbers +=
+            &number_text(place, "middle", &tick_label(f64::from(power).exp2(), Unit::Numbers));
     }
     let _ = write!(
         svg,

@@ -1,4 +1,4 @@
-//! Draws a plot as SVG: two axes with numbers, and curves.
+//! Draws a plot as SVG: two axes with numbers, and curves or stems.
 //!
 //! Colours have enough contrast on white and on near-black, since a picture in a page cannot
 //! know the page's theme.
@@ -6,7 +6,7 @@
 use std::fmt::Write as _;
 
 use super::scale::{Scale, fitted_bounds, tick_label};
-use super::{Plot, SAMPLES};
+use super::{Curves, Plot, Unit};
 
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 300.0;
@@ -20,25 +20,50 @@ pub(super) const INK: &str = "#7d8794";
 /// A colour and a dash for each curve, in order.
 const CURVES: [(&str, &str); 4] =
     [("#3987e5", ""), ("#e0701b", "8 4"), ("#2da05a", "2 3"), ("#b05fd0", "10 3 2 3")];
+/// Colours of curves with these labels.
+const NAMED: [(&str, &str); 3] = [("red", "#e0474c"), ("green", "#2da05a"), ("blue", "#3987e5")];
 /// Points nearer to a line than this are left out.
 const FLAT: f64 = 0.04;
 
-/// The plot with the values of its curves, each at the [`SAMPLES`] inputs of the plot.
+/// The plot with the values of its curves, each at the inputs of the plot.
 pub fn draw_plot(title: &str, plot: &Plot, curves: &[Vec<f64>]) -> String {
     let (from, to) = plot.y.map_or_else(
         || fitted_bounds(curves.iter().flatten().copied()),
         |range| (range.from, range.to),
     );
-    let x = Scale { from: plot.x.from, to: plot.x.to, start: LEFT, end: RIGHT };
+    // The outermost stems stand within the frame.
+    let room = if plot.x.unit == Unit::Integers { 0.5 } else { 0.0 };
+    let x = Scale { from: plot.x.from - room, to: plot.x.to + room, start: LEFT, end: RIGHT };
     let y = Scale { from, to, start: BOTTOM, end: TOP };
     let mut svg = svg_head(title);
-    draw_axes(&mut svg, &x, &y);
+    draw_axes(&mut svg, (&x, plot.x.unit), (&y, plot.y.map_or(Unit::Numbers, |range| range.unit)));
+    let looks = looks(plot);
     for (index, values) in curves.iter().enumerate() {
-        draw_curve(&mut svg, index, &curve_path(values, &x, &y));
+        let points = curve_points(plot, values, &x, &y);
+        if plot.x.unit == Unit::Integers {
+            draw_stems(&mut svg, looks[index].0, &points, &y, (index, curves.len()));
+        } else {
+            draw_curve(&mut svg, looks[index], &curve_path(&points));
+        }
     }
     draw_captions(&mut svg, title, plot);
     svg.push_str("</svg>\n");
     svg
+}
+
+/// The colour and the dash of each curve.
+fn looks(plot: &Plot) -> Vec<(&'static str, &'static str)> {
+    let count = plot.curves.as_ref().map_or(1, |curves| curves.values.len());
+    let label = |index: usize| plot.curves.as_ref().map(|curves| curves.label(index));
+    let named = |index: usize| {
+        let label = label(index)?;
+        NAMED.iter().find(|(name, _)| *name == label).map(|(_, colour)| *colour)
+    };
+    let of = |index: usize| {
+        let (colour, dashes) = CURVES[index % CURVES.len()];
+        (named(index).unwrap_or(colour), dashes)
+    };
+    (0..count).map(of).collect()
 }
 
 pub(super) fn svg_head(title: &str) -> String {
@@ -49,44 +74,68 @@ pub(super) fn svg_head(title: &str) -> String {
     )
 }
 
-fn draw_axes(svg: &mut String, x: &Scale, y: &Scale) {
+fn draw_axes(svg: &mut String, (x, across): (&Scale, Unit), (y, up): (&Scale, Unit)) {
     let _ = writeln!(svg, "<g stroke=\"{INK}\" stroke-opacity=\"0.25\">");
-    for value in y.ticks(5.0) {
+    for value in y.ticks(5.0, up) {
         let at = rounded_place(y.place(value));
         let _ = writeln!(svg, "<path d=\"M{LEFT} {at}H{RIGHT}\"/>");
     }
-    for value in x.ticks(6.0) {
+    for value in x.ticks(6.0, across) {
         let at = rounded_place(x.place(value));
         let _ = writeln!(svg, "<path d=\"M{at} {BOTTOM}V{TOP}\"/>");
     }
     let _ = writeln!(svg, "</g>\n<g fill=\"{INK}\">");
-    for value in y.ticks(5.0) {
+    for value in y.ticks(5.0, up) {
         let _ = writeln!(
             svg,
             "<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>",
             LEFT - 8.0,
             rounded_place(y.place(value) + 4.0),
-            tick_label(value)
+            tick_label(value, up)
         );
     }
-    for value in x.ticks(6.0) {
+    for value in x.ticks(6.0, across) {
         let _ = writeln!(
             svg,
             "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
             rounded_place(x.place(value)),
             BOTTOM + 18.0,
-            tick_label(value)
+            tick_label(value, across)
         );
     }
     svg.push_str("</g>\n");
 }
 
-fn draw_curve(svg: &mut String, index: usize, path: &str) {
-    let (colour, dashes) = CURVES[index % CURVES.len()];
+fn draw_curve(svg: &mut String, (colour, dashes): (&str, &str), path: &str) {
     let _ = writeln!(
         svg,
         "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\" stroke-linejoin=\"round\"{}/>",
         dash_attribute(dashes)
+    );
+}
+
+/// A line from zero to each value, with a dot at its end. Stems of several curves stand side by
+/// side.
+fn draw_stems(
+    svg: &mut String,
+    colour: &str,
+    points: &[Option<(f64, f64)>],
+    y: &Scale,
+    (index, count): (usize, usize),
+) {
+    let apart = (0.6 * (RIGHT - LEFT) / points.len().max(1) as f64 / count as f64).min(8.0);
+    let aside = (index as f64 - 0.5 * (count - 1) as f64) * apart;
+    let zero = rounded_place(y.place(0f64.clamp(y.from, y.to)));
+    let radius = rounded_place((0.45 * apart).clamp(1.5, 3.5));
+    let (mut lines, mut dots) = (String::new(), String::new());
+    for (x, y) in points.iter().flatten() {
+        let (x, y) = (rounded_place(x + aside), rounded_place(*y));
+        let _ = write!(lines, "M{x} {zero}V{y}");
+        let _ = writeln!(dots, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"/>");
+    }
+    let _ = writeln!(
+        svg,
+        "<path d=\"{lines}\" stroke=\"{colour}\" stroke-width=\"1.5\"/>\n<g fill=\"{colour}\">\n{dots}</g>"
     );
 }
 
@@ -101,9 +150,9 @@ fn draw_captions(svg: &mut String, title: &str, plot: &Plot) {
         "<text x=\"{LEFT}\" y=\"22\" fill=\"{INK}\" font-weight=\"600\">{}</text>",
         escape_xml(title)
     );
+    let stems = plot.x.unit == Unit::Integers;
     let mut right = RIGHT;
-    for (index, text) in legend_entries(plot).iter().enumerate().rev() {
-        let (colour, dashes) = CURVES[index % CURVES.len()];
+    for (text, (colour, dashes)) in legend_entries(plot).iter().zip(looks(plot)).rev() {
         let start = right - 7.0 * text.chars().count() as f64;
         let _ = writeln!(
             svg,
@@ -115,7 +164,7 @@ fn draw_captions(svg: &mut String, title: &str, plot: &Plot) {
         let _ = writeln!(
             svg,
             "<path d=\"{line}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"{}/>",
-            dash_attribute(dashes)
+            dash_attribute(if stems { "" } else { dashes })
         );
         right = start - 44.0;
     }
@@ -128,38 +177,27 @@ fn draw_captions(svg: &mut String, title: &str, plot: &Plot) {
     );
 }
 
-/// One entry for each curve; the parameter's name is on the first.
+/// One entry for each curve; the parameter's name is on the first, unless the curves have names.
 fn legend_entries(plot: &Plot) -> Vec<String> {
-    let named = |curves: &super::Curves, index: usize, value: &f64| {
-        if index == 0 {
-            format!("{} = {}", curves.name, tick_label(*value))
-        } else {
-            tick_label(*value)
-        }
+    let entry = |curves: &Curves, index: usize| match (index, curves.labels.is_empty()) {
+        (0, true) => format!("{} = {}", curves.name, curves.label(index)),
+        _ => curves.label(index),
     };
-    plot.curves
-        .iter()
-        .flat_map(|curves| {
-            curves.values.iter().enumerate().map(|(index, value)| named(curves, index, value))
-        })
-        .collect()
+    let curves = plot.curves.iter();
+    curves.flat_map(|curves| (0..curves.values.len()).map(|index| entry(curves, index))).collect()
+}
+
+/// The places of a curve's values. There is none where a value is not finite.
+fn curve_points(plot: &Plot, values: &[f64], x: &Scale, y: &Scale) -> Vec<Option<(f64, f64)>> {
+    let place = |(input, value): (f64, &f64)| {
+        let up = y.place(*value).clamp(TOP - 4.0, BOTTOM + 4.0);
+        value.is_finite().then(|| (x.place(input), up))
+    };
+    plot.inputs().zip(values).map(place).collect()
 }
 
 /// A curve within the frame. It is interrupted where a value is not finite.
-fn curve_path(values: &[f64], x: &Scale, y: &Scale) -> String {
-    let step = (x.to - x.from) / (SAMPLES - 1) as f64;
-    let points: Vec<Option<(f64, f64)>> = values
-        .iter()
-        .enumerate()
-        .map(|(index, value)| {
-            value.is_finite().then(|| {
-                (
-                    x.place(x.from + step * index as f64),
-                    y.place(*value).clamp(TOP - 4.0, BOTTOM + 4.0),
-                )
-            })
-        })
-        .collect();
+fn curve_path(points: &[Option<(f64, f64)>]) -> String {
     let pieces = points.split(Option::is_none).filter(|piece| piece.len() > 1);
     pieces.map(|piece| piece_path(&piece.iter().flatten().copied().collect::<Vec<_>>())).collect()
 }

@@ -156,13 +156,15 @@ fn plot(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
         _ => one.ty.plotted.to_owned(),
     });
     let value = new.result.number.replace('$', &format!("{}({arguments})", new.name));
-    let (label, [low, high]) = match (across, turns) {
-        (Some(across), _) => (across.name.to_owned(), across.range),
-        (None, Some(turns)) => (format!("angle of {}, degrees", turns.name), ["0", "90"]),
-        (None, None) => ("number".to_owned(), ["0", "4"]),
+    let (label, [low, high], unit) = match (across, turns) {
+        (Some(across), _) => (across.name.to_owned(), across.range, ""),
+        (None, Some(turns)) => {
+            (format!("angle of {}", turns.name), ["0", "90"], ", unit = \"degrees\"")
+        }
+        (None, None) => ("number".to_owned(), ["0", "4"], ", unit = \"integers\""),
     };
     let mut plot = format!(
-        "[{}]\nvalue = \"{value}\"\nx = {{ label = \"{label}\", from = {low}, to = {high} }}\n",
+        "[{}]\nvalue = \"{value}\"\nx = {{ label = \"{label}\", from = {low}, to = {high}{unit} }}\n",
         new.name
     );
     if let Some(Parameter { name, range: [low, high], .. }) = curves {
