@@ -1,5 +1,6 @@
 import { fileURLToPath } from "node:url";
 import { defineConfig } from "vite";
+import { guide } from "./guide";
 
 const below = (path: string) => fileURLToPath(new URL(path, import.meta.url));
 
@@ -7,6 +8,7 @@ const below = (path: string) => fileURLToPath(new URL(path, import.meta.url));
 export default defineConfig({
     base: "./",
     publicDir: false,
+    plugins: [guide],
     resolve: { alias: { "@lamplight/toolchain": below("../target/toolchain/index.js") } },
     worker: { format: "es" },
     server: { fs: { allow: [below("..")] } },

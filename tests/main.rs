@@ -59,6 +59,7 @@ mod scene;
 mod shaderlib;
 mod shadow;
 mod site;
+mod sketch;
 mod snapshot;
 mod specialise;
 mod tables;
@@ -119,6 +120,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     shaderlib::trials,
     shadow::trials,
     site::trials,
+    sketch::trials,
     specialise::trials,
     tables::trials,
     texts::trials,

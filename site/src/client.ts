@@ -2,7 +2,8 @@
 import type { Toolchain } from "@lamplight/toolchain";
 
 type Answer = { id?: number; value?: unknown; error?: string; milliseconds?: number; ready?: boolean; failed?: string };
-type Waiting = { resolve: (value: unknown) => void; reject: (error: Error) => void; start: () => void };
+type Call = { id: number; name: string; inputs: unknown[] };
+type Waiting = { call: Call; resolve: (value: unknown) => void; reject: (error: Error) => void; start: () => void };
 
 /** Milliseconds that a call about typed text may take before the toolchain is restarted. */
 export const TYPED = 1000;
@@ -40,17 +41,23 @@ export class Client {
     #told(answer: Answer) {
         if (answer.ready) {
             this.#ready = true;
-            for (const waiting of this.#waiting.values()) waiting.start();
+            this.#first()?.start();
         } else if (answer.failed !== undefined) {
             this.#drop(new Error(answer.failed));
         } else if (answer.id !== undefined) {
             const waiting = this.#waiting.get(answer.id);
             this.#waiting.delete(answer.id);
             this.#warm = true;
+            // The worker takes one call after another, and the time of each is its own.
+            this.#first()?.start();
             this.milliseconds = answer.milliseconds ?? 0;
             if (answer.error === undefined) waiting?.resolve(answer.value);
             else waiting?.reject(new Error(answer.error));
         }
+    }
+
+    #first(): Waiting | undefined {
+        return this.#waiting.values().next().value;
     }
 
     #drop(error: Error) {
@@ -74,15 +81,18 @@ export class Client {
                 timer = window.setTimeout(() => {
                     this.#worker.terminate();
                     this.replaced++;
-                    this.#drop(new TooLong(`no answer within ${limit / 1000} s: the toolchain was restarted`));
+                    this.#waiting.delete(id);
+                    waiting.reject(new TooLong(`no answer within ${limit / 1000} s: the toolchain was restarted`));
                     this.#begin();
+                    for (const { call } of this.#waiting.values()) this.#worker.postMessage(call);
                 }, this.#warm ? limit : Math.max(limit, COLD));
             };
-            this.#waiting.set(id, {
-                resolve: done(resolve as (value: unknown) => void), reject: done(reject), start,
-            });
-            if (this.#ready) start();
-            this.#worker.postMessage({ id, name, inputs });
+            const call = { id, name, inputs };
+            const waiting = { call, resolve: done(resolve as (value: unknown) => void), reject: done(reject), start };
+            const isFirst = this.#waiting.size === 0;
+            this.#waiting.set(id, waiting);
+            if (this.#ready && isFirst) start();
+            this.#worker.postMessage(call);
         });
     }
 }

@@ -50,10 +50,14 @@ export function route(): Route {
 }
 
 /** Puts the state of a page into the address without a step of its own in the history. */
-export function remember(page: string, path: string, query: Record<string, string | undefined>) {
+export function remember(
+    page: string, path: string, query: Record<string, string | undefined>, present: Record<string, string | undefined> = {},
+) {
     // If the user has gone to another page meanwhile, the address stays as it is.
     if (location.hash !== known) return;
     const given = Object.entries(query).filter((pair): pair is [string, string] => !!pair[1]);
+    // What is present counts even where it is empty.
+    given.push(...Object.entries(present).filter((pair): pair is [string, string] => pair[1] !== undefined));
     const text = new URLSearchParams(given).toString();
     const hash = `#/${page}${path && `/${path}`}${text && `?${text}`}`;
     if (hash === location.hash) return;

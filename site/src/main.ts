@@ -7,6 +7,7 @@ const PAGES: Record<string, { title: string; open: () => Promise<{ page: Page }>
     catalogue: { title: "Catalogue", open: () => import("./pages/catalogue") },
     programs: { title: "Programs", open: () => import("./pages/programs") },
     playground: { title: "Playground", open: () => import("./pages/playground") },
+    guide: { title: "Guide", open: () => import("./pages/guide") },
     gallery: { title: "Gallery", open: () => import("./pages/gallery") },
     speed: { title: "Speed", open: () => import("./pages/speed") },
 };

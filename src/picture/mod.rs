@@ -7,6 +7,7 @@
 //! comes back as numbers, exact to the bit, and is a texture for the next pass. So all executors
 //! share everything but the drawing itself.
 
+mod controls;
 pub mod frame;
 pub mod gallery;
 mod light;
@@ -16,14 +17,16 @@ mod passes;
 mod pixels;
 mod plan;
 mod prepared;
+pub mod sketch;
 pub mod strip;
 mod textures;
 mod values;
 
+pub use controls::{Controls, LampControl, Uniform, picture_controls};
 pub use needs::Needs;
 pub use passes::prepare_passes;
 pub use pixels::{Linear, Picture, is_own_png};
-pub use plan::{Pass, Plan};
+pub use plan::{Changes, Pass, Plan};
 pub use prepared::Prepared;
 
 use std::sync::Arc;

@@ -19,7 +19,7 @@ use crate::execute::Session;
 use crate::execute::fixture::{Fixture, Texture, TextureKind};
 use crate::execute::frame::{Buffers, Frame, Mesh, Side, State};
 use crate::picture::frame::{Composed, Programs, Stages, pack_buffer};
-use crate::scene::sets::{self, Eye, LampKind, Scene};
+use crate::scene::sets::{Eye, Lamp, LampKind, Scene};
 use crate::scene::{cascade_splits, depth_range};
 
 /// What all objects and views of a pass share, by group and binding.
@@ -42,6 +42,33 @@ struct Studio<'a> {
 /// the picture's size. Maps of moments are blurred, so half of that is enough.
 const MAP_SIZES: (u32, u32) = (256, 1024);
 
+/// The scene of a plan with what lights it.
+pub(super) struct Lit<'p> {
+    pub scene: Scene,
+    /// The lamp that casts the shadow.
+    pub key: Lamp,
+    pub last: &'p Pass,
+    /// The pass that lights the scene.
+    pub lit: &'p Pass,
+    /// Texels along an edge of the shadow map.
+    pub size: u32,
+}
+
+impl<'p> Lit<'p> {
+    /// # Errors
+    /// Those of [`Plan::staged`], and a plan without passes.
+    pub fn of(plan: &'p Plan, shot: &Shot) -> Result<Self, Diagnostics> {
+        let scene = plan.staged()?;
+        let (Some(last), Some(lit), Some(key)) = (plan.last(), plan.lit(), scene.lamps.first())
+        else {
+            return Err(vec![no_frame()]);
+        };
+        let twice = (2 * shot.size[0].max(shot.size[1])).next_power_of_two();
+        let size = scene.map_size.unwrap_or_else(|| twice.clamp(MAP_SIZES.0, MAP_SIZES.1));
+        Ok(Self { key: *key, scene, last, lit, size })
+    }
+}
+
 /// Draws all passes of a plan but the last, and prepares that one.
 ///
 /// # Errors
@@ -52,19 +79,7 @@ pub fn prepare_passes(
     plan: &Plan,
     shot: &Shot,
 ) -> Result<Prepared, Diagnostics> {
-    let scene = plan.model.as_deref().cloned().or_else(|| sets::scene(&plan.scene));
-    let (Some(last), Some(lit), Some(mut scene)) = (plan.last(), plan.lit(), scene) else {
-        return Err(vec![Diagnostic::error(
-            codes::EXECUTOR_FAILED,
-            format!("there is no scene `{}`", plan.scene),
-        )]);
-    };
-    let no_lamp = || vec![Diagnostic::error(codes::EXECUTOR_FAILED, "the scene has no lamp")];
-    let key = scene.lamps.first_mut().ok_or_else(no_lamp)?;
-    plan.place(key);
-    let key = *key;
-    let twice = (2 * shot.size[0].max(shot.size[1])).next_power_of_two();
-    let size = scene.map_size.unwrap_or_else(|| twice.clamp(MAP_SIZES.0, MAP_SIZES.1));
+    let Lit { mut scene, key, last, lit, size } = Lit::of(plan, shot)?;
     let slice = |scene: &Scene, light: LightView| {
         let with_lamps = with_bulbs(scene, plan, lit, &light, shot);
         let scene = with_lamps.as_ref().unwrap_or(scene);
@@ -344,7 +359,7 @@ fn color_texture(
 }
 
 /// The bindings of both stages, each once, with the members that either of them has.
-fn stage_bindings(stages: &Stages) -> Vec<Binding> {
+pub(super) fn stage_bindings(stages: &Stages) -> Vec<Binding> {
     let of = |stage: &Composed| stage.reflection.bindings.clone();
     let all = of(&stages.vertex).into_iter().chain(stages.fragment.iter().flat_map(of));
     let by_place: BTreeMap<_, _> =

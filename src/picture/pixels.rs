@@ -67,6 +67,11 @@ impl Background {
         Self { world_from_clip: eye.clip_from_world.inverse(), kind }
     }
 
+    /// The dark one, whatever is drawn.
+    pub fn backdrop(eye: Camera) -> Self {
+        Self { world_from_clip: eye.clip_from_world.inverse(), kind: Seen::Backdrop }
+    }
+
     /// The background at a place of the picture. Both coordinates are in [0, 1], from the upper
     /// left.
     pub(super) fn colour(&self, u: f64, v: f64) -> DVec3 {

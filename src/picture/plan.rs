@@ -12,7 +12,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::manifest::Program;
 use crate::permute::{Assignment, Quoted, Setting, Settings, key};
 use crate::picture::frame::Programs;
-use crate::scene::sets::{Lamp, Scene};
+use crate::scene::sets::{self, Lamp, Scene};
 use crate::source::SourceSet;
 
 /// The axis of programs that have lamps: how many.
@@ -31,6 +31,17 @@ pub struct Plan {
     pub numbers: BTreeMap<String, BTreeMap<String, Number>>,
     /// The nine coefficients of the ambient light, if a probe is given.
     pub probe: Option<[[f64; 3]; 9]>,
+    /// What somebody changed in the picture.
+    pub changes: Changes,
+}
+
+/// Changes over what the source published and over what the scene has.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Changes {
+    /// Places of lamps by their index. A lamp that is moved shines at the same point as before.
+    pub lamps: BTreeMap<usize, DVec3>,
+    /// Numbers of uniforms by path, such as `lamps.lights[2].color`.
+    pub uniforms: BTreeMap<String, Vec<f64>>,
 }
 
 /// One permutation.
@@ -65,6 +76,7 @@ impl Plan {
                 .collect::<Result<_, _>>()?,
             numbers: preset.numbers.clone(),
             probe: probe.map(|probe| probe.coefficients),
+            changes: Changes::default(),
         })
     }
 
@@ -114,6 +126,7 @@ impl Plan {
             passes,
             numbers: BTreeMap::new(),
             probe: None,
+            changes: Changes::default(),
         })
     }
 
@@ -140,8 +153,27 @@ impl Plan {
         self.passes.iter().rev().take(1 + over).any(|one| std::ptr::eq(one, pass))
     }
 
+    /// The scene, with its lamps where the source has them or where they were moved.
+    ///
+    /// # Errors
+    /// There is no such scene, or it has no lamp.
+    pub(super) fn staged(&self) -> Result<Scene, Diagnostics> {
+        let failed = |message| vec![Diagnostic::error(codes::EXECUTOR_FAILED, message)];
+        let scene = self.model.as_deref().cloned().or_else(|| sets::scene(&self.scene));
+        let mut scene =
+            scene.ok_or_else(|| failed(format!("there is no scene `{}`", self.scene)))?;
+        let key = scene.lamps.first_mut();
+        self.place(key.ok_or_else(|| failed("the scene has no lamp".to_owned()))?);
+        for (index, place) in &self.changes.lamps {
+            if let Some(lamp) = scene.lamps.get_mut(*index) {
+                lamp.position = *place;
+            }
+        }
+        Ok(scene)
+    }
+
     /// Moves a lamp to where the source has it, so that its shadow falls from there.
-    pub(super) fn place(&self, lamp: &mut Lamp) {
+    fn place(&self, lamp: &mut Lamp) {
         let vector = |field| {
             self.number("light", field)
                 .and_then(|values| values.try_into().ok())

@@ -3,12 +3,13 @@
 
 use std::sync::Arc;
 
+use super::Surroundings;
 use super::values::Values;
 use crate::bundle::{Binding, Kind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
 use crate::scene::sets::{Map, Maps};
-use crate::scene::{CubeMap, FACES, Sky, prefilter};
+use crate::scene::{CubeMap, FACES, Sky, bricks, prefilter};
 
 /// What earlier passes have drawn.
 #[derive(Default)]
@@ -32,6 +33,26 @@ pub fn binding_sampler(binding: &Binding) -> Fixture {
     let address = if binding.name == "map_sampler" { Address::Repeat } else { Address::Clamp };
     let linear = !NEAREST.contains(&binding.name.as_str());
     Fixture::Sampler(Sampler { compare, linear, address })
+}
+
+/// A texture of a type in WGSL, for a shader that says nothing about its content: bricks, the
+/// surroundings, or the largest depth. `None` for types that no fixture has.
+pub fn plain_texture(ty: &str, surroundings: &Surroundings) -> Option<Texture> {
+    let deep = |kind: TextureKind| Texture {
+        kind,
+        width: 1,
+        height: 1,
+        texels: vec![1.0; kind.layers() as usize],
+    };
+    match ty {
+        "texture_2d<f32>" => color_textures(vec![bricks().base]).pop(),
+        "texture_cube<f32>" => {
+            Some(surroundings.with_sky(|sky| cube_texture(&CubeMap::of(sky, ENVIRONMENT))))
+        }
+        "texture_depth_2d" => Some(deep(TextureKind::Depth2d)),
+        "texture_depth_cube" => Some(deep(TextureKind::DepthCube)),
+        _ => None,
+    }
 }
 
 /// Textures by the name of their binding.

@@ -84,6 +84,9 @@ impl Values<'_> {
     /// The numbers of a uniform in any block but those of the camera and of an object: what the
     /// source published, what the scene has, or what the axes choose. `None` if nothing knows it.
     pub fn number(&self, path: &str) -> Option<Vec<f64>> {
+        if let Some(changed) = self.plan.changes.uniforms.get(path) {
+            return Some(changed.clone());
+        }
         let path = Path::new(path);
         let of_scene = || match path.block {
             "lamps" if path.field == "count" => self.lamps().map(|count| vec![count as f64]),
@@ -105,6 +108,9 @@ impl Values<'_> {
 
     /// The numbers of an object's own blocks.
     pub fn object(&self, object: &Object, path: &str) -> Option<Vec<f64>> {
+        if let Some(changed) = self.plan.changes.uniforms.get(path) {
+            return Some(changed.clone());
+        }
         let parsed = Path::new(path);
         match (parsed.block, parsed.field) {
             ("object", "world_from_object") => Some(matrix_columns(object.world_from_object)),
@@ -130,6 +136,10 @@ impl Values<'_> {
 
     fn published(&self, path: &Path<'_>) -> Option<Vec<f64>> {
         let (_, group) = GROUPS.iter().find(|(block, _)| *block == path.block)?;
+        let is_placed = matches!(path.field, "position" | "axis");
+        if path.block == "lamps" && is_placed && self.plan.changes.lamps.contains_key(&path.index) {
+            return None;
+        }
         // The exponents must be the same where moments are made and where they are read.
         let group = if path.field == "exponents" { "caster" } else { group };
         self.plan.number(group, path.field)

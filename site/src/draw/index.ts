@@ -1,5 +1,5 @@
-import type { PictureRequest, Pixels } from "@lamplight/toolchain";
-import { OWN, toolchain } from "../client";
+import type { PictureRequest, Pixels, SketchRequest, Step } from "@lamplight/toolchain";
+import { OWN, TYPED, toolchain } from "../client";
 import { type Device } from "./common";
 
 let opening: Promise<Device | undefined> | undefined;
@@ -27,17 +27,27 @@ export class Refused extends Error {}
 
 let last: Promise<unknown> = Promise.resolve();
 
-/** A picture, drawn by the page. Pictures wait for each other. */
-export function picture(request: Omit<PictureRequest, "target">): Promise<Pixels> {
-    const next = last.then(() => drawn(request), () => drawn(request));
+/** Pictures wait for each other. */
+function queued<T>(run: () => Promise<T>): Promise<T> {
+    const next = last.then(run, run);
     last = next;
     return next;
 }
 
-async function drawn(request: Omit<PictureRequest, "target">): Promise<Pixels> {
+/** A picture, drawn by the page. */
+export function picture(request: Omit<PictureRequest, "target">): Promise<Pixels> {
+    return queued(() => drawn((target) => toolchain.call(OWN, "pictureStart", { ...request, target })));
+}
+
+/** A fragment stage on a model, drawn by the page. Nobody knows how long a user's text takes. */
+export function sketch(request: Omit<SketchRequest, "target">): Promise<Pixels> {
+    return queued(() => drawn((target) => toolchain.call(TYPED, "sketchStart", { ...request, target })));
+}
+
+async function drawn(start: (target: string) => Promise<Step>): Promise<Pixels> {
     const found = await device();
     if (!found) throw new Refused("This browser has neither WebGPU nor WebGL2: pictures cannot be drawn. Everything else works.");
-    let step = await toolchain.call(OWN, "pictureStart", { ...request, target: found.target });
+    let step = await start(found.target);
     while (step.drawing) {
         const { words, depths } = await found.draw(step.drawing);
         step = await toolchain.call(OWN, "pictureFrames", words, depths);

@@ -1,6 +1,9 @@
 import type { ItemInfo, LibraryInfo } from "@lamplight/toolchain";
 import { OWN, toolchain } from "../client";
-import { code, h, remember, route } from "../dom";
+import { choose, code, h, remember, route } from "../dom";
+import { packed } from "../pack";
+import { type Parameter, parameters, stage } from "../parts/preview";
+import { type Look, Sketch } from "../parts/sketch";
 import { plot } from "../plot";
 
 let library: Promise<LibraryInfo> | undefined;
@@ -41,25 +44,26 @@ export async function page(into: HTMLElement) {
         if (!item) return place.replaceChildren(h("p", {}, `The library has no ${path}.`));
         place.dataset.path = path;
         remember("catalogue", path, { q: search.value.trim() });
-        await entry(place, item);
+        await entry(place, item, items);
     }
     into.replaceChildren(h("div", { class: "columns" }, h("aside", {}, search, list), place));
-    const first = path || "brdf::microfacet::d_ggx";
+    const first = path || "brdf::specular::d_ggx";
     place.dataset.path = first;
     await filter();
     await open(items.has(first) ? first : path || [...items.keys()][0]);
 }
 
-async function entry(place: HTMLElement, item: ItemInfo) {
+async function entry(place: HTMLElement, item: ItemInfo, items: Map<string, ItemInfo>) {
     const written = await toolchain.call(OWN, "written", item.path);
     const section = (title: string, text: string | undefined) =>
         text ? h("p", {}, h("strong", {}, `${title}: `), text) : undefined;
     const users = written.usedBy.map((path) => path.replace(/\.wesl$/, "").replaceAll("/", "::"));
     const live = h("section", { class: "live", "aria-label": "Live plot" });
+    const seen = h("section", { class: "live" });
     place.replaceChildren(
         h("h1", {}, item.name), h("p", { class: "path" }, item.path),
         ...item.doc.map((text) => h("p", {}, text)),
-        live,
+        live, seen,
         h("h2", {}, "Use it"),
         code(item.import, "import in WESL"), code(item.include, "include in GLSL"),
         item.members.length ? h("dl", {}, ...item.members.flatMap((member) => [
@@ -70,7 +74,43 @@ async function entry(place: HTMLElement, item: ItemInfo) {
         h("h2", {}, "WESL"), code(written.wesl, "WESL source"),
         ...(written.glsl ? [h("h2", {}, "GLSL"), code(written.glsl, "GLSL source")] : []),
     );
+    if (item.kind === "function") preview(seen, item, items);
     if (item.plot) await curves(live, item);
+}
+
+/** Milliseconds for which a picture is in view before it is drawn: nobody waits for those that are
+ * passed by. */
+const SETTLED = 150;
+
+/** The look is kept from entry to entry. */
+const look: Look = {};
+
+/** The function on a model. Each parameter is a number, or something of the surface. */
+function preview(place: HTMLElement, item: ItemInfo, items: Map<string, ItemInfo>) {
+    const structs = new Map([...items.values()].filter((one) => one.kind === "struct").map((one) => [one.name, one]));
+    const chosen = parameters(item, structs);
+    place.append(h("h2", {}, "On a model"));
+    if (typeof chosen === "string") return place.append(h("p", { class: "note" }, chosen));
+    const link = h("a", { href: "#/playground" }, "Open in the playground");
+    const sketch = new Sketch(() => look, () => {}, false);
+    const draw = async () => {
+        const files = { "preview.wesl": stage(item, chosen, structs) };
+        link.href = `#/playground?state=${await packed(JSON.stringify({ files, open: "preview.wesl", look }))}`;
+        await sketch.draw({ files, root: "preview.wesl" });
+    };
+    const source = (parameter: Parameter) => parameter.sources.length > 1 ? [choose(
+        `${parameter.name}: ${parameter.type}`, parameter.sources, parameter.source,
+        (value) => { parameter.source = value; draw(); },
+    )] : [];
+    const sources = h("div", { class: "row" }, ...chosen.flatMap(source));
+    place.append(sources, sketch.element, link);
+    let timer = 0;
+    const seen = new IntersectionObserver(([{ isIntersecting }]) => {
+        clearTimeout(timer);
+        if (!place.isConnected) seen.disconnect();
+        else if (isIntersecting) timer = window.setTimeout(() => { seen.disconnect(); draw(); }, SETTLED);
+    });
+    seen.observe(sketch.element);
 }
 
 /** The plot with its parameters as sliders, and the value at one place in f32 and in f64. */

@@ -6,58 +6,21 @@ import type { Diagnostic } from "@lamplight/toolchain";
 import { OWN, TYPED, toolchain } from "../client";
 import { choose, h, remember, route } from "../dom";
 import { output } from "../output";
-import { packed, unpacked, zip } from "../pack";
-
-const FIRST = {
-    files: {
-        "lit.wesl": `import lamplight::brdf::diffuse::lambert;
-import lamplight::brdf::specular::blinn_phong;
-import package::lamp::falloff;
-
-@fragment
-fn fs_main(@location(0) normal: vec3f, @location(1) to_light: vec3f) -> @location(0) vec4f {
-    let n = normalize(normal);
-    let l = normalize(to_light);
-    let light = lambert(n, l) + blinn_phong(n, l, vec3f(0.0, 0.0, 1.0), 32.0);
-    return vec4f(vec3f(light * falloff(length(to_light))), 1.0);
-}
-`,
-        "lamp.wesl": `import lamplight::lighting::attenuation::inverse_square;
-
-fn falloff(distance: f32) -> f32 {
-    return inverse_square(distance * distance, 0.01);
-}
-`,
-        "lit.frag.glsl": `#version 450
-#include <lamplight/brdf/diffuse.glsl>
-
-layout(location = 0) in vec3 normal;
-layout(location = 0) out vec4 color;
-
-void main() {
-    color = vec4(lambert(normalize(normal), vec3(0.0, 1.0, 0.0)));
-}
-`,
-    } as Record<string, string>,
-    open: "lit.wesl", target: "wgsl", expression: "package::lamp::falloff(2.0)",
-};
-
-const KEPT = "lamplight-playground";
+import { zip } from "../pack";
+import { FIRST, type Project, earlier, keep, linked, opened } from "../parts/project";
+import { latest } from "../parts/latest";
+import { Sketch } from "../parts/sketch";
 
 export async function page(into: HTMLElement) {
-    const given = route().query.get("state");
-    const kept = localStorage.getItem(KEPT);
-    const state: typeof FIRST = structuredClone(FIRST);
-    try {
-        Object.assign(state, given ? JSON.parse(await unpacked(given)) : kept ? JSON.parse(kept) : {});
-    } catch {
-        // A link that was cut short opens the first example.
-    }
+    const state: Project = await opened(route().query.get("state"));
     const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Files" });
     const outputs = h("div", { class: "texts" });
     const problems = h("ul", { class: "problems", "aria-label": "Diagnostics", "aria-live": "polite" });
     const told = h("p", { role: "status", class: "status" });
     const value = h("output", {});
+    const unkept = h("p", { class: "wrong", role: "alert", hidden: true },
+        "The browser has no room to keep these files: they are lost when the page is closed. Save them as a zip.");
+    const sketch = new Sketch(() => state.look, () => { save(); link(); });
     const editor = new EditorView({ parent: h("div", { class: "editor" }) });
 
     const begin = () => editor.setState(EditorState.create({
@@ -75,14 +38,14 @@ export async function page(into: HTMLElement) {
     }));
     function changed() {
         // Saved before anything is computed, so that a reload restores what was typed.
-        localStorage.setItem(KEPT, JSON.stringify(state));
+        save();
         run();
     }
-    let busy = false;
-    let again = false;
-    async function run() {
-        if (busy) { again = true; return; }
-        busy = true;
+    function save() {
+        const isKept = keep(state);
+        unkept.hidden = isKept;
+    }
+    const run = latest(async () => {
         try {
             const start = performance.now();
             const made = await toolchain.call(TYPED, "compile", {
@@ -90,6 +53,9 @@ export async function page(into: HTMLElement) {
             });
             mark(made.diagnostics);
             if (made.ok) outputs.replaceChildren(...output(made, state.target));
+            const isDrawn = /@fragment|\.frag(\.|$)/.test(`${state.files[state.open]}${state.open}`);
+            sketch.element.hidden = !isDrawn;
+            if (made.ok && isDrawn) sketch.draw({ files: state.files, root: state.open });
             told.textContent = `${made.ok ? "no errors" : "errors"}, ${Math.round(performance.now() - start)} ms`;
             const number = await toolchain.call(TYPED, "evaluate", { files: state.files, expression: state.expression });
             value.textContent = number.value ?? number.diagnostics[0]?.message ?? "";
@@ -97,9 +63,12 @@ export async function page(into: HTMLElement) {
             told.textContent = error instanceof Error ? error.message : String(error);
         }
         into.dataset.runs = String(Number(into.dataset.runs ?? 0) + 1);
-        remember("playground", "", { state: await packed(JSON.stringify(state)) });
-        busy = false;
-        if (again) { again = false; run(); }
+        await link();
+    });
+    async function link() {
+        remember("playground", "", { state: await linked(state) });
+        // What is kept belongs to the new address.
+        save();
     }
     function mark(found: Diagnostic[]) {
         const length = editor.state.doc.length;
@@ -129,16 +98,19 @@ export async function page(into: HTMLElement) {
         state.open = name;
         begin(); files(); changed();
     }
-    const save = () => {
+    const zipped = () => {
         const link = h("a", { href: URL.createObjectURL(zip(state.files)), download: "shaders.zip" });
         link.click();
         URL.revokeObjectURL(link.href);
     };
-    const restart = () => {
-        if (!confirm("Discard your files, and begin with the first example again?")) return;
-        Object.assign(state, structuredClone(FIRST));
+    const replace = (project: Project) => {
+        Object.assign(state, structuredClone(project));
         begin(); files(); changed();
     };
+    const restart = () => {
+        if (confirm("Discard your files, and begin with the first example again?")) replace(FIRST);
+    };
+    const own = earlier();
     const expression = h("input", {
         value: state.expression, "aria-label": "Expression", spellcheck: "false",
         oninput: () => { state.expression = expression.value; changed(); },
@@ -155,7 +127,9 @@ export async function page(into: HTMLElement) {
             h("div", {},
                 h("div", { class: "row" },
                     languages,
-                    h("button", { onclick: save }, "Save as zip"), h("button", { onclick: restart }, "Begin again")),
+                    h("button", { onclick: zipped }, "Save as zip"), h("button", { onclick: restart }, "Begin again"),
+                    own && h("button", { onclick: () => replace(own) }, "Back to my files before the link")),
+                unkept, sketch.element,
                 h("label", { class: "eval" }, h("span", {}, "value of"), expression, value), outputs)),
     );
     begin();

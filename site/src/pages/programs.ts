@@ -1,116 +1,152 @@
-import type { Choice, Point, ProgramInfo } from "@lamplight/toolchain";
+import type { PictureControls, PictureRequest, Point, ProgramInfo } from "@lamplight/toolchain";
 import { OWN, toolchain } from "../client";
-import { choose, code, h, remember, route } from "../dom";
+import { choose, h, remember, route } from "../dom";
 import { device, picture, show } from "../draw";
-import { output } from "../output";
+import { output, texts } from "../output";
+import { axes } from "../parts/axes";
+import { Lamps } from "../parts/lamps";
+import { latest } from "../parts/latest";
+import { Uniforms } from "../parts/uniforms";
+
+/** Numbers by name, as the address has them: `a:1,2;b:3`. */
+type Numbers = Record<string, number[]>;
+
+function read(text: string | null): Numbers {
+    const pairs = (text ?? "").split(";").map((one) => one.split(":"));
+    const numbers = pairs.map(([name, list = ""]): [string, number[]] => [name, list.split(",").map(Number)]);
+    return Object.fromEntries(numbers.filter(([name, list]) => name && list.every(Number.isFinite)));
+}
+
+const written = (numbers: Numbers) => Object.entries(numbers).map(([name, list]) => `${name}:${list}`).join(";");
+
+/** A link has the same numbers as the page, so they are short. */
+const short = (list: number[]) => list.map((one) => Number(one.toPrecision(5)));
+
+function begun(query: URLSearchParams, path: string, published?: { program: string; key: string; scene: string }) {
+    return {
+        program: path || published?.program || "forward", key: query.get("key") ?? published?.key ?? "",
+        scene: query.get("scene") ?? published?.scene ?? "", environment: query.get("environment") ?? "studio",
+        target: query.get("target") ?? "wgsl", preset: query.get("preset") ?? "",
+        lamps: read(query.get("lamps")), set: read(query.get("set")),
+        /** The permutation that this one is compared with. */
+        against: query.get("against") ?? undefined,
+    };
+}
 
 export async function page(into: HTMLElement) {
     const [{ programs }, studio, known] = await Promise.all([
         toolchain.call(OWN, "programs", {}), toolchain.call(OWN, "studio"), toolchain.call(OWN, "targets"),
     ]);
     const { path, query } = route();
-    const preset = query.get("preset") ?? "";
-    const published = studio.presets.find((one) => one.name === preset);
-    const state = {
-        program: path || published?.program || "forward", key: query.get("key") ?? published?.key ?? "",
-        scene: query.get("scene") ?? published?.scene ?? "", environment: query.get("environment") ?? "studio",
-        target: query.get("target") ?? "wgsl", light: query.get("light") ?? "", preset,
-    };
-    const canvas = h("canvas", {
-        width: 256, height: 256, tabindex: "0", role: "img",
-        "aria-label": "The picture. Arrow keys move the light.",
-    });
+    const state = begun(query, path, studio.presets.find((one) => one.name === query.get("preset")));
+    type State = typeof state;
+    const canvas = h("canvas", { width: 256, height: 256, role: "img", "aria-label": "The picture" });
+    const over = h("div", { class: "picture" }, canvas);
     const told = h("p", { role: "status", class: "status" });
-    const axes = h("form", { class: "axes", "aria-label": "Axes" });
+    const form = h("form", { class: "axes", "aria-label": "Axes" });
     const text = h("div", { class: "texts" });
-    const scene = choose("scene", ["", ...studio.scenes.map((one) => one.name)], state.scene, (value) => set({ scene: value }));
-    const around = choose("environment", studio.environments, state.environment, (value) => set({ environment: value }));
-    const programChoice = choose("program", programs.map((one) => one.name), state.program, (value) => set({ program: value, key: "", scene: "", preset: "" }));
-    const targets = choose("output", ["composed", ...known], state.target, (value) => set({ target: value }));
     const info = h("p", { class: "note" });
+    const costNote = h("p", { class: "note" });
+    const numbers = h("div", { class: "uniforms" });
+    const uniforms = new Uniforms(numbers, (name, list) => set({ set: { ...state.set, [name]: short(list) } }, false));
+    const lamps = new Lamps(over, (index, place, isDone) =>
+        set({ lamps: { ...state.lamps, [index]: short(place) } }, false, isDone));
+    const forget = { lamps: {}, set: {} };
+    const scene = choose("scene", ["", ...studio.scenes.map((one) => one.name)], state.scene, (value) => set({ scene: value, lamps: {} }, false));
+    const around = choose("environment", studio.environments, state.environment, (value) => set({ environment: value }, false));
+    const programChoice = choose("program", programs.map((one) => one.name), state.program,
+        (value) => set({ program: value, key: "", scene: "", preset: "", against: undefined, ...forget }));
+    const targets = choose("output", ["composed", ...known], state.target, (value) => set({ target: value }));
+    const compare = h("button", {
+        type: "button", "aria-pressed": "false",
+        onclick: () => set({ against: state.against === undefined ? point?.key ?? "" : undefined }),
+    });
+    const reset = h("button", { type: "button", onclick: () => set({ ...forget }, false) }, "Numbers and lamps as they were");
 
-    let turn = 0;
-    async function update() {
-        const now = ++turn;
+    let point: Point | undefined;
+    let found: ProgramInfo = programs[0];
+    let wanted = { texts: true, controls: true };
+
+    const request = (): Omit<PictureRequest, "target"> => ({
+        program: found.name, key: point!.key, width: 384, height: 384, samples: 1, environment: state.environment,
+        ...(state.preset && { preset: state.preset }), ...(state.scene && { scene: state.scene }),
+        uniforms: state.set, lamps: state.lamps,
+    });
+    async function draw(withControls: boolean) {
         const start = performance.now();
-        const { program, key, ...rest } = state;
-        remember("programs", program, { key, ...rest });
-        const found = programs.find((one) => one.name === program) ?? programs[0];
-        const point = await toolchain.call(OWN, "point", { program: found.name, key });
-        if (now !== turn) return;
-        controls(axes, found, point, (next) => set({ key: next }));
-        info.textContent = `${found.doc} ${found.valid.toLocaleString("en")} permutations are possible, ${found.shipped.toLocaleString("en")} ship.`;
+        const asked = request();
+        try {
+            const pixels = await picture(asked);
+            show(canvas, pixels);
+            told.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms, ${asked.key || "default"}`;
+            canvas.dataset.drawn = String(Number(canvas.dataset.drawn ?? 0) + 1);
+            canvas.dataset.key = asked.key;
+        } catch (error) {
+            told.textContent = error instanceof Error ? error.message : String(error);
+        }
+        if (!withControls) return;
+        const controls: PictureControls = await toolchain.call(OWN, "pictureControls", { ...asked, target: "wgsl" });
+        lamps.show(controls);
+        uniforms.show(controls.uniforms);
+        canvas.dataset.controls = String(controls.uniforms.length);
+    }
+    async function write() {
+        if (!found.wesl) return;
+        const shader = (settings: Point["settings"]) => toolchain.call(OWN, "compile", {
+            root: found.wesl!, settings, targets: state.target === "composed" ? [] : [state.target],
+        });
+        const made = await shader(point!.settings);
+        if (state.against === undefined) return text.replaceChildren(...output(made, state.target));
+        const [{ differences }, other] = await Promise.all([
+            import("../parts/differences"), toolchain.call(OWN, "point", { program: found.name, key: state.against }),
+        ]);
+        const before = texts(await shader(other.settings), state.target);
+        const after = texts(made, state.target);
+        const names = [...new Set([...before, ...after].map((one) => one.title))];
+        const of = (some: typeof before, title: string) => some.find((one) => one.title === title)?.text ?? "";
+        text.replaceChildren(
+            h("p", {}, "From ", h("code", {}, other.key || "default"), " to ", h("code", {}, point!.key || "default")),
+            ...names.map((title) => differences(of(before, title), of(after, title), title)));
+    }
+    const update = latest(async () => {
+        const now = wanted;
+        wanted = { texts: false, controls: false };
+        const { program, key, scene, environment, target, preset, against } = state;
+        remember("programs", program, {
+            key, scene, environment, target, preset, lamps: written(state.lamps), set: written(state.set),
+        }, { against });
+        if (now.texts || !point) {
+            found = programs.find((one) => one.name === program) ?? programs[0];
+            const [next, costs] = await Promise.all([
+                toolchain.call(OWN, "point", { program: found.name, key }), toolchain.call(OWN, "costs", found.name),
+            ]);
+            point = next;
+            axes(form, found, point, costs, (next) => set({ key: next }));
+            info.textContent = `${found.doc} ${found.valid.toLocaleString("en")} permutations are possible, ${found.shipped.toLocaleString("en")} ship.`;
+            costNote.textContent = costs.axes.length ? `Costs are medians against the default of the axis, over pairs of permutations, on ${costs.gpu} (${costs.generation}) with ${costs.driver}.` : "";
+            compare.textContent = state.against === undefined ? "Compare from here" : "End the comparison";
+            compare.setAttribute("aria-pressed", String(state.against !== undefined));
+        }
         if (!point.valid) {
             told.textContent = point.broken.join(" ") || point.diagnostics[0]?.message || "";
             return;
         }
-        try {
-            const pixels = await picture({
-                program: found.name, key: point.key, width: 384, height: 384, samples: 1, environment: state.environment,
-                ...(state.preset && { preset: state.preset }), ...(state.scene && { scene: state.scene }),
-                numbers: state.light ? { light: { position: state.light.split(",").map(Number) } } : {},
-            });
-            if (now !== turn) return;
-            show(canvas, pixels);
-            told.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms, ${point.key || "default"}`;
-            canvas.dataset.drawn = String(Number(canvas.dataset.drawn ?? 0) + 1);
-            canvas.dataset.key = point.key;
-        } catch (error) {
-            told.textContent = error instanceof Error ? error.message : String(error);
-        }
-        if (found.wesl && now === turn) {
-            const made = await toolchain.call(OWN, "compile", {
-                root: found.wesl, settings: point.settings, targets: state.target === "composed" ? [] : [state.target],
-            });
-            if (now === turn) text.replaceChildren(...output(made, state.target));
-        }
-    }
-    function set(change: Partial<typeof state>) {
+        await draw(now.controls);
+        if (now.texts) await write();
+    });
+    /** Without new texts, only the picture changes; while a lamp is dragged, its controls stay. */
+    function set(change: Partial<State>, withTexts = true, withControls = true) {
         Object.assign(state, change);
+        wanted = { texts: wanted.texts || withTexts, controls: wanted.controls || withControls };
         update();
     }
-    // The light moves in the plane z = 2.5 of the scene.
-    const move = (x: number, y: number) => {
-        const place = [3 * (2 * x - 1), 3 * (1.2 - y), 2.5];
-        set({ light: place.map((one) => one.toFixed(2)).join(",") });
-    };
-    const drag = (event: PointerEvent) => {
-        const box = canvas.getBoundingClientRect();
-        move((event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height);
-    };
-    canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); drag(event); });
-    canvas.addEventListener("pointermove", (event) => { if (event.buttons) drag(event); });
-    const steps: Record<string, [number, number]> = { ArrowLeft: [-0.05, 0], ArrowRight: [0.05, 0], ArrowUp: [0, -0.05], ArrowDown: [0, 0.05] };
-    canvas.addEventListener("keydown", (event) => {
-        const step = steps[event.key];
-        if (!step) return;
-        event.preventDefault();
-        const [x, y] = (state.light || "0,1.5,2.5").split(",").map(Number);
-        move((x / 3 + 1) / 2 + step[0], 1.2 - y / 3 + step[1]);
-    });
     into.replaceChildren(
         h("h1", { class: "quiet" }, "Programs"),
         h("div", { class: "columns wide" },
-            h("div", {}, h("div", { class: "picture" }, canvas), told,
-                h("div", { class: "row" }, programChoice, scene, around), info, axes),
-            h("div", {}, h("div", { class: "row" }, targets), text)),
+            h("div", {}, over, told,
+                h("div", { class: "row" }, programChoice, scene, around, reset), info, form, costNote,
+                h("details", {}, h("summary", {}, "Uniforms"), numbers)),
+            h("div", {}, h("div", { class: "row" }, targets, compare), text)),
     );
     await update();
-}
-
-/** Every axis as a control: what cannot be chosen next to the others says why. */
-function controls(form: HTMLFormElement, program: ProgramInfo, point: Point, change: (key: string) => void) {
-    const focused = (document.activeElement as HTMLElement | null)?.dataset?.axis;
-    const option = (choice: Choice) => h("option", {
-        value: choice.key, disabled: choice.reasons.length > 0, title: choice.reasons.join(" ") || undefined,
-        selected: String(point.settings[choice.axis]) === String(choice.value),
-    }, choice.reasons.length ? `${choice.value} – ${choice.reasons[0]}` : String(choice.value));
-    form.replaceChildren(...program.axes.map((axis) => {
-        const choices = point.choices.filter((choice) => choice.axis === axis.name);
-        const select = h("select", { "data-axis": axis.name, title: axis.doc, onchange: () => change(select.value) }, ...choices.map(option));
-        return h("label", {}, h("span", {}, axis.name), select);
-    }));
-    if (focused) form.querySelector<HTMLElement>(`[data-axis="${focused}"]`)?.focus();
-    if (point.valid) return;
-    form.append(h("p", { class: "wrong" }, point.broken.join(" ")), code(point.key, "key"));
 }

@@ -25,6 +25,10 @@ export interface Toolchain {
     studio: typeof raw.studio;
     pictureStart: typeof raw.pictureStart;
     pictureFrames: typeof raw.pictureFrames;
+    pictureControls: typeof raw.pictureControls;
+    sketchStart: typeof raw.sketchStart;
+    sketchControls: typeof raw.sketchControls;
+    costs: typeof raw.costs;
 }
 
 /** An input stopped the toolchain. The next call finds it restarted. */

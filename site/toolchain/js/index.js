@@ -3,7 +3,8 @@ import * as raw from "./toolchain.js";
 const NAMES = [
     "version", "targets", "library", "search", "written", "files", "file", "programs", "point",
     "compose", "compile", "lint", "evaluate", "curves", "reference", "studio", "pictureStart",
-    "pictureFrames",
+    "pictureFrames", "pictureControls", "sketchStart",
+    "sketchControls", "costs",
 ];
 
 export class Stopped extends Error {

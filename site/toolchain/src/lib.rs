@@ -5,6 +5,7 @@
 //! Errors in the input are returned as diagnostics in the value, and never thrown as exceptions.
 
 mod choose;
+mod cost;
 mod diagnostic;
 mod library;
 mod linkers;

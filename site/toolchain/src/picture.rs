@@ -5,6 +5,9 @@
 //! with the frames that are there. It stops at the first frame that is missing, and returns the
 //! drawing for it. The rest of the code is that of `lamplight render`.
 
+mod controls;
+mod drawing;
+mod sketch;
 mod told;
 
 use std::cell::RefCell;
@@ -15,22 +18,18 @@ use lamplight::catalogue::preset::{self, Number, Preset};
 use lamplight::catalogue::probe::{self, Probe};
 use lamplight::diagnostic::{self, Diagnostics, codes};
 use lamplight::execute::Session;
-use lamplight::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
-use lamplight::execute::frame::{self, Buffers, EntryPoint, Frame, Side, VertexFormat};
+use lamplight::execute::frame::{self, Frame};
 use lamplight::execute::kernel::Kernel;
-use lamplight::execute::shipped::Shipped;
 use lamplight::picture::frame::Programs;
-use lamplight::picture::{self, Plan, Shot, Surroundings};
+use lamplight::picture::{self, Plan, Prepared, Shot, Surroundings};
 use lamplight::scene::{ENVIRONMENTS, environment, sets};
 use tsify::Ts;
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use crate::diagnostic::{Diagnostic, diagnostics};
 use crate::{Answer, answer};
-use told::{
-    Attribute, Buffer, Drawing, Level, Mesh, Named, PictureRequest, Pixels, PresetInfo,
-    SamplerInfo, Stage, Step, Studio, TextureInfo,
-};
+use drawing::described;
+use told::{Drawing, Named, PictureRequest, Pixels, PresetInfo, Step, Studio};
 
 /// What is the same for all pictures.
 struct Kept {
@@ -41,10 +40,16 @@ struct Kept {
 
 /// The picture that is being drawn.
 struct Current {
-    request: PictureRequest,
+    work: Work,
     /// What was drawn so far, in order.
     given: Vec<Vec<Frame>>,
     wanted: Layout,
+}
+
+enum Work {
+    Picture(PictureRequest),
+    /// With the shot and the target.
+    Sketch(Box<Prepared>, Shot, String),
 }
 
 /// Sizes of the frames of a drawing.
@@ -87,10 +92,12 @@ pub fn studio() -> Answer<Studio> {
 /// Begins a picture, and forgets the one before it.
 #[wasm_bindgen(js_name = pictureStart)]
 pub fn picture_start(request: Ts<PictureRequest>) -> Answer<Step> {
-    let request = request.to_rust()?;
-    let current = Current { request, given: Vec::new(), wanted: Layout::default() };
-    CURRENT.set(Some(current));
-    answer(&step())
+    answer(&begun(Work::Picture(request.to_rust()?)))
+}
+
+fn begun(work: Work) -> Step {
+    CURRENT.set(Some(Current { work, given: Vec::new(), wanted: Layout::default() }));
+    step()
 }
 
 /// Continues with what was drawn: for each view, the words of all its targets. Then the depths of
@@ -156,12 +163,24 @@ fn step() -> Step {
 
 /// Computes the picture from its beginning, up to the first frame that is missing or to its end.
 fn advance(kept: &Kept, current: &mut Current) -> Result<Step, Diagnostics> {
-    let request = &current.request;
-    let target = Target::ALL.iter().copied().find(|target| target.name() == request.target);
-    let target = target.ok_or_else(|| vec![refused("the page draws with `wgsl` or `essl300`")])?;
-    let (plan, shot) = (plan(kept, request)?, shot(request)?);
-    let page = Page { given: &current.given, state: Mutex::default(), target };
-    let rendered = picture::render_plan(&page, &kept.programs, &plan, &shot);
+    let page = |target: &str| {
+        let target = Target::ALL.iter().copied().find(|known| known.name() == target);
+        let target = target.ok_or_else(|| vec![refused("pages draw with `wgsl` or `essl300`")])?;
+        Ok::<_, Diagnostics>(Page { given: &current.given, state: Mutex::default(), target })
+    };
+    let (page, rendered) = match &current.work {
+        Work::Picture(request) => {
+            let page = page(&request.target)?;
+            let (plan, shot) = (plan(kept, request)?, shot(request)?);
+            let rendered = picture::render_plan(&page, &kept.programs, &plan, &shot);
+            (page, rendered)
+        }
+        Work::Sketch(prepared, shot, target) => {
+            let page = page(target)?;
+            let rendered = prepared.photograph(&page, shot).map(|picture| picture.develop());
+            (page, rendered)
+        }
+    };
     let state = page.state.into_inner().unwrap_or_default();
     if let Some((drawing, layout)) = state.wanted {
         current.wanted = layout;
@@ -205,6 +224,12 @@ fn plan(kept: &Kept, request: &PictureRequest) -> Result<Plan, Diagnostics> {
     for (group, fields) in &request.numbers {
         let fields = fields.iter().map(|(field, number)| (field.clone(), number_of(number)));
         plan.numbers.entry(group.clone()).or_default().extend(fields);
+    }
+    plan.changes.uniforms.clone_from(&request.uniforms);
+    for (index, place) in &request.lamps {
+        if let (Ok(index), Ok(place)) = (index.parse(), <[f64; 3]>::try_from(&place[..])) {
+            plan.changes.lamps.insert(index, place.into());
+        }
     }
     Ok(plan)
 }
@@ -275,123 +300,5 @@ fn layout(drawing: &frame::Drawing<'_>) -> Layout {
         targets: drawing.targets as usize,
         pixels: drawing.size[0] as usize * drawing.size[1] as usize,
         depth: drawing.state.keep_depth,
-    }
-}
-
-fn described(
-    drawing: &frame::Drawing<'_>,
-    target: Target,
-) -> Result<Drawing, diagnostic::Diagnostic> {
-    let state = drawing.state;
-    let (textures, samplers) = fixtures(drawing);
-    Ok(Drawing {
-        vertex: stage(drawing.vertex, target)?,
-        fragment: drawing.fragment.map(|entry| stage(entry, target)).transpose()?,
-        targets: drawing.targets,
-        meshes: drawing.items.iter().map(mesh).collect(),
-        views: drawing.views.iter().map(buffers).collect(),
-        buffers: buffers(drawing.buffers),
-        textures,
-        samplers,
-        width: drawing.size[0],
-        height: drawing.size[1],
-        depth_test: state.depth_test,
-        keep_depth: state.keep_depth,
-        cull: match state.cull {
-            None => "none",
-            Some(Side::Front) => "front",
-            Some(Side::Back) => "back",
-        }
-        .to_owned(),
-        mirrored: state.mirrored,
-        offset: state.offset,
-    })
-}
-
-fn stage(entry: EntryPoint<'_>, target: Target) -> Result<Stage, diagnostic::Diagnostic> {
-    let Shipped { bytes, native, reflection, .. } = Shipped::of(entry, target)?;
-    Ok(Stage { text: String::from_utf8_lossy(&bytes).into_owned(), native, reflection })
-}
-
-fn mesh(item: &frame::Item<'_>) -> Mesh {
-    let bytes = |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    let attribute = |(attribute, offset): (frame::Attribute, u64)| Attribute {
-        location: attribute.location,
-        format: match attribute.format {
-            VertexFormat::Uint32 => "uint32",
-            VertexFormat::Float32 => "float32",
-            VertexFormat::Float32x2 => "float32x2",
-            VertexFormat::Float32x3 => "float32x3",
-            VertexFormat::Float32x4 => "float32x4",
-        }
-        .to_owned(),
-        offset: offset as u32,
-    };
-    Mesh {
-        attributes: item.mesh.layout().into_iter().map(attribute).collect(),
-        stride: item.mesh.stride() as u32,
-        vertices: item.mesh.vertices(),
-        words: bytes(&item.mesh.words),
-        indices: bytes(&item.mesh.indices),
-        buffers: buffers(item.buffers),
-    }
-}
-
-fn buffers(buffers: &Buffers) -> Vec<Buffer> {
-    let one = |((group, binding), bytes): (&(u32, u32), &Vec<u8>)| Buffer {
-        group: *group,
-        binding: *binding,
-        bytes: bytes.clone(),
-    };
-    buffers.iter().map(one).collect()
-}
-
-fn fixtures(drawing: &frame::Drawing<'_>) -> (Vec<TextureInfo>, Vec<SamplerInfo>) {
-    let (mut textures, mut samplers) = (Vec::new(), Vec::new());
-    for (place, fixture) in drawing.fixtures {
-        match &**fixture {
-            Fixture::Texture(texture) => {
-                let smaller = drawing.levels.get(place).map_or(&[][..], Vec::as_slice);
-                let levels = std::iter::once(texture).chain(smaller).map(level);
-                textures.push(TextureInfo {
-                    group: place.0,
-                    binding: place.1,
-                    depth: texture.kind.is_depth(),
-                    cube: matches!(texture.kind, TextureKind::DepthCube | TextureKind::ColorCube),
-                    levels: levels.collect(),
-                });
-            }
-            Fixture::Sampler(sampler) => samplers.push(sampling(*place, *sampler)),
-        }
-    }
-    (textures, samplers)
-}
-
-fn level(texture: &Texture) -> Level {
-    Level {
-        width: texture.width,
-        height: texture.height,
-        bytes: texture.texels.iter().flat_map(|texel| texel.to_le_bytes()).collect(),
-    }
-}
-
-fn sampling((group, binding): (u32, u32), sampler: Sampler) -> SamplerInfo {
-    let compare = sampler.compare.map(|compare| match compare {
-        Compare::Less => "less",
-        Compare::LessEqual => "less-equal",
-        Compare::Greater => "greater",
-        Compare::GreaterEqual => "greater-equal",
-    });
-    let address = match sampler.address {
-        Address::Clamp => "clamp-to-edge",
-        Address::Repeat => "repeat",
-        Address::Mirror => "mirror-repeat",
-    };
-    SamplerInfo {
-        group,
-        binding,
-        compare: compare.map(str::to_owned),
-        linear: sampler.linear,
-        address: address.to_owned(),
     }
 }

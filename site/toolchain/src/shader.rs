@@ -165,6 +165,18 @@ fn made(request: &ShaderRequest) -> ShaderResult {
     made
 }
 
+/// The composed text of a root file, with the problems in the author's places.
+pub fn composed_text(
+    request: &ShaderRequest,
+    sources: &mut SourceSet,
+) -> Result<Composed, Diagnostics> {
+    let manifest = manifest(request.files.as_ref(), sources)?;
+    let loaded = graph(request.files.as_ref(), &request.root, language(&request.root), sources)?;
+    let Chosen { settings, .. } = chosen(request, manifest.get(), sources)?;
+    compose::compose(&loaded.1, &settings, &options(request))
+        .map_err(|errors| loaded.1.traced(errors))
+}
+
 /// What is chosen of a root file.
 struct Chosen {
     settings: Settings,

@@ -7,9 +7,11 @@
 //! every executor. [`probe`] rewrites a fragment entry point to return the bits of its colour and
 //! of its inputs.
 
+mod budget;
 mod pack;
 pub mod probe;
 mod programs;
 
-pub use pack::pack_buffer;
+pub use budget::bound_loops;
+pub use pack::{Leaf, buffer_leaves, pack_buffer};
 pub use programs::{Composed, Programs, Stages};

@@ -7,70 +7,81 @@ use crate::diagnostic::{Diagnostic, codes};
 /// column by column; an empty list stands for zeros. `None` if nothing knows the field.
 pub type Numbers<'n> = dyn Fn(&str) -> Option<Vec<f64>> + 'n;
 
+/// A scalar, a vector or a matrix in a buffer.
+pub struct Leaf<'b> {
+    /// As in [`Numbers`].
+    pub path: String,
+    /// Type in WGSL.
+    pub ty: &'b str,
+    at: u32,
+    size: u32,
+}
+
 /// The bytes of a buffer.
 ///
 /// # Errors
 /// A field that nothing knows, or for which there are too few numbers.
 pub fn pack_buffer(binding: &Binding, numbers: &Numbers<'_>) -> Result<Vec<u8>, Diagnostic> {
-    let size = binding.size.unwrap_or(0);
-    let mut packer = Packer { bytes: vec![0; size as usize], numbers };
+    let mut bytes = vec![0; binding.size.unwrap_or(0) as usize];
+    buffer_leaves(binding).iter().try_for_each(|leaf| pack_leaf(&mut bytes, leaf, numbers))?;
+    Ok(bytes)
+}
+
+/// Everything in a buffer that has numbers, in the order of the buffer.
+pub fn buffer_leaves(binding: &Binding) -> Vec<Leaf<'_>> {
+    let mut leaves = Vec::new();
     if binding.members.is_empty() {
-        packer.leaf(0, &binding.ty, size, &binding.name)?;
+        let size = binding.size.unwrap_or(0);
+        leaves.push(Leaf { path: binding.name.clone(), ty: &binding.ty, at: 0, size });
     }
-    packer.members(0, &binding.name, &binding.members)?;
-    Ok(packer.bytes)
+    members(&mut leaves, 0, &binding.name, &binding.members);
+    leaves
 }
 
-struct Packer<'n> {
-    bytes: Vec<u8>,
-    numbers: &'n Numbers<'n>,
+fn members<'b>(leaves: &mut Vec<Leaf<'b>>, base: u32, path: &str, members: &'b [Member]) {
+    for one in members {
+        member(leaves, base + one.offset, format!("{path}.{}", one.name), one);
+    }
 }
 
-impl Packer<'_> {
-    fn members(&mut self, base: u32, path: &str, members: &[Member]) -> Result<(), Diagnostic> {
-        members.iter().try_for_each(|member| {
-            self.member(base + member.offset, &format!("{path}.{}", member.name), member)
-        })
+fn member<'b>(leaves: &mut Vec<Leaf<'b>>, at: u32, path: String, member: &'b Member) {
+    let is_array = |stride: &u32| *stride > 0 && member.ty.starts_with("array");
+    let Some(stride) = member.stride.filter(is_array) else {
+        if member.members.is_empty() {
+            return leaves.push(Leaf { path, ty: &member.ty, at, size: member.size });
+        }
+        return members(leaves, at, &path, &member.members);
+    };
+    for index in 0..member.size / stride {
+        let (at, path) = (at + index * stride, format!("{path}[{index}]"));
+        if member.members.is_empty() {
+            let ty = member.ty.trim_start_matches("array<").split(',').next().unwrap_or_default();
+            leaves.push(Leaf { path, ty, at, size: stride });
+        } else {
+            members(leaves, at, &path, &member.members);
+        }
     }
+}
 
-    fn member(&mut self, at: u32, path: &str, member: &Member) -> Result<(), Diagnostic> {
-        let is_array = |stride: &u32| *stride > 0 && member.ty.starts_with("array");
-        let Some(stride) = member.stride.filter(is_array) else {
-            if member.members.is_empty() {
-                return self.leaf(at, &member.ty, member.size, path);
-            }
-            return self.members(at, path, &member.members);
-        };
-        for index in 0..member.size / stride {
-            let (at, path) = (at + index * stride, format!("{path}[{index}]"));
-            if member.members.is_empty() {
-                self.leaf(at, member.ty.trim_start_matches("array<"), stride, &path)?;
-            } else {
-                self.members(at, &path, &member.members)?;
-            }
-        }
-        Ok(())
+fn pack_leaf(bytes: &mut [u8], leaf: &Leaf<'_>, numbers: &Numbers<'_>) -> Result<(), Diagnostic> {
+    let Leaf { path, ty, at, size } = leaf;
+    let values = numbers(path).ok_or_else(|| without_number(path, ty))?;
+    let offsets: Vec<u32> = scalar_offsets(ty, *size).collect();
+    if !values.is_empty() && values.len() < offsets.len() {
+        let message = format!(
+            "the uniform `{path}: {ty}` was given {} of {} numbers",
+            values.len(),
+            offsets.len()
+        );
+        return Err(Diagnostic::error(codes::PICTURE_INVALID, message));
     }
-
-    fn leaf(&mut self, at: u32, ty: &str, size: u32, path: &str) -> Result<(), Diagnostic> {
-        let values = (self.numbers)(path).ok_or_else(|| without_number(path, ty))?;
-        let offsets: Vec<u32> = scalar_offsets(ty, size).collect();
-        if !values.is_empty() && values.len() < offsets.len() {
-            let message = format!(
-                "the uniform `{path}: {ty}` was given {} of {} numbers",
-                values.len(),
-                offsets.len()
-            );
-            return Err(Diagnostic::error(codes::PICTURE_INVALID, message));
+    for (offset, value) in offsets.into_iter().zip(values) {
+        let from = (at + offset) as usize;
+        if let Some(place) = bytes.get_mut(from..from + 4) {
+            place.copy_from_slice(&word_bytes(ty, value));
         }
-        for (offset, value) in offsets.into_iter().zip(values) {
-            let from = (at + offset) as usize;
-            if let Some(place) = self.bytes.get_mut(from..from + 4) {
-                place.copy_from_slice(&word_bytes(ty, value));
-            }
-        }
-        Ok(())
     }
+    Ok(())
 }
 
 fn without_number(path: &str, ty: &str) -> Diagnostic {

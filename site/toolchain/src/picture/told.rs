@@ -49,6 +49,14 @@ pub struct PictureRequest {
     #[serde(default)]
     #[tsify(optional, type = "Record<string, Record<string, number[]>>")]
     pub numbers: BTreeMap<String, BTreeMap<String, Vec<f64>>>,
+    /// Numbers of uniforms by path, as `pictureControls` lists them. They replace all others.
+    #[serde(default)]
+    #[tsify(optional, type = "Record<string, number[]>")]
+    pub uniforms: BTreeMap<String, Vec<f64>>,
+    /// Places of lamps in world space, by their index.
+    #[serde(default)]
+    #[tsify(optional, type = "Record<string, number[]>")]
+    pub lamps: BTreeMap<String, Vec<f64>>,
     /// What the page draws with: `wgsl` for WebGPU, `essl300` for WebGL2.
     pub target: String,
 }

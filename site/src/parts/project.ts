@@ -1,0 +1,105 @@
+// The files of the playground, and where they are kept: in the link and in the browser.
+import { packed, unpacked } from "../pack";
+import type { Look } from "./sketch";
+
+export type Project = {
+    files: Record<string, string>; open: string; target: string; expression: string; look: Look;
+};
+
+export const FIRST: Project = {
+    files: {
+        "lit.wesl": `import lamplight::brdf::diffuse::lambert;
+import lamplight::brdf::specular::blinn_phong;
+import package::lamp::falloff;
+
+@fragment
+fn fs_main(@location(0) normal: vec3f, @location(1) to_light: vec3f) -> @location(0) vec4f {
+    let n = normalize(normal);
+    let l = normalize(to_light);
+    let light = lambert(n, l) + blinn_phong(n, l, vec3f(0.0, 0.0, 1.0), 32.0);
+    return vec4f(vec3f(light * falloff(length(to_light))), 1.0);
+}
+`,
+        "lamp.wesl": `import lamplight::lighting::attenuation::inverse_square;
+
+fn falloff(distance: f32) -> f32 {
+    return inverse_square(distance * distance, 0.01);
+}
+`,
+        "lit.frag.glsl": `#version 450
+#include <lamplight/brdf/diffuse.glsl>
+
+layout(location = 0) in vec3 normal;
+layout(location = 0) out vec4 color;
+
+void main() {
+    color = vec4(lambert(normalize(normal), vec3(0.0, 1.0, 0.0)));
+}
+`,
+    },
+    open: "lit.wesl", target: "wgsl", expression: "package::lamp::falloff(2.0)", look: {},
+};
+
+/** What somebody typed last, and what was there before a link replaced it. */
+const [KEPT, EARLIER] = ["lamplight-playground", "lamplight-playground-earlier"];
+
+/** Characters of a link that browsers and servers still take. */
+const LONGEST = 60000;
+
+/** A project, whatever a link has. */
+function sound(found: unknown): Project {
+    const given = (typeof found === "object" && found !== null ? found : {}) as Partial<Record<keyof Project, unknown>>;
+    const files = Object.fromEntries(Object.entries(given.files ?? {}).filter(([, text]) => typeof text === "string"));
+    const names = Object.keys(files);
+    if (!names.length) return structuredClone(FIRST);
+    const text = (key: "open" | "target" | "expression") => (typeof given[key] === "string" ? given[key] as string : FIRST[key]);
+    const look = (typeof given.look === "object" && given.look !== null ? given.look : {}) as Look;
+    const open = names.includes(text("open")) ? text("open") : names[0];
+    return { files, open, target: text("target"), expression: text("expression"), look };
+}
+
+function parsed(text: string | null): { project: Project; at: string } | undefined {
+    try {
+        const found = JSON.parse(text ?? "");
+        return { project: sound(found.project), at: String(found.at) };
+    } catch {
+        return undefined;
+    }
+}
+
+/** Keeps a project with the address that it belongs to. False if the browser has no room. */
+export function keep(project: Project): boolean {
+    try {
+        localStorage.setItem(KEPT, JSON.stringify({ project, at: location.hash }));
+        return true;
+    } catch {
+        return false;
+    }
+}
+
+/** The project of the link. If that was typed into since, what was typed; without a link, what was
+ * typed last. */
+export async function opened(link: string | null): Promise<Project> {
+    const text = localStorage.getItem(KEPT);
+    const kept = parsed(text);
+    if (kept && (!link || kept.at === location.hash)) return kept.project;
+    if (!link) return structuredClone(FIRST);
+    try {
+        const project = sound(JSON.parse(await unpacked(link)));
+        // The user's own files stay within reach.
+        if (text) localStorage.setItem(EARLIER, text);
+        return project;
+    } catch {
+        // A link that was cut short opens what was typed last.
+        return kept?.project ?? structuredClone(FIRST);
+    }
+}
+
+/** What was typed before a link was opened. */
+export const earlier = (): Project | undefined => parsed(localStorage.getItem(EARLIER))?.project;
+
+/** The project as a part of a link; nothing if it is too large for one. */
+export async function linked(project: Project): Promise<string | undefined> {
+    const text = await packed(JSON.stringify(project));
+    return text.length > LONGEST ? undefined : text;
+}

@@ -1,0 +1,147 @@
+// A fragment stage drawn on a model of choice, with its inputs and uniforms as controls.
+import type { SketchControls, SketchRequest } from "@lamplight/toolchain";
+import { TYPED, toolchain } from "../client";
+import { choose, h } from "../dom";
+import { device, show, sketch } from "../draw";
+import { latest } from "./latest";
+import { Uniforms } from "./uniforms";
+
+/** What somebody chose, to be kept in a link. */
+export type Look = {
+    model?: string; turn?: [number, number]; lamp?: [number, number, number]; exposure?: number;
+    inputs?: Record<string, string>; uniforms?: Record<string, number[]>;
+};
+
+type Shader = SketchRequest["shader"];
+
+const LAMP: [number, number, number] = [1.6, 2, 2.4];
+const SIZE = 320;
+
+/** Keys that turn the model, by radians. */
+const TURNS: Record<string, [number, number]> = {
+    ArrowLeft: [0.1, 0], ArrowRight: [-0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1],
+};
+
+export class Sketch {
+    readonly element: HTMLElement;
+    #keptLook: () => Look;
+    #shader?: Shader;
+    #changed: () => void;
+    #canvas = h("canvas", {
+        width: SIZE, height: SIZE, role: "img", tabindex: "0",
+        "aria-label": "The picture. Dragging or the arrow keys turn the model; with Shift they move the light.",
+    });
+    #told = h("p", { role: "status", class: "status" });
+    #inputs = h("div", { class: "row" });
+    #numbers = h("div", { class: "uniforms" });
+    #uniforms: Uniforms;
+    #models = h("span", {});
+    #known = "";
+    #sources = "";
+
+    /** `changed` is told when somebody changed the look. */
+    constructor(look: () => Look, changed: () => void, withInputs = true) {
+        this.#keptLook = look;
+        this.#inputs.hidden = !withInputs;
+        this.#changed = changed;
+        this.#uniforms = new Uniforms(this.#numbers, (path, numbers) => {
+            this.#look.uniforms = { ...this.#look.uniforms, [path]: numbers };
+            this.#again(false);
+        });
+        const exposure = h("input", {
+            type: "range", min: -4, max: 4, step: 0.25, "aria-label": "Exposure, in powers of two",
+            oninput: () => { this.#look.exposure = Number(exposure.value); this.#again(false); },
+        });
+        exposure.value = String(look().exposure ?? 0);
+        this.#listen();
+        this.element = h("section", { class: "sketch", "aria-label": "Picture" },
+            h("div", { class: "picture" }, this.#canvas), this.#told,
+            h("div", { class: "row" }, this.#models, h("label", {}, h("span", {}, "exposure"), exposure)),
+            this.#inputs, this.#numbers);
+    }
+
+    get #look(): Look {
+        return this.#keptLook();
+    }
+
+    #listen() {
+        const turn = (x: number, y: number, light: boolean) => {
+            const { turn: [around, up] = [0, 0.3], lamp = LAMP } = this.#look;
+            if (light) this.#look.lamp = [lamp[0] - 2 * x, lamp[1] - 2 * y, lamp[2]];
+            else this.#look.turn = [around + x, Math.min(1.5, Math.max(-1.5, up + y))];
+            this.#again(false);
+        };
+        let last: [number, number] | undefined;
+        const canvas = this.#canvas;
+        canvas.addEventListener("pointerdown", (event) => {
+            canvas.setPointerCapture(event.pointerId);
+            last = [event.clientX, event.clientY];
+        });
+        canvas.addEventListener("pointermove", (event) => {
+            if (!last) return;
+            turn((last[0] - event.clientX) / 100, (event.clientY - last[1]) / 100, event.shiftKey);
+            last = [event.clientX, event.clientY];
+        });
+        const end = () => { last = undefined; };
+        canvas.addEventListener("pointerup", end);
+        canvas.addEventListener("pointercancel", end);
+        canvas.addEventListener("keydown", (event) => {
+            const step = TURNS[event.key];
+            if (!step) return;
+            event.preventDefault();
+            turn(...step, event.shiftKey);
+        });
+    }
+
+    /** Draws another text, or the same after a change. */
+    draw(shader: Shader): Promise<void> {
+        this.#shader = shader;
+        return this.#again(true);
+    }
+
+    #controls = true;
+
+    #again(withControls: boolean): Promise<void> {
+        this.#controls ||= withControls;
+        if (!withControls) this.#changed();
+        return this.#run();
+    }
+
+    #run = latest(async () => {
+        // Nobody sees the picture of a page that was left.
+        if (!this.element.isConnected) return;
+        const withControls = this.#controls;
+        this.#controls = false;
+        const { turn = [0, 0.3], lamp = LAMP, ...rest } = this.#look;
+        const request = { ...rest, turn, lamp, shader: this.#shader!, size: SIZE, samples: 4 };
+        const start = performance.now();
+        try {
+            if (withControls) this.#show(await toolchain.call(TYPED, "sketchControls", { ...request, target: "wgsl" }));
+            const pixels = await sketch(request);
+            show(this.#canvas, pixels);
+            this.#canvas.dataset.drawn = String(Number(this.#canvas.dataset.drawn ?? 0) + 1);
+            this.#told.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms`;
+        } catch (error) {
+            this.#told.textContent = error instanceof Error ? error.message : String(error);
+        }
+    });
+
+    #show(controls: SketchControls) {
+        if (controls.diagnostics.length) return;
+        this.#uniforms.show(controls.uniforms);
+        const models = controls.models.join();
+        if (models !== this.#known) {
+            this.#models.replaceChildren(choose("model", controls.models, this.#look.model ?? controls.models[0],
+                (model) => { this.#look.model = model; this.#again(false); }));
+            this.#known = models;
+        }
+        const sources = controls.inputs.map((one) => `${one.name}:${one.type}`).join();
+        if (sources === this.#sources) return;
+        this.#sources = sources;
+        this.#inputs.replaceChildren(...controls.inputs.map(({ name, source }) =>
+            choose(`input ${name}`, controls.sources, source, (chosen) => {
+                this.#look.inputs = { ...this.#look.inputs, [name]: chosen };
+                this.#again(false);
+            })));
+    }
+}

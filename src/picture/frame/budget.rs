@@ -1,0 +1,117 @@
+//! Ends the loops of a module after a number of trips, so that no text can keep a device busy.
+
+use naga::{
+    AddressSpace, Arena, BinaryOperator, Block, Expression, Function, GlobalVariable, Handle,
+    Literal, LocalVariable, MemoryDecorations, Module, Range, Scalar, Span, Statement, Type,
+    TypeInner,
+};
+
+/// Ends each loop once `most` trips were made, in all functions of an invocation together.
+///
+/// Browsers refuse derivatives in a loop that ends by a variable of the module, since invocations
+/// might differ in it. So a module with derivatives counts in each call of a function by itself.
+pub fn bound_loops(module: &mut Module, most: u32) {
+    let ty = Type { name: None, inner: TypeInner::Scalar(Scalar::U32) };
+    let ty = module.types.insert(ty, Span::UNDEFINED);
+    let shared = match derives(module) {
+        true => None,
+        false => Some(module.global_variables.append(variable(ty), Span::UNDEFINED)),
+    };
+    let functions = module.functions.iter_mut().map(|(_, function)| function);
+    for function in functions.chain(module.entry_points.iter_mut().map(|point| &mut point.function))
+    {
+        if has_loop(&function.body) {
+            bound_function(function, shared, ty, most);
+        }
+    }
+}
+
+fn variable(ty: Handle<Type>) -> GlobalVariable {
+    GlobalVariable {
+        name: Some("lamplight_trips".to_owned()),
+        space: AddressSpace::Private,
+        binding: None,
+        ty,
+        init: None,
+        memory_decorations: MemoryDecorations::empty(),
+    }
+}
+
+fn derives(module: &Module) -> bool {
+    let functions = module.functions.iter().map(|(_, function)| function);
+    let mut all = functions.chain(module.entry_points.iter().map(|point| &point.function));
+    all.any(|function| {
+        function.expressions.iter().any(|(_, expression)| {
+            matches!(expression, Expression::Derivative { .. } | Expression::ImageSample { .. })
+        })
+    })
+}
+
+fn has_loop(block: &Block) -> bool {
+    block.iter().any(|statement| match statement {
+        Statement::Loop { .. } => true,
+        Statement::Block(inner) => has_loop(inner),
+        Statement::If { accept, reject, .. } => has_loop(accept) || has_loop(reject),
+        Statement::Switch { cases, .. } => cases.iter().any(|case| has_loop(&case.body)),
+        _ => false,
+    })
+}
+
+fn bound_function(
+    function: &mut Function,
+    shared: Option<Handle<GlobalVariable>>,
+    ty: Handle<Type>,
+    most: u32,
+) {
+    let mut add = |expression| function.expressions.append(expression, Span::UNDEFINED);
+    let counter = match shared {
+        Some(global) => add(Expression::GlobalVariable(global)),
+        None => {
+            let zero = add(Expression::Literal(Literal::U32(0)));
+            let name = Some("lamplight_trips".to_owned());
+            let local = LocalVariable { name, ty, init: Some(zero) };
+            let local = function.local_variables.append(local, Span::UNDEFINED);
+            add(Expression::LocalVariable(local))
+        }
+    };
+    let (one, most) =
+        (add(Expression::Literal(Literal::U32(1))), add(Expression::Literal(Literal::U32(most))));
+    bound_block(&mut function.body, &mut function.expressions, [counter, one, most]);
+}
+
+type Value = Handle<Expression>;
+
+/// Begins the body of every loop with `trips += 1; if trips > most { break; }`.
+fn bound_block(block: &mut Block, arena: &mut Arena<Expression>, given: [Value; 3]) {
+    for statement in block.iter_mut() {
+        match statement {
+            Statement::Block(inner) => bound_block(inner, arena, given),
+            Statement::If { accept, reject, .. } => {
+                bound_block(accept, arena, given);
+                bound_block(reject, arena, given);
+            }
+            Statement::Switch { cases, .. } => {
+                cases.iter_mut().for_each(|case| bound_block(&mut case.body, arena, given));
+            }
+            Statement::Loop { body, .. } => {
+                bound_block(body, arena, given);
+                body.splice(0..0, counted(arena, given));
+            }
+            _ => {}
+        }
+    }
+}
+
+fn counted(arena: &mut Arena<Expression>, [counter, one, most]: [Value; 3]) -> Block {
+    let mut add = |expression| arena.append(expression, Span::UNDEFINED);
+    let before = add(Expression::Load { pointer: counter });
+    let binary = |op, left, right| Expression::Binary { op, left, right };
+    let after = add(binary(BinaryOperator::Add, before, one));
+    let done = add(binary(BinaryOperator::Greater, after, most));
+    let accept = Block::from_vec(vec![Statement::Break]);
+    Block::from_vec(vec![
+        Statement::Emit(Range::new_from_bounds(before, done)),
+        Statement::Store { pointer: counter, value: after },
+        Statement::If { condition: done, accept, reject: Block::new() },
+    ])
+}
