@@ -210,10 +210,11 @@ fn label(input: &Varying) -> String {
 /// The source of an input: the one that was chosen, or that its name suggests.
 fn source_of(input: &Varying, setting: &Setting) -> &'static str {
     let name = label(input);
-    if let Some(chosen) = setting.inputs.get(&name) {
-        if let Some((source, _)) = SOURCES.iter().find(|(source, _)| source == chosen) {
-            return source;
-        }
+    let chosen = setting.inputs.get(&name);
+    if let Some((source, _)) =
+        SOURCES.iter().find(|(source, _)| Some(*source) == chosen.map(String::as_str))
+    {
+        return source;
     }
     let name = name.to_lowercase();
     let has = |word: &&str| name.split('_').any(|part| part == *word);

@@ -1,35 +1,165 @@
 //! The playground.
 
-use serde_json::Value;
+use std::collections::BTreeMap;
+use std::process::Command;
+use std::time::Instant;
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use lamplight::browser::Page;
+use libtest_mimic::Failed;
+use serde_json::{Value, json};
 
 use super::{Opened, Outcome, PATIENCE, text, without_errors};
 
-/// The playground shows outputs and a value for its first text, and underlines a mistake that is
-/// typed, at its column.
+const VALUE: &str = "document.querySelector('.eval output').textContent";
+const FIRST_OUTPUT: &str = "document.querySelector('.texts pre')?.textContent";
+const DRAWN: &str = "document.querySelector('.sketch canvas')?.dataset.drawn";
+
+/// The playground shows outputs, a value and a picture for its first text, and underlines a mistake
+/// that is typed, at its column. Nothing that was typed is lost. The toolchain is replaced if it
+/// hangs.
 pub fn playground() -> Outcome {
     let opened = Opened::new()?;
     let mut page = opened.page("#/playground")?;
-    page.until(
-        "document.querySelector('.texts pre')?.textContent.includes('fn lambert')",
-        PATIENCE,
-    )?;
-    page.until("document.querySelector('.eval output').textContent === '0.25'", PATIENCE)?;
-    // Types a text at the end of the line with `let n`.
-    let typed = |text: &str| {
-        format!(
-            "(() => {{ const it = document.querySelector('.cm-content'); it.focus();
-                const lines = [...document.querySelectorAll('.cm-line')];
-                const line = lines.find((one) => one.textContent.includes('let n ='));
-                const range = document.createRange(); range.selectNodeContents(line); range.collapse(false);
-                getSelection().removeAllRanges(); getSelection().addRange(range);
-                document.execCommand('insertText', false, {}); }})()",
-            Value::from(text)
-        )
-    };
-    page.evaluate(&typed(" let m = nowhere(n);"), PATIENCE)?;
+    page.until(&format!("{FIRST_OUTPUT}?.includes('fn lambert')"), PATIENCE)?;
+    page.until(&format!("{VALUE} === '0.25'"), PATIENCE)?;
+    page.until(&format!("{DRAWN} !== undefined"), PATIENCE)?;
+    taken_by_the_command_line(&page)?;
+    page.evaluate(&typed("let n =", " let m = nowhere(n);"), PATIENCE)?;
     let mark = "document.querySelector('.cm-lintRange-error')?.textContent";
     page.until(&format!("{mark} === 'nowhere'"), PATIENCE)?;
     let problem = text(&page, "document.querySelector('.problems').textContent")?;
     assert!(problem.contains("lit.wesl:7:40: "), "expected lit.wesl:7:40 in `{problem}`");
+    kept(&opened, &page)?;
+    replaced(&page)?;
     without_errors(&mut page)
+}
+
+/// Types a text at the end of the line that contains some words.
+fn typed(line: &str, text: &str) -> String {
+    format!(
+        "(() => {{ const it = document.querySelector('.cm-content'); it.focus();
+            const lines = [...document.querySelectorAll('.cm-line')];
+            const line = lines.find((one) => one.textContent.includes({}));
+            const range = document.createRange(); range.selectNodeContents(line); range.collapse(false);
+            getSelection().removeAllRanges(); getSelection().addRange(range);
+            document.execCommand('insertText', false, {}); }})()",
+        Value::from(line),
+        Value::from(text)
+    )
+}
+
+/// The files of the zip compile with the command line, to the bytes that the page shows.
+fn taken_by_the_command_line(page: &Page) -> Outcome {
+    let save = "(async () => {
+        const make = URL.createObjectURL;
+        const blob = new Promise((found) => {
+            URL.createObjectURL = (blob) => { found(blob); return make.call(URL, blob); };
+        });
+        const click = HTMLAnchorElement.prototype.click;
+        HTMLAnchorElement.prototype.click = () => {};
+        [...document.querySelectorAll('button')].find((it) => it.textContent === 'Save as zip').click();
+        HTMLAnchorElement.prototype.click = click;
+        URL.createObjectURL = make;
+        const bytes = new Uint8Array(await (await blob).arrayBuffer());
+        return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(''));
+    })()";
+    let files = stored_files(&BASE64_STANDARD.decode(text(page, save)?)?)?;
+    let names: Vec<&str> = files.keys().map(String::as_str).collect();
+    assert_eq!(names, ["lamp.wesl", "lit.frag.glsl", "lit.wesl"]);
+    let folder = tempfile::tempdir()?;
+    for (name, bytes) in &files {
+        std::fs::write(folder.path().join(name), bytes)?;
+    }
+    let mut compile = Command::new(env!("CARGO_BIN_EXE_lamplight"));
+    compile.args(["compile", "lit.wesl", "lit.frag.glsl", "--target", "wgsl", "-o", "out"]);
+    let ran = compile.current_dir(folder.path()).output()?;
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let made = std::fs::read_to_string(folder.path().join("out/lit.fs_main.frag.wgsl"))?;
+    assert_eq!(text(page, FIRST_OUTPUT)?, made, "the page shows other bytes");
+    Ok(())
+}
+
+/// The files of a zip whose entries are stored as they are, by its central directory.
+fn stored_files(zip: &[u8]) -> Result<BTreeMap<String, Vec<u8>>, Failed> {
+    let short = |at: usize| -> Option<usize> {
+        Some(usize::from(u16::from_le_bytes(zip.get(at..at + 2)?.try_into().ok()?)))
+    };
+    let long = |at: usize| Some(short(at)? | short(at + 2)? << 16);
+    let read = || {
+        let end = zip.len().checked_sub(22)?;
+        let (count, mut at) = (short(end + 10)?, long(end + 16)?);
+        let mut files = BTreeMap::new();
+        for _ in 0..count {
+            let (method, size, name, local) =
+                (short(at + 10)?, long(at + 24)?, short(at + 28)?, long(at + 42)?);
+            let path = String::from_utf8(zip.get(at + 46..at + 46 + name)?.to_vec()).ok()?;
+            let start = local + 30 + short(local + 26)? + short(local + 28)?;
+            files.insert(path, zip.get(start..start + size).filter(|_| method == 0)?.to_vec());
+            at += 46 + name;
+        }
+        Some(files)
+    };
+    read().ok_or_else(|| "the zip has another form".into())
+}
+
+/// What was typed right before a reload is there afterwards. The link has it too, for a browser that
+/// never had it. A link does not destroy other files.
+fn kept(opened: &Opened, page: &Page) -> Outcome {
+    let lines =
+        "[...document.querySelectorAll('.cm-line')].map((it) => it.textContent).join('\\n')";
+    let there = |words: &str| format!("{lines}.includes({})", Value::from(words));
+    page.evaluate(&typed("let l =", " // before the reload"), PATIENCE)?;
+    page.call("Page.reload", json!({}))?;
+    page.until(
+        &format!("document.body?.dataset.ready && {}", there("// before the reload")),
+        PATIENCE,
+    )?;
+    page.until("document.querySelector('.problems li') !== null", PATIENCE)?;
+    page.until("location.hash.includes('state=')", PATIENCE)?;
+    let link = text(page, "location.hash")?;
+    page.evaluate(
+        "localStorage.setItem('lamplight-playground', JSON.stringify({ at: '', project: {
+            files: { 'own.wesl': '// my own', }, open: 'own.wesl', target: 'wgsl', expression: '1.0' } }))",
+        PATIENCE,
+    )?;
+    let other = opened.page(&link)?;
+    other.until(&there("// before the reload"), PATIENCE)?;
+    let back = "[...document.querySelectorAll('button')].find((it) => it.textContent.startsWith('Back to my files'))";
+    other.evaluate(&format!("{back}.click()"), PATIENCE)?;
+    other.until(&there("// my own"), PATIENCE)?;
+    Ok(())
+}
+
+/// A text that keeps the toolchain busy for minutes is given up after a second, and the page goes on
+/// with a new toolchain. The page answers all the time.
+fn replaced(page: &Page) -> Outcome {
+    let work = "x = sin(x) + cos(x); ".repeat(200);
+    let slow = format!(
+        " fn slow() -> f32 {{ var x = 0.5; for (var i = 0; i < 900000; i++) {{ {work} }} return x; }}"
+    );
+    let expression = |text: &str| {
+        format!(
+            "(() => {{ const it = document.querySelector('.eval input'); it.value = '{text}';
+                it.dispatchEvent(new Event('input')); }})()"
+        )
+    };
+    // The mistake of before goes away.
+    page.evaluate(
+        "(() => { const it = document.querySelector('.cm-content'); it.focus(); document.execCommand('selectAll'); })()",
+        PATIENCE,
+    )?;
+    page.evaluate(
+        &format!("document.execCommand('insertText', false, {})", json!(slow)),
+        PATIENCE,
+    )?;
+    page.evaluate(&expression("package::lit::slow()"), PATIENCE)?;
+    let started = Instant::now();
+    let said = "document.querySelector('.status').textContent";
+    page.until(&format!("{said}.includes('the toolchain was restarted')"), PATIENCE)?;
+    println!("the toolchain was given up after {:.1} s", started.elapsed().as_secs_f64());
+    page.evaluate(&expression("2.0 + 1.0"), PATIENCE)?;
+    page.until(&format!("{VALUE} === '3' || {VALUE} === '3.0'"), PATIENCE)?;
+    Ok(())
 }
