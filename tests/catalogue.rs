@@ -1,9 +1,10 @@
 //! The pages and modules that are generated from the library's files are up to date, and the
 //! presets and light probes are valid.
 
+mod figures;
 mod plots;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use lamplight::catalogue::{self, Kind, preset, probe};
 use lamplight::diagnostic::Diagnostic;
@@ -30,6 +31,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("catalogue::preset_fields", preset_numbers_name_fields),
         Trial::test("catalogue::probe_forms_agree", probe_forms_agree),
     ];
+    trials.extend(figures::trials());
     trials.extend(plots::trials());
     trials
 }
@@ -38,8 +40,9 @@ pub fn trials() -> Vec<Trial> {
 fn pages_are_up_to_date() -> Result<(), Failed> {
     same_on_disk("docs/catalogue", &made(catalogue_files())?)?;
     let found = on_disk("docs/catalogue");
-    let expected = made(catalogue_files())?;
-    let stale: Vec<&String> = found.iter().filter(|path| !expected.contains_key(*path)).collect();
+    let mut expected: BTreeSet<String> = made(catalogue_files())?.into_keys().collect();
+    expected.extend(figures::pictures()?);
+    let stale: Vec<&String> = found.iter().filter(|path| !expected.contains(*path)).collect();
     if stale.is_empty() {
         Ok(())
     } else {

@@ -2,10 +2,11 @@
 //! that show them.
 //!
 //! Everything is read from the library's own files: names, signatures and documentation from the
-//! modules, [`plot`]s from `NAME.plot.toml` beside a module, [`preset`]s from `presets.toml`,
+//! modules, [`plot`]s from `NAME.plot.toml` and [`figure`]s from `NAME.figure.toml` beside a module, [`preset`]s from `presets.toml`,
 //! [`probe`]s from `data/sh9_probes.toml`, recorded [`cost`]s from `costs.toml`. [`pages`] writes the catalogue from them.
 
 pub mod cost;
+pub mod figure;
 mod natural;
 mod outline;
 pub mod pages;

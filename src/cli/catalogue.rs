@@ -10,10 +10,16 @@ use super::failure::Failure;
 use super::overwrite::Overwrite;
 use super::terminal::stdout;
 use crate::catalogue::cost::is_record;
+use crate::catalogue::{self as library, figure};
+use crate::picture::figure::{Pictures, draw_figures};
 use crate::proof::catalogue::{self, Files};
+use crate::source::SourceSet;
 use crate::{input, output};
 
-/// Write the library's catalogue: a page for each module, with plots.
+/// The most bytes of a picture that is kept.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// Write the library's catalogue: a page for each module, with plots and pictures.
 #[derive(Args)]
 pub struct Arguments {
     /// The folder to write to.
@@ -59,15 +65,35 @@ pub fn run_catalogue(arguments: Arguments, gpus: cost::Opened) -> Result<(), Fai
             Err(Failure::check(outdated_message(&changed)))
         };
     }
-    let files_as_bytes = files.iter().map(|(path, text)| (path.as_str(), text.as_bytes()));
-    output::write_folder(folder, files_as_bytes, arguments.overwrite.replace())?;
+    let pictures = match &arguments.modules {
+        Some(_) => Pictures::new(),
+        None => figure_pictures(folder)?,
+    };
+    let texts = files.iter().map(|(path, text)| (path.as_str(), text.as_bytes()));
+    let drawn = pictures.iter().map(|(path, png)| (path.as_str(), png.as_slice()));
+    output::write_folder(folder, texts.chain(drawn), arguments.overwrite.replace())?;
     Ok(writeln!(
         stdout(),
-        "{}: {} files, {} changed",
+        "{}: {} files, {} changed; {} pictures",
         folder.display(),
         files.len(),
-        changed.len()
+        changed.len(),
+        pictures.len()
     )?)
+}
+
+/// The pictures of functions. Those in the folder that are still true are kept.
+fn figure_pictures(folder: &Path) -> Result<Pictures, Failure> {
+    let mut sources = SourceSet::default();
+    let read = |sources: &mut SourceSet| {
+        let kinds = figure::library_kinds(sources)?;
+        let figures = figure::library_figures(sources, &library::library_modules(), &kinds)?;
+        draw_figures(&kinds, &figures, &|path| {
+            let file = folder.join(figure::picture_path(path));
+            input::read_file(&file, MOST_BYTES).ok()
+        })
+    };
+    read(&mut sources).map_err(|problems| Failure::Input(sources, problems))
 }
 
 fn changed_files(folder: &Path, files: &Files) -> Vec<(PathBuf, String)> {

@@ -8,6 +8,7 @@
 //! share everything but the drawing itself.
 
 mod controls;
+pub mod figure;
 pub mod frame;
 pub mod gallery;
 mod light;

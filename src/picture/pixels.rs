@@ -208,6 +208,14 @@ impl Picture {
         }
     }
 
+    /// The colour of a pixel; black outside.
+    pub fn pixel(&self, [x, y]: [u32; 2]) -> [u8; 3] {
+        let at = 3 * (y as usize * self.width as usize + x as usize);
+        let inside = x < self.width && y < self.height;
+        let found = if inside { self.pixels.get(at..at + 3) } else { None };
+        found.and_then(|found| found.try_into().ok()).unwrap_or_default()
+    }
+
     /// Puts another picture over this one.
     pub fn place(&mut self, other: &Self, [left, top]: [u32; 2]) {
         for (index, colour) in other.pixels.as_chunks::<3>().0.iter().enumerate() {

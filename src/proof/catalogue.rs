@@ -7,7 +7,7 @@ use super::library::{Library, lock_sources};
 use super::{plots, quality};
 use crate::catalogue::pages::{Contents, Drawn, catalogue_pages as written};
 use crate::catalogue::quality::{self as groups, Measured};
-use crate::catalogue::{self, Module, cost, plot, prefix, preset, probe};
+use crate::catalogue::{self, Module, cost, figure, plot, prefix, preset, probe};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::{Session, executors, on_thread};
 use crate::permute::Manifest;
@@ -50,9 +50,13 @@ fn read_contents(sources: &Mutex<SourceSet>, manifest: &Manifest) -> Result<File
     let presets = preset::library_presets(&mut lock_sources(sources), manifest, &probes)?;
     let costs = cost::library_costs(&mut lock_sources(sources))?;
     let quality = measure_quality(sources)?;
+    let kinds = figure::library_kinds(&mut lock_sources(sources))?;
+    let figures = figure::library_figures(&mut lock_sources(sources), &modules, &kinds)?;
     Ok(written(&Contents {
         modules: &modules,
         plots: &plots,
+        kinds: &kinds,
+        figures: &figures,
         manifest,
         presets: &presets,
         probes: &probes,

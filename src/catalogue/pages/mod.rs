@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::cost::Costs;
+use super::figure::{Figures, Kinds};
 use super::preset::Preset;
 use super::probe::Probe;
 use super::quality::Measured;
@@ -30,6 +31,9 @@ pub struct Contents<'c> {
     pub modules: &'c [Module],
     /// By the path of the function: `lighting::spot::cone_hard`.
     pub plots: &'c BTreeMap<String, Drawn>,
+    pub kinds: &'c Kinds,
+    /// By the path of the function; the pictures are drawn apart.
+    pub figures: &'c Figures,
     pub manifest: &'c Manifest,
     pub presets: &'c [Preset],
     pub probes: &'c [Probe],
@@ -49,10 +53,7 @@ pub fn catalogue_pages(contents: &Contents) -> BTreeMap<String, String> {
         ("presets.md".to_owned(), preset::preset_page(contents.presets, contents.probes)),
     ]);
     for module in contents.modules {
-        files.insert(
-            page_of(&module.path),
-            module::module_page(module, contents.plots, contents.costs),
-        );
+        files.insert(page_of(&module.path), module::module_page(module, contents));
     }
     for (path, plot) in contents.plots {
         files.insert(format!("{}.svg", path.replace("::", "/")), plot.svg.clone());

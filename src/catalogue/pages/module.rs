@@ -1,11 +1,9 @@
 //! The page of a module.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::super::cost::Costs;
 use super::super::{Item, Kind, Module, SECTIONS};
-use super::Drawn;
+use super::Contents;
 use super::cost;
 use super::markdown::{code_block, escaped_prose, table_cell};
 
@@ -13,7 +11,7 @@ use super::markdown::{code_block, escaped_prose, table_cell};
 const PARAGRAPHS: std::ops::RangeFrom<usize> = 1..;
 
 /// The page: the module's comment, a table of contents, every item.
-pub fn module_page(module: &Module, plots: &BTreeMap<String, Drawn>, costs: &Costs) -> String {
+pub fn module_page(module: &Module, contents: &Contents) -> String {
     let mut text = format!("# {}\n", module.path);
     for paragraph in &module.doc {
         let _ = write!(text, "\n{}\n", escaped_prose(paragraph));
@@ -25,8 +23,8 @@ pub fn module_page(module: &Module, plots: &BTreeMap<String, Drawn>, costs: &Cos
     }
     write_contents(&mut text, module);
     for item in &module.items {
-        write_item(&mut text, item, plots.get(&item.path()));
-        cost::of_function(&mut text, item, costs);
+        write_item(&mut text, item, contents);
+        cost::of_function(&mut text, item, contents.costs);
     }
     let up = "../".repeat(module.path.matches("::").count());
     let _ = write!(text, "\n---\n[Catalogue]({up}README.md)\n");
@@ -51,7 +49,7 @@ fn write_contents(text: &mut String, module: &Module) {
     }
 }
 
-fn write_item(text: &mut String, item: &Item, plot: Option<&Drawn>) {
+fn write_item(text: &mut String, item: &Item, contents: &Contents) {
     let _ = write!(text, "\n## {}\n", escaped_prose(&item.name));
     for paragraph in item.paragraphs() {
         let _ = write!(text, "\n{}\n", escaped_prose(&paragraph));
@@ -60,19 +58,34 @@ fn write_item(text: &mut String, item: &Item, plot: Option<&Drawn>) {
     if let Some(glsl) = &item.glsl {
         let _ = write!(text, "\n{}", code_block("glsl", glsl));
     }
-    if let Some(plot) = plot {
-        let (_, module) = item.module.rsplit_once("::").unwrap_or(("", &item.module));
-        let _ = write!(
-            text,
-            "\n![{} plotted]({module}/{}.svg)\n\nPlotted: {}\n",
-            item.name, item.name, plot.caption
-        );
-    }
+    write_pictures(text, item, contents);
     write_members(text, item);
     for section in &SECTIONS[PARAGRAPHS] {
         if let Some(words) = item.section(section) {
             let _ = write!(text, "\n**{section}.** {}\n", escaped_prose(&words));
         }
+    }
+}
+
+/// The plot and the figure, each with what it shows.
+fn write_pictures(text: &mut String, item: &Item, contents: &Contents) {
+    let (name, path) = (&item.name, item.path());
+    let (_, module) = item.module.rsplit_once("::").unwrap_or(("", &item.module));
+    if let Some(plot) = contents.plots.get(&path) {
+        let caption = &plot.caption;
+        let _ = write!(text, "\n![{name} plotted]({module}/{name}.svg)\n\nPlotted: {caption}\n");
+    }
+    match contents.figures.get(&path) {
+        Some(figure) => match &figure.none {
+            Some(reason) => {
+                let _ = write!(text, "\nNo picture: {}.\n", escaped_prose(reason));
+            }
+            None => {
+                let caption = figure.caption(contents.kinds);
+                let _ = write!(text, "\n![{name} drawn]({module}/{name}.png)\n\n{caption}\n");
+            }
+        },
+        None => {}
     }
 }
 

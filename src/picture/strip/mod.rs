@@ -4,7 +4,7 @@
 
 mod entry;
 mod label;
-mod painted;
+pub(super) mod painted;
 
 pub use entry::{Comparison, Panel, library_comparisons};
 pub use painted::paint_expression;

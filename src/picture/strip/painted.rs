@@ -63,11 +63,15 @@ fn colour_of_words(words: &[u32]) -> DVec3 {
 
 /// The centre of every pixel, moved by a part of a pixel, as words.
 fn pixel_centres([width, height]: [u32; 2], shift: [f64; 2]) -> Vec<u32> {
-    let (w, h) = (f64::from(width), f64::from(height));
     let place = |x: u32, y: u32| {
-        let across = (2.0 * (f64::from(x) + 0.5 + shift[0]) - w) / h;
-        let up = 1.0 - 2.0 * (f64::from(y) + 0.5 + shift[1]) / h;
-        [(across as f32).to_bits(), (up as f32).to_bits()]
+        place_words([f64::from(x) + 0.5 + shift[0], f64::from(y) + 0.5 + shift[1]], [width, height])
     };
     (0..height).flat_map(|y| (0..width).flat_map(move |x| place(x, y))).collect()
+}
+
+/// A place in pixels as words of the two coordinates that an expression has.
+pub fn place_words([x, y]: [f64; 2], size: [u32; 2]) -> [u32; 2] {
+    let [width, height] = size.map(f64::from);
+    let (across, up) = ((2.0 * x - width) / height, 1.0 - 2.0 * y / height);
+    [(across as f32).to_bits(), (up as f32).to_bits()]
 }
