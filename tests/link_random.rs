@@ -137,8 +137,8 @@ struct Tally {
     whole: BTreeMap<String, (usize, u64)>,
     /// The stages that were run, by executor.
     ran: BTreeMap<&'static str, Ran>,
-    /// How many programs were not run because they have no fragment stage.
-    vertex_alone: usize,
+    /// How many vertex stages were not run because their positions are random.
+    elsewhere: usize,
     /// How many programs were not run because naga refuses a function that nothing calls. The outputs
     /// lack this function, but the evaluator reads the whole text.
     refused_whole: usize,
@@ -183,8 +183,8 @@ impl std::fmt::Display for Tally {
         let refused: usize = self.refused.values().sum();
         write!(f, "; {refused} refused; as a whole: {:?}", self.whole)?;
         self.ran.iter().try_for_each(|(name, ran)| write!(f, "\n  {name}: {ran}"))?;
-        if self.vertex_alone > 0 {
-            write!(f, "\n  {} not run: vertex stages alone", self.vertex_alone)?;
+        if self.elsewhere > 0 {
+            write!(f, "\n  {} not run: vertex stages with random positions", self.elsewhere)?;
         }
         if self.refused_whole > 0 {
             write!(f, "\n  {} not run: naga refuses an unused function", self.refused_whole)?;
@@ -220,11 +220,11 @@ fn batch(seeds: std::ops::Range<u64>, how: &How, tally: &mut Tally) -> Result<()
                     tally.whole.entry(place).or_insert((0, seed)).0 += 1;
                 }
                 if how.often > 0 && seed % how.often == 0 {
-                    tally.vertex_alone += usize::from(sound.runnable.is_none());
+                    tally.elsewhere += usize::from(sound.is_elsewhere);
                     let (whole, refused): (Vec<_>, Vec<_>) =
-                        sound.runnable.into_iter().partition(|one| one.is_valid_as_a_whole());
+                        sound.runnables.into_iter().partition(Runnable::is_valid_as_a_whole);
                     tally.refused_whole += refused.len();
-                    runnables.extend(whole.into_iter().map(|one| *one));
+                    runnables.extend(whole);
                 }
                 if seed % how.every == 0 {
                     let some = few(sound.outputs, how.most);
@@ -336,11 +336,9 @@ fn again(program: &Program, seed: u64, kind: &str, runner: Option<&Runner>) -> O
             let views: Vec<&Output> = sound.outputs.iter().filter(is_wanted).collect();
             let refused = outside::refused(&views).ok()?;
             let refused = refused.iter().map(|(index, words)| refusal(views[*index], words));
-            let ran = match (runner, &sound.runnable) {
-                (Some(runner), Some(runnable)) => {
-                    runner.run(std::slice::from_ref(&**runnable), &mut BTreeMap::new()).ok()?
-                }
-                _ => Vec::new(),
+            let ran = match runner {
+                Some(runner) => runner.run(&sound.runnables, &mut BTreeMap::new()).ok()?,
+                None => Vec::new(),
             };
             let mut all = refused.chain(ran.into_iter().map(|(_, finding)| finding));
             all.find(|finding| finding.kind == kind)

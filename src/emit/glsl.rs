@@ -5,6 +5,7 @@ use naga::proc::BoundsCheckPolicies;
 
 use super::lacks;
 use super::reflect::place_of;
+use super::remainder;
 use super::rename;
 use super::slots::{EXPLICIT_LIMIT, Numbering, assign_slots, native_reflection};
 use super::text::Text;
@@ -28,6 +29,10 @@ pub fn write_glsl(
     }
     let changed = rename::rename_taken(source.module, &is_taken);
     let source = &Source { module: changed.as_ref().unwrap_or(source.module), ..*source };
+    let defined = remainder::with_defined_remainders(source.module, source.info)?;
+    let (module, info) =
+        defined.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
+    let source = &Source { module, info, ..*source };
     let options = writer_options(source, version, numbering)?;
     let pipeline = PipelineOptions {
         shader_stage: source.stage,
@@ -47,6 +52,9 @@ pub fn write_glsl(
     let mut info = written.map_err(|error| text.explain(error))?;
     // naga omits the prefix of this one extension's name, and no driver knows it without.
     let mut text = text.0.replacen("#extension ARB_", "#extension GL_ARB_", 1);
+    if defined.is_some() {
+        text = remainder::with_plain_parameters(text);
+    }
     name_blocks(source, &mut text, &mut info);
     let mut native = glsl_reflection(source, &info, numbering);
     let is_asked = text.contains(&format!("uniform uint {FIRST_INSTANCE};"));

@@ -19,6 +19,7 @@ mod lacks;
 mod lists;
 mod names;
 mod reflect;
+mod remainder;
 mod rename;
 mod setters;
 mod slots;

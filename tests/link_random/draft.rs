@@ -76,6 +76,8 @@ pub struct Draft {
     /// The program has matrices of two rows in blocks. GLSL has another layout for them, so it is not
     /// among the targets.
     pub has_two_rows: bool,
+    /// The vertex stage draws a triangle over the whole frame. Otherwise its position is random.
+    pub places_corners: bool,
 }
 
 impl Draft {
@@ -83,6 +85,7 @@ impl Draft {
         let axes = 1 + random.below(AXES.len());
         let is_modern = random.chance(40);
         let has_two_rows = !spelling.is_glsl() && random.chance(25);
+        let places_corners = random.chance(75);
         Self {
             random,
             names: Names::new(spelling.is_glsl()),
@@ -98,6 +101,7 @@ impl Draft {
             bindings: 0,
             is_modern,
             has_two_rows,
+            places_corners,
         }
     }
 

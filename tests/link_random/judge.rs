@@ -16,7 +16,7 @@ use lamplight::validate::validate;
 
 use super::program::Program;
 use super::random::Random;
-use super::run::{Runnable, is_fragment};
+use super::run::Runnable;
 
 /// A mistake that was found: its kind, and the details.
 #[derive(Debug, Clone)]
@@ -46,8 +46,10 @@ pub struct Sound {
     pub outputs: Vec<Output>,
     /// The targets that were compiled as a whole, with the reason.
     pub whole: Vec<(String, Reason)>,
-    /// A fragment stage of one of the permutations.
-    pub runnable: Option<Box<Runnable>>,
+    /// A stage of each kind, each of one of the permutations.
+    pub runnables: Vec<Runnable>,
+    /// Whether there is a vertex stage whose position is random.
+    pub is_elsewhere: bool,
 }
 
 /// The verdict on a program.
@@ -189,12 +191,11 @@ impl Case {
                 Finding::new(format!("order: {kind}"), format!("{entry} {index}\n{about}"))
             })?;
             sound.keep(&made.unit, &mut seen);
-            if sound.runnable.is_none() && is_fragment(&made.unit) {
-                let (entry, unit) = (name.to_owned(), made.unit);
-                let seed = source.seed;
-                let runnable = Runnable { seed, composed, entry, unit };
-                sound.runnable = Some(Box::new(runnable));
-            }
+            let entry = name.to_owned();
+            sound.keep_runnable(
+                source,
+                Runnable { seed: source.seed, composed, entry, unit: made.unit },
+            );
         }
         sound.outputs.iter().try_for_each(read_again)?;
         Ok(sound)
@@ -211,6 +212,16 @@ fn keeping(language: Language, entry: &str) -> Options {
 }
 
 impl Sound {
+    /// Keeps the first stage of each kind that can be run.
+    fn keep_runnable(&mut self, source: &Program, runnable: Runnable) {
+        let is_fragment = runnable.is_fragment();
+        if !is_fragment && !source.places_corners {
+            self.is_elsewhere = true;
+        } else if self.runnables.iter().all(|known| known.is_fragment() != is_fragment) {
+            self.runnables.push(runnable);
+        }
+    }
+
     fn keep(&mut self, unit: &Unit, seen: &mut BTreeMap<(String, Vec<u8>), ()>) {
         for (name, artifact) in &unit.targets {
             let place = (name.clone(), artifact.bytes.to_vec());

@@ -21,6 +21,8 @@ pub struct Program {
     /// The name of its one file.
     pub file: &'static str,
     pub text: String,
+    /// Whether the vertex stage draws a triangle over the whole frame, so that it can be run.
+    pub places_corners: bool,
 }
 
 impl Program {
@@ -65,7 +67,8 @@ impl Program {
                 draft.items.concat()
             }
         };
-        Self { seed, language, manifest, targets, file, text }
+        let places_corners = draft.places_corners;
+        Self { seed, language, manifest, targets, file, text, places_corners }
     }
 }
 

@@ -1,21 +1,22 @@
-//! Runs fragment stages of random programs from their outputs, on an executor for each target, and
-//! computes them again with the evaluator from the composed text.
+//! Runs stages of random programs from their outputs, on an executor for each target, and computes
+//! them again with the evaluator from the composed text.
 //!
-//! `unit + feeder -> two draws for each target: inputs of fragments, outputs -> comparison`
+//! `unit + partner -> one or two draws for each target: inputs of fragments, outputs -> comparison`
 //!
-//! A feeder is a vertex stage that is made for the inputs of a fragment stage, so that these have
-//! ordinary numbers. Vertex stages of the programs are not run, because the places of their triangles
-//! would be random.
+//! A stage is drawn with a partner that is made for it. The partner of a fragment stage is a vertex
+//! stage that gives its inputs ordinary numbers. The partner of a vertex stage is a fragment stage
+//! that writes its inputs.
 
 mod driver;
 mod evaluated;
+mod fragment;
 mod metal;
+mod vertex;
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::sync::Arc;
 
-use lamplight::bundle::{Kind, Language, Reflection, Stage, Target, Unit, Varying};
+use lamplight::bundle::{Kind, Language, Stage, Target, Unit, Varying};
 use lamplight::compose::{Composed, lean};
 use lamplight::diagnostic::{Diagnostic, codes};
 use lamplight::emit::reflect;
@@ -49,6 +50,10 @@ pub struct Runnable {
 }
 
 impl Runnable {
+    pub fn is_fragment(&self) -> bool {
+        self.unit.reflection.stage == Stage::Fragment
+    }
+
     /// Whether naga accepts all of its text, with functions that the entry point does not need. WGSL
     /// was validated with all of them before.
     pub fn is_valid_as_a_whole(&self) -> bool {
@@ -93,12 +98,19 @@ type Opened = (Target, &'static str, Box<dyn Session>);
 struct Ready<'r> {
     runnable: &'r Runnable,
     validated: Validated,
-    feeder: Validated,
-    /// A fragment stage that writes its inputs; `None` if the stage has no inputs.
-    tells: Option<probe::Watched>,
+    partner: Partner,
+    mesh: Mesh,
     buffers: Buffers,
     fixtures: BTreeMap<Place, Arc<Fixture>>,
     stages: BTreeMap<Target, Result<Stages, Diagnostic>>,
+}
+
+/// The stage that a stage is drawn with.
+struct Partner {
+    validated: Validated,
+    entry: &'static str,
+    /// A fragment stage that writes its inputs; `None` if there are no inputs.
+    tells: Option<probe::Watched>,
 }
 
 /// Items with the indices of their stages in a list.
@@ -107,9 +119,17 @@ type Placed<T> = Vec<(usize, T)>;
 /// The stages that are drawn in one target.
 #[derive(Clone)]
 struct Stages {
-    feeder: Shipped,
-    own: Shipped,
+    vertex: Shipped,
+    /// The fragment stage that is tried; `None` if it is the vertex stage.
+    fragment: Option<Shipped>,
     tells: Option<Shipped>,
+}
+
+impl Stages {
+    /// The stage that is tried.
+    fn own(&mut self) -> &mut Shipped {
+        self.fragment.as_mut().unwrap_or(&mut self.vertex)
+    }
 }
 
 /// The words that both draws gave.
@@ -123,6 +143,9 @@ struct Drawn {
 
 /// The words of each render target.
 type Targets = Vec<Vec<u32>>;
+
+/// Fails if a frame differs from what the evaluator computes.
+type Judge<'p> = dyn FnMut(&Drawn, &mut Ran) -> Result<(), String> + 'p;
 
 impl Runner {
     /// Opens every driver and browser that runs a target.
@@ -202,18 +225,18 @@ fn made_ready(runnables: &[Runnable]) -> (Placed<Ready<'_>>, Placed<Finding>) {
 
 impl<'r> Ready<'r> {
     fn new(runnable: &'r Runnable) -> Result<Self, String> {
-        let Runnable { seed, composed, entry, unit, .. } = runnable;
+        let Runnable { seed, composed, entry, unit } = runnable;
         let told = |problems: Vec<Diagnostic>| format!("seed {seed}: {problems:?}");
         // The crate validates the lean text too, since naga refuses some texts with aliases.
         let validated = validate(&lean(composed)).map_err(told)?;
         let mut random = Random(seed ^ 0xfeed);
-        // The reflection is that of the whole text. An output leaves out inputs that it does not
-        // read.
+        // The reflection is that of the whole text. An output leaves out what it does not need.
         let whole = reflect(&validated, entry).map_err(|problem| told(vec![problem]))?;
-        let text = feeder(&whole, &mut random);
-        let feeder = Composed::of_text(Language::Wesl, None, text);
-        let feeder = validate(&feeder).map_err(told)?;
-        let tells = probe::told_inputs(&validated.module, entry);
+        let (partner, mesh) = match runnable.is_fragment() {
+            true => (fragment::partner(&validated, entry, &whole, &mut random), Mesh::default()),
+            false => (vertex::partner(&whole), vertex::mesh(&mut random)),
+        };
+        let partner = partner.map_err(told)?;
         let (mut buffers, mut fixtures) = (Buffers::new(), BTreeMap::new());
         for binding in &unit.reflection.bindings {
             let place = (binding.group, binding.binding);
@@ -228,7 +251,7 @@ impl<'r> Ready<'r> {
             }
         }
         let stages = BTreeMap::new();
-        let mut ready = Self { runnable, validated, feeder, tells, buffers, fixtures, stages };
+        let mut ready = Self { runnable, validated, partner, mesh, buffers, fixtures, stages };
         let own = Target::ALL.iter().filter(|one| unit.targets.contains_key(one.name()));
         ready.stages = own.map(|target| (*target, ready.shipped(*target))).collect();
         Ok(ready)
@@ -236,8 +259,8 @@ impl<'r> Ready<'r> {
 
     fn shipped(&self, target: Target) -> Result<Stages, Diagnostic> {
         let Runnable { unit, .. } = self.runnable;
-        let feeder = EntryPoint { module: &self.feeder.module, entry: "feed" };
-        let tells = self.tells.as_ref().map(|tells| {
+        let Partner { validated, entry, tells } = &self.partner;
+        let tells = tells.as_ref().map(|tells| {
             Shipped::of(EntryPoint { module: &tells.module, entry: probe::TELLS }, target)
         });
         let artifact = &unit.targets[target.name()];
@@ -247,7 +270,14 @@ impl<'r> Ready<'r> {
             native: (*artifact.native).clone(),
             reflection: (*unit.reflection).clone(),
         };
-        Ok(Stages { feeder: Shipped::of(feeder, target)?, own, tells: tells.transpose()? })
+        let (vertex, fragment) = match self.runnable.is_fragment() {
+            true => {
+                let feeder = EntryPoint { module: &validated.module, entry };
+                (Shipped::of(feeder, target)?, Some(own))
+            }
+            false => (own, None),
+        };
+        Ok(Stages { vertex, fragment, tells: tells.transpose()? })
     }
 
     /// Draws the stage and the one that writes its inputs. Gives the outputs and the inputs.
@@ -258,25 +288,29 @@ impl<'r> Ready<'r> {
     ) -> Result<(Targets, Targets), Diagnostic> {
         self.drawing(|drawing| {
             let draw = |fragment| {
-                let pair = Pair { vertex: &stages.feeder, fragment };
+                let pair = Pair { vertex: &stages.vertex, fragment };
                 let frames = session.draw_shipped(pair, drawing);
                 frames.map(|mut frames| frames.remove(0).targets)
             };
             let told = stages.tells.as_ref().map(draw).transpose()?;
-            Ok((draw(&stages.own)?, told.unwrap_or_default()))
+            let outputs = stages.fragment.as_ref().map(draw).transpose()?;
+            Ok((outputs.unwrap_or_default(), told.unwrap_or_default()))
         })
     }
 
     fn drawing<T>(&self, draw: impl FnOnce(&Drawing<'_>) -> T) -> T {
-        let mesh = Mesh::default();
+        let own = EntryPoint { module: &self.validated.module, entry: &self.runnable.entry };
+        let partner =
+            EntryPoint { module: &self.partner.validated.module, entry: self.partner.entry };
+        let (vertex, fragment) = match self.runnable.is_fragment() {
+            true => (partner, own),
+            false => (own, partner),
+        };
         draw(&Drawing {
-            vertex: EntryPoint { module: &self.feeder.module, entry: "feed" },
-            fragment: Some(EntryPoint {
-                module: &self.validated.module,
-                entry: &self.runnable.entry,
-            }),
+            vertex,
+            fragment: Some(fragment),
             targets: 1,
-            items: &[Item { mesh: &mesh, buffers: &self.buffers }],
+            items: &[Item { mesh: &self.mesh, buffers: &self.buffers }],
             views: &[Buffers::new()],
             buffers: &Buffers::new(),
             plain: &[],
@@ -293,8 +327,16 @@ impl<'r> Ready<'r> {
         frames: &[Drawn],
         ran: &mut BTreeMap<&'static str, Ran>,
     ) -> Vec<(Target, Finding)> {
-        let mut evaluator = match Evaluator::new(self) {
-            Ok(evaluator) => evaluator,
+        let made = match self.runnable.is_fragment() {
+            true => Evaluator::new(self).map(|mut made| -> Box<Judge<'_>> {
+                Box::new(move |frame, tally| made.frame(frame, tally))
+            }),
+            false => vertex::Corners::new(self).map(|made| -> Box<Judge<'_>> {
+                Box::new(move |frame, tally| made.frame(frame, tally))
+            }),
+        };
+        let mut judge = match made {
+            Ok(judge) => judge,
             Err(error) => {
                 let finding = Finding::new(format!("evaluator: {error}"), error);
                 // The finding is one of the evaluator, not of a target. WGSL is never excused by
@@ -306,7 +348,7 @@ impl<'r> Ready<'r> {
         let mut findings = Vec::new();
         for frame in frames {
             let tally = ran.entry(frame.name).or_default();
-            if let Err(error) = evaluator.frame(frame, tally) {
+            if let Err(error) = judge(frame, tally) {
                 let kind = format!("{} computes something else on {}", frame.target, frame.name);
                 findings.push((frame.target, self.finding(kind, frame.target, &error)));
             }
@@ -322,33 +364,6 @@ impl<'r> Ready<'r> {
         };
         Finding::new(kind, format!("{about}\n{}\n{output}", self.runnable.composed.text))
     }
-}
-
-/// A vertex stage that draws one triangle over the whole frame. Its outputs fit the inputs of a
-/// fragment stage, and differ from pixel to pixel.
-fn feeder(reflection: &Reflection, random: &mut Random) -> String {
-    let (mut members, mut values) = (String::new(), String::new());
-    for (index, input) in reflection.inputs.iter().enumerate() {
-        let Some(location) = input.location else { continue };
-        let attribute = interpolated(input);
-        let _ = writeln!(members, "@location({location}) {attribute} fed_{index}: {},", input.ty);
-        let count = match input.ty.as_bytes() {
-            [b'v', b'e', b'c', size, ..] => usize::from(size - b'0'),
-            _ => 1,
-        };
-        let mut one = || match input.ty.contains("f32") {
-            true => format!("{:?} + corner.x * {:?}", number(random), number(random)),
-            false => format!("{}", random.below(9)),
-        };
-        let parts: Vec<String> = (0..count).map(|_| one()).collect();
-        let _ = write!(values, ", {}({})", input.ty, parts.join(", "));
-    }
-    format!(
-        "struct Fed {{ @builtin(position) position: vec4f,\n{members}}}\n\
-         @vertex fn feed(@builtin(vertex_index) index: u32) -> Fed {{\n\
-         let corner = vec2f(vec2u((index << 1u) & 2u, index & 2u));\n\
-         return Fed(vec4f(corner * 2.0 - 1.0, 0.0, 1.0){values});\n}}\n"
-    )
 }
 
 fn interpolated(input: &Varying) -> String {
@@ -373,9 +388,4 @@ fn numbers(start: u64, path: &str) -> Vec<f64> {
         Random(random.next())
     });
     (0..16).map(|_| number(&mut random)).collect()
-}
-
-/// Whether a unit is of a fragment stage.
-pub fn is_fragment(unit: &Unit) -> bool {
-    unit.reflection.stage == Stage::Fragment
 }

@@ -98,14 +98,24 @@ impl Draft {
             list.push(format!("{attribute} {name}: {spelt}"));
             body.locals.push(Local { name, ty, is_mutable: false });
         }
+        let index = body.locals[2].name.clone();
         body.seeded();
         body.statements(1);
         let value = body.value(&Type::Struct(carried), 2);
+        let end = match body.draft.places_corners {
+            false => format!("return {value};"),
+            true => {
+                let placed = body.name();
+                let (ty, corner) =
+                    (body.draft.spell(&Type::Struct(carried)), corner("vec4f", "f32", &index, "u"));
+                let position = &body.draft.structs[carried].members[0].name;
+                let declared = format!("var {placed}: {ty} = {value};");
+                format!("{declared}\n{placed}.{position} = {corner};\nreturn {placed};")
+            }
+        };
         let (lines, result) = (body.lines.join("\n"), self.spell(&Type::Struct(carried)));
         let list = list.join(", ");
-        self.items.push(format!(
-            "@vertex fn {name}({list}) -> {result} {{\n{lines}\nreturn {value};\n}}\n"
-        ));
+        self.items.push(format!("@vertex fn {name}({list}) -> {result} {{\n{lines}\n{end}\n}}\n"));
     }
 
     /// Adds a fragment stage. It returns a colour or a structure, or an axis decides which of them.
@@ -185,8 +195,8 @@ impl Draft {
         self.values.push(Value { root, path, ty, is_mutable: false, when: None });
     }
 
-    /// Adds the `main` of a GLSL stage, which writes the outputs.
-    fn glsl_main(&mut self, outputs: &[(String, Type)]) {
+    /// Adds the `main` of a GLSL stage, which writes the outputs and ends with given lines.
+    fn glsl_main(&mut self, outputs: &[(String, Type)], last: &str) {
         let mut body = Body::new(self, None);
         body.used.extend(outputs.iter().map(|(name, _)| name.clone()));
         body.seeded();
@@ -197,7 +207,7 @@ impl Draft {
             let _ = writeln!(end, "{name} = {value};");
         }
         let lines = body.lines.join("\n");
-        self.items.push(format!("void main() {{\n{lines}\n{end}}}\n"));
+        self.items.push(format!("void main() {{\n{lines}\n{end}{last}}}\n"));
     }
 
     pub fn glsl_fragment(&mut self) {
@@ -211,7 +221,7 @@ impl Draft {
         let names = self.glsl_outputs(&types);
         self.functions();
         let outputs: Vec<_> = names.into_iter().zip(types).collect();
-        self.glsl_main(&outputs);
+        self.glsl_main(&outputs, "");
     }
 
     pub fn glsl_vertex(&mut self) {
@@ -223,9 +233,19 @@ impl Draft {
         let names = self.glsl_outputs(&types);
         self.functions();
         let mut outputs: Vec<_> = names.into_iter().zip(types).collect();
-        outputs.push(("gl_Position".to_owned(), FOUR));
-        self.glsl_main(&outputs);
+        if !self.places_corners {
+            outputs.push(("gl_Position".to_owned(), FOUR));
+            return self.glsl_main(&outputs, "");
+        }
+        let corner = corner("vec4", "float", "gl_VertexIndex", "");
+        self.glsl_main(&outputs, &format!("gl_Position = {corner};\n"));
     }
+}
+
+/// The place of a vertex by its index: three corners of one triangle over the whole frame.
+fn corner(vector: &str, float: &str, index: &str, suffix: &str) -> String {
+    let (x, y) = (format!("({index} << 1u) & 2{suffix}"), format!("{index} & 2{suffix}"));
+    format!("{vector}({float}({x}) * 2.0 - 1.0, {float}({y}) * 2.0 - 1.0, 0.0, 1.0)")
 }
 
 fn is_flat(ty: &Type) -> bool {

@@ -10,10 +10,10 @@ use std::collections::BTreeMap;
 use lamplight::bundle::Target;
 use lamplight::execute::shipped::Shipped;
 
-use super::{Drawn, Opened, Ready, Stages};
+use super::{Drawn, Opened, Ready};
 
 /// How many other numberings are tried.
-const NUMBERINGS: usize = 4;
+const NUMBERINGS: usize = 12;
 
 /// Draws a stage again with other numbers of ids. If the result is then the evaluator's, gives the
 /// name of the executor.
@@ -21,8 +21,9 @@ pub fn renumbered(sessions: &[Opened], target: Target, ready: &Ready<'_>) -> Opt
     let (_, name, session) = sessions.iter().find(|(one, ..)| *one == target)?;
     let stages = ready.stages.get(&target)?.as_ref().ok()?;
     let is_right = |unused: usize| {
-        let own = with_unused(&stages.own, unused)?;
-        let stages = Stages { own, ..stages.clone() };
+        let mut stages = stages.clone();
+        let own = stages.own();
+        *own = with_unused(own, unused)?;
         let (outputs, inputs) = ready.draw(&stages, session.as_ref()).ok()?;
         let drawn = Drawn { target, name, outputs, inputs };
         ready.compare(&[drawn], &mut BTreeMap::new()).is_empty().then_some(*name)

@@ -3,13 +3,15 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use lamplight::eval::{Bounded, Function, Kind as Slot, Machine, Number as _, Program, Resources};
+use lamplight::eval::{
+    Bounded, Function, FunctionId, Kind as Slot, Machine, Number as _, Program, Resources,
+};
 use naga::Binding;
 
 use super::{Drawn, Ran, Ready, SIZE};
 use crate::fragments;
 
-/// The evaluator of one stage. Quads with the same inputs are computed once.
+/// The evaluator of one fragment stage. Quads with the same inputs are computed once.
 pub struct Evaluator<'p> {
     machine: Box<Compute<'p>>,
     known: BTreeMap<Vec<u32>, Wanted>,
@@ -29,14 +31,9 @@ struct Wanted {
 
 impl<'p> Evaluator<'p> {
     pub fn new(ready: &'p Ready<'_>) -> Result<Self, String> {
-        let told = |error: lamplight::eval::Error| error.to_string();
-        let module = &ready.validated;
-        let program = Program::new(&module.module, &module.info).map_err(told)?;
-        let found = program.functions().filter(|(_, one)| one.name == ready.runnable.entry).last();
-        let (id, function) = found.map(|(id, one)| (id, one.clone())).ok_or("no entry point")?;
-        let resources =
-            fragments::resources(ready.buffers.clone(), &ready.fixtures, &BTreeMap::new());
-        let places = places(&function);
+        let (program, id, function) = entry_point(ready)?;
+        let resources = resources(ready);
+        let places = components(&function.outputs);
         let machine =
             move |given: &[Vec<u32>; 4]| quad(&program, id, &function, &places, &resources, given);
         Ok(Self { machine: Box::new(machine), known: BTreeMap::new() })
@@ -62,14 +59,27 @@ impl<'p> Evaluator<'p> {
     }
 }
 
-fn four(target: &[u32], pixel: usize) -> [u32; 4] {
+/// The stage as the evaluator has it.
+pub fn entry_point(ready: &Ready<'_>) -> Result<(Program, FunctionId, Function), String> {
+    let module = &ready.validated;
+    let program = Program::new(&module.module, &module.info).map_err(|error| error.to_string())?;
+    let found = program.functions().filter(|(_, one)| one.name == ready.runnable.entry).last();
+    let (id, function) = found.map(|(id, one)| (id, one.clone())).ok_or("no entry point")?;
+    Ok((program, id, function))
+}
+
+pub fn resources(ready: &Ready<'_>) -> Resources {
+    fragments::resources(ready.buffers.clone(), &ready.fixtures, &BTreeMap::new())
+}
+
+pub fn four(target: &[u32], pixel: usize) -> [u32; 4] {
     std::array::from_fn(|word| target[4 * pixel + word])
 }
 
-/// The location and the component of each result; `None` for a depth.
-fn places(function: &Function) -> Vec<Option<(u32, usize)>> {
+/// The location and the component of each slot; `None` for a built-in.
+pub fn components(bindings: &[Option<Binding>]) -> Vec<Option<(u32, usize)>> {
     let mut places: Vec<Option<(u32, usize)>> = Vec::new();
-    for binding in &function.outputs {
+    for binding in bindings {
         places.push(match binding {
             Some(Binding::Location { location, .. }) => {
                 let is_it = |place: &&Option<(u32, usize)>| {
@@ -85,7 +95,7 @@ fn places(function: &Function) -> Vec<Option<(u32, usize)>> {
 
 fn quad(
     program: &Program,
-    id: lamplight::eval::FunctionId,
+    id: FunctionId,
     function: &Function,
     places: &[Option<(u32, usize)>],
     resources: &Resources,
@@ -118,19 +128,28 @@ fn compare(
         let target = drawn.outputs.get(*location as usize);
         let target = target.ok_or_else(|| format!("there is no target {location}"))?;
         let found = f64::from(f32::from_bits(four(target, pixel)[*component]));
-        let (value, error) = (wanted.value(), wanted.error());
-        tally.numbers += 1;
-        let is_known = value.is_finite() && error.is_finite() && value.abs() < f64::from(f32::MAX);
-        if found == value || is_known && (found - value).abs() <= error {
-            continue;
-        }
-        if !is_known || doubt {
-            tally.open += 1;
-            continue;
-        }
-        return Err(format!(
-            "pixel {pixel}, location {location}, component {component}: found {found}, wanted {value} within {error:e}"
-        ));
+        let place = || format!("pixel {pixel}, location {location}, component {component}");
+        agree(found, (wanted.value(), wanted.error()), doubt, tally)
+            .map_err(|what| format!("{}: {what}", place()))?;
     }
     Ok(())
+}
+
+/// Fails unless a number is the wanted one within its error.
+pub fn agree(
+    found: f64,
+    (value, error): (f64, f64),
+    doubt: bool,
+    tally: &mut Ran,
+) -> Result<(), String> {
+    tally.numbers += 1;
+    let is_known = value.is_finite() && error.is_finite() && value.abs() < f64::from(f32::MAX);
+    if found == value || is_known && (found - value).abs() <= error {
+        return Ok(());
+    }
+    if !is_known || doubt {
+        tally.open += 1;
+        return Ok(());
+    }
+    Err(format!("found {found}, wanted {value} within {error:e}"))
 }

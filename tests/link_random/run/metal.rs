@@ -12,8 +12,8 @@ use super::{Ready, Stages, Targets};
 /// All stages of a batch in MSL, compiled at once.
 pub struct Metal {
     compiled: Compiled,
-    /// For each stage that has MSL, the index of its feeder. The stage itself, and the one that
-    /// writes its inputs, follow.
+    /// For each stage that has MSL, the index of its vertex stage. The fragment stages that are
+    /// drawn with it follow: the one that is tried, if it is one, and the one that writes its inputs.
     first: BTreeMap<usize, usize>,
 }
 
@@ -21,9 +21,9 @@ impl Metal {
     pub fn new(ready: &[Ready<'_>]) -> Result<Self, String> {
         let (mut stages, mut first) = (Vec::new(), BTreeMap::new());
         for (index, ready) in ready.iter().enumerate() {
-            if let Some(Ok(Stages { feeder, own, tells })) = ready.stages.get(&Target::MSL) {
+            if let Some(Ok(Stages { vertex, fragment, tells })) = ready.stages.get(&Target::MSL) {
                 first.insert(index, stages.len());
-                stages.extend([feeder, own].into_iter().chain(tells).cloned());
+                stages.extend([vertex].into_iter().chain(fragment).chain(tells).cloned());
             }
         }
         let compiled = Compiled::new(stages).map_err(|missing| missing.reason)?;
@@ -41,8 +41,12 @@ impl Metal {
                 let frames = self.compiled.draw(first, Some(fragment), &drawing);
                 frames.map(|mut frames| frames.remove(0).targets)
             };
-            let told =
-                ready.tells.as_ref().map(|tells| draw(first + 2, tells.targets)).transpose()?;
+            let tells = ready.partner.tells.as_ref();
+            if !ready.runnable.is_fragment() {
+                let told = tells.map(|tells| draw(first + 1, tells.targets)).transpose()?;
+                return Ok((Targets::new(), told.unwrap_or_default()));
+            }
+            let told = tells.map(|tells| draw(first + 2, tells.targets)).transpose()?;
             Ok((draw(first + 1, count)?, told.unwrap_or_default()))
         })
     }

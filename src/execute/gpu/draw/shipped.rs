@@ -42,7 +42,7 @@ impl Gpu {
         if let Some(stage) = stages.iter().find(|stage| stage.target != own) {
             return Err(gpu_failed(format!("this executor draws no {}", stage.target)));
         }
-        if let Some(reason) = stage_lacks(pair.fragment) {
+        if let Some(reason) = stages.into_iter().find_map(stage_lacks) {
             return Err(Diagnostic::error(codes::EXECUTOR_LACKS, reason));
         }
         if self.is_lavapipe() && stages.iter().any(|one| one.blocks().count() > LAVAPIPE_BLOCKS) {
@@ -136,10 +136,10 @@ impl Gpu {
     }
 }
 
-/// What cannot be done with a fragment stage on this way to the device.
+/// What cannot be done with a stage on this way to the device.
 fn stage_lacks(stage: &Shipped) -> Option<&'static str> {
     match stage.target {
-        Target::WGSL => stage.lacks_of_webgpu(),
+        Target::WGSL if stage.reflection.stage == Stage::Fragment => stage.lacks_of_webgpu(),
         Target::HLSL => hlsl::hlsl_lacks(&stage.text()),
         _ => None,
     }
