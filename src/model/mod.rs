@@ -12,7 +12,7 @@ mod nodes;
 mod surface;
 mod texture;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use glam::DVec3;
@@ -50,6 +50,8 @@ struct Reader<'b> {
     document: &'b gltf::Document,
     blob: &'b [u8],
     notes: BTreeSet<String>,
+    /// Means of images that the programs do not read, by number and whether they are colours.
+    means: BTreeMap<(usize, bool), DVec3>,
     /// Whether no material that is drawn is lit.
     all_unlit: bool,
 }
@@ -67,8 +69,9 @@ pub fn read_model(bytes: &[u8], view: View) -> Result<Model, String> {
     let read = || -> Result<Model, String> {
         let document =
             gltf::Gltf::from_slice(json).map_err(|error| document_error(&error))?.document;
-        let notes = BTreeSet::new();
-        model_scene(&mut Reader { document: &document, blob, notes, all_unlit: false }, view)
+        let (notes, means) = (BTreeSet::new(), BTreeMap::new());
+        let mut reader = Reader { document: &document, blob, notes, means, all_unlit: false };
+        model_scene(&mut reader, view)
     };
     caught(read).unwrap_or_else(|reason| Err(format!("the document is broken: {reason}")))
 }

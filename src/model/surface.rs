@@ -18,12 +18,15 @@ pub fn read_surface(
     let own = material.pbr_metallic_roughness();
     let [red, green, blue, _] = own.base_color_factor().map(f64::from);
     let color = DVec3::new(red, green, blue);
-    let layers = read_layers(reader, material)?;
-    let metal = layers.metallic;
-    let rough = f64::from(own.roughness_factor()).clamp(0.0, 1.0);
+    let mut layers = read_layers(reader, material)?;
     left_out(reader, material);
+    let means = if material.unlit() { Means::default() } else { texture_means(reader, material)? };
+    layers.metallic *= means.metal;
+    let metal = layers.metallic;
+    let rough = f64::from(own.roughness_factor()).clamp(0.0, 1.0) * means.rough;
     let strength = f64::from(material.emissive_strength().unwrap_or(1.0)).max(0.0);
-    let emission = DVec3::from_array(material.emissive_factor().map(f64::from)) * strength;
+    let factor = DVec3::from_array(material.emissive_factor().map(f64::from));
+    let emission = factor * strength * means.emission;
     if material.unlit() {
         if !reader.all_unlit && own.base_color_texture().is_some() {
             let what = "left out: textures of unlit materials beside lit ones";
@@ -42,7 +45,7 @@ pub fn read_surface(
         Material {
             emission,
             shininess: (2.0 / (alpha * alpha) - 2.0).clamp(1.0, 2000.0),
-            ambient: DVec3::ONE,
+            ambient: DVec3::splat(means.open),
             roughness: rough.max(0.045),
             diffuse: matt,
             specular,
@@ -65,16 +68,45 @@ fn unlit_surface(all_unlit: bool, color: DVec3) -> (DVec3, Material) {
     )
 }
 
+/// Means of the textures that the programs do not have, as factors.
+struct Means {
+    metal: f64,
+    rough: f64,
+    /// The share of the light from around that arrives.
+    open: f64,
+    emission: DVec3,
+}
+
+impl Default for Means {
+    fn default() -> Self {
+        Self { metal: 1.0, rough: 1.0, open: 1.0, emission: DVec3::ONE }
+    }
+}
+
+/// The means of a material's textures. A factor of 1 that a texture lowers everywhere would make
+/// everything metal.
+fn texture_means(reader: &mut Reader<'_>, material: &gltf::Material<'_>) -> Result<Means, String> {
+    let mut means = Means::default();
+    if let Some(info) = material.pbr_metallic_roughness().metallic_roughness_texture() {
+        let mean = reader.texture_mean(&info.texture(), false, "metal and roughness")?;
+        (means.rough, means.metal) = (mean.y, mean.z);
+    }
+    if let Some(occlusion) = material.occlusion_texture() {
+        let mean = reader.texture_mean(&occlusion.texture(), false, "occlusion")?;
+        let strength = f64::from(occlusion.strength()).clamp(0.0, 1.0);
+        means.open = 1.0 + strength * (mean.x - 1.0);
+    }
+    // Without a factor nothing is emitted, whatever the texture is.
+    if let Some(info) = material.emissive_texture() {
+        means.emission = reader.texture_mean(&info.texture(), true, "emission")?;
+    }
+    Ok(means)
+}
+
 /// Notes on what the programs do not have.
 fn left_out(reader: &mut Reader<'_>, material: &gltf::Material<'_>) {
-    let own = material.pbr_metallic_roughness();
-    let absent = [
-        (own.metallic_roughness_texture().is_some(), "textures of metal and roughness"),
-        (material.occlusion_texture().is_some(), "textures of occlusion"),
-        (material.emissive_texture().is_some(), "textures of emission"),
-        (material.alpha_mode() != gltf::material::AlphaMode::Opaque, "transparency"),
-    ];
-    for (_, what) in absent.iter().filter(|(is_there, _)| *is_there) {
-        reader.notes.insert(format!("left out, since the programs do not have them: {what}"));
+    if material.alpha_mode() != gltf::material::AlphaMode::Opaque {
+        let note = "left out, since the programs do not have it: transparency";
+        reader.notes.insert(note.to_owned());
     }
 }

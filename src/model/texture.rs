@@ -78,6 +78,33 @@ impl Sheet {
     }
 }
 
+impl Reader<'_> {
+    /// The mean of a texture that the programs do not have, which is noted. Each image is decoded
+    /// once.
+    pub fn texture_mean(
+        &mut self,
+        texture: &gltf::Texture<'_>,
+        is_color: bool,
+        what: &str,
+    ) -> Result<DVec3, String> {
+        self.notes.insert(format!(
+            "textures of {what} count with their mean, since the programs do not have them"
+        ));
+        let key = (texture.source().index(), is_color);
+        if let Some(mean) = self.means.get(&key) {
+            return Ok(*mean);
+        }
+        if self.means.len() >= MODEL_TEXTURES {
+            return Err(format!("materials: more than {MODEL_TEXTURES} sets of textures"));
+        }
+        let map = decode_image(self, key.0, is_color)?;
+        let sum: DVec3 = map.texels.iter().map(|texel| texel.truncate()).sum();
+        let mean = sum / map.texels.len().max(1) as f64;
+        self.means.insert(key, mean);
+        Ok(mean)
+    }
+}
+
 /// Cells in a row of the sheet.
 fn cells_across(cells: usize) -> usize {
     (1..).find(|side| side * side >= cells).unwrap_or(1)

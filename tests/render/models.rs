@@ -22,6 +22,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("render/model/bumps_rise", bumps_rise),
         Trial::test("render/model/lamp_and_camera", lamp_and_camera),
         Trial::test("render/model/what_is_left_out_is_said", what_is_left_out_is_said),
+        Trial::test("render/model/means_of_textures", means_of_textures),
         Trial::test("render/model/choices_of_the_user", choices_of_the_user),
     ];
     drawn.into_iter().chain(layers::trials()).chain(wrong::trials()).collect()
@@ -306,6 +307,39 @@ fn what_is_left_out_is_said() -> Result<(), Failed> {
         demand(said.contains(part), || format!("expected `{part}` in `{said}`"))?;
     }
     Ok(())
+}
+
+/// Textures that the programs do not have count with their mean. So a half that shines and a half
+/// that does not give the picture of a factor of 0.5, and the same for metal, roughness and
+/// occlusion.
+fn means_of_textures() -> Result<(), Failed> {
+    let emitted = image([WHITE, [0; 3], [0; 3], WHITE])?;
+    let rough = image([[255, 128, 0]; 4])?;
+    let open = image([[0; 3], [255; 3], [255; 3], [0; 3]])?;
+    let (mut document, buffer) = square(&[emitted, rough, open]);
+    let own = json!({ "baseColorFactor": [0.6, 0.3, 0.2, 1.0] });
+    let mut textured = json!({ "pbrMetallicRoughness": own, "emissiveFactor": [0.2, 0.4, 0.0] });
+    let mut factors = textured.clone();
+    textured["emissiveTexture"] = json!({ "index": 0 });
+    textured["pbrMetallicRoughness"]["metallicRoughnessTexture"] = json!({ "index": 1 });
+    factors["emissiveFactor"] = json!([0.1, 0.2, 0.0]);
+    factors["pbrMetallicRoughness"]["metallicFactor"] = json!(0.0);
+    factors["pbrMetallicRoughness"]["roughnessFactor"] = json!(128.0 / 255.0);
+    let mut taken = |material: &Value| {
+        document["materials"] = json!([material]);
+        drawn(&glb(&document, &buffer), &BEFORE)
+    };
+    let ((one, said), (other, _)) = (taken(&textured)?, taken(&factors)?);
+    for what in ["emission", "metal and roughness"] {
+        let note = format!("textures of {what} count with their mean");
+        demand(said.contains(&note), || format!("expected `{note}` in `{said}`"))?;
+    }
+    let (found, expected) = (pixel(&one, 0.5, 0.5), pixel(&other, 0.5, 0.5));
+    demand(is_near(found, expected, 1), || format!("found {found:?}, by factors {expected:?}"))?;
+    textured["occlusionTexture"] = json!({ "index": 2 });
+    let (dim, _) = taken(&textured)?;
+    let darker = pixel(&dim, 0.5, 0.5);
+    demand(darker[0] + 5 < found[0], || format!("{darker:?} should be darker than {found:?}"))
 }
 
 /// The user's settings go before those that the model asks for, even if they exclude these.
