@@ -75,17 +75,12 @@ fn write_pictures(text: &mut String, item: &Item, contents: &Contents) {
         let caption = &plot.caption;
         let _ = write!(text, "\n![{name} plotted]({module}/{name}.svg)\n\nPlotted: {caption}\n");
     }
-    match contents.figures.get(&path) {
-        Some(figure) => match &figure.none {
-            Some(reason) => {
-                let _ = write!(text, "\nNo picture: {}.\n", escaped_prose(reason));
-            }
-            None => {
-                let caption = figure.caption(contents.kinds);
-                let _ = write!(text, "\n![{name} drawn]({module}/{name}.png)\n\n{caption}\n");
-            }
-        },
-        None => {}
+    let Some(figure) = contents.figures.get(&path) else { return };
+    if let Some(reason) = &figure.none {
+        let _ = write!(text, "\nNo picture: {}.\n", escaped_prose(reason));
+    } else {
+        let caption = figure.caption(contents.kinds);
+        let _ = write!(text, "\n![{name} drawn]({module}/{name}.png)\n\n{caption}\n");
     }
 }
 
