@@ -1,6 +1,10 @@
 //! Lamplight: lighting and shadow functions in WGSL and GLSL, composed, compiled and proven.
 //!
-//! The crate has three uses. The shaders themselves are in `shaderlib/` and need none of it.
+//! The crate has three uses. The shaders themselves are in `shaderlib/` and need none of it. The
+//! [site] shows each function with plots and pictures, draws every permutation of the programs, and
+//! has a playground and the guide. All of it is computed in the browser, by this crate.
+//!
+//! [site]: https://lamplight-shaders.github.io/lamplight/
 //!
 //! # In an engine
 //!

@@ -5,13 +5,14 @@
 mod pictures;
 mod playground;
 mod programs;
+mod seen;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
 use lamplight::browser::serve::{Files, Server};
-use lamplight::browser::{Browser, Page, Screenshot};
+use lamplight::browser::{Browser, Page};
 use lamplight::catalogue;
 use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
@@ -29,7 +30,7 @@ pub fn trials() -> Vec<Trial> {
         ("pictures", pictures::pictures),
         ("programs", programs::programs),
         ("playground", playground::playground),
-        ("seen", seen),
+        ("seen", seen::seen),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("site::{name}"), case)).collect()
 }
@@ -124,45 +125,4 @@ fn catalogue() -> Outcome {
         PATIENCE,
     )?;
     without_errors(&mut page)
-}
-
-/// The main pages at the widths of a phone and of a desktop screen. No page is wider than the screen,
-/// and every control has a name for screen readers. Screenshots are left in `target/tmp/site/`.
-fn seen() -> Outcome {
-    let opened = Opened::new()?;
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/tmp/site");
-    std::fs::create_dir_all(&folder)?;
-    let pages = [
-        (
-            "catalogue",
-            "#/catalogue/brdf::specular::blinn_phong",
-            "document.querySelector('.live svg')",
-        ),
-        (
-            "programs",
-            "#/programs/forward?key=shadow=pcf_3x3",
-            "document.querySelector('canvas').dataset.drawn",
-        ),
-        ("playground", "#/playground", "document.querySelector('.texts pre')"),
-        ("gallery", "#/gallery", "document.querySelector('canvas').dataset.drawn"),
-    ];
-    for (name, address, there) in pages {
-        let mut page = opened.page(address)?;
-        page.until(&format!("!!{there}"), PATIENCE)?;
-        let nameless = "[...document.querySelectorAll('input, select, button, a, canvas')].filter((it) =>
-            !(it.getAttribute('aria-label') || it.labels?.length || it.textContent.trim())).map((it) => it.outerHTML)";
-        assert_eq!(page.evaluate(nameless, PATIENCE)?, json!([]), "{name}: controls without name");
-        for width in [360, 1280] {
-            let bytes = page.screenshot(Screenshot { width, height: 900, whole: false })?;
-            std::fs::write(folder.join(format!("{name}-{width}.png")), bytes)?;
-        }
-        page.screenshot(Screenshot { width: 360, height: 900, whole: false })?;
-        let wide = "document.documentElement.scrollWidth";
-        assert!(
-            page.evaluate(wide, PATIENCE)?.as_u64().is_some_and(|found| found <= 360),
-            "{name} is wider than a screen of 360 pixels"
-        );
-        without_errors(&mut page)?;
-    }
-    Ok(())
 }

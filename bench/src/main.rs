@@ -14,6 +14,7 @@ mod lsp;
 mod migrate;
 mod packages;
 mod scale;
+mod site;
 
 use std::error::Error;
 use std::process::ExitCode;
@@ -30,6 +31,7 @@ const BENCHMARKS: &[Benchmark] = &[
     ("lsp", lsp::run),
     ("migrate", migrate::run),
     ("scale", scale::run),
+    ("site", site::run),
 ];
 
 fn main() -> ExitCode {

@@ -1,6 +1,6 @@
 //! Programs of the library's manifest, composed into the stages of one permutation.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::bundle::{Language, Reflection};
@@ -26,7 +26,16 @@ pub struct Programs {
 struct Kept {
     texts: SourceSet,
     graphs: BTreeMap<String, Arc<Graph>>,
+    /// The permutations that were asked for last, the latest at the end. Pictures of the same one
+    /// follow each other while somebody moves a lamp.
+    stages: VecDeque<(Asked, Stages)>,
 }
+
+/// What stages are asked for by.
+type Asked = (String, Settings, Language);
+
+/// How many permutations are kept: as many as the passes of a picture.
+const KEPT_STAGES: usize = 8;
 
 /// The stages of one permutation. Without a fragment stage it draws only depth.
 #[derive(Debug, Clone)]
@@ -56,7 +65,8 @@ impl Programs {
         let (mut texts, manifest) = project::library_manifest()?;
         match Table::load(&mut texts, &manifest) {
             Ok(pictures) => {
-                let kept = Mutex::new(Kept { texts, graphs: BTreeMap::new() });
+                let (graphs, stages) = Default::default();
+                let kept = Mutex::new(Kept { texts, graphs, stages });
                 Ok(Self { manifest, pictures, kept })
             }
             Err(problems) => Err((texts, problems)),
@@ -88,6 +98,26 @@ impl Programs {
     /// # Errors
     /// Those of the composition, and a program that does not exist in the language.
     pub fn stages(
+        &self,
+        program: &Program,
+        settings: &Settings,
+        language: Language,
+    ) -> Result<Stages, Diagnostics> {
+        let asked = (program.name.clone(), settings.clone(), language);
+        let found = self.kept().stages.iter().find(|(known, _)| *known == asked).cloned();
+        if let Some((_, stages)) = found {
+            return Ok(stages);
+        }
+        let stages = self.composed_stages(program, settings, language)?;
+        let mut kept = self.kept();
+        kept.stages.push_back((asked, stages.clone()));
+        if kept.stages.len() > KEPT_STAGES {
+            kept.stages.pop_front();
+        }
+        Ok(stages)
+    }
+
+    fn composed_stages(
         &self,
         program: &Program,
         settings: &Settings,
