@@ -63,6 +63,16 @@ impl Opened {
     }
 }
 
+/// Waits for something. The error has the words that the page says meanwhile.
+fn wait(page: &Page, expression: &str) -> Outcome {
+    let said = "[...document.querySelectorAll('.status, .wrong, .problems, .eval output')]
+        .map((it) => it.textContent).join('; ')";
+    page.until(expression, PATIENCE).map_err(|problem| match text(page, said) {
+        Ok(words) => format!("{problem}; the page says: {words}").into(),
+        Err(_) => problem.into(),
+    })
+}
+
 fn text(page: &Page, expression: &str) -> Result<String, Failed> {
     let found = page.evaluate(expression, PATIENCE)?;
     Ok(found.as_str().map_or_else(|| found.to_string(), str::to_owned))

@@ -8,10 +8,10 @@ type Waiting = { call: Call; resolve: (value: unknown) => void; reject: (error: 
 /** Milliseconds that a call about typed text may take before the toolchain is restarted. */
 export const TYPED = 1000;
 /** What the library's own programs may take: nobody typed them. */
-export const OWN = 20000;
+export const OWN = 60000;
 
 /** What the first answer may take: the browser compiles the toolchain while it runs. */
-const COLD = 10000;
+const COLD = 20000;
 
 export class TooLong extends Error {}
 

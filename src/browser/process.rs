@@ -30,6 +30,7 @@ const FLAGS: &[&str] = &[
     "--disable-component-update",
     "--disable-dev-shm-usage",
     "--disable-extensions",
+    "--disable-gpu-watchdog",
     "--disable-quic",
     "--disable-renderer-backgrounding",
     "--disable-sync",

@@ -22,7 +22,7 @@ use lamplight::source::{Embedded, Memory, Package, SourceSet};
 use lamplight::validate::validate;
 use libtest_mimic::Failed;
 
-use super::{Opened, Outcome, PATIENCE, text, without_errors};
+use super::{Opened, Outcome, PATIENCE, text, wait, without_errors};
 
 /// Presets of several kinds: without shadow, with a shadow map, with blurred moments, with a cube
 /// map.
@@ -41,7 +41,7 @@ pub fn pictures() -> Outcome {
         for preset in PRESETS {
             let canvas = format!("document.querySelector('canvas[data-preset={preset}]')");
             page.evaluate(&format!("{canvas}.scrollIntoView()"), PATIENCE)?;
-            page.until(&format!("{canvas}?.dataset.drawn === '1'"), PATIENCE)?;
+            wait(&page, &format!("{canvas}?.dataset.drawn === '1'"))?;
             let pixels = text(&page, &format!("{canvas}.toDataURL('image/png')"))?;
             let name = format!("{preset} at {address}");
             compare(&name, &pixels, &rendered(preset)?)?;
@@ -52,7 +52,7 @@ pub fn pictures() -> Outcome {
     }
     let mut page = opened.page("?device=none#/programs")?;
     let said = "document.querySelector('[role=status].status').textContent";
-    page.until(&format!("{said}.includes('neither WebGPU nor WebGL2')"), PATIENCE)?;
+    wait(&page, &format!("{said}.includes('neither WebGPU nor WebGL2')"))?;
     without_errors(&mut page)
 }
 
@@ -105,9 +105,9 @@ const FUNCTION: &str = "brdf::diffuse::oren_nayar";
 fn preview(page: &Page, device: &str) -> Outcome {
     page.evaluate(&format!("location.hash = '#/catalogue/{FUNCTION}'"), PATIENCE)?;
     let canvas = "document.querySelector('.sketch canvas')";
-    page.until(&format!("{canvas} !== null"), PATIENCE)?;
+    wait(&page, &format!("{canvas} !== null"))?;
     page.evaluate(&format!("{canvas}.scrollIntoView()"), PATIENCE)?;
-    page.until(&format!("{canvas}?.dataset.drawn !== undefined"), PATIENCE)?;
+    wait(&page, &format!("{canvas}?.dataset.drawn !== undefined"))?;
     let pixels = text(page, &format!("{canvas}.toDataURL('image/png')"))?;
     let link = "(async () => {
         const packed = document.querySelector('.live a').href.split('state=')[1];

@@ -10,7 +10,7 @@ use lamplight::browser::Page;
 use libtest_mimic::Failed;
 use serde_json::{Value, json};
 
-use super::{Opened, Outcome, PATIENCE, text, without_errors};
+use super::{Opened, Outcome, PATIENCE, text, wait, without_errors};
 
 const VALUE: &str = "document.querySelector('.eval output').textContent";
 const FIRST_OUTPUT: &str = "document.querySelector('.texts pre')?.textContent";
@@ -22,13 +22,13 @@ const DRAWN: &str = "document.querySelector('.sketch canvas')?.dataset.drawn";
 pub fn playground() -> Outcome {
     let opened = Opened::new()?;
     let mut page = opened.page("#/playground")?;
-    page.until(&format!("{FIRST_OUTPUT}?.includes('fn lambert')"), PATIENCE)?;
-    page.until(&format!("{VALUE} === '0.25'"), PATIENCE)?;
-    page.until(&format!("{DRAWN} !== undefined"), PATIENCE)?;
+    wait(&page, &format!("{FIRST_OUTPUT}?.includes('fn lambert')"))?;
+    wait(&page, &format!("{VALUE} === '0.25'"))?;
+    wait(&page, &format!("{DRAWN} !== undefined"))?;
     taken_by_the_command_line(&page)?;
     page.evaluate(&typed("let n =", " let m = nowhere(n);"), PATIENCE)?;
     let mark = "document.querySelector('.cm-lintRange-error')?.textContent";
-    page.until(&format!("{mark} === 'nowhere'"), PATIENCE)?;
+    wait(&page, &format!("{mark} === 'nowhere'"))?;
     let problem = text(&page, "document.querySelector('.problems').textContent")?;
     assert!(problem.contains("lit.wesl:7:40: "), "expected lit.wesl:7:40 in `{problem}`");
     kept(&opened, &page)?;
@@ -112,12 +112,9 @@ fn kept(opened: &Opened, page: &Page) -> Outcome {
     let there = |words: &str| format!("{lines}.includes({})", Value::from(words));
     page.evaluate(&typed("let l =", " // before the reload"), PATIENCE)?;
     page.call("Page.reload", json!({}))?;
-    page.until(
-        &format!("document.body?.dataset.ready && {}", there("// before the reload")),
-        PATIENCE,
-    )?;
-    page.until("document.querySelector('.problems li') !== null", PATIENCE)?;
-    page.until("location.hash.includes('state=')", PATIENCE)?;
+    wait(&page, &format!("document.body?.dataset.ready && {}", there("// before the reload")))?;
+    wait(&page, "document.querySelector('.problems li') !== null")?;
+    wait(&page, "location.hash.includes('state=')")?;
     let link = text(page, "location.hash")?;
     page.evaluate(
         "localStorage.setItem('lamplight-playground', JSON.stringify({ at: '', project: {
@@ -125,10 +122,10 @@ fn kept(opened: &Opened, page: &Page) -> Outcome {
         PATIENCE,
     )?;
     let other = opened.page(&link)?;
-    other.until(&there("// before the reload"), PATIENCE)?;
+    wait(&other, &there("// before the reload"))?;
     let back = "[...document.querySelectorAll('button')].find((it) => it.textContent.startsWith('Back to my files'))";
     other.evaluate(&format!("{back}.click()"), PATIENCE)?;
-    other.until(&there("// my own"), PATIENCE)?;
+    wait(&other, &there("// my own"))?;
     Ok(())
 }
 
@@ -146,20 +143,16 @@ fn replaced(page: &Page) -> Outcome {
         )
     };
     // The mistake of before goes away.
-    page.evaluate(
-        "(() => { const it = document.querySelector('.cm-content'); it.focus(); document.execCommand('selectAll'); })()",
-        PATIENCE,
-    )?;
-    page.evaluate(
-        &format!("document.execCommand('insertText', false, {})", json!(slow)),
-        PATIENCE,
-    )?;
+    let replace =
+        "(() => { document.querySelector('.cm-content').focus(); document.execCommand('selectAll');
+        document.execCommand('insertText', false, TEXT); })()";
+    page.evaluate(&replace.replace("TEXT", &Value::from(slow).to_string()), PATIENCE)?;
     page.evaluate(&expression("package::lit::slow()"), PATIENCE)?;
     let started = Instant::now();
     let said = "document.querySelector('.status').textContent";
-    page.until(&format!("{said}.includes('the toolchain was restarted')"), PATIENCE)?;
+    wait(&page, &format!("{said}.includes('the toolchain was restarted')"))?;
     println!("the toolchain was given up after {:.1} s", started.elapsed().as_secs_f64());
     page.evaluate(&expression("2.0 + 1.0"), PATIENCE)?;
-    page.until(&format!("{VALUE} === '3' || {VALUE} === '3.0'"), PATIENCE)?;
+    wait(&page, &format!("{VALUE} === '3' || {VALUE} === '3.0'"))?;
     Ok(())
 }

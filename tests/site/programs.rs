@@ -3,7 +3,7 @@
 use lamplight::browser::Page;
 use serde_json::Value;
 
-use super::{Opened, Outcome, PATIENCE, text, without_errors};
+use super::{Opened, Outcome, PATIENCE, text, wait, without_errors};
 
 /// Switching an axis changes the picture and the outputs, and the axis says what it costs. Values
 /// that are impossible say why. A moved lamp and the number of a uniform change the picture. The link
@@ -11,7 +11,7 @@ use super::{Opened, Outcome, PATIENCE, text, without_errors};
 pub fn programs() -> Outcome {
     let opened = Opened::new()?;
     let mut page = opened.page("#/programs/forward?scene=casters")?;
-    page.until("document.querySelector('canvas').dataset.drawn !== undefined", PATIENCE)?;
+    wait(&page, "document.querySelector('canvas').dataset.drawn !== undefined")?;
     let picture = "document.querySelector('canvas').toDataURL()";
     let before = text(&page, picture)?;
     let greyed = "[...document.querySelectorAll('[data-axis=shadow_light] option, [data-axis=frequency] option, [data-axis=lights] option')]
@@ -24,43 +24,43 @@ pub fn programs() -> Outcome {
         )
     };
     let outputs = "[...document.querySelectorAll('.texts pre')].map((it) => it.textContent).join()";
-    page.until(&format!("{outputs}.includes('fn vs_main')"), PATIENCE)?;
+    wait(&page, &format!("{outputs}.includes('fn vs_main')"))?;
     let written = text(&page, outputs)?;
     page.evaluate(&choose("shadow", "hard"), PATIENCE)?;
-    page.until("document.querySelector('canvas').dataset.key?.includes('shadow=hard')", PATIENCE)?;
+    wait(&page, "document.querySelector('canvas').dataset.key?.includes('shadow=hard')")?;
     assert_ne!(before, text(&page, picture)?, "the shadow does not change the picture");
     assert!(page.evaluate(greyed, PATIENCE)?.as_u64() > Some(0), "no value says why it is greyed");
-    page.until(&format!("{outputs} !== {}", Value::from(written)), PATIENCE)?;
+    wait(&page, &format!("{outputs} !== {}", Value::from(written)))?;
     let shadowed = text(&page, picture)?;
     let cost = "document.querySelector('[data-axis=shadow]').closest('label').textContent";
     assert!(text(&page, cost)?.contains("instructions"), "the axis `shadow` says no cost");
-    page.until("document.querySelectorAll('.lamp').length > 1", PATIENCE)?;
+    wait(&page, "document.querySelectorAll('.lamp').length > 1")?;
     page.evaluate(
         "document.querySelector('.lamp').dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowDown' }))",
         PATIENCE,
     )?;
-    page.until(&format!("{picture} !== {}", Value::from(shadowed)), PATIENCE)?;
+    wait(&page, &format!("{picture} !== {}", Value::from(shadowed)))?;
     let lit = text(&page, picture)?;
     page.evaluate(
         "(() => { const it = document.querySelector('[data-path$=\".strength\"] input[type=number]');
             it.value = '0.25'; it.dispatchEvent(new Event('input')); })()",
         PATIENCE,
     )?;
-    page.until(&format!("{picture} !== {}", Value::from(lit)), PATIENCE)?;
+    wait(&page, &format!("{picture} !== {}", Value::from(lit)))?;
     let moved = text(&page, picture)?;
     let link = text(&page, "location.hash")?;
     without_errors(&mut page)?;
     let again = opened.page(&link)?;
-    again.until(&format!("{picture} === {}", Value::from(moved)), PATIENCE)?;
+    wait(&again, &format!("{picture} === {}", Value::from(moved)))?;
     compared(&again, &choose("shadow", "none"))
 }
 
 /// After a comparison begins and an axis is switched, the lines that only one text has are marked.
 fn compared(page: &Page, switch: &str) -> Outcome {
     page.evaluate("document.querySelector('[aria-pressed]').click()", PATIENCE)?;
-    page.until("document.querySelector('[aria-pressed=true]') !== null", PATIENCE)?;
+    wait(&page, "document.querySelector('[aria-pressed=true]') !== null")?;
     page.evaluate(switch, PATIENCE)?;
-    page.until("document.querySelector('.differences del') !== null", PATIENCE)?;
+    wait(&page, "document.querySelector('.differences del') !== null")?;
     let removed =
         "[...document.querySelectorAll('.differences del')].map((it) => it.textContent).join('')";
     let removed = text(page, removed)?;

@@ -8,7 +8,7 @@ use lamplight::browser::{Page, Screenshot};
 use libtest_mimic::Failed;
 use serde_json::{Value, json};
 
-use super::{Opened, Outcome, PATIENCE, text, without_errors};
+use super::{Opened, Outcome, PATIENCE, text, wait, without_errors};
 
 /// The widths of a phone and of a desktop screen.
 const WIDTHS: [u32; 2] = [360, 1280];
@@ -47,7 +47,7 @@ pub fn seen() -> Outcome {
     let mut wrong = Vec::new();
     for (name, address, there) in PAGES {
         let mut page = opened.page(address)?;
-        page.until(&format!("!!({there})"), PATIENCE)?;
+        wait(&page, &format!("!!({there})"))?;
         let nameless = "[...document.querySelectorAll('input, select, button, a, canvas, summary')].filter((it) =>
             !(it.getAttribute('aria-label') || it.labels?.length || it.textContent.trim())).map((it) => it.outerHTML)";
         assert_eq!(page.evaluate(nameless, PATIENCE)?, json!([]), "{name}: controls without name");
@@ -109,7 +109,7 @@ fn as_reviewed(page: &Page, name: &str, width: u32) -> Result<Option<String>, Fa
     let shot = Screenshot { width, height: 900, whole: false };
     page.screenshot(shot)?;
     // The editor measures its lines anew after the width has changed.
-    page.until(&format!("!({SHIFTED})"), PATIENCE)?;
+    wait(&page, &format!("!({SHIFTED})"))?;
     let bytes = page.screenshot(shot)?;
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let reference = root.join(format!("tests/site/reviewed/{name}.png"));

@@ -9,6 +9,7 @@ export interface Device {
     /** The language of its shaders. */
     target: "wgsl" | "essl300";
     draw(drawing: Drawing): Promise<Frames>;
+    isLost(): boolean;
 }
 
 /** What pixels hold that nothing covers. */

@@ -49,7 +49,11 @@ async function drawn(start: (target: string) => Promise<Step>): Promise<Pixels> 
     if (!found) throw new Refused("This browser has neither WebGPU nor WebGL2: pictures cannot be drawn. Everything else works.");
     let step = await start(found.target);
     while (step.drawing) {
-        const { words, depths } = await found.draw(step.drawing);
+        const { words, depths } = await found.draw(step.drawing).catch((error) => {
+            // Such as when a driver is updated. The next picture opens another device.
+            if (found.isLost()) opening = undefined;
+            throw error;
+        });
         step = await toolchain.call(OWN, "pictureFrames", words, depths);
     }
     if (!step.picture) throw new Refused(step.diagnostics[0]?.message ?? "there is no picture");

@@ -27,7 +27,7 @@ export async function open(): Promise<Device | undefined> {
     gl.getExtension("EXT_color_buffer_float");
     gl.getExtension("OES_texture_float_linear");
     const programs = new Map<string, WebGLProgram>();
-    return { name: "WebGL2", target: "essl300", draw: async (drawing) => draw(gl, programs, drawing) };
+    return { name: "WebGL2", target: "essl300", draw: async (drawing) => draw(gl, programs, drawing), isLost: () => gl.isContextLost() };
 }
 
 function draw(gl: WebGL2RenderingContext, programs: Map<string, WebGLProgram>, drawing: Drawing): Frames {

@@ -19,10 +19,13 @@ export async function open(): Promise<Device | undefined> {
     const filters = adapter.features.has("float32-filterable");
     const device = await adapter.requestDevice({ requiredFeatures: filters ? ["float32-filterable"] : [] });
     const pipelines = new Map<string, Promise<GPURenderPipeline>>();
+    let isLost = false;
+    device.lost.then(() => { isLost = true; });
     return {
         name: "WebGPU",
         target: "wgsl",
         draw: (drawing) => draw(device, filters, pipelines, drawing),
+        isLost: () => isLost,
     };
 }
 

@@ -1,6 +1,9 @@
 import { OWN, toolchain } from "../client";
 import { h } from "../dom";
 import { picture, show } from "../draw";
+import { latest } from "../parts/latest";
+
+const first = <T>(some: Set<T>): T | undefined => some.values().next().value;
 
 /** Every published example, drawn where it is seen. */
 export async function page(into: HTMLElement) {
@@ -14,17 +17,30 @@ export async function page(into: HTMLElement) {
     into.replaceChildren(h("h1", {}, "Gallery"),
         h("p", {}, "The examples that the library’s functions were published with, drawn by your browser."),
         h("div", { class: "cards" }, ...cards));
-    const seen = new IntersectionObserver((entries) => {
-        for (const { isIntersecting, target } of entries) {
-            if (!isIntersecting) continue;
-            seen.unobserve(target);
-            const canvas = target as HTMLCanvasElement;
-            picture({ preset: canvas.dataset.preset, width: 192, height: 192, samples: 4 }).then(
-                (pixels) => { show(canvas, pixels); canvas.dataset.drawn = "1"; },
-                (error: Error) => { canvas.replaceWith(h("p", { class: "wrong" }, error.message)); },
-            );
+    // One after another, and only what is still in view when its turn comes.
+    const waiting = new Set<HTMLCanvasElement>();
+    const draw = latest(async () => {
+        for (let canvas = first(waiting); canvas; canvas = first(waiting)) {
+            waiting.delete(canvas);
+            seen.unobserve(canvas);
+            try {
+                show(canvas, await picture({ preset: canvas.dataset.preset, width: 192, height: 192, samples: 4 }));
+                canvas.dataset.drawn = "1";
+            } catch (error) {
+                canvas.replaceWith(h("p", { class: "wrong" }, error instanceof Error ? error.message : String(error)));
+            }
         }
     });
+    const seen = new IntersectionObserver((entries) => {
+        for (const { isIntersecting, target } of entries) {
+            if (isIntersecting) waiting.add(target as HTMLCanvasElement);
+            else waiting.delete(target as HTMLCanvasElement);
+        }
+        draw();
+    });
     into.querySelectorAll("canvas").forEach((canvas) => seen.observe(canvas));
-    return () => seen.disconnect();
+    return () => {
+        seen.disconnect();
+        waiting.clear();
+    };
 }
