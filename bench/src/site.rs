@@ -111,7 +111,7 @@ fn keystroke() -> Result<Duration, Diagnostics> {
         };
         let mut sources = SourceSet::default();
         let id = sources.add(MANIFEST, manifest.clone());
-        let settings = of_manifest(&manifest::parse(&mut sources, id)?, "")?;
+        let settings = of_manifest(&manifest::parse(&sources, id)?, "")?;
         let graph = resolve::load(&mut sources, &packages, FORWARD, Language::Wesl)?;
         compile(&graph, &settings, &linker)
     })

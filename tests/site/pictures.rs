@@ -105,9 +105,9 @@ const FUNCTION: &str = "brdf::diffuse::oren_nayar";
 fn preview(page: &Page, device: &str) -> Outcome {
     page.evaluate(&format!("location.hash = '#/catalogue/{FUNCTION}'"), PATIENCE)?;
     let canvas = "document.querySelector('.sketch canvas')";
-    wait(&page, &format!("{canvas} !== null"))?;
+    wait(page, &format!("{canvas} !== null"))?;
     page.evaluate(&format!("{canvas}.scrollIntoView()"), PATIENCE)?;
-    wait(&page, &format!("{canvas}?.dataset.drawn !== undefined"))?;
+    wait(page, &format!("{canvas}?.dataset.drawn !== undefined"))?;
     let pixels = text(page, &format!("{canvas}.toDataURL('image/png')"))?;
     let link = "(async () => {
         const packed = document.querySelector('.live a').href.split('state=')[1];

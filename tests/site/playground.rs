@@ -112,9 +112,9 @@ fn kept(opened: &Opened, page: &Page) -> Outcome {
     let there = |words: &str| format!("{lines}.includes({})", Value::from(words));
     page.evaluate(&typed("let l =", " // before the reload"), PATIENCE)?;
     page.call("Page.reload", json!({}))?;
-    wait(&page, &format!("document.body?.dataset.ready && {}", there("// before the reload")))?;
-    wait(&page, "document.querySelector('.problems li') !== null")?;
-    wait(&page, "location.hash.includes('state=')")?;
+    wait(page, &format!("document.body?.dataset.ready && {}", there("// before the reload")))?;
+    wait(page, "document.querySelector('.problems li') !== null")?;
+    wait(page, "location.hash.includes('state=')")?;
     let link = text(page, "location.hash")?;
     page.evaluate(
         "localStorage.setItem('lamplight-playground', JSON.stringify({ at: '', project: {
@@ -150,9 +150,9 @@ fn replaced(page: &Page) -> Outcome {
     page.evaluate(&expression("package::lit::slow()"), PATIENCE)?;
     let started = Instant::now();
     let said = "document.querySelector('.status').textContent";
-    wait(&page, &format!("{said}.includes('the toolchain was restarted')"))?;
+    wait(page, &format!("{said}.includes('the toolchain was restarted')"))?;
     println!("the toolchain was given up after {:.1} s", started.elapsed().as_secs_f64());
     page.evaluate(&expression("2.0 + 1.0"), PATIENCE)?;
-    wait(&page, &format!("{VALUE} === '3' || {VALUE} === '3.0'"))?;
+    wait(page, &format!("{VALUE} === '3' || {VALUE} === '3.0'"))?;
     Ok(())
 }

@@ -58,9 +58,9 @@ pub fn programs() -> Outcome {
 /// After a comparison begins and an axis is switched, the lines that only one text has are marked.
 fn compared(page: &Page, switch: &str) -> Outcome {
     page.evaluate("document.querySelector('[aria-pressed]').click()", PATIENCE)?;
-    wait(&page, "document.querySelector('[aria-pressed=true]') !== null")?;
+    wait(page, "document.querySelector('[aria-pressed=true]') !== null")?;
     page.evaluate(switch, PATIENCE)?;
-    wait(&page, "document.querySelector('.differences del') !== null")?;
+    wait(page, "document.querySelector('.differences del') !== null")?;
     let removed =
         "[...document.querySelectorAll('.differences del')].map((it) => it.textContent).join('')";
     let removed = text(page, removed)?;

@@ -109,7 +109,7 @@ fn as_reviewed(page: &Page, name: &str, width: u32) -> Result<Option<String>, Fa
     let shot = Screenshot { width, height: 900, whole: false };
     page.screenshot(shot)?;
     // The editor measures its lines anew after the width has changed.
-    wait(&page, &format!("!({SHIFTED})"))?;
+    wait(page, &format!("!({SHIFTED})"))?;
     let bytes = page.screenshot(shot)?;
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let reference = root.join(format!("tests/site/reviewed/{name}.png"));
