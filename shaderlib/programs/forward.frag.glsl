@@ -46,24 +46,72 @@ layout(set = 1, binding = 4) uniform sampler map_sampler;
 
 #if FOG != FOG_NONE
 #include "../color/transfer.glsl"
+#include "../fog/height.glsl"
+#include "../fog/phase.glsl"
 
 /// The fog that colours fade into with distance.
 layout(std140, set = 0, binding = 3) uniform Haze {
     vec3 color;
-    /// `exp2`: per scene unit.
+    /// `exp2`, `height`: per scene unit.
     float density;
     /// `linear`: distances at which the fog begins and at which it hides everything, in scene units.
     float start;
     float end;
+    /// `height`: where the fog has its density, y in the world.
+    float base;
+    /// `height`: how fast it thins above, per scene unit.
+    float falloff;
+    /// `fog_sun`: the sun's light on a surface across its direction, times the share that fog scatters.
+    vec3 sun;
+    /// `fog_sun`: mean cosine of the angle by which fog turns light, (-1, 1).
+    float forwardness;
+    /// `fog_sun`: unit, in the world.
+    vec3 to_sun;
 } haze;
 
 /// The colour of a point, faded with its distance from the viewer.
 vec3 hazy(vec3 color, vec3 position) {
-    float reach = distance(position, camera.world_from_view[3].xyz);
-#if FOG == FOG_LINEAR
-    return mix(haze.color, color, fog_linear(reach, haze.start, haze.end));
+    vec3 eye = camera.world_from_view[3].xyz;
+    float reach = distance(position, eye);
+#if FOG == FOG_HEIGHT || FOG_SUN
+    vec3 view = safe_normalize(position - eye, vec3(0.0));
+#endif
+#if FOG_SUN
+    vec3 air = haze.color + haze.sun * hg(dot(haze.to_sun, view), haze.forwardness);
 #else
-    return mix(haze.color, color, fog_exp2(reach, haze.density));
+    vec3 air = haze.color;
+#endif
+#if FOG == FOG_LINEAR
+    return mix(air, color, fog_linear(reach, haze.start, haze.end));
+#elif FOG == FOG_EXP2
+    return mix(air, color, fog_exp2(reach, haze.density));
+#else
+    float depth = fog_height(eye.y, view.y, reach, haze.density, haze.falloff, haze.base);
+    return mix(air, color, fog_transmittance(depth));
+#endif
+}
+#endif
+
+#if CURVE != CURVE_NONE
+#include "../color/tonemap.glsl"
+#include "../color/transfer.glsl"
+
+/// What the display should show of the light: linear, [0, 1].
+vec3 toned(vec3 color) {
+#if CURVE == CURVE_REINHARD
+    return tonemap_reinhard(color);
+#elif CURVE == CURVE_ACES
+    return tonemap_aces(color);
+#elif CURVE == CURVE_ACES_HILL
+    return aces_hill(color);
+#elif CURVE == CURVE_AGX
+    return agx(color);
+#elif CURVE == CURVE_HABLE
+    return hable(color);
+#elif CURVE == CURVE_NEUTRAL
+    return neutral(color);
+#else
+    return uchimura(color);
 #endif
 }
 #endif
@@ -191,6 +239,9 @@ void main() {
 #endif
 #if FOG != FOG_NONE
     shaded = hazy(shaded, in_position);
+#endif
+#if CURVE != CURVE_NONE
+    shaded = toned(shaded);
 #endif
 #if SATURATE
     shaded = saturate_color(shaded);

@@ -64,6 +64,8 @@ pub struct Needs {
     /// Whether that array has a material for each side.
     pub sides: bool,
     pub background: Background,
+    /// Whether haze behind everything is brighter towards the sun.
+    pub sun: bool,
     /// Whether the specular map of the surroundings has a level for each roughness.
     pub levels: bool,
     /// Whether the moments of depth 1 are exponentials.
@@ -127,6 +129,7 @@ struct Row {
     materials: Option<Materials>,
     sides: bool,
     background: Background,
+    sun: bool,
     levels: bool,
     cleared: Option<Cleared>,
     encoded: bool,
@@ -254,6 +257,7 @@ impl Needs {
         self.material_array |= row.materials.is_some();
         self.sides |= row.sides;
         self.background = self.background.max(row.background);
+        self.sun |= row.sun;
         self.levels |= row.levels;
         self.exponential |= row.cleared.is_some();
         self.encoded |= row.encoded;

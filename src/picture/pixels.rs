@@ -1,5 +1,7 @@
 //! Linear colours, and the pictures made of them.
 
+use std::f64::consts::PI;
+
 use glam::{DMat4, DVec3};
 use image::ImageEncoder as _;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
@@ -45,7 +47,36 @@ enum Seen {
     Probe(Box<[DVec3; 9]>, f64),
     /// The colour from below, and from above.
     Hemisphere(DVec3, DVec3),
-    Haze(DVec3),
+    /// The fog's own colour, and the sun in it.
+    Haze(DVec3, Option<Sun>),
+}
+
+/// A sun in fog, as in the block `haze` of `forward`.
+#[derive(Debug, Clone, Copy)]
+struct Sun {
+    light: DVec3,
+    /// Unit, towards it.
+    direction: DVec3,
+    /// The mean cosine of the angle by which the fog turns light.
+    forwardness: f64,
+}
+
+impl Sun {
+    fn of(values: &Values<'_>) -> Option<Self> {
+        let vector = |path| values.number(path)?.try_into().ok().map(DVec3::from_array);
+        Some(Self {
+            light: vector("haze.sun")?,
+            direction: vector("haze.to_sun")?,
+            forwardness: *values.number("haze.forwardness")?.first()?,
+        })
+    }
+
+    /// What fog without end scatters into a direction: Henyey and Greenstein's phase function.
+    fn scattered(&self, view: DVec3) -> DVec3 {
+        let g = self.forwardness;
+        let spread = 1.0 + g * g - 2.0 * g * view.dot(self.direction);
+        self.light * ((1.0 - g * g) / (4.0 * PI * spread.powf(1.5)))
+    }
 }
 
 impl Background {
@@ -53,11 +84,15 @@ impl Background {
     pub fn new(values: &Values<'_>, eye: Camera) -> Self {
         let needs = &values.lit.needs;
         let kind = match needs.background {
-            needs::Background::Haze => Seen::Haze(values.scene.haze),
+            needs::Background::Haze => {
+                let color = values.number("haze.color").and_then(|color| color.try_into().ok());
+                let sun = if needs.sun { Sun::of(values) } else { None };
+                Seen::Haze(color.map_or(values.scene.haze, DVec3::from_array), sun)
+            }
             needs::Background::Surroundings => Seen::Around(values.shot.surroundings.clone()),
             needs::Background::Probe if needs.unlit => Seen::Probe(
                 Box::new(values.probe().map(DVec3::from_array)),
-                0.5 / std::f64::consts::PI,
+                0.5 / PI,
             ),
             needs::Background::Hemisphere => {
                 Seen::Hemisphere(values.scene.ground, values.scene.sky)
@@ -91,7 +126,8 @@ impl Background {
             Seen::Hemisphere(ground, sky) => {
                 ground.lerp(*sky, (0.5 + 0.5 * direction().y * 1.6).clamp(0.0, 1.0))
             }
-            Seen::Haze(haze) => *haze,
+            Seen::Haze(haze, None) => *haze,
+            Seen::Haze(haze, Some(sun)) => *haze + sun.scattered(direction()),
         }
     }
 }

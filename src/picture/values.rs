@@ -261,6 +261,7 @@ impl Values<'_> {
             "density" => vec![2.0_f64.ln().sqrt() / (0.5 * (start + end))],
             "start" => vec![start],
             "end" => vec![end],
+            "to_sun" => vector_values(-self.scene.lamps.first()?.axis()),
             _ => return None,
         })
     }

@@ -6,7 +6,7 @@ use lamplight::source::SourceSet;
 use super::{Kind, Made, Repository, check_name, refuse_rest};
 
 pub const KIND: Kind =
-    Kind { name: "axis-value", example: &["forward::fog=height"], rest: "", make };
+    Kind { name: "axis-value", example: &["forward::fog=layered"], rest: "", make };
 
 const MANIFEST: &str = "shaderlib/lamplight.toml";
 const LOCK: &str = "shaderlib/lamplight.lock";
