@@ -12,7 +12,7 @@ layout(location = 1) in vec3 in_normal;
 layout(location = 1) flat in vec3 in_normal;
 #endif
 layout(location = 2) in vec4 in_color;
-#if BASE_MAP || NORMAL_MAP
+#if BASE_MAP || NORMAL_MAP || OCCLUSION == OCCLUSION_MAP
 layout(location = 3) in vec2 in_uv;
 #endif
 #if LIGHTMAP
@@ -40,8 +40,14 @@ layout(set = 1, binding = 2) uniform texture2D normal_map;
 #if LIGHTMAP
 layout(set = 1, binding = 3) uniform texture2D light_map;
 #endif
-#if BASE_MAP || NORMAL_MAP || LIGHTMAP
+#if BASE_MAP || NORMAL_MAP || LIGHTMAP || OCCLUSION == OCCLUSION_MAP
 layout(set = 1, binding = 4) uniform sampler map_sampler;
+#endif
+#if OCCLUSION == OCCLUSION_MAP
+layout(set = 1, binding = 6) uniform texture2D occlusion_map;
+#elif OCCLUSION == OCCLUSION_SCREEN
+layout(set = 0, binding = 15) uniform texture2D seen_occlusion;
+layout(set = 0, binding = 16) uniform sampler open_sampler;
 #endif
 
 #if FOG != FOG_NONE
@@ -172,6 +178,44 @@ vec3 shade(vec3 base) {
 #include "forward/lamps.glsl"
 #include "forward/environment.glsl"
 
+#if OCCLUSION != OCCLUSION_NONE
+#include "../ambient/occlusion.glsl"
+
+/// The open share of the surroundings, [0, 1].
+float open_share() {
+#if OCCLUSION == OCCLUSION_MAP
+    return texture(sampler2D(occlusion_map, map_sampler), in_uv).x;
+#else
+    vec2 place = gl_FragCoord.xy / vec2(textureSize(sampler2D(seen_occlusion, open_sampler), 0));
+    return textureLod(sampler2D(seen_occlusion, open_sampler), place, 0.0).x;
+#endif
+}
+
+#if METALLIC_ROUGHNESS
+/// The light around a layered surface without what is hidden of the mirrored environment. What falls
+/// onto its front has lost that already, by the share of ambient light of its material.
+Around occluded(Around around, Layered at, float open) {
+    Around seen = around;
+    seen.mirrored *= specular_occlusion(dot(at.normal, at.view), open, at.roughness * at.roughness);
+#if CLEARCOAT
+    float rough = layers.clearcoat_roughness;
+    seen.coated *= specular_occlusion(dot(at.coat_normal, at.view), open, rough * rough);
+#endif
+    return seen;
+}
+#else
+/// The squared roughness of the highlight, for how wide it mirrors the surroundings.
+float highlight_alpha(Material material) {
+#if SPECULAR == SPECULAR_GGX
+    return material.roughness * material.roughness;
+#else
+    // The width of the lobe of Blinn and Phong.
+    return sqrt(2.0 / (max(material.shininess, 0.0) + 2.0));
+#endif
+}
+#endif
+#endif
+
 /// The colour of the surface.
 vec3 shade(vec3 base) {
     Surface surface;
@@ -197,6 +241,14 @@ vec3 shade(vec3 base) {
 #else
     surface.material = materials.items[0];
 #endif
+#if OCCLUSION != OCCLUSION_NONE
+    float open = open_share();
+#if METALLIC_ROUGHNESS
+    surface.material.ambient *= multibounce(open, base);
+#else
+    surface.material.ambient *= multibounce(open, base * surface.material.diffuse);
+#endif
+#endif
 #if SHADOW != SHADOW_NONE
     surface.visibility = visibility(surface, gl_FragCoord.xy);
 #endif
@@ -217,8 +269,16 @@ vec3 shade(vec3 base) {
 #endif
 #if METALLIC_ROUGHNESS
     Around around = light_around(surface, sum.scattered);
+#if OCCLUSION != OCCLUSION_NONE && AMBIENT == AMBIENT_IBL
+    around = occluded(around, surface.layered, open);
+#endif
     return layered_ambient(surface.layered, around, surface.material.emission) + sum.reflected;
 #else
+#if OCCLUSION != OCCLUSION_NONE && AMBIENT == AMBIENT_IBL
+    // The highlights of lamps are summed up, so only the mirrored environment loses by occlusion.
+    float nv = dot(surface.normal, surface.view);
+    surface.material.specular *= specular_occlusion(nv, open, highlight_alpha(surface.material));
+#endif
 #if AMBIENT == AMBIENT_IBL
     sum = add_environment(sum, surface);
 #endif

@@ -6,7 +6,7 @@
 
 /// How moments are made of a depth.
 layout(std140, set = 0, binding = 1) uniform Moments {
-    /// `evsm`: the positive and the negative exponent, as in the caster of `forward`.
+    /// `evsm`: the positive and the negative exponent; `esm`: the sharpness and 0; as in the caster of `forward`.
     vec2 exponents;
     /// Added to the depth.
     float bias;
@@ -18,6 +18,10 @@ void main() {
     float depth = constant_bias(gl_FragCoord.z, -terms.bias);
 #if MOMENTS == MOMENTS_EVSM
     out_color = evsm_moments(depth, terms.exponents);
+#elif MOMENTS == MOMENTS_ESM
+    out_color = vec4(esm_moment(depth, terms.exponents.x), 0.0, 0.0, 0.0);
+#elif MOMENTS == MOMENTS_MSM
+    out_color = msm_moments(depth);
 #elif SLOPE
     out_color = vec4(vsm_moments_slope(depth, dFdx(depth), dFdy(depth)), 0.0, 0.0);
 #else

@@ -44,6 +44,8 @@ struct ProgramNeeds {
 pub struct Needs {
     /// The passes before it: programs, and keys where these are not the default.
     pub before: Vec<(String, String)>,
+    /// The passes after those that show what the viewer sees, for it to read.
+    pub seen: Vec<(String, String)>,
     /// Whether it is drawn over the screen, from what the viewer sees in the pass right before it.
     pub screen: bool,
     /// Whether the colours are code values of a display. A picture shows them as they are.
@@ -68,8 +70,8 @@ pub struct Needs {
     pub sun: bool,
     /// Whether the specular map of the surroundings has a level for each roughness.
     pub levels: bool,
-    /// Whether the moments of depth 1 are exponentials.
-    pub exponential: bool,
+    /// What made the moments of depth 1.
+    pub cleared: Cleared,
     /// The near plane of a spot light's shadow map.
     pub near: Option<f64>,
     uniforms: Uniforms,
@@ -108,11 +110,15 @@ enum Materials {
     Array,
 }
 
-/// The content of an empty texel in a map of moments.
-#[derive(Debug, Clone, Copy, Deserialize)]
+/// The content of an empty texel in a map of moments: those of depth 1, by the technique.
+#[derive(Debug, Clone, Copy, Default, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum Cleared {
-    Exponential,
+pub enum Cleared {
+    #[default]
+    Vsm,
+    Evsm,
+    Esm,
+    Msm,
 }
 
 /// A row as the file has it; [`Needs`] explains its fields.
@@ -120,6 +126,7 @@ enum Cleared {
 #[serde(deny_unknown_fields, default)]
 struct Row {
     before: Vec<String>,
+    seen: Vec<String>,
     reach: Option<f64>,
     lamps: Option<LampKind>,
     caster: Option<LampKind>,
@@ -210,7 +217,7 @@ impl Table {
     pub fn needs(&self, program: &str, settings: &Settings) -> Needs {
         let mut needs = Needs { reach: 1.0, uniforms: self.uniforms.clone(), ..Needs::default() };
         let Some(found) = self.programs.get(program) else { return needs };
-        needs.draw_before(&found.before);
+        needs.before.extend(split_passes(&found.before));
         needs.screen = found.screen;
         for (axis, rows) in &found.axes {
             let value = settings.values.get(axis).map(ToString::to_string);
@@ -228,6 +235,11 @@ impl Needs {
         self.uniforms.get(block)?.get(field).map(Number::to_vec)
     }
 
+    /// How many passes right before it show what the viewer sees.
+    pub fn seen_before(&self) -> usize {
+        self.seen.len() + usize::from(self.screen)
+    }
+
     /// Whether something casts a shadow: a pass before draws the map of a light.
     pub fn has_shadow(&self) -> bool {
         self.before.len() > usize::from(self.screen)
@@ -235,19 +247,12 @@ impl Needs {
 
     /// Whether the shadow map may be one of several, for parts of the viewer's depth.
     pub fn has_cascades(&self) -> bool {
-        !self.screen && self.has_shadow() && self.caster == Some(LampKind::Directional)
-    }
-
-    fn draw_before(&mut self, passes: &[String]) {
-        let split = |pass: &String| {
-            let (program, key) = pass.split_once(' ').unwrap_or((pass, ""));
-            (program.to_owned(), key.trim().to_owned())
-        };
-        self.before.extend(passes.iter().map(split));
+        self.seen_before() == 0 && self.has_shadow() && self.caster == Some(LampKind::Directional)
     }
 
     fn add(&mut self, row: &Row) {
-        self.draw_before(&row.before);
+        self.before.extend(split_passes(&row.before));
+        self.seen.extend(split_passes(&row.seen));
         self.reach = row.reach.unwrap_or(self.reach);
         self.lamps = row.lamps.or(self.lamps);
         self.caster = row.caster.or(self.caster);
@@ -259,7 +264,7 @@ impl Needs {
         self.background = self.background.max(row.background);
         self.sun |= row.sun;
         self.levels |= row.levels;
-        self.exponential |= row.cleared.is_some();
+        self.cleared = row.cleared.unwrap_or(self.cleared);
         self.encoded |= row.encoded;
         self.near = row.near.or(self.near);
         for (block, fields) in &row.uniforms {
@@ -267,6 +272,14 @@ impl Needs {
             all.extend(fields.iter().map(|(field, number)| (field.clone(), number.clone())));
         }
     }
+}
+
+/// The program and the key of each pass.
+fn split_passes(passes: &[String]) -> impl Iterator<Item = (String, String)> {
+    passes.iter().map(|pass| {
+        let (program, key) = pass.split_once(' ').unwrap_or((pass, ""));
+        (program.to_owned(), key.trim().to_owned())
+    })
 }
 
 impl From<ProgramEntry> for ProgramNeeds {

@@ -117,6 +117,7 @@ impl Plan {
             .needs
             .before
             .iter()
+            .chain(&last.needs.seen)
             .map(|(program, key)| Pass::new(programs, program, key))
             .collect::<Result<Vec<_>, _>>()?;
         let passes = earlier.into_iter().chain([last]).collect();
@@ -146,10 +147,10 @@ impl Plan {
         passes.find(|pass| pass.integer(LAMPS).is_some()).or_else(|| self.last())
     }
 
-    /// Whether a pass shows what the viewer sees, and not what the light sees: the last one, and the
-    /// one right before it if that is drawn over the screen.
+    /// Whether a pass shows what the viewer sees, and not what the light sees: the last one, and those
+    /// right before it that it reads so.
     pub(super) fn is_of_viewer(&self, pass: &Pass) -> bool {
-        let over = usize::from(self.last().is_some_and(|last| last.needs.screen));
+        let over = self.last().map_or(0, |last| last.needs.seen_before());
         self.passes.iter().rev().take(1 + over).any(|one| std::ptr::eq(one, pass))
     }
 

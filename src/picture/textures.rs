@@ -25,7 +25,7 @@ pub struct Left {
 }
 
 /// Samplers of textures that are not filtered.
-const NEAREST: [&str; 2] = ["depth_sampler", "surface_sampler"];
+const NEAREST: [&str; 3] = ["depth_sampler", "surface_sampler", "open_sampler"];
 
 /// The sampler of a binding.
 pub fn binding_sampler(binding: &Binding) -> Fixture {
@@ -95,6 +95,7 @@ impl<'a> Library<'a> {
             "sky_specular" => Some(vec![sky(LOBE, SPECULAR)]),
             "base_map" => Some(color_textures(self.maps().base.clone().levels())),
             "normal_map" => Some(color_textures(self.maps().normal.clone().levels())),
+            "occlusion_map" => Some(color_textures(self.maps().occlusion.clone().levels())),
             "light_map" => Some(color_textures(vec![self.maps().light.clone()])),
             _ => self.left.texture(name),
         };
@@ -142,7 +143,7 @@ impl Left {
             }
             "blurred" => one(self.moments.clone()),
             "shadow_moments" => self.moments.clone().map(with_levels),
-            "light" | "surface_color" => one(color(0)),
+            "light" | "surface_color" | "seen_occlusion" => one(color(0)),
             "surface_normal" => one(color(1)),
             "surface_depth" | "depth_buffer" => {
                 one(self.seen.as_ref().map(|(depths, size)| as_color(depths, *size)))

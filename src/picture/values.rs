@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DMat3, DMat4, DVec3};
 
 use super::light::LightView;
-use super::needs::Falloff;
+use super::needs::{Cleared, Falloff};
 use super::plan::{LAMPS, Pass, Plan};
 use super::textures::LEVELS;
 use super::{Shot, Surroundings};
@@ -337,9 +337,6 @@ impl Values<'_> {
 
     /// The moments of depth 1, which the last pass reads where nothing was drawn.
     pub fn cleared_moments(&self) -> [f32; 4] {
-        if !self.lit.needs.exponential {
-            return [1.0, 1.0, 0.0, 0.0];
-        }
         let exponents = self
             .plan
             .number("caster", "exponents")
@@ -347,7 +344,13 @@ impl Values<'_> {
             .unwrap_or_default();
         let exponent = |index: usize| exponents.get(index).copied().unwrap_or(0.0);
         let (positive, negative) = (exponent(0).exp(), -(-exponent(1)).exp());
-        [positive, positive * positive, negative, negative * negative].map(|moment| moment as f32)
+        let moments = match self.lit.needs.cleared {
+            Cleared::Vsm => [1.0, 1.0, 0.0, 0.0],
+            Cleared::Evsm => [positive, positive * positive, negative, negative * negative],
+            Cleared::Esm => [positive, 0.0, 0.0, 0.0],
+            Cleared::Msm => [1.0; 4],
+        };
+        moments.map(|moment| moment as f32)
     }
 }
 

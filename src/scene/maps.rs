@@ -1,5 +1,7 @@
 //! Textures made by formulas.
 
+use std::f64::consts::TAU;
+
 use glam::{DVec2, DVec3, DVec4};
 
 /// Texels, row by row, linear.
@@ -13,13 +15,15 @@ pub struct Map {
     pub texels: Vec<DVec4>,
 }
 
-/// The textures that the axes `base_map`, `normal_map` and `lightmap` read.
+/// The textures that the axes `base_map`, `normal_map`, `occlusion` and `lightmap` read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Maps {
     /// Colours.
     pub base: Map,
     /// Normals in tangent space, from -1 to 1 written as 0 to 1.
     pub normal: Map,
+    /// The open share of the surroundings, in red.
+    pub occlusion: Map,
     /// Light that was computed beforehand.
     pub light: Map,
 }
@@ -84,6 +88,7 @@ pub fn bricks() -> Maps {
                 DVec3::new(-0.02 * slope(DVec2::X), -0.02 * slope(DVec2::Y), 1.0).normalize();
             (normal * 0.5 + 0.5).extend(1.0)
         }),
+        occlusion: Map::of(128, |at| DVec3::splat(open_above(at)).extend(1.0)),
         light: Map::of(32, |at| {
             let glow = (-(at - 0.5).length_squared() * 6.0).exp();
             (DVec3::new(1.0, 0.92, 0.8) * (0.1 + 0.9 * glow)).extend(1.0)
@@ -91,10 +96,32 @@ pub fn bricks() -> Maps {
     }
 }
 
+/// How open the wall is to light at a place: the mean over directions of the cosine-weighted part of
+/// the sky above the horizon that the relief has there.
+fn open_above(at: DVec2) -> f64 {
+    /// Height of a brick above the joint, in widths of the texture. The relief of the occlusion is
+    /// deeper than that of the normals, as where mortar is raked out.
+    const DEPTH: f64 = 0.03;
+    const DIRECTIONS: usize = 8;
+    const STEPS: usize = 8;
+    let here = Brick::at(at).height;
+    let open = |direction: usize| {
+        let turn = DVec2::from_angle(TAU * direction as f64 / DIRECTIONS as f64);
+        let slope = |step: usize| {
+            let far = 0.08 * (step as f64 / STEPS as f64);
+            DEPTH * (Brick::at(at + turn * far).height - here) / far
+        };
+        let steepest = (1..=STEPS).map(slope).fold(0.0, f64::max);
+        // The cosine-weighted share above an elevation is the square of its cosine.
+        1.0 / (1.0 + steepest * steepest)
+    };
+    (0..DIRECTIONS).map(open).sum::<f64>() / DIRECTIONS as f64
+}
+
 /// Soil without a pattern. The other maps are those of [`bricks`].
 pub fn soil() -> Maps {
     let base = Map::of(128, |at| {
-        let turn = at * std::f64::consts::TAU;
+        let turn = at * TAU;
         let grain = (5.0 * turn.x).sin() * (7.0 * turn.y).cos() + (11.0 * (turn.x + turn.y)).sin();
         DVec4::new(0.62, 0.5, 0.36, 1.0) * (1.0 + 0.03 * grain)
     });

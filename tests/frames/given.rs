@@ -48,6 +48,10 @@ pub fn number(path: &str) -> Vec<f64> {
         "exponents" => vec![5.0, 5.0],
         "radius" => vec![2.0],
         "window" => vec![4.0],
+        // A room around the sheet.
+        "low" => vec![-4.0, -3.0, -5.0],
+        "high" => vec![4.0, 3.5, 4.5],
+        "centre" => vec![0.2, 0.1, 0.3],
         "steps" => vec![255.0],
         "frame" => vec![5.0],
         "level" => vec![0.0],
@@ -83,13 +87,16 @@ fn view_projection() -> DMat4 {
     perspective(1.2, 1.0, 0.1, 12.0, Clip::Wgpu, Depth::Normal)
 }
 
+/// Samplers of textures that are not filtered.
+const NEAREST: [&str; 2] = ["depth_sampler", "open_sampler"];
+
 /// A texture or a sampler for a binding. Colours vary smoothly, and depths have an edge.
 pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
     let sampler =
         |linear, compare| Fixture::Sampler(Sampler { compare, linear, address: Address::Clamp });
     match kind {
         BindingKind::ComparisonSampler => sampler(true, Some(Compare::LessEqual)),
-        BindingKind::Sampler => sampler(name != "depth_sampler", None),
+        BindingKind::Sampler => sampler(!NEAREST.contains(&name), None),
         _ => {
             let kind = match (ty.contains("depth"), ty.contains("cube")) {
                 (true, true) => TextureKind::DepthCube,
@@ -99,18 +106,26 @@ pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
             };
             // `shadow_depth` is the depth map too, read as a colour texture.
             let is_depth = kind.is_depth() || name == "shadow_depth";
+            // One texel for each pixel of any frame.
+            let (width, height) = if name == "seen_occlusion" { (256, 64) } else { (8, 8) };
             let value = |index: usize| {
-                let (x, y) = ((index % 8) as f32, (index / 8 % 8) as f32);
+                let (x, y) = ((index % 8) as f32, (index / width as usize % 8) as f32);
                 if is_depth {
                     if x < 4.0 { 0.25 } else { 0.875 }
                 } else {
                     (20.0 + 3.0 * x + 2.0 * y) / 64.0
                 }
             };
-            let texels = 8 * 8 * kind.layers() as usize;
+            let texels = (width * height * kind.layers()) as usize;
             // Normals are near that of the surface, so that the errors of their directions are small.
             let is_normal = name == "normal_map";
+            // Moments are those of three depths, and vary little: four of them lose digits.
+            let is_moments = name == "shadow_moments";
             let own = move |index: usize, channel: usize| match (is_normal, channel) {
+                _ if is_moments => {
+                    let factor = [1.0, 1.42667, 2.28, 3.83307][channel];
+                    factor * (0.49 + 0.02 * value(index)).powi(channel as i32 + 1)
+                }
                 (true, 0 | 1) => 0.25 + 0.5 * value(index + 5 * channel),
                 (true, _) => 0.96875,
                 _ => value(index) + channel as f32 / 16.0,
@@ -119,8 +134,8 @@ pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
                 |index: usize| (0..kind.channels()).map(move |channel| own(index, channel));
             Fixture::Texture(Texture {
                 kind,
-                width: 8,
-                height: 8,
+                width,
+                height,
                 texels: (0..texels).flat_map(channel).collect(),
             })
         }

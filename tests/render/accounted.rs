@@ -54,7 +54,7 @@ fn numbers_read(preset: &Preset) -> Result<BTreeSet<(&'static str, String)>, Str
     }
     // Depths that the viewer sees are no map of a light.
     let last = plan.last().ok_or("no pass")?;
-    let before = plan.passes.len() - 1 - usize::from(last.needs.screen);
+    let before = plan.passes.len() - 1 - last.needs.seen_before();
     let is_map = |pass: &Pass| ["depth", "moments"].contains(&&*pass.program);
     let has_map = plan.passes[..before].iter().any(is_map);
     let is_of_spot = !preset.key.contains("shadow_light=");

@@ -15,6 +15,7 @@ use tempfile::TempDir;
 pub fn trials() -> Vec<Trial> {
     let drawn = [
         Trial::test("render/model/unlit_colour_is_exact", unlit_colour_is_exact),
+        Trial::test("render/model/unlit_colours_are_multiplied", unlit_colours_are_multiplied),
         Trial::test("render/model/all_of_it_is_seen", all_of_it_is_seen),
         Trial::test("render/model/textures_stand_upright", textures_stand_upright),
         Trial::test("render/model/cells_of_textures", cells_of_textures),
@@ -149,6 +150,42 @@ fn unlit_colour_is_exact() -> Result<(), Failed> {
     demand(is_near(found, [137, 188, 255], 1), || {
         format!("expected [137, 188, 255] in the middle, found {found:?}")
     })
+}
+
+/// The colour of an unlit surface is that of its factor, its texture and its corners, multiplied, and
+/// nothing else, in the permutation that the command says.
+fn unlit_colours_are_multiplied() -> Result<(), Failed> {
+    // In sRGB 188 is a half.
+    let (mut document, mut buffer) = square(&[image([[188, 255, 188]; 4])?]);
+    let corners = [[0.5_f32, 0.5, 1.0]; 4];
+    let start = buffer.len();
+    buffer.extend(corners.iter().flatten().flat_map(|number| number.to_le_bytes()));
+    let views = document["bufferViews"].as_array_mut().ok_or("no views")?;
+    views.push(json!({ "buffer": 0, "byteOffset": start, "byteLength": 48 }));
+    let view = views.len() - 1;
+    let accessors = document["accessors"].as_array_mut().ok_or("no accessors")?;
+    accessors
+        .push(json!({ "bufferView": view, "componentType": 5126, "count": 4, "type": "VEC3" }));
+    let accessor = accessors.len() - 1;
+    document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(accessor);
+    document["buffers"][0]["byteLength"] = json!(buffer.len());
+    document["extensionsUsed"] = json!(["KHR_materials_unlit"]);
+    document["materials"] = json!([{
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [1.0, 0.5, 0.5, 1.0], "baseColorTexture": { "index": 0 },
+        },
+        "extensions": { "KHR_materials_unlit": {} },
+    }]);
+    let file = glb(&document, &buffer);
+    let (picture, _) = drawn(&file, &BEFORE)?;
+    let found = pixel(&picture, 0.5, 0.5);
+    demand(is_near(found, [137, 137, 137], 1), || {
+        format!("expected a quarter of the light, [137, 137, 137], found {found:?}")
+    })?;
+    let key = "`ambient=none,base_map,lights=none`";
+    let output = render(TempDir::new()?.path(), &file, &BEFORE)?;
+    let said = String::from_utf8_lossy(&output.stdout);
+    demand(said.contains(key), || format!("expected {key}, found: {said}"))
 }
 
 /// The view that is chosen for a model shows all of it, and fills a good part of the picture,

@@ -5,6 +5,23 @@
 
 #include "lamps.glsl"
 
+#if BOX_PROJECTION
+#include "../../ambient/ibl.glsl"
+
+/// The walls that the specular environment shows, as a box along the axes of the world.
+layout(std140, set = 0, binding = 17) uniform Room {
+    vec3 low;
+    vec3 high;
+    /// Where the environment was seen from.
+    vec3 centre;
+} room;
+
+/// Where the environment has what is seen from a point in a direction.
+vec3 towards_wall(Surface surface, vec3 direction) {
+    return box_project(direction, surface.position, room.low, room.high, room.centre);
+}
+#endif
+
 #if METALLIC_ROUGHNESS
 #include "../../ambient/ibl.glsl"
 
@@ -23,7 +40,12 @@ vec3 surrounding_light(Surface surface, vec3 normal) {
 vec3 seen_light(Surface surface, vec3 direction, float roughness) {
 #if AMBIENT == AMBIENT_IBL
     float level = prefilter_lod(roughness, layers.sky_levels);
-    return textureLod(samplerCube(sky_specular, sky_sampler), direction, level).rgb * surroundings.specular_share;
+#if BOX_PROJECTION
+    vec3 seen = towards_wall(surface, direction);
+#else
+    vec3 seen = direction;
+#endif
+    return textureLod(samplerCube(sky_specular, sky_sampler), seen, level).rgb * surroundings.specular_share;
 #else
     return surrounding_light(surface, direction);
 #endif
@@ -92,7 +114,12 @@ Around light_around(Surface surface, vec3 scattered) {
 /// The sums with the light of the environment maps.
 Accum add_environment(Accum sum, Surface surface) {
     vec3 diffuse = texture(samplerCube(sky_diffuse, sky_sampler), surface.normal).rgb;
-    vec3 specular = texture(samplerCube(sky_specular, sky_sampler), reflect(-surface.view, surface.normal)).rgb;
+#if BOX_PROJECTION
+    vec3 mirrored = towards_wall(surface, reflect(-surface.view, surface.normal));
+#else
+    vec3 mirrored = reflect(-surface.view, surface.normal);
+#endif
+    vec3 specular = texture(samplerCube(sky_specular, sky_sampler), mirrored).rgb;
     return Accum(
         sum.scattered + surface.material.ambient * diffuse * surroundings.diffuse_share,
         sum.reflected + surface.material.specular * specular * surroundings.specular_share

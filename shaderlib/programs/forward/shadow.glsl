@@ -26,10 +26,11 @@ layout(std140, set = 0, binding = 4) uniform Caster {
     float texel;
     /// `pcf_random16`, `pcf_vogel`: radius of the filter; `pcss`: width of the light; in texels.
     float radius;
-    /// `evsm`: the positive and the negative exponent, as in `moments`.
+    /// `evsm`: the positive and the negative exponent; `esm`: the sharpness and 0; as in `moments`.
     vec2 exponents;
-    /// `vsm`, `evsm`: see `shadow::moments`.
+    /// `vsm`, `evsm`: see `shadow::moments`; `msm`: what `msm_visibility` calls bias.
     float min_variance;
+    /// `vsm`, `evsm`: see `shadow::moments`.
     float bleed;
     /// `vsm`: least visibility.
     float least;
@@ -68,7 +69,7 @@ ShadowUv place_in_map(Surface surface) {
     return at;
 }
 
-#if SHADOW == SHADOW_VSM || SHADOW == SHADOW_EVSM
+#if SHADOW == SHADOW_VSM || SHADOW == SHADOW_EVSM || SHADOW == SHADOW_ESM || SHADOW == SHADOW_MSM
 #include "../../shadow/moments.glsl"
 
 layout(set = 0, binding = 10) uniform texture2D shadow_moments;
@@ -80,6 +81,10 @@ float visibility(Surface surface, vec2 pixel) {
     vec4 moments = texture(sampler2D(shadow_moments, moment_sampler), at.uv);
 #if SHADOW == SHADOW_VSM
     float visible = vsm_visibility(moments.xy, at.depth, caster.min_variance, caster.least, caster.bleed);
+#elif SHADOW == SHADOW_ESM
+    float visible = esm_visibility(moments.x, at.depth, caster.exponents.x);
+#elif SHADOW == SHADOW_MSM
+    float visible = msm_visibility(moments, at.depth, caster.min_variance);
 #else
     float visible = evsm_visibility(moments, at.depth, caster.exponents, caster.min_variance, caster.bleed);
 #endif
