@@ -46,8 +46,8 @@ layout(set = 1, binding = 4) uniform sampler map_sampler;
 #if OCCLUSION == OCCLUSION_MAP
 layout(set = 1, binding = 6) uniform texture2D occlusion_map;
 #elif OCCLUSION == OCCLUSION_SCREEN
-layout(set = 0, binding = 15) uniform texture2D seen_occlusion;
-layout(set = 0, binding = 16) uniform sampler open_sampler;
+layout(set = 1, binding = 7) uniform texture2D seen_occlusion;
+layout(set = 1, binding = 8) uniform sampler open_sampler;
 #endif
 
 #if FOG != FOG_NONE

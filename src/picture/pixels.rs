@@ -90,10 +90,9 @@ impl Background {
                 Seen::Haze(color.map_or(values.scene.haze, DVec3::from_array), sun)
             }
             needs::Background::Surroundings => Seen::Around(values.shot.surroundings.clone()),
-            needs::Background::Probe if needs.unlit => Seen::Probe(
-                Box::new(values.probe().map(DVec3::from_array)),
-                0.5 / PI,
-            ),
+            needs::Background::Probe if needs.unlit => {
+                Seen::Probe(Box::new(values.probe().map(DVec3::from_array)), 0.5 / PI)
+            }
             needs::Background::Hemisphere => {
                 Seen::Hemisphere(values.scene.ground, values.scene.sky)
             }

@@ -16,8 +16,8 @@ pub fn number(path: &str) -> Vec<f64> {
         };
         (0..count).map(|i| low + (high - low) * step(i)).collect()
     };
-    if let Some(columns) = matrix(path, name) {
-        return columns;
+    if let Some(chosen) = matrix(path, name).or_else(|| room(name)) {
+        return chosen;
     }
     match name {
         "count" => vec![3.0],
@@ -48,14 +48,20 @@ pub fn number(path: &str) -> Vec<f64> {
         "exponents" => vec![5.0, 5.0],
         "radius" => vec![2.0],
         "window" => vec![4.0],
-        // A room around the sheet.
-        "low" => vec![-4.0, -3.0, -5.0],
-        "high" => vec![4.0, 3.5, 4.5],
-        "centre" => vec![0.2, 0.1, 0.3],
         "steps" => vec![255.0],
         "frame" => vec![5.0],
         "level" => vec![0.0],
         _ => vary(0.1, 0.9, 4),
+    }
+}
+
+/// A room around the sheet, by the name of a corner.
+fn room(name: &str) -> Option<Vec<f64>> {
+    match name {
+        "low" => Some(vec![-4.0, -3.0, -5.0]),
+        "high" => Some(vec![4.0, 3.5, 4.5]),
+        "centre" => Some(vec![0.2, 0.1, 0.3]),
+        _ => None,
     }
 }
 

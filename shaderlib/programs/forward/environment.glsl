@@ -9,7 +9,7 @@
 #include "../../ambient/ibl.glsl"
 
 /// The walls that the specular environment shows, as a box along the axes of the world.
-layout(std140, set = 0, binding = 17) uniform Room {
+layout(std140, set = 0, binding = 15) uniform Room {
     vec3 low;
     vec3 high;
     /// Where the environment was seen from.
@@ -41,11 +41,9 @@ vec3 seen_light(Surface surface, vec3 direction, float roughness) {
 #if AMBIENT == AMBIENT_IBL
     float level = prefilter_lod(roughness, layers.sky_levels);
 #if BOX_PROJECTION
-    vec3 seen = towards_wall(surface, direction);
-#else
-    vec3 seen = direction;
+    direction = towards_wall(surface, direction);
 #endif
-    return textureLod(samplerCube(sky_specular, sky_sampler), seen, level).rgb * surroundings.specular_share;
+    return textureLod(samplerCube(sky_specular, sky_sampler), direction, level).rgb * surroundings.specular_share;
 #else
     return surrounding_light(surface, direction);
 #endif
@@ -116,10 +114,10 @@ Accum add_environment(Accum sum, Surface surface) {
     vec3 diffuse = texture(samplerCube(sky_diffuse, sky_sampler), surface.normal).rgb;
 #if BOX_PROJECTION
     vec3 mirrored = towards_wall(surface, reflect(-surface.view, surface.normal));
-#else
-    vec3 mirrored = reflect(-surface.view, surface.normal);
-#endif
     vec3 specular = texture(samplerCube(sky_specular, sky_sampler), mirrored).rgb;
+#else
+    vec3 specular = texture(samplerCube(sky_specular, sky_sampler), reflect(-surface.view, surface.normal)).rgb;
+#endif
     return Accum(
         sum.scattered + surface.material.ambient * diffuse * surroundings.diffuse_share,
         sum.reflected + surface.material.specular * specular * surroundings.specular_share
