@@ -60,7 +60,12 @@ pub fn texture_sheet(reader: &mut Reader<'_>, placed: &Placed) -> Result<Sheet, 
     let has_colors = cells.keys().any(|(color, _)| color.is_some());
     let has_normals = cells.keys().any(|(_, bumps)| bumps.is_some());
     let light = blank_map(1, DVec4::ONE);
-    Ok(Sheet { maps: Some(Maps { base, normal, occlusion: blank_map(1, DVec4::ONE), light }), has_colors, has_normals, cells })
+    Ok(Sheet {
+        maps: Some(Maps { base, normal, occlusion: blank_map(1, DVec4::ONE), light }),
+        has_colors,
+        has_normals,
+        cells,
+    })
 }
 
 impl Sheet {
