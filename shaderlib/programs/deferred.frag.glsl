@@ -45,6 +45,9 @@ vec3 shade(vec3 base, vec3 normal, uint material) {
 #if SHADOW != SHADOW_NONE
     surface.visibility = visibility(surface, gl_FragCoord.xy);
 #endif
+#if AREA == AREA_RECTANGLE && SPECULAR == SPECULAR_GGX
+    surface.lobe = table_lobe(dot(surface.normal, surface.view), surface.material.roughness);
+#endif
     Accum sum = lit(surface);
 #if AMBIENT == AMBIENT_IBL
     sum = add_environment(sum, surface);

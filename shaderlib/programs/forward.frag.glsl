@@ -261,6 +261,12 @@ vec3 shade(vec3 base) {
 #if CLEARCOAT
     surface.layered = coated(surface.layered, coat_normal);
 #endif
+#if AREA == AREA_RECTANGLE && SPECULAR == SPECULAR_GGX
+    surface.lobe = table_lobe(dot(surface.normal, surface.view), surface.material.roughness);
+#endif
+#if AREA == AREA_RECTANGLE && CLEARCOAT
+    surface.coat_lobe = table_lobe(dot(coat_normal, surface.view), layers.clearcoat_roughness);
+#endif
     Accum sum = lit(surface);
 #if LIGHTMAP && METALLIC_ROUGHNESS
     sum.scattered += baked();

@@ -21,6 +21,9 @@
 #include "../brdf/specular.glsl"
 #include "../brdf/transmission.glsl"
 #include "../math/safe.glsl"
+#if AREA == AREA_SPHERE || AREA == AREA_TUBE
+#include "areas.glsl"
+#endif
 
 /// A material of glTF beside what `Material` has of it: its emission and its roughness. The
 /// comments name the factors of the extensions.
@@ -290,6 +293,30 @@ vec3 layered_light(Layered at, vec3 l, float strength) {
 #endif
     return light;
 }
+
+#if AREA == AREA_SPHERE || AREA == AREA_TUBE
+/// The light of a lamp of colour 1 with an area, of which `fallen` falls onto the surface, and which
+/// the base and the coat see in highlights. `strength` is a factor on these.
+vec3 layered_area_light(Layered at, float fallen, Seen base, Seen coat, float strength) {
+    vec3 h = safe_normalize(base.l + at.view, at.normal);
+    float mu = clamp(dot(at.view, h), 0.0, 1.0);
+    float lobe = strength * base.gain * facets(at.normal, at.view, base.l, h, at.roughness);
+    vec3 dielectric = layers.specular * reflectance(at.f0, mu);
+    vec3 below = at.base * (fallen * (1.0 - largest_channel(dielectric)));
+    vec3 of_dielectric = below + dielectric * energy_compensation(at.f0, at.dfg) * lobe;
+    vec3 of_metal = reflectance(at.base, mu) * energy_compensation(at.base, at.dfg) * lobe;
+    vec3 light = mix(of_dielectric, of_metal, layers.metallic);
+#if SHEEN
+    light = sheen_over(at, light, base.l, h, strength);
+#endif
+#if CLEARCOAT
+    vec3 half_way = safe_normalize(coat.l + at.view, at.coat_normal);
+    float lobe_of_coat = facets(at.coat_normal, at.view, coat.l, half_way, layers.clearcoat_roughness);
+    light = coat_mix(light, vec3(strength * coat.gain * at.coat_gain * lobe_of_coat), 1.0, at.coat_share);
+#endif
+    return light;
+}
+#endif
 
 /// The light from around that leaves the surface towards the viewer, with what it gives off itself.
 vec3 layered_ambient(Layered at, Around around, vec3 emission) {

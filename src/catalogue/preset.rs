@@ -16,7 +16,7 @@
 //! deviations = ["The map is compared with linear filtering, in the recipe with the nearest texel."]
 //! ```
 //!
-//! `look` says what to look for in the picture. The tables `light`, `material`, `layers`,
+//! `look` says what to look for in the picture. The tables `light`, `area`, `material`, `layers`,
 //! `surroundings`, `haze`, `caster`, `moments`, `display`, `march` and `lobe` have the numbers that the source
 //! publishes, named after the fields of the uniform they go to. `depth_pass` has what the shadow map is drawn with:
 //! `polygon_offset`, `cull_front`, and of a spot light the whole angle `fov` in degrees and the
@@ -140,6 +140,8 @@ struct Entry {
     #[serde(default)]
     light: Group,
     #[serde(default)]
+    area: Group,
+    #[serde(default)]
     material: Group,
     #[serde(default)]
     layers: Group,
@@ -225,6 +227,7 @@ impl Checker<'_> {
         }
         let groups = [
             ("light", entry.light),
+            ("area", entry.area),
             ("material", entry.material),
             ("layers", entry.layers),
             ("surroundings", entry.surroundings),

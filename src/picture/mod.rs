@@ -11,6 +11,7 @@ mod controls;
 pub mod figure;
 pub mod frame;
 pub mod gallery;
+mod lamps;
 mod light;
 mod mesh;
 pub mod needs;

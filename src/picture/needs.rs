@@ -13,7 +13,7 @@ use crate::catalogue::preset::Number;
 use crate::catalogue::reader;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::{Axis, Manifest, Program, Settings};
-use crate::scene::sets::LampKind;
+use crate::scene::sets::{LampKind, LampShape};
 use crate::source::{self, Embedded, Package, SourceId, SourceSet, Span};
 
 /// Path below the library.
@@ -57,6 +57,8 @@ pub struct Needs {
     /// The kind of the lamp that casts the shadow.
     pub caster: Option<LampKind>,
     pub falloff: Falloff,
+    /// The area of lamps that have a place. With `None` they are points.
+    pub shape: Option<LampShape>,
     /// Whether no lamp shines.
     pub unlit: bool,
     /// Whether each triangle has the normal of its face.
@@ -131,6 +133,7 @@ struct Row {
     lamps: Option<LampKind>,
     caster: Option<LampKind>,
     falloff: Option<Falloff>,
+    shape: Option<LampShape>,
     unlit: bool,
     faceted: bool,
     materials: Option<Materials>,
@@ -257,6 +260,7 @@ impl Needs {
         self.lamps = row.lamps.or(self.lamps);
         self.caster = row.caster.or(self.caster);
         self.falloff = row.falloff.unwrap_or(self.falloff);
+        self.shape = row.shape.or(self.shape);
         self.unlit |= row.unlit;
         self.faceted |= row.faceted;
         self.material_array |= row.materials.is_some();

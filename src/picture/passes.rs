@@ -19,7 +19,7 @@ use crate::execute::Session;
 use crate::execute::fixture::{Fixture, Texture, TextureKind};
 use crate::execute::frame::{Buffers, Frame, Mesh, Side, State};
 use crate::picture::frame::{Composed, Programs, Stages, pack_buffer};
-use crate::scene::sets::{Eye, Lamp, LampKind, Scene};
+use crate::scene::sets::{Eye, Lamp, Scene};
 use crate::scene::{cascade_splits, depth_range};
 
 /// What all objects and views of a pass share, by group and binding.
@@ -81,9 +81,9 @@ pub fn prepare_passes(
 ) -> Result<Prepared, Diagnostics> {
     let Lit { mut scene, key, last, lit, size } = Lit::of(plan, shot)?;
     let slice = |scene: &Scene, light: LightView| {
-        let with_lamps = with_bulbs(scene, plan, lit, &light, shot);
-        let scene = with_lamps.as_ref().unwrap_or(scene);
         let values = Values { plan, scene, lit, light: &light, shot };
+        let with_lamps = values.with_bulbs();
+        let values = Values { scene: with_lamps.as_ref().unwrap_or(scene), ..values };
         let studio = Studio { painter, programs, values };
         let mut left = Left::default();
         for pass in &plan.passes[..plan.passes.len() - 1] {
@@ -110,26 +110,6 @@ pub fn prepare_passes(
     let mut slices = slices.into_iter();
     let nearest = slices.next().ok_or_else(|| vec![no_frame()])?;
     Ok(Prepared { farther: slices.collect(), ..nearest })
-}
-
-/// The scene, with the lamps that have a position as objects, if it shows them.
-fn with_bulbs(
-    scene: &Scene,
-    plan: &Plan,
-    lit: &Pass,
-    light: &LightView,
-    shot: &Shot,
-) -> Option<Scene> {
-    if !scene.shows_lamps || lit.needs.unlit {
-        return None;
-    }
-    let values = Values { plan, scene, lit, light, shot };
-    let shining = scene.lamps.iter().enumerate().take(values.lamps().unwrap_or(0));
-    let kinds = shining.map(|(index, lamp)| (lamp, values.kind(index, lamp)));
-    let bulbs = kinds.filter(|(_, kind)| *kind != LampKind::Directional);
-    let bulbs: Vec<_> = bulbs.flat_map(|(lamp, kind)| Scene::bulb(lamp, kind)).collect();
-    let objects = scene.objects.iter().cloned().chain(bulbs).collect();
-    Some(Scene { objects, ..scene.clone() })
 }
 
 /// The weight of the logarithmic split against the even one.

@@ -7,6 +7,7 @@ use super::Surroundings;
 use super::values::Values;
 use crate::bundle::{Binding, Kind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::eval::{half_from, half_to};
 use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
 use crate::scene::sets::{Map, Maps};
 use crate::scene::{CubeMap, FACES, Sky, bricks, prefilter};
@@ -97,6 +98,7 @@ impl<'a> Library<'a> {
             "normal_map" => Some(color_textures(self.maps().normal.clone().levels())),
             "occlusion_map" => Some(color_textures(self.maps().occlusion.clone().levels())),
             "light_map" => Some(color_textures(vec![self.maps().light.clone()])),
+            "ltc_table" => Some(vec![table_texture(LTC)]),
             _ => self.left.texture(name),
         };
         let missing = || format!("no pass before has drawn what `{name}` reads");
@@ -181,6 +183,18 @@ fn cube_texture(map: &CubeMap) -> Texture {
         height: map.size as u32,
         texels,
     }
+}
+
+/// The table of linearly transformed cosines: 64 by 64 texels of four numbers.
+const LTC: &[u8] = include_bytes!("../../shaderlib/tables/ltc.bin");
+
+/// A square table of four channels, rounded to half floats, which every device can filter.
+fn table_texture(bytes: &[u8]) -> Texture {
+    let (words, _) = bytes.as_chunks::<4>();
+    let number = |word: &[u8; 4]| half_to(half_from(f64::from(f32::from_le_bytes(*word)))) as f32;
+    let side = (words.len() / 4).isqrt() as u32;
+    let texels = words.iter().map(number).collect();
+    Texture { kind: TextureKind::Color2d, width: side, height: side, texels }
 }
 
 fn color_textures(levels: Vec<Map>) -> Vec<Texture> {

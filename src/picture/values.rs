@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 use glam::{DMat3, DMat4, DVec3};
 
 use super::light::LightView;
-use super::needs::{Cleared, Falloff};
-use super::plan::{LAMPS, Pass, Plan};
+use super::needs::Cleared;
+use super::plan::{Pass, Plan};
 use super::textures::LEVELS;
 use super::{Shot, Surroundings};
-use crate::scene::sets::{Eye, Lamp, LampKind, Material, Object, Scene};
+use crate::scene::sets::{Eye, LampKind, Material, Object, Scene};
 use crate::scene::{Clip, Depth, directions, normal_matrix, perspective, sh9_project};
 
 /// What the uniforms of one pass are filled from.
@@ -32,6 +32,7 @@ pub struct Camera {
 /// The blocks of uniforms, with the group of a preset's numbers that fills each.
 const GROUPS: &[(&str, &str)] = &[
     ("lamps", "light"),
+    ("areas", "area"),
     ("materials", "material"),
     ("layers", "layers"),
     ("surroundings", "surroundings"),
@@ -42,9 +43,6 @@ const GROUPS: &[(&str, &str)] = &[
     ("lobe", "lobe"),
     ("march", "march"),
 ];
-
-/// The range of falloffs that have one, as a multiple of the target's distance.
-const RANGE: f64 = 2.4;
 
 /// The path of a uniform: `lamps.lights[2].color` is the field `color` of the third light in the
 /// block `lamps`.
@@ -91,6 +89,7 @@ impl Values<'_> {
         let of_scene = || match path.block {
             "lamps" if path.field == "count" => self.lamps().map(|count| vec![count as f64]),
             "lamps" => self.lamp(path.index, path.field),
+            "areas" => self.area(path.index, path.field),
             "materials" => self.materials(path.index, path.field),
             "surroundings" => self.surroundings(&path),
             "haze" => self.haze(path.field),
@@ -143,81 +142,6 @@ impl Values<'_> {
         // The exponents must be the same where moments are made and where they are read.
         let group = if path.field == "exponents" { "caster" } else { group };
         self.plan.number(group, path.field)
-    }
-
-    /// How many lamps shine: those of the scene, as far as the array has room.
-    pub fn lamps(&self) -> Option<usize> {
-        let most = usize::try_from(self.lit.integer(LAMPS)?).ok()?;
-        Some(self.scene.lamps.len().min(most))
-    }
-
-    /// The kind of a lamp in this permutation.
-    pub fn kind(&self, index: usize, lamp: &Lamp) -> LampKind {
-        let needs = &self.lit.needs;
-        // The first lamp casts the shadow.
-        let caster = if index == 0 && needs.has_shadow() { needs.caster } else { None };
-        needs.lamps.or(caster).unwrap_or(lamp.kind)
-    }
-
-    fn lamp(&self, index: usize, field: &str) -> Option<Vec<f64>> {
-        // An array that is longer than the scene has lamps ends with zeros.
-        let Some(lamp) = self.scene.lamps.get(index) else { return Some(Vec::new()) };
-        let kind = self.kind(index, lamp);
-        Some(match field {
-            "kind" => vec![match kind {
-                LampKind::Directional => 1.0,
-                LampKind::Point => 2.0,
-                LampKind::Spot => 3.0,
-            }],
-            "color" => vector_values(self.intensity(index, lamp, kind)),
-            "ambient" => vector_values(lamp.color * 0.06),
-            "range" => vec![RANGE * lamp.reach()],
-            "position" => vector_values(lamp.position),
-            "axis" => vector_values(self.axis(index, lamp, kind)),
-            "cutoff" | "outer" => vec![lamp.half_angle.cos()],
-            "inner" => vec![(0.75 * lamp.half_angle).cos()],
-            "shadow_layer" => vec![if index == 0 { 0.0 } else { -1.0 }],
-            _ => return None,
-        })
-    }
-
-    /// The direction of a lamp. Several directional lights shine from where the lamps are, and not
-    /// all straight down.
-    fn axis(&self, index: usize, lamp: &Lamp, kind: LampKind) -> DVec3 {
-        let key = self.scene.lamps.first().map_or(DVec3::ZERO, |key| key.target);
-        if kind == LampKind::Directional && index > 0 {
-            (key - lamp.position).normalize_or(DVec3::NEG_Y)
-        } else {
-            lamp.axis()
-        }
-    }
-
-    /// The intensity with which the lamp's colour arrives at the target, whatever the falloff is.
-    fn intensity(&self, index: usize, lamp: &Lamp, kind: LampKind) -> DVec3 {
-        if kind == LampKind::Directional {
-            // Directional lights reach everywhere, so all but the first are dimmer.
-            return lamp.color * if index == 0 { 1.0 } else { 0.25 };
-        }
-        let d = lamp.reach();
-        let published = |field| self.plan.number("light", field);
-        let falloff = match self.lit.needs.falloff {
-            Falloff::None => 1.0,
-            Falloff::Polynomial => {
-                let coefficients = published("attenuation")
-                    .or_else(|| self.lit.needs.uniform("lamps", "attenuation"))
-                    .unwrap_or_else(|| vec![1.0]);
-                1.0 / coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * d + coefficient)
-            }
-            Falloff::LinearRadius => 1.0 - d / self.range(d),
-            Falloff::InverseSquareWindow => (1.0 - (d / self.range(d)).powi(4)).powi(2) / (d * d),
-        };
-        lamp.color / if falloff > 1e-6 { falloff } else { 1.0 }
-    }
-
-    /// The range of a lamp at a distance from its target.
-    fn range(&self, distance: f64) -> f64 {
-        let published = self.plan.number("light", "range");
-        published.and_then(|range| range.first().copied()).unwrap_or(RANGE * distance)
     }
 
     fn materials(&self, index: usize, field: &str) -> Option<Vec<f64>> {
@@ -385,7 +309,7 @@ fn material_value(material: &Material, field: &str) -> Option<Vec<f64>> {
     })
 }
 
-fn vector_values(vector: DVec3) -> Vec<f64> {
+pub(super) fn vector_values(vector: DVec3) -> Vec<f64> {
     vector.to_array().to_vec()
 }
 

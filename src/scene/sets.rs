@@ -4,7 +4,7 @@ pub use super::maps::{Map, Maps};
 
 use std::sync::Arc;
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec2, DVec3};
 
 use super::layers::Layers;
 use super::shape::Shape;
@@ -40,6 +40,8 @@ pub struct Scene {
     pub map_size: Option<u32>,
     /// Whether lamps with a position are drawn as objects.
     pub shows_lamps: bool,
+    /// Half of the width and height of lamps with an area, if they are not of the usual size.
+    pub lamp_size: Option<DVec2>,
 }
 
 /// A shape with its place in the scene.
@@ -100,6 +102,29 @@ pub enum LampKind {
     Point,
     /// Shines into a cone.
     Spot,
+}
+
+/// The area of a lamp that has a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LampShape {
+    /// Shines along the lamp's axis.
+    Rectangle,
+    /// As high as the rectangle.
+    Sphere,
+    /// As wide as the rectangle.
+    Tube,
+}
+
+impl LampShape {
+    /// The radius of a round lamp, from half of the width and height of lamps.
+    pub fn radius(self, size: DVec2) -> f64 {
+        match self {
+            Self::Rectangle => 0.0,
+            Self::Sphere => size.y,
+            Self::Tube => 0.12 * size.y,
+        }
+    }
 }
 
 /// What a surface does with light.
@@ -181,6 +206,13 @@ impl Lamp {
         (self.target - self.position).normalize_or(DVec3::NEG_Y)
     }
 
+    /// Directions to the right and up: the cross product of both is the axis.
+    pub fn sides(&self) -> (DVec3, DVec3) {
+        let axis = self.axis();
+        let right = DVec3::Y.cross(axis).normalize_or(DVec3::X);
+        (right, axis.cross(right))
+    }
+
     /// Distance of the target.
     pub fn reach(&self) -> f64 {
         self.position.distance(self.target)
@@ -202,14 +234,47 @@ impl Scene {
 
     /// A lamp as it is drawn: a bulb, and for a spot light a shade behind it.
     pub fn bulb(lamp: &Lamp, kind: LampKind) -> Vec<Object> {
-        let glow = lamp.color / lamp.color.max_element().max(1e-6);
         let place = DMat4::from_translation(lamp.position);
-        let material = Material { emission: glow * 1.5, ..Material::default().glossy(0.0) };
-        let ball = Object::new(Shape::sphere(0.11, (24, 12)), place, glow).of(material, 7);
-        let tin = Material { emission: DVec3::splat(0.015), ..Material::default().glossy(0.1) };
-        let shade = Object::new(lamp_shade(lamp), place, DVec3::splat(0.16)).of(tin, 8);
+        let ball = Shape::sphere(0.11, (24, 12));
+        let ball = Object::new(ball, place, glow(lamp)).of(glowing_material(lamp), 7);
+        let shade = Object::new(lamp_shade(lamp), place, DVec3::splat(0.16)).of(dark_tin(), 8);
         let parts = [Some(ball), (kind == LampKind::Spot).then_some(shade)];
         parts.into_iter().flatten().map(|part| Object { casts: false, ..part }).collect()
+    }
+
+    /// Half of the width and height of lamps with an area.
+    pub fn lamp_size(&self) -> DVec2 {
+        self.lamp_size.unwrap_or(DVec2::new(0.6, 0.4))
+    }
+
+    /// A lamp with an area, as it is drawn. A rectangle has a frame behind it.
+    pub fn wide_lamp(&self, lamp: &Lamp, shape: LampShape) -> Vec<Object> {
+        let size = self.lamp_size();
+        let (right, up) = lamp.sides();
+        let patch = |size: DVec2, depth: f64| {
+            let (right, up) = (right * size.x, up * size.y);
+            Shape::patch(lamp.axis() * depth - right - up, 2.0 * right, 2.0 * up, (1, 1))
+        };
+        let radius = shape.radius(size);
+        let surface = match shape {
+            LampShape::Rectangle => patch(size, 0.0),
+            LampShape::Sphere => Shape::sphere(radius, (48, 24)),
+            LampShape::Tube => {
+                let ends = [-size.x - radius, -size.x, size.x, size.x + radius];
+                let radii = [0.0, radius, radius, 0.0];
+                let points: Vec<_> = ends.iter().map(|x| DVec2::new(*x, 0.0)).zip(radii).collect();
+                let turn = glam::DQuat::from_rotation_arc(DVec3::X, right);
+                Shape::tube(&points, (24, 48)).transformed(DMat4::from_quat(turn))
+            }
+        };
+        let place = DMat4::from_translation(lamp.position);
+        let frame = (shape == LampShape::Rectangle).then(|| {
+            let wider = patch(size + DVec2::splat(0.05), -0.01);
+            Object::new(wider, place, DVec3::splat(0.16)).of(dark_tin(), 8)
+        });
+        let glowing = Object::new(surface, place, glow(lamp)).of(glowing_material(lamp), 7);
+        let parts = [Some(glowing), frame].into_iter().flatten();
+        parts.map(|part| Object { casts: false, ..part }).collect()
     }
 
     /// Every vertex of every object that casts a shadow, in world space.
@@ -225,6 +290,19 @@ impl Scene {
         };
         self.objects.iter().filter(|object| object.casts).flat_map(of).collect()
     }
+}
+
+/// The colour of a lamp, as bright as can be.
+fn glow(lamp: &Lamp) -> DVec3 {
+    lamp.color / lamp.color.max_element().max(1e-6)
+}
+
+fn glowing_material(lamp: &Lamp) -> Material {
+    Material { emission: glow(lamp) * 1.5, ..Material::default().glossy(0.0) }
+}
+
+fn dark_tin() -> Material {
+    Material { emission: DVec3::splat(0.015), ..Material::default().glossy(0.1) }
 }
 
 /// An open cone along the lamp's axis.
@@ -278,5 +356,6 @@ fn base_scene(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Scene {
         own_maps: None,
         map_size: None,
         shows_lamps: false,
+        lamp_size: None,
     }
 }

@@ -46,6 +46,8 @@ pub fn number(path: &str) -> Vec<f64> {
         "start" => vec![1.0],
         "end" => vec![6.0],
         "exponents" => vec![5.0, 5.0],
+        "radius" if path.starts_with("areas") => vec![0.3 + 0.1 * index],
+        "right" => vec![-0.6, 0.0, 0.2],
         "radius" => vec![2.0],
         "window" => vec![4.0],
         "steps" => vec![255.0],
@@ -127,13 +129,19 @@ pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
             let is_normal = name == "normal_map";
             // Moments are those of three depths, and vary little: four of them lose digits.
             let is_moments = name == "shadow_moments";
-            let own = move |index: usize, channel: usize| match (is_normal, channel) {
+            // Matrices are those of wide lobes, with a positive determinant.
+            let is_table = name == "ltc_table";
+            let own = |index: usize, channel: usize| match (is_normal, channel) {
                 _ if is_moments => {
                     let factor = [1.0, 1.42667, 2.28, 3.83307][channel];
                     factor * (0.49 + 0.02 * value(index)).powi(channel as i32 + 1)
                 }
-                (true, 0 | 1) => 0.25 + 0.5 * value(index + 5 * channel),
+                (true, 0 | 1) => 0.484375 + 0.03125 * value(index + 5 * channel),
                 (true, _) => 0.96875,
+                _ if name == "surface_normal" && channel < 2 => {
+                    0.5 + 0.03125 * value(index + 5 * channel)
+                }
+                _ if is_table && channel % 3 > 0 => 0.25 * value(index) - 0.1875,
                 _ => value(index) + channel as f32 / 16.0,
             };
             let channel =

@@ -17,6 +17,7 @@ use super::{library, plan, said};
 /// scene, which a source does not give.
 const STRUCTURES: &[(&str, &str, &[&str])] = &[
     ("Light", "light", &["kind", "shadow_layer"]),
+    ("Area", "area", &[]),
     ("Material", "material", &[]),
     ("Layers", "layers", &["sky_levels"]),
     ("Surroundings", "surroundings", &["sh"]),

@@ -8,6 +8,10 @@
 #include "ambient.glsl"
 #include "materials.glsl"
 #include "viewer.glsl"
+#if AREA != AREA_NONE
+#include "../../brdf/energy.glsl"
+#include "../areas.glsl"
+#endif
 #if METALLIC_ROUGHNESS
 #include "../layers.glsl"
 #endif
@@ -34,6 +38,14 @@ struct Surface {
 #if METALLIC_ROUGHNESS
     /// What `metallic_roughness` makes of the material.
     Layered layered;
+#endif
+#if AREA == AREA_RECTANGLE && SPECULAR == SPECULAR_GGX
+    /// The microfacets as linearly transformed cosines.
+    mat3 lobe;
+#endif
+#if AREA == AREA_RECTANGLE && CLEARCOAT
+    /// The same of the coat.
+    mat3 coat_lobe;
 #endif
 };
 
@@ -154,13 +166,86 @@ float specular_share(Surface surface, vec3 l) {
 #endif
 }
 
+#if AREA != AREA_NONE
+/// Whether the lamp has an area: a light of one direction has none.
+bool has_area(Light light) {
+#if LIGHTS == LIGHTS_MIXED
+    return light.kind == LIGHT_POINT || light.kind == LIGHT_SPOT;
+#else
+    return true;
+#endif
+}
+
+/// How much light of a lamp with an area falls onto the surface.
+float fallen_share(Surface surface, Light light, LightSample arriving, uint i) {
+    if (!has_area(light)) {
+        return lambert(surface.normal, arriving.l);
+    }
+    return area_share(i, surface.normal, surface.position, light.position);
+}
+#endif
+
+#if AREA != AREA_NONE && METALLIC_ROUGHNESS
+/// The light of a lamp with an area, of colour 1, that leaves a layered surface towards the viewer.
+vec3 layered_lamp(Surface surface, Light light, LightSample arriving, uint i) {
+    if (!has_area(light)) {
+        return layered_light(surface.layered, arriving.l, light.strength);
+    }
+    vec3 n = surface.normal;
+    vec3 view = surface.view;
+    vec3 p = surface.position;
+#if AREA == AREA_RECTANGLE
+    // Lobes take in the light of a rectangle as they take in that of the surroundings.
+    float factor = 3.14159265 * light.strength;
+    Around around;
+    around.front = vec3(area_share(i, n, p, light.position));
+    around.mirrored = vec3(factor * reflected_rectangle(i, n, view, p, light.position, surface.lobe));
+#if CLEARCOAT
+    vec3 coat_normal = surface.layered.coat_normal;
+    around.coated = vec3(factor * reflected_rectangle(i, coat_normal, view, p, light.position, surface.coat_lobe));
+#endif
+    return layered_ambient(surface.layered, around, vec3(0.0));
+#else
+    Layered at = surface.layered;
+    Seen base = seen_lamp(i, n, view, p, light.position, at.roughness);
+#if CLEARCOAT
+    Seen coat = seen_lamp(i, at.coat_normal, at.view, p, light.position, layers.clearcoat_roughness);
+#else
+    Seen coat = base;
+#endif
+    return layered_area_light(at, area_share(i, n, p, light.position), base, coat, light.strength);
+#endif
+}
+#elif AREA != AREA_NONE && SPECULAR == SPECULAR_GGX
+/// The microfacet highlight of a lamp with an area.
+vec3 area_highlight(Surface surface, Light light, LightSample arriving, uint i) {
+    if (!has_area(light)) {
+        return ggx(surface, arriving.l);
+    }
+    vec3 n = surface.normal;
+    float roughness = surface.material.roughness;
+#if AREA == AREA_RECTANGLE
+    vec2 dfg = dfg_approx(dot(n, surface.view), roughness);
+    vec3 albedo = surface.material.specular * dfg.x + dfg.y;
+    return albedo * reflected_rectangle(i, n, surface.view, surface.position, light.position, surface.lobe);
+#else
+    Seen seen = seen_lamp(i, n, surface.view, surface.position, light.position, roughness);
+    return seen.gain * ggx(surface, seen.l);
+#endif
+}
+#endif
+
 /// The sums with the light of one lamp.
 Accum add_lamp(Accum sum, Surface surface, uint i) {
     Light light = lamps.lights[i];
     LightSample arriving = sample_lamp(light, surface.position);
     float ambient = ambient_share(light, arriving);
 #if !METALLIC_ROUGHNESS
+#if AREA == AREA_NONE
     float diffuse = diffuse_share(surface, arriving.l);
+#else
+    float diffuse = fallen_share(surface, light, arriving, i);
+#endif
     float specular = specular_share(surface, arriving.l);
 #endif
 #if SHADOW == SHADOW_NONE
@@ -175,12 +260,20 @@ Accum add_lamp(Accum sum, Surface surface, uint i) {
     vec3 radiance = light.color * (arriving.attenuation * arriving.spot * visibility);
     return Accum(
         sum.scattered + light.ambient * surface.material.ambient * ambient,
+#if AREA == AREA_NONE
         sum.reflected + radiance * layered_light(surface.layered, arriving.l, light.strength)
+#else
+        sum.reflected + radiance * layered_lamp(surface, light, arriving, i)
+#endif
     );
 #else
     Accum next = accumulate(sum, surface.material, light, arriving, ambient, diffuse, specular, visibility);
     vec3 radiance = light.color * (arriving.attenuation * arriving.spot * visibility * light.strength);
+#if AREA == AREA_NONE
     next.reflected += radiance * ggx(surface, arriving.l);
+#else
+    next.reflected += radiance * area_highlight(surface, light, arriving, i);
+#endif
     return next;
 #endif
 }

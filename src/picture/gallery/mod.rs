@@ -219,11 +219,15 @@ fn geometry_text(scene: &str) -> String {
         haze_range,
         map_size,
         shows_lamps,
+        lamp_size,
         maps: _,
         own_maps: _,
     } = (set.make)();
     let seen = (objects, eye, lamps, materials);
-    format!("{seen:.3?} {ambient} {sky} {ground} {haze} {haze_range:?} {map_size:?} {shows_lamps}")
+    let size = lamp_size.map(|size| format!(" {size}")).unwrap_or_default();
+    format!(
+        "{seen:.3?} {ambient} {sky} {ground} {haze} {haze_range:?} {map_size:?} {shows_lamps}{size}"
+    )
 }
 
 fn stage_texts(stages: &Stages) -> Vec<Arc<str>> {

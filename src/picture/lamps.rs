@@ -1,0 +1,118 @@
+//! The lamps of a scene as a permutation has them: their numbers, and what is seen of them.
+
+use glam::DVec3;
+
+use super::needs::Falloff;
+use super::plan::LAMPS;
+use super::values::{Values, vector_values};
+use crate::scene::sets::{Lamp, LampKind, Scene};
+
+/// The range of falloffs that have one, as a multiple of the target's distance.
+const RANGE: f64 = 2.4;
+
+impl Values<'_> {
+    /// How many lamps shine: those of the scene, as far as the array has room.
+    pub fn lamps(&self) -> Option<usize> {
+        let most = usize::try_from(self.lit.integer(LAMPS)?).ok()?;
+        Some(self.scene.lamps.len().min(most))
+    }
+
+    /// The kind of a lamp in this permutation.
+    pub fn kind(&self, index: usize, lamp: &Lamp) -> LampKind {
+        let needs = &self.lit.needs;
+        // The first lamp casts the shadow.
+        let caster = if index == 0 && needs.has_shadow() { needs.caster } else { None };
+        needs.lamps.or(caster).unwrap_or(lamp.kind)
+    }
+
+    pub(super) fn lamp(&self, index: usize, field: &str) -> Option<Vec<f64>> {
+        // An array that is longer than the scene has lamps ends with zeros.
+        let Some(lamp) = self.scene.lamps.get(index) else { return Some(Vec::new()) };
+        let kind = self.kind(index, lamp);
+        Some(match field {
+            "kind" => vec![match kind {
+                LampKind::Directional => 1.0,
+                LampKind::Point => 2.0,
+                LampKind::Spot => 3.0,
+            }],
+            "color" => vector_values(self.intensity(index, lamp, kind)),
+            "ambient" => vector_values(lamp.color * 0.06),
+            "range" => vec![RANGE * lamp.reach()],
+            "position" => vector_values(lamp.position),
+            "axis" => vector_values(self.axis(index, lamp, kind)),
+            "cutoff" | "outer" => vec![lamp.half_angle.cos()],
+            "inner" => vec![(0.75 * lamp.half_angle).cos()],
+            "shadow_layer" => vec![if index == 0 { 0.0 } else { -1.0 }],
+            _ => return None,
+        })
+    }
+
+    /// The direction of a lamp. Several directional lights shine from where the lamps are, and not
+    /// all straight down.
+    fn axis(&self, index: usize, lamp: &Lamp, kind: LampKind) -> DVec3 {
+        let key = self.scene.lamps.first().map_or(DVec3::ZERO, |key| key.target);
+        if kind == LampKind::Directional && index > 0 {
+            (key - lamp.position).normalize_or(DVec3::NEG_Y)
+        } else {
+            lamp.axis()
+        }
+    }
+
+    /// The intensity with which the lamp's colour arrives at the target, whatever the falloff is.
+    fn intensity(&self, index: usize, lamp: &Lamp, kind: LampKind) -> DVec3 {
+        if kind == LampKind::Directional {
+            // Directional lights reach everywhere, so all but the first are dimmer.
+            return lamp.color * if index == 0 { 1.0 } else { 0.25 };
+        }
+        let d = lamp.reach();
+        let published = |field| self.plan.number("light", field);
+        let falloff = match self.lit.needs.falloff {
+            Falloff::None => 1.0,
+            Falloff::Polynomial => {
+                let coefficients = published("attenuation")
+                    .or_else(|| self.lit.needs.uniform("lamps", "attenuation"))
+                    .unwrap_or_else(|| vec![1.0]);
+                1.0 / coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * d + coefficient)
+            }
+            Falloff::LinearRadius => 1.0 - d / self.range(d),
+            Falloff::InverseSquareWindow => (1.0 - (d / self.range(d)).powi(4)).powi(2) / (d * d),
+        };
+        lamp.color / if falloff > 1e-6 { falloff } else { 1.0 }
+    }
+
+    /// The range of a lamp at a distance from its target.
+    fn range(&self, distance: f64) -> f64 {
+        let published = self.plan.number("light", "range");
+        published.and_then(|range| range.first().copied()).unwrap_or(RANGE * distance)
+    }
+
+    /// The extent of a lamp.
+    pub(super) fn area(&self, index: usize, field: &str) -> Option<Vec<f64>> {
+        let Some(lamp) = self.scene.lamps.get(index) else { return Some(Vec::new()) };
+        let (right, up) = lamp.sides();
+        let size = self.scene.lamp_size();
+        Some(match field {
+            "right" => vector_values(right * size.x),
+            "up" => vector_values(up * size.y),
+            "radius" => vec![self.lit.needs.shape?.radius(size)],
+            _ => return None,
+        })
+    }
+
+    /// The scene, with the lamps that have a position as objects, if it shows them.
+    pub(super) fn with_bulbs(&self) -> Option<Scene> {
+        let Self { scene, lit, .. } = self;
+        if !scene.shows_lamps || lit.needs.unlit {
+            return None;
+        }
+        let shining = scene.lamps.iter().enumerate().take(self.lamps().unwrap_or(0));
+        let kinds = shining.map(|(index, lamp)| (lamp, self.kind(index, lamp)));
+        let bulbs = kinds.filter(|(_, kind)| *kind != LampKind::Directional);
+        let bulbs = bulbs.flat_map(|(lamp, kind)| match lit.needs.shape {
+            Some(shape) => scene.wide_lamp(lamp, shape),
+            None => Scene::bulb(lamp, kind),
+        });
+        let objects = scene.objects.iter().cloned().chain(bulbs).collect();
+        Some(Scene { objects, ..(*scene).clone() })
+    }
+}
