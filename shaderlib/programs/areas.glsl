@@ -41,9 +41,9 @@ struct Seen {
 #if AREA == AREA_RECTANGLE
 /// The light of the rectangle around `middle` that a lobe takes in, over pi. The rectangle is
 /// brighter if it is smaller.
-float reflected_rectangle(uint i, vec3 normal, vec3 view, vec3 position, vec3 middle, mat3 lobe) {
-    vec3 right = areas.lamps[i].right;
-    vec3 up = areas.lamps[i].up;
+float reflected_rectangle(Area extent, vec3 normal, vec3 view, vec3 position, vec3 middle, mat3 lobe) {
+    vec3 right = extent.right;
+    vec3 up = extent.up;
     vec3 corners[4] = vec3[4](middle - right - up, middle + right - up, middle + right + up, middle - right + up);
     vec3 offset = middle - position;
     float brightness = dot(offset, offset) / max(4.0 * length(cross(right, up)), 1e-12);
@@ -51,10 +51,10 @@ float reflected_rectangle(uint i, vec3 normal, vec3 view, vec3 position, vec3 mi
 }
 
 /// The light that falls onto a surface from the lamp around `middle`.
-float area_share(uint i, vec3 normal, vec3 position, vec3 middle) {
+float area_share(Area extent, vec3 normal, vec3 position, vec3 middle) {
     // A cosine looks alike from all sides, so any direction may be the viewer's.
     mat3 cosine = ltc_matrix(vec4(1.0, 0.0, 0.0, 1.0));
-    return 3.14159265 * reflected_rectangle(i, normal, any_tangent(normal), position, middle, cosine);
+    return 3.14159265 * reflected_rectangle(extent, normal, any_tangent(normal), position, middle, cosine);
 }
 
 #if SPECULAR == SPECULAR_GGX
@@ -68,10 +68,10 @@ mat3 table_lobe(float nv, float roughness) {
 #endif
 #else
 /// The light that falls onto a surface from the lamp around `middle`.
-float area_share(uint i, vec3 normal, vec3 position, vec3 middle) {
+float area_share(Area extent, vec3 normal, vec3 position, vec3 middle) {
     vec3 offset = middle - position;
 #if AREA == AREA_SPHERE
-    float radius = areas.lamps[i].radius;
+    float radius = extent.radius;
     float d2 = max(dot(offset, offset), 1e-12);
     float mu = dot(normal, offset) * inversesqrt(d2);
     float sin2 = min(radius * radius / d2, 1.0);
@@ -80,7 +80,7 @@ float area_share(uint i, vec3 normal, vec3 position, vec3 middle) {
     }
     return sphere_irradiance(mu, sin2) / (3.14159265 * sin2);
 #else
-    vec3 half_axis = areas.lamps[i].right;
+    vec3 half_axis = extent.right;
     vec3 start = offset - half_axis;
     vec3 end = offset + half_axis;
     float a = dot(normal, start);
@@ -105,8 +105,7 @@ float area_share(uint i, vec3 normal, vec3 position, vec3 middle) {
 }
 
 /// The point of a lamp around `middle` that the surface mirrors, or the nearest one to that.
-Seen seen_lamp(uint i, vec3 normal, vec3 view, vec3 position, vec3 middle, float roughness) {
-    Area extent = areas.lamps[i];
+Seen seen_lamp(Area extent, vec3 normal, vec3 view, vec3 position, vec3 middle, float roughness) {
     vec3 offset = middle - position;
     vec3 mirrored = reflect(-view, normal);
     float alpha = roughness * roughness;

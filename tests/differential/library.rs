@@ -75,6 +75,8 @@ fn program(program: &Program) -> Result<(), Failed> {
     let root = ("".to_owned(), "main.wesl".to_owned());
     files.insert(root.clone(), own.clone());
     let mut translated = files.clone();
+    let modules = translated.iter_mut().filter(|((_, path), _)| path.starts_with("programs/"));
+    modules.for_each(|(_, text)| *text = booleans(text));
     translated.insert(root, booleans(&own));
     let points = cover::pairwise(&program.space).points;
     for point in points.iter().step_by(points.len().div_ceil(POINTS)) {

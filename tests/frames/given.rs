@@ -125,25 +125,7 @@ pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
                 }
             };
             let texels = (width * height * kind.layers()) as usize;
-            // Normals are near that of the surface, so that the errors of their directions are small.
-            let is_normal = name == "normal_map";
-            // Moments are those of three depths, and vary little: four of them lose digits.
-            let is_moments = name == "shadow_moments";
-            // Matrices are those of wide lobes, with a positive determinant.
-            let is_table = name == "ltc_table";
-            let own = |index: usize, channel: usize| match (is_normal, channel) {
-                _ if is_moments => {
-                    let factor = [1.0, 1.42667, 2.28, 3.83307][channel];
-                    factor * (0.49 + 0.02 * value(index)).powi(channel as i32 + 1)
-                }
-                (true, 0 | 1) => 0.484375 + 0.03125 * value(index + 5 * channel),
-                (true, _) => 0.96875,
-                _ if name == "surface_normal" && channel < 2 => {
-                    0.5 + 0.03125 * value(index + 5 * channel)
-                }
-                _ if is_table && channel % 3 > 0 => 0.25 * value(index) - 0.1875,
-                _ => value(index) + channel as f32 / 16.0,
-            };
+            let own = move |index: usize, channel: usize| color_value(name, value, index, channel);
             let channel =
                 |index: usize| (0..kind.channels()).map(move |channel| own(index, channel));
             Fixture::Texture(Texture {
@@ -153,5 +135,23 @@ pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
                 texels: (0..texels).flat_map(channel).collect(),
             })
         }
+    }
+}
+
+/// A channel of a texel; `value` varies smoothly with the index.
+fn color_value(name: &str, value: impl Fn(usize) -> f32, index: usize, channel: usize) -> f32 {
+    match (name, channel) {
+        // Moments are those of three depths, and vary little: four of them lose digits.
+        ("shadow_moments", _) => {
+            let factor = [1.0, 1.42667, 2.28, 3.83307][channel];
+            factor * (0.49 + 0.02 * value(index)).powi(channel as i32 + 1)
+        }
+        // Normals are near that of the surface, so that the errors of their directions are small.
+        ("normal_map", 0 | 1) => 0.484375 + 0.03125 * value(index + 5 * channel),
+        ("normal_map", _) => 0.96875,
+        ("surface_normal", 0 | 1) => 0.5 + 0.03125 * value(index + 5 * channel),
+        // Matrices are those of wide lobes, with a positive determinant.
+        ("ltc_table", 1 | 2) => 0.25 * value(index) - 0.1875,
+        _ => value(index) + channel as f32 / 16.0,
     }
 }
