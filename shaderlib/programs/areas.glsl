@@ -27,7 +27,7 @@ struct Area {
 
 /// The extents of the lamps, in their order.
 layout(std140, set = 3, binding = 0) uniform Areas {
-    Area lamps[MAX_LIGHTS];
+    Area items[MAX_LIGHTS];
 } areas;
 
 /// How a lamp of some size is seen in a highlight.

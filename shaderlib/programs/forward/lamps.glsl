@@ -181,7 +181,7 @@ float fallen_share(Surface surface, Light light, LightSample arriving, uint i) {
     if (!has_area(light)) {
         return lambert(surface.normal, arriving.l);
     }
-    return area_share(areas.lamps[i], surface.normal, surface.position, light.position);
+    return area_share(areas.items[i], surface.normal, surface.position, light.position);
 }
 #endif
 
@@ -198,22 +198,22 @@ vec3 layered_lamp(Surface surface, Light light, LightSample arriving, uint i) {
     // Lobes take in the light of a rectangle as they take in that of the surroundings.
     float factor = 3.14159265 * light.strength;
     Around around;
-    around.front = vec3(area_share(areas.lamps[i], n, p, light.position));
-    around.mirrored = vec3(factor * reflected_rectangle(areas.lamps[i], n, view, p, light.position, surface.lobe));
+    around.front = vec3(area_share(areas.items[i], n, p, light.position));
+    around.mirrored = vec3(factor * reflected_rectangle(areas.items[i], n, view, p, light.position, surface.lobe));
 #if CLEARCOAT
     vec3 coat_normal = surface.layered.coat_normal;
-    around.coated = vec3(factor * reflected_rectangle(areas.lamps[i], coat_normal, view, p, light.position, surface.coat_lobe));
+    around.coated = vec3(factor * reflected_rectangle(areas.items[i], coat_normal, view, p, light.position, surface.coat_lobe));
 #endif
     return layered_ambient(surface.layered, around, vec3(0.0));
 #else
     Layered at = surface.layered;
-    Seen base = seen_lamp(areas.lamps[i], n, view, p, light.position, at.roughness);
+    Seen base = seen_lamp(areas.items[i], n, view, p, light.position, at.roughness);
 #if CLEARCOAT
-    Seen coat = seen_lamp(areas.lamps[i], at.coat_normal, at.view, p, light.position, layers.clearcoat_roughness);
+    Seen coat = seen_lamp(areas.items[i], at.coat_normal, at.view, p, light.position, layers.clearcoat_roughness);
 #else
     Seen coat = base;
 #endif
-    return layered_area_light(at, area_share(areas.lamps[i], n, p, light.position), base, coat, light.strength);
+    return layered_area_light(at, area_share(areas.items[i], n, p, light.position), base, coat, light.strength);
 #endif
 }
 #elif AREA != AREA_NONE && SPECULAR == SPECULAR_GGX
@@ -227,9 +227,9 @@ vec3 area_highlight(Surface surface, Light light, LightSample arriving, uint i) 
 #if AREA == AREA_RECTANGLE
     vec2 dfg = dfg_approx(dot(n, surface.view), roughness);
     vec3 albedo = surface.material.specular * dfg.x + dfg.y;
-    return albedo * reflected_rectangle(areas.lamps[i], n, surface.view, surface.position, light.position, surface.lobe);
+    return albedo * reflected_rectangle(areas.items[i], n, surface.view, surface.position, light.position, surface.lobe);
 #else
-    Seen seen = seen_lamp(areas.lamps[i], n, surface.view, surface.position, light.position, roughness);
+    Seen seen = seen_lamp(areas.items[i], n, surface.view, surface.position, light.position, roughness);
     return seen.gain * ggx(surface, seen.l);
 #endif
 }
