@@ -174,7 +174,7 @@ impl Modules {
     pub fn places_in(&self, node: u32) -> impl Iterator<Item = (Symbol, Range<u32>)> {
         let here = &self.graph.nodes[node as usize];
         let uses = here.module.items.iter().flat_map(move |item| uses_of_item(here, node, item));
-        let imports = here.module.imports.iter().zip(&here.imports);
+        let imports = here.module.imports.iter().zip(here.imports.iter());
         let imports = imports.flat_map(|(import, targets)| {
             let symbol = targets.iter().copied().find_map(symbol_of);
             let places = [import.path.range.clone(), import.alias_range.clone()];

@@ -49,6 +49,11 @@ impl Placed {
         Self { source, errors: moved(&module.errors), warnings: moved(&module.warnings), module }
     }
 
+    /// The parsed text itself.
+    pub fn shared(&self) -> Arc<Module> {
+        Arc::clone(&self.module)
+    }
+
     /// A place in this file.
     pub fn span(&self, range: Range<u32>) -> Span {
         Span { source: self.source, start: range.start, end: range.end }

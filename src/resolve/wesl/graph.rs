@@ -94,13 +94,13 @@ pub struct Node {
     /// `package::a::b` or `lamplight::brdf::specular`.
     pub label: String,
     /// Item indices by name, in source order.
-    pub sets: FxHashMap<Name, Vec<u32>>,
+    pub sets: Arc<FxHashMap<Name, Vec<u32>>>,
     /// Indices of imports, by the name that they bring into scope.
-    pub aliases: FxHashMap<Name, Vec<usize>>,
+    pub aliases: Arc<FxHashMap<Name, Vec<usize>>>,
     /// For each import, what it may lead to.
-    pub imports: Vec<Vec<Target>>,
+    pub imports: Arc<Vec<Vec<Target>>>,
     /// For each reference, what it may mean: the first candidate whose conditions hold.
-    pub bindings: Vec<Vec<Candidate>>,
+    pub bindings: Arc<Vec<Vec<Candidate>>>,
     /// Imports that lead nowhere, with their conditions. They are reported if the module is reached
     /// and the conditions hold.
     pub broken_imports: Vec<(Vec<ConditionId>, u32)>,

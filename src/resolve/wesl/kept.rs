@@ -1,11 +1,13 @@
-//! Parsed texts that are kept from one reading of a package to the next, as editors need it: after
-//! a keystroke, all files but one have the text that they had before.
+//! Parsed texts, and what their names mean, that are kept from one reading of a package to the next,
+//! as editors need it: after a keystroke, all files but one have the text that they had before.
 
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
-use crate::parse::wesl::{Module, Names, parse_for_editor};
+use super::replay::Resolution;
+use crate::parse::wesl::{Module, Name, Names, parse_for_editor};
+use crate::resolve::Packages;
 use crate::source::SourceId;
 
 /// A text that was not read again in so many readings is forgotten.
@@ -14,26 +16,66 @@ const READINGS: u64 = 64;
 /// Identifiers that are kept at most. More than a package has come together as its author types.
 const NAMES: usize = 1 << 20;
 
-/// Parsed texts by their content, with the identifiers that all of them share.
+/// A parsed text, with what it declares.
+#[derive(Debug, Clone)]
+pub struct Parsed {
+    pub module: Arc<Module>,
+    /// Indices of items by name, in the order of the text.
+    pub sets: Arc<FxHashMap<Name, Vec<u32>>>,
+    /// Indices of imports, by the name that they bring into scope.
+    pub aliases: Arc<FxHashMap<Name, Vec<usize>>>,
+}
+
+impl Parsed {
+    pub fn new(module: Arc<Module>) -> Self {
+        let mut sets: FxHashMap<Name, Vec<u32>> = FxHashMap::default();
+        let named = module.items.iter().enumerate();
+        for (index, item) in named.filter(|(_, item)| item.name != Name::UNDERSCORE) {
+            sets.entry(item.name).or_default().push(index as u32);
+        }
+        let mut aliases: FxHashMap<Name, Vec<usize>> = FxHashMap::default();
+        for (index, import) in module.imports.iter().enumerate() {
+            aliases.entry(import.alias).or_default().push(index);
+        }
+        Self { module, sets: Arc::new(sets), aliases: Arc::new(aliases) }
+    }
+}
+
+/// A module: the root that is read, its package, and its path there.
+pub type Key = (String, usize, Vec<String>);
+
+/// Parsed texts by their content, with the identifiers that all of them share, and what was found
+/// of them.
 #[derive(Debug, Default)]
 pub struct Kept {
     /// Absent while a reading has them, and where one ended early.
     names: Option<Arc<Names>>,
-    modules: FxHashMap<Arc<str>, (Arc<Module>, u64)>,
+    modules: FxHashMap<Arc<str>, (Parsed, u64)>,
+    resolutions: FxHashMap<Key, (Arc<Resolution>, u64)>,
+    /// The names of the package and of its dependencies. Paths start with them.
+    packages: Vec<String>,
     reading: u64,
 }
 
 impl Kept {
     /// Begins a reading; gives the identifiers to it.
-    pub(super) fn begin(&mut self) -> Names {
+    pub(super) fn begin(&mut self, packages: &Packages) -> Names {
         self.reading += 1;
         let oldest = self.reading.saturating_sub(READINGS);
         self.modules.retain(|_, (_, last)| *last >= oldest);
+        self.resolutions.retain(|_, (_, last)| *last >= oldest);
+        let all = std::iter::once(&packages.root).chain(&packages.dependencies);
+        let packages: Vec<String> = all.map(|package| package.name.clone()).collect();
+        if packages != self.packages {
+            self.resolutions.clear();
+            self.packages = packages;
+        }
         match self.names.take().filter(|names| names.len() <= NAMES) {
             Some(names) => Arc::unwrap_or_clone(names),
             // The parsed texts have numbers of identifiers that are lost.
             None => {
                 self.modules.clear();
+                self.resolutions.clear();
                 Names::default()
             }
         }
@@ -45,19 +87,32 @@ impl Kept {
     }
 
     /// The parsed text, which need not be that of this file alone.
-    pub(super) fn parse(
-        &mut self,
-        source: SourceId,
-        text: Arc<str>,
-        names: &mut Names,
-    ) -> Arc<Module> {
+    pub(super) fn parse(&mut self, source: SourceId, text: Arc<str>, names: &mut Names) -> Parsed {
         let reading = self.reading;
-        if let Some((module, last)) = self.modules.get_mut(&text) {
+        if let Some((parsed, last)) = self.modules.get_mut(&text) {
             *last = reading;
-            return Arc::clone(module);
+            return parsed.clone();
         }
-        let module = Arc::new(parse_for_editor(source, Arc::clone(&text), names));
-        self.modules.insert(text, (Arc::clone(&module), reading));
-        module
+        let module = parse_for_editor(source, Arc::clone(&text), names);
+        let parsed = Parsed::new(Arc::new(module));
+        self.modules.insert(text, (parsed.clone(), reading));
+        parsed
+    }
+
+    /// What was found of a module last.
+    pub(super) fn resolution(&mut self, key: &Key) -> Option<Arc<Resolution>> {
+        let (resolution, last) = self.resolutions.get_mut(key)?;
+        *last = self.reading;
+        Some(Arc::clone(resolution))
+    }
+
+    /// Keeps what was found of a module; `None` if that holds only for this reading.
+    pub(super) fn keep_resolution(&mut self, key: Key, resolution: Option<Resolution>) {
+        match resolution {
+            Some(resolution) => {
+                self.resolutions.insert(key, (Arc::new(resolution), self.reading));
+            }
+            None => drop(self.resolutions.remove(&key)),
+        }
     }
 }

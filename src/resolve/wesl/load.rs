@@ -6,9 +6,10 @@ use std::sync::Arc;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::Kept;
 use super::graph::{Bases, Candidate, Constant, Graph, Importer, Node, Target, certain_errors};
+use super::kept::{Kept, Parsed};
 use super::lint;
+use super::replay::Notes;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::limits::{RESOLVE_FACTOR, RESOLVE_STEPS, Steps};
 use crate::parse::wesl::{self, ConditionId, Name, Names, Path, Placed, Reference};
@@ -26,7 +27,7 @@ pub struct Loader<'a> {
     pub(super) constant_places: FxHashMap<Name, u32>,
     pub(super) failures: Vec<Diagnostic>,
     /// Parsed texts of earlier readings, for editors.
-    kept: Option<&'a mut Kept>,
+    pub(super) kept: Option<&'a mut Kept>,
     /// By package and path: the node of a file, `None` if there is no such file, or why it cannot
     /// be read.
     known: HashMap<(usize, String), Result<Option<u32>, Diagnostic>>,
@@ -34,6 +35,12 @@ pub struct Loader<'a> {
     listings: FxHashMap<usize, Vec<String>>,
     /// Steps of looking names up.
     steps: Cell<Steps>,
+    /// How many of them were taken.
+    pub(super) spent: Cell<u64>,
+    /// What the resolving of the present module asked.
+    pub(super) notes: Notes,
+    /// The root module, by which earlier results are kept.
+    pub(super) root: String,
     /// By file: the last byte whose line and column were asked for, and those.
     positions: FxHashMap<SourceId, (usize, usize, usize)>,
     /// The names that the last module that was asked about uses.
@@ -54,15 +61,20 @@ impl<'a> Loader<'a> {
             known: HashMap::new(),
             listings: FxHashMap::default(),
             steps: Cell::new(Steps::new(RESOLVE_STEPS)),
+            spent: Cell::new(0),
+            notes: Notes::default(),
+            root: String::new(),
             positions: FxHashMap::default(),
             used: None,
         }
     }
 
-    /// With the parsed texts of earlier readings. The loader gives back what it took.
-    pub fn with_kept(mut self, kept: &'a mut Kept) -> Self {
-        self.names = kept.begin();
+    /// With the parsed texts of earlier readings, and the results of those with the same root. The
+    /// loader gives back what it took.
+    pub fn with_kept(mut self, kept: &'a mut Kept, root: &str) -> Self {
+        self.names = kept.begin(self.packages);
         self.kept = Some(kept);
+        root.clone_into(&mut self.root);
         self
     }
 
@@ -230,21 +242,11 @@ impl<'a> Loader<'a> {
         let mut steps = self.steps.get();
         steps.grant(RESOLVE_FACTOR.saturating_mul(text.len() as u64));
         self.steps.set(steps);
-        let module = match &mut self.kept {
+        let Parsed { module, sets, aliases } = match &mut self.kept {
             Some(kept) => kept.parse(source, text, &mut self.names),
-            None => Arc::new(wesl::parse(source, text, &mut self.names)),
+            None => Parsed::new(Arc::new(wesl::parse(source, text, &mut self.names))),
         };
         let module = Placed::new(module, source);
-        let mut sets: FxHashMap<Name, Vec<u32>> = FxHashMap::default();
-        for (index, item) in
-            module.items.iter().enumerate().filter(|(_, item)| item.name != Name::UNDERSCORE)
-        {
-            sets.entry(item.name).or_default().push(index as u32);
-        }
-        let mut aliases: FxHashMap<Name, Vec<usize>> = FxHashMap::default();
-        for (index, import) in module.imports.iter().enumerate() {
-            aliases.entry(import.alias).or_default().push(index);
-        }
         path.iter().for_each(|part| {
             self.names.intern(part);
         });
@@ -257,8 +259,8 @@ impl<'a> Loader<'a> {
             label,
             sets,
             aliases,
-            imports: Vec::new(),
-            bindings: Vec::new(),
+            imports: Arc::default(),
+            bindings: Arc::default(),
             broken_imports: Vec::new(),
             duplicates: Vec::new(),
             lints: Vec::new(),
@@ -309,6 +311,7 @@ impl<'a> Loader<'a> {
         let mut left = self.steps.get();
         let outcome = left.spend(steps as u64);
         self.steps.set(left);
+        self.spent.set(self.spent.get() + steps as u64);
         outcome.is_ok()
     }
 
@@ -318,7 +321,7 @@ impl<'a> Loader<'a> {
     }
 
     /// Resolves a module's imports, then its uses.
-    fn resolve(&mut self, node: u32) {
+    pub(super) fn resolve_anew(&mut self, node: u32) {
         let imports: Vec<(Option<ConditionId>, Path, Name)> = self.nodes[node as usize]
             .module
             .imports
@@ -326,6 +329,7 @@ impl<'a> Loader<'a> {
             .map(|import| (import.condition, import.path.clone(), import.alias))
             .collect();
         let mut imported: FxHashMap<Name, Vec<Candidate>> = FxHashMap::default();
+        let mut found = Vec::new();
         for (index, (condition, path, alias)) in imports.iter().enumerate() {
             let mut targets = Vec::new();
             for mut candidate in self.candidates(node, path, Some(index)) {
@@ -340,12 +344,13 @@ impl<'a> Loader<'a> {
                 }
                 imported.entry(*alias).or_default().push(candidate);
             }
-            self.nodes[node as usize].imports.push(targets);
+            found.push(targets);
         }
+        self.nodes[node as usize].imports = Arc::new(found);
         let references = self.nodes[node as usize].module.references.clone();
         let bindings =
             references.iter().map(|reference| self.binding(node, reference, &imported)).collect();
-        self.nodes[node as usize].bindings = bindings;
+        self.nodes[node as usize].bindings = Arc::new(bindings);
         lint::report_clashes(self, node, &imported);
         lint::report_duplicates(self, node);
         self.nodes[node as usize].lints = lint::import_lints(self, &self.nodes[node as usize]);

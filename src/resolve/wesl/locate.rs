@@ -232,7 +232,7 @@ impl Loader<'_> {
         let Some((last, parents)) = absolute.segments.split_last() else {
             return Ok(Target::Module);
         };
-        let parent = self.module(package, parents, span)?;
+        let parent = self.ask_module(package, parents, span)?;
         if let Some(node) = parent.filter(|node| self.nodes[*node as usize].sets.contains_key(last))
         {
             return Ok(Target::Items { node, name: *last });
@@ -281,9 +281,10 @@ impl Loader<'_> {
         import: bool,
     ) -> Result<bool, Diagnostic> {
         let path = segments.iter().map(|name| self.names.text(*name)).collect::<Vec<_>>().join("/");
-        if import && self.module(package, segments, span)?.is_some() {
+        if import && self.ask_module(package, segments, span)?.is_some() {
             return Ok(true);
         }
+        self.notes.is_open = true;
         // The listing is sorted: what begins so stands together.
         let listing = self.listing(package);
         let begins = |start: String| {

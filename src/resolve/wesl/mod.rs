@@ -6,6 +6,7 @@ mod kept;
 mod lint;
 mod load;
 mod locate;
+mod replay;
 
 pub use graph::{Candidate, Constant, Graph, Node, Target};
 pub use kept::Kept;
@@ -35,7 +36,7 @@ pub fn load_kept(
     root: &str,
     kept: &mut Kept,
 ) -> Result<Graph, Diagnostics> {
-    load_with(load::Loader::new(sources, packages).with_kept(kept), root)
+    load_with(load::Loader::new(sources, packages).with_kept(kept, root), root)
 }
 
 fn load_with(mut loader: load::Loader<'_>, root: &str) -> Result<Graph, Diagnostics> {
@@ -55,7 +56,7 @@ pub fn load_all(
     paths: &[String],
     kept: &mut Kept,
 ) -> Option<Graph> {
-    load::Loader::new(sources, packages).with_kept(kept).every(paths)
+    load::Loader::new(sources, packages).with_kept(kept, "").every(paths)
 }
 
 fn missing_root(packages: &Packages, root: &str) -> Diagnostic {
