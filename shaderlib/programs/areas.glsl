@@ -26,7 +26,7 @@ struct Area {
 };
 
 /// The extents of the lamps, in their order.
-layout(std140, set = 3, binding = 0) uniform Areas {
+layout(std140, set = 1, binding = 9) uniform Areas {
     Area items[MAX_LIGHTS];
 } areas;
 
@@ -58,8 +58,8 @@ float area_share(Area extent, vec3 normal, vec3 position, vec3 middle) {
 }
 
 #if SPECULAR == SPECULAR_GGX
-layout(set = 3, binding = 1) uniform texture2D ltc_table;
-layout(set = 3, binding = 2) uniform sampler table_sampler;
+layout(set = 1, binding = 10) uniform texture2D ltc_table;
+layout(set = 1, binding = 11) uniform sampler table_sampler;
 
 /// The lobe of a surface of this cosine of the viewer, as a matrix for `reflected_rectangle`.
 mat3 table_lobe(float nv, float roughness) {
