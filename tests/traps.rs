@@ -47,7 +47,7 @@ const FOLDERS: &[Writer] = &[
     writer("migrate", &["migrate", "--from", "naga_oil", "oil", "-o", "OUT"]),
     writer("man", &["man", "-o", "OUT"]),
     writer("export_npm", &["export", "OUT", "--form", "npm"]),
-    writer("catalogue", &["catalogue", "-o", "OUT"]),
+    writer("catalogue", &["catalogue", "-o", "OUT", "--without-pictures"]),
     writer("report", &["check", "half.toml", "--report", "OUT"]),
     Writer {
         files: &["README.md", "hpg_4_spot.png"],

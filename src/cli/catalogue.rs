@@ -39,6 +39,9 @@ pub struct Arguments {
     /// read.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "modules", "check"])]
     pub costs: Option<PathBuf>,
+    /// Write the pages and plots only, and draw no pictures of functions.
+    #[arg(long, conflicts_with_all = ["modules", "costs", "check"])]
+    without_pictures: bool,
     /// Write nothing; fail if a file would change.
     #[arg(long)]
     check: bool,
@@ -65,10 +68,8 @@ pub fn run_catalogue(arguments: Arguments, gpus: cost::Opened) -> Result<(), Fai
             Err(Failure::check(outdated_message(&changed)))
         };
     }
-    let pictures = match &arguments.modules {
-        Some(_) => Pictures::new(),
-        None => figure_pictures(folder)?,
-    };
+    let is_drawn = arguments.modules.is_none() && !arguments.without_pictures;
+    let pictures = if is_drawn { figure_pictures(folder)? } else { Pictures::new() };
     let texts = files.iter().map(|(path, text)| (path.as_str(), text.as_bytes()));
     let drawn = pictures.iter().map(|(path, png)| (path.as_str(), png.as_slice()));
     output::write_folder(folder, texts.chain(drawn), arguments.overwrite.replace())?;
