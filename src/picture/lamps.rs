@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::needs::Falloff;
 use super::plan::LAMPS;
-use super::values::{Values, vector_values};
+use super::values::{Values, matrix_columns, vector_values};
+use crate::scene::between_middles;
 use crate::scene::sets::{Lamp, LampKind, Scene};
 
 /// The range of falloffs that have one, as a multiple of the target's distance.
@@ -95,6 +96,22 @@ impl Values<'_> {
             "right" => vector_values(right * size.x),
             "up" => vector_values(up * size.y),
             "radius" => vec![self.lit.needs.shape?.radius(size)],
+            _ => return None,
+        })
+    }
+
+    /// How a lamp reads its profile.
+    pub(super) fn profile(&self, index: usize, field: &str) -> Option<Vec<f64>> {
+        let Some(lamp) = self.scene.lamps.get(index) else { return Some(Vec::new()) };
+        let [scale_x, scale_y, x, y] = between_middles(&self.lit.needs.profile?.map()).to_array();
+        Some(match field {
+            "uv_from_world" => matrix_columns(lamp.uv_from_world()),
+            "right" => vector_values(lamp.sides().0),
+            // Light of one direction has no place to project from.
+            "share" if self.kind(index, lamp) == LampKind::Directional => vec![0.0],
+            "share" => vec![1.0],
+            "scale" => vec![scale_x, scale_y],
+            "offset" => vec![x, y],
             _ => return None,
         })
     }

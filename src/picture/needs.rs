@@ -13,7 +13,7 @@ use crate::catalogue::preset::Number;
 use crate::catalogue::reader;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::{Axis, Manifest, Program, Settings};
-use crate::scene::sets::{LampKind, LampShape};
+use crate::scene::sets::{LampKind, LampProfile, LampShape};
 use crate::source::{self, Embedded, Package, SourceId, SourceSet, Span};
 
 /// Path below the library.
@@ -59,6 +59,8 @@ pub struct Needs {
     pub falloff: Falloff,
     /// The area of lamps that have a place. With `None` they are points.
     pub shape: Option<LampShape>,
+    /// What lamps send where. With `None` it is the same everywhere.
+    pub profile: Option<LampProfile>,
     /// Whether no lamp shines.
     pub unlit: bool,
     /// Whether each triangle has the normal of its face.
@@ -134,6 +136,7 @@ struct Row {
     caster: Option<LampKind>,
     falloff: Option<Falloff>,
     shape: Option<LampShape>,
+    profile: Option<LampProfile>,
     unlit: bool,
     faceted: bool,
     materials: Option<Materials>,
@@ -261,6 +264,7 @@ impl Needs {
         self.caster = row.caster.or(self.caster);
         self.falloff = row.falloff.unwrap_or(self.falloff);
         self.shape = row.shape.or(self.shape);
+        self.profile = row.profile.or(self.profile);
         self.unlit |= row.unlit;
         self.faceted |= row.faceted;
         self.material_array |= row.materials.is_some();

@@ -98,6 +98,10 @@ impl<'a> Library<'a> {
             "normal_map" => Some(color_textures(self.maps().normal.clone().levels())),
             "occlusion_map" => Some(color_textures(self.maps().occlusion.clone().levels())),
             "light_map" => Some(color_textures(vec![self.maps().light.clone()])),
+            "profile_map" => {
+                let profile = self.values.lit.needs.profile;
+                profile.map(|profile| color_textures(vec![profile.map()]))
+            }
             "ltc_table" => Some(vec![table_texture(LTC)]),
             _ => self.left.texture(name),
         };

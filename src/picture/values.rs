@@ -33,6 +33,7 @@ pub struct Camera {
 const GROUPS: &[(&str, &str)] = &[
     ("lamps", "light"),
     ("areas", "area"),
+    ("profiles", "profile"),
     ("materials", "material"),
     ("layers", "layers"),
     ("surroundings", "surroundings"),
@@ -90,6 +91,7 @@ impl Values<'_> {
             "lamps" if path.field == "count" => self.lamps().map(|count| vec![count as f64]),
             "lamps" => self.lamp(path.index, path.field),
             "areas" => self.area(path.index, path.field),
+            "profiles" => self.profile(path.index, path.field),
             "materials" => self.materials(path.index, path.field),
             "surroundings" => self.surroundings(&path),
             "haze" => self.haze(path.field),
@@ -313,6 +315,6 @@ pub(super) fn vector_values(vector: DVec3) -> Vec<f64> {
     vector.to_array().to_vec()
 }
 
-fn matrix_columns(matrix: DMat4) -> Vec<f64> {
+pub(super) fn matrix_columns(matrix: DMat4) -> Vec<f64> {
     matrix.to_cols_array().to_vec()
 }

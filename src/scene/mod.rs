@@ -14,6 +14,7 @@ mod maps;
 mod mesh;
 mod palette;
 mod probe;
+mod profiles;
 mod projection;
 pub mod sets;
 mod shape;
@@ -29,6 +30,7 @@ pub use layers::Layers;
 pub use maps::{bricks, linear_from_srgb};
 pub use mesh::{MeshError, UNUSED_NORMAL, face_normals, normal_matrix, smooth_normals};
 pub use probe::{CubeMap, directions, irradiance_sh9, prefilter, sh9_basis, sh9_project};
+pub use profiles::{between_middles, luminaire, window};
 pub use projection::{
     Clip, Depth, cube_projection, orthographic, perspective, polygon_offset, shadow_matrix,
 };

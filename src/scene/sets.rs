@@ -7,6 +7,8 @@ use std::sync::Arc;
 use glam::{DMat4, DVec2, DVec3};
 
 use super::layers::Layers;
+use super::profiles::{luminaire, window};
+use super::projection::{Clip, Depth, perspective};
 use super::shape::Shape;
 use super::view::look_at;
 use super::{maps, palette};
@@ -127,6 +129,26 @@ impl LampShape {
     }
 }
 
+/// What a lamp sends where, if that is not the same everywhere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LampProfile {
+    /// As was measured of a luminaire.
+    Ies,
+    /// A projected picture.
+    Cookie,
+}
+
+impl LampProfile {
+    /// The texture of it.
+    pub fn map(self) -> Map {
+        match self {
+            Self::Ies => luminaire(),
+            Self::Cookie => window(),
+        }
+    }
+}
+
 /// What a surface does with light.
 #[derive(Debug, Clone, Copy)]
 pub struct Material {
@@ -211,6 +233,16 @@ impl Lamp {
         let axis = self.axis();
         let right = DVec3::Y.cross(axis).normalize_or(DVec3::X);
         (right, axis.cross(right))
+    }
+
+    /// From the world to the coordinates of a picture that the lamp projects into its cone.
+    pub fn uv_from_world(&self) -> DMat4 {
+        let fov = (2.0 * self.half_angle).clamp(0.1, 3.0);
+        let projection = perspective(fov, 1.0, 0.05, 100.0, Clip::Wgpu, Depth::Normal);
+        let half = DVec3::new(0.5, -0.5, 1.0);
+        let uv_from_clip =
+            DMat4::from_translation(DVec3::new(0.5, 0.5, 0.0)) * DMat4::from_scale(half);
+        uv_from_clip * projection * look_at(self.position, self.target, DVec3::Y)
     }
 
     /// Distance of the target.

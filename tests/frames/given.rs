@@ -47,6 +47,12 @@ pub fn number(path: &str) -> Vec<f64> {
         "end" => vec![6.0],
         "exponents" => vec![5.0, 5.0],
         "radius" if path.starts_with("areas") => vec![0.3 + 0.1 * index],
+        "right" if path.starts_with("profiles") => {
+            [vec![0.8, -0.6, 0.0], vec![1.0, 0.0, 0.0], vec![0.8, 0.0, 0.6]][index as usize % 3]
+                .clone()
+        }
+        "scale" if path.starts_with("profiles") => vec![0.875, 0.875],
+        "offset" => vec![0.0625, 0.0625],
         "right" => vec![-0.6, 0.0, 0.2],
         "radius" => vec![2.0],
         "window" => vec![4.0],
@@ -76,6 +82,10 @@ fn matrix(path: &str, name: &str) -> Option<Vec<f64>> {
         }
         "clip_from_world" => {
             vec![0.5, 0., 0., 0., 0., 0.5, 0., 0.05, 0.1, 0., -0.3, 0., 0.03, 0.02, 0.5, 1.]
+        }
+        // One side of the sheet is beside the picture.
+        "uv_from_world" => {
+            vec![0.56, 0., 0., 0., 0., 0.45, 0., 0.05, 0.02, 0., 0.3, 0.1, 0.5, 0.48, 0.2, 1.]
         }
         "world_from_clip" | "view_from_world" => DMat4::IDENTITY.to_cols_array().to_vec(),
         "clip_from_view" => view_projection().to_cols_array().to_vec(),

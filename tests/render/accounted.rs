@@ -18,6 +18,7 @@ use super::{library, plan, said};
 const STRUCTURES: &[(&str, &str, &[&str])] = &[
     ("Light", "light", &["kind", "shadow_layer"]),
     ("Area", "area", &[]),
+    ("Profile", "profile", &["uv_from_world", "right", "share", "scale", "offset"]),
     ("Material", "material", &[]),
     ("Layers", "layers", &["sky_levels"]),
     ("Surroundings", "surroundings", &["sh"]),

@@ -15,6 +15,9 @@
 #if METALLIC_ROUGHNESS
 #include "../layers.glsl"
 #endif
+#if PROFILE != PROFILE_NONE
+#include "../profiles.glsl"
+#endif
 
 /// The lights, of which the first `count` shine.
 layout(std140, set = 0, binding = 1) uniform Lamps {
@@ -239,6 +242,9 @@ vec3 area_highlight(Surface surface, Light light, LightSample arriving, uint i) 
 Accum add_lamp(Accum sum, Surface surface, uint i) {
     Light light = lamps.lights[i];
     LightSample arriving = sample_lamp(light, surface.position);
+#if PROFILE != PROFILE_NONE
+    light.color *= profile_factor(profiles.items[i], light, arriving.l, surface.position);
+#endif
     float ambient = ambient_share(light, arriving);
 #if !METALLIC_ROUGHNESS
 #if AREA == AREA_NONE
