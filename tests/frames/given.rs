@@ -16,7 +16,8 @@ pub fn number(path: &str) -> Vec<f64> {
         };
         (0..count).map(|i| low + (high - low) * step(i)).collect()
     };
-    if let Some(chosen) = matrix(path, name).or_else(|| room(name)) {
+    let chosen = matrix(path, name).or_else(|| room(name));
+    if let Some(chosen) = chosen.or_else(|| profile(path, name, index as usize)) {
         return chosen;
     }
     match name {
@@ -47,12 +48,6 @@ pub fn number(path: &str) -> Vec<f64> {
         "end" => vec![6.0],
         "exponents" => vec![5.0, 5.0],
         "radius" if path.starts_with("areas") => vec![0.3 + 0.1 * index],
-        "right" if path.starts_with("profiles") => {
-            [vec![0.8, -0.6, 0.0], vec![1.0, 0.0, 0.0], vec![0.8, 0.0, 0.6]][index as usize % 3]
-                .clone()
-        }
-        "scale" if path.starts_with("profiles") => vec![0.875, 0.875],
-        "offset" => vec![0.0625, 0.0625],
         "right" => vec![-0.6, 0.0, 0.2],
         "radius" => vec![2.0],
         "window" => vec![4.0],
@@ -60,6 +55,18 @@ pub fn number(path: &str) -> Vec<f64> {
         "frame" => vec![5.0],
         "level" => vec![0.0],
         _ => vary(0.1, 0.9, 4),
+    }
+}
+
+/// How a lamp reads its profile: beside its axis, and not up to the border of the texture.
+fn profile(path: &str, name: &str, index: usize) -> Option<Vec<f64>> {
+    const RIGHT: [[f64; 3]; 3] = [[0.8, -0.6, 0.0], [1.0, 0.0, 0.0], [0.8, 0.0, 0.6]];
+    match name {
+        _ if !path.starts_with("profiles") => None,
+        "right" => Some(RIGHT[index % RIGHT.len()].to_vec()),
+        "scale" => Some(vec![0.875, 0.875]),
+        "offset" => Some(vec![0.0625, 0.0625]),
+        _ => None,
     }
 }
 
