@@ -4,6 +4,7 @@
 
 mod accounted;
 mod closed_forms;
+mod clustered;
 mod command;
 mod compared;
 mod deferred;
@@ -69,6 +70,7 @@ pub fn trials() -> Vec<Trial> {
     presets
         .chain(forms)
         .chain(accounted::trials())
+        .chain(clustered::trials())
         .chain(compared::trials())
         .chain(deferred::trials())
         .chain(occlusion::trials())

@@ -11,7 +11,7 @@ use libtest_mimic::{Failed, Trial};
 
 pub use sets::nothing_is_shown;
 
-use sets::{environments, scenes, volumes};
+use sets::{clusters, environments, scenes, volumes};
 
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
@@ -20,7 +20,7 @@ const CLIPS: [Clip; 3] = [Clip::Wgpu, Clip::Vulkan, Clip::OpenGl];
 const DEPTHS: [Depth; 2] = [Depth::Normal, Depth::Reversed];
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 17] = [
+    let cases: [Case; 18] = [
         ("views", views),
         ("views_by_angles", angles),
         ("perspective", perspective),
@@ -29,6 +29,7 @@ pub fn trials() -> Vec<Trial> {
         ("faces_of_a_cube", faces),
         ("shadow_matrices", shadow_matrices),
         ("cascades", cascades),
+        ("clusters", clusters),
         ("normals", normals),
         ("normal_matrix", normal_matrix),
         ("gaussian", gaussian),

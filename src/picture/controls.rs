@@ -1,5 +1,6 @@
 //! What somebody can change in a picture: where its lamps are, and the numbers of its uniforms.
 
+use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
 use glam::{DMat4, DVec3};
@@ -61,7 +62,8 @@ pub fn picture_controls(
 ) -> Result<Controls, Diagnostics> {
     let Lit { scene, key, lit, size, .. } = Lit::of(plan, shot)?;
     let light = LightView::new(&scene, &key, plan, lit, size);
-    let values = Values { plan, scene: &scene, lit, light: &light, shot };
+    let values =
+        Values { plan, scene: &scene, lit, light: &light, shot, clusters: OnceCell::new() };
     let shining = values.lamps().unwrap_or(usize::from(lit.needs.caster.is_some()));
     let lamps = scene.lamps.iter().enumerate().take(shining).map(|(index, lamp)| LampControl {
         index,

@@ -4,9 +4,9 @@ use glam::DVec3;
 
 use super::needs::Falloff;
 use super::plan::LAMPS;
-use super::values::{Values, matrix_columns, vector_values};
-use crate::scene::between_middles;
+use super::values::{Values, eye_projection, matrix_columns, vector_values};
 use crate::scene::sets::{Lamp, LampKind, Scene};
+use crate::scene::{Cells, Clusters, Reach, between_middles};
 
 /// The range of falloffs that have one, as a multiple of the target's distance.
 const RANGE: f64 = 2.4;
@@ -114,6 +114,40 @@ impl Values<'_> {
             "offset" => vec![x, y],
             _ => return None,
         })
+    }
+
+    /// The lists of lamps for the parts of the view.
+    pub(super) fn cluster(&self, index: usize, field: &str) -> Option<Vec<f64>> {
+        let eye = &self.scene.eye;
+        let cells = Cells { counts: [16, 8, 16], near: eye.near, far: eye.far };
+        let made = || {
+            let shining = self.scene.lamps.iter().enumerate().take(self.lamps()?);
+            let reach = |(index, lamp)| self.lamp_reach(index, lamp);
+            let lamps: Vec<Reach> = shining.map(reach).collect();
+            Clusters::new(&cells, eye_projection(eye, self.shot), eye.view(), &lamps).ok()
+        };
+        let words = |words: &[u32]| {
+            let word = |part: usize| words.get(4 * index + part).copied().unwrap_or_default();
+            (0..4).map(|part| f64::from(word(part))).collect()
+        };
+        let lists = self.clusters.get_or_init(made).as_ref()?;
+        Some(match field {
+            "counts" => cells.counts.map(f64::from).to_vec(),
+            "near" => vec![cells.near],
+            "far" => vec![cells.far],
+            "cells" => words(&lists.cells),
+            "indices" => words(&lists.indices),
+            _ => return None,
+        })
+    }
+
+    /// Where a lamp shines. Only some falloffs end.
+    fn lamp_reach(&self, index: usize, lamp: &Lamp) -> Reach {
+        let ends =
+            matches!(self.lit.needs.falloff, Falloff::LinearRadius | Falloff::InverseSquareWindow);
+        let is_near = ends && self.kind(index, lamp) != LampKind::Directional;
+        let range = if is_near { self.range(lamp.reach()) } else { f64::INFINITY };
+        Reach { position: lamp.position, range }
     }
 
     /// The scene, with the lamps that have a position as objects, if it shows them.

@@ -1,5 +1,6 @@
 //! Runs the passes of a plan in order.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -81,7 +82,7 @@ pub fn prepare_passes(
 ) -> Result<Prepared, Diagnostics> {
     let Lit { mut scene, key, last, lit, size } = Lit::of(plan, shot)?;
     let slice = |scene: &Scene, light: LightView| {
-        let values = Values { plan, scene, lit, light: &light, shot };
+        let values = Values { plan, scene, lit, light: &light, shot, clusters: OnceCell::new() };
         let with_lamps = values.with_bulbs();
         let values = Values { scene: with_lamps.as_ref().unwrap_or(scene), ..values };
         let studio = Studio { painter, programs, values };

@@ -1,5 +1,6 @@
 //! Finds a number for every uniform: what the source published, or else what the scene has.
 
+use std::cell::OnceCell;
 use std::f64::consts::PI;
 
 use glam::{DMat3, DMat4, DVec3};
@@ -10,7 +11,7 @@ use super::plan::{Pass, Plan};
 use super::textures::LEVELS;
 use super::{Shot, Surroundings};
 use crate::scene::sets::{Eye, LampKind, Material, Object, Scene};
-use crate::scene::{Clip, Depth, directions, normal_matrix, perspective, sh9_project};
+use crate::scene::{Clip, Clusters, Depth, directions, normal_matrix, perspective, sh9_project};
 
 /// What the uniforms of one pass are filled from.
 pub struct Values<'a> {
@@ -20,6 +21,8 @@ pub struct Values<'a> {
     pub lit: &'a Pass,
     pub light: &'a LightView,
     pub shot: &'a Shot,
+    /// The lists of lamps for the parts of the view, once they are asked for.
+    pub clusters: OnceCell<Option<Clusters>>,
 }
 
 /// The camera of a pass.
@@ -91,6 +94,7 @@ impl Values<'_> {
             "lamps" if path.field == "count" => self.lamps().map(|count| vec![count as f64]),
             "lamps" => self.lamp(path.index, path.field),
             "areas" => self.area(path.index, path.field),
+            "clusters" => self.cluster(path.index, path.field),
             "profiles" => self.profile(path.index, path.field),
             "materials" => self.materials(path.index, path.field),
             "surroundings" => self.surroundings(&path),
@@ -281,7 +285,7 @@ impl Values<'_> {
 }
 
 /// The projection of the viewer.
-fn eye_projection(eye: &Eye, shot: &Shot) -> DMat4 {
+pub(super) fn eye_projection(eye: &Eye, shot: &Shot) -> DMat4 {
     let [width, height] = shot.size;
     let aspect = f64::from(width) / f64::from(height.max(1));
     // A picture that is higher than wide still shows everything that a square one shows.

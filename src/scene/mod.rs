@@ -6,6 +6,7 @@
 //! looks down its -z axis, with +y up. Lengths are in scene units, angles in radians. Cast the
 //! results (`as_mat4`, `as_vec3`) where they enter a uniform buffer.
 
+mod clusters;
 mod environment;
 mod frustum;
 mod kernel;
@@ -21,6 +22,7 @@ mod shape;
 mod sky;
 mod view;
 
+pub use clusters::{Cells, ClusterError, Clusters, MOST_CELLS, MOST_INDICES, MOST_LAMPS, Reach};
 #[doc(hidden)]
 pub use environment::DECODER;
 pub use environment::{ENVIRONMENTS, Environment, environment};

@@ -20,7 +20,7 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// Where it is seen from.
     pub eye: Eye,
-    /// Up to ten lamps, the most important one first. The first one casts the shadow.
+    /// Lamps, the most important one first. The first one casts the shadow.
     pub lamps: Vec<Lamp>,
     /// The materials for `material=array`: fourteen fronts with their backs.
     pub materials: Vec<[Material; 2]>,

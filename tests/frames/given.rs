@@ -16,8 +16,7 @@ pub fn number(path: &str) -> Vec<f64> {
         };
         (0..count).map(|i| low + (high - low) * step(i)).collect()
     };
-    let chosen = matrix(path, name).or_else(|| room(name));
-    if let Some(chosen) = chosen.or_else(|| profile(path, name, index as usize)) {
+    if let Some(chosen) = special(path, name, index as usize) {
         return chosen;
     }
     match name {
@@ -58,6 +57,12 @@ pub fn number(path: &str) -> Vec<f64> {
     }
 }
 
+/// Values of which a picture needs more than that they vary.
+fn special(path: &str, name: &str, index: usize) -> Option<Vec<f64>> {
+    let found = matrix(path, name).or_else(|| room(name));
+    found.or_else(|| profile(path, name, index)).or_else(|| cluster(name, index))
+}
+
 /// How a lamp reads its profile: beside its axis, and not up to the border of the texture.
 fn profile(path: &str, name: &str, index: usize) -> Option<Vec<f64>> {
     const RIGHT: [[f64; 3]; 3] = [[0.8, -0.6, 0.0], [1.0, 0.0, 0.0], [0.8, 0.0, 0.6]];
@@ -68,6 +73,25 @@ fn profile(path: &str, name: &str, index: usize) -> Option<Vec<f64>> {
         "offset" => Some(vec![0.0625, 0.0625]),
         _ => None,
     }
+}
+
+/// Lists of one to three lamps, in cells that are small where the sheet is.
+fn cluster(name: &str, index: usize) -> Option<Vec<f64>> {
+    match name {
+        "counts" => Some(vec![4.0, 3.0, 24.0]),
+        "cells" => Some(words(index, |cell| (cell % 3) | ((1 + cell % 3) << 16))),
+        "indices" => {
+            let bytes =
+                |word: usize| (4 * word..4 * word + 4).map(|at| (at % 3) << (8 * (at % 4))).sum();
+            Some(words(index, bytes))
+        }
+        _ => None,
+    }
+}
+
+/// The four words of a vector, each by its number.
+fn words(index: usize, word: impl Fn(usize) -> usize) -> Vec<f64> {
+    (4 * index..4 * index + 4).map(|number| word(number) as f64).collect()
 }
 
 /// A room around the sheet, by the name of a corner.

@@ -18,6 +18,10 @@
 #if PROFILE != PROFILE_NONE
 #include "../profiles.glsl"
 #endif
+#if CLUSTERED
+#include "../clusters.glsl"
+#include "camera.glsl"
+#endif
 
 /// The lights, of which the first `count` shine.
 layout(std140, set = 0, binding = 1) uniform Lamps {
@@ -291,7 +295,15 @@ Accum lit(Surface surface) {
 #else
     Accum sum = Accum(surface.material.ambient * ambient_light(surface.normal), vec3(0.0));
 #endif
-#if METALLIC_ROUGHNESS && MAX_LIGHTS == 1
+#if CLUSTERED
+    uvec2 list = lamp_list(surface.position, camera.clip_from_world, camera.world_from_view);
+    for (uint k = 0u; k < list.y; k++) {
+        uint i = listed_lamp(list.x + k);
+        if (i < min(lamps.count, uint(MAX_LIGHTS))) {
+            sum = add_lamp(sum, surface, i);
+        }
+    }
+#elif METALLIC_ROUGHNESS && MAX_LIGHTS == 1
     // Compilers unroll the loop only if its body is small, which that of the layers is not.
     if (lamps.count > 0u) {
         sum = add_lamp(sum, surface, 0u);

@@ -1,0 +1,79 @@
+//! Lists of lamps change no colour: `clustered` gives the picture that all lamps give.
+
+use lamplight::bundle::Language;
+use lamplight::execute::Session;
+use lamplight::picture::{Linear, Plan, prepare_passes};
+use libtest_mimic::Trial;
+
+use super::{BACKENDS, library, on_device, said, shot};
+
+/// Programs, and keys without `clustered`. With the second falloff lamps reach everything, so every
+/// list has all of them.
+const KEYS: [(&str, &str, &str); 3] = [
+    (
+        "short",
+        "forward",
+        "ambient_attenuated,attenuation=inverse_square_window,max_lights=10,specular=ggx",
+    ),
+    ("endless", "forward", "ambient_attenuated,max_lights=10"),
+    (
+        "deferred",
+        "deferred",
+        "ambient_attenuated,attenuation=inverse_square_window,max_lights=10,specular=ggx",
+    ),
+];
+
+const SIZE: [u32; 2] = [160, 96];
+/// The largest difference of a channel. Lamps are summed up in the same order, but compilers may
+/// contract the sums of one of the loops.
+const TOLERANCE: f64 = 1e-5;
+/// The least share of the pixels that show a surface.
+const SEEN: f64 = 0.3;
+
+pub fn trials() -> Vec<Trial> {
+    let on = |(backend, language): (&'static str, Language)| {
+        KEYS.map(|(name, program, key)| {
+            Trial::test(format!("render/clustered_is_all/{name}/{backend}"), move || {
+                on_device(backend, |painter| same(painter, language, program, key))
+            })
+        })
+    };
+    BACKENDS.into_iter().flat_map(on).collect()
+}
+
+fn same(painter: &dyn Session, language: Language, program: &str, key: &str) -> Result<(), String> {
+    let wanted = drawn(painter, language, program, key)?;
+    let found = drawn(painter, language, program, &format!("{key},clustered"))?;
+    let [width, height] = SIZE;
+    let (mut seen, mut largest) = (0_u32, 0.0_f64);
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        let (found, wanted) = match (found.drawn(x, y), wanted.drawn(x, y)) {
+            (Some(found), Some(wanted)) => (found, wanted),
+            (None, None) => continue,
+            _ => return Err(format!("only one of them shows a surface at {x}, {y}")),
+        };
+        let error = (found - wanted).abs().max_element();
+        if error.is_nan() || error > TOLERANCE * wanted.abs().max_element().max(1.0) {
+            return Err(format!("{found} at {x}, {y}, without lists {wanted}"));
+        }
+        (seen, largest) = (seen + 1, largest.max(error));
+    }
+    println!("{program} [{key}]: {seen} pixels, the largest difference is {largest:e}");
+    let least = (SEEN * f64::from(width * height)) as u32;
+    if seen >= least { Ok(()) } else { Err(format!("{seen} pixels show a surface")) }
+}
+
+/// The colours of a permutation of a program, neither clamped nor encoded.
+fn drawn(
+    painter: &dyn Session,
+    language: Language,
+    program: &str,
+    key: &str,
+) -> Result<Linear, String> {
+    let programs = &library().programs;
+    let mut plan = Plan::of_key(programs, program, key).map_err(said)?;
+    plan.scene = "fair".to_owned();
+    let shot = shot(SIZE, 1, language);
+    let prepared = prepare_passes(painter, programs, &plan, &shot).map_err(said)?;
+    prepared.photograph(painter, &shot).map_err(said)
+}
