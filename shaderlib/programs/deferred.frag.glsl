@@ -26,6 +26,29 @@ layout(set = 2, binding = 2) uniform texture2D surface_color;
 layout(set = 2, binding = 3) uniform texture2D surface_normal;
 layout(set = 2, binding = 5) uniform sampler surface_sampler;
 
+#if OCCLUSION == OCCLUSION_SCREEN
+#include "../ambient/occlusion.glsl"
+
+layout(set = 1, binding = 7) uniform texture2D seen_occlusion;
+layout(set = 1, binding = 8) uniform sampler open_sampler;
+
+/// The open share of the surroundings, [0, 1].
+float open_share() {
+    vec2 place = gl_FragCoord.xy / vec2(textureSize(sampler2D(seen_occlusion, open_sampler), 0));
+    return textureLod(sampler2D(seen_occlusion, open_sampler), place, 0.0).x;
+}
+
+/// The squared roughness of the highlight, for how wide it mirrors the surroundings.
+float highlight_alpha(Material material) {
+#if SPECULAR == SPECULAR_GGX
+    return material.roughness * material.roughness;
+#else
+    // The width of the lobe of Blinn and Phong.
+    return sqrt(2.0 / (max(material.shininess, 0.0) + 2.0));
+#endif
+}
+#endif
+
 #if LIGHTS != LIGHTS_NONE
 /// The colour of the surface.
 vec3 shade(vec3 base, vec3 normal, uint material) {
@@ -42,6 +65,10 @@ vec3 shade(vec3 base, vec3 normal, uint material) {
 #else
     surface.material = materials.items[0];
 #endif
+#if OCCLUSION == OCCLUSION_SCREEN
+    float open = open_share();
+    surface.material.ambient *= multibounce(open, base * surface.material.diffuse);
+#endif
 #if SHADOW != SHADOW_NONE
     surface.visibility = visibility(surface, gl_FragCoord.xy);
 #endif
@@ -50,6 +77,11 @@ vec3 shade(vec3 base, vec3 normal, uint material) {
 #endif
     Accum sum = lit(surface);
 #if AMBIENT == AMBIENT_IBL
+#if OCCLUSION == OCCLUSION_SCREEN
+    // The highlights of lamps are summed up, so only the mirrored environment loses by occlusion.
+    float nv = dot(surface.normal, surface.view);
+    surface.material.specular *= specular_occlusion(nv, open, highlight_alpha(surface.material));
+#endif
     sum = add_environment(sum, surface);
 #endif
     return resolve(base, surface.material, sum);

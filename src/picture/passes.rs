@@ -143,7 +143,10 @@ impl Studio<'_> {
     fn draw(&self, pass: &Pass, left: &mut Left) -> Result<(), Diagnostics> {
         let prepared = self.ready(pass, left)?;
         if self.values.plan.is_of_viewer(pass) {
-            return self.draw_seen(&prepared, left);
+            return match pass.needs.screen {
+                true => self.draw_over(&prepared, left),
+                false => self.draw_seen(&prepared, left),
+            };
         }
         let light = self.values.light;
         let views: Vec<Buffers> = match prepared.camera {
@@ -164,6 +167,14 @@ impl Studio<'_> {
         let frames = prepared.draw_colors(self.painter, &views, [side; 2], 0)?;
         let cleared = self.values.cleared_moments();
         left.moments = Some(color_texture(&frames, [side; 2], |_| cleared)?);
+        Ok(())
+    }
+
+    /// Draws over the screen, and keeps what was seen before.
+    fn draw_over(&self, prepared: &Prepared, left: &mut Left) -> Result<(), Diagnostics> {
+        let mut drawn = Left::default();
+        self.draw_seen(prepared, &mut drawn)?;
+        left.over = drawn.colors.into_iter().next();
         Ok(())
     }
 

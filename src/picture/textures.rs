@@ -21,8 +21,10 @@ pub struct Left {
     pub moments: Option<Texture>,
     /// The depths that the viewer sees, and the size.
     pub seen: Option<(Vec<f32>, [u32; 2])>,
-    /// The colour targets of the last pass that the viewer sees.
+    /// The colour targets of the last pass that shows things to the viewer.
     pub colors: Vec<Texture>,
+    /// The colours of the last pass over the screen.
+    pub over: Option<Texture>,
 }
 
 /// Samplers of textures that are not filtered.
@@ -149,7 +151,8 @@ impl Left {
             }
             "blurred" => one(self.moments.clone()),
             "shadow_moments" => self.moments.clone().map(with_levels),
-            "light" | "surface_color" | "seen_occlusion" => one(color(0)),
+            "light" | "surface_color" => one(color(0)),
+            "seen_occlusion" => one(self.over.clone()),
             "surface_normal" => one(color(1)),
             "surface_depth" | "depth_buffer" => {
                 one(self.seen.as_ref().map(|(depths, size)| as_color(depths, *size)))

@@ -23,6 +23,11 @@ const KEYS: &[(&str, &str, &str)] = &[
         "ambient=hemisphere,diffuse=oren_nayar,shadow=pcf_5x5",
         "ambient=hemisphere,diffuse=oren_nayar,material=array,shadow=pcf_5x5",
     ),
+    (
+        "occluded",
+        "ambient=ibl,occlusion=screen,specular=ggx",
+        "ambient=ibl,material=array,occlusion=screen,specular=ggx",
+    ),
     ("unlit", "ambient=sh9,lights=none", "ambient=sh9,lights=none"),
 ];
 
