@@ -18,6 +18,8 @@ export class TooLong extends Error {}
 export class Client {
     /** Milliseconds that the last answer took in the worker. */
     milliseconds = 0;
+    /** Milliseconds of all answers. */
+    spent = 0;
     /** How often the worker was replaced. */
     replaced = 0;
     #worker!: Worker;
@@ -51,6 +53,7 @@ export class Client {
             // The worker takes one call after another, and the time of each is its own.
             this.#first()?.start();
             this.milliseconds = answer.milliseconds ?? 0;
+            this.spent += this.milliseconds;
             if (answer.error === undefined) waiting?.resolve(answer.value);
             else waiting?.reject(new Error(answer.error));
         }

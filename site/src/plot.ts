@@ -1,4 +1,4 @@
-// Curves as SVG: f32, f64 and the band that WGSL's bounds allow.
+// Curves as SVG: f64, the values of a device in f32, and the band that WGSL's bounds allow.
 import type { CurveResult, PlotInfo } from "@lamplight/toolchain";
 
 const NS = "http://www.w3.org/2000/svg";
@@ -13,7 +13,7 @@ function s(tag: string, given: Record<string, string | number>, text?: string): 
 
 const short = (value: number) => String(Number(value.toPrecision(3)));
 
-export function plot(info: PlotInfo, found: CurveResult, at: number): SVGElement {
+export function plot(info: PlotInfo, found: CurveResult, at: number, device: number[][]): SVGElement {
     const values = found.curves.flatMap((curve) => curve.double).filter(Number.isFinite);
     const low = info.low ?? Math.min(0, ...values);
     const high = Math.max(info.high ?? Math.max(...values, low + 1e-6), low + 1e-9);
@@ -41,7 +41,7 @@ export function plot(info: PlotInfo, found: CurveResult, at: number): SVGElement
         if (info.unit === "integers") {
             const aside = 4 * (index - (found.curves.length - 1) / 2);
             found.inputs.forEach((input, i) => {
-                const [px, py] = [x(input) + aside, y(curve.single[i])];
+                const [px, py] = [x(input) + aside, y(device[index][i])];
                 svg.append(
                     s("line", { x1: px, x2: px, y1: y(Math.min(Math.max(0, low), high)), y2: py, stroke: colour }),
                     s("circle", { cx: px, cy: py, r: 3, fill: colour, class: "stem" }),
@@ -51,7 +51,8 @@ export function plot(info: PlotInfo, found: CurveResult, at: number): SVGElement
         }
         svg.append(
             s("polygon", { points: band.join(" "), fill: colour, opacity: 0.18, class: "band" }),
-            s("polyline", { points: points((i) => curve.single[i]).join(" "), stroke: colour, class: "curve" }),
+            s("polyline", { points: points((i) => curve.double[i]).join(" "), stroke: colour, class: "curve" }),
+            s("polyline", { points: points((i) => device[index][i]).join(" "), class: "device" }),
         );
     });
     svg.append(s("line", { class: "at", x1: x(at), x2: x(at), y1: TOP, y2: H - BOTTOM }));

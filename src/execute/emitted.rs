@@ -7,7 +7,7 @@ use crate::bundle::{Language, Native, Target};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::Emitted;
 use crate::execute::kernel::{ENTRY, Kernel};
-use crate::link;
+use crate::link::{self, Linker};
 use crate::validate::{CAPABILITIES, Validated};
 
 /// Emits the kernel's entry point in a target's language. Executors of emitted files get their
@@ -16,10 +16,11 @@ use crate::validate::{CAPABILITIES, Validated};
 /// # Errors
 /// `executor-lacks` where the target's language cannot express something in the kernel.
 pub fn emit_kernel(kernel: &Kernel, target: Target) -> Result<Emitted, Diagnostic> {
-    Ok(of_module(&kernel.module, ENTRY, target)?.0)
+    Ok(of_module(&kernel.module, ENTRY, target, &Linker::new(&[target]))?.0)
 }
 
-/// Emits an entry point of a module in a target's language, with the module's analysis.
+/// Emits an entry point of a module in a target's language, with the module's analysis. The linker
+/// is one of that target.
 ///
 /// # Errors
 /// Those of [`emit_kernel`].
@@ -27,11 +28,12 @@ pub fn of_module(
     module: &Module,
     entry: &str,
     target: Target,
+    linker: &Linker<'_>,
 ) -> Result<(Emitted, Validated), Diagnostic> {
     let info = Validator::new(ValidationFlags::all(), CAPABILITIES).validate(module);
     let info = info.map_err(|error| emit_failed(format!("the module is not valid: {error}")))?;
     let validated = Validated { language: Language::Wesl, module: module.clone(), info };
-    match link::compile_module(&validated, entry, target) {
+    match link::module_linked(&validated, entry, target, linker) {
         Ok(artifact) => {
             let (bytes, native) = (artifact.bytes.to_vec(), Native::clone(&artifact.native));
             Ok((Emitted { bytes, native }, validated))

@@ -5,6 +5,7 @@ use super::frame::EntryPoint;
 use crate::bundle::{Kind, Native, Reflection, Stage, Target, Varying};
 use crate::diagnostic::Diagnostic;
 use crate::emit::{self, Emitted};
+use crate::link::Linker;
 
 /// A stage as it is shipped: its bytes in a target, and its reflection.
 #[derive(Debug, Clone)]
@@ -29,7 +30,19 @@ impl Shipped {
     /// # Errors
     /// `executor-lacks` where the target's language cannot express something in it.
     pub fn of(stage: EntryPoint<'_>, target: Target) -> Result<Self, Diagnostic> {
-        let (emitted, validated) = emitted::of_module(stage.module, stage.entry, target)?;
+        Self::linked(stage, target, &Linker::new(&[target]))
+    }
+
+    /// As [`Self::of`], with a linker of that target which is kept from stage to stage.
+    ///
+    /// # Errors
+    /// Those of [`Self::of`].
+    pub fn linked(
+        stage: EntryPoint<'_>,
+        target: Target,
+        linker: &Linker<'_>,
+    ) -> Result<Self, Diagnostic> {
+        let (emitted, validated) = emitted::of_module(stage.module, stage.entry, target, linker)?;
         let Emitted { bytes, native } = emitted;
         let reflection = emit::reflect(&validated, stage.entry)?;
         Ok(Self { target, bytes, native, reflection })

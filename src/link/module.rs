@@ -24,6 +24,20 @@ pub fn compile_module(
     entry: &str,
     target: Target,
 ) -> Result<Artifact, Diagnostics> {
+    module_linked(validated, entry, target, &Linker::new(&[target]))
+}
+
+/// As [`compile_module`], with a linker of that target which may be kept, so that functions which
+/// modules share are translated once.
+///
+/// # Errors
+/// Those of [`compile_module`].
+pub fn module_linked(
+    validated: &Validated,
+    entry: &str,
+    target: Target,
+    linker: &Linker<'_>,
+) -> Result<Artifact, Diagnostics> {
     let wgsl = emit(validated, entry, Target::WGSL).map_err(|error| vec![error])?;
     let wgsl = String::from_utf8_lossy(&wgsl.bytes).into_owned();
     let files = Memory(BTreeMap::from([(FILE.to_owned(), wgsl)]));
@@ -34,8 +48,7 @@ pub fn compile_module(
     let options = Options { keep, ..Options::default() };
     let composed = compose(&graph, &Settings::default(), &options)?;
     let text = Text { composed: &composed, lean: &lean(&composed) };
-    let targets = [target];
-    let made = compile(&text, entry, &targets, &Linker::new(&targets))?;
+    let made = compile(&text, entry, &[target], linker)?;
     let missing = || vec![Diagnostic::error(codes::EMIT_FAILED, format!("no output for {target}"))];
     made.unit.targets.into_values().next().ok_or_else(missing)
 }

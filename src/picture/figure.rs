@@ -8,12 +8,13 @@ use glam::DVec3;
 
 use super::pixels::{Linear, Picture};
 use super::prepared::sample_shift;
+use super::samples::{columns, fence, image};
 use super::strip::painted::place_words;
 use crate::bundle::Language;
 use crate::catalogue::figure::{Figure, Figures, Kind, Kinds, Textures};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::executors::eval::EXECUTOR;
-use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use crate::execute::fixture::{Address, Compare, Fixture, Sampler, TextureKind};
 use crate::execute::kernel::{self, Kernel};
 use crate::execute::{Session, on_thread};
 use crate::project::LIBRARY;
@@ -233,67 +234,25 @@ fn figure_text(kind: &Kind, path: &str, figure: &Figure) -> String {
     )
 }
 
-/// Texels of the fixtures in each direction.
-const TEXELS: u32 = 64;
-
 fn fixtures(textures: Textures) -> BTreeMap<String, Arc<Fixture>> {
     let sampler =
         |compare| Fixture::Sampler(Sampler { compare, linear: true, address: Address::Clamp });
     let lit = || sampler(Some(Compare::LessEqual));
     let nearest =
         || Fixture::Sampler(Sampler { compare: None, linear: false, address: Address::Clamp });
+    let texture = Fixture::Texture;
     let named = |all: Vec<(&str, Fixture)>| {
         all.into_iter().map(|(name, one)| (name.to_owned(), Arc::new(one))).collect()
     };
     match textures {
         Textures::None => BTreeMap::new(),
         Textures::Depth => named(vec![
-            ("map", fence(TextureKind::Depth2d)),
+            ("map", texture(fence(TextureKind::Depth2d))),
             ("smp", lit()),
-            ("depths", fence(TextureKind::Color2d)),
+            ("depths", texture(fence(TextureKind::Color2d))),
             ("depths_smp", nearest()),
         ]),
-        Textures::Cube => named(vec![("cube", columns()), ("smp", lit())]),
-        Textures::Image => named(vec![("map", image()), ("smp", sampler(None))]),
+        Textures::Cube => named(vec![("cube", texture(columns())), ("smp", lit())]),
+        Textures::Image => named(vec![("map", texture(image())), ("smp", sampler(None))]),
     }
-}
-
-/// The depths of a fence whose posts lean: the lower a post, the nearer it is to the ground, which
-/// is at depth 0.6.
-fn fence(kind: TextureKind) -> Fixture {
-    let depth = |index: u32| {
-        let [x, y] = [index % TEXELS, index / TEXELS].map(|at| f64::from(at) / f64::from(TEXELS));
-        let post = (x * 4.0 + y * 0.5 + 0.2).fract();
-        if post < 0.4 && (0.12..0.9).contains(&y) { (0.2 + 0.35 * y) as f32 } else { 0.6 }
-    };
-    let texels = (0..TEXELS * TEXELS).flat_map(|index| vec![depth(index); kind.channels()]);
-    Fixture::Texture(Texture { kind, width: TEXELS, height: TEXELS, texels: texels.collect() })
-}
-
-/// Four columns around a lamp, at a quarter of the depth, on the four faces at its sides.
-fn columns() -> Fixture {
-    let faces = TextureKind::DepthCube.layers();
-    let depth = |index: u32| {
-        let (face, x) = (index / (TEXELS * TEXELS), index % TEXELS);
-        let is_side = face != 2 && face != 3;
-        if is_side && (TEXELS * 3 / 8..TEXELS * 5 / 8).contains(&x) { 0.25 } else { 1.0 }
-    };
-    let texels = (0..faces * TEXELS * TEXELS).map(depth).collect();
-    let kind = TextureKind::DepthCube;
-    Fixture::Texture(Texture { kind, width: TEXELS, height: TEXELS, texels })
-}
-
-/// Squares of four colours on black.
-fn image() -> Fixture {
-    let colour = |index: u32| {
-        let [x, y] = [index % TEXELS, index / TEXELS];
-        let [column, row] = [x / (TEXELS / 2), y / (TEXELS / 2)];
-        let inside = [x, y].iter().all(|at| (8..24).contains(&(at % (TEXELS / 2))));
-        let colours = [[0.9, 0.25, 0.1], [0.95, 0.8, 0.2], [0.1, 0.5, 0.9], [0.3, 0.8, 0.35]];
-        let [r, g, b] = if inside { colours[(2 * row + column) as usize % 4] } else { [0.0; 3] };
-        [r, g, b, 1.0]
-    };
-    let texels = (0..TEXELS * TEXELS).flat_map(colour).collect();
-    let kind = TextureKind::Color2d;
-    Fixture::Texture(Texture { kind, width: TEXELS, height: TEXELS, texels })
 }

@@ -19,6 +19,7 @@ mod passes;
 mod pixels;
 mod plan;
 mod prepared;
+mod samples;
 pub mod sketch;
 pub mod strip;
 mod textures;

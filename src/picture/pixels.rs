@@ -179,8 +179,11 @@ impl Linear {
     /// The picture in sRGB.
     pub fn develop(&self) -> Picture {
         let scale = 1.0 / f64::from(self.samples.max(1));
-        let byte = |linear: f64| (srgb_encoded(linear * scale) * 255.0).round() as u8;
-        let pixels = self.sums.iter().flat_map(|sum| sum.to_array().map(byte)).collect();
+        let codes = Codes::new();
+        let mut pixels = Vec::with_capacity(3 * self.sums.len());
+        for sum in &self.sums {
+            pixels.extend(sum.to_array().map(|linear| codes.of(linear * scale)));
+        }
         Picture { width: self.size[0], height: self.size[1], pixels }
     }
 }
@@ -189,6 +192,31 @@ impl Linear {
 fn visible_part(seen: DVec3) -> DVec3 {
     let parts = seen.to_array().map(|part| if part.is_nan() { 0.0 } else { part });
     DVec3::from_array(parts).clamp(DVec3::ZERO, DVec3::ONE)
+}
+
+/// A number of sRGB in eight bits.
+fn srgb_code(linear: f64) -> u8 {
+    (srgb_encoded(linear) * 255.0).round() as u8
+}
+
+/// How many parts the numbers from 0 to 1 are divided into.
+const PARTS: usize = 4096;
+
+/// [`srgb_code`] of many numbers, without a power for each. The function rises, so a part whose two
+/// ends have the same code has it everywhere.
+struct Codes(Vec<Option<u8>>);
+
+impl Codes {
+    fn new() -> Self {
+        let ends: Vec<u8> =
+            (0..=PARTS).map(|index| srgb_code(index as f64 / PARTS as f64)).collect();
+        Self(ends.windows(2).map(|two| (two[0] == two[1]).then_some(two[0])).collect())
+    }
+
+    fn of(&self, linear: f64) -> u8 {
+        let known = self.0.get((linear * PARTS as f64) as usize).copied().flatten();
+        known.unwrap_or_else(|| srgb_code(linear))
+    }
 }
 
 /// The transfer function of sRGB.

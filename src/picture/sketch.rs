@@ -259,7 +259,7 @@ fn bound(binding: &Binding, setting: &Setting, shot: &Shot) -> Result<Bound, Dia
             Ok(Bound::Buffer(pack_buffer(binding, &|path| leaves.get(path).cloned())?))
         }
         Kind::Sampler | Kind::ComparisonSampler => Ok(Bound::Fixture(binding_sampler(binding))),
-        Kind::Texture => plain_texture(&binding.ty, &shot.surroundings)
+        Kind::Texture => plain_texture(&binding.name, &binding.ty, &shot.surroundings)
             .map(|texture| Bound::Fixture(Fixture::Texture(texture)))
             .ok_or_else(|| unbound(binding)),
         Kind::Storage | Kind::StorageTexture => Err(unbound(binding)),

@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use super::Surroundings;
+use super::samples::{columns, fence};
 use super::values::Values;
 use crate::bundle::{Binding, Kind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -28,7 +29,7 @@ pub struct Left {
 }
 
 /// Samplers of textures that are not filtered.
-const NEAREST: [&str; 3] = ["depth_sampler", "surface_sampler", "open_sampler"];
+const NEAREST: [&str; 4] = ["depth_sampler", "depths_smp", "surface_sampler", "open_sampler"];
 
 /// The sampler of a binding.
 pub fn binding_sampler(binding: &Binding) -> Fixture {
@@ -38,22 +39,17 @@ pub fn binding_sampler(binding: &Binding) -> Fixture {
     Fixture::Sampler(Sampler { compare, linear, address })
 }
 
-/// A texture of a type in WGSL, for a shader that says nothing about its content: bricks, the
-/// surroundings, or the largest depth. `None` for types that no fixture has.
-pub fn plain_texture(ty: &str, surroundings: &Surroundings) -> Option<Texture> {
-    let deep = |kind: TextureKind| Texture {
-        kind,
-        width: 1,
-        height: 1,
-        texels: vec![1.0; kind.layers() as usize],
-    };
+/// A texture by its name and its type in WGSL, for a shader that says nothing about its content:
+/// bricks, the surroundings, or depths that cast a shadow. `None` for types that no fixture has.
+pub fn plain_texture(name: &str, ty: &str, surroundings: &Surroundings) -> Option<Texture> {
     match ty {
+        "texture_2d<f32>" if name.contains("depth") => Some(fence(TextureKind::Color2d)),
         "texture_2d<f32>" => color_textures(vec![bricks().base]).pop(),
         "texture_cube<f32>" => {
             Some(surroundings.with_sky(|sky| cube_texture(&CubeMap::of(sky, ENVIRONMENT))))
         }
-        "texture_depth_2d" => Some(deep(TextureKind::Depth2d)),
-        "texture_depth_cube" => Some(deep(TextureKind::DepthCube)),
+        "texture_depth_2d" => Some(fence(TextureKind::Depth2d)),
+        "texture_depth_cube" => Some(columns()),
         _ => None,
     }
 }

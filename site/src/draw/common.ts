@@ -12,6 +12,10 @@ export interface Device {
     isLost(): boolean;
 }
 
+/** Milliseconds since the page was opened: while drivers compiled shaders, and while they drew and
+ * were read. Some compile only when they draw for the first time. */
+export const spent = { compiling: 0, drawing: 0 };
+
 /** What pixels hold that nothing covers. */
 export const SENTINEL = 0xdeadbeef;
 
@@ -23,11 +27,13 @@ export function buffers(drawing: Drawing, view: number, mesh: number): Map<strin
 
 export const floats = (bytes: Uint8Array) => new Float32Array(bytes.buffer, bytes.byteOffset, bytes.byteLength / 4);
 
+const number = new Float32Array(1);
+const word = new Uint32Array(number.buffer);
+
 /** A number as a half float: what is too large for one becomes infinite. */
 export function half(value: number): number {
-    const view = new DataView(new ArrayBuffer(4));
-    view.setFloat32(0, value);
-    const bits = view.getUint32(0);
+    number[0] = value;
+    const bits = word[0];
     const sign = (bits >>> 16) & 0x8000;
     const exponent = ((bits >>> 23) & 0xff) - 112;
     const fraction = bits & 0x7fffff;
@@ -37,4 +43,11 @@ export function half(value: number): number {
         return sign | (((fraction | 0x800000) >>> (14 - exponent)) + 0);
     }
     return (sign | (exponent << 10) | (fraction >>> 13)) + ((fraction >>> 12) & 1);
+}
+
+/** Whether two arrays have the same bytes. */
+export function same(one: Uint8Array, other: Uint8Array): boolean {
+    if (one.length !== other.length) return false;
+    const [a, b] = [one, other].map((bytes) => new Uint32Array(bytes.buffer, bytes.byteOffset, bytes.length >> 2));
+    return a.every((word, index) => word === b[index]);
 }

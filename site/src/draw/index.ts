@@ -1,6 +1,6 @@
-import type { PictureRequest, Pixels, SketchRequest, Step } from "@lamplight/toolchain";
+import type { Drawing, PictureRequest, Pixels, SketchRequest, Step } from "@lamplight/toolchain";
 import { OWN, TYPED, toolchain } from "../client";
-import { type Device } from "./common";
+import { type Device, type Frames } from "./common";
 
 let opening: Promise<Device | undefined> | undefined;
 
@@ -36,24 +36,36 @@ function queued<T>(run: () => Promise<T>): Promise<T> {
 
 /** A picture, drawn by the page. */
 export function picture(request: Omit<PictureRequest, "target">): Promise<Pixels> {
-    return queued(() => drawn((target) => toolchain.call(OWN, "pictureStart", { ...request, target })));
+    return queued(() => pictured((target) => toolchain.call(OWN, "pictureStart", { ...request, target })));
 }
 
 /** A fragment stage on a model, drawn by the page. Nobody knows how long a user's text takes. */
 export function sketch(request: Omit<SketchRequest, "target">): Promise<Pixels> {
-    return queued(() => drawn((target) => toolchain.call(TYPED, "sketchStart", { ...request, target })));
+    return queued(() => pictured((target) => toolchain.call(TYPED, "sketchStart", { ...request, target })));
 }
 
-async function drawn(start: (target: string) => Promise<Step>): Promise<Pixels> {
+/** A drawing of the page's own, in the device's language. `undefined` without a device. */
+export function drawn(make: (target: string) => Promise<Drawing>): Promise<{ name: string; frames: Frames } | undefined> {
+    return queued(async () => {
+        const found = await device();
+        return found && { name: found.name, frames: await framed(found, await make(found.target)) };
+    });
+}
+
+async function framed(found: Device, drawing: Drawing): Promise<Frames> {
+    return found.draw(drawing).catch((error) => {
+        // Such as when a driver is updated. The next picture opens another device.
+        if (found.isLost()) opening = undefined;
+        throw error;
+    });
+}
+
+async function pictured(start: (target: string) => Promise<Step>): Promise<Pixels> {
     const found = await device();
     if (!found) throw new Refused("This browser has neither WebGPU nor WebGL2: pictures cannot be drawn. Everything else works.");
     let step = await start(found.target);
     while (step.drawing) {
-        const { words, depths } = await found.draw(step.drawing).catch((error) => {
-            // Such as when a driver is updated. The next picture opens another device.
-            if (found.isLost()) opening = undefined;
-            throw error;
-        });
+        const { words, depths } = await framed(found, step.drawing);
         step = await toolchain.call(OWN, "pictureFrames", words, depths);
     }
     if (!step.picture) throw new Refused(step.diagnostics[0]?.message ?? "there is no picture");

@@ -1,6 +1,6 @@
 // Drawings on WebGL2.
 import type { Drawing, SamplerInfo, Stage, TextureInfo } from "@lamplight/toolchain";
-import { type Device, type Frames, SENTINEL, buffers, floats } from "./common";
+import { type Device, type Frames, SENTINEL, buffers, floats, spent } from "./common";
 
 type Slot = { group: number; binding: number; index?: number; name?: string };
 type Combined = { texture: [number, number]; sampler?: [number, number]; name: string };
@@ -32,7 +32,10 @@ export async function open(): Promise<Device | undefined> {
 
 function draw(gl: WebGL2RenderingContext, programs: Map<string, WebGLProgram>, drawing: Drawing): Frames {
     const { width, height, vertex, fragment } = drawing;
+    const begun = performance.now();
     const program = linked(gl, programs, vertex.text, fragment?.text ?? NOTHING);
+    const compiled = performance.now();
+    spent.compiling += compiled - begun;
     const stages = [vertex, ...(fragment ? [fragment] : [])];
     const blocks = boundBlocks(gl, program, stages);
     const owned: (() => void)[] = [];
@@ -66,6 +69,7 @@ function draw(gl: WebGL2RenderingContext, programs: Map<string, WebGLProgram>, d
     owned.forEach((free) => free());
     const error = gl.getError();
     if (error !== gl.NO_ERROR) throw new Error(`WebGL2 reports error 0x${error.toString(16)}`);
+    spent.drawing += performance.now() - compiled;
     return { words, depths };
 }
 

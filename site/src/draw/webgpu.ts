@@ -1,6 +1,6 @@
 // Drawings on WebGPU.
 import type { Drawing, SamplerInfo, TextureInfo } from "@lamplight/toolchain";
-import { type Device, type Frames, SENTINEL, buffers, floats, half } from "./common";
+import { type Device, type Frames, SENTINEL, buffers, floats, half, same, spent } from "./common";
 
 /** Depth cannot be copied into a texture, only drawn. */
 const DEPTH = `
@@ -13,35 +13,47 @@ const DEPTH = `
     return textureLoad(stored, vec2u(position.xy), 0).x;
 }`;
 
+/** What is kept from drawing to drawing. */
+type Kept = {
+    device: GPUDevice;
+    /** Whether textures of 32-bit floats can be filtered. */
+    filters: boolean;
+    pipelines: Map<string, Promise<GPURenderPipeline>>;
+    /** What draws depths into a texture. */
+    deep?: GPURenderPipeline;
+    /** Textures by what they are bound to, which seldom changes. */
+    textures: Map<string, { given: TextureInfo; made: GPUTexture }>;
+};
+
 export async function open(): Promise<Device | undefined> {
     const adapter = await navigator.gpu?.requestAdapter().catch(() => null);
     if (!adapter) return undefined;
     const filters = adapter.features.has("float32-filterable");
     const device = await adapter.requestDevice({ requiredFeatures: filters ? ["float32-filterable"] : [] });
-    const pipelines = new Map<string, Promise<GPURenderPipeline>>();
+    const kept: Kept = { device, filters, pipelines: new Map(), textures: new Map() };
     let isLost = false;
     device.lost.then(() => { isLost = true; });
     return {
         name: "WebGPU",
         target: "wgsl",
-        draw: (drawing) => draw(device, filters, pipelines, drawing),
+        draw: (drawing) => draw(kept, drawing),
         isLost: () => isLost,
     };
 }
 
-async function draw(
-    device: GPUDevice, filters: boolean, pipelines: Map<string, Promise<GPURenderPipeline>>, drawing: Drawing,
-): Promise<Frames> {
-    const pipeline = await prepared(device, pipelines, drawing);
+async function draw(kept: Kept, drawing: Drawing): Promise<Frames> {
+    const begun = performance.now();
+    const pipeline = await prepared(kept, drawing);
+    const compiled = performance.now();
+    spent.compiling += compiled - begun;
+    const { device } = kept;
     const used = bindings(drawing);
     const textures = new Map<string, GPUTextureView>();
     const owned: { destroy(): void }[] = [];
     for (const texture of drawing.textures) {
         const place = `${texture.group},${texture.binding}`;
         if (!used.has(place)) continue;
-        const made = texture.depth ? stored(device, texture) : coloured(device, filters, texture);
-        owned.push(made);
-        textures.set(place, made.createView({ dimension: texture.cube ? "cube" : "2d" }));
+        textures.set(place, uploaded(kept, place, texture).createView({ dimension: texture.cube ? "cube" : "2d" }));
     }
     const samplers = new Map(drawing.samplers.map((one) => [`${one.group},${one.binding}`, sampler(device, one)]));
     const { width, height } = drawing;
@@ -98,6 +110,7 @@ async function draw(
     const words = new Uint32Array(joined(await Promise.all(reads)));
     const depths = new Float32Array(joined(await Promise.all(depthReads)));
     for (const one of owned) one.destroy();
+    spent.drawing += performance.now() - compiled;
     return { words, depths };
 }
 
@@ -105,7 +118,21 @@ function missing(place: string): never {
     throw new Error(`nothing is given for the binding ${place}`);
 }
 
-function prepared(device: GPUDevice, pipelines: Map<string, Promise<GPURenderPipeline>>, drawing: Drawing) {
+/** The texture of a place: that of the drawing before, if it has the same texels. */
+function uploaded(kept: Kept, place: string, given: TextureInfo): GPUTexture {
+    const known = kept.textures.get(place);
+    const isKnown = known && known.given.cube === given.cube && known.given.depth === given.depth
+        && known.given.levels.length === given.levels.length
+        && known.given.levels.every(({ width, bytes }, index) =>
+            width === given.levels[index].width && same(bytes, given.levels[index].bytes));
+    if (isKnown) return known.made;
+    known?.made.destroy();
+    const made = given.depth ? stored(kept, given) : coloured(kept, given);
+    kept.textures.set(place, { given, made });
+    return made;
+}
+
+function prepared({ device, pipelines }: Kept, drawing: Drawing) {
     const { vertex, fragment, depthTest, cull, mirrored, offset, meshes } = drawing;
     const attributes = meshes[0]?.attributes ?? [];
     const key = JSON.stringify([
@@ -206,7 +233,7 @@ function joined(parts: ArrayBuffer[]): ArrayBuffer {
     return all.buffer;
 }
 
-function coloured(device: GPUDevice, filters: boolean, texture: TextureInfo): GPUTexture {
+function coloured({ device, filters }: Kept, texture: TextureInfo): GPUTexture {
     const layers = texture.cube ? 6 : 1;
     const [{ width, height }] = texture.levels;
     const made = device.createTexture({
@@ -226,23 +253,29 @@ function coloured(device: GPUDevice, filters: boolean, texture: TextureInfo): GP
     return made;
 }
 
-function stored(device: GPUDevice, texture: TextureInfo): GPUTexture {
+function deepened(device: GPUDevice): GPURenderPipeline {
+    const module = device.createShaderModule({ code: DEPTH });
+    const layout = device.createBindGroupLayout({
+        entries: [{ binding: 0, visibility: GPUShaderStage.FRAGMENT, texture: { sampleType: "unfilterable-float" } }],
+    });
+    return device.createRenderPipeline({
+        layout: device.createPipelineLayout({ bindGroupLayouts: [layout] }),
+        vertex: { module, entryPoint: "triangle" },
+        fragment: { module, entryPoint: "depth", targets: [] },
+        depthStencil: { format: "depth32float", depthWriteEnabled: true, depthCompare: "always" },
+    });
+}
+
+function stored(kept: Kept, texture: TextureInfo): GPUTexture {
+    const { device } = kept;
+    const pipeline = kept.deep ??= deepened(device);
     const layers = texture.cube ? 6 : 1;
     const [{ width, height, bytes }] = texture.levels;
     const made = device.createTexture({
         size: [width, height, layers], format: "depth32float",
         usage: GPUTextureUsage.TEXTURE_BINDING | GPUTextureUsage.RENDER_ATTACHMENT,
     });
-    const module = device.createShaderModule({ code: DEPTH });
-    const layout = device.createBindGroupLayout({
-        entries: [{ binding: 0, visibility: GPUShaderStage.FRAGMENT, texture: { sampleType: "unfilterable-float" } }],
-    });
-    const pipeline = device.createRenderPipeline({
-        layout: device.createPipelineLayout({ bindGroupLayouts: [layout] }),
-        vertex: { module, entryPoint: "triangle" },
-        fragment: { module, entryPoint: "depth", targets: [] },
-        depthStencil: { format: "depth32float", depthWriteEnabled: true, depthCompare: "always" },
-    });
+    const layout = pipeline.getBindGroupLayout(0);
     for (let layer = 0; layer < layers; layer++) {
         const source = device.createTexture({
             size: [width, height], format: "r32float",
@@ -263,6 +296,7 @@ function stored(device: GPUDevice, texture: TextureInfo): GPUTexture {
         pass.draw(3);
         pass.end();
         device.queue.submit([encoder.finish()]);
+        source.destroy();
     }
     return made;
 }

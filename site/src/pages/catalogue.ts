@@ -1,7 +1,9 @@
-import type { ItemInfo, LibraryInfo } from "@lamplight/toolchain";
+import type { CurveResult, ItemInfo, LibraryInfo } from "@lamplight/toolchain";
 import { OWN, toolchain } from "../client";
 import { choose, code, h, remember, route } from "../dom";
 import { packed } from "../pack";
+import { type Computed, computed } from "../parts/computed";
+import { latest } from "../parts/latest";
 import { type Parameter, parameters, stage } from "../parts/preview";
 import { type Look, Sketch } from "../parts/sketch";
 import { plot } from "../plot";
@@ -78,7 +80,7 @@ async function entry(place: HTMLElement, item: ItemInfo, items: Map<string, Item
     if (item.plot) await curves(live, item);
 }
 
-/** Milliseconds for which a picture is in view before it is drawn: nobody waits for those that are
+/** Milliseconds for which something is in view before the GPU is asked for it: nobody waits for what is
  * passed by. */
 const SETTLED = 150;
 
@@ -113,7 +115,7 @@ function preview(place: HTMLElement, item: ItemInfo, items: Map<string, ItemInfo
     seen.observe(sketch.element);
 }
 
-/** The plot with its parameters as sliders, and the value at one place in f32 and in f64. */
+/** The plot with its parameters as sliders, and the value at one place in f64 and on the GPU. */
 async function curves(live: HTMLElement, item: ItemInfo) {
     const info = item.plot!;
     const [shown, numbers] = [h("div", { class: "plot" }), h("p", { class: "numbers", "aria-live": "polite" })];
@@ -127,26 +129,49 @@ async function curves(live: HTMLElement, item: ItemInfo) {
     const own = info.parameter && info.values.length
         ? slider(info.parameter, Math.min(...info.values), Math.max(...info.values, Math.min(...info.values) + span), info.values[Math.floor(info.values.length / 2)])
         : undefined;
-    async function draw() {
+    const note = h("p", { class: "note" });
+    let gpu: Computed | undefined;
+    let isSettled = false;
+    const draw = latest(async () => {
         const values = own ? [Number(own.value), ...info.values] : info.values;
         const found = await toolchain.call(OWN, "curves", {
             path: item.path, value: info.value, parameter: info.parameter, values, from: info.from, to: info.to, samples: steps + 1,
         });
         if (!found.curves.length) return numbers.replaceChildren(found.diagnostics[0]?.message ?? "");
+        gpu = isSettled && live.isConnected ? await computed(found) : undefined;
+        show(found);
+    });
+    function show(found: CurveResult) {
         const at = Number(x.value);
-        shown.replaceChildren(plot(info, found, at));
+        shown.replaceChildren(plot(info, found, at, gpu?.rows ?? found.curves.map((curve) => curve.single)));
         const index = Math.round(((at - info.from) / (info.to - info.from)) * steps);
         const curve = found.curves[0];
         const error = curve.error[index];
         numbers.textContent = `at ${Number(at.toPrecision(4))}${own ? `, ${info.parameter} ${Number(own.value).toPrecision(3)}` : ""}: `
-            + `f32 ${Math.fround(curve.single[index])}, f64 ${curve.double[index]}, `
+            + `f64 ${curve.double[index]}, f32 on the CPU ${Math.fround(curve.single[index])}, `
+            + `${gpu ? `${gpu.name} ${gpu.rows[0][index]}, ` : ""}`
             + `WGSL allows ±${Number.isFinite(error) ? error.toExponential(2) : "∞"}`;
+        const dots = gpu?.name ?? "f32 on the CPU";
+        const far = gpu && outside(found, gpu);
+        note.textContent = `Lines are f64, dots are ${dots}, bands are what WGSL allows. `
+            + (far === undefined ? "" : far ? `${far} values of ${dots} are outside.` : `All values of ${dots} are inside.`);
         live.dataset.drawn = String(Number(live.dataset.drawn ?? 0) + 1);
+        if (gpu) Object.assign(live.dataset, { device: gpu.name, outside: String(far) });
     }
     live.replaceChildren(
         shown, h("label", {}, h("span", {}, info.label), x),
         ...(own ? [h("label", {}, h("span", {}, info.parameter!), own)] : []),
-        numbers, ...(info.note ? [h("p", { class: "note" }, info.note)] : []),
+        numbers, note, ...(info.note ? [h("p", { class: "note" }, info.note)] : []),
     );
     await draw();
+    setTimeout(() => {
+        isSettled = true;
+        if (live.isConnected) draw();
+    }, SETTLED);
+}
+
+/** How many values of the GPU are farther from f64 than WGSL allows. */
+function outside({ curves }: CurveResult, { rows }: Computed): number {
+    return curves.flatMap(({ double, error }, row) =>
+        double.filter((value, index) => !(Math.abs(rows[row][index] - value) <= error[index]) && Number.isFinite(error[index]))).length;
 }

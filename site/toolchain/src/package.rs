@@ -9,6 +9,7 @@ use lamplight::diagnostic::Diagnostics;
 use lamplight::permute::Setting;
 use lamplight::permute::manifest::{self, Manifest};
 use lamplight::project::{self, LIBRARY, MANIFEST};
+use lamplight::resolve::wesl::{self, Kept as Parsed};
 use lamplight::resolve::{self, Graph, Packages};
 use lamplight::source::{Embedded, Memory, Package, SourceSet};
 use serde::{Deserialize, Serialize};
@@ -55,23 +56,30 @@ pub fn packages(files: Option<&Files>) -> Packages {
     }
 }
 
-/// A manifest. That of the library is read only once.
+/// A manifest with the texts that it points into.
+type ReadManifest = Rc<(SourceSet, Manifest)>;
+
+/// A manifest. It is read again only after it has changed.
 pub enum Held {
-    Library(Rc<(SourceSet, Manifest)>),
-    Own(Option<Manifest>),
+    Read(ReadManifest),
+    None,
 }
 
 impl Held {
     pub fn get(&self) -> Option<&Manifest> {
         match self {
-            Self::Library(kept) => Some(&kept.1),
-            Self::Own(found) => found.as_ref(),
+            Self::Read(kept) => Some(&kept.1),
+            Self::None => None,
         }
     }
 }
 
 thread_local! {
-    static LIBRARY_MANIFEST: OnceCell<Rc<(SourceSet, Manifest)>> = const { OnceCell::new() };
+    static LIBRARY_MANIFEST: OnceCell<ReadManifest> = const { OnceCell::new() };
+    /// The text of the last manifest of the user's, and the manifest.
+    static OWN_MANIFEST: RefCell<Option<(String, ReadManifest)>> = const { RefCell::new(None) };
+    /// Parsed texts: after a keystroke, all but one are what they were.
+    static PARSED: RefCell<Parsed> = RefCell::default();
     static GRAPHS: RefCell<BTreeMap<String, Kept>> = const { RefCell::new(BTreeMap::new()) };
 }
 
@@ -81,9 +89,17 @@ type Kept = Rc<(SourceSet, Graph)>;
 /// The manifest of the package, if it has one.
 pub fn manifest(files: Option<&Files>, sources: &mut SourceSet) -> Result<Held, Diagnostics> {
     let Some(files) = files else { return library_manifest(sources) };
-    let Some(text) = files.get(MANIFEST) else { return Ok(Held::Own(None)) };
-    let id = sources.add(MANIFEST, text.clone());
-    manifest::parse(sources, id).map(Some).map(Held::Own)
+    let Some(text) = files.get(MANIFEST) else { return Ok(Held::None) };
+    OWN_MANIFEST.with_borrow_mut(|kept| {
+        if let Some((_, found)) = kept.as_ref().filter(|(known, _)| known == text) {
+            *sources = found.0.clone();
+            return Ok(Held::Read(found.clone()));
+        }
+        let id = sources.add(MANIFEST, text.clone());
+        let found = Rc::new((sources.clone(), manifest::parse(sources, id)?));
+        *kept = Some((text.clone(), found.clone()));
+        Ok(Held::Read(found))
+    })
 }
 
 fn library_manifest(sources: &mut SourceSet) -> Result<Held, Diagnostics> {
@@ -97,7 +113,7 @@ fn library_manifest(sources: &mut SourceSet) -> Result<Held, Diagnostics> {
         }
         let found = kept.get().cloned().ok_or_else(Vec::new)?;
         *sources = found.0.clone();
-        Ok(Held::Library(found))
+        Ok(Held::Read(found))
     })
 }
 
@@ -108,9 +124,15 @@ pub fn graph(
     language: Language,
     sources: &mut SourceSet,
 ) -> Result<Kept, Diagnostics> {
-    let load = |sources: &mut SourceSet| resolve::load(sources, &packages(files), root, language);
+    let packages = packages(files);
+    let load = |sources: &mut SourceSet| resolve::load(sources, &packages, root, language);
     if files.is_some() {
-        let graph = load(sources)?;
+        let graph = match language {
+            Language::Wesl => PARSED
+                .with_borrow_mut(|kept| wesl::load_kept(sources, &packages, root, kept))
+                .map(Graph::Wesl)?,
+            Language::Glsl => load(sources)?,
+        };
         return Ok(Rc::new((SourceSet::default(), graph)));
     }
     let found = GRAPHS.with_borrow(|kept| kept.get(root).cloned());

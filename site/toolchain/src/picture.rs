@@ -1,17 +1,23 @@
 //! Pictures that the page draws: the toolchain says what to draw, and gets back what was drawn.
 //!
 //! A picture has passes, and each pass needs what the one before it drew. The devices of a page
-//! answer asynchronously. So after each answer the picture is computed again from its beginning,
-//! with the frames that are there. It stops at the first frame that is missing, and returns the
-//! drawing for it. The rest of the code is that of `lamplight render`.
+//! answer asynchronously. So after each answer the passes are computed again from the first, with
+//! the frames that are there. That stops at the first frame that is missing, and returns the drawing
+//! for it. Once all passes but the last are drawn, what was prepared is kept. The rest of the code is
+//! that of `lamplight render`.
+//!
+//! A pass that draws the same as in an earlier picture, such as a shadow map while materials change,
+//! is not drawn again.
 
 mod controls;
 mod drawing;
+mod seen;
 mod sketch;
 mod told;
 
 use std::cell::RefCell;
-use std::sync::Mutex;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
 
 use lamplight::bundle::{Language, Target};
 use lamplight::catalogue::preset::{self, Number, Preset};
@@ -29,6 +35,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 use crate::diagnostic::{Diagnostic, diagnostics};
 use crate::{Answer, answer};
 use drawing::described;
+use seen::Known;
 use told::{Drawing, Named, PictureRequest, Pixels, PresetInfo, Step, Studio};
 
 /// What is the same for all pictures.
@@ -41,19 +48,48 @@ struct Kept {
 /// The picture that is being drawn.
 struct Current {
     work: Work,
-    /// What was drawn so far, in order.
-    given: Vec<Vec<Frame>>,
-    wanted: Layout,
+    /// What was drawn so far, by the place of the drawing in the picture.
+    given: BTreeMap<usize, Arc<Vec<Frame>>>,
+    /// What the page draws now.
+    wanted: Option<Asked>,
+    /// The last pass, once all frames before it are there.
+    ready: Option<Ready>,
+}
+
+/// A drawing that the page was asked for.
+struct Asked {
+    place: usize,
+    layout: Layout,
+    known: Option<Known>,
+}
+
+/// The last pass.
+struct Ready {
+    prepared: Box<Prepared>,
+    shot: Shot,
+    /// How many drawings come before it.
+    before: usize,
 }
 
 enum Work {
-    Picture(PictureRequest),
-    /// With the shot and the target.
-    Sketch(Box<Prepared>, Shot, String),
+    Picture(Box<PictureRequest>),
+    /// Its target. All passes but the last are drawn.
+    Sketch(String),
+}
+
+impl Work {
+    fn target(&self) -> Result<Target, Diagnostics> {
+        let name = match self {
+            Self::Picture(request) => &request.target,
+            Self::Sketch(target) => target,
+        };
+        let target = Target::ALL.iter().copied().find(|known| known.name() == name);
+        target.ok_or_else(|| vec![refused("pages draw with `wgsl` or `essl300`")])
+    }
 }
 
 /// Sizes of the frames of a drawing.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Layout {
     views: usize,
     targets: usize,
@@ -92,11 +128,11 @@ pub fn studio() -> Answer<Studio> {
 /// Begins a picture, and forgets the one before it.
 #[wasm_bindgen(js_name = pictureStart)]
 pub fn picture_start(request: Ts<PictureRequest>) -> Answer<Step> {
-    answer(&begun(Work::Picture(request.to_rust()?)))
+    answer(&begun(Work::Picture(Box::new(request.to_rust()?)), None))
 }
 
-fn begun(work: Work) -> Step {
-    CURRENT.set(Some(Current { work, given: Vec::new(), wanted: Layout::default() }));
+fn begun(work: Work, ready: Option<Ready>) -> Step {
+    CURRENT.set(Some(Current { work, given: BTreeMap::new(), wanted: None, ready }));
     step()
 }
 
@@ -106,7 +142,8 @@ fn begun(work: Work) -> Step {
 pub fn picture_frames(words: Vec<u32>, depths: Vec<f32>) -> Answer<Step> {
     CURRENT.with_borrow_mut(|current| {
         let Some(current) = current else { return };
-        let Layout { views, targets, pixels, depth } = current.wanted;
+        let Some(Asked { place, layout, known }) = current.wanted.take() else { return };
+        let Layout { views, targets, pixels, depth } = layout;
         let target = |view: usize, index: usize| {
             let start = 4 * pixels * (view * targets + index);
             words.get(start..start + 4 * pixels).unwrap_or_default().to_vec()
@@ -120,7 +157,11 @@ pub fn picture_frames(words: Vec<u32>, depths: Vec<f32>) -> Answer<Step> {
             },
             detour: None,
         };
-        current.given.push((0..views).map(frame).collect());
+        let frames: Arc<Vec<Frame>> = Arc::new((0..views).map(frame).collect());
+        if let Some(known) = known {
+            seen::keep(known, frames.clone());
+        }
+        current.given.insert(place, frames);
     });
     answer(&step())
 }
@@ -161,35 +202,39 @@ fn step() -> Step {
     }
 }
 
-/// Computes the picture from its beginning, up to the first frame that is missing or to its end.
+/// Computes the picture up to the first frame that is missing, or to its end.
 fn advance(kept: &Kept, current: &mut Current) -> Result<Step, Diagnostics> {
-    let page = |target: &str| {
-        let target = Target::ALL.iter().copied().find(|known| known.name() == target);
-        let target = target.ok_or_else(|| vec![refused("pages draw with `wgsl` or `essl300`")])?;
-        Ok::<_, Diagnostics>(Page { given: &current.given, state: Mutex::default(), target })
-    };
-    let (page, rendered) = match &current.work {
-        Work::Picture(request) => {
-            let page = page(&request.target)?;
-            let (plan, shot) = (plan(kept, request)?, shot(request)?);
-            let rendered = picture::render_plan(&page, &kept.programs, &plan, &shot);
-            (page, rendered)
+    let target = current.work.target()?;
+    if let (None, Work::Picture(request)) = (&current.ready, &current.work) {
+        let page = Page { given: &current.given, state: Mutex::default(), target };
+        let (plan, shot) = (plan(kept, request)?, shot(request)?);
+        let prepared = picture::prepare_passes(&page, &kept.programs, &plan, &shot);
+        let Told { count, wanted } = page.told();
+        if let Some(wanted) = wanted {
+            return Ok(asked(current, wanted));
         }
-        Work::Sketch(prepared, shot, target) => {
-            let page = page(target)?;
-            let rendered = prepared.photograph(&page, shot).map(|picture| picture.develop());
-            (page, rendered)
-        }
-    };
-    let state = page.state.into_inner().unwrap_or_default();
-    if let Some((drawing, layout)) = state.wanted {
-        current.wanted = layout;
-        return Ok(Step { drawing: Some(drawing), picture: None, diagnostics: Vec::new() });
+        current.ready = Some(Ready { prepared: Box::new(prepared?), shot, before: count });
     }
-    let picture = rendered?;
-    let rgba = picture.pixels.chunks(3).flat_map(|rgb| [rgb[0], rgb[1], rgb[2], 255]).collect();
+    let Ready { prepared, shot, before } = current.ready.as_ref().ok_or_else(Vec::new)?;
+    let state = Mutex::new(Told { count: *before, wanted: None });
+    let page = Page { given: &current.given, state, target };
+    let photographed = prepared.photograph(&page, shot);
+    if let Some(wanted) = page.told().wanted {
+        return Ok(asked(current, wanted));
+    }
+    let picture = photographed?.develop();
+    let mut rgba = Vec::with_capacity(picture.pixels.len() / 3 * 4);
+    for [r, g, b] in picture.pixels.as_chunks::<3>().0 {
+        rgba.extend([*r, *g, *b, 255]);
+    }
     let pixels = Pixels { width: picture.width, height: picture.height, rgba };
     Ok(Step { drawing: None, picture: Some(pixels), diagnostics: Vec::new() })
+}
+
+/// Asks the page for a drawing.
+fn asked(current: &mut Current, (drawing, asked): (Drawing, Asked)) -> Step {
+    current.wanted = Some(asked);
+    Step { drawing: Some(drawing), picture: None, diagnostics: Vec::new() }
 }
 
 fn refused(message: &str) -> diagnostic::Diagnostic {
@@ -258,15 +303,22 @@ fn shot(request: &PictureRequest) -> Result<Shot, Diagnostics> {
 
 /// A session that returns frames which were drawn before, and asks the page for the next ones.
 struct Page<'a> {
-    given: &'a [Vec<Frame>],
+    given: &'a BTreeMap<usize, Arc<Vec<Frame>>>,
     state: Mutex<Told>,
     target: Target,
 }
 
 #[derive(Default)]
 struct Told {
-    used: usize,
-    wanted: Option<(Drawing, Layout)>,
+    /// How many drawings there were.
+    count: usize,
+    wanted: Option<(Drawing, Asked)>,
+}
+
+impl Page<'_> {
+    fn told(self) -> Told {
+        self.state.into_inner().unwrap_or_default()
+    }
 }
 
 impl Session for Page<'_> {
@@ -283,12 +335,18 @@ impl Session for Page<'_> {
         drawing: &frame::Drawing<'_>,
     ) -> Result<Vec<Frame>, diagnostic::Diagnostic> {
         let mut told = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        if let Some(frames) = self.given.get(told.used) {
-            told.used += 1;
-            return Ok(frames.clone());
+        let place = told.count;
+        told.count += 1;
+        if let Some(frames) = self.given.get(&place) {
+            return Ok(frames.to_vec());
+        }
+        let known = seen::known(drawing, self.target);
+        if let Some(frames) = known.as_ref().and_then(seen::find) {
+            return Ok(frames.to_vec());
         }
         if told.wanted.is_none() {
-            told.wanted = Some((described(drawing, self.target)?, layout(drawing)));
+            let asked = Asked { place, layout: layout(drawing), known };
+            told.wanted = Some((described(drawing, self.target)?, asked));
         }
         Err(refused("not drawn yet"))
     }

@@ -1,10 +1,12 @@
 //! A drawing in the form in which the page gets it.
 
-use lamplight::bundle::Target;
+use lamplight::bundle::{Conventions, Target};
 use lamplight::diagnostic;
 use lamplight::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
 use lamplight::execute::frame::{self, Buffers, EntryPoint, Side, VertexFormat};
 use lamplight::execute::shipped::Shipped;
+
+use crate::linkers::LINKERS;
 
 use super::told::{Attribute, Buffer, Drawing, Level, Mesh, SamplerInfo, Stage, TextureInfo};
 
@@ -40,7 +42,12 @@ pub fn described(
 }
 
 fn stage(entry: EntryPoint<'_>, target: Target) -> Result<Stage, diagnostic::Diagnostic> {
-    let Shipped { bytes, native, reflection, .. } = Shipped::of(entry, target)?;
+    let Shipped { bytes, native, reflection, .. } = LINKERS.with_borrow_mut(|linkers| {
+        let linker = linkers.of(&[target], Conventions::default());
+        let made = Shipped::linked(entry, target, linker);
+        linker.forget();
+        made
+    })?;
     Ok(Stage { text: String::from_utf8_lossy(&bytes).into_owned(), native, reflection })
 }
 

@@ -15,7 +15,7 @@ use wasm_bindgen::prelude::wasm_bindgen;
 
 use super::controls::{UniformInfo, uniform_info};
 use super::told::Step;
-use super::{Work, begun, refused};
+use super::{Ready, Work, begun, refused};
 use crate::diagnostic::{Diagnostic, diagnostics};
 use crate::shader::{ShaderRequest, composed_text};
 use crate::{Answer, answer};
@@ -95,7 +95,10 @@ pub fn sketch_start(request: Ts<SketchRequest>) -> Answer<Step> {
         Ok((sketch.prepare(&setting, &shot)?, shot))
     });
     answer(&match prepared {
-        Ok((prepared, shot)) => begun(Work::Sketch(Box::new(prepared), shot, request.target)),
+        Ok((prepared, shot)) => {
+            let ready = Ready { prepared: Box::new(prepared), shot, before: 0 };
+            begun(Work::Sketch(request.target), Some(ready))
+        }
         Err(problems) => {
             Step { drawing: None, picture: None, diagnostics: diagnostics(&sources, &problems) }
         }
