@@ -117,6 +117,9 @@ fn catalogue() -> Outcome {
     assert_eq!(page.evaluate(&script, PATIENCE)?, json!([]), "these entries do not open");
     page.evaluate("location.hash = '#/catalogue/brdf::specular::blinn_phong'", PATIENCE)?;
     page.until("document.querySelectorAll('.live .curve').length > 0", PATIENCE)?;
+    page.until("document.querySelector('.live').dataset.device === 'WebGPU'", PATIENCE)?;
+    let outside = "document.querySelector('.live').dataset.outside";
+    assert_eq!(text(&page, outside)?, "0", "the GPU's values are not within WGSL's bounds");
     let curve = "document.querySelector('.live .curve').getAttribute('points')";
     let before = text(&page, curve)?;
     page.evaluate(
@@ -134,5 +137,28 @@ fn catalogue() -> Outcome {
         "[...document.querySelectorAll('.list a')].some((it) => it.textContent === 'f_schlick')",
         PATIENCE,
     )?;
-    without_errors(&mut page)
+    without_errors(&mut page)?;
+    textured(&mut page)
+}
+
+/// A function that reads a texture of depths is drawn partly lit and partly in shadow.
+fn textured(page: &mut Page) -> Outcome {
+    page.evaluate("location.hash = '#/catalogue/shadow::compare::hard'", PATIENCE)?;
+    page.until("document.querySelector('article h1')?.textContent === 'hard'", PATIENCE)?;
+    let canvas = "document.querySelector('.sketch canvas')";
+    wait(page, &format!("{canvas} !== null"))?;
+    page.evaluate(&format!("{canvas}.scrollIntoView()"), PATIENCE)?;
+    wait(page, &format!("{canvas}?.dataset.drawn !== undefined"))?;
+    let shares = format!(
+        "(() => {{
+            const it = {canvas};
+            const {{ data }} = it.getContext('2d').getImageData(it.width / 4, it.height / 4, it.width / 2, it.height / 2);
+            const greens = data.filter((_, index) => index % 4 === 1);
+            return [greens.filter((one) => one > 250).length, greens.filter((one) => one < 5).length]
+                .map((count) => count / greens.length);
+        }})()"
+    );
+    let found: [f64; 2] = serde_json::from_value(page.evaluate(&shares, PATIENCE)?)?;
+    assert!(found.iter().all(|share| *share > 0.1), "lit and in shadow are {found:?}");
+    without_errors(page)
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use lamplight::browser::serve::{Files, Server};
@@ -16,6 +17,9 @@ use lamplight::permute::{Manifest, Quoted, Settings, key, manifest};
 use lamplight::picture::frame::Programs;
 use lamplight::picture::{self, Plan, Shot, Surroundings};
 use lamplight::project::{self, LIBRARY, MANIFEST};
+use lamplight::proof::expression::evaluate_expression;
+use lamplight::proof::library::Library as ProofLibrary;
+use lamplight::resolve::wesl::{self, Kept};
 use lamplight::resolve::{self, Graph, Packages};
 use lamplight::scene::environment;
 use lamplight::source::{Embedded, Files as _, Memory, Package, SourceSet};
@@ -26,8 +30,11 @@ use crate::Outcome;
 /// The permutations that the page switches between.
 const KEYS: [&str; 5] = ["shadow=hard", "shadow=pcf_3x3", "specular=ggx", "diffuse=oren_nayar", ""];
 const FORWARD: &str = "programs/forward.wesl";
-const COUNT: usize = 15;
+const COUNT: usize = 31;
 const PATIENCE: Duration = Duration::from_secs(300);
+
+/// The expression that the page evaluates.
+const EXPRESSION: &str = "brdf::specular::d_ggx(0.9, 0.3)";
 
 /// Prints the page's table.
 pub fn run() -> Outcome {
@@ -35,7 +42,15 @@ pub fn run() -> Outcome {
     if !folder.join("index.html").is_file() {
         return Err("there is no site: run `cargo xtask site`".into());
     }
-    let times = [keystroke(), permutation(), switched_axis()];
+    let times = [
+        keystroke(),
+        composing(),
+        emitting(&[Target::WGSL]),
+        emitting(Target::ALL),
+        evaluating(),
+        switched_axis(COUNT, &KEYS.map(str::to_owned)),
+        switched_axis(9, &new_keys()),
+    ];
     let times: Vec<String> = times
         .into_iter()
         .map(|time| time.map(|time| format!("{:.2}", 1000.0 * time.as_secs_f64())))
@@ -62,16 +77,23 @@ fn words(problems: &[Diagnostic]) -> String {
 }
 
 /// The median time of a task, which runs once before.
-fn median(mut run: impl FnMut(usize) -> Result<(), Diagnostics>) -> Result<Duration, Diagnostics> {
-    run(COUNT)?;
+fn median(run: impl FnMut(usize) -> Result<(), Diagnostics>) -> Result<Duration, Diagnostics> {
+    median_of(COUNT, run)
+}
+
+fn median_of(
+    count: usize,
+    mut run: impl FnMut(usize) -> Result<(), Diagnostics>,
+) -> Result<Duration, Diagnostics> {
+    run(count)?;
     let mut times = Vec::new();
-    for index in 0..COUNT {
+    for index in 0..count {
         let start = Instant::now();
         run(index)?;
         times.push(start.elapsed());
     }
     times.sort();
-    Ok(times[COUNT / 2])
+    Ok(times[count / 2])
 }
 
 /// The settings of a permutation of `forward`.
@@ -102,6 +124,11 @@ fn keystroke() -> Result<Duration, Diagnostics> {
     let text = text.replace("import package::", "import lamplight::");
     let manifest = Embedded.read(MANIFEST).ok().flatten().ok_or_else(Diagnostics::new)?;
     let linker = Linker::with(&[Target::WGSL], Conventions::default());
+    // As the page keeps them: a manifest that has not changed, and parsed texts.
+    let mut read = SourceSet::default();
+    let id = read.add(MANIFEST, manifest);
+    let manifest = manifest::parse(&read, id)?;
+    let mut kept = Kept::default();
     median(|index| {
         let edited = text.replace("fn fs_main", &format!("// {index}\nfn fs_main"));
         let files = BTreeMap::from([(FORWARD.to_owned(), edited)]);
@@ -109,25 +136,56 @@ fn keystroke() -> Result<Duration, Diagnostics> {
             root: Package { name: "package".to_owned(), files: Box::new(Memory(files)) },
             dependencies: vec![Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) }],
         };
-        let mut sources = SourceSet::default();
-        let id = sources.add(MANIFEST, manifest.clone());
-        let settings = of_manifest(&manifest::parse(&sources, id)?, "")?;
-        let graph = resolve::load(&mut sources, &packages, FORWARD, Language::Wesl)?;
-        compile(&graph, &settings, &linker)
+        let mut sources = read.clone();
+        let settings = of_manifest(&manifest, "")?;
+        let graph = wesl::load_kept(&mut sources, &packages, FORWARD, &mut kept)?;
+        compile(&Graph::Wesl(graph), &settings, &linker)
     })
 }
 
-/// From a key to WGSL; the graph of the library is read once.
-fn permutation() -> Result<Duration, Diagnostics> {
+/// The graph of `forward`, and the settings of the keys.
+fn chosen() -> Result<(Graph, Vec<Settings>), Diagnostics> {
     let packages = project::library();
     let graph = resolve::load(&mut SourceSet::default(), &packages, FORWARD, Language::Wesl)?;
-    let linker = Linker::with(&[Target::WGSL], Conventions::default());
-    let chosen = KEYS.map(settings).into_iter().collect::<Result<Vec<_>, _>>()?;
+    Ok((graph, KEYS.map(settings).into_iter().collect::<Result<_, _>>()?))
+}
+
+/// From a key to the composed text.
+fn composing() -> Result<Duration, Diagnostics> {
+    let (graph, chosen) = chosen()?;
+    let options = Options::default();
+    median(|index| compose::compose(&graph, &chosen[index % KEYS.len()], &options).map(drop))
+}
+
+/// From a key to the outputs of some targets.
+fn emitting(targets: &[Target]) -> Result<Duration, Diagnostics> {
+    let (graph, chosen) = chosen()?;
+    let linker = Linker::with(targets, Conventions::default());
     median(|index| compile(&graph, &chosen[index % KEYS.len()], &linker))
 }
 
-/// From a key to the picture, which Vulkan draws.
-fn switched_axis() -> Result<Duration, Diagnostics> {
+/// The value of the expression.
+fn evaluating() -> Result<Duration, Diagnostics> {
+    let sources = Mutex::new(SourceSet::default());
+    median(|_| {
+        let mut session = executors::eval::EXECUTOR.start().map_err(|_| Diagnostics::new())?;
+        let library = ProofLibrary::embedded();
+        let session = session.as_mut();
+        evaluate_expression(&library, &sources, EXPRESSION, Language::Wesl, session).map(drop)
+    })
+}
+
+/// The keys of permutations that nothing was drawn with before, as the page has them.
+fn new_keys() -> Vec<String> {
+    let diffuse = ["half_lambert", "wrap", "oren_nayar"];
+    let specular = ["phong", "blinn_phong_normalized", "ggx"];
+    let key = |d: &str, s: &str| format!("diffuse={d},specular={s}");
+    diffuse.iter().flat_map(|d| specular.iter().map(move |s| key(d, s))).collect()
+}
+
+/// From a key to the picture, which Vulkan draws. With as many keys as there are turns, each
+/// permutation is drawn for the first time.
+fn switched_axis(count: usize, keys: &[String]) -> Result<Duration, Diagnostics> {
     let programs = Programs::load().map_err(|(_, problems)| problems)?;
     let shot = Shot {
         size: [256; 2],
@@ -138,8 +196,10 @@ fn switched_axis() -> Result<Duration, Diagnostics> {
         surroundings: Surroundings::Formula(environment("studio").ok_or_else(Diagnostics::new)?),
     };
     let painter = executors::vulkan::EXECUTOR.start().map_err(|_| Diagnostics::new())?;
-    median(|index| {
-        let plan = Plan::of_key(&programs, "forward", KEYS[index % KEYS.len()])?;
+    median_of(count, |index| {
+        // The turn before the others draws the default.
+        let key = if index == count { "" } else { &keys[index % keys.len()] };
+        let plan = Plan::of_key(&programs, "forward", key)?;
         picture::render_plan(painter.as_ref(), &programs, &plan, &shot).map(drop)
     })
 }

@@ -16,6 +16,12 @@ export function h<K extends keyof HTMLElementTagNameMap>(
     return made;
 }
 
+/** A sentence, with what is between backticks as code. */
+export function sentence(text: string): Child[] {
+    return text.split("`").map((part, index, all) =>
+        index % 2 && index < all.length - 1 ? h("code", {}, part) : index % 2 ? `\`${part}` : part);
+}
+
 /** A text with a button that copies it. */
 export function code(text: string, label: string): HTMLElement {
     const button = h("button", {

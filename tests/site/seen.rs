@@ -13,6 +13,9 @@ use super::{Opened, Outcome, PATIENCE, text, wait, without_errors};
 /// The widths of a phone and of a desktop screen.
 const WIDTHS: [u32; 2] = [360, 1280];
 
+/// The width of the pages in dark.
+const DARK: u32 = 1280;
+
 /// The most bytes that a page loads before the toolchain, not compressed.
 const FIRST_VIEW: u64 = 1_000_000;
 
@@ -38,8 +41,8 @@ const PAGES: [Shown; 5] = [
     ("guide", "#/guide", "document.querySelector('.guide h1')"),
 ];
 
-/// The main pages at the widths of a phone and of a desktop screen look as they did when somebody
-/// looked at them. No page is wider than the screen, every control has a name for screen readers,
+/// The main pages at the widths of a phone and of a desktop screen, and in dark, look as they did when
+/// somebody looked at them. No page is wider than the screen, every control has a name for screen readers,
 /// and texts can be read in light and dark. Before the toolchain, a page loads little, and only the
 /// site's own files.
 pub fn seen() -> Outcome {
@@ -55,6 +58,9 @@ pub fn seen() -> Outcome {
         for width in WIDTHS {
             wrong.extend(as_reviewed(&page, &format!("{name}-{width}"), width)?);
         }
+        in_scheme(&page, "dark")?;
+        wrong.extend(as_reviewed(&page, &format!("{name}-dark"), DARK)?);
+        in_scheme(&page, "light")?;
         page.screenshot(Screenshot { width: 360, height: 900, whole: false })?;
         let wide = page.evaluate("document.documentElement.scrollWidth", PATIENCE)?;
         assert!(wide.as_u64().is_some_and(|found| found <= 360), "{name} is {wide} pixels wide");
@@ -155,12 +161,18 @@ fn different_cells(one: &RgbImage, other: &RgbImage, steps: u8) -> f64 {
     far as f64 / f64::from(one.width() * one.height())
 }
 
+/// Shows a page as somebody sees it who prefers light or dark.
+fn in_scheme(page: &Page, scheme: &str) -> Outcome {
+    let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
+    page.call("Emulation.setEmulatedMedia", json!({ "features": features }))?;
+    Ok(())
+}
+
 /// Every colour of text has enough contrast with what is behind it, in light and dark.
 fn readable(opened: &Opened) -> Outcome {
     let page = opened.page("#/guide")?;
     for scheme in ["light", "dark"] {
-        let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
-        page.call("Emulation.setEmulatedMedia", json!({ "features": features }))?;
+        in_scheme(&page, scheme)?;
         let colour = |name: &str| -> Result<f64, Failed> {
             let value = format!(
                 "getComputedStyle(document.documentElement).getPropertyValue({}).trim()",

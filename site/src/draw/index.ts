@@ -39,6 +39,30 @@ export function picture(request: Omit<PictureRequest, "target">): Promise<Pixels
     return queued(() => pictured((target) => toolchain.call(OWN, "pictureStart", { ...request, target })));
 }
 
+/** Milliseconds after which somebody who switched something should see a picture. */
+const SOON = 100;
+/** How much smaller a coarse picture is. */
+const COARSE = 4;
+/** What the last whole picture took. */
+let took = 0;
+
+/** A picture on a canvas. Where whole ones take long, a coarse one comes first; it is marked. */
+export async function shown(
+    canvas: HTMLCanvasElement, request: Omit<PictureRequest, "target">, isOld: () => boolean,
+): Promise<void> {
+    if (took > SOON) {
+        const [width, height] = [request.width, request.height].map((side) => Math.ceil(side / COARSE));
+        show(canvas, await picture({ ...request, width, height }));
+        canvas.dataset.coarse = "1";
+        if (isOld()) return;
+    }
+    const start = performance.now();
+    const whole = await picture(request);
+    took = performance.now() - start;
+    show(canvas, whole);
+    delete canvas.dataset.coarse;
+}
+
 /** A fragment stage on a model, drawn by the page. Nobody knows how long a user's text takes. */
 export function sketch(request: Omit<SketchRequest, "target">): Promise<Pixels> {
     return queued(() => pictured((target) => toolchain.call(TYPED, "sketchStart", { ...request, target })));

@@ -1,6 +1,6 @@
 import type { CurveResult, ItemInfo, LibraryInfo } from "@lamplight/toolchain";
 import { OWN, toolchain } from "../client";
-import { choose, code, h, remember, route } from "../dom";
+import { choose, code, h, remember, route, sentence } from "../dom";
 import { packed } from "../pack";
 import { type Computed, computed } from "../parts/computed";
 import { latest } from "../parts/latest";
@@ -58,18 +58,18 @@ export async function page(into: HTMLElement) {
 async function entry(place: HTMLElement, item: ItemInfo, items: Map<string, ItemInfo>) {
     const written = await toolchain.call(OWN, "written", item.path);
     const section = (title: string, text: string | undefined) =>
-        text ? h("p", {}, h("strong", {}, `${title}: `), text) : undefined;
+        text ? h("p", {}, h("strong", {}, `${title}: `), ...sentence(text)) : undefined;
     const users = written.usedBy.map((path) => path.replace(/\.wesl$/, "").replaceAll("/", "::"));
     const live = h("section", { class: "live", "aria-label": "Live plot" });
     const seen = h("section", { class: "live" });
     place.replaceChildren(
         h("h1", {}, item.name), h("p", { class: "path" }, item.path),
-        ...item.doc.map((text) => h("p", {}, text)),
+        ...item.doc.map((text) => h("p", {}, ...sentence(text))),
         live, seen,
         h("h2", {}, "Use it"),
         code(item.import, "import in WESL"), code(item.include, "include in GLSL"),
         item.members.length ? h("dl", {}, ...item.members.flatMap((member) => [
-            h("dt", {}, h("code", {}, `${member.name}: ${member.type}`)), h("dd", {}, member.doc),
+            h("dt", {}, h("code", {}, `${member.name}: ${member.type}`)), h("dd", {}, ...sentence(member.doc)),
         ])) : undefined!,
         ...[section("Source", item.source), section("Edges", item.edges), section("Error model", item.errorModel),
             section("Used by", users.join(", "))].filter((one) => one !== undefined),

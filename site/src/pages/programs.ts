@@ -1,7 +1,7 @@
-import type { PictureControls, PictureRequest, Point, ProgramInfo } from "@lamplight/toolchain";
+import type { CostInfo, PictureControls, PictureRequest, Point, ProgramInfo } from "@lamplight/toolchain";
 import { OWN, toolchain } from "../client";
 import { choose, h, remember, route } from "../dom";
-import { device, picture, show } from "../draw";
+import { device, shown } from "../draw";
 import { output, texts } from "../output";
 import { axes } from "../parts/axes";
 import { Lamps } from "../parts/lamps";
@@ -72,12 +72,22 @@ export async function page(into: HTMLElement) {
         ...(state.preset && { preset: state.preset }), ...(state.scene && { scene: state.scene }),
         uniforms: state.set, lamps: state.lamps,
     });
-    async function draw(withControls: boolean) {
+    // They are recorded, and do not change.
+    const recorded = new Map<string, Promise<CostInfo>>();
+    const costsOf = (name: string) => {
+        const known = recorded.get(name) ?? toolchain.call(OWN, "costs", name);
+        recorded.set(name, known);
+        return known;
+    };
+    async function draw(withControls: boolean, isOld: () => boolean) {
         const start = performance.now();
         const asked = request();
         try {
-            const pixels = await picture(asked);
-            show(canvas, pixels);
+            await shown(canvas, asked, isOld);
+            if (isOld()) {
+                wanted.controls ||= withControls;
+                return;
+            }
             told.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms, ${asked.key || "default"}`;
             canvas.dataset.drawn = String(Number(canvas.dataset.drawn ?? 0) + 1);
             canvas.dataset.key = asked.key;
@@ -108,7 +118,7 @@ export async function page(into: HTMLElement) {
             h("p", {}, "From ", h("code", {}, other.key || "default"), " to ", h("code", {}, point!.key || "default")),
             ...names.map((title) => differences(of(before, title), of(after, title), title)));
     }
-    const update = latest(async () => {
+    const update = latest(async (isOld) => {
         const now = wanted;
         wanted = { texts: false, controls: false };
         const { program, key, scene, environment, target, preset, against } = state;
@@ -118,7 +128,7 @@ export async function page(into: HTMLElement) {
         if (now.texts || !point) {
             found = programs.find((one) => one.name === program) ?? programs[0];
             const [next, costs] = await Promise.all([
-                toolchain.call(OWN, "point", { program: found.name, key }), toolchain.call(OWN, "costs", found.name),
+                toolchain.call(OWN, "point", { program: found.name, key }), costsOf(found.name),
             ]);
             point = next;
             axes(form, found, point, costs, (next) => set({ key: next }));
@@ -131,8 +141,9 @@ export async function page(into: HTMLElement) {
             told.textContent = point.broken.join(" ") || point.diagnostics[0]?.message || "";
             return;
         }
-        await draw(now.controls);
-        if (now.texts) await write();
+        await draw(now.controls, isOld);
+        if (isOld()) wanted.texts ||= now.texts;
+        else if (now.texts) await write();
     });
     /** Without new texts, only the picture changes; while a lamp is dragged, its controls stay. */
     function set(change: Partial<State>, withTexts = true, withControls = true) {

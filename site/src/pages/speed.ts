@@ -53,13 +53,16 @@ async function tasks(): Promise<Task[]> {
         },
     ];
     if (!await device()) return found;
-    const drawn = (key: string) => picture({ key, width: 256, height: 256, samples: 1 });
+    const drawn = (key: string, size = 256) => picture({ key, width: size, height: size, samples: 1 });
     return [...found, {
         name: "a switched axis of forward, to a picture of 256 × 256", count: 30, limit: 100, isDrawn: true,
         run: (index) => drawn(key(index)),
     }, {
         name: "the same, each permutation for the first time", count: NEW.length, isDrawn: true,
         run: (index) => drawn(index < 0 ? "" : NEW[index]),
+    }, {
+        name: "a switched axis of forward, to the coarse picture that slow devices show first", count: 30, limit: 100,
+        isDrawn: true, run: (index) => drawn(key(index), 96),
     }];
 }
 
