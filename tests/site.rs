@@ -85,8 +85,7 @@ fn without_errors(page: &mut Page) -> Outcome {
     }
 }
 
-/// Every entry of the catalogue opens and shows its source. A plot changes with its slider, and the
-/// search finds an entry.
+/// Every entry of the catalogue opens and shows its source.
 fn catalogue() -> Outcome {
     let opened = Opened::new()?;
     let mut page = opened.page("#/catalogue")?;
@@ -115,13 +114,19 @@ fn catalogue() -> Outcome {
         Value::from(paths)
     );
     assert_eq!(page.evaluate(&script, PATIENCE)?, json!([]), "these entries do not open");
+    plotted(&mut page)?;
+    textured(&mut page)
+}
+
+/// A plot has the values of the GPU, and changes with its slider. The search finds an entry.
+fn plotted(page: &mut Page) -> Outcome {
     page.evaluate("location.hash = '#/catalogue/brdf::specular::blinn_phong'", PATIENCE)?;
     page.until("document.querySelectorAll('.live .curve').length > 0", PATIENCE)?;
     page.until("document.querySelector('.live').dataset.device === 'WebGPU'", PATIENCE)?;
     let outside = "document.querySelector('.live').dataset.outside";
-    assert_eq!(text(&page, outside)?, "0", "the GPU's values are not within WGSL's bounds");
+    assert_eq!(text(page, outside)?, "0", "the GPU's values are not within WGSL's bounds");
     let curve = "document.querySelector('.live .curve').getAttribute('points')";
-    let before = text(&page, curve)?;
+    let before = text(page, curve)?;
     page.evaluate(
         "(() => { const it = document.querySelectorAll('.live input')[1]; it.value = it.min;
             it.dispatchEvent(new Event('input')); })()",
@@ -137,8 +142,7 @@ fn catalogue() -> Outcome {
         "[...document.querySelectorAll('.list a')].some((it) => it.textContent === 'f_schlick')",
         PATIENCE,
     )?;
-    without_errors(&mut page)?;
-    textured(&mut page)
+    without_errors(page)
 }
 
 /// A function that reads a texture of depths is drawn partly lit and partly in shadow.

@@ -34,7 +34,7 @@ const COUNT: usize = 31;
 const PATIENCE: Duration = Duration::from_secs(300);
 
 /// The expression that the page evaluates.
-const EXPRESSION: &str = "brdf::specular::d_ggx(0.9, 0.3)";
+const EXPRESSION: &str = "brdf::specular::d_ggx(0.9, 0.19, 0.3)";
 
 /// Prints the page's table.
 pub fn run() -> Outcome {

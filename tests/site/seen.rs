@@ -26,7 +26,11 @@ const CONTRAST: f64 = 4.5;
 type Shown = (&'static str, &'static str, &'static str);
 
 const PAGES: [Shown; 5] = [
-    ("catalogue", "#/catalogue/brdf::specular::blinn_phong", "document.querySelector('.live svg')"),
+    (
+        "catalogue",
+        "#/catalogue/brdf::specular::blinn_phong",
+        "document.querySelector('.live')?.dataset.device",
+    ),
     (
         "programs",
         "#/programs/forward?key=shadow=pcf_3x3",

@@ -12,7 +12,7 @@ type Task = {
 
 const KEYS = ["shadow=hard", "shadow=pcf_3x3", "specular=ggx", "diffuse=oren_nayar", ""];
 const [FORWARD, MANIFEST] = ["programs/forward.wesl", "lamplight.toml"];
-const EXPRESSION = "brdf::specular::d_ggx(0.9, 0.3)";
+const EXPRESSION = "brdf::specular::d_ggx(0.9, 0.19, 0.3)";
 
 /** Keys whose permutations nothing was drawn with before. Each differs from the one before it in one
  * axis or two. */
@@ -49,7 +49,10 @@ async function tasks(): Promise<Task[]> {
         { name: "composing and emitting it in all languages", count: 31, run: (index) => permutation(index, all) },
         {
             name: `evaluating ${EXPRESSION}`, count: 31,
-            run: () => toolchain.call(OWN, "evaluate", { expression: EXPRESSION }),
+            run: async () => {
+                const { value, diagnostics } = await toolchain.call(OWN, "evaluate", { expression: EXPRESSION });
+                if (value === undefined) throw new Error(diagnostics[0]?.message ?? "the expression has no value");
+            },
         },
     ];
     if (!await device()) return found;
