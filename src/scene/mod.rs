@@ -1,6 +1,6 @@
 //! The mathematics of lighting for the host: matrices of lights, bounds fitted around what is seen,
-//! normals, skies, and kernels of samples. Also the shapes, environments and scenes of the pictures,
-//! all made by formulas.
+//! normals, lists of lamps, skies, and kernels of samples. Also the shapes, environments and scenes
+//! of the pictures, all made by formulas.
 //!
 //! Everything is in f64 and for column vectors. World and view spaces are right-handed; a view
 //! looks down its -z axis, with +y up. Lengths are in scene units, angles in radians. Cast the
