@@ -12,7 +12,7 @@ layout(location = 1) in vec3 in_normal;
 layout(location = 1) flat in vec3 in_normal;
 #endif
 layout(location = 2) in vec4 in_color;
-#if BASE_MAP || NORMAL_MAP || OCCLUSION == OCCLUSION_MAP
+#if BASE_MAP || NORMAL_MAP || MATERIAL_MAPS || OCCLUSION == OCCLUSION_MAP
 layout(location = 3) in vec2 in_uv;
 #endif
 #if LIGHTMAP
@@ -40,7 +40,7 @@ layout(set = 1, binding = 2) uniform texture2D normal_map;
 #if LIGHTMAP
 layout(set = 1, binding = 3) uniform texture2D light_map;
 #endif
-#if BASE_MAP || NORMAL_MAP || LIGHTMAP || OCCLUSION == OCCLUSION_MAP
+#if BASE_MAP || NORMAL_MAP || LIGHTMAP || MATERIAL_MAPS || OCCLUSION == OCCLUSION_MAP
 layout(set = 1, binding = 4) uniform sampler map_sampler;
 #endif
 #if OCCLUSION == OCCLUSION_MAP
@@ -177,6 +177,9 @@ vec3 shade(vec3 base) {
 #include "../surface/normal.glsl"
 #include "forward/lamps.glsl"
 #include "forward/environment.glsl"
+#if MATERIAL_MAPS
+#include "forward/maps.glsl"
+#endif
 
 #if OCCLUSION != OCCLUSION_NONE
 #include "../ambient/occlusion.glsl"
@@ -198,7 +201,7 @@ Around occluded(Around around, Layered at, float open) {
     Around seen = around;
     seen.mirrored *= specular_occlusion(dot(at.normal, at.view), open, at.roughness * at.roughness);
 #if CLEARCOAT
-    float rough = layers.clearcoat_roughness;
+    float rough = at.own.clearcoat_roughness;
     seen.coated *= specular_occlusion(dot(at.coat_normal, at.view), open, rough * rough);
 #endif
     return seen;
@@ -241,6 +244,16 @@ vec3 shade(vec3 base) {
 #else
     surface.material = materials.items[0];
 #endif
+#if METALLIC_ROUGHNESS
+    Factors own = plain_factors();
+#endif
+#if MATERIAL_MAPS
+    own = mapped_factors(own);
+    vec4 rough_metal = texture(sampler2D(metallic_roughness_map, map_sampler), in_uv);
+    own.metallic *= rough_metal.z;
+    surface.material.roughness *= rough_metal.y;
+    surface.material.emission *= texture(sampler2D(emission_map, map_sampler), in_uv).rgb;
+#endif
 #if OCCLUSION != OCCLUSION_NONE
     float open = open_share();
 #if METALLIC_ROUGHNESS
@@ -253,7 +266,7 @@ vec3 shade(vec3 base) {
     surface.visibility = visibility(surface, gl_FragCoord.xy);
 #endif
 #if METALLIC_ROUGHNESS
-    surface.layered = layered(base, surface.material.roughness, surface.normal, surface.view);
+    surface.layered = layered(base, surface.material.roughness, surface.normal, surface.view, own);
 #endif
 #if ANISOTROPY
     surface.layered = brushed(surface.layered, in_tangent);
@@ -265,7 +278,7 @@ vec3 shade(vec3 base) {
     surface.lobe = table_lobe(dot(surface.normal, surface.view), surface.material.roughness);
 #endif
 #if AREA == AREA_RECTANGLE && CLEARCOAT
-    surface.coat_lobe = table_lobe(dot(coat_normal, surface.view), layers.clearcoat_roughness);
+    surface.coat_lobe = table_lobe(dot(coat_normal, surface.view), surface.layered.own.clearcoat_roughness);
 #endif
     Accum sum = lit(surface);
 #if LIGHTMAP && METALLIC_ROUGHNESS

@@ -7,7 +7,7 @@
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec4 in_color;
-#if BASE_MAP || NORMAL_MAP || OCCLUSION == OCCLUSION_MAP
+#if BASE_MAP || NORMAL_MAP || MATERIAL_MAPS || OCCLUSION == OCCLUSION_MAP
 layout(location = 3) in vec2 in_uv;
 #endif
 #if LIGHTMAP
@@ -27,7 +27,7 @@ layout(location = 1) out vec3 out_normal;
 layout(location = 1) flat out vec3 out_normal;
 #endif
 layout(location = 2) out vec4 out_color;
-#if BASE_MAP || NORMAL_MAP || OCCLUSION == OCCLUSION_MAP
+#if BASE_MAP || NORMAL_MAP || MATERIAL_MAPS || OCCLUSION == OCCLUSION_MAP
 layout(location = 3) out vec2 out_uv;
 #endif
 #if LIGHTMAP
@@ -66,7 +66,7 @@ void main() {
     out_normal = normal;
 #endif
     out_color = in_color * object.color;
-#if BASE_MAP || NORMAL_MAP || OCCLUSION == OCCLUSION_MAP
+#if BASE_MAP || NORMAL_MAP || MATERIAL_MAPS || OCCLUSION == OCCLUSION_MAP
     out_uv = in_uv;
 #endif
 #if LIGHTMAP

@@ -72,7 +72,28 @@ layout(std140, set = 1, binding = 5) uniform Layers {
     float dispersion;
     /// `ambient=ibl`: levels of `sky_specular`, even in perceptual roughness; 1 where it has one.
     float sky_levels;
+    /// `iridescence`, `material_maps`: thickness of the film where green is 0, nanometres.
+    float iridescence_least;
 } layers;
+
+/// The factors of `Layers` that textures multiply, at a point.
+struct Factors {
+    vec3 specular_color;
+    float specular;
+    vec3 sheen_color;
+    float sheen_roughness;
+    vec3 diffuse_transmission_color;
+    float diffuse_transmission;
+    vec2 anisotropy_direction;
+    float anisotropy;
+    float metallic;
+    float clearcoat;
+    float clearcoat_roughness;
+    float iridescence;
+    float iridescence_thickness;
+    float transmission;
+    float thickness;
+};
 
 /// A point of a layered surface, as far as it does not depend on lights. Every permutation has all
 /// members, so that functions are the same in all of them; without an extension, its members are
@@ -84,6 +105,7 @@ struct Layered {
     /// The base colour.
     vec3 base;
     float roughness;
+    Factors own;
     /// Reflectance of the dielectric at normal incidence, without its weight.
     vec3 f0;
     /// Scale and offset of the base's albedo.
@@ -119,21 +141,57 @@ struct Around {
     vec3 through;
 };
 
+/// The factors where no texture multiplies them.
+Factors plain_factors() {
+    Factors own;
+    own.specular_color = layers.specular_color;
+    own.specular = layers.specular;
+    own.metallic = layers.metallic;
+#if SHEEN
+    own.sheen_color = layers.sheen_color;
+    own.sheen_roughness = layers.sheen_roughness;
+#endif
+#if DIFFUSE_TRANSMISSION
+    own.diffuse_transmission_color = layers.diffuse_transmission_color;
+    own.diffuse_transmission = layers.diffuse_transmission;
+#endif
+#if ANISOTROPY
+    own.anisotropy_direction = layers.anisotropy_direction;
+    own.anisotropy = layers.anisotropy;
+#endif
+#if CLEARCOAT
+    own.clearcoat = layers.clearcoat;
+    own.clearcoat_roughness = layers.clearcoat_roughness;
+#endif
+#if IRIDESCENCE
+    own.iridescence = layers.iridescence;
+    own.iridescence_thickness = layers.iridescence_thickness;
+#endif
+#if TRANSMISSION
+    own.transmission = layers.transmission;
+#endif
+#if VOLUME
+    own.thickness = layers.thickness;
+#endif
+    return own;
+}
+
 /// The surface at a point.
-Layered layered(vec3 base, float roughness, vec3 normal, vec3 view) {
+Layered layered(vec3 base, float roughness, vec3 normal, vec3 view, Factors own) {
     Layered at;
+    at.own = own;
     at.normal = normal;
     at.view = view;
     at.nv = clamp(dot(normal, view), 0.0, 1.0);
     at.base = base;
     at.roughness = clamp(roughness, 0.0, 1.0);
-    at.f0 = specular_f0(layers.ior, 1.0, layers.specular_color);
+    at.f0 = specular_f0(layers.ior, 1.0, at.own.specular_color);
     at.dfg = dfg_approx(at.nv, at.roughness);
 #if SHEEN
-    at.sheen_view = sheen_albedo(at.nv, layers.sheen_roughness * layers.sheen_roughness);
+    at.sheen_view = sheen_albedo(at.nv, at.own.sheen_roughness * at.own.sheen_roughness);
 #endif
 #if VOLUME
-    at.passing = volume_transmittance(layers.attenuation_color, layers.thickness, layers.attenuation_distance);
+    at.passing = volume_transmittance(layers.attenuation_color, at.own.thickness, layers.attenuation_distance);
 #endif
     return at;
 }
@@ -142,12 +200,12 @@ Layered layered(vec3 base, float roughness, vec3 normal, vec3 view) {
 /// The surface, brushed along its tangent, which has the sign of the bitangent in `w`.
 Layered brushed(Layered surface, vec4 tangent) {
     Layered at = surface;
-    at.alphas = alpha_aniso(at.roughness * at.roughness, layers.anisotropy);
+    at.alphas = alpha_aniso(at.roughness * at.roughness, at.own.anisotropy);
     // The isotropic surface whose facets are as wide.
     at.dfg = dfg_approx(at.nv, sqrt(sqrt(at.alphas.x * at.alphas.y)));
     vec3 along = safe_normalize(tangent.xyz - at.normal * dot(at.normal, tangent.xyz), vec3(0.0));
     vec3 across = cross(at.normal, along) * tangent.w;
-    at.tangent = along * layers.anisotropy_direction.x + across * layers.anisotropy_direction.y;
+    at.tangent = along * at.own.anisotropy_direction.x + across * at.own.anisotropy_direction.y;
     at.bitangent = cross(at.normal, at.tangent);
     return at;
 }
@@ -159,28 +217,28 @@ Layered coated(Layered surface, vec3 coat_normal) {
     Layered at = surface;
     float cosine = clamp(dot(coat_normal, at.view), 0.0, 1.0);
     at.coat_normal = coat_normal;
-    at.coat_share = layers.clearcoat * f_schlick(vec3(0.04), 1.0, cosine).x;
-    at.coat_gain = energy_compensation(vec3(1.0), dfg_approx(cosine, layers.clearcoat_roughness)).x;
+    at.coat_share = at.own.clearcoat * f_schlick(vec3(0.04), 1.0, cosine).x;
+    at.coat_gain = energy_compensation(vec3(1.0), dfg_approx(cosine, at.own.clearcoat_roughness)).x;
     return at;
 }
 #endif
 
 /// Reflectance at the cosine `mu`, of a material that has `f0` at normal incidence.
-vec3 reflectance(vec3 f0, float mu) {
+vec3 reflectance(Layered at, vec3 f0, float mu) {
     vec3 plain = f_schlick(f0, 1.0, mu);
 #if IRIDESCENCE
-    vec3 film = iridescence(1.0, layers.iridescence_ior, f0, layers.iridescence_thickness, mu);
-    return mix(plain, film, layers.iridescence);
+    vec3 film = iridescence(1.0, layers.iridescence_ior, f0, at.own.iridescence_thickness, mu);
+    return mix(plain, film, at.own.iridescence);
 #else
     return plain;
 #endif
 }
 
 /// The reflectance that the base's albedo is computed with: that of the film is towards the viewer.
-vec3 mean_reflectance(vec3 f0, float nv) {
+vec3 mean_reflectance(Layered at, vec3 f0) {
 #if IRIDESCENCE
-    vec3 film = iridescence(1.0, layers.iridescence_ior, f0, layers.iridescence_thickness, nv);
-    return mix(f0, film, layers.iridescence);
+    vec3 film = iridescence(1.0, layers.iridescence_ior, f0, at.own.iridescence_thickness, at.nv);
+    return mix(f0, film, at.own.iridescence);
 #else
     return f0;
 #endif
@@ -240,16 +298,16 @@ vec3 passing_share(Layered at) {
 vec3 below_light(Layered at, vec3 l) {
     float nl = dot(at.normal, l);
 #if DIFFUSE_TRANSMISSION
-    float before = diffuse_transmission(max(nl, 0.0), layers.diffuse_transmission);
-    float behind = diffuse_transmission(min(nl, 0.0), layers.diffuse_transmission);
-    vec3 scattered = 3.14159265 * (at.base * before + layers.diffuse_transmission_color * passing_share(at) * behind);
+    float before = diffuse_transmission(max(nl, 0.0), at.own.diffuse_transmission);
+    float behind = diffuse_transmission(min(nl, 0.0), at.own.diffuse_transmission);
+    vec3 scattered = 3.14159265 * (at.base * before + at.own.diffuse_transmission_color * passing_share(at) * behind);
 #else
     vec3 scattered = at.base * max(nl, 0.0);
 #endif
 #if TRANSMISSION
     float roughness = through_roughness(at);
     float lobe = 3.14159265 * max(-nl, 0.0) * btdf_thin(at.normal, l, at.view, roughness * roughness);
-    return mix(scattered, at.base * passing_share(at) * lobe, layers.transmission);
+    return mix(scattered, at.base * passing_share(at) * lobe, at.own.transmission);
 #else
     return scattered;
 #endif
@@ -258,11 +316,11 @@ vec3 below_light(Layered at, vec3 l) {
 #if SHEEN
 /// The light with a sheen over it.
 vec3 sheen_over(Layered at, vec3 light, vec3 l, vec3 h, float strength) {
-    float alpha = layers.sheen_roughness * layers.sheen_roughness;
+    float alpha = at.own.sheen_roughness * at.own.sheen_roughness;
     float nl = dot(at.normal, l);
     float lobe = d_charlie(dot(at.normal, h), alpha) * v_neubelt(nl, at.nv);
-    float scale = sheen_scale(layers.sheen_color, at.sheen_view, sheen_albedo(abs(nl), alpha));
-    return layers.sheen_color * (strength * 3.14159265 * max(nl, 0.0) * lobe) + light * scale;
+    float scale = sheen_scale(at.own.sheen_color, at.sheen_view, sheen_albedo(abs(nl), alpha));
+    return at.own.sheen_color * (strength * 3.14159265 * max(nl, 0.0) * lobe) + light * scale;
 }
 #endif
 
@@ -278,17 +336,17 @@ vec3 layered_light(Layered at, vec3 l, float strength) {
 #else
     float lobe = strength * facets(at.normal, at.view, l, h, at.roughness);
 #endif
-    vec3 dielectric = layers.specular * reflectance(at.f0, mu);
+    vec3 dielectric = at.own.specular * reflectance(at, at.f0, mu);
     vec3 below = below_light(at, l) * (1.0 - largest_channel(dielectric));
     vec3 of_dielectric = below + dielectric * energy_compensation(at.f0, at.dfg) * lobe;
-    vec3 of_metal = reflectance(at.base, mu) * energy_compensation(at.base, at.dfg) * lobe;
-    vec3 light = mix(of_dielectric, of_metal, layers.metallic);
+    vec3 of_metal = reflectance(at, at.base, mu) * energy_compensation(at.base, at.dfg) * lobe;
+    vec3 light = mix(of_dielectric, of_metal, at.own.metallic);
 #if SHEEN
     light = sheen_over(at, light, l, h, strength);
 #endif
 #if CLEARCOAT
     vec3 half_way = safe_normalize(l + at.view, at.coat_normal);
-    float coat = strength * at.coat_gain * facets(at.coat_normal, at.view, l, half_way, layers.clearcoat_roughness);
+    float coat = strength * at.coat_gain * facets(at.coat_normal, at.view, l, half_way, at.own.clearcoat_roughness);
     light = coat_mix(light, vec3(coat), 1.0, at.coat_share);
 #endif
     return light;
@@ -301,17 +359,17 @@ vec3 layered_area_light(Layered at, float fallen, Seen base, Seen coat, float st
     vec3 h = safe_normalize(base.l + at.view, at.normal);
     float mu = clamp(dot(at.view, h), 0.0, 1.0);
     float lobe = strength * base.gain * facets(at.normal, at.view, base.l, h, at.roughness);
-    vec3 dielectric = layers.specular * reflectance(at.f0, mu);
+    vec3 dielectric = at.own.specular * reflectance(at, at.f0, mu);
     vec3 below = at.base * (fallen * (1.0 - largest_channel(dielectric)));
     vec3 of_dielectric = below + dielectric * energy_compensation(at.f0, at.dfg) * lobe;
-    vec3 of_metal = reflectance(at.base, mu) * energy_compensation(at.base, at.dfg) * lobe;
-    vec3 light = mix(of_dielectric, of_metal, layers.metallic);
+    vec3 of_metal = reflectance(at, at.base, mu) * energy_compensation(at.base, at.dfg) * lobe;
+    vec3 light = mix(of_dielectric, of_metal, at.own.metallic);
 #if SHEEN
     light = sheen_over(at, light, base.l, h, strength);
 #endif
 #if CLEARCOAT
     vec3 half_way = safe_normalize(coat.l + at.view, at.coat_normal);
-    float lobe_of_coat = facets(at.coat_normal, at.view, coat.l, half_way, layers.clearcoat_roughness);
+    float lobe_of_coat = facets(at.coat_normal, at.view, coat.l, half_way, at.own.clearcoat_roughness);
     light = coat_mix(light, vec3(strength * coat.gain * at.coat_gain * lobe_of_coat), 1.0, at.coat_share);
 #endif
     return light;
@@ -320,23 +378,23 @@ vec3 layered_area_light(Layered at, float fallen, Seen base, Seen coat, float st
 
 /// The light from around that leaves the surface towards the viewer, with what it gives off itself.
 vec3 layered_ambient(Layered at, Around around, vec3 emission) {
-    SplitSum dielectric = split_sum_multi(at.f0, mean_reflectance(at.f0, at.nv), at.dfg);
-    SplitSum metal = split_sum_multi(at.base, mean_reflectance(at.base, at.nv), at.dfg);
+    SplitSum dielectric = split_sum_multi(at.f0, mean_reflectance(at, at.f0), at.dfg);
+    SplitSum metal = split_sum_multi(at.base, mean_reflectance(at, at.base), at.dfg);
     vec3 below = at.base * around.front;
 #if DIFFUSE_TRANSMISSION
-    vec3 behind = layers.diffuse_transmission_color * passing_share(at) * around.back;
-    below = mix(below, behind, layers.diffuse_transmission);
+    vec3 behind = at.own.diffuse_transmission_color * passing_share(at) * around.back;
+    below = mix(below, behind, at.own.diffuse_transmission);
 #endif
 #if TRANSMISSION
-    below = mix(below, at.base * passing_share(at) * around.through, layers.transmission);
+    below = mix(below, at.base * passing_share(at) * around.through, at.own.transmission);
 #endif
-    float taken = layers.specular * largest_channel(dielectric.single + dielectric.multiple);
-    vec3 of_dielectric = layers.specular * (dielectric.single * around.mirrored + dielectric.multiple * around.front);
+    float taken = at.own.specular * largest_channel(dielectric.single + dielectric.multiple);
+    vec3 of_dielectric = at.own.specular * (dielectric.single * around.mirrored + dielectric.multiple * around.front);
     vec3 of_metal = metal.single * around.mirrored + metal.multiple * around.front;
-    vec3 light = mix(of_dielectric + below * (1.0 - taken), of_metal, layers.metallic);
+    vec3 light = mix(of_dielectric + below * (1.0 - taken), of_metal, at.own.metallic);
 #if SHEEN
-    float scale = sheen_scale(layers.sheen_color, at.sheen_view, 0.0);
-    light = layers.sheen_color * at.sheen_view * around.front + light * scale;
+    float scale = sheen_scale(at.own.sheen_color, at.sheen_view, 0.0);
+    light = at.own.sheen_color * at.sheen_view * around.front + light * scale;
 #endif
     light += emission * layers.emissive_strength;
 #if CLEARCOAT
@@ -348,7 +406,7 @@ vec3 layered_ambient(Layered at, Around around, vec3 emission) {
 /// The direction that the base mirrors towards the viewer.
 vec3 mirrored_direction(Layered at) {
 #if ANISOTROPY
-    return bent_reflection(at.view, at.normal, at.bitangent, layers.anisotropy, at.roughness);
+    return bent_reflection(at.view, at.normal, at.bitangent, at.own.anisotropy, at.roughness);
 #else
     return reflect(-at.view, at.normal);
 #endif

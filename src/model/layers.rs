@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 use serde_json::{Map, Value};
 
 use super::Reader;
+use super::part::is_drawn;
 use crate::scene::Layers;
 use crate::scene::sets::Object;
 
@@ -64,7 +65,7 @@ pub fn read_layers(
     for name in material.extensions().into_iter().flat_map(|all| all.keys()).filter(known) {
         reader.notes.insert(format!("left out, since the programs do not have it: {name}"));
     }
-    let mut layers = parsed_layers(reader, material, &place)?;
+    let mut layers = parsed_layers(material, &place)?;
     let mut values = |name: &str| Values::of(reader, material.extension_value(name), &place, name);
     if let Some(own) = values("KHR_materials_clearcoat")? {
         layers.clearcoat = own.share("clearcoatFactor", 0.0)?;
@@ -82,7 +83,7 @@ pub fn read_layers(
     if let Some(own) = values("KHR_materials_iridescence")? {
         layers.iridescence = own.share("iridescenceFactor", 0.0)?;
         layers.iridescence_ior = own.number("iridescenceIor", 1.3, 1.0)?;
-        own.number("iridescenceThicknessMinimum", 100.0, 0.0)?;
+        layers.iridescence_least = own.number("iridescenceThicknessMinimum", 100.0, 0.0)?;
         // Without a texture the film is everywhere as thick as it can be.
         layers.iridescence_thickness = own.number("iridescenceThicknessMaximum", 400.0, 0.0)?;
     }
@@ -98,16 +99,7 @@ pub fn read_layers(
 }
 
 /// The factors that the parser gives.
-fn parsed_layers(
-    reader: &mut Reader<'_>,
-    material: &gltf::Material<'_>,
-    place: &str,
-) -> Result<Layers, String> {
-    let mut left_out = |is_there: bool, name: &str| {
-        if is_there {
-            reader.notes.insert(textures_left_out(name));
-        }
-    };
+fn parsed_layers(material: &gltf::Material<'_>, place: &str) -> Result<Layers, String> {
     let at = |name: &str| format!("{place}.extensions.{name}");
     let own = material.pbr_metallic_roughness();
     let mut layers =
@@ -119,9 +111,6 @@ fn parsed_layers(
     }
     if let Some(specular) = material.specular() {
         let name = "KHR_materials_specular";
-        let is_there =
-            specular.specular_texture().is_some() || specular.specular_color_texture().is_some();
-        left_out(is_there, name);
         let factor = specular.specular_factor().into();
         layers.specular = bounded(factor, 0.0, 1.0, &at(&format!("{name}.specularFactor")))?;
         let color = specular.specular_color_factor();
@@ -129,18 +118,16 @@ fn parsed_layers(
     }
     if let Some(transmission) = material.transmission() {
         let name = "KHR_materials_transmission";
-        left_out(transmission.transmission_texture().is_some(), name);
         let factor = transmission.transmission_factor().into();
         layers.transmission =
             bounded(factor, 0.0, 1.0, &at(&format!("{name}.transmissionFactor")))?;
     }
-    volume_layers(reader, material, place, &mut layers)?;
+    volume_layers(material, place, &mut layers)?;
     Ok(layers)
 }
 
 /// What passes a body, and how long it is under way.
 fn volume_layers(
-    reader: &mut Reader<'_>,
     material: &gltf::Material<'_>,
     place: &str,
     layers: &mut Layers,
@@ -148,9 +135,6 @@ fn volume_layers(
     const NAME: &str = "KHR_materials_volume";
     let Some(volume) = material.volume() else { return Ok(()) };
     let at = |field: &str| format!("{place}.extensions.{NAME}.{field}");
-    if volume.thickness_texture().is_some() {
-        reader.notes.insert(textures_left_out(NAME));
-    }
     let thickness = volume.thickness_factor().into();
     layers.thickness = bounded(thickness, 0.0, f64::MAX, &at("thicknessFactor"))?;
     // Infinity is the default: nothing is absorbed.
@@ -161,10 +145,6 @@ fn volume_layers(
     }
     layers.attenuation_color = bounded_color(volume.attenuation_color(), &at("attenuationColor"))?;
     Ok(())
-}
-
-fn textures_left_out(extension: &str) -> String {
-    format!("left out, since the programs do not have them: textures of {extension}")
 }
 
 /// A number between two bounds.
@@ -206,8 +186,10 @@ impl<'v> Values<'v> {
         let Some(value) = value else { return Ok(None) };
         let fields = value.as_object();
         let fields = fields.ok_or_else(|| format!("{place}: expected an object, found {value}"))?;
-        if fields.keys().any(|key| key.ends_with("Texture")) {
-            reader.notes.insert(textures_left_out(name));
+        let left_out = |key: &&String| key.ends_with("Texture") && !is_drawn(name, key);
+        for key in fields.keys().filter(left_out) {
+            let note = format!("left out, since the programs do not have it: {key} of {name}");
+            reader.notes.insert(note);
         }
         Ok(Some(Self { fields, place }))
     }

@@ -5,7 +5,7 @@ use gltf::mesh::Mode;
 
 use super::Reader;
 use super::nodes::Part;
-use super::surface::read_surface;
+use super::surface::{Means, read_surface};
 use super::texture::Sheet;
 use crate::limits::MODEL_CORNERS;
 use crate::scene::sets::Object;
@@ -17,7 +17,7 @@ pub fn mesh_objects(
     part: &Part,
     sheet: &Sheet,
     corners: &mut usize,
-) -> Result<Vec<Object>, String> {
+) -> Result<Vec<(Object, Means)>, String> {
     let document = reader.document;
     let mesh = document.meshes().nth(part.mesh).ok_or("a node has a mesh that is not there")?;
     let mut objects = Vec::new();
@@ -35,17 +35,17 @@ pub fn mesh_objects(
         }
         let vertices = mesh_vertices(reader, &primitive, &indices, &place)?;
         let shape = Shape { vertices, indices };
-        let shape = sheet.placed(shape, &primitive.material());
+        let shape = sheet.placed(reader, shape, &primitive.material())?;
         let shape = shape.transformed(part.world_from_mesh);
         let shape =
             if part.world_from_mesh.determinant() < 0.0 { mirror_winding(shape) } else { shape };
-        let (color, mut material) = read_surface(reader, &primitive.material())?;
+        let (color, mut material, means) = read_surface(reader, &primitive.material())?;
         // Bodies are as thick as they are large.
         let scale = part.world_from_mesh.determinant().abs().cbrt();
         if let Some(layers) = &mut material.layers {
             layers.thickness *= scale;
         }
-        objects.push(Object::made(shape, DMat4::IDENTITY, color, material));
+        objects.push((Object::made(shape, DMat4::IDENTITY, color, material), means));
     }
     Ok(objects)
 }

@@ -9,6 +9,7 @@ mod accessor;
 mod layers;
 mod mesh;
 mod nodes;
+mod part;
 mod surface;
 mod texture;
 
@@ -17,6 +18,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+pub use self::surface::Lacks;
+use self::surface::Means;
 use self::texture::Sheet;
 use crate::limits::{MODEL_BYTES, MODEL_JSON_BYTES};
 use crate::scene::sets::{Eye, Lamp, LampKind, Scene};
@@ -30,8 +33,32 @@ pub struct Model {
     pub notes: BTreeSet<String>,
     /// Values of the axes of `forward` that show it, such as `specular=ggx`.
     pub axes: Vec<String>,
-    /// Values of its axes that show the layers of the materials, such as `clearcoat=true`.
+    /// Values of its axes that show the layers of the materials, such as `clearcoat=true`, and the
+    /// textures that multiply their factors.
     pub layers: Vec<String>,
+    /// The textures that at least one material has, by the names of their bindings.
+    textures: BTreeSet<&'static str>,
+    /// Means of textures, one for each object.
+    means: Vec<Means>,
+}
+
+impl Model {
+    /// The scene for a permutation, which may not have all textures: materials have their means then,
+    /// which is the second value in words.
+    pub fn scene_of(mut self, lacks: Lacks) -> (Scene, Option<String>) {
+        for (object, means) in self.scene.objects.iter_mut().zip(&self.means) {
+            means.apply(&mut object.material, lacks);
+        }
+        let shown = |name: &&&str| match **name {
+            "base_map" | "normal_map" => false,
+            "occlusion_map" => lacks.occlusion,
+            _ => lacks.maps,
+        };
+        let names: Vec<&str> = self.textures.iter().filter(shown).copied().collect();
+        let said = "textures that the permutation does not have count with their mean, and those of \
+            extensions not at all";
+        (self.scene, (!names.is_empty()).then(|| format!("{said}: {}", names.join(", "))))
+    }
 }
 
 /// From where a model is seen.
@@ -50,7 +77,7 @@ struct Reader<'b> {
     document: &'b gltf::Document,
     blob: &'b [u8],
     notes: BTreeSet<String>,
-    /// Means of images that the programs do not read, by number and whether they are colours.
+    /// Means of images, by number and whether they are colours.
     means: BTreeMap<(usize, bool), DVec3>,
     /// Whether no material that is drawn is lit.
     all_unlit: bool,
@@ -131,23 +158,31 @@ fn model_scene(reader: &mut Reader<'_>, view: View) -> Result<Model, String> {
     let placed = nodes::walk_scene(reader)?;
     reader.all_unlit = drawn_materials(reader.document, &placed).all(|one| one.unlit());
     let sheet = texture::texture_sheet(reader, &placed)?;
-    let mut objects = Vec::new();
+    let mut found = Vec::new();
     let mut corners = 0;
     for part in &placed.parts {
-        objects.extend(mesh::mesh_objects(reader, part, &sheet, &mut corners)?);
+        found.extend(mesh::mesh_objects(reader, part, &sheet, &mut corners)?);
     }
+    let (objects, means): (Vec<_>, Vec<_>) = found.into_iter().unzip();
     if objects.is_empty() {
         return Err("the model has no triangles".to_owned());
     }
     let bounds = nodes::bounding_ball(&objects);
     let eye = model_eye(&placed, &bounds, view)?;
     let lamps = nodes::model_lamps(&placed, &bounds, &eye);
-    let layers = if reader.all_unlit { Vec::new() } else { layers::layer_axes(&objects) };
+    let mut layers = if reader.all_unlit { Vec::new() } else { layers::layer_axes(&objects) };
+    let is_mapped = |name: &&str| !matches!(*name, "base_map" | "normal_map" | "occlusion_map");
+    if sheet.names.iter().any(is_mapped) {
+        layers.push("material_maps=true".to_owned());
+    }
     let axes = model_axes(reader, &placed, &sheet, (&lamps, &layers));
+    if sheet.names.contains("occlusion_map") {
+        layers.push("occlusion=map".to_owned());
+    }
     let mut scene = Scene::of_model(objects, eye, lamps);
     scene.own_maps = sheet.maps.map(Arc::new);
     let notes = std::mem::take(&mut reader.notes);
-    Ok(Model { scene, notes, axes, layers })
+    Ok(Model { scene, notes, axes, layers, textures: sheet.names, means })
 }
 
 /// The materials of everything that is drawn.
@@ -167,7 +202,8 @@ fn model_axes(
     (lamps, layers): (&[Lamp], &[String]),
 ) -> Vec<String> {
     if reader.all_unlit {
-        let textured = if sheet.has_colors { "base_map=true" } else { "base_map=false" };
+        let textured =
+            if sheet.names.contains("base_map") { "base_map=true" } else { "base_map=false" };
         return ["lights=none", "ambient=none", textured].map(str::to_owned).to_vec();
     }
     let most = [1, 4, 10].into_iter().find(|most| lamps.len() <= *most).unwrap_or(10);
@@ -179,10 +215,10 @@ fn model_axes(
     // Layers mirror their surroundings, or show them.
     let ambient = if layers.len() > 1 { "ibl" } else { "hemisphere" };
     let mut chosen = format!("specular=ggx,ambient={ambient},max_lights={most},{shadow}");
-    if sheet.has_colors {
+    if sheet.names.contains("base_map") {
         chosen += ",base_map=true";
     }
-    if sheet.has_normals {
+    if sheet.names.contains("normal_map") {
         chosen += ",normal_map=true";
     }
     if drawn_materials(reader.document, placed).any(|material| material.double_sided()) {

@@ -7,32 +7,34 @@ use super::layers::read_layers;
 use crate::scene::Layers;
 use crate::scene::sets::Material;
 
-/// The colour of a surface, and what it does with light.
+/// The colour of a surface, what it does with light, and the means of its textures, which the
+/// factors of glTF do not have yet.
 ///
 /// # Errors
 /// A value of an extension that is none.
 pub fn read_surface(
     reader: &mut Reader<'_>,
     material: &gltf::Material<'_>,
-) -> Result<(DVec3, Material), String> {
+) -> Result<(DVec3, Material, Means), String> {
     let own = material.pbr_metallic_roughness();
     let [red, green, blue, _] = own.base_color_factor().map(f64::from);
     let color = DVec3::new(red, green, blue);
-    let mut layers = read_layers(reader, material)?;
+    let layers = read_layers(reader, material)?;
     left_out(reader, material);
     let means = if material.unlit() { Means::default() } else { texture_means(reader, material)? };
-    layers.metallic *= means.metal;
-    let metal = layers.metallic;
-    let rough = f64::from(own.roughness_factor()).clamp(0.0, 1.0) * means.rough;
+    // Surfaces that are not glTF's have no textures of metal and roughness.
+    let metal = layers.metallic * means.metal;
+    let factor = f64::from(own.roughness_factor()).clamp(0.0, 1.0);
+    let rough = factor * means.rough;
     let strength = f64::from(material.emissive_strength().unwrap_or(1.0)).max(0.0);
-    let factor = DVec3::from_array(material.emissive_factor().map(f64::from));
-    let emission = factor * strength * means.emission;
+    let emission = DVec3::from_array(material.emissive_factor().map(f64::from)) * strength;
     if material.unlit() {
         if !reader.all_unlit && own.base_color_texture().is_some() {
             let what = "left out: textures of unlit materials beside lit ones";
             reader.notes.insert(what.to_owned());
         }
-        return Ok(unlit_surface(reader.all_unlit, color));
+        let (color, material) = unlit_surface(reader.all_unlit, color);
+        return Ok((color, material, means));
     }
     let share = layers.specular_color * layers.specular;
     let normal = (((layers.ior - 1.0) / (layers.ior + 1.0)).powi(2) * share).min(DVec3::ONE);
@@ -45,14 +47,37 @@ pub fn read_surface(
         Material {
             emission,
             shininess: (2.0 / (alpha * alpha) - 2.0).clamp(1.0, 2000.0),
-            ambient: DVec3::splat(means.open),
-            roughness: rough.max(0.045),
+            roughness: factor.max(0.045),
             diffuse: matt,
             specular,
             layers: Some(layers),
             ..Material::default()
         },
+        means,
     ))
+}
+
+impl Means {
+    /// Multiplies the factors of a material that a permutation has no textures for.
+    pub fn apply(&self, material: &mut Material, lacks: Lacks) {
+        if lacks.occlusion {
+            material.ambient *= self.open;
+        }
+        if lacks.maps {
+            material.emission *= self.emission;
+            material.roughness = (material.roughness * self.rough).max(0.045);
+            if let Some(layers) = &mut material.layers {
+                layers.metallic *= self.metal;
+            }
+        }
+    }
+}
+
+/// The textures that a permutation does not have: those of `material_maps` and of `occlusion=map`.
+#[derive(Debug, Clone, Copy)]
+pub struct Lacks {
+    pub maps: bool,
+    pub occlusion: bool,
 }
 
 /// A surface that shows its colour and nothing else. If all are unlit, no lamp shines. Beside others,
@@ -68,8 +93,9 @@ fn unlit_surface(all_unlit: bool, color: DVec3) -> (DVec3, Material) {
     )
 }
 
-/// Means of the textures that the programs do not have, as factors.
-struct Means {
+/// Means of textures, as factors for permutations that do not have them.
+#[derive(Debug, Clone, Copy)]
+pub struct Means {
     metal: f64,
     rough: f64,
     /// The share of the light from around that arrives.
@@ -88,17 +114,17 @@ impl Default for Means {
 fn texture_means(reader: &mut Reader<'_>, material: &gltf::Material<'_>) -> Result<Means, String> {
     let mut means = Means::default();
     if let Some(info) = material.pbr_metallic_roughness().metallic_roughness_texture() {
-        let mean = reader.texture_mean(&info.texture(), false, "metal and roughness")?;
+        let mean = reader.texture_mean(&info.texture(), false)?;
         (means.rough, means.metal) = (mean.y, mean.z);
     }
     if let Some(occlusion) = material.occlusion_texture() {
-        let mean = reader.texture_mean(&occlusion.texture(), false, "occlusion")?;
+        let mean = reader.texture_mean(&occlusion.texture(), false)?;
         let strength = f64::from(occlusion.strength()).clamp(0.0, 1.0);
         means.open = 1.0 + strength * (mean.x - 1.0);
     }
     // Without a factor nothing is emitted, whatever the texture is.
     if let Some(info) = material.emissive_texture() {
-        means.emission = reader.texture_mean(&info.texture(), true, "emission")?;
+        means.emission = reader.texture_mean(&info.texture(), true)?;
     }
     Ok(means)
 }

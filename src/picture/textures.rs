@@ -3,6 +3,8 @@
 
 use std::sync::Arc;
 
+use glam::DVec4;
+
 use super::Surroundings;
 use super::samples::{columns, fence};
 use super::values::Values;
@@ -11,7 +13,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::eval::{half_from, half_to};
 use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
 use crate::scene::sets::{Map, Maps};
-use crate::scene::{CubeMap, FACES, Sky, bricks, prefilter};
+use crate::scene::{CubeMap, FACES, Sky, blank_texel, brick_materials, bricks, prefilter};
 
 /// What earlier passes have drawn.
 #[derive(Default)]
@@ -101,7 +103,10 @@ impl<'a> Library<'a> {
                 profile.map(|profile| color_textures(vec![profile.map()]))
             }
             "ltc_table" => Some(vec![table_texture(LTC)]),
-            _ => self.left.texture(name),
+            _ => match blank_texel(name) {
+                Some(blank) => Some(self.material_map(name, blank)),
+                None => self.left.texture(name),
+            },
         };
         let missing = || format!("no pass before has drawn what `{name}` reads");
         found.ok_or_else(|| vec![Diagnostic::error(codes::EXECUTOR_FAILED, missing())])
@@ -122,6 +127,16 @@ impl<'a> Library<'a> {
         (0..LEVELS)
             .map(|index| surroundings.with_sky(|sky| cube_texture(&level(sky, index))))
             .collect()
+    }
+
+    /// A texture of a material, whose texels are all the same if the material has none.
+    fn material_map(&mut self, name: &str, blank: DVec4) -> Vec<Texture> {
+        let found = match &self.values.scene.own_maps {
+            Some(maps) => maps.material.get(name).cloned(),
+            None => brick_materials().remove(name),
+        };
+        let map = found.unwrap_or_else(|| Map { width: 1, height: 1, texels: vec![blank] });
+        color_textures(map.levels())
     }
 
     fn maps(&mut self) -> &Maps {

@@ -33,6 +33,8 @@ pub struct Layers {
     pub iridescence_ior: f64,
     /// Thickness of the film, nanometres.
     pub iridescence_thickness: f64,
+    /// The same where a texture has none, nanometres.
+    pub iridescence_least: f64,
     /// Share of the light that passes the surface, [0, 1].
     pub transmission: f64,
     /// How far light goes through the body, scene units.
@@ -66,6 +68,7 @@ impl Default for Layers {
             iridescence: 0.0,
             iridescence_ior: 1.3,
             iridescence_thickness: 400.0,
+            iridescence_least: 100.0,
             transmission: 0.0,
             thickness: 0.0,
             attenuation_color: DVec3::ONE,
@@ -96,6 +99,7 @@ impl Layers {
             "iridescence" => vec![self.iridescence],
             "iridescence_ior" => vec![self.iridescence_ior],
             "iridescence_thickness" => vec![self.iridescence_thickness],
+            "iridescence_least" => vec![self.iridescence_least],
             "transmission" => vec![self.transmission],
             "thickness" => vec![self.thickness],
             "attenuation_color" => vector(self.attenuation_color),

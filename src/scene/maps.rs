@@ -1,5 +1,6 @@
 //! Textures made by formulas.
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3, DVec4};
@@ -15,7 +16,8 @@ pub struct Map {
     pub texels: Vec<DVec4>,
 }
 
-/// The textures that the axes `base_map`, `normal_map`, `occlusion` and `lightmap` read.
+/// The textures that the axes `base_map`, `normal_map`, `occlusion`, `lightmap` and `material_maps`
+/// read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Maps {
     /// Colours.
@@ -26,6 +28,26 @@ pub struct Maps {
     pub occlusion: Map,
     /// Light that was computed beforehand.
     pub light: Map,
+    /// Those of `material_maps`, by the names of their bindings. The others are blank.
+    pub material: BTreeMap<&'static str, Map>,
+}
+
+/// The textures of `material_maps`, and their texels where a material has none.
+const BLANK: [(&str, DVec4); 9] = [
+    ("anisotropy_map", DVec4::new(1.0, 0.5, 1.0, 1.0)),
+    ("clearcoat_map", DVec4::ONE),
+    ("diffuse_transmission_map", DVec4::ONE),
+    ("emission_map", DVec4::ONE),
+    ("iridescence_map", DVec4::ONE),
+    ("metallic_roughness_map", DVec4::ONE),
+    ("sheen_map", DVec4::ONE),
+    ("specular_map", DVec4::ONE),
+    ("transmission_map", DVec4::ONE),
+];
+
+/// The texel of a texture of `material_maps` that changes nothing; `None` for other names.
+pub fn blank_texel(name: &str) -> Option<DVec4> {
+    BLANK.iter().find(|(known, _)| *known == name).map(|(_, texel)| *texel)
 }
 
 impl Map {
@@ -93,7 +115,31 @@ pub fn bricks() -> Maps {
             let glow = (-(at - 0.5).length_squared() * 6.0).exp();
             (DVec3::new(1.0, 0.92, 0.8) * (0.1 + 0.9 * glow)).extend(1.0)
         }),
+        material: BTreeMap::new(),
     }
+}
+
+/// The textures of `material_maps` for [`bricks`]: some bricks are polished metal, some glow, all
+/// have a coat, and the joints are rough.
+pub fn brick_materials() -> BTreeMap<&'static str, Map> {
+    let own = |texel: fn(Brick) -> DVec3| Map::of(256, move |at| texel(Brick::at(at)).extend(1.0));
+    BTreeMap::from([
+        (
+            "metallic_roughness_map",
+            own(|brick| {
+                let metal = if brick.tone > 0.55 { brick.height } else { 0.0 };
+                DVec3::new(1.0, 1.0 - brick.height * (0.45 + 0.4 * brick.tone), metal)
+            }),
+        ),
+        (
+            "emission_map",
+            own(|brick| {
+                let glow = if brick.tone < 0.2 { brick.height } else { 0.0 };
+                DVec3::splat(glow)
+            }),
+        ),
+        ("clearcoat_map", own(|brick| DVec3::new(brick.height, 1.0, 1.0))),
+    ])
 }
 
 /// How open the wall is to light at a place: the mean over directions of the cosine-weighted part of

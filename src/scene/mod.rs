@@ -29,7 +29,7 @@ pub use environment::{ENVIRONMENTS, Environment, environment};
 pub use frustum::{Bounds, cascade_splits, corners, depth_range, fit};
 pub use kernel::gaussian;
 pub use layers::Layers;
-pub use maps::{bricks, linear_from_srgb};
+pub use maps::{blank_texel, brick_materials, bricks, linear_from_srgb};
 pub use mesh::{MeshError, UNUSED_NORMAL, face_normals, normal_matrix, smooth_normals};
 pub use probe::{CubeMap, directions, irradiance_sh9, prefilter, sh9_basis, sh9_project};
 pub use profiles::{between_middles, luminaire, window};

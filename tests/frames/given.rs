@@ -193,6 +193,10 @@ fn color_value(name: &str, value: impl Fn(usize) -> f32, index: usize, channel: 
         ("surface_normal", 0 | 1) => 0.5 + 0.03125 * value(index + 5 * channel),
         // Matrices are those of wide lobes, with a positive determinant.
         ("ltc_table", 1 | 2) => 0.25 * value(index) - 0.1875,
+        // Directions are far from none, and surfaces are rough, so that errors stay small.
+        ("anisotropy_map", 0) | ("metallic_roughness_map" | "clearcoat_map", 1) => {
+            0.75 + 0.25 * value(index)
+        }
         _ => value(index) + channel as f32 / 16.0,
     }
 }

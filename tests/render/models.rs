@@ -1,6 +1,7 @@
 //! Models of users. The trials write binary glTF files, and `lamplight render --model` draws them.
 
 mod layers;
+mod maps;
 mod wrong;
 
 use std::fs;
@@ -26,7 +27,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("render/model/means_of_textures", means_of_textures),
         Trial::test("render/model/choices_of_the_user", choices_of_the_user),
     ];
-    drawn.into_iter().chain(layers::trials()).chain(wrong::trials()).collect()
+    drawn.into_iter().chain(layers::trials()).chain(maps::trials()).chain(wrong::trials()).collect()
 }
 
 /// A binary glTF file.
@@ -338,15 +339,16 @@ fn lamp_and_camera() -> Result<(), Failed> {
 /// A note names the parts of the file that are not drawn.
 fn what_is_left_out_is_said() -> Result<(), Failed> {
     let (mut document, buffer) = square(&[image([WHITE; 4])?]);
-    document["materials"] = json!([{ "emissiveTexture": { "index": 0 }, "alphaMode": "BLEND" }]);
+    document["materials"] =
+        json!([{ "emissiveTexture": { "index": 0, "texCoord": 1 }, "alphaMode": "BLEND" }]);
     let (_, said) = drawn(&glb(&document, &buffer), &[])?;
-    for part in ["note: `model.glb`: ", "textures of emission", "transparency"] {
+    for part in ["note: `model.glb`: ", "other coordinates", "transparency"] {
         demand(said.contains(part), || format!("expected `{part}` in `{said}`"))?;
     }
     Ok(())
 }
 
-/// Textures that the programs do not have count with their mean. So a half that shines and a half
+/// Textures that the permutation does not have count with their mean. So a half that shines and a half
 /// that does not give the picture of a factor of 0.5, and the same for metal, roughness and
 /// occlusion.
 fn means_of_textures() -> Result<(), Failed> {
@@ -362,15 +364,16 @@ fn means_of_textures() -> Result<(), Failed> {
     factors["emissiveFactor"] = json!([0.1, 0.2, 0.0]);
     factors["pbrMetallicRoughness"]["metallicFactor"] = json!(0.0);
     factors["pbrMetallicRoughness"]["roughnessFactor"] = json!(128.0 / 255.0);
+    let without = ["--set", "material_maps=false,occlusion=none,ambient=hemisphere"];
+    let arguments = [BEFORE, without].concat();
     let mut taken = |material: &Value| {
         document["materials"] = json!([material]);
-        drawn(&glb(&document, &buffer), &BEFORE)
+        drawn(&glb(&document, &buffer), &arguments)
     };
     let ((one, said), (other, _)) = (taken(&textured)?, taken(&factors)?);
-    for what in ["emission", "metal and roughness"] {
-        let note = format!("textures of {what} count with their mean");
-        demand(said.contains(&note), || format!("expected `{note}` in `{said}`"))?;
-    }
+    let note = "count with their mean, and those of extensions not at all: emission_map, \
+        metallic_roughness_map";
+    demand(said.contains(note), || format!("expected `{note}` in `{said}`"))?;
     let (found, expected) = (pixel(&one, 0.5, 0.5), pixel(&other, 0.5, 0.5));
     demand(is_near(found, expected, 1), || format!("found {found:?}, by factors {expected:?}"))?;
     textured["occlusionTexture"] = json!({ "index": 2 });

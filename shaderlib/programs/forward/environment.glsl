@@ -100,7 +100,7 @@ Around light_around(Surface surface, vec3 scattered) {
 #endif
 #if CLEARCOAT
     vec3 mirrored = reflect(-surface.view, surface.layered.coat_normal);
-    around.coated = seen_light(surface, mirrored, layers.clearcoat_roughness);
+    around.coated = seen_light(surface, mirrored, surface.layered.own.clearcoat_roughness);
 #endif
 #if TRANSMISSION
     around.through = light_through(surface);

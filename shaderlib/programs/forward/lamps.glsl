@@ -216,7 +216,7 @@ vec3 layered_lamp(Surface surface, Light light, LightSample arriving, uint i) {
     Layered at = surface.layered;
     Seen base = seen_lamp(areas.items[i], n, view, p, light.position, at.roughness);
 #if CLEARCOAT
-    Seen coat = seen_lamp(areas.items[i], at.coat_normal, at.view, p, light.position, layers.clearcoat_roughness);
+    Seen coat = seen_lamp(areas.items[i], at.coat_normal, at.view, p, light.position, at.own.clearcoat_roughness);
 #else
     Seen coat = base;
 #endif

@@ -152,7 +152,8 @@ fn make_plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure
         return permutation_plan(programs, arguments);
     };
     let plan = model::model_plan(programs, arguments, &own)?;
-    Ok(Plan { model: Some(Arc::new(own.scene)), ..plan })
+    let scene = model::model_scene(own, &plan)?;
+    Ok(Plan { model: Some(Arc::new(scene)), ..plan })
 }
 
 /// Writes the picture where it is asked for.

@@ -8,9 +8,10 @@ use super::super::input::axis_value;
 use super::super::terminal;
 use super::{Arguments, Failure};
 use crate::limits::MODEL_BYTES;
-use crate::model::{self, Model, View};
+use crate::model::{self, Lacks, Model, View};
 use crate::picture::Plan;
 use crate::picture::frame::Programs;
+use crate::scene::sets::Scene;
 
 /// From where the model is seen, as `--camera` says it.
 pub fn parse_view(text: &str) -> Result<View, String> {
@@ -63,8 +64,12 @@ pub fn model_plan(
         .collect();
     let is_layer = |value: &str| model.layers.iter().any(|layer| layer == value);
     // What the user chose may exclude what the model would have. The kept part shrinks by steps.
-    let kept: [&dyn Fn(&str) -> bool; 3] =
-        [&|_| true, &|value| value != "dispersion=true", &|value| !is_layer(value)];
+    let kept: [&dyn Fn(&str) -> bool; 4] = [
+        &|_| true,
+        &|value| value != "dispersion=true",
+        &|value| !matches!(value, "dispersion=true" | "occlusion=map"),
+        &|value| !is_layer(value),
+    ];
     for keeps in kept {
         let (set, left_out): (Vec<&str>, Vec<&str>) = own.iter().partition(|value| keeps(value));
         let set = set.into_iter().filter_map(|value| axis_value(value).ok());
@@ -78,6 +83,18 @@ pub fn model_plan(
     let plan = super::permutation_plan(programs, arguments)?;
     tell_left_out(&own)?;
     Ok(plan)
+}
+
+/// The scene of a model for a permutation, and a word about textures that this does not have.
+pub fn model_scene(model: Model, plan: &Plan) -> Result<Scene, Failure> {
+    let key = plan.last().map_or("", |pass| pass.key.as_str());
+    let has = |setting: &str| key.split(',').any(|own| own == setting);
+    let lacks = Lacks { maps: !has("material_maps"), occlusion: !has("occlusion=map") };
+    let (scene, note) = model.scene_of(lacks);
+    if let Some(note) = note {
+        writeln!(terminal::stderr(), "note: {note}")?;
+    }
+    Ok(scene)
 }
 
 /// Says on standard error which values of axes the model asks for and the permutation does not have.

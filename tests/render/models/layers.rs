@@ -134,12 +134,12 @@ fn unlit_beside_lit() -> Result<(), Failed> {
     })
 }
 
-/// Textures of extensions and unknown extensions are named.
+/// The texture of the coat's normals and unknown extensions are named.
 fn what_is_left_out_is_said() -> Result<(), Failed> {
     let extensions = json!({ "KHR_materials_clearcoat":
-        { "clearcoatFactor": 1.0, "clearcoatTexture": { "index": 0 } }, "EXT_materials_fur": {} });
+        { "clearcoatFactor": 1.0, "clearcoatNormalTexture": { "index": 0 } }, "EXT_materials_fur": {} });
     let (_, said) = drawn(&surface(&extensions), &[])?;
-    for part in ["textures of KHR_materials_clearcoat", "EXT_materials_fur"] {
+    for part in ["clearcoatNormalTexture of KHR_materials_clearcoat", "EXT_materials_fur"] {
         demand(said.contains(part), || format!("expected `{part}` in `{said}`"))?;
     }
     Ok(())

@@ -1,0 +1,142 @@
+//! Which channels of a material's images are in which textures of `forward`.
+
+use glam::DVec4;
+use serde_json::Value;
+
+use super::Reader;
+
+/// Channels of an image in a texture, where they keep their places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Part {
+    /// The name of the texture's binding.
+    pub map: &'static str,
+    /// The number of the image in the document.
+    pub image: usize,
+    pub channels: &'static [usize],
+    /// Whether the image is coded as sRGB.
+    pub is_color: bool,
+    /// The bits of the share that the image has over 1.
+    strength: u32,
+}
+
+const RGB: &[usize] = &[0, 1, 2];
+
+/// A texture of an extension that the parser does not know: the extension, its field, the name of the
+/// binding, the channels, and whether it is a colour.
+type Field = (&'static str, &'static str, &'static str, &'static [usize], bool);
+
+const FIELDS: [Field; 9] = [
+    ("KHR_materials_anisotropy", "anisotropyTexture", "anisotropy_map", RGB, false),
+    ("KHR_materials_clearcoat", "clearcoatTexture", "clearcoat_map", &[0], false),
+    ("KHR_materials_clearcoat", "clearcoatRoughnessTexture", "clearcoat_map", &[1], false),
+    (
+        "KHR_materials_diffuse_transmission",
+        "diffuseTransmissionColorTexture",
+        "diffuse_transmission_map",
+        RGB,
+        true,
+    ),
+    (
+        "KHR_materials_diffuse_transmission",
+        "diffuseTransmissionTexture",
+        "diffuse_transmission_map",
+        &[3],
+        false,
+    ),
+    ("KHR_materials_iridescence", "iridescenceTexture", "iridescence_map", &[0], false),
+    ("KHR_materials_iridescence", "iridescenceThicknessTexture", "iridescence_map", &[1], false),
+    ("KHR_materials_sheen", "sheenColorTexture", "sheen_map", RGB, true),
+    ("KHR_materials_sheen", "sheenRoughnessTexture", "sheen_map", &[3], false),
+];
+
+/// Whether a field of an extension is a texture that is drawn.
+pub fn is_drawn(extension: &str, field: &str) -> bool {
+    FIELDS.iter().any(|known| (known.0, known.1) == (extension, field))
+}
+
+impl Part {
+    fn new(map: &'static str, image: usize, channels: &'static [usize], is_color: bool) -> Self {
+        Self { map, image, channels, is_color, strength: 1_f32.to_bits() }
+    }
+
+    /// A texel, as far as it counts.
+    pub fn weakened(&self, texel: DVec4) -> DVec4 {
+        DVec4::ONE.lerp(texel, f32::from_bits(self.strength).clamp(0.0, 1.0).into())
+    }
+}
+
+/// The parts of all textures of a material.
+///
+/// # Errors
+/// A texture that is not there, with the place that names it.
+pub fn material_parts(
+    reader: &mut Reader<'_>,
+    material: &gltf::Material<'_>,
+) -> Result<Vec<Part>, String> {
+    let mut parts = Vec::new();
+    let own = material.pbr_metallic_roughness();
+    let mut add = |set: u32, texture: gltf::Texture<'_>, map, channels, is_color| {
+        if set != 0 {
+            let note =
+                "all textures have the first coordinates, and other coordinates are left out";
+            reader.notes.insert(note.to_owned());
+        }
+        parts.push(Part::new(map, texture.source().index(), channels, is_color));
+    };
+    if let Some(info) = own.base_color_texture() {
+        add(info.tex_coord(), info.texture(), "base_map", RGB, true);
+    }
+    // What is unlit has no other textures.
+    if material.unlit() {
+        return Ok(parts);
+    }
+    if let Some(info) = material.normal_texture() {
+        add(info.tex_coord(), info.texture(), "normal_map", RGB, false);
+    }
+    if let Some(info) = own.metallic_roughness_texture() {
+        add(info.tex_coord(), info.texture(), "metallic_roughness_map", &[1, 2], false);
+    }
+    if let Some(info) = material.emissive_texture() {
+        add(info.tex_coord(), info.texture(), "emission_map", RGB, true);
+    }
+    if let Some(specular) = material.specular() {
+        if let Some(info) = specular.specular_texture() {
+            add(info.tex_coord(), info.texture(), "specular_map", &[3], false);
+        }
+        if let Some(info) = specular.specular_color_texture() {
+            add(info.tex_coord(), info.texture(), "specular_map", RGB, true);
+        }
+    }
+    if let Some(info) = material.transmission().and_then(|own| own.transmission_texture()) {
+        add(info.tex_coord(), info.texture(), "transmission_map", &[0], false);
+    }
+    if let Some(info) = material.volume().and_then(|own| own.thickness_texture()) {
+        add(info.tex_coord(), info.texture(), "transmission_map", &[1], false);
+    }
+    if let Some(info) = material.occlusion_texture() {
+        add(info.tex_coord(), info.texture(), "occlusion_map", &[0], false);
+        if let Some(part) = parts.last_mut() {
+            part.strength = info.strength().to_bits();
+        }
+    }
+    for field in &FIELDS {
+        parts.extend(extension_part(reader, material, field)?);
+    }
+    Ok(parts)
+}
+
+/// The texture of an extension that the parser does not know, if the material has it.
+fn extension_part(
+    reader: &Reader<'_>,
+    material: &gltf::Material<'_>,
+    (extension, field, map, channels, is_color): &Field,
+) -> Result<Option<Part>, String> {
+    let value = material.extension_value(extension).and_then(|own| own.get(*field));
+    let (Some(value), Some(index)) = (value, material.index()) else { return Ok(None) };
+    let place = format!("materials[{index}].extensions.{extension}.{field}");
+    let number = value.get("index").and_then(Value::as_u64);
+    let number = number.ok_or_else(|| format!("{place}: expected a texture, found {value}"))?;
+    let texture = usize::try_from(number).ok().and_then(|at| reader.document.textures().nth(at));
+    let texture = texture.ok_or_else(|| format!("{place}: there is no texture {number}"))?;
+    Ok(Some(Part::new(map, texture.source().index(), channels, *is_color)))
+}
