@@ -17,7 +17,7 @@
 //! ```
 //!
 //! `look` says what to look for in the picture. The tables `light`, `area`, `material`, `layers`,
-//! `surroundings`, `haze`, `caster`, `moments`, `display`, `march` and `lobe` have the numbers that the source
+//! `surroundings`, `haze`, `caster`, `moments`, `display`, `march`, `horizon` and `lobe` have the numbers that the source
 //! publishes, named after the fields of the uniform they go to. `depth_pass` has what the shadow map is drawn with:
 //! `polygon_offset`, `cull_front`, and of a spot light the whole angle `fov` in degrees and the
 //! planes `near` and `far` in scene units. `open` names the numbers that the source leaves to its
@@ -158,6 +158,8 @@ struct Entry {
     #[serde(default)]
     march: Group,
     #[serde(default)]
+    horizon: Group,
+    #[serde(default)]
     lobe: Group,
     #[serde(default)]
     depth_pass: Group,
@@ -236,6 +238,7 @@ impl Checker<'_> {
             ("moments", entry.moments),
             ("display", entry.display),
             ("march", entry.march),
+            ("horizon", entry.horizon),
             ("lobe", entry.lobe),
             ("depth_pass", entry.depth_pass),
         ];

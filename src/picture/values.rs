@@ -46,6 +46,7 @@ const GROUPS: &[(&str, &str)] = &[
     ("display", "display"),
     ("lobe", "lobe"),
     ("march", "march"),
+    ("horizon", "horizon"),
 ];
 
 /// The path of a uniform: `lamps.lights[2].color` is the field `color` of the third light in the

@@ -27,6 +27,7 @@ const STRUCTURES: &[(&str, &str, &[&str])] = &[
     ("Moments", "moments", &[]),
     ("Display", "display", &[]),
     ("March", "march", &[]),
+    ("Horizon", "horizon", &[]),
     ("Lobe", "lobe", &["world_from_clip"]),
 ];
 
