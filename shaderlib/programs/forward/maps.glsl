@@ -7,9 +7,9 @@
 #include "../../math/safe.glsl"
 #include "../layers.glsl"
 
-layout(set = 1, binding = 12) uniform texture2D metallic_roughness_map;
-layout(set = 1, binding = 13) uniform texture2D emission_map;
-layout(set = 1, binding = 14) uniform texture2D specular_map;
+layout(set = 2, binding = 7) uniform texture2D metallic_roughness_map;
+layout(set = 2, binding = 8) uniform texture2D emission_map;
+layout(set = 2, binding = 9) uniform texture2D specular_map;
 #if CLEARCOAT
 layout(set = 2, binding = 1) uniform texture2D clearcoat_map;
 #endif

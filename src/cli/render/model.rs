@@ -64,10 +64,11 @@ pub fn model_plan(
         .collect();
     let is_layer = |value: &str| model.layers.iter().any(|layer| layer == value);
     // What the user chose may exclude what the model would have. The kept part shrinks by steps.
-    let kept: [&dyn Fn(&str) -> bool; 4] = [
+    let kept: [&dyn Fn(&str) -> bool; 5] = [
         &|_| true,
         &|value| value != "dispersion=true",
         &|value| !matches!(value, "dispersion=true" | "occlusion=map"),
+        &|value| !matches!(value, "dispersion=true" | "occlusion=map" | "material_maps=true"),
         &|value| !is_layer(value),
     ];
     for keeps in kept {
