@@ -93,25 +93,8 @@ pub fn material_parts(
     if let Some(info) = material.normal_texture() {
         add(info.tex_coord(), info.texture(), "normal_map", RGB, false);
     }
-    if let Some(info) = own.metallic_roughness_texture() {
-        add(info.tex_coord(), info.texture(), "metallic_roughness_map", &[1, 2], false);
-    }
-    if let Some(info) = material.emissive_texture() {
-        add(info.tex_coord(), info.texture(), "emission_map", RGB, true);
-    }
-    if let Some(specular) = material.specular() {
-        if let Some(info) = specular.specular_texture() {
-            add(info.tex_coord(), info.texture(), "specular_map", &[3], false);
-        }
-        if let Some(info) = specular.specular_color_texture() {
-            add(info.tex_coord(), info.texture(), "specular_map", RGB, true);
-        }
-    }
-    if let Some(info) = material.transmission().and_then(|own| own.transmission_texture()) {
-        add(info.tex_coord(), info.texture(), "transmission_map", &[0], false);
-    }
-    if let Some(info) = material.volume().and_then(|own| own.thickness_texture()) {
-        add(info.tex_coord(), info.texture(), "transmission_map", &[1], false);
+    for (info, map, channels, is_color) in factor_textures(material) {
+        add(info.tex_coord(), info.texture(), map, channels, is_color);
     }
     if let Some(info) = material.occlusion_texture() {
         add(info.tex_coord(), info.texture(), "occlusion_map", &[0], false);
@@ -123,6 +106,29 @@ pub fn material_parts(
         parts.extend(extension_part(reader, material, field)?);
     }
     Ok(parts)
+}
+
+/// A texture of a factor, the name of the binding, the channels, and whether it is a colour.
+type FactorTexture<'d> = (gltf::texture::Info<'d>, &'static str, &'static [usize], bool);
+
+/// The textures that multiply factors, of those that the parser knows.
+fn factor_textures<'d>(material: &gltf::Material<'d>) -> Vec<FactorTexture<'d>> {
+    let own = material.pbr_metallic_roughness();
+    let (specular, volume) = (material.specular(), material.volume());
+    let transmission = material.transmission().and_then(|own| own.transmission_texture());
+    let weight = specular.as_ref().and_then(|own| own.specular_texture());
+    let tint = specular.as_ref().and_then(|own| own.specular_color_texture());
+    let found: [(_, _, &'static [usize], _); 6] = [
+        (own.metallic_roughness_texture(), "metallic_roughness_map", &[1, 2], false),
+        (material.emissive_texture(), "emission_map", RGB, true),
+        (weight, "specular_map", &[3], false),
+        (tint, "specular_map", RGB, true),
+        (transmission, "transmission_map", &[0], false),
+        (volume.and_then(|own| own.thickness_texture()), "transmission_map", &[1], false),
+    ];
+    let all = found.into_iter();
+    all.filter_map(|(info, map, channels, is_color)| Some((info?, map, channels, is_color)))
+        .collect()
 }
 
 /// The texture of an extension that the parser does not know, if the material has it.
