@@ -148,6 +148,11 @@ fn shown(
     let picture = lamplight::picture::render_plan(painter, &library().programs, &plan, &shot)
         .map_err(said)?;
     difference::reviewed(&picture, &preset.name, backend)?;
+    // WGSL promises no accuracy for the angles of `gtao`. `frames/shipped/gtao` compares whole frames.
+    if preset.program == "gtao" {
+        println!("{} on {backend}: its fragments are those of frames/shipped/gtao", preset.name);
+        return Ok(());
+    }
     let tally = recomputed(painter, &plan, language)?;
     println!("{} on {backend}: {tally}", preset.name);
     Ok(())
