@@ -192,6 +192,7 @@ impl Sources {
         let Stages { vertex, fragment } =
             stages.map_err(|problems| render(&self.programs.texts(), &problems, Form::Human))?;
         let fragment = fragment.ok_or("no fragment stage")?;
+        let key = self.space.key(point).to_string();
         let (mut buffers, mut fixtures) = (Buffers::new(), BTreeMap::new());
         for binding in vertex.reflection.bindings.iter().chain(&fragment.reflection.bindings) {
             let place = (binding.group, binding.binding);
@@ -200,16 +201,15 @@ impl Sources {
                     let bytes = pack_buffer(binding, &|path| Some(number(path)));
                     buffers.insert(place, bytes.map_err(|problem| problem.message)?);
                 }
-                _ => drop(
-                    fixtures
-                        .insert(place, Arc::new(fixture(binding.kind, &binding.name, &binding.ty))),
-                ),
+                _ => {
+                    let made = fixture(binding.kind, &binding.name, &binding.ty, &key);
+                    fixtures.insert(place, Arc::new(made));
+                }
             }
         }
         let drawn = match &self.bundle {
             None => [vertex.validated.clone(), fragment.validated.clone()],
             Some(bundle) => {
-                let key = self.space.key(point).to_string();
                 let stage = |entry| shipped(bundle, self.program, entry, &key);
                 [stage(vertex.entry)?, stage(fragment.entry)?]
             }

@@ -139,8 +139,9 @@ fn view_projection() -> DMat4 {
 /// Samplers of textures that are not filtered.
 const NEAREST: [&str; 2] = ["depth_sampler", "open_sampler"];
 
-/// A texture or a sampler for a binding. Colours vary smoothly, and depths have an edge.
-pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
+/// A texture or a sampler for a binding of a permutation. Colours vary smoothly, and depths have an
+/// edge.
+pub fn fixture(kind: BindingKind, name: &str, ty: &str, key: &str) -> Fixture {
     let sampler =
         |linear, compare| Fixture::Sampler(Sampler { compare, linear, address: Address::Clamp });
     match kind {
@@ -166,7 +167,8 @@ pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
                 }
             };
             let texels = (width * height * kind.layers()) as usize;
-            let own = move |index: usize, channel: usize| color_value(name, value, index, channel);
+            let given = Given::new(name, key);
+            let own = move |index: usize, channel: usize| given.color(value, index, channel);
             let channel =
                 |index: usize| (0..kind.channels()).map(move |channel| own(index, channel));
             Fixture::Texture(Texture {
@@ -179,24 +181,58 @@ pub fn fixture(kind: BindingKind, name: &str, ty: &str) -> Fixture {
     }
 }
 
-/// A channel of a texel; `value` varies smoothly with the index.
-fn color_value(name: &str, value: impl Fn(usize) -> f32, index: usize, channel: usize) -> f32 {
-    match (name, channel) {
-        // Moments are those of three depths, and vary little: four of them lose digits.
-        ("shadow_moments", _) => {
-            let factor = [1.0, 1.42667, 2.28, 3.83307][channel];
-            factor * (0.49 + 0.02 * value(index)).powi(channel as i32 + 1)
+/// What the colours of a texture are.
+#[derive(Clone, Copy)]
+enum Given {
+    Colors,
+    /// Four moments of the depth, which vary little, since a solution for four of them loses digits.
+    FourMoments,
+    /// Normals near that of the surface, so that the errors of their directions are small.
+    Normals,
+    /// Normals that vary by a sixteenth of that. The formulas of lamps with an area multiply the
+    /// errors of directions.
+    NearNormals,
+    /// Octahedral normals that vary as little.
+    NearOctahedral,
+    /// Matrices of wide lobes, with a positive determinant.
+    Lobes,
+    /// Directions that are far from none.
+    Directions,
+    /// Roughnesses, so large that errors stay small.
+    Roughnesses,
+}
+
+impl Given {
+    fn new(name: &str, key: &str) -> Self {
+        let has_area = key.contains("area=");
+        match name {
+            "shadow_moments" if key.contains("shadow=msm") => Self::FourMoments,
+            "normal_map" if has_area => Self::NearNormals,
+            "normal_map" => Self::Normals,
+            "surface_normal" if has_area => Self::NearOctahedral,
+            "ltc_table" => Self::Lobes,
+            "anisotropy_map" => Self::Directions,
+            "metallic_roughness_map" | "clearcoat_map" => Self::Roughnesses,
+            _ => Self::Colors,
         }
-        // Normals are near that of the surface, so that the errors of their directions are small.
-        ("normal_map", 0 | 1) => 0.484375 + 0.03125 * value(index + 5 * channel),
-        ("normal_map", _) => 0.96875,
-        ("surface_normal", 0 | 1) => 0.5 + 0.03125 * value(index + 5 * channel),
-        // Matrices are those of wide lobes, with a positive determinant.
-        ("ltc_table", 1 | 2) => 0.25 * value(index) - 0.1875,
-        // Directions are far from none, and surfaces are rough, so that errors stay small.
-        ("anisotropy_map", 0) | ("metallic_roughness_map" | "clearcoat_map", 1) => {
-            0.75 + 0.25 * value(index)
+    }
+
+    /// A channel of a texel; `value` varies smoothly with the index.
+    fn color(self, value: impl Fn(usize) -> f32, index: usize, channel: usize) -> f32 {
+        let turned = value(index + 5 * channel);
+        match (self, channel) {
+            // The moments of three depths.
+            (Self::FourMoments, _) => {
+                let factor = [1.0, 1.42667, 2.28, 3.83307][channel];
+                factor * (0.49 + 0.02 * value(index)).powi(channel as i32 + 1)
+            }
+            (Self::Normals, 0 | 1) => 0.25 + 0.5 * turned,
+            (Self::NearNormals, 0 | 1) => 0.484375 + 0.03125 * turned,
+            (Self::Normals | Self::NearNormals, _) => 0.96875,
+            (Self::NearOctahedral, 0 | 1) => 0.5 + 0.03125 * turned,
+            (Self::Lobes, 1 | 2) => 0.25 * value(index) - 0.1875,
+            (Self::Directions, 0) | (Self::Roughnesses, 1) => 0.75 + 0.25 * value(index),
+            _ => value(index) + channel as f32 / 16.0,
         }
-        _ => value(index) + channel as f32 / 16.0,
     }
 }

@@ -246,7 +246,7 @@ impl<'r> Ready<'r> {
                 let bytes = pack_buffer(binding, &numbers).map_err(|problem| problem.message)?;
                 buffers.insert(place, bytes);
             } else {
-                let made = fixture(binding.kind, &binding.name, &binding.ty);
+                let made = fixture(binding.kind, &binding.name, &binding.ty, "");
                 fixtures.insert(place, Arc::new(made));
             }
         }
