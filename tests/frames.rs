@@ -41,14 +41,9 @@ const STEP: usize = 29;
 /// The least number of fragments of a permutation that must be compared.
 const LEAST: usize = 200;
 /// The largest share of a permutation's fragments that may be open (see [`crate::fragments`]). What
-/// was in textures has wider bounds, so that more comparisons are within them. A tube is cut at the
-/// horizon, and its nearest point is found by comparisons too.
-pub fn most_open(program: &str, key: &str) -> f64 {
-    match program {
-        _ if key.contains("area=tube") => 0.04,
-        "deferred" => 0.03,
-        _ => 0.01,
-    }
+/// was in textures has wider bounds, so that more comparisons are within them.
+pub fn most_open(program: &str) -> f64 {
+    if program == "deferred" { 0.03 } else { 0.01 }
 }
 
 const BACKENDS: [&str; 2] = ["vulkan", "gl"];
@@ -90,7 +85,7 @@ fn run(
         let (mut total, mut failures) = (Tally::default(), Vec::new());
         for point in &points {
             let key = sources.space.key(point).to_string();
-            let most = most_open(program, &key);
+            let most = most_open(program);
             let scene = sources.scene(point);
             match scene.and_then(|scene| agrees(renderer.as_ref(), &scene, most)) {
                 Ok(tally) => total.add(&tally),

@@ -67,6 +67,6 @@ export function remember(
     const text = new URLSearchParams(given).toString();
     const hash = `#/${page}${path && `/${path}`}${text && `?${text}`}`;
     if (hash === location.hash) return;
-    history.replaceState(null, "", `${location.search}${hash}`);
+    history.replaceState(history.state, "", `${location.search}${hash}`);
     known = location.hash;
 }

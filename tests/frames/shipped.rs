@@ -239,7 +239,7 @@ impl Driver {
                 let text = format!("{} [{key}] compared {what}", self.name);
                 self.failures.push(text);
             }
-            Ok(tally) if tally.open as f64 > most_open(program, key) * tally.tried as f64 => {
+            Ok(tally) if tally.open as f64 > most_open(program) * tally.tried as f64 => {
                 let Tally { tried, open, .. } = tally;
                 let text = format!("{} [{key}] {open} of {tried} fragments are open", self.name);
                 self.failures.push(text);

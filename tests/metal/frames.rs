@@ -57,7 +57,7 @@ fn drawn(program: &'static str, language: Language) -> Result<(), String> {
             .collect::<Result<Vec<_>, _>>()?;
         let compiled = Compiled::new(stages.shipped).map_err(|missing| missing.reason)?;
         for ((scene, key), pair) in scenes.iter().zip(&keys).zip(pairs) {
-            match agrees(&compiled, pair, scene, most_open(program, key)) {
+            match agrees(&compiled, pair, scene, most_open(program)) {
                 Ok(tally) => total.add(&tally),
                 Err(error) => failures.push(format!("[{key}] {error}")),
             }

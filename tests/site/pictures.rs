@@ -40,7 +40,7 @@ pub fn pictures() -> Outcome {
         let mut page = opened.page(address)?;
         for preset in PRESETS {
             let canvas = format!("document.querySelector('canvas[data-preset={preset}]')");
-            page.evaluate(&format!("{canvas}.scrollIntoView()"), PATIENCE)?;
+            page.evaluate(&format!("{canvas}.scrollIntoView({{ block: 'center' }})"), PATIENCE)?;
             wait(&page, &format!("{canvas}?.dataset.drawn === '1'"))?;
             let pixels = text(&page, &format!("{canvas}.toDataURL('image/png')"))?;
             let name = format!("{preset} at {address}");
@@ -106,7 +106,7 @@ fn preview(page: &Page, device: &str) -> Outcome {
     page.evaluate(&format!("location.hash = '#/catalogue/{FUNCTION}'"), PATIENCE)?;
     let canvas = "document.querySelector('.sketch canvas')";
     wait(page, &format!("{canvas} !== null"))?;
-    page.evaluate(&format!("{canvas}.scrollIntoView()"), PATIENCE)?;
+    page.evaluate(&format!("{canvas}.scrollIntoView({{ block: 'center' }})"), PATIENCE)?;
     wait(page, &format!("{canvas}?.dataset.drawn !== undefined"))?;
     let pixels = text(page, &format!("{canvas}.toDataURL('image/png')"))?;
     let link = "(async () => {

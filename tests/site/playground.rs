@@ -117,7 +117,7 @@ fn kept(opened: &Opened, page: &Page) -> Outcome {
     wait(page, "location.hash.includes('state=')")?;
     let link = text(page, "location.hash")?;
     page.evaluate(
-        "localStorage.setItem('lamplight-playground', JSON.stringify({ at: '', project: {
+        "localStorage.setItem('lamplight-playground', JSON.stringify({ visit: '', project: {
             files: { 'own.wesl': '// my own', }, open: 'own.wesl', target: 'wgsl', expression: '1.0' } }))",
         PATIENCE,
     )?;

@@ -3,7 +3,15 @@ import { h } from "../dom";
 import { picture, show } from "../draw";
 import { latest } from "../parts/latest";
 
-const first = <T>(some: Set<T>): T | undefined => some.values().next().value;
+/** How far the middle of an element is from the middle of the window, in pixels. */
+function distance(element: Element): number {
+    const { top, bottom } = element.getBoundingClientRect();
+    return Math.abs((top + bottom - innerHeight) / 2);
+}
+
+/** What the user most likely looks at. */
+const nearest = (some: Set<HTMLCanvasElement>): HTMLCanvasElement | undefined =>
+    [...some].sort((a, b) => distance(a) - distance(b))[0];
 
 /** Every published example, drawn where it is seen. */
 export async function page(into: HTMLElement) {
@@ -17,10 +25,10 @@ export async function page(into: HTMLElement) {
     into.replaceChildren(h("h1", {}, "Gallery"),
         h("p", {}, "The examples that the library’s functions were published with, drawn by your browser."),
         h("div", { class: "cards" }, ...cards));
-    // One after another, and only what is still in view when its turn comes.
+    // One after another, from the middle of the window outwards, and only what is still in view.
     const waiting = new Set<HTMLCanvasElement>();
     const draw = latest(async () => {
-        for (let canvas = first(waiting); canvas; canvas = first(waiting)) {
+        for (let canvas = nearest(waiting); canvas; canvas = nearest(waiting)) {
             waiting.delete(canvas);
             seen.unobserve(canvas);
             try {

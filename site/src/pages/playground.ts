@@ -67,8 +67,6 @@ export async function page(into: HTMLElement) {
     });
     async function link() {
         remember("playground", "", { state: await linked(state) });
-        // What is kept belongs to the new address.
-        save();
     }
     function mark(found: Diagnostic[]) {
         const length = editor.state.doc.length;

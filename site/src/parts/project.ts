@@ -58,31 +58,42 @@ function sound(found: unknown): Project {
     return { files, open, target: text("target"), expression: text("expression"), look };
 }
 
-function parsed(text: string | null): { project: Project; at: string } | undefined {
+function parsed(text: string | null): { project: Project; visit: string } | undefined {
     try {
         const found = JSON.parse(text ?? "");
-        return { project: sound(found.project), at: String(found.at) };
+        return { project: sound(found.project), visit: String(found.visit) };
     } catch {
         return undefined;
     }
 }
 
-/** Keeps a project with the address that it belongs to. False if the browser has no room. */
+/** The visit that the present entry of the browser's history belongs to. A reload goes on with it,
+ * even one that began before the address followed what was typed. A link begins another. */
+function visit(): string {
+    const known: unknown = history.state?.visit;
+    if (typeof known === "string") return known;
+    // `crypto.randomUUID` is only there in secure contexts.
+    const made = `${Date.now()}-${Math.random()}`;
+    history.replaceState({ visit: made }, "");
+    return made;
+}
+
+/** Keeps a project with the visit that it belongs to. False if the browser has no room. */
 export function keep(project: Project): boolean {
     try {
-        localStorage.setItem(KEPT, JSON.stringify({ project, at: location.hash }));
+        localStorage.setItem(KEPT, JSON.stringify({ project, visit: visit() }));
         return true;
     } catch {
         return false;
     }
 }
 
-/** The project of the link. If that was typed into since, what was typed; without a link, what was
- * typed last. */
+/** The project of the link. If that was typed into in this visit, what was typed; without a link, what
+ * was typed last. */
 export async function opened(link: string | null): Promise<Project> {
     const text = localStorage.getItem(KEPT);
     const kept = parsed(text);
-    if (kept && (!link || kept.at === location.hash)) return kept.project;
+    if (kept && (!link || kept.visit === visit())) return kept.project;
     if (!link) return structuredClone(FIRST);
     try {
         const project = sound(JSON.parse(await unpacked(link)));
