@@ -10,6 +10,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("eval/machine/coverage", coverage),
         Trial::test("eval/machine/places", places),
         Trial::test("eval/machine/bounds", bounds),
+        Trial::test("eval/machine/powers_near_zero", powers_near_zero),
         Trial::test("eval/machine/glsl", glsl),
         Trial::test("eval/machine/refusals", refusals),
         Trial::test("eval/machine/loop_trips", loop_trips),
@@ -103,6 +104,39 @@ fn bounds() -> Result<(), Failed> {
     let g = program.function("g").ok_or("g")?;
     let sum = machine.call(g, &[Bounded::from_f64(0.5), Bounded::from_f64(0.25)])?[0];
     assert_eq!((sum.value(), sum.error()), (0.75, 0.0));
+    Ok(())
+}
+
+/// Powers of bases with an error as large as themselves have a finite bound, and every base within
+/// the error gives a power within it, computed as drivers do.
+fn powers_near_zero() -> Result<(), Failed> {
+    let program = program("fn f(x: f32, s: f32) -> f32 { return pow(x, s); }")?;
+    let mut machine = Machine::<Bounded>::new(&program)?;
+    let f = program.function("f").ok_or("f")?;
+    let mut state = 1_u32;
+    let mut share = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(state >> 8) / f64::from(1 << 24)
+    };
+    for _ in 0..2000 {
+        let base = (-40.0 * share()).exp2();
+        let error = base * (4.0 * share() - 2.0).exp2();
+        let exponent = 0.05 + 8.0 * share();
+        let given = [Bounded::with_error(base, error), Bounded::from_f64(exponent)];
+        let bound = machine.call(f, &given)?[0];
+        assert!(bound.error().is_finite(), "pow({base:e} +- {error:e}, {exponent})");
+        for part in [0.0, 0.001, share(), share(), 0.999, 1.0] {
+            let least = (base - error).max(0.0);
+            let x = (least + (base + error - least) * part) as f32;
+            let found = f64::from((exponent as f32 * x.log2()).exp2());
+            assert!(
+                (found - bound.value()).abs() <= bound.error(),
+                "pow({x:e}, {exponent}) is {found:e}, {:e} +- {:e}",
+                bound.value(),
+                bound.error()
+            );
+        }
+    }
     Ok(())
 }
 

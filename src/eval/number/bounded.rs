@@ -197,10 +197,30 @@ impl Bounded {
             times(y.value, log_error) + times(log, y.error) + exponent.abs() * unit;
         let relative = (exponent_error * std::f64::consts::LN_2).exp_m1()
             + (3.0 + 2.0 * exponent.abs()) * unit;
-        Self::new(
-            value,
-            times(value, relative) + if value < f64::from(f32::MIN_POSITIVE) { value } else { 0.0 },
-        )
+        let error =
+            times(value, relative) + if value < f64::from(f32::MIN_POSITIVE) { value } else { 0.0 };
+        // The slope says enough where the base is almost exact.
+        let is_coarse = x.error > x.value / 64.0 && y.value > y.error;
+        Self::new(value, if is_coarse { Self::raised_range(x, y, value) } else { error })
+    }
+
+    /// The error of a power with a positive exponent, by its monotony: it is between the powers of the
+    /// least and the largest base.
+    ///
+    /// With `t` for `y log2 x`, the rounding of a smaller power is at most that of the largest: its
+    /// parts grow as `2^t` and `|t| 2^t` do, and of the second the maximum below 0 is at
+    /// `t = -1/ln2`, so that `span` stands for `|t|`.
+    fn raised_range(x: Self, y: Self, value: f64) -> f64 {
+        let unit = f64::from(f32::EPSILON);
+        let least = (x.value - x.error).max(0.0).powf(y.value);
+        let exponent = y.value * (x.value + x.error).log2();
+        let (largest, span) = (exponent.exp2(), exponent.abs().max(std::f64::consts::LOG2_E));
+        let exponent_error =
+            y.value * (-21f64).exp2() + 4.0 * span * unit + span * y.error / y.value;
+        let relative =
+            (exponent_error * std::f64::consts::LN_2).exp_m1() + (3.0 + 2.0 * span) * unit;
+        let farthest = (value - least).max(largest - value);
+        farthest + largest * relative + f64::from(f32::MIN_POSITIVE)
     }
 
     fn remainder(a: Self, b: Self, doubt: &mut bool) -> Self {
