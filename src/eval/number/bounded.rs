@@ -199,8 +199,8 @@ impl Bounded {
             + (3.0 + 2.0 * exponent.abs()) * unit;
         let error =
             times(value, relative) + if value < f64::from(f32::MIN_POSITIVE) { value } else { 0.0 };
-        // The slope says enough where the base is almost exact.
-        let is_coarse = x.error > x.value / 64.0 && y.value > y.error;
+        // Where the base is almost exact, the slope says enough: its change is below the rounding.
+        let is_coarse = x.error > x.value / 4096.0 && y.value > y.error;
         Self::new(value, if is_coarse { Self::raised_range(x, y, value) } else { error })
     }
 
