@@ -102,11 +102,14 @@ pub fn library_figures(
                 let message = format!("`{name}` in `{file}` {reason}");
                 Err(vec![Diagnostic::error(codes::DATA_SYNTAX, message)])
             };
-            if !module.items.iter().any(|item| item.name == name) {
+            let is_function =
+                |item: &super::Item| item.name == name && item.kind == super::Kind::Function;
+            if !module.items.iter().any(is_function) {
                 return refused("is not a function of the module".to_owned());
             }
             let is_drawn = !figure.kind.is_empty() && !figure.value.is_empty();
-            if is_drawn == figure.none.is_some() {
+            let is_empty = figure.kind.is_empty() && figure.value.is_empty();
+            if figure.none.is_some() != is_empty || is_drawn == is_empty {
                 return refused("needs either a `kind` with a `value`, or `none`".to_owned());
             }
             if is_drawn && !kinds.contains_key(&figure.kind) {

@@ -11,7 +11,8 @@ use super::overwrite::Overwrite;
 use super::terminal::stdout;
 use crate::catalogue::cost::is_record;
 use crate::catalogue::{self as library, figure};
-use crate::picture::figure::{Pictures, draw_figures};
+use crate::diagnostic::Diagnostics;
+use crate::picture::figure::{Pictures, draw_figures, stale_figures};
 use crate::proof::catalogue::{self, Files};
 use crate::source::SourceSet;
 use crate::{input, output};
@@ -40,7 +41,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "modules", "check"])]
     pub costs: Option<PathBuf>,
     /// Write the pages and plots only, and draw no pictures of functions.
-    #[arg(long, conflicts_with_all = ["modules", "costs", "check"])]
+    #[arg(long, conflicts_with_all = ["modules", "costs"])]
     without_pictures: bool,
     /// Write nothing; fail if a file would change.
     #[arg(long)]
@@ -61,15 +62,23 @@ pub fn run_catalogue(arguments: Arguments, gpus: cost::Opened) -> Result<(), Fai
     };
     let files = files.map_err(|(sources, problems)| Failure::Input(sources, problems))?;
     let changed = changed_files(folder, &files);
+    let is_drawn = arguments.modules.is_none() && !arguments.without_pictures;
     if arguments.check {
-        return if changed.is_empty() {
-            Ok(())
-        } else {
-            Err(Failure::check(outdated_message(&changed)))
+        let mut outdated: Vec<PathBuf> = changed.into_iter().map(|(path, _)| path).collect();
+        if is_drawn {
+            outdated.extend(
+                with_figures(folder, stale_figures)?
+                    .iter()
+                    .map(|path| folder.join(figure::picture_path(path))),
+            );
+        }
+        return match outdated.is_empty() {
+            true => Ok(()),
+            false => Err(Failure::check(outdated_message(&outdated))),
         };
     }
-    let is_drawn = arguments.modules.is_none() && !arguments.without_pictures;
-    let pictures = if is_drawn { figure_pictures(folder)? } else { Pictures::new() };
+    // Pictures in the folder that are still true are kept.
+    let pictures = if is_drawn { with_figures(folder, draw_figures)? } else { Pictures::new() };
     let texts = files.iter().map(|(path, text)| (path.as_str(), text.as_bytes()));
     let drawn = pictures.iter().map(|(path, png)| (path.as_str(), png.as_slice()));
     output::write_folder(folder, texts.chain(drawn), arguments.overwrite.replace())?;
@@ -83,13 +92,20 @@ pub fn run_catalogue(arguments: Arguments, gpus: cost::Opened) -> Result<(), Fai
     )?)
 }
 
-/// The pictures of functions. Those in the folder that are still true are kept.
-fn figure_pictures(folder: &Path) -> Result<Pictures, Failure> {
+/// What is done with figures: their kinds, all of them, and the pictures that a folder has.
+type Work<T> = fn(
+    &figure::Kinds,
+    &figure::Figures,
+    &(dyn Fn(&str) -> Option<Vec<u8>> + Sync),
+) -> Result<T, Diagnostics>;
+
+/// Does something with the library's figures and their pictures in the folder.
+fn with_figures<T>(folder: &Path, work: Work<T>) -> Result<T, Failure> {
     let mut sources = SourceSet::default();
     let read = |sources: &mut SourceSet| {
         let kinds = figure::library_kinds(sources)?;
         let figures = figure::library_figures(sources, &library::library_modules(), &kinds)?;
-        draw_figures(&kinds, &figures, &|path| {
+        work(&kinds, &figures, &|path| {
             let file = folder.join(figure::picture_path(path));
             input::read_file(&file, MOST_BYTES).ok()
         })
@@ -104,7 +120,7 @@ fn changed_files(folder: &Path, files: &Files) -> Vec<(PathBuf, String)> {
     files.iter().map(|(path, text)| (folder.join(path), text.clone())).filter(differs).collect()
 }
 
-fn outdated_message(changed: &[(PathBuf, String)]) -> String {
-    let names: Vec<String> = changed.iter().map(|(path, _)| path.display().to_string()).collect();
+fn outdated_message(outdated: &[PathBuf]) -> String {
+    let names: Vec<String> = outdated.iter().map(|path| path.display().to_string()).collect();
     format!("not up to date: {}\nrun: cargo xtask docs", names.join(", "))
 }

@@ -89,6 +89,12 @@ pub struct Setting {
 /// device, and with it the browser.
 const TRIPS: u32 = 4096;
 
+/// Bytes of a uniform buffer that every device takes.
+const UNIFORM_BYTES: u32 = 64 << 10;
+
+/// How many uniforms get controls.
+const LISTED: usize = 256;
+
 /// The name that the stage has while it is drawn.
 const ENTRY: &str = "fs_main";
 
@@ -114,6 +120,13 @@ impl Sketch {
         }
         let reflection = reflect(&validated, ENTRY)?;
         bound_loops(&mut validated.module, TRIPS);
+        let is_large = |one: &Binding| {
+            one.kind == Kind::Uniform && one.size.is_none_or(|size| size > UNIFORM_BYTES)
+        };
+        if let Some(large) = reflection.bindings.iter().find(|one| is_large(one)) {
+            let reason = format!("`{}` has more than {UNIFORM_BYTES} bytes", large.name);
+            return Err(refused(&reason));
+        }
         let is_colour = |one: &Varying| one.location == Some(0) && one.ty == "vec4<f32>";
         if !reflection.outputs.iter().any(is_colour) {
             return Err(refused(&format!("`{name}` returns no `vec4f` at location 0")));
@@ -131,7 +144,7 @@ impl Sketch {
         located.map(|one| (label(one), one.ty.clone(), source_of(one, setting))).collect()
     }
 
-    /// The uniforms with their numbers. Matrices are left out.
+    /// The uniforms with their numbers, as many as a page has room for. Matrices are left out.
     pub fn uniforms(&self, setting: &Setting) -> Vec<Uniform> {
         let blocks = self.stage.reflection.bindings.iter().filter(|one| one.kind == Kind::Uniform);
         let uniform = |leaf: Leaf<'_>| Uniform {
@@ -141,7 +154,7 @@ impl Sketch {
             path: leaf.path,
         };
         let leaves = blocks.flat_map(buffer_leaves).filter(|leaf| !leaf.ty.starts_with("mat"));
-        leaves.map(uniform).collect()
+        leaves.take(LISTED).map(uniform).collect()
     }
 
     /// The sketch on its model, ready to be photographed.
@@ -226,9 +239,6 @@ fn source_of(input: &Varying, setting: &Setting) -> &'static str {
 }
 
 fn uniform_numbers(setting: &Setting, path: &str, ty: &str) -> Vec<f64> {
-    if let Some(numbers) = setting.uniforms.get(path) {
-        return numbers.clone();
-    }
     let digit =
         |at: usize| ty.as_bytes().get(at).map_or(1, |one| usize::from(one.wrapping_sub(48)));
     if ty.starts_with("mat") {
@@ -237,7 +247,11 @@ fn uniform_numbers(setting: &Setting, path: &str, ty: &str) -> Vec<f64> {
         return (0..columns * rows).map(entry).collect();
     }
     let count = if ty.starts_with("vec") { digit(3) } else { 1 };
-    vec![if is_integer(ty) { 1.0 } else { 0.5 }; count]
+    // Numbers that were chosen before the type changed do not fit any more.
+    match setting.uniforms.get(path).filter(|numbers| numbers.len() == count) {
+        Some(numbers) => numbers.clone(),
+        None => vec![if is_integer(ty) { 1.0 } else { 0.5 }; count],
+    }
 }
 
 fn is_integer(ty: &str) -> bool {
@@ -286,8 +300,10 @@ fn vertex_stage(fragment: &Reflection, setting: &Setting) -> Result<Composed, Di
 }
 
 fn vertex_text(fragment: &Reflection, setting: &Setting) -> String {
-    let taken = fragment.bindings.iter().filter(|one| one.group == 0).map(|one| one.binding + 1);
-    let free = taken.max().unwrap_or(0);
+    let is_taken =
+        |place: &u32| fragment.bindings.iter().any(|one| one.group == 0 && one.binding == *place);
+    let mut free = (0..).filter(|place| !is_taken(place));
+    let [camera, around] = [(); 2].map(|()| free.next().unwrap_or_default());
     let (outputs, lines) = given_inputs(fragment, setting);
     format!(
         "struct Camera {{
@@ -297,8 +313,8 @@ fn vertex_text(fragment: &Reflection, setting: &Setting) -> String {
 struct Around {{
     lamp: vec3f,
 }}
-@group(0) @binding({free}) var<uniform> camera: Camera;
-@group(0) @binding({}) var<uniform> around: Around;
+@group(0) @binding({camera}) var<uniform> camera: Camera;
+@group(0) @binding({around}) var<uniform> around: Around;
 struct Given {{
     @builtin(position) clip: vec4f,
 {outputs}}}
@@ -321,8 +337,7 @@ fn vs_main(
     given.clip = camera.clip_from_world * vec4f(position, 1.0);
 {lines}    return given;
 }}
-",
-        free + 1
+"
     )
 }
 
@@ -333,7 +348,6 @@ fn given_inputs(fragment: &Reflection, setting: &Setting) -> (String, String) {
         let Some(location) = input.location else { continue };
         let ty = &input.ty;
         let interpolation = match (input.interpolation.as_deref(), input.sampling.as_deref()) {
-            (Some("flat"), _) => "@interpolate(flat) ".to_owned(),
             (Some(kind), Some(sampling)) => format!("@interpolate({kind}, {sampling}) "),
             (Some(kind), None) => format!("@interpolate({kind}) "),
             (None, _) if is_integer(ty) => "@interpolate(flat) ".to_owned(),

@@ -1,4 +1,4 @@
-//! Ends the loops of a module after a number of trips, so that no text can keep a device busy.
+//! Ends the loops of a module after a number of trips, so that no loop keeps a device busy.
 
 use naga::{
     AddressSpace, Arena, BinaryOperator, Block, Expression, Function, GlobalVariable, Handle,
@@ -9,7 +9,8 @@ use naga::{
 /// Ends each loop once `most` trips were made, in all functions of an invocation together.
 ///
 /// Browsers refuse derivatives in a loop that ends by a variable of the module, since invocations
-/// might differ in it. So a module with derivatives counts in each call of a function by itself.
+/// might differ in it. So a module with derivatives counts in each call of a function by itself, and
+/// functions that call one another in loops make as many trips as the product of theirs.
 pub fn bound_loops(module: &mut Module, most: u32) {
     let ty = Type { name: None, inner: TypeInner::Scalar(Scalar::U32) };
     let ty = module.types.insert(ty, Span::UNDEFINED);
@@ -93,8 +94,9 @@ fn bound_block(block: &mut Block, arena: &mut Arena<Expression>, given: [Value; 
             Statement::Switch { cases, .. } => {
                 cases.iter_mut().for_each(|case| bound_block(&mut case.body, arena, given));
             }
-            Statement::Loop { body, .. } => {
+            Statement::Loop { body, continuing, .. } => {
                 bound_block(body, arena, given);
+                bound_block(continuing, arena, given);
                 body.splice(0..0, counted(arena, given));
             }
             _ => {}

@@ -31,6 +31,17 @@ struct Kept {
     stages: VecDeque<(Asked, Stages)>,
 }
 
+impl Kept {
+    /// Stages that are kept, which become the latest.
+    fn again(&mut self, asked: &Asked) -> Option<Stages> {
+        let at = self.stages.iter().position(|(known, _)| known == asked)?;
+        let found = self.stages.remove(at)?;
+        let stages = found.1.clone();
+        self.stages.push_back(found);
+        Some(stages)
+    }
+}
+
 /// What stages are asked for by.
 type Asked = (String, Settings, Language);
 
@@ -104,8 +115,7 @@ impl Programs {
         language: Language,
     ) -> Result<Stages, Diagnostics> {
         let asked = (program.name.clone(), settings.clone(), language);
-        let found = self.kept().stages.iter().find(|(known, _)| *known == asked).cloned();
-        if let Some((_, stages)) = found {
+        if let Some(stages) = self.kept().again(&asked) {
             return Ok(stages);
         }
         let stages = self.composed_stages(program, settings, language)?;

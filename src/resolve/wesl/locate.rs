@@ -237,6 +237,7 @@ impl Loader<'_> {
         {
             return Ok(Target::Items { node, name: *last });
         }
+        self.notes.lacks.extend(parent.map(|node| (node, *last)));
         if self.is_module(package, &absolute.segments, span, import)? {
             return Ok(Target::Module);
         }

@@ -34,6 +34,8 @@ pub struct Resolution {
     asks: Vec<Ask>,
     /// The items that were found in other modules.
     items: Vec<(u32, Name)>,
+    /// The items that were not found, so that the name is that of a module.
+    lacks: Vec<(u32, Name)>,
     steps: u64,
     imports: Arc<Vec<Vec<Target>>>,
     bindings: Arc<Vec<Vec<Candidate>>>,
@@ -43,6 +45,8 @@ pub struct Resolution {
 #[derive(Debug, Default)]
 pub struct Notes {
     asks: Vec<Ask>,
+    /// The items that were not found in a module.
+    pub lacks: Vec<(u32, Name)>,
     /// Whether a module could not be read, or the files of a folder were asked for.
     pub is_open: bool,
     failures: usize,
@@ -119,6 +123,7 @@ impl Loader<'_> {
             node,
             asks: notes.asks,
             items,
+            lacks: notes.lacks,
             steps: self.spent.get() - notes.steps,
             imports: Arc::clone(&here.imports),
             bindings: Arc::clone(&here.bindings),
@@ -141,7 +146,7 @@ impl Loader<'_> {
         let has = |(other, name): &(u32, Name)| {
             self.nodes.get(*other as usize).is_some_and(|node| node.sets.contains_key(name))
         };
-        if !known.items.iter().all(has) {
+        if !known.items.iter().all(has) || known.lacks.iter().any(has) {
             return false;
         }
         // A reading without earlier ones takes the same steps.
