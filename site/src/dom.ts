@@ -55,12 +55,13 @@ export function route(): Route {
     return { page: page || "catalogue", path: decodeURIComponent(path.join("/")), query: new URLSearchParams(query) };
 }
 
-/** Puts the state of a page into the address without a step of its own in the history. */
+/** Puts the state of a page into the address without a step of its own in the history. `into` is the
+ * place that the page fills. */
 export function remember(
-    page: string, path: string, query: Record<string, string | undefined>, present: Record<string, string | undefined> = {},
+    into: HTMLElement, page: string, path: string, query: Record<string, string | undefined>, present: Record<string, string | undefined> = {},
 ) {
     // If the user has gone to another page meanwhile, the address stays as it is.
-    if (location.hash !== known) return;
+    if (location.hash !== known || !into.isConnected) return;
     const given = Object.entries(query).filter((pair): pair is [string, string] => !!pair[1]);
     // What is present counts even where it is empty.
     given.push(...Object.entries(present).filter((pair): pair is [string, string] => pair[1] !== undefined));

@@ -29,7 +29,7 @@ export async function page(into: HTMLElement) {
     async function filter() {
         const now = ++asked;
         const text = search.value.trim();
-        remember("catalogue", place.dataset.path ?? "", { q: text });
+        remember(into, "catalogue", place.dataset.path ?? "", { q: text });
         if (!text) {
             list.replaceChildren(...modules.filter((module) => module.items.length).map((module) =>
                 h("details", { open: module.items.some((item) => item.path === place.dataset.path) },
@@ -45,7 +45,7 @@ export async function page(into: HTMLElement) {
         const item = items.get(path);
         if (!item) return place.replaceChildren(h("p", {}, `The library has no ${path}.`));
         place.dataset.path = path;
-        remember("catalogue", path, { q: search.value.trim() });
+        remember(into, "catalogue", path, { q: search.value.trim() });
         await entry(place, item, items);
     }
     into.replaceChildren(h("div", { class: "columns" }, h("aside", {}, search, list), place));

@@ -11,8 +11,8 @@ import { FIRST, type Project, earlier, keep, linked, opened } from "../parts/pro
 import { latest } from "../parts/latest";
 import { Sketch } from "../parts/sketch";
 
-export async function page(into: HTMLElement) {
-    const state: Project = await opened(route().query.get("state"));
+export async function page(into: HTMLElement, given?: Project) {
+    const state: Project = given ?? await opened(route().query.get("state"));
     const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Files" });
     const outputs = h("div", { class: "texts" });
     const problems = h("ul", { class: "problems", "aria-label": "Diagnostics", "aria-live": "polite" });
@@ -41,7 +41,9 @@ export async function page(into: HTMLElement) {
         save();
         run();
     }
+    let isReplaced = false;
     function save() {
+        if (isReplaced || !into.isConnected) return;
         const isKept = keep(state);
         unkept.hidden = isKept;
     }
@@ -66,7 +68,8 @@ export async function page(into: HTMLElement) {
         await link();
     });
     async function link() {
-        remember("playground", "", { state: await linked(state) });
+        const made = await linked(state);
+        if (!isReplaced) remember(into, "playground", "", { state: made });
     }
     function mark(found: Diagnostic[]) {
         const length = editor.state.doc.length;
@@ -101,14 +104,19 @@ export async function page(into: HTMLElement) {
         link.click();
         URL.revokeObjectURL(link.href);
     };
-    const replace = (project: Project) => {
+    // The page is built again, since every control shows something of the project.
+    const replace = async (project: Project) => {
         Object.assign(state, structuredClone(project));
-        begin(); files(); changed();
+        save();
+        isReplaced = true;
+        editor.destroy();
+        await page(into, state);
     };
     const restart = () => {
         if (confirm("Discard your files, and begin with the first example again?")) replace(FIRST);
     };
-    const own = earlier();
+    const back = earlier().map((project, index) => h("button", { onclick: () => replace(project) },
+        index ? `Back to ${Object.keys(project.files).join(", ")}` : "Back to my files before the link"));
     const expression = h("input", {
         value: state.expression, "aria-label": "Expression", spellcheck: "false",
         oninput: () => { state.expression = expression.value; changed(); },
@@ -126,7 +134,7 @@ export async function page(into: HTMLElement) {
                 h("div", { class: "row" },
                     languages,
                     h("button", { onclick: zipped }, "Save as zip"), h("button", { onclick: restart }, "Begin again"),
-                    own && h("button", { onclick: () => replace(own) }, "Back to my files before the link")),
+                    ...back),
                 unkept, sketch.element,
                 h("label", { class: "eval" }, h("span", {}, "value of"), expression, value), outputs)),
     );
@@ -134,5 +142,5 @@ export async function page(into: HTMLElement) {
     files();
     languages.replaceWith(choice(await toolchain.call(OWN, "targets")));
     await run();
-    return () => editor.destroy();
+    return () => { if (!isReplaced) editor.destroy(); };
 }

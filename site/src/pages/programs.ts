@@ -33,6 +33,8 @@ function begun(query: URLSearchParams, path: string, published?: { program: stri
     };
 }
 
+const problems = (all: { message: string }[]) => all.map((one) => one.message).join(" ");
+
 export async function page(into: HTMLElement) {
     const [{ programs }, studio, known] = await Promise.all([
         toolchain.call(OWN, "programs", {}), toolchain.call(OWN, "studio"), toolchain.call(OWN, "targets"),
@@ -96,6 +98,7 @@ export async function page(into: HTMLElement) {
         }
         if (!withControls) return;
         const controls: PictureControls = await toolchain.call(OWN, "pictureControls", { ...asked, target: "wgsl" });
+        if (controls.diagnostics.length) told.textContent = problems(controls.diagnostics);
         lamps.show(controls);
         uniforms.show(controls.uniforms);
         canvas.dataset.controls = String(controls.uniforms.length);
@@ -106,10 +109,15 @@ export async function page(into: HTMLElement) {
             root: found.wesl!, settings, targets: state.target === "composed" ? [] : [state.target],
         });
         const made = await shader(point!.settings);
+        if (!made.ok) return text.replaceChildren(h("p", { class: "wrong" }, problems(made.diagnostics)));
         if (state.against === undefined) return text.replaceChildren(...output(made, state.target));
         const [{ differences }, other] = await Promise.all([
             import("../parts/differences"), toolchain.call(OWN, "point", { program: found.name, key: state.against }),
         ]);
+        if (!other.valid) {
+            const why = other.broken.join(" ") || problems(other.diagnostics);
+            return text.replaceChildren(h("p", { class: "wrong" }, `${state.against}: ${why}`));
+        }
         const before = texts(await shader(other.settings), state.target);
         const after = texts(made, state.target);
         const names = [...new Set([...before, ...after].map((one) => one.title))];
@@ -121,8 +129,15 @@ export async function page(into: HTMLElement) {
     const update = latest(async (isOld) => {
         const now = wanted;
         wanted = { texts: false, controls: false };
+        try {
+            await renew(now, isOld);
+        } catch (error) {
+            told.textContent = error instanceof Error ? error.message : String(error);
+        }
+    });
+    async function renew(now: typeof wanted, isOld: () => boolean) {
         const { program, key, scene, environment, target, preset, against } = state;
-        remember("programs", program, {
+        remember(into, "programs", program, {
             key, scene, environment, target, preset, lamps: written(state.lamps), set: written(state.set),
         }, { against });
         if (now.texts || !point) {
@@ -144,7 +159,7 @@ export async function page(into: HTMLElement) {
         await draw(now.controls, isOld);
         if (isOld()) wanted.texts ||= now.texts;
         else if (now.texts) await write();
-    });
+    }
     /** Without new texts, only the picture changes; while a lamp is dragged, its controls stay. */
     function set(change: Partial<State>, withTexts = true, withControls = true) {
         Object.assign(state, change);

@@ -40,8 +40,11 @@ void main() {
     open: "lit.wesl", target: "wgsl", expression: "package::lamp::falloff(2.0)", look: {},
 };
 
-/** What somebody typed last, and what was there before a link replaced it. */
+/** What somebody typed last, and what was there before links replaced it: the latest first. */
 const [KEPT, EARLIER] = ["lamplight-playground", "lamplight-playground-earlier"];
+
+/** How many projects are there from before a link. */
+const MOST_EARLIER = 4;
 
 /** Characters of a link that browsers and servers still take. */
 const LONGEST = 60000;
@@ -61,7 +64,7 @@ function sound(found: unknown): Project {
 function parsed(text: string | null): { project: Project; visit: string } | undefined {
     try {
         const found = JSON.parse(text ?? "");
-        return { project: sound(found.project), visit: String(found.visit) };
+        return { project: sound(found.project ?? found), visit: String(found.visit) };
     } catch {
         return undefined;
     }
@@ -78,6 +81,15 @@ function visit(): string {
     return made;
 }
 
+/** What the browser keeps; nothing where it keeps nothing. */
+function stored(key: string): string | null {
+    try {
+        return localStorage.getItem(key);
+    } catch {
+        return null;
+    }
+}
+
 /** Keeps a project with the visit that it belongs to. False if the browser has no room. */
 export function keep(project: Project): boolean {
     try {
@@ -91,23 +103,45 @@ export function keep(project: Project): boolean {
 /** The project of the link. If that was typed into in this visit, what was typed; without a link, what
  * was typed last. */
 export async function opened(link: string | null): Promise<Project> {
-    const text = localStorage.getItem(KEPT);
+    const text = stored(KEPT);
     const kept = parsed(text);
     if (kept && (!link || kept.visit === visit())) return kept.project;
     if (!link) return structuredClone(FIRST);
+    let project: Project;
     try {
-        const project = sound(JSON.parse(await unpacked(link)));
-        // The user's own files stay within reach.
-        if (text) localStorage.setItem(EARLIER, text);
-        return project;
+        project = sound(JSON.parse(await unpacked(link)));
     } catch {
         // A link that was cut short opens what was typed last.
         return kept?.project ?? structuredClone(FIRST);
     }
+    if (text) keepEarlier(text);
+    return project;
 }
 
-/** What was typed before a link was opened. */
-export const earlier = (): Project | undefined => parsed(localStorage.getItem(EARLIER))?.project;
+function earlierTexts(): string[] {
+    const text = stored(EARLIER);
+    try {
+        const found: unknown = JSON.parse(text ?? "[]");
+        // Older versions kept one project.
+        return Array.isArray(found) ? found.filter((one) => typeof one === "string") : [text ?? ""];
+    } catch {
+        return [];
+    }
+}
+
+/** The user's own files stay within reach, even if several links are opened and typed into. */
+function keepEarlier(text: string) {
+    const all = [text, ...earlierTexts().filter((one) => one !== text)].slice(0, MOST_EARLIER);
+    try {
+        localStorage.setItem(EARLIER, JSON.stringify(all));
+    } catch {
+        // Without room for them, what was typed last is still there until somebody types again.
+    }
+}
+
+/** What was typed before links were opened, the latest first. */
+export const earlier = (): Project[] =>
+    earlierTexts().flatMap((text) => parsed(text)?.project ?? []);
 
 /** The project as a part of a link; nothing if it is too large for one. */
 export async function linked(project: Project): Promise<string | undefined> {

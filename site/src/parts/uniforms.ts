@@ -51,11 +51,15 @@ export class Uniforms {
         const name = path.slice(path.lastIndexOf(".") + 1);
         const step = whole(type) ? 1 : "any";
         const all: HTMLInputElement[][] = [];
+        const last = [...numbers];
         const tell = (from: HTMLInputElement, index: number) => {
             const value = Number(from.value);
             if (from.value === "" || !Number.isFinite(value)) return;
             for (const other of all[index]) if (other !== from) other.value = from.value;
-            this.#change(path, all.map(([first]) => Number(first.value)));
+            last[index] = value;
+            // A field that somebody has just emptied keeps its number.
+            all.forEach(([{ value }], at) => { if (value !== "") last[at] = Number(value); });
+            this.#change(path, [...last]);
         };
         numbers.forEach((value, index) => {
             const label = numbers.length > 1 ? `${path} ${PARTS[index] ?? index}` : path;
