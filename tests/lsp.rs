@@ -43,6 +43,7 @@ const TRIALS: &[(&str, Run)] = &[
     ("cost", cost::recorded),
     ("cost_written", cost::written),
     ("incremental", incremental::as_fresh),
+    ("module_becomes_item", incremental::module_becomes_item),
     ("long_lines", lines::long_lines),
     ("glsl::hover", glsl::hover),
     ("glsl::definition", glsl::definition),

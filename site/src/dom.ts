@@ -48,6 +48,17 @@ export type Route = { page: string; path: string; query: URLSearchParams };
 /** The address as this page read or wrote it last. */
 let known = "";
 
+/** How many times a page was opened since the document was loaded. */
+let pages = 0;
+
+/** Whether the page is the one that the document was loaded with. */
+export const isFirstPage = (): boolean => pages === 1;
+
+/** Counts a page that is opened. */
+export function countPage() {
+    pages += 1;
+}
+
 export function route(): Route {
     known = location.hash;
     const [way, query] = location.hash.replace(/^#\/?/, "").split("?");
@@ -68,6 +79,6 @@ export function remember(
     const text = new URLSearchParams(given).toString();
     const hash = `#/${page}${path && `/${path}`}${text && `?${text}`}`;
     if (hash === location.hash) return;
-    history.replaceState(history.state, "", `${location.search}${hash}`);
+    history.replaceState(null, "", `${location.search}${hash}`);
     known = location.hash;
 }

@@ -1,4 +1,4 @@
-import { route } from "./dom";
+import { countPage, route } from "./dom";
 
 /** A page fills the place it is given, and says what to do when it is left. */
 export type Page = (into: HTMLElement) => Promise<(() => void) | void>;
@@ -17,6 +17,7 @@ let opened = 0;
 
 async function open() {
     const now = ++opened;
+    countPage();
     const { page } = route();
     const known = PAGES[page] ?? PAGES.catalogue;
     leave?.();

@@ -294,3 +294,41 @@ pub fn as_fresh() -> Outcome {
     }
     Ok(())
 }
+
+/// A name that an import gives to a module is that of an item, once the module above has one.
+pub fn module_becomes_item() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let root = folder.path().canonicalize()?;
+    fs::create_dir(root.join("a"))?;
+    let user = "import package::a::b;\nfn g() -> f32 { return b(); }\n";
+    for (file, text) in [("a.wesl", ""), ("a/b.wesl", "fn c() {}\n"), ("x.wesl", user)] {
+        fs::write(root.join(file), text)?;
+    }
+    let uri = |file: &str| format!("file://{}", root.join(file).display());
+    let mut kept = Editor::new();
+    kept.open(&uri("x.wesl"), user);
+    kept.open(&uri("a.wesl"), "");
+    kept.look();
+    let item = "fn b() -> f32 { return 1.0; }\n";
+    let change = json!({
+        "textDocument": { "uri": uri("a.wesl"), "version": 2 },
+        "contentChanges": [{ "text": item }],
+    });
+    kept.tell("textDocument/didChange", change);
+    kept.look();
+    let mut new = Editor::new();
+    new.open(&uri("x.wesl"), user);
+    new.open(&uri("a.wesl"), item);
+    new.look();
+    let call = json!({
+        "textDocument": { "uri": uri("x.wesl") },
+        "position": { "line": 1, "character": 24 },
+    });
+    let asked = [&mut kept, &mut new].map(|one| one.ask("textDocument/definition", &call));
+    if asked[1]["result"].is_null() {
+        return Err(format!("a new server finds nothing: {}", asked[1]).into());
+    }
+    differs(1, "definition", user, Some(&asked[0]), &asked[1])?;
+    let told = [&kept, &new].map(|one| one.told.get(&uri("x.wesl")));
+    differs(1, "diagnostics", user, told[0], told[1].ok_or("nothing was told of x.wesl")?)
+}

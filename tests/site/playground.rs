@@ -105,7 +105,7 @@ fn stored_files(zip: &[u8]) -> Result<BTreeMap<String, Vec<u8>>, Failed> {
 }
 
 /// What was typed right before a reload is there afterwards. The link has it too, for a browser that
-/// never had it. A link does not destroy other files.
+/// never had it. A link does not destroy other files, and a second one does not either.
 fn kept(opened: &Opened, page: &Page) -> Outcome {
     let lines =
         "[...document.querySelectorAll('.cm-line')].map((it) => it.textContent).join('\\n')";
@@ -117,13 +117,23 @@ fn kept(opened: &Opened, page: &Page) -> Outcome {
     wait(page, "location.hash.includes('state=')")?;
     let link = text(page, "location.hash")?;
     page.evaluate(
-        "localStorage.setItem('lamplight-playground', JSON.stringify({ visit: '', project: {
-            files: { 'own.wesl': '// my own', }, open: 'own.wesl', target: 'wgsl', expression: '1.0' } }))",
+        "localStorage.setItem('lamplight-playground', JSON.stringify({
+            files: { 'own.wesl': '// my own', }, open: 'own.wesl', target: 'wgsl', expression: '1.0' }))",
         PATIENCE,
     )?;
     let other = opened.page(&link)?;
     wait(&other, &there("// before the reload"))?;
     let back = "[...document.querySelectorAll('button')].find((it) => it.textContent.startsWith('Back to my files'))";
+    // Typing into what a link opened, and then opening another link, leaves both within reach.
+    other.evaluate(&typed("let l =", " // typed after the link"), PATIENCE)?;
+    wait(&other, "localStorage.getItem('lamplight-playground').includes('typed after the link')")?;
+    let third = opened.page(&link)?;
+    wait(&third, &there("// before the reload"))?;
+    let all = "[...document.querySelectorAll('button')].filter((it) => it.textContent.startsWith('Back to ')).map((it) => it.textContent)";
+    let offered = text(&third, &format!("{all}.join('; ')"))?;
+    assert_eq!(offered, "Back to my files before the link; Back to own.wesl");
+    third.evaluate(&format!("{back}.click()"), PATIENCE)?;
+    wait(&third, &there("// typed after the link"))?;
     other.evaluate(&format!("{back}.click()"), PATIENCE)?;
     wait(&other, &there("// my own"))?;
     Ok(())

@@ -1,4 +1,5 @@
 // The files of the playground, and where they are kept: in the link and in the browser.
+import { isFirstPage } from "../dom";
 import { packed, unpacked } from "../pack";
 import type { Look } from "./sketch";
 
@@ -61,65 +62,73 @@ function sound(found: unknown): Project {
     return { files, open, target: text("target"), expression: text("expression"), look };
 }
 
-function parsed(text: string | null): { project: Project; visit: string } | undefined {
+function parsed(text: string | null): Project | undefined {
     try {
         const found = JSON.parse(text ?? "");
-        return { project: sound(found.project ?? found), visit: String(found.visit) };
+        // Older versions kept the project with its address.
+        return sound(found.project ?? found);
     } catch {
         return undefined;
     }
 }
 
-/** The visit that the present entry of the browser's history belongs to. A reload goes on with it,
- * even one that began before the address followed what was typed. A link begins another. */
-function visit(): string {
-    const known: unknown = history.state?.visit;
-    if (typeof known === "string") return known;
-    // `crypto.randomUUID` is only there in secure contexts.
-    const made = `${Date.now()}-${Math.random()}`;
-    history.replaceState({ visit: made }, "");
-    return made;
-}
-
-/** What the browser keeps; nothing where it keeps nothing. */
-function stored(key: string): string | null {
+/** What the browser keeps of all tabs or of one; nothing where it keeps nothing. */
+function stored(key: string, storage: () => Storage): string | null {
     try {
-        return localStorage.getItem(key);
+        return storage().getItem(key);
     } catch {
         return null;
     }
 }
 
-/** Keeps a project with the visit that it belongs to. False if the browser has no room. */
-export function keep(project: Project): boolean {
+/** Puts a text into a storage, or takes it out. False if the browser has no room. */
+function store(key: string, text: string | null, storage: () => Storage): boolean {
     try {
-        localStorage.setItem(KEPT, JSON.stringify({ project, visit: visit() }));
+        if (text === null) storage().removeItem(key);
+        else storage().setItem(key, text);
         return true;
     } catch {
         return false;
     }
 }
 
-/** The project of the link. If that was typed into in this visit, what was typed; without a link, what
- * was typed last. */
+const [ALL, TAB] = [() => localStorage, () => sessionStorage];
+
+/** Keeps a project. False if the browser has no room. */
+export function keep(project: Project): boolean {
+    const text = JSON.stringify(project);
+    store(KEPT, text, TAB);
+    return store(KEPT, text, ALL);
+}
+
+/** Whether a reload of the page has just brought it here. */
+function isReload(): boolean {
+    const [entry] = performance.getEntriesByType("navigation") as PerformanceNavigationTiming[];
+    return entry?.type === "reload" && isFirstPage();
+}
+
+/** The project of the link; without a link, what was typed last. After a reload it is what was typed
+ * in this tab, since the address may not have followed that yet. */
 export async function opened(link: string | null): Promise<Project> {
-    const text = stored(KEPT);
+    const again = isReload() ? parsed(stored(KEPT, TAB)) : undefined;
+    if (again) return again;
+    store(KEPT, null, TAB);
+    const text = stored(KEPT, ALL);
     const kept = parsed(text);
-    if (kept && (!link || kept.visit === visit())) return kept.project;
-    if (!link) return structuredClone(FIRST);
+    if (!link) return kept ?? structuredClone(FIRST);
     let project: Project;
     try {
         project = sound(JSON.parse(await unpacked(link)));
     } catch {
         // A link that was cut short opens what was typed last.
-        return kept?.project ?? structuredClone(FIRST);
+        return kept ?? structuredClone(FIRST);
     }
-    if (text) keepEarlier(text);
+    if (text && JSON.stringify(kept) !== JSON.stringify(project)) keepEarlier(text);
     return project;
 }
 
 function earlierTexts(): string[] {
-    const text = stored(EARLIER);
+    const text = stored(EARLIER, ALL);
     try {
         const found: unknown = JSON.parse(text ?? "[]");
         // Older versions kept one project.
@@ -132,16 +141,13 @@ function earlierTexts(): string[] {
 /** The user's own files stay within reach, even if several links are opened and typed into. */
 function keepEarlier(text: string) {
     const all = [text, ...earlierTexts().filter((one) => one !== text)].slice(0, MOST_EARLIER);
-    try {
-        localStorage.setItem(EARLIER, JSON.stringify(all));
-    } catch {
-        // Without room for them, what was typed last is still there until somebody types again.
-    }
+    // Without room for them, what was typed last is still there until somebody types again.
+    store(EARLIER, JSON.stringify(all), ALL);
 }
 
 /** What was typed before links were opened, the latest first. */
 export const earlier = (): Project[] =>
-    earlierTexts().flatMap((text) => parsed(text)?.project ?? []);
+    earlierTexts().flatMap((text) => parsed(text) ?? []);
 
 /** The project as a part of a link; nothing if it is too large for one. */
 export async function linked(project: Project): Promise<string | undefined> {
