@@ -87,8 +87,8 @@ impl Values<'_> {
     /// The numbers of a uniform in any block but those of the camera and of an object: what the
     /// source published, what the scene has, or what the axes choose. `None` if nothing knows it.
     pub fn number(&self, path: &str) -> Option<Vec<f64>> {
-        if let Some(changed) = self.plan.changes.uniforms.get(path) {
-            return Some(changed.clone());
+        if let Some(changed) = self.changed(path) {
+            return Some(changed);
         }
         let path = Path::new(path);
         let of_scene = || match path.block {
@@ -114,8 +114,8 @@ impl Values<'_> {
 
     /// The numbers of an object's own blocks.
     pub fn object(&self, object: &Object, path: &str) -> Option<Vec<f64>> {
-        if let Some(changed) = self.plan.changes.uniforms.get(path) {
-            return Some(changed.clone());
+        if let Some(changed) = self.changed(path) {
+            return Some(changed);
         }
         let parsed = Path::new(path);
         match (parsed.block, parsed.field) {
@@ -133,6 +133,19 @@ impl Values<'_> {
                 .or_else(|| self.number(path)),
             _ => self.number(path),
         }
+    }
+
+    /// What somebody changed a uniform to. The exponents of moments are those of the lookup in all
+    /// passes, or else those that the moments are made with.
+    fn changed(&self, path: &str) -> Option<Vec<f64>> {
+        let uniforms = &self.plan.changes.uniforms;
+        let found = match path {
+            "caster.exponents" | "terms.exponents" => {
+                uniforms.get("caster.exponents").or_else(|| uniforms.get("terms.exponents"))
+            }
+            _ => uniforms.get(path),
+        };
+        found.cloned()
     }
 
     /// How many levels the specular map of the surroundings has: one for each roughness, or one.
@@ -269,8 +282,8 @@ impl Values<'_> {
     /// The moments of depth 1, which the last pass reads where nothing was drawn.
     pub fn cleared_moments(&self) -> [f32; 4] {
         let exponents = self
-            .plan
-            .number("caster", "exponents")
+            .changed("caster.exponents")
+            .or_else(|| self.plan.number("caster", "exponents"))
             .or_else(|| self.lit.needs.uniform("terms", "exponents"))
             .unwrap_or_default();
         let exponent = |index: usize| exponents.get(index).copied().unwrap_or(0.0);
