@@ -9,6 +9,8 @@ pub struct Ordinals {
     /// For each axis of keys, what each of its values adds.
     pub of_values: Vec<Vec<u64>>,
     pub digits: Vec<Digit>,
+    /// Every number is below this.
+    pub range: u128,
 }
 
 /// One digit of a number: `number / weight % radix`.
@@ -61,7 +63,7 @@ pub fn key_ordinals(program: &Program, lock: &Lock, most: u64) -> Option<Ordinal
     let of_axes: u64 = axes.iter().zip(&of_values).map(|(axis, values)| values[axis.default]).sum();
     let constant = u64::try_from(default).ok()?.checked_sub(of_axes)?;
     debug_assert!(space.axes().iter().any(|axis| axis.mode == Mode::Dynamic) || constant == 0);
-    Some(Ordinals { constant, of_values, digits })
+    Some(Ordinals { constant, of_values, digits, range })
 }
 
 fn digit_comment(axis: &Axis, setting: Option<&crate::permute::Setting>, digit: u128) -> Says {

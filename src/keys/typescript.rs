@@ -60,21 +60,64 @@ function numberKey(number: number, digits: readonly Digit[]): Record<string, Val
 }
 ";
 
+/// The same for numbers that only a `bigint` holds.
+const BIG_NUMBERS: &str = "
+type BigField = readonly [string, Value, readonly (readonly [Value, bigint])[]];
+
+type BigDigit = readonly [bigint, bigint, string, readonly (Value | null | undefined)[]];
+
+function keyBigNumber(key: object, start: bigint, fields: readonly BigField[]): bigint {
+  const chosen = key as Record<string, Value | undefined>;
+  const added = fields.map(([field, value, adds]) => adds.find(([known]) => known === (chosen[field] ?? value))?.[1]);
+  return added.reduce<bigint>((sum, add) => sum + (add ?? 0n), start);
+}
+
+function bigNumberKey(number: bigint, digits: readonly BigDigit[]): Record<string, Value> | undefined {
+  const key: Record<string, Value> = {};
+  for (const [weight, radix, field, values] of digits) {
+    const value = values[Number((number / weight) % radix)];
+    if (value === undefined) return undefined;
+    if (value !== null) key[field] = value;
+  }
+  return key;
+}
+";
+
 /// Integers below this are exact as a number of the language.
-const MOST: u64 = 1 << 53;
+const EXACT: u128 = 1 << 53;
+
+/// How numbers of keys are written: their type, the end of their literals, and the functions.
+struct Form {
+    ty: &'static str,
+    end: &'static str,
+    to: &'static str,
+    from: &'static str,
+}
+
+const SMALL: Form = Form { ty: "number", end: "", to: "keyNumber", from: "numberKey" };
+const BIG: Form = Form { ty: "bigint", end: "n", to: "keyBigNumber", from: "bigNumberKey" };
 
 fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
     let mut taken = Taken::new(&["Value", "keyText", "Record", "Math"]);
     let mut text = START.to_owned();
-    if lock.is_some() {
-        for name in ["Field", "Digit", "keyNumber", "numberKey"] {
-            taken.give(name.to_owned());
+    let found: Vec<Option<Ordinals>> = manifest
+        .programs
+        .iter()
+        .map(|program| lock.and_then(|lock| key_ordinals(program, lock, u64::MAX)))
+        .collect();
+    let has_big = found.iter().flatten().any(|ordinals| ordinals.range > EXACT);
+    let helpers: [(bool, &[&str], &str); 2] = [
+        (lock.is_some(), &["Field", "Digit", "keyNumber", "numberKey"], NUMBERS),
+        (has_big, &["BigField", "BigDigit", "keyBigNumber", "bigNumberKey"], BIG_NUMBERS),
+    ];
+    for (_, names, helper) in helpers.iter().filter(|(is_used, ..)| *is_used) {
+        for name in *names {
+            taken.give((*name).to_owned());
         }
-        text.push_str(NUMBERS);
+        text.push_str(helper);
     }
-    for program in &manifest.programs {
-        let found = lock.and_then(|lock| key_ordinals(program, lock, MOST));
-        text.push_str(&self::program_keys(program, found.as_ref(), &mut taken));
+    for (program, ordinals) in manifest.programs.iter().zip(&found) {
+        text.push_str(&self::program_keys(program, ordinals.as_ref(), &mut taken));
     }
     text
 }
@@ -129,10 +172,12 @@ fn number_functions(
     (fields, [to, from]): (&[String], &[String; 2]),
 ) -> String {
     let axes: Vec<&Axis> = key_axes(program).collect();
+    let Form { ty: number, end, to: to_number, from: to_key } =
+        if ordinals.range > EXACT { BIG } else { SMALL };
     let field = |((axis, field), adds): ((&&Axis, &String), &Vec<u64>)| {
         let adds = axis.values.iter().zip(adds);
         let adds: Vec<String> =
-            adds.map(|(value, add)| format!("[{}, {add}]", value_literal(value))).collect();
+            adds.map(|(value, add)| format!("[{}, {add}{end}]", value_literal(value))).collect();
         format!(
             "    [\"{field}\", {}, [{}]],\n",
             value_literal(default_setting(axis)),
@@ -141,7 +186,7 @@ fn number_functions(
     };
     let listed: String = axes.iter().zip(fields).zip(&ordinals.of_values).map(field).collect();
     let mut text = format!(
-        "\n/** The number in the lock file: it stays what it is when axes and values are added. */\nexport function {to}(key: {ty} = {{}}): number {{\n  return keyNumber(key, {}, [\n{listed}  ]);\n}}\n",
+        "\n/** The number in the lock file: it stays what it is when axes and values are added. */\nexport function {to}(key: {ty} = {{}}): {number} {{\n  return {to_number}(key, {}{end}, [\n{listed}  ]);\n}}\n",
         ordinals.constant
     );
     let digit = |digit: &super::ordinal::Digit| {
@@ -151,12 +196,13 @@ fn number_functions(
             Says::Gone => "undefined".to_owned(),
         });
         let says = says.collect::<Vec<_>>().join(", ");
-        format!("    [{}, {}, \"{}\", [{says}]],\n", digit.weight, digit.radix, fields[digit.axis])
+        let (weight, radix, field) = (digit.weight, digit.radix, &fields[digit.axis]);
+        format!("    [{weight}{end}, {radix}{end}, \"{field}\", [{says}]],\n")
     };
     let digits: String = ordinals.digits.iter().map(digit).collect();
     let _ = write!(
         text,
-        "\n/** The key of a number; undefined if there is none. */\nexport function {from}(number: number): {ty} | undefined {{\n  const key: {ty} | undefined = numberKey(number, [\n{digits}  ]);\n  return key !== undefined && {to}(key) === number ? key : undefined;\n}}\n"
+        "\n/** The key of a number; undefined if there is none. */\nexport function {from}(number: {number}): {ty} | undefined {{\n  const key: {ty} | undefined = {to_key}(number, [\n{digits}  ]);\n  return key !== undefined && {to}(key) === number ? key : undefined;\n}}\n"
     );
     text
 }

@@ -83,5 +83,5 @@ pub fn typescript_main(manifest: &Manifest) -> String {
             axes.join(", ")
         );
     }
-    text + "];\nfor (const line of readFileSync(0, 'utf8').trim().split('\\n')) {\n  const [program, ...ordinals] = line.split(' ').map(Number);\n  const [key, axes, toOrdinal, fromOrdinal] = programs[program];\n  const chosen = Object.fromEntries(axes.map(([name, values], index) => [name, values[ordinals[index]]]));\n  const number = toOrdinal(chosen);\n  console.log(key(chosen), number, key(fromOrdinal(number)) === key(chosen));\n}\n"
+    text + "];\nfor (const line of readFileSync(0, 'utf8').trim().split('\\n')) {\n  const [program, ...ordinals] = line.split(' ').map(Number);\n  const [key, axes, toOrdinal, fromOrdinal] = programs[program];\n  const chosen = Object.fromEntries(axes.map(([name, values], index) => [name, values[ordinals[index]]]));\n  const number = toOrdinal(chosen);\n  console.log(key(chosen), String(number), key(fromOrdinal(number)) === key(chosen));\n}\n"
 }
