@@ -195,6 +195,9 @@ fn library() -> Result<Manifest, Failed> {
 
 /// Removes the types from TypeScript, as a runtime does: interfaces, aliases and annotations.
 fn stripped(text: String) -> String {
+    // Numbers that only a `bigint` holds have the same annotations otherwise.
+    let same = [("bigint", "number"), ("BigField[]", "Field[]"), ("BigDigit[]", "Digit[]")];
+    let text = same.iter().fold(text, |text, (big, small)| text.replace(big, small));
     let mut out = String::new();
     let mut inside = false;
     for line in text.lines() {
@@ -219,7 +222,7 @@ fn stripped(text: String) -> String {
                 Some((start, _)) => format!("{start}FromOrdinal(number) {{"),
                 None => line,
             };
-            let line = match (line.find("const key: "), line.find(" | undefined = numberKey")) {
+            let line = match (line.find("const key: "), line.find(" | undefined = ")) {
                 (Some(start), Some(end)) => {
                     format!("{}const key{}", &line[..start], &line[end + " | undefined".len()..])
                 }
