@@ -1,5 +1,5 @@
 import type { Drawing, PictureRequest, Pixels, SketchRequest, Step } from "@lamplight/toolchain";
-import { OWN, TYPED, toolchain } from "../client";
+import { OWN, toolchain } from "../client";
 import { type Device, type Frames } from "./common";
 
 let opening: Promise<Device | undefined> | undefined;
@@ -63,9 +63,10 @@ export async function shown(
     delete canvas.dataset.coarse;
 }
 
-/** A fragment stage on a model, drawn by the page. Nobody knows how long a user's text takes. */
-export function sketch(request: Omit<SketchRequest, "target">): Promise<Pixels> {
-    return queued(() => pictured((target) => toolchain.call(TYPED, "sketchStart", { ...request, target })));
+/** A fragment stage on a model, drawn by the page. `limit` is what the toolchain may take: nobody knows
+ * how long a user's text takes. */
+export function sketch(request: Omit<SketchRequest, "target">, limit: number): Promise<Pixels> {
+    return queued(() => pictured((target) => toolchain.call(limit, "sketchStart", { ...request, target })));
 }
 
 /** A drawing of the page's own, in the device's language. `undefined` without a device. */

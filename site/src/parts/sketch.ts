@@ -1,6 +1,6 @@
 // A fragment stage drawn on a model of choice, with its inputs and uniforms as controls.
 import type { SketchControls, SketchRequest } from "@lamplight/toolchain";
-import { TYPED, toolchain } from "../client";
+import { OWN, TYPED, toolchain } from "../client";
 import { choose, h } from "../dom";
 import { device, show, sketch } from "../draw";
 import { latest } from "./latest";
@@ -26,6 +26,7 @@ export class Sketch {
     readonly element: HTMLElement;
     #keptLook: () => Look;
     #shader?: Shader;
+    #limit: number;
     #changed: () => void;
     #canvas = h("canvas", {
         width: SIZE, height: SIZE, role: "img", tabindex: "0",
@@ -39,10 +40,12 @@ export class Sketch {
     #known = "";
     #sources = "";
 
-    /** `changed` is told when somebody changed the look. */
-    constructor(look: () => Look, changed: () => void, withInputs = true) {
+    /** `changed` is told when somebody changed the look. A text that somebody types has inputs to
+     * choose, and is given up if it takes long. */
+    constructor(look: () => Look, changed: () => void, isTyped = true) {
         this.#keptLook = look;
-        this.#inputs.hidden = !withInputs;
+        this.#inputs.hidden = !isTyped;
+        this.#limit = isTyped ? TYPED : OWN;
         this.#changed = changed;
         this.#uniforms = new Uniforms(this.#numbers, (path, numbers) => {
             this.#look.uniforms = { ...this.#look.uniforms, [path]: numbers };
@@ -116,8 +119,8 @@ export class Sketch {
         const request = { ...rest, turn, lamp, shader: this.#shader!, size: SIZE, samples: 4 };
         const start = performance.now();
         try {
-            if (withControls) this.#show(await toolchain.call(TYPED, "sketchControls", { ...request, target: "wgsl" }));
-            const pixels = await sketch(request);
+            if (withControls) this.#show(await toolchain.call(this.#limit, "sketchControls", { ...request, target: "wgsl" }));
+            const pixels = await sketch(request, this.#limit);
             show(this.#canvas, pixels);
             this.#canvas.dataset.drawn = String(Number(this.#canvas.dataset.drawn ?? 0) + 1);
             this.#told.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms`;
