@@ -45,7 +45,8 @@ export class Sketch {
     constructor(look: () => Look, changed: () => void, isTyped = true) {
         this.#keptLook = look;
         this.#inputs.hidden = !isTyped;
-        this.#limit = isTyped ? TYPED : OWN;
+        // The model and its textures are made in the same call.
+        this.#limit = isTyped ? 5 * TYPED : OWN;
         this.#changed = changed;
         this.#uniforms = new Uniforms(this.#numbers, (path, numbers) => {
             this.#look.uniforms = { ...this.#look.uniforms, [path]: numbers };
