@@ -29,13 +29,13 @@ export function page(text: string, name: string): string {
             },
             code({ text, lang }: Tokens.Code) {
                 const label = (lang ?? "").split(" ")[0] || "text";
-                return `<pre tabindex="0" aria-label="${escaped(label)}"><code>${escaped(text)}</code></pre>\n`;
+                return `<pre tabindex="0" role="group" aria-label="${escaped(label)}"><code>${escaped(text)}</code></pre>\n`;
             },
             table(token: Tokens.Table) {
                 const row = (cells: Tokens.TableCell[], tag: string) =>
                     `<tr>${cells.map((cell) => `<${tag}>${this.parser.parseInline(cell.tokens)}</${tag}>`).join("")}</tr>`;
                 const rows = token.rows.map((cells) => row(cells, "td")).join("");
-                return `<div class="scrolled" tabindex="0"><table><thead>${row(token.header, "th")}</thead><tbody>${rows}</tbody></table></div>\n`;
+                return `<div class="scrolled" tabindex="0" role="group" aria-label="table"><table><thead>${row(token.header, "th")}</thead><tbody>${rows}</tbody></table></div>\n`;
             },
         },
     });
@@ -48,7 +48,7 @@ export const guide: Plugin = {
     transform(text, id) {
         const found = /([^/]+)\.(md|sh)$/.exec(id);
         if (!found) return undefined;
-        const html = found[2] === "md" ? page(text, found[1]) : `<h1>${found[1]}.sh</h1><pre tabindex="0"><code>${escaped(text)}</code></pre>`;
+        const html = found[2] === "md" ? page(text, found[1]) : `<h1>${found[1]}.sh</h1><pre tabindex="0" role="group" aria-label="${found[1]}.sh"><code>${escaped(text)}</code></pre>`;
         return { code: `export default ${JSON.stringify(html)};`, map: null };
     },
 };

@@ -22,16 +22,37 @@ export function sentence(text: string): Child[] {
         index % 2 && index < all.length - 1 ? h("code", {}, part) : index % 2 ? `\`${part}` : part);
 }
 
+/** What went wrong, in words. */
+export const reason = (error: unknown): string => (error instanceof Error ? error.message : String(error));
+
+/** Tells screen readers something that others see. */
+export function say(text: string) {
+    const place = document.querySelector("#said");
+    if (place) place.textContent = text;
+}
+
+/** A text that can be scrolled by keyboard. */
+export const scrolled = (label: string, ...children: Child[]): HTMLPreElement =>
+    h("pre", { tabindex: "0", role: "group", "aria-label": label }, ...children);
+
 /** A text with a button that copies it. */
 export function code(text: string, label: string): HTMLElement {
+    const copied = async () => {
+        try {
+            await navigator.clipboard.writeText(text);
+            return "Copied";
+        } catch {
+            // Browsers refuse it to pages that did not come over a safe connection.
+            getSelection()?.selectAllChildren(pre);
+            return "Selected: copy it now";
+        }
+    };
     const button = h("button", {
-        class: "copy", "aria-label": `Copy ${label}`,
-        onclick: async () => {
-            await navigator.clipboard?.writeText(text);
-            button.textContent = "Copied";
-        },
+        class: "copy", type: "button", "aria-label": `Copy ${label}`,
+        onclick: async () => say(button.textContent = await copied()),
     }, "Copy");
-    return h("div", { class: "code" }, button, h("pre", { tabindex: "0", "aria-label": label }, h("code", {}, text)));
+    const pre = scrolled(label, h("code", {}, text));
+    return h("div", { class: "code" }, button, pre);
 }
 
 export function choose(
@@ -80,5 +101,12 @@ export function remember(
     const hash = `#/${page}${path && `/${path}`}${text && `?${text}`}`;
     if (hash === location.hash) return;
     history.replaceState(null, "", `${location.search}${hash}`);
+    known = location.hash;
+}
+
+/** Puts another address into the history, for a page that shows it without being opened again. */
+export function visit(hash: string) {
+    if (hash === location.hash) return;
+    history.pushState(null, "", `${location.search}${hash}`);
     known = location.hash;
 }

@@ -1,4 +1,5 @@
-import { countPage, route } from "./dom";
+import { toolchain } from "./client";
+import { countPage, h, reason, route } from "./dom";
 
 /** A page fills the place it is given, and says what to do when it is left. */
 export type Page = (into: HTMLElement) => Promise<(() => void) | void>;
@@ -33,15 +34,42 @@ async function open() {
     into.tabIndex = -1;
     into.append("Loading …");
     document.querySelector("main")!.replaceWith(into);
+    // Somebody who came by a link reads on at the new page.
+    if (now > 1) into.focus({ preventScroll: true });
     try {
         const done = await (await known.open()).page(into);
         if (now === opened) leave = done;
         else done?.();
         document.body.dataset.ready = page;
     } catch (error) {
-        into.replaceChildren(`This page could not be opened: ${error instanceof Error ? error.message : error}`);
+        into.replaceChildren(h("p", { class: "wrong", role: "alert" }, `This page could not be opened: ${reason(error)}`));
     }
 }
+
+const notice = document.querySelector<HTMLElement>("#notice")!;
+
+function tell(text: string) {
+    notice.textContent = text;
+    notice.hidden = !text;
+}
+
+/** Milliseconds of loading after which the page says what it waits for. */
+const SLOW = 3000;
+let loading = 0;
+toolchain.onLoading = (isLoading) => {
+    clearTimeout(loading);
+    if (isLoading) loading = window.setTimeout(() => tell("The toolchain is still loading."), SLOW);
+    else tell("");
+};
+
+// Nothing fails in silence.
+addEventListener("unhandledrejection", ({ reason: error }) => tell(`Something failed: ${reason(error)}`));
+
+document.querySelector(".skip")!.addEventListener("click", (event) => {
+    // Its address would be that of a page.
+    event.preventDefault();
+    document.querySelector<HTMLElement>("main")!.focus();
+});
 
 addEventListener("hashchange", () => {
     delete document.body.dataset.ready;

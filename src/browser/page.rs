@@ -38,7 +38,8 @@ impl Page {
             Some(text) => Ok(text.to_owned()),
             None => Err(Problem::Refused(format!("there is no `{name}` in {value}"))),
         };
-        let blank = json!({ "url": "about:blank" });
+        // In a window of its own: a page behind another one is hidden, and draws nothing.
+        let blank = json!({ "url": "about:blank", "newWindow": true });
         let made = browser.call(None, "Target.createTarget", blank, PATIENCE)?;
         let target = text(&made, "targetId")?;
         let attach = json!({ "targetId": target, "flatten": true });

@@ -23,6 +23,8 @@ type Kept = {
     deep?: GPURenderPipeline;
     /** Textures by what they are bound to, which seldom changes. */
     textures: Map<string, { given: TextureInfo; made: GPUTexture }>;
+    /** Samplers by their settings: a driver may compile shaders again for a new one. */
+    samplers: Map<string, GPUSampler>;
 };
 
 export async function open(): Promise<Device | undefined> {
@@ -30,7 +32,7 @@ export async function open(): Promise<Device | undefined> {
     if (!adapter) return undefined;
     const filters = adapter.features.has("float32-filterable");
     const device = await adapter.requestDevice({ requiredFeatures: filters ? ["float32-filterable"] : [] });
-    const kept: Kept = { device, filters, pipelines: new Map(), textures: new Map() };
+    const kept: Kept = { device, filters, pipelines: new Map(), textures: new Map(), samplers: new Map() };
     let isLost = false;
     device.lost.then(() => { isLost = true; });
     return {
@@ -50,12 +52,14 @@ async function draw(kept: Kept, drawing: Drawing): Promise<Frames> {
     const used = bindings(drawing);
     const textures = new Map<string, GPUTextureView>();
     const owned: { destroy(): void }[] = [];
+    // What the browser refuses is an error of this drawing, and not only a line in its console.
+    device.pushErrorScope("validation");
     for (const texture of drawing.textures) {
         const place = `${texture.group},${texture.binding}`;
         if (!used.has(place)) continue;
         textures.set(place, uploaded(kept, place, texture).createView({ dimension: texture.cube ? "cube" : "2d" }));
     }
-    const samplers = new Map(drawing.samplers.map((one) => [`${one.group},${one.binding}`, sampler(device, one)]));
+    const samplers = new Map(drawing.samplers.map((one) => [`${one.group},${one.binding}`, sampler(kept, one)]));
     const { width, height } = drawing;
     const reads: Promise<ArrayBuffer>[] = [];
     const depthReads: Promise<ArrayBuffer>[] = [];
@@ -107,11 +111,15 @@ async function draw(kept: Kept, drawing: Drawing): Promise<Frames> {
         for (const copy of copies) reads.push(read(copy, width, height, 16));
         if (depthCopy) depthReads.push(read(depthCopy, width, height, 4));
     }
-    const words = new Uint32Array(joined(await Promise.all(reads)));
-    const depths = new Float32Array(joined(await Promise.all(depthReads)));
+    const wrong = device.popErrorScope();
+    const drawn = Promise.all([Promise.all(reads), Promise.all(depthReads)]);
+    drawn.catch(() => {});
+    const refused = await wrong;
+    if (refused) throw new Error(`WebGPU refuses the drawing: ${refused.message}`);
+    const [words, depths] = await drawn.then((all) => all.map(joined));
     for (const one of owned) one.destroy();
     spent.drawing += performance.now() - compiled;
-    return { words, depths };
+    return { words: new Uint32Array(words), depths: new Float32Array(depths) };
 }
 
 function missing(place: string): never {
@@ -301,13 +309,20 @@ function stored(kept: Kept, texture: TextureInfo): GPUTexture {
     return made;
 }
 
-function sampler(device: GPUDevice, one: SamplerInfo): GPUSampler {
+function sampler({ device, samplers }: Kept, one: SamplerInfo): GPUSampler {
+    const key = JSON.stringify([one.linear, one.address, one.compare]);
+    const made = samplers.get(key) ?? device.createSampler(settings(one));
+    samplers.set(key, made);
+    return made;
+}
+
+function settings(one: SamplerInfo): GPUSamplerDescriptor {
     const filter: GPUFilterMode = one.linear ? "linear" : "nearest";
     const address = one.address as GPUAddressMode;
-    return device.createSampler({
+    return {
         addressModeU: address, addressModeV: address, addressModeW: address,
         magFilter: filter, minFilter: filter,
         mipmapFilter: one.linear && !one.compare ? "linear" : "nearest",
         compare: one.compare as GPUCompareFunction | undefined,
-    });
+    };
 }

@@ -1,6 +1,6 @@
 import type { CurveResult, ItemInfo, LibraryInfo } from "@lamplight/toolchain";
 import { OWN, toolchain } from "../client";
-import { choose, code, h, remember, route, sentence } from "../dom";
+import { choose, code, h, reason, remember, route, sentence, visit } from "../dom";
 import { packed } from "../pack";
 import { type Computed, computed } from "../parts/computed";
 import { latest } from "../parts/latest";
@@ -12,6 +12,7 @@ let library: Promise<LibraryInfo> | undefined;
 
 export async function page(into: HTMLElement) {
     library ??= toolchain.call(OWN, "library");
+    library.catch(() => { library = undefined; });
     const { modules } = await library;
     const items = new Map(modules.flatMap((module) => module.items.map((item) => [item.path, item])));
     const { path, query } = route();
@@ -23,7 +24,14 @@ export async function page(into: HTMLElement) {
     });
     const link = (item: ItemInfo) => h("a", {
         href: `#/catalogue/${item.path}`, title: item.summary,
-        onclick: (event: Event) => { event.preventDefault(); open(item.path); place.scrollIntoView({ block: "nearest" }); },
+        "aria-current": item.path === place.dataset.path ? "page" : undefined,
+        onclick: (event: MouseEvent) => {
+            // With such a key, the browser opens it elsewhere.
+            if (event.ctrlKey || event.metaKey || event.shiftKey || event.altKey) return;
+            event.preventDefault();
+            visit(`#/catalogue/${item.path}`);
+            go(item.path);
+        },
     }, item.name);
     let asked = 0;
     async function filter() {
@@ -41,12 +49,25 @@ export async function page(into: HTMLElement) {
         const found = hits.map((hit) => items.get(hit.path)!);
         list.replaceChildren(h("p", { role: "status" }, `${found.length} found`), ...found.map(link));
     }
-    async function open(path: string) {
+    /** Opens what somebody chose: they read on there. */
+    async function go(path: string) {
+        try {
+            await open(path, true);
+        } catch (error) {
+            place.replaceChildren(h("p", { class: "wrong", role: "alert" }, `${path} could not be opened: ${reason(error)}`));
+        }
+    }
+    async function open(path: string, isChosen = false) {
         const item = items.get(path);
-        if (!item) return place.replaceChildren(h("p", {}, `The library has no ${path}.`));
+        if (!item) return place.replaceChildren(h("h1", {}, "Catalogue"), h("p", {}, `The library has no ${path}.`));
         place.dataset.path = path;
         remember(into, "catalogue", path, { q: search.value.trim() });
-        await entry(place, item, items);
+        document.title = `${item.name} – Catalogue – Lamplight`;
+        for (const one of list.querySelectorAll("a")) {
+            if (one.getAttribute("href") === `#/catalogue/${path}`) one.setAttribute("aria-current", "page");
+            else one.removeAttribute("aria-current");
+        }
+        await entry(place, item, items, isChosen);
     }
     into.replaceChildren(h("div", { class: "columns" }, h("aside", {}, search, list), place));
     const first = path || "brdf::specular::d_ggx";
@@ -55,15 +76,16 @@ export async function page(into: HTMLElement) {
     await open(items.has(first) ? first : path || [...items.keys()][0]);
 }
 
-async function entry(place: HTMLElement, item: ItemInfo, items: Map<string, ItemInfo>) {
+async function entry(place: HTMLElement, item: ItemInfo, items: Map<string, ItemInfo>, isChosen: boolean) {
     const written = await toolchain.call(OWN, "written", item.path);
     const section = (title: string, text: string | undefined) =>
         text ? h("p", {}, h("strong", {}, `${title}: `), ...sentence(text)) : undefined;
     const users = written.usedBy.map((path) => path.replace(/\.wesl$/, "").replaceAll("/", "::"));
     const live = h("section", { class: "live", "aria-label": "Live plot" });
-    const seen = h("section", { class: "live" });
+    const seen = h("section", { class: "live", "aria-label": "On a model" });
+    const title = h("h1", { tabindex: "-1" }, item.name);
     place.replaceChildren(
-        h("h1", {}, item.name), h("p", { class: "path" }, item.path),
+        title, h("p", { class: "path" }, item.path),
         ...item.doc.map((text) => h("p", {}, ...sentence(text))),
         live, seen,
         h("h2", {}, "Use it"),
@@ -76,6 +98,12 @@ async function entry(place: HTMLElement, item: ItemInfo, items: Map<string, Item
         h("h2", {}, "WESL"), code(written.wesl, "WESL source"),
         ...(written.glsl ? [h("h2", {}, "GLSL"), code(written.glsl, "GLSL source")] : []),
     );
+    if (isChosen) {
+        title.focus({ preventScroll: true });
+        const { top } = title.getBoundingClientRect();
+        // On a narrow screen it is below the list.
+        if (top < 0 || top > innerHeight / 2) title.scrollIntoView({ block: "start" });
+    }
     if (item.kind === "function") preview(seen, item, items);
     if (item.plot) await curves(live, item);
 }
@@ -107,10 +135,11 @@ function preview(place: HTMLElement, item: ItemInfo, items: Map<string, ItemInfo
     const sources = h("div", { class: "row" }, ...chosen.flatMap(source));
     place.append(sources, sketch.element, link);
     let timer = 0;
-    const seen = new IntersectionObserver(([{ isIntersecting }]) => {
+    const seen = new IntersectionObserver((entries) => {
         clearTimeout(timer);
+        // A busy page is told several changes at once, of which only the last one holds.
         if (!place.isConnected) seen.disconnect();
-        else if (isIntersecting) timer = window.setTimeout(() => { seen.disconnect(); draw(); }, SETTLED);
+        else if (entries.at(-1)?.isIntersecting) timer = window.setTimeout(() => { seen.disconnect(); draw(); }, SETTLED);
     });
     seen.observe(sketch.element);
 }
@@ -133,6 +162,13 @@ async function curves(live: HTMLElement, item: ItemInfo) {
     let gpu: Computed | undefined;
     let isSettled = false;
     const draw = latest(async () => {
+        try {
+            await drawCurves();
+        } catch (error) {
+            numbers.textContent = reason(error);
+        }
+    });
+    async function drawCurves() {
         const values = own ? [Number(own.value), ...info.values] : info.values;
         const found = await toolchain.call(OWN, "curves", {
             path: item.path, value: info.value, parameter: info.parameter, values, from: info.from, to: info.to, samples: steps + 1,
@@ -140,7 +176,7 @@ async function curves(live: HTMLElement, item: ItemInfo) {
         if (!found.curves.length) return numbers.replaceChildren(found.diagnostics[0]?.message ?? "");
         gpu = isSettled && live.isConnected ? await computed(found) : undefined;
         show(found);
-    });
+    }
     function show(found: CurveResult) {
         const at = Number(x.value);
         shown.replaceChildren(plot(info, found, at, gpu?.rows ?? found.curves.map((curve) => curve.single)));

@@ -1,6 +1,6 @@
 import { OWN, toolchain } from "../client";
-import { h } from "../dom";
-import { picture, show } from "../draw";
+import { h, reason } from "../dom";
+import { NO_DEVICE, device, picture, show } from "../draw";
 import { latest } from "../parts/latest";
 
 /** How far the middle of an element is from the middle of the window, in pixels. */
@@ -14,7 +14,7 @@ const nearest = (some: Set<HTMLCanvasElement>): HTMLCanvasElement | undefined =>
     [...some].sort((a, b) => distance(a) - distance(b))[0];
 
 /** Every published example, drawn where it is seen. */
-export async function page(into: HTMLElement) {
+export async function page(into: HTMLElement): Promise<(() => void) | void> {
     const { presets } = await toolchain.call(OWN, "studio");
     const cards = presets.map((preset) => {
         const canvas = h("canvas", { width: 192, height: 192, role: "img", "aria-label": preset.doc, "data-preset": preset.name });
@@ -25,6 +25,7 @@ export async function page(into: HTMLElement) {
     into.replaceChildren(h("h1", {}, "Gallery"),
         h("p", {}, "The examples that the library’s functions were published with, drawn by your browser."),
         h("div", { class: "cards" }, ...cards));
+    if (!await device()) return into.querySelector(".cards")!.before(h("p", { class: "wrong", role: "status" }, NO_DEVICE));
     // One after another, from the middle of the window outwards, and only what is still in view.
     const waiting = new Set<HTMLCanvasElement>();
     const draw = latest(async () => {
@@ -35,7 +36,7 @@ export async function page(into: HTMLElement) {
                 show(canvas, await picture({ preset: canvas.dataset.preset, width: 192, height: 192, samples: 4 }));
                 canvas.dataset.drawn = "1";
             } catch (error) {
-                canvas.replaceWith(h("p", { class: "wrong" }, error instanceof Error ? error.message : String(error)));
+                canvas.replaceWith(h("p", { class: "wrong" }, reason(error)));
             }
         }
     });

@@ -3,17 +3,20 @@ import { type Diagnostic as Mark, lintGutter, setDiagnostics } from "@codemirror
 import { EditorState } from "@codemirror/state";
 import { EditorView, drawSelection, highlightActiveLine, keymap, lineNumbers } from "@codemirror/view";
 import type { Diagnostic } from "@lamplight/toolchain";
-import { OWN, TYPED, toolchain } from "../client";
-import { choose, h, remember, route } from "../dom";
+import { OWN, toolchain, typed } from "../client";
+import { choose, h, reason, remember, route } from "../dom";
 import { output } from "../output";
 import { zip } from "../pack";
 import { FIRST, type Project, earlier, keep, linked, opened } from "../parts/project";
+import { Files } from "../parts/files";
 import { latest } from "../parts/latest";
 import { Sketch } from "../parts/sketch";
 
+/** Milliseconds after which the page says that it still computes. */
+const PATIENCE = 1000;
+
 export async function page(into: HTMLElement, given?: Project) {
     const state: Project = given ?? await opened(route().query.get("state"));
-    const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Files" });
     const outputs = h("div", { class: "texts" });
     const problems = h("ul", { class: "problems", "aria-label": "Diagnostics", "aria-live": "polite" });
     const told = h("p", { role: "status", class: "status" });
@@ -21,13 +24,15 @@ export async function page(into: HTMLElement, given?: Project) {
     const unkept = h("p", { class: "wrong", role: "alert", hidden: true },
         "The browser has no room to keep these files: they are lost when the page is closed. Save them as a zip.");
     const sketch = new Sketch(() => state.look, () => { save(); link(); });
-    const editor = new EditorView({ parent: h("div", { class: "editor" }) });
+    const panel = h("div", { class: "editor", id: "text", role: "tabpanel", "aria-label": "Text of the open file" });
+    const leaving = h("p", { class: "note", id: "leaving" }, "Tab indents. Escape and then Tab leaves the editor.");
+    const editor = new EditorView({ parent: panel });
 
     const begin = () => editor.setState(EditorState.create({
         doc: state.files[state.open] ?? "",
         extensions: [
             lineNumbers(), history(), drawSelection(), highlightActiveLine(), lintGutter(), EditorView.lineWrapping,
-            EditorView.contentAttributes.of({ "aria-label": `Text of ${state.open}` }),
+            EditorView.contentAttributes.of({ "aria-label": `Text of ${state.open}`, "aria-describedby": "leaving" }),
             keymap.of([...defaultKeymap, ...historyKeymap, indentWithTab]),
             EditorView.updateListener.of((update) => {
                 if (!update.docChanged) return;
@@ -36,7 +41,10 @@ export async function page(into: HTMLElement, given?: Project) {
             }),
         ],
     }));
+    /** How often something was typed or chosen. */
+    let changes = 0;
     function changed() {
+        changes += 1;
         // Saved before anything is computed, so that a reload restores what was typed.
         save();
         run();
@@ -48,25 +56,39 @@ export async function page(into: HTMLElement, given?: Project) {
         unkept.hidden = isKept;
     }
     const run = latest(async () => {
+        const now = changes;
+        const isOld = () => now !== changes || !into.isConnected;
+        const patience = window.setTimeout(() => { told.textContent = "Still computing …"; }, PATIENCE);
         try {
-            const start = performance.now();
-            const made = await toolchain.call(TYPED, "compile", {
-                files: state.files, root: state.open, targets: state.target === "composed" ? [] : [state.target],
-            });
-            mark(made.diagnostics);
-            if (made.ok) outputs.replaceChildren(...output(made, state.target));
-            const isDrawn = /@fragment|\.frag(\.|$)/.test(`${state.files[state.open]}${state.open}`);
-            sketch.element.hidden = !isDrawn;
-            if (made.ok && isDrawn) sketch.draw({ files: state.files, root: state.open });
-            told.textContent = `${made.ok ? "no errors" : "errors"}, ${Math.round(performance.now() - start)} ms`;
-            const number = await toolchain.call(TYPED, "evaluate", { files: state.files, expression: state.expression });
-            value.textContent = number.value ?? number.diagnostics[0]?.message ?? "";
+            await compute(isOld);
         } catch (error) {
-            told.textContent = error instanceof Error ? error.message : String(error);
+            told.textContent = reason(error);
         }
+        clearTimeout(patience);
         into.dataset.runs = String(Number(into.dataset.runs ?? 0) + 1);
         await link();
     });
+    async function compute(isOld: () => boolean) {
+        const start = performance.now();
+        const made = await toolchain.call(typed(isOld), "compile", {
+            files: state.files, root: state.open, targets: state.target === "composed" ? [] : [state.target],
+        });
+        const took = Math.round(performance.now() - start);
+        mark(made.diagnostics);
+        if (made.ok) outputs.replaceChildren(...output(made, state.target));
+        told.textContent = `${made.ok ? "no errors" : "errors"}, ${took} ms`;
+        const isDrawn = /@fragment|\.frag(\.|$)/.test(`${state.files[state.open]}${state.open}`);
+        sketch.element.hidden = !isDrawn;
+        try {
+            const number = await toolchain.call(typed(isOld), "evaluate", { files: state.files, expression: state.expression });
+            value.textContent = number.value ?? number.diagnostics[0]?.message ?? "";
+        } catch (error) {
+            value.textContent = "no value";
+            told.textContent = reason(error);
+        }
+        // Last, so that a picture which takes long does not keep the rest waiting.
+        if (made.ok && isDrawn && !isOld()) sketch.draw({ files: state.files, root: state.open }, isOld);
+    }
     async function link() {
         const made = await linked(state);
         if (!isReplaced) remember(into, "playground", "", { state: made });
@@ -87,18 +109,7 @@ export async function page(into: HTMLElement, given?: Project) {
             return h("li", { class: one.severity }, h("code", {}, where), `${one.message} `, h("span", { class: "note" }, one.notes.join(" ")));
         }));
     }
-    function files() {
-        tabs.replaceChildren(...Object.keys(state.files).map((name) => h("button", {
-            role: "tab", "aria-selected": String(name === state.open), onclick: () => { state.open = name; begin(); files(); changed(); },
-        }, name)), h("button", { onclick: add, "aria-label": "Add a file" }, "+"));
-    }
-    function add() {
-        const name = prompt("Name of the file", "more.wesl");
-        if (!name || name in state.files || !/^[\w./-]+$/.test(name)) return;
-        state.files[name] = "";
-        state.open = name;
-        begin(); files(); changed();
-    }
+    const files = new Files(state, () => { begin(); changed(); });
     const zipped = () => {
         const link = h("a", { href: URL.createObjectURL(zip(state.files)), download: "shaders.zip" });
         link.click();
@@ -129,7 +140,7 @@ export async function page(into: HTMLElement, given?: Project) {
     into.replaceChildren(
         h("h1", { class: "quiet" }, "Playground"),
         h("div", { class: "columns wide" },
-            h("div", {}, tabs, editor.dom.parentElement ?? editor.dom, told, problems),
+            h("div", {}, files.element, panel, leaving, told, problems),
             h("div", {},
                 h("div", { class: "row" },
                     languages,
@@ -139,7 +150,7 @@ export async function page(into: HTMLElement, given?: Project) {
                 h("label", { class: "eval" }, h("span", {}, "value of"), expression, value), outputs)),
     );
     begin();
-    files();
+    files.show();
     languages.replaceWith(choice(await toolchain.call(OWN, "targets")));
     await run();
     return () => { if (!isReplaced) editor.destroy(); };

@@ -1,7 +1,7 @@
 import type { CostInfo, PictureControls, PictureRequest, Point, ProgramInfo } from "@lamplight/toolchain";
 import { OWN, toolchain } from "../client";
-import { choose, h, remember, route } from "../dom";
-import { device, shown } from "../draw";
+import { choose, h, reason, remember, route } from "../dom";
+import { Screen, device, picture } from "../draw";
 import { output, texts } from "../output";
 import { axes } from "../parts/axes";
 import { Lamps } from "../parts/lamps";
@@ -43,6 +43,7 @@ export async function page(into: HTMLElement) {
     const state = begun(query, path, studio.presets.find((one) => one.name === query.get("preset")));
     type State = typeof state;
     const canvas = h("canvas", { width: 256, height: 256, role: "img", "aria-label": "The picture" });
+    const screen = new Screen(canvas);
     const over = h("div", { class: "picture" }, canvas);
     const told = h("p", { role: "status", class: "status" });
     const form = h("form", { class: "axes", "aria-label": "Axes" });
@@ -85,7 +86,8 @@ export async function page(into: HTMLElement) {
         const start = performance.now();
         const asked = request();
         try {
-            await shown(canvas, asked, isOld);
+            const take = (factor: number) => picture({ ...asked, width: asked.width / factor, height: asked.height / factor });
+            await screen.show(take, isOld);
             if (isOld()) {
                 wanted.controls ||= withControls;
                 return;
@@ -94,7 +96,7 @@ export async function page(into: HTMLElement) {
             canvas.dataset.drawn = String(Number(canvas.dataset.drawn ?? 0) + 1);
             canvas.dataset.key = asked.key;
         } catch (error) {
-            told.textContent = error instanceof Error ? error.message : String(error);
+            told.textContent = reason(error);
         }
         if (!withControls) return;
         const controls: PictureControls = await toolchain.call(OWN, "pictureControls", { ...asked, target: "wgsl" });
@@ -132,7 +134,7 @@ export async function page(into: HTMLElement) {
         try {
             await renew(now, isOld);
         } catch (error) {
-            told.textContent = error instanceof Error ? error.message : String(error);
+            told.textContent = reason(error);
         }
     });
     async function renew(now: typeof wanted, isOld: () => boolean) {

@@ -1,6 +1,6 @@
 // Two texts, line by line, with what only one of them has.
 import { diffLines } from "diff";
-import { h } from "../dom";
+import { h, scrolled } from "../dom";
 
 /** Lines around a difference that are shown too. */
 const AROUND = 3;
@@ -15,7 +15,8 @@ export function differences(before: string, after: string, label: string): HTMLE
         found.filter((one) => one[which]).reduce((sum, one) => sum + one.count, 0);
     const [added, removed] = [count("added"), count("removed")];
     if (!added && !removed) return h("p", { class: "note" }, `${label}: no difference.`);
-    const pre = h("pre", { tabindex: "0", "aria-label": `Differences of ${label}`, class: "differences" });
+    const pre = scrolled(`Differences of ${label}`);
+    pre.classList.add("differences");
     found.forEach((part, index) => {
         const lines = part.value.replace(/\n$/, "").split("\n");
         if (part.added) pre.append(h("ins", {}, lines.map((line) => `+ ${line}\n`).join("")));

@@ -4,14 +4,18 @@ export function latest(run: (isOld: () => boolean) => Promise<void>): () => Prom
     let running: Promise<void> | undefined;
     let again = false;
     const begin = async () => {
-        do {
-            again = false;
-            await run(() => again);
-        } while (again);
+        try {
+            do {
+                again = false;
+                await run(() => again);
+            } while (again);
+        } finally {
+            // At once: somebody may ask before a promise could tell it.
+            running = undefined;
+        }
     };
     return () => {
         again = true;
-        running ??= begin().finally(() => { running = undefined; });
-        return running;
+        return running ??= begin();
     };
 }

@@ -1,8 +1,8 @@
 // A fragment stage drawn on a model of choice, with its inputs and uniforms as controls.
 import type { SketchControls, SketchRequest } from "@lamplight/toolchain";
-import { OWN, TYPED, toolchain } from "../client";
-import { choose, h } from "../dom";
-import { device, show, sketch } from "../draw";
+import { type Limit, OWN, toolchain, typed } from "../client";
+import { choose, h, reason } from "../dom";
+import { Screen, device, sketch } from "../draw";
 import { latest } from "./latest";
 import { Uniforms } from "./uniforms";
 
@@ -26,12 +26,14 @@ export class Sketch {
     readonly element: HTMLElement;
     #keptLook: () => Look;
     #shader?: Shader;
-    #limit: number;
+    #isTyped: boolean;
+    #isOld = () => false;
     #changed: () => void;
     #canvas = h("canvas", {
         width: SIZE, height: SIZE, role: "img", tabindex: "0",
         "aria-label": "The picture. Dragging or the arrow keys turn the model; with Shift they move the light.",
     });
+    #screen = new Screen(this.#canvas);
     #told = h("p", { role: "status", class: "status" });
     #inputs = h("div", { class: "row" });
     #numbers = h("div", { class: "uniforms" });
@@ -45,8 +47,7 @@ export class Sketch {
     constructor(look: () => Look, changed: () => void, isTyped = true) {
         this.#keptLook = look;
         this.#inputs.hidden = !isTyped;
-        // The model and its textures are made in the same call.
-        this.#limit = isTyped ? 5 * TYPED : OWN;
+        this.#isTyped = isTyped;
         this.#changed = changed;
         this.#uniforms = new Uniforms(this.#numbers, (path, numbers) => {
             this.#look.uniforms = { ...this.#look.uniforms, [path]: numbers };
@@ -97,9 +98,10 @@ export class Sketch {
         });
     }
 
-    /** Draws another text, or the same after a change. */
-    draw(shader: Shader): Promise<void> {
+    /** Draws another text, or the same after a change. `isOld` says whether somebody typed on. */
+    draw(shader: Shader, isOld = () => false): Promise<void> {
         this.#shader = shader;
+        this.#isOld = isOld;
         return this.#again(true);
     }
 
@@ -111,22 +113,27 @@ export class Sketch {
         return this.#run();
     }
 
-    #run = latest(async () => {
+    #run = latest(async (isOld) => {
         // Nobody sees the picture of a page that was left.
         if (!this.element.isConnected) return;
         const withControls = this.#controls;
         this.#controls = false;
         const { turn = [0, 0.3], lamp = LAMP, ...rest } = this.#look;
         const request = { ...rest, turn, lamp, shader: this.#shader!, size: SIZE, samples: 4 };
+        const isOldText = this.#isOld;
+        const limit: Limit = this.#isTyped ? typed(() => isOld() || isOldText()) : OWN;
+        // A coarse picture has one sample.
+        const take = (factor: number) =>
+            sketch({ ...request, size: SIZE / factor, samples: factor === 1 ? request.samples : 1 }, limit);
         const start = performance.now();
         try {
-            if (withControls) this.#show(await toolchain.call(this.#limit, "sketchControls", { ...request, target: "wgsl" }));
-            const pixels = await sketch(request, this.#limit);
-            show(this.#canvas, pixels);
+            if (withControls) this.#show(await toolchain.call(limit, "sketchControls", { ...request, target: "wgsl" }));
+            if (!await this.#screen.show(take, isOld)) return;
             this.#canvas.dataset.drawn = String(Number(this.#canvas.dataset.drawn ?? 0) + 1);
             this.#told.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms`;
         } catch (error) {
-            this.#told.textContent = error instanceof Error ? error.message : String(error);
+            this.#told.textContent = reason(error);
+            this.#controls ||= withControls;
         }
     });
 
