@@ -14,8 +14,9 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 6] = [
+    let cases: [Case; 7] = [
         ("pages", pages),
+        ("nothing_is_hidden", nothing_is_hidden),
         ("errors_are_read", errors_are_read),
         ("folders_are_served", folders_are_served),
         ("a_page_hangs", a_page_hangs),
@@ -58,6 +59,21 @@ fn pages() -> Outcome {
         assert_eq!(other, None, "the page is red, but at width {width} a pixel is not");
     }
     assert_eq!(page.errors(), &[] as &[String]);
+    Ok(())
+}
+
+/// A page draws and notices what is in view while other pages are open. Behind them it would wait
+/// for ever.
+fn nothing_is_hidden() -> Outcome {
+    let server = served(&[("index.html", "<!doctype html><link rel=icon href=data:,><p>text")])?;
+    let browser = Browser::shared()?;
+    let pages = [browser.open(&server.address(""))?, browser.open(&server.address(""))?];
+    for page in pages {
+        page.loaded(PATIENCE)?;
+        let seen = "new Promise((seen) => requestAnimationFrame(() =>
+            new IntersectionObserver(([{ isIntersecting }]) => seen(isIntersecting)).observe(document.body)))";
+        assert_eq!(page.evaluate(seen, PATIENCE)?, serde_json::json!(true));
+    }
     Ok(())
 }
 

@@ -2,6 +2,9 @@
 //! change them, mistakes are underlined at their place, and links keep the user's choices.
 //! `cargo xtask test` builds the site first.
 
+mod keys;
+mod lost;
+mod named;
 mod pictures;
 mod playground;
 mod programs;
@@ -25,12 +28,14 @@ type Case = (&'static str, fn() -> Outcome);
 const PATIENCE: Duration = Duration::from_secs(120);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 5] = [
+    let cases: [Case; 7] = [
         ("catalogue", catalogue),
         ("pictures", pictures::pictures),
         ("programs", programs::programs),
         ("playground", playground::playground),
         ("seen", seen::seen),
+        ("keys", keys::keys),
+        ("lost", lost::lost),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("site::{name}"), case)).collect()
 }
@@ -65,8 +70,8 @@ impl Opened {
 
 /// Waits for something. The error has the words that the page says meanwhile.
 fn wait(page: &Page, expression: &str) -> Outcome {
-    let said = "[...document.querySelectorAll('.status, .wrong, .problems, .eval output')]
-        .map((it) => it.textContent).join('; ')";
+    let said = "[document.visibilityState, ...[...document.querySelectorAll('#notice, .status, .wrong, .problems, .eval output')]
+        .map((it) => it.textContent)].join('; ')";
     page.until(expression, PATIENCE).map_err(|problem| match text(page, said) {
         Ok(words) => format!("{problem}; the page says: {words}").into(),
         Err(_) => problem.into(),

@@ -2,7 +2,9 @@
 import type { CurveResult, PlotInfo } from "@lamplight/toolchain";
 
 const NS = "http://www.w3.org/2000/svg";
-const [W, H, LEFT, BOTTOM, TOP, RIGHT] = [640, 320, 56, 36, 12, 12];
+const [H, LEFT, BOTTOM, TOP, RIGHT] = [320, 56, 36, 12, 16];
+/** Units across: as many as there are pixels, so that the letters stay readable on a phone. */
+const [NARROW, WIDE] = [320, 640];
 
 function s(tag: string, given: Record<string, string | number>, text?: string): SVGElement {
     const made = document.createElementNS(NS, tag);
@@ -13,7 +15,10 @@ function s(tag: string, given: Record<string, string | number>, text?: string): 
 
 const short = (value: number) => String(Number(value.toPrecision(3)));
 
-export function plot(info: PlotInfo, found: CurveResult, at: number, device: number[][]): SVGElement {
+export const colour = (index: number) => `var(--curve-${index % 5})`;
+
+export function plot(info: PlotInfo, found: CurveResult, at: number, device: number[][], pixels: number): SVGElement {
+    const W = Math.round(Math.min(WIDE, Math.max(NARROW, pixels)));
     const values = found.curves.flatMap((curve) => curve.double).filter(Number.isFinite);
     const low = info.low ?? Math.min(0, ...values);
     const high = Math.max(info.high ?? Math.max(...values, low + 1e-6), low + 1e-9);
@@ -37,21 +42,21 @@ export function plot(info: PlotInfo, found: CurveResult, at: number, device: num
         const safe = (value: number) => (Number.isFinite(value) ? value : high - low);
         const band = [...points((i) => curve.double[i] + safe(curve.error[i])),
             ...points((i) => curve.double[i] - safe(curve.error[i])).reverse()];
-        const colour = `var(--curve-${index % 5})`;
+        const own = colour(index);
         if (info.unit === "integers") {
             const aside = 4 * (index - (found.curves.length - 1) / 2);
             found.inputs.forEach((input, i) => {
                 const [px, py] = [x(input) + aside, y(device[index][i])];
                 svg.append(
-                    s("line", { x1: px, x2: px, y1: y(Math.min(Math.max(0, low), high)), y2: py, stroke: colour }),
-                    s("circle", { cx: px, cy: py, r: 3, fill: colour, class: "stem" }),
+                    s("line", { x1: px, x2: px, y1: y(Math.min(Math.max(0, low), high)), y2: py, stroke: own }),
+                    s("circle", { cx: px, cy: py, r: 3, fill: own, class: "stem" }),
                 );
             });
             return;
         }
         svg.append(
-            s("polygon", { points: band.join(" "), fill: colour, opacity: 0.18, class: "band" }),
-            s("polyline", { points: points((i) => curve.double[i]).join(" "), stroke: colour, class: "curve" }),
+            s("polygon", { points: band.join(" "), fill: own, opacity: 0.18, class: "band" }),
+            s("polyline", { points: points((i) => curve.double[i]).join(" "), stroke: own, class: "curve" }),
             s("polyline", { points: points((i) => device[index][i]).join(" "), class: "device" }),
         );
     });

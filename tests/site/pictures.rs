@@ -113,15 +113,16 @@ fn preview(page: &Page, device: &str) -> Outcome {
         const packed = document.querySelector('.live a').href.split('state=')[1];
         const bytes = Uint8Array.from(atob(packed.replaceAll('-', '+').replaceAll('_', '/')), (one) => one.charCodeAt(0));
         const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
-        return Object.values(JSON.parse(await new Response(stream).text()).files)[0];
+        const { files, look } = JSON.parse(await new Response(stream).text());
+        return [Object.values(files)[0], look.uniforms];
     })()";
-    let stage = text(page, link)?;
+    let (stage, uniforms): (String, _) = serde_json::from_value(page.evaluate(link, PATIENCE)?)?;
     assert!(stage.contains("oren_nayar(n, l, v, knobs.sigma)"), "the stage is {stage}");
-    compare(&format!("{FUNCTION} on {device}"), &pixels, &sketched(&stage)?)
+    compare(&format!("{FUNCTION} on {device}"), &pixels, &sketched(&stage, uniforms)?)
 }
 
 /// The picture of a fragment stage as the catalogue shows it first.
-fn sketched(stage: &str) -> Result<Picture, Failed> {
+fn sketched(stage: &str, uniforms: BTreeMap<String, Vec<f64>>) -> Result<Picture, Failed> {
     const PATH: &str = "stage.wesl";
     let files = BTreeMap::from([(PATH.to_owned(), stage.to_owned())]);
     let packages = Packages {
@@ -133,8 +134,8 @@ fn sketched(stage: &str) -> Result<Picture, Failed> {
         let graph = resolve::load(&mut sources, &packages, PATH, Language::Wesl)?;
         let composed = compose::compose(&graph, &Settings::default(), &Options::default())?;
         let sketch = Sketch::new(validate(&composed)?, None).map_err(|problem| vec![problem])?;
-        let setting =
-            Setting { turn: [0.0, 0.3], lamp: [1.6, 2.0, 2.4].into(), ..Setting::default() };
+        let (turn, lamp) = ([0.0, 0.3], [1.6, 2.0, 2.4].into());
+        let setting = Setting { turn, lamp, uniforms, ..Setting::default() };
         let shot = shot(320).ok_or_else(Vec::new)?;
         let painter = executors::vulkan::EXECUTOR.start().map_err(|_| Vec::new())?;
         let picture = sketch.prepare(&setting, &shot)?.photograph(painter.as_ref(), &shot)?;

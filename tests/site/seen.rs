@@ -8,6 +8,7 @@ use lamplight::browser::{Page, Screenshot};
 use libtest_mimic::Failed;
 use serde_json::{Value, json};
 
+use super::named::named;
 use super::{Opened, Outcome, PATIENCE, text, wait, without_errors};
 
 /// The widths of a phone and of a desktop screen.
@@ -55,9 +56,7 @@ pub fn seen() -> Outcome {
     for (name, address, there) in PAGES {
         let mut page = opened.page(address)?;
         wait(&page, &format!("!!({there})"))?;
-        let nameless = "[...document.querySelectorAll('input, select, button, a, canvas, summary')].filter((it) =>
-            !(it.getAttribute('aria-label') || it.labels?.length || it.textContent.trim())).map((it) => it.outerHTML)";
-        assert_eq!(page.evaluate(nameless, PATIENCE)?, json!([]), "{name}: controls without name");
+        named(&page, name)?;
         small_and_own(&page, name)?;
         for width in WIDTHS {
             wrong.extend(as_reviewed(&page, &format!("{name}-{width}"), width)?);

@@ -6,7 +6,7 @@ import { type Computed, computed } from "../parts/computed";
 import { latest } from "../parts/latest";
 import { type Parameter, parameters, stage } from "../parts/preview";
 import { type Look, Sketch } from "../parts/sketch";
-import { plot } from "../plot";
+import { colour, plot } from "../plot";
 
 let library: Promise<LibraryInfo> | undefined;
 
@@ -69,7 +69,12 @@ export async function page(into: HTMLElement) {
         }
         await entry(place, item, items, isChosen);
     }
-    into.replaceChildren(h("div", { class: "columns" }, h("aside", {}, search, list), place));
+    // There are many functions to pass for somebody who goes by keys.
+    const skip = h("a", {
+        class: "skip", href: "#/catalogue",
+        onclick: (event: Event) => { event.preventDefault(); place.querySelector("h1")?.focus(); },
+    }, "Skip the list");
+    into.replaceChildren(h("div", { class: "columns" }, h("aside", {}, search, skip, list), place));
     const first = path || "brdf::specular::d_ggx";
     place.dataset.path = first;
     await filter();
@@ -121,6 +126,9 @@ function preview(place: HTMLElement, item: ItemInfo, items: Map<string, ItemInfo
     const chosen = parameters(item, structs);
     place.append(h("h2", {}, "On a model"));
     if (typeof chosen === "string") return place.append(h("p", { class: "note" }, chosen));
+    // The plot knows which number shows something.
+    const { parameter, values = [] } = item.plot ?? {};
+    if (parameter && values.length) look.uniforms = { ...look.uniforms, [`knobs.${parameter}`]: [values[Math.floor(values.length / 2)]] };
     const link = h("a", { href: "#/playground" }, "Open in the playground");
     const sketch = new Sketch(() => look, () => {}, false);
     const draw = async () => {
@@ -160,6 +168,7 @@ async function curves(live: HTMLElement, item: ItemInfo) {
         : undefined;
     const note = h("p", { class: "note" });
     let gpu: Computed | undefined;
+    let last: CurveResult | undefined;
     let isSettled = false;
     const draw = latest(async () => {
         try {
@@ -175,11 +184,13 @@ async function curves(live: HTMLElement, item: ItemInfo) {
         });
         if (!found.curves.length) return numbers.replaceChildren(found.diagnostics[0]?.message ?? "");
         gpu = isSettled && live.isConnected ? await computed(found) : undefined;
+        last = found;
         show(found);
     }
     function show(found: CurveResult) {
         const at = Number(x.value);
-        shown.replaceChildren(plot(info, found, at, gpu?.rows ?? found.curves.map((curve) => curve.single)));
+        const picture = plot(info, found, at, gpu?.rows ?? found.curves.map((curve) => curve.single), live.clientWidth);
+        shown.replaceChildren(picture, ...(info.parameter ? [legend(info.parameter, found, !!own)] : []));
         const index = Math.round(((at - info.from) / (info.to - info.from)) * steps);
         const curve = found.curves[0];
         const error = curve.error[index];
@@ -200,10 +211,25 @@ async function curves(live: HTMLElement, item: ItemInfo) {
         numbers, note, ...(info.note ? [h("p", { class: "note" }, info.note)] : []),
     );
     await draw();
+    let width = live.clientWidth;
+    // The letters have the same size on a screen that was turned.
+    const turned = new ResizeObserver(() => {
+        if (!live.isConnected) turned.disconnect();
+        else if (last && live.clientWidth !== width) show(last);
+        width = live.clientWidth;
+    });
+    turned.observe(live);
     setTimeout(() => {
         isSettled = true;
         if (live.isConnected) draw();
     }, SETTLED);
+}
+
+/** Which curve is which. */
+function legend(parameter: string, { curves }: CurveResult, hasSlider: boolean): HTMLElement {
+    const one = (value: number, index: number) => h("span", { style: `--curve: ${colour(index)}` },
+        `${parameter} = ${Number(value.toPrecision(3))}${hasSlider && index === 0 ? " (slider)" : ""}`);
+    return h("p", { class: "legend" }, ...curves.map((curve, index) => one(curve.parameter, index)));
 }
 
 /** How many values of the GPU are farther from f64 than WGSL allows. */

@@ -19,7 +19,7 @@ export async function page(into: HTMLElement): Promise<(() => void) | void> {
     const cards = presets.map((preset) => {
         const canvas = h("canvas", { width: 192, height: 192, role: "img", "aria-label": preset.doc, "data-preset": preset.name });
         return h("article", { class: "card" },
-            h("a", { href: `#/programs/${preset.program}?preset=${preset.name}` }, canvas, h("h2", {}, preset.name)),
+            h("a", { href: `#/programs/${preset.program}?preset=${preset.name}`, "aria-label": preset.name }, canvas, h("h2", {}, preset.name)),
             h("p", {}, preset.doc), h("p", { class: "note" }, preset.source));
     });
     into.replaceChildren(h("h1", {}, "Gallery"),

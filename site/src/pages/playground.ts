@@ -68,20 +68,32 @@ export async function page(into: HTMLElement, given?: Project) {
         into.dataset.runs = String(Number(into.dataset.runs ?? 0) + 1);
         await link();
     });
+    async function compiled(isOld: () => boolean) {
+        const { files, open, target } = state;
+        const call = (targets: string[], keepAll: boolean) =>
+            toolchain.call(typed(isOld), "compile", { files, root: open, targets, keepAll });
+        const made = await call(target === "composed" ? [] : [target], false);
+        const isModule = made.diagnostics.some((one) => one.code === "no-entry-point");
+        if (made.ok || !isModule) return { made, target };
+        // Other files import it. It has nothing to emit, but a text and maybe mistakes.
+        const { diagnostics } = await toolchain.call(typed(isOld), "lint", { files });
+        const composed = await call([], true);
+        const ok = composed.ok && diagnostics.every((one) => one.severity !== "error");
+        return { made: { ...composed, ok, diagnostics }, target: "composed" };
+    }
     async function compute(isOld: () => boolean) {
         const start = performance.now();
-        const made = await toolchain.call(typed(isOld), "compile", {
-            files: state.files, root: state.open, targets: state.target === "composed" ? [] : [state.target],
-        });
-        const took = Math.round(performance.now() - start);
+        const { made, target } = await compiled(isOld);
+        const found = `${made.ok ? "no errors" : "errors"}, ${Math.round(performance.now() - start)} ms`;
         mark(made.diagnostics);
-        if (made.ok) outputs.replaceChildren(...output(made, state.target));
-        told.textContent = `${made.ok ? "no errors" : "errors"}, ${took} ms`;
+        if (made.ok) outputs.replaceChildren(...output(made, target));
+        told.textContent = found;
         const isDrawn = /@fragment|\.frag(\.|$)/.test(`${state.files[state.open]}${state.open}`);
         sketch.element.hidden = !isDrawn;
         try {
             const number = await toolchain.call(typed(isOld), "evaluate", { files: state.files, expression: state.expression });
             value.textContent = number.value ?? number.diagnostics[0]?.message ?? "";
+            told.textContent = found;
         } catch (error) {
             value.textContent = "no value";
             told.textContent = reason(error);

@@ -39,6 +39,19 @@ export class Sketch {
     #numbers = h("div", { class: "uniforms" });
     #uniforms: Uniforms;
     #models = h("span", {});
+    /** The light across the picture and upwards, also for fingers, which have no Shift. */
+    #lights = ["light across", "light up"].map((label, axis) => {
+        const input: HTMLInputElement = h("input", {
+            type: "range", min: -4, max: 4, step: 0.1, "aria-label": label,
+            oninput: () => {
+                const lamp: [number, number, number] = [...this.#look.lamp ?? LAMP];
+                lamp[axis] = Number(input.value);
+                this.#look.lamp = lamp;
+                this.#again(false);
+            },
+        });
+        return input;
+    });
     #known = "";
     #sources = "";
 
@@ -61,7 +74,8 @@ export class Sketch {
         this.#listen();
         this.element = h("section", { class: "sketch", "aria-label": "Picture" },
             h("div", { class: "picture" }, this.#canvas), this.#told,
-            h("div", { class: "row" }, this.#models, h("label", {}, h("span", {}, "exposure"), exposure)),
+            h("div", { class: "row" }, this.#models, h("label", {}, h("span", {}, "exposure"), exposure),
+                ...this.#lights.map((input) => h("label", {}, h("span", {}, input.ariaLabel!), input))),
             this.#inputs, this.#numbers);
     }
 
@@ -119,6 +133,7 @@ export class Sketch {
         const withControls = this.#controls;
         this.#controls = false;
         const { turn = [0, 0.3], lamp = LAMP, ...rest } = this.#look;
+        this.#lights.forEach((input, axis) => { if (input !== document.activeElement) input.value = String(lamp[axis]); });
         const request = { ...rest, turn, lamp, shader: this.#shader!, size: SIZE, samples: 4 };
         const isOldText = this.#isOld;
         const limit: Limit = this.#isTyped ? typed(() => isOld() || isOldText()) : OWN;
