@@ -102,6 +102,9 @@ fn reached(page: &Page, name: &str) -> Outcome {
 fn catalogue(opened: &Opened) -> Outcome {
     let mut page = opened.page("#/catalogue/brdf::specular::blinn_phong")?;
     wait(&page, "document.querySelector('.live')?.dataset.device !== undefined")?;
+    // The preview is drawn where it is seen, and has its controls then.
+    page.evaluate("document.querySelector('.sketch canvas').scrollIntoView()", PATIENCE)?;
+    wait(&page, "document.querySelector('.sketch canvas').dataset.drawn !== undefined")?;
     reached(&page, "catalogue")?;
     let address = text(&page, "location.hash")?;
     focus(&page, ".skip")?;
