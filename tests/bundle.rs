@@ -1,6 +1,7 @@
 //! Bundles: written, loaded, compared, merged, damaged and timed.
 
 mod damage;
+mod digests;
 mod large;
 mod schema;
 
@@ -14,6 +15,7 @@ use lamplight::bundle::{
 use libtest_mimic::{Failed, Trial};
 
 use damage::{damaged_directories, flips, truncations, versions};
+use digests::remembered;
 use large::large;
 use schema::schema;
 
@@ -21,7 +23,7 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 13] = [
+    let cases: [Case; 14] = [
         ("recorded_keys_are_listed", recording),
         ("both_forms_give_back_what_was_written", round_trips),
         ("keys_come_in_any_order_with_defaults", keys_in_any_order),
@@ -35,6 +37,7 @@ pub fn trials() -> Vec<Trial> {
         ("diff_names_what_changed", differences),
         ("shards_merge", merging),
         ("manifests_follow_their_schema", schema),
+        ("remembered_hashes_are_those_of_the_unit", remembered),
     ];
     let mut trials: Vec<Trial> = cases
         .into_iter()

@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Arc;
 use std::{env, fs};
 
 use lamplight::bundle::Stage;
@@ -86,7 +87,9 @@ fn read_case(folder: &Path) -> Case {
             line.split_once('=').map(|(key, value)| (key.trim(), value.trim())).unwrap();
         let words = || value.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
         match key.split_once(' ').unwrap_or(("", key)) {
-            ("enum", axis) => drop(case.settings.enums.insert(axis.into(), words())),
+            ("enum", axis) => {
+                drop(Arc::make_mut(&mut case.settings.enums).insert(axis.into(), words()));
+            }
             ("", "root") => case.root = value.into(),
             ("", "keep") if value == "all" => case.options.keep = Keep::All,
             ("", "keep") => case.options.keep = Keep::Items(words()),

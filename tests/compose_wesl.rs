@@ -9,6 +9,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use lamplight::compose::wesl::compose;
 use lamplight::compose::{Composed, Keep, Mangle, Options};
@@ -60,15 +61,16 @@ impl Case {
             let (name, value) = rest
                 .split_once('=')
                 .map_or((rest.trim(), ""), |(name, value)| (name.trim(), value.trim()));
-            let list =
-                |text: &str| text.split(',').map(|part| part.trim().to_owned()).collect::<Vec<_>>();
+            let list = |text: &str| text.split(',').map(|part| part.trim().to_owned()).collect();
             match word {
                 "constant" => {
                     let literal = lamplight::permute::constant::parse(value).unwrap();
                     drop(case.settings.constants.insert(name.to_owned(), literal));
                 }
                 "set" => drop(case.settings.values.insert(name.to_owned(), Setting::parse(value))),
-                "enum" => drop(case.settings.enums.insert(name.to_owned(), list(value))),
+                "enum" => {
+                    Arc::make_mut(&mut case.settings.enums).insert(name.to_owned(), list(value));
+                }
                 "integer" => drop(case.settings.integers.insert(name.to_owned())),
                 "keep" if name == "all" => case.options.keep = Keep::All,
                 "keep" => case.options.keep = Keep::Items(list(name)),
@@ -341,9 +343,10 @@ fn permutations() -> Result<(), Failed> {
 }
 
 fn settings(values: &[(&str, Setting)]) -> Settings {
+    let shadow = ["none", "hard", "soft"].map(str::to_owned).to_vec();
     Settings {
         values: values.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect(),
-        enums: [("shadow".to_owned(), ["none", "hard", "soft"].map(str::to_owned).to_vec())].into(),
+        enums: Arc::new([("shadow".to_owned(), shadow)].into()),
         integers: ["lights".to_owned()].into(),
         ..Settings::default()
     }
@@ -385,10 +388,9 @@ fn mutilated() -> Result<(), Failed> {
             ("gloss", Setting::Bool(true)),
             ("a", Setting::Bool(false)),
         ]);
+        let options = Options { keep: Keep::All, ..Options::default() };
         let outcome = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl")
-            .and_then(|graph| {
-                compose(&graph, &settings, &Options { keep: Keep::All, ..Options::default() })
-            });
+            .and_then(|graph| compose(&graph, &settings, &options));
         if let Err(errors) = outcome {
             let told = render(&sources, &errors, Form::Short);
             assert!(!errors.is_empty() && !told.is_empty(), "a failure without a diagnostic");

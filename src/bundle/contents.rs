@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Error, Language, Native, Reflection};
+use super::{Digest, Digester, Error, Language, Native, Reflection};
 
 /// The first 128 bits of BLAKE3, which name units and blobs by their content.
 pub type Hash = [u8; 16];
@@ -75,54 +75,13 @@ pub struct Artifact {
     pub native: Arc<Native>,
 }
 
-/// The hashes of a unit.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Digest {
-    /// Equal for units with equal content, on any machine.
-    pub unit: Hash,
-    /// The checksum of the reflection as JSON.
-    pub reflection: Hash,
-    /// What the targets have, in their order.
-    pub targets: Box<[TargetDigest]>,
-}
-
-/// The hashes of one target of a unit.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct TargetDigest {
-    /// The checksum of the bytes.
-    pub blob: Hash,
-    /// How many bytes there are.
-    pub length: u32,
-    /// The checksum of the target's own names and numbers as JSON.
-    pub native: Hash,
-}
-
 impl Unit {
     /// Hashes everything, each byte once.
     ///
     /// # Errors
     /// [`Error::Io`] for a blob of 4 GiB or more.
     pub fn digest(&self) -> Result<Digest, Error> {
-        let mut hasher = blake3::Hasher::new();
-        let mut part = |bytes: &[u8]| {
-            hasher.update(&(bytes.len() as u64).to_le_bytes());
-            hasher.update(bytes);
-        };
-        let reflection = to_json(&*self.reflection)?;
-        part(&reflection);
-        let mut targets = Vec::with_capacity(self.targets.len());
-        for (target, artifact) in &self.targets {
-            let length = u32::try_from(artifact.bytes.len())
-                .map_err(|_| Error::Io(format!("the shader for `{target}` is too large")))?;
-            let (blob, native) = (checksum(&artifact.bytes), to_json(&*artifact.native)?);
-            part(target.as_bytes());
-            part(artifact.extension.as_bytes());
-            part(&native);
-            part(&blob);
-            targets.push(TargetDigest { blob, length, native: checksum(&native) });
-        }
-        let (unit, reflection) = (shortened_hash(&hasher.finalize()), checksum(&reflection));
-        Ok(Digest { unit, reflection, targets: targets.into() })
+        Digester::default().digest(self)
     }
 
     /// Equal for units with equal content, on any machine.

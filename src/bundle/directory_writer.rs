@@ -18,7 +18,7 @@ use super::directory::{
     BLOBS, BlobFile, MANIFEST, MOST_MANIFEST_BYTES, blob_files_of_manifest, read_manifest,
 };
 use super::manifest::{self, Before, Manifest, ManifestArtifact};
-use super::{Contents, Digest, Error, Unit};
+use super::{Contents, Digest, Digester, Error, Unit};
 use crate::limits::GROUP_BYTES;
 use crate::output::{self, Foreign, Replace, Scratch};
 
@@ -52,6 +52,7 @@ pub struct DirectoryWriter {
     /// Files of blobs that only the bundle before it named.
     retired: BTreeSet<String>,
     scratch: Scratch,
+    digester: Digester,
     manifest: Mutex<Manifest>,
     /// Files of blobs in the scratch folder.
     staged: Mutex<BTreeSet<String>>,
@@ -96,6 +97,7 @@ impl DirectoryWriter {
             live,
             retired,
             scratch,
+            digester: Digester::default(),
             manifest: Mutex::default(),
             staged: Mutex::default(),
             _turn: turn,
@@ -111,7 +113,7 @@ impl DirectoryWriter {
 
     /// Keeps the blobs of a unit for [`Self::finish`]; keys refer to it by the digest's hash.
     pub fn add(&self, unit: &Unit) -> Result<Digest, Error> {
-        let digest = unit.digest()?;
+        let digest = self.digester.digest(unit)?;
         if let Some(found) = digest.targets.iter().find(|found| found.length as usize > GROUP_BYTES)
         {
             let bytes = found.length;

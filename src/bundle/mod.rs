@@ -8,6 +8,7 @@
 pub(crate) mod contents;
 mod conventions;
 mod diff;
+mod digest;
 mod directory;
 mod directory_writer;
 mod error;
@@ -24,9 +25,10 @@ mod store;
 mod target;
 mod usage;
 
-pub use contents::{Artifact, Axis, Contents, Digest, EntryContents, Hash, ProgramContents, Unit};
+pub use contents::{Artifact, Axis, Contents, EntryContents, Hash, ProgramContents, Unit};
 pub use conventions::{AskedConventions, Bounds, Clip, Convention, Conventions};
 pub use diff::{Change, Difference, diff};
+pub use digest::{Digest, Digester};
 pub use directory::{BlobFile, blob_files};
 pub use directory_writer::{DirectoryWriter, write_directory};
 pub use error::{Error, Miss};

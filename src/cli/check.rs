@@ -89,7 +89,9 @@ impl Arguments {
         for program in manifest.iter().flat_map(|manifest| &manifest.programs) {
             let of_program = program.space.settings(&program.space.default_assignment());
             settings.values.extend(of_program.values);
-            settings.enums.extend(of_program.enums);
+            let of_enums = of_program.enums.iter();
+            let of_enums = of_enums.map(|(axis, values)| (axis.clone(), values.clone()));
+            Arc::make_mut(&mut settings.enums).extend(of_enums);
             settings.integers.extend(of_program.integers);
             settings.undeclared = settings.undeclared.or(of_program.undeclared);
         }

@@ -10,6 +10,10 @@
 
 use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{PoisonError, RwLock};
+
+use rustc_hash::FxHashMap;
 
 use super::members::rename_like_members;
 use super::{Composed, Part, PartKind, SourceMap};
@@ -22,63 +26,108 @@ const ALIAS_DEPTH: usize = 64;
 /// Bytes to which the aliases of one part may expand.
 const ALIAS_BYTES: usize = 1 << 16;
 
+/// Bytes of parts after which they are forgotten.
+const REMEMBERED_BYTES: usize = 16 << 20;
+
 /// The text to compile. It has no map to the author's files: to get errors with places, validate
 /// the whole text.
 pub fn lean(composed: &Composed) -> Composed {
-    let mut text = String::with_capacity(composed.text.len() / 2);
-    let mut parts = Vec::with_capacity(composed.parts.len());
-    let squeezer = Squeezer::new(composed);
-    if composed.parts.is_empty() {
-        squeezer.append(&composed.text, &mut text);
-    }
-    for part in &composed.parts {
-        let start = text.len();
-        let author = &composed.text[part.range.clone()];
-        let whole = match part.aliases.is_empty() {
-            true => Some(Cow::Borrowed(author)),
-            false => expand_aliases(composed, part).map(Cow::Owned),
-        };
-        if part.kind != PartKind::Alias || whole.is_none() {
-            squeezer.append(whole.as_deref().unwrap_or(author), &mut text);
-        }
-        let (range, names) = (start..text.len(), part.names.clone());
-        let (uses, aliases) = (part.uses.clone(), Vec::new());
-        parts.push(Part { kind: part.kind, names, range, uses, aliases });
-        if text.len() > start && !text.ends_with('\n') {
-            text.push('\n');
-        }
-    }
-    rename_like_members(Composed {
-        text,
-        map: SourceMap::default(),
-        parts,
-        reads: Vec::new(),
-        warnings: Vec::new(),
-        decisions: Vec::new(),
-        ..*composed
-    })
+    Leaner::new(composed.language).lean(composed)
 }
 
-/// Writes parts without their comments and layout, each on a new line.
-struct Squeezer {
+/// Makes the lean texts of one language. It remembers the lean form of each part, since the
+/// permutations of a program share most of their parts. A form depends on its part alone, so no
+/// text depends on what is remembered.
+pub struct Leaner {
     language: Language,
-    /// Whether some part may have lines that must stay as they are.
-    has_odd_lines: bool,
+    /// The lean form of each part.
+    known: RwLock<FxHashMap<Box<str>, Box<str>>>,
+    /// Bytes of all known parts.
+    bytes: AtomicUsize,
 }
 
-impl Squeezer {
-    fn new(composed: &Composed) -> Self {
-        let is_glsl = composed.language == Language::Glsl;
-        let has_odd_lines = is_glsl && has_odd_lines(&composed.text);
-        Self { language: composed.language, has_odd_lines }
+impl Leaner {
+    /// A leaner that remembers nothing yet.
+    pub fn new(language: Language) -> Self {
+        Self { language, known: RwLock::default(), bytes: AtomicUsize::new(0) }
     }
 
-    fn append(&self, text: &str, lean: &mut String) {
-        match self.language {
-            Language::Wesl => append_wgsl(text, lean),
-            Language::Glsl if self.has_odd_lines && has_odd_lines(text) => lean.push_str(text),
-            Language::Glsl => append_glsl(text, lean),
+    /// The lean form of a text; see [`lean`].
+    pub fn lean(&self, composed: &Composed) -> Composed {
+        let mut text = String::with_capacity(composed.text.len() / 2);
+        let mut parts = Vec::with_capacity(composed.parts.len());
+        if composed.parts.is_empty() {
+            append_lean(self.language, &composed.text, &mut text);
         }
+        let mut new: Vec<(Cow<'_, str>, Range<usize>)> = Vec::new();
+        let known = self.known.read().unwrap_or_else(PoisonError::into_inner);
+        for part in &composed.parts {
+            let start = text.len();
+            if let Some(whole) = without_aliases(composed, part) {
+                match known.get(&*whole) {
+                    Some(lean) => text.push_str(lean),
+                    None => {
+                        append_lean(self.language, &whole, &mut text);
+                        new.push((whole, start..text.len()));
+                    }
+                }
+            }
+            let (range, names) = (start..text.len(), part.names.clone());
+            let (uses, aliases) = (part.uses.clone(), Vec::new());
+            parts.push(Part { kind: part.kind, names, range, uses, aliases });
+            if text.len() > start && !text.ends_with('\n') {
+                text.push('\n');
+            }
+        }
+        drop(known);
+        self.remember(new, &text);
+        rename_like_members(Composed {
+            text,
+            map: SourceMap::default(),
+            parts,
+            reads: Vec::new(),
+            warnings: Vec::new(),
+            decisions: Vec::new(),
+            ..*composed
+        })
+    }
+
+    /// Remembers the lean forms of parts, which are ranges of a text.
+    fn remember(&self, new: Vec<(Cow<'_, str>, Range<usize>)>, text: &str) {
+        if new.is_empty() {
+            return;
+        }
+        let more: usize = new.iter().map(|(whole, range)| whole.len() + range.len()).sum();
+        let mut known = self.known.write().unwrap_or_else(PoisonError::into_inner);
+        if self.bytes.fetch_add(more, Ordering::Relaxed) + more > REMEMBERED_BYTES {
+            known.clear();
+            self.bytes.store(more, Ordering::Relaxed);
+        }
+        known.extend(new.into_iter().map(|(whole, range)| (whole.into(), text[range].into())));
+    }
+}
+
+/// The text of a part in which aliases are replaced by what they stand for; `None` for an alias,
+/// unless it could not be replaced.
+fn without_aliases<'c>(composed: &'c Composed, part: &Part) -> Option<Cow<'c, str>> {
+    let author = Cow::Borrowed(&composed.text[part.range.clone()]);
+    let whole = match part.aliases.is_empty() {
+        true => Some(author.clone()),
+        false => expand_aliases(composed, part).map(Cow::Owned),
+    };
+    match whole {
+        Some(_) if part.kind == PartKind::Alias => None,
+        Some(whole) => Some(whole),
+        None => Some(author),
+    }
+}
+
+/// Appends a part, or a text without parts, without its comments and layout.
+fn append_lean(language: Language, text: &str, lean: &mut String) {
+    match language {
+        Language::Wesl => append_wgsl(text, lean),
+        Language::Glsl if has_odd_lines(text) => lean.push_str(text),
+        Language::Glsl => append_glsl(text, lean),
     }
 }
 

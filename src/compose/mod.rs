@@ -7,7 +7,7 @@ mod part;
 mod source_map;
 pub mod wesl;
 
-pub use lean::{lean, lean_glsl};
+pub use lean::{Leaner, lean, lean_glsl};
 pub use part::{Part, PartKind};
 pub use source_map::{Segment, SourceMap};
 

@@ -9,7 +9,7 @@ use super::entry::Entry;
 use super::lint::Decided;
 use super::{Progress, REPORTED};
 use crate::bundle::{Digest, Hash, Language, Target};
-use crate::compose::{self, Composed, lean};
+use crate::compose::{self, Composed, Leaner};
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::link::Reason;
 use crate::permute::{Assignment, Key, ReadTree, Space};
@@ -140,6 +140,7 @@ struct Known<'a> {
     entry: &'a Entry,
     result: EntryResult,
     tree: ReadTree<u32>,
+    leaner: Leaner,
     /// The index of each text, by its hash.
     texts: BTreeMap<Hash, u32>,
 }
@@ -162,7 +163,8 @@ impl<'a> Known<'a> {
             warnings: Vec::new(),
             whole: BTreeMap::new(),
         };
-        Self { entry, result, tree: ReadTree::default(), texts: BTreeMap::new() }
+        let (tree, leaner) = (ReadTree::default(), Leaner::new(entry.language));
+        Self { entry, result, tree, leaner, texts: BTreeMap::new() }
     }
 
     fn find(
@@ -177,7 +179,7 @@ impl<'a> Known<'a> {
         let composed = compose::compose(&self.entry.graph, settings, &self.entry.options);
         let composed =
             composed.map_err(|errors| of_permutation(errors, self.entry, &space.key(point)))?;
-        let lean = lean(&composed);
+        let lean = self.leaner.lean(&composed);
         let mut hash = [0; 16];
         hash.copy_from_slice(&blake3::hash(lean.text.as_bytes()).as_bytes()[..16]);
         Ok(Found::Text { text: Box::new(Text { composed, lean }), hash })

@@ -4,6 +4,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::EntryResult;
 use super::entry::Entry;
 use crate::compose::Decision;
@@ -13,6 +15,9 @@ use crate::permute::axis::{Axis, Mode};
 use crate::permute::{Assignment, Program, cover};
 use crate::resolve::Graph;
 use crate::source::{SourceSet, Span};
+
+/// How many permutations are shown to conditions one after the other.
+const FIRST_POINTS: usize = 64;
 
 /// A place, by the name of its file, since programs that share a file each read it.
 type Place = (String, u32, u32);
@@ -58,21 +63,11 @@ impl Lints {
         mut outcomes: Outcomes<'_>,
         points: &[Assignment],
     ) {
-        for point in points {
-            if outcomes.is_settled() {
-                break;
-            }
-            outcomes.see(&program.space.settings(point));
-        }
+        outcomes = see_points(outcomes, program, points);
         // A condition that is constant only because of the lists decides something as soon as they
         // have more entries.
         if program.space.count() < program.space.valid_count() {
-            for point in cover::pairwise(&program.space).points {
-                if outcomes.is_settled() {
-                    break;
-                }
-                outcomes.see(&program.space.settings(&point));
-            }
+            outcomes = see_points(outcomes, program, &cover::pairwise(&program.space).points);
         }
         for span in outcomes.places() {
             *self.conditions.entry(place_of(sources, span)).or_default() += 1;
@@ -141,6 +136,29 @@ impl Lints {
         found.extend(everywhere.map(|(_, (_, warning))| warning));
         found
     }
+}
+
+/// Shows permutations to the conditions that are still open: some first, since they settle most
+/// conditions, and the others in parallel.
+fn see_points<'g>(
+    outcomes: Outcomes<'g>,
+    program: &Program,
+    points: &[Assignment],
+) -> Outcomes<'g> {
+    let see = |mut outcomes: Outcomes<'g>, points: &[Assignment]| {
+        for point in points {
+            if outcomes.is_settled() {
+                break;
+            }
+            outcomes.see(&program.space.settings(point));
+        }
+        outcomes
+    };
+    let (first, others) = points.split_at(points.len().min(FIRST_POINTS));
+    let outcomes = see(outcomes, first);
+    let parts = others.par_chunks(FIRST_POINTS).map(|part| see(outcomes.clone(), part));
+    let parts: Vec<Outcomes<'g>> = parts.collect();
+    parts.iter().fold(outcomes, Outcomes::join)
 }
 
 /// How the conditions of one entry point's GLSL came out in all its compositions.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-use crate::bundle::{Contents, Digest, DirectoryWriter, Error, Hash, Unit};
+use crate::bundle::{Contents, Digest, Digester, DirectoryWriter, Error, Hash, Unit};
 
 /// Takes units as they are made, from many threads.
 pub trait Sink: Sync {
@@ -20,12 +20,19 @@ impl Sink for DirectoryWriter {
 
 /// Keeps every unit in memory.
 #[derive(Debug, Default)]
-pub struct Memory(Mutex<BTreeMap<Hash, Unit>>);
+pub struct Memory {
+    digester: Digester,
+    units: Mutex<BTreeMap<Hash, Unit>>,
+}
 
 impl Sink for Memory {
     fn add(&self, unit: Unit) -> Result<Digest, Error> {
-        let digest = unit.digest()?;
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).entry(digest.unit).or_insert(unit);
+        let digest = self.digester.digest(&unit)?;
+        self.units
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .entry(digest.unit)
+            .or_insert(unit);
         Ok(digest)
     }
 }
@@ -33,7 +40,7 @@ impl Sink for Memory {
 impl Memory {
     /// Gives every entry point the units that its keys refer to.
     pub fn fill(self, contents: &mut Contents) {
-        let units = self.0.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let units = self.units.into_inner().unwrap_or_else(PoisonError::into_inner);
         for entry in contents
             .programs
             .values_mut()
@@ -51,10 +58,10 @@ impl Memory {
 
 /// Looks at each unit and keeps none: to count, or to measure.
 #[derive(Debug, Default)]
-pub struct Discard;
+pub struct Discard(Digester);
 
 impl Sink for Discard {
     fn add(&self, unit: Unit) -> Result<Digest, Error> {
-        unit.digest()
+        self.0.digest(&unit)
     }
 }

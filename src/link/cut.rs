@@ -4,7 +4,7 @@ use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::hash::{Hash, Hasher};
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::mark::{self, Mark, SCRATCH};
 use super::reason::Reason;
@@ -244,7 +244,7 @@ impl Cut {
     /// Notes which identifiers the unit's function declares itself. `bases` are names that the
     /// author gave inside it; naga may append an underscore or a number to them. The entry point's
     /// name does not count as a local, even where a local has the same name.
-    pub fn add_locals(&mut self, bases: &BTreeSet<&str>, entry: &str) {
+    pub fn add_locals(&mut self, bases: &FxHashSet<&str>, entry: &str) {
         let is_local = |word: &&str| {
             if *word == entry {
                 return false;
@@ -253,8 +253,10 @@ impl Cut {
             let stem = if stem.ends_with('_') { stem.trim_end_matches('_') } else { *word };
             bases.contains(stem) || bases.contains(word.trim_end_matches('_'))
         };
-        let words: BTreeSet<&str> = self.body.words().collect();
-        let locals = words.into_iter().filter(|word| is_local(word)).map(str::to_owned);
-        self.body.locals = locals.collect();
+        let words: FxHashSet<&str> = self.body.words().collect();
+        let locals = words.into_iter().filter(is_local);
+        let mut locals: Vec<String> = locals.map(str::to_owned).collect();
+        locals.sort_unstable();
+        self.body.locals = locals;
     }
 }

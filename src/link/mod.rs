@@ -65,8 +65,8 @@ pub use module::{compile_module, module_linked};
 pub use reason::Reason;
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, PoisonError, RwLock};
 
 use crate::bundle::Language;
 use crate::bundle::{Artifact, Conventions, Reflection, Target};
@@ -90,7 +90,7 @@ const SIZE_UNSHARED: usize = 2 << 20;
 pub struct Linker<'a> {
     targets: &'a [Target],
     conventions: Conventions,
-    pool: RwLock<Pool>,
+    pool: Pool,
     /// Units asked for since the last batch, and how many of them were new.
     asked: AtomicUsize,
     new: AtomicUsize,
@@ -114,7 +114,7 @@ impl<'a> Linker<'a> {
     /// A linker whose outputs keep the given conventions.
     pub fn with(targets: &'a [Target], conventions: Conventions) -> Self {
         let (asked, new) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        Self { targets, conventions, pool: RwLock::new(Pool::new(targets)), asked, new }
+        Self { targets, conventions, pool: Pool::new(targets), asked, new }
     }
 
     /// The targets that it translates to.
@@ -148,9 +148,10 @@ impl<'a> Linker<'a> {
             Some((outline.declarations[*function].name(), units[*function].clone()?))
         });
         let parts = Parts { functions: named.collect(), entry };
-        let pool = self.pool.read().unwrap_or_else(PoisonError::into_inner);
         let (targets, mut text) = (self.targets.iter().enumerate(), String::new());
-        let targets = targets.map(|(index, target)| pool.link(&parts, index, *target, &mut text));
+        let link =
+            |(index, target): (usize, &Target)| self.pool.link(&parts, index, *target, &mut text);
+        let targets = targets.map(link);
         let targets = targets.collect();
         Ok(Linked { reflection, targets, suspect })
     }
@@ -193,8 +194,7 @@ impl<'a> Linker<'a> {
         *left = left.checked_sub(recipe.bytes(outline)).ok_or(Reason::Large)?;
         let key = recipe.key(outline);
         self.asked.fetch_add(1, Ordering::Relaxed);
-        let known = self.pool.read().unwrap_or_else(PoisonError::into_inner).find(&key);
-        if let Some(known) = known {
+        if let Some(known) = self.pool.find(&key) {
             return known;
         }
         self.new.fetch_add(1, Ordering::Relaxed);
@@ -209,8 +209,7 @@ impl<'a> Linker<'a> {
             .map(|(stub, _)| outline.declarations[*stub].name())
             .chain(function)
             .collect();
-        let mut pool = self.pool.write().unwrap_or_else(PoisonError::into_inner);
-        pool.keep(key, translated, function, &callees)
+        self.pool.keep(key, translated, function, &callees)
     }
 
     /// Keeps the pool within its bound; no output depends on this. Call it between batches only: a
@@ -219,9 +218,8 @@ impl<'a> Linker<'a> {
         let (asked, new) =
             (self.asked.swap(0, Ordering::Relaxed), self.new.swap(0, Ordering::Relaxed));
         let bound = if 4 * new > asked { SIZE_UNSHARED } else { SIZE };
-        let mut pool = self.pool.write().unwrap_or_else(PoisonError::into_inner);
-        if pool.size() > bound {
-            *pool = Pool::new(self.targets);
+        if self.pool.size() > bound {
+            self.pool.clear(self.targets);
         }
     }
 }

@@ -4,10 +4,11 @@
 //! for example, gets an underscore at its end. Where the text has that identifier with another
 //! meaning, the name gets a number instead.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 
 use naga::valid::{ValidationFlags, Validator};
 use naga::{Constant, Expression, Literal, Module, Scalar, Span, Type, TypeInner};
+use rustc_hash::FxHashMap;
 
 use super::cut::Reference;
 use super::ready::{Bits, Identifier, Ready};
@@ -23,11 +24,11 @@ use crate::validate::{CAPABILITIES, Validated};
 #[derive(Default)]
 pub struct Names {
     target: Option<Target>,
-    numbers: HashMap<String, u32>,
+    numbers: FxHashMap<String, u32>,
     /// For each name: the author's form, its usual form, and the number of the usual form as a
     /// word.
     usual: Vec<(String, String, u32)>,
-    words: HashMap<String, u32>,
+    words: FxHashMap<String, u32>,
 }
 
 /// The forms that the names of one text get.

@@ -1,8 +1,9 @@
 //! Keeps each unit once in every target, and links texts from units.
 
 use rustc_hash::FxHashMap;
-use std::collections::{BTreeSet, HashMap};
-use std::sync::Arc;
+use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
 use super::cut::Cut;
 use super::outline::Key;
@@ -14,14 +15,15 @@ use super::translate::{Translated, Written};
 use crate::bundle::{Artifact, Native, Reflection, Target};
 use crate::emit::targets;
 
-/// The units that are kept.
+/// The units that are kept. Each target has a lock of its own, so that a thread which keeps a unit
+/// seldom waits for one that links a text.
 pub struct Pool {
-    units: HashMap<Key, Result<Arc<Unit>, Reason>>,
-    /// What the targets share, in the order of the targets.
-    texts: Vec<Texts>,
-    words: spirv::Pool,
+    units: RwLock<FxHashMap<Key, Result<Arc<Unit>, Reason>>>,
+    /// What the functions of each target share, in the order of the targets.
+    texts: Vec<RwLock<Texts>>,
+    words: RwLock<spirv::Pool>,
     /// Bytes of all units, roughly.
-    size: usize,
+    size: AtomicUsize,
 }
 
 /// A translated unit.
@@ -48,54 +50,61 @@ pub struct Parts<'p> {
 impl Pool {
     pub fn new(targets: &[Target]) -> Self {
         Self {
-            units: HashMap::new(),
-            texts: targets.iter().map(|target| Texts::new(*target)).collect(),
-            words: spirv::Pool::default(),
-            size: 0,
+            units: RwLock::default(),
+            texts: targets.iter().map(|target| RwLock::new(Texts::new(*target))).collect(),
+            words: RwLock::default(),
+            size: AtomicUsize::new(0),
         }
     }
 
     pub fn find(&self, key: &Key) -> Option<Result<Arc<Unit>, Reason>> {
-        self.units.get(key).cloned()
+        read(&self.units).get(key).cloned()
     }
 
     /// Bytes of all units, roughly.
     pub fn size(&self) -> usize {
-        self.size
+        self.size.load(Ordering::Relaxed)
+    }
+
+    /// Forgets all units. No text may be linked meanwhile, since its units belong to this pool.
+    pub fn clear(&self, targets: &[Target]) {
+        write(&self.units).clear();
+        for (texts, target) in self.texts.iter().zip(targets) {
+            *write(texts) = Texts::new(*target);
+        }
+        *write(&self.words) = spirv::Pool::default();
+        self.size.store(0, Ordering::Relaxed);
     }
 
     /// Keeps a unit. `function` is its author's name, `None` for an entry point; `callees` are the
-    /// names of the functions that it may call.
+    /// names of the functions that it may call. Of a unit that two threads translate, one is kept.
     pub fn keep(
-        &mut self,
+        &self,
         key: Key,
         translated: Result<Translated, Reason>,
         function: Option<&str>,
         callees: &BTreeSet<&str>,
     ) -> Result<Arc<Unit>, Reason> {
-        if let Some(known) = self.units.get(&key) {
-            return known.clone();
+        if let Some(known) = self.find(&key) {
+            return known;
         }
         let unit = translated.map(|translated| {
-            let mut pieces = Vec::new();
-            for (written, texts) in translated.targets.into_iter().zip(&mut self.texts) {
-                let piece = written.and_then(|written| match written {
-                    Written::Text { cut, native } => {
-                        self.size += 2 * cut.size();
-                        Ok(Piece::Text(texts.keep(cut, native)?))
-                    }
-                    Written::Words { words, native } => {
-                        self.size += size_of_val(words.as_slice()) / 2;
-                        words_piece(&mut self.words, &words, native, function, callees)
-                    }
-                });
-                pieces.push(piece);
-            }
+            let pieces = translated.targets.into_iter().zip(&self.texts);
+            let pieces = pieces.map(|(written, texts)| match written? {
+                Written::Text { cut, native } => {
+                    self.size.fetch_add(2 * cut.size(), Ordering::Relaxed);
+                    Ok(Piece::Text(write(texts).keep(cut, native)?))
+                }
+                Written::Words { words, native } => {
+                    self.size.fetch_add(size_of_val(words.as_slice()) / 2, Ordering::Relaxed);
+                    words_piece(&mut write(&self.words), &words, native, function, callees)
+                }
+            });
+            let targets = pieces.collect();
             let (summary, reflection) = (translated.summary, translated.reflection);
-            Arc::new(Unit { summary, reflection, targets: pieces })
+            Arc::new(Unit { summary, reflection, targets })
         });
-        self.units.insert(key, unit.clone());
-        unit
+        write(&self.units).entry(key).or_insert(unit).clone()
     }
 
     /// Links one target of a text. `text` is a buffer that is used again.
@@ -112,7 +121,7 @@ impl Pool {
         let texts = self.texts.get(index).ok_or(Reason::Shape)?;
         let (bytes, native) = match spirv_piece(&parts.entry, index)? {
             Piece::Text(_) => {
-                let native = texts.link(&text_pieces(parts, index)?, text)?;
+                let native = read(texts).link(&text_pieces(parts, index)?, text)?;
                 (text.as_bytes().into(), native)
             }
             Piece::Words { piece, native } => {
@@ -135,7 +144,8 @@ impl Pool {
                 named.insert(name, piece);
             }
         }
-        let words = spirv::assemble_module(&self.words, entry, &|name| named.get(name).copied());
+        let pool = read(&self.words);
+        let words = spirv::assemble_module(&pool, entry, &|name| named.get(name).copied());
         let words = words.map_err(|_| Reason::Spirv)?;
         let mut bytes = Vec::with_capacity(4 * words.len());
         words.iter().for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
@@ -148,6 +158,14 @@ impl Unit {
     pub fn is_refused(&self, index: usize) -> bool {
         matches!(self.targets.get(index), Some(Err(Reason::Refused)))
     }
+}
+
+fn read<T>(lock: &RwLock<T>) -> RwLockReadGuard<'_, T> {
+    lock.read().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn write<T>(lock: &RwLock<T>) -> RwLockWriteGuard<'_, T> {
+    lock.write().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn spirv_piece(unit: &Unit, index: usize) -> Result<&Piece, Reason> {

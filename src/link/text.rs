@@ -51,10 +51,8 @@ fn declaration_length(text: &str) -> Option<usize> {
         match byte {
             b'(' | b'[' | b'{' => depth += 1,
             b')' | b']' | b'}' => depth = depth.checked_sub(1)?,
-            _ => {}
-        }
-        if depth == 0 && byte == b';' {
-            return Some(at + 1);
+            b';' if depth == 0 => return Some(at + 1),
+            _ => continue,
         }
         if depth == 0 && byte == b'}' && !names_what_it_holds {
             let after = &text[at + 1..];

@@ -1,7 +1,9 @@
 //! What the functions of one target share, and how texts of that target are put together.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::sync::Arc;
+
+use rustc_hash::FxHashMap;
 
 use super::cut::{Cut, Fragment, Shared};
 use super::names::{Chosen, Names, Renames};
@@ -16,14 +18,14 @@ pub struct Texts {
     names: Names,
     headers: Vec<String>,
     declarations: Vec<Declared>,
-    places: HashMap<(Fragment, Vec<u32>), u32>,
+    places: FxHashMap<(Fragment, Vec<u32>), u32>,
     /// The declarations, in the order in which a text writes them.
     order: Vec<u32>,
     /// For each declaration its rank in that order. Declarations that are written alike have the
     /// same rank.
     ranks: Vec<u32>,
     /// Declarations of the same name and head have the same number: a text can have one of them.
-    twins: HashMap<(String, String), u32>,
+    twins: FxHashMap<(String, String), u32>,
 }
 
 /// A unit in one target.

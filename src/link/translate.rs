@@ -1,12 +1,13 @@
 //! Translates one unit for every target: naga writes its canonical text, of which the unit's own
 //! part is kept.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use naga::front::{glsl, wgsl};
 use naga::valid::{ModuleInfo, ValidationFlags, Validator};
 use naga::{Function, Module};
+use rustc_hash::FxHashSet;
 
 use super::canonical::{IDLE, Recipe, UnitId};
 use super::cut::{self, Cut, Fragment};
@@ -191,7 +192,7 @@ fn local_names<'m>(
     recipe: &Recipe<'_>,
     module: &'m Module,
     name: Option<&str>,
-) -> BTreeSet<&'m str> {
+) -> FxHashSet<&'m str> {
     let function = match recipe.unit {
         UnitId::Entry => module.entry_points.first().map(|point| &point.function),
         UnitId::Function(_) => {

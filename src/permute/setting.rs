@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::sync::Arc;
 
 /// The value of an axis or a feature.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -43,7 +44,7 @@ pub struct Settings {
     pub values: BTreeMap<String, Setting>,
     /// Enum axes with all their values, so that `@if(axis == value)` and the GLSL macros
     /// `AXIS_VALUE` know them. Names that are not here are plain WESL features.
-    pub enums: BTreeMap<String, Vec<String>>,
+    pub enums: Arc<BTreeMap<String, Vec<String>>>,
     /// Declared integer axes: those that conditions may compare.
     pub integers: std::collections::BTreeSet<String>,
     /// Axes whose numbers are left open for the pipeline to choose, with their defaults:

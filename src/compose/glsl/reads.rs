@@ -44,7 +44,7 @@ impl<'s> Reads<'s> {
 
     /// Defines the macro of every setting, and those of the values of enum axes.
     pub fn define(&mut self, table: &mut Table<'_>, settings: &Settings) {
-        for (axis, values) in &settings.enums {
+        for (axis, values) in &*settings.enums {
             let axis = axis.to_uppercase();
             for (number, value) in values.iter().enumerate() {
                 table.number(&format!("{axis}_{}", value.to_uppercase()), number as i64);

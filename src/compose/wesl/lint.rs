@@ -8,12 +8,14 @@ use crate::resolve::wesl::Graph;
 use crate::source::Span;
 
 /// How the conditions of the root package came out in the permutations that were shown so far.
+#[derive(Clone)]
 pub struct Outcomes<'g> {
     graph: &'g Graph,
     /// Those that had the same value each time.
     open: Vec<Condition>,
 }
 
+#[derive(Clone)]
 struct Condition {
     node: u32,
     id: ConditionId,
@@ -55,6 +57,29 @@ impl<'g> Outcomes<'g> {
             condition.unknown |= !evaluator.errors.is_empty();
             evaluator.errors.clear();
         }
+        self.settle();
+    }
+
+    /// Adds what other permutations showed of the same graph.
+    pub fn join(mut self, other: &Self) -> Self {
+        let place = |condition: &Condition| (condition.node, condition.id);
+        let find = |condition: &Condition| {
+            let found = other.open.binary_search_by_key(&place(condition), place);
+            found.ok().and_then(|index| other.open.get(index))
+        };
+        self.open.retain_mut(|condition| {
+            find(condition).is_some_and(|found| {
+                condition.held |= found.held;
+                condition.failed |= found.failed;
+                true
+            })
+        });
+        self.settle();
+        self
+    }
+
+    /// Drops the conditions that no further permutation can change.
+    fn settle(&mut self) {
         let graph = self.graph;
         self.open.retain(|condition| {
             !condition.unknown

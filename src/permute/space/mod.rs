@@ -7,6 +7,7 @@ mod formula;
 pub use formula::Formula;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::axis::{Axis, Kind, Mode, ValueSet};
 use super::key::{Assignment, Key};
@@ -79,6 +80,8 @@ pub struct Space {
     lists: Lists,
     valid: Diagram,
     wanted: Diagram,
+    /// [`Settings::enums`] at every point.
+    enums: Arc<BTreeMap<String, Vec<String>>>,
     /// [`Settings::undeclared`] at every point.
     pub undeclared: Option<bool>,
     /// The values of features that are no axes, at every point.
@@ -100,7 +103,10 @@ impl Space {
         } else {
             build_diagram(&axes, &constraints, &lists, order)?
         };
+        let enums = axes.iter().filter(|axis| axis.kind == Kind::Enum);
+        let enums = enums.map(|axis| (axis.name.clone(), axis.value_names())).collect();
         Ok(Self {
+            enums: Arc::new(enums),
             axes,
             constraints,
             lists,
@@ -230,21 +236,15 @@ impl Space {
 
     /// The settings for a composition at a point: every axis with its value, dynamic ones too.
     pub fn settings(&self, point: &Assignment) -> Settings {
-        let of_kind = |kind| self.axes.iter().filter(move |axis| axis.kind == kind);
+        let integers = self.axes.iter().filter(|axis| axis.kind == Kind::Int);
+        let open = self.axes.iter().filter(|axis| axis.mode == Mode::Spec);
         let axes = self.axes.iter().enumerate();
         let axes = axes.map(|(index, axis)| (axis.name.clone(), self.value(index, point).clone()));
         Settings {
             values: self.features.clone().into_iter().chain(axes).collect(),
-            enums: of_kind(Kind::Enum)
-                .map(|axis| (axis.name.clone(), axis.value_names()))
-                .collect(),
-            integers: of_kind(Kind::Int).map(|axis| axis.name.clone()).collect(),
-            open: self
-                .axes
-                .iter()
-                .filter(|axis| axis.mode == Mode::Spec)
-                .map(|axis| (axis.name.clone(), axis.values[axis.default].clone()))
-                .collect(),
+            enums: self.enums.clone(),
+            integers: integers.map(|axis| axis.name.clone()).collect(),
+            open: open.map(|axis| (axis.name.clone(), axis.values[axis.default].clone())).collect(),
             undeclared: self.undeclared,
             constants: BTreeMap::new(),
         }
