@@ -286,11 +286,20 @@ fn composed(
             keep.push("main".to_owned());
             compose::glsl::compose(
                 &graph,
-                settings,
+                &asked_settings(&graph, settings),
                 &Options { keep: Keep::Items(keep), ..Options::default() },
             )
         }
     }
+}
+
+/// The settings that a graph of GLSL may ask for. The others are those of the package's other
+/// programs: their macros could replace names that this module declares.
+fn asked_settings(graph: &resolve::glsl::Graph, settings: &Settings) -> Settings {
+    let mut asked = settings.clone();
+    asked.values.retain(|name, _| graph.may_ask(name));
+    Arc::make_mut(&mut asked.enums).retain(|name, _| graph.may_ask(name));
+    asked
 }
 
 /// The files of a package, with some texts of our own added.

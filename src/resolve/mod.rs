@@ -86,7 +86,7 @@ impl Graph {
     pub fn may_ask(&self, name: &str) -> bool {
         match self {
             Self::Wesl(graph) => graph.may_ask(name),
-            Self::Glsl(graph) => graph.symbols.find(&name.to_uppercase()).is_some(),
+            Self::Glsl(graph) => graph.may_ask(name),
         }
     }
 }

@@ -19,6 +19,7 @@ pub const CASES: &[Case] = &[
     ("colours", colours),
     ("own_functions", own),
     ("checks_under_settings", settings),
+    ("checks_without_macros_of_others", macros_of_others),
     ("search", search),
     ("keys_as_json", keys_as_json),
     ("errors_of_all_programs", all_programs),
@@ -268,6 +269,26 @@ fn settings() -> Outcome {
     package.run("check --feature double")?.ends(0)?.says(&["1 of 1 pass"])?;
     package.run("check --features-default on")?.ends(0)?;
     package.run("check --features-default off")?.ends(3)?;
+    Ok(())
+}
+
+/// An axis of a program defines macros for that program alone. A module that does not ask for the
+/// axis may declare their names.
+fn macros_of_others() -> Outcome {
+    let manifest = "[program.p]\nwesl = \"p.wesl\"\ntargets = [\"wgsl\"]\n\
+                    [program.p.axis]\nlight = { values = [\"off\", \"point\"] }\n";
+    let program = "@fragment fn main() -> @location(0) vec4f {\n\
+                   @if(light == point) { return vec4f(1.0); }\n@else { return vec4f(); }\n}\n";
+    let wesl = "const LIGHT_POINT = 2u;\nfn f(x: f32) -> f32 { return x * f32(LIGHT_POINT); }\n";
+    let glsl = "const uint LIGHT_POINT = 2u;\n\
+                float f(float x) { return x * float(LIGHT_POINT); }\n";
+    let case = "[[case]]\nfunction = \"f\"\nformula = \"2*x\"\ntolerance = { abs = 1e-6 }\n\
+                [case.inputs]\nx = [0, 1, 2]\n";
+    let files = [("wesl.toml", ROOT), ("lamplight.toml", manifest), ("p.wesl", program)];
+    let module = [("a.wesl", wesl), ("a.glsl", glsl), ("a.toml", case)];
+    let package = Package::new(&[files, module].concat())?;
+    package.run("check a.toml")?.ends(0)?.says(&["2 of 2 pass"])?;
+    package.run("gen --no-cache")?.ends(0)?.says(&["p: 2 permutations"])?;
     Ok(())
 }
 

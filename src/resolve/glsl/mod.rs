@@ -27,6 +27,11 @@ pub struct Graph {
 }
 
 impl Graph {
+    /// Whether a text mentions the macro of a setting.
+    pub fn may_ask(&self, name: &str) -> bool {
+        self.symbols.find(&name.to_uppercase()).is_some()
+    }
+
     /// The includes that led to a file, as notes, from its own includer to one in the root file.
     pub fn trace(&self, source: SourceId) -> Vec<String> {
         let mut notes = Vec::new();
