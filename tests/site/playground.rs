@@ -32,6 +32,7 @@ pub fn playground() -> Outcome {
     let problem = text(&page, "document.querySelector('.problems').textContent")?;
     assert!(problem.contains("lit.wesl:7:40: "), "expected lit.wesl:7:40 in `{problem}`");
     kept(&opened, &page)?;
+    too_large(&page)?;
     replaced(&page)?;
     without_errors(&mut page)
 }
@@ -136,6 +137,21 @@ fn kept(opened: &Opened, page: &Page) -> Outcome {
     wait(&third, &there("// typed after the link"))?;
     other.evaluate(&format!("{back}.click()"), PATIENCE)?;
     wait(&other, &there("// my own"))?;
+    Ok(())
+}
+
+/// A huge text is not inserted, with a sentence that says so. The text before it stays.
+fn too_large(page: &Page) -> Outcome {
+    page.evaluate(
+        "(() => { const data = new DataTransfer(); data.setData('text/plain', '// x '.repeat(2000000));
+            const paste = new ClipboardEvent('paste', { clipboardData: data, bubbles: true, cancelable: true });
+            document.querySelector('.cm-content').dispatchEvent(paste); })()",
+        PATIENCE,
+    )?;
+    wait(page, "document.querySelector('.status').textContent.startsWith('Not inserted')")?;
+    let letters =
+        page.evaluate("document.querySelector('.cm-content').textContent.length", PATIENCE)?;
+    assert!(letters.as_u64().is_some_and(|count| count < 10_000), "the page has {letters} letters");
     Ok(())
 }
 

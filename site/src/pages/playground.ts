@@ -15,6 +15,9 @@ import { Sketch } from "../parts/sketch";
 /** Milliseconds after which the page says that it still computes. */
 const PATIENCE = 1000;
 
+/** Letters of all files: with more, the page would stand still for a second while it keeps them. */
+const LARGEST = 4 << 20;
+
 export async function page(into: HTMLElement, given?: Project) {
     const state: Project = given ?? await opened(route().query.get("state"));
     const outputs = h("div", { class: "texts" });
@@ -28,11 +31,18 @@ export async function page(into: HTMLElement, given?: Project) {
     const leaving = h("p", { class: "note", id: "leaving" }, "Tab indents. Escape and then Tab leaves the editor.");
     const editor = new EditorView({ parent: panel });
 
+    /** Letters of the files that are not open. */
+    const others = () => Object.entries(state.files).reduce((sum, [name, text]) => sum + (name === state.open ? 0 : text.length), 0);
     const begin = () => editor.setState(EditorState.create({
         doc: state.files[state.open] ?? "",
         extensions: [
             lineNumbers(), history(), drawSelection(), highlightActiveLine(), lintGutter(), EditorView.lineWrapping,
             EditorView.contentAttributes.of({ "aria-label": `Text of ${state.open}`, "aria-describedby": "leaving" }),
+            EditorState.transactionFilter.of((change) => {
+                if (!change.docChanged || change.newDoc.length + others() <= LARGEST) return change;
+                told.textContent = `Not inserted: the files would have more than ${LARGEST.toLocaleString("en")} letters together.`;
+                return [];
+            }),
             keymap.of([...defaultKeymap, ...historyKeymap, indentWithTab]),
             EditorView.updateListener.of((update) => {
                 if (!update.docChanged) return;

@@ -139,6 +139,7 @@ export async function page(into: HTMLElement) {
     });
     async function renew(now: typeof wanted, isOld: () => boolean) {
         const { program, key, scene, environment, target, preset, against } = state;
+        if (into.isConnected) document.title = `${program} – Programs – Lamplight`;
         remember(into, "programs", program, {
             key, scene, environment, target, preset, lamps: written(state.lamps), set: written(state.set),
         }, { against });
