@@ -16,9 +16,10 @@
 //! deviations = ["The map is compared with linear filtering, in the recipe with the nearest texel."]
 //! ```
 //!
-//! `look` says what to look for in the picture. The tables `light`, `area`, `material`, `layers`,
-//! `surroundings`, `haze`, `caster`, `moments`, `display`, `march`, `horizon` and `lobe` have the numbers that the source
-//! publishes, named after the fields of the uniform they go to. `depth_pass` has what the shadow map is drawn with:
+//! `look` says what to look for in the picture. The tables `object`, `light`, `area`, `material`,
+//! `layers`, `surroundings`, `haze`, `caster`, `moments`, `display`, `march`, `horizon` and `lobe`
+//! have the numbers that the source publishes, named after the fields of the uniform they go to.
+//! Those of `object` are for all objects. `depth_pass` has what the shadow map is drawn with:
 //! `polygon_offset`, `cull_front`, and of a spot light the whole angle `fov` in degrees and the
 //! planes `near` and `far` in scene units. `open` names the numbers that the source leaves to its
 //! reader, or to models of its own: the scene and the renderer choose them. Every number that the
@@ -138,6 +139,8 @@ struct Entry {
     #[serde(default)]
     passes: Vec<PassEntry>,
     #[serde(default)]
+    object: Group,
+    #[serde(default)]
     light: Group,
     #[serde(default)]
     area: Group,
@@ -228,6 +231,7 @@ impl Checker<'_> {
             self.permutation(&pass.program, &pass.key);
         }
         let groups = [
+            ("object", entry.object),
             ("light", entry.light),
             ("area", entry.area),
             ("material", entry.material),

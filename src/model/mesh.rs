@@ -4,6 +4,7 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 use gltf::mesh::Mode;
 
 use super::Reader;
+use super::coordinates::Coordinates;
 use super::nodes::Part;
 use super::surface::{Means, read_surface};
 use super::texture::Sheet;
@@ -33,7 +34,8 @@ pub fn mesh_objects(
         if *corners > MODEL_CORNERS {
             return Err(format!("{place}: more than {MODEL_CORNERS} corners of triangles"));
         }
-        let vertices = mesh_vertices(reader, &primitive, &indices, &place)?;
+        let own = sheet.coordinates(reader, &primitive.material())?;
+        let vertices = mesh_vertices(reader, &primitive, (&indices, own), &place)?;
         let shape = Shape { vertices, indices };
         let shape = sheet.placed(reader, shape, &primitive.material())?;
         let shape = shape.transformed(part.world_from_mesh);
@@ -97,10 +99,27 @@ fn triangle_indices(
     }))
 }
 
+/// The coordinates of a primitive's corners, moved as the textures are.
+pub fn mesh_coordinates(
+    reader: &Reader<'_>,
+    primitive: &gltf::Primitive<'_>,
+    own: Coordinates,
+    place: &str,
+) -> Result<Vec<DVec2>, String> {
+    let name = format!("TEXCOORD_{}", own.set);
+    let Some(accessor) = primitive.get(&gltf::Semantic::TexCoords(own.set)) else {
+        return Ok(Vec::new());
+    };
+    let moved = own.texture_from_set();
+    let rows = reader.rows(&accessor, &format!("{place}.attributes.{name}"))?;
+    let at = |row: &[f64; 4]| moved.transform_point2(DVec2::new(row[0], row[1]));
+    Ok(rows.iter().map(at).map(|at| if at.is_finite() { at } else { DVec2::ZERO }).collect())
+}
+
 fn mesh_vertices(
     reader: &Reader<'_>,
     primitive: &gltf::Primitive<'_>,
-    indices: &[u32],
+    (indices, own): (&[u32], Coordinates),
     place: &str,
 ) -> Result<Vec<Vertex>, String> {
     let rows = |semantic: gltf::Semantic, name: &str| match primitive.get(&semantic) {
@@ -110,7 +129,7 @@ fn mesh_vertices(
     let positions = rows(gltf::Semantic::Positions, "POSITION")?.unwrap_or_default();
     let normals = rows(gltf::Semantic::Normals, "NORMAL")?;
     let tangents = rows(gltf::Semantic::Tangents, "TANGENT")?;
-    let coordinates = rows(gltf::Semantic::TexCoords(0), "TEXCOORD_0")?;
+    let coordinates = mesh_coordinates(reader, primitive, own, place)?;
     let colors = rows(gltf::Semantic::Colors(0), "COLOR_0")?;
     let vector = |row: &[f64; 4]| DVec3::new(row[0], row[1], row[2]);
     let points: Vec<DVec3> = positions.iter().map(vector).collect();
@@ -124,7 +143,7 @@ fn mesh_vertices(
     let vertex = |(index, position): (usize, &DVec3)| {
         let own = row(&normals, index).map(|normal| vector(&normal).normalize_or_zero());
         let normal = own.or_else(|| smooth.get(index).copied()).unwrap_or(DVec3::Y);
-        let uv = row(&coordinates, index).map_or(DVec2::ZERO, |row| DVec2::new(row[0], row[1]));
+        let uv = coordinates.get(index).copied().unwrap_or_default();
         Vertex {
             position: *position,
             normal,

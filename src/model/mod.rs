@@ -6,6 +6,7 @@
 //! names its place in the document. All memory is bounded by [`limits`](crate::limits).
 
 mod accessor;
+mod coordinates;
 mod layers;
 mod mesh;
 mod nodes;

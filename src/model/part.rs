@@ -4,6 +4,7 @@ use glam::DVec4;
 use serde_json::Value;
 
 use super::Reader;
+use super::coordinates::{Coordinates, TRANSFORM};
 
 /// Channels of an image in a texture, where they keep their places.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -15,6 +16,7 @@ pub struct Part {
     pub channels: &'static [usize],
     /// Whether the image is coded as sRGB.
     pub is_color: bool,
+    pub coordinates: Coordinates,
     /// The bits of the share that the image has over 1.
     strength: u32,
 }
@@ -56,7 +58,12 @@ pub fn is_drawn(extension: &str, field: &str) -> bool {
 
 impl Part {
     fn new(map: &'static str, image: usize, channels: &'static [usize], is_color: bool) -> Self {
-        Self { map, image, channels, is_color, strength: 1_f32.to_bits() }
+        let coordinates = Coordinates::default();
+        Self { map, image, channels, is_color, coordinates, strength: 1_f32.to_bits() }
+    }
+
+    fn at(self, coordinates: Coordinates) -> Self {
+        Self { coordinates, ..self }
     }
 
     /// A texel, as far as it counts.
@@ -70,37 +77,40 @@ impl Part {
 /// # Errors
 /// A texture that is not there, with the place that names it.
 pub fn material_parts(
-    reader: &mut Reader<'_>,
+    reader: &Reader<'_>,
     material: &gltf::Material<'_>,
 ) -> Result<Vec<Part>, String> {
     let mut parts = Vec::new();
     let own = material.pbr_metallic_roughness();
-    let mut add = |set: u32, texture: gltf::Texture<'_>, map, channels, is_color| {
-        if set != 0 {
-            let note =
-                "all textures have the first coordinates, and other coordinates are left out";
-            reader.notes.insert(note.to_owned());
-        }
-        parts.push(Part::new(map, texture.source().index(), channels, is_color));
+    let known = |info: &gltf::texture::Info<'_>, map, channels, is_color| {
+        let part = Part::new(map, info.texture().source().index(), channels, is_color);
+        part.at(Coordinates::of_texture(info))
+    };
+    let place = |field: &str| match material.index() {
+        Some(index) => format!("materials[{index}].{field}"),
+        None => field.to_owned(),
     };
     if let Some(info) = own.base_color_texture() {
-        add(info.tex_coord(), info.texture(), "base_map", RGB, true);
+        parts.push(known(&info, "base_map", RGB, true));
     }
     // What is unlit has no other textures.
     if material.unlit() {
         return Ok(parts);
     }
     if let Some(info) = material.normal_texture() {
-        add(info.tex_coord(), info.texture(), "normal_map", RGB, false);
+        let own = info.extension_value(TRANSFORM);
+        let at = Coordinates::read(info.tex_coord(), own, &place("normalTexture"))?;
+        let image = info.texture().source().index();
+        parts.push(Part::new("normal_map", image, RGB, false).at(at));
     }
     for (info, map, channels, is_color) in factor_textures(material) {
-        add(info.tex_coord(), info.texture(), map, channels, is_color);
+        parts.push(known(&info, map, channels, is_color));
     }
     if let Some(info) = material.occlusion_texture() {
-        add(info.tex_coord(), info.texture(), "occlusion_map", &[0], false);
-        if let Some(part) = parts.last_mut() {
-            part.strength = info.strength().to_bits();
-        }
+        let own = info.extension_value(TRANSFORM);
+        let at = Coordinates::read(info.tex_coord(), own, &place("occlusionTexture"))?;
+        let part = Part::new("occlusion_map", info.texture().source().index(), &[0], false).at(at);
+        parts.push(Part { strength: info.strength().to_bits(), ..part });
     }
     for field in &FIELDS {
         parts.extend(extension_part(reader, material, field)?);
@@ -144,5 +154,9 @@ fn extension_part(
     let number = number.ok_or_else(|| format!("{place}: expected a texture, found {value}"))?;
     let texture = usize::try_from(number).ok().and_then(|at| reader.document.textures().nth(at));
     let texture = texture.ok_or_else(|| format!("{place}: there is no texture {number}"))?;
-    Ok(Some(Part::new(map, texture.source().index(), channels, *is_color)))
+    let set = value.get("texCoord").and_then(Value::as_u64).unwrap_or(0);
+    let set = u32::try_from(set).map_err(|_| format!("{place}: there is no TEXCOORD_{set}"))?;
+    let own = value.get("extensions").and_then(|all| all.get(TRANSFORM));
+    let at = Coordinates::read(set, own, &place)?;
+    Ok(Some(Part::new(map, texture.source().index(), channels, *is_color).at(at)))
 }

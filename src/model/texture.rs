@@ -7,9 +7,11 @@ use glam::{DVec2, DVec3, DVec4};
 use gltf::image::Source;
 
 use super::Reader;
+use super::coordinates::{Coordinates, Window};
+use super::mesh::mesh_coordinates;
 use super::nodes::Placed;
 use super::part::{Part, material_parts};
-use crate::limits::{MODEL_PIXELS, MODEL_TEXTURES};
+use crate::limits::{MODEL_CORNERS, MODEL_PIXELS, MODEL_TEXTURES};
 use crate::scene::sets::{Map, Maps};
 use crate::scene::{Shape, blank_texel};
 
@@ -19,20 +21,44 @@ pub struct Sheet {
     pub maps: Option<Maps>,
     /// The textures that at least one material has, by the names of their bindings.
     pub names: BTreeSet<&'static str>,
-    cells: BTreeMap<Vec<Part>, usize>,
+    cells: BTreeMap<Vec<Part>, Cell>,
+}
+
+/// The place of a set of textures on the sheet.
+#[derive(Debug, Clone, Copy)]
+struct Cell {
+    index: usize,
+    /// The coordinates that the surfaces have, or those of the textures where all have the same.
+    own: Coordinates,
+    is_shared: bool,
+    window: Window,
+}
+
+impl Cell {
+    /// The coordinates of a material's surfaces. A texture with another set cannot be on the same
+    /// sheet; textures that are moved differently are moved in their images.
+    fn new(index: usize, parts: &[Part]) -> Self {
+        let first = parts.first().map_or_else(Coordinates::default, |part| part.coordinates);
+        let is_shared = parts.iter().all(|part| part.coordinates == first);
+        let own = if is_shared { first } else { Coordinates::of_set(first.set) };
+        Self { index, own, is_shared, window: Window::UNIT }
+    }
+
+    /// Where a texture has its pixel for a share of the cell.
+    fn in_texture(&self, part: &Part, share: DVec2) -> DVec2 {
+        let at = self.window.at(share);
+        let at = if self.is_shared {
+            at
+        } else {
+            part.coordinates.texture_from_set().transform_point2(at)
+        };
+        at - at.floor()
+    }
 }
 
 /// Puts the textures of all materials that are drawn on a sheet.
 pub fn texture_sheet(reader: &mut Reader<'_>, placed: &Placed) -> Result<Sheet, String> {
-    let document = reader.document;
-    let mut cells = BTreeMap::new();
-    for part in &placed.parts {
-        let mesh = document.meshes().nth(part.mesh).ok_or("a node has a mesh that is not there")?;
-        for primitive in mesh.primitives() {
-            let count = cells.len();
-            cells.entry(material_parts(reader, &primitive.material())?).or_insert(count);
-        }
-    }
+    let cells = texture_cells(reader, placed)?;
     let names: BTreeSet<&str> = cells.keys().flatten().map(|part| part.map).collect();
     if names.is_empty() {
         return Ok(Sheet { cells, ..Sheet::default() });
@@ -47,8 +73,17 @@ pub fn texture_sheet(reader: &mut Reader<'_>, placed: &Placed) -> Result<Sheet, 
             let side = (sheet_side(part.map) / across).min(1024);
             let map = maps.entry(part.map);
             let map = map.or_insert_with(|| blank_map(across * side, blank_of(part.map)));
-            let at = [cell % across * side, cell / across * side];
-            place_image(map, part, &decode_image(reader, part.image, part.is_color)?, at, side);
+            let Some(image) = reader.image(part.image, part.is_color)? else { continue };
+            let at = [cell.index % across * side, cell.index / across * side];
+            if part.coordinates.set == cell.own.set {
+                place_image(map, part, &image, (at, side), |share| cell.in_texture(part, share));
+            } else {
+                let what = "textures with other coordinates than the first one of their material \
+                    count with their mean";
+                reader.notes.insert(what.to_owned());
+                let mean = blank_map(1, image.mean());
+                place_image(map, part, &mean, (at, side), |_| DVec2::ZERO);
+            }
         }
     }
     let mut taken = |name: &str| maps.remove(name).unwrap_or_else(|| blank_map(1, blank_of(name)));
@@ -56,6 +91,44 @@ pub fn texture_sheet(reader: &mut Reader<'_>, placed: &Placed) -> Result<Sheet, 
     let (occlusion, light) = (taken("occlusion_map"), taken("light_map"));
     let maps = Some(Maps { base, normal, occlusion, light, material: maps });
     Ok(Sheet { maps, names, cells })
+}
+
+/// A cell for each set of textures. One set alone is repeated by the sampler, others in their cells.
+fn texture_cells(
+    reader: &Reader<'_>,
+    placed: &Placed,
+) -> Result<BTreeMap<Vec<Part>, Cell>, String> {
+    let document = reader.document;
+    let mut cells = BTreeMap::new();
+    let mut bounds: BTreeMap<usize, (DVec2, DVec2)> = BTreeMap::new();
+    let mut corners = 0;
+    let meshes: BTreeSet<usize> = placed.parts.iter().map(|part| part.mesh).collect();
+    for index in meshes {
+        let mesh = document.meshes().nth(index).ok_or("a node has a mesh that is not there")?;
+        for primitive in mesh.primitives() {
+            let parts = material_parts(reader, &primitive.material())?;
+            let count = cells.len();
+            let cell = *cells.entry(parts).or_insert_with_key(|parts| Cell::new(count, parts));
+            let place = format!("meshes[{index}].primitives[{}]", primitive.index());
+            let rows = mesh_coordinates(reader, &primitive, cell.own, &place)?;
+            corners += rows.len();
+            if corners > MODEL_CORNERS {
+                return Err(format!("{place}: more than {MODEL_CORNERS} corners of triangles"));
+            }
+            let (low, high) =
+                bounds.entry(cell.index).or_insert((DVec2::INFINITY, DVec2::NEG_INFINITY));
+            for uv in rows {
+                (*low, *high) = (low.min(uv), high.max(uv));
+            }
+        }
+    }
+    let is_alone = cells.len() == 1;
+    for cell in cells.values_mut().filter(|cell| !(is_alone && cell.is_shared)) {
+        if let Some((low, high)) = bounds.get(&cell.index) {
+            cell.window = Window::around(*low, *high);
+        }
+    }
+    Ok(cells)
 }
 
 /// Texels along an edge of a sheet. There may be ten of them.
@@ -70,20 +143,34 @@ fn blank_of(map: &str) -> DVec4 {
 }
 
 impl Sheet {
+    /// The coordinates that the corners of a material's surfaces have.
+    pub fn coordinates(
+        &self,
+        reader: &Reader<'_>,
+        material: &gltf::Material<'_>,
+    ) -> Result<Coordinates, String> {
+        let cell = self.cells.get(&material_parts(reader, material)?);
+        Ok(cell.map_or_else(Coordinates::default, |cell| cell.own))
+    }
+
     /// A shape whose coordinates are those of its material's cell.
     pub fn placed(
         &self,
-        reader: &mut Reader<'_>,
+        reader: &Reader<'_>,
         shape: Shape,
         material: &gltf::Material<'_>,
     ) -> Result<Shape, String> {
         let across = cells_across(self.cells.len());
         let parts = material_parts(reader, material)?;
-        let Some(cell) = self.cells.get(&parts).filter(|_| across > 1) else { return Ok(shape) };
-        let corner = DVec2::new((cell % across) as f64, (cell / across) as f64);
-        let share = |x: f64| if (0.0..=1.0).contains(&x) { x } else { x - x.floor() };
+        let Some(cell) = self.cells.get(&parts) else { return Ok(shape) };
+        if across == 1 {
+            // The window of a single cell is repeated by the sampler.
+            let window = cell.window;
+            return Ok(shape.map(|vertex| vertex.uv = (vertex.uv - window.low) / window.size));
+        }
+        let corner = DVec2::new((cell.index % across) as f64, (cell.index / across) as f64);
         // Off the rim, so that filters do not reach into the next cell.
-        let within = |uv: DVec2| 0.004 + 0.992 * DVec2::new(share(uv.x), share(uv.y));
+        let within = |uv: DVec2| 0.004 + 0.992 * cell.window.share(uv);
         Ok(shape.map(|vertex| vertex.uv = (corner + within(vertex.uv)) / across as f64))
     }
 }
@@ -102,11 +189,22 @@ impl Reader<'_> {
         if self.means.len() >= MODEL_TEXTURES {
             return Err(format!("materials: more than {MODEL_TEXTURES} sets of textures"));
         }
-        let map = decode_image(self, key.0, is_color)?;
-        let sum: DVec3 = map.texels.iter().map(|texel| texel.truncate()).sum();
-        let mean = sum / map.texels.len().max(1) as f64;
+        // What cannot be read changes nothing.
+        let mean = self.image(key.0, is_color)?.map_or(DVec3::ONE, |map| map.mean().truncate());
         self.means.insert(key, mean);
         Ok(mean)
+    }
+
+    /// An image of the document, linear. One that cannot be decoded is left out with a note.
+    fn image(&mut self, index: usize, is_color: bool) -> Result<Option<Map>, String> {
+        match decode_image(self, index, is_color)? {
+            Ok(map) => Ok(Some(map)),
+            Err(reason) => {
+                let note = format!("images[{index}] is left out: {reason}");
+                self.notes.insert(note);
+                Ok(None)
+            }
+        }
     }
 }
 
@@ -120,9 +218,17 @@ fn blank_map(side: usize, texel: DVec4) -> Map {
 }
 
 /// Writes the channels of an image that count into a cell, the nearest pixel for each texel.
-fn place_image(map: &mut Map, part: &Part, image: &Map, [left, top]: [usize; 2], side: usize) {
+fn place_image(
+    map: &mut Map,
+    part: &Part,
+    image: &Map,
+    ([left, top], side): ([usize; 2], usize),
+    in_texture: impl Fn(DVec2) -> DVec2,
+) {
     for (y, x) in (0..side).flat_map(|y| (0..side).map(move |x| (y, x))) {
-        let (column, row) = (x * image.width / side, y * image.height / side);
+        let at = in_texture((DVec2::new(x as f64, y as f64) + 0.5) / side as f64);
+        let column = ((at.x * image.width as f64) as usize).min(image.width - 1);
+        let row = ((at.y * image.height as f64) as usize).min(image.height - 1);
         let own = part.weakened(image.texels[row * image.width + column]);
         let texel = &mut map.texels[(top + y) * map.width + left + x];
         for channel in part.channels {
@@ -131,8 +237,15 @@ fn place_image(map: &mut Map, part: &Part, image: &Map, [left, top]: [usize; 2],
     }
 }
 
-/// An image of the document, linear.
-fn decode_image(reader: &Reader<'_>, index: usize, is_color: bool) -> Result<Map, String> {
+/// An image of the document, linear, or why it cannot be decoded.
+///
+/// # Errors
+/// Bytes that are not in the file, and an image that is too large.
+fn decode_image(
+    reader: &Reader<'_>,
+    index: usize,
+    is_color: bool,
+) -> Result<Result<Map, String>, String> {
     let place = format!("images[{index}]");
     let image = reader.document.images().nth(index).ok_or(format!("{place}: is not there"))?;
     let bytes = match image.source() {
@@ -147,7 +260,11 @@ fn decode_image(reader: &Reader<'_>, index: usize, is_color: bool) -> Result<Map
         .with_guessed_format()
         .map_err(|error| format!("{place}: {error}"))?;
     decoder.limits(limits);
-    let decoded = decoder.decode().map_err(|error| format!("{place}: {error}"))?;
+    let decoded = match decoder.decode() {
+        Err(image::ImageError::Limits(error)) => return Err(format!("{place}: {error}")),
+        Err(error) => return Ok(Err(error.to_string())),
+        Ok(decoded) => decoded,
+    };
     let (width, height) = (decoded.width(), decoded.height());
     if u64::from(width) * u64::from(height) > MODEL_PIXELS || width == 0 || height == 0 {
         return Err(format!("{place}: {width} x {height} pixels are more than {MODEL_PIXELS}"));
@@ -162,9 +279,9 @@ fn decode_image(reader: &Reader<'_>, index: usize, is_color: bool) -> Result<Map
         let [red, green, blue, alpha] = pixel.0;
         DVec3::from_array([red, green, blue].map(linear)).extend(f64::from(alpha) / 255.0)
     };
-    Ok(Map {
+    Ok(Ok(Map {
         width: small.width() as usize,
         height: small.height() as usize,
         texels: small.pixels().map(texel).collect(),
-    })
+    }))
 }

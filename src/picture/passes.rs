@@ -116,8 +116,9 @@ pub fn prepare_passes(
 /// The weight of the logarithmic split against the even one.
 const SPLIT: f64 = 0.7;
 
-/// The viewer's depth in parts that share planes. The splits are where the scene is, and the ends
-/// are those of the viewer.
+/// The viewer's depth in parts. The splits are where the scene is, and the ends are those of the
+/// viewer. A part begins a little before the one in front of it ends: where both are cut at one
+/// plane, rounding leaves pixels that neither of them draws.
 fn slices_of(scene: &Scene, count: u32) -> Vec<(f64, f64)> {
     let eye = &scene.eye;
     let (nearest, farthest) =
@@ -127,8 +128,9 @@ fn slices_of(scene: &Scene, count: u32) -> Vec<(f64, f64)> {
     if let Some(last) = ends.last_mut() {
         *last = eye.far;
     }
-    let starts = std::iter::once(eye.near).chain(ends.clone());
-    starts.zip(ends).collect()
+    let starts: Vec<f64> =
+        std::iter::once(eye.near).chain(ends.iter().map(|end| 0.999 * end)).collect();
+    starts.into_iter().zip(ends).collect()
 }
 
 fn no_cascades(pass: &Pass) -> Diagnostic {

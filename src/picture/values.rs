@@ -34,6 +34,7 @@ pub struct Camera {
 
 /// The blocks of uniforms, with the group of a preset's numbers that fills each.
 const GROUPS: &[(&str, &str)] = &[
+    ("object", "object"),
     ("lamps", "light"),
     ("areas", "area"),
     ("profiles", "profile"),
@@ -123,7 +124,12 @@ impl Values<'_> {
             ("object", "normal_from_object") => {
                 Some(matrix_columns(DMat4::from_mat3(normal_matrix(object.world_from_object))))
             }
-            ("object", "color") => Some(object.color.extend(1.0).to_array().to_vec()),
+            ("object", "color") => {
+                let color = self.published(&parsed);
+                let mut color = color.unwrap_or_else(|| vector_values(object.color));
+                color.push(1.0);
+                Some(color)
+            }
             ("materials", field) if !self.lit.needs.material_array => {
                 self.published(&parsed).or_else(|| material_value(&object.material, field))
             }

@@ -79,6 +79,11 @@ impl Map {
         Some(Self { width, height, texels: (0..width * height).map(mean).collect() })
     }
 
+    /// The mean of all texels.
+    pub fn mean(&self) -> DVec4 {
+        self.texels.iter().sum::<DVec4>() / self.texels.len().max(1) as f64
+    }
+
     /// The map and all its smaller levels.
     pub fn levels(self) -> Vec<Self> {
         std::iter::successors(Some(self), Self::half).collect()

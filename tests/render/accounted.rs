@@ -16,6 +16,7 @@ use super::{library, plan, said};
 /// Structures of uniforms, the group of a preset's numbers for each, and fields that describe the
 /// scene, which a source does not give.
 const STRUCTURES: &[(&str, &str, &[&str])] = &[
+    ("Object", "object", &["world_from_object", "normal_from_object"]),
     ("Light", "light", &["kind", "shadow_layer"]),
     ("Area", "area", &[]),
     ("Profile", "profile", &["uv_from_world", "right", "share", "scale", "offset"]),

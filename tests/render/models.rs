@@ -1,5 +1,6 @@
 //! Models of users. The trials write binary glTF files, and `lamplight render --model` draws them.
 
+mod coordinates;
 mod layers;
 mod maps;
 mod wrong;
@@ -27,7 +28,13 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("render/model/means_of_textures", means_of_textures),
         Trial::test("render/model/choices_of_the_user", choices_of_the_user),
     ];
-    drawn.into_iter().chain(layers::trials()).chain(maps::trials()).chain(wrong::trials()).collect()
+    drawn
+        .into_iter()
+        .chain(coordinates::trials())
+        .chain(layers::trials())
+        .chain(maps::trials())
+        .chain(wrong::trials())
+        .collect()
 }
 
 /// A binary glTF file.
@@ -339,8 +346,11 @@ fn lamp_and_camera() -> Result<(), Failed> {
 /// A note names the parts of the file that are not drawn.
 fn what_is_left_out_is_said() -> Result<(), Failed> {
     let (mut document, buffer) = square(&[image([WHITE; 4])?]);
-    document["materials"] =
-        json!([{ "emissiveTexture": { "index": 0, "texCoord": 1 }, "alphaMode": "BLEND" }]);
+    document["materials"] = json!([{
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } },
+        "emissiveTexture": { "index": 0, "texCoord": 1 },
+        "alphaMode": "BLEND",
+    }]);
     let (_, said) = drawn(&glb(&document, &buffer), &[])?;
     for part in ["note: `model.glb`: ", "other coordinates", "transparency"] {
         demand(said.contains(part), || format!("expected `{part}` in `{said}`"))?;

@@ -23,6 +23,7 @@ article > div { flex: 1 1 24rem; min-width: 0; }
 article > a { flex: 0 1 480px; align-self: flex-start; }
 h3 { margin: 0 0 .3rem; font-size: 1.15rem; }
 img { border-radius: 6px; width: 100%; height: auto; display: block; }
+section img { width: auto; max-width: 100%; }
 ul { padding-left: 1.1rem; margin: .5rem 0; color: var(--quiet); font-size: .92rem; }
 code { overflow-wrap: anywhere; }
 pre { overflow: auto; padding: .6rem .8rem; border: 1px solid var(--edge); border-radius: 6px; font-size: 12.5px; }

@@ -19,6 +19,8 @@ use crate::picture::frame::Programs;
 /// A panel is drawn this many times larger than it is shown. Its inset is shown at the size at
 /// which it was drawn.
 pub const ZOOM: u32 = 3;
+/// Panels in a row. More would be too narrow on a page to read their labels.
+const ACROSS: u32 = 4;
 /// Pixels between panels, and the height of a label.
 const GAP: u32 = 6;
 const LABEL: u32 = 28;
@@ -61,7 +63,7 @@ pub fn panel_plan(
     Ok(Plan { scene: comparison.scene.clone(), numbers: panel.numbers.clone(), ..plan })
 }
 
-/// All panels from left to right, each with its label above and a part of it enlarged below.
+/// All panels in rows, each with its label above and a part of it enlarged below.
 ///
 /// # Errors
 /// Those of its panels.
@@ -77,22 +79,23 @@ pub fn draw_strip(
         .collect::<Result<_, _>>()?;
     let [width, height] = shot.size.map(|side| side / ZOOM);
     let count = large.len() as u32;
-    let mut strip = Picture::filled(
-        count * width + count.saturating_sub(1) * GAP,
-        LABEL + 2 * height + GAP,
-        GROUND,
-    );
+    // As many rows as are needed, and the panels spread evenly over them.
+    let rows = count.div_ceil(ACROSS).max(1);
+    let across = count.div_ceil(rows);
+    let tall = LABEL + 2 * height + GAP;
+    let extent = |count: u32, side: u32| count * side + count.saturating_sub(1) * GAP;
+    let mut strip = Picture::filled(extent(across, width), extent(rows, tall), GROUND);
     let inset = [0, 1].map(|axis| {
         let free = shot.size[axis] - shot.size[axis] / ZOOM;
         ((comparison.inset[axis] * f64::from(shot.size[axis])) as u32).min(free)
     });
-    for (index, (picture, panel)) in large.iter().zip(&comparison.panels).enumerate() {
-        let left = index as u32 * (width + GAP);
+    for (index, (picture, panel)) in (0..).zip(large.iter().zip(&comparison.panels)) {
+        let (left, top) = (index % across * (width + GAP), index / across * (tall + GAP));
         let mut small = picture.shrunk(ZOOM);
         small.outline(inset.map(|at| at / ZOOM), [width / ZOOM, height / ZOOM], FRAME);
-        label::write_label(&mut strip, &panel.label, [left + MARGIN, 4], width - 2 * MARGIN);
-        strip.place(&small, [left, LABEL]);
-        strip.place(&picture.part(inset, [width, height]), [left, LABEL + height + GAP]);
+        label::write_label(&mut strip, &panel.label, [left + MARGIN, top + 4], width - 2 * MARGIN);
+        strip.place(&small, [left, top + LABEL]);
+        strip.place(&picture.part(inset, [width, height]), [left, top + LABEL + height + GAP]);
     }
     Ok(strip)
 }

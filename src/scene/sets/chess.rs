@@ -199,5 +199,6 @@ pub fn scene() -> Scene {
         half_angle: 0.62,
         kind: LampKind::Spot,
     };
-    base_scene(objects, eye, palette::lamps(key, 5.0, 4.5, 0.12))
+    let lamps = palette::lamps(key, 5.0, 4.5, 0.12);
+    Scene { map_size: Some(2048), ..base_scene(objects, eye, lamps) }
 }

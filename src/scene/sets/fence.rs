@@ -23,8 +23,8 @@ const LEAVES: i32 = 4;
 fn fence_shape() -> Shape {
     let bar = |index: i32| {
         let x = 0.42 * (f64::from(index) - 0.5 * f64::from(BARS - 1));
-        let body = Shape::cuboid(DVec3::new(0.11, 0.62, 0.05), 1);
-        let body = body.transformed(DMat4::from_translation(DVec3::new(x, 0.72, 0.0)));
+        let body = Shape::cuboid(DVec3::new(0.11, 0.67, 0.05), 1);
+        let body = body.transformed(DMat4::from_translation(DVec3::new(x, 0.67, 0.0)));
         body.with(bar_top().transformed(DMat4::from_translation(DVec3::new(x, 1.34, 0.0))))
     };
     let rail = |y: f64| {
@@ -83,13 +83,13 @@ pub fn scene() -> Scene {
         Object::new(tiles(12, 1.4, [CHALK, CHALK * 0.86], 2), DMat4::IDENTITY, DVec3::ONE)
             .of(matt, 7),
         Object::new(fence_shape(), placed_at(-0.75, 0.0, -0.45, 0.25), AMBER * 0.9).of(matt, 1),
-        Object::new(twig_shape(), placed_at(1.75, 0.95, 0.85, -0.5) * DMat4::from_rotation_x(0.2), LEAF)
+        Object::new(twig_shape(), placed_at(1.6, 0.95, 0.85, -0.5) * DMat4::from_rotation_x(0.2), LEAF)
             .of(matt, 12),
     ];
     let eye = Eye {
-        position: DVec3::new(0.9, 4.3, 7.8),
-        target: DVec3::new(0.35, 0.45, 0.75),
-        fov_y: 0.58,
+        position: DVec3::new(1.25, 4.3, 7.8),
+        target: DVec3::new(0.7, 0.45, 0.75),
+        fov_y: 0.62,
         near: 0.5,
         far: 40.0,
     };

@@ -16,7 +16,8 @@ pub fn scene() -> Scene {
     let mut scene = casters::scene();
     scene.objects.remove(casters::FLOOR);
     if let Some(key) = scene.lamps.first_mut() {
-        *key = Lamp { position: DVec3::new(-2.2, 5.4, 5.6), half_angle: 0.44, ..*key };
+        let (position, target) = (DVec3::new(-1.4, 6.6, 7.4), DVec3::new(-0.1, 0.9, 0.4));
+        *key = Lamp { position, target, half_angle: 0.44, ..*key };
     }
     scene
 }

@@ -24,14 +24,14 @@ pub fn scene() -> Scene {
         Object::new(shape, DMat4::IDENTITY, color).of(matt, 7)
     };
     let ball = |x: f64, color| {
-        Object::new(Shape::sphere(0.4, (64, 32)), placed_at(x, 0.4, 0.9, 0.0), color).of(matt, 0)
+        Object::new(Shape::sphere(0.4, (64, 32)), placed_at(x, 0.4, 0.6, 0.0), color).of(matt, 0)
     };
     let corner = DVec3::new(-4.5, 0.0, 0.0);
     let objects = vec![
         plane(corner, DVec3::X * 9.0, DVec3::Y * 4.6, CHALK),
         plane(corner + DVec3::Z * 5.0, DVec3::X * 9.0, DVec3::NEG_Z * 5.0, SLATE * 1.6),
-        ball(-1.1, CORAL),
-        ball(1.1, TEAL),
+        ball(-2.2, CORAL),
+        ball(2.2, TEAL),
     ];
     let eye = Eye {
         position: DVec3::new(0.0, 2.6, 10.0),

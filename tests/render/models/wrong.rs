@@ -117,7 +117,16 @@ const WRONG: &[Wrong] = &[
         "materials[0].extensions.KHR_materials_anisotropy: expected an object, found 3",
     ),
     ("image_of_gigapixels", huge_image, "images[0]"),
-    ("image_that_is_none", || pictured(b"no image".to_vec()), "images[0]"),
+    (
+        "offset_of_one_number",
+        || moved(json!({ "offset": [1.0] })),
+        "materials[0].normalTexture.extensions.KHR_texture_transform.offset: expected two numbers",
+    ),
+    (
+        "turn_by_a_word",
+        || moved(json!({ "rotation": "left" })),
+        "KHR_texture_transform.rotation: expected a number, found \"left\"",
+    ),
 ];
 
 fn refused(file: &[u8], words: &str) -> Result<(), Failed> {
@@ -168,9 +177,18 @@ fn pictured(image: Vec<u8>) -> Vec<u8> {
     glb(&document, &buffer)
 }
 
+/// A texture of normals with a transformation.
+fn moved(transform: Value) -> Vec<u8> {
+    let (mut document, buffer) = square(&[Vec::new()]);
+    document["materials"] = json!([{ "normalTexture": {
+        "index": 0, "extensions": { "KHR_texture_transform": transform },
+    } }]);
+    glb(&document, &buffer)
+}
+
 /// A PNG whose header claims 65,535 by 65,535 pixels.
 fn huge_image() -> Vec<u8> {
     let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\xff\xff\0\0\xff\xff\x08\x06\0\0\0".to_vec();
-    png.extend([0xba, 0x58, 0x9b, 0x6b]);
+    png.extend([0xb6, 0x05, 0xd9, 0x50]);
     pictured(png)
 }

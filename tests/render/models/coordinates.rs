@@ -1,0 +1,171 @@
+//! Coordinates of textures: moved, turned, scaled, repeated, of another set; and images that cannot be
+//! decoded.
+
+use libtest_mimic::{Failed, Trial};
+use serde_json::{Value, json};
+
+use super::{
+    BEFORE, BLUE, GREEN, RED, WHITE, demand, drawn, glb, has_quarters, image, is_near, pixel,
+    square,
+};
+
+pub fn trials() -> Vec<Trial> {
+    vec![
+        Trial::test("render/model/coordinates/turned", turned_quarter),
+        Trial::test("render/model/coordinates/each_its_own", each_its_own),
+        Trial::test("render/model/coordinates/repeated_in_cells", repeated_in_cells),
+        Trial::test("render/model/coordinates/second_set", second_set),
+        Trial::test("render/model/coordinates/sets_beside_each_other", sets_beside_each_other),
+        Trial::test("render/model/image_that_is_none", image_that_is_none),
+    ]
+}
+
+/// A material that is not lit, with a texture that is moved.
+fn unlit(index: usize, transform: &Value) -> Value {
+    json!({
+        "pbrMetallicRoughness": { "baseColorTexture": {
+            "index": index, "extensions": { "KHR_texture_transform": transform },
+        } },
+        "extensions": { "KHR_materials_unlit": {} },
+    })
+}
+
+/// An image of four by four pixels that are red, green, blue and white by rows, apart from its lower
+/// left quarter, which has one of each.
+fn quartered() -> Result<Vec<u8>, Failed> {
+    let row = |left: [[u8; 3]; 2], right| [left[0], left[1], right, right].concat();
+    let black = [[0; 3]; 2];
+    let pixels = [
+        row(black, [9; 3]),
+        row(black, [9; 3]),
+        row([RED, GREEN], [9; 3]),
+        row([BLUE, WHITE], [9; 3]),
+    ];
+    Ok(lamplight::picture::Picture { width: 4, height: 4, pixels: pixels.concat() }.png()?)
+}
+
+/// The example of the extension: only the lower left quarter of the image, turned clockwise by 90
+/// degrees.
+fn turned_quarter() -> Result<(), Failed> {
+    let (mut document, buffer) = square(&[quartered()?]);
+    let transform =
+        json!({ "offset": [0, 1], "rotation": std::f64::consts::FRAC_PI_2, "scale": [0.5, 0.5] });
+    document["extensionsUsed"] = json!(["KHR_materials_unlit", "KHR_texture_transform"]);
+    document["extensionsRequired"] = json!(["KHR_texture_transform"]);
+    document["materials"] = json!([unlit(0, &transform)]);
+    let (picture, _) = drawn(&glb(&document, &buffer), &BEFORE)?;
+    has_quarters(&picture, [BLUE, RED, WHITE, GREEN])
+}
+
+/// Two textures of a material with transformations of their own are where each of them says: the
+/// colour is not moved, and the emission is moved by half of its image.
+fn each_its_own() -> Result<(), Failed> {
+    let colour = image([[40, 0, 0], [0, 40, 0], [0, 0, 40], [40; 3]])?;
+    let glow = image([WHITE, [0; 3], [0; 3], [0; 3]])?;
+    let (mut document, buffer) = square(&[colour, glow]);
+    document["extensionsUsed"] = json!(["KHR_texture_transform"]);
+    let moved = json!({ "KHR_texture_transform": { "offset": [0.5, 0.0] } });
+    document["materials"] = json!([{
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "metallicFactor": 0.0 },
+        "emissiveFactor": [1, 1, 1],
+        "emissiveTexture": { "index": 1, "extensions": moved },
+    }]);
+    let (picture, _) = drawn(&glb(&document, &buffer), &BEFORE)?;
+    let [left, right] = [0.4, 0.6].map(|x| pixel(&picture, x, 0.4));
+    demand(right == WHITE && left[0] < 200, || {
+        format!("the upper right quarter should glow, and not the left: {left:?}, {right:?}")
+    })
+}
+
+/// Where several materials share a texture of the renderer, each still repeats its own image.
+fn repeated_in_cells() -> Result<(), Failed> {
+    let images = [image([RED, GREEN, BLUE, WHITE])?, image([WHITE; 4])?];
+    let (mut document, buffer) = square(&images);
+    let plain = json!({});
+    // Three repetitions less a quarter at each side: the pixels of the middle one are in order, and
+    // around them are those of its neighbours.
+    let thrice = json!({ "scale": [3, 3] });
+    document["extensionsUsed"] = json!(["KHR_materials_unlit", "KHR_texture_transform"]);
+    document["materials"] = json!([unlit(0, &thrice), unlit(1, &plain)]);
+    let mut other = document["meshes"][0]["primitives"][0].clone();
+    other["material"] = json!(1);
+    document["meshes"] = json!([document["meshes"][0], { "primitives": [other] }]);
+    document["nodes"] = json!([{ "mesh": 0 }, { "mesh": 1, "translation": [5, 0, 0] }]);
+    document["scenes"] = json!([{ "nodes": [0, 1] }]);
+    let (picture, _) = drawn(&glb(&document, &buffer), &BEFORE)?;
+    // The square covers the middle half of the picture, and each repetition a sixth of it.
+    let expected = [RED, GREEN];
+    for (index, x) in (0..6).map(|index| (index, 0.25 + (f64::from(index) + 0.5) / 12.0)) {
+        let (found, expected) = (pixel(&picture, x, 0.29), expected[index as usize % 2]);
+        demand(is_near(found, expected, 60), || {
+            format!("pixel {index} of the row: found {found:?}, expected {expected:?}")
+        })?;
+    }
+    Ok(())
+}
+
+/// A document with a second set of coordinates, which turns the image by half a turn.
+fn with_second_set(images: &[Vec<u8>]) -> Result<(Value, Vec<u8>), Failed> {
+    let (mut document, mut buffer) = square(images);
+    let start = buffer.len();
+    let turned = [[1.0_f32, 1.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0]];
+    buffer.extend(turned.iter().flatten().flat_map(|number| number.to_le_bytes()));
+    let views = document["bufferViews"].as_array_mut().ok_or("no views")?;
+    views.push(json!({ "buffer": 0, "byteOffset": start, "byteLength": 32 }));
+    let view = views.len() - 1;
+    let accessors = document["accessors"].as_array_mut().ok_or("no accessors")?;
+    accessors
+        .push(json!({ "bufferView": view, "componentType": 5126, "count": 4, "type": "VEC2" }));
+    let accessor = accessors.len() - 1;
+    document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = json!(accessor);
+    document["buffers"][0]["byteLength"] = json!(buffer.len());
+    Ok((document, buffer))
+}
+
+/// A texture with the second set of coordinates is drawn with that set.
+fn second_set() -> Result<(), Failed> {
+    let (mut document, buffer) = with_second_set(&[image([RED, GREEN, BLUE, WHITE])?])?;
+    document["extensionsUsed"] = json!(["KHR_materials_unlit"]);
+    document["materials"] = json!([{
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "texCoord": 1 } },
+        "extensions": { "KHR_materials_unlit": {} },
+    }]);
+    let (picture, said) = drawn(&glb(&document, &buffer), &BEFORE)?;
+    demand(!said.contains("other coordinates"), || format!("expected no note, found: {said}"))?;
+    has_quarters(&picture, [WHITE, BLUE, GREEN, RED])
+}
+
+/// A second texture with another set than the first counts with its mean, and a note says so.
+fn sets_beside_each_other() -> Result<(), Failed> {
+    let images = [image([[0; 3]; 4])?, image([WHITE, [0; 3], [0; 3], WHITE])?];
+    let (mut document, buffer) = with_second_set(&images)?;
+    document["materials"] = json!([{
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 }, "metallicFactor": 0.0 },
+        "emissiveFactor": [1, 1, 1],
+        "emissiveTexture": { "index": 1, "texCoord": 1 },
+    }]);
+    let (picture, said) = drawn(&glb(&document, &buffer), &BEFORE)?;
+    demand(said.contains("count with their mean"), || format!("expected a note, found: {said}"))?;
+    let [left, right] = [0.4, 0.6].map(|x| pixel(&picture, x, 0.6));
+    demand(is_near(left, right, 12) && left[0] > 170 && left[0] < 225, || {
+        format!("expected about half of the light on both sides, found {left:?} and {right:?}")
+    })
+}
+
+/// An image that cannot be decoded is left out with a note, and the factor remains.
+fn image_that_is_none() -> Result<(), Failed> {
+    let (mut document, buffer) = square(&[b"no image".to_vec()]);
+    document["extensionsUsed"] = json!(["KHR_materials_unlit"]);
+    document["materials"] = json!([{
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [0.25, 0.5, 1.0, 1.0], "baseColorTexture": { "index": 0 },
+        },
+        "extensions": { "KHR_materials_unlit": {} },
+    }]);
+    let (picture, said) = drawn(&glb(&document, &buffer), &BEFORE)?;
+    demand(said.contains("images[0] is left out"), || format!("expected a note, found: {said}"))?;
+    let found = pixel(&picture, 0.5, 0.5);
+    demand(is_near(found, [137, 188, 255], 1), || {
+        format!("expected the factor, [137, 188, 255], found {found:?}")
+    })
+}
