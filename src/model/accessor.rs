@@ -7,9 +7,9 @@ use gltf::buffer::Source;
 use super::Reader;
 use crate::limits::MODEL_CORNERS;
 
-impl Reader<'_> {
+impl<'b> Reader<'b> {
     /// The bytes of a view of the file's own buffer.
-    pub fn view(&self, view: &gltf::buffer::View<'_>, place: &str) -> Result<&[u8], String> {
+    pub fn view(&self, view: &gltf::buffer::View<'_>, place: &str) -> Result<&'b [u8], String> {
         let buffer = view.buffer();
         if let Source::Uri(_) = buffer.source() {
             let index = buffer.index();

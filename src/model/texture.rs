@@ -5,6 +5,7 @@ use std::io::Cursor;
 
 use glam::{DVec2, DVec3, DVec4};
 use gltf::image::Source;
+use image::{DynamicImage, ImageDecoder as _, ImageError};
 
 use super::Reader;
 use super::coordinates::{Coordinates, Window};
@@ -237,6 +238,15 @@ fn place_image(
     }
 }
 
+/// The bytes of an image as they are in the file.
+fn image_bytes<'b>(reader: &Reader<'b>, index: usize, place: &str) -> Result<&'b [u8], String> {
+    let image = reader.document.images().nth(index).ok_or(format!("{place}: is not there"))?;
+    match image.source() {
+        Source::View { view, .. } => reader.view(&view, place),
+        Source::Uri { .. } => Err(format!("{place}: is in another file; export one `.glb`")),
+    }
+}
+
 /// An image of the document, linear, or why it cannot be decoded.
 ///
 /// # Errors
@@ -247,28 +257,30 @@ fn decode_image(
     is_color: bool,
 ) -> Result<Result<Map, String>, String> {
     let place = format!("images[{index}]");
-    let image = reader.document.images().nth(index).ok_or(format!("{place}: is not there"))?;
-    let bytes = match image.source() {
-        Source::View { view, .. } => reader.view(&view, &place)?,
-        Source::Uri { .. } => {
-            return Err(format!("{place}: is in another file; export one `.glb`"));
-        }
-    };
+    let bytes = image_bytes(reader, index, &place)?;
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(16 * MODEL_PIXELS);
-    let mut decoder = image::ImageReader::new(Cursor::new(bytes))
+    let mut file = image::ImageReader::new(Cursor::new(bytes))
         .with_guessed_format()
         .map_err(|error| format!("{place}: {error}"))?;
-    decoder.limits(limits);
-    let decoded = match decoder.decode() {
-        Err(image::ImageError::Limits(error)) => return Err(format!("{place}: {error}")),
-        Err(error) => return Ok(Err(error.to_string())),
-        Ok(decoded) => decoded,
+    file.limits(limits);
+    // What is too large is an error, and anything else is a kind of image that is not known.
+    let undecoded = |error: ImageError| match error {
+        ImageError::Limits(error) => Err(format!("{place}: {error}")),
+        error => Ok(Err(error.to_string())),
     };
-    let (width, height) = (decoded.width(), decoded.height());
+    let decoder = match file.into_decoder() {
+        Ok(decoder) => decoder,
+        Err(error) => return undecoded(error),
+    };
+    let (width, height) = decoder.dimensions();
     if u64::from(width) * u64::from(height) > MODEL_PIXELS || width == 0 || height == 0 {
         return Err(format!("{place}: {width} x {height} pixels are more than {MODEL_PIXELS}"));
     }
+    let decoded = match DynamicImage::from_decoder(decoder) {
+        Ok(decoded) => decoded,
+        Err(error) => return undecoded(error),
+    };
     // No finer than a cell can be.
     let small = decoded.thumbnail(1024.min(width), 1024.min(height)).to_rgba8();
     let linear = |byte: u8| {

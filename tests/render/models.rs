@@ -20,7 +20,6 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("render/model/unlit_colours_are_multiplied", unlit_colours_are_multiplied),
         Trial::test("render/model/all_of_it_is_seen", all_of_it_is_seen),
         Trial::test("render/model/textures_stand_upright", textures_stand_upright),
-        Trial::test("render/model/cells_of_textures", cells_of_textures),
         Trial::test("render/model/mirrored_is_the_same", mirrored_is_the_same),
         Trial::test("render/model/bumps_rise", bumps_rise),
         Trial::test("render/model/lamp_and_camera", lamp_and_camera),
@@ -251,29 +250,6 @@ fn textures_stand_upright() -> Result<(), Failed> {
     let (mut document, buffer) = square(&[image([RED, GREEN, BLUE, WHITE])?]);
     document["materials"] =
         json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
-    let (picture, _) = drawn(&glb(&document, &buffer), &BEFORE)?;
-    has_quarters(&picture, [RED, GREEN, BLUE, WHITE])
-}
-
-/// The images of several materials are packed into one texture. Each square still shows only its own
-/// image.
-fn cells_of_textures() -> Result<(), Failed> {
-    let images = [image([RED; 4])?, image([GREEN; 4])?, image([BLUE; 4])?, image([WHITE; 4])?];
-    let (mut document, buffer) = square(&images);
-    let material =
-        |index| json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": index } } });
-    document["materials"] = (0..4).map(material).collect();
-    let part = document["meshes"][0]["primitives"][0].clone();
-    let mesh = |index| {
-        let mut part = part.clone();
-        part["material"] = json!(index);
-        json!({ "primitives": [part] })
-    };
-    document["meshes"] = (0..4).map(mesh).collect();
-    let places = [[-0.5, 0.5], [0.5, 0.5], [-0.5, -0.5], [0.5, -0.5]];
-    let node = |(mesh, [x, y]): (usize, [f64; 2])| json!({ "mesh": mesh, "translation": [x, y, 0.0], "scale": [0.5, 0.5, 1.0] });
-    document["nodes"] = places.into_iter().enumerate().map(node).collect();
-    document["scenes"] = json!([{ "nodes": [0, 1, 2, 3] }]);
     let (picture, _) = drawn(&glb(&document, &buffer), &BEFORE)?;
     has_quarters(&picture, [RED, GREEN, BLUE, WHITE])
 }

@@ -13,6 +13,7 @@ pub fn trials() -> Vec<Trial> {
     vec![
         Trial::test("render/model/coordinates/turned", turned_quarter),
         Trial::test("render/model/coordinates/each_its_own", each_its_own),
+        Trial::test("render/model/cells_of_textures", cells_of_textures),
         Trial::test("render/model/coordinates/repeated_in_cells", repeated_in_cells),
         Trial::test("render/model/coordinates/second_set", second_set),
         Trial::test("render/model/coordinates/sets_beside_each_other", sets_beside_each_other),
@@ -75,6 +76,29 @@ fn each_its_own() -> Result<(), Failed> {
     demand(right == WHITE && left[0] < 200, || {
         format!("the upper right quarter should glow, and not the left: {left:?}, {right:?}")
     })
+}
+
+/// The images of several materials are packed into one texture. Each square still shows only its own
+/// image.
+fn cells_of_textures() -> Result<(), Failed> {
+    let images = [image([RED; 4])?, image([GREEN; 4])?, image([BLUE; 4])?, image([WHITE; 4])?];
+    let (mut document, buffer) = square(&images);
+    let material =
+        |index| json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": index } } });
+    document["materials"] = (0..4).map(material).collect();
+    let part = document["meshes"][0]["primitives"][0].clone();
+    let mesh = |index| {
+        let mut part = part.clone();
+        part["material"] = json!(index);
+        json!({ "primitives": [part] })
+    };
+    document["meshes"] = (0..4).map(mesh).collect();
+    let places = [[-0.5, 0.5], [0.5, 0.5], [-0.5, -0.5], [0.5, -0.5]];
+    let node = |(mesh, [x, y]): (usize, [f64; 2])| json!({ "mesh": mesh, "translation": [x, y, 0.0], "scale": [0.5, 0.5, 1.0] });
+    document["nodes"] = places.into_iter().enumerate().map(node).collect();
+    document["scenes"] = json!([{ "nodes": [0, 1, 2, 3] }]);
+    let (picture, _) = drawn(&glb(&document, &buffer), &BEFORE)?;
+    has_quarters(&picture, [RED, GREEN, BLUE, WHITE])
 }
 
 /// Where several materials share a texture of the renderer, each still repeats its own image.

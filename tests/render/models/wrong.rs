@@ -190,5 +190,7 @@ fn moved(transform: Value) -> Vec<u8> {
 fn huge_image() -> Vec<u8> {
     let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\xff\xff\0\0\xff\xff\x08\x06\0\0\0".to_vec();
     png.extend([0xb6, 0x05, 0xd9, 0x50]);
+    png.extend(b"\0\0\0\x10IDAT\x78\x9c");
+    png.extend([0; 18]);
     pictured(png)
 }
