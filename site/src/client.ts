@@ -104,14 +104,15 @@ export class Client {
         const id = this.#next++;
         const call = { id, name, inputs };
         return new Promise((resolve, reject) => {
-            let timer = 0;
+            let [timer, begun] = [0, 0];
             const done = <T>(then: (value: T) => void) => (value: T) => {
                 clearTimeout(timer);
                 then(value);
             };
             // Time runs once the toolchain is loaded.
             const start = () => {
-                const [begun, cold] = [performance.now(), this.#isWarm ? 0 : COLD];
+                begun = performance.now();
+                const cold = this.#isWarm ? 0 : COLD;
                 const late = () => {
                     const spent = performance.now() - begun;
                     const isOver = spent >= Math.max(most, cold) || (spent >= Math.max(least, cold) && isOld());
@@ -123,7 +124,7 @@ export class Client {
             const giveUp = () => {
                 this.#waiting.delete(id);
                 this.#replace();
-                waiting.reject(new TooLong(`no answer within ${most / 1000} s: the toolchain was restarted`));
+                waiting.reject(new TooLong(`no answer within ${Math.round((performance.now() - begun) / 1000)} s: the toolchain was restarted`));
             };
             const waiting = { call, resolve: done(resolve as (value: unknown) => void), reject: done(reject), start };
             const worker = this.#worker ?? this.#begin();
