@@ -16,6 +16,7 @@ pub fn trials() -> Vec<Trial> {
     vec![
         Trial::test("catalogue::plots_show_their_parameter", curves_are_apart),
         Trial::test("catalogue::plots_have_units", angles_are_in_degrees),
+        Trial::test("catalogue::plots_have_short_labels", labels_fit),
     ]
 }
 
@@ -80,4 +81,18 @@ fn angles_are_in_degrees() -> Result<(), Failed> {
         }
     }
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n").into()) }
+}
+
+/// What is written below a plot is no wider than the plot: 520 pixels, at about 6 for a character.
+fn labels_fit() -> Result<(), Failed> {
+    const MOST: usize = 82;
+    let count = |plot: &plot::Plot| {
+        plot.x.label.len() + plot.note.as_ref().map_or(0, |note| "  ()".len() + note.len())
+    };
+    let plots = all_plots()?;
+    let long =
+        plots.iter().map(|(path, plot)| (path, count(plot))).filter(|(_, most)| *most > MOST);
+    let long: Vec<String> =
+        long.map(|(path, count)| format!("{path}: {count} characters below it")).collect();
+    if long.is_empty() { Ok(()) } else { Err(long.join("\n").into()) }
 }
