@@ -3,6 +3,7 @@
 //! forms.
 
 mod accounted;
+mod cascades;
 mod closed_forms;
 mod clustered;
 mod command;
@@ -15,6 +16,7 @@ mod needs;
 mod occlusion;
 mod pages;
 mod prefiltered;
+mod probes;
 mod shadows;
 
 use std::path::PathBuf;
@@ -59,7 +61,11 @@ pub fn trials() -> Vec<Trial> {
         })
     };
     let presets = library.presets.iter().flat_map(on_each);
-    let forms = closed_forms::FORMS.iter().chain(shadows::FORMS);
+    let forms = closed_forms::FORMS
+        .iter()
+        .chain(shadows::FORMS)
+        .chain(cascades::FORMS)
+        .chain(probes::FORMS);
     let forms = forms.flat_map(|(name, form)| {
         BACKENDS.map(|(backend, language)| {
             Trial::test(format!("render/{name}/{backend}"), move || {

@@ -1,6 +1,8 @@
 //! Compares the mathematics for the host with closed forms: matrices, cascades, normals, kernels,
 //! spherical harmonics.
 
+mod parts;
+mod probes;
 mod sets;
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
@@ -20,7 +22,7 @@ const CLIPS: [Clip; 3] = [Clip::Wgpu, Clip::Vulkan, Clip::OpenGl];
 const DEPTHS: [Depth; 2] = [Depth::Normal, Depth::Reversed];
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 18] = [
+    let cases: [Case; 21] = [
         ("views", views),
         ("views_by_angles", angles),
         ("perspective", perspective),
@@ -28,7 +30,10 @@ pub fn trials() -> Vec<Trial> {
         ("tight_boxes", tight),
         ("faces_of_a_cube", faces),
         ("shadow_matrices", shadow_matrices),
-        ("cascades", cascades),
+        ("cascades", parts::cascades),
+        ("spheres_of_cascades", parts::spheres),
+        ("rays", probes::rays),
+        ("fields_of_probes", probes::fields),
         ("clusters", clusters),
         ("normals", normals),
         ("normal_matrix", normal_matrix),
@@ -223,24 +228,6 @@ fn shadow_matrices() -> Outcome {
         )?;
     }
     Ok(())
-}
-
-/// Cascades are split evenly, logarithmically, or by a mix of both.
-fn cascades() -> Outcome {
-    let even = scene::cascade_splits(1.0, 101.0, 4, 0.0);
-    if even != [26.0, 51.0, 76.0, 101.0] {
-        return Err(format!("even splits should be 26, 51, 76, 101, found {even:?}").into());
-    }
-    let logarithmic = scene::cascade_splits(1.0, 10_000.0, 4, 1.0);
-    for (found, wanted) in logarithmic.iter().zip([10.0, 100.0, 1000.0, 10_000.0]) {
-        near("logarithmic", *found, wanted, 1e-9)?;
-    }
-    let mixed = scene::cascade_splits(0.1, 250.0, 5, 0.7);
-    if mixed.is_sorted() && mixed.last() == Some(&250.0) && mixed[0] > 0.1 {
-        Ok(())
-    } else {
-        Err(format!("mixed splits should rise from above 0.1 to 250, found {mixed:?}").into())
-    }
 }
 
 fn normals() -> Outcome {

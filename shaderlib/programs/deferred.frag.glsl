@@ -69,7 +69,9 @@ vec3 shade(vec3 base, vec3 normal, uint material) {
     float open = open_share();
     surface.material.ambient *= multibounce(open, base * surface.material.diffuse);
 #endif
-#if SHADOW != SHADOW_NONE
+#if CASCADES
+    surface.visibility = cascaded_visibility(surface, gl_FragCoord.xy);
+#elif SHADOW != SHADOW_NONE
     surface.visibility = visibility(surface, gl_FragCoord.xy);
 #endif
 #if AREA == AREA_RECTANGLE && SPECULAR == SPECULAR_GGX

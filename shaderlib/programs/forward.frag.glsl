@@ -262,7 +262,9 @@ vec3 shade(vec3 base) {
     surface.material.ambient *= multibounce(open, base * surface.material.diffuse);
 #endif
 #endif
-#if SHADOW != SHADOW_NONE
+#if CASCADES
+    surface.visibility = cascaded_visibility(surface, gl_FragCoord.xy);
+#elif SHADOW != SHADOW_NONE
     surface.visibility = visibility(surface, gl_FragCoord.xy);
 #endif
 #if METALLIC_ROUGHNESS

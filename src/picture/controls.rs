@@ -10,7 +10,7 @@ use super::light::LightView;
 use super::mesh::vertex_attributes;
 use super::passes::{Lit, stage_bindings};
 use super::plan::{Pass, Plan, known_program};
-use super::values::{Camera, Values};
+use super::values::{Camera, Values, eye_projection};
 use crate::bundle::Kind;
 use crate::diagnostic::Diagnostics;
 use crate::picture::frame::{Leaf, Programs, buffer_leaves};
@@ -61,9 +61,17 @@ pub fn picture_controls(
     shot: &Shot,
 ) -> Result<Controls, Diagnostics> {
     let Lit { scene, key, lit, size, .. } = Lit::of(plan, shot)?;
-    let light = LightView::new(&scene, &key, plan, lit, size);
-    let values =
-        Values { plan, scene: &scene, lit, light: &light, shot, clusters: OnceCell::new() };
+    let eye = eye_projection(&scene.eye, shot);
+    let light = LightView::new(&scene, &key, plan, lit, size, eye);
+    let values = Values {
+        plan,
+        scene: &scene,
+        lit,
+        light: &light,
+        shot,
+        clusters: OnceCell::new(),
+        probes: OnceCell::new(),
+    };
     let shining = values.lamps().unwrap_or(usize::from(lit.needs.caster.is_some()));
     let lamps = scene.lamps.iter().enumerate().take(shining).map(|(index, lamp)| LampControl {
         index,

@@ -10,6 +10,59 @@ use crate::scene::{Cells, Clusters, Reach, between_middles};
 
 /// The range of falloffs that have one, as a multiple of the target's distance.
 const RANGE: f64 = 2.4;
+/// How far away a directional light is, in reaches of its lamp.
+const FAR_AWAY: f64 = 100.0;
+
+/// How a lamp fades with distance.
+struct Fading {
+    falloff: Falloff,
+    coefficients: Vec<f64>,
+    range: f64,
+}
+
+/// A lamp, as it lights things that are not seen.
+pub(super) struct Shining {
+    kind: LampKind,
+    color: DVec3,
+    position: DVec3,
+    axis: DVec3,
+    reach: f64,
+    half_angle: f64,
+    fading: Fading,
+}
+
+impl Fading {
+    /// How much of the light is left at a distance.
+    fn at(&self, d: f64) -> f64 {
+        match self.falloff {
+            Falloff::None => 1.0,
+            Falloff::Polynomial => {
+                let coefficients = self.coefficients.iter().rev();
+                1.0 / coefficients.fold(0.0, |sum, coefficient| sum * d + coefficient)
+            }
+            Falloff::LinearRadius => (1.0 - d / self.range).max(0.0),
+            Falloff::InverseSquareWindow => {
+                (1.0 - (d / self.range).powi(4)).max(0.0).powi(2) / (d * d).max(1e-4)
+            }
+        }
+    }
+}
+
+impl Shining {
+    /// The light that arrives at a point across its direction, and where it comes from. A spot fades
+    /// towards the edge of its cone as with `cone=smooth`.
+    pub fn arriving(&self, at: DVec3) -> (DVec3, DVec3) {
+        if self.kind == LampKind::Directional {
+            return (self.color, at - self.axis * FAR_AWAY * self.reach);
+        }
+        let offset = at - self.position;
+        let (inner, outer) = ((0.75 * self.half_angle).cos(), self.half_angle.cos());
+        let along = (offset.normalize_or_zero().dot(self.axis) - outer) / (inner - outer);
+        let t = if self.kind == LampKind::Spot { along.clamp(0.0, 1.0) } else { 1.0 };
+        let share = t * t * (3.0 - 2.0 * t) * self.fading.at(offset.length());
+        (self.color * share, self.position)
+    }
+}
 
 impl Values<'_> {
     /// How many lamps shine: those of the scene, as far as the array has room.
@@ -65,20 +118,38 @@ impl Values<'_> {
             // Directional lights reach everywhere, so all but the first are dimmer.
             return lamp.color * if index == 0 { 1.0 } else { 0.25 };
         }
-        let d = lamp.reach();
-        let published = |field| self.plan.number("light", field);
-        let falloff = match self.lit.needs.falloff {
-            Falloff::None => 1.0,
-            Falloff::Polynomial => {
-                let coefficients = published("attenuation")
-                    .or_else(|| self.lit.needs.uniform("lamps", "attenuation"))
-                    .unwrap_or_else(|| vec![1.0]);
-                1.0 / coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * d + coefficient)
-            }
-            Falloff::LinearRadius => 1.0 - d / self.range(d),
-            Falloff::InverseSquareWindow => (1.0 - (d / self.range(d)).powi(4)).powi(2) / (d * d),
-        };
+        let falloff = self.fading(lamp).at(lamp.reach());
         lamp.color / if falloff > 1e-6 { falloff } else { 1.0 }
+    }
+
+    fn fading(&self, lamp: &Lamp) -> Fading {
+        let published = self.plan.number("light", "attenuation");
+        let coefficients = published.or_else(|| self.lit.needs.uniform("lamps", "attenuation"));
+        Fading {
+            falloff: self.lit.needs.falloff,
+            coefficients: coefficients.unwrap_or_else(|| vec![1.0]),
+            range: self.range(lamp.reach()),
+        }
+    }
+
+    /// The lamps that shine, with what their light depends on.
+    pub(super) fn shining(&self) -> Vec<Shining> {
+        let lamps = self.scene.lamps.iter().enumerate().take(self.lamps().unwrap_or(0));
+        let shining = |(index, lamp): (usize, &Lamp)| {
+            let kind = self.kind(index, lamp);
+            let color = self.number(&format!("lamps.lights[{index}].color"));
+            let color = color.and_then(|color| color.try_into().ok()).map(DVec3::from_array);
+            Shining {
+                kind,
+                color: color.unwrap_or_default(),
+                position: lamp.position,
+                axis: self.axis(index, lamp, kind),
+                reach: lamp.reach(),
+                half_angle: lamp.half_angle,
+                fading: self.fading(lamp),
+            }
+        };
+        lamps.map(shining).collect()
     }
 
     /// The range of a lamp at a distance from its target.

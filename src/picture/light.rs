@@ -2,6 +2,7 @@
 
 use glam::{DMat4, DVec3};
 
+use super::cascades::{CASCADES, Cascades, seen_range};
 use super::plan::{Pass, Plan};
 use crate::scene::sets::{Lamp, LampKind, Scene};
 use crate::scene::{
@@ -20,6 +21,8 @@ pub struct LightView {
     pub size: u32,
     /// The size of a texel: the same everywhere for directional lights, at distance 1 for others.
     pub texel: f64,
+    /// The parts of a map that is one of cascades.
+    pub parts: Option<Cascades>,
 }
 
 /// A box for a scene without points.
@@ -49,10 +52,22 @@ impl Frustum {
 }
 
 impl LightView {
-    /// The view of the scene's first lamp, as the last pass of a plan needs it.
-    pub fn new(scene: &Scene, lamp: &Lamp, plan: &Plan, last: &Pass, size: u32) -> Self {
+    /// The view of the scene's first lamp, as the last pass of a plan needs it. `eye` is the
+    /// projection of the viewer.
+    pub fn new(
+        scene: &Scene,
+        lamp: &Lamp,
+        plan: &Plan,
+        last: &Pass,
+        size: u32,
+        eye: DMat4,
+    ) -> Self {
         let points = scene.points();
         match last.needs.caster.unwrap_or(LampKind::Spot) {
+            LampKind::Directional if last.needs.cascades => {
+                // A lookup reads some texels to each side of a point that is moved by some texels.
+                Self::parted(scene, lamp, size, 2.0 * last.needs.reach + 3.0, eye)
+            }
             LampKind::Spot => Self::spot(lamp, &points, size, &Frustum::of(plan, last)),
             LampKind::Directional => Self::directional(lamp, &points, size),
             LampKind::Point => Self::point(lamp, &points, size / 2),
@@ -70,7 +85,7 @@ impl LightView {
         let angle = frustum.angle.unwrap_or_else(cone);
         let projection = perspective(angle, 1.0, near, far, Clip::Wgpu, Depth::Normal);
         let texel = 2.0 * (0.5 * angle).tan() / f64::from(size);
-        Self { clip_from_world: vec![projection * view], near, far, size, texel }
+        Self { clip_from_world: vec![projection * view], near, far, size, texel, parts: None }
     }
 
     fn directional(lamp: &Lamp, points: &[DVec3], size: u32) -> Self {
@@ -96,6 +111,23 @@ impl LightView {
         Self::around(view, if is_seen { bounds } else { whole }, size)
     }
 
+    /// The views of a directional light for four parts of the viewer's depth. Each map fits around a
+    /// sphere, so that it keeps its size however the viewer turns, and moves by whole texels.
+    fn parted(scene: &Scene, lamp: &Lamp, size: u32, rim: f64, eye: DMat4) -> Self {
+        let view = look_along(lamp.position, lamp.axis(), DVec3::Y);
+        let whole = fit(view, &scene.points()).unwrap_or(UNIT);
+        let parts = Cascades::new(&scene.eye, eye, seen_range(scene), size, rim);
+        let margin = 1e-3 * (whole.far - whole.near).max(1.0);
+        let (near, far) = (whole.near - margin, whole.far + margin);
+        let clip_from_world = (0..CASCADES)
+            .map(|index| {
+                let bounds = Bounds { near, far, ..parts.bounds(index, view) };
+                orthographic(&bounds, Clip::Wgpu, Depth::Normal) * view
+            })
+            .collect();
+        Self { clip_from_world, near, far, size, texel: parts.texels[0], parts: Some(parts) }
+    }
+
     fn around(view: DMat4, tight: Bounds, size: u32) -> Self {
         // A margin on all sides: on the map for filters, in depth for rounding.
         let margin = 0.02 * (tight.right - tight.left).max(tight.top - tight.bottom) + 1e-3;
@@ -115,6 +147,7 @@ impl LightView {
             far: bounds.far,
             size,
             texel,
+            parts: None,
         }
     }
 
@@ -123,7 +156,7 @@ impl LightView {
         let (near, far) = (NEAREST * farthest, 1.01 * farthest);
         let projection = cube_projection(near, far, Clip::Wgpu, Depth::Normal);
         let faces = (0..6).map(|face| projection * cube_view(lamp.position, face)).collect();
-        Self { clip_from_world: faces, near, far, size, texel: 2.0 / f64::from(size) }
+        Self { clip_from_world: faces, near, far, size, texel: 2.0 / f64::from(size), parts: None }
     }
 
     /// Whether it is a cube with six faces.

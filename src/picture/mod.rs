@@ -7,6 +7,7 @@
 //! comes back as numbers, exact to the bit, and is a texture for the next pass. So all executors
 //! share everything but the drawing itself.
 
+mod cascades;
 mod controls;
 pub mod figure;
 pub mod frame;
@@ -19,6 +20,7 @@ mod passes;
 mod pixels;
 mod plan;
 mod prepared;
+mod probes;
 mod samples;
 pub mod sketch;
 pub mod strip;

@@ -76,6 +76,8 @@ pub struct Needs {
     pub levels: bool,
     /// What made the moments of depth 1.
     pub cleared: Cleared,
+    /// Whether the shadow map has four parts, for parts of the viewer's depth.
+    pub cascades: bool,
     /// The near plane of a spot light's shadow map.
     pub near: Option<f64>,
     uniforms: Uniforms,
@@ -146,6 +148,7 @@ struct Row {
     levels: bool,
     cleared: Option<Cleared>,
     encoded: bool,
+    cascades: bool,
     near: Option<f64>,
     uniforms: Uniforms,
 }
@@ -252,8 +255,11 @@ impl Needs {
     }
 
     /// Whether the shadow map may be one of several, for parts of the viewer's depth.
-    pub fn has_cascades(&self) -> bool {
-        self.seen_before() == 0 && self.has_shadow() && self.caster == Some(LampKind::Directional)
+    pub fn takes_cascades(&self) -> bool {
+        self.seen_before() == 0
+            && self.has_shadow()
+            && !self.cascades
+            && self.caster == Some(LampKind::Directional)
     }
 
     fn add(&mut self, row: &Row) {
@@ -274,6 +280,7 @@ impl Needs {
         self.levels |= row.levels;
         self.cleared = row.cleared.unwrap_or(self.cleared);
         self.encoded |= row.encoded;
+        self.cascades |= row.cascades;
         self.near = row.near.or(self.near);
         for (block, fields) in &row.uniforms {
             let all = self.uniforms.entry(block.clone()).or_default();

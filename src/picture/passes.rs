@@ -7,21 +7,22 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use super::Shot;
+use super::cascades::{SPLIT, quartered_map, seen_range};
 use super::light::LightView;
 use super::mesh::{self, vertex_attributes};
 use super::pixels::Background;
 use super::plan::{Pass, Plan};
 use super::prepared::{Prepared, no_frame, pixel_colour};
 use super::textures::{Left, Library, binding_sampler};
-use super::values::{Camera, Values};
+use super::values::{Camera, Values, eye_projection};
 use crate::bundle::{Binding, Kind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::Session;
 use crate::execute::fixture::{Fixture, Texture, TextureKind};
 use crate::execute::frame::{Buffers, Frame, Mesh, Side, State};
 use crate::picture::frame::{Composed, Programs, Stages, pack_buffer};
+use crate::scene::cascade_splits;
 use crate::scene::sets::{Eye, Lamp, Scene};
-use crate::scene::{cascade_splits, depth_range};
 
 /// What all objects and views of a pass share, by group and binding.
 #[derive(Default)]
@@ -82,7 +83,15 @@ pub fn prepare_passes(
 ) -> Result<Prepared, Diagnostics> {
     let Lit { mut scene, key, last, lit, size } = Lit::of(plan, shot)?;
     let slice = |scene: &Scene, light: LightView| {
-        let values = Values { plan, scene, lit, light: &light, shot, clusters: OnceCell::new() };
+        let values = Values {
+            plan,
+            scene,
+            lit,
+            light: &light,
+            shot,
+            clusters: OnceCell::new(),
+            probes: OnceCell::new(),
+        };
         let with_lamps = values.with_bulbs();
         let values = Values { scene: with_lamps.as_ref().unwrap_or(scene), ..values };
         let studio = Studio { painter, programs, values };
@@ -93,10 +102,11 @@ pub fn prepare_passes(
         studio.ready(last, &left)
     };
     if shot.cascades <= 1 {
-        let light = LightView::new(&scene, &key, plan, lit, size);
+        let eye = eye_projection(&scene.eye, shot);
+        let light = LightView::new(&scene, &key, plan, lit, size, eye);
         return slice(&scene, light);
     }
-    if !last.needs.has_cascades() {
+    if !last.needs.takes_cascades() {
         return Err(vec![no_cascades(last)]);
     }
     // Each part of the viewer's depth is a separate frame, clipped by its planes.
@@ -113,18 +123,13 @@ pub fn prepare_passes(
     Ok(Prepared { farther: slices.collect(), ..nearest })
 }
 
-/// The weight of the logarithmic split against the even one.
-const SPLIT: f64 = 0.7;
-
 /// The viewer's depth in parts. The splits are where the scene is, and the ends are those of the
 /// viewer. A part begins a little before the one in front of it ends: where both are cut at one
 /// plane, rounding leaves pixels that neither of them draws.
 fn slices_of(scene: &Scene, count: u32) -> Vec<(f64, f64)> {
     let eye = &scene.eye;
-    let (nearest, farthest) =
-        depth_range(eye.view(), &scene.points()).unwrap_or((eye.near, eye.far));
-    let (near, far) = (nearest.clamp(eye.near, eye.far), farthest.clamp(eye.near, eye.far));
-    let mut ends = cascade_splits(near, far.max(1.001 * near), count as usize, SPLIT);
+    let (near, far) = seen_range(scene);
+    let mut ends = cascade_splits(near, far, count as usize, SPLIT);
     if let Some(last) = ends.last_mut() {
         *last = eye.far;
     }
@@ -134,8 +139,12 @@ fn slices_of(scene: &Scene, count: u32) -> Vec<(f64, f64)> {
 }
 
 fn no_cascades(pass: &Pass) -> Diagnostic {
-    let message =
-        format!("`{}` has no cascades: they are of the shadow of a directional light", pass.key);
+    let key = &pass.key;
+    if pass.needs.cascades {
+        let message = format!("`{key}` has cascades of its own");
+        return Diagnostic::error(codes::PICTURE_INVALID, message);
+    }
+    let message = format!("`{key}` has no cascades: they are of the shadow of a directional light");
     Diagnostic::error(codes::PICTURE_INVALID, message)
         .note("choose `shadow_light=directional` and a `shadow`")
 }
@@ -163,7 +172,11 @@ impl Studio<'_> {
         let side = if pass.program == "depth" { light.size } else { (light.size / 2).max(1) };
         if prepared.stages.fragment.is_none() {
             let frames = prepared.draw(self.painter, &views, [side; 2], None)?;
-            left.map = Some((frames.into_iter().map(|frame| frame.depth).collect(), side));
+            let depths: Vec<_> = frames.into_iter().map(|frame| frame.depth).collect();
+            left.map = Some(match light.parts {
+                Some(_) => (vec![quartered_map(&depths, side)], 2 * side),
+                None => (depths, side),
+            });
             return Ok(());
         }
         let frames = prepared.draw_colors(self.painter, &views, [side; 2], 0)?;

@@ -102,6 +102,9 @@ impl<'a> Library<'a> {
                 let profile = self.values.lit.needs.profile;
                 profile.map(|profile| color_textures(vec![profile.map()]))
             }
+            "probe_light" | "probe_depths" => {
+                self.values.probe_map(name).map(|map| color_textures(vec![map]))
+            }
             "ltc_table" => Some(vec![table_texture(LTC)]),
             _ => match blank_texel(name) {
                 Some(blank) => Some(self.material_map(name, blank)),

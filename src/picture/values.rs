@@ -11,7 +11,9 @@ use super::plan::{Pass, Plan};
 use super::textures::LEVELS;
 use super::{Shot, Surroundings};
 use crate::scene::sets::{Eye, LampKind, Material, Object, Scene};
-use crate::scene::{Clip, Clusters, Depth, directions, normal_matrix, perspective, sh9_project};
+use crate::scene::{
+    Clip, Clusters, Depth, ProbeField, directions, normal_matrix, perspective, sh9_project,
+};
 
 /// What the uniforms of one pass are filled from.
 pub struct Values<'a> {
@@ -23,6 +25,8 @@ pub struct Values<'a> {
     pub shot: &'a Shot,
     /// The lists of lamps for the parts of the view, once they are asked for.
     pub clusters: OnceCell<Option<Clusters>>,
+    /// The light probes, once they are asked for.
+    pub probes: OnceCell<ProbeField>,
 }
 
 /// The camera of a pass.
@@ -96,6 +100,11 @@ impl Values<'_> {
             "lamps" if path.field == "count" => self.lamps().map(|count| vec![count as f64]),
             "lamps" => self.lamp(path.index, path.field),
             "areas" => self.area(path.index, path.field),
+            "cascades" => {
+                let parts = &self.light.clip_from_world;
+                self.light.parts.as_ref()?.number(parts, path.index, path.field)
+            }
+            "probes" => self.probe_number(path.field),
             "clusters" => self.cluster(path.index, path.field),
             "profiles" => self.profile(path.index, path.field),
             "materials" => self.materials(path.index, path.field),

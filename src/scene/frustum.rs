@@ -80,3 +80,16 @@ pub fn cascade_splits(near: f64, far: f64, count: usize, lambda: f64) -> Vec<f64
     };
     (1..=count).map(split).collect()
 }
+
+/// The smallest sphere around a slice of a view frustum: its distance from the eye along the view
+/// axis, and its radius. A shadow map of this size fits however the viewer turns.
+///
+/// Parameters: `near`, `far` ends of the slice, scene units, `0 <= near <= far`; `tangents` of half
+/// the angles of view, across and up.
+/// Source: Valient, "Stable Rendering of Cascaded Shadow Maps", ShaderX 6, 2008.
+/// Edges: the centre of a wide slice is at its far end, not beyond it.
+pub fn bounding_sphere(near: f64, far: f64, tangents: [f64; 2]) -> (f64, f64) {
+    let spread = tangents[0].powi(2) + tangents[1].powi(2);
+    let centre = (0.5 * (near + far) * (1.0 + spread)).min(far);
+    (centre, (far - centre).hypot(far * spread.sqrt()))
+}

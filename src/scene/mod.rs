@@ -8,6 +8,7 @@
 
 mod clusters;
 mod environment;
+mod field;
 mod frustum;
 mod kernel;
 mod layers;
@@ -15,8 +16,10 @@ mod maps;
 mod mesh;
 mod palette;
 mod probe;
+mod probing;
 mod profiles;
 mod projection;
+mod rays;
 pub mod sets;
 mod shape;
 mod sky;
@@ -26,7 +29,8 @@ pub use clusters::{Cells, ClusterError, Clusters, MOST_CELLS, MOST_INDICES, MOST
 #[doc(hidden)]
 pub use environment::DECODER;
 pub use environment::{ENVIRONMENTS, Environment, environment};
-pub use frustum::{Bounds, cascade_splits, corners, depth_range, fit};
+pub use field::{PROBE_SIDES, ProbeField, ProbeGrid};
+pub use frustum::{Bounds, bounding_sphere, cascade_splits, corners, depth_range, fit};
 pub use kernel::gaussian;
 pub use layers::Layers;
 pub use maps::{blank_texel, brick_materials, bricks, linear_from_srgb};
@@ -36,6 +40,7 @@ pub use profiles::{between_middles, luminaire, window};
 pub use projection::{
     Clip, Depth, cube_projection, orthographic, perspective, polygon_offset, shadow_matrix,
 };
+pub use rays::{Hit, Surfaces};
 pub use shape::{Shape, Vertex};
 pub use sky::{Equirect, Sky};
 pub use view::{FACES, cube_view, from_angles, look_along, look_at};

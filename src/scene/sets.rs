@@ -1,6 +1,7 @@
 //! The scenes of the pictures: shapes, lamps, materials and a viewer, all made by formulas.
 
 pub use super::maps::{Map, Maps};
+pub use super::probing::Probes;
 
 use std::sync::Arc;
 
@@ -42,6 +43,8 @@ pub struct Scene {
     pub map_size: Option<u32>,
     /// Whether lamps with a position are drawn as objects.
     pub shows_lamps: bool,
+    /// Its light probes, if they are not the usual ones.
+    pub probes: Option<Probes>,
     /// Half of the width and height of lamps with an area, if they are not of the usual size.
     pub lamp_size: Option<DVec2>,
 }
@@ -388,6 +391,7 @@ fn base_scene(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Scene {
         own_maps: None,
         map_size: None,
         shows_lamps: false,
+        probes: None,
         lamp_size: None,
     }
 }

@@ -60,7 +60,11 @@ pub fn number(path: &str) -> Vec<f64> {
 /// Values of which a picture needs more than that they vary.
 fn special(path: &str, name: &str, index: usize) -> Option<Vec<f64>> {
     let found = matrix(path, name).or_else(|| room(name));
-    found.or_else(|| profile(path, name, index)).or_else(|| cluster(name, index))
+    found
+        .or_else(|| profile(path, name, index))
+        .or_else(|| cluster(name, index))
+        .or_else(|| cascade(path, name))
+        .or_else(|| probes(path, name))
 }
 
 /// How a lamp reads its profile: beside its axis, and not up to the border of the texture.
@@ -85,6 +89,31 @@ fn cluster(name: &str, index: usize) -> Option<Vec<f64>> {
                 |word: usize| (4 * word..4 * word + 4).map(|at| (at % 3) << (8 * (at % 4))).sum();
             Some(words(index, bytes))
         }
+        _ => None,
+    }
+}
+
+/// Parts of a shadow map whose ends cross the sheet.
+fn cascade(path: &str, name: &str) -> Option<Vec<f64>> {
+    match name {
+        _ if path.starts_with("cascades.clip_from_world") => matrix("", "clip_from_world"),
+        "splits" => Some(vec![2.8, 2.95, 3.1, 3.25]),
+        "texels" => Some(vec![0.005, 0.01, 0.02, 0.04]),
+        "overlap" => Some(vec![0.06]),
+        _ => None,
+    }
+}
+
+/// A grid of light probes around the sheet.
+fn probes(path: &str, name: &str) -> Option<Vec<f64>> {
+    match name {
+        _ if !path.starts_with("probes") => None,
+        "origin" => Some(vec![-1.3, -1.2, -0.9]),
+        "spacing" => Some(vec![0.95, 0.85, 0.7]),
+        "counts" => Some(vec![4.0, 4.0, 4.0]),
+        "light_side" => Some(vec![6.0]),
+        "depth_side" => Some(vec![14.0]),
+        "bias" => Some(vec![0.1]),
         _ => None,
     }
 }

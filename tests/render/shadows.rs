@@ -1,7 +1,6 @@
 //! Compares shadows in whole frames with rays from fragments to the light.
 
 use glam::{DMat4, DVec3};
-use lamplight::picture::Prepared;
 use lamplight::scene::sets::{self, Scene};
 
 use super::closed_forms::Form;
@@ -12,16 +11,15 @@ pub const FORMS: &[(&str, Form)] = &[
     ("shadow_border", border),
     ("shadow_acne", acne),
     ("shadow_penumbra", penumbra),
-    ("cascades", cascades),
 ];
 
 /// The width and the height of a frame, in pixels.
 const SIZE: u32 = 128;
-const DIRECTIONAL: &str =
+pub const DIRECTIONAL: &str =
     "ambient=none,lights=directional,max_lights=1,shadow_light=directional,specular=none";
 
 /// The objects of the scene `casters`, in the form in which rays are tested against them.
-struct Casters {
+pub struct Casters {
     floor_half: f64,
     ball: DVec3,
     object_from_box: DMat4,
@@ -31,7 +29,7 @@ struct Casters {
 
 /// Whether an object blocks a ray. Near the edge of an object that is unclear.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Way {
+pub enum Way {
     Clear,
     Blocked,
     Unclear,
@@ -115,7 +113,7 @@ impl Casters {
         }
     }
 
-    fn way(&self, fragment: &Fragment, towards: DVec3, margin: f64) -> Way {
+    pub fn way(&self, fragment: &Fragment, towards: DVec3, margin: f64) -> Way {
         let from = fragment.position + fragment.normal * 1e-3;
         let ways = [
             self.of_floor(from, towards, margin),
@@ -140,12 +138,12 @@ impl Casters {
     }
 }
 
-fn casters() -> Result<Casters, String> {
+pub fn casters() -> Result<Casters, String> {
     sets::scene("casters").map(|scene| Casters::new(&scene)).ok_or_else(|| "no casters".to_owned())
 }
 
 /// The share of the light that a shadow leaves.
-fn visibility(fragment: &Fragment, towards: DVec3) -> f64 {
+pub fn visibility(fragment: &Fragment, towards: DVec3) -> f64 {
     fragment.light() / fragment.normal.dot(towards)
 }
 
@@ -191,7 +189,7 @@ fn octants(bench: &Bench<'_>) -> Result<(), String> {
 }
 
 /// The direction to the light in the trials below. The ball's shadow then falls only on the floor.
-const TOWARDS: DVec3 = DVec3::new(-0.3, 0.8, 0.25);
+pub const TOWARDS: DVec3 = DVec3::new(-0.3, 0.8, 0.25);
 
 /// The fragments of the floor that only the ball can shadow, each with its distance from the border
 /// of the shadow and its visibility; and the size of a texel of the map.
@@ -316,85 +314,4 @@ fn penumbra(bench: &Bench<'_>) -> Result<(), String> {
         }
     }
     Ok(())
-}
-
-/// With cascades, each part of the viewer's depth has a map of its own, and the nearest is finer than
-/// one map of the whole scene. In each part, every fragment is lit or dark as its ray says. Together
-/// the parts give the picture.
-fn cascades(bench: &Bench<'_>) -> Result<(), String> {
-    let (casters, towards) = (casters()?, TOWARDS.normalize());
-    let axis = (-towards).to_array();
-    let numbers: Numbers<'_> = &[("light", "axis", &axis), ("light", "color", &[1.0; 3])];
-    let plan = bench.plan(&format!("{DIRECTIONAL},shadow=hard"), "casters", numbers)?;
-    let single = bench.prepared(&plan, SIZE)?;
-    let nearest = bench.cascaded(&plan, SIZE, 3)?;
-    let slices: Vec<&Prepared> = std::iter::once(&nearest).chain(&nearest.farther).collect();
-    let mut fragments = 0;
-    for slice in &slices {
-        let margin = 3.0 * texel(slice)?;
-        let seen = bench.fragments_of(slice, SIZE)?;
-        fragments += seen.len();
-        judge_slice(&casters, &seen, towards, margin)?;
-    }
-    let (fine, coarse, whole) =
-        (texel(&nearest)?, texel(&single)?, bench.fragments_of(&single, SIZE)?.len());
-    if slices.len() != 3 || fine > 0.8 * coarse || fragments < whole {
-        return Err(format!(
-            "{} cascades, expected 3; texels of {fine}, {coarse} with one map; {fragments} \
-             fragments of {whole}",
-            slices.len()
-        ));
-    }
-    compare_pictures(bench, &nearest, &single)
-}
-
-fn texel(prepared: &Prepared) -> Result<f64, &'static str> {
-    uniform(prepared, "caster", "texel").ok_or("no texel")
-}
-
-/// Fails unless fragments that face the light are lit exactly if the ray to the light is clear.
-fn judge_slice(
-    casters: &Casters,
-    seen: &[Fragment],
-    towards: DVec3,
-    margin: f64,
-) -> Result<(), String> {
-    let (mut counts, mut wrong) = ([0, 0], 0);
-    for fragment in seen.iter().filter(|fragment| fragment.normal.dot(towards) > 0.25) {
-        let wanted = match casters.way(fragment, towards, margin) {
-            Way::Unclear => continue,
-            Way::Clear => 1,
-            Way::Blocked => 0,
-        };
-        counts[wanted] += 1;
-        wrong += usize::from((visibility(fragment, towards) - wanted as f64).abs() > 0.01);
-    }
-    if wrong > 0 || counts[1] < 100 {
-        return Err(format!("of {counts:?} dark and lit fragments of a cascade {wrong} are wrong"));
-    }
-    Ok(())
-}
-
-/// Fails unless the picture with cascades is that with one map, apart from the borders of shadows.
-fn compare_pictures(
-    bench: &Bench<'_>,
-    nearest: &Prepared,
-    single: &Prepared,
-) -> Result<(), String> {
-    let (parts, one) = (bench.photograph(nearest, SIZE)?, bench.photograph(single, SIZE)?);
-    let (mut drawn, mut apart) = (0, 0);
-    for index in 0..SIZE * SIZE {
-        let (x, y) = (index % SIZE, index / SIZE);
-        let (part, one) = (parts.drawn(x, y), one.drawn(x, y));
-        drawn += usize::from(one.is_some());
-        let is_alike = part
-            .zip(one)
-            .map_or(part.is_none() && one.is_none(), |(part, one)| part.distance(one) < 0.01);
-        apart += usize::from(!is_alike);
-    }
-    if 25 * apart > drawn {
-        Err(format!("{apart} of {drawn} pixels differ from one map's, at most 4 % may"))
-    } else {
-        Ok(())
-    }
 }

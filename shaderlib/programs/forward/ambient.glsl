@@ -3,7 +3,7 @@
 #ifndef LAMPLIGHT_PROGRAMS_FORWARD_AMBIENT_GLSL
 #define LAMPLIGHT_PROGRAMS_FORWARD_AMBIENT_GLSL
 
-#if AMBIENT != AMBIENT_NONE
+#if AMBIENT != AMBIENT_NONE && AMBIENT != AMBIENT_DDGI
 /// Light from everywhere: each value of `ambient` reads what it needs.
 layout(std140, set = 0, binding = 2) uniform Surroundings {
     /// `constant`: added to the ambient light of the lamps.
@@ -44,6 +44,8 @@ vec3 ambient_light(vec3 normal) {
 vec3 ambient_light(vec3 normal) {
     return surroundings.scale * sh9_irradiance_clamped(normal, surroundings.sh);
 }
+#elif AMBIENT == AMBIENT_DDGI
+#include "../probes.glsl"
 #elif AMBIENT == AMBIENT_IBL
 layout(set = 0, binding = 12) uniform textureCube sky_diffuse;
 layout(set = 0, binding = 13) uniform textureCube sky_specular;

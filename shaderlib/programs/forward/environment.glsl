@@ -30,6 +30,8 @@ vec3 towards_wall(Surface surface, vec3 direction) {
 vec3 surrounding_light(Surface surface, vec3 normal) {
 #if AMBIENT == AMBIENT_IBL
     vec3 light = texture(samplerCube(sky_diffuse, sky_sampler), normal).rgb * surroundings.diffuse_share;
+#elif AMBIENT == AMBIENT_DDGI
+    vec3 light = probe_irradiance(surface.position, normal);
 #else
     vec3 light = ambient_light(normal);
 #endif

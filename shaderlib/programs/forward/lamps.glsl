@@ -292,6 +292,8 @@ Accum add_lamp(Accum sum, Surface surface, uint i) {
 Accum lit(Surface surface) {
 #if AMBIENT == AMBIENT_NONE || AMBIENT == AMBIENT_IBL
     Accum sum = Accum(vec3(0.0), vec3(0.0));
+#elif AMBIENT == AMBIENT_DDGI
+    Accum sum = Accum(surface.material.ambient * probe_irradiance(surface.position, surface.normal), vec3(0.0));
 #else
     Accum sum = Accum(surface.material.ambient * ambient_light(surface.normal), vec3(0.0));
 #endif

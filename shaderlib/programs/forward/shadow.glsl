@@ -6,6 +6,10 @@
 #include "../../math/noise.glsl"
 #include "../../shadow/bias.glsl"
 #include "../../shadow/coord.glsl"
+#if CASCADES
+#include "camera.glsl"
+#include "../cascades.glsl"
+#endif
 
 /// The light that casts the shadow, and how its map is read.
 layout(std140, set = 0, binding = 4) uniform Caster {
@@ -36,6 +40,7 @@ layout(std140, set = 0, binding = 4) uniform Caster {
     float least;
 } caster;
 
+#if !CASCADES
 /// The point that is looked up: off the surface, so that it does not shadow itself.
 vec3 receiver(Surface surface, Light light) {
 #if SHADOW_LIGHT == SHADOW_LIGHT_DIRECTIONAL
@@ -46,6 +51,7 @@ vec3 receiver(Surface surface, Light light) {
     return normal_offset(surface.position, surface.normal, l, caster.texel * length(offset), caster.normal_offset);
 #endif
 }
+#endif
 
 #if SHADOW_LIGHT == SHADOW_LIGHT_POINT
 #include "../../shadow/compare.glsl"
@@ -61,10 +67,18 @@ float visibility(Surface surface, vec2 pixel) {
     return cube_compare(shadow_cube, shadow_sampler, offset, depth);
 }
 #else
+#if CASCADES
+/// Where the shadow map holds the point, the bias taken off its depth.
+ShadowUv place_in_map(int part, Surface surface) {
+    vec3 away = -lamps.lights[caster.light].axis;
+    vec3 point = normal_offset(surface.position, surface.normal, away, cascades.texels[part], caster.normal_offset);
+    ShadowUv at = project(shadow_coord(cascades.clip_from_world[part], point), caster.min_w);
+#else
 /// Where the shadow map holds the point, the bias taken off its depth.
 ShadowUv place_in_map(Surface surface) {
     vec3 point = receiver(surface, lamps.lights[caster.light]);
     ShadowUv at = project(shadow_coord(caster.clip_from_world, point), caster.min_w);
+#endif
     at.depth = constant_bias(at.depth, caster.bias);
     return at;
 }
@@ -100,9 +114,15 @@ layout(set = 0, binding = 8) uniform texture2D shadow_depth;
 layout(set = 0, binding = 9) uniform sampler depth_sampler;
 #endif
 
+#if CASCADES
+/// How much of the shadow caster's light arrives; `pixel` is the place in the framebuffer.
+float visibility(int part, Surface surface, vec2 pixel) {
+    ShadowUv at = place_in_map(part, surface);
+#else
 /// How much of the shadow caster's light arrives; `pixel` is the place in the framebuffer.
 float visibility(Surface surface, vec2 pixel) {
     ShadowUv at = place_in_map(surface);
+#endif
 #if SHADOW == SHADOW_PCF_VOGEL || SHADOW == SHADOW_PCSS
     float phi = 6.2831853 * interleaved_gradient_noise(pixel);
 #endif
@@ -123,6 +143,27 @@ float visibility(Surface surface, vec2 pixel) {
 #endif
 }
 #endif
+#endif
+
+#if CASCADES
+/// How much of the shadow caster's light arrives, from the parts of the map that have the point.
+float cascaded_visibility(Surface surface, vec2 pixel) {
+    vec3 eye = camera.world_from_view[3].xyz;
+    CascadePair pair = cascade_pair(dot(eye - surface.position, camera.world_from_view[2].xyz));
+    // Beyond all parts, everything is lit.
+    float visible = 1.0;
+    if (pair.here < 4) {
+        visible = visibility(pair.here, surface, pixel);
+    }
+    if (pair.share > 0.0) {
+        float behind = 1.0;
+        if (pair.next < 4) {
+            behind = visibility(pair.next, surface, pixel);
+        }
+        visible = mix(visible, behind, pair.share);
+    }
+    return visible;
+}
 #endif
 
 #endif

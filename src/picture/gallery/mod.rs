@@ -220,13 +220,15 @@ fn geometry_text(scene: &str) -> String {
         map_size,
         shows_lamps,
         lamp_size,
+        probes,
         maps: _,
         own_maps: _,
     } = (set.make)();
     let seen = (objects, eye, lamps, materials);
     let size = lamp_size.map(|size| format!(" {size}")).unwrap_or_default();
+    let probes = probes.map(|probes| format!(" {probes:?}")).unwrap_or_default();
     format!(
-        "{seen:.3?} {ambient} {sky} {ground} {haze} {haze_range:?} {map_size:?} {shows_lamps}{size}"
+        "{seen:.3?} {ambient} {sky} {ground} {haze} {haze_range:?} {map_size:?} {shows_lamps}{size}{probes}"
     )
 }
 

@@ -1,0 +1,188 @@
+//! What rays meet: the triangles of a scene, in a tree of boxes.
+
+use glam::DVec3;
+
+use super::sets::{Object, Scene};
+
+/// Triangles that rays are cast against.
+#[derive(Debug, Clone, Default)]
+pub struct Surfaces {
+    triangles: Vec<Triangle>,
+    /// The root is the first one.
+    nodes: Vec<Node>,
+}
+
+/// What a ray meets first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// In lengths of the ray's direction.
+    pub distance: f64,
+    /// Of unit length, on the front of the triangle.
+    pub normal: DVec3,
+    /// The share of the light that it scatters.
+    pub albedo: DVec3,
+    /// The light that it gives off by itself.
+    pub emission: DVec3,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Triangle {
+    corners: [DVec3; 3],
+    albedo: DVec3,
+    emission: DVec3,
+}
+
+/// A box around triangles.
+#[derive(Debug, Clone)]
+struct Node {
+    low: DVec3,
+    high: DVec3,
+    /// A leaf has a range of triangles. Another node has two nodes, of which it holds the second; the
+    /// first one comes right after it.
+    content: Content,
+}
+
+#[derive(Debug, Clone)]
+enum Content {
+    Leaf(std::ops::Range<usize>),
+    Second(usize),
+}
+
+/// The most triangles of a leaf.
+const LEAF: usize = 4;
+/// Hits that are nearer than this are those of the surface that the ray starts from.
+const NEAREST: f64 = 1e-6;
+
+impl Surfaces {
+    /// The triangles of everything that casts a shadow.
+    pub fn of(scene: &Scene) -> Self {
+        let casting = scene.objects.iter().filter(|object| object.casts);
+        let mut triangles: Vec<Triangle> = casting.flat_map(object_triangles).collect();
+        let mut nodes = Vec::new();
+        let count = triangles.len();
+        if count > 0 {
+            build_node(&mut triangles, 0..count, &mut nodes);
+        }
+        Self { triangles, nodes }
+    }
+
+    /// What a ray meets first, from either side. The direction need not be of unit length.
+    pub fn hit(&self, from: DVec3, towards: DVec3) -> Option<Hit> {
+        let mut best = f64::INFINITY;
+        let mut found = None;
+        let mut waiting = Vec::from_iter((!self.nodes.is_empty()).then_some(0));
+        while let Some(index) = waiting.pop() {
+            let node = &self.nodes[index];
+            if !node.is_met(from, towards, best) {
+                continue;
+            }
+            match &node.content {
+                Content::Second(second) => waiting.extend([*second, index + 1]),
+                Content::Leaf(range) => {
+                    for triangle in &self.triangles[range.clone()] {
+                        if let Some(distance) = triangle.met(from, towards).filter(|at| *at < best)
+                        {
+                            (best, found) = (distance, Some(triangle));
+                        }
+                    }
+                }
+            }
+        }
+        found.map(|triangle| Hit {
+            distance: best,
+            normal: triangle.across().normalize_or_zero(),
+            albedo: triangle.albedo,
+            emission: triangle.emission,
+        })
+    }
+
+    /// Whether nothing is between two points.
+    pub fn is_clear(&self, from: DVec3, to: DVec3) -> bool {
+        self.hit(from, to - from).is_none_or(|hit| hit.distance >= 1.0 - NEAREST)
+    }
+}
+
+fn object_triangles(object: &Object) -> Vec<Triangle> {
+    let vertex = |index: &u32| object.shape.vertices.get(*index as usize);
+    let triangle = |three: &[u32]| {
+        let [a, b, c] = [vertex(three.first()?)?, vertex(three.get(1)?)?, vertex(three.get(2)?)?];
+        let place = |at: DVec3| object.world_from_object.transform_point3(at);
+        let color = (a.color + b.color + c.color) / 3.0 * object.color;
+        Some(Triangle {
+            corners: [place(a.position), place(b.position), place(c.position)],
+            albedo: (color * object.material.diffuse).clamp(DVec3::ZERO, DVec3::ONE),
+            emission: object.material.emission,
+        })
+    };
+    object.shape.indices.chunks(3).filter_map(triangle).collect()
+}
+
+/// Adds the tree of a range of triangles, which it sorts.
+fn build_node(all: &mut [Triangle], range: std::ops::Range<usize>, nodes: &mut Vec<Node>) {
+    let triangles = &mut all[range.clone()];
+    let corners = || triangles.iter().flat_map(|triangle| triangle.corners);
+    let low = corners().fold(DVec3::INFINITY, DVec3::min);
+    let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
+    let index = nodes.len();
+    nodes.push(Node { low, high, content: Content::Leaf(range.clone()) });
+    if triangles.len() <= LEAF {
+        return;
+    }
+    let size = high - low;
+    let axis = (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(0);
+    let half = triangles.len() / 2;
+    triangles.select_nth_unstable_by(half, |a, b| a.middle()[axis].total_cmp(&b.middle()[axis]));
+    let middle = range.start + half;
+    build_node(all, range.start..middle, nodes);
+    nodes[index].content = Content::Second(nodes.len());
+    build_node(all, middle..range.end, nodes);
+}
+
+impl Node {
+    /// Whether a ray meets the box before a distance.
+    fn is_met(&self, from: DVec3, towards: DVec3, before: f64) -> bool {
+        let (mut enter, mut leave) = (0.0_f64, before);
+        for axis in 0..3 {
+            let (start, step) = (from[axis], towards[axis]);
+            if step == 0.0 {
+                if start < self.low[axis] || start > self.high[axis] {
+                    return false;
+                }
+                continue;
+            }
+            let (a, b) = ((self.low[axis] - start) / step, (self.high[axis] - start) / step);
+            (enter, leave) = (enter.max(a.min(b)), leave.min(a.max(b)));
+        }
+        // Boxes may be flat.
+        enter <= leave * (1.0 + 1e-12) + 1e-12
+    }
+}
+
+impl Triangle {
+    fn across(&self) -> DVec3 {
+        let [a, b, c] = self.corners;
+        (b - a).cross(c - a)
+    }
+
+    fn middle(&self) -> DVec3 {
+        let [a, b, c] = self.corners;
+        (a + b + c) / 3.0
+    }
+
+    /// Where a ray meets it: Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection",
+    /// 1997.
+    fn met(&self, from: DVec3, towards: DVec3) -> Option<f64> {
+        let [a, b, c] = self.corners;
+        let (along, up) = (b - a, c - a);
+        let p = towards.cross(up);
+        let scale = along.dot(p);
+        if scale == 0.0 {
+            return None;
+        }
+        let offset = from - a;
+        let q = offset.cross(along);
+        let (u, v) = (offset.dot(p) / scale, towards.dot(q) / scale);
+        let distance = up.dot(q) / scale;
+        (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > NEAREST).then_some(distance)
+    }
+}

@@ -1,0 +1,93 @@
+//! Fields of light probes in whole frames: what is drawn is what the host computes, and no light comes
+//! through walls.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use lamplight::execute::fixture::{Fixture, Texture};
+use lamplight::scene::sets::{self, Scene};
+use lamplight::scene::{ProbeField, ProbeGrid, Surfaces};
+
+use super::closed_forms::Form;
+use super::frames::{Bench, Fragment};
+
+pub const FORMS: &[(&str, Form)] =
+    &[("probes_of_the_host", same_field), ("probes_leak_nothing", no_leaks)];
+
+/// The width and the height of a frame, in pixels.
+const SIZE: u32 = 128;
+const KEY: &str = "ambient=ddgi,lights=spot,max_lights=1,specular=none";
+
+fn halls() -> Result<Scene, String> {
+    sets::scene("halls").ok_or_else(|| "no halls".to_owned())
+}
+
+/// With a wall that glows and a lamp that is off, every fragment has the light that the field of the
+/// host has there.
+fn same_field(bench: &Bench<'_>) -> Result<(), String> {
+    let mut scene = halls()?;
+    scene.objects[2].material.emission = DVec3::new(0.9, 0.3, 0.2);
+    let points = scene.points();
+    let low = points.iter().copied().reduce(DVec3::min).ok_or("no points")?;
+    let high = points.iter().copied().reduce(DVec3::max).ok_or("no points")?;
+    let probes = scene.probes.unwrap_or_default();
+    let grid = ProbeGrid::within(low, high, probes.counts);
+    let surfaces = Surfaces::of(&scene);
+    let field = ProbeField::new(grid, &surfaces, &|_, _| DVec3::ZERO, probes.beyond);
+    let mut plan = bench.plan(
+        KEY,
+        "halls",
+        &[("light", "color", &[0.0; 3]), ("light", "ambient", &[0.0; 3])],
+    )?;
+    plan.model = Some(Arc::new(scene));
+    let (mut seen, mut largest) = (0, 0.0_f64);
+    for fragment in bench.fragments(&plan, SIZE)?.iter().filter(|one| one.position.x > -2.99) {
+        let wanted = fragment.base * field.light_at(fragment.position, fragment.normal);
+        let error = (fragment.colour - wanted).abs().max_element();
+        if error.is_nan() || error > 1e-3 {
+            return Err(format!("{fragment:?}: the host has {wanted}"));
+        }
+        (seen, largest) = (seen + 1, largest.max(wanted.max_element()));
+    }
+    if seen > 3000 && largest > 0.1 {
+        Ok(())
+    } else {
+        Err(format!("{seen} fragments, of which the brightest has {largest}"))
+    }
+}
+
+/// Beside the wall between the rooms, the floor of the dark one is much darker than that of the lit
+/// one, which is reddish. If probes see through walls, it is not.
+fn no_leaks(bench: &Bench<'_>) -> Result<(), String> {
+    let plan = bench.plan(&format!("{KEY},cone=smooth,shadow=pcf_3x3"), "halls", &[])?;
+    let mut prepared = bench.prepared(&plan, SIZE)?;
+    let [lit, dark] = beside_wall(&bench.fragments_of(&prepared, SIZE)?);
+    let stage = prepared.stages.fragment.as_ref().ok_or("no fragment stage")?;
+    let depths = stage.reflection.bindings.iter().find(|binding| binding.name == "probe_depths");
+    let depths = depths.ok_or("no distances")?;
+    let place = (depths.group, depths.binding);
+    let Some(Fixture::Texture(seen)) = prepared.fixtures.get(&place).map(|one| &**one) else {
+        return Err("no texture of distances".to_owned());
+    };
+    let texels = [1e3, 1e6, 0.0, 1.0].repeat(seen.texels.len() / 4);
+    let endless = Fixture::Texture(Texture { texels, ..seen.clone() });
+    prepared.fixtures.insert(place, Arc::new(endless));
+    let [_, leaking] = beside_wall(&bench.fragments_of(&prepared, SIZE)?);
+    let what = format!("lit {lit}, dark {dark}, without distances {leaking}");
+    println!("{what}");
+    let reddish = lit.x > 1.2 * lit.y;
+    if reddish && dark.y < 0.15 * lit.y && leaking.y > 2.0 * dark.y { Ok(()) } else { Err(what) }
+}
+
+/// The mean light on the floor at both sides of the wall, far from its opening.
+fn beside_wall(fragments: &[Fragment]) -> [DVec3; 2] {
+    let mean = |from: f64, to: f64| {
+        let inside = fragments.iter().filter(|fragment| {
+            let at = fragment.position;
+            fragment.normal.y > 0.99 && at.y < -1.39 && from < at.x && at.x < to && at.z > 1.0
+        });
+        let light: Vec<DVec3> = inside.map(|fragment| fragment.colour / fragment.base).collect();
+        light.iter().sum::<DVec3>() / light.len().max(1) as f64
+    };
+    [mean(-0.6, -0.1), mean(0.1, 0.6)]
+}
