@@ -155,7 +155,7 @@ pub const SET: Set = Set {
 
 fn chess_piece(profile: Profile, x: f64, z: f64, (color, share): (DVec3, f64)) -> Object {
     let points: Vec<DVec2> = profile.iter().map(|(r, h)| DVec2::new(*r, *h)).collect();
-    let mut shape = Shape::lathe(&points, (48, 4 * points.len() as u32));
+    let mut shape = Shape::lathe(&points, (56, 7 * points.len() as u32));
     if std::ptr::eq(profile, KING) {
         let cross = |half| {
             Shape::cuboid(half, 1)
@@ -200,5 +200,5 @@ pub fn scene() -> Scene {
         kind: LampKind::Spot,
     };
     let lamps = palette::lamps(key, 5.0, 4.5, 0.12);
-    Scene { map_size: Some(1536), ..base_scene(objects, eye, lamps) }
+    Scene { map_size: Some(2048), ..base_scene(objects, eye, lamps) }
 }
