@@ -218,8 +218,8 @@ enum Given {
     FourMoments,
     /// Normals near that of the surface, so that the errors of their directions are small.
     Normals,
-    /// Normals that vary by a sixteenth of that. The formulas of lamps with an area multiply the
-    /// errors of directions.
+    /// Normals that vary by a sixteenth of that. The formulas of lamps with an area, of what brushed
+    /// surfaces mirror, and of light probes multiply the errors of directions.
     NearNormals,
     /// Octahedral normals that vary as little.
     NearOctahedral,
@@ -233,12 +233,13 @@ enum Given {
 
 impl Given {
     fn new(name: &str, key: &str) -> Self {
-        let has_area = key.contains("area=");
+        let is_sensitive =
+            ["area=", "anisotropy", "ambient=ddgi"].iter().any(|axis| key.contains(axis));
         match name {
             "shadow_moments" if key.contains("shadow=msm") => Self::FourMoments,
-            "normal_map" if has_area => Self::NearNormals,
+            "normal_map" if is_sensitive => Self::NearNormals,
             "normal_map" => Self::Normals,
-            "surface_normal" if has_area => Self::NearOctahedral,
+            "surface_normal" if is_sensitive => Self::NearOctahedral,
             "ltc_table" => Self::Lobes,
             "anisotropy_map" => Self::Directions,
             "metallic_roughness_map" | "clearcoat_map" => Self::Roughnesses,
