@@ -11,7 +11,9 @@ pub enum Reason {
     /// There is not exactly one entry point, or it is a compute shader.
     EntryPoint,
     Override,
-    /// A storage buffer: writers pass the lengths of its arrays to the functions that need them.
+    /// A storage buffer: writers pass the lengths of its arrays to the functions that need them. This
+    /// breaks the first assumption that the documentation of `src/link/mod.rs` lists. `refuse_part` in
+    /// `outline.rs` finds declarations; `uses.rs` finds pointers in an address space that no stub has.
     StorageBuffer,
     /// An array of bindings: writers ask whether its index is uniform.
     BindingArray,

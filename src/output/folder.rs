@@ -168,7 +168,10 @@ impl Folder {
         let path = self.path.join(RECORD);
         let written =
             self.scratch.write("record", (HEADER.to_owned() + &lines.concat()).as_bytes())?;
-        fs::rename(written, &path).map_err(|error| Error::io(&path, &error))
+        fs::rename(written, &path).map_err(|error| Error::io(&path, &error))?;
+        // The record is on the disk before any file that it lists.
+        sync_folder(&self.path);
+        Ok(())
     }
 }
 

@@ -14,13 +14,13 @@
 //! 2. `Scratch::write` writes the bytes to a new file in this folder, and waits until they are on
 //!    the disk.
 //! 3. `put_file` in `file.rs` gives the file the permissions of the one that it replaces, and renames
-//!    it into its place. In an output folder, `Folder::put` in `folder.rs` does this.
+//!    it into its place. In an output folder, `Folder::put` in `folder.rs` only renames it.
 //! 4. `sync_folder` in `scratch.rs` syncs the folder, so that the new name survives a loss of power.
 //! 5. The scratch folder is removed: when it is dropped, or by the next run if this one was killed.
 //!
 //! For a folder, the record of hashes is written before the files, with the old and the new hash of
-//! each, and once more at the end. So a killed run leaves no file that the next one takes for a
-//! foreign one.
+//! each, and once more at the end. So neither a killed run nor a loss of power leaves a file that the
+//! next run takes for a foreign one.
 //!
 //! A command flattens `Overwrite` of `src/cli/overwrite.rs`, which adds `--force`, and passes
 //! `overwrite.replace()`; `src/cli/export/mod.rs` is an example. A command that writes has one line in

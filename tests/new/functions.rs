@@ -44,6 +44,10 @@ pub fn in_modules() -> Outcome {
                 return Err(format!("{stem}.{extension}: {what}").into());
             }
         }
+        let plain = text(&files, &format!("tests/plain/{}.wesl", module.replace("::", "/")))?;
+        if !plain.contains("fn unheard_of(n: vec3f, nl: f32, k: f32) -> f32 {\n    return f32();") {
+            return Err(format!("no plain text of `unheard_of`:\n{plain}").into());
+        }
         let reference = format!("src/proof/references/{}.rs", module.replace("::", "_"));
         let text = text(&files, &reference)?;
         balanced(text)?;
@@ -51,6 +55,26 @@ pub fn in_modules() -> Outcome {
         let reads = "let (n, nl, k) = (a.vec3(), a.f64(), a.f64());";
         if let Some(part) = [row, reads].iter().find(|part| !text.contains(**part)) {
             return Err(format!("{reference} has no `{part}`:\n{text}").into());
+        }
+    }
+    Ok(())
+}
+
+/// A formula stands in both languages, and in the text without guards.
+pub fn with_formula() -> Outcome {
+    let formula = "vec3f(nl, f32(2u), nv) * pow(nl, k)";
+    let rest = ["nl: f32, nv: f32, k: f32 0..2", "vec3f", formula];
+    let files = make("function", "brdf::fresh::unheard_of", &rest)?;
+    let stem = "shaderlib/brdf/fresh";
+    compiles(&files, stem, "unheard_of(0.5, 0.5, 1.0).x", "unheard_of(0.5, 0.5, 1.0).x")?;
+    for (path, wanted) in [
+        ("shaderlib/brdf/fresh.wesl", formula),
+        ("tests/plain/brdf/fresh.wesl", formula),
+        ("shaderlib/brdf/fresh.glsl", "vec3(nl, float(2u), nv) * pow(nl, k)"),
+    ] {
+        let text = text(&files, path)?;
+        if !text.contains(&format!("    return {wanted};\n")) {
+            return Err(format!("{path} should return {wanted}:\n{text}").into());
         }
     }
     Ok(())

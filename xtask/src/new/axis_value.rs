@@ -28,7 +28,7 @@ fn make(repository: &Repository<'_>, text: &str, rest: &[&str]) -> Result<Made, 
     let mut files = vec![(MANIFEST.to_owned(), manifest), (LOCK.to_owned(), lock)];
     let pictures = repository.read(PICTURES)?;
     if pictures.contains(&table) {
-        files.push((PICTURES.to_owned(), with_row(&pictures, &table, &format!("{value} = {{}}"))));
+        files.push((PICTURES.to_owned(), with_row(&pictures, &table, value)));
     }
     let constant = format!("{axis}_{value}").to_uppercase();
     let next = vec![
@@ -36,9 +36,11 @@ fn make(repository: &Repository<'_>, text: &str, rest: &[&str]) -> Result<Made, 
             "shaderlib/programs/: `@if({axis} == {value})` in WESL and `#if {} == {constant}` in GLSL (trial library::values_have_effect)",
             axis.to_uppercase()
         ),
-        format!("{PICTURES}: what a picture takes from `{value}`, if it is more than nothing"),
-        format!("{MANIFEST}: {ships}"),
-        "cargo xtask record library::; read the difference".to_owned(),
+        format!(
+            "{PICTURES}: what a picture takes from `{value}`; its row is a copy of the last one"
+        ),
+        format!("{MANIFEST}: {ships}; `doc` of the axis, if it describes values"),
+        "cargo xtask record library:: _budget; read the difference".to_owned(),
         "cargo xtask docs".to_owned(),
     ];
     Ok(Made { files, next })
@@ -142,10 +144,12 @@ fn in_lock(text: &str, line: &str, value: &str) -> Result<String, String> {
     }
 }
 
-/// A row at the end of a table.
-fn with_row(text: &str, table: &str, row: &str) -> String {
+/// A row at the end of a table, which says of the value what the last row says of its own.
+fn with_row(text: &str, table: &str, value: &str) -> String {
     let start = text.find(table).map_or(text.len(), |at| at + table.len());
     let rows = text[start..].find("\n[").map_or(text.len(), |at| start + at);
     let (before, after) = text.split_at(rows);
-    format!("{}\n{row}\n{after}", before.trim_end())
+    let last = before[start..].trim_end().lines().next_back();
+    let said = last.and_then(|row| row.split_once(" = ")).map_or("{}", |(_, said)| said);
+    format!("{}\n{value} = {said}\n{after}", before.trim_end())
 }

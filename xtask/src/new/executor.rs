@@ -17,15 +17,17 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
     let file = format!("{FOLDER}/{name}.rs");
     repository.refuse_existing(&file)?;
     let known = repository.stems(FOLDER)?;
+    let interface = INTERFACES.iter().find(|(one, _)| *rest.first().unwrap_or(&name) == *one);
     let text = match rest {
-        [] => of_wgpu(name),
+        _ if interface.is_some() => of_wgpu(name, interface),
+        [] => of_wgpu(name, None),
         [like] if known.iter().any(|known| known == like) => {
             let text = repository.read(&format!("{FOLDER}/{like}.rs"))?;
             text.replace(&format!("name: {like:?}"), &format!("name: {name:?}"))
         }
-        _ => return Err(format!("name one executor of {}", known.join(", "))),
+        _ => return Err(format!("name one executor of {}, dx12, metal", known.join(", "))),
     };
-    let next = vec![
+    let mut next = vec![
         format!(
             "{file}: `about`, and what opens it (trials house::described, harness::executor::{name})"
         ),
@@ -37,19 +39,25 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
         ),
         "cargo xtask record diagnostics; cargo xtask record guide; read the difference".to_owned(),
     ];
+    if interface.is_none() && rest.is_empty() {
+        next.insert(0, format!(
+            "{file}: opens a Vulkan device whose name contains `{name}`; the interfaces are `cargo xtask new executor {name} dx12` and `... metal`"
+        ));
+    }
     let mut files = vec![(file, text)];
-    if INTERFACES.iter().any(|(interface, _)| *interface == name) && rest.is_empty() {
-        files.push((CARGO.to_owned(), with_feature(&repository.read(CARGO)?, name)?));
+    if let Some((interface, _)) = interface {
+        files.push((CARGO.to_owned(), with_feature(&repository.read(CARGO)?, interface)?));
+        next.push(
+            "cargo build, with a network: Cargo.lock gets what the interface needs".to_owned(),
+        );
     }
     Ok(Made { files, next })
 }
 
-/// A device of an interface of wgpu that has this name, or else a device of Vulkan whose driver has
-/// it.
-fn of_wgpu(name: &str) -> String {
-    let interface = INTERFACES.iter().find(|(interface, _)| *interface == name);
+/// A device of an interface of wgpu, or else a device of Vulkan whose driver has this name.
+fn of_wgpu(name: &str, interface: Option<&(&str, &str)>) -> String {
     let (systems, needs, backend, part) = match interface {
-        Some((_, systems)) => (*systems, "", name.to_uppercase(), ""),
+        Some((interface, systems)) => (*systems, "", interface.to_uppercase(), ""),
         None => ("every system but WebAssembly", "\"libvulkan1\"", "VULKAN".to_owned(), name),
     };
     let words = [
@@ -67,6 +75,9 @@ fn with_feature(text: &str, feature: &str) -> Result<String, String> {
     let wrong = || format!("`{CARGO}` has no line `wgpu = {{ ... features = [...] }}`");
     let start = text.find("\nwgpu = {").ok_or_else(wrong)?;
     let end = start + text[start..].find("] }").ok_or_else(wrong)?;
+    if text[start..end].contains(&format!("{feature:?}")) {
+        return Ok(text.to_owned());
+    }
     Ok(format!("{}, {feature:?}{}", &text[..end], &text[end..]))
 }
 
@@ -86,8 +97,10 @@ pub const EXECUTOR: Entry = Entry {
     open: || {
         super::open_gpu(Wanted {
             backend: wgpu::Backends::BACKEND,
-            // A part of the adapter's name. An empty part allows every adapter.
+            // A part of the adapter's name. An empty part allows every adapter. `Without` is for
+            // adapters whose names do not have the part.
             named: Named::With("PART"),
+            // Or `Emitted`, with a target, for texts that the driver gets unchanged.
             shaders: Shaders::Translated,
         })
     },

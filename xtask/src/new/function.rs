@@ -1,12 +1,14 @@
 //! A function of the shader library, in a module that exists or in a new one.
 
-use super::parameter::{Parameter, Type, read_parameters, type_of};
+use lamplight::bundle::Language;
+
+use super::parameter::{Parameter, TYPES, Type, read_parameters, type_of};
 use super::{Kind, Made, Repository, check_name};
 
 pub const KIND: Kind = Kind {
     name: "function",
     example: &["brdf::diffuse::minnaert", "nl: f32, nv: f32, k: f32 0..2", "f32"],
-    rest: "",
+    rest: "[FORMULA IN WESL]",
     make,
 };
 
@@ -16,10 +18,13 @@ fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, 
     let [folder, module, name] = parts[..] else {
         return Err(format!("`{path}` is not the path of a function: FOLDER::MODULE::NAME"));
     };
-    let [parameters, result] = rest else {
-        return Err(
-            "after the name: the parameters and the type of the result, as in the usage".to_owned()
-        );
+    let (parameters, result, formula) = match rest {
+        [parameters, result] => (parameters, result, None),
+        [parameters, result, formula] => (parameters, result, Some(*formula)),
+        _ => {
+            let what = "the parameters, the type of the result and, if you like, the formula";
+            return Err(format!("after the name: {what}, as in the usage"));
+        }
     };
     let signature = Signature {
         folder,
@@ -27,15 +32,17 @@ fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, 
         name,
         parameters: read_parameters(parameters)?,
         result: type_of(result)?,
+        formula,
     };
     let stem = format!("shaderlib/{folder}/{module}");
     let reference = format!("src/proof/references/{folder}_{module}.rs");
-    let edits: [(String, Edit); 5] = [
+    let edits: [(String, Edit); 6] = [
         (format!("{stem}.wesl"), wesl),
         (format!("{stem}.glsl"), glsl),
         (format!("{stem}.toml"), cases),
         (format!("{stem}.plot.toml"), plot),
         (reference.clone(), reference_text),
+        (format!("tests/plain/{folder}/{module}.wesl"), plain),
     ];
     let mut files = Vec::new();
     for (file, edit) in edits {
@@ -47,18 +54,27 @@ fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, 
 }
 
 fn steps(stem: &str, reference: &str, signature: &Signature<'_>) -> Vec<String> {
-    let Signature { folder, module, .. } = signature;
+    let Signature { folder, module, formula, .. } = signature;
+    let plain = match formula {
+        Some(_) => "has the formula as it was given",
+        None => "the published formula, without guards",
+    };
     vec![
         format!(
-            "{stem}.wesl: the formula, and each line of its comment (trial shaderlib::); `Edges:` says what it returns for zero vectors and outside the domain, `Error model:` the bound that `tolerance` states"
+            "{stem}.wesl: the formula, and each line of its comment (trial shaderlib::); `Edges:` says what it returns for zero vectors and outside the domain, `Error model:` the bound that `tolerance` states; for guards, `max(x, 1e-4)`, or `safe_pow` and `safe_normalize` of `super::super::math::safe`"
         ),
         format!("{stem}.glsl: the same comment and formula (trial shaderlib::)"),
         format!("{reference}: the formula in f64, from the source and not from the shader (check)"),
         format!(
-            "{stem}.toml: `tolerance`, such as {{ ulp = 2 }}, `check` measures it; `laws`, such as {{ range = [0, 1] }}, `check` lists them if one is wrong"
+            "{stem}.toml: `tolerance`, such as {{ ulp = 2 }}, with a power also `pow = {{ base = \"nl * nv\", exponent = \"k\", ulp = 2 }}`, `check` measures it; `laws`, such as {{ range = [0, 1] }}, `check` lists them if one is wrong"
+        ),
+        format!(
+            "tests/plain/{folder}/{module}.wesl: {plain} (trial plain::); a line `/// Reason:` only if `cargo xtask record plain::` asks for one"
         ),
         format!("{stem}.plot.toml is complete, unless another parameter should be drawn"),
-        format!("cargo run -- check {folder}/{module}; cargo xtask docs --costs"),
+        format!(
+            "cargo run -- check {folder}/{module}; cargo xtask docs --costs; cargo xtask record plain:: _budget"
+        ),
     ]
 }
 
@@ -68,9 +84,20 @@ struct Signature<'n> {
     name: &'n str,
     parameters: Vec<Parameter<'n>>,
     result: Type,
+    /// An expression in WESL that GLSL has too, up to the names of types.
+    formula: Option<&'n str>,
 }
 
 impl Signature<'_> {
+    /// What the function returns.
+    fn value(&self, language: Language) -> String {
+        let (formula, result) = (self.formula, self.result);
+        match language {
+            Language::Wesl => formula.map_or(format!("{}()", result.wesl), str::to_owned),
+            Language::Glsl => formula.map_or(format!("{}(0)", result.glsl), in_glsl),
+        }
+    }
+
     /// Something of each parameter, with commas between.
     fn list(&self, of: impl Fn(&Parameter<'_>) -> String) -> String {
         self.parameters.iter().map(of).collect::<Vec<_>>().join(", ")
@@ -93,9 +120,38 @@ fn wesl(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
     refuse_known(old, &format!("fn {}(", new.name))?;
     let parameters = new.list(|one| format!("{}: {}", one.name, one.ty.wesl));
     let (comment, name, result) = (new.comment(), new.name, new.result.wesl);
-    Ok(format!(
-        "{old}\n{comment}fn {name}({parameters}) -> {result} {{\n    return {result}();\n}}\n"
-    ))
+    let value = new.value(Language::Wesl);
+    Ok(format!("{old}\n{comment}fn {name}({parameters}) -> {result} {{\n    return {value};\n}}\n"))
+}
+
+/// The formula without guards, which the library's function is compared with.
+fn plain(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
+    let old = old.map_or(String::new(), |old| format!("{old}\n"));
+    refuse_known(&old, &format!("fn {}(", new.name))?;
+    let parameters = new.list(|one| format!("{}: {}", one.name, one.ty.wesl));
+    let (name, result, value) = (new.name, new.result.wesl, new.value(Language::Wesl));
+    Ok(format!("{old}fn {name}({parameters}) -> {result} {{\n    return {value};\n}}\n"))
+}
+
+/// An expression of WESL with GLSL's names of types.
+fn in_glsl(formula: &str) -> String {
+    let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
+    let name = |word: &str| {
+        let known = TYPES.iter().find(|ty| ty.wesl == word);
+        known.map_or(word.to_owned(), |ty| ty.glsl.to_owned())
+    };
+    let ends = formula.char_indices().filter(|(_, letter)| !is_part(*letter));
+    let ends = ends
+        .map(|(at, letter)| (at, at + letter.len_utf8()))
+        .chain([(formula.len(), formula.len())]);
+    let mut start = 0;
+    let mut text = String::new();
+    for (end, next) in ends {
+        text += &name(&formula[start..end]);
+        text += &formula[end..next];
+        start = next;
+    }
+    text
 }
 
 /// Gives names their prefix. It stands before the declarations and after them.
@@ -111,8 +167,9 @@ fn glsl(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
     let before = old.strip_suffix(&end).ok_or_else(|| format!("does not end with\n{end}"))?;
     let parameters = new.list(|one| format!("{} {}", one.ty.glsl, one.name));
     let (comment, name, result) = (new.comment(), new.name, new.result.glsl);
+    let value = new.value(Language::Glsl);
     Ok(format!(
-        "{before}\n{comment}{result} {name}({parameters}) {{\n    return {result}(0);\n}}\n{end}"
+        "{before}\n{comment}{result} {name}({parameters}) {{\n    return {value};\n}}\n{end}"
     ))
 }
 

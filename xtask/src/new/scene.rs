@@ -67,7 +67,7 @@ pub fn scene() -> Scene {
         (24, 24),
     );
     // A place is x, y, z and the turn about y. The last number is the object's index into the array of
-    // materials, for `material=array`: see `materials` in `palette.rs`.
+    // materials, for `material=array`: see `materials` in `src/scene/palette.rs`.
     let objects = vec![
         Object::new(ground, DMat4::IDENTITY, CHALK).of(Material::default(), 7),
         Object::new(

@@ -38,9 +38,13 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
         format!(
             "{GUIDE}: what `{name}` does unlike `{like}`, in a column of its own (trials conventions::guide, guide lists are whole)"
         ),
+        format!(
+            "{GUIDE}, \"{}\": rows that hold for `{name}`; src/emit/lacks.rs has the versions",
+            LACKING.trim_start_matches("## ")
+        ),
         "cargo xtask record; read the difference".to_owned(),
     ];
-    let target = own_ending(&target, name);
+    let target = without_older_rules(own_ending(&target, name), name);
     Ok(Made { files: vec![(file, target), (own_executor, text), (GUIDE.to_owned(), guide)], next })
 }
 
@@ -76,13 +80,34 @@ fn own_ending(text: &str, name: &str) -> String {
     }
 }
 
+/// The target without rules of a later version, if its own version is not below that.
+fn without_older_rules(text: String, name: &str) -> String {
+    let number = |text: &str| -> Option<u32> {
+        text.trim_matches(|letter: char| !letter.is_ascii_digit()).parse().ok()
+    };
+    let rules = text.split_once(", GlslRules::Later(").and_then(|(before, rest)| {
+        let (later, after) = rest.split_once(')')?;
+        (number(later)? <= number(name)?).then(|| format!("{before}{after}"))
+    });
+    rules.unwrap_or(text)
+}
+
+/// The section about what a version lacks. A new version may lack less.
+const LACKING: &str = "## What GLSL does not have";
+
 /// The text with the new name after the other, in each cell of a table that has it.
 fn in_tables(text: &str, like: &str, name: &str) -> String {
     let quoted = format!("`{like}`");
     let both = format!("{quoted}, `{name}`");
-    let line = |line: &str| match line.starts_with('|') {
-        true => line.replace(&quoted, &both),
-        false => line.to_owned(),
+    let mut section = "";
+    let line = |line| {
+        if str::starts_with(line, "## ") {
+            section = line.trim_end();
+        }
+        match line.starts_with('|') && section != LACKING {
+            true => line.replace(&quoted, &both),
+            false => line.to_owned(),
+        }
     };
     text.split_inclusive('\n').map(line).collect()
 }
