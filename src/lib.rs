@@ -129,6 +129,8 @@ mod packing;
 #[cfg(not(feature = "single-file"))]
 #[path = "packing/absent.rs"]
 mod packing;
+#[doc(hidden)]
+pub mod quadrature;
 #[cfg(all(feature = "compile", target_os = "linux"))]
 #[path = "syncing/system.rs"]
 mod syncing;

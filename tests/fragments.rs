@@ -9,7 +9,9 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
-use lamplight::eval::{self, Bounded, Filter, Function, Kind, Machine, Number, Program, Resources};
+use lamplight::eval::{
+    self, Bounded, Filter, Function, FunctionId, Kind, Machine, Number, Program, Resources,
+};
 use lamplight::execute::fixture::{Fixture, Texture};
 use lamplight::execute::frame::Buffers;
 use lamplight::execute::kernel::SENTINEL;
@@ -116,6 +118,16 @@ pub fn recompute(
     Ok(())
 }
 
+/// The function of an entry point. A module from GLSL has a plain function of the same name; entry
+/// points come after functions.
+pub fn entry_function<'a>(
+    program: &'a Program,
+    entry: &str,
+) -> Result<(FunctionId, &'a Function), String> {
+    let named = program.functions().filter(|(_, function)| function.name == entry);
+    named.last().ok_or_else(|| "no entry point".to_owned())
+}
+
 /// [`recompute`] for frames of several drivers. Quads with the same inputs are computed once.
 pub fn recompute_each(
     stage: &Composed,
@@ -125,12 +137,7 @@ pub fn recompute_each(
 ) -> Result<Vec<Result<Tally, String>>, String> {
     let program = Program::new(&stage.validated.module, &stage.validated.info)
         .map_err(|error| error.to_string())?;
-    // A module from GLSL has a plain function of the same name. Entry points come after functions.
-    let (id, _) = program
-        .functions()
-        .filter(|(_, function)| function.name == stage.entry)
-        .last()
-        .ok_or("no entry point")?;
+    let (id, _) = entry_function(&program, stage.entry)?;
     let signature = program.signature(id).ok_or("no entry point")?;
     let mut machine = Machine::<Bounded>::new(&program).map_err(|error| error.to_string())?;
     machine.bind(resources).map_err(|error| error.to_string())?;

@@ -16,7 +16,7 @@ use lamplight::bundle::{
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::fixture::Fixture;
 use lamplight::execute::frame::{
-    Attribute, Buffers, Drawing, EntryPoint, Item, Mesh, State, VertexFormat,
+    Attribute, Buffers, Drawing, EntryPoint, Item, Mesh, VertexFormat,
 };
 use lamplight::execute::{Session, executors, on_thread};
 use lamplight::generate::{Request, in_memory};
@@ -312,18 +312,12 @@ fn agrees(renderer: &dyn Session, scene: &Scene, most: f64) -> Result<Tally, Str
     let Scene { vertex, fragment, drawn: [drawn_vertex, drawn_fragment], mesh, buffers, .. } =
         scene;
     let watched = probe::watch_entry(&drawn_fragment.module, fragment.entry).ok_or("no colour")?;
+    let vertex = EntryPoint { module: &drawn_vertex.module, entry: vertex.entry };
+    let point = EntryPoint { module: &watched.module, entry: fragment.entry };
+    let items = [Item { mesh, buffers }];
     let drawing = Drawing {
-        vertex: EntryPoint { module: &drawn_vertex.module, entry: vertex.entry },
-        fragment: Some(EntryPoint { module: &watched.module, entry: fragment.entry }),
         targets: watched.targets,
-        items: &[Item { mesh, buffers }],
-        views: &[Buffers::new()],
-        buffers: &Buffers::new(),
-        plain: &[],
-        fixtures: &scene.fixtures,
-        levels: &BTreeMap::new(),
-        size: [WIDTH, HEIGHT],
-        state: State::default(),
+        ..Drawing::of_items([vertex, point], &items, &scene.fixtures, [WIDTH, HEIGHT])
     };
     let frame = renderer.draw_frames(&drawing).map_err(|problem| problem.message)?.remove(0);
     let mut tally = Tally {

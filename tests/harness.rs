@@ -138,6 +138,13 @@ fn many_modules() -> Result<(), Failed> {
     }
 }
 
+/// A library of one module in memory.
+fn library_of_texts(module: &str, cases: &str) -> Library {
+    let files = [("mine.wesl", module), ("mine.toml", cases)]
+        .map(|(path, text)| (path.to_owned(), text.to_owned()));
+    Library::new("mine", Arc::new(Memory(files.into())), Vec::new())
+}
+
 /// A function that a target cannot express is reported as lacking, with the reason, and not as a
 /// failure. GLSL ES 3.00 has no arrays of arrays, and GLSL 3.30 has them only with an extension.
 fn lacking() -> Result<(), Failed> {
@@ -147,9 +154,7 @@ fn lacking() -> Result<(), Failed> {
 }";
     let cases =
         "[[case]]\nfunction = \"pick\"\nformula = \"i + 1\"\ninputs = { i = [0, 1, 2, 3] }\n";
-    let files = [("mine.wesl", module), ("mine.toml", cases)]
-        .map(|(path, text)| (path.to_owned(), text.to_owned()));
-    let library = Library::new("mine", Arc::new(Memory(files.into())), Vec::new());
+    let library = library_of_texts(module, cases);
     opened(|open| {
         let sources = Mutex::new(SourceSet::default());
         let report = library
@@ -198,9 +203,7 @@ fn every_function_has_cases() -> Result<(), Failed> {
 fn vectors() -> Result<(), Failed> {
     let module = "fn length_of(v: vec3f) -> f32 { return length(v); }";
     let cases = "[[case]]\nfunction = \"length_of\"\nformula = \"length(v)\"\ntolerance = { ulp = 4 }\nlaws = { reaches = [0, 5] }\ninputs = { v = [[[0, 0, 0], [3, 0, 4]]] }\n";
-    let files = [("mine.wesl", module), ("mine.toml", cases)]
-        .map(|(path, text)| (path.to_owned(), text.to_owned()));
-    let library = Library::new("mine", Arc::new(Memory(files.into())), Vec::new());
+    let library = library_of_texts(module, cases);
     opened(|open| {
         let sources = Mutex::new(SourceSet::default());
         let report = library

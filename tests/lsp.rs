@@ -359,25 +359,37 @@ fn ask_beyond_the_end(session: &mut Session, text: &str) -> Outcome {
     Ok(())
 }
 
-/// Neovim, run without a screen, uses the server. `cargo xtask test` installs it.
-fn neovim() -> Outcome {
+/// What Neovim prints, run without a screen in a package with a mistake in `main.wesl`.
+/// `cargo xtask test` installs it.
+fn said_by_neovim(arguments: impl FnOnce(&mut Command)) -> Result<String, Failed> {
     let folder = tempfile::tempdir()?;
     let root = folder.path().canonicalize()?;
     fs::write(root.join("lamplight.toml"), MANIFEST)?;
     fs::write(root.join("util.wesl"), UTIL)?;
     fs::write(root.join("main.wesl"), MAIN.replace("vec4f(sum)", "vec4f(summ)"))?;
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lsp/neovim.lua");
-    let output = Command::new("nvim")
-        .args(["--headless", "--clean", "-u", "NONE", "-c"])
-        .arg(format!("luafile {}", script.display()))
-        .arg(root.join("main.wesl"))
-        .env("LAMPLIGHT", env!("CARGO_BIN_EXE_lamplight"))
+    let mut command = Command::new("nvim");
+    command
+        .args(["--headless", "--clean", "-u"])
         .env("XDG_CACHE_HOME", root.join("cache"))
         .env("XDG_STATE_HOME", root.join("state"))
-        .current_dir(&root)
+        .current_dir(&root);
+    arguments(&mut command);
+    let output = command
         .output()
         .map_err(|error| format!("nvim: {error}; install it with: apt-get install neovim"))?;
-    let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+    Ok(String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned())
+}
+
+/// Neovim uses the server.
+fn neovim() -> Outcome {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lsp/neovim.lua");
+    let said = said_by_neovim(|command| {
+        command
+            .args(["NONE", "-c"])
+            .arg(format!("luafile {}", script.display()))
+            .arg("main.wesl")
+            .env("LAMPLIGHT", env!("CARGO_BIN_EXE_lamplight"));
+    })?;
     let expected =
         ["diagnostics: ok", "hover: ok", "definition: ok", "rename: ok", "completion: ok"];
     expect(expected.iter().all(|line| said.contains(line)), &said)

@@ -30,7 +30,7 @@ use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::frame::{Buffers, EntryPoint};
 use lamplight::execute::{Session, executors, on_thread};
 use lamplight::picture::frame::{Programs, probe as watch};
-use lamplight::picture::{Picture, Plan, Prepared, Shot, Surroundings, prepare_passes};
+use lamplight::picture::{Linear, Picture, Plan, Prepared, Shot, Surroundings, prepare_passes};
 use lamplight::scene::environment;
 use libtest_mimic::{Failed, Trial};
 
@@ -121,6 +121,22 @@ pub fn on_device(
 /// Opens an executor by name.
 pub fn start(name: &str) -> Result<Box<dyn Session>, String> {
     executors::find_executor(name).ok_or("no such executor")?.start()
+}
+
+/// The colours of a permutation of a program, neither clamped nor encoded.
+fn linear_picture(
+    painter: &dyn Session,
+    language: Language,
+    (program, key): (&str, &str),
+    scene: &str,
+    size: [u32; 2],
+) -> Result<Linear, String> {
+    let programs = &library().programs;
+    let mut plan = Plan::of_key(programs, program, key).map_err(said)?;
+    plan.scene = scene.to_owned();
+    let shot = shot(size, 1, language);
+    let prepared = prepare_passes(painter, programs, &plan, &shot).map_err(said)?;
+    prepared.photograph(painter, &shot).map_err(said)
 }
 
 pub fn shot(size: [u32; 2], samples: u32, language: Language) -> Shot {

@@ -117,6 +117,11 @@ fn run(tool: &str, arguments: &[&str]) -> Result<String, Failed> {
     if output.status.success() { Ok(said) } else { Err(format!("{tool}: {said}").into()) }
 }
 
+/// The id of the specialisation constant of an axis.
+fn choice_id(found: &Found, name: &str) -> Option<u32> {
+    found.native.choices.iter().find(|choice| choice.name == name).and_then(|choice| choice.id)
+}
+
 /// In SPIR-V the axes are specialisation constants. spirv-opt can set them by the ids in the
 /// reflection, and the result is valid.
 fn spirv() -> Outcome {
@@ -125,15 +130,7 @@ fn spirv() -> Outcome {
     let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
     std::fs::write(path("a.spv"), &found.bytes)?;
     run("spirv-val", &["--target-env", "vulkan1.1", &path("a.spv")])?;
-    let id = |name: &str| {
-        found
-            .native
-            .choices
-            .iter()
-            .find(|choice| choice.name == name)
-            .and_then(|choice| choice.id)
-            .ok_or("no id")
-    };
+    let id = |name: &str| choice_id(&found, name).ok_or("no id");
     let chosen = format!("{}:16 {}:true", id("taps")?, id("negative")?);
     run(
         "spirv-opt",

@@ -87,6 +87,33 @@ pub struct Drawing<'a> {
     pub state: State,
 }
 
+static NO_BUFFERS: [Buffers; 1] = [Buffers::new()];
+static NO_LEVELS: BTreeMap<(u32, u32), Vec<Texture>> = BTreeMap::new();
+
+impl<'a> Drawing<'a> {
+    /// One frame with one target, no buffers but those of the items, and the state's defaults.
+    pub fn of_items(
+        [vertex, fragment]: [EntryPoint<'a>; 2],
+        items: &'a [Item<'a>],
+        fixtures: &'a BTreeMap<(u32, u32), Arc<Fixture>>,
+        size: [u32; 2],
+    ) -> Self {
+        Self {
+            vertex,
+            fragment: Some(fragment),
+            targets: 1,
+            items,
+            views: &NO_BUFFERS,
+            buffers: &NO_BUFFERS[0],
+            plain: &[],
+            fixtures,
+            levels: &NO_LEVELS,
+            size,
+            state: State::default(),
+        }
+    }
+}
+
 /// A mesh with uniform buffers of its own.
 #[derive(Debug, Clone, Copy)]
 pub struct Item<'a> {

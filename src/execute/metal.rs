@@ -82,8 +82,7 @@ impl Metal {
         count: u32,
     ) -> Result<Vec<u32>, Diagnostic> {
         self.runs = self.runs.wrapping_add(1);
-        let rows = (count * kernel.result_texels() + 2).div_ceil(TARGET_WIDTH);
-        let header = [count, rows * TARGET_WIDTH, self.runs, 0];
+        let (rows, header) = kernel.draw_header(count, self.runs);
         let kept = match self.kept.get(&kernel.id) {
             Some(Ok(kept)) => kept,
             Some(Err(error)) => return Err(error.clone()),

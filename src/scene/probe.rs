@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::Sky;
 use super::view::FACES;
+use crate::quadrature::gauss_legendre;
 
 /// The nine real spherical harmonics of bands 0 to 2, in the library's order: L00, L1m1, L10, L11,
 /// L2m2, L2m1, L20, L21, L22.
@@ -78,29 +79,6 @@ pub fn directions(rows: usize) -> Vec<(DVec3, f64)> {
         })
     };
     gauss_legendre(rows).into_iter().flat_map(row).collect()
-}
-
-/// Nodes in (-1, 1) and their weights, by Newton's method on Legendre's polynomial.
-fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
-    let node = |index: usize| {
-        let mut x = (PI * (index as f64 + 0.75) / (count as f64 + 0.5)).cos();
-        let mut slope = 1.0;
-        for _ in 0..100 {
-            let (mut before, mut value) = (0.0, 1.0);
-            for degree in 1..=count {
-                let n = degree as f64;
-                (before, value) = (value, ((2.0 * n - 1.0) * x * value - (n - 1.0) * before) / n);
-            }
-            slope = count as f64 * (x * value - before) / (x * x - 1.0);
-            let step = value / slope;
-            x -= step;
-            if step.abs() < 1e-15 {
-                break;
-            }
-        }
-        (x, 2.0 / ((1.0 - x * x) * slope * slope))
-    };
-    (0..count).map(node).collect()
 }
 
 /// Six square images in the order of [`FACES`], rows from the top.

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use lamplight::bundle::{Bundle, Language, Target};
 use lamplight::diagnostic::Diagnostic;
 use lamplight::execute::executors::{self, Entry, Shipping};
-use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, State};
+use lamplight::execute::frame::{Drawing, EntryPoint, Item};
 use lamplight::execute::shipped::Shipped;
 use lamplight::execute::{Pair, Session, on_thread};
 use lamplight::permute::axis::ValueSet;
@@ -216,19 +216,10 @@ impl Driver {
     ) -> Result<Vec<Vec<u32>>, Diagnostic> {
         let stage = |of: &'_ super::Composed| of.validated.clone();
         let modules = [stage(&scene.vertex), stage(&scene.fragment)];
-        let drawing = Drawing {
-            vertex: EntryPoint { module: &modules[0].module, entry: scene.vertex.entry },
-            fragment: Some(EntryPoint { module: &modules[1].module, entry: scene.fragment.entry }),
-            targets: 1,
-            items: &[Item { mesh: &scene.mesh, buffers: &scene.buffers }],
-            views: &[Buffers::new()],
-            buffers: &Buffers::new(),
-            plain: &[],
-            fixtures: &scene.fixtures,
-            levels: &BTreeMap::new(),
-            size: SIZE,
-            state: State::default(),
-        };
+        let vertex_point = EntryPoint { module: &modules[0].module, entry: scene.vertex.entry };
+        let point = EntryPoint { module: &modules[1].module, entry: scene.fragment.entry };
+        let items = [Item { mesh: &scene.mesh, buffers: &scene.buffers }];
+        let drawing = Drawing::of_items([vertex_point, point], &items, &scene.fixtures, SIZE);
         Ok(self.session.draw_shipped(Pair { vertex, fragment }, &drawing)?.remove(0).targets)
     }
 

@@ -4,10 +4,8 @@
 //! Its fragments are not computed again with error bounds, as those of other programs are: WGSL
 //! promises no accuracy for the cosine of an angle beyond pi, which an arc has.
 
-use std::collections::BTreeMap;
-
 use lamplight::bundle::{Bundle, Language};
-use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, State};
+use lamplight::execute::frame::{Drawing, EntryPoint, Item};
 use lamplight::execute::kernel::SENTINEL;
 use lamplight::execute::{Session, executors, on_thread};
 use lamplight::picture::frame::probe;
@@ -71,18 +69,12 @@ fn colors(target: &[u32]) -> Vec<Option<f32>> {
 fn evaluated(evaluator: &dyn Session, scene: &Scene) -> Result<Vec<Option<f32>>, String> {
     let watched = probe::watch_entry(&scene.fragment.validated.module, scene.fragment.entry);
     let watched = watched.ok_or("no colour")?;
+    let vertex = EntryPoint { module: &scene.vertex.validated.module, entry: scene.vertex.entry };
+    let fragment = EntryPoint { module: &watched.module, entry: scene.fragment.entry };
+    let items = [Item { mesh: &scene.mesh, buffers: &scene.buffers }];
     let drawing = Drawing {
-        vertex: EntryPoint { module: &scene.vertex.validated.module, entry: scene.vertex.entry },
-        fragment: Some(EntryPoint { module: &watched.module, entry: scene.fragment.entry }),
         targets: watched.targets,
-        items: &[Item { mesh: &scene.mesh, buffers: &scene.buffers }],
-        views: &[Buffers::new()],
-        buffers: &Buffers::new(),
-        plain: &[],
-        fixtures: &scene.fixtures,
-        levels: &BTreeMap::new(),
-        size: SIZE,
-        state: State::default(),
+        ..Drawing::of_items([vertex, fragment], &items, &scene.fixtures, SIZE)
     };
     let mut frames = evaluator.draw_frames(&drawing).map_err(|problem| problem.message)?;
     Ok(colors(frames.remove(0).targets.first().ok_or("no target")?))

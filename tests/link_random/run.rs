@@ -22,7 +22,7 @@ use lamplight::diagnostic::{Diagnostic, codes};
 use lamplight::emit::reflect;
 use lamplight::execute::executors;
 use lamplight::execute::fixture::Fixture;
-use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, Mesh, State};
+use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, Mesh};
 use lamplight::execute::shipped::Shipped;
 use lamplight::execute::{Pair, Session};
 use lamplight::picture::frame::{pack_buffer, probe};
@@ -302,23 +302,12 @@ impl<'r> Ready<'r> {
         let own = EntryPoint { module: &self.validated.module, entry: &self.runnable.entry };
         let partner =
             EntryPoint { module: &self.partner.validated.module, entry: self.partner.entry };
-        let (vertex, fragment) = match self.runnable.is_fragment() {
-            true => (partner, own),
-            false => (own, partner),
+        let pair = match self.runnable.is_fragment() {
+            true => [partner, own],
+            false => [own, partner],
         };
-        draw(&Drawing {
-            vertex,
-            fragment: Some(fragment),
-            targets: 1,
-            items: &[Item { mesh: &self.mesh, buffers: &self.buffers }],
-            views: &[Buffers::new()],
-            buffers: &Buffers::new(),
-            plain: &[],
-            fixtures: &self.fixtures,
-            levels: &BTreeMap::new(),
-            size: SIZE,
-            state: State::default(),
-        })
+        let items = [Item { mesh: &self.mesh, buffers: &self.buffers }];
+        draw(&Drawing::of_items(pair, &items, &self.fixtures, SIZE))
     }
 
     /// A finding for each target whose numbers differ from the evaluator's.

@@ -10,8 +10,7 @@ use libtest_mimic::Failed;
 use serde_json::{Value, json};
 use toml::Table;
 
-use super::session::{MAIN, MANIFEST, UTIL};
-use super::{Outcome, expect};
+use super::{Outcome, expect, said_by_neovim};
 
 /// What the server reads, by the names that editors have for it.
 const LANGUAGES: [&str; 3] = ["glsl", "wesl", "wgsl"];
@@ -211,11 +210,6 @@ fn check_grammar(part: &Value, rules: &Value) -> Outcome {
 
 /// Neovim with the configuration that authors copy starts the server by itself.
 pub fn neovim() -> Outcome {
-    let folder_of_package = tempfile::tempdir()?;
-    let root = folder_of_package.path().canonicalize()?;
-    fs::write(root.join("lamplight.toml"), MANIFEST)?;
-    fs::write(root.join("util.wesl"), UTIL)?;
-    fs::write(root.join("main.wesl"), MAIN.replace("vec4f(sum)", "vec4f(summ)"))?;
     let program = Path::new(env!("CARGO_BIN_EXE_lamplight"));
     let programs = program.parent().ok_or("no folder")?.to_owned();
     let others = std::env::var_os("PATH").unwrap_or_default();
@@ -223,16 +217,11 @@ pub fn neovim() -> Outcome {
         std::env::join_paths(std::iter::once(programs).chain(std::env::split_paths(&others)))?;
     let waits = "lua vim.wait(60000, function() return #vim.diagnostic.get(0) > 0 end, 50) \
                  print(#vim.diagnostic.get(0) > 0 and vim.bo.filetype or 'nothing told')";
-    let output = Command::new("nvim")
-        .args(["--headless", "--clean", "-u"])
-        .arg(folder("editors/neovim/lamplight.lua"))
-        .args(["main.wesl", "-c", waits, "-c", "qall!"])
-        .env("PATH", all)
-        .env("XDG_CACHE_HOME", root.join("cache"))
-        .env("XDG_STATE_HOME", root.join("state"))
-        .current_dir(&root)
-        .output()
-        .map_err(|error| format!("nvim: {error}; install it with: apt-get install neovim"))?;
-    let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+    let said = said_by_neovim(|command| {
+        command
+            .arg(folder("editors/neovim/lamplight.lua"))
+            .args(["main.wesl", "-c", waits, "-c", "qall!"])
+            .env("PATH", all);
+    })?;
     expect(said.trim().ends_with("wesl"), &said)
 }

@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 
 use lamplight::bundle::{Bundle, Language, Target};
 use lamplight::eval::Program;
-use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, State};
+use lamplight::execute::frame::{Drawing, EntryPoint, Item};
 use lamplight::execute::raster::Compiled;
 use lamplight::execute::shipped::Shipped;
 use lamplight::picture::frame::Composed;
 use libtest_mimic::{Failed, Trial};
 use naga::{Binding, BuiltIn};
 
-use crate::fragments::{self, Tally, Watched};
+use crate::fragments::{self, Tally, Watched, entry_function};
 use crate::frames::{PROGRAMS, Scene, Sources, bundle, most_open, points};
 
 /// The number of permutations of `forward` in each language. All pairs of values are among them, as
@@ -110,19 +110,8 @@ fn agrees(
     most: f64,
 ) -> Result<Tally, String> {
     let Scene { vertex, fragment, mesh, buffers, fixtures, .. } = scene;
-    let drawing = Drawing {
-        vertex: stage(vertex),
-        fragment: Some(stage(fragment)),
-        targets: 1,
-        items: &[Item { mesh, buffers }],
-        views: &[Buffers::new()],
-        buffers: &Buffers::new(),
-        plain: &[],
-        fixtures,
-        levels: &BTreeMap::new(),
-        size: SIZE,
-        state: State::default(),
-    };
+    let items = [Item { mesh, buffers }];
+    let drawing = Drawing::of_items([stage(vertex), stage(fragment)], &items, fixtures, SIZE);
     let [first, second] = pair;
     let frames = compiled.draw_watched(first, second, &drawing);
     let frame = frames.map_err(|problem| problem.message)?.remove(0);
@@ -154,11 +143,7 @@ fn in_order(stage: &Composed, targets: &[Vec<u32>]) -> Result<Vec<Vec<u32>>, Str
     let (position, locations) = rest[1..].split_last().ok_or("there is no position")?;
     let program = Program::new(&stage.validated.module, &stage.validated.info)
         .map_err(|error| error.to_string())?;
-    let (_, function) = program
-        .functions()
-        .filter(|(_, function)| function.name == stage.entry)
-        .last()
-        .ok_or("no entry point")?;
+    let (_, function) = entry_function(&program, stage.entry)?;
     let (mut inputs, mut seen) = (Vec::new(), Vec::new());
     for binding in &function.inputs {
         let component = seen.iter().filter(|other| *other == binding).count();

@@ -2,10 +2,9 @@
 
 use lamplight::bundle::Language;
 use lamplight::execute::Session;
-use lamplight::picture::{Linear, Plan, prepare_passes};
 use libtest_mimic::Trial;
 
-use super::{BACKENDS, library, on_device, said, shot};
+use super::{BACKENDS, linear_picture, on_device};
 
 /// Programs, and keys without `clustered`. With the second falloff lamps reach everything, so every
 /// list has all of them.
@@ -42,8 +41,9 @@ pub fn trials() -> Vec<Trial> {
 }
 
 fn same(painter: &dyn Session, language: Language, program: &str, key: &str) -> Result<(), String> {
-    let wanted = drawn(painter, language, program, key)?;
-    let found = drawn(painter, language, program, &format!("{key},clustered"))?;
+    let drawn = |key: &str| linear_picture(painter, language, (program, key), "fair", SIZE);
+    let wanted = drawn(key)?;
+    let found = drawn(&format!("{key},clustered"))?;
     let [width, height] = SIZE;
     let (mut seen, mut largest) = (0_u32, 0.0_f64);
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
@@ -61,19 +61,4 @@ fn same(painter: &dyn Session, language: Language, program: &str, key: &str) -> 
     println!("{program} [{key}]: {seen} pixels, the largest difference is {largest:e}");
     let least = (SEEN * f64::from(width * height)) as u32;
     if seen >= least { Ok(()) } else { Err(format!("{seen} pixels show a surface")) }
-}
-
-/// The colours of a permutation of a program, neither clamped nor encoded.
-fn drawn(
-    painter: &dyn Session,
-    language: Language,
-    program: &str,
-    key: &str,
-) -> Result<Linear, String> {
-    let programs = &library().programs;
-    let mut plan = Plan::of_key(programs, program, key).map_err(said)?;
-    plan.scene = "fair".to_owned();
-    let shot = shot(SIZE, 1, language);
-    let prepared = prepare_passes(painter, programs, &plan, &shot).map_err(said)?;
-    prepared.photograph(painter, &shot).map_err(said)
 }

@@ -3,10 +3,9 @@
 //! map has levels, and at the edges of things the level depends on neighbouring pixels.
 
 use lamplight::execute::Session;
-use lamplight::picture::{Linear, Plan, prepare_passes};
 use libtest_mimic::Trial;
 
-use super::{BACKENDS, library, on_device, said, shot};
+use super::{BACKENDS, linear_picture, on_device};
 use lamplight::bundle::Language;
 
 /// Keys of `deferred`, and of `forward` for the same picture.
@@ -59,8 +58,11 @@ fn same(
     deferred: &str,
     forward: &str,
 ) -> Result<(), String> {
-    let found = drawn(painter, language, "deferred", deferred)?;
-    let wanted = drawn(painter, language, "forward", forward)?;
+    let drawn = |program: &str, key: &str| {
+        linear_picture(painter, language, (program, key), "casters", SIZE)
+    };
+    let found = drawn("deferred", deferred)?;
+    let wanted = drawn("forward", forward)?;
     let [width, height] = SIZE;
     let (mut seen, mut beyond, mut largest) = (0, 0, 0.0_f64);
     for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
@@ -82,19 +84,4 @@ fn same(
         return Err(format!("{what}, at most {BEYOND} of them may; the largest is {largest:e}"));
     }
     Ok(())
-}
-
-/// The colours of a permutation of a program, neither clamped nor encoded.
-fn drawn(
-    painter: &dyn Session,
-    language: Language,
-    program: &str,
-    key: &str,
-) -> Result<Linear, String> {
-    let programs = &library().programs;
-    let mut plan = Plan::of_key(programs, program, key).map_err(said)?;
-    plan.scene = "casters".to_owned();
-    let shot = shot(SIZE, 1, language);
-    let prepared = prepare_passes(painter, programs, &plan, &shot).map_err(said)?;
-    prepared.photograph(painter, &shot).map_err(said)
 }

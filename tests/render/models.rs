@@ -159,23 +159,34 @@ fn unlit_colour_is_exact() -> Result<(), Failed> {
     })
 }
 
+/// Adds an attribute of vectors, one for each corner, to the mesh of a document.
+fn add_attribute<const N: usize>(
+    document: &mut Value,
+    buffer: &mut Vec<u8>,
+    name: &str,
+    corners: &[[f32; N]],
+) -> Result<(), Failed> {
+    let (start, count) = (buffer.len(), corners.len());
+    buffer.extend(corners.iter().flatten().flat_map(|number| number.to_le_bytes()));
+    let views = document["bufferViews"].as_array_mut().ok_or("no views")?;
+    views.push(json!({ "buffer": 0, "byteOffset": start, "byteLength": 4 * N * count }));
+    let view = views.len() - 1;
+    let accessors = document["accessors"].as_array_mut().ok_or("no accessors")?;
+    accessors.push(json!({
+        "bufferView": view, "componentType": 5126, "count": count, "type": format!("VEC{N}"),
+    }));
+    let accessor = accessors.len() - 1;
+    document["meshes"][0]["primitives"][0]["attributes"][name] = json!(accessor);
+    document["buffers"][0]["byteLength"] = json!(buffer.len());
+    Ok(())
+}
+
 /// The colour of an unlit surface is that of its factor, its texture and its corners, multiplied, and
 /// nothing else, in the permutation that the command says.
 fn unlit_colours_are_multiplied() -> Result<(), Failed> {
     // In sRGB 188 is a half.
     let (mut document, mut buffer) = square(&[image([[188, 255, 188]; 4])?]);
-    let corners = [[0.5_f32, 0.5, 1.0]; 4];
-    let start = buffer.len();
-    buffer.extend(corners.iter().flatten().flat_map(|number| number.to_le_bytes()));
-    let views = document["bufferViews"].as_array_mut().ok_or("no views")?;
-    views.push(json!({ "buffer": 0, "byteOffset": start, "byteLength": 48 }));
-    let view = views.len() - 1;
-    let accessors = document["accessors"].as_array_mut().ok_or("no accessors")?;
-    accessors
-        .push(json!({ "bufferView": view, "componentType": 5126, "count": 4, "type": "VEC3" }));
-    let accessor = accessors.len() - 1;
-    document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(accessor);
-    document["buffers"][0]["byteLength"] = json!(buffer.len());
+    add_attribute(&mut document, &mut buffer, "COLOR_0", &[[0.5, 0.5, 1.0]; 4])?;
     document["extensionsUsed"] = json!(["KHR_materials_unlit"]);
     document["materials"] = json!([{
         "pbrMetallicRoughness": {

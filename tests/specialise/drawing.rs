@@ -4,7 +4,7 @@ use lamplight::bundle::Target;
 use libtest_mimic::Failed;
 use pollster::block_on;
 
-use super::{found, run};
+use super::{choice_id, found, run};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
 
@@ -54,14 +54,7 @@ impl Drawing {
         let folder = tempfile::tempdir()?;
         let path = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
         std::fs::write(path("a.spv"), &found.bytes)?;
-        let id = |name: &str| {
-            found
-                .native
-                .choices
-                .iter()
-                .find(|choice| choice.name == name)
-                .and_then(|choice| choice.id)
-        };
+        let id = |name: &str| choice_id(&found, name);
         let values = found
             .constants
             .iter()

@@ -19,8 +19,6 @@ use crate::diagnostic::codes;
 use lane::{Lane, Stop};
 use watch::Watch;
 
-use std::collections::BTreeMap;
-
 /// How many loop iterations one call may make unless set otherwise, all loops together.
 pub const LOOP_LIMIT: u64 = crate::limits::LOOP_TRIPS;
 
@@ -109,15 +107,6 @@ impl<'p, N: Number> Machine<'p, N> {
         self.quad.clear();
         self.resources = resources;
         Ok(())
-    }
-
-    /// Binds other buffers and keeps the textures and samplers.
-    ///
-    /// # Errors
-    /// Those of [`Self::bind`].
-    pub fn bind_buffers(&mut self, buffers: BTreeMap<(u32, u32), Vec<u8>>) -> Result<(), Error> {
-        let resources = std::mem::take(&mut self.resources);
-        self.bind(Resources { buffers, ..resources })
     }
 
     /// Refuses a function whose buffers are not all bound.

@@ -127,28 +127,10 @@ fn depth_texture(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) 
         wgpu::TextureFormat::Depth32Float,
         usage,
     );
-    let source = wgpu::ShaderSource::Wgsl(DEPTH.into());
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
-    let ty = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Uint,
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    };
-    let entry = wgpu::BindGroupLayoutEntry {
-        binding: 0,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty,
-        count: None,
-    };
-    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: None,
-        entries: &[entry],
-    });
-    let drawing = pipeline::draw_pipeline(
+    let (layout, drawing) = pipeline::texture_pipeline(
         device,
-        &[&layout],
-        &module,
-        (&module, "depth"),
+        (DEPTH, "depth"),
+        wgpu::TextureSampleType::Uint,
         None,
         Some(wgpu::TextureFormat::Depth32Float),
     );

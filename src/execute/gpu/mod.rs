@@ -97,8 +97,7 @@ impl Gpu {
         count: u32,
     ) -> Result<Vec<u32>, Diagnostic> {
         self.runs = self.runs.wrapping_add(1);
-        let rows = (count * kernel.result_texels() + 2).div_ceil(TARGET_WIDTH);
-        let header = [count, rows * TARGET_WIDTH, self.runs, 0];
+        let (rows, header) = kernel.draw_header(count, self.runs);
         self.prepare(kernel)?;
         let buffer =
             self.guarded(|gpu| gpu.submit(kernel, &input_texels(kernel, inputs, header), rows))??;

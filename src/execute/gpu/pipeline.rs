@@ -84,6 +84,36 @@ impl Prepared {
     }
 }
 
+/// A pipeline that draws one full-screen triangle from a texture at binding 0, and the layout of
+/// that binding. The WGSL `source` has both stages; `entry` is its fragment stage.
+pub fn texture_pipeline(
+    device: &wgpu::Device,
+    (source, entry): (&'static str, &str),
+    sample_type: wgpu::TextureSampleType,
+    color: Option<wgpu::TextureFormat>,
+    depth: Option<wgpu::TextureFormat>,
+) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline) {
+    let source = wgpu::ShaderSource::Wgsl(source.into());
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
+    let ty = wgpu::BindingType::Texture {
+        sample_type,
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    };
+    let binding = wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility: wgpu::ShaderStages::FRAGMENT,
+        ty,
+        count: None,
+    };
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: None,
+        entries: &[binding],
+    });
+    let drawing = draw_pipeline(device, &[&layout], &module, (&module, entry), color, depth);
+    (layout, drawing)
+}
+
 /// A pipeline that draws one full-screen triangle.
 pub fn draw_pipeline(
     device: &wgpu::Device,

@@ -15,10 +15,12 @@
 //!
 //! Pixels after the last invocation repeat it, so that no fragment returns early.
 
+mod body;
 mod shape;
 mod varying;
 mod wrap;
 
+pub use body::{Body, Value};
 pub use shape::Shape;
 pub use varying::varying_modules;
 
@@ -115,6 +117,12 @@ impl Kernel {
     /// Pixels of one invocation.
     pub fn result_texels(&self) -> u32 {
         self.result_words().div_ceil(4).max(1)
+    }
+
+    /// The rows of the target of one draw, and the header of its inputs.
+    pub fn draw_header(&self, count: u32, run: u32) -> (u32, [u32; 4]) {
+        let rows = (count * self.result_texels() + 2).div_ceil(TARGET_WIDTH);
+        (rows, [count, rows * TARGET_WIDTH, run, 0])
     }
 
     /// Scalar kind of each result word.

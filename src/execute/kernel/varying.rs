@@ -6,7 +6,8 @@ use naga::{
     Module, Sampling, ScalarKind, Span, Statement, VectorSize,
 };
 
-use super::wrap::{Body, Source, Value, with_entry};
+use super::body::{Body, Value};
+use super::wrap::{Source, with_entry};
 use super::{Shape, find_function, pointed_type, resource_class, untestable_function};
 use crate::diagnostic::{Diagnostic, codes};
 

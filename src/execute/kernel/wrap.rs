@@ -1,21 +1,18 @@
 //! Builds the fragment entry point around a function. It works on naga's modules, so it is the same
 //! for WESL and for GLSL.
 
-mod words;
-
 use naga::{
     AddressSpace, BinaryOperator as Op, Binding, BuiltIn, EntryPoint, Expression, Function,
     FunctionArgument, FunctionResult, GlobalVariable, Handle, ImageClass, ImageDimension, Literal,
-    LocalVariable, MathFunction, Module, Range, ResourceBinding, Scalar, ScalarKind, ShaderStage,
-    Span, Statement, SwizzleComponent, Type, TypeInner, VectorSize,
+    LocalVariable, MathFunction, Module, ResourceBinding, ScalarKind, ShaderStage, Span, Statement,
+    SwizzleComponent, Type, TypeInner, VectorSize,
 };
 
+use super::body::{Body, Value};
 use super::{
     ECHO, ENTRY, INPUT_WIDTH, Kernel, Parameter, ParameterKind, TARGET_WIDTH, pointed_type,
 };
 use crate::diagnostic::{Diagnostic, codes};
-
-pub(super) type Value = Handle<Expression>;
 
 /// The module with its entry points replaced by the kernel's, and the function's handle in it.
 pub fn wrap_kernel(
@@ -63,12 +60,6 @@ fn called_function(module: &Module) -> Option<Handle<Function>> {
 
 fn lost_function(name: &str) -> Diagnostic {
     Diagnostic::error(codes::UNTESTABLE_FUNCTION, format!("`{name}` could not be wrapped"))
-}
-
-/// The entry point that is being built.
-pub(super) struct Body<'a> {
-    pub(super) module: &'a mut Module,
-    pub(super) function: Function,
 }
 
 /// Where an argument comes from.
@@ -285,47 +276,24 @@ impl Body<'_> {
         self.add(Expression::Select { condition, accept, reject: value })
     }
 
-    pub(super) fn add(&mut self, expression: Expression) -> Value {
-        let emitted = !expression.needs_pre_emit();
-        let value = self.function.expressions.append(expression, Span::UNDEFINED);
-        if emitted {
-            self.function
-                .body
-                .push(Statement::Emit(Range::new_from_bounds(value, value)), Span::UNDEFINED);
+    /// The four words of this pixel: those of part 0, unless `part` is another.
+    fn choose(&mut self, words: &[Value], part: Value) -> Value {
+        let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
+        let zero = self.literal(0);
+        let mut chosen = self.add(Expression::Compose {
+            ty,
+            components: padded_words(words.get(..4).unwrap_or(words), zero),
+        });
+        for (index, four) in words.chunks(4).enumerate().skip(1) {
+            let accept = self.add(Expression::Compose { ty, components: padded_words(four, zero) });
+            let index = self.literal(index as u32);
+            let condition = self.binary(Op::Equal, part, index);
+            chosen = self.add(Expression::Select { condition, accept, reject: chosen });
         }
-        value
+        chosen
     }
+}
 
-    fn ty(&mut self, inner: TypeInner) -> Handle<Type> {
-        self.module.types.insert(Type { name: None, inner }, Span::UNDEFINED)
-    }
-
-    fn scalar(&mut self, scalar: Scalar) -> Handle<Type> {
-        self.ty(TypeInner::Scalar(scalar))
-    }
-
-    pub(super) fn vector(&mut self, size: VectorSize, kind: ScalarKind) -> Handle<Type> {
-        let width = if kind == ScalarKind::Bool { naga::BOOL_WIDTH } else { 4 };
-        self.ty(TypeInner::Vector { size, scalar: Scalar { kind, width } })
-    }
-
-    fn literal(&mut self, value: u32) -> Value {
-        self.add(Expression::Literal(Literal::U32(value)))
-    }
-
-    pub(super) fn component(&mut self, base: Value, index: u32) -> Value {
-        self.add(Expression::AccessIndex { base, index })
-    }
-
-    pub(super) fn binary(&mut self, op: Op, left: Value, right: Value) -> Value {
-        self.add(Expression::Binary { op, left, right })
-    }
-
-    fn math(&mut self, fun: MathFunction, left: Value, right: Value) -> Value {
-        self.add(Expression::Math { fun, arg: left, arg1: Some(right), arg2: None, arg3: None })
-    }
-
-    fn convert(&mut self, expr: Value, kind: ScalarKind) -> Value {
-        self.add(Expression::As { expr, kind, convert: Some(4) })
-    }
+fn padded_words(words: &[Value], zero: Value) -> Vec<Value> {
+    words.iter().copied().chain(std::iter::repeat(zero)).take(4).collect()
 }

@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 use super::emitted;
 use super::frame::{Drawing, Frame};
 use super::gpu::{input_texels, run_batches, unpack_results};
-use super::kernel::{Kernel, TARGET_WIDTH};
+use super::kernel::Kernel;
 use super::{Pair, Session};
 use crate::browser::serve::{Files, Server};
 use crate::browser::{Browser, PATIENCE, Page, Problem};
@@ -226,8 +226,7 @@ impl Web {
         inputs: &[u32],
         [count, run]: [u32; 2],
     ) -> Result<Vec<u32>, Diagnostic> {
-        let rows = (count * kernel.result_texels() + 2).div_ceil(TARGET_WIDTH);
-        let header = [count, rows * TARGET_WIDTH, run, 0];
+        let (rows, header) = kernel.draw_header(count, run);
         let texels = asked::base64_of_words(&input_texels(kernel, inputs, header));
         let question = json!({ "id": kernel.id, "rows": rows, "texels": texels });
         let call = format!("lamplight.run({question})");

@@ -1,9 +1,11 @@
 //! Rewrites fragment entry points to return words: the bits of their colour, and of their inputs.
 
 use naga::{
-    Binding, EntryPoint, Expression, Function, FunctionResult, Handle, Literal, Module, Range,
-    Scalar, ScalarKind, Span, Statement, StructMember, Type, TypeInner, VectorSize,
+    Binding, EntryPoint, Expression, Function, FunctionResult, Handle, Module, ScalarKind, Span,
+    Statement, StructMember, Type, TypeInner, VectorSize,
 };
+
+use crate::execute::kernel::{Body, Value};
 
 /// A rewritten module.
 #[derive(Debug)]
@@ -21,11 +23,11 @@ pub struct Watched {
 pub fn watch_entry(module: &Module, entry: &str) -> Option<Watched> {
     let (mut module, index) = (module.clone(), find_entry(module, entry)?);
     let inner = inner_function(&mut module, index)?;
-    let mut body = Body::new(&mut module, index);
+    let mut body = entry_body(&mut module, index);
     let mut components = vec![body.colour(inner, 0)?];
-    components.extend(body.inputs());
+    components.extend(body.input_words());
     let targets = components.len() as u32;
-    body.finish(components, index);
+    body.finish_entry(components, index);
     Some(Watched { module, targets })
 }
 
@@ -36,10 +38,10 @@ pub const TELLS: &str = "lamplight_tells";
 /// location 0 on. `None` without a fragment entry point, or if that has no inputs.
 pub fn told_inputs(module: &Module, entry: &str) -> Option<Watched> {
     let (mut module, index) = (module.clone(), find_entry(module, entry)?);
-    let mut body = Body::new(&mut module, index);
-    let components = body.inputs();
+    let mut body = entry_body(&mut module, index);
+    let components = body.input_words();
     let targets = components.len() as u32;
-    (targets > 0).then(|| body.finish(components, index))?;
+    (targets > 0).then(|| body.finish_entry(components, index))?;
     // No other declaration is left, so no writer changes the name.
     let mut told = module.entry_points.swap_remove(index);
     told.name = TELLS.to_owned();
@@ -53,9 +55,9 @@ pub fn told_inputs(module: &Module, entry: &str) -> Option<Watched> {
 pub fn bits_module(module: &Module, entry: &str, location: u32) -> Option<Module> {
     let (mut module, index) = (module.clone(), find_entry(module, entry)?);
     let inner = inner_function(&mut module, index)?;
-    let mut body = Body::new(&mut module, index);
+    let mut body = entry_body(&mut module, index);
     let colour = body.colour(inner, location)?;
-    body.finish(vec![colour], index);
+    body.finish_entry(vec![colour], index);
     Some(module)
 }
 
@@ -75,31 +77,24 @@ fn inner_function(module: &mut Module, index: usize) -> Option<Handle<Function>>
     Some(module.functions.append(function, Span::UNDEFINED))
 }
 
-/// A new body for an entry point.
-struct Body<'a> {
-    module: &'a mut Module,
-    function: Function,
+/// An empty body with the arguments of an entry point.
+fn entry_body(module: &mut Module, index: usize) -> Body<'_> {
+    let arguments = module.entry_points[index].function.arguments.clone();
+    Body { module, function: Function { arguments, ..Function::default() } }
 }
 
-type Value = Handle<Expression>;
-
-impl<'a> Body<'a> {
-    fn new(module: &'a mut Module, index: usize) -> Self {
-        let arguments = module.entry_points[index].function.arguments.clone();
-        Self { module, function: Function { arguments, ..Function::default() } }
-    }
-
-    fn arguments(&mut self) -> Vec<Value> {
+impl Body<'_> {
+    fn argument_values(&mut self) -> Vec<Value> {
         (0..self.function.arguments.len() as u32)
             .map(|index| self.add(Expression::FunctionArgument(index)))
             .collect()
     }
 
     /// The words of all arguments in groups of four. Words after the last argument are 0.
-    fn inputs(&mut self) -> Vec<Value> {
+    fn input_words(&mut self) -> Vec<Value> {
         let types: Vec<_> = self.function.arguments.iter().map(|argument| argument.ty).collect();
         let mut words = Vec::new();
-        for (value, ty) in self.arguments().into_iter().zip(types) {
+        for (value, ty) in self.argument_values().into_iter().zip(types) {
             self.flatten(value, ty, &mut words);
         }
         let zero = self.literal(0);
@@ -111,7 +106,7 @@ impl<'a> Body<'a> {
 
     /// The bits of what the function returns at a location.
     fn colour(&mut self, inner: Handle<Function>, location: u32) -> Option<Value> {
-        let arguments = self.arguments();
+        let arguments = self.argument_values();
         let ty = self.module.functions[inner].result.as_ref()?.ty;
         let member = match &self.module.types[ty].inner {
             TypeInner::Vector { size: VectorSize::Quad, .. } => None,
@@ -132,7 +127,7 @@ impl<'a> Body<'a> {
     }
 
     /// Returns one value of four words at each location.
-    fn finish(mut self, components: Vec<Value>, index: usize) {
+    fn finish_entry(mut self, components: Vec<Value>, index: usize) {
         let four = self.words();
         let location = |location: usize| Binding::Location {
             location: location as u32,
@@ -156,56 +151,8 @@ impl<'a> Body<'a> {
         entry.function = self.function;
     }
 
-    fn flatten(&mut self, value: Value, ty: Handle<Type>, words: &mut Vec<Value>) {
-        let parts: Vec<Handle<Type>> = match self.module.types[ty].inner.clone() {
-            TypeInner::Scalar(scalar) => {
-                let word = self.word(value, scalar.kind);
-                return words.push(word);
-            }
-            TypeInner::Vector { size, scalar } => {
-                vec![self.ty(TypeInner::Scalar(scalar)); size as usize]
-            }
-            TypeInner::Struct { members, .. } => members.iter().map(|member| member.ty).collect(),
-            _ => Vec::new(),
-        };
-        for (index, part) in parts.into_iter().enumerate() {
-            let component = self.add(Expression::AccessIndex { base: value, index: index as u32 });
-            self.flatten(component, part, words);
-        }
-    }
-
-    fn word(&mut self, value: Value, kind: ScalarKind) -> Value {
-        match kind {
-            ScalarKind::Uint => value,
-            ScalarKind::Bool => {
-                let (accept, reject) = (self.literal(1), self.literal(0));
-                self.add(Expression::Select { condition: value, accept, reject })
-            }
-            _ => self.add(Expression::As { expr: value, kind: ScalarKind::Uint, convert: None }),
-        }
-    }
-
     fn words(&mut self) -> Handle<Type> {
-        self.ty(TypeInner::Vector { size: VectorSize::Quad, scalar: Scalar::U32 })
-    }
-
-    fn ty(&mut self, inner: TypeInner) -> Handle<Type> {
-        self.module.types.insert(Type { name: None, inner }, Span::UNDEFINED)
-    }
-
-    fn literal(&mut self, value: u32) -> Value {
-        self.add(Expression::Literal(Literal::U32(value)))
-    }
-
-    fn add(&mut self, expression: Expression) -> Value {
-        let emitted = !expression.needs_pre_emit();
-        let value = self.function.expressions.append(expression, Span::UNDEFINED);
-        if emitted {
-            self.function
-                .body
-                .push(Statement::Emit(Range::new_from_bounds(value, value)), Span::UNDEFINED);
-        }
-        value
+        self.vector(VectorSize::Quad, ScalarKind::Uint)
     }
 }
 

@@ -18,10 +18,11 @@
 
 use std::f64::consts::PI;
 
-use super::integral::{MOST_CALLS, MOST_ROWS, gauss_legendre};
+use super::integral::{MOST_CALLS, MOST_ROWS};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::proof::cases::{Rows, Text, word_of};
 use crate::proof::formula::{Formula, Scope};
+use crate::quadrature::gauss_legendre;
 
 /// How an albedo is integrated, and what it must be.
 #[derive(Debug, Clone)]

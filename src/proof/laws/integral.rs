@@ -8,6 +8,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use crate::proof::cases::Rows;
+use crate::quadrature::gauss_legendre;
 
 /// The most calls of one law, over all its rows.
 pub const MOST_CALLS: usize = 1 << 17;
@@ -138,28 +139,4 @@ fn frame_around(z: [f64; 3]) -> [[f64; 3]; 3] {
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-/// Nodes and weights on [-1, 1]: the zeros of Legendre's polynomial, found by Newton's method.
-pub fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
-    let node = |index: usize| {
-        let mut x = (PI * (index as f64 + 0.75) / (count as f64 + 0.5)).cos();
-        for _ in 0..32 {
-            let (value, slope) = legendre(count, x);
-            x -= value / slope;
-        }
-        let (_, slope) = legendre(count, x);
-        (x, 2.0 / ((1.0 - x * x) * slope * slope))
-    };
-    (0..count).map(node).collect()
-}
-
-/// Legendre's polynomial of a degree and its derivative, by the three-term recurrence.
-fn legendre(degree: usize, x: f64) -> (f64, f64) {
-    let (mut before, mut value) = (1.0, x);
-    for n in 2..=degree {
-        let n = n as f64;
-        (before, value) = (value, ((2.0 * n - 1.0) * x * value - (n - 1.0) * before) / n);
-    }
-    (value, degree as f64 * (x * value - before) / (x * x - 1.0))
 }

@@ -5,8 +5,8 @@ use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
 
 use super::{
-    BEFORE, BLUE, GREEN, RED, WHITE, demand, drawn, glb, has_quarters, image, is_near, pixel,
-    square,
+    BEFORE, BLUE, GREEN, RED, WHITE, add_attribute, demand, drawn, glb, has_quarters, image,
+    is_near, pixel, square,
 };
 
 pub fn trials() -> Vec<Trial> {
@@ -131,18 +131,8 @@ fn repeated_in_cells() -> Result<(), Failed> {
 /// A document with a second set of coordinates, which turns the image by half a turn.
 fn with_second_set(images: &[Vec<u8>]) -> Result<(Value, Vec<u8>), Failed> {
     let (mut document, mut buffer) = square(images);
-    let start = buffer.len();
-    let turned = [[1.0_f32, 1.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0]];
-    buffer.extend(turned.iter().flatten().flat_map(|number| number.to_le_bytes()));
-    let views = document["bufferViews"].as_array_mut().ok_or("no views")?;
-    views.push(json!({ "buffer": 0, "byteOffset": start, "byteLength": 32 }));
-    let view = views.len() - 1;
-    let accessors = document["accessors"].as_array_mut().ok_or("no accessors")?;
-    accessors
-        .push(json!({ "bufferView": view, "componentType": 5126, "count": 4, "type": "VEC2" }));
-    let accessor = accessors.len() - 1;
-    document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = json!(accessor);
-    document["buffers"][0]["byteLength"] = json!(buffer.len());
+    let turned = [[1.0, 1.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0]];
+    add_attribute(&mut document, &mut buffer, "TEXCOORD_1", &turned)?;
     Ok((document, buffer))
 }
 

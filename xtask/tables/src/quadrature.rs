@@ -8,26 +8,8 @@ pub type Direction = [f64; 3];
 /// Nodes and weights of Gauss and Legendre on [low, high].
 pub fn gauss_legendre(count: usize, low: f64, high: f64) -> Vec<(f64, f64)> {
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-    let node = |index: usize| {
-        let mut x = (PI * (index as f64 + 0.75) / (count as f64 + 0.5)).cos();
-        for _ in 0..64 {
-            let (value, slope) = legendre(count, x);
-            x -= value / slope;
-        }
-        let (_, slope) = legendre(count, x);
-        (middle - half * x, half * 2.0 / ((1.0 - x * x) * slope * slope))
-    };
-    (0..count).map(node).collect()
-}
-
-/// Legendre's polynomial of a degree and its derivative, by the three-term recurrence.
-fn legendre(degree: usize, x: f64) -> (f64, f64) {
-    let (mut before, mut value) = (1.0, x);
-    for n in 2..=degree {
-        let n = n as f64;
-        (before, value) = (value, ((2.0 * n - 1.0) * x * value - (n - 1.0) * before) / n);
-    }
-    (value, degree as f64 * (x * value - before) / (x * x - 1.0))
+    let rule = lamplight::quadrature::gauss_legendre(count);
+    rule.into_iter().map(|(x, weight)| (middle - half * x, half * weight)).collect()
 }
 
 pub fn dot(a: Direction, b: Direction) -> f64 {

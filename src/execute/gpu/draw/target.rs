@@ -178,32 +178,8 @@ fn copy_to_buffer(
 
 /// A pipeline that reads the bits of a depth texture, and the layout of its bindings.
 fn depth_reader(device: &wgpu::Device) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline) {
-    let source = wgpu::ShaderSource::Wgsl(DEPTH.into());
-    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
-    let ty = wgpu::BindingType::Texture {
-        sample_type: wgpu::TextureSampleType::Float { filterable: false },
-        view_dimension: wgpu::TextureViewDimension::D2,
-        multisampled: false,
-    };
-    let entry = wgpu::BindGroupLayoutEntry {
-        binding: 0,
-        visibility: wgpu::ShaderStages::FRAGMENT,
-        ty,
-        count: None,
-    };
-    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: None,
-        entries: &[entry],
-    });
-    let pipeline = pipeline::draw_pipeline(
-        device,
-        &[&layout],
-        &module,
-        (&module, "read"),
-        Some(TARGET_FORMAT),
-        None,
-    );
-    (layout, pipeline)
+    let taken = wgpu::TextureSampleType::Float { filterable: false };
+    pipeline::texture_pipeline(device, (DEPTH, "read"), taken, Some(TARGET_FORMAT), None)
 }
 
 /// Draws the bits of a depth texture into a target of words.

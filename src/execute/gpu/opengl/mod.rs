@@ -86,8 +86,7 @@ impl OpenGl {
         count: u32,
     ) -> Result<Vec<u32>, Diagnostic> {
         self.runs = self.runs.wrapping_add(1);
-        let rows = (count * kernel.result_texels() + 2).div_ceil(TARGET_WIDTH);
-        let header = [count, rows * TARGET_WIDTH, self.runs, 0];
+        let (rows, header) = kernel.draw_header(count, self.runs);
         self.prepare(kernel)?;
         let kept =
             self.kept.get(&kernel.id).ok_or_else(|| gpu_failed("the kernel was not prepared"))?;

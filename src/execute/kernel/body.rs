@@ -1,12 +1,72 @@
-//! Converts values to words, and back.
+//! Writes the body of a function of naga's modules, and converts values to words and back.
 
-use naga::{BinaryOperator as Op, Expression, Handle, ScalarKind, Type, TypeInner, VectorSize};
+use naga::{
+    BinaryOperator as Op, Expression, Function, Handle, Literal, MathFunction, Module, Range,
+    Scalar, ScalarKind, Span, Statement, Type, TypeInner, VectorSize,
+};
 
-use super::{Body, Value};
+/// A value within the body.
+pub type Value = Handle<Expression>;
+
+/// The function that is being built, and the module that it is for.
+pub struct Body<'a> {
+    pub module: &'a mut Module,
+    pub function: Function,
+}
 
 impl Body<'_> {
+    /// Adds an expression, which is evaluated here if it needs to be.
+    pub fn add(&mut self, expression: Expression) -> Value {
+        let emitted = !expression.needs_pre_emit();
+        let value = self.function.expressions.append(expression, Span::UNDEFINED);
+        if emitted {
+            self.function
+                .body
+                .push(Statement::Emit(Range::new_from_bounds(value, value)), Span::UNDEFINED);
+        }
+        value
+    }
+
+    /// A type without a name.
+    pub fn ty(&mut self, inner: TypeInner) -> Handle<Type> {
+        self.module.types.insert(Type { name: None, inner }, Span::UNDEFINED)
+    }
+
+    pub fn scalar(&mut self, scalar: Scalar) -> Handle<Type> {
+        self.ty(TypeInner::Scalar(scalar))
+    }
+
+    pub fn vector(&mut self, size: VectorSize, kind: ScalarKind) -> Handle<Type> {
+        let width = if kind == ScalarKind::Bool { naga::BOOL_WIDTH } else { 4 };
+        self.ty(TypeInner::Vector { size, scalar: Scalar { kind, width } })
+    }
+
+    /// A literal of `u32`.
+    pub fn literal(&mut self, value: u32) -> Value {
+        self.add(Expression::Literal(Literal::U32(value)))
+    }
+
+    /// A component of a vector, a matrix, an array or a struct.
+    pub fn component(&mut self, base: Value, index: u32) -> Value {
+        self.add(Expression::AccessIndex { base, index })
+    }
+
+    pub fn binary(&mut self, op: Op, left: Value, right: Value) -> Value {
+        self.add(Expression::Binary { op, left, right })
+    }
+
+    /// A built-in function of two values.
+    pub fn math(&mut self, fun: MathFunction, left: Value, right: Value) -> Value {
+        self.add(Expression::Math { fun, arg: left, arg1: Some(right), arg2: None, arg3: None })
+    }
+
+    /// A value converted to 32 bits of a kind.
+    pub fn convert(&mut self, expr: Value, kind: ScalarKind) -> Value {
+        self.add(Expression::As { expr, kind, convert: Some(4) })
+    }
+
     /// A value of the type from words; `None` if the type does not consist of words.
-    pub(super) fn unflatten(
+    pub fn unflatten(
         &mut self,
         ty: Handle<Type>,
         words: &mut dyn Iterator<Item = Value>,
@@ -34,7 +94,7 @@ impl Body<'_> {
     }
 
     /// Appends the words of a value.
-    pub(super) fn flatten(&mut self, value: Value, ty: Handle<Type>, words: &mut Vec<Value>) {
+    pub fn flatten(&mut self, value: Value, ty: Handle<Type>, words: &mut Vec<Value>) {
         if let TypeInner::Scalar(scalar) = self.module.types[ty].inner {
             let word = self.as_word(value, scalar.kind);
             return words.push(word);
@@ -70,25 +130,4 @@ impl Body<'_> {
             _ => self.add(Expression::As { expr: value, kind: ScalarKind::Uint, convert: None }),
         }
     }
-
-    /// The four words of this pixel: those of part 0, unless `part` is another.
-    pub(super) fn choose(&mut self, words: &[Value], part: Value) -> Value {
-        let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
-        let zero = self.literal(0);
-        let mut chosen = self.add(Expression::Compose {
-            ty,
-            components: padded_words(words.get(..4).unwrap_or(words), zero),
-        });
-        for (index, four) in words.chunks(4).enumerate().skip(1) {
-            let accept = self.add(Expression::Compose { ty, components: padded_words(four, zero) });
-            let index = self.literal(index as u32);
-            let condition = self.binary(Op::Equal, part, index);
-            chosen = self.add(Expression::Select { condition, accept, reject: chosen });
-        }
-        chosen
-    }
-}
-
-fn padded_words(words: &[Value], zero: Value) -> Vec<Value> {
-    words.iter().copied().chain(std::iter::repeat(zero)).take(4).collect()
 }

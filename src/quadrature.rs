@@ -1,0 +1,27 @@
+//! The rule of Gauss and Legendre, which laws, scenes and tables integrate with.
+
+use std::f64::consts::PI;
+
+/// Nodes and weights on [-1, 1]: the zeros of Legendre's polynomial, found by Newton's method.
+pub fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
+    let node = |index: usize| {
+        let mut x = (PI * (index as f64 + 0.75) / (count as f64 + 0.5)).cos();
+        for _ in 0..64 {
+            let (value, slope) = legendre(count, x);
+            x -= value / slope;
+        }
+        let (_, slope) = legendre(count, x);
+        (x, 2.0 / ((1.0 - x * x) * slope * slope))
+    };
+    (0..count).map(node).collect()
+}
+
+/// Legendre's polynomial of a degree and its derivative, by the three-term recurrence.
+fn legendre(degree: usize, x: f64) -> (f64, f64) {
+    let (mut before, mut value) = (1.0, x);
+    for n in 2..=degree {
+        let n = n as f64;
+        (before, value) = (value, ((2.0 * n - 1.0) * x * value - (n - 1.0) * before) / n);
+    }
+    (value, degree as f64 * (x * value - before) / (x * x - 1.0))
+}
