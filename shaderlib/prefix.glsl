@@ -9,6 +9,7 @@
 #define LAMPLIGHT_PREFIXED
 
 #define Accum lamplight_Accum
+#define ComplexIor lamplight_ComplexIor
 #define LIGHT_DIRECTIONAL lamplight_LIGHT_DIRECTIONAL
 #define LIGHT_OFF lamplight_LIGHT_OFF
 #define LIGHT_POINT lamplight_LIGHT_POINT
@@ -54,6 +55,7 @@
 #define chebyshev(p0, p1, p2, p3) lamplight_chebyshev(p0, p1, p2, p3)
 #define cluster_index(p0, p1, p2, p3, p4) lamplight_cluster_index(p0, p1, p2, p3, p4)
 #define cluster_slice(p0, p1, p2, p3) lamplight_cluster_slice(p0, p1, p2, p3)
+#define coat_darkening(p0, p1, p2, p3) lamplight_coat_darkening(p0, p1, p2, p3)
 #define coat_f0(p0, p1) lamplight_coat_f0(p0, p1)
 #define coat_mix(p0, p1, p2, p3) lamplight_coat_mix(p0, p1, p2, p3)
 #define compare_tap(p0, p1, p2) lamplight_compare_tap(p0, p1, p2)
@@ -80,6 +82,8 @@
 #define decay_cutoff(p0, p1, p2) lamplight_decay_cutoff(p0, p1, p2)
 #define depth_view_igl(p0) lamplight_depth_view_igl(p0)
 #define dfg_approx(p0, p1) lamplight_dfg_approx(p0, p1)
+#define dfg_approx_karis(p0, p1) lamplight_dfg_approx_karis(p0, p1)
+#define dfg_approx_lazarov(p0, p1) lamplight_dfg_approx_lazarov(p0, p1)
 #define diffuse_transmission(p0, p1) lamplight_diffuse_transmission(p0, p1)
 #define diffusion_cdf(p0, p1) lamplight_diffusion_cdf(p0, p1)
 #define diffusion_profile(p0, p1) lamplight_diffusion_profile(p0, p1)
@@ -103,6 +107,7 @@
 #define evsm_warp(p0, p1) lamplight_evsm_warp(p0, p1)
 #define exposure(p0) lamplight_exposure(p0)
 #define f0_from_ior(p0) lamplight_f0_from_ior(p0)
+#define f_average_dielectric(p0) lamplight_f_average_dielectric(p0)
 #define f_average_schlick(p0, p1) lamplight_f_average_schlick(p0, p1)
 #define f_conductor(p0, p1, p2) lamplight_f_conductor(p0, p1, p2)
 #define f_conductor_channel(p0, p1, p2) lamplight_f_conductor_channel(p0, p1, p2)
@@ -111,6 +116,7 @@
 #define f_schlick_f82(p0, p1, p2) lamplight_f_schlick_f82(p0, p1, p2)
 #define face_normal(p0, p1, p2) lamplight_face_normal(p0, p1, p2)
 #define face_normal_area(p0, p1, p2) lamplight_face_normal_area(p0, p1, p2)
+#define fd_wrap(p0, p1) lamplight_fd_wrap(p0, p1)
 #define film_sensitivity(p0, p1) lamplight_film_sensitivity(p0, p1)
 #define flip_if_back(p0, p1) lamplight_flip_if_back(p0, p1)
 #define fog_droplet(p0, p1) lamplight_fog_droplet(p0, p1)
@@ -144,6 +150,7 @@
 #define interleaved_gradient_noise(p0) lamplight_interleaved_gradient_noise(p0)
 #define inverse3(p0) lamplight_inverse3(p0)
 #define inverse_square(p0, p1) lamplight_inverse_square(p0, p1)
+#define ior_artistic(p0, p1) lamplight_ior_artistic(p0, p1)
 #define ior_from_f0(p0) lamplight_ior_from_f0(p0)
 #define iridescence(p0, p1, p2, p3, p4) lamplight_iridescence(p0, p1, p2, p3, p4)
 #define is_nan_bits(p0) lamplight_is_nan_bits(p0)
@@ -164,6 +171,7 @@
 #define material_index_oglpg(p0, p1) lamplight_material_index_oglpg(p0, p1)
 #define mean_blocker(p0, p1, p2, p3) lamplight_mean_blocker(p0, p1, p2, p3)
 #define micro_shadow(p0, p1) lamplight_micro_shadow(p0, p1)
+#define ms_lobe(p0, p1, p2, p3) lamplight_ms_lobe(p0, p1, p2, p3)
 #define msm_dequantise(p0) lamplight_msm_dequantise(p0)
 #define msm_moments(p0) lamplight_msm_moments(p0)
 #define msm_quantise(p0) lamplight_msm_quantise(p0)
@@ -280,6 +288,7 @@
 #undef LAMPLIGHT_PREFIXED
 
 #undef Accum
+#undef ComplexIor
 #undef LIGHT_DIRECTIONAL
 #undef LIGHT_OFF
 #undef LIGHT_POINT
@@ -325,6 +334,7 @@
 #undef chebyshev
 #undef cluster_index
 #undef cluster_slice
+#undef coat_darkening
 #undef coat_f0
 #undef coat_mix
 #undef compare_tap
@@ -351,6 +361,8 @@
 #undef decay_cutoff
 #undef depth_view_igl
 #undef dfg_approx
+#undef dfg_approx_karis
+#undef dfg_approx_lazarov
 #undef diffuse_transmission
 #undef diffusion_cdf
 #undef diffusion_profile
@@ -374,6 +386,7 @@
 #undef evsm_warp
 #undef exposure
 #undef f0_from_ior
+#undef f_average_dielectric
 #undef f_average_schlick
 #undef f_conductor
 #undef f_conductor_channel
@@ -382,6 +395,7 @@
 #undef f_schlick_f82
 #undef face_normal
 #undef face_normal_area
+#undef fd_wrap
 #undef film_sensitivity
 #undef flip_if_back
 #undef fog_droplet
@@ -415,6 +429,7 @@
 #undef interleaved_gradient_noise
 #undef inverse3
 #undef inverse_square
+#undef ior_artistic
 #undef ior_from_f0
 #undef iridescence
 #undef is_nan_bits
@@ -435,6 +450,7 @@
 #undef material_index_oglpg
 #undef mean_blocker
 #undef micro_shadow
+#undef ms_lobe
 #undef msm_dequantise
 #undef msm_moments
 #undef msm_quantise

@@ -3,6 +3,8 @@
 #ifndef LAMPLIGHT_BRDF_COAT_GLSL
 #define LAMPLIGHT_BRDF_COAT_GLSL
 
+#include "fresnel.glsl"
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif
@@ -31,6 +33,22 @@ vec3 coat_f0(vec3 f0, float ior) {
     float n = max(ior, 0.0);
     vec3 r = (vec3(1.0) + s - n * (vec3(1.0) - s)) / (vec3(1.0) + s + n * (vec3(1.0) - s));
     return r * r;
+}
+
+/// The factor by which a coat darkens and saturates the base: light that the base reflects may be reflected back to it from within the coat.
+///
+/// Parameters: `eb` linear albedo of the base without a coat, [0, 1]; `eta` index of refraction of the coat over that of the air, from 1 on; `rb` perceptual roughness of the base, [0, 1]: how evenly its light is spread; `f` reflectance of the coat for the angle of the view, [0, 1].
+/// Returns: `(1 - K)/(1 - eb*K)`, [0, 1], with `K = mix(f, 1 - (1 - E)/eta^2, rb)` and `E` the average reflectance of the coat from above.
+/// Source: Academy Software Foundation, OpenPBR Surface 1.1, 2024, "Coat darkening".
+/// Edges: 1 for a white base and for a coat that reflects nothing; parameters outside their ranges are clamped to them; what `1 - K` is at least, 0.0001, keeps a white base white below a coat that reflects everything.
+/// Error model: relative 2^-20.
+vec3 coat_darkening(vec3 eb, float eta, float rb, float f) {
+    float n = clamp(eta, 1.0, 100.0);
+    float diffuse = (1.0 - f_average_dielectric(n)) / (n * n);
+    // 1 - K, which is what leaves the coat at each of its bounces.
+    float leaving = max(mix(1.0 - clamp(f, 0.0, 1.0), diffuse, clamp(rb, 0.0, 1.0)), 1e-4);
+    vec3 absorbed = 1.0 - clamp(eb, vec3(0.0), vec3(1.0));
+    return leaving / (leaving + (1.0 - leaving) * absorbed);
 }
 
 #ifdef LAMPLIGHT_PREFIX

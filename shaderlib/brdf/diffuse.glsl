@@ -159,6 +159,19 @@ float diffuse_transmission(float nl, float w) {
     return (max(nl, 0.0) * (1.0 - share) + max(-nl, 0.0) * share) * 0.31830989;
 }
 
+/// Lambert's cosine wrapped around the terminator, with as much light as without.
+///
+/// Parameters: `nl` cosine n.l, [-1, 1]; `w` wrap, [0, 1]: 0 is Lambert, 1 reaches the far side.
+/// Returns: `saturate((nl + w)/(1 + w)^2)`, [0, 1]: its integral over the sphere is pi for every wrap.
+/// Source: McAuley, "Energy-Conserving Wrapped Diffuse", 2011; Guy, Agopian, "Physically Based Rendering in Filament", section 4.10.
+/// Edges: 0 where the light is farther behind than the wrap reaches; a negative `w` counts as 0.
+/// Error model: absolute 4*2^-23.
+float fd_wrap(float nl, float w) {
+    float amount = max(w, 0.0);
+    float over = 1.0 + amount;
+    return clamp((nl + amount) / (over * over), 0.0, 1.0);
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

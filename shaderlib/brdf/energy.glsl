@@ -69,6 +69,54 @@ SplitSum split_sum_multi(vec3 f0, vec3 ks, vec2 dfg) {
     return SplitSum(single, single * average * lost / (vec3(1.0) - average * lost));
 }
 
+/// The lobe of the light that facets reflect several times, which a single-scattering lobe leaves out.
+///
+/// Parameters: `eo`, `ei` albedo of the white single-scattering lobe towards the viewer and the light, [0, 1]; `eavg` its average over the hemisphere, weighted by the cosine, [0, 1]; `favg` linear average of the Fresnel term, [0, 1].
+/// Returns: `(1 - eo)*(1 - ei)/(pi*(1 - eavg))*favg^2*eavg/(1 - favg*(1 - eavg))`, 1/sr, at least 0; the caller multiplies by `nl`.
+/// Source: Kulla, Conty, "Revisiting Physically Based Shading at Imageworks", 2017. Texts with one factor `favg` count the first reflection too.
+/// Edges: 0 where the lobe loses nothing; an `eavg` outside [0.05, 0.9999] and other parameters outside [0, 1] are clamped to it.
+/// Error model: relative 2^-20, absolute 2^-20 over `1 - eavg`.
+vec3 ms_lobe(float eo, float ei, float eavg, vec3 favg) {
+    float kept = clamp(eavg, 0.05, 0.9999);
+    float lost = 1.0 - kept;
+    vec3 f = clamp(favg, vec3(0.0), vec3(1.0));
+    float shape = (1.0 - clamp(eo, 0.0, 1.0)) * (1.0 - clamp(ei, 0.0, 1.0)) * 0.31830989 / lost;
+    return shape * (f * f * kept / (1.0 - f * lost));
+}
+
+/// The directional albedo of GGX by the fit that mobile versions of Unreal use.
+///
+/// Parameters: `nv` cosine n.v, [0, 1]; `roughness` perceptual, [0, 1].
+/// Returns: `(scale, offset)` as `dfg_approx`; an offset of a smooth surface may be 0.04 below 0.
+/// Source: Karis, "Physically Based Shading on Mobile", 2014, after Lazarov. Its geometry term is not the height-correlated one.
+/// Edges: parameters outside [0, 1] are clamped to it.
+/// Error model: absolute 2^-20; both numbers are within 0.2 of those of the height-correlated lobe for roughness from 0.3 to 0.7 and cosines from 0.2 on.
+vec2 dfg_approx_karis(float nv, float roughness) {
+    float r = clamp(roughness, 0.0, 1.0);
+    vec4 q = r * vec4(-1.0, -0.0275, -0.572, 0.022) + vec4(1.0, 0.0425, 1.04, -0.04);
+    float a = min(q.x * q.x, exp2(-9.28 * clamp(nv, 0.0, 1.0))) * q.x + q.y;
+    return vec2(-1.04, 1.04) * a + q.zw;
+}
+
+/// The directional albedo of GGX by a polynomial over glossiness.
+///
+/// Engines give it `1 - roughness`, as here, although the lobe that it fits best has an alpha of `roughness^4`: a surface seems smoother than it is, by up to 0.26 of the albedo.
+///
+/// Parameters: `nv` cosine n.v, [0, 1]; `roughness` perceptual, [0, 1].
+/// Returns: `(scale, offset)` as `dfg_approx`; the offset is in [0, 1], and so is the sum of both, but for rounding.
+/// Source: Lazarov, "Getting More Physical in Call of Duty: Black Ops II", 2013, in the form for glossiness `1 - roughness` of Knarkowicz, "Analytical DFG Term for IBL", 2014. Its geometry term is not the height-correlated one.
+/// Edges: parameters outside [0, 1] are clamped to it.
+/// Error model: absolute 2^-19; for the square root of the roughness in its place, both numbers are within 0.09 of those of the height-correlated lobe for roughness from 0.16 to 0.72 and cosines from 0.2 on.
+vec2 dfg_approx_lazarov(float nv, float roughness) {
+    float y = clamp(nv, 0.0, 1.0);
+    float g = 1.0 - clamp(roughness, 0.0, 1.0);
+    float smooth_side = g * (1.895 * g - 0.1688);
+    float rough_side = 0.9903 + y * (-4.853 + y * (8.404 - 5.069 * y));
+    float bias = clamp(min(smooth_side, rough_side), 0.0, 1.0);
+    float total = 0.6045 + g * (1.699 + g * (2.661 * g - 3.603)) + y * (0.1939 * y - 0.5228 + 1.404 * g);
+    return vec2(clamp(total, 0.0, 1.0) - bias, bias);
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

@@ -1,9 +1,18 @@
-//! Sources: Khronos Group, KHR_materials_clearcoat, 2020; Fresnel's equation at normal incidence.
+//! Sources: Khronos Group, KHR_materials_clearcoat, 2020; Fresnel's equation at normal incidence;
+//! Academy Software Foundation, OpenPBR Surface 1.1, 2024.
 
+use super::brdf_fresnel::average;
 use super::{Arguments, Entry, Expected};
+use glam::DVec3;
 
-pub const REFERENCES: Entry =
-    Entry { module: "brdf::coat", functions: &[("coat_mix", coat_mix), ("coat_f0", coat_f0)] };
+pub const REFERENCES: Entry = Entry {
+    module: "brdf::coat",
+    functions: &[
+        ("coat_mix", coat_mix),
+        ("coat_f0", coat_f0),
+        ("coat_darkening", coat_darkening),
+    ],
+};
 
 fn coat_mix(a: &mut Arguments<'_>) -> Expected {
     let (base, coat, share) = (a.vec3(), a.vec3(), (a.f64() * a.f64()).clamp(0.0, 1.0));
@@ -20,4 +29,13 @@ fn coat_f0(a: &mut Arguments<'_>) -> Expected {
         if base.is_finite() { ((base - ior) / (base + ior)).powi(2) } else { 1.0 }
     };
     Expected::words(f0.to_array().map(one))
+}
+
+/// (1 - K)/(1 - Eb*K): the sum of all bounces below the coat.
+fn coat_darkening(a: &mut Arguments<'_>) -> Expected {
+    let (base, eta) = (a.vec3().clamp(DVec3::ZERO, DVec3::ONE), a.f64().clamp(1.0, 100.0));
+    let (rough, seen) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));
+    let diffuse = 1.0 - (1.0 - average(eta)) / (eta * eta);
+    let k = (seen + (diffuse - seen) * rough).min(1.0 - f64::from(1e-4f32));
+    base.map(|base| (1.0 - k) / (1.0 - base * k)).into()
 }

@@ -1,7 +1,7 @@
 //! Sources: Lambert, "Photometria", 1760; Valve's half Lambert; Green, GPU Gems, 2004, chapter 16
 //! (wrap); Oren and Nayar, 1994 (qualitative model); Burley, 2012, section 5.3; Portsmouth, Kutz and
 //! Hill, 2025 (EON); Hill's fit in MaterialX, 2021; Khronos Group,
-//! KHR_materials_diffuse_transmission, 2024.
+//! KHR_materials_diffuse_transmission, 2024; McAuley, 2011 (energy of a wrap).
 
 use super::{Arguments, Entry, Expected};
 use glam::DVec3;
@@ -20,6 +20,7 @@ pub const REFERENCES: Entry = Entry {
         ("eon", eon),
         ("burley_albedo", burley_albedo),
         ("diffuse_transmission", diffuse_transmission),
+        ("fd_wrap", |a| fd_wrap(a.f64(), a.f64().max(0.0)).into()),
     ],
 };
 
@@ -103,4 +104,9 @@ fn burley_albedo(a: &mut Arguments<'_>) -> Expected {
 fn diffuse_transmission(a: &mut Arguments<'_>) -> Expected {
     let (nl, share) = (a.f64(), a.f64().clamp(0.0, 1.0));
     (((1.0 - share) * nl.max(0.0) + share * (-nl).max(0.0)) * FRAC_1_PI).into()
+}
+
+/// A wrapped cosine over what it adds to the integral.
+fn fd_wrap(nl: f64, w: f64) -> f64 {
+    ((nl + w) / (1.0 + w).powi(2)).clamp(0.0, 1.0)
 }

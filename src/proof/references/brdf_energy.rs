@@ -1,5 +1,5 @@
 //! Sources: this library's fit, whose coefficients are repeated; Turquin, 2019, equation 16;
-//! Fdez-Agüera, 2019.
+//! Fdez-Agüera, 2019; Kulla and Conty, 2017; Karis, 2014; Lazarov, 2013, as Knarkowicz has it.
 
 use super::{Arguments, Entry, Expected};
 use glam::DVec3;
@@ -10,6 +10,9 @@ pub const REFERENCES: Entry = Entry {
         ("dfg_approx", dfg_approx),
         ("energy_compensation", energy_compensation),
         ("split_sum_multi", split_sum_multi),
+        ("ms_lobe", ms_lobe),
+        ("dfg_approx_karis", |a| karis(a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0))),
+        ("dfg_approx_lazarov", |a| lazarov(a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0))),
     ],
 };
 
@@ -71,4 +74,40 @@ fn split_sum_multi(a: &mut Arguments<'_>) -> Expected {
     let series = |a: f64| (1..2000).map(|n| (a * lost).powi(n)).sum::<f64>();
     let multiple = single * DVec3::new(series(average.x), series(average.y), series(average.z));
     Expected::words(single.to_array().into_iter().chain(multiple.to_array()))
+}
+
+/// What is left of light that is lost at once, then kept in part and lost in part at each bounce.
+fn ms_lobe(a: &mut Arguments<'_>) -> Expected {
+    let (eo, ei) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));
+    let kept = a.f64().clamp(f64::from(0.05f32), f64::from(0.9999f32));
+    let white = (1.0 - eo) * (1.0 - ei) / (std::f64::consts::PI * (1.0 - kept));
+    let one = |f: f64| {
+        let bounces = (0..2000).map(|bounce| (f * (1.0 - kept)).powi(bounce)).sum::<f64>();
+        white * f * f * kept * bounces
+    };
+    a.vec3().clamp(DVec3::ZERO, DVec3::ONE).map(one).into()
+}
+
+fn karis(nv: f64, r: f64) -> Expected {
+    let (c0, c1) = ([-1.0, -0.0275, -0.572, 0.022], [1.0, 0.0425, 1.04, -0.04]);
+    let q: Vec<f64> = c0.iter().zip(c1).map(|(slope, start)| r * slope + start).collect();
+    let a = (q[0] * q[0]).min((-9.28 * nv).exp2()) * q[0] + q[1];
+    Expected::words([-1.04 * a + q[2], 1.04 * a + q[3]])
+}
+
+fn lazarov(y: f64, r: f64) -> Expected {
+    let g = 1.0 - r;
+    let smooth = polynomial(y, g, &[(-0.1688, 0, 1), (1.895, 0, 2)]);
+    let rough = polynomial(y, g, &[(0.9903, 0, 0), (-4.853, 1, 0), (8.404, 2, 0), (-5.069, 3, 0)]);
+    let bias = smooth.min(rough).clamp(0.0, 1.0);
+    let total = [
+        (0.6045, 0, 0),
+        (1.699, 0, 1),
+        (-0.5228, 1, 0),
+        (-3.603, 0, 2),
+        (1.404, 1, 1),
+        (0.1939, 2, 0),
+        (2.661, 0, 3),
+    ];
+    Expected::words([polynomial(y, g, &total).clamp(0.0, 1.0) - bias, bias])
 }

@@ -1,5 +1,6 @@
 //! Sources: Fresnel's equations, for a real and for a complex index (Born, Wolf, Principles of
-//! Optics, sections 1.5 and 14.2); Kutz, Hašan, Edmondson, 2021; Jakob et al., 2014.
+//! Optics, sections 1.5 and 14.2); Kutz, Hašan, Edmondson, 2021; Jakob et al., 2014; this library's
+//! fit of the average; Duntley, 1942; Gulbrandsen, 2014.
 
 use super::{Arguments, Entry, Expected};
 use glam::{DVec2, DVec3};
@@ -14,6 +15,8 @@ pub const REFERENCES: Entry = Entry {
         ("f_conductor_channel", |a| conductor(a.f64(), a.f64(), a.f64()).into()),
         ("f_schlick_f82", f_schlick_f82),
         ("f_average_schlick", f_average_schlick),
+        ("f_average_dielectric", |a| average(a.f64()).into()),
+        ("ior_artistic", ior_artistic),
     ],
 };
 
@@ -83,4 +86,32 @@ fn f_schlick_f82(a: &mut Arguments<'_>) -> Expected {
 fn f_average_schlick(a: &mut Arguments<'_>) -> Expected {
     let (f0, f90) = (a.vec3(), a.vec3());
     (f0 + (f90 - f0) / 21.0).into()
+}
+
+/// The fit, in the Fresnel amplitude at normal incidence; from the denser side by reciprocity: as much
+/// light enters as leaves, spread over n^2 of the solid angle.
+pub fn average(eta: f64) -> f64 {
+    let eta = eta.clamp(0.0, 1e6);
+    let amplitude = ((eta - 1.0) / (eta + 1.0)).abs();
+    let sum = |terms: [f64; 4]| {
+        terms.iter().zip(0..).map(|(term, power)| term * amplitude.powi(power)).sum::<f64>()
+    };
+    let over = amplitude * sum([0.630748, 1.559664, 0.58983, -2.30022]);
+    let inside = (over / sum([1.0, 7.526047, -11.661933, 3.615908])).clamp(0.0, 1.0);
+    if eta < 1.0 { 1.0 - eta * eta * (1.0 - inside) } else { inside }
+}
+
+/// k from the reflectance at normal incidence, r*((n + 1)^2 + k^2) = (n - 1)^2 + k^2.
+fn ior_artistic(a: &mut Arguments<'_>) -> Expected {
+    let (r, g) = (a.vec3(), a.vec3().clamp(DVec3::ZERO, DVec3::ONE));
+    let r = r.clamp(DVec3::ZERO, DVec3::splat(f64::from(0.999f32)));
+    let one = |r: f64, g: f64| {
+        let most = (1.0 + r.sqrt()) / (1.0 - r.sqrt());
+        let n = most + ((1.0 - r) / (1.0 + r) - most) * g;
+        let k2 = (r * (n + 1.0).powi(2) - (n - 1.0).powi(2)) / (1.0 - r);
+        let ends = r == 0.0 || g == 0.0;
+        (n, if ends { 0.0 } else { k2.max(0.0).sqrt() })
+    };
+    let ends = [one(r.x, g.x), one(r.y, g.y), one(r.z, g.z)];
+    Expected::words(ends.map(|end| end.0).into_iter().chain(ends.map(|end| end.1)))
 }
