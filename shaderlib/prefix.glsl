@@ -23,7 +23,9 @@
 #define accumulate(p0, p1, p2, p3, p4, p5, p6, p7) lamplight_accumulate(p0, p1, p2, p3, p4, p5, p6, p7)
 #define aces_hill(p0) lamplight_aces_hill(p0)
 #define agx(p0) lamplight_agx(p0)
+#define agx_blender(p0) lamplight_agx_blender(p0)
 #define agx_curve(p0) lamplight_agx_curve(p0)
+#define agx_curve_blender(p0) lamplight_agx_curve_blender(p0)
 #define alpha_aniso(p0, p1) lamplight_alpha_aniso(p0, p1)
 #define alpha_aniso_disney(p0, p1) lamplight_alpha_aniso_disney(p0, p1)
 #define alpha_aniso_filament(p0, p1) lamplight_alpha_aniso_filament(p0, p1)
@@ -127,6 +129,8 @@
 #define fog_transmittance(p0) lamplight_fog_transmittance(p0)
 #define gaussian21(p0) lamplight_gaussian21(p0)
 #define geomerics_channel(p0, p1, p2) lamplight_geomerics_channel(p0, p1, p2)
+#define gt7(p0) lamplight_gt7(p0)
+#define gt7_curve(p0) lamplight_gt7_curve(p0)
 #define gtao_arc(p0, p1) lamplight_gtao_arc(p0, p1)
 #define hable(p0) lamplight_hable(p0)
 #define hable_channel(p0) lamplight_hable_channel(p0)
@@ -141,6 +145,7 @@
 #define hlg_from_linear(p0) lamplight_hlg_from_linear(p0)
 #define horizon_occlusion(p0, p1, p2) lamplight_horizon_occlusion(p0, p1, p2)
 #define ibl_mix(p0, p1, p2, p3, p4) lamplight_ibl_mix(p0, p1, p2, p3, p4)
+#define ictcp_from_nits(p0) lamplight_ictcp_from_nits(p0)
 #define ies_u(p0) lamplight_ies_u(p0)
 #define ies_uv(p0, p1, p2) lamplight_ies_uv(p0, p1, p2)
 #define ign_time(p0, p1) lamplight_ign_time(p0, p1)
@@ -181,6 +186,7 @@
 #define nearest_tube(p0, p1, p2, p3) lamplight_nearest_tube(p0, p1, p2, p3)
 #define neutral(p0) lamplight_neutral(p0)
 #define neutral_inverse(p0) lamplight_neutral_inverse(p0)
+#define nits_from_ictcp(p0) lamplight_nits_from_ictcp(p0)
 #define nits_from_pq(p0) lamplight_nits_from_pq(p0)
 #define normal_matrix(p0) lamplight_normal_matrix(p0)
 #define normal_offset(p0, p1, p2, p3, p4) lamplight_normal_offset(p0, p1, p2, p3, p4)
@@ -302,7 +308,9 @@
 #undef accumulate
 #undef aces_hill
 #undef agx
+#undef agx_blender
 #undef agx_curve
+#undef agx_curve_blender
 #undef alpha_aniso
 #undef alpha_aniso_disney
 #undef alpha_aniso_filament
@@ -406,6 +414,8 @@
 #undef fog_transmittance
 #undef gaussian21
 #undef geomerics_channel
+#undef gt7
+#undef gt7_curve
 #undef gtao_arc
 #undef hable
 #undef hable_channel
@@ -420,6 +430,7 @@
 #undef hlg_from_linear
 #undef horizon_occlusion
 #undef ibl_mix
+#undef ictcp_from_nits
 #undef ies_u
 #undef ies_uv
 #undef ign_time
@@ -460,6 +471,7 @@
 #undef nearest_tube
 #undef neutral
 #undef neutral_inverse
+#undef nits_from_ictcp
 #undef nits_from_pq
 #undef normal_matrix
 #undef normal_offset

@@ -6,6 +6,7 @@
 #define LAMPLIGHT_COLOR_TONEMAP_GLSL
 
 #include "../math/safe.glsl"
+#include "transfer.glsl"
 
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
@@ -188,6 +189,94 @@ float uchimura_channel(float x) {
 /// Error model: absolute 2^-20.
 vec3 uchimura(vec3 c) {
     return vec3(uchimura_channel(c.x), uchimura_channel(c.y), uchimura_channel(c.z));
+}
+
+/// The tone curve of AgX as Blender has it: a line through middle grey with a softer toe and shoulder.
+///
+/// Parameters: `x` binary logarithm of the light, scaled so that 16.5 stops fill [0, 1] and middle grey is at 20/33.
+/// Returns: from 0 to 1 but for rounding, to be raised to the power 2.4: `0.18^(1/2.4)` for middle grey, where its slope is 2.4.
+/// Source: Chow, the AgX of Blender 4, 2023: sigmoids of the power 1.5 that reach the corners, in closed form.
+/// Edges: `x` outside [0, 1] is clamped.
+/// Error model: absolute 2^-19.
+float agx_curve_blender(float x) {
+    float d = clamp(x, 0.0, 1.0) - 0.60606061;
+    if (d < 0.0) {
+        float u = -4.2427143 * d;
+        return 0.48943709 - 0.56567561 * u / pow(1.0 + u * sqrt(u), 0.66666667);
+    }
+    float w = 3.3557127 * d;
+    return 0.48943709 + 0.71519829 * w / pow(1.0 + w * sqrt(w), 0.66666667);
+}
+
+/// The AgX view transform of Blender: less contrast than `agx`, and hues that turn less as they become brighter.
+///
+/// Parameters: `c` linear colour, Rec. 709, at least 0, with middle grey at 0.18, which stays there.
+/// Returns: linear colour, Rec. 709, [0, 1].
+/// Source: Chow, the AgX of Blender 4, 2023, with its matrices over Rec. 2020; of the hue's turn by the curve, 40 % are kept. Colours that leave Rec. 709 are clamped instead of being compensated for luminance.
+/// Edges: as `agx`.
+/// Error model: absolute 2^-16.
+vec3 agx_blender(vec3 c) {
+    vec3 inset = mat3(
+        vec3(0.54481475, 0.14041695, 0.08881042),
+        vec3(0.3737874, 0.75413755, 0.17887176),
+        vec3(0.081397855, 0.1054455, 0.73231782)
+    ) * max(c, vec3(0.0));
+    vec3 stops = (log2(max(inset, vec3(1e-10))) + 12.47393) / 16.499999;
+    vec3 toned = vec3(agx_curve_blender(stops.x), agx_curve_blender(stops.y), agx_curve_blender(stops.z));
+    vec3 shown = vec3(safe_pow(toned.x, 2.4), safe_pow(toned.y, 2.4), safe_pow(toned.z, 2.4));
+    // The curve keeps the order of channels, so their place between the least and the largest is the hue.
+    float least = min(min(inset.x, inset.y), inset.z);
+    float span = max(max(max(inset.x, inset.y), inset.z) - least, 1e-30);
+    float dark = min(min(shown.x, shown.y), shown.z);
+    float bright = max(max(shown.x, shown.y), shown.z);
+    vec3 hue = dark + (bright - dark) * ((inset - least) / span);
+    vec3 narrow = mat3(
+        vec3(1.9648874, -0.29931336, -0.16435274),
+        vec3(-0.8559885, 1.326398, -0.23818397),
+        vec3(-0.10889892, -0.0270846, 1.4025367)
+    ) * (0.6 * hue + 0.4 * shown);
+    return clamp(narrow, vec3(0.0), vec3(1.0));
+}
+
+/// The tone curve of Gran Turismo 7 for a white of 250 candelas per square metre, one channel.
+///
+/// Parameters: `x` linear light, at least 0: 1 is 100 candelas per square metre.
+/// Returns: a number from 0 to 2.96, of which a display shows up to 2.5: a toe below 0.538, a line up to 1.11, a shoulder above.
+/// Source: Polyphony Digital, "Driving Toward Reality: Physically Based Tone Mapping and Perceptual Fidelity in Gran Turismo 7", SIGGRAPH, 2025, with its example code: alpha 0.25, grey 0.538, line up to 0.444 of the white, toe 1.28.
+/// Edges: light below 0 counts as 0.
+/// Error model: absolute 2^-19.
+float gt7_curve(float x) {
+    float toe = 0.538 * safe_pow(x / 0.538, 1.28);
+    float shoulder = 2.9633333 - 3.3733512 * exp(-0.53956835 * x);
+    return x >= 1.11 ? shoulder : mix(toe, x, smoothstep(0.0, 0.538, x));
+}
+
+/// The tone mapping of Gran Turismo 7: a curve by channel, mixed with one of intensity that keeps hues.
+///
+/// Parameters: `c` linear colour, Rec. 709, at least 0: 1 is 100 candelas per square metre.
+/// Returns: linear colour, Rec. 709, [0, 1]: 1 is 250 candelas per square metre.
+/// Source: Polyphony Digital, "Driving Toward Reality: Physically Based Tone Mapping and Perceptual Fidelity in Gran Turismo 7", SIGGRAPH, 2025, with its example code for displays of the usual range, which computes in Rec. 2020: 60 % by intensity, whose colours fade from 0.98 to 1.16 of the white's.
+/// Edges: channels below 0 count as 0, above 1e6 as that.
+/// Error model: absolute 2^-11, from the perceptual quantiser and back.
+vec3 gt7(vec3 c) {
+    vec3 wide = mat3(
+        vec3(0.6274039, 0.069097288, 0.016391439),
+        vec3(0.32928303, 0.9195404, 0.08801331),
+        vec3(0.043313067, 0.011362316, 0.89559525)
+    ) * clamp(c, vec3(0.0), vec3(1e6));
+    vec3 curved = vec3(gt7_curve(wide.x), gt7_curve(wide.y), gt7_curve(wide.z));
+    vec3 before = ictcp_from_nits(100.0 * wide);
+    vec3 after = ictcp_from_nits(100.0 * curved);
+    // Bright colours fade to white. 0.6026 is the intensity of white.
+    float kept = 1.0 - smoothstep(0.98, 1.16, before.x * 1.6595881);
+    vec3 even = nits_from_ictcp(vec3(after.x, before.yz * kept)) * 0.01;
+    vec3 shown = min(0.4 * curved + 0.6 * even, vec3(2.5)) * 0.4;
+    vec3 narrow = mat3(
+        vec3(1.660491, -0.12455047, -0.018150763),
+        vec3(-0.58764114, 1.1328999, -0.1005789),
+        vec3(-0.072849864, -0.0083494221, 1.1187297)
+    ) * shown;
+    return clamp(narrow, vec3(0.0), vec3(1.0));
 }
 
 #ifdef LAMPLIGHT_PREFIX

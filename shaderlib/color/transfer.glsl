@@ -186,6 +186,44 @@ vec3 dither(vec3 c, float noise, float steps) {
     return clamp(c + (noise - 0.5) / max(steps, 1.0), vec3(0.0), vec3(1.0));
 }
 
+/// A colour as intensity and two differences, which hold hue and saturation apart from brightness.
+///
+/// Parameters: `c` linear colour, Rec. 2020, candelas per square metre, [0, 10000].
+/// Returns: `(I, Ct, Cp)`: the intensity is in [0, 1], 0.508 for 100, and both differences are 0 for greys, and within [-0.9, 0.9].
+/// Source: ITU-R BT.2100-2, table 7, for the perceptual quantiser.
+/// Edges: as for `pq_from_nits`, of the mixtures of the channels.
+/// Error model: absolute 2^-12, from `pq_from_nits`.
+vec3 ictcp_from_nits(vec3 c) {
+    vec3 lms = mat3(
+        vec3(0.41210938, 0.16674805, 0.024169922),
+        vec3(0.52392578, 0.72045898, 0.075439453),
+        vec3(0.063964844, 0.11279297, 0.90039062)
+    ) * c;
+    float l = pq_from_nits(lms.x);
+    float m = pq_from_nits(lms.y);
+    float s = pq_from_nits(lms.z);
+    return vec3(0.5 * (l + m), 1.6137695 * l - 3.3234863 * m + 1.7097168 * s, 4.3781738 * l - 4.2456055 * m - 0.13256836 * s);
+}
+
+/// The linear colour from intensity and two differences.
+///
+/// Parameters: `c` `(I, Ct, Cp)` as from `ictcp_from_nits`.
+/// Returns: linear colour, Rec. 2020, candelas per square metre, at least 0.
+/// Source: ITU-R BT.2100-2, table 7, backwards.
+/// Edges: as for `nits_from_pq`; channels below 0, outside Rec. 2020, are 0.
+/// Error model: absolute 2^-8 of the largest response of the eye, from `nits_from_pq`.
+vec3 nits_from_ictcp(vec3 c) {
+    float l = nits_from_pq(c.x + 0.008609037 * c.y + 0.11102963 * c.z);
+    float m = nits_from_pq(c.x - 0.008609037 * c.y - 0.11102963 * c.z);
+    float s = nits_from_pq(c.x + 0.56003134 * c.y - 0.32062717 * c.z);
+    vec3 rgb = mat3(
+        vec3(3.4366067, -0.79132956, -0.0259499),
+        vec3(-2.5064521, 1.9836005, -0.098913715),
+        vec3(0.069845424, -0.1922709, 1.1248636)
+    ) * vec3(l, m, s);
+    return max(rgb, vec3(0.0));
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

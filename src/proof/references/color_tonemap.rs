@@ -1,6 +1,8 @@
 //! Sources: Sobotka, AgX, 2022, with the matrices of Blender 4; Khronos Group, PBR Neutral, 2024;
-//! Hill, 2016; Hable, 2010; Reinhard et al., 2002, equation 4; Uchimura, 2017.
+//! Hill, 2016; Hable, 2010; Reinhard et al., 2002, equation 4; Uchimura, 2017; Chow, the AgX of
+//! Blender 4, 2023; Polyphony Digital, 2025.
 
+use super::color_transfer::{from_ictcp, ictcp};
 use super::{Arguments, Entry, Expected};
 use glam::{DMat3, DVec2, DVec3};
 
@@ -17,19 +19,33 @@ pub const REFERENCES: Entry = Entry {
         ("reinhard_extended", reinhard_extended),
         ("uchimura_channel", |a| uchimura(a.f64()).into()),
         ("uchimura", |a| a.vec3().map(uchimura).into()),
+        ("agx_curve_blender", |a| agx_curve_blender(a.f64()).into()),
+        ("agx_blender", |a| agx_blender(a.vec3()).into()),
+        ("gt7_curve", |a| gt7_curve(a.f64()).into()),
+        ("gt7", |a| gt7(a.vec3()).into()),
     ],
 };
 
-/// A sigmoid of a power through (20/33, 1/2) with the slope 2, scaled so that it reaches a corner.
-fn agx_curve(x: f64) -> f64 {
-    let (pivot, middle, slope) = (20.0 / 33.0, 0.5, 2.0);
+/// A sigmoid of a power through (20/33, `middle`), scaled so that it reaches a corner.
+fn sigmoid(x: f64, middle: f64, slope: f64, powers: [f64; 2]) -> f64 {
+    let pivot = 20.0 / 33.0;
     let d = x.clamp(0.0, 1.0) - pivot;
-    let (sign, span, power): (f64, f64, f64) =
-        if d < 0.0 { (-1.0, pivot, 3.0) } else { (1.0, 1.0 - pivot, 3.25) };
-    let corner = (slope * span).powf(-power) * ((slope * span / middle).powf(power) - 1.0);
+    let (sign, span, height, power) = match d < 0.0 {
+        true => (-1.0, pivot, middle, powers[0]),
+        false => (1.0, 1.0 - pivot, 1.0 - middle, powers[1]),
+    };
+    let corner = (slope * span).powf(-power) * ((slope * span / height).powf(power) - 1.0);
     let scale = corner.powf(-1.0 / power);
     let u = slope * d.abs() / scale;
     middle + sign * scale * u / (1.0 + u.powf(power)).powf(1.0 / power)
+}
+
+fn agx_curve(x: f64) -> f64 {
+    sigmoid(x, 0.5, 2.0, [3.0, 3.25])
+}
+
+fn agx_curve_blender(x: f64) -> f64 {
+    sigmoid(x, 0.18f64.powf(1.0 / 2.4), 2.4, [1.5, 1.5])
 }
 
 /// From a colour space's primaries and white to XYZ.
@@ -47,9 +63,9 @@ fn rec2020() -> DMat3 {
     to_xyz(to).inverse() * to_xyz(from)
 }
 
-/// Colours drawn together, the curve over logarithms, and drawn apart again.
-fn agx(c: DVec3) -> DVec3 {
-    let inset = DMat3::from_cols_array(&[
+/// The matrices by which AgX draws colours together, and by which it drew those that it shows.
+fn agx_matrices() -> [DMat3; 2] {
+    let inset = [
         0.856627153315983,
         0.137318972929847,
         0.11189821299995,
@@ -59,8 +75,8 @@ fn agx(c: DVec3) -> DVec3 {
         0.0482516061458583,
         0.101439036467562,
         0.811302368396859,
-    ]);
-    let outset = DMat3::from_cols_array(&[
+    ];
+    let outset = [
         0.899796955911611,
         0.11142098895748,
         0.11142098895748,
@@ -70,12 +86,57 @@ fn agx(c: DVec3) -> DVec3 {
         0.013003424885555,
         0.0130034248855548,
         0.801379391839686,
-    ]);
-    let light = inset * (rec2020() * c.clamp(DVec3::ZERO, DVec3::splat(1e10)));
+    ];
+    [DMat3::from_cols_array(&inset), DMat3::from_cols_array(&outset)]
+}
+
+/// Colours drawn together, and a curve over the logarithms of their channels.
+fn agx_toned(c: DVec3, curve: fn(f64) -> f64) -> (DVec3, DVec3) {
+    let light = agx_matrices()[0] * (rec2020() * c.clamp(DVec3::ZERO, DVec3::splat(1e20)));
     let (low, high) = ((0.18f64).log2() - 10.0, (0.18f64).log2() + 6.5);
-    let toned = light.map(|x| agx_curve((x.max(1e-10).log2() - low) / (high - low)));
-    let shown = (outset.inverse() * toned).map(|x| x.max(0.0).powf(2.2));
+    (light, light.map(|x| curve((x.max(1e-10).log2() - low) / (high - low))))
+}
+
+/// Drawn apart again, and then shown.
+fn agx(c: DVec3) -> DVec3 {
+    let (_, toned) = agx_toned(c, agx_curve);
+    let shown = (agx_matrices()[1].inverse() * toned).map(|x| x.max(0.0).powf(2.2));
     (rec2020().inverse() * shown).clamp(DVec3::ZERO, DVec3::ONE)
+}
+
+/// The hue of a colour, in turns.
+fn hue_of(c: DVec3) -> f64 {
+    let span = c.max_element() - c.min_element();
+    let sixth = if span == 0.0 {
+        0.0
+    } else if c.x == c.max_element() {
+        (c.y - c.z) / span
+    } else if c.y == c.max_element() {
+        (c.z - c.x) / span + 2.0
+    } else {
+        (c.x - c.y) / span + 4.0
+    };
+    (sixth / 6.0).rem_euclid(1.0)
+}
+
+/// The colour between two bounds that has a hue: each channel is a trapezoid over it.
+fn with_hue(least: f64, most: f64, hue: f64) -> DVec3 {
+    let channel = |start: f64| {
+        let from_centre = ((hue - start + 0.5).rem_euclid(1.0) - 0.5).abs();
+        least + (most - least) * (2.0 - 6.0 * from_centre).clamp(0.0, 1.0)
+    };
+    DVec3::new(channel(0.0), channel(1.0 / 3.0), channel(2.0 / 3.0))
+}
+
+/// Shown, 60 % of the way back to the hue before the curve, on the shorter way, and drawn apart.
+fn agx_blender(c: DVec3) -> DVec3 {
+    let (light, toned) = agx_toned(c, agx_curve_blender);
+    let shown = toned.map(|x| x.max(0.0).powf(2.4));
+    let (before, after) = (hue_of(light), hue_of(shown));
+    let turn = (after - before + 0.5).rem_euclid(1.0) - 0.5;
+    let mixed = with_hue(shown.min_element(), shown.max_element(), before + 0.4 * turn);
+    let narrow = rec2020().inverse() * (agx_matrices()[1].inverse() * mixed);
+    narrow.clamp(DVec3::ZERO, DVec3::ONE)
 }
 
 const START: f64 = 0.8 - 0.04;
@@ -154,4 +215,38 @@ fn uchimura(x: f64) -> f64 {
     let toe = m * (x / m).powf(c);
     let shoulder = p - (p - s1) * (-c2 * (x - s0) / p).exp();
     (toe * w0 + (m + a * (x - m)) * (1.0 - w0 - w2) + shoulder * w2).clamp(0.0, 1.0)
+}
+
+const GT7_WHITE: f64 = 250.0 / 100.0;
+
+fn smoothstep(from: f64, to: f64, x: f64) -> f64 {
+    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// The example code's curve, with its shoulder's constants from alpha.
+fn gt7_curve(x: f64) -> f64 {
+    let (alpha, middle, line, toe) = (0.25, 0.538, 0.444, 1.28);
+    if x < 0.0 {
+        return 0.0;
+    }
+    let k: f64 = (line - 1.0) / (alpha - 1.0);
+    if x >= line * GT7_WHITE {
+        let scale = GT7_WHITE * k * (line / k).exp();
+        return GT7_WHITE * (line + k) - scale * (-x / (k * GT7_WHITE)).exp();
+    }
+    let linear = smoothstep(0.0, middle, x);
+    (1.0 - linear) * middle * (x / middle).powf(toe) + linear * x
+}
+
+/// Curved by channel, and by intensity with the chroma of before, as far as it is not too bright.
+fn gt7(c: DVec3) -> DVec3 {
+    let light = rec2020() * c.clamp(DVec3::ZERO, DVec3::splat(1e6));
+    let curved = light.map(gt7_curve);
+    let white = ictcp(DVec3::splat(GT7_WHITE * 100.0)).x;
+    let (before, after) = (ictcp(light * 100.0), ictcp(curved * 100.0));
+    let kept = 1.0 - smoothstep(0.98, 1.16, before.x / white);
+    let even = from_ictcp(DVec3::new(after.x, before.y * kept, before.z * kept)) / 100.0;
+    let blended = (curved * 0.4 + even * 0.6).min(DVec3::splat(GT7_WHITE));
+    (rec2020().inverse() * (blended / GT7_WHITE)).clamp(DVec3::ZERO, DVec3::ONE)
 }

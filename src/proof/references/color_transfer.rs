@@ -2,7 +2,7 @@
 //! specification, section 3.10 (fog); SMPTE ST 2084:2014; ITU-R BT.2100-2; Roberts, 1962.
 
 use super::{Entry, Expected};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 pub const REFERENCES: Entry = Entry {
     module: "color::transfer",
@@ -17,6 +17,8 @@ pub const REFERENCES: Entry = Entry {
         ("nits_from_pq", |a| nits(a.f64()).into()),
         ("hlg_from_linear", |a| hlg(a.f64()).into()),
         ("linear_from_hlg", |a| from_hlg(a.f64()).into()),
+        ("ictcp_from_nits", |a| ictcp(a.vec3()).into()),
+        ("nits_from_ictcp", |a| from_ictcp(a.vec3()).into()),
         ("dither", |a| dither(a.vec3(), a.f64(), a.f64()).into()),
         ("fog_linear", |a| fog_linear(a.f64(), a.f64(), a.f64()).into()),
         ("fog_exp", |a| (-(a.f64() * a.f64()).max(0.0)).exp().into()),
@@ -95,4 +97,22 @@ fn from_hlg(code: f64) -> f64 {
 fn dither(c: DVec3, noise: f64, steps: f64) -> DVec3 {
     let step = 1.0 / steps.max(1.0);
     (c + DVec3::splat(step * noise - step / 2.0)).clamp(DVec3::ZERO, DVec3::ONE)
+}
+
+/// Rec. 2020 as the responses of the eye, and their codes as intensity and differences: rows, in
+/// 4096ths.
+fn ictcp_matrices() -> [DMat3; 2] {
+    let responses = [1688.0, 2146.0, 262.0, 683.0, 2951.0, 462.0, 99.0, 309.0, 3688.0];
+    let parts = [2048.0, 2048.0, 0.0, 6610.0, -13613.0, 7003.0, 17933.0, -17390.0, -543.0];
+    [responses, parts].map(|rows| DMat3::from_cols_array(&rows).transpose() * (1.0 / 4096.0))
+}
+
+pub fn ictcp(c: DVec3) -> DVec3 {
+    let [responses, parts] = ictcp_matrices();
+    parts * (responses * c).map(pq)
+}
+
+pub fn from_ictcp(c: DVec3) -> DVec3 {
+    let [responses, parts] = ictcp_matrices();
+    (responses.inverse() * (parts.inverse() * c).map(nits)).max(DVec3::ZERO)
 }
