@@ -9,6 +9,7 @@
 mod constants;
 mod drivers;
 mod library;
+mod lockstep;
 mod machine;
 mod speed;
 mod sweeps;
@@ -30,6 +31,7 @@ pub fn trials() -> Vec<Trial> {
     trials.extend(constants::trials());
     trials.extend(drivers::trials());
     trials.extend(library::trials());
+    trials.extend(lockstep::trials());
     trials.extend(machine::trials());
     trials.extend(speed::trials());
     trials.extend(sweeps::trials());

@@ -13,6 +13,7 @@ mod load;
 mod lsp;
 mod migrate;
 mod packages;
+mod render;
 mod scale;
 mod site;
 
@@ -30,6 +31,7 @@ const BENCHMARKS: &[Benchmark] = &[
     ("load", load::run),
     ("lsp", lsp::run),
     ("migrate", migrate::run),
+    ("render", render::run),
     ("scale", scale::run),
     ("site", site::run),
 ];

@@ -18,6 +18,7 @@
 //! # }
 //! ```
 
+mod batch;
 mod code;
 mod error;
 mod layout;
@@ -28,6 +29,7 @@ mod operation;
 mod program;
 mod resources;
 
+pub use batch::Batch;
 pub use code::Compare;
 pub use error::{Error, Finding, Kind as FindingKind};
 pub use layout::{Kind, MAX_SLOTS};

@@ -171,6 +171,28 @@ impl Program {
             .map(|(index, function)| (FunctionId(index as u32), function))
     }
 
+    /// The slots of private variables, and those of their initial values; zero without any.
+    pub(super) fn privates(
+        &self,
+    ) -> impl Iterator<Item = (std::ops::Range<usize>, Option<std::ops::Range<usize>>)> {
+        let range = |slot: u32, n: u32| slot as usize..(slot + n) as usize;
+        self.globals.iter().filter_map(move |global| match global.role {
+            Role::Private(from) => {
+                Some((range(global.slot, global.slots), from.map(|from| range(from, global.slots))))
+            }
+            _ => None,
+        })
+    }
+
+    pub(super) fn instruction(&self, pc: u32) -> Option<&Instruction> {
+        self.code.get(pc as usize)
+    }
+
+    /// An access to a texture, by its index.
+    pub(super) fn access(&self, index: u32) -> Option<&Access> {
+        self.images.get(index as usize)
+    }
+
     /// What the caller must know of a function.
     pub fn signature(&self, id: FunctionId) -> Option<&Function> {
         self.functions.get(id.0 as usize)

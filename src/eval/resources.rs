@@ -2,6 +2,7 @@
 
 use super::code::Compare;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The resources, by group and binding.
 #[derive(Debug, Clone, Default)]
@@ -12,6 +13,30 @@ pub struct Resources {
     pub textures: BTreeMap<(u32, u32), Texture>,
     /// Samplers by group and binding.
     pub samplers: BTreeMap<(u32, u32), Sampler>,
+}
+
+/// Complete textures, and samplers, by the index of the variable that they are bound to.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Bound {
+    pub textures: Vec<Option<Texture>>,
+    pub samplers: Vec<Option<Sampler>>,
+}
+
+impl Bound {
+    /// What is bound to variables, from the group and binding of each.
+    pub fn of(
+        resources: &Resources,
+        places: impl Iterator<Item = Option<(u32, u32)>> + Clone,
+    ) -> Self {
+        let texture = |place: Option<(u32, u32)>| {
+            resources.textures.get(&place?).filter(|texture| texture.is_complete()).cloned()
+        };
+        let sampler = |place: Option<(u32, u32)>| resources.samplers.get(&place?).copied();
+        Self {
+            textures: places.clone().map(texture).collect(),
+            samplers: places.map(sampler).collect(),
+        }
+    }
 }
 
 /// The dimensions of a texture.
@@ -45,8 +70,8 @@ pub struct Level {
     pub height: u32,
     /// Layers of an array, faces of cubes, slices of a 3D texture.
     pub layers: u32,
-    /// Row by row, layer by layer.
-    pub texels: Vec<[f64; 4]>,
+    /// Row by row, layer by layer. They are shared, so that every thread can have the texture.
+    pub texels: Arc<Vec<[f64; 4]>>,
 }
 
 /// What a sampler returns for coordinates outside of a texture.
@@ -91,7 +116,7 @@ pub struct Sampler {
 impl Texture {
     /// A texture of one level, its texels row by row.
     pub fn flat(shape: Shape, width: u32, height: u32, layers: u32, texels: Vec<[f64; 4]>) -> Self {
-        Self { shape, levels: vec![Level { width, height, layers, texels }] }
+        Self { shape, levels: vec![Level { width, height, layers, texels: Arc::new(texels) }] }
     }
 
     /// Whether every level has as many texels as its size says, and a cube has whole cubes.

@@ -20,7 +20,8 @@ pub fn trials() -> Vec<Trial> {
     modules.map(|path| Trial::test(format!("eval/library/{path}"), move || check(&path))).collect()
 }
 
-fn check(path: &str) -> Result<(), Failed> {
+/// The program of all functions of a module.
+pub fn library_program(path: &str) -> Result<Program, Failed> {
     let packages = Packages {
         root: Package { name: "lamplight".into(), files: Box::new(Embedded) },
         dependencies: Vec::new(),
@@ -30,7 +31,11 @@ fn check(path: &str) -> Result<(), Failed> {
     let composed =
         compose(&graph, &Settings::default(), &Options { keep: Keep::All, ..Options::default() })
             .map_err(said)?;
-    let program = program(&composed.text)?;
+    program(&composed.text)
+}
+
+fn check(path: &str) -> Result<(), Failed> {
+    let program = library_program(path)?;
     let mut failures = String::new();
     for (id, function) in program.functions() {
         let outcome = match &function.error {
@@ -53,7 +58,7 @@ fn bounded(program: &Program, id: FunctionId) -> Result<(), Failed> {
     let mut seed = 1u32;
     for _ in 0..INPUTS {
         let words: Vec<u32> =
-            function.arguments.iter().map(|kind| word(*kind, &mut seed)).collect();
+            function.arguments.iter().map(|kind| random_word(*kind, &mut seed)).collect();
         let mut result = Vec::new();
         single.call_words(id, &words, &mut result)?;
         let slots: Vec<Bounded> =
@@ -85,7 +90,7 @@ fn bounded(program: &Program, id: FunctionId) -> Result<(), Failed> {
 }
 
 /// A number from -1 to 1, or a small integer.
-fn word(kind: Kind, seed: &mut u32) -> u32 {
+pub fn random_word(kind: Kind, seed: &mut u32) -> u32 {
     *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     match kind {
         Kind::Float => ((*seed >> 8) as f32 / 8_388_608.0 - 1.0).to_bits(),

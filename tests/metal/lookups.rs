@@ -189,7 +189,7 @@ fn texture(ty: &str, seed: u32, variant: u32) -> Texture {
                 value(ty, scrambled(seed + 7919 * (4 * texel + i as u32) + level))
             })
         });
-        Level { width, height, layers: depth, texels: texels.collect() }
+        Level { width, height, layers: depth, texels: std::sync::Arc::new(texels.collect()) }
     };
     Texture { shape, levels: (0..count).map(level).collect() }
 }

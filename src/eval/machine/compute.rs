@@ -128,23 +128,27 @@ fn each_word<N: Number>(m: &mut [N], n: u8, to: u32, mut f: impl FnMut(&[N], u32
 }
 
 fn convert<N: Number>(m: &mut [N], op: Convert, n: u8, to: u32, a: Operand, doubt: &mut bool) {
-    each_component(m, n, to, |m, i| {
-        let x = m[a.at(i)];
-        match op {
-            Convert::FloatFromS => whole_number(f64::from(x.word() as i32)),
-            Convert::FloatFromU => whole_number(f64::from(x.word())),
-            Convert::SFromFloat => N::from_word(x.to_i32(doubt) as u32),
-            Convert::UFromFloat => N::from_word(x.to_u32(doubt)),
-            Convert::BoolFromFloat => N::from_word(u32::from(x.value() != 0.0)),
-            Convert::FloatFromBits => N::from_f64(f64::from(f32::from_bits(x.word()))),
-            Convert::BitsFromFloat => N::from_word(x.bits()),
-            Convert::IsNan => N::from_word(u32::from(x.value().is_nan())),
-            Convert::IsInf => N::from_word(u32::from(x.value().is_infinite())),
-        }
-    });
+    each_component(m, n, to, |m, i| convert_slot(op, m[a.at(i)], doubt));
+}
+
+/// Changes one slot from a word to a number, or the other way.
+#[inline(always)]
+pub(in crate::eval) fn convert_slot<N: Number>(op: Convert, x: N, doubt: &mut bool) -> N {
+    match op {
+        Convert::FloatFromS => whole_number(f64::from(x.word() as i32)),
+        Convert::FloatFromU => whole_number(f64::from(x.word())),
+        Convert::SFromFloat => N::from_word(x.to_i32(doubt) as u32),
+        Convert::UFromFloat => N::from_word(x.to_u32(doubt)),
+        Convert::BoolFromFloat => N::from_word(u32::from(x.value() != 0.0)),
+        Convert::FloatFromBits => N::from_f64(f64::from(f32::from_bits(x.word()))),
+        Convert::BitsFromFloat => N::from_word(x.bits()),
+        Convert::IsNan => N::from_word(u32::from(x.value().is_nan())),
+        Convert::IsInf => N::from_word(u32::from(x.value().is_infinite())),
+    }
 }
 
 /// An integer as a number, rounded as an f32 must be.
+#[inline(always)]
 fn whole_number<N: Number>(value: f64) -> N {
     let rounded = f64::from(value as f32);
     N::with_error(value, 2.0 * (value - rounded).abs())

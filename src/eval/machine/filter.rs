@@ -2,6 +2,7 @@
 
 use super::super::number::Number;
 use super::super::resources::{Address, Filter, Level, Sampler, Shape, Texture};
+use super::quick::filter_image;
 
 /// The precision of the fraction between two texels that hardware must have.
 ///
@@ -14,11 +15,11 @@ const WIDEST: f64 = 2.0;
 /// A place in a texture: coordinates in [0, 1] on a layer, with a bound of their errors.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
-    shape: Shape,
-    at: [f64; 3],
+    pub shape: Shape,
+    pub at: [f64; 3],
     error: [f64; 3],
-    layer: u32,
-    face: usize,
+    pub layer: u32,
+    pub face: usize,
 }
 
 /// Everything that one lookup depends on.
@@ -91,6 +92,11 @@ impl Point {
 /// filtered, since the place may cross the middle of a texel or the seam of a cube.
 pub(super) fn combine<N: Number>(footprint: &Footprint<N>, doubt: &mut bool) -> [(f64, f64); 4] {
     let level = &footprint.texture.levels[footprint.level];
+    if !N::BOUNDED
+        && let Some(values) = filter_image(footprint, level)
+    {
+        return values.map(|value| (value, 0.0));
+    }
     let mut values = [0.0; 4];
     let mut add = |tap: Tap| {
         let Tap { weight, texel } = footprint.compared(tap, doubt);
@@ -236,6 +242,13 @@ impl<N: Number> Footprint<'_, N> {
     }
 }
 
+impl<N: Number> Footprint<'_, N> {
+    /// A texel, or the outcome of its comparison.
+    pub fn shown(&self, texel: [f64; 4]) -> [f64; 4] {
+        self.compared(Tap { weight: 1.0, texel }, &mut false).texel
+    }
+}
+
 impl<N> Footprint<'_, N> {
     /// Calls back with the texel at a column and a row, and its weight. Beyond the corner of a cube
     /// there is none: its weight is divided among the three texels that meet there.
@@ -289,7 +302,7 @@ impl<N> Footprint<'_, N> {
     }
 }
 
-fn wrap_address(address: Address, at: i64, size: u32) -> i64 {
+pub(super) fn wrap_address(address: Address, at: i64, size: u32) -> i64 {
     let size = i64::from(size);
     match address {
         Address::Clamp => at.clamp(0, size - 1),

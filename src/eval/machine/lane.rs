@@ -4,7 +4,7 @@ use super::super::code::Instruction;
 use super::super::error::{Error, Kind};
 use super::super::number::Number;
 use super::super::program::Program;
-use super::super::resources::Resources;
+use super::super::resources::Bound;
 use super::compute::compute;
 use super::texture;
 use super::watch::Watch;
@@ -26,9 +26,9 @@ pub(super) struct Lane<N> {
 
 /// What all lanes share.
 #[derive(Clone, Copy)]
-pub(super) struct Env<'e> {
+pub(in crate::eval) struct Env<'e> {
     pub program: &'e Program,
-    pub resources: &'e Resources,
+    pub bound: &'e Bound,
     pub loop_limit: u64,
     /// Whether the lane is part of a quad.
     pub quad: bool,
@@ -135,7 +135,7 @@ impl<N: Number> Lane<N> {
     }
 }
 
-fn jump_target(program: &Program, table: u32, selector: u32) -> u32 {
+pub(in crate::eval) fn jump_target(program: &Program, table: u32, selector: u32) -> u32 {
     let table = &program.tables[table as usize];
     table.cases.iter().find(|case| case.0 == selector).map_or(table.default, |case| case.1)
 }

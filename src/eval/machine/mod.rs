@@ -6,6 +6,7 @@ mod geometry;
 mod lane;
 mod packing;
 mod quad;
+mod quick;
 mod texture;
 mod watch;
 mod word;
@@ -14,10 +15,17 @@ use super::error::{Error, Finding};
 use super::layout::{Kind, decode_buffer};
 use super::number::Number;
 use super::program::{Constant, Function, FunctionId, Program, Role};
-use super::resources::Resources;
+use super::resources::{Bound, Resources};
 use crate::diagnostic::codes;
+pub(in crate::eval) use compute::convert_slot;
+pub(in crate::eval) use geometry::geometry;
+pub(in crate::eval) use lane::{Env, jump_target};
 use lane::{Lane, Stop};
-use watch::Watch;
+pub(in crate::eval) use packing::pack;
+pub(in crate::eval) use quad::derivative_lanes;
+pub(in crate::eval) use texture::{Slots, apply_access, coordinate_of, gradient_of};
+pub(in crate::eval) use watch::Watch;
+pub(in crate::eval) use word::{extract_bits, insert_bits, word1, word2};
 
 /// How many loop iterations one call may make unless set otherwise, all loops together.
 pub const LOOP_LIMIT: u64 = crate::limits::LOOP_TRIPS;
@@ -27,6 +35,8 @@ pub const LOOP_LIMIT: u64 = crate::limits::LOOP_TRIPS;
 pub struct Machine<'p, N> {
     program: &'p Program,
     resources: Resources,
+    /// Textures and samplers by the index of their variable.
+    resolved: Bound,
     lane: Lane<N>,
     /// The lanes of a quad, once one has run, and which of them were discarded.
     quad: Vec<Lane<N>>,
@@ -58,6 +68,7 @@ impl<'p, N: Number> Machine<'p, N> {
         let mut machine = Self {
             program,
             resources: Resources::default(),
+            resolved: Bound::default(),
             lane,
             quad: Vec::new(),
             killed: [false; 4],
@@ -105,6 +116,8 @@ impl<'p, N: Number> Machine<'p, N> {
             }
         }
         self.quad.clear();
+        let places = self.program.globals.iter().map(|global| global.binding);
+        self.resolved = Bound::of(&resources, places);
         self.resources = resources;
         Ok(())
     }
@@ -200,9 +213,9 @@ impl<'p, N: Number> Machine<'p, N> {
         (self.lane.pc, self.lane.trips, self.lane.killed) = (entry, 0, false);
         self.lane.steps = 0;
         self.lane.calls.clear();
-        let env = lane::Env {
+        let env = Env {
             program: self.program,
-            resources: &self.resources,
+            bound: &self.resolved,
             loop_limit: self.loop_limit,
             quad: false,
         };
@@ -210,6 +223,24 @@ impl<'p, N: Number> Machine<'p, N> {
             Stop::Done => Ok(()),
             Stop::Quad => Err(needs_quad(self.program, self.lane.pc)),
         }
+    }
+
+    /// The memory of the single lane, which has all constants and buffers.
+    pub(super) fn memory(&self) -> &[N] {
+        &self.lane.memory
+    }
+
+    /// The function, if it can be run on the arguments of all lanes.
+    pub(super) fn runnable(&self, id: FunctionId, lanes: &[&[N]]) -> Option<&'p Function> {
+        let function = self.program.signature(id)?;
+        let are_fit = lanes.iter().all(|lane| lane.len() == function.arguments.len());
+        let is_ready = function.error.is_none() && self.check_buffers(function).is_ok();
+        (are_fit && is_ready).then_some(function)
+    }
+
+    /// What lanes share.
+    pub(super) fn env(&self, quad: bool) -> Env<'_> {
+        Env { program: self.program, bound: &self.resolved, loop_limit: self.loop_limit, quad }
     }
 
     /// Whether the last call ran into `discard`.
@@ -274,14 +305,10 @@ fn callable_function(program: &Program, id: FunctionId, given: usize) -> Result<
 
 /// Sets private variables to their initial values.
 fn begin_lane<N: Number>(program: &Program, lane: &mut Lane<N>) {
-    for global in &program.globals {
-        let (to, n) = (global.slot as usize, global.slots as usize);
-        match global.role {
-            Role::Private(Some(from)) => {
-                lane.memory.copy_within(from as usize..from as usize + n, to)
-            }
-            Role::Private(None) => lane.memory[to..to + n].fill(N::default()),
-            _ => {}
+    for (slots, from) in program.privates() {
+        match from {
+            Some(from) => lane.memory.copy_within(from, slots.start),
+            None => lane.memory[slots].fill(N::default()),
         }
     }
 }

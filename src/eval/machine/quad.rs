@@ -50,7 +50,7 @@ impl<N: Number> Machine<'_, N> {
     fn together(&mut self, lanes: &mut [Lane<N>]) -> Result<(), Error> {
         let env = Env {
             program: self.program,
-            resources: &self.resources,
+            bound: &self.resolved,
             loop_limit: self.loop_limit,
             quad: true,
         };
@@ -103,7 +103,7 @@ fn waiting_position<N>(lane: &Lane<N>) -> impl Iterator<Item = u32> + '_ {
 }
 
 /// The two lanes whose difference is the derivative for a lane.
-pub(super) fn derivative_lanes(lane: usize, axis: Axis, coarse: bool) -> (usize, usize) {
+pub(in crate::eval) fn derivative_lanes(lane: usize, axis: Axis, coarse: bool) -> (usize, usize) {
     let lane = if coarse { 0 } else { lane };
     match axis {
         Axis::Y => (lane & 1, lane | 2),

@@ -19,6 +19,24 @@ type Gradient = [[f64; 3]; 2];
 /// The instruction, and where to report what happens there.
 type Notes<'w> = (u32, &'w mut Watch);
 
+/// The memory of one lane, which many lanes may have together.
+pub(in crate::eval) trait Slots<N> {
+    fn get(&self, slot: u32) -> N;
+    fn set(&mut self, slot: u32, value: N);
+}
+
+impl<N: Copy> Slots<N> for [N] {
+    #[inline(always)]
+    fn get(&self, slot: u32) -> N {
+        self[slot as usize]
+    }
+
+    #[inline(always)]
+    fn set(&mut self, slot: u32, value: N) {
+        self[slot as usize] = value;
+    }
+}
+
 /// Runs an access whose level depends on the neighbours, for the lanes that reached it.
 pub(super) fn run_quad<N: Number>(
     env: Env,
@@ -29,22 +47,32 @@ pub(super) fn run_quad<N: Number>(
 ) -> Result<(), Error> {
     let access = &env.program.images[index as usize];
     let coordinates: [Option<[f64; 3]>; 4] = std::array::from_fn(|lane| {
-        group
-            .contains(&lane)
-            .then(|| values_at(&lanes[lane].memory, access.coordinate, access.dimensions))
+        group.contains(&lane).then(|| coordinate_of(access, &lanes[lane].memory[..]))
     });
     for &lane in group {
-        let gradient = [Axis::X, Axis::Y].map(|axis| {
-            let (low, high) = derivative_lanes(lane, axis, false);
-            coordinates[low]
-                .zip(coordinates[high])
-                .map_or([0.0; 3], |(low, high)| std::array::from_fn(|i| high[i] - low[i]))
-        });
+        let gradient = gradient_of(&coordinates, lane);
         let pc = lanes[lane].pc;
-        apply_access(env, access, &mut lanes[lane].memory, Some(gradient), (pc, watch))
-            .map_err(|error| error.or_at(env.span(pc)))?;
+        apply_access(env, access, &mut lanes[lane].memory[..], Some(gradient), (pc, watch))?;
     }
     Ok(())
+}
+
+/// The coordinate of an access.
+pub(in crate::eval) fn coordinate_of<N: Number>(
+    access: &Access,
+    m: &(impl Slots<N> + ?Sized),
+) -> [f64; 3] {
+    values_at(m, access.coordinate, access.dimensions)
+}
+
+/// How the coordinate changes around a lane of a quad; not at all where a neighbour has none.
+pub(in crate::eval) fn gradient_of(coordinates: &[Option<[f64; 3]>; 4], lane: usize) -> Gradient {
+    [Axis::X, Axis::Y].map(|axis| {
+        let (low, high) = derivative_lanes(lane, axis, false);
+        coordinates[low]
+            .zip(coordinates[high])
+            .map_or([0.0; 3], |(low, high)| std::array::from_fn(|i| high[i] - low[i]))
+    })
 }
 
 /// Runs an access of one lane.
@@ -56,20 +84,31 @@ pub(super) fn run_single<N: Number>(
     watch: &mut Watch,
 ) -> Result<(), Error> {
     apply_access(env, &env.program.images[index as usize], memory, None, (pc, watch))
-        .map_err(|error| error.or_at(env.span(pc)))
 }
 
-fn apply_access<N: Number>(
+/// Runs an access on the memory of a lane.
+pub(in crate::eval) fn apply_access<N: Number>(
     env: Env,
     access: &Access,
-    m: &mut [N],
+    m: &mut (impl Slots<N> + ?Sized),
     gradient: Option<Gradient>,
     notes: Notes,
 ) -> Result<(), Error> {
-    let texture = bound_texture(env, m[access.image as usize].word())?;
+    let pc = notes.0;
+    access_texture(env, access, m, gradient, notes).map_err(|error| error.or_at(env.span(pc)))
+}
+
+fn access_texture<N: Number>(
+    env: Env,
+    access: &Access,
+    m: &mut (impl Slots<N> + ?Sized),
+    gradient: Option<Gradient>,
+    notes: Notes,
+) -> Result<(), Error> {
+    let texture = bound_texture(env, m.get(access.image).word())?;
     let size = |level: Option<u32>| {
         let level =
-            level.map_or(0, |slot| m[slot as usize].word() as usize).min(texture.levels.len() - 1);
+            level.map_or(0, |slot| m.get(slot).word() as usize).min(texture.levels.len() - 1);
         let level = &texture.levels[level];
         [level.width, level.height, level.layers, 0]
     };
@@ -92,35 +131,30 @@ fn apply_access<N: Number>(
 }
 
 fn bound_texture<'e>(env: Env<'e>, global: u32) -> Result<&'e Texture, Error> {
-    let variable = env.program.globals.get(global as usize);
-    let bound = variable.and_then(|variable| env.resources.textures.get(&variable.binding?));
-    bound
-        .filter(|texture| texture.is_complete())
-        .ok_or_else(|| unbound_resource(variable.map(|variable| &*variable.name)))
+    let bound = env.bound.textures.get(global as usize).and_then(Option::as_ref);
+    bound.ok_or_else(|| unbound_resource(env, global))
 }
 
 fn bound_sampler<'e>(env: Env<'e>, global: u32) -> Result<&'e Sampler, Error> {
-    let variable = env.program.globals.get(global as usize);
-    let bound = variable.and_then(|variable| env.resources.samplers.get(&variable.binding?));
-    bound.ok_or_else(|| unbound_resource(variable.map(|variable| &*variable.name)))
+    let bound = env.bound.samplers.get(global as usize).and_then(Option::as_ref);
+    bound.ok_or_else(|| unbound_resource(env, global))
 }
 
-fn unbound_resource(name: Option<&str>) -> Error {
-    Error::new(
-        codes::EVAL_UNBOUND,
-        format!("no complete texture or sampler is given for `{}`", name.unwrap_or("?")),
-    )
+#[cold]
+fn unbound_resource(env: Env, global: u32) -> Error {
+    let name = env.program.globals.get(global as usize).map_or("?", |variable| &*variable.name);
+    Error::new(codes::EVAL_UNBOUND, format!("no complete texture or sampler is given for `{name}`"))
 }
 
 /// Reads one texel. Outside the texture it is zero, which is reported.
 fn load_texel<N: Number>(
     access: &Access,
     texture: &Texture,
-    m: &mut [N],
+    m: &mut (impl Slots<N> + ?Sized),
     level: Option<u32>,
     (pc, watch): Notes,
 ) {
-    let word = |slot: u32| i64::from(m[slot as usize].word() as i32);
+    let word = |slot: u32| i64::from(m.get(slot).word() as i32);
     let mut at = [0i64; 3];
     (0..usize::from(access.dimensions)).for_each(|i| at[i] = word(access.coordinate + i as u32));
     if let Some(layer) = access.layer {
@@ -139,7 +173,7 @@ fn sample_texture<N: Number>(
     env: Env,
     access: &Access,
     texture: &Texture,
-    m: &mut [N],
+    m: &mut (impl Slots<N> + ?Sized),
     gradient: Option<Gradient>,
     notes: Notes,
 ) -> Result<(), Error> {
@@ -147,7 +181,7 @@ fn sample_texture<N: Number>(
     else {
         return Ok(());
     };
-    let sampler = bound_sampler(env, m[slot as usize].word())?;
+    let sampler = bound_sampler(env, m.get(slot).word())?;
     let sampler =
         if clamp_to_edge { Sampler { address: Default::default(), ..*sampler } } else { *sampler };
     let coordinate = values_at(m, access.coordinate, access.dimensions);
@@ -158,7 +192,7 @@ fn sample_texture<N: Number>(
         filter: Filter::Linear,
         point: sample_point(access, texture, m, coordinate),
         shift: texel_offset(access, m, offset),
-        reference: reference.map(|slot| m[slot as usize]),
+        reference: reference.map(|slot| m.get(slot)),
     };
     let mut doubt = false;
     let result = if let Some(component) = gather {
@@ -171,10 +205,8 @@ fn sample_texture<N: Number>(
         let level = match level {
             Level::Zero => 0.0,
             _ if clamp_to_edge => 0.0,
-            Level::Exact(slot) => m[slot as usize].value(),
-            Level::Bias(slot) => {
-                detail_level(texture, coordinate, slopes) + m[slot as usize].value()
-            }
+            Level::Exact(slot) => m.get(slot).value(),
+            Level::Bias(slot) => detail_level(texture, coordinate, slopes) + m.get(slot).value(),
             Level::Auto | Level::Gradient(..) => detail_level(texture, coordinate, slopes),
         };
         between_levels(&footprint, level, &mut doubt)
@@ -190,25 +222,29 @@ fn sample_texture<N: Number>(
 fn sample_point<N: Number>(
     access: &Access,
     texture: &Texture,
-    m: &[N],
+    m: &(impl Slots<N> + ?Sized),
     coordinate: [f64; 3],
 ) -> Point {
     let errors: [f64; 3] = std::array::from_fn(|i| {
         if i < usize::from(access.dimensions) {
-            m[access.coordinate as usize + i].error()
+            m.get(access.coordinate + i as u32).error()
         } else {
             0.0
         }
     });
-    let layer = access.layer.map_or(0, |slot| (m[slot as usize].word() as i32).max(0) as u32);
+    let layer = access.layer.map_or(0, |slot| (m.get(slot).word() as i32).max(0) as u32);
     project(texture.shape, coordinate, errors, layer)
 }
 
 /// The offset of an access, in texels.
-fn texel_offset<N: Number>(access: &Access, m: &[N], offset: Option<u32>) -> [i64; 3] {
+fn texel_offset<N: Number>(
+    access: &Access,
+    m: &(impl Slots<N> + ?Sized),
+    offset: Option<u32>,
+) -> [i64; 3] {
     std::array::from_fn(|i| match offset {
         Some(slot) if i < usize::from(access.dimensions) => {
-            i64::from(m[slot as usize + i].word() as i32)
+            i64::from(m.get(slot + i as u32).word() as i32)
         }
         _ => 0,
     })
@@ -271,18 +307,23 @@ fn between_levels<N: Number>(
     })
 }
 
-fn values_at<N: Number>(m: &[N], slot: u32, dimensions: u8) -> [f64; 3] {
+fn values_at<N: Number>(m: &(impl Slots<N> + ?Sized), slot: u32, dimensions: u8) -> [f64; 3] {
     std::array::from_fn(|i| {
-        if i < usize::from(dimensions) { m[slot as usize + i].value() } else { 0.0 }
+        if i < usize::from(dimensions) { m.get(slot + i as u32).value() } else { 0.0 }
     })
 }
 
-fn store_result<N: Number>(m: &mut [N], access: &Access, result: [(f64, f64); 4]) {
+fn store_result<N: Number>(
+    m: &mut (impl Slots<N> + ?Sized),
+    access: &Access,
+    result: [(f64, f64); 4],
+) {
     for (i, (value, error)) in result.into_iter().take(usize::from(access.n)).enumerate() {
-        m[access.to as usize + i] = if access.words {
+        let value = if access.words {
             N::from_word(value as i64 as u32)
         } else {
             N::with_error(value, error)
         };
+        m.set(access.to + i as u32, value);
     }
 }

@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 const MAX_FINDINGS: usize = 10_000;
 
 /// Coverage and findings of one machine.
-#[derive(Debug)]
-pub(super) struct Watch {
+#[derive(Debug, Default)]
+pub(in crate::eval) struct Watch {
     pub sanitize: bool,
     pub hits: Vec<u64>,
     findings: BTreeMap<(Kind, u32), u64>,

@@ -3,7 +3,8 @@
 
 use super::super::code::{Word1, Word2};
 
-pub(super) fn word1(op: Word1, x: u32) -> u32 {
+#[inline(always)]
+pub(in crate::eval) fn word1(op: Word1, x: u32) -> u32 {
     match op {
         Word1::Negate => x.wrapping_neg(),
         Word1::Not => !x,
@@ -30,7 +31,8 @@ pub(super) fn word1(op: Word1, x: u32) -> u32 {
     }
 }
 
-pub(super) fn word2(op: Word2, a: u32, b: u32) -> u32 {
+#[inline(always)]
+pub(in crate::eval) fn word2(op: Word2, a: u32, b: u32) -> u32 {
     let (signed_a, signed_b) = (a as i32, b as i32);
     match op {
         Word2::Add => a.wrapping_add(b),
@@ -66,7 +68,7 @@ pub(super) fn word2(op: Word2, a: u32, b: u32) -> u32 {
 }
 
 /// Bits `[offset, offset + count)` of the word, with the range clamped to the word.
-pub(super) fn extract_bits(signed: bool, word: u32, offset: u32, count: u32) -> u32 {
+pub(in crate::eval) fn extract_bits(signed: bool, word: u32, offset: u32, count: u32) -> u32 {
     let offset = offset.min(32);
     let count = count.min(32 - offset);
     if count == 0 {
@@ -77,7 +79,7 @@ pub(super) fn extract_bits(signed: bool, word: u32, offset: u32, count: u32) -> 
 }
 
 /// `[word, new, offset, count]`: the word with bits `[offset, offset + count)` replaced.
-pub(super) fn insert_bits([word, new, offset, count]: [u32; 4]) -> u32 {
+pub(in crate::eval) fn insert_bits([word, new, offset, count]: [u32; 4]) -> u32 {
     let offset = offset.min(32);
     let count = count.min(32 - offset);
     if count == 0 {

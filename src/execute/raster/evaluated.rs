@@ -7,12 +7,14 @@ use rayon::prelude::*;
 use super::corners::{Corner, Source, scalar_sources, vertex_attribute};
 use super::{Quad, Shaded, Shading};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::eval::{Function, FunctionId, Kind, Machine, Number, Program, Resources};
+use crate::eval::{Batch, Function, FunctionId, Kind, Machine, Number, Program, Resources};
 use crate::execute::frame::{Buffers, Drawing, EntryPoint, Mesh};
 use crate::execute::interpreter::eval_failed;
 
-/// How many quads are worth a task of their own.
-const CHUNK: usize = 64;
+/// How many fragments or vertices are worth a task of their own.
+const CHUNK: usize = 256;
+/// Tasks for each thread. Some parts of a frame take longer than others.
+const TASKS: usize = 8;
 
 /// The stages of a program, lowered.
 pub struct Evaluated {
@@ -52,6 +54,19 @@ impl Lowered {
             found.map(|(id, function)| (id, function.clone())).ok_or_else(missing)?;
         Ok(Self { program, function, signature })
     }
+
+    /// Lanes with resources.
+    fn batch(&self, resources: &Resources) -> Result<Batch<'_>, Diagnostic> {
+        let mut machine = Machine::<f32>::new(&self.program).map_err(eval_failed)?;
+        machine.bind(resources.clone()).map_err(eval_failed)?;
+        Ok(Batch::new(machine))
+    }
+}
+
+/// How many of `count` things a task has, in whole quads.
+fn task_size(count: usize) -> usize {
+    let threads = rayon::current_num_threads().max(1);
+    count.div_ceil(threads * TASKS).max(CHUNK).next_multiple_of(Batch::LANES)
 }
 
 fn unusable_stage(message: String) -> Diagnostic {
@@ -60,13 +75,10 @@ fn unusable_stage(message: String) -> Diagnostic {
 
 impl Shading for Evaluated {
     fn corners(&self, mesh: &Mesh, resources: Resources) -> Result<Vec<Corner>, Diagnostic> {
-        let Lowered { program, function, signature } = &self.vertex;
-        let mut machine = Machine::<f32>::new(program).map_err(eval_failed)?;
-        machine.bind(resources).map_err(eval_failed)?;
+        let Lowered { function, signature, .. } = &self.vertex;
         let inputs = scalar_sources(&signature.inputs);
         let outputs = scalar_sources(&signature.outputs);
-        let mut corners = Vec::new();
-        for index in 0..mesh.vertices() {
+        let arguments = |index: u32| -> Vec<f32> {
             let argument = |(source, kind): (&Source, &Kind)| match source {
                 Source::Location(location, component) => {
                     slot_of_word(*kind, vertex_attribute(mesh, index, *location, *component))
@@ -74,12 +86,25 @@ impl Shading for Evaluated {
                 Source::BuiltIn(BuiltIn::VertexIndex, _) => f32::from_word(index),
                 _ => f32::from_word(0),
             };
-            let arguments: Vec<f32> =
-                inputs.iter().zip(&signature.arguments).map(argument).collect();
-            let slots = machine.call(*function, &arguments).map_err(eval_failed)?.to_vec();
-            corners.push(Corner { clip: clip_position(&outputs, &slots), slots });
-        }
-        Ok(corners)
+            inputs.iter().zip(&signature.arguments).map(argument).collect()
+        };
+        let indices: Vec<u32> = (0..mesh.vertices()).collect();
+        let corners = indices
+            .par_chunks(task_size(indices.len()))
+            .map(|indices| {
+                let mut batch = self.vertex.batch(&resources)?;
+                let arguments: Vec<Vec<f32>> = indices.iter().map(|i| arguments(*i)).collect();
+                let arguments: Vec<&[f32]> = arguments.iter().map(Vec::as_slice).collect();
+                let mut corners = Vec::with_capacity(indices.len());
+                let called = batch.calls(*function, &arguments, &mut |_, slots, _| {
+                    let clip = clip_position(&outputs, slots);
+                    corners.push(Corner { clip, slots: slots.to_vec() });
+                });
+                called.map_err(eval_failed)?;
+                Ok(corners)
+            })
+            .collect::<Result<Vec<Vec<Corner>>, Diagnostic>>()?;
+        Ok(corners.into_iter().flatten().collect())
     }
 
     fn given(&self) -> Vec<(Source, bool)> {
@@ -106,32 +131,30 @@ impl Shading for Evaluated {
         textures: &Resources,
         quads: &[Quad],
     ) -> Result<Vec<Shaded>, Diagnostic> {
-        let Some(Lowered { program, function, signature }) = &self.fragment else {
-            return Ok(Vec::new());
-        };
+        let Some(stage) = &self.fragment else { return Ok(Vec::new()) };
+        let Lowered { function, signature, .. } = stage;
         let outputs = scalar_sources(&signature.outputs);
-        let threads = rayon::current_num_threads().max(1);
+        let resources = Resources { buffers, ..textures.clone() };
         let shaded: Vec<Vec<Shaded>> = quads
-            .par_chunks(quads.len().div_ceil(threads).max(CHUNK))
-            .map(|quads| {
-                let mut machine = Machine::<f32>::new(program).map_err(eval_failed)?;
-                machine
-                    .bind(Resources { buffers: buffers.clone(), ..textures.clone() })
-                    .map_err(eval_failed)?;
-                quads
-                    .iter()
-                    .map(|quad| {
-                        let arguments = quad.arguments.each_ref().map(Vec::as_slice);
-                        let results = machine.quad(*function, arguments).map_err(eval_failed)?;
-                        let discarded = machine.quad_discarded();
-                        Ok([0, 1, 2, 3].map(|lane| {
-                            let targets =
-                                || target_words(&outputs, &signature.result, &results[lane]);
-                            (!discarded[lane]).then(targets)
-                        }))
-                    })
-                    .collect::<Result<_, Diagnostic>>()
-            })
+            .par_chunks(task_size(4 * quads.len()) / 4)
+            .map_init(
+                || stage.batch(&resources),
+                |batch, quads| {
+                    let batch = batch.as_mut().map_err(|problem| problem.clone())?;
+                    let arguments: Vec<[&[f32]; 4]> = quads
+                        .iter()
+                        .map(|quad| quad.arguments.each_ref().map(Vec::as_slice))
+                        .collect();
+                    let mut shaded = vec![Shaded::default(); quads.len()];
+                    let called =
+                        batch.quads(*function, &arguments, &mut |lane, slots, is_discarded| {
+                            let targets = || target_words(&outputs, &signature.result, slots);
+                            shaded[lane / 4][lane % 4] = (!is_discarded).then(targets);
+                        });
+                    called.map_err(eval_failed)?;
+                    Ok(shaded)
+                },
+            )
             .collect::<Result<_, Diagnostic>>()?;
         Ok(shaded.into_iter().flatten().collect())
     }

@@ -1,6 +1,7 @@
 //! Runs the fragment stage for visible fragments.
 
 use naga::BuiltIn;
+use rayon::prelude::*;
 
 use super::corners::Source;
 use super::triangles::{NONE, Triangle};
@@ -9,9 +10,8 @@ use crate::diagnostic::Diagnostic;
 use crate::eval::{Number, Resources};
 use crate::execute::frame::{Buffers, Drawing};
 
-/// How many rows are shaded at a time, in whole quads. This bounds the memory for the arguments of
-/// large frames.
-const ROWS: u32 = 256;
+/// How many quads are shaded at a time. This bounds the memory for the arguments of large frames.
+const AT_ONCE: usize = 1 << 16;
 
 /// The targets of a frame.
 pub fn shade_frame(
@@ -25,12 +25,9 @@ pub fn shade_frame(
     let mut targets = vec![cleared_target(drawing.size); drawing.targets as usize];
     let wiring = wire_stages(&shading.given(), &taken);
     let screen = Screen { drawn, size: drawing.size, wiring };
-    for (index, item) in drawing.items.iter().enumerate() {
-        for first in (0..drawing.size[1]).step_by(ROWS as usize) {
-            let quads = screen.quads(index, first..drawing.size[1].min(first + ROWS));
-            if quads.is_empty() {
-                continue;
-            }
+    for (item, places) in drawing.items.iter().zip(screen.places(drawing.items.len())) {
+        for places in places.chunks(AT_ONCE) {
+            let quads: Vec<Quad> = places.par_iter().map(|place| screen.quad(place)).collect();
             let shaded = shading.shade(item_buffers(drawing, view, item), textures, &quads)?;
             for (quad, shaded) in quads.iter().zip(&shaded) {
                 store_quad(&mut targets, drawing.size[0], quad, shaded);
@@ -72,30 +69,40 @@ struct Screen<'a> {
     wiring: Vec<Wire>,
 }
 
-impl Screen<'_> {
-    /// The quads of some rows that show an item; each triangle in a quad is a quad of its own.
-    fn quads(&self, item: usize, rows: std::ops::Range<u32>) -> Vec<Quad> {
-        let mut quads = Vec::new();
-        let places =
-            rows.step_by(2).flat_map(|y| (0..self.size[0]).step_by(2).map(move |x| (x, y)));
-        for (x, y) in places {
+/// A quad that shows a triangle.
+struct Place<'a> {
+    triangle: &'a Triangle,
+    pixels: [(u32, u32); 4],
+    covered: [bool; 4],
+}
+
+impl<'a> Screen<'a> {
+    /// The quads that show each item; each triangle in a quad is a quad of its own.
+    fn places(&self, items: usize) -> Vec<Vec<Place<'a>>> {
+        let mut places: Vec<Vec<Place<'a>>> = Vec::new();
+        places.resize_with(items, Vec::new);
+        let [columns, rows] = self.size.map(|size| (0..size).step_by(2));
+        for (x, y) in rows.flat_map(|y| columns.clone().map(move |x| (x, y))) {
             let pixels = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)];
             let shown = pixels.map(|(x, y)| self.shown(x, y));
             for lane in 0..4 {
                 let id = shown[lane];
-                let triangle = self.drawn.triangles.get(id as usize);
-                let Some(triangle) = triangle.filter(|triangle| triangle.item == item) else {
-                    continue;
-                };
+                let Some(triangle) = self.drawn.triangles.get(id as usize) else { continue };
                 if shown[..lane].contains(&id) {
                     continue;
                 }
-                let arguments = pixels
-                    .map(|(x, y)| self.arguments(triangle, f64::from(x) + 0.5, f64::from(y) + 0.5));
-                quads.push(Quad { pixels, covered: shown.map(|other| other == id), arguments });
+                let covered = shown.map(|other| other == id);
+                places[triangle.item].push(Place { triangle, pixels, covered });
             }
         }
-        quads
+        places
+    }
+
+    fn quad(&self, place: &Place<'_>) -> Quad {
+        let middle = |x: u32| f64::from(x) + 0.5;
+        let arguments =
+            place.pixels.map(|(x, y)| self.arguments(place.triangle, middle(x), middle(y)));
+        Quad { pixels: place.pixels, covered: place.covered, arguments }
     }
 
     fn shown(&self, x: u32, y: u32) -> u32 {

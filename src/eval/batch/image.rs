@@ -1,0 +1,68 @@
+//! Accesses to textures and derivatives, for the lanes that run.
+
+use super::super::code::{Axis, Binary, Unary};
+use super::super::machine::{
+    Env, Watch, apply_access, coordinate_of, derivative_lanes, gradient_of,
+};
+use super::super::number::Number;
+use super::rows::{ALL, LANES, Mask, Row, Rows, lanes_of};
+
+/// Runs an access of each lane by itself.
+pub fn run_single(env: Env<'_>, index: u32, rows: &mut Rows<'_>, at: u32) -> Option<()> {
+    let access = env.program.access(index)?;
+    let mut watch = Watch::default();
+    for lane in lanes_of(rows.mask) {
+        apply_access(env, access, &mut rows.lane(lane), None, (at, &mut watch)).ok()?;
+    }
+    Some(())
+}
+
+/// Runs an access whose level depends on the neighbours, for the lanes that reached it.
+pub fn run_quads(env: Env<'_>, index: u32, memory: &mut [Row], mask: Mask) -> Option<()> {
+    let access = env.program.access(index)?;
+    let mut watch = Watch::default();
+    let mut rows = Rows::new(memory, ALL, false);
+    for quad in 0..LANES / 4 {
+        let coordinates = std::array::from_fn(|place| {
+            let lane = 4 * quad + place;
+            (mask >> lane & 1 != 0).then(|| coordinate_of(access, &rows.lane(lane)))
+        });
+        for lane in lanes_of(mask & 0xf << (4 * quad)) {
+            let gradient = gradient_of(&coordinates, lane & 3);
+            apply_access(env, access, &mut rows.lane(lane), Some(gradient), (0, &mut watch))
+                .ok()?;
+        }
+    }
+    Some(())
+}
+
+/// The difference between neighbours of a slot, for the lanes that reached it.
+pub fn derivative(
+    memory: &mut [Row],
+    mask: Mask,
+    axis: Axis,
+    coarse: bool,
+    (to, from): (u32, u32),
+) {
+    let values = memory[from as usize];
+    for lane in lanes_of(mask) {
+        let quad = lane & !3;
+        let along = |axis| {
+            let (low, high) = derivative_lanes(lane & 3, axis, coarse);
+            let (low, high) = (quad + low, quad + high);
+            let are_there = mask >> low & mask >> high & 1 != 0;
+            match are_there {
+                true => f32::binary(Binary::Subtract, values[high], values[low], &mut false),
+                false => 0.0,
+            }
+        };
+        memory[to as usize][lane] = match axis {
+            Axis::Width => {
+                let [x, y] =
+                    [Axis::X, Axis::Y].map(|axis| f32::unary(Unary::Abs, along(axis), &mut false));
+                f32::binary(Binary::Add, x, y, &mut false)
+            }
+            axis => along(axis),
+        };
+    }
+}

@@ -1,0 +1,160 @@
+//! The memory of all lanes: a row of numbers for each slot, one number for each lane.
+
+use super::super::machine::Slots;
+
+/// How many lanes run together.
+pub const LANES: usize = 16;
+
+/// A slot of all lanes.
+pub type Row = [f32; LANES];
+
+/// A bit for each lane.
+pub type Mask = u32;
+
+/// All lanes.
+pub const ALL: Mask = (1 << LANES) - 1;
+
+/// The lanes of a mask.
+pub fn lanes_of(mask: Mask) -> impl Iterator<Item = usize> {
+    (0..LANES).filter(move |lane| mask >> lane & 1 != 0)
+}
+
+/// The memory, and the lanes that an instruction writes.
+pub struct Rows<'m> {
+    pub m: &'m mut [Row],
+    /// The lanes that run. All others keep what they have, unless `whole` is set.
+    pub mask: Mask,
+    /// Whether nothing is lost if the other lanes are written too.
+    pub whole: bool,
+    /// All bits for each lane of the mask.
+    keep: [u32; LANES],
+}
+
+impl<'m> Rows<'m> {
+    pub fn new(m: &'m mut [Row], mask: Mask, whole: bool) -> Self {
+        let keep = std::array::from_fn(|lane| 0u32.wrapping_sub(mask >> lane & 1));
+        Self { m, mask, whole, keep }
+    }
+
+    #[inline(always)]
+    pub fn row(&self, slot: u32) -> Row {
+        self.m[slot as usize]
+    }
+
+    #[inline(always)]
+    pub fn words(&self, slot: u32) -> [u32; LANES] {
+        self.m[slot as usize].map(f32::to_bits)
+    }
+
+    #[inline(always)]
+    pub fn put(&mut self, slot: u32, row: Row) {
+        let to = &mut self.m[slot as usize];
+        if self.whole {
+            *to = row;
+        } else {
+            for lane in 0..LANES {
+                let (keep, old) = (self.keep[lane], to[lane].to_bits());
+                to[lane] = f32::from_bits(row[lane].to_bits() & keep | old & !keep);
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub fn put_words(&mut self, slot: u32, words: [u32; LANES]) {
+        self.put(slot, words.map(f32::from_bits));
+    }
+
+    /// The lanes that run and have something else than 0 in a slot.
+    #[inline(always)]
+    pub fn truth(&self, slot: u32) -> Mask {
+        let words = self.words(slot);
+        let mut truth = 0;
+        for (lane, word) in words.iter().enumerate() {
+            truth |= u32::from(*word != 0) << lane;
+        }
+        truth & self.mask
+    }
+
+    /// The first lane that runs.
+    #[inline(always)]
+    pub fn first(&self) -> usize {
+        (self.mask.trailing_zeros() as usize).min(LANES - 1)
+    }
+
+    /// Whether all lanes that run have the same bits in a row.
+    #[inline(always)]
+    pub fn is_same(&self, row: &Row) -> bool {
+        let first = row[self.first()].to_bits();
+        let mut other = 0;
+        for (value, keep) in row.iter().zip(&self.keep) {
+            other |= (value.to_bits() ^ first) & keep;
+        }
+        other == 0
+    }
+
+    /// The word of a slot, if all lanes that run have the same.
+    #[inline(always)]
+    pub fn common(&self, slot: u32) -> Option<u32> {
+        let row = &self.m[slot as usize];
+        self.is_same(row).then(|| row[self.first()].to_bits())
+    }
+
+    /// Copies slots, which may overlap. As for a single lane, an address outside of the memory
+    /// reads nothing.
+    #[inline(always)]
+    pub fn copy(&mut self, to: u32, from: u32, n: u32) {
+        let (first, last) = (from as usize, from as usize + n as usize);
+        if last > self.m.len() || to as usize + n as usize > self.m.len() {
+            return;
+        }
+        if self.whole {
+            return self.m.copy_within(first..last, to as usize);
+        }
+        let move_one = |i: u32, rows: &mut Self| rows.put(to + i, rows.row(from + i));
+        if to <= from {
+            (0..n).for_each(|i| move_one(i, self));
+        } else {
+            (0..n).rev().for_each(|i| move_one(i, self));
+        }
+    }
+
+    /// The memory of one lane.
+    pub fn lane(&mut self, lane: usize) -> LaneView<'_> {
+        LaneView { m: self.m, lane }
+    }
+}
+
+/// The memory of one lane.
+pub struct LaneView<'m> {
+    m: &'m mut [Row],
+    lane: usize,
+}
+
+impl LaneView<'_> {
+    /// Copies slots of this lane, as [`Rows::copy`].
+    pub fn copy(&mut self, to: u32, from: u32, n: u32) {
+        let (to, from, n) = (to as usize, from as usize, n as usize);
+        if from + n > self.m.len() || to + n > self.m.len() {
+            return;
+        }
+        let lane = self.lane;
+        let move_one = |i: usize, m: &mut [Row]| m[to + i][lane] = m[from + i][lane];
+        if to <= from {
+            (0..n).for_each(|i| move_one(i, self.m));
+        } else {
+            (0..n).rev().for_each(|i| move_one(i, self.m));
+        }
+    }
+}
+
+impl Slots<f32> for LaneView<'_> {
+    #[inline(always)]
+    fn get(&self, slot: u32) -> f32 {
+        self.m[slot as usize][self.lane]
+    }
+
+    #[inline(always)]
+    fn set(&mut self, slot: u32, value: f32) {
+        self.m[slot as usize][self.lane] = value;
+    }
+}
