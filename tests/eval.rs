@@ -8,6 +8,7 @@
 
 mod constants;
 mod drivers;
+mod filters;
 mod library;
 mod lockstep;
 mod machine;
@@ -30,6 +31,7 @@ pub fn trials() -> Vec<Trial> {
     }
     trials.extend(constants::trials());
     trials.extend(drivers::trials());
+    trials.extend(filters::trials());
     trials.extend(library::trials());
     trials.extend(lockstep::trials());
     trials.extend(machine::trials());

@@ -36,4 +36,4 @@ pub use layout::{Kind, MAX_SLOTS};
 pub use machine::{LOOP_LIMIT, Machine};
 pub use number::{Bounded, Number, half_from, half_to};
 pub use program::{Branch, Function, FunctionId, Point, Program};
-pub use resources::{Address, Filter, Level, Resources, Sampler, Shape, Texture};
+pub use resources::{Address, Filter, Level, Resources, Sampler, Shape, Texels, Texture};

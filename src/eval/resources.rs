@@ -71,7 +71,54 @@ pub struct Level {
     /// Layers of an array, faces of cubes, slices of a 3D texture.
     pub layers: u32,
     /// Row by row, layer by layer. They are shared, so that every thread can have the texture.
-    pub texels: Arc<Vec<[f64; 4]>>,
+    pub texels: Arc<Texels>,
+}
+
+/// The texels of a level.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Texels {
+    /// Four components each.
+    Whole(Vec<[f64; 4]>),
+    /// Some components each, side by side. The others are 0.
+    Channels {
+        /// How many components a texel has, 1 to 4.
+        count: usize,
+        /// Those of all texels.
+        values: Vec<f32>,
+    },
+}
+
+impl Texels {
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        match self {
+            Self::Whole(texels) => texels.len(),
+            Self::Channels { count, values } => values.len().checked_div(*count).unwrap_or(0),
+        }
+    }
+
+    /// A texel by its index.
+    #[inline(always)]
+    pub fn get(&self, index: usize) -> Option<[f64; 4]> {
+        match self {
+            Self::Whole(texels) => texels.get(index).copied(),
+            Self::Channels { count: 4, values } => values
+                .get(4 * index..4 * index + 4)
+                .map(|texel| [0, 1, 2, 3].map(|i| f64::from(texel[i]))),
+            Self::Channels { count: 1, values } => {
+                values.get(index).map(|value| [f64::from(*value), 0.0, 0.0, 0.0])
+            }
+            Self::Channels { count, values } => {
+                let texel = values.get(count * index..count * (index + 1))?;
+                Some([0, 1, 2, 3].map(|i| texel.get(i).map_or(0.0, |value| f64::from(*value))))
+            }
+        }
+    }
+
+    /// All of them in order.
+    pub fn iter(&self) -> impl Iterator<Item = [f64; 4]> + '_ {
+        (0..self.count()).filter_map(|index| self.get(index))
+    }
 }
 
 /// What a sampler returns for coordinates outside of a texture.
@@ -116,7 +163,13 @@ pub struct Sampler {
 impl Texture {
     /// A texture of one level, its texels row by row.
     pub fn flat(shape: Shape, width: u32, height: u32, layers: u32, texels: Vec<[f64; 4]>) -> Self {
-        Self { shape, levels: vec![Level { width, height, layers, texels: Arc::new(texels) }] }
+        Self::of(shape, width, height, layers, Texels::Whole(texels))
+    }
+
+    /// As [`Self::flat`], with texels of fewer components.
+    pub fn of(shape: Shape, width: u32, height: u32, layers: u32, texels: Texels) -> Self {
+        let texels = Arc::new(texels);
+        Self { shape, levels: vec![Level { width, height, layers, texels }] }
     }
 
     /// Whether every level has as many texels as its size says, and a cube has whole cubes.
@@ -124,7 +177,7 @@ impl Texture {
         let filled = |level: &Level| {
             let size = u64::from(level.width) * u64::from(level.height) * u64::from(level.layers);
             size > 0
-                && size == level.texels.len() as u64
+                && size == level.texels.count() as u64
                 && (self.shape != Shape::Cube || level.layers.is_multiple_of(6))
         };
         !self.levels.is_empty() && self.levels.iter().all(filled)
@@ -136,6 +189,6 @@ impl Level {
     pub(super) fn texel(&self, [x, y, z]: [i64; 3]) -> Option<[f64; 4]> {
         let within = |at: i64, size: u32| usize::try_from(at).ok().filter(|at| *at < size as usize);
         let (x, y, z) = (within(x, self.width)?, within(y, self.height)?, within(z, self.layers)?);
-        self.texels.get((z * self.height as usize + y) * self.width as usize + x).copied()
+        self.texels.get((z * self.height as usize + y) * self.width as usize + x)
     }
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
 use super::kernel::{Kernel, ParameterKind};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::eval::{self, FunctionId, Machine, Number, Program, Resources};
+use crate::eval::{self, FunctionId, Machine, Number, Program, Resources, Texels};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, ScalarKind};
 
@@ -160,13 +160,9 @@ impl From<&Texture> for eval::Texture {
             TextureKind::Depth2d | TextureKind::Color2d => eval::Shape::D2,
             TextureKind::DepthCube | TextureKind::ColorCube => eval::Shape::Cube,
         };
-        let texel = |channels: &[f32]| {
-            std::array::from_fn(|channel| {
-                channels.get(channel).map_or(0.0, |value| f64::from(*value))
-            })
-        };
-        let texels = fixture.texels.chunks(fixture.kind.channels()).map(texel).collect();
-        Self::flat(shape, fixture.width, fixture.height, fixture.kind.layers(), texels)
+        let texels =
+            Texels::Channels { count: fixture.kind.channels(), values: fixture.texels.clone() };
+        Self::of(shape, fixture.width, fixture.height, fixture.kind.layers(), texels)
     }
 }
 

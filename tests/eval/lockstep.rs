@@ -5,7 +5,8 @@ mod draft;
 
 use super::library::{library_program, random_word};
 use super::program;
-use draft::{Dice, draft_program};
+pub use draft::Dice;
+use draft::draft_program;
 use lamplight::eval::{
     Address, Batch, Error, Filter, FunctionId, Kind, LOOP_LIMIT, Machine, Program, Resources,
     Sampler, Shape, Texture,
@@ -51,7 +52,7 @@ fn resources() -> Resources {
 }
 
 fn random_programs() -> Result<(), Failed> {
-    let (mut parted, mut refused) = (0, 0);
+    let (mut parted, mut refused, mut finite) = (0, 0, 0);
     for seed in 0..PROGRAMS {
         let text = draft_program(seed);
         let program = program(&text)
@@ -70,13 +71,17 @@ fn random_programs() -> Result<(), Failed> {
             .map_err(|problem| format!("program {seed}: {problem}\n{text}"))?;
         match results {
             Some(results) => {
-                parted += u32::from(results.iter().any(|result| *result != results[0]))
+                parted += u32::from(results.iter().any(|result| *result != results[0]));
+                let numbers = results.iter().flatten().flatten();
+                finite += numbers.filter(|bits| f32::from_bits(**bits).is_finite()).count();
             }
             None => refused += 1,
         }
     }
     // Programs that end at once, or give all lanes the same, would test nothing.
     println!("{parted} of {PROGRAMS} programs give lanes different results, {refused} fail");
+    println!("{finite} lanes give finite numbers");
+    assert!(finite > PROGRAMS as usize * QUADS, "too few lanes give finite numbers");
     assert!(parted > PROGRAMS / 2, "the lanes part too seldom");
     assert!(refused > 0 && refused < PROGRAMS / 4, "too few or too many programs fail");
     Ok(())

@@ -8,7 +8,8 @@ use lamplight::bundle::{Kind, Language, Native, Reflection, Target};
 use lamplight::compose::Composed;
 use lamplight::emit;
 use lamplight::eval::{
-    self, Address, Compare, Filter, Level, Machine, Number, Resources, Sampler, Shape, Texture,
+    self, Address, Compare, Filter, Level, Machine, Number, Resources, Sampler, Shape, Texels,
+    Texture,
 };
 use lamplight::execute::compiled::Program;
 use lamplight::execute::compiled::request::{Bound, Fragment};
@@ -189,7 +190,12 @@ fn texture(ty: &str, seed: u32, variant: u32) -> Texture {
                 value(ty, scrambled(seed + 7919 * (4 * texel + i as u32) + level))
             })
         });
-        Level { width, height, layers: depth, texels: std::sync::Arc::new(texels.collect()) }
+        Level {
+            width,
+            height,
+            layers: depth,
+            texels: std::sync::Arc::new(Texels::Whole(texels.collect())),
+        }
     };
     Texture { shape, levels: (0..count).map(level).collect() }
 }

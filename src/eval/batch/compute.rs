@@ -6,7 +6,7 @@ use super::super::code::{Word1, Word2};
 use super::super::machine::{convert_slot, extract_bits, insert_bits, pack, word1, word2};
 use super::super::number::Number;
 use super::geometry::{geometry, matrix_product};
-use super::rows::{LANES, Row, Rows, lanes_of};
+use super::rows::{LANES, Row, Rows, each_lane, lanes_of};
 
 /// Runs one instruction.
 #[inline(always)]
@@ -35,7 +35,7 @@ pub fn compute(instruction: &Instruction, rows: &mut Rows<'_>) {
                 let last = count[i].saturating_sub(1);
                 base[i].wrapping_add(index[i].min(last).wrapping_mul(size))
             };
-            rows.put_words(to, std::array::from_fn(at));
+            rows.put_words(to, each_lane(at));
         }
         Instruction::Load { to, pointer, offset, n } => {
             moved(rows, pointer, |rows, address| rows.copy(to, address.wrapping_add(offset), n), {
@@ -88,7 +88,7 @@ fn seldom(instruction: &Instruction, rows: &mut Rows<'_>) {
                 let (old, new) =
                     (rows.words(from.at(part) as u32), rows.words(new.at(part) as u32));
                 let word = |i: usize| insert_bits([old[i], new[i], offset[i], count[i]]);
-                rows.put_words(to + part, std::array::from_fn(word));
+                rows.put_words(to + part, each_lane(word));
             }
         }
         Instruction::Convert { op, n, to, a } => convert(rows, op, n, to, a),
@@ -150,11 +150,7 @@ pub fn on_each_lane(
 fn each1(rows: &mut Rows<'_>, n: u8, to: u32, a: Operand, f: impl Fn(f32) -> f32) {
     for part in 0..u32::from(n) {
         let x = rows.m[a.at(part)];
-        let mut result = [0.0; LANES];
-        for i in 0..LANES {
-            result[i] = f(x[i]);
-        }
-        rows.put(to + part, result);
+        rows.put(to + part, each_lane(|i| f(x[i])));
     }
 }
 
@@ -162,11 +158,7 @@ fn each1(rows: &mut Rows<'_>, n: u8, to: u32, a: Operand, f: impl Fn(f32) -> f32
 fn each2(rows: &mut Rows<'_>, n: u8, to: u32, [a, b]: [Operand; 2], f: impl Fn(f32, f32) -> f32) {
     for part in 0..u32::from(n) {
         let (x, y) = (rows.m[a.at(part)], rows.m[b.at(part)]);
-        let mut result = [0.0; LANES];
-        for i in 0..LANES {
-            result[i] = f(x[i], y[i]);
-        }
-        rows.put(to + part, result);
+        rows.put(to + part, each_lane(|i| f(x[i], y[i])));
     }
 }
 
@@ -180,11 +172,7 @@ fn each3(
 ) {
     for part in 0..u32::from(n) {
         let (x, y, z) = (rows.m[a.at(part)], rows.m[b.at(part)], rows.m[c.at(part)]);
-        let mut result = [0.0; LANES];
-        for i in 0..LANES {
-            result[i] = f(x[i], y[i], z[i]);
-        }
-        rows.put(to + part, result);
+        rows.put(to + part, each_lane(|i| f(x[i], y[i], z[i])));
     }
 }
 
@@ -193,7 +181,7 @@ fn each3(
 fn each_row(rows: &mut Rows<'_>, n: u8, to: u32, a: Operand, f: impl Fn(usize, u32) -> u32) {
     for part in 0..u32::from(n) {
         let x = rows.words(a.at(part) as u32);
-        rows.put_words(to + part, std::array::from_fn(|i| f(i, x[i])));
+        rows.put_words(to + part, each_lane(|i| f(i, x[i])));
     }
 }
 

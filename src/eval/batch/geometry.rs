@@ -3,7 +3,7 @@
 use super::super::code::{Geometry, Product};
 use super::super::machine;
 use super::compute::on_each_lane;
-use super::rows::{LANES, Row, Rows};
+use super::rows::{LANES, Row, Rows, each_lane};
 
 /// A vector of up to four numbers, of all lanes.
 type Vector = [Row; 4];
@@ -40,7 +40,8 @@ pub fn geometry(rows: &mut Rows<'_>, op: Geometry, n: u32, [to, a, b, c]: [u32; 
         }
         Geometry::Reflect => {
             let (e1, e2) = (load(rows, a, n), load(rows, b, n));
-            let twice = dot(&e2, &e1, size).map(|x| 2.0 * x);
+            let cosine = dot(&e2, &e1, size);
+            let twice = each_lane(|i| 2.0 * cosine[i]);
             for (i, slot) in (0..size).zip(to..) {
                 let along = times(&e2[i], &twice);
                 rows.put(slot, zip(&e1[i], &along, |x, y| x - y));
@@ -75,11 +76,7 @@ fn load(rows: &Rows<'_>, from: u32, n: u32) -> Vector {
 
 #[inline(always)]
 fn zip(a: &Row, b: &Row, f: impl Fn(f32, f32) -> f32) -> Row {
-    let mut result = [0.0; LANES];
-    for i in 0..LANES {
-        result[i] = f(a[i], b[i]);
-    }
-    result
+    each_lane(|i| f(a[i], b[i]))
 }
 
 #[inline(always)]
@@ -99,7 +96,11 @@ fn dot(a: &Vector, b: &Vector, n: usize) -> Row {
 
 #[inline(always)]
 fn length(vector: &Vector, n: usize) -> Row {
-    if n == 1 { vector[0].map(f32::abs) } else { dot(vector, vector, n).map(f32::sqrt) }
+    if n == 1 {
+        return each_lane(|i| vector[0][i].abs());
+    }
+    let square = dot(vector, vector, n);
+    each_lane(|i| square[i].sqrt())
 }
 
 /// Products of matrices; a column of `b` at a time.

@@ -5,7 +5,7 @@ use super::super::machine::{
     Env, Watch, apply_access, coordinate_of, derivative_lanes, gradient_of,
 };
 use super::super::number::Number;
-use super::rows::{ALL, LANES, Mask, Row, Rows, lanes_of};
+use super::rows::{ALL, LANES, Mask, Row, Rows, kept_lanes, lanes_of};
 
 /// Runs an access of each lane by itself.
 pub fn run_single(env: Env<'_>, index: u32, rows: &mut Rows<'_>, at: u32) -> Option<()> {
@@ -21,7 +21,8 @@ pub fn run_single(env: Env<'_>, index: u32, rows: &mut Rows<'_>, at: u32) -> Opt
 pub fn run_quads(env: Env<'_>, index: u32, memory: &mut [Row], mask: Mask) -> Option<()> {
     let access = env.program.access(index)?;
     let mut watch = Watch::default();
-    let mut rows = Rows::new(memory, ALL, false);
+    let keep = kept_lanes(ALL);
+    let mut rows = Rows::new(memory, ALL, false, &keep);
     for quad in 0..LANES / 4 {
         let coordinates = std::array::from_fn(|place| {
             let lane = 4 * quad + place;

@@ -14,6 +14,22 @@ pub type Mask = u32;
 /// All lanes.
 pub const ALL: Mask = (1 << LANES) - 1;
 
+/// All bits for each lane of a mask, and none for the others.
+pub fn kept_lanes(mask: Mask) -> [u32; LANES] {
+    each_lane(|lane| 0u32.wrapping_sub(mask >> lane & 1))
+}
+
+/// What a function gives for each lane. It is a plain loop, which the compiler turns into
+/// instructions for many numbers.
+#[inline(always)]
+pub fn each_lane<T: Copy + Default>(f: impl Fn(usize) -> T) -> [T; LANES] {
+    let mut row = [T::default(); LANES];
+    for (lane, value) in row.iter_mut().enumerate() {
+        *value = f(lane);
+    }
+    row
+}
+
 /// The lanes of a mask.
 pub fn lanes_of(mask: Mask) -> impl Iterator<Item = usize> {
     (0..LANES).filter(move |lane| mask >> lane & 1 != 0)
@@ -26,13 +42,13 @@ pub struct Rows<'m> {
     pub mask: Mask,
     /// Whether nothing is lost if the other lanes are written too.
     pub whole: bool,
-    /// All bits for each lane of the mask.
-    keep: [u32; LANES],
+    /// [`kept_lanes`] of the mask.
+    keep: &'m [u32; LANES],
 }
 
 impl<'m> Rows<'m> {
-    pub fn new(m: &'m mut [Row], mask: Mask, whole: bool) -> Self {
-        let keep = std::array::from_fn(|lane| 0u32.wrapping_sub(mask >> lane & 1));
+    #[inline(always)]
+    pub fn new(m: &'m mut [Row], mask: Mask, whole: bool, keep: &'m [u32; LANES]) -> Self {
         Self { m, mask, whole, keep }
     }
 
@@ -43,7 +59,8 @@ impl<'m> Rows<'m> {
 
     #[inline(always)]
     pub fn words(&self, slot: u32) -> [u32; LANES] {
-        self.m[slot as usize].map(f32::to_bits)
+        let row = &self.m[slot as usize];
+        each_lane(|lane| row[lane].to_bits())
     }
 
     #[inline(always)]
@@ -52,21 +69,25 @@ impl<'m> Rows<'m> {
         if self.whole {
             *to = row;
         } else {
-            for lane in 0..LANES {
-                let (keep, old) = (self.keep[lane], to[lane].to_bits());
-                to[lane] = f32::from_bits(row[lane].to_bits() & keep | old & !keep);
-            }
+            let (keep, old) = (self.keep, *to);
+            *to = each_lane(|lane| {
+                let (new, old) = (row[lane].to_bits(), old[lane].to_bits());
+                f32::from_bits(new & keep[lane] | old & !keep[lane])
+            });
         }
     }
 
     #[inline(always)]
     pub fn put_words(&mut self, slot: u32, words: [u32; LANES]) {
-        self.put(slot, words.map(f32::from_bits));
+        self.put(slot, each_lane(|lane| f32::from_bits(words[lane])));
     }
 
     /// The lanes that run and have something else than 0 in a slot.
     #[inline(always)]
     pub fn truth(&self, slot: u32) -> Mask {
+        if let Some(word) = self.common(slot) {
+            return if word == 0 { 0 } else { self.mask };
+        }
         let words = self.words(slot);
         let mut truth = 0;
         for (lane, word) in words.iter().enumerate() {
@@ -86,7 +107,7 @@ impl<'m> Rows<'m> {
     pub fn is_same(&self, row: &Row) -> bool {
         let first = row[self.first()].to_bits();
         let mut other = 0;
-        for (value, keep) in row.iter().zip(&self.keep) {
+        for (value, keep) in row.iter().zip(self.keep) {
             other |= (value.to_bits() ^ first) & keep;
         }
         other == 0
@@ -107,7 +128,7 @@ impl<'m> Rows<'m> {
         if last > self.m.len() || to as usize + n as usize > self.m.len() {
             return;
         }
-        if self.whole {
+        if self.whole && n > 4 {
             return self.m.copy_within(first..last, to as usize);
         }
         let move_one = |i: u32, rows: &mut Self| rows.put(to + i, rows.row(from + i));

@@ -4,7 +4,7 @@ use super::super::code::Instruction;
 use super::super::machine::{Env, jump_target};
 use super::compute::compute;
 use super::image;
-use super::rows::{LANES, Mask, Row, Rows, lanes_of};
+use super::rows::{ALL, LANES, Mask, Row, Rows, kept_lanes, lanes_of};
 use super::schedule::{Group, Lanes};
 
 /// The first slot of the function's result, and where the results of lanes are kept.
@@ -17,7 +17,7 @@ pub fn run_lanes(
     lanes: &mut Lanes,
     results: Results<'_>,
 ) -> Option<()> {
-    let mut run = Run { env, memory, lanes, results };
+    let mut run = Run { env, memory, lanes, keep: kept_lanes(ALL), results };
     loop {
         if let Some(group) = run.lanes.next_group(env.loop_limit) {
             run.advance(group)?;
@@ -33,6 +33,8 @@ struct Run<'r> {
     env: Env<'r>,
     memory: &'r mut [Row],
     lanes: &'r mut Lanes,
+    /// The lanes of the group that runs.
+    keep: [u32; LANES],
     results: Results<'r>,
 }
 
@@ -54,6 +56,7 @@ impl Run<'_> {
     /// Runs a group until others have to run.
     fn advance(&mut self, mut group: Group) -> Option<()> {
         let began = (group.steps_left, group.trips_left);
+        self.keep = kept_lanes(group.mask);
         loop {
             let instruction = self.env.program.instruction(group.pc)?;
             group.steps_left = group.steps_left.checked_sub(instruction.steps())?;
@@ -125,7 +128,7 @@ impl Run<'_> {
 
     #[inline(always)]
     fn rows(&mut self, group: &Group) -> Rows<'_> {
-        Rows::new(self.memory, group.mask, group.alone)
+        Rows::new(self.memory, group.mask, group.alone, &self.keep)
     }
 
     #[inline(always)]

@@ -133,7 +133,7 @@ fn convert<N: Number>(m: &mut [N], op: Convert, n: u8, to: u32, a: Operand, doub
 
 /// Changes one slot from a word to a number, or the other way.
 #[inline(always)]
-pub(in crate::eval) fn convert_slot<N: Number>(op: Convert, x: N, doubt: &mut bool) -> N {
+pub fn convert_slot<N: Number>(op: Convert, x: N, doubt: &mut bool) -> N {
     match op {
         Convert::FloatFromS => whole_number(f64::from(x.word() as i32)),
         Convert::FloatFromU => whole_number(f64::from(x.word())),

@@ -9,7 +9,7 @@ use super::super::number::Number;
 type Vector<N> = [N; 4];
 
 /// Runs one function on the slots `[to, a, b, c]`.
-pub(in crate::eval) fn geometry<N: Number>(
+pub fn geometry<N: Number>(
     m: &mut [N],
     op: Geometry,
     n: usize,

@@ -26,7 +26,7 @@ pub(super) struct Lane<N> {
 
 /// What all lanes share.
 #[derive(Clone, Copy)]
-pub(in crate::eval) struct Env<'e> {
+pub struct Env<'e> {
     pub program: &'e Program,
     pub bound: &'e Bound,
     pub loop_limit: u64,
@@ -135,7 +135,7 @@ impl<N: Number> Lane<N> {
     }
 }
 
-pub(in crate::eval) fn jump_target(program: &Program, table: u32, selector: u32) -> u32 {
+pub fn jump_target(program: &Program, table: u32, selector: u32) -> u32 {
     let table = &program.tables[table as usize];
     table.cases.iter().find(|case| case.0 == selector).map_or(table.default, |case| case.1)
 }

@@ -4,13 +4,7 @@ use super::super::code::{Packing, Unary};
 use super::super::number::{Number, half_from, half_to};
 
 /// Packs the vector at `from`, or unpacks the word there.
-pub(in crate::eval) fn pack<N: Number>(
-    m: &mut [N],
-    op: Packing,
-    to: u32,
-    from: u32,
-    doubt: &mut bool,
-) {
+pub fn pack<N: Number>(m: &mut [N], op: Packing, to: u32, from: u32, doubt: &mut bool) {
     let (to, from) = (to as usize, from as usize);
     let word = m[from].word();
     match op {

@@ -2,12 +2,14 @@
 //! [`super::filter`]: a texture of two dimensions, or the inside of a face of a cube.
 
 use super::super::number::Number;
-use super::super::resources::{Filter, Level, Shape};
+use super::super::resources::{Filter, Level, Shape, Texels};
 use super::filter::{Footprint, wrap_address};
 
-/// The image that a place is on, and how many texels are before it.
+/// The image that a place is on.
 struct Image<'l> {
-    texels: &'l [[f64; 4]],
+    texels: &'l Texels,
+    /// The index of its first texel.
+    first: usize,
     size: [u32; 2],
 }
 
@@ -22,10 +24,8 @@ pub fn filter_image<N: Number>(footprint: &Footprint<N>, level: &Level) -> Optio
         _ => return None,
     };
     let all = level.width as usize * level.height as usize;
-    let image = Image {
-        texels: level.texels.get(layer * all..(layer + 1) * all)?,
-        size: [level.width, level.height],
-    };
+    let image =
+        Image { texels: &level.texels, first: layer * all, size: [level.width, level.height] };
     match footprint.filter {
         Filter::Linear => linear(footprint, &image),
         Filter::Nearest => nearest(footprint, &image),
@@ -87,7 +87,7 @@ fn place_along<N>(
 impl Image<'_> {
     #[inline(always)]
     fn at(&self, x: usize, y: usize) -> Option<[f64; 4]> {
-        self.texels.get(y * self.size[0] as usize + x).copied()
+        self.texels.get(self.first + y * self.size[0] as usize + x)
     }
 }
 

@@ -20,7 +20,7 @@ type Gradient = [[f64; 3]; 2];
 type Notes<'w> = (u32, &'w mut Watch);
 
 /// The memory of one lane, which many lanes may have together.
-pub(in crate::eval) trait Slots<N> {
+pub trait Slots<N> {
     fn get(&self, slot: u32) -> N;
     fn set(&mut self, slot: u32, value: N);
 }
@@ -58,15 +58,12 @@ pub(super) fn run_quad<N: Number>(
 }
 
 /// The coordinate of an access.
-pub(in crate::eval) fn coordinate_of<N: Number>(
-    access: &Access,
-    m: &(impl Slots<N> + ?Sized),
-) -> [f64; 3] {
+pub fn coordinate_of<N: Number>(access: &Access, m: &(impl Slots<N> + ?Sized)) -> [f64; 3] {
     values_at(m, access.coordinate, access.dimensions)
 }
 
 /// How the coordinate changes around a lane of a quad; not at all where a neighbour has none.
-pub(in crate::eval) fn gradient_of(coordinates: &[Option<[f64; 3]>; 4], lane: usize) -> Gradient {
+pub fn gradient_of(coordinates: &[Option<[f64; 3]>; 4], lane: usize) -> Gradient {
     [Axis::X, Axis::Y].map(|axis| {
         let (low, high) = derivative_lanes(lane, axis, false);
         coordinates[low]
@@ -87,7 +84,7 @@ pub(super) fn run_single<N: Number>(
 }
 
 /// Runs an access on the memory of a lane.
-pub(in crate::eval) fn apply_access<N: Number>(
+pub fn apply_access<N: Number>(
     env: Env,
     access: &Access,
     m: &mut (impl Slots<N> + ?Sized),

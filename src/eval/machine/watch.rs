@@ -11,7 +11,7 @@ const MAX_FINDINGS: usize = 10_000;
 
 /// Coverage and findings of one machine.
 #[derive(Debug, Default)]
-pub(in crate::eval) struct Watch {
+pub struct Watch {
     pub sanitize: bool,
     pub hits: Vec<u64>,
     findings: BTreeMap<(Kind, u32), u64>,

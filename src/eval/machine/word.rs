@@ -4,7 +4,7 @@
 use super::super::code::{Word1, Word2};
 
 #[inline(always)]
-pub(in crate::eval) fn word1(op: Word1, x: u32) -> u32 {
+pub fn word1(op: Word1, x: u32) -> u32 {
     match op {
         Word1::Negate => x.wrapping_neg(),
         Word1::Not => !x,
@@ -32,7 +32,7 @@ pub(in crate::eval) fn word1(op: Word1, x: u32) -> u32 {
 }
 
 #[inline(always)]
-pub(in crate::eval) fn word2(op: Word2, a: u32, b: u32) -> u32 {
+pub fn word2(op: Word2, a: u32, b: u32) -> u32 {
     let (signed_a, signed_b) = (a as i32, b as i32);
     match op {
         Word2::Add => a.wrapping_add(b),
@@ -68,7 +68,7 @@ pub(in crate::eval) fn word2(op: Word2, a: u32, b: u32) -> u32 {
 }
 
 /// Bits `[offset, offset + count)` of the word, with the range clamped to the word.
-pub(in crate::eval) fn extract_bits(signed: bool, word: u32, offset: u32, count: u32) -> u32 {
+pub fn extract_bits(signed: bool, word: u32, offset: u32, count: u32) -> u32 {
     let offset = offset.min(32);
     let count = count.min(32 - offset);
     if count == 0 {
@@ -79,7 +79,7 @@ pub(in crate::eval) fn extract_bits(signed: bool, word: u32, offset: u32, count:
 }
 
 /// `[word, new, offset, count]`: the word with bits `[offset, offset + count)` replaced.
-pub(in crate::eval) fn insert_bits([word, new, offset, count]: [u32; 4]) -> u32 {
+pub fn insert_bits([word, new, offset, count]: [u32; 4]) -> u32 {
     let offset = offset.min(32);
     let count = count.min(32 - offset);
     if count == 0 {

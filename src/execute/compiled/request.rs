@@ -122,7 +122,7 @@ impl Image {
             width: level.width,
             height: level.height,
             layers: level.layers,
-            words: level.texels.iter().flatten().map(|value| format.word(*value)).collect(),
+            words: level.texels.iter().flatten().map(|value| format.word(value)).collect(),
         };
         let levels = texture.levels.iter().map(level).collect();
         Self { shape: texture.shape, format, levels }

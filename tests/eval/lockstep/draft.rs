@@ -15,7 +15,7 @@ impl Dice {
 
     /// Mostly small numbers, with those among them that operations treat specially.
     pub fn number(&mut self) -> f32 {
-        match self.roll(12) {
+        match self.roll(60) {
             0 => 0.0,
             1 => -0.0,
             2 => 1.0,
@@ -26,7 +26,8 @@ impl Dice {
     }
 }
 
-/// A random program. All of its variables are in scope everywhere: `x` and `y` are numbers, `v` is a
+/// A random program. Its numbers are variables, or in a buffer, since naga computes expressions of
+/// constants by itself. All of its variables are in scope everywhere: `x` and `y` are numbers, `v` is a
 /// vector, `i` an integer and `a` an array.
 struct Draft {
     dice: Dice,
@@ -42,8 +43,19 @@ struct Draft {
 
 impl Draft {
     fn number(&mut self) -> String {
-        let options =
-            ["x", "y", "v.x", "v[i & 3]", "a[i]", "f32(i)", "0.5", "-1.25", "3.0", "v.w", "held"];
+        let options = [
+            "x",
+            "y",
+            "v.x",
+            "v[i & 3]",
+            "a[i]",
+            "f32(i)",
+            "given[0].z",
+            "-given[1].y",
+            "given[2].w",
+            "v.w",
+            "held",
+        ];
         let pick = self.dice.roll(options.len() as u32) as usize;
         options[pick].to_owned()
     }
