@@ -126,7 +126,12 @@ pub fn prefilter(sky: &Sky<'_>, exponent: f64, size: usize, rows: usize) -> Cube
         let n = CubeMap::direction(size, face, column, row);
         let (mut sum, mut all) = (DVec3::ZERO, 0.0);
         for (direction, solid_angle, radiance) in &seen {
-            let weight = n.dot(*direction).max(0.0).powf(exponent) * solid_angle;
+            let cosine = n.dot(*direction).max(0.0);
+            // Half of the directions are behind the lobe, and a power takes most of the time.
+            if cosine == 0.0 && exponent > 0.0 {
+                continue;
+            }
+            let weight = cosine.powf(exponent) * solid_angle;
             sum += *radiance * weight;
             all += weight;
         }

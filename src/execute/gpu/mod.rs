@@ -226,6 +226,16 @@ impl Gpu {
     }
 
     fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<u32>, Diagnostic> {
+        let word = |bytes: &[u8; 4]| u32::from_le_bytes(*bytes);
+        self.mapped(buffer, |bytes| bytes.as_chunks::<4>().0.iter().map(word).collect())
+    }
+
+    /// Runs something on the bytes of a buffer, once the device has written them.
+    fn mapped<T>(
+        &self,
+        buffer: &wgpu::Buffer,
+        run: impl FnOnce(&[u8]) -> T,
+    ) -> Result<T, Diagnostic> {
         let outcome = Arc::new(Mutex::new(None));
         let sender = Arc::clone(&outcome);
         buffer
@@ -243,11 +253,10 @@ impl Gpu {
             None => return Err(gpu_failed("the result was never handed over")),
         }
         let view = buffer.get_mapped_range(..).map_err(|error| gpu_failed(format!("{error:?}")))?;
-        let words =
-            view.as_chunks::<4>().0.iter().map(|bytes| u32::from_le_bytes(*bytes)).collect();
+        let found = run(&view);
         drop(view);
         buffer.unmap();
-        Ok(words)
+        Ok(found)
     }
 
     /// Runs calls of wgpu with every error caught, panics below wgpu included.

@@ -8,6 +8,9 @@ use crate::execute::shipped::Format;
 
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
+/// The format that depths are read in: their bits.
+const READ_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+
 /// The shader that reads depth. Not every device can copy depth into a buffer, but all can read it.
 const DEPTH: &str = "
 @group(0) @binding(0) var drawn: texture_2d<f32>;
@@ -90,12 +93,12 @@ impl Targets {
         let color = self
             .color
             .iter()
-            .map(|(target, _)| copy_to_buffer(gpu, encoder, target, self.size))
+            .map(|(target, _)| copy_to_buffer(gpu, encoder, target, self.size, TEXEL))
             .collect();
         let kept = self.depth.as_ref().filter(|_| self.keep_depth);
         let depth = kept.map(|depth| {
             let target = as_words(gpu, encoder, depth, self.size);
-            copy_to_buffer(gpu, encoder, &target, self.size)
+            copy_to_buffer(gpu, encoder, &target, self.size, DEPTH_TEXEL)
         });
         Pending { size: self.size, color, depth }
     }
@@ -103,22 +106,26 @@ impl Targets {
 
 impl Pending {
     pub fn read(&self, gpu: &Gpu, detour: Option<&'static str>) -> Result<Frame, Diagnostic> {
-        let row = self.size[0] as usize * 4;
-        let read = |buffer: &wgpu::Buffer| -> Result<Vec<u32>, Diagnostic> {
-            let words = gpu.read(buffer)?;
-            Ok(words
-                .chunks(padded_row(self.size[0]) as usize / 4)
-                .flat_map(|words| &words[..row])
-                .copied()
-                .collect())
+        let color = |buffer: &wgpu::Buffer| {
+            gpu.mapped(buffer, |bytes| self.texels(bytes, TEXEL, u32::from_le_bytes))
         };
-        let targets = self.color.iter().map(read).collect::<Result<_, _>>()?;
-        let depth = self.depth.as_ref().map(read).transpose()?.unwrap_or_default();
-        Ok(Frame {
-            targets,
-            depth: depth.chunks(4).map(|pixel| f32::from_bits(pixel[0])).collect(),
-            detour,
-        })
+        let targets = self.color.iter().map(color).collect::<Result<_, _>>()?;
+        let depth = self.depth.as_ref().map(|buffer| {
+            gpu.mapped(buffer, |bytes| self.texels(bytes, DEPTH_TEXEL, f32::from_le_bytes))
+        });
+        Ok(Frame { targets, depth: depth.transpose()?.unwrap_or_default(), detour })
+    }
+
+    /// What is in the rows of a buffer, without their padding. Large maps are read once, into
+    /// memory that has their size.
+    fn texels<T>(&self, bytes: &[u8], texel: u32, number: impl Fn([u8; 4]) -> T) -> Vec<T> {
+        let [width, height] = self.size;
+        let row = (width * texel) as usize;
+        let mut all = Vec::with_capacity(row / 4 * height as usize);
+        for bytes in bytes.chunks(padded_row(width, texel) as usize) {
+            all.extend(bytes[..row].as_chunks::<4>().0.iter().map(|bytes| number(*bytes)));
+        }
+        all
     }
 }
 
@@ -147,9 +154,13 @@ fn color_attachment(
     }
 }
 
+/// Bytes of a texel of a target, and of the depths that are read.
+const TEXEL: u32 = 16;
+const DEPTH_TEXEL: u32 = 4;
+
 /// Bytes of a row in a buffer, with its padding.
-fn padded_row(width: u32) -> u32 {
-    (width * 16).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
+fn padded_row(width: u32, texel: u32) -> u32 {
+    (width * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
 }
 
 fn copy_to_buffer(
@@ -157,8 +168,9 @@ fn copy_to_buffer(
     encoder: &mut wgpu::CommandEncoder,
     target: &wgpu::Texture,
     [width, height]: [u32; 2],
+    texel: u32,
 ) -> wgpu::Buffer {
-    let row = padded_row(width);
+    let row = padded_row(width, texel);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: u64::from(row) * u64::from(height),
@@ -179,7 +191,7 @@ fn copy_to_buffer(
 /// A pipeline that reads the bits of a depth texture, and the layout of its bindings.
 fn depth_reader(device: &wgpu::Device) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline) {
     let taken = wgpu::TextureSampleType::Float { filterable: false };
-    pipeline::texture_pipeline(device, (DEPTH, "read"), taken, Some(TARGET_FORMAT), None)
+    pipeline::texture_pipeline(device, (DEPTH, "read"), taken, Some(READ_FORMAT), None)
 }
 
 /// Draws the bits of a depth texture into a target of words.
@@ -202,7 +214,7 @@ fn as_words(
     let target = create_target(
         device,
         size,
-        TARGET_FORMAT,
+        READ_FORMAT,
         wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
     );
     let view = target.create_view(&Default::default());
