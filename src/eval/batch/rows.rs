@@ -131,11 +131,9 @@ impl<'m> Rows<'m> {
         if self.whole && n > 4 {
             return self.m.copy_within(first..last, to as usize);
         }
-        let move_one = |i: u32, rows: &mut Self| rows.put(to + i, rows.row(from + i));
-        if to <= from {
-            (0..n).for_each(|i| move_one(i, self));
-        } else {
-            (0..n).rev().for_each(|i| move_one(i, self));
+        for i in 0..n {
+            let i = if to <= from { i } else { n - 1 - i };
+            self.put(to + i, self.row(from + i));
         }
     }
 
