@@ -204,6 +204,87 @@ float area_energy(float alpha, float wide) {
     return ratio * ratio;
 }
 
+/// The integral of a linearly transformed cosine over a disk or an ellipse.
+///
+/// With the identity for `minv` it is the form factor: irradiance over pi of a light of radiance 1.
+///
+/// Parameters: `n`, `v` unit, one space, `v` away from the surface; `p` the lit point, that space, scene units; `minv` as for `ltc_rect`; `center`, `ex`, `ey` centre and half axes of the ellipse, the space of `p`: it shines to the side to which the cross product of its axes points.
+/// Returns: the integral, in [0, 1] up to rounding. Multiply it by the light's radiance and the lobe's albedo to get the reflected radiance.
+/// Source: Heitz, Hill, "Real-Time Line- and Disk-Light Shading with Linearly Transformed Cosines", SIGGRAPH, 2017: `L1*L2/sqrt((1 + L1^2)*(1 + L2^2))` with the half axes of the cone of directions, whose largest eigenvalue is found here by Newton's method.
+/// Edges: 0 from behind the light and below the horizon, and for an ellipse without area; where the horizon cuts the light, a sphere of the same form factor stands for it.
+/// Error model: absolute 2^-18 for a light that is as large as it is far away, beside what the sphere is off at the horizon.
+float ltc_disk(vec3 n, vec3 v, vec3 p, mat3 minv, vec3 center, vec3 ex, vec3 ey) {
+    vec3 t1 = safe_normalize(v - n * dot(v, n), any_tangent(n));
+    vec3 t2 = cross(n, t1);
+    vec3 q = center - p;
+    vec3 far = minv * vec3(dot(t1, q), dot(t2, q), dot(n, q));
+    float scale = 1.0 / max(length(far), 1e-18);
+    vec3 c = far * scale;
+    vec3 a = minv * vec3(dot(t1, ex), dot(t2, ex), dot(n, ex)) * scale;
+    vec3 b = minv * vec3(dot(t1, ey), dot(t2, ey), dot(n, ey)) * scale;
+    vec3 ab = cross(a, b);
+    float volume = dot(c, ab);
+    if (!(volume < 0.0)) {
+        return 0.0;
+    }
+    // The directions of the light are those with a positive value of a quadric, whose inverse is c*c - a*a - b*b as
+    // outer products: it has one positive eigenvalue, which is at most 1, and its eigenvector is the light's axis.
+    vec3 ca = cross(c, a);
+    vec3 cb = cross(c, b);
+    float trace = 1.0 - dot(a, a) - dot(b, b);
+    float minors = dot(ab, ab) - dot(ca, ca) - dot(cb, cb);
+    float root = 1.0;
+    for (int i = 0; i < 10; i++) {
+        float value = ((root - trace) * root + minors) * root - volume * volume;
+        root -= value / ((3.0 * root - 2.0 * trace) * root + minors);
+    }
+    float product = volume * volume / root;
+    vec3 once = c - a * dot(a, c) - b * dot(b, c);
+    vec3 twice = c * dot(c, once) - a * dot(a, once) - b * dot(b, once);
+    vec3 axis = safe_normalize(twice + (root - trace) * once + product * c, vec3(0.0));
+    float share = -volume * inversesqrt(max(root * ((3.0 * root - 2.0 * trace) * root + minors), 1e-30));
+    return sphere_irradiance(axis.z, share) * 0.31830989;
+}
+
+/// The integral of a linearly transformed cosine over a thin tube.
+///
+/// Parameters: `n`, `v`, `p`, `minv` as for `ltc_rect`; `a`, `b` ends of the tube's axis, the space of `p`, scene units; `radius` of the tube, scene units, small compared to its distance.
+/// Returns: the integral, [0, 1], without the caps. Multiply it by the light's radiance and the lobe's albedo to get the reflected radiance.
+/// Source: Heitz, Hill, "Real-Time Line- and Disk-Light Shading with Linearly Transformed Cosines", SIGGRAPH, 2017: `l/(d*(d^2 + l^2)) + atan(l/d)/d^2` from end to end, times the radius over pi, without the differences that cancel.
+/// Edges: the part below the horizon is cut off; 0 for a line without length or through the point; a tube that is too thick for its distance counts as one that covers the hemisphere; a negative radius counts as 0.
+/// Error model: absolute 2^-18 for a tube of a tenth of its distance.
+float ltc_line(vec3 n, vec3 v, vec3 p, mat3 minv, vec3 a, vec3 b, float radius) {
+    vec3 t1 = safe_normalize(v - n * dot(v, n), any_tangent(n));
+    vec3 t2 = cross(n, t1);
+    vec3 qa = vec3(dot(t1, a - p), dot(t2, a - p), dot(n, a - p));
+    vec3 qb = vec3(dot(t1, b - p), dot(t2, b - p), dot(n, b - p));
+    vec3 across = safe_normalize(cross(qa, qb), vec3(0.0));
+    vec3 head = minv * qa;
+    vec3 tail = minv * qb;
+    if (!(head.z > 0.0 || tail.z > 0.0) || dot(across, across) == 0.0) {
+        return 0.0;
+    }
+    if (head.z < 0.0) {
+        head = head + (tail - head) * (head.z / (head.z - tail.z));
+    }
+    if (tail.z < 0.0) {
+        tail = tail + (head - tail) * (tail.z / (tail.z - head.z));
+    }
+    vec3 along = safe_normalize(tail - head, vec3(0.0));
+    float l1 = dot(head, along);
+    float l2 = dot(tail, along);
+    vec3 nearest = head - along * l1;
+    float d = max(length(nearest), 1e-12);
+    float span = (l2 - l1) * d / max(dot(head, head) * dot(tail, tail), 1e-30);
+    float rise = span * (d * d - l1 * l2) + atan(d * (l2 - l1), d * d + l1 * l2);
+    float sum = nearest.z / d * rise / d + along.z * span * (l1 + l2);
+    // How much narrower than the transformed light its own is: the determinant over the cofactors of the inverse matrix.
+    vec3 c0 = cross(minv[1], minv[2]);
+    vec3 wide = across.x * c0 + across.y * cross(minv[2], minv[0]) + across.z * cross(minv[0], minv[1]);
+    float width = max(radius, 0.0) * dot(minv[0], c0) * inversesqrt(max(dot(wide, wide), 1e-30));
+    return clamp(width * sum * 0.31830989, 0.0, 1.0);
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

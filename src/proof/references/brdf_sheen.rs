@@ -1,7 +1,9 @@
 //! Sources: Estevez and Kulla, 2017; Neubelt and Pettineo, 2013; Khronos Group,
-//! KHR_materials_sheen, 2020; the fit of the albedo: MaterialX shader library, 2020.
+//! KHR_materials_sheen, 2020; the fit of the albedo: MaterialX shader library, 2020;
+//! Zeltner et al., 2022, in the fit of MaterialX, 2023.
 
 use super::{Arguments, Entry, Expected};
+use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
 pub const REFERENCES: Entry = Entry {
@@ -14,6 +16,8 @@ pub const REFERENCES: Entry = Entry {
         ("v_charlie", v_charlie),
         ("sheen_albedo", |a| sheen_albedo(a.f64(), a.f64()).into()),
         ("sheen_scale", sheen_scale),
+        ("sheen_ltc", |a| ltc(a.f64(), a.f64())),
+        ("sheen_ltc_lobe", |a| ltc_lobe(a.vec3(), a.vec3()).into()),
     ],
 };
 
@@ -79,4 +83,31 @@ fn sheen_scale(a: &mut Arguments<'_>) -> Expected {
     let (color, ev, el) = (a.vec3(), a.f64(), a.f64());
     let left = |albedo: f64| 1.0 - color.max_element() * albedo;
     left(ev).min(left(el)).clamp(0.0, 1.0).into()
+}
+
+/// Two entries of the inverse matrix, and a Gaussian of the cosine with an offset.
+fn ltc(x: f64, y: f64) -> Expected {
+    let (x, y) = (x.clamp(0.0, 1.0), y.clamp(f64::from(0.01f32), 1.0));
+    let a = (2.58126 * x + 0.813703 * y) * y / (1.0 + 0.310327 * x.powi(2) + 2.60994 * x * y);
+    let under = 0.0000254053 + 1.71228 * x - 1.71506 * x * y + 1.34174 * y.powi(2);
+    let b = (1.0 - x).sqrt() * (y - 1.0) * y.powi(3) / under;
+    let deviation = y * (0.0206607 + 1.58491 * y) / (0.0379424 + 1.32227 * y + y.powi(2));
+    let mean = (-0.193854 * y - 1.14885 * y.powi(2) + 1.7932 * y.powi(3) - 0.95943 * y.powi(5))
+        / (0.046391 + y);
+    let offset = (0.000654023 * y - 0.0207818 * y.powi(2) + 0.119681 * y.powi(3))
+        / (1.26264 - 1.92021 * y + y.powi(2));
+    let z = (x - mean) / deviation;
+    let share = (-0.5 * z * z).exp() / (deviation * (2.0 * PI).sqrt()) + offset;
+    Expected::words([a, b, share.clamp(0.0, 1.0)])
+}
+
+/// The cosine lobe of the transformed direction, times the change of solid angle: |det|/length^3.
+fn ltc_lobe(t: DVec3, w: DVec3) -> f64 {
+    let inverse = DMat3::from_cols_array_2d(&[[t.x, 0.0, 0.0], [0.0, t.x, 0.0], [t.y, 0.0, 1.0]]);
+    let inside = inverse * w;
+    let size = inside.length();
+    match size > 1e-9 {
+        true => (inside.z / size).max(0.0) / PI * inverse.determinant() / size.powi(3),
+        false => 0.0,
+    }
 }

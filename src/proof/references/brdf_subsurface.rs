@@ -9,6 +9,7 @@ pub const REFERENCES: Entry = Entry {
         ("diffusion_profile", |a| profile(a.f64(), a.f64()).into()),
         ("diffusion_cdf", |a| cdf(a.f64() * a.f64()).into()),
         ("diffusion_s", diffusion_s),
+        ("diffusion_sample", |a| sample(a.f64(), a.f64()).into()),
     ],
 };
 
@@ -33,4 +34,15 @@ fn diffusion_s(a: &mut Arguments<'_>) -> Expected {
         let albedo = albedo.clamp(0.0, 1.0);
         1.85 - albedo + 7.0 * (albedo - 0.8).abs().powi(3)
     }))
+}
+
+/// The distance by bisection of the share.
+fn sample(u: f64, s: f64) -> f64 {
+    let share = u.clamp(0.0, 1.0 - (-24f64).exp2());
+    let (mut low, mut high) = (0.0, 64.0);
+    for _ in 0..100 {
+        let middle = (low + high) / 2.0;
+        if cdf(middle) < share { low = middle } else { high = middle }
+    }
+    low / s.max(f64::from(1e-6f32))
 }

@@ -1,5 +1,5 @@
 //! Sources: Khronos Group, KHR_materials_specular, _ior, _volume, _transmission and _dispersion,
-//! 2021 to 2024; Beer's and Snell's laws; Walter et al., 2007, equations 33 and 34.
+//! 2021 to 2024; Beer's and Snell's laws; Walter et al., 2007, equations 21, 33 and 34.
 
 use super::brdf_fresnel::dielectric;
 use super::{Arguments, Entry, Expected};
@@ -15,6 +15,7 @@ pub const REFERENCES: Entry = Entry {
         ("transmission_roughness", |a| (a.f64() * (2.0 * a.f64() - 2.0).clamp(0.0, 1.0)).into()),
         ("btdf_thin", btdf_thin),
         ("dispersion_ior", dispersion_ior),
+        ("btdf_volume", btdf_volume),
     ],
 };
 
@@ -61,4 +62,23 @@ fn dispersion_ior(a: &mut Arguments<'_>) -> Expected {
     let ends = DVec2::new(a.f64().max(1.0), a.f64().max(0.0));
     let half_spread = (ends.x - 1.0) * 0.025 * ends.y;
     DVec3::new((ends.x - half_spread).max(1.0), ends.x, ends.x + half_spread).into()
+}
+
+/// Equation 21 without 1 - F, for an index of 1 on the viewer's side, with G1 by equation 34.
+fn btdf_volume(a: &mut Arguments<'_>) -> Expected {
+    let (n, l, v, alpha, ior) = (a.vec3(), a.vec3(), a.vec3(), a.f64(), a.f64());
+    let h = -(ior * l + v);
+    let h = h * if ior < 1.0 { -1.0 } else { 1.0 } / h.length();
+    let (nl, nv, lh, vh, nh) = (n.dot(l), n.dot(v), l.dot(h), v.dot(h), n.dot(h));
+    if nl >= 0.0 || nv <= 0.0 || lh >= 0.0 || vh <= 0.0 || nh <= 0.0 || alpha == 0.0 {
+        return 0.0.into();
+    }
+    let a2 = alpha * alpha;
+    let d = a2 / (PI * (n.cross(h).length_squared() + nh * nh * a2).powi(2));
+    let g1 = |cosine: f64| {
+        let tangent2 = (1.0 - cosine * cosine) / (cosine * cosine);
+        2.0 / (1.0 + (1.0 + a2 * tangent2.max(0.0)).sqrt())
+    };
+    let facets = (lh * vh / (nl * nv)).abs();
+    (facets * g1(nl) * g1(nv) * d / (ior * lh + vh).powi(2)).into()
 }

@@ -1,6 +1,7 @@
 //! Sources: Lambert, "Photometria", 1760; Heitz, Dupuy, Hill and Neubelt, "Real-Time Polygonal-Light
 //! Shading with Linearly Transformed Cosines", 2016; Lagarde and de Rousiers, "Moving Frostbite to
-//! Physically Based Rendering", 2014, section 4.7; Karis, "Real Shading in Unreal Engine 4", 2013.
+//! Physically Based Rendering", 2014, section 4.7; Karis, "Real Shading in Unreal Engine 4", 2013;
+//! Heitz and Hill, 2017 (lines and disks).
 
 use super::{Arguments, Entry, Expected};
 use glam::{DMat3, DVec2, DVec3};
@@ -12,6 +13,8 @@ pub const REFERENCES: Entry = Entry {
         ("ltc_edge", |a| edge(a.vec3(), a.vec3()).into()),
         ("any_tangent", |a| any_tangent(a.vec3()).into()),
         ("ltc_rect", ltc_rect),
+        ("ltc_disk", ltc_disk),
+        ("ltc_line", ltc_line),
         ("ltc_uv", |a| ltc_uv(a.f64(), a.f64()).into()),
         ("ltc_matrix", ltc_matrix),
         ("sphere_irradiance", |a| sphere(a.f64(), a.f64()).into()),
@@ -134,4 +137,47 @@ fn area_energy(alpha: f64, wide: f64) -> f64 {
     } else {
         (alpha.max(0.0) / wide.max(f64::from(f32::MIN_POSITIVE))).powi(2)
     }
+}
+
+/// The frame whose z is the normal and whose x is the viewer's direction along the surface.
+fn frame_of(n: DVec3, v: DVec3) -> DMat3 {
+    let t1 = (v - n * v.dot(n)).try_normalize().unwrap_or(any_tangent(n));
+    DMat3::from_cols(t1, n.cross(t1), n).transpose()
+}
+
+/// The vector irradiance of the transformed ellipse as an integral over its outline, which converges
+/// fast; a sphere of its length and direction is cut at the horizon.
+fn ltc_disk(a: &mut Arguments<'_>) -> Expected {
+    let (n, v, p, minv) = (a.vec3(), a.vec3(), a.vec3(), a.mat3());
+    let inside = minv * frame_of(n, v);
+    let (c, x, y) = (inside * (a.vec3() - p), inside * a.vec3(), inside * a.vec3());
+    if c.dot(x.cross(y)) >= 0.0 {
+        return 0.0.into();
+    }
+    const STEPS: u32 = 4096;
+    let step = |index: u32| {
+        let (sine, cosine) = (2.0 * PI * f64::from(index) / f64::from(STEPS)).sin_cos();
+        let at = c + x * cosine + y * sine;
+        at.cross(y * cosine - x * sine) / at.length_squared()
+    };
+    let light = -(0..STEPS).map(step).sum::<DVec3>() / f64::from(STEPS);
+    (sphere(light.normalize_or_zero().z, light.length()) / PI).into()
+}
+
+/// The lobe over all points of the line, each with the solid angle that its width of two radii has.
+fn ltc_line(a: &mut Arguments<'_>) -> Expected {
+    let (n, v, p, minv) = (a.vec3(), a.vec3(), a.vec3(), a.mat3());
+    let frame = frame_of(n, v);
+    let (head, tail) = (frame * (a.vec3() - p), frame * (a.vec3() - p));
+    let radius = a.f64().max(0.0);
+    const STEPS: u32 = 4096;
+    let step = |index: u32| {
+        let at = head.lerp(tail, (f64::from(index) + 0.5) / f64::from(STEPS));
+        let inside = minv * at.normalize_or_zero();
+        let lobe = inside.z.max(0.0) / inside.length_squared().powi(2);
+        let width = 2.0 * radius * at.cross(tail - head).length() / at.length().powi(3);
+        if lobe.is_finite() { lobe * width } else { 0.0 }
+    };
+    let sum = (0..STEPS).map(step).sum::<f64>() / f64::from(STEPS);
+    (sum * minv.determinant() / PI).clamp(0.0, 1.0).into()
 }
