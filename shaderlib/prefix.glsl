@@ -45,6 +45,7 @@
 #define bounding_sphere(p0, p1, p2) lamplight_bounding_sphere(p0, p1, p2)
 #define box_project(p0, p1, p2, p3, p4) lamplight_box_project(p0, p1, p2, p3, p4)
 #define btdf_thin(p0, p1, p2, p3) lamplight_btdf_thin(p0, p1, p2, p3)
+#define btdf_volume(p0, p1, p2, p3, p4) lamplight_btdf_volume(p0, p1, p2, p3, p4)
 #define burley(p0, p1, p2, p3) lamplight_burley(p0, p1, p2, p3)
 #define burley_albedo(p0, p1) lamplight_burley_albedo(p0, p1)
 #define cascade_blend(p0, p1, p2) lamplight_cascade_blend(p0, p1, p2)
@@ -90,6 +91,7 @@
 #define diffusion_cdf(p0, p1) lamplight_diffusion_cdf(p0, p1)
 #define diffusion_profile(p0, p1) lamplight_diffusion_profile(p0, p1)
 #define diffusion_s(p0) lamplight_diffusion_s(p0)
+#define diffusion_sample(p0, p1) lamplight_diffusion_sample(p0, p1)
 #define disk_irradiance(p0, p1, p2) lamplight_disk_irradiance(p0, p1, p2)
 #define dispersion_ior(p0, p1) lamplight_dispersion_ior(p0, p1)
 #define dither(p0, p1, p2) lamplight_dither(p0, p1, p2)
@@ -132,6 +134,7 @@
 #define gt7(p0) lamplight_gt7(p0)
 #define gt7_curve(p0) lamplight_gt7_curve(p0)
 #define gtao_arc(p0, p1) lamplight_gtao_arc(p0, p1)
+#define gtso(p0, p1, p2, p3) lamplight_gtso(p0, p1, p2, p3)
 #define hable(p0) lamplight_hable(p0)
 #define hable_channel(p0) lamplight_hable_channel(p0)
 #define half_lambert(p0, p1) lamplight_half_lambert(p0, p1)
@@ -166,7 +169,9 @@
 #define linear_from_srgb_channel(p0) lamplight_linear_from_srgb_channel(p0)
 #define linear_radius(p0, p1) lamplight_linear_radius(p0, p1)
 #define linearize_depth(p0, p1, p2) lamplight_linearize_depth(p0, p1, p2)
+#define ltc_disk(p0, p1, p2, p3, p4, p5, p6) lamplight_ltc_disk(p0, p1, p2, p3, p4, p5, p6)
 #define ltc_edge(p0, p1) lamplight_ltc_edge(p0, p1)
+#define ltc_line(p0, p1, p2, p3, p4, p5, p6) lamplight_ltc_line(p0, p1, p2, p3, p4, p5, p6)
 #define ltc_matrix(p0) lamplight_ltc_matrix(p0)
 #define ltc_rect(p0, p1, p2, p3, p4) lamplight_ltc_rect(p0, p1, p2, p3, p4)
 #define ltc_uv(p0, p1) lamplight_ltc_uv(p0, p1)
@@ -193,6 +198,7 @@
 #define octahedral_decode(p0) lamplight_octahedral_decode(p0)
 #define octahedral_encode(p0) lamplight_octahedral_encode(p0)
 #define oren_nayar(p0, p1, p2, p3) lamplight_oren_nayar(p0, p1, p2, p3)
+#define paraboloid_uv(p0) lamplight_paraboloid_uv(p0)
 #define pcf_3x3(p0, p1) lamplight_pcf_3x3(p0, p1)
 #define pcf_5x5(p0, p1) lamplight_pcf_5x5(p0, p1)
 #define pcf_castano_3(p0, p1) lamplight_pcf_castano_3(p0, p1)
@@ -257,6 +263,8 @@
 #define shadow_coord(p0, p1) lamplight_shadow_coord(p0, p1)
 #define shadow_mix(p0, p1) lamplight_shadow_mix(p0, p1)
 #define sheen_albedo(p0, p1) lamplight_sheen_albedo(p0, p1)
+#define sheen_ltc(p0, p1) lamplight_sheen_ltc(p0, p1)
+#define sheen_ltc_lobe(p0, p1) lamplight_sheen_ltc_lobe(p0, p1)
 #define sheen_scale(p0, p1, p2) lamplight_sheen_scale(p0, p1, p2)
 #define slice_depth(p0, p1, p2, p3) lamplight_slice_depth(p0, p1, p2, p3)
 #define slope_bias(p0, p1, p2) lamplight_slope_bias(p0, p1, p2)
@@ -264,6 +272,8 @@
 #define specular_f0(p0, p1, p2) lamplight_specular_f0(p0, p1, p2)
 #define specular_occlusion(p0, p1, p2) lamplight_specular_occlusion(p0, p1, p2)
 #define sphere_irradiance(p0, p1) lamplight_sphere_irradiance(p0, p1)
+#define spheremap_decode(p0) lamplight_spheremap_decode(p0)
+#define spheremap_encode(p0) lamplight_spheremap_encode(p0)
 #define split_sum(p0, p1, p2) lamplight_split_sum(p0, p1, p2)
 #define split_sum_multi(p0, p1, p2) lamplight_split_sum_multi(p0, p1, p2)
 #define srgb_from_linear(p0) lamplight_srgb_from_linear(p0)
@@ -330,6 +340,7 @@
 #undef bounding_sphere
 #undef box_project
 #undef btdf_thin
+#undef btdf_volume
 #undef burley
 #undef burley_albedo
 #undef cascade_blend
@@ -375,6 +386,7 @@
 #undef diffusion_cdf
 #undef diffusion_profile
 #undef diffusion_s
+#undef diffusion_sample
 #undef disk_irradiance
 #undef dispersion_ior
 #undef dither
@@ -417,6 +429,7 @@
 #undef gt7
 #undef gt7_curve
 #undef gtao_arc
+#undef gtso
 #undef hable
 #undef hable_channel
 #undef half_lambert
@@ -451,7 +464,9 @@
 #undef linear_from_srgb_channel
 #undef linear_radius
 #undef linearize_depth
+#undef ltc_disk
 #undef ltc_edge
+#undef ltc_line
 #undef ltc_matrix
 #undef ltc_rect
 #undef ltc_uv
@@ -478,6 +493,7 @@
 #undef octahedral_decode
 #undef octahedral_encode
 #undef oren_nayar
+#undef paraboloid_uv
 #undef pcf_3x3
 #undef pcf_5x5
 #undef pcf_castano_3
@@ -542,6 +558,8 @@
 #undef shadow_coord
 #undef shadow_mix
 #undef sheen_albedo
+#undef sheen_ltc
+#undef sheen_ltc_lobe
 #undef sheen_scale
 #undef slice_depth
 #undef slope_bias
@@ -549,6 +567,8 @@
 #undef specular_f0
 #undef specular_occlusion
 #undef sphere_irradiance
+#undef spheremap_decode
+#undef spheremap_encode
 #undef split_sum
 #undef split_sum_multi
 #undef srgb_from_linear

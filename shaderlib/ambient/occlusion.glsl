@@ -79,6 +79,27 @@ vec3 ssao_kernel(uint i, uint count) {
     return direction * (0.1 + 0.9 * share * share);
 }
 
+/// The share of a reflection that is open, from the cone of directions that are and the cone of the lobe.
+///
+/// Parameters: `bent` unit, the mean open direction; `r` unit, the mirrored direction, the same space; `ao` ambient occlusion, [0, 1], 1 is open; `alpha` squared perceptual roughness, [0, 1].
+/// Returns: the part of the lobe's cone that the open cone covers, [0, 1].
+/// Source: Jimenez, Wu, Pesce, Jarabo, "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016, with the intersection of cones by a smooth step; the cones as in Guy, Agopian, Filament, 2018: cosines `sqrt(1 - ao)` and `2^(-3.321928*alpha^2)`.
+/// Edges: fades to 1 for an alpha from 0.09 to 0.01, whose cone has no width; parameters outside [0, 1] are clamped.
+/// Error model: absolute 2^-9, from the arc cosines.
+float gtso(vec3 bent, vec3 r, float ao, float alpha) {
+    float a = clamp(alpha, 0.0, 1.0);
+    float cos_open = sqrt(1.0 - clamp(ao, 0.0, 1.0));
+    float cos_lobe = exp2(-3.321928 * a * a);
+    float open = acos(cos_open);
+    float lobe = acos(min(cos_lobe, 1.0));
+    float apart = acos(clamp(dot(bent, r), -1.0, 1.0));
+    // From one cone within the other to two that only touch.
+    float within = abs(open - lobe);
+    float covered = 1.0 - smoothstep(within, max(open + lobe, within + 1e-4), apart);
+    float share = covered * (1.0 - max(cos_open, cos_lobe)) / max(1.0 - cos_lobe, 1e-7);
+    return mix(1.0, share, smoothstep(0.01, 0.09, a));
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

@@ -99,6 +99,30 @@ vec3 blend_whiteout(vec3 base, vec3 detail) {
     return safe_normalize(vec3(base.xy + detail.xy, base.z * detail.z), base);
 }
 
+/// A normal in two numbers, for G-buffers: the mirror ball's equal-area map.
+///
+/// Parameters: `n` unit normal in view space, z towards the viewer.
+/// Returns: `n.xy/sqrt(8*n.z + 8) + 1/2`, a disk in [0, 1].
+/// Source: Mittring, "A bit more deferred - CryEngine 3", 2009: the sphere map transform, which is Lambert's azimuthal projection of equal area.
+/// Edges: a `1 + n.z` below 1e-7 counts as that: straight away from the viewer is the centre of the disk, like straight towards.
+/// Error model: absolute 2^-23 + 2^-24/(1 + n.z).
+vec2 spheremap_encode(vec3 n) {
+    return n.xy / sqrt(8.0 * max(1.0 + n.z, 1e-7)) + 0.5;
+}
+
+/// The normal that `spheremap_encode` holds in two numbers.
+///
+/// Parameters: `e` place on the disk, [0, 1].
+/// Returns: unit normal in view space.
+/// Source: Mittring, "A bit more deferred - CryEngine 3", 2009: the inverse of the sphere map transform.
+/// Edges: places beyond the disk count as its rim, and give the opposite of z but for rounding.
+/// Error model: absolute 2^-20.
+vec3 spheremap_decode(vec2 e) {
+    vec2 f = 4.0 * e - 2.0;
+    float s = min(dot(f, f), 4.0);
+    return vec3(f * sqrt(1.0 - 0.25 * s), 1.0 - 0.5 * s);
+}
+
 #ifdef LAMPLIGHT_PREFIX
 #include "../prefix.glsl"
 #endif

@@ -12,6 +12,7 @@ pub const REFERENCES: Entry = Entry {
         ("multibounce", multibounce),
         ("horizon_occlusion", horizon),
         ("gtao_arc", gtao_arc),
+        ("gtso", gtso),
         ("ssao_kernel", |a| kernel(a.f64(), a.f64()).into()),
     ],
 };
@@ -66,4 +67,26 @@ fn kernel(i: f64, count: f64) -> DVec3 {
     let share = (i / count.max(1.0)).min(1.0);
     DVec3::new(radius * phi.cos(), radius * phi.sin(), (1.0 - x).sqrt())
         * (0.1 + 0.9 * share * share)
+}
+
+/// Two cones: the smaller one where it is within the other, none where they are apart.
+fn gtso(a: &mut Arguments<'_>) -> Expected {
+    let (bent, r) = (a.vec3(), a.vec3());
+    let [ao, alpha] = [a.f64(), a.f64()].map(|x| x.clamp(0.0, 1.0));
+    let step = |from: f64, to: f64, x: f64| {
+        let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
+        t * t * (3.0 - 2.0 * t)
+    };
+    let (open, lobe) = ((1.0 - ao).sqrt().acos(), (-3.321928 * alpha * alpha).exp2().acos());
+    let apart = bent.dot(r).clamp(-1.0, 1.0).acos();
+    let cap = |angle: f64| 1.0 - angle.cos();
+    let both = if apart <= (open - lobe).abs() {
+        cap(open.min(lobe))
+    } else if apart >= open + lobe {
+        0.0
+    } else {
+        cap(open.min(lobe)) * (1.0 - step((open - lobe).abs(), open + lobe, apart))
+    };
+    let share = if lobe == 0.0 { 1.0 } else { both / cap(lobe) };
+    (1.0 + (share - 1.0) * step(0.01, 0.09, alpha)).into()
 }

@@ -17,6 +17,7 @@ pub const REFERENCES: Entry = Entry {
         ("linearize_depth", linearize_depth),
         ("depth_view_igl", |a| (1.0 - (1.0 - a.f64()) * 100.0).into()),
         ("cube_depth", cube_depth),
+        ("paraboloid_uv", paraboloid_uv),
     ],
 };
 
@@ -58,4 +59,12 @@ fn cube_depth(a: &mut Arguments<'_>) -> Expected {
     let (offset, near, far) = (a.vec3(), a.f64(), a.f64());
     let z = offset.abs().max_element().max(near);
     (far / (far - near) * (z - near) / z).into()
+}
+
+/// The tangent of half the angle to the axis, in the direction of the point.
+fn paraboloid_uv(a: &mut Arguments<'_>) -> Expected {
+    let p = a.vec3();
+    let across = p.truncate();
+    let at = across.normalize_or_zero() * (across.length().atan2(p.z) / 2.0).tan();
+    Expected::words([0.5 + 0.5 * at.x, 0.5 - 0.5 * at.y, p.length()])
 }

@@ -2,7 +2,7 @@
 //! maps with the bitangent's sign); Hill, 2012 (blending).
 
 use super::{Arguments, Entry, Expected};
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 
 pub const REFERENCES: Entry = Entry {
     module: "surface::normal",
@@ -13,6 +13,8 @@ pub const REFERENCES: Entry = Entry {
         }),
         ("perturb_normal", perturb),
         ("blend_rnm", blend_rnm),
+        ("spheremap_encode", |a| spheremap(a.vec3()).into()),
+        ("spheremap_decode", |a| from_spheremap(a.vec2()).into()),
         ("blend_udn", |a| slopes(a, |_| 1.0)),
         ("blend_whiteout", |a| slopes(a, |detail| detail.z)),
     ],
@@ -47,4 +49,16 @@ fn slopes(a: &mut Arguments<'_>, height: fn(DVec3) -> f64) -> Expected {
     let (base, detail) = (a.vec3(), a.vec3());
     let sum = DVec3::new(base.x + detail.x, base.y + detail.y, base.z * height(detail));
     sum.try_normalize().unwrap_or(base).into()
+}
+
+/// Equal areas: the radius is the sine of half the angle to z, over 2.
+fn spheremap(n: DVec3) -> DVec2 {
+    let half_angle = n.truncate().length().atan2(n.z) / 2.0;
+    n.truncate().normalize_or_zero() * half_angle.sin() / 2.0 + 0.5
+}
+
+fn from_spheremap(e: DVec2) -> DVec3 {
+    let radius = (2.0 * (e - 0.5).length()).min(1.0);
+    let angle = 2.0 * radius.asin();
+    ((e - 0.5).normalize_or_zero() * angle.sin()).extend(angle.cos())
 }
