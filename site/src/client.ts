@@ -1,5 +1,5 @@
-// Calls of the toolchain: each has a limit, after which the worker is replaced. Every call ends: with an
-// answer, or with an error that says why there is none.
+// Calls of the toolchain: each has a limit, after which the worker is replaced. Once the toolchain is
+// loaded, every call ends: with an answer, or with an error that says why there is none.
 import type { Toolchain } from "@lamplight/toolchain";
 
 type Answer = {

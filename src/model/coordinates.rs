@@ -7,6 +7,17 @@ use serde_json::Value;
 /// The name of the extension.
 pub const TRANSFORM: &str = "KHR_texture_transform";
 
+/// The set of coordinates that a texture or its extension names, if it names one.
+///
+/// # Errors
+/// It is not the number of a set.
+pub fn set_of(value: &Value, place: &str) -> Result<Option<u32>, String> {
+    let Some(named) = value.get("texCoord") else { return Ok(None) };
+    let set = named.as_u64().and_then(|set| u32::try_from(set).ok());
+    let wrong = || format!("{place}.texCoord: expected the number of a set, found {named}");
+    set.map(Some).ok_or_else(wrong)
+}
+
 /// The coordinates of one texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub struct Coordinates {
@@ -28,7 +39,11 @@ impl Coordinates {
     /// A value that is none, after the place of the texture.
     pub fn read(set: u32, extension: Option<&Value>, place: &str) -> Result<Self, String> {
         let Some(value) = extension else { return Ok(Self { set, transform: None }) };
-        let wrong = |what: &str| format!("{place}.extensions.{TRANSFORM}.{what}");
+        let place = format!("{place}.extensions.{TRANSFORM}");
+        if !value.is_object() {
+            return Err(format!("{place}: expected an object, found {value}"));
+        }
+        let wrong = |what: &str| format!("{place}.{what}");
         let pair = |key: &str, usual: f64| match value.get(key) {
             None => Ok([usual; 2]),
             Some(pair) => {
@@ -45,8 +60,7 @@ impl Coordinates {
                 .as_f64()
                 .ok_or_else(|| wrong(&format!("rotation: expected a number, found {angle}")))?,
         };
-        let own = value.get("texCoord").and_then(Value::as_u64);
-        let set = own.and_then(|own| u32::try_from(own).ok()).unwrap_or(set);
+        let set = set_of(value, &place)?.unwrap_or(set);
         Ok(Self { set, transform: Some([x, y, angle, across, down].map(f64::to_bits)) })
     }
 

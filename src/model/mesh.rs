@@ -35,6 +35,10 @@ pub fn mesh_objects(
             return Err(format!("{place}: more than {MODEL_CORNERS} corners of triangles"));
         }
         let own = sheet.coordinates(reader, &primitive.material())?;
+        if own.set > 0 && primitive.get(&gltf::Semantic::TexCoords(own.set)).is_none() {
+            let note = format!("{place}: no `TEXCOORD_{}`, which its textures name", own.set);
+            reader.notes.insert(note);
+        }
         let vertices = mesh_vertices(reader, &primitive, (&indices, own), &place)?;
         let shape = Shape { vertices, indices };
         let shape = sheet.placed(reader, shape, &primitive.material())?;
@@ -50,6 +54,11 @@ pub fn mesh_objects(
         objects.push((Object::made(shape, DMat4::IDENTITY, color, material), means));
     }
     Ok(objects)
+}
+
+/// Whether a primitive is made of triangles. Others are left out.
+pub fn has_triangles(primitive: &gltf::Primitive<'_>) -> bool {
+    matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)
 }
 
 /// Mirrored triangles wind the other way round.

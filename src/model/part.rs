@@ -4,7 +4,7 @@ use glam::DVec4;
 use serde_json::Value;
 
 use super::Reader;
-use super::coordinates::{Coordinates, TRANSFORM};
+use super::coordinates::{Coordinates, TRANSFORM, set_of};
 
 /// Channels of an image in a texture, where they keep their places.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -154,8 +154,7 @@ fn extension_part(
     let number = number.ok_or_else(|| format!("{place}: expected a texture, found {value}"))?;
     let texture = usize::try_from(number).ok().and_then(|at| reader.document.textures().nth(at));
     let texture = texture.ok_or_else(|| format!("{place}: there is no texture {number}"))?;
-    let set = value.get("texCoord").and_then(Value::as_u64).unwrap_or(0);
-    let set = u32::try_from(set).map_err(|_| format!("{place}: there is no TEXCOORD_{set}"))?;
+    let set = set_of(value, &place)?.unwrap_or(0);
     let own = value.get("extensions").and_then(|all| all.get(TRANSFORM));
     let at = Coordinates::read(set, own, &place)?;
     Ok(Some(Part::new(map, texture.source().index(), channels, *is_color).at(at)))

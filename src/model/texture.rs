@@ -9,7 +9,7 @@ use image::{DynamicImage, ImageDecoder as _, ImageError};
 
 use super::Reader;
 use super::coordinates::{Coordinates, Window};
-use super::mesh::mesh_coordinates;
+use super::mesh::{has_triangles, mesh_coordinates};
 use super::nodes::Placed;
 use super::part::{Part, material_parts};
 use crate::limits::{MODEL_CORNERS, MODEL_PIXELS, MODEL_TEXTURES};
@@ -106,7 +106,7 @@ fn texture_cells(
     let meshes: BTreeSet<usize> = placed.parts.iter().map(|part| part.mesh).collect();
     for index in meshes {
         let mesh = document.meshes().nth(index).ok_or("a node has a mesh that is not there")?;
-        for primitive in mesh.primitives() {
+        for primitive in mesh.primitives().filter(has_triangles) {
             let parts = material_parts(reader, &primitive.material())?;
             let count = cells.len();
             let cell = *cells.entry(parts).or_insert_with_key(|parts| Cell::new(count, parts));

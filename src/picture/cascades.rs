@@ -36,13 +36,15 @@ pub(super) fn seen_range(scene: &Scene) -> (f64, f64) {
 }
 
 impl Cascades {
-    /// The parts of the depths from `near` to `far`, for a viewer with this projection. At each side of a part, `rim` texels are left
-    /// for lookups.
+    /// The parts of the depths from `near` to `far`, for a viewer with this projection. At each side
+    /// of a part, `rim` texels are left for lookups.
     pub fn new(eye: &Eye, projection: DMat4, (near, far): (f64, f64), size: u32, rim: f64) -> Self {
         let ends = cascade_splits(near, far, CASCADES, SPLIT);
-        let splits: [f64; CASCADES] =
+        let mut splits: [f64; CASCADES] =
             std::array::from_fn(|index| ends.get(index).copied().unwrap_or(far));
         let overlap = OVERLAP * (splits[0] - near);
+        // The last part fades out behind everything that is seen.
+        splits[CASCADES - 1] += overlap;
         let tangents = [projection.x_axis.x.recip(), projection.y_axis.y.recip()];
         let forward = -eye.view().inverse().z_axis.truncate();
         let spheres = std::array::from_fn(|index| {

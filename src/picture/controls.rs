@@ -10,7 +10,7 @@ use super::light::LightView;
 use super::mesh::vertex_attributes;
 use super::passes::{Lit, stage_bindings};
 use super::plan::{Pass, Plan, known_program};
-use super::values::{Camera, Values, eye_projection};
+use super::values::{Camera, Values, eye_projection, follows};
 use crate::bundle::Kind;
 use crate::diagnostic::Diagnostics;
 use crate::picture::frame::{Leaf, Programs, buffer_leaves};
@@ -51,7 +51,8 @@ pub struct Uniform {
     pub numbers: Vec<f64>,
 }
 
-/// What can be changed in the picture of a plan. Matrices follow from the scene and cannot.
+/// What can be changed in the picture of a plan. Matrices, and numbers that must agree with
+/// them or with textures, follow from the scene and cannot.
 ///
 /// # Errors
 /// Those of compositions.
@@ -106,7 +107,8 @@ fn pass_uniforms(
     };
     let bindings = stage_bindings(&stages);
     let blocks = bindings.iter().filter(|binding| binding.kind == Kind::Uniform);
-    let leaves = blocks.flat_map(buffer_leaves).filter(|leaf| !leaf.ty.starts_with("mat"));
+    let leaves = blocks.flat_map(buffer_leaves);
+    let leaves = leaves.filter(|leaf| !leaf.ty.starts_with("mat") && !follows(&leaf.path));
     let uniform = |leaf: Leaf<'_>| {
         // Arrays end with zeros that no lamp or object reads.
         let numbers = numbers(&leaf.path).filter(|numbers| !numbers.is_empty())?;

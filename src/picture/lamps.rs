@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::needs::Falloff;
 use super::plan::LAMPS;
-use super::values::{Values, eye_projection, matrix_columns, vector_values};
+use super::values::{Values, eye_projection, matrix_columns, vector_of, vector_values};
 use crate::scene::sets::{Lamp, LampKind, Scene};
 use crate::scene::{Cells, Clusters, Reach, between_middles};
 
@@ -27,7 +27,9 @@ pub(super) struct Shining {
     position: DVec3,
     axis: DVec3,
     reach: f64,
-    half_angle: f64,
+    /// Cosines of the angles where the edge of a cone begins and ends.
+    inner: f64,
+    outer: f64,
     fading: Fading,
 }
 
@@ -42,7 +44,9 @@ impl Fading {
             }
             Falloff::LinearRadius => (1.0 - d / self.range).max(0.0),
             Falloff::InverseSquareWindow => {
-                (1.0 - (d / self.range).powi(4)).max(0.0).powi(2) / (d * d).max(1e-4)
+                // As in the programs, a range of zero is none.
+                let share = if self.range > 0.0 { d / self.range } else { 0.0 };
+                (1.0 - share.powi(4)).max(0.0).powi(2) / (d * d).max(1e-4)
             }
         }
     }
@@ -56,8 +60,8 @@ impl Shining {
             return (self.color, at - self.axis * FAR_AWAY * self.reach);
         }
         let offset = at - self.position;
-        let (inner, outer) = ((0.75 * self.half_angle).cos(), self.half_angle.cos());
-        let along = (offset.normalize_or_zero().dot(self.axis) - outer) / (inner - outer);
+        let along = offset.normalize_or_zero().dot(self.axis) - self.outer;
+        let along = along / (self.inner - self.outer).max(1e-6);
         let t = if self.kind == LampKind::Spot { along.clamp(0.0, 1.0) } else { 1.0 };
         let share = t * t * (3.0 - 2.0 * t) * self.fading.at(offset.length());
         (self.color * share, self.position)
@@ -132,21 +136,30 @@ impl Values<'_> {
         }
     }
 
-    /// The lamps that shine, with what their light depends on.
+    /// The lamps that shine, with the numbers that the program has of them.
     pub(super) fn shining(&self) -> Vec<Shining> {
         let lamps = self.scene.lamps.iter().enumerate().take(self.lamps().unwrap_or(0));
         let shining = |(index, lamp): (usize, &Lamp)| {
-            let kind = self.kind(index, lamp);
-            let color = self.number(&format!("lamps.lights[{index}].color"));
-            let color = color.and_then(|color| color.try_into().ok()).map(DVec3::from_array);
+            let numbers = |field: &str| {
+                self.number(&format!("lamps.lights[{index}].{field}")).unwrap_or_default()
+            };
+            let vector = |field: &str| vector_of(&numbers(field)).unwrap_or_default();
+            let single = |field: &str| numbers(field).first().copied().unwrap_or_default();
+            let fading = self.fading(lamp);
+            let coefficients = Some(numbers("attenuation")).filter(|numbers| !numbers.is_empty());
             Shining {
-                kind,
-                color: color.unwrap_or_default(),
-                position: lamp.position,
-                axis: self.axis(index, lamp, kind),
+                kind: self.kind(index, lamp),
+                color: vector("color"),
+                position: vector("position"),
+                axis: vector("axis").normalize_or_zero(),
                 reach: lamp.reach(),
-                half_angle: lamp.half_angle,
-                fading: self.fading(lamp),
+                inner: single("inner"),
+                outer: single("outer"),
+                fading: Fading {
+                    range: single("range"),
+                    coefficients: coefficients.unwrap_or(fading.coefficients),
+                    falloff: fading.falloff,
+                },
             }
         };
         lamps.map(shining).collect()

@@ -51,6 +51,18 @@ impl Frustum {
     }
 }
 
+/// How many texels around a point a lookup reads. It reads some to each side of a point that is moved
+/// by some.
+fn lookup_rim(plan: &Plan, last: &Pass) -> f64 {
+    let number = |field: &str| {
+        let changed = plan.changes.uniforms.get(&format!("caster.{field}")).cloned();
+        let numbers = changed.or_else(|| plan.number("caster", field));
+        numbers.and_then(|numbers| numbers.first().copied()).unwrap_or_default().abs()
+    };
+    let reach = last.needs.reach;
+    (2.0 * reach + 3.0).max(reach.max(number("radius")) + number("normal_offset") + 3.0)
+}
+
 impl LightView {
     /// The view of the scene's first lamp, as the last pass of a plan needs it. `eye` is the
     /// projection of the viewer.
@@ -65,8 +77,7 @@ impl LightView {
         let points = scene.points();
         match last.needs.caster.unwrap_or(LampKind::Spot) {
             LampKind::Directional if last.needs.cascades => {
-                // A lookup reads some texels to each side of a point that is moved by some texels.
-                Self::parted(scene, lamp, size, 2.0 * last.needs.reach + 3.0, eye)
+                Self::parted(scene, lamp, size, lookup_rim(plan, last), eye)
             }
             LampKind::Spot => Self::spot(lamp, &points, size, &Frustum::of(plan, last)),
             LampKind::Directional => Self::directional(lamp, &points, size),

@@ -3,15 +3,16 @@
 use glam::DVec3;
 
 use super::lamps::Shining;
-use super::values::{Values, vector_values};
-use crate::scene::sets::Map;
-use crate::scene::{PROBE_SIDES, ProbeField, ProbeGrid, Surfaces};
+use super::values::{Values, vector_of, vector_values};
+use crate::scene::sets::{Map, Object};
+use crate::scene::{Look, PROBE_SIDES, ProbeField, ProbeGrid, Surfaces};
 
 impl Values<'_> {
     /// What the probes see.
     fn probe_field(&self) -> &ProbeField {
         self.probes.get_or_init(|| {
-            let (surfaces, lamps) = (Surfaces::of(self.scene), self.shining());
+            let surfaces = Surfaces::with_looks(self.scene, |object| self.look(object));
+            let lamps = self.shining();
             let direct = |at: DVec3, normal: DVec3| direct_light(&lamps, &surfaces, at, normal);
             ProbeField::new(
                 self.probe_grid(),
@@ -20,6 +21,20 @@ impl Values<'_> {
                 self.scene.probes.unwrap_or_default().beyond,
             )
         })
+    }
+
+    /// What the program has of an object's colours.
+    fn look(&self, object: &Object) -> Look {
+        let index = object.material_index as usize * if self.lit.needs.sides { 2 } else { 1 };
+        let index = if self.lit.needs.material_array { index } else { 0 };
+        let numbers = |path: &str| vector_of(&self.object(object, path).unwrap_or_default());
+        let material = |field| numbers(&format!("materials.items[{index}].{field}"));
+        let own = Look::of(object);
+        Look {
+            color: numbers("object.color").unwrap_or(own.color),
+            diffuse: material("diffuse").unwrap_or(own.diffuse),
+            emission: material("emission").unwrap_or(own.emission),
+        }
     }
 
     fn probe_grid(&self) -> ProbeGrid {

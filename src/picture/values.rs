@@ -71,6 +71,14 @@ impl<'p> Path<'p> {
     }
 }
 
+/// The blocks whose numbers must agree with textures, matrices or lists that are made of the scene.
+const FOLLOWING: [&str; 3] = ["cascades", "clusters", "probes"];
+
+/// Whether a uniform follows from the scene, so that nobody can change it.
+pub(super) fn follows(path: &str) -> bool {
+    FOLLOWING.contains(&Path::new(path).block)
+}
+
 impl Camera {
     /// The viewer's.
     pub fn of_viewer(eye: &Eye, shot: &Shot) -> Self {
@@ -153,6 +161,9 @@ impl Values<'_> {
     /// What somebody changed a uniform to. The exponents of moments are those of the lookup in all
     /// passes, or else those that the moments are made with.
     fn changed(&self, path: &str) -> Option<Vec<f64>> {
+        if follows(path) {
+            return None;
+        }
         let uniforms = &self.plan.changes.uniforms;
         let found = match path {
             "caster.exponents" | "terms.exponents" => {
@@ -342,6 +353,11 @@ fn material_value(material: &Material, field: &str) -> Option<Vec<f64>> {
         "sigma" => vec![material.sigma],
         _ => return None,
     })
+}
+
+/// The vector of three numbers, or of the first three of four.
+pub(super) fn vector_of(numbers: &[f64]) -> Option<DVec3> {
+    Some(DVec3::from_array(*numbers.first_chunk()?))
 }
 
 pub(super) fn vector_values(vector: DVec3) -> Vec<f64> {

@@ -40,7 +40,7 @@ pub use profiles::{between_middles, luminaire, window};
 pub use projection::{
     Clip, Depth, cube_projection, orthographic, perspective, polygon_offset, shadow_matrix,
 };
-pub use rays::{Hit, Surfaces};
+pub use rays::{Hit, Look, Surfaces};
 pub use shape::{Shape, Vertex};
 pub use sky::{Equirect, Sky};
 pub use view::{FACES, cube_view, from_angles, look_along, look_at};

@@ -56,8 +56,14 @@ const NEAREST: f64 = 1e-6;
 impl Surfaces {
     /// The triangles of everything that casts a shadow.
     pub fn of(scene: &Scene) -> Self {
+        Self::with_looks(scene, Look::of)
+    }
+
+    /// The same, with other colours.
+    pub fn with_looks(scene: &Scene, look: impl Fn(&Object) -> Look) -> Self {
         let casting = scene.objects.iter().filter(|object| object.casts);
-        let mut triangles: Vec<Triangle> = casting.flat_map(object_triangles).collect();
+        let mut triangles: Vec<Triangle> =
+            casting.flat_map(|object| object_triangles(object, &look(object))).collect();
         let mut nodes = Vec::new();
         let count = triangles.len();
         if count > 0 {
@@ -102,16 +108,35 @@ impl Surfaces {
     }
 }
 
-fn object_triangles(object: &Object) -> Vec<Triangle> {
+/// The colours of an object.
+#[derive(Debug, Clone, Copy)]
+pub struct Look {
+    /// Multiplied with the colours of the corners.
+    pub color: DVec3,
+    /// Share of the light that it reflects to all sides.
+    pub diffuse: DVec3,
+    /// Linear colour that it gives off by itself.
+    pub emission: DVec3,
+}
+
+impl Look {
+    /// The object's own.
+    pub fn of(object: &Object) -> Self {
+        let material = &object.material;
+        Self { color: object.color, diffuse: material.diffuse, emission: material.emission }
+    }
+}
+
+fn object_triangles(object: &Object, look: &Look) -> Vec<Triangle> {
     let vertex = |index: &u32| object.shape.vertices.get(*index as usize);
     let triangle = |three: &[u32]| {
         let [a, b, c] = [vertex(three.first()?)?, vertex(three.get(1)?)?, vertex(three.get(2)?)?];
         let place = |at: DVec3| object.world_from_object.transform_point3(at);
-        let color = (a.color + b.color + c.color) / 3.0 * object.color;
+        let color = (a.color + b.color + c.color) / 3.0 * look.color;
         Some(Triangle {
             corners: [place(a.position), place(b.position), place(c.position)],
-            albedo: (color * object.material.diffuse).clamp(DVec3::ZERO, DVec3::ONE),
-            emission: object.material.emission,
+            albedo: (color * look.diffuse).clamp(DVec3::ZERO, DVec3::ONE),
+            emission: look.emission,
         })
     };
     object.shape.indices.chunks(3).filter_map(triangle).collect()

@@ -54,18 +54,23 @@ pub fn filled(page: &str) -> Result<String, Failed> {
     for Change { about, falls_by, .. } in change {
         writeln!(rows, "| {about} | {falls_by:.1} % |")?;
     }
-    let budget = recorded_sum()?;
-    let page = page.replace("{sum}", &grouped(budget)).replace("{restrict}", &grouped(restrict));
+    let (budget, count) = recorded_sum()?;
+    let page = page
+        .replace("{count}", &count.to_string())
+        .replace("{sum}", &grouped(budget))
+        .replace("{restrict}", &grouped(restrict));
     Ok(page.replace("{changes}\n", &rows))
 }
 
-/// The sum over the covering set, from the recorded budget of programs.
-fn recorded_sum() -> Result<i64, Failed> {
+/// The sum over the covering set, and its permutations, from the recorded budget of programs.
+fn recorded_sum() -> Result<(i64, usize), Failed> {
     let path = snapshot::root().join("snapshots/costs/programs.json");
     let budget: Value = serde_json::from_str(&std::fs::read_to_string(path)?)?;
     let costs = budget["costs"].as_object().ok_or("no costs are recorded")?;
     let own = costs.iter().filter(|(name, _)| name.starts_with("forward "));
-    Ok(own.filter_map(|(_, figures)| figures["inverse_throughput"].as_i64()).sum())
+    let sum = own.clone().filter_map(|(_, figures)| figures["inverse_throughput"].as_i64()).sum();
+    let count = own.filter(|(name, _)| name.ends_with(" fragment")).count();
+    Ok((sum, count))
 }
 
 /// The sum over the covering set, as measured now.

@@ -2,14 +2,18 @@
 
 use glam::DVec3;
 use lamplight::picture::Prepared;
+use lamplight::scene::Surfaces;
 use lamplight::scene::sets;
 
 use super::closed_forms::Form;
 use super::frames::{Bench, Fragment, Numbers, uniform};
 use super::shadows::{Casters, DIRECTIONAL, TOWARDS, Way, casters, visibility};
 
-pub const FORMS: &[(&str, Form)] =
-    &[("cascades", cascades), ("cascades_in_one_map", parts_of_a_map)];
+pub const FORMS: &[(&str, Form)] = &[
+    ("cascades", cascades),
+    ("cascades_in_one_map", parts_of_a_map),
+    ("cascades_reach_the_farthest", farthest_shadow),
+];
 
 /// The width and the height of a frame, in pixels.
 const SIZE: u32 = 128;
@@ -122,6 +126,38 @@ fn parts_of_a_map(bench: &Bench<'_>) -> Result<(), String> {
         return Err(format!("texels of {texels:?}, {coarse} with one map; {counts:?} fragments"));
     }
     compare_pictures(bench, &parted, &single)
+}
+
+/// What is farthest from the viewer has its whole shadow: here it falls onto the wall at the back.
+fn farthest_shadow(bench: &Bench<'_>) -> Result<(), String> {
+    let scene = sets::scene("room").ok_or("no room")?;
+    let (surfaces, towards) = (Surfaces::of(&scene), DVec3::new(0.4, 0.3, 1.0).normalize());
+    let axis = (-towards).to_array();
+    let numbers: Numbers<'_> = &[("light", "axis", &axis), ("light", "color", &[1.0; 3])];
+    let plan = bench.plan(&format!("{DIRECTIONAL},shadow=hard,cascades"), "room", numbers)?;
+    let prepared = bench.prepared(&plan, SIZE)?;
+    let texels = uniforms::<4>(&prepared, "cascades", "texels").ok_or("no cascades")?;
+    let view = scene.eye.view();
+    let depth = |fragment: &Fragment| -view.transform_point3(fragment.position).z;
+    let mut seen = bench.fragments_of(&prepared, SIZE)?;
+    let farthest = seen.iter().map(depth).fold(0.0, f64::max);
+    seen.retain(|fragment| depth(fragment) > 0.98 * farthest);
+    let (mut dark, mut wrong) = (0, 0);
+    for fragment in seen.iter().filter(|fragment| fragment.normal.dot(towards) > 0.25) {
+        let from = fragment.position + 1e-3 * fragment.normal;
+        let (side, up) = fragment.normal.any_orthonormal_pair();
+        let around = [side, -side, up, -up].map(|one| from + 3.0 * texels[3] * one);
+        let is_blocked = |from: DVec3| !surfaces.is_clear(from, from + 100.0 * towards);
+        if around.iter().all(|from| is_blocked(*from)) {
+            dark += 1;
+            wrong += usize::from(visibility(fragment, towards) > 0.01);
+        }
+    }
+    if dark < 100 || wrong > 0 {
+        let all = seen.len();
+        return Err(format!("of {all} fragments at the back {dark} are dark, {wrong} are lit"));
+    }
+    Ok(())
 }
 
 /// The numbers of a vector in a uniform block.

@@ -11,8 +11,11 @@ use lamplight::scene::{ProbeField, ProbeGrid, Surfaces};
 use super::closed_forms::Form;
 use super::frames::{Bench, Fragment};
 
-pub const FORMS: &[(&str, Form)] =
-    &[("probes_of_the_host", same_field), ("probes_leak_nothing", no_leaks)];
+pub const FORMS: &[(&str, Form)] = &[
+    ("probes_of_the_host", same_field),
+    ("probes_leak_nothing", no_leaks),
+    ("probes_see_what_was_changed", follow_changes),
+];
 
 /// The width and the height of a frame, in pixels.
 const SIZE: u32 = 128;
@@ -53,6 +56,54 @@ fn same_field(bench: &Bench<'_>) -> Result<(), String> {
         Ok(())
     } else {
         Err(format!("{seen} fragments, of which the brightest has {largest}"))
+    }
+}
+
+/// The probes are lit by the lamps and the colours that the program has, also where somebody changed
+/// them. Their own numbers must agree with their textures, and nobody changes them.
+fn follow_changes(bench: &Bench<'_>) -> Result<(), String> {
+    let key = format!("{KEY},attenuation=inverse_square_window,cone=smooth");
+    let light = |change: Option<(&str, &[f64])>| -> Result<_, String> {
+        let mut plan = bench.plan(&key, "halls", &[])?;
+        let change = change.map(|(path, numbers)| (path.to_owned(), numbers.to_vec()));
+        plan.changes.uniforms.extend(change);
+        let prepared = bench.prepared(&plan, SIZE)?;
+        let stage = prepared.stages.fragment.as_ref().ok_or("no fragment stage")?;
+        let place = |name: &str| {
+            let found = stage.reflection.bindings.iter().find(|binding| binding.name == name);
+            found.map(|found| (found.group, found.binding)).ok_or(format!("no {name}"))
+        };
+        let texture = prepared.fixtures.get(&place("probe_light")?).map(|one| (**one).clone());
+        let Some(Fixture::Texture(texture)) = texture else {
+            return Err("no texture of light".to_owned());
+        };
+        Ok((texture.texels, prepared.buffers.get(&place("probes")?).cloned()))
+    };
+    let before = light(None)?;
+    let changes: [(&str, &[f64]); 7] = [
+        ("object.color", &[0.2, 0.9, 0.3, 1.0]),
+        ("materials.items[0].diffuse", &[0.2, 0.2, 0.9]),
+        ("lamps.lights[0].color", &[1.0, 2.0, 3.0]),
+        ("lamps.lights[0].position", &[0.5, 1.0, 0.5]),
+        ("lamps.lights[0].axis", &[0.0, -1.0, 0.0]),
+        ("lamps.lights[0].range", &[1.0]),
+        ("lamps.lights[0].outer", &[0.999]),
+    ];
+    for (path, numbers) in changes {
+        if light(Some((path, numbers)))? == before {
+            return Err(format!("the probes do not see `{path}`"));
+        }
+    }
+    for (path, numbers) in [("probes.counts", &[4.0; 3][..]), ("probes.spacing", &[9.0; 3])] {
+        if light(Some((path, numbers)))? != before {
+            return Err(format!("`{path}` is changed"));
+        }
+    }
+    // A range of zero is none, and not no light.
+    let endless = light(Some(("lamps.lights[0].range", &[0.0])))?;
+    match endless.0.iter().sum::<f32>() >= before.0.iter().sum::<f32>() {
+        true => Ok(()),
+        false => Err("without a range, the probes have less light".to_owned()),
     }
 }
 

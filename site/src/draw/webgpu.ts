@@ -44,6 +44,16 @@ export async function open(): Promise<Device | undefined> {
 }
 
 async function draw(kept: Kept, drawing: Drawing): Promise<Frames> {
+    const owned: { destroy(): void }[] = [];
+    try {
+        return await drawWith(kept, drawing, owned);
+    } finally {
+        for (const one of owned) one.destroy();
+    }
+}
+
+/** Draws with buffers and textures that it adds to `owned`. */
+async function drawWith(kept: Kept, drawing: Drawing, owned: { destroy(): void }[]): Promise<Frames> {
     const begun = performance.now();
     const pipeline = await prepared(kept, drawing);
     const compiled = performance.now();
@@ -51,7 +61,6 @@ async function draw(kept: Kept, drawing: Drawing): Promise<Frames> {
     const { device } = kept;
     const used = bindings(drawing);
     const textures = new Map<string, GPUTextureView>();
-    const owned: { destroy(): void }[] = [];
     // What the browser refuses is an error of this drawing, and not only a line in its console.
     device.pushErrorScope("validation");
     for (const texture of drawing.textures) {
@@ -117,7 +126,6 @@ async function draw(kept: Kept, drawing: Drawing): Promise<Frames> {
     const refused = await wrong;
     if (refused) throw new Error(`WebGPU refuses the drawing: ${refused.message}`);
     const [words, depths] = await drawn.then((all) => all.map(joined));
-    for (const one of owned) one.destroy();
     spent.drawing += performance.now() - compiled;
     return { words: new Uint32Array(words), depths: new Float32Array(depths) };
 }

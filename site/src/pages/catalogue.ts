@@ -183,9 +183,16 @@ async function curves(live: HTMLElement, item: ItemInfo) {
             path: item.path, value: info.value, parameter: info.parameter, values, from: info.from, to: info.to, samples: steps + 1,
         });
         if (!found.curves.length) return numbers.replaceChildren(found.diagnostics[0]?.message ?? "");
-        gpu = isSettled && live.isConnected ? await computed(found) : undefined;
         last = found;
+        let failed = "";
+        try {
+            gpu = isSettled && live.isConnected ? await computed(found) : undefined;
+        } catch (error) {
+            gpu = undefined;
+            failed = reason(error);
+        }
         show(found);
+        if (failed) note.append(` The GPU has no values: ${failed}`);
     }
     function show(found: CurveResult) {
         const at = Number(x.value);

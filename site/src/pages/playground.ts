@@ -39,7 +39,9 @@ export async function page(into: HTMLElement, given?: Project) {
             lineNumbers(), history(), drawSelection(), highlightActiveLine(), lintGutter(), EditorView.lineWrapping,
             EditorView.contentAttributes.of({ "aria-label": `Text of ${state.open}`, "aria-describedby": "leaving" }),
             EditorState.transactionFilter.of((change) => {
-                if (!change.docChanged || change.newDoc.length + others() <= LARGEST) return change;
+                // Files that are too large already can be made smaller.
+                const isSmaller = change.newDoc.length < change.startState.doc.length;
+                if (!change.docChanged || isSmaller || change.newDoc.length + others() <= LARGEST) return change;
                 told.textContent = `Not inserted: the files would have more than ${LARGEST.toLocaleString("en")} letters together.`;
                 return [];
             }),

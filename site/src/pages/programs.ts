@@ -80,6 +80,8 @@ export async function page(into: HTMLElement) {
     const costsOf = (name: string) => {
         const known = recorded.get(name) ?? toolchain.call(OWN, "costs", name);
         recorded.set(name, known);
+        // What failed is asked for again.
+        known.catch(() => recorded.delete(name));
         return known;
     };
     async function draw(withControls: boolean, isOld: () => boolean) {

@@ -41,7 +41,10 @@ export async function computed({ module, inputs, curves }: CurveResult): Promise
         const key = `${target} ${width} ${height} ${module}`;
         if (known?.key !== key) {
             const files = { "plot.wesl": stages(module!, width, height) };
-            known = { key, made: toolchain.call(OWN, "compile", { files, root: "plot.wesl", targets: [target] }) };
+            const made = toolchain.call(OWN, "compile", { files, root: "plot.wesl", targets: [target] });
+            known = { key, made };
+            // What failed is asked for again.
+            made.catch(() => { if (known?.made === made) known = undefined; });
         }
         const numbers = [...padded(inputs), ...padded(curves.map((curve) => curve.parameter))];
         return drawing(await known.made, width, height, new Uint8Array(new Float32Array(numbers).buffer));

@@ -106,8 +106,7 @@ fn repeated_in_cells() -> Result<(), Failed> {
     let images = [image([RED, GREEN, BLUE, WHITE])?, image([WHITE; 4])?];
     let (mut document, buffer) = square(&images);
     let plain = json!({});
-    // Three repetitions less a quarter at each side: the pixels of the middle one are in order, and
-    // around them are those of its neighbours.
+    // Three repetitions across, so that the upper row has red and green in turn.
     let thrice = json!({ "scale": [3, 3] });
     document["extensionsUsed"] = json!(["KHR_materials_unlit", "KHR_texture_transform"]);
     document["materials"] = json!([unlit(0, &thrice), unlit(1, &plain)]);

@@ -19,7 +19,7 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
     let known = repository.stems(FOLDER)?;
     let interface = INTERFACES.iter().find(|(one, _)| *rest.first().unwrap_or(&name) == *one);
     let text = match rest {
-        _ if interface.is_some() => of_wgpu(name, interface),
+        [] | [_] if interface.is_some() => of_wgpu(name, interface),
         [] => of_wgpu(name, None),
         [like] if known.iter().any(|known| known == like) => {
             let text = repository.read(&format!("{FOLDER}/{like}.rs"))?;
