@@ -1,6 +1,8 @@
 //! Inputs that once caused a failure, one file each in `tests/regressions/KIND/`. `cargo xtask fuzz`
 //! or a person found them. Each must give the same answer twice, without a panic, within seconds.
 
+#[path = "../xtask/src/fuzz/ending.rs"]
+mod ending;
 #[path = "../fuzz/src/kinds.rs"]
 pub mod kinds;
 #[path = "../xtask/src/fuzz/mutate.rs"]
@@ -10,6 +12,7 @@ mod proofs;
 
 use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use kinds::{KINDS, Kind};
@@ -26,6 +29,7 @@ pub fn trials() -> Vec<Trial> {
         .map(|kind| Trial::test(format!("regressions::{}::mutants", kind.name), || mutants(kind)));
     seeds
         .chain(mutants)
+        .chain([Trial::test("regressions::workers_that_fail", failed_workers)])
         .chain(all().flat_map(|kind| files(kind).into_iter().map(move |file| trial(kind, file))))
         .collect()
 }
@@ -52,6 +56,29 @@ fn seeded(kind: &Kind) -> Result<(), Failed> {
         }
         None => Ok(()),
     }
+}
+
+/// A worker that could not work, or panicked, is an error of `cargo xtask fuzz`. It must not count as
+/// a worker that found nothing.
+fn failed_workers() -> Result<(), Failed> {
+    let ended = |script: &str| {
+        let status = Command::new("sh").args(["-c", script]).status()?;
+        Ok::<_, Failed>(ending::read_ending(status, "said"))
+    };
+    for (script, expected) in [
+        ("exit 0", Ok(None)),
+        ("exit 3", Ok(Some("said"))),
+        ("exit 4", Err("a worker ended with code 4: said")),
+        ("exit 101", Err("a worker ended with code 101: said")),
+        ("kill -9 $$", Ok(Some("aborts (signal: 9 (SIGKILL))"))),
+    ] {
+        let found = ended(script)?;
+        let found = found.as_ref().map(Option::as_deref).map_err(String::as_str);
+        if found != expected {
+            return Err(format!("`{script}` should be {expected:?}, found {found:?}").into());
+        }
+    }
+    Ok(())
 }
 
 /// The number of mutants for each kind. They are made from valid inputs, with the same seed in every

@@ -5,6 +5,7 @@
 //! `tests/regressions/KIND/`.
 
 mod commands;
+mod ending;
 mod judge;
 #[path = "../../fuzz/src/kinds.rs"]
 mod kinds;
@@ -25,8 +26,6 @@ use mutate::Random;
 const USAGE: &str = "usage: cargo xtask fuzz [--seconds N] [--seed N] [KIND]...\n       cargo xtask fuzz link [--programs N] [--seed N]";
 /// A worker that gives no sign of life for this long is in an endless loop.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// The exit code of a worker that found something.
-const FOUND: i32 = 3;
 /// With how many smaller inputs a finding is tried.
 const SHRINKS: usize = 400;
 
@@ -115,7 +114,7 @@ fn fuzz(kind: &Kind, seed: u64, seconds: u64) -> Result<usize, Failure> {
             &seed.wrapping_add(round).to_string(),
             &rest.to_string(),
         ])?;
-        let Some(reason) = outcome(worker, Some(&current(kind))) else { break };
+        let Some(reason) = outcome(worker, Some(&current(kind)))? else { break };
         round += 1;
         let input = fs::read(current(kind)).map_err(environment)?;
         if told.insert(reason.clone()) {
@@ -140,28 +139,21 @@ fn spawn(arguments: &[&str]) -> Result<Child, Failure> {
         .map_err(environment)
 }
 
-/// What is wrong, from how a worker ended. `sign` is a file that changes while it is alive.
-fn outcome(mut worker: Child, sign: Option<&Path>) -> Option<String> {
+/// What a worker found wrong. `sign` is a file that a live worker keeps writing; a worker whose file
+/// is old is killed.
+fn outcome(mut worker: Child, sign: Option<&Path>) -> Result<Option<String>, Failure> {
     let started = Instant::now();
     loop {
         if let Ok(Some(status)) = worker.try_wait() {
             let said = worker.wait_with_output().map(|output| output.stderr).unwrap_or_default();
-            let said = String::from_utf8_lossy(&said).trim().to_owned();
-            return match status.code() {
-                Some(0) => None,
-                Some(FOUND) => Some(said),
-                Some(_) => {
-                    eprintln!("{said}");
-                    None
-                }
-                None => Some(format!("aborts ({status})")),
-            };
+            let said = String::from_utf8_lossy(&said);
+            return ending::read_ending(status, said.trim()).map_err(Failure::environment);
         }
         let alive = sign.and_then(|sign| fs::metadata(sign).ok()?.modified().ok()?.elapsed().ok());
         if started.elapsed() > PATIENCE && alive.is_none_or(|since| since > PATIENCE) {
             let _ = worker.kill();
             let _ = worker.wait();
-            return Some("does not end".to_owned());
+            return Ok(Some("does not end".to_owned()));
         }
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -223,7 +215,7 @@ fn shrunk(kind: &Kind, mut input: Vec<u8>, reason: &str) -> Result<Vec<u8>, Fail
         fs::write(&file, &smaller).map_err(environment)?;
         tries += 1;
         let worker = spawn(&["--judge", kind.name, &file.to_string_lossy()])?;
-        match outcome(worker, None) {
+        match outcome(worker, None)? {
             Some(same) if same == reason => input = smaller,
             _ => at = end,
         }
