@@ -91,9 +91,8 @@ fn read_values(reader: &mut Reader, what: &str, list: &Value) -> Option<Vec<Sett
     let span = reader.span(list.span());
     if array.is_empty() || array.len() > MAX {
         let message = format!("{what} has {} values, and an axis has from 1 to {MAX}", array.len());
-        reader.problems.push(
-            Diagnostic::error(codes::AXIS_LIMIT, message).at(span, "no axis without a choice"),
-        );
+        let label = format!("expected 1 to {MAX} values");
+        reader.problems.push(Diagnostic::error(codes::AXIS_LIMIT, message).at(span, label));
         return None;
     }
     let read: Vec<(Setting, Span)> = array
