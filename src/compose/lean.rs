@@ -18,7 +18,7 @@ use rustc_hash::FxHashMap;
 use super::members::rename_like_members;
 use super::{Composed, Part, PartKind, SourceMap};
 use crate::bundle::Language;
-use crate::parse::wesl::blank::{block_comment, is_blank, line_comment};
+use crate::parse::wesl::blank::{comment_length, is_blank};
 
 /// How deeply aliases may refer to each other. Deeper ones are kept, so that naga reports them.
 const ALIAS_DEPTH: usize = 64;
@@ -225,7 +225,7 @@ fn token_length(text: &str) -> usize {
     let mut at = 0;
     while let Some(&byte) = bytes.get(at) {
         at += match byte {
-            b'/' if comment_length(&text[at..]).is_some() => return at,
+            b'/' if comment_length(&text[at..]) > 0 => return at,
             b'!'..=b'~' => 1,
             _ => match text[at..].chars().next() {
                 Some(found) if !is_blank(found) => found.len_utf8(),
@@ -246,9 +246,9 @@ fn gap_length(text: &str) -> usize {
             b' ' | b'\n' => 1,
             b'!'..=b'.' | b'0'..=b'~' => return at,
             _ => match (comment_length(&text[at..]), text[at..].chars().next()) {
-                (Some(length), _) => length,
-                (None, Some(found)) if is_blank(found) => found.len_utf8(),
-                _ => return at,
+                (0, Some(found)) if is_blank(found) => found.len_utf8(),
+                (0, _) => return at,
+                (length, _) => length,
             },
         };
     }
@@ -258,15 +258,6 @@ fn gap_length(text: &str) -> usize {
 /// Whether the character can never become part of a longer token.
 fn stands_alone(found: u8) -> bool {
     matches!(found, b'\n' | b'(' | b')' | b'[' | b']' | b'{' | b'}' | b',' | b';')
-}
-
-/// Length of the comment at the start of the text, if there is one.
-fn comment_length(text: &str) -> Option<usize> {
-    match text.as_bytes() {
-        [b'/', b'/', ..] => Some(line_comment(text)),
-        [b'/', b'*', ..] => Some(block_comment(text).0),
-        _ => None,
-    }
 }
 
 /// GLSL without comments and layout. Directives end with their line, so lines stay; block comments

@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use super::package::Modules;
 use super::place::word_at_byte;
+use crate::parse::wesl::blank::without_comments;
 use crate::parse::wesl::{Item, ItemKind};
 use crate::parse::words::{PieceKind, pieces};
 use crate::resolve::wesl::Node;
@@ -92,22 +93,4 @@ fn declared_members(text: &str, item: &Item) -> Vec<(Range<u32>, Range<u32>)> {
         last = (piece.kind == PieceKind::Word).then(|| at(piece.at)..at(piece.end()));
     }
     found
-}
-
-/// The text with blanks in place of its comments.
-fn without_comments(text: &str) -> String {
-    let mut found = String::with_capacity(text.len());
-    let mut rest = text;
-    while let Some(start) = rest.find("//").into_iter().chain(rest.find("/*")).min() {
-        let (before, comment) = rest.split_at(start);
-        let length = match comment.starts_with("//") {
-            true => comment.find('\n'),
-            false => comment.find("*/").map(|end| end + "*/".len()),
-        };
-        let length = length.unwrap_or(comment.len());
-        found += before;
-        found.extend(std::iter::repeat_n(' ', length));
-        rest = &comment[length..];
-    }
-    found + rest
 }

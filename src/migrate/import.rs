@@ -2,23 +2,9 @@
 
 use super::condition::Condition;
 use super::names::{Modules, Place};
-use super::scan::comment_length;
 use super::tree::{Bytes, Choice, Import, Leaf, Node, Path};
+use crate::parse::wesl::blank::without_comments;
 use crate::parse::words::leading_word;
-
-/// The text without its comments, byte for byte.
-pub fn without_comments(text: &str) -> String {
-    let mut bare = String::with_capacity(text.len());
-    while bare.len() < text.len() {
-        let rest = &text[bare.len()..];
-        let length = comment_length(rest);
-        match rest.chars().next() {
-            Some(letter) if length == 0 => bare.push(letter),
-            _ => bare.extend(std::iter::repeat_n(' ', length)),
-        }
-    }
-    bare
-}
 
 /// Why an import cannot be read, and where.
 type Wrong = (&'static str, Bytes);

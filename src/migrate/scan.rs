@@ -5,7 +5,7 @@ use super::condition::Condition;
 use super::import;
 use super::tree::{Branch, Bytes, Choice, Import, Kind, Line, Node, Scanned, Token};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::parse::wesl::blank::{block_comment, line_comment};
+use crate::parse::wesl::blank::{block_comment, comment_length, without_comments};
 use crate::parse::words::{begins_word, continues_word, leading_word, number_end};
 use crate::source::{LIMITS, SourceId, Span};
 
@@ -241,7 +241,7 @@ impl Scanner<'_> {
         let start = self.at;
         let mut line = self.line();
         let is_open = |text: &str| {
-            let bare = import::without_comments(text);
+            let bare = without_comments(text);
             bare.matches('{').count() > bare.matches('}').count()
         };
         while is_open(&self.text[start..self.at]) && self.at < self.text.len() {
@@ -351,14 +351,5 @@ pub fn trivia_length(text: &str) -> usize {
             0 => return at,
             length => length,
         };
-    }
-}
-
-/// Bytes of the comment that a text starts with.
-pub fn comment_length(text: &str) -> usize {
-    match () {
-        () if text.starts_with("//") => line_comment(text),
-        () if text.starts_with("/*") => block_comment(text).0,
-        () => 0,
     }
 }

@@ -18,6 +18,7 @@ const LAMP: &str = "/* a: b */
 struct Lamp {
     // power: none
     @align(16) up: vec3f,
+    /* none: f32, /* nested */ near: f32, */
     power: f32, /* x: y */
 }
 
@@ -36,7 +37,7 @@ pub fn found() -> Outcome {
     let mut session = Session::new(TEXT)?;
     session.open("lamp.wesl", LAMP)?;
     let lamp = session.uri("lamp.wesl")?;
-    for (words, line, character) in [("power", 4, 4), ("up.x", 3, 15)] {
+    for (words, line, character) in [("power", 5, 4), ("up.x", 3, 15)] {
         let found = session.at("textDocument/definition", TEXT, words, json!({}))?;
         let start = json!({ "line": line, "character": character });
         let is_it = found[0]["uri"] == json!(lamp) && found[0]["range"]["start"] == start;
@@ -54,5 +55,10 @@ pub fn found() -> Outcome {
     let text = TEXT.replace("lamp.power", "lamp.far");
     session.change(&text)?;
     let far = session.at("textDocument/definition", &text, "far", json!({}))?;
-    expect(far[0]["range"]["start"] == json!({ "line": 9, "character": 4 }), &far)
+    expect(far[0]["range"]["start"] == json!({ "line": 10, "character": 4 }), &far)?;
+    // Comments nest, so a comment goes on after one in it.
+    let text = TEXT.replace("lamp.power", "lamp.near");
+    session.change(&text)?;
+    let near = session.at("textDocument/hover", &text, "near", json!({}))?;
+    expect(near == Value::Null, &near)
 }

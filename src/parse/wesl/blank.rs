@@ -42,3 +42,24 @@ pub fn block_comment(text: &str) -> (usize, bool) {
     }
     (at, false)
 }
+
+/// Bytes of the comment that the text begins with; 0 if it begins with none.
+pub fn comment_length(text: &str) -> usize {
+    match text.as_bytes() {
+        [b'/', b'/', ..] => line_comment(text),
+        [b'/', b'*', ..] => block_comment(text).0,
+        _ => 0,
+    }
+}
+
+/// The text with blanks in place of its comments, byte for byte.
+pub fn without_comments(text: &str) -> String {
+    let mut bare = String::with_capacity(text.len());
+    while let Some(next) = text[bare.len()..].chars().next() {
+        match comment_length(&text[bare.len()..]) {
+            0 => bare.push(next),
+            length => bare.extend(std::iter::repeat_n(' ', length)),
+        }
+    }
+    bare
+}

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::blank::{block_comment, line_comment};
+use super::blank::comment_length;
 
 /// Where an item's text starts: at the comments above it, if no blank line stands between.
 ///
@@ -17,7 +17,7 @@ pub fn leading_start(text: &str, from: u32, start: u32) -> u32 {
             b'/' => {
                 attached = if newlines > 1 { Some(at) } else { attached.or(Some(at)) };
                 newlines = 0;
-                at = comment_end(text, at, end);
+                at += comment_length(&text[at..end]).max(1);
             }
             byte => {
                 newlines += usize::from(byte == b'\n');
@@ -82,12 +82,4 @@ fn comment_lines(text: &str, before: u32, start: u32) -> u32 {
         at = newline + 1;
     }
     before + at as u32
-}
-
-fn comment_end(text: &str, at: usize, limit: usize) -> usize {
-    let rest = &text[at..limit];
-    match rest.starts_with("//") {
-        true => at + line_comment(rest),
-        false => at + block_comment(rest).0,
-    }
 }
