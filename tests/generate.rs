@@ -16,14 +16,14 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use shards::{parallel, shards, wrong_shards};
-use shared::{shared_folder, shared_server};
+use shared::{foreign_folder, shared_folder, shared_server};
 use watched::watch;
 
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 16] = [
+    let cases: [Case; 17] = [
         ("comments_and_layout_go_and_nothing_else", layout),
         ("a_second_run_does_nothing", nothing_to_do),
         ("an_edit_compiles_what_it_reaches", edits),
@@ -39,6 +39,7 @@ pub fn trials() -> Vec<Trial> {
         ("a_key_and_a_target_can_be_chosen", choices),
         ("watch_follows_edits", watch),
         ("a_folder_can_be_shared", shared_folder),
+        ("a_foreign_folder_is_no_store", foreign_folder),
         ("a_redis_server_can_be_shared", shared_server),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("generate::{name}"), case)).collect()

@@ -54,6 +54,16 @@ impl Folder {
         }
     }
 
+    /// Opens the folder as a store, the cache that machines share.
+    ///
+    /// # Errors
+    /// If the path is something other than a cache.
+    pub fn open_store(path: &str) -> Result<Box<dyn Storage>, String> {
+        Self::new(path)
+            .map(|folder| Box::new(folder) as Box<dyn Storage>)
+            .map_err(|foreign| foreign.to_string())
+    }
+
     fn scratch(&self) -> Result<&Scratch, String> {
         let make = || {
             let scratch = output::make_folder(&self.path)

@@ -8,11 +8,9 @@ pub const HELP: &str = "A cache that machines share: `fs:/path`; read after `--c
 /// Opens the store at `fs:/path`.
 pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
     match address.split_once(':') {
-        Some(("fs", path)) => Folder::new(path)
-            .map(|folder| Box::new(folder) as Box<dyn Storage>)
-            .map_err(|foreign| foreign.to_string()),
+        Some(("fs", path)) => Folder::open_store(path),
         _ => Err(format!(
-            "this build has no store like `{address}`, only `fs:/path`: build it with `cargo install lamplight --features store`"
+            "this build supports only `fs:/path`, not `{address}`: build it with `cargo install lamplight --features store`"
         )),
     }
 }

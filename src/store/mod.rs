@@ -6,12 +6,12 @@
 
 use std::time::Duration;
 
-use opendal::services::{Fs, Redis};
+use opendal::services::Redis;
 use opendal::{ErrorKind, Operator};
 use tokio::runtime::{Builder, Runtime};
 use tokio::time::timeout;
 
-use crate::cache::{MOST_RECORD_BYTES, Storage};
+use crate::cache::{Folder, MOST_RECORD_BYTES, Storage};
 
 /// The help on addresses.
 pub const HELP: &str =
@@ -29,7 +29,16 @@ const ROOT: &str = "/lamplight";
 
 /// Opens the store at `fs:/path` or `redis://host:port`, if it answers.
 pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
-    let operator = open_operator(address)?;
+    match address.split_once(':') {
+        Some(("fs", path)) => Folder::open_store(path),
+        Some(("redis", _)) => open_server(address),
+        _ => Err(format!("`{address}` is not a store: write `fs:/path` or `redis://host:port`")),
+    }
+}
+
+fn open_server(address: &str) -> Result<Box<dyn Storage>, String> {
+    let operator = Operator::new(Redis::default().endpoint(address).root(ROOT))
+        .map_err(|error| format!("the store `{address}` cannot be opened: {error}"))?;
     let runtime = Builder::new_multi_thread()
         .worker_threads(1)
         .enable_all()
@@ -38,41 +47,23 @@ pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
     let answer = runtime.block_on(async { timeout(PATIENCE, operator.read("units/00/0")).await });
     match answer {
         Ok(Err(error)) if error.kind() != ErrorKind::NotFound => {
-            return Err(format!("the store `{address}` refuses: {error}"));
+            Err(format!("the store `{address}` refuses: {error}"))
         }
         Err(_) => {
-            return Err(format!(
-                "the store `{address}` does not answer within {} s",
-                PATIENCE.as_secs()
-            ));
+            let patience = PATIENCE.as_secs();
+            Err(format!("the store `{address}` does not answer within {patience} s"))
         }
-        Ok(_) => {}
+        Ok(_) => Ok(Box::new(Server { operator, runtime })),
     }
-    Ok(Box::new(Store { operator, runtime }))
 }
 
-fn open_operator(address: &str) -> Result<Operator, String> {
-    let operator = match address.split_once(':') {
-        Some(("fs", path)) => {
-            Operator::new(Fs::default().root(path).atomic_write_dir(&format!("{path}/.tmp")))
-        }
-        Some(("redis", _)) => Operator::new(Redis::default().endpoint(address).root(ROOT)),
-        _ => {
-            return Err(format!(
-                "`{address}` is not a store: write `fs:/path` or `redis://host:port`"
-            ));
-        }
-    };
-    operator.map_err(|error| format!("the store `{address}` cannot be opened: {error}"))
-}
-
-struct Store {
+struct Server {
     operator: Operator,
     /// Runs the operator's work, and ends with it.
     runtime: Runtime,
 }
 
-impl Store {
+impl Server {
     /// Waits for an answer, or fails once it takes too long.
     fn asked<T>(
         &self,
@@ -94,7 +85,7 @@ impl Store {
     }
 }
 
-impl Storage for Store {
+impl Storage for Server {
     fn get(&self, name: &str) -> Result<Option<Vec<u8>>, String> {
         match self.asked(self.bounded(name))? {
             Ok(bytes) => Ok(Some(bytes)),

@@ -10,6 +10,17 @@ pub fn shared_folder() -> Outcome {
     shared(&format!("fs:{}", tempfile::tempdir()?.path().display()))
 }
 
+/// A folder that has something else in it is no store, and nothing is written to it.
+pub fn foreign_folder() -> Outcome {
+    let (package, folder) = (Package::new()?, tempfile::tempdir()?);
+    fs::write(folder.path().join("notes.txt"), "mine")?;
+    let store = format!("fs:{}", folder.path().display());
+    let refused = package.run(&["gen", "--cache", "cache", "--store", &store])?;
+    equal(refused.status.code(), Some(4))?;
+    equal(String::from_utf8_lossy(&refused.stderr).contains("`notes.txt`"), true)?;
+    equal(fs::read_dir(folder.path())?.count(), 1)
+}
+
 /// Another machine, which has an empty cache, takes everything from the store and compiles nothing.
 fn shared(store: &str) -> Outcome {
     let package = Package::new()?;
