@@ -89,7 +89,7 @@ fn gallery_is_current() -> Result<(), Failed> {
     let mut files = gallery::composed(&cards);
     files.push(("README.md".to_owned(), gallery::markdown(&cards, &strips)));
     files.push(("index.html".to_owned(), gallery::html(&cards, &strips)));
-    let mut stale = Vec::new();
+    let mut stale = unlinked_texts(&folder, &files)?;
     for (path, wanted) in files {
         let found = std::fs::read_to_string(folder.join(&path)).unwrap_or_default();
         if found != wanted && is_recorded() {
@@ -121,6 +121,18 @@ fn gallery_is_current() -> Result<(), Failed> {
     }
     let command = "lamplight render --all --force -o docs/gallery";
     Err(format!("the gallery is not current, run `{command}`:\n{}", stale.join("\n")).into())
+}
+
+/// Composed texts that no page links, such as those of a preset that has another's text now.
+fn unlinked_texts(folder: &Path, files: &[(String, String)]) -> Result<Vec<String>, Failed> {
+    let mut unlinked = Vec::new();
+    for entry in std::fs::read_dir(folder.join("composed"))? {
+        let path = format!("composed/{}", entry?.file_name().to_string_lossy());
+        if !files.iter().any(|(linked, _)| *linked == path) {
+            unlinked.push(format!("{path} is linked by no page: delete it"));
+        }
+    }
+    Ok(unlinked)
 }
 
 /// The difference of a large picture and its smaller form from the reviewed picture, if it is too
