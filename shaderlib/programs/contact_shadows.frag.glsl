@@ -25,8 +25,9 @@ layout(std140, set = 0, binding = 2) uniform Screen {
 
 /// The light, and the march towards it.
 layout(std140, set = 0, binding = 3) uniform March {
-    /// `light=directional`: unit, towards the light; `light=point`: its position; in the view's space.
-    vec3 lamp;
+    /// A light that has a place: its position and 1; one that has none: unit, towards it, and 0; in
+    /// the view's space.
+    vec4 lamp;
     /// Length of the march, scene units.
     float reach;
     /// Least distance behind a surface that is in its shadow, scene units.
@@ -41,13 +42,10 @@ void main() {
     float depth = textureLod(sampler2D(depth_buffer, depth_sampler), in_uv, 0.0).x;
     vec4 place = screen.view_from_clip * vec4(2.0 * in_uv.x - 1.0, 1.0 - 2.0 * in_uv.y, depth, 1.0);
     vec3 start = place.xyz / place.w;
-#if LIGHT == LIGHT_POINT
-    vec3 l = safe_normalize(march.lamp - start, vec3(0.0));
-    float reach = min(march.reach, distance(march.lamp, start));
-#else
-    vec3 l = march.lamp;
-    float reach = march.reach;
-#endif
+    // A light without a place has the same direction everywhere, and no point lies behind it.
+    vec3 offset = march.lamp.xyz - march.lamp.w * start;
+    vec3 l = safe_normalize(offset, vec3(0.0));
+    float reach = march.lamp.w > 0.0 ? min(march.reach, length(offset)) : march.reach;
 #if JITTER
     float jitter = interleaved_gradient_noise(gl_FragCoord.xy);
 #else

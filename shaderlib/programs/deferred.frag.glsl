@@ -4,6 +4,9 @@
 #include "../ambient/octahedral.glsl"
 #include "../math/safe.glsl"
 #include "forward/ambient.glsl"
+#if OCCLUSION == OCCLUSION_SCREEN || CONTACT
+layout(set = 1, binding = 8) uniform sampler open_sampler;
+#endif
 #if LIGHTS != LIGHTS_NONE
 #include "forward/lamps.glsl"
 #include "forward/environment.glsl"
@@ -30,7 +33,6 @@ layout(set = 2, binding = 5) uniform sampler surface_sampler;
 #include "../ambient/occlusion.glsl"
 
 layout(set = 1, binding = 7) uniform texture2D seen_occlusion;
-layout(set = 1, binding = 8) uniform sampler open_sampler;
 
 /// The open share of the surroundings, [0, 1].
 float open_share() {
@@ -73,6 +75,9 @@ vec3 shade(vec3 base, vec3 normal, uint material) {
     surface.visibility = cascaded_visibility(surface, gl_FragCoord.xy);
 #elif SHADOW != SHADOW_NONE
     surface.visibility = visibility(surface, gl_FragCoord.xy);
+#endif
+#if CONTACT
+    surface.visibility *= contact_visibility(gl_FragCoord.xy);
 #endif
 #if AREA == AREA_RECTANGLE && SPECULAR == SPECULAR_GGX
     surface.lobe = table_lobe(dot(surface.normal, surface.view), surface.material.roughness);

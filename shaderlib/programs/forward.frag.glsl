@@ -47,6 +47,8 @@ layout(set = 1, binding = 4) uniform sampler map_sampler;
 layout(set = 1, binding = 6) uniform texture2D occlusion_map;
 #elif OCCLUSION == OCCLUSION_SCREEN
 layout(set = 1, binding = 7) uniform texture2D seen_occlusion;
+#endif
+#if OCCLUSION == OCCLUSION_SCREEN || CONTACT
 layout(set = 1, binding = 8) uniform sampler open_sampler;
 #endif
 
@@ -266,6 +268,9 @@ vec3 shade(vec3 base) {
     surface.visibility = cascaded_visibility(surface, gl_FragCoord.xy);
 #elif SHADOW != SHADOW_NONE
     surface.visibility = visibility(surface, gl_FragCoord.xy);
+#endif
+#if CONTACT
+    surface.visibility *= contact_visibility(gl_FragCoord.xy);
 #endif
 #if METALLIC_ROUGHNESS
     surface.layered = layered(base, surface.material.roughness, surface.normal, surface.view, own);

@@ -264,7 +264,9 @@ impl Needs {
 
     fn add(&mut self, row: &Row) {
         self.before.extend(split_passes(&row.before));
-        self.seen.extend(split_passes(&row.seen));
+        // Two axes may read one pass.
+        let seen = split_passes(&row.seen).filter(|pass| !self.seen.contains(pass));
+        self.seen.extend(seen.collect::<Vec<_>>());
         self.reach = row.reach.unwrap_or(self.reach);
         self.lamps = row.lamps.or(self.lamps);
         self.caster = row.caster.or(self.caster);

@@ -155,7 +155,7 @@ impl Studio<'_> {
         let prepared = self.ready(pass, left)?;
         if self.values.plan.is_of_viewer(pass) {
             return match pass.needs.screen {
-                true => self.draw_over(&prepared, left),
+                true => self.draw_over(pass, &prepared, left),
                 false => self.draw_seen(&prepared, left),
             };
         }
@@ -186,10 +186,15 @@ impl Studio<'_> {
     }
 
     /// Draws over the screen, and keeps what was seen before.
-    fn draw_over(&self, prepared: &Prepared, left: &mut Left) -> Result<(), Diagnostics> {
+    fn draw_over(
+        &self,
+        pass: &Pass,
+        prepared: &Prepared,
+        left: &mut Left,
+    ) -> Result<(), Diagnostics> {
         let mut drawn = Left::default();
         self.draw_seen(prepared, &mut drawn)?;
-        left.over = drawn.colors.into_iter().next();
+        left.over.extend(drawn.colors.into_iter().next().map(|over| (pass.program.clone(), over)));
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! The textures and samplers of a pass, from earlier passes, from the scene and from its
 //! surroundings.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use glam::DVec4;
@@ -26,8 +27,8 @@ pub struct Left {
     pub seen: Option<(Vec<f32>, [u32; 2])>,
     /// The colour targets of the last pass that shows things to the viewer.
     pub colors: Vec<Texture>,
-    /// The colours of the last pass over the screen.
-    pub over: Option<Texture>,
+    /// The colours of passes over the screen, by program.
+    pub over: BTreeMap<String, Texture>,
 }
 
 /// Samplers of textures that are not filtered.
@@ -166,7 +167,8 @@ impl Left {
             "blurred" => one(self.moments.clone()),
             "shadow_moments" => self.moments.clone().map(with_levels),
             "light" | "surface_color" => one(color(0)),
-            "seen_occlusion" => one(self.over.clone()),
+            "seen_occlusion" => one(self.over.get("gtao").cloned()),
+            "seen_contact" => one(self.over.get("contact_shadows").cloned()),
             "surface_normal" => one(color(1)),
             "surface_depth" | "depth_buffer" => {
                 one(self.seen.as_ref().map(|(depths, size)| as_color(depths, *size)))

@@ -122,7 +122,7 @@ impl Values<'_> {
             "caster" | "planes" => self.caster(path.field),
             "lobe" if path.field == "world_from_clip" => Some(matrix_columns(self.sky_from_clip())),
             "eye" | "screen" => self.screen(path.field),
-            "march" if path.field == "lamp" => Some(vector_values(self.marched_light())),
+            "march" if path.field == "lamp" => Some(self.marched_light()),
             _ => None,
         };
         self.published(&path)
@@ -258,14 +258,15 @@ impl Values<'_> {
         (eye_projection(eye, self.shot) * turned).inverse()
     }
 
-    /// The first lamp in the view's space: where it is, or where its light comes from.
-    fn marched_light(&self) -> DVec3 {
-        let Some(lamp) = self.scene.lamps.first() else { return DVec3::Y };
+    /// The first lamp in the view's space: where it is and 1, or where its light comes from and 0.
+    fn marched_light(&self) -> Vec<f64> {
+        let Some(lamp) = self.scene.lamps.first() else { return vec![0.0; 4] };
         let view = self.scene.eye.view();
-        match self.lit.needs.caster {
-            Some(LampKind::Directional) => view.transform_vector3(-lamp.axis()).normalize(),
-            _ => view.transform_point3(lamp.position),
-        }
+        let place = match self.lit.needs.caster.unwrap_or(lamp.kind) {
+            LampKind::Directional => view.transform_vector3(-lamp.axis()).normalize().extend(0.0),
+            _ => view.transform_point3(lamp.position).extend(1.0),
+        };
+        place.to_array().to_vec()
     }
 
     fn caster(&self, field: &str) -> Option<Vec<f64>> {

@@ -145,6 +145,16 @@ float visibility(Surface surface, vec2 pixel) {
 #endif
 #endif
 
+#if CONTACT
+layout(set = 2, binding = 15) uniform texture2D seen_contact;
+
+/// How much of the shadow caster's light passes what is near the point, as seen on the screen.
+float contact_visibility(vec2 pixel) {
+    vec2 place = pixel / vec2(textureSize(sampler2D(seen_contact, open_sampler), 0));
+    return textureLod(sampler2D(seen_contact, open_sampler), place, 0.0).x;
+}
+#endif
+
 #if CASCADES
 /// How much of the shadow caster's light arrives, from the parts of the map that have the point.
 float cascaded_visibility(Surface surface, vec2 pixel) {
