@@ -6,6 +6,7 @@ use naga::valid::{ValidationFlags, Validator};
 use crate::bundle::{Language, Native, Target};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::Emitted;
+use crate::execute::executor_failed;
 use crate::execute::kernel::{ENTRY, Kernel};
 use crate::link::{self, Linker};
 use crate::validate::{CAPABILITIES, Validated};
@@ -31,7 +32,8 @@ pub fn of_module(
     linker: &Linker<'_>,
 ) -> Result<(Emitted, Validated), Diagnostic> {
     let info = Validator::new(ValidationFlags::all(), CAPABILITIES).validate(module);
-    let info = info.map_err(|error| emit_failed(format!("the module is not valid: {error}")))?;
+    let info =
+        info.map_err(|error| executor_failed(format!("the module is not valid: {error}")))?;
     let validated = Validated { language: Language::Wesl, module: module.clone(), info };
     match link::module_linked(&validated, entry, target, linker) {
         Ok(artifact) => {
@@ -52,8 +54,4 @@ fn kernel_refused(errors: Diagnostics, target: Target) -> Diagnostic {
     } else {
         error
     }
-}
-
-fn emit_failed(message: impl Into<String>) -> Diagnostic {
-    Diagnostic::error(codes::EXECUTOR_FAILED, message)
 }

@@ -1,6 +1,7 @@
 //! Textures and samplers that the parameters of a function under test are bound to.
 
 use super::kernel::ResourceClass;
+pub use crate::eval::{Address, Compare};
 use naga::{ImageClass, ImageDimension, ScalarKind};
 
 /// A texture or a sampler.
@@ -63,13 +64,17 @@ pub struct Sampler {
     pub address: Address,
 }
 
-/// The test of a comparison sampler, `reference OP stored`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Compare {
-    Less,
-    LessEqual,
-    Greater,
-    GreaterEqual,
+impl Sampler {
+    /// The address mode and the comparison in WebGPU's words.
+    pub fn web_words(self) -> (&'static str, Option<String>) {
+        let address = match self.address {
+            Address::Clamp => "clamp-to-edge",
+            Address::Repeat => "repeat",
+            Address::Mirror => "mirror-repeat",
+        };
+        let name = |compare| Compare::NAMES.iter().find(|(_, found)| *found == compare);
+        (address, self.compare.and_then(name).map(|(name, _)| name.replace('_', "-")))
+    }
 }
 
 impl Compare {
@@ -79,6 +84,8 @@ impl Compare {
         ("less_equal", Self::LessEqual),
         ("greater", Self::Greater),
         ("greater_equal", Self::GreaterEqual),
+        ("equal", Self::Equal),
+        ("not_equal", Self::NotEqual),
     ];
 
     /// Whether the reference passes against the stored depth.
@@ -88,16 +95,10 @@ impl Compare {
             Self::LessEqual => reference <= stored,
             Self::Greater => reference > stored,
             Self::GreaterEqual => reference >= stored,
+            Self::Equal => reference == stored,
+            Self::NotEqual => reference != stored,
         }
     }
-}
-
-/// How coordinates outside of [0, 1] are treated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Address {
-    Clamp,
-    Repeat,
-    Mirror,
 }
 
 impl Address {
@@ -120,6 +121,14 @@ impl Address {
 }
 
 impl Fixture {
+    /// The sampler, if it is one.
+    pub fn sampler(&self) -> Option<Sampler> {
+        match self {
+            Self::Sampler(sampler) => Some(*sampler),
+            Self::Texture(_) => None,
+        }
+    }
+
     /// Whether the shader's declaration can be bound to it.
     pub fn fits(&self, class: ResourceClass) -> bool {
         match (self, class) {

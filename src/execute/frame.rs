@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::fixture::{Fixture, Texture};
+use super::fixture::{Fixture, Sampler, Texture};
 
 /// Triangles. The attributes of a vertex are interleaved.
 #[derive(Debug, Clone, Default)]
@@ -91,6 +91,11 @@ static NO_BUFFERS: [Buffers; 1] = [Buffers::new()];
 static NO_LEVELS: BTreeMap<(u32, u32), Vec<Texture>> = BTreeMap::new();
 
 impl<'a> Drawing<'a> {
+    /// The sampler at a group and binding.
+    pub fn sampler_at(&self, [group, binding]: [u32; 2]) -> Option<Sampler> {
+        self.fixtures.get(&(group, binding))?.sampler()
+    }
+
     /// One frame with one target, no buffers but those of the items, and the state's defaults.
     pub fn of_items(
         [vertex, fragment]: [EntryPoint<'a>; 2],

@@ -2,7 +2,8 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use super::executor_failed;
+use super::fixture::{Fixture, Sampler, Texture, TextureKind};
 use super::kernel::{Kernel, ParameterKind};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::eval::{self, FunctionId, Machine, Number, Program, Resources, Texels};
@@ -48,9 +49,8 @@ impl Interpreter {
     pub fn of(kernel: &Kernel, module: &Module) -> Result<Self, Diagnostic> {
         let validated =
             Validator::new(ValidationFlags::all(), Capabilities::all()).validate(module);
-        let info = validated.map_err(|error| {
-            Diagnostic::error(codes::EXECUTOR_FAILED, format!("the kernel is not valid: {error}"))
-        })?;
+        let info = validated
+            .map_err(|error| executor_failed(format!("the kernel is not valid: {error}")))?;
         let program = Program::new(module, &info).map_err(eval_failed)?;
         let slots = argument_slots(kernel, &program)?;
         Ok(Self {
@@ -168,18 +168,8 @@ impl From<&Texture> for eval::Texture {
 
 impl From<Sampler> for eval::Sampler {
     fn from(fixture: Sampler) -> Self {
-        let address = match fixture.address {
-            Address::Clamp => eval::Address::Clamp,
-            Address::Repeat => eval::Address::Repeat,
-            Address::Mirror => eval::Address::Mirror,
-        };
+        let Sampler { compare, address, .. } = fixture;
         let filter = if fixture.linear { eval::Filter::Linear } else { eval::Filter::Nearest };
-        let compare = fixture.compare.map(|compare| match compare {
-            Compare::Less => eval::Compare::Less,
-            Compare::LessEqual => eval::Compare::LessEqual,
-            Compare::Greater => eval::Compare::Greater,
-            Compare::GreaterEqual => eval::Compare::GreaterEqual,
-        });
         Self { address: [address; 3], mag: filter, min: filter, compare, ..Self::default() }
     }
 }

@@ -9,13 +9,13 @@ use super::compiled::Program;
 use super::compiled::request::{Bound, Format, Fragment, Image, ImageLevel};
 use super::fixture::Fixture;
 use super::frame::{Drawing, EntryPoint, Frame};
-use super::gpu::{emitted, input_texels, run_batches, unpack_results};
+use super::gpu::{emitted, run_batches};
 use super::kernel::{INPUT_WIDTH, Kernel, TARGET_WIDTH};
 use super::raster::Compiled;
 use super::shipped::Shipped;
-use super::{Pair, Session};
+use super::{Pair, Session, executor_failed};
 use crate::bundle::{Native, Target};
-use crate::diagnostic::{Diagnostic, codes};
+use crate::diagnostic::Diagnostic;
 use crate::emit::Emitted;
 use crate::eval::{Sampler, Shape, Texture};
 use crate::metal::{Missing, clang_version};
@@ -27,7 +27,6 @@ pub struct Metal {
     programs: Vec<Program>,
     /// For each kernel its program, its text and its bindings; or why it could not be compiled.
     kept: HashMap<u64, Result<Kept, Diagnostic>>,
-    runs: u32,
 }
 
 /// A kernel within a program.
@@ -44,7 +43,7 @@ impl Metal {
     /// It is missing.
     pub fn open() -> Result<Self, Missing> {
         let compiler = clang_version()?;
-        Ok(Self { compiler, programs: Vec::new(), kept: HashMap::new(), runs: 0 })
+        Ok(Self { compiler, programs: Vec::new(), kept: HashMap::new() })
     }
 
     /// Compiles the kernels that are new, all of them at once.
@@ -59,7 +58,7 @@ impl Metal {
         let outputs: Vec<Result<(String, Native), Diagnostic>> =
             on_large_stack(|| new.par_iter().map(emit).collect());
         let texts: Vec<&str> = outputs.iter().flatten().map(|(text, _)| text.as_str()).collect();
-        let program = Program::build(&texts).map_err(|missing| metal_failed(missing.reason));
+        let program = Program::build(&texts).map_err(|missing| executor_failed(missing.reason));
         let (index, mut next) = (self.programs.len(), 0);
         for (kernel, output) in new.iter().zip(&outputs) {
             let kept = match (output, &program) {
@@ -74,28 +73,21 @@ impl Metal {
         self.programs.extend(program);
     }
 
-    /// One draw: the result words of `count` invocations.
-    fn draw(
-        &mut self,
-        kernel: &Kernel,
-        inputs: &[u32],
-        count: u32,
-    ) -> Result<Vec<u32>, Diagnostic> {
-        self.runs = self.runs.wrapping_add(1);
-        let (rows, header) = kernel.draw_header(count, self.runs);
+    /// One draw: the words of the target.
+    fn draw(&mut self, kernel: &Kernel, texels: &[u32], rows: u32) -> Result<Vec<u32>, Diagnostic> {
         let kept = match self.kept.get(&kernel.id) {
             Some(Ok(kept)) => kept,
             Some(Err(error)) => return Err(error.clone()),
-            None => return Err(metal_failed("the kernel was not prepared")),
+            None => return Err(executor_failed("the kernel was not prepared")),
         };
         let Some(program) = self.programs.get_mut(kept.program) else {
-            return Err(metal_failed("the program was lost"));
+            return Err(executor_failed("the program was lost"));
         };
-        let bound = bind_kernel(kernel, &kept.native, input_texels(kernel, inputs, header));
+        let bound = bind_kernel(kernel, &kept.native, texels);
         let quads: Vec<[Fragment; 4]> = (0..rows.div_ceil(2))
             .flat_map(|y| (0..TARGET_WIDTH / 2).map(move |x| quad_fragments(2 * x, 2 * y)))
             .collect();
-        let shaded = program.quads(kept.text, &bound, &quads).map_err(metal_failed)?;
+        let shaded = program.quads(kept.text, &bound, &quads).map_err(executor_failed)?;
         let mut pixels = vec![0; (rows * TARGET_WIDTH) as usize * 4];
         for (fragment, shaded) in quads.iter().flatten().zip(shaded.iter().flatten()) {
             let [x, y, ..] = fragment.position.map(|place| place as usize);
@@ -106,7 +98,7 @@ impl Metal {
                 pixel.copy_from_slice(words);
             }
         }
-        unpack_results(kernel, &pixels, header)
+        Ok(pixels)
     }
 }
 
@@ -121,7 +113,7 @@ impl Session for Metal {
 
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
         self.compile(&[kernel]);
-        run_batches(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
+        run_batches(kernel, inputs, |texels, rows| self.draw(kernel, texels, rows))
     }
 
     fn draw_frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
@@ -129,7 +121,7 @@ impl Session for Metal {
         let mut stages = vec![shipped(drawing.vertex)?];
         stages.extend(drawing.fragment.map(shipped).transpose()?);
         let fragment = stages.len().checked_sub(2).map(|_| 1);
-        let compiled = Compiled::new(stages).map_err(|missing| metal_failed(missing.reason))?;
+        let compiled = Compiled::new(stages).map_err(|missing| executor_failed(missing.reason))?;
         compiled.draw(0, fragment, drawing)
     }
 
@@ -138,19 +130,16 @@ impl Session for Metal {
         pair: Pair<'_>,
         drawing: &Drawing<'_>,
     ) -> Result<Vec<Frame>, Diagnostic> {
-        let targets = pair.fragment.targets().map_err(metal_failed)?.len() as u32;
+        let targets = pair.fragment.targets().map_err(executor_failed)?.len() as u32;
         let stages = vec![pair.vertex.clone(), pair.fragment.clone()];
-        let compiled = Compiled::new(stages).map_err(|missing| metal_failed(missing.reason))?;
+        let compiled = Compiled::new(stages).map_err(|missing| executor_failed(missing.reason))?;
         compiled.draw(0, Some(1), &Drawing { targets, ..*drawing })
     }
 }
 
-fn metal_failed(message: impl Into<String>) -> Diagnostic {
-    Diagnostic::error(codes::EXECUTOR_FAILED, message)
-}
-
 fn emitted_text(emitted: Emitted) -> Result<(String, Native), Diagnostic> {
-    let text = String::from_utf8(emitted.bytes).map_err(|error| metal_failed(error.to_string()))?;
+    let text =
+        String::from_utf8(emitted.bytes).map_err(|error| executor_failed(error.to_string()))?;
     Ok((text, emitted.native))
 }
 
@@ -164,12 +153,11 @@ fn quad_fragments(x: u32, y: u32) -> [Fragment; 4] {
 }
 
 /// Binds the inputs and the fixtures of a kernel, where its text has them.
-fn bind_kernel(kernel: &Kernel, native: &Native, texels: Vec<u32>) -> Bound {
+fn bind_kernel(kernel: &Kernel, native: &Native, texels: &[u32]) -> Bound {
     let mut bound = Bound::default();
-    let fixture = |binding: u32| kernel.resources().find(|resource| resource.binding == binding);
     for slot in &native.slots {
         let Some(index) = slot.index else { continue };
-        match fixture(slot.binding).map(|resource| &*resource.fixture) {
+        match kernel.fixture_at(slot.binding) {
             Some(Fixture::Texture(texture)) => {
                 let image = Image::new(&Texture::from(texture), Format::Float);
                 bound.textures.insert(index, image);
@@ -177,7 +165,7 @@ fn bind_kernel(kernel: &Kernel, native: &Native, texels: Vec<u32>) -> Bound {
             Some(Fixture::Sampler(sampler)) => {
                 bound.samplers.insert(index, Sampler::from(*sampler));
             }
-            None => drop(bound.textures.insert(index, input_image(&texels))),
+            None => drop(bound.textures.insert(index, input_image(texels))),
         }
     }
     bound

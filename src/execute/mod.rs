@@ -87,6 +87,11 @@ pub struct Pair<'a> {
     pub fragment: &'a Shipped,
 }
 
+/// What went wrong with an executor, which is no mistake of a function.
+fn executor_failed(message: impl Into<String>) -> Diagnostic {
+    Diagnostic::error(codes::EXECUTOR_FAILED, message)
+}
+
 fn draws_none() -> Diagnostic {
-    Diagnostic::error(codes::EXECUTOR_FAILED, "this executor draws no frames")
+    executor_failed("this executor draws no frames")
 }

@@ -11,7 +11,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, StorageAccess};
 use wgpu::util::DeviceExt;
 
-use super::{Gpu, gpu_failed};
+use super::{Gpu, executor_failed};
 use crate::diagnostic::Diagnostic;
 use crate::execute::frame::{
     Attribute, Drawing, EntryPoint, Frame, Mesh, Place, Side, State, VertexFormat,
@@ -277,10 +277,12 @@ fn bytes_of_words(words: &[u32]) -> Vec<u8> {
 /// The bindings that the entry point uses, which are those of the derived layout.
 fn used_bindings(stage: EntryPoint<'_>) -> Result<BTreeSet<Place>, Diagnostic> {
     let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(stage.module);
-    let info = info.map_err(|error| gpu_failed(format!("the program is not valid: {error}")))?;
+    let info =
+        info.map_err(|error| executor_failed(format!("the program is not valid: {error}")))?;
     let index = stage.module.entry_points.iter().position(|point| point.name == stage.entry);
-    let index = index
-        .ok_or_else(|| gpu_failed(format!("the program has no entry point `{}`", stage.entry)))?;
+    let index = index.ok_or_else(|| {
+        executor_failed(format!("the program has no entry point `{}`", stage.entry))
+    })?;
     let variables = stage
         .module
         .global_variables

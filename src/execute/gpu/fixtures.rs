@@ -1,6 +1,7 @@
 //! Uploads fixtures as textures and samplers of a device.
 
 use super::pipeline;
+use super::textures::{create_texture, write_level};
 use crate::eval::{half_from, half_to};
 use crate::execute::fixture::{Address, Compare, Sampler, Texture};
 
@@ -59,6 +60,8 @@ pub fn create_sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler 
         Compare::LessEqual => wgpu::CompareFunction::LessEqual,
         Compare::Greater => wgpu::CompareFunction::Greater,
         Compare::GreaterEqual => wgpu::CompareFunction::GreaterEqual,
+        Compare::Equal => wgpu::CompareFunction::Equal,
+        Compare::NotEqual => wgpu::CompareFunction::NotEqual,
     });
     device.create_sampler(&wgpu::SamplerDescriptor {
         address_mode_u: address,
@@ -91,14 +94,8 @@ fn color_texture(
         && levels().all(|level| level.texels.iter().all(|texel| is_half(*texel)));
     let format =
         if half { wgpu::TextureFormat::Rgba16Float } else { wgpu::TextureFormat::Rgba32Float };
-    let created = create_texture(
-        device,
-        texture,
-        texture.kind.layers(),
-        1 + smaller.len() as u32,
-        format,
-        usage,
-    );
+    let count = 1 + smaller.len() as u32;
+    let created = create_texture(device, level_size(texture), count, format, usage);
     for (index, level) in levels().enumerate() {
         let bytes: Vec<u8> = match half {
             true => level
@@ -108,9 +105,14 @@ fn color_texture(
                 .collect(),
             false => level.texels.iter().flat_map(|texel| texel.to_le_bytes()).collect(),
         };
-        write_level(queue, &created, level, index as u32, level.kind.layers(), &bytes);
+        write_level(queue, &created, index as u32, level_size(level), &bytes);
     }
     created
+}
+
+/// Width, height and layers.
+fn level_size(level: &Texture) -> [u32; 3] {
+    [level.width, level.height, level.kind.layers()]
 }
 
 fn is_half(texel: f32) -> bool {
@@ -119,20 +121,14 @@ fn is_half(texel: f32) -> bool {
 
 fn depth_texture(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT;
-    let created = create_texture(
-        device,
-        texture,
-        texture.kind.layers(),
-        1,
-        wgpu::TextureFormat::Depth32Float,
-        usage,
-    );
+    let format = wgpu::TextureFormat::Depth32Float;
+    let created = create_texture(device, level_size(texture), 1, format, usage);
     let (layout, drawing) = pipeline::texture_pipeline(
         device,
         (DEPTH, "depth"),
         wgpu::TextureSampleType::Uint,
         None,
-        Some(wgpu::TextureFormat::Depth32Float),
+        Some(format),
     );
     for layer in 0..texture.kind.layers() {
         draw_layer(device, queue, texture, layer, &created, &layout, &drawing);
@@ -148,11 +144,12 @@ fn staged_depths(
     layer: u32,
 ) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-    let staged = create_texture(device, texture, 1, 1, wgpu::TextureFormat::R32Uint, usage);
-    let size = (texture.width * texture.height) as usize;
-    let texels = texture.texels.iter().skip(layer as usize * size).take(size);
+    let size = [texture.width, texture.height, 1];
+    let staged = create_texture(device, size, 1, wgpu::TextureFormat::R32Uint, usage);
+    let count = (texture.width * texture.height) as usize;
+    let texels = texture.texels.iter().skip(layer as usize * count).take(count);
     let bytes: Vec<u8> = texels.flat_map(|value| value.to_le_bytes()).collect();
-    write_level(queue, &staged, texture, 0, 1, &bytes);
+    write_level(queue, &staged, 0, size, &bytes);
     staged
 }
 
@@ -197,52 +194,4 @@ fn draw_layer(
     pass.draw(0..3, 0..1);
     drop(pass);
     queue.submit([encoder.finish()]);
-}
-
-fn create_texture(
-    device: &wgpu::Device,
-    texture: &Texture,
-    layers: u32,
-    levels: u32,
-    format: wgpu::TextureFormat,
-    usage: wgpu::TextureUsages,
-) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d {
-            width: texture.width,
-            height: texture.height,
-            depth_or_array_layers: layers,
-        },
-        mip_level_count: levels,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    })
-}
-
-/// Copies bytes into one level of the texture; `texture` has the size of that level.
-fn write_level(
-    queue: &wgpu::Queue,
-    target: &wgpu::Texture,
-    texture: &Texture,
-    level: u32,
-    layers: u32,
-    bytes: &[u8],
-) {
-    let row = bytes.len() as u32 / (texture.height * layers).max(1);
-    let layout = wgpu::TexelCopyBufferLayout {
-        offset: 0,
-        bytes_per_row: Some(row),
-        rows_per_image: Some(texture.height),
-    };
-    let size = wgpu::Extent3d {
-        width: texture.width,
-        height: texture.height,
-        depth_or_array_layers: layers,
-    };
-    let place = wgpu::TexelCopyTextureInfo { mip_level: level, ..target.as_image_copy() };
-    queue.write_texture(place, bytes, layout, size);
 }

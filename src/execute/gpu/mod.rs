@@ -8,23 +8,27 @@ mod open;
 mod opengl;
 mod passthrough;
 mod pipeline;
+mod textures;
 
 pub use super::emitted;
 pub use open::{Named, Shaders, Wanted, open_gpu};
 pub use opengl::{Api, OpenGl};
 
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use super::frame::{Drawing, Frame};
 use super::kernel::{ECHO, INPUT_WIDTH, Kernel, SENTINEL, TARGET_WIDTH};
-use super::{Pair, Session, draws_none};
+use super::shipped::Format;
+use super::{Pair, Session, draws_none, executor_failed};
 use crate::bundle::Stage;
-use crate::diagnostic::{Diagnostic, codes};
+use crate::diagnostic::Diagnostic;
 use crate::emit::Emitted;
 use passthrough::Binary;
 use pipeline::Prepared;
+use textures::{TEXEL, color_attachment, copy_to_buffer, create_texture, write_level};
 
 /// The longest wait for one draw: a hundred thousand times what one usually takes.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -42,7 +46,6 @@ pub struct Gpu {
     prepared: HashMap<u64, Prepared>,
     /// Shipped stages as SPIR-V, by their bytes and the bind group of their heaps.
     binaries: Mutex<HashMap<(Vec<u8>, u32), Binary>>,
-    runs: u32,
 }
 
 impl Session for Gpu {
@@ -51,7 +54,11 @@ impl Session for Gpu {
     }
 
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
-        run_batches(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
+        run_batches(kernel, inputs, |texels, rows| {
+            self.prepare(kernel)?;
+            let buffer = self.guarded(|gpu| gpu.submit(kernel, texels, rows))??;
+            self.read(&buffer)
+        })
     }
 
     fn draw_frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
@@ -70,41 +77,32 @@ impl Session for Gpu {
     }
 }
 
-/// Runs as many draws as the inputs need. `draw` is given the words and the number of invocations
-/// of one draw.
+/// Runs as many draws as the inputs need. `draw` is given the words of the input texture and the
+/// rows of the target, and returns the words of the target.
 pub fn run_batches(
     kernel: &Kernel,
     inputs: &[u32],
     mut draw: impl FnMut(&[u32], u32) -> Result<Vec<u32>, Diagnostic>,
 ) -> Result<Vec<u32>, Diagnostic> {
+    // The number of the draw. A target that still holds the results of another draw shows it.
+    static RUN: AtomicU32 = AtomicU32::new(1);
+    let mut run = |batch: &[u32], count: u32| {
+        let (rows, header) = kernel.draw_header(count, RUN.fetch_add(1, Ordering::Relaxed));
+        let pixels = draw(&input_texels(kernel, batch, header), rows)?;
+        unpack_results(kernel, &pixels, header)
+    };
     if kernel.input_words() == 0 {
-        return draw(&[], 1);
+        return run(&[], 1);
     }
     let stride = kernel.input_words() as usize;
     let mut results = Vec::new();
     for batch in inputs.chunks(kernel.batch() as usize * stride) {
-        results.extend(draw(batch, (batch.len() / stride) as u32)?);
+        results.extend(run(batch, (batch.len() / stride) as u32)?);
     }
     Ok(results)
 }
 
 impl Gpu {
-    /// Runs one draw; the result words of `count` invocations.
-    fn draw(
-        &mut self,
-        kernel: &Kernel,
-        inputs: &[u32],
-        count: u32,
-    ) -> Result<Vec<u32>, Diagnostic> {
-        self.runs = self.runs.wrapping_add(1);
-        let (rows, header) = kernel.draw_header(count, self.runs);
-        self.prepare(kernel)?;
-        let buffer =
-            self.guarded(|gpu| gpu.submit(kernel, &input_texels(kernel, inputs, header), rows))??;
-        let pixels = self.read(&buffer)?;
-        unpack_results(kernel, &pixels, header)
-    }
-
     fn prepare(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
         if !self.prepared.contains_key(&kernel.id) {
             let emitted = match self.shaders {
@@ -113,13 +111,13 @@ impl Gpu {
                     let Emitted { bytes, native } = emitted::emit_kernel(kernel, target)?;
                     let heaps = pipeline::HEAPS;
                     let binary = Binary::new(target, Stage::Fragment, &bytes, &native, heaps);
-                    Some(binary.map_err(gpu_failed)?)
+                    Some(binary.map_err(executor_failed)?)
                 }
             };
             let prepared = self.guarded(|gpu| {
                 Prepared::new(&gpu.device, &gpu.queue, &gpu.vertex, kernel, emitted.as_ref())
             })?;
-            self.prepared.insert(kernel.id, prepared.map_err(gpu_failed)?);
+            self.prepared.insert(kernel.id, prepared.map_err(executor_failed)?);
         }
         Ok(())
     }
@@ -133,25 +131,15 @@ impl Gpu {
         let prepared = self
             .prepared
             .get(&kernel.id)
-            .ok_or_else(|| gpu_failed("the kernel was not prepared"))?;
+            .ok_or_else(|| executor_failed("the kernel was not prepared"))?;
         let inputs = self.inputs(texels);
-        let target = self.texture(
-            TARGET_WIDTH,
-            rows,
-            wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-        );
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+        let size = [TARGET_WIDTH, rows, 1];
+        let target = create_texture(&self.device, size, 1, TARGET_FORMAT, usage);
         let group = prepared.bind(&self.device, &inputs.create_view(&Default::default()));
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        let cleared = f64::from(SENTINEL);
-        let load =
-            wgpu::LoadOp::Clear(wgpu::Color { r: cleared, g: cleared, b: cleared, a: cleared });
         let view = target.create_view(&Default::default());
-        let attachment = wgpu::RenderPassColorAttachment {
-            view: &view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-        };
+        let attachment = color_attachment(&view, Format::Uint);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[Some(attachment)],
             ..Default::default()
@@ -163,66 +151,20 @@ impl Gpu {
         }
         pass.draw(0..3, 0..1);
         drop(pass);
-        let buffer = self.download(&mut encoder, &target, rows);
+        let buffer =
+            copy_to_buffer(&self.device, &mut encoder, &target, [TARGET_WIDTH, rows], TEXEL);
         self.queue.submit([encoder.finish()]);
         Ok(buffer)
     }
 
     fn inputs(&self, texels: &[u32]) -> wgpu::Texture {
         let rows = (texels.len() as u32 / 4).div_ceil(INPUT_WIDTH);
-        let texture = self.texture(
-            INPUT_WIDTH,
-            rows,
-            wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        );
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let size = [INPUT_WIDTH, rows, 1];
+        let texture = create_texture(&self.device, size, 1, TARGET_FORMAT, usage);
         let bytes: Vec<u8> = texels.iter().flat_map(|word| word.to_le_bytes()).collect();
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(INPUT_WIDTH * 16),
-            rows_per_image: None,
-        };
-        let size = wgpu::Extent3d { width: INPUT_WIDTH, height: rows, depth_or_array_layers: 1 };
-        self.queue.write_texture(texture.as_image_copy(), &bytes, layout, size);
+        write_level(&self.queue, &texture, 0, size, &bytes);
         texture
-    }
-
-    fn texture(&self, width: u32, height: u32, usage: wgpu::TextureUsages) -> wgpu::Texture {
-        self.device.create_texture(&wgpu::TextureDescriptor {
-            label: None,
-            size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: TARGET_FORMAT,
-            usage,
-            view_formats: &[],
-        })
-    }
-
-    fn download(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        target: &wgpu::Texture,
-        rows: u32,
-    ) -> wgpu::Buffer {
-        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
-            label: None,
-            size: u64::from(rows) * u64::from(TARGET_WIDTH) * 16,
-            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-            mapped_at_creation: false,
-        });
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(TARGET_WIDTH * 16),
-            rows_per_image: None,
-        };
-        let size = wgpu::Extent3d { width: TARGET_WIDTH, height: rows, depth_or_array_layers: 1 };
-        encoder.copy_texture_to_buffer(
-            target.as_image_copy(),
-            wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
-            size,
-        );
-        buffer
     }
 
     fn read(&self, buffer: &wgpu::Buffer) -> Result<Vec<u32>, Diagnostic> {
@@ -244,15 +186,16 @@ impl Gpu {
             .device
             .poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(PATIENCE) });
         waited.map_err(|error| {
-            gpu_failed(format!("no answer within {} s: {error}", PATIENCE.as_secs()))
+            executor_failed(format!("no answer within {} s: {error}", PATIENCE.as_secs()))
         })?;
         self.check_faults()?;
         match lock_mutex(&outcome).take() {
             Some(Ok(())) => {}
-            Some(Err(error)) => return Err(gpu_failed(error.to_string())),
-            None => return Err(gpu_failed("the result was never handed over")),
+            Some(Err(error)) => return Err(executor_failed(error.to_string())),
+            None => return Err(executor_failed("the result was never handed over")),
         }
-        let view = buffer.get_mapped_range(..).map_err(|error| gpu_failed(format!("{error:?}")))?;
+        let view =
+            buffer.get_mapped_range(..).map_err(|error| executor_failed(format!("{error:?}")))?;
         let found = run(&view);
         drop(view);
         buffer.unmap();
@@ -270,23 +213,23 @@ impl Gpu {
         let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| calls(self)));
         let caught: Vec<_> =
             scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
-        let value = outcome.map_err(|_| gpu_failed("wgpu or naga panicked"))?;
+        let value = outcome.map_err(|_| executor_failed("wgpu or naga panicked"))?;
         match caught.first() {
-            Some(error) => Err(gpu_failed(error.to_string())),
+            Some(error) => Err(executor_failed(error.to_string())),
             None => self.check_faults().map(|()| value),
         }
     }
 
     fn check_faults(&self) -> Result<(), Diagnostic> {
         match lock_mutex(&self.faults).first() {
-            Some(fault) => Err(gpu_failed(fault.clone())),
+            Some(fault) => Err(executor_failed(fault.clone())),
             None => Ok(()),
         }
     }
 }
 
 /// The words of the input texture, in whole rows, with the header first.
-pub fn input_texels(kernel: &Kernel, inputs: &[u32], header: [u32; 4]) -> Vec<u32> {
+fn input_texels(kernel: &Kernel, inputs: &[u32], header: [u32; 4]) -> Vec<u32> {
     let stride = kernel.input_words().max(1) as usize;
     let padding = (kernel.input_texels() * 4 - kernel.input_words()) as usize;
     let mut texels = header.to_vec();
@@ -302,7 +245,7 @@ pub fn input_texels(kernel: &Kernel, inputs: &[u32], header: [u32; 4]) -> Vec<u3
 }
 
 /// The result words, once the echo and the padding show that the target was written as intended.
-pub fn unpack_results(
+fn unpack_results(
     kernel: &Kernel,
     pixels: &[u32],
     header: [u32; 4],
@@ -312,7 +255,7 @@ pub fn unpack_results(
     for index in [0, last] {
         if pixel(index) != [header[0], header[1], header[2], ECHO ^ index as u32] {
             let found = pixel(index);
-            return Err(gpu_failed(format!(
+            return Err(executor_failed(format!(
                 "pixel {index} of {last} echoes {found:08x?}: the target was not written as laid out"
             )));
         }
@@ -320,19 +263,15 @@ pub fn unpack_results(
     let texels = kernel.result_texels() as usize;
     let end = 1 + header[0] as usize * texels;
     if (1..end).any(|index| pixel(index) == [SENTINEL; 4]) {
-        return Err(gpu_failed("a pixel was never written"));
+        return Err(executor_failed("a pixel was never written"));
     }
     if (end..last).any(|index| pixel(index) != pixel(end - texels + (index - end) % texels)) {
-        return Err(gpu_failed("the padding does not repeat the last invocation"));
+        return Err(executor_failed("the padding does not repeat the last invocation"));
     }
     let words = kernel.result_words() as usize;
     Ok((0..header[0] as usize)
         .flat_map(|index| pixels[(1 + index * texels) * 4..].iter().take(words).copied())
         .collect())
-}
-
-fn gpu_failed(message: impl Into<String>) -> Diagnostic {
-    Diagnostic::error(codes::EXECUTOR_FAILED, message)
 }
 
 fn lock_mutex<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {

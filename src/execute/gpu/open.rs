@@ -116,7 +116,6 @@ pub fn open_gpu(wanted: Wanted) -> Result<Gpu, String> {
         vertex,
         prepared: HashMap::new(),
         binaries: Mutex::new(HashMap::new()),
-        runs: 0,
     })
 }
 

@@ -46,7 +46,8 @@ impl Prepared {
         };
         let heaps = match emitted {
             Some(emitted) if !emitted.heaps.is_empty() => {
-                Some(heaps::bind_heaps(device, &emitted.heaps, &|place| sampler_at(kernel, place))?)
+                let sampler = |[_, binding]: [u32; 2]| kernel.fixture_at(binding)?.sampler();
+                Some(heaps::bind_heaps(device, &emitted.heaps, &sampler)?)
             }
             _ => None,
         };
@@ -158,14 +159,6 @@ pub fn draw_pipeline(
         multiview_mask: None,
         cache: None,
     })
-}
-
-fn sampler_at(kernel: &Kernel, [_, binding]: [u32; 2]) -> Option<Sampler> {
-    let resource = kernel.resources().find(|resource| resource.binding == binding)?;
-    match &*resource.fixture {
-        Fixture::Sampler(settings) => Some(*settings),
-        Fixture::Texture(_) => None,
-    }
 }
 
 /// The layout of the kernel's bindings. Samplers have a binding in any case, since wgpu numbers

@@ -146,6 +146,11 @@ impl Kernel {
         })
     }
 
+    /// What is bound at a binding.
+    pub fn fixture_at(&self, binding: u32) -> Option<&Fixture> {
+        self.resources().find(|found| found.binding == binding).map(|found| &*found.fixture)
+    }
+
     /// The most invocations of one draw.
     pub fn batch(&self) -> u32 {
         let by_inputs = (MAX_ROWS * INPUT_WIDTH - 1) / self.input_texels().max(1);

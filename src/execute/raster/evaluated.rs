@@ -6,8 +6,9 @@ use rayon::prelude::*;
 
 use super::corners::{Corner, Source, scalar_sources, vertex_attribute};
 use super::{Quad, Shaded, Shading};
-use crate::diagnostic::{Diagnostic, codes};
+use crate::diagnostic::Diagnostic;
 use crate::eval::{Batch, Function, FunctionId, Kind, Machine, Number, Program, Resources};
+use crate::execute::executor_failed;
 use crate::execute::frame::{Buffers, Drawing, EntryPoint, Mesh};
 use crate::execute::interpreter::eval_failed;
 
@@ -43,13 +44,13 @@ impl Lowered {
     fn new(stage: EntryPoint<'_>) -> Result<Self, Diagnostic> {
         let info: ModuleInfo = Validator::new(ValidationFlags::all(), Capabilities::all())
             .validate(stage.module)
-            .map_err(|error| unusable_stage(format!("the program is not valid: {error}")))?;
+            .map_err(|error| executor_failed(format!("the program is not valid: {error}")))?;
         let program = Program::new(stage.module, &info).map_err(eval_failed)?;
         // GLSL also has a plain function of that name. Entry points come after functions, so the
         // last one is meant.
         let found = program.functions().filter(|(_, function)| function.name == stage.entry).last();
         let missing =
-            || unusable_stage(format!("the program has no entry point `{}`", stage.entry));
+            || executor_failed(format!("the program has no entry point `{}`", stage.entry));
         let (function, signature) =
             found.map(|(id, function)| (id, function.clone())).ok_or_else(missing)?;
         Ok(Self { program, function, signature })
@@ -67,10 +68,6 @@ impl Lowered {
 fn task_size(count: usize) -> usize {
     let threads = rayon::current_num_threads().max(1);
     count.div_ceil(threads * TASKS).max(CHUNK).next_multiple_of(Batch::LANES)
-}
-
-fn unusable_stage(message: String) -> Diagnostic {
-    Diagnostic::error(codes::EXECUTOR_FAILED, message)
 }
 
 impl Shading for Evaluated {

@@ -6,11 +6,12 @@ use naga::BuiltIn;
 
 use super::corners::{Corner, Source, vertex_attribute};
 use super::{Quad, Shaded, Shading};
-use crate::diagnostic::{Diagnostic, codes};
+use crate::diagnostic::Diagnostic;
 use crate::eval::{Number, Resources};
 use crate::execute::compiled::Program;
 use crate::execute::compiled::interface::{Interface, Part, Role};
 use crate::execute::compiled::request::{Bound, Fragment, Transformed, Vertex};
+use crate::execute::executor_failed;
 use crate::execute::frame::{Buffers, Drawing, Frame, Mesh};
 use crate::execute::shipped::Shipped;
 use crate::metal::Missing;
@@ -69,7 +70,7 @@ impl Compiled {
         is_watched: bool,
     ) -> Result<Vec<Frame>, Diagnostic> {
         let stage = |index: usize| {
-            let interface = self.program().interface(index).cloned().map_err(raster_failed)?;
+            let interface = self.program().interface(index).cloned().map_err(executor_failed)?;
             Ok::<_, Diagnostic>(Stage { index, interface })
         };
         let (vertex, fragment) = (stage(vertex)?, fragment.map(stage).transpose()?);
@@ -90,10 +91,6 @@ impl Compiled {
         let shipped = &self.stages[stage.index];
         Bound::new(resources, &shipped.native, &shipped.reflection)
     }
-}
-
-fn raster_failed(message: String) -> Diagnostic {
-    Diagnostic::error(codes::EXECUTOR_FAILED, message)
 }
 
 /// A stage of a program, by its index.
@@ -132,7 +129,7 @@ impl Shading for Pair<'_> {
             clip: vertex.position.map(f64::from),
             slots: vertex.locations.into_iter().flatten().map(f32::from_bits).collect(),
         };
-        Ok(transformed.map_err(raster_failed)?.into_iter().map(corner).collect())
+        Ok(transformed.map_err(executor_failed)?.into_iter().map(corner).collect())
     }
 
     fn given(&self) -> Vec<(Source, bool)> {
@@ -172,7 +169,7 @@ impl Shading for Pair<'_> {
             .collect();
         let shaded = self.compiled.program().quads(stage.index, &bound, &fragments);
         let mut results: Vec<Shaded> = Vec::new();
-        for (given, shaded) in fragments.iter().zip(shaded.map_err(raster_failed)?) {
+        for (given, shaded) in fragments.iter().zip(shaded.map_err(executor_failed)?) {
             results.push(std::array::from_fn(|lane| {
                 let mut targets = shaded[lane].targets.clone();
                 if let Some(drawn) = self.watched {

@@ -4,11 +4,11 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
 
-use super::page_failed;
+use super::executor_failed;
 use crate::bundle::Combined;
 use crate::diagnostic::Diagnostic;
 use crate::emit::Emitted;
-use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture};
+use crate::execute::fixture::{Fixture, Sampler, Texture};
 use crate::execute::kernel::Kernel;
 
 /// The stages that may read a binding, as WebGPU's bits.
@@ -34,7 +34,8 @@ pub fn words_of_answer(value: &Value) -> Result<Vec<u32>, String> {
 
 /// A kernel with everything that it is bound to.
 pub fn kernel_json(kernel: &Kernel, emitted: &Emitted) -> Result<Value, Diagnostic> {
-    let code = str::from_utf8(&emitted.bytes).map_err(|error| page_failed(error.to_string()))?;
+    let code =
+        str::from_utf8(&emitted.bytes).map_err(|error| executor_failed(error.to_string()))?;
     let fixtures: Vec<((u32, u32), &Fixture)> =
         kernel.resources().map(|resource| ((0, resource.binding), &*resource.fixture)).collect();
     let filters = are_filtered(fixtures.iter().map(|(_, fixture)| *fixture));
@@ -127,17 +128,7 @@ fn image_json(texture: &Texture) -> Value {
 
 /// The sampler in WebGPU's terms.
 fn sampler_json(sampler: Sampler) -> Value {
-    let address = match sampler.address {
-        Address::Clamp => "clamp-to-edge",
-        Address::Repeat => "repeat",
-        Address::Mirror => "mirror-repeat",
-    };
-    let compare = sampler.compare.map(|compare| match compare {
-        Compare::Less => "less",
-        Compare::LessEqual => "less-equal",
-        Compare::Greater => "greater",
-        Compare::GreaterEqual => "greater-equal",
-    });
+    let (address, compare) = sampler.web_words();
     let filter = if sampler.linear { "linear" } else { "nearest" };
     json!({ "address": address, "filter": filter, "compare": compare })
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Map, Value, json};
 
-use super::{Api, asked, page_failed};
+use super::{Api, asked, executor_failed};
 use crate::bundle::{ClipSpace, FrontFace, Target};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::Pair;
@@ -23,7 +23,7 @@ pub fn frames_question(
 ) -> Result<Value, Diagnostic> {
     for stage in [pair.vertex, pair.fragment] {
         if stage.target != api.target() {
-            return Err(page_failed(format!("this executor draws no {}", stage.target)));
+            return Err(executor_failed(format!("this executor draws no {}", stage.target)));
         }
     }
     let lacks = pair.fragment.lacks_of_webgpu().filter(|_| api.target() == Target::WGSL);
@@ -32,9 +32,9 @@ pub fn frames_question(
     }
     if drawing.state != State::default() || !drawing.levels.is_empty() {
         let message = "shipped texts are drawn without depth test, culling and smaller levels";
-        return Err(page_failed(message));
+        return Err(executor_failed(message));
     }
-    let formats = pair.fragment.targets().map_err(page_failed)?;
+    let formats = pair.fragment.targets().map_err(executor_failed)?;
     let places = read_places(pair);
     let fixtures: Vec<(Place, &Fixture)> =
         places.iter().filter_map(|place| Some((*place, &**drawing.fixtures.get(place)?))).collect();
@@ -42,7 +42,7 @@ pub fn frames_question(
         let items = drawing.items.iter();
         items.map(|item| buffers_json(drawing, view, item, &places)).collect::<Result<Vec<_>, _>>()
     });
-    let views = views.collect::<Result<Vec<_>, _>>().map_err(page_failed)?;
+    let views = views.collect::<Result<Vec<_>, _>>().map_err(executor_failed)?;
     let reversed = |clip: &ClipSpace| clip.front_face == FrontFace::Reversed;
     Ok(json!({
         "size": drawing.size,
@@ -52,7 +52,7 @@ pub fn frames_question(
         "layout": layout_json(drawing, &places, &fixtures),
         "fixtures": fixtures.iter().map(|(place, one)| asked::fixture_json(*place, one)).collect::<Vec<_>>(),
         "units": units_json(pair),
-        "blocks": blocks_json(pair).map_err(page_failed)?,
+        "blocks": blocks_json(pair).map_err(executor_failed)?,
         "reversed": pair.vertex.native.clip.as_ref().is_some_and(reversed),
         "meshes": drawing.items.iter().map(|item| mesh_json(item.mesh)).collect::<Vec<_>>(),
         "views": views,

@@ -17,9 +17,9 @@ use serde_json::{Value, json};
 
 use super::emitted;
 use super::frame::{Drawing, Frame};
-use super::gpu::{input_texels, run_batches, unpack_results};
+use super::gpu::run_batches;
 use super::kernel::Kernel;
-use super::{Pair, Session};
+use super::{Pair, Session, executor_failed};
 use crate::browser::serve::{Files, Server};
 use crate::browser::{Browser, PATIENCE, Page, Problem};
 use crate::bundle::Target;
@@ -74,7 +74,6 @@ pub struct Web {
     patience: Duration,
     adapter: String,
     state: Mutex<State>,
-    runs: u32,
 }
 
 #[derive(Default)]
@@ -117,8 +116,8 @@ impl Web {
         let files = files.map(|(path, text)| (path.to_owned(), text.as_bytes().to_vec()));
         let server = Server::start(Files::Memory(BTreeMap::from(files)));
         let server = server.map_err(|error| format!("nothing can be served: {error}"))?;
-        let (state, runs) = (Mutex::default(), 0);
-        let mut web = Self { api, start, server, patience, adapter: String::new(), state, runs };
+        let state = Mutex::default();
+        let mut web = Self { api, start, server, patience, adapter: String::new(), state };
         let (page, adapter) = web.opened().map_err(|problem| problem.to_string())?;
         web.adapter = adapter;
         web.state = Mutex::new(State { page: Some(page), ..State::default() });
@@ -153,14 +152,14 @@ impl Web {
             Ok(Answer::Lacks(words)) => {
                 return Err(Failure::Of(Diagnostic::error(codes::EXECUTOR_LACKS, words)));
             }
-            Ok(Answer::Error(words)) => return Err(Failure::Of(page_failed(words))),
-            Err(Problem::Threw(words)) => return Err(Failure::Of(page_failed(words))),
-            Ok(Answer::Lost(words)) => Failure::Lost(page_failed(words)),
+            Ok(Answer::Error(words)) => return Err(Failure::Of(executor_failed(words))),
+            Err(Problem::Threw(words)) => return Err(Failure::Of(executor_failed(words))),
+            Ok(Answer::Lost(words)) => Failure::Lost(executor_failed(words)),
             // A page that was slow once is slow again. Its work may continue in the process that
             // draws for all pages, where nothing stops it but the end of the browser.
             Err(problem @ Problem::Late { .. }) => {
                 page.end_browser();
-                Failure::Of(page_failed(problem.to_string()))
+                Failure::Of(executor_failed(problem.to_string()))
             }
             Err(problem) => Failure::lost(problem),
         };
@@ -201,11 +200,11 @@ impl Web {
                 false => self.ask(state, &format!("lamplight.prepare({})", json!(texts)))?,
             };
             let said: Vec<Answer> = serde_json::from_value(said)
-                .map_err(|error| Failure::Of(page_failed(error.to_string())))?;
+                .map_err(|error| Failure::Of(executor_failed(error.to_string())))?;
             if let Some(Answer::Lost(words)) =
                 said.iter().find(|one| matches!(one, Answer::Lost(_)))
             {
-                let lost = page_failed(words.clone());
+                let lost = executor_failed(words.clone());
                 *state = State::default();
                 return Err(Failure::Lost(lost));
             }
@@ -219,15 +218,9 @@ impl Web {
         Ok(())
     }
 
-    /// One draw: the result words of `count` invocations.
-    fn draw(
-        &self,
-        kernel: &Kernel,
-        inputs: &[u32],
-        [count, run]: [u32; 2],
-    ) -> Result<Vec<u32>, Diagnostic> {
-        let (rows, header) = kernel.draw_header(count, run);
-        let texels = asked::base64_of_words(&input_texels(kernel, inputs, header));
+    /// One draw: the words of the target.
+    fn draw(&self, kernel: &Kernel, texels: &[u32], rows: u32) -> Result<Vec<u32>, Diagnostic> {
+        let texels = asked::base64_of_words(texels);
         let question = json!({ "id": kernel.id, "rows": rows, "texels": texels });
         let call = format!("lamplight.run({question})");
         let said = self.twice(|web, state| {
@@ -237,7 +230,7 @@ impl Web {
                 _ => web.ask(state, &call),
             }
         })?;
-        unpack_results(kernel, &asked::words_of_answer(&said).map_err(page_failed)?, header)
+        asked::words_of_answer(&said).map_err(executor_failed)
     }
 }
 
@@ -253,14 +246,7 @@ impl Session for Web {
     }
 
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
-        let web = &*self;
-        let mut run = web.runs;
-        let results = run_batches(kernel, inputs, |batch, count| {
-            run = run.wrapping_add(1);
-            web.draw(kernel, batch, [count, run])
-        });
-        self.runs = run;
-        results
+        run_batches(kernel, inputs, |texels, rows| self.draw(kernel, texels, rows))
     }
 
     fn draw_shipped(
@@ -271,7 +257,7 @@ impl Session for Web {
         let question = frames::frames_question(self.api, pair, drawing)?;
         let call = format!("lamplight.frames({question})");
         let said = self.twice(|web, state| web.ask(state, &call))?;
-        frames::frames_answer(&said).map_err(page_failed)
+        frames::frames_answer(&said).map_err(executor_failed)
     }
 }
 
@@ -280,8 +266,8 @@ fn check_kept(said: Option<Answer>) -> Result<(), Diagnostic> {
     match said {
         Some(Answer::Value(_)) => Ok(()),
         Some(Answer::Lacks(words)) => Err(Diagnostic::error(codes::EXECUTOR_LACKS, words)),
-        Some(Answer::Error(words) | Answer::Lost(words)) => Err(page_failed(words)),
-        None => Err(page_failed("the page has forgotten a kernel")),
+        Some(Answer::Error(words) | Answer::Lost(words)) => Err(executor_failed(words)),
+        None => Err(executor_failed("the page has forgotten a kernel")),
     }
 }
 
@@ -295,10 +281,6 @@ enum Failure {
 
 impl Failure {
     fn lost(problem: Problem) -> Self {
-        Self::Lost(page_failed(problem.to_string()))
+        Self::Lost(executor_failed(problem.to_string()))
     }
-}
-
-fn page_failed(message: impl Into<String>) -> Diagnostic {
-    Diagnostic::error(codes::EXECUTOR_FAILED, message)
 }

@@ -2,7 +2,7 @@
 
 use lamplight::bundle::{Conventions, Target};
 use lamplight::diagnostic;
-use lamplight::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use lamplight::execute::fixture::{Fixture, Sampler, Texture, TextureKind};
 use lamplight::execute::frame::{self, Buffers, EntryPoint, Side, VertexFormat};
 use lamplight::execute::shipped::Shipped;
 
@@ -114,22 +114,6 @@ fn level(texture: &Texture) -> Level {
 }
 
 fn sampling((group, binding): (u32, u32), sampler: Sampler) -> SamplerInfo {
-    let compare = sampler.compare.map(|compare| match compare {
-        Compare::Less => "less",
-        Compare::LessEqual => "less-equal",
-        Compare::Greater => "greater",
-        Compare::GreaterEqual => "greater-equal",
-    });
-    let address = match sampler.address {
-        Address::Clamp => "clamp-to-edge",
-        Address::Repeat => "repeat",
-        Address::Mirror => "mirror-repeat",
-    };
-    SamplerInfo {
-        group,
-        binding,
-        compare: compare.map(str::to_owned),
-        linear: sampler.linear,
-        address: address.to_owned(),
-    }
+    let (address, compare) = sampler.web_words();
+    SamplerInfo { group, binding, compare, linear: sampler.linear, address: address.to_owned() }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::super::{Gpu, fixtures, gpu_failed, pipeline};
+use super::super::{Gpu, executor_failed, fixtures, pipeline};
 use super::Groups;
 use crate::diagnostic::Diagnostic;
 use crate::execute::fixture::{Address, Fixture, Sampler};
@@ -178,5 +178,5 @@ fn bound_fixture(gpu: &Gpu, drawing: &Drawing<'_>, place: Place) -> Result<Kept,
 }
 
 fn missing_binding(place: Place) -> Diagnostic {
-    gpu_failed(format!("nothing is given for group {}, binding {}", place.0, place.1))
+    executor_failed(format!("nothing is given for group {}, binding {}", place.0, place.1))
 }

@@ -3,13 +3,13 @@
 use std::collections::BTreeSet;
 
 use super::super::passthrough::Binary;
-use super::super::{Gpu, Shaders, gpu_failed, heaps, hlsl, lock_mutex};
+use super::super::{Gpu, Shaders, executor_failed, heaps, hlsl, lock_mutex};
 use super::bindings::Bindings;
 use super::{LAVAPIPE_BLOCKS, Meshes, Stages};
 use crate::bundle::{SamplerHeap, Stage, Target};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::Pair;
-use crate::execute::fixture::{Fixture, Sampler};
+
 use crate::execute::frame::{Drawing, Frame, Place};
 use crate::execute::shipped::{Format, Shipped};
 
@@ -28,7 +28,7 @@ impl Gpu {
         drawing: &Drawing<'_>,
     ) -> Result<Vec<Frame>, Diagnostic> {
         self.can_draw(pair)?;
-        let formats = pair.fragment.targets().map_err(gpu_failed)?;
+        let formats = pair.fragment.targets().map_err(executor_failed)?;
         let frames = self.guarded(|gpu| gpu.submit_shipped(pair, drawing, &formats))??;
         frames.into_iter().map(|frame| frame.read(self, None)).collect()
     }
@@ -40,7 +40,7 @@ impl Gpu {
         };
         let stages = [pair.vertex, pair.fragment];
         if let Some(stage) = stages.iter().find(|stage| stage.target != own) {
-            return Err(gpu_failed(format!("this executor draws no {}", stage.target)));
+            return Err(executor_failed(format!("this executor draws no {}", stage.target)));
         }
         if let Some(reason) = stages.into_iter().find_map(stage_lacks) {
             return Err(Diagnostic::error(codes::EXECUTOR_LACKS, reason));
@@ -68,8 +68,8 @@ impl Gpu {
         let heaps = match all.is_empty() {
             true => None,
             false => {
-                let sampler = |place: [u32; 2]| sampler_at(drawing, place);
-                Some(heaps::bind_heaps(&self.device, &all, &sampler).map_err(gpu_failed)?)
+                let sampler = |place: [u32; 2]| drawing.sampler_at(place);
+                Some(heaps::bind_heaps(&self.device, &all, &sampler).map_err(executor_failed)?)
             }
         };
         let mut in_order: Vec<Option<&wgpu::BindGroupLayout>> =
@@ -130,7 +130,7 @@ impl Gpu {
         }
         let Shipped { target, bytes, native, reflection } = shipped;
         let binary = Binary::new(*target, reflection.stage, bytes, native, heaps);
-        let binary = binary.map_err(gpu_failed)?;
+        let binary = binary.map_err(executor_failed)?;
         lock_mutex(&self.binaries).insert(key, binary.clone());
         Ok(binary)
     }
@@ -152,11 +152,4 @@ fn read_places(pair: Pair<'_>) -> BTreeSet<Place> {
         .flat_map(|stage| &stage.reflection.bindings)
         .map(|binding| (binding.group, binding.binding))
         .collect()
-}
-
-fn sampler_at(drawing: &Drawing<'_>, [group, binding]: [u32; 2]) -> Option<Sampler> {
-    match drawing.fixtures.get(&(group, binding)).map(|fixture| &**fixture) {
-        Some(Fixture::Sampler(settings)) => Some(*settings),
-        _ => None,
-    }
 }

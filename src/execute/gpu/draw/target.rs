@@ -1,9 +1,9 @@
 //! The attachments of a frame, and how they are read back.
 
+use super::super::textures::{TEXEL, color_attachment, copy_to_buffer, create_texture, padded_row};
 use super::super::{Gpu, TARGET_FORMAT, pipeline};
 use crate::diagnostic::Diagnostic;
 use crate::execute::frame::{Drawing, Frame};
-use crate::execute::kernel::SENTINEL;
 use crate::execute::shipped::Format;
 
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -42,17 +42,12 @@ impl Targets {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let depth_usage =
             wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
-        let size = drawing.size;
+        let [width, height] = drawing.size;
+        let create = |format, usage| create_texture(device, [width, height, 1], 1, format, usage);
         Self {
-            size,
-            color: formats
-                .iter()
-                .map(|one| (create_target(device, size, texture_format(*one), usage), *one))
-                .collect(),
-            depth: drawing
-                .state
-                .depth_test
-                .then(|| create_target(device, size, DEPTH_FORMAT, depth_usage)),
+            size: drawing.size,
+            color: formats.iter().map(|one| (create(texture_format(*one), usage), *one)).collect(),
+            depth: drawing.state.depth_test.then(|| create(DEPTH_FORMAT, depth_usage)),
             keep_depth: drawing.state.keep_depth,
         }
     }
@@ -93,12 +88,12 @@ impl Targets {
         let color = self
             .color
             .iter()
-            .map(|(target, _)| copy_to_buffer(gpu, encoder, target, self.size, TEXEL))
+            .map(|(target, _)| copy_to_buffer(&gpu.device, encoder, target, self.size, TEXEL))
             .collect();
         let kept = self.depth.as_ref().filter(|_| self.keep_depth);
         let depth = kept.map(|depth| {
             let target = as_words(gpu, encoder, depth, self.size);
-            copy_to_buffer(gpu, encoder, &target, self.size, DEPTH_TEXEL)
+            copy_to_buffer(&gpu.device, encoder, &target, self.size, DEPTH_TEXEL)
         });
         Pending { size: self.size, color, depth }
     }
@@ -137,56 +132,8 @@ pub fn texture_format(of: Format) -> wgpu::TextureFormat {
     }
 }
 
-fn color_attachment(
-    view: &wgpu::TextureView,
-    format: Format,
-) -> wgpu::RenderPassColorAttachment<'_> {
-    let cleared = match format {
-        Format::Float => f64::from(f32::from_bits(SENTINEL)),
-        Format::Uint => f64::from(SENTINEL),
-    };
-    let load = wgpu::LoadOp::Clear(wgpu::Color { r: cleared, g: cleared, b: cleared, a: cleared });
-    wgpu::RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-    }
-}
-
-/// Bytes of a texel of a target, and of the depths that are read.
-const TEXEL: u32 = 16;
+/// Bytes of a texel of the depths that are read.
 const DEPTH_TEXEL: u32 = 4;
-
-/// Bytes of a row in a buffer, with its padding.
-fn padded_row(width: u32, texel: u32) -> u32 {
-    (width * texel).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT)
-}
-
-fn copy_to_buffer(
-    gpu: &Gpu,
-    encoder: &mut wgpu::CommandEncoder,
-    target: &wgpu::Texture,
-    [width, height]: [u32; 2],
-    texel: u32,
-) -> wgpu::Buffer {
-    let row = padded_row(width, texel);
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: u64::from(row) * u64::from(height),
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    let layout =
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
-    let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-    encoder.copy_texture_to_buffer(
-        target.as_image_copy(),
-        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
-        size,
-    );
-    buffer
-}
 
 /// A pipeline that reads the bits of a depth texture, and the layout of its bindings.
 fn depth_reader(device: &wgpu::Device) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline) {
@@ -199,7 +146,7 @@ fn as_words(
     gpu: &Gpu,
     encoder: &mut wgpu::CommandEncoder,
     depth: &wgpu::Texture,
-    size: [u32; 2],
+    [width, height]: [u32; 2],
 ) -> wgpu::Texture {
     let device = &gpu.device;
     let (layout, pipeline) = depth_reader(device);
@@ -211,12 +158,8 @@ fn as_words(
         layout: &layout,
         entries: &[entry],
     });
-    let target = create_target(
-        device,
-        size,
-        READ_FORMAT,
-        wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-    );
+    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+    let target = create_texture(device, [width, height, 1], 1, READ_FORMAT, usage);
     let view = target.create_view(&Default::default());
     let attachments = [Some(color_attachment(&view, Format::Uint))];
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -228,22 +171,4 @@ fn as_words(
     pass.draw(0..3, 0..1);
     drop(pass);
     target
-}
-
-fn create_target(
-    device: &wgpu::Device,
-    [width, height]: [u32; 2],
-    format: wgpu::TextureFormat,
-    usage: wgpu::TextureUsages,
-) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage,
-        view_formats: &[],
-    })
 }

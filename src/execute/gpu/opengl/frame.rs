@@ -7,7 +7,7 @@ use glow::HasContext as _;
 use super::{Unit, plain_state, program, texture};
 use crate::bundle::{Combined, FrontFace, Slot};
 use crate::execute::Pair;
-use crate::execute::fixture::{Fixture, Sampler};
+use crate::execute::fixture::Fixture;
 use crate::execute::frame::{Buffers, Drawing, Frame, Item, Mesh, Place, State, VertexFormat};
 use crate::execute::gpu::opengl::context::Api;
 use crate::execute::kernel::SENTINEL;
@@ -105,17 +105,10 @@ fn texture_unit(
         program::set_unit(gl, program, &combined.name, next);
         next
     });
-    let settings = combined.sampler.and_then(|place| sampler_at(drawing, place));
+    let settings = combined.sampler.and_then(|place| drawing.sampler_at(place));
     let sampler = settings.map(|settings| texture::create_sampler(gl, settings)).transpose()?;
     let (target, texture) = texture::upload_fixture(gl, fixture)?;
     Ok(Unit { index, target, texture, sampler })
-}
-
-fn sampler_at(drawing: &Drawing<'_>, [group, binding]: [u32; 2]) -> Option<Sampler> {
-    match drawing.fixtures.get(&(group, binding)).map(|fixture| &**fixture) {
-        Some(Fixture::Sampler(settings)) => Some(*settings),
-        _ => None,
-    }
 }
 
 fn draw_frame(

@@ -15,11 +15,11 @@ use std::collections::HashMap;
 
 use glow::HasContext as _;
 
-use super::{emitted, gpu_failed, input_texels, unpack_results};
+use super::{emitted, executor_failed};
 use crate::bundle::{Combined, Target};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::emit::Emitted;
-use crate::execute::fixture::{Fixture, Sampler};
+use crate::execute::fixture::Fixture;
 use crate::execute::frame::{Drawing, Frame};
 use crate::execute::kernel::{INPUT_WIDTH, Kernel, SENTINEL, TARGET_WIDTH};
 use crate::execute::{Pair, Session};
@@ -33,7 +33,6 @@ pub struct OpenGl {
     context: Context,
     target: Target,
     kept: HashMap<u64, Kept>,
-    runs: u32,
 }
 
 /// What is kept for a kernel: the program, the unit of its inputs, and the fixtures on their units.
@@ -54,12 +53,12 @@ struct Unit {
 impl OpenGl {
     /// Opens a context for the texts of a target. The error is a message.
     pub fn open(api: Api, target: Target) -> Result<Self, String> {
-        Ok(Self { context: Context::open(api)?, target, kept: HashMap::new(), runs: 0 })
+        Ok(Self { context: Context::open(api)?, target, kept: HashMap::new() })
     }
 
     fn has_extensions(&self, text: &[u8]) -> Result<(), Diagnostic> {
         let missing = self.context.with(|gl| Ok(program::missing_extension(gl, text)));
-        match missing.map_err(gpu_failed)? {
+        match missing.map_err(executor_failed)? {
             None => Ok(()),
             Some(name) => {
                 let message = format!("the driver has no {name}, which the emitted text requires");
@@ -74,25 +73,19 @@ impl OpenGl {
             self.has_extensions(&emitted.bytes)?;
             let vertex = program::triangle_stage(self.context.api());
             let kept = self.context.with(|gl| keep_kernel(gl, kernel, &vertex, &emitted));
-            self.kept.insert(kernel.id, kept.map_err(gpu_failed)?);
+            self.kept.insert(kernel.id, kept.map_err(executor_failed)?);
         }
         Ok(())
     }
 
-    fn draw(
-        &mut self,
-        kernel: &Kernel,
-        inputs: &[u32],
-        count: u32,
-    ) -> Result<Vec<u32>, Diagnostic> {
-        self.runs = self.runs.wrapping_add(1);
-        let (rows, header) = kernel.draw_header(count, self.runs);
+    fn draw(&mut self, kernel: &Kernel, texels: &[u32], rows: u32) -> Result<Vec<u32>, Diagnostic> {
         self.prepare(kernel)?;
-        let kept =
-            self.kept.get(&kernel.id).ok_or_else(|| gpu_failed("the kernel was not prepared"))?;
-        let (texels, api) = (input_texels(kernel, inputs, header), self.context.api());
-        let pixels = self.context.with(|gl| draw_kernel(gl, api, kept, &texels, rows));
-        unpack_results(kernel, &pixels.map_err(gpu_failed)?, header)
+        let kept = self
+            .kept
+            .get(&kernel.id)
+            .ok_or_else(|| executor_failed("the kernel was not prepared"))?;
+        let api = self.context.api();
+        self.context.with(|gl| draw_kernel(gl, api, kept, texels, rows)).map_err(executor_failed)
     }
 }
 
@@ -102,7 +95,7 @@ impl Session for OpenGl {
     }
 
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
-        super::run_batches(kernel, inputs, |batch, count| self.draw(kernel, batch, count))
+        super::run_batches(kernel, inputs, |texels, rows| self.draw(kernel, texels, rows))
     }
 
     fn draw_shipped(
@@ -112,12 +105,12 @@ impl Session for OpenGl {
     ) -> Result<Vec<Frame>, Diagnostic> {
         for stage in [pair.vertex, pair.fragment] {
             if stage.target != self.target {
-                return Err(gpu_failed(format!("this executor draws no {}", stage.target)));
+                return Err(executor_failed(format!("this executor draws no {}", stage.target)));
             }
             self.has_extensions(&stage.bytes)?;
         }
         let api = self.context.api();
-        self.context.with(|gl| frame::draw_frames(gl, api, pair, drawing)).map_err(gpu_failed)
+        self.context.with(|gl| frame::draw_frames(gl, api, pair, drawing)).map_err(executor_failed)
     }
 }
 
@@ -136,13 +129,11 @@ fn keep_kernel(
             inputs = index;
             continue;
         }
-        let Some(Fixture::Texture(fixture)) = fixture_at(kernel, combined.texture) else {
+        let Some(Fixture::Texture(fixture)) = kernel.fixture_at(combined.texture[1]) else {
             return Err(format!("`{}` has no fixture", combined.name));
         };
-        let sampler = match combined.sampler.and_then(|place| fixture_of_sampler(kernel, place)) {
-            Some(settings) => Some(texture::create_sampler(gl, settings)?),
-            None => None,
-        };
+        let settings = combined.sampler.and_then(|place| kernel.fixture_at(place[1])?.sampler());
+        let sampler = settings.map(|settings| texture::create_sampler(gl, settings)).transpose()?;
         let (target, texture) = texture::upload_fixture(gl, fixture)?;
         units.push(Unit { index, target, texture, sampler });
     }
@@ -165,17 +156,6 @@ fn texture_unit(
         program::set_unit(gl, program, &combined.name, order);
         order
     })
-}
-
-fn fixture_at(kernel: &Kernel, [_, binding]: [u32; 2]) -> Option<&Fixture> {
-    kernel.resources().find(|other| other.binding == binding).map(|resource| &*resource.fixture)
-}
-
-fn fixture_of_sampler(kernel: &Kernel, place: [u32; 2]) -> Option<Sampler> {
-    match fixture_at(kernel, place)? {
-        Fixture::Sampler(settings) => Some(*settings),
-        Fixture::Texture(_) => None,
-    }
 }
 
 fn draw_kernel(

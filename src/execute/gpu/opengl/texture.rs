@@ -115,6 +115,8 @@ pub fn create_sampler(gl: &glow::Context, settings: Sampler) -> Result<glow::Sam
         Compare::LessEqual => glow::LEQUAL,
         Compare::Greater => glow::GREATER,
         Compare::GreaterEqual => glow::GEQUAL,
+        Compare::Equal => glow::EQUAL,
+        Compare::NotEqual => glow::NOTEQUAL,
     });
     // SAFETY: the context is current.
     unsafe {
