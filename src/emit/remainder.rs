@@ -12,6 +12,7 @@ use naga::{
     Module, Range, Scalar, ScalarKind, Span, Statement, Type, TypeInner, VectorSize,
 };
 
+use super::blocks::inner_blocks_mut;
 use crate::validate::CAPABILITIES;
 
 /// The name of the functions, as naga has it in other languages.
@@ -53,19 +54,19 @@ pub fn with_defined_remainders(
     let mut functions = Arena::new();
     let mut helpers = BTreeMap::new();
     for shape in found.iter().flat_map(BTreeMap::values) {
-        helpers
-            .entry(*shape)
-            .or_insert_with(|| functions.append(helper(&mut module, *shape), Span::UNDEFINED));
+        helpers.entry(*shape).or_insert_with(|| {
+            functions.append(remainder_function(&mut module, *shape), Span::UNDEFINED)
+        });
     }
     // The new functions come first, since naga has no calls forward.
     let mut moved = BTreeMap::new();
     let mut found = found.into_iter();
     for (old, mut function, span) in std::mem::take(&mut module.functions).drain() {
-        call(&mut function, &moved, &helpers, &found.next().unwrap_or_default());
+        call_helpers(&mut function, &moved, &helpers, &found.next().unwrap_or_default());
         moved.insert(old, functions.append(function, span));
     }
     for point in &mut module.entry_points {
-        call(&mut point.function, &moved, &helpers, &found.next().unwrap_or_default());
+        call_helpers(&mut point.function, &moved, &helpers, &found.next().unwrap_or_default());
     }
     module.functions = functions;
     let info = Validator::new(ValidationFlags::empty(), CAPABILITIES).validate(&module);
@@ -98,7 +99,7 @@ pub fn with_plain_parameters(text: String) -> String {
     plain
 }
 
-/// The first two lines of a function for remainders.
+/// The same remainder function with parameters `lhs` and `rhs`; `None` if naga wrote another body.
 fn plain_function(head: &str, body: &str) -> Option<String> {
     let (start, parameters) = head.trim_end().strip_suffix(") {")?.split_once('(')?;
     let (ty, _) = start.split_once(' ').filter(|(_, name)| name.starts_with(NAME))?;
@@ -129,7 +130,7 @@ fn signed_remainders(module: &Module, function: &Function, info: &FunctionInfo) 
 }
 
 /// `a - a / b * b`.
-fn helper(module: &mut Module, Shape { size, width }: Shape) -> Function {
+fn remainder_function(module: &mut Module, Shape { size, width }: Shape) -> Function {
     let scalar = Scalar { kind: ScalarKind::Sint, width };
     let inner = match size {
         None => TypeInner::Scalar(scalar),
@@ -162,7 +163,12 @@ type Helpers = BTreeMap<Shape, Handle<Function>>;
 type Calls = BTreeMap<Handle<Expression>, Statement>;
 
 /// Calls helpers in the place of remainders, and all other functions where they are now.
-fn call(function: &mut Function, moved: &Moved, helpers: &Helpers, remainders: &Remainders) {
+fn call_helpers(
+    function: &mut Function,
+    moved: &Moved,
+    helpers: &Helpers,
+    remainders: &Remainders,
+) {
     let mut calls = Calls::new();
     for (handle, expression) in function.expressions.iter_mut() {
         match expression {
@@ -193,19 +199,10 @@ fn call_in(block: &mut Block, moved: &Moved, calls: &Calls) {
                 continue;
             }
             Statement::Call { function, .. } => *function = moved[function],
-            Statement::Block(inner) => call_in(inner, moved, calls),
-            Statement::If { accept, reject, .. } => {
-                call_in(accept, moved, calls);
-                call_in(reject, moved, calls);
-            }
-            Statement::Switch { cases, .. } => {
-                cases.iter_mut().for_each(|case| call_in(&mut case.body, moved, calls));
-            }
-            Statement::Loop { body, continuing, .. } => {
-                call_in(body, moved, calls);
-                call_in(continuing, moved, calls);
-            }
             _ => {}
+        }
+        for inner in inner_blocks_mut(&mut statement) {
+            call_in(inner, moved, calls);
         }
         block.push(statement, span);
     }

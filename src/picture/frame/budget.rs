@@ -6,6 +6,8 @@ use naga::{
     TypeInner,
 };
 
+use crate::emit::blocks::{inner_blocks, inner_blocks_mut};
+
 /// Ends each loop once `most` trips were made, in all functions of an invocation together.
 ///
 /// Browsers refuse derivatives in a loop that ends by a variable of the module, since invocations
@@ -14,9 +16,9 @@ use naga::{
 pub fn bound_loops(module: &mut Module, most: u32) {
     let ty = Type { name: None, inner: TypeInner::Scalar(Scalar::U32) };
     let ty = module.types.insert(ty, Span::UNDEFINED);
-    let shared = match derives(module) {
+    let shared = match has_derivatives(module) {
         true => None,
-        false => Some(module.global_variables.append(variable(ty), Span::UNDEFINED)),
+        false => Some(module.global_variables.append(trip_counter(ty), Span::UNDEFINED)),
     };
     let functions = module.functions.iter_mut().map(|(_, function)| function);
     for function in functions.chain(module.entry_points.iter_mut().map(|point| &mut point.function))
@@ -27,7 +29,7 @@ pub fn bound_loops(module: &mut Module, most: u32) {
     }
 }
 
-fn variable(ty: Handle<Type>) -> GlobalVariable {
+fn trip_counter(ty: Handle<Type>) -> GlobalVariable {
     GlobalVariable {
         name: Some("lamplight_trips".to_owned()),
         space: AddressSpace::Private,
@@ -38,7 +40,7 @@ fn variable(ty: Handle<Type>) -> GlobalVariable {
     }
 }
 
-fn derives(module: &Module) -> bool {
+fn has_derivatives(module: &Module) -> bool {
     let functions = module.functions.iter().map(|(_, function)| function);
     let mut all = functions.chain(module.entry_points.iter().map(|point| &point.function));
     all.any(|function| {
@@ -49,12 +51,9 @@ fn derives(module: &Module) -> bool {
 }
 
 fn has_loop(block: &Block) -> bool {
-    block.iter().any(|statement| match statement {
-        Statement::Loop { .. } => true,
-        Statement::Block(inner) => has_loop(inner),
-        Statement::If { accept, reject, .. } => has_loop(accept) || has_loop(reject),
-        Statement::Switch { cases, .. } => cases.iter().any(|case| has_loop(&case.body)),
-        _ => false,
+    block.iter().any(|statement| {
+        matches!(statement, Statement::Loop { .. })
+            || inner_blocks(statement).into_iter().any(has_loop)
     })
 }
 
@@ -85,26 +84,16 @@ type Value = Handle<Expression>;
 /// Begins the body of every loop with `trips += 1; if trips > most { break; }`.
 fn bound_block(block: &mut Block, arena: &mut Arena<Expression>, given: [Value; 3]) {
     for statement in block.iter_mut() {
-        match statement {
-            Statement::Block(inner) => bound_block(inner, arena, given),
-            Statement::If { accept, reject, .. } => {
-                bound_block(accept, arena, given);
-                bound_block(reject, arena, given);
-            }
-            Statement::Switch { cases, .. } => {
-                cases.iter_mut().for_each(|case| bound_block(&mut case.body, arena, given));
-            }
-            Statement::Loop { body, continuing, .. } => {
-                bound_block(body, arena, given);
-                bound_block(continuing, arena, given);
-                body.splice(0..0, counted(arena, given));
-            }
-            _ => {}
+        for inner in inner_blocks_mut(statement) {
+            bound_block(inner, arena, given);
+        }
+        if let Statement::Loop { body, .. } = statement {
+            body.splice(0..0, counted_trip(arena, given));
         }
     }
 }
 
-fn counted(arena: &mut Arena<Expression>, [counter, one, most]: [Value; 3]) -> Block {
+fn counted_trip(arena: &mut Arena<Expression>, [counter, one, most]: [Value; 3]) -> Block {
     let mut add = |expression| arena.append(expression, Span::UNDEFINED);
     let before = add(Expression::Load { pointer: counter });
     let binary = |op, left, right| Expression::Binary { op, left, right };

@@ -3,6 +3,7 @@
 use naga::{Block, Expression, Function, Handle, Range, Statement, TypeInner};
 
 use super::site::{Edit, Site, equal_value};
+use crate::emit::blocks::inner_blocks_mut;
 
 /// Changes the function; `false` where the site is not in it.
 pub fn apply_mutation(
@@ -27,7 +28,9 @@ pub fn apply_mutation(
             })
         }
         Edit::Decided { statement, holds, .. } => {
-            change_statement(&mut function.body, *statement, &mut |found| decide(found, *holds))
+            change_statement(&mut function.body, *statement, &mut |found| {
+                keep_branch(found, *holds)
+            })
         }
         Edit::Exchanged { statement, first, .. } => {
             change_statement(&mut function.body, *statement, &mut |found| {
@@ -56,7 +59,7 @@ pub fn apply_mutation(
 }
 
 /// Only one branch of an `if` remains.
-fn decide(found: &mut Statement, holds: bool) {
+fn keep_branch(found: &mut Statement, holds: bool) {
     if let Statement::If { accept, reject, .. } = found {
         let kept = if holds { accept } else { reject };
         *found = Statement::Block(std::mem::take(kept));
@@ -92,20 +95,7 @@ fn walk_statements(
             return true;
         }
         *left -= 1;
-        let found = match statement {
-            Statement::Block(block) => walk_statements(block, left, edit),
-            Statement::If { accept, reject, .. } => {
-                walk_statements(accept, left, edit) || walk_statements(reject, left, edit)
-            }
-            Statement::Switch { cases, .. } => {
-                cases.iter_mut().any(|case| walk_statements(&mut case.body, left, edit))
-            }
-            Statement::Loop { body, continuing, .. } => {
-                walk_statements(body, left, edit) || walk_statements(continuing, left, edit)
-            }
-            _ => false,
-        };
-        if found {
+        if inner_blocks_mut(statement).into_iter().any(|inner| walk_statements(inner, left, edit)) {
             return true;
         }
     }

@@ -8,6 +8,7 @@ use naga::{
 };
 
 use super::operators::{BUILT_INS, OPERATORS, SIDED, SIDED_MATH};
+use crate::emit::blocks::inner_blocks;
 
 /// One mistake: where, what, and the place in the composed text.
 #[derive(Debug, Clone)]
@@ -335,17 +336,6 @@ fn swapped_swizzle(
     }
     let pattern = [second, first, rest[0], rest[1]];
     vec![(Expression::Swizzle { size, vector, pattern }, How::Swapped)]
-}
-
-/// The blocks within a statement, in order.
-fn inner_blocks(statement: &Statement) -> Vec<&Block> {
-    match statement {
-        Statement::Block(block) => vec![block],
-        Statement::If { accept, reject, .. } => vec![accept, reject],
-        Statement::Switch { cases, .. } => cases.iter().map(|case| &case.body).collect(),
-        Statement::Loop { body, continuing, .. } => vec![body, continuing],
-        _ => Vec::new(),
-    }
 }
 
 /// A literal with a mistake: a float changed by one part in a hundred, an integer by one, a boolean
