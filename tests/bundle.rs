@@ -297,16 +297,11 @@ fn rewriting() -> Outcome {
 /// The same contents without the permutations with hard shadows.
 fn fewer() -> Contents {
     let mut fewer = small();
-    fewer
-        .programs
-        .values_mut()
-        .flat_map(|program| program.languages.values_mut())
-        .flat_map(|entries| entries.values_mut())
-        .for_each(|entry| {
-            entry.keys.retain(|key, _| !key.contains("hard"));
-            let used: Vec<_> = entry.keys.values().copied().collect();
-            entry.units.retain(|hash, _| used.contains(hash));
-        });
+    for entry in fewer.entries_mut() {
+        entry.keys.retain(|key, _| !key.contains("hard"));
+        let used: Vec<_> = entry.keys.values().copied().collect();
+        entry.units.retain(|hash, _| used.contains(hash));
+    }
     fewer
 }
 
@@ -341,12 +336,7 @@ fn merging() -> Outcome {
     let mut shards = [Contents::default(), Contents::default()];
     for (index, shard) in shards.iter_mut().enumerate() {
         *shard = small();
-        for entry in shard
-            .programs
-            .values_mut()
-            .flat_map(|program| program.languages.values_mut())
-            .flat_map(|entries| entries.values_mut())
-        {
+        for entry in shard.entries_mut() {
             let mut count = 0;
             entry.keys.retain(|_, _| {
                 count += 1;

@@ -100,6 +100,18 @@ impl EntryContents {
 }
 
 impl Contents {
+    /// The entry points of all programs and languages, in order.
+    pub fn entries(&self) -> impl Iterator<Item = &EntryContents> {
+        let languages = self.programs.values().flat_map(|program| program.languages.values());
+        languages.flat_map(BTreeMap::values)
+    }
+
+    /// As [`Self::entries`], to be changed.
+    pub fn entries_mut(&mut self) -> impl Iterator<Item = &mut EntryContents> {
+        let programs = self.programs.values_mut();
+        programs.flat_map(|program| program.languages.values_mut()).flat_map(BTreeMap::values_mut)
+    }
+
     /// Adds the programs, units and keys of another bundle, as from another shard.
     ///
     /// # Errors

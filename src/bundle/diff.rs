@@ -44,10 +44,10 @@ pub fn diff(old: &Contents, new: &Contents) -> Difference {
     let mut difference = Difference::default();
     let programs: BTreeSet<&String> = old.programs.keys().chain(new.programs.keys()).collect();
     for program in programs {
-        let axes = |contents: &Contents| {
-            contents.programs.get(program).map(|program| program.axes.clone()).unwrap_or_default()
-        };
-        if axes(old) != axes(new) {
+        let [before, after] = [old, new].map(|contents| {
+            contents.programs.get(program).map_or(&[][..], |program| program.axes.as_slice())
+        });
+        if before != after {
             difference.axes.push(program.clone());
         }
         let (before, after) = (entries_by_place(old, program), entries_by_place(new, program));
@@ -87,9 +87,8 @@ fn compare_entries(
     new: Option<&EntryContents>,
     changes: &mut Vec<Change>,
 ) {
-    let keys =
-        |entry: Option<&EntryContents>| entry.map(|entry| entry.keys.clone()).unwrap_or_default();
-    let (before, after) = (keys(old), keys(new));
+    let none = BTreeMap::new();
+    let [before, after] = [old, new].map(|entry| entry.map_or(&none, |entry| &entry.keys));
     let all: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
     for key in all {
         let (kind, parts) = match (before.get(key), after.get(key)) {

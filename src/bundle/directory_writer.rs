@@ -30,14 +30,7 @@ const RETIRED_HEADER: &str =
 /// Writes the directory form, and replaces a bundle of ours that is there.
 pub fn write_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<(), Error> {
     let writer = DirectoryWriter::create(path)?;
-    let entries = contents
-        .programs
-        .values()
-        .flat_map(|program| program.languages.values())
-        .flat_map(|entries| entries.values());
-    entries
-        .flat_map(|entry| entry.units.values())
-        .try_for_each(|unit| writer.add(unit).map(|_| ()))?;
+    writer.add_all(contents)?;
     writer.finish(contents)
 }
 
@@ -130,6 +123,12 @@ impl DirectoryWriter {
         }
         self.manifest().absorb(part);
         Ok(digest)
+    }
+
+    /// Keeps the blobs of all units.
+    pub(super) fn add_all(&self, contents: &Contents) -> Result<(), Error> {
+        let mut units = contents.entries().flat_map(|entry| entry.units.values());
+        units.try_for_each(|unit| self.add(unit).map(drop))
     }
 
     /// Writes a blob to the scratch folder, unless the directory has it already.

@@ -234,6 +234,11 @@ impl Packed {
         Ok((target, u32_at(units, at + 4, "units")?, u32_at(units, at + 8, "units")?))
     }
 
+    fn artifact_of(&self, target: &TargetMeta, native: u32, blob: u32) -> Result<Artifact, Error> {
+        let (extension, native) = (target.extension.clone(), Arc::new(self.text(native)?));
+        Ok(Artifact { extension, native, blob })
+    }
+
     /// A decompressed group, kept or from the file.
     fn group(&self, group: u32) -> Result<Arc<[u8]>, Error> {
         if let Ok(kept) = self.groups.lock()
@@ -338,14 +343,7 @@ impl Store for Packed {
         let mut targets = BTreeMap::new();
         for artifact in first..first + count {
             let (target, native, blob) = self.artifact_record(artifact)?;
-            targets.insert(
-                target.name.clone(),
-                Artifact {
-                    extension: target.extension.clone(),
-                    native: Arc::new(self.text(native)?),
-                    blob,
-                },
-            );
+            targets.insert(target.name.clone(), self.artifact_of(target, native, blob)?);
         }
         Ok(Unit { reflection: Arc::new(self.text(reflection)?), targets })
     }
@@ -356,11 +354,7 @@ impl Store for Packed {
         for artifact in first..first + count {
             let (found, native, blob) = self.artifact_record(artifact)?;
             if found.name == target {
-                let artifact = Artifact {
-                    extension: found.extension.clone(),
-                    native: Arc::new(self.text(native)?),
-                    blob,
-                };
+                let artifact = self.artifact_of(found, native, blob)?;
                 return Ok((Arc::new(self.text(reflection)?), artifact));
             }
             known.push(found.name.clone());

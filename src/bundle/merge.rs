@@ -19,11 +19,6 @@ pub fn merge(bundles: &[Bundle]) -> Result<Contents, Error> {
 }
 
 /// [`merge`] into the directory form, unit by unit: memory holds keys and hashes only.
-pub fn merge_directory(bundles: &[Bundle], path: impl AsRef<Path>) -> Result<(), Error> {
-    merge_into(bundles, DirectoryWriter::create(path)?)
-}
-
-/// [`merge_directory`] into a directory that is ready.
 pub fn merge_into(bundles: &[Bundle], writer: DirectoryWriter) -> Result<(), Error> {
     bundles.iter().try_for_each(Bundle::verify)?;
     let mut all = Contents::default();
@@ -37,14 +32,7 @@ pub fn merge_into(bundles: &[Bundle], writer: DirectoryWriter) -> Result<(), Err
 /// key refers to any more stay until it is written anew.
 pub fn patch_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<(), Error> {
     let writer = DirectoryWriter::reopen(path)?;
-    let entries = contents
-        .programs
-        .values()
-        .flat_map(|program| program.languages.values())
-        .flat_map(BTreeMap::values);
-    entries
-        .flat_map(|entry| entry.units.values())
-        .try_for_each(|unit| writer.add(unit).map(|_| ()))?;
+    writer.add_all(contents)?;
     writer.patch(contents)
 }
 

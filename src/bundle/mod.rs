@@ -35,7 +35,7 @@ pub use error::{Error, Miss};
 pub use key::canonical;
 pub use loader::{Bundle, Constant, Found, Program, Shader, constants};
 pub use manifest::SCHEMA;
-pub use merge::{merge, merge_directory, merge_into, patch_directory};
+pub use merge::{merge, merge_into, patch_directory};
 pub use pack::{pack, replace_file, write_file};
 pub use reflection::{
     Binding, BufferSizes, Choice, ClipSpace, Combined, FrontFace, HeapSampler, Kind, Language,

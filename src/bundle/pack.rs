@@ -77,15 +77,8 @@ struct Packer {
 impl Packer {
     /// Numbers the blobs so that similar ones are neighbours: by target, then by entry point.
     fn collect_blobs(&mut self, contents: &Contents) -> Result<(), Error> {
-        let entries = || {
-            contents
-                .programs
-                .values()
-                .flat_map(|program| program.languages.values())
-                .flat_map(|entries| entries.values())
-        };
-        let artifacts =
-            entries().flat_map(|entry| entry.units.values()).flat_map(|unit| &unit.targets);
+        let units = contents.entries().flat_map(|entry| entry.units.values());
+        let artifacts = units.flat_map(|unit| &unit.targets);
         let mut targets: Vec<TargetMeta> = artifacts
             .map(|(name, artifact)| TargetMeta {
                 name: name.clone(),
@@ -95,9 +88,8 @@ impl Packer {
         targets.sort();
         targets.dedup();
         for target in &targets {
-            for artifact in
-                entries().flat_map(in_key_order).filter_map(|unit| unit.targets.get(&target.name))
-            {
+            let units = contents.entries().flat_map(in_key_order);
+            for artifact in units.filter_map(|unit| unit.targets.get(&target.name)) {
                 if artifact.extension == target.extension {
                     self.add_blob(&artifact.bytes)?;
                 }

@@ -41,12 +41,7 @@ impl Memory {
     /// Gives every entry point the units that its keys refer to.
     pub fn fill(self, contents: &mut Contents) {
         let units = self.units.into_inner().unwrap_or_else(PoisonError::into_inner);
-        for entry in contents
-            .programs
-            .values_mut()
-            .flat_map(|program| program.languages.values_mut())
-            .flat_map(BTreeMap::values_mut)
-        {
+        for entry in contents.entries_mut() {
             entry.units = entry
                 .keys
                 .values()
