@@ -81,8 +81,8 @@
 //! use lamplight::diagnostic::Diagnostics;
 //! use lamplight::permute::Settings;
 //! use lamplight::resolve::{self, Packages};
-//! use lamplight::source::{Embedded, Memory, Package, SourceSet};
-//! use lamplight::{compose, emit, validate};
+//! use lamplight::source::SourceSet;
+//! use lamplight::{compose, emit, project, validate};
 //!
 //! fn lit() -> Result<Vec<u8>, Diagnostics> {
 //!     let text = "
@@ -90,11 +90,8 @@
 //!         @fragment fn fs_main(@location(0) n: vec3f) -> @location(0) vec4f {
 //!             return vec4f(lambert(n, vec3f(0.0, 1.0, 0.0)));
 //!         }";
-//!     let own = Memory([("lit.wesl".to_owned(), text.to_owned())].into());
-//!     let packages = Packages {
-//!         root: Package { name: "package".to_owned(), files: Box::new(own) },
-//!         dependencies: vec![Package { name: "lamplight".to_owned(), files: Box::new(Embedded) }],
-//!     };
+//!     let mut packages = Packages::of_text("lit.wesl", text.to_owned());
+//!     packages.dependencies.push(project::library_package());
 //!     let mut sources = SourceSet::default();
 //!     let graph = resolve::load(&mut sources, &packages, "lit.wesl", Language::Wesl)?;
 //!     let composed = compose::compose(&graph, &Settings::default(), &Default::default())?;

@@ -253,8 +253,8 @@ fn preset_numbers_name_fields() -> Result<(), Failed> {
 /// One light probe was published twice, with two digits and with six. The two differ by no more than
 /// rounding, so a wrong digit in either would be noticed.
 fn probe_forms_agree() -> Result<(), Failed> {
-    let probes =
-        probe::library(&mut SourceSet::default()).map_err(|problems| format!("{problems:?}"))?;
+    let probes = probe::library_probes(&mut SourceSet::default())
+        .map_err(|problems| format!("{problems:?}"))?;
     let find = |name: &str| {
         probes.iter().find(|probe| probe.name == name).ok_or_else(|| format!("no probe `{name}`"))
     };

@@ -101,7 +101,7 @@ pub fn library() -> &'static Library {
         let programs = Programs::load()
             .map_err(|(texts, problems)| render(&texts, &problems, Form::Human))
             .unwrap();
-        let probes = programs.with_texts(probe::library).unwrap();
+        let probes = programs.with_texts(probe::library_probes).unwrap();
         let presets = programs
             .with_texts(|texts| preset::library_presets(texts, programs.manifest(), &probes))
             .unwrap();

@@ -14,7 +14,7 @@ use lamplight::diagnostic::Diagnostic;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::permute::Settings;
 use lamplight::resolve::{self, Packages};
-use lamplight::source::{Embedded, Files as _, Memory, Package, SourceSet};
+use lamplight::source::{Embedded, Files as _, SourceSet};
 use libtest_mimic::{Failed, Trial};
 use naga::front::{glsl, wgsl};
 use naga::{Module, ShaderStage};
@@ -275,10 +275,9 @@ fn composed_glsl(text: String) -> Result<String, Failed> {
 }
 
 fn beside(root: &str, text: String) -> (SourceSet, Packages) {
-    let root =
-        Package { name: "user".into(), files: Box::new(Memory([(root.to_owned(), text)].into())) };
-    let library = Package { name: "lamplight".into(), files: Box::new(Embedded) };
-    (SourceSet::default(), Packages { root, dependencies: vec![library] })
+    let mut packages = Packages::of_text(root, text);
+    packages.dependencies.push(lamplight::project::library_package());
+    (SourceSet::default(), packages)
 }
 
 fn written(

@@ -12,7 +12,7 @@ use lamplight::picture::sketch::{MODELS, Setting, Sketch};
 use lamplight::picture::{Picture, Shot, Surroundings};
 use lamplight::resolve::{self, Packages};
 use lamplight::scene::environment;
-use lamplight::source::{Memory, Package, SourceSet};
+use lamplight::source::SourceSet;
 use lamplight::validate::validate;
 use libtest_mimic::{Failed, Trial};
 
@@ -33,9 +33,7 @@ const SIZE: u32 = 33;
 
 fn sketch(text: &str) -> Result<Sketch, Diagnostics> {
     const PATH: &str = "stage.wesl";
-    let files = BTreeMap::from([(PATH.to_owned(), text.to_owned())]);
-    let root = Package { name: "package".to_owned(), files: Box::new(Memory(files)) };
-    let packages = Packages { root, dependencies: Vec::new() };
+    let packages = Packages::of_text(PATH, text.to_owned());
     let graph = resolve::load(&mut SourceSet::default(), &packages, PATH, Language::Wesl)?;
     let composed = compose::compose(&graph, &Settings::default(), &Options::default())?;
     Sketch::new(validate(&composed)?, None).map_err(|problem| vec![problem])

@@ -218,7 +218,7 @@ fn shader(
 
 /// A package of the files in memory, which can import the library.
 fn own(files: &BTreeMap<String, String>) -> Packages {
-    let library = Package { name: project::LIBRARY.to_owned(), files: Box::new(Embedded) };
+    let library = project::library_package();
     let files = Box::new(Memory(files.clone()));
     Packages { root: Package { name: "package".to_owned(), files }, dependencies: vec![library] }
 }

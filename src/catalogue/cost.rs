@@ -10,8 +10,8 @@ use serde::Deserialize;
 use super::reader;
 use crate::bundle::Stage;
 use crate::diagnostic::Diagnostics;
-use crate::project::LIBRARY;
-use crate::source::{self, Embedded, Package, SourceSet};
+use crate::project::library_package;
+use crate::source::{self, Package, SourceSet};
 
 /// Path of the record below the library's root.
 pub const PATH: &str = "costs.toml";
@@ -139,8 +139,7 @@ pub fn is_record(head: &[u8]) -> bool {
 
 /// The library's record; empty if there is none.
 pub fn library_costs(sources: &mut SourceSet) -> Result<Costs, Diagnostics> {
-    let library = Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) };
-    package_costs(sources, &library)
+    package_costs(sources, &library_package())
 }
 
 /// The record of a package; empty if there is none.

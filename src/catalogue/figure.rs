@@ -22,8 +22,7 @@ use serde::Deserialize;
 use super::plot::Curves;
 use super::reader;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::project::LIBRARY;
-use crate::source::{self, Embedded, Package, SourceSet};
+use crate::source::SourceSet;
 
 /// Path of the kinds below the library's root.
 const KINDS: &str = "figures.toml";
@@ -80,7 +79,7 @@ pub type Figures = BTreeMap<String, Figure>;
 /// # Errors
 /// Those of the file.
 pub fn library_kinds(sources: &mut SourceSet) -> Result<Kinds, Diagnostics> {
-    Ok(read_own(sources, KINDS)?.unwrap_or_default())
+    reader::read_own(sources, KINDS)
 }
 
 /// The figures of all modules, by the path of the function.
@@ -96,7 +95,7 @@ pub fn library_figures(
     let mut all = Figures::new();
     for module in modules {
         let file = figure_path(&module.path);
-        let figures: Figures = read_own(sources, &file)?.unwrap_or_default();
+        let figures: Figures = reader::find_own(sources, &file)?.unwrap_or_default();
         for (name, figure) in figures {
             let refused = |reason: String| {
                 let message = format!("`{name}` in `{file}` {reason}");
@@ -119,15 +118,6 @@ pub fn library_figures(
         }
     }
     Ok(all)
-}
-
-fn read_own<T: serde::de::DeserializeOwned>(
-    sources: &mut SourceSet,
-    path: &str,
-) -> Result<Option<T>, Diagnostics> {
-    let package = Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) };
-    let id = source::read(sources, &package, path).map_err(|error| vec![error.into()])?;
-    id.map(|id| reader::read_data(sources, id)).transpose()
 }
 
 /// The path of a module's figures: `lighting/spot.figure.toml` for `lighting::spot`.

@@ -190,7 +190,7 @@ pub fn library_examples(
     sources: &mut SourceSet,
     manifest: &Manifest,
 ) -> Result<(Vec<preset::Preset>, Vec<probe::Probe>), Diagnostics> {
-    let probes = probe::library(sources)?;
+    let probes = probe::library_probes(sources)?;
     Ok((preset::library_presets(sources, manifest, &probes)?, probes))
 }
 

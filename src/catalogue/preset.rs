@@ -37,7 +37,7 @@ use super::{natural, reader};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::{Manifest, Program, Quoted, key};
 use crate::scene::sets;
-use crate::source::{self, Embedded, Package, SourceId, SourceSet, Span};
+use crate::source::{SourceId, SourceSet, Span};
 
 /// One example.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -188,11 +188,8 @@ pub fn library_presets(
     manifest: &Manifest,
     probes: &[Probe],
 ) -> Result<Vec<Preset>, Diagnostics> {
-    let package = Package { name: "lamplight".to_owned(), files: Box::new(Embedded) };
-    match source::read(sources, &package, PATH).map_err(|error| vec![error.into()])? {
-        Some(id) => parse_presets(sources, id, manifest, probes),
-        None => Ok(Vec::new()),
-    }
+    let id = reader::add_own(sources, PATH)?;
+    parse_presets(sources, id, manifest, probes)
 }
 
 /// Reads the presets that are in the set, in their natural order; programs and keys are the manifest's.

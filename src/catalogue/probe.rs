@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::reader;
 use crate::diagnostic::Diagnostics;
-use crate::source::{self, Embedded, Package, SourceSet};
+use crate::source::{SourceSet, Span};
 
 /// Path of the data below the library's root.
 pub const PATH: &str = "data/sh9_probes.toml";
@@ -38,16 +38,12 @@ struct Entry {
 }
 
 /// The library's light probes, by name.
-pub fn library(sources: &mut SourceSet) -> Result<Vec<Probe>, Diagnostics> {
-    let library = Package { name: "lamplight".to_owned(), files: Box::new(Embedded) };
-    let Some(id) = source::read(sources, &library, PATH).map_err(|error| vec![error.into()])?
-    else {
-        return Ok(Vec::new());
-    };
+pub fn library_probes(sources: &mut SourceSet) -> Result<Vec<Probe>, Diagnostics> {
+    let id = reader::add_own(sources, PATH)?;
     let entries: BTreeMap<toml::Spanned<String>, Entry> = reader::read_data(sources, id)?;
     let mut problems = Vec::new();
     let probes = entries.into_iter().filter_map(|(name, entry)| {
-        let span = source::Span::new(id, name.span());
+        let span = Span::new(id, name.span());
         let found = make_probe(name.into_inner(), &entry);
         if found.is_none() {
             problems.push(reader::invalid_data(

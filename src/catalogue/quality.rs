@@ -6,8 +6,7 @@ use serde::Deserialize;
 use super::cost::FIGURES;
 use super::reader;
 use crate::diagnostic::Diagnostics;
-use crate::project::LIBRARY;
-use crate::source::{self, Embedded, Package, SourceSet};
+use crate::source::SourceSet;
 
 /// Path of the file below the library's root.
 pub const PATH: &str = "quality.toml";
@@ -101,9 +100,5 @@ pub type Row<'m> = (&'m Entry, f64, &'m [i64; FIGURES.len()]);
 
 /// The groups of the library.
 pub fn library_groups(sources: &mut SourceSet) -> Result<Vec<Group>, Diagnostics> {
-    let library = Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) };
-    match source::read(sources, &library, PATH).map_err(|error| vec![error.into()])? {
-        Some(id) => reader::read_data::<File>(sources, id).map(|file| file.group),
-        None => Ok(Vec::new()),
-    }
+    reader::read_own::<File>(sources, PATH).map(|file| file.group)
 }

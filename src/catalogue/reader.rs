@@ -3,7 +3,8 @@
 use serde::de::DeserializeOwned;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::source::{SourceId, SourceSet, Span};
+use crate::project::library_package;
+use crate::source::{self, SourceId, SourceSet, Span};
 
 /// A data file in the set as a value of `T`.
 pub fn read_data<T: DeserializeOwned>(sources: &SourceSet, id: SourceId) -> Result<T, Diagnostics> {
@@ -16,6 +17,30 @@ pub fn read_data<T: DeserializeOwned>(sources: &SourceSet, id: SourceId) -> Resu
             message,
         )]
     })
+}
+
+/// A file of the library as a value of `T`; `None` if there is no such file.
+pub fn find_own<T: DeserializeOwned>(
+    sources: &mut SourceSet,
+    path: &str,
+) -> Result<Option<T>, Diagnostics> {
+    let id = source::read(sources, &library_package(), path).map_err(|error| vec![error.into()])?;
+    id.map(|id| read_data(sources, id)).transpose()
+}
+
+/// A file that the library has, added to the set.
+pub fn add_own(sources: &mut SourceSet, path: &str) -> Result<SourceId, Diagnostics> {
+    let id = source::read(sources, &library_package(), path).map_err(|error| vec![error.into()])?;
+    id.ok_or_else(|| vec![Diagnostic::error(codes::UNREADABLE, format!("there is no `{path}`"))])
+}
+
+/// A file that the library has, as a value of `T`.
+pub fn read_own<T: DeserializeOwned>(
+    sources: &mut SourceSet,
+    path: &str,
+) -> Result<T, Diagnostics> {
+    let id = add_own(sources, path)?;
+    read_data(sources, id)
 }
 
 /// Something in a data file is not as expected.

@@ -154,8 +154,8 @@ fn preset_table() -> Result<Table, Failure> {
 
 fn probe_table() -> Result<Table, Failure> {
     let mut sources = SourceSet::default();
-    let probes =
-        probe::library(&mut sources).map_err(|problems| Failure::Input(sources, problems))?;
+    let probes = probe::library_probes(&mut sources)
+        .map_err(|problems| Failure::Input(sources, problems))?;
     Ok(Table {
         shown: &["probe", "title"],
         things: probes.iter().map(super::show::probe_json).collect(),

@@ -1,8 +1,6 @@
 //! Compiles modules that were built in memory, such as a kernel around a function. The module is
 //! written as a text, which is then compiled as every other text is.
 
-use std::collections::BTreeMap;
-
 use super::{Linker, Text, compile};
 use crate::bundle::{Artifact, Language, Target};
 use crate::compose::{Keep, Options, compose, lean};
@@ -10,7 +8,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::emit;
 use crate::permute::Settings;
 use crate::resolve::{Packages, load};
-use crate::source::{Memory, Package, SourceSet};
+use crate::source::SourceSet;
 use crate::validate::Validated;
 
 const FILE: &str = "module.wgsl";
@@ -40,9 +38,7 @@ pub fn module_linked(
 ) -> Result<Artifact, Diagnostics> {
     let wgsl = emit(validated, entry, Target::WGSL).map_err(|error| vec![error])?;
     let wgsl = String::from_utf8_lossy(&wgsl.bytes).into_owned();
-    let files = Memory(BTreeMap::from([(FILE.to_owned(), wgsl)]));
-    let root = Package { name: "package".to_owned(), files: Box::new(files) };
-    let packages = Packages { root, dependencies: Vec::new() };
+    let packages = Packages::of_text(FILE, wgsl);
     let graph = load(&mut SourceSet::default(), &packages, FILE, Language::Wesl)?;
     let keep = Keep::Items(vec![entry.to_owned()]);
     let options = Options { keep, ..Options::default() };

@@ -11,10 +11,10 @@ use toml::Spanned;
 
 use crate::catalogue::preset::Number;
 use crate::catalogue::reader;
-use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::permute::{Axis, Manifest, Program, Settings};
 use crate::scene::sets::{LampKind, LampProfile, LampShape};
-use crate::source::{self, Embedded, Package, SourceId, SourceSet, Span};
+use crate::source::{SourceId, SourceSet, Span};
 
 /// Path below the library.
 const PATH: &str = "pictures.toml";
@@ -178,11 +178,8 @@ impl Table {
     /// # Errors
     /// Values without a row, and rows for values that no axis has.
     pub fn load(sources: &mut SourceSet, manifest: &Manifest) -> Result<Self, Diagnostics> {
-        let package = Package { name: "lamplight".to_owned(), files: Box::new(Embedded) };
-        let id = source::read(sources, &package, PATH).map_err(|error| vec![error.into()])?;
-        let missing =
-            || vec![Diagnostic::error(codes::UNREADABLE, format!("there is no `{PATH}`"))];
-        Self::parse(sources, id.ok_or_else(missing)?, manifest)
+        let id = reader::add_own(sources, PATH)?;
+        Self::parse(sources, id, manifest)
     }
 
     /// The table that a file holds.

@@ -28,7 +28,7 @@ use crate::permute::Settings;
 use crate::resolve::{self, Packages};
 use crate::scene::Shape;
 use crate::scene::sets::{Eye, Material, Object};
-use crate::source::{Memory, Package, SourceSet};
+use crate::source::SourceSet;
 use crate::validate::{Validated, validate};
 
 /// What an input can be given: a name, and the words in names of inputs that suggest it. The
@@ -288,9 +288,7 @@ fn unbound(binding: &Binding) -> Diagnostic {
 fn vertex_stage(fragment: &Reflection, setting: &Setting) -> Result<Composed, Diagnostics> {
     const PATH: &str = "sketch.wesl";
     let text = vertex_text(fragment, setting);
-    let files = BTreeMap::from([(PATH.to_owned(), text)]);
-    let root = Package { name: "sketch".to_owned(), files: Box::new(Memory(files)) };
-    let packages = Packages { root, dependencies: Vec::new() };
+    let packages = Packages::of_text(PATH, text);
     let graph = resolve::load(&mut SourceSet::default(), &packages, PATH, Language::Wesl)?;
     let composed = compose::compose(&graph, &Settings::default(), &Options::default())?;
     let validated = Arc::new(validate(&composed)?);

@@ -68,7 +68,8 @@ fn root_package(files: Box<dyn Files>) -> Package {
     Package { name: "package".to_owned(), files }
 }
 
-fn library_package() -> Package {
+/// The shader library as a package that others import, from the binary.
+pub fn library_package() -> Package {
     Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) }
 }
 

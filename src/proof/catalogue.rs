@@ -5,14 +5,14 @@ use std::sync::Mutex;
 
 use super::library::{Library, lock_sources};
 use super::{plots, quality};
-use crate::catalogue::pages::{Contents, Drawn, catalogue_pages as written};
+use crate::catalogue::pages::{Contents, Drawn, catalogue_pages};
 use crate::catalogue::quality::{self as groups, Measured};
-use crate::catalogue::{self, Module, cost, figure, plot, prefix, preset, probe};
+use crate::catalogue::{self, Module, cost, figure, plot, prefix, preset, probe, reader};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::{Session, executors, on_thread};
 use crate::permute::Manifest;
-use crate::project::{self, LIBRARY};
-use crate::source::{self, Embedded, Package, SourceSet};
+use crate::project;
+use crate::source::{Embedded, SourceSet};
 
 /// Path below a folder and text.
 pub type Files = BTreeMap<String, String>;
@@ -30,7 +30,7 @@ pub fn catalogue_files() -> Result<Files, (SourceSet, Diagnostics)> {
 /// from its data, and the names with a prefix.
 pub fn made_modules() -> Result<Files, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
-    let probes = match probe::library(&mut sources) {
+    let probes = match probe::library_probes(&mut sources) {
         Ok(probes) => probes,
         Err(problems) => return Err((sources, problems)),
     };
@@ -46,13 +46,13 @@ pub fn made_modules() -> Result<Files, (SourceSet, Diagnostics)> {
 fn read_contents(sources: &Mutex<SourceSet>, manifest: &Manifest) -> Result<Files, Diagnostics> {
     let modules = catalogue::library_modules();
     let plots = draw_plots(sources, &modules)?;
-    let probes = probe::library(&mut lock_sources(sources))?;
+    let probes = probe::library_probes(&mut lock_sources(sources))?;
     let presets = preset::library_presets(&mut lock_sources(sources), manifest, &probes)?;
     let costs = cost::library_costs(&mut lock_sources(sources))?;
     let quality = measure_quality(sources)?;
     let kinds = figure::library_kinds(&mut lock_sources(sources))?;
     let figures = figure::library_figures(&mut lock_sources(sources), &modules, &kinds)?;
-    Ok(written(&Contents {
+    Ok(catalogue_pages(&Contents {
         modules: &modules,
         plots: &plots,
         kinds: &kinds,
@@ -83,15 +83,14 @@ fn draw_plots(
     let mut session = executor.start().map_err(|_| vec![drawing_stopped()])?;
     let mut found = BTreeMap::new();
     for module in modules {
-        for (name, plot) in read_plots(sources, &module.path)? {
+        let file = plot::plot_path(&module.path);
+        let plots: Option<plot::Plots> = reader::find_own(&mut lock_sources(sources), &file)?;
+        for (name, plot) in plots.unwrap_or_default() {
             let path = format!("{}::{name}", module.path);
             if !module.items.iter().any(|item| item.name == name) {
                 return Err(vec![Diagnostic::error(
                     codes::UNKNOWN_FUNCTION,
-                    format!(
-                        "`{}` plots `{path}`, which does not exist",
-                        plot::plot_path(&module.path)
-                    ),
+                    format!("`{file}` plots `{path}`, which does not exist"),
                 )]);
             }
             found.insert(
@@ -101,17 +100,6 @@ fn draw_plots(
         }
     }
     Ok(found)
-}
-
-fn read_plots(sources: &Mutex<SourceSet>, module: &str) -> Result<plot::Plots, Diagnostics> {
-    let package = Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) };
-    let mut sources = lock_sources(sources);
-    match source::read(&mut sources, &package, &plot::plot_path(module))
-        .map_err(|error| vec![error.into()])?
-    {
-        Some(id) => plot::parse_plots(&sources, id),
-        None => Ok(plot::Plots::new()),
-    }
 }
 
 fn draw_plot(

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use crate::bundle::Language;
 use crate::diagnostic::Diagnostics;
 use crate::permute::Settings;
-use crate::source::{Package, SourceSet};
+use crate::source::{Memory, Package, SourceSet};
 
 /// The packages a composition may read.
 pub struct Packages {
@@ -19,6 +19,12 @@ pub struct Packages {
 }
 
 impl Packages {
+    /// A package with nothing but one text, which imports nothing.
+    pub fn of_text(path: &str, text: String) -> Self {
+        let files = Box::new(Memory([(path.to_owned(), text)].into()));
+        Self { root: Package { name: "package".to_owned(), files }, dependencies: Vec::new() }
+    }
+
     /// The dependency of that name.
     pub fn dependency(&self, name: &str) -> Option<&Package> {
         self.dependencies.iter().find(|package| package.name == name)

@@ -10,7 +10,7 @@ use lamplight::limits;
 use lamplight::permute::{Settings, manifest};
 use lamplight::project;
 use lamplight::resolve::{self, Packages};
-use lamplight::source::{Embedded, Memory, Package, SourceSet};
+use lamplight::source::{Memory, Package, SourceSet};
 use libtest_mimic::Trial;
 
 use super::Outcome;
@@ -74,7 +74,7 @@ fn outcome(files: &Files) -> Result<(), Diagnostics> {
     let language = if root == WESL { Language::Wesl } else { Language::Glsl };
     let memory = Memory(files.iter().cloned().collect());
     let own = Package { name: "package".to_owned(), files: Box::new(memory) };
-    let library = Package { name: project::LIBRARY.to_owned(), files: Box::new(Embedded) };
+    let library = project::library_package();
     let packages = Packages { root: own, dependencies: vec![library] };
     let graph = resolve::load(&mut sources, &packages, root, language)?;
     compose::compose(&graph, &Settings::default(), &Options::default()).map(|_| ())

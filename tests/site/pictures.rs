@@ -15,10 +15,10 @@ use lamplight::permute::Settings;
 use lamplight::picture::frame::Programs;
 use lamplight::picture::sketch::{Setting, Sketch};
 use lamplight::picture::{self, Picture, Plan, Shot, Surroundings};
-use lamplight::project::LIBRARY;
+use lamplight::project;
 use lamplight::resolve::{self, Packages};
 use lamplight::scene::environment;
-use lamplight::source::{Embedded, Memory, Package, SourceSet};
+use lamplight::source::SourceSet;
 use lamplight::validate::validate;
 use libtest_mimic::Failed;
 
@@ -124,11 +124,8 @@ fn preview(page: &Page, device: &str) -> Outcome {
 /// The picture of a fragment stage as the catalogue shows it first.
 fn sketched(stage: &str, uniforms: BTreeMap<String, Vec<f64>>) -> Result<Picture, Failed> {
     const PATH: &str = "stage.wesl";
-    let files = BTreeMap::from([(PATH.to_owned(), stage.to_owned())]);
-    let packages = Packages {
-        root: Package { name: "package".to_owned(), files: Box::new(Memory(files)) },
-        dependencies: vec![Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) }],
-    };
+    let mut packages = Packages::of_text(PATH, stage.to_owned());
+    packages.dependencies.push(project::library_package());
     let draw = || {
         let mut sources = SourceSet::default();
         let graph = resolve::load(&mut sources, &packages, PATH, Language::Wesl)?;

@@ -11,7 +11,7 @@ use lamplight::permute::manifest::{self, Manifest};
 use lamplight::project::{self, LIBRARY, MANIFEST};
 use lamplight::resolve::wesl::{self, Kept as Parsed};
 use lamplight::resolve::{self, Graph, Packages};
-use lamplight::source::{Embedded, Memory, Package, SourceSet};
+use lamplight::source::{Memory, Package, SourceSet};
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
 
@@ -51,7 +51,7 @@ pub fn packages(files: Option<&Files>) -> Packages {
         None => project::library(),
         Some(files) => Packages {
             root: Package { name: "package".to_owned(), files: Box::new(Memory(files.clone())) },
-            dependencies: vec![Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) }],
+            dependencies: vec![project::library_package()],
         },
     }
 }

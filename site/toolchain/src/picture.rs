@@ -179,7 +179,7 @@ fn load() -> Result<Kept, Vec<Diagnostic>> {
     let programs =
         Programs::load().map_err(|(sources, problems)| diagnostics(&sources, &problems))?;
     let read = programs.with_texts(|texts| {
-        let probes = probe::library(texts)?;
+        let probes = probe::library_probes(texts)?;
         Ok((preset::library_presets(texts, programs.manifest(), &probes)?, probes))
     });
     match read {

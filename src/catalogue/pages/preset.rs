@@ -81,7 +81,7 @@ fn light_probes(text: &mut String, probes: &[Probe]) {
     let _ = write!(
         text,
         "\n## Light probes\n\nEach probe has nine coefficients in the order {}. In shaders, [`ambient::probes`](ambient/probes.md) has a function\n\
-         for each probe. In Rust, `lamplight::catalogue::probe::library(..)` returns them.\n\n| probe | place | L00 |\n|---|---|---|\n",
+         for each probe. In Rust, `lamplight::catalogue::probe::library_probes(..)` returns them.\n\n| probe | place | L00 |\n|---|---|---|\n",
         ORDER.join(", ")
     );
     for probe in probes {

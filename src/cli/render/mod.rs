@@ -264,7 +264,7 @@ fn of_preset(programs: &Programs, arguments: &Arguments, name: &str) -> Result<P
 /// Presets and light probes of the library.
 pub fn library_examples(programs: &Programs) -> Result<(Vec<Preset>, Vec<probe::Probe>), Failure> {
     let read = programs.with_texts(|texts| {
-        let probes = probe::library(texts)?;
+        let probes = probe::library_probes(texts)?;
         Ok((preset::library_presets(texts, programs.manifest(), &probes)?, probes))
     });
     read.map_err(|problems| input_failure(programs, problems))

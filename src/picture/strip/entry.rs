@@ -7,9 +7,9 @@ use toml::Spanned;
 
 use crate::catalogue::preset::Number;
 use crate::catalogue::reader;
-use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::diagnostic::Diagnostics;
 use crate::scene::sets;
-use crate::source::{self, Embedded, Package, SourceSet, Span};
+use crate::source::{SourceSet, Span};
 
 /// Path below the library.
 const PATH: &str = "comparisons.toml";
@@ -73,10 +73,7 @@ struct Entry {
 /// # Errors
 /// Those of the file.
 pub fn library_comparisons(sources: &mut SourceSet) -> Result<Vec<Comparison>, Diagnostics> {
-    let package = Package { name: "lamplight".to_owned(), files: Box::new(Embedded) };
-    let id = source::read(sources, &package, PATH).map_err(|error| vec![error.into()])?;
-    let missing = || vec![Diagnostic::error(codes::UNREADABLE, format!("there is no `{PATH}`"))];
-    let id = id.ok_or_else(missing)?;
+    let id = reader::add_own(sources, PATH)?;
     let entries: BTreeMap<String, Entry> = reader::read_data(sources, id)?;
     let mut problems = Vec::new();
     let comparison = |(name, entry): (String, Entry)| {
