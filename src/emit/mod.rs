@@ -10,7 +10,7 @@
 //!   pass to the window flips them, and front faces wind the other way round for `glFrontFace`.
 //! - `msl`, `hlsl`, `wgsl`: the same conventions are native.
 
-pub(crate) mod blocks;
+pub mod blocks;
 pub mod clip;
 mod columns;
 pub(crate) mod glsl;

@@ -8,7 +8,7 @@ use lamplight::bundle::Language;
 use lamplight::diagnostic::Diagnostics;
 use lamplight::permute::Setting;
 use lamplight::permute::manifest::{self, Manifest};
-use lamplight::project::{self, LIBRARY, MANIFEST};
+use lamplight::project::{self, MANIFEST};
 use lamplight::resolve::wesl::{self, Kept as Parsed};
 use lamplight::resolve::{self, Graph, Packages};
 use lamplight::source::{Memory, Package, SourceSet};

@@ -3,7 +3,7 @@
 //! There is no syntax tree: composing needs items, scopes and conditions, and naga parses the
 //! composed text anyway.
 
-pub(crate) mod blank;
+pub mod blank;
 mod block;
 mod body;
 mod condition;
