@@ -55,6 +55,10 @@ vec3 toned(vec3 color) {
     return aces_hill(color);
 #elif CURVE == CURVE_AGX
     return agx(color);
+#elif CURVE == CURVE_AGX_BLENDER
+    return agx_blender(color);
+#elif CURVE == CURVE_GT7
+    return gt7(color);
 #elif CURVE == CURVE_HABLE
     return hable(color);
 #elif CURVE == CURVE_NEUTRAL
