@@ -10,7 +10,7 @@ use std::process::Command;
 use lamplight::bundle::{Language, Stage, Target};
 use lamplight::compose::{Composed, Segment, SourceMap};
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::emit::{self, Emitted, Judge};
+use lamplight::emit::{self, Emitted};
 use lamplight::source::{SourceSet, Span};
 use lamplight::validate::{self, Validated, validate};
 use libtest_mimic::{Failed, Trial};
@@ -94,12 +94,13 @@ fn judge(entry: &str, stage: naga::ShaderStage, target: Target, emitted: &Emitte
     let extension = if stage == naga::ShaderStage::Vertex { "vert" } else { "frag" };
     let file = folder.path().join(format!("out.{extension}"));
     std::fs::write(&file, &emitted.bytes)?;
-    match emit::targets::find(target).ok_or("the target has no file")?.judge {
-        Judge::SpirvVal(_) => {
+    let found = emit::targets::find(target).ok_or("the target has no file")?;
+    match found.judged.judge {
+        "spirv_val" => {
             run(Command::new("spirv-val").args(["--target-env", "vulkan1.1"]).arg(&file))
         }
-        Judge::Glslang(_) => run(Command::new("glslangValidator").arg(&file)),
-        Judge::NagaAndTint => {
+        "glslang" if found.glsl.is_some() => run(Command::new("glslangValidator").arg(&file)),
+        "naga_tint" => {
             let text = String::from_utf8(emitted.bytes.clone())?;
             naga::front::wgsl::parse_str(&text)
                 .map(|_| ())

@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output as Said};
 
 use lamplight::bundle::{Target, blob_files};
-use lamplight::emit::{Judge, targets};
-use lamplight::judge::{self, Output};
+use lamplight::emit::targets;
+use lamplight::judge::{self, Output, judges};
 use libtest_mimic::{Failed, Trial};
 
 use placed::{glsl_means_something_else, refusals_are_placed, writers_are_placed};
@@ -245,17 +245,13 @@ fn what_passed_is_known() -> Outcome {
 /// before it writes anything.
 fn missing_programs_are_told() -> Outcome {
     let nothing = tempfile::tempdir()?;
-    let install_command = |judge| match judge {
-        Judge::SpirvVal(_) => "apt-get install spirv-tools",
-        Judge::Glslang(_) | Judge::GlslangHlsl => "apt-get install glslang-tools",
-        Judge::Clang => "apt-get install clang",
-        Judge::NagaAndTint => "apt-get install nodejs",
-    };
     let package = Package::new(MANIFEST, SHADER)?;
     for entry in targets::ALL {
-        let install = install_command(entry.judge);
+        let judge = judges::find(entry.judged.judge).ok_or("the target has no judge")?;
+        let tool = judge.tools.first().ok_or("the judge runs no program")?;
+        let install = format!("apt-get install {}", tool.package);
         let mut command = package.command(&["gen", "--validate", "--target", entry.target.name()]);
-        expect(&command.env("PATH", nothing.path()).output()?, 4, &[install])?;
+        expect(&command.env("PATH", nothing.path()).output()?, 4, &[&install])?;
     }
     let arguments = ["gen", "--validate", "--target", "wgsl", "--cache", "cache/lamplight-cache"];
     let words = ["npm install", "cache/lamplight-tint webgpu@"];

@@ -6,6 +6,7 @@ mod recorded;
 use std::process::Command;
 use std::sync::OnceLock;
 
+use lamplight::bundle::key::{has_value, without_axis, write as write_key};
 use lamplight::bundle::{Contents, EntryContents, Language, Target, blob_files, write_directory};
 use lamplight::compose::{Keep, Options, compose};
 use lamplight::diagnostic::render::{Form, render};
@@ -181,9 +182,9 @@ fn values_have_effect() -> Result<(), Failed> {
     for (name, program) in &contents()?.programs {
         for axis in program.axes.iter().filter(|axis| axis.mode == "static") {
             for value in axis.values.iter().filter(|value| **value != axis.default) {
-                let setting = setting_of(&axis.name, value);
+                let setting = write_key([(axis.name.as_str(), value.as_str())]);
                 for (language, entries) in &program.languages {
-                    if !entries.values().any(|entry| differs_by(entry, &setting)) {
+                    if !entries.values().any(|entry| differs_by(entry, &axis.name, value)) {
                         idle.push(format!("`{name}`: `{setting}` changes nothing in {language:?}"));
                     }
                 }
@@ -193,17 +194,11 @@ fn values_have_effect() -> Result<(), Failed> {
     if idle.is_empty() { Ok(()) } else { Err(idle.join("\n").into()) }
 }
 
-/// A setting, written as in a key.
-fn setting_of(axis: &str, value: &str) -> String {
-    if value == "true" { axis.to_owned() } else { format!("{axis}={value}") }
-}
-
-/// Whether some key with the setting gives another output than the same key without it.
-fn differs_by(entry: &EntryContents, setting: &str) -> bool {
-    entry.keys.iter().any(|(key, unit)| {
-        let others: Vec<&str> = key.split(',').filter(|part| *part != setting).collect();
-        let without = if others.is_empty() { "default".to_owned() } else { others.join(",") };
-        without != *key && entry.keys.get(&without).is_some_and(|other| other != unit)
+/// Whether some key with the value gives another output than the same key without it.
+fn differs_by(entry: &EntryContents, axis: &str, value: &str) -> bool {
+    let mut with_value = entry.keys.iter().filter(|(key, _)| has_value(key, axis, value));
+    with_value.any(|(key, unit)| {
+        entry.keys.get(&without_axis(key, axis)).is_some_and(|other| other != unit)
     })
 }
 

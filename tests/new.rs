@@ -1,6 +1,7 @@
 //! `cargo xtask new`: the crate's own parsers read the files that it writes, and trials fail until
 //! the parts that it leaves empty are written.
 
+mod axis_values;
 mod contributing;
 mod functions;
 #[path = "../xtask/src/new/mod.rs"]
@@ -11,8 +12,6 @@ use std::path::Path;
 
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
-use lamplight::permute::{lock, manifest};
-use lamplight::picture::needs::Table;
 use lamplight::source::{SourceId, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
@@ -23,14 +22,20 @@ type Outcome = Result<(), Failed>;
 type Run = fn() -> Outcome;
 
 pub fn trials() -> Vec<Trial> {
-    let all: [(&str, Run); 12] = [
+    let all: [(&str, Run); 18] = [
         ("function", functions::in_modules),
         ("function_types", functions::of_types),
         ("function_formula", functions::with_formula),
-        ("axis_value", axis_value),
+        ("function_translation", functions::in_glsl),
+        ("forms", functions::forms),
+        ("reason", functions::reason),
+        ("axis_value", axis_values::is_listed),
+        ("axis_value_places", axis_values::is_an_error),
         ("diagnostic", diagnostic),
         ("executor", executor),
+        ("executor_own", own_executor),
         ("target", target),
+        ("target_version", target_version),
         ("scene", scene),
         ("examples", examples),
         ("mistakes", mistakes),
@@ -64,55 +69,6 @@ fn parsed<T>(
     parse(&sources, id).map_err(|problems| render(&sources, &problems, Form::Human).into())
 }
 
-/// A new value of an axis is in the manifest, in the lock file and in the table of pictures.
-fn axis_value() -> Outcome {
-    let files = make("axis-value", "forward::fog=unheard_of", &[])?;
-    let manifest = parsed(text(&files, "shaderlib/lamplight.toml")?, manifest::parse)?;
-    let program = manifest.program("forward").ok_or("no program `forward`")?;
-    let axis = program.space.axis("fog").ok_or("no axis `fog`")?;
-    if axis.value_names().last().map(String::as_str) != Some("unheard_of") {
-        let values = axis.value_names();
-        return Err(format!("the last value of `fog` should be `unheard_of`: {values:?}").into());
-    }
-    let known =
-        parsed(&std::fs::read_to_string(root().join("shaderlib/lamplight.lock"))?, lock::parse)?;
-    let extended = manifest
-        .programs
-        .iter()
-        .fold(known, |lock, program| lock.extended(&program.name, &program.space));
-    if extended.to_string() != text(&files, "shaderlib/lamplight.lock")? {
-        return Err("the lock file differs from what `lamplight keys --lock` would write".into());
-    }
-    ships("forward", "fog", "unheard_of")?;
-    ships("tonemap", "exposure", "automatic")?;
-    let pictures = text(&files, "shaderlib/pictures.toml")?;
-    parsed(pictures, |sources, id| Table::parse(sources, id, &manifest))?;
-    let without = pictures.replace("unheard_of = { background = \"haze\" }\n", "");
-    match parsed(&without, |sources, id| Table::parse(sources, id, &manifest)) {
-        Err(problem) if problem.message().unwrap_or_default().contains("`fog=unheard_of`") => {
-            Ok(())
-        }
-        Err(problem) => {
-            let found = problem.message().unwrap_or_default();
-            Err(format!("without a row, expected an error for `fog=unheard_of`, found {found}")
-                .into())
-        }
-        Ok(_) => Err("a table of pictures without a row for `fog=unheard_of` is accepted".into()),
-    }
-}
-
-/// Some permutation with a new value ships, by a slice or by a key that is added.
-fn ships(program: &str, axis: &str, value: &str) -> Outcome {
-    let files = make("axis-value", &format!("{program}::{axis}={value}"), &[])?;
-    let manifest = parsed(text(&files, "shaderlib/lamplight.toml")?, manifest::parse)?;
-    let space = &manifest.program(program).ok_or("the program is lost")?.space;
-    let has = |key: &str| key.split(',').any(|one| one == format!("{axis}={value}"));
-    match space.enumerate().iter().any(|point| has(&space.key(point).to_string())) {
-        true => Ok(()),
-        false => Err(format!("no permutation of {program} with {axis}={value} ships").into()),
-    }
-}
-
 /// A new diagnostic has an empty title and page, which trials then demand.
 fn diagnostic() -> Outcome {
     let files = make("diagnostic", "unknown-swizzle", &[])?;
@@ -128,7 +84,7 @@ fn diagnostic() -> Outcome {
 fn target() -> Outcome {
     for (name, rest, like, version) in [
         ("glsl499", &[][..], "glsl450", "Version::Desktop(499)"),
-        ("essl399", &[], "essl300", "Glslang(&[GlslRules::Own])"),
+        ("essl399", &[], "essl300", "rules: &[\"own\"]"),
         ("glsl398", &["glsl330"], "glsl330", "Version::Desktop(398)"),
         ("msl99", &[], "msl", "extension: \"msl99.metal\""),
         ("wgsl99", &["wgsl"], "wgsl", "extension: \"wgsl99\""),
@@ -161,6 +117,51 @@ fn target() -> Outcome {
             .chain(lacking.lines().filter(|line| has_name(line)));
         if let Some(line) = wrong.into_iter().next() {
             return Err(format!("docs/guide/targets.md, `{name}` beside `{like}`: `{line}`").into());
+        }
+    }
+    Ok(())
+}
+
+/// A new version of GLSL numbers its bindings if it can, and is told what it lacks by the table that
+/// refuses it. Rules of a later version are none of its own.
+fn target_version() -> Outcome {
+    for (name, numbering, lacks, lacks_not) in [
+        ("essl310", "Explicit", "`textureQueryLevels`", "`bitCount`"),
+        ("essl299", "Named", "`bitCount`", "none"),
+        ("glsl430", "Explicit", "`textureSamples`", "`textureQueryLevels`"),
+        ("glsl410", "Named", "`unpackHalf2x16`", "`bitCount`"),
+    ] {
+        let made = made::make(&root(), "target", name, &[])?;
+        let steps = made.next.join("\n");
+        let files: BTreeMap<String, String> = made.files.into_iter().collect();
+        let path = format!("src/emit/targets/{name}.rs");
+        let text = text(&files, &path)?;
+        if !text.contains(&format!("Numbering::{numbering})")) {
+            return Err(format!("{path} should have `Numbering::{numbering}`:\n{text}").into());
+        }
+        if !steps.contains(lacks) || steps.contains(lacks_not) {
+            return Err(format!("{name} lacks {lacks}, and not {lacks_not}:\n{steps}").into());
+        }
+    }
+    Ok(())
+}
+
+/// An executor without wgpu has a session, with what a kernel is and what is expected of it. The
+/// file for a device of wgpu explains what may be wanted of the device.
+fn own_executor() -> Outcome {
+    let path = "src/execute/executors/fresh.rs";
+    for (rest, parts) in [
+        (&["own"][..], &["impl Session for ", "run_batches(", "draw_pixels(", "emit_kernel("][..]),
+        (&[], &["`Named::Without`", "`Shaders::Emitted(Target::SPIRV)`"]),
+    ] {
+        let files = make("executor", "fresh", rest)?;
+        let text = text(&files, path)?;
+        balanced(text)?;
+        if let Some(part) = parts.iter().find(|part| !text.contains(**part)) {
+            return Err(format!("{path} with {rest:?} has no `{part}`:\n{text}").into());
+        }
+        if text.contains("NAME") || !text.contains("about: \"\"") {
+            return Err(format!("{path} should have its name and an empty `about`:\n{text}").into());
         }
     }
     Ok(())

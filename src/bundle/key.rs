@@ -1,13 +1,20 @@
 //! Keys as text: `shadow=pcf_3x3,two_sided`.
 //!
 //! A key lists the axes that differ from their defaults, sorted by name. An axis whose value is
-//! `true` stands alone. The permutation without a difference is [`DEFAULT`]. This is the one place
-//! that reads and writes keys: the loader, the tools and the command line all use it.
+//! `true` stands alone. The permutation without a difference is [`DEFAULT`]. The loader, the tools
+//! and the command line read and write keys with this module. Code that `src/keys/` generates for
+//! hosts writes keys by itself, with the marks and words that are constants here.
 
 use super::{Axis, Error};
 
 /// The key of the permutation with every axis at its default.
 pub const DEFAULT: &str = "default";
+
+/// What stands between the parts of a key.
+pub const SEPARATOR: char = ',';
+
+/// What stands between an axis and its value.
+pub const ASSIGNS: char = '=';
 
 /// The value that an axis has where a key names it alone.
 pub const IMPLIED: &str = "true";
@@ -46,12 +53,12 @@ pub fn parts(key: &str) -> impl Iterator<Item = Part<'_>> {
     let mut rest = (!is_default).then_some(Word { text: key, start: 0 });
     std::iter::from_fn(move || {
         let Word { text, start } = rest?;
-        let (part, after) = match text.split_once(',') {
+        let (part, after) = match text.split_once(SEPARATOR) {
             Some((part, after)) => (part, Some(after)),
             None => (text, None),
         };
         rest = after.map(|text| Word { text, start: start + part.len() + 1 });
-        Some(match part.split_once('=') {
+        Some(match part.split_once(ASSIGNS) {
             Some((axis, value)) => Part {
                 axis: trimmed_word(axis, start),
                 value: Some(trimmed_word(value, start + axis.len() + 1)),
@@ -74,9 +81,9 @@ pub fn write<'a>(differing: impl IntoIterator<Item = (&'a str, &'a str)>) -> Str
     parts.sort_unstable();
     let parts = parts.into_iter().map(|(axis, value)| match value {
         IMPLIED => axis.to_owned(),
-        _ => format!("{axis}={value}"),
+        _ => format!("{axis}{ASSIGNS}{value}"),
     });
-    parts.collect::<Vec<_>>().join(",")
+    parts.collect::<Vec<_>>().join(&SEPARATOR.to_string())
 }
 
 /// The canonical form of a key: axes sorted, defaults left out.
@@ -123,6 +130,17 @@ fn axis_and_value<'a>(axes: &'a [Axis], part: Part<'a>) -> Result<(&'a Axis, &'a
         }
         _ => format!("axis `{name}` needs a value{known}"),
     })
+}
+
+/// Whether a key names an axis with this value.
+pub fn has_value(key: &str, axis: &str, value: &str) -> bool {
+    parts(key).any(|part| part.axis.text == axis && part.chosen() == value)
+}
+
+/// The key without an axis, which then has its default.
+pub fn without_axis(key: &str, axis: &str) -> String {
+    let others = parts(key).filter(|part| part.axis.text != axis);
+    write(others.map(|part| (part.axis.text, part.chosen())))
 }
 
 /// The value that a canonical key gives an axis.

@@ -12,7 +12,7 @@ use super::features;
 use super::input::{self, LanguageName};
 use crate::bundle::Language;
 use crate::cli::terminal::stdout;
-use crate::diagnostic::{Diagnostics, nearest_name};
+use crate::diagnostic::{Diagnostics, nearest_name, stopped_message};
 use crate::execute::on_thread;
 use crate::output::{self, Replace};
 use crate::permute::{Setting, Settings};
@@ -76,7 +76,7 @@ struct Selection {
 pub fn run_check(arguments: Arguments) -> Result<(), Failure> {
     let selections = parse_selections(&arguments)?;
     on_thread(|| check_selections(&selections, &arguments))
-        .unwrap_or_else(|| Err(Failure::environment("the check stopped with an internal error")))
+        .unwrap_or_else(|| Err(Failure::environment(stopped_message("the check"))))
 }
 
 impl Arguments {

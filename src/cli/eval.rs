@@ -10,6 +10,7 @@ use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::input::LanguageName;
 use super::own::Own;
 use crate::cli::terminal::stdout;
+use crate::diagnostic::stopped_message;
 use crate::execute::{Session, on_thread};
 use crate::proof::expression::evaluate_expression;
 use crate::proof::library::Library;
@@ -32,9 +33,8 @@ pub struct Arguments {
 }
 
 pub fn run_eval(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
-    on_thread(|| evaluate_all(&arguments, form)).unwrap_or_else(|| {
-        Err(Failure::environment("the evaluation stopped with an internal error"))
-    })
+    on_thread(|| evaluate_all(&arguments, form))
+        .unwrap_or_else(|| Err(Failure::environment(stopped_message("the evaluation"))))
 }
 
 fn evaluate_all(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failure> {

@@ -38,6 +38,11 @@ pub mod codes {
     }
 }
 
+/// The message about code that ended with a panic.
+pub(crate) fn stopped_message(what: &str) -> String {
+    format!("{what} stopped with an internal error")
+}
+
 /// How much a diagnostic weighs. Only errors fail a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {

@@ -60,8 +60,8 @@ pub struct Entry {
     pub header: &'static [&'static str],
     /// What the language has for overrides.
     pub overrides: Overrides,
-    /// The tool that judges whether its outputs are well formed.
-    pub judge: Judge,
+    /// What judges whether its outputs are well formed.
+    pub judged: Judged,
     /// The clip spaces of its vertex stages.
     pub clip: &'static clip::Spaces,
     /// Writes the entry point of a module without overrides; only [`emit`] calls it.
@@ -81,31 +81,14 @@ pub enum Overrides {
     Macros,
 }
 
-/// The tool that judges the outputs of a target, from their bytes. Every target has one. `judge`
-/// runs them.
+/// What judges the outputs of a target, from their bytes. Every target has a judge, and the module
+/// `judge` runs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Judge {
-    /// spirv-val, by the rules of each of these environments.
-    SpirvVal(&'static [&'static str]),
-    /// glslangValidator, by each of these rules.
-    Glslang(&'static [GlslRules]),
-    /// glslangValidator as a compiler of HLSL for Vulkan.
-    GlslangHlsl,
-    /// clang, with headers in the place of Metal's.
-    Clang,
-    /// naga, and Tint, the compiler of Chromium and Dawn.
-    NagaAndTint,
-}
-
-/// The rules that a text of GLSL has to keep.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum GlslRules {
-    /// OpenGL's, or OpenGL ES's, of the version that the text names.
-    Own,
-    /// The rules of a later version, which replaces the version in the text.
-    Later(&'static str),
-    /// Vulkan's, as far as texts for OpenGL can keep them.
-    Vulkan,
+pub struct Judged {
+    /// The name of a file of `src/judge/judges/`.
+    pub judge: &'static str,
+    /// The rules that outputs must keep. They are those of the judge, whose file explains them.
+    pub rules: &'static [&'static str],
 }
 
 /// One file for each output language.

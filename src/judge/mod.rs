@@ -2,17 +2,13 @@
 //!
 //! `files of a bundle -> outputs -> verdict (those that passed before are known) -> blame (the author's places)`
 //!
-//! Each target names its judge in the table of targets, so no target is without one. Programs are
-//! started for batches of outputs. If a batch is refused, its outputs are judged again one by one.
+//! Each file of `judges/` is a judge, and each target names one, so no target is without one. Programs
+//! are started for batches of outputs. If a batch is refused, its outputs are judged again one by one.
 
 mod blame;
-mod glslang;
 mod known;
-mod msl;
 mod novel;
-mod spirv;
 mod tint;
-mod wgsl;
 
 use std::fmt;
 use std::path::PathBuf;
@@ -25,10 +21,49 @@ pub use tint::Tint;
 
 use crate::bundle::{BlobFile, Error, Hash, Stage, Target};
 use crate::cache::Cache;
-use crate::emit::{Judge, targets};
+use crate::emit::{Judged, targets};
 use crate::output::Scratch;
-use crate::tools::{CLANG, GLSLANG, NODE, SPIRV_VAL, Tool};
+use crate::tools::Tool;
 use crate::validate::on_large_stack;
+
+/// A judge, which a target names.
+pub struct Entry {
+    /// The name of its file.
+    pub name: &'static str,
+    /// The programs that it runs.
+    pub tools: &'static [Tool],
+    /// What else it needs and this machine lacks.
+    pub lacks: fn(&Tint) -> Option<Missing>,
+    /// What, beyond the versions of the programs, changes its verdicts.
+    pub version: fn(&Tint) -> String,
+    /// The work for a group of outputs.
+    plan: Plan,
+}
+
+/// Divides a group of outputs into works. The error is a message, if the judge cannot be run.
+type Plan = for<'w> fn(&Group<'w>) -> Result<Vec<Work<'w>>, String>;
+
+/// Outputs of one target, stage and name of the entry point, and what judges them.
+struct Group<'w> {
+    outputs: &'w [&'w Output],
+    /// The rules that the target names. The judge's file explains them.
+    rules: &'static [&'static str],
+    /// Without Tint, WGSL is judged by naga alone.
+    tint: Option<&'w Tint>,
+    /// Where texts are written that are not the outputs themselves.
+    scratch: &'w Scratch,
+}
+
+/// One file for each judge.
+pub mod judges {
+    use super::Entry;
+    include!(concat!(env!("OUT_DIR"), "/judges.rs"));
+
+    /// The judge of that name.
+    pub fn find(name: &str) -> Option<&'static Entry> {
+        ALL.iter().copied().find(|entry| entry.name == name)
+    }
+}
 
 /// One output of a bundle.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -103,30 +138,22 @@ impl fmt::Display for Missing {
     }
 }
 
-/// The programs that a judge needs.
-fn judge_tools(judge: Judge) -> &'static [Tool] {
-    match judge {
-        Judge::SpirvVal(_) => &[SPIRV_VAL],
-        Judge::Glslang(_) | Judge::GlslangHlsl => &[GLSLANG],
-        Judge::Clang => &[CLANG],
-        Judge::NagaAndTint => &[NODE],
-    }
-}
-
-fn judge_of(target: Target) -> Option<Judge> {
-    targets::find(target).map(|entry| entry.judge)
+/// The judge of a target, and the rules that the target names for it.
+fn judge_of(target: Target) -> Option<(&'static Entry, Judged)> {
+    let judged = targets::find(target)?.judged;
+    judges::find(judged.judge).map(|judge| (judge, judged))
 }
 
 /// What the judges of some targets need and this machine lacks, each once.
 pub fn missing(targets: &[Target], tint: &Tint) -> Vec<Missing> {
     let one = |target: &Target| {
-        let judge = judge_of(*target)?;
-        let absent = judge_tools(judge).iter().find(|tool| tool.path().is_none());
+        let (judge, _) = judge_of(*target)?;
+        let absent = judge.tools.iter().find(|tool| tool.path().is_none());
         let absent = absent.map(|tool| Missing {
             what: format!("`{}`", tool.program),
             install: format!("apt-get install {}", tool.package),
         });
-        absent.or_else(|| matches!(judge, Judge::NagaAndTint).then(|| tint.missing()).flatten())
+        absent.or_else(|| (judge.lacks)(tint))
     };
     let mut found: Vec<Missing> = targets.iter().filter_map(one).collect();
     found.sort();
@@ -136,14 +163,9 @@ pub fn missing(targets: &[Target], tint: &Tint) -> Vec<Missing> {
 
 /// The versions of a target's judges. Outputs are judged again when they change.
 fn judge_versions(target: Target, tint: &Tint) -> String {
-    let Some(judge) = judge_of(target) else { return String::new() };
-    let programs: String = judge_tools(judge).iter().map(|tool| tool.version()).collect();
-    let own = match judge {
-        Judge::NagaAndTint => format!("naga {} tint {}", env!("LAMPLIGHT_NAGA"), tint.version()),
-        Judge::Clang => crate::metal::shim_hash(),
-        Judge::SpirvVal(_) | Judge::Glslang(_) | Judge::GlslangHlsl => String::new(),
-    };
-    format!("{judge:?} {programs} {own}")
+    let Some((judge, judged)) = judge_of(target) else { return String::new() };
+    let programs: String = judge.tools.iter().map(|tool| tool.version()).collect();
+    format!("{} {:?} {programs} {}", judged.judge, judged.rules, (judge.version)(tint))
 }
 
 /// The result of judging outputs.
@@ -239,19 +261,14 @@ pub fn judge(outputs: &[Output], tint: Option<&Tint>, progress: Progress<'_>) ->
 
 /// The work for outputs of one target, stage and name of the entry point.
 fn plan_group<'w>(
-    group: &'w [&'w Output],
+    outputs: &'w [&'w Output],
     tint: Option<&'w Tint>,
     scratch: &'w Scratch,
 ) -> Result<Vec<Work<'w>>, String> {
-    let Some(first) = group.first() else { return Ok(Vec::new()) };
-    let judge = judge_of(first.target).ok_or_else(|| format!("no target `{}`", first.target))?;
-    match judge {
-        Judge::SpirvVal(environments) => Ok(spirv::plan_spirv(group, environments)),
-        Judge::Glslang(rules) => glslang::plan_glsl(group, rules, scratch),
-        Judge::GlslangHlsl => glslang::plan_hlsl(group),
-        Judge::Clang => msl::plan_msl(group),
-        Judge::NagaAndTint => Ok(wgsl::plan_wgsl(group, tint)),
-    }
+    let Some(first) = outputs.first() else { return Ok(Vec::new()) };
+    let found = judge_of(first.target);
+    let (judge, judged) = found.ok_or_else(|| format!("no judge of `{}`", first.target))?;
+    (judge.plan)(&Group { outputs, rules: judged.rules, tint, scratch })
 }
 
 /// Divides a group into works that do the same.

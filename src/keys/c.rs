@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::names::{Taken, comment_lines, value_name};
 use super::ordinal::{Ordinals, Says, key_ordinals};
 use super::{Language, default_setting, key_axes, key_part};
+use crate::bundle::key::{DEFAULT, SEPARATOR};
 use crate::permute::{Axis, Kind, Lock, Manifest, Program, Setting};
 
 pub const LANGUAGE: Language = Language { name: "c", about: "a header for C99 and C++", write };
@@ -80,7 +81,7 @@ static inline size_t lamplight_key_part(char *text, size_t length, const char *p
 {
     size_t added = strlen(part);
     if (length > 0)
-        text[length++] = ',';
+        text[length++] = 'SEPARATOR';
     memcpy(text + length, part, added + 1);
     return length + added;
 }
@@ -90,7 +91,7 @@ static inline size_t lamplight_key_part(char *text, size_t length, const char *p
 fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
     let guard = include_guard(manifest);
     let mut taken = Taken::new(&[&guard, "LAMPLIGHT_KEY_PART", "lamplight_key_part"]);
-    let mut text = START.replace("GUARD", &guard);
+    let mut text = START.replace("GUARD", &guard).replace("SEPARATOR", &SEPARATOR.to_string());
     for program in &manifest.programs {
         let found = lock.and_then(|lock| key_ordinals(program, lock, u64::MAX));
         text.push_str(&self::program_keys(program, found.as_ref(), &mut taken));
@@ -226,7 +227,7 @@ fn longest_key(axes: &[Named<'_>]) -> usize {
             .max()
             .unwrap_or(0)
     });
-    parts.sum::<usize>().max("default".len() + 1)
+    parts.sum::<usize>().max(DEFAULT.len() + 1)
 }
 
 fn to_text(name: &str, to_key: &str, bytes: &str, axes: &[Named<'_>]) -> String {
@@ -241,8 +242,9 @@ fn to_text(name: &str, to_key: &str, bytes: &str, axes: &[Named<'_>]) -> String 
         text.push_str("    (void)key;\n");
     }
     axes.iter().for_each(|axis| text.push_str(&append_part(axis)));
-    text.push_str(
-        "    return length > 0 ? length : lamplight_key_part(text, 0, \"default\");\n}\n",
+    let _ = writeln!(
+        text,
+        "    return length > 0 ? length : lamplight_key_part(text, 0, \"{DEFAULT}\");\n}}"
     );
     text
 }

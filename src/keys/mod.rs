@@ -12,6 +12,7 @@ mod ordinal;
 mod rust;
 mod typescript;
 
+use crate::bundle::key;
 use crate::permute::{Axis, Lock, Manifest, Mode, Program, Setting};
 
 /// A language that keys are written for.
@@ -53,7 +54,7 @@ fn key_axes(program: &Program) -> impl Iterator<Item = &Axis> {
 fn key_part(axis: &Axis, value: &Setting) -> String {
     match value {
         Setting::Bool(true) => axis.name.clone(),
-        value => format!("{}={value}", axis.name),
+        value => format!("{}{}{value}", axis.name, key::ASSIGNS),
     }
 }
 

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::names::{Taken, camel_case, comment_lines, value_name};
 use super::ordinal::{Ordinals, Says, key_ordinals};
 use super::{Language, default_setting, key_axes, key_part};
+use crate::bundle::key::{DEFAULT, SEPARATOR};
 use crate::permute::{Axis, Kind, Lock, Manifest, Program};
 
 pub const LANGUAGE: Language =
@@ -184,13 +185,15 @@ fn display_impl(axes: &[Named<'_>]) -> String {
     for axis in axes {
         let _ = writeln!(text, "            if self.{} != {} {{", axis.field, axis.default());
         let _ = writeln!(text, "                {}", write_part(axis));
-        text.push_str("                separator = \",\";\n            }\n");
+        let _ = writeln!(text, "                separator = \"{SEPARATOR}\";\n            }}");
     }
-    text.push_str(if axes.is_empty() {
-        "            f.write_str(\"default\")\n"
-    } else {
-        "            if separator.is_empty() { f.write_str(\"default\") } else { Ok(()) }\n"
-    });
+    let writes = format!("f.write_str(\"{DEFAULT}\")");
+    let _ = match axes.is_empty() {
+        true => writeln!(text, "            {writes}"),
+        false => {
+            writeln!(text, "            if separator.is_empty() {{ {writes} }} else {{ Ok(()) }}")
+        }
+    };
     text.push_str("        }\n    }\n");
     text
 }

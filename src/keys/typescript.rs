@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::names::{Taken, camel_case, comment_lines, lower_camel};
 use super::ordinal::{Ordinals, Says, key_ordinals};
 use super::{Language, default_setting, key_axes};
+use crate::bundle::key::{ASSIGNS, DEFAULT, SEPARATOR};
 use crate::permute::{Axis, Kind, Lock, Manifest, Program, Setting};
 
 pub const LANGUAGE: Language =
@@ -29,8 +30,8 @@ type Value = string | number | bigint | boolean;
 function keyText(key: object, axes: readonly (readonly [string, Value])[]): string {
   const chosen = key as Record<string, Value | undefined>;
   const differing = axes.filter(([axis, value]) => (chosen[axis] ?? value) !== value);
-  const parts = differing.map(([axis]) => (chosen[axis] === true ? axis : `${axis}=${chosen[axis]}`));
-  return parts.join(\",\") || \"default\";
+  const parts = differing.map(([axis]) => (chosen[axis] === true ? axis : `${axis}ASSIGNS${chosen[axis]}`));
+  return parts.join(\"SEPARATOR\") || \"DEFAULT\";
 }
 ";
 
@@ -99,7 +100,10 @@ const BIG: Form = Form { ty: "bigint", end: "n", to: "keyBigNumber", from: "bigN
 
 fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
     let mut taken = Taken::new(&["Value", "keyText", "Record", "Math"]);
-    let mut text = START.to_owned();
+    let mut text = START
+        .replace("ASSIGNS", &ASSIGNS.to_string())
+        .replace("SEPARATOR", &SEPARATOR.to_string())
+        .replace("\"DEFAULT\"", &format!("\"{DEFAULT}\""));
     let found: Vec<Option<Ordinals>> = manifest
         .programs
         .iter()

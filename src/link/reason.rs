@@ -38,7 +38,10 @@ pub enum Reason {
     Sampling,
     /// The stage lacks an operation that is used. The whole text shows what is wrong.
     Stage,
-    /// naga wrote an output in a form that this crate does not know.
+    /// naga wrote an output in a form that this crate does not know. `cut.rs` divides an output into
+    /// declarations, and finds in them the marks that stand for names. `names.rs` asks how the target
+    /// spells a name. `translate.rs` and `texts.rs` write and read an entry point's native names as
+    /// JSON. `pool.rs` looks for the piece of each target, which is text or SPIR-V.
     Shape,
     /// The lines before the declarations of two outputs cannot be merged.
     Header,

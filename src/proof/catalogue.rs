@@ -8,7 +8,7 @@ use super::{plots, quality};
 use crate::catalogue::pages::{Contents, Drawn, catalogue_pages};
 use crate::catalogue::quality::{self as groups, Measured};
 use crate::catalogue::{self, Module, cost, figure, plot, prefix, preset, probe, reader};
-use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes, stopped_message};
 use crate::execute::{Session, executors, on_thread};
 use crate::permute::Manifest;
 use crate::project;
@@ -115,5 +115,5 @@ fn draw_plot(
 }
 
 fn drawing_stopped() -> Diagnostic {
-    Diagnostic::error(codes::EVAL_INTERNAL, "the plots stopped with an internal error")
+    Diagnostic::error(codes::EVAL_INTERNAL, stopped_message("the plots"))
 }

@@ -6,7 +6,7 @@ use std::sync::{Once, OnceLock};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::diagnostic::{Diagnostic, codes};
+use crate::diagnostic::{Diagnostic, codes, stopped_message};
 
 /// The stack of each thread that runs naga. It is reserved address space, of which only the used
 /// part takes memory. With [`super::LIMITS`] it is several times what the deepest accepted text was
@@ -36,11 +36,8 @@ pub fn on_large_stack<R: Send>(work: impl FnOnce() -> R + Send) -> R {
 /// Runs `work`, which calls naga with `text`. A panic becomes a diagnostic and prints nothing.
 pub fn guard<R>(text: &str, work: impl FnOnce() -> R) -> Result<R, Diagnostic> {
     caught(work).map_err(|reason| {
-        Diagnostic::error(
-            codes::NAGA_INTERNAL,
-            format!("naga stopped with an internal error: {reason}"),
-        )
-        .note(quote_start(text))
+        Diagnostic::error(codes::NAGA_INTERNAL, format!("{}: {reason}", stopped_message("naga")))
+            .note(quote_start(text))
     })
 }
 

@@ -11,9 +11,11 @@ use lamplight::proof::cases;
 use lamplight::resolve::{self, Packages};
 use lamplight::source::{Embedded, Files, Memory, Package, ReadError, SourceSet};
 use lamplight::validate::validate;
+use libtest_mimic::Failed;
 
 use super::{Outcome, balanced, made, make, parsed, text};
 use crate::shaderlib;
+use crate::snapshot::root;
 
 /// A new function, in a module that exists and in new ones, has a case, a plot and a reference. It
 /// compiles, and its documentation is demanded.
@@ -78,6 +80,136 @@ pub fn with_formula() -> Outcome {
         }
     }
     Ok(())
+}
+
+/// Statements are in both languages. GLSL has the type of each declaration, also those that only
+/// naga can tell, and its own spelling of calls. What has no known type is not translated, and the
+/// steps say so; what does not compile is refused.
+pub fn in_glsl() -> Outcome {
+    let make_body = |body: &str| {
+        let rest = ["nl: f32, nv: f32, k: f32 0..2", "f32", body];
+        made::make(&root(), "function", "brdf::diffuse::unheard_of", &rest)
+    };
+    let body = "let a = vec3f(nl, nv, k); let n = 2; let m = 3u; var s = dot(a, a); \
+                s += saturate(select(f32(n), f32(m), nl > nv)); return inverseSqrt(s)";
+    let files: BTreeMap<String, String> = make_body(body)?.files.into_iter().collect();
+    let glsl = text(&files, "shaderlib/brdf/diffuse.glsl")?;
+    let wanted = "\
+    vec3 a = vec3(nl, nv, k);
+    int n = 2;
+    uint m = 3u;
+    float s = dot(a, a);
+    s += clamp((nl > nv ? float(m) : float(n)), 0.0, 1.0);
+    return inversesqrt(s);
+}
+";
+    if !glsl.contains(wanted) {
+        return Err(format!("expected in GLSL:\n{wanted}\nfound:\n{glsl}").into());
+    }
+    for path in ["shaderlib/brdf/diffuse.wesl", "tests/plain/brdf/diffuse.wesl"] {
+        let text = text(&files, path)?;
+        if !text.contains("    let n = 2;\n    let m = 3u;\n    var s = dot(a, a);\n") {
+            return Err(format!("{path} should have the formula as given:\n{text}").into());
+        }
+    }
+    let untyped = make_body("let a = array<f32, 2>(nl, nv); return a[1]")?;
+    let steps = untyped.next.join("\n");
+    if !steps.contains("could not be translated (`a` has none of the known types)") {
+        return Err(format!("the steps should say what GLSL lacks:\n{steps}").into());
+    }
+    for (body, expected) in [
+        ("unknown_function(nl)", "the formula does not compile: "),
+        ("let a = nl", "the last statement of a formula is `return VALUE`"),
+        ("if (nl > 0.0) { k = 1.0 }; return k", "is none of the statements of a formula"),
+        ("return nl; return nv", "only the last statement"),
+        (" ; ", "the formula is empty"),
+    ] {
+        let made = make_body(body);
+        if !made.as_ref().is_err_and(|said| said.contains(expected)) {
+            return Err(format!("{body}: expected `{expected}`, found {made:?}").into());
+        }
+    }
+    Ok(())
+}
+
+/// A new case lists every term of a tolerance and every law that the guide explains, in forms that
+/// the crate reads. No case of the library keeps this list.
+pub fn forms() -> Outcome {
+    let guide = std::fs::read_to_string(root().join("docs/guide/cases.md"))?;
+    let section = |name: &str| -> Result<Vec<String>, Failed> {
+        let (_, rest) = guide.split_once(&format!("\n## {name}\n")).ok_or("no such section")?;
+        let rest = rest.split_once("\n## ").map_or(rest, |(section, _)| section);
+        let row = |line: &str| Some(line.strip_prefix("| `")?.trim_start_matches("{ ").to_owned());
+        let word = |row: String| row.split(' ').next().map(str::to_owned);
+        Ok(rest.lines().filter_map(row).filter_map(word).collect())
+    };
+    use made::function::{LAWS, TOLERANCES};
+    for (name, listed) in [("Tolerances", TOLERANCES), ("Laws", LAWS)] {
+        let words = section(name)?;
+        let lost = words.iter().find(|word| !listed.contains(&format!("{{ {word} = ")));
+        if let Some(word) = lost {
+            return Err(format!("a new case lacks the form of `{word}`:\n{listed}").into());
+        }
+        if words.is_empty() {
+            return Err(format!("the guide lists no {name}").into());
+        }
+        for line in listed.lines().skip(1) {
+            let form = line.trim_start_matches("# ");
+            let form = form.rsplit_once("}: ").map_or(form, |(form, _)| form).to_owned() + "}";
+            let value = if name == "Laws" {
+                format!("laws = [{form}]")
+            } else {
+                format!("tolerance = {form}")
+            };
+            let inputs = "[case.inputs]\nn = { unit = 4 }\nl = { unit = 4 }\nv = { unit = 4 }\nx = 1\nd = 1\nnl = 1\nnv = 1\nk = 1\n";
+            let case = format!("[[case]]\nfunction = \"f\"\noracle = \"eval\"\n{value}\n{inputs}");
+            parsed(&case, cases::parse_cases)?;
+        }
+    }
+    let first = LAWS.lines().next().unwrap_or_default();
+    let mark = first.split('.').next().unwrap_or_default();
+    let library = Embedded.list(&["toml"]);
+    let kept = library
+        .iter()
+        .find(|path| Embedded.read(path).ok().flatten().is_some_and(|text| text.contains(mark)));
+    match kept {
+        Some(path) => Err(format!("shaderlib/{path}: choose forms, and delete their list").into()),
+        None if library.is_empty() => Err("the library has no cases".into()),
+        None => Ok(()),
+    }
+}
+
+/// The reason for a guard stands above the function's plain text, once. A module that is new has the
+/// step that counts the library's files anew.
+pub fn reason() -> Outcome {
+    let why = "A negative width would divide by zero.";
+    let path = "tests/plain/brdf/diffuse.wesl";
+    let files = make("reason", "brdf::diffuse::wrap", &[why])?;
+    let made = text(&files, path)?;
+    let old = std::fs::read_to_string(root().join(path))?;
+    let line = format!("/// Reason: {why}\n");
+    if !made.contains(&format!("\n{line}fn wrap(")) || made.replace(&line, "") != old {
+        return Err(format!("{path} should only gain a reason for `wrap`:\n{made}").into());
+    }
+    for (name, rest, expected) in [
+        ("brdf::diffuse::unheard_of", &[why][..], "has no `fn unheard_of(`"),
+        ("lighting::area::ltc_edge", &[why], "already"),
+        ("brdf::diffuse::wrap", &[], "name a function and say why"),
+    ] {
+        let made = made::make(&root(), "reason", name, rest);
+        if !made.as_ref().is_err_and(|said| said.contains(expected)) {
+            return Err(format!("{name}: expected `{expected}`, found {made:?}").into());
+        }
+    }
+    let counts = |module: &str| -> Result<bool, String> {
+        let path = format!("{module}::unheard_of");
+        let made = made::make(&root(), "function", &path, &["x: f32", "f32"])?;
+        Ok(made.next.iter().any(|step| step.starts_with("cargo xtask record guide")))
+    };
+    match (counts("brdf::diffuse")?, counts("brdf::fresh")?) {
+        (false, true) => Ok(()),
+        found => Err(format!("only a new module changes the guide's counts: {found:?}").into()),
+    }
 }
 
 /// A function may take and return each type that the command knows. Its plot calls it correctly.

@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use lamplight::bundle::{Language, Target};
 use lamplight::compose::Composed;
-use lamplight::emit::{GlslRules, Judge, emit, targets};
+use lamplight::emit::{emit, targets};
 use lamplight::permute::manifest::Program;
 use lamplight::permute::{Assignment, cover};
 use lamplight::validate::on_large_stack;
@@ -95,13 +95,12 @@ fn accepted(
         Ok(path.to_string_lossy().into_owned())
     };
     run("spirv-val", &["--target-env", "vulkan1.1", &write(Target::SPIRV, "spv")?])?;
-    for entry in targets::ALL {
-        let Judge::Glslang(rules) = entry.judge else { continue };
+    for entry in targets::ALL.iter().filter(|entry| entry.glsl.is_some()) {
         let path = write(entry.target, extension)?;
         run("glslangValidator", &["-S", extension, &path])?;
         // Engines use the text for ES 3.00 with later versions of ES too, so it must be valid there.
-        for rule in rules {
-            let GlslRules::Later(version) = rule else { continue };
+        let is_version = |rule: &&&str| rule.starts_with(|first: char| first.is_ascii_digit());
+        for version in entry.judged.rules.iter().filter(is_version) {
             let text = std::fs::read_to_string(&path).map_err(|error| error.to_string())?;
             let (_, rest) = text.split_once('\n').ok_or("the text has one line")?;
             let text = format!("#version {version}\n{rest}");

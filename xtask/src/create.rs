@@ -16,7 +16,11 @@ pub fn run(arguments: &[String]) -> Outcome {
         println!("wrote {path}");
     }
     println!("\nnow:");
-    made.next.iter().for_each(|step| println!("- {step}"));
+    for step in &made.next {
+        // Details of a step stand below it.
+        let mark = if step.starts_with(' ') { "" } else { "- " };
+        println!("{mark}{step}");
+    }
     Ok(())
 }
 

@@ -3,6 +3,9 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use lamplight::judge::judges;
+use lamplight::tools::Tool;
+
 use crate::{Failure, Outcome};
 
 /// Something that the tests need: the Debian package that has it, and how to see whether it is
@@ -73,10 +76,19 @@ pub fn prepare() -> Outcome {
     }
 }
 
-/// The package and the purpose of everything that is missing.
+/// The package and the purpose of everything that is missing. The files of judges list their programs
+/// themselves.
 fn missing() -> Vec<(&'static str, &'static str)> {
     let listed = NEEDS.iter().filter(|need| !(need.found)());
-    listed.map(|need| (need.package, need.what)).collect()
+    let tools = judges::ALL.iter().flat_map(|judge| judge.tools);
+    let is_listed = |tool: &&Tool| NEEDS.iter().any(|need| need.package == tool.package);
+    let of_judges = tools.filter(|tool| !is_listed(tool) && tool.path().is_none());
+    let mut found: Vec<(&str, &str)> = listed
+        .map(|need| (need.package, need.what))
+        .chain(of_judges.map(|tool| (tool.package, tool.program)))
+        .collect();
+    found.dedup();
+    found
 }
 
 /// Installs packages of Debian.

@@ -18,7 +18,7 @@ use super::terminal::{self, stdout};
 use crate::bundle::Language;
 use crate::catalogue::preset::{self, Preset};
 use crate::catalogue::probe;
-use crate::diagnostic::{Diagnostics, nearest_name};
+use crate::diagnostic::{Diagnostics, nearest_name, stopped_message};
 use crate::execute::executors::Entry;
 use crate::execute::on_thread;
 use crate::limits::ENVIRONMENT_BYTES;
@@ -107,7 +107,7 @@ fn parse_stops(text: &str) -> Result<f64, String> {
 
 pub fn run_render(arguments: Arguments, _: DiagnosticForm) -> Result<(), Failure> {
     on_thread(|| draw_picture(&arguments))
-        .unwrap_or_else(|| Err(Failure::environment("the renderer stopped with an internal error")))
+        .unwrap_or_else(|| Err(Failure::environment(stopped_message("the renderer"))))
 }
 
 fn draw_picture(arguments: &Arguments) -> Result<(), Failure> {

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::super::input::axis_value;
 use super::super::terminal;
 use super::{Arguments, Failure};
+use crate::bundle::key::{IMPLIED, has_value};
 use crate::limits::MODEL_BYTES;
 use crate::model::{self, Lacks, Model, View};
 use crate::picture::Plan;
@@ -89,8 +90,10 @@ pub fn model_plan(
 /// The scene of a model for a permutation, and a word about textures that this does not have.
 pub fn model_scene(model: Model, plan: &Plan) -> Result<Scene, Failure> {
     let key = plan.last().map_or("", |pass| pass.key.as_str());
-    let has = |setting: &str| key.split(',').any(|own| own == setting);
-    let lacks = Lacks { maps: !has("material_maps"), occlusion: !has("occlusion=map") };
+    let lacks = Lacks {
+        maps: !has_value(key, "material_maps", IMPLIED),
+        occlusion: !has_value(key, "occlusion", "map"),
+    };
     let (scene, note) = model.scene_of(lacks);
     if let Some(note) = note {
         writeln!(terminal::stderr(), "note: {note}")?;

@@ -9,7 +9,7 @@ use naga::{Handle, ImageDimension, Type, TypeInner};
 use crate::bundle::Target;
 use crate::emit::glsl;
 use crate::emit::slots::Numbering;
-use crate::emit::{Emitted, Entry, GlslRules, Judge, Overrides, Source, clip};
+use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip};
 
 const VERSION: Version = Version::new_gles(300);
 
@@ -22,7 +22,7 @@ pub const TARGET: Entry = Entry {
     glsl: Some(VERSION),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
-    judge: Judge::Glslang(&[GlslRules::Own, GlslRules::Later("310 es")]),
+    judged: Judged { judge: "glslang", rules: &["own", "310 es"] },
     clip: &clip::OPENGL,
     write,
 };

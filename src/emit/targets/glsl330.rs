@@ -8,7 +8,7 @@ use naga::back::glsl::Version;
 use crate::bundle::Target;
 use crate::emit::glsl;
 use crate::emit::slots::Numbering;
-use crate::emit::{Emitted, Entry, GlslRules, Judge, Overrides, Source, clip};
+use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip};
 
 const VERSION: Version = Version::Desktop(330);
 
@@ -21,7 +21,7 @@ pub const TARGET: Entry = Entry {
     glsl: Some(VERSION),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
-    judge: Judge::Glslang(&[GlslRules::Own]),
+    judged: Judged { judge: "glslang", rules: &["own"] },
     clip: &clip::OPENGL,
     write,
 };

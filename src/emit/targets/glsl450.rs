@@ -9,7 +9,7 @@ use naga::back::glsl::Version;
 use crate::bundle::Target;
 use crate::emit::glsl;
 use crate::emit::slots::Numbering;
-use crate::emit::{Emitted, Entry, GlslRules, Judge, Overrides, Source, clip};
+use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip};
 
 const VERSION: Version = Version::Desktop(450);
 
@@ -22,7 +22,7 @@ pub const TARGET: Entry = Entry {
     glsl: Some(VERSION),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
-    judge: Judge::Glslang(&[GlslRules::Own, GlslRules::Vulkan]),
+    judged: Judged { judge: "glslang", rules: &["own", "vulkan"] },
     clip: &clip::OPENGL,
     write,
 };

@@ -16,7 +16,7 @@ use crate::bundle::{HeapSampler, Kind, Native, Place, SamplerHeap, Semantic, Tar
 use crate::emit::reflect::{binding_kind, entry_inputs};
 use crate::emit::slots::{Numbering, assign_slots, native_reflection};
 use crate::emit::text::Text;
-use crate::emit::{Emitted, Entry, Judge, Overrides, Source, clip, setters, zeros};
+use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip, setters, zeros};
 use crate::emit::{columns, lists, rename};
 
 /// The target, for the table of all.
@@ -28,7 +28,7 @@ pub const TARGET: Entry = Entry {
     glsl: None,
     header: &[],
     overrides: Overrides::Macros,
-    judge: Judge::GlslangHlsl,
+    judged: Judged { judge: "glslang", rules: &["hlsl"] },
     clip: &clip::SHARED,
     write,
 };

@@ -12,7 +12,7 @@ use naga::back::msl::{
 use crate::bundle::{BufferSizes, Kind, Target};
 use crate::emit::slots::{Numbering, assign_slots, native_reflection};
 use crate::emit::text::Text;
-use crate::emit::{Emitted, Entry, Judge, Overrides, Source, clip, rename};
+use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip, rename};
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -23,7 +23,7 @@ pub const TARGET: Entry = Entry {
     glsl: None,
     header: &["#", "using "],
     overrides: Overrides::FunctionConstants,
-    judge: Judge::Clang,
+    judged: Judged { judge: "clang", rules: &[] },
     clip: &clip::SHARED,
     write,
 };

@@ -9,7 +9,7 @@ use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 use crate::bundle::Target;
 use crate::emit::slots::{Numbering, native_reflection};
 use crate::emit::spirv::{HEADER_WORDS, Instruction, bytes, instructions, op};
-use crate::emit::{Emitted, Entry, Judge, Overrides, Source, clip};
+use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip};
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -20,7 +20,7 @@ pub const TARGET: Entry = Entry {
     glsl: None,
     header: &[],
     overrides: Overrides::Specialised,
-    judge: Judge::SpirvVal(&["vulkan1.0", "vulkan1.1"]),
+    judged: Judged { judge: "spirv_val", rules: &["vulkan1.0", "vulkan1.1"] },
     clip: &clip::VULKAN,
     write,
 };

@@ -7,7 +7,7 @@ use naga::back::wgsl::{Writer, WriterFlags};
 use crate::bundle::{Choice, Target};
 use crate::emit::slots::{Numbering, native_reflection};
 use crate::emit::text::Text;
-use crate::emit::{Emitted, Entry, Judge, Overrides, Source, clip};
+use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip};
 
 /// The target, for the table of all.
 pub const TARGET: Entry = Entry {
@@ -18,7 +18,7 @@ pub const TARGET: Entry = Entry {
     glsl: None,
     header: &["enable ", "requires "],
     overrides: Overrides::Kept,
-    judge: Judge::NagaAndTint,
+    judged: Judged { judge: "naga_tint", rules: &[] },
     clip: &clip::SHARED,
     write,
 };

@@ -27,7 +27,7 @@ use rayon::prelude::*;
 use super::cases::File;
 use super::ratchet::{self, Ratchet};
 use crate::bundle::Language;
-use crate::diagnostic::{Diagnostic, Diagnostics, codes};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes, stopped_message};
 use crate::execute::kernel::Kernel;
 use crate::execute::{STACK, Session};
 use crate::source::Span;
@@ -229,7 +229,7 @@ pub fn check_with(
 fn executor_stopped(executor: &str) -> Diagnostic {
     Diagnostic::error(
         codes::EXECUTOR_FAILED,
-        format!("the executor `{executor}` stopped with an internal error"),
+        stopped_message(&format!("the executor `{executor}`")),
     )
 }
 

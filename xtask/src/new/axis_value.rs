@@ -1,49 +1,140 @@
 //! A value of an axis of one of the library's programs.
 
-use lamplight::permute::manifest;
+use lamplight::bundle::key;
+use lamplight::permute::{Manifest, manifest};
 use lamplight::source::SourceSet;
 
-use super::{Kind, Made, Repository, check_name, refuse_rest};
+use super::axis_places::{program_files, testing_lines, with_errors};
+use super::{Kind, Made, Repository, check_name};
 
-pub const KIND: Kind =
-    Kind { name: "axis-value", example: &["forward::fog=layered"], rest: "", make };
+pub const KIND: Kind = Kind {
+    name: "axis-value",
+    example: &["forward::fog=layered"],
+    rest: "['`layered` is fog in layers.']",
+    make,
+};
 
 const MANIFEST: &str = "shaderlib/lamplight.toml";
 const LOCK: &str = "shaderlib/lamplight.lock";
 const PICTURES: &str = "shaderlib/pictures.toml";
 
+/// A value, the axis and the program.
+struct Named<'n> {
+    program: &'n str,
+    axis: &'n str,
+    value: &'n str,
+}
+
+impl<'n> Named<'n> {
+    fn read(text: &'n str) -> Result<Self, String> {
+        let parsed = text.split_once("::").and_then(|(program, rest)| {
+            let (axis, value) = rest.split_once('=')?;
+            Some(Self { program, axis, value })
+        });
+        let named = parsed
+            .ok_or_else(|| format!("`{text}` is not a value of an axis: PROGRAM::AXIS=VALUE"))?;
+        let Self { program, axis, value } = named;
+        [program, axis, value].iter().try_for_each(|name| check_name(name, '_'))?;
+        Ok(named)
+    }
+}
+
 fn make(repository: &Repository<'_>, text: &str, rest: &[&str]) -> Result<Made, String> {
-    refuse_rest(rest)?;
-    let parsed = text.split_once("::").and_then(|(program, rest)| {
-        let (axis, value) = rest.split_once('=')?;
-        Some((program, axis, value))
-    });
-    let (program, axis, value) =
-        parsed.ok_or_else(|| format!("`{text}` is not a value of an axis: PROGRAM::AXIS=VALUE"))?;
-    [program, axis, value].iter().try_for_each(|name| check_name(name, '_'))?;
+    let said = match rest {
+        [] => None,
+        [said] => Some(*said),
+        _ => return Err("after the value: a sentence for `doc` of the axis, or nothing".to_owned()),
+    };
+    let named = Named::read(text)?;
+    let Named { program, axis, value } = named;
     let table = format!("[program.{program}.axis.{axis}]\n");
-    let manifest = in_manifest(&repository.read(MANIFEST)?, &table, value)?;
-    let (manifest, ships) = shipping(manifest, program, &format!("{axis}={value}"))?;
+    let old = repository.read(MANIFEST)?;
+    let text = in_manifest(&old, &table, value)?;
+    let text = said.map_or(Ok(text.clone()), |said| in_doc(&text, &table, said))?;
+    let (text, ships) = shipping(text, program, axis, value)?;
     let lock = in_lock(&repository.read(LOCK)?, &format!("{program} {axis} "), value)?;
-    let mut files = vec![(MANIFEST.to_owned(), manifest), (LOCK.to_owned(), lock)];
+    let mut files = vec![(MANIFEST.to_owned(), text), (LOCK.to_owned(), lock)];
     let pictures = repository.read(PICTURES)?;
-    if pictures.contains(&table) {
+    let has_pictures = pictures.contains(&table);
+    if has_pictures {
         files.push((PICTURES.to_owned(), with_row(&pictures, &table, value)));
     }
-    let constant = format!("{axis}_{value}").to_uppercase();
-    let next = vec![
-        format!(
-            "shaderlib/programs/: `@if({axis} == {value})` in WESL and `#if {} == {constant}` in GLSL (trial library::values_have_effect)",
-            axis.to_uppercase()
-        ),
-        format!(
+    let places = Places::find(repository, &read_manifest(&old)?, &named)?;
+    let mut next = places.steps(&named);
+    files.extend(places.changed);
+    if has_pictures {
+        next.push(format!(
             "{PICTURES}: what a picture takes from `{value}`; its row is a copy of the last one"
-        ),
-        format!("{MANIFEST}: {ships}; `doc` of the axis, if it describes values"),
-        "cargo xtask record library:: _budget; read the difference".to_owned(),
-        "cargo xtask docs".to_owned(),
-    ];
+        ));
+    }
+    next.push(match said {
+        Some(_) => format!("{MANIFEST}: {ships}"),
+        None => format!("{MANIFEST}: {ships}; `doc` of the axis, if it describes values"),
+    });
+    next.push("cargo xtask record library:: _budget; read the difference".to_owned());
+    next.push("cargo xtask docs".to_owned());
     Ok(Made { files, next })
+}
+
+/// Where a program tests the axis.
+struct Places {
+    /// Files of GLSL in which the new value is an error now.
+    changed: Vec<(String, String)>,
+    /// Lines that test the axis, with their places.
+    lines: Vec<String>,
+    /// Other programs that test an axis of this name in the same files.
+    sharing: Vec<String>,
+}
+
+impl Places {
+    fn find(
+        repository: &Repository<'_>,
+        manifest: &Manifest,
+        Named { program, axis, value }: &Named<'_>,
+    ) -> Result<Self, String> {
+        let mut found = Self { changed: Vec::new(), lines: Vec::new(), sharing: Vec::new() };
+        let mut testing = Vec::new();
+        for (path, text) in program_files(repository, manifest, program)? {
+            let made = if path.ends_with(".glsl") {
+                with_errors(&text, axis, value)
+            } else {
+                text.clone()
+            };
+            let lines = testing_lines(&path, &made, axis);
+            if !lines.is_empty() {
+                testing.push(path.clone());
+            }
+            found.lines.extend(lines);
+            if made != text {
+                found.changed.push((path, made));
+            }
+        }
+        let others = manifest.programs.iter().filter(|other| other.name != *program);
+        for other in others.filter(|other| other.space.axis(axis).is_some()) {
+            let files = program_files(repository, manifest, &other.name)?;
+            if files.iter().any(|(path, _)| testing.contains(path)) {
+                found.sharing.push(other.name.clone());
+            }
+        }
+        Ok(found)
+    }
+
+    fn steps(&self, Named { axis, value, .. }: &Named<'_>) -> Vec<String> {
+        let (name, constant) = (axis.to_uppercase(), format!("{axis}_{value}").to_uppercase());
+        let mut steps = vec![format!(
+            "the effect, `@if({axis} == {value})` in WESL and `#if {name} == {constant}` in GLSL, with an import in WESL and an `#include` in GLSL of what it calls (trial library::values_have_effect); these lines test the axis:"
+        )];
+        steps.extend(self.lines.iter().map(|line| format!("  {line}")));
+        if !self.changed.is_empty() {
+            steps.push(format!(
+                "replace each `#error` for `{axis}={value}`, or delete it with its `#elif` where `#else` is right (trial library::)"
+            ));
+        }
+        steps.extend(self.sharing.iter().map(|other| {
+            format!("`{other}` has the axis too, and shares files: cargo xtask new axis-value {other}::{axis}={value}, if it has not the value yet")
+        }));
+        steps
+    }
 }
 
 /// The value at the end of the axis's list.
@@ -54,7 +145,9 @@ fn in_manifest(text: &str, table: &str, value: &str) -> Result<String, String> {
         .find("\nvalues = [\"")
         .map(|at| start + at)
         .filter(|at| !text[start + 1..*at].contains("\n["))
-        .ok_or_else(|| format!("`{name}` has no list of names"))?;
+        .ok_or_else(|| {
+            format!("`{name}` has no list of names: values of a boolean axis are fixed, and a number is added to `values` by hand, with a line in `{LOCK}`")
+        })?;
     let end = list + text[list..].find(']').ok_or_else(|| format!("`{name}` has no `]`"))?;
     if text[list..end].contains(&format!("\"{value}\"")) {
         return Err(format!("`{name}` has the value `{value}` already"));
@@ -62,11 +155,33 @@ fn in_manifest(text: &str, table: &str, value: &str) -> Result<String, String> {
     Ok(format!("{}, \"{value}\"{}", &text[..end], &text[end..]))
 }
 
-/// The manifest in which some permutation with the setting ships, and how many do. Where no slice has
+/// The manifest with a sentence at the end of the axis's description.
+fn in_doc(text: &str, table: &str, said: &str) -> Result<String, String> {
+    let said = said.trim();
+    if said.contains(['"', '\\', '\n']) {
+        return Err(format!("`{said}` must do without quotes and backslashes"));
+    }
+    let start = text.find(table).map_or(text.len(), |at| at + table.len());
+    let (before, after) = text.split_at(start);
+    let Some(rest) = after.strip_prefix("doc = \"") else {
+        return Ok(format!("{before}doc = \"{said}\"\n{after}"));
+    };
+    let end = rest.find("\"\n").ok_or("the description of the axis does not end in its line")?;
+    let (doc, after) = rest.split_at(end);
+    Ok(format!("{before}doc = \"{doc} {said}{after}"))
+}
+
+/// The manifest in which some permutation with the value ships, and how many do. Where no slice has
 /// it, one permutation with it is included.
-fn shipping(text: String, program: &str, setting: &str) -> Result<(String, String), String> {
+fn shipping(
+    text: String,
+    program: &str,
+    axis: &str,
+    value: &str,
+) -> Result<(String, String), String> {
+    let setting = key::write([(axis, value)]);
     let shipped = shipped_keys(&text, program)?;
-    let has = |keys: &[String]| keys.iter().filter(|key| has_setting(key, setting)).count();
+    let has = |keys: &[String]| keys.iter().filter(|key| key::has_value(key, axis, value)).count();
     let (all, with) = (shipped.len(), has(&shipped));
     if with > 0 {
         let said = format!(
@@ -75,11 +190,12 @@ fn shipping(text: String, program: &str, setting: &str) -> Result<(String, Strin
         return Ok((text, said));
     }
     // The setting alone, or else beside those that another value of the axis needs.
-    let axis = setting.split('=').next().unwrap_or_default();
-    let alike =
-        shipped.iter().filter(|key| key.split(',').any(|one| one.split('=').next() == Some(axis)));
-    let keys =
-        std::iter::once(setting.to_owned()).chain(alike.map(|key| with_setting(key, setting)));
+    let alike = shipped.iter().filter(|key| key::parts(key).any(|part| part.axis.text == axis));
+    let with_value = |key: &String| {
+        let others = key::parts(key).filter(|part| part.axis.text != axis);
+        key::write(others.map(|part| (part.axis.text, part.chosen())).chain([(axis, value)]))
+    };
+    let keys = std::iter::once(setting.clone()).chain(alike.map(with_value));
     for key in keys.take(TRIED) {
         let included = in_include(&text, program, &key)?;
         if shipped_keys(&included, program).is_ok_and(|keys| has(&keys) > 0) {
@@ -95,29 +211,20 @@ fn shipping(text: String, program: &str, setting: &str) -> Result<(String, Strin
 /// How many keys are tried.
 const TRIED: usize = 20;
 
-/// The keys of the permutations that ship.
-fn shipped_keys(text: &str, program: &str) -> Result<Vec<String>, String> {
+fn read_manifest(text: &str) -> Result<Manifest, String> {
     let mut sources = SourceSet::default();
     let id = sources.add(MANIFEST, text);
-    let manifest = manifest::parse(&sources, id).map_err(|errors| {
+    manifest::parse(&sources, id).map_err(|errors| {
         errors.first().map_or(String::new(), |error| format!("`{MANIFEST}`: {}", error.message))
-    })?;
+    })
+}
+
+/// The keys of the permutations that ship.
+fn shipped_keys(text: &str, program: &str) -> Result<Vec<String>, String> {
+    let manifest = read_manifest(text)?;
     let program = manifest.program(program).ok_or_else(|| format!("no program `{program}`"))?;
     let space = &program.space;
     Ok(space.enumerate().iter().map(|point| space.key(point).to_string()).collect())
-}
-
-fn has_setting(key: &str, setting: &str) -> bool {
-    key.split(',').any(|one| one == setting)
-}
-
-/// The key with a setting in place of the axis's own, its axes in order.
-fn with_setting(key: &str, setting: &str) -> String {
-    let axis = |one: &str| one.split('=').next().unwrap_or_default().to_owned();
-    let rest = key.split(',').filter(|one| axis(one) != axis(setting));
-    let mut settings: Vec<&str> = rest.chain([setting]).collect();
-    settings.sort_by_key(|one| axis(one));
-    settings.join(",")
 }
 
 /// The manifest in which a program includes one more key.

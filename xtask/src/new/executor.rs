@@ -3,7 +3,7 @@
 use super::{Kind, Made, Repository, check_name};
 
 pub const KIND: Kind =
-    Kind { name: "executor", example: &["dx12"], rest: "[EXECUTOR THAT IT IS LIKE]", make };
+    Kind { name: "executor", example: &["dx12"], rest: "[EXECUTOR THAT IT IS LIKE, or own]", make };
 
 const FOLDER: &str = "src/execute/executors";
 const CARGO: &str = "Cargo.toml";
@@ -19,6 +19,7 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
     let known = repository.stems(FOLDER)?;
     let interface = INTERFACES.iter().find(|(one, _)| *rest.first().unwrap_or(&name) == *one);
     let text = match rest {
+        ["own"] => OWN.replace("NAME", name),
         [] | [_] if interface.is_some() => of_wgpu(name, interface),
         [] => of_wgpu(name, None),
         [like] if known.iter().any(|known| known == like) => {
@@ -27,24 +28,8 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
         }
         _ => return Err(format!("name one executor of {}, dx12, metal", known.join(", "))),
     };
-    let mut next = vec![
-        format!(
-            "{file}: `about`, and what opens it (trials house::described, harness::executor::{name})"
-        ),
-        format!(
-            "{file}: `needs`, each package listed in xtask/src/machine.rs too (trial house::needs_of_executors)"
-        ),
-        format!(
-            "{file}: `samples: None` where it draws no frames, and `shipping` where it takes a target's files as they are (trials harness::executor::{name}, frames/shipped)"
-        ),
-        "cargo xtask record diagnostics; cargo xtask record guide; read the difference".to_owned(),
-    ];
-    if interface.is_none() && rest.is_empty() {
-        next.insert(0, format!(
-            "{file}: opens a Vulkan device whose name contains `{name}`; the interfaces are `cargo xtask new executor {name} dx12` and `... metal`"
-        ));
-    }
-    let mut files = vec![(file, text)];
+    let next = steps(&file, name, interface.is_none() && rest.is_empty(), rest == ["own"]);
+    let (mut files, mut next) = (vec![(file, text)], next);
     if let Some((interface, _)) = interface {
         files.push((CARGO.to_owned(), with_feature(&repository.read(CARGO)?, interface)?));
         next.push(
@@ -52,6 +37,42 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
         );
     }
     Ok(Made { files, next })
+}
+
+/// What remains to be done. `is_vulkan` is for the file that no argument chose, and `is_own` for one
+/// without wgpu.
+fn steps(file: &str, name: &str, is_vulkan: bool, is_own: bool) -> Vec<String> {
+    let mut next = vec![
+        format!(
+            "{file}: `about`, and what opens it, as its comments say (trials house::described, harness::executor::{name})"
+        ),
+        format!(
+            "{file}: `needs`, each package listed in xtask/src/machine.rs too (trial house::needs_of_executors)"
+        ),
+        format!(
+            "{file}: `samples: None` where it draws no frames, and `shipping` where it takes a target's files as they are (trials harness::executor::{name}, frames/shipped)"
+        ),
+        format!(
+            "{file}: `Runs on:`; other systems are built without the executor and do not know its name"
+        ),
+        "trials that open all executors fail where one is not available: have its packages installed by xtask/src/machine.rs, or narrow `Runs on:`".to_owned(),
+        "cargo xtask record diagnostics; cargo xtask record guide; read the difference".to_owned(),
+    ];
+    if is_own {
+        next.insert(0, format!(
+            "{file}: `open_device` and `draw_pixels`, which say what they get and give; then `draw_frames`, if it draws frames"
+        ));
+        next.push(
+            "Cargo.toml, if it needs a crate: then cargo build, with a network, for Cargo.lock"
+                .to_owned(),
+        );
+    }
+    if is_vulkan {
+        next.insert(0, format!(
+            "{file}: opens a Vulkan device whose name contains `{name}`; the interfaces are `cargo xtask new executor {name} dx12` and `... metal`, and `... own` is without wgpu"
+        ));
+    }
+    next
 }
 
 /// A device of an interface of wgpu, or else a device of Vulkan whose driver has this name.
@@ -81,6 +102,7 @@ fn with_feature(text: &str, feature: &str) -> Result<String, String> {
     Ok(format!("{}, {feature:?}{}", &text[..end], &text[end..]))
 }
 
+/// What the fields of an entry say. A copy of another executor has them without comments.
 const TEXT: &str = r#"//! wgpu on NAME.
 //!
 //! Runs on: SYSTEMS
@@ -90,20 +112,114 @@ use crate::execute::gpu::{Named, Shaders, Wanted};
 
 pub const EXECUTOR: Entry = Entry {
     name: "NAME",
+    // One line for listings.
     about: "",
+    // Debian packages.
     needs: &[NEEDS],
+    // A function that is called while the process has one thread, such as one that sets a variable.
     before_threads: None,
+    // How many places in each pixel of a picture are averaged; `None` if it draws no frames.
     samples: Some(DEVICE_SAMPLES),
+    // The first adapter that fits, a software adapter before others. Without one, the error says so.
     open: || {
         super::open_gpu(Wanted {
+            // One interface of wgpu: `VULKAN`, `GL`, `DX12` or `METAL`.
             backend: wgpu::Backends::BACKEND,
-            // A part of the adapter's name. An empty part allows every adapter. `Without` is for
-            // adapters whose names do not have the part.
+            // A part of the adapter's name. An empty part allows every adapter. `Named::Without` is
+            // for adapters whose names do not have the part.
             named: Named::With("PART"),
-            // Or `Emitted`, with a target, for texts that the driver gets unchanged.
+            // wgpu translates the shaders. `Shaders::Emitted(Target::SPIRV)` gives the driver the
+            // texts of a target unchanged, which the adapter must allow (`PASSTHROUGH_SHADERS`).
             shaders: Shaders::Translated,
         })
     },
+    // `Some(Shipping { target, open })` if it draws the files of a target as they are.
     shipping: None,
 };
+"#;
+
+const OWN: &str = r#"//! NAME.
+//!
+//! Runs on: every system but WebAssembly
+
+use super::{Entry, Unavailable};
+use crate::bundle::Target;
+use crate::diagnostic::{Diagnostic, codes};
+use crate::execute::Session;
+use crate::execute::emitted::emit_kernel;
+use crate::execute::gpu::{input_texels, run_batches, unpack_results};
+use crate::execute::kernel::{ENTRY, INPUT_WIDTH, Kernel, TARGET_WIDTH};
+
+/// The executor, for the table of all.
+pub const EXECUTOR: Entry = Entry {
+    name: "NAME",
+    // One line for listings.
+    about: "",
+    // Debian packages.
+    needs: &[],
+    // A function that is called while the process has one thread, such as one that sets a variable.
+    before_threads: None,
+    // How many places in each pixel of a picture are averaged; `None` if it draws no frames.
+    samples: None,
+    open: || Ok(Box::new(Own { adapter: open_device()?, runs: 0 })),
+    // `Some(Shipping { target, open })` if it draws the files of a target as they are.
+    shipping: None,
+};
+
+/// An open device.
+struct Own {
+    /// Its name, driver and version.
+    adapter: String,
+    /// How many draws there were, so that each writes something else.
+    runs: u32,
+}
+
+/// Opens the device, or says why it is not available on this machine.
+fn open_device() -> Result<String, Unavailable> {
+    Err(Unavailable { reason: "`NAME` opens no device yet".to_owned() })
+}
+
+impl Session for Own {
+    fn adapter(&self) -> String {
+        self.adapter.clone()
+    }
+
+    // `prepare` is called before the first `run`, with all kernels, for executors that compile many at
+    // once. `draw_frames` and `draw_shipped` draw pictures; without them, both refuse.
+
+    fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
+        run_batches(kernel, inputs, |batch, count| {
+            self.runs = self.runs.wrapping_add(1);
+            let (rows, header) = kernel.draw_header(count, self.runs);
+            let texels = input_texels(kernel, batch, header);
+            let text = emit_kernel(kernel, Target::WGSL)?.bytes;
+            let pixels = draw_pixels(kernel, &text, &texels, rows)?;
+            unpack_results(kernel, &pixels, header)
+        })
+    }
+}
+
+/// Draws a triangle over a whole target, and gives the words of its pixels, row by row.
+///
+/// - `text` is a fragment shader, whose entry point is called `kernel_entry`.
+/// - The target has the format `Rgba32Uint`, `TARGET_WIDTH` pixels a row, and `rows` rows.
+/// - Binding 0 of group 0 is a texture of `Rgba32Uint`, `INPUT_WIDTH` texels a row, that has the words
+///   of `texels`, four a texel.
+/// - `kernel.resources()` are further textures and samplers of group 0: each has its `binding` and, in
+///   `fixture`, what it holds.
+fn draw_pixels(
+    kernel: &Kernel,
+    text: &[u8],
+    texels: &[u32],
+    rows: u32,
+) -> Result<Vec<u32>, Diagnostic> {
+    let kernel_entry = ENTRY;
+    let (inputs, resources) = (texels.len() as u32 / 4 / INPUT_WIDTH, kernel.resources().count());
+    let message = format!(
+        "`NAME` does not draw `{kernel_entry}` yet: {} bytes, {inputs} rows of inputs, \
+         {resources} resources, {TARGET_WIDTH} x {rows} pixels",
+        text.len()
+    );
+    Err(Diagnostic::error(codes::EXECUTOR_FAILED, message))
+}
 "#;

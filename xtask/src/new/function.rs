@@ -2,13 +2,15 @@
 
 use lamplight::bundle::Language;
 
-use super::parameter::{Parameter, TYPES, Type, read_parameters, type_of};
+use super::compiled::first_problem;
+use super::formula::Formula;
+use super::parameter::{Parameter, Type, read_parameters, type_of};
 use super::{Kind, Made, Repository, check_name};
 
 pub const KIND: Kind = Kind {
     name: "function",
     example: &["brdf::diffuse::minnaert", "nl: f32, nv: f32, k: f32 0..2", "f32"],
-    rest: "[FORMULA IN WESL]",
+    rest: "['let a = nl * nv; return pow(a, k)']",
     make,
 };
 
@@ -20,19 +22,20 @@ fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, 
     };
     let (parameters, result, formula) = match rest {
         [parameters, result] => (parameters, result, None),
-        [parameters, result, formula] => (parameters, result, Some(*formula)),
+        [parameters, result, formula] => (parameters, result, Some(Formula::read(formula)?)),
         _ => {
             let what = "the parameters, the type of the result and, if you like, the formula";
             return Err(format!("after the name: {what}, as in the usage"));
         }
     };
-    let signature = Signature {
+    let mut new = Signature {
         folder,
         module,
         name,
         parameters: read_parameters(parameters)?,
         result: type_of(result)?,
         formula,
+        untranslated: None,
     };
     let stem = format!("shaderlib/{folder}/{module}");
     let reference = format!("src/proof/references/{folder}_{module}.rs");
@@ -44,38 +47,93 @@ fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, 
         (reference.clone(), reference_text),
         (format!("tests/plain/{folder}/{module}.wesl"), plain),
     ];
+    complete_formula(repository, &mut new, &edits)?;
     let mut files = Vec::new();
     for (file, edit) in edits {
-        let text = edit(repository.find(&file).as_deref(), &signature)
+        let text = edit(repository.find(&file).as_deref(), &new)
             .map_err(|problem| format!("`{file}`: {problem}"))?;
         files.push((file, text));
     }
-    Ok(Made { files, next: steps(&stem, &reference, &signature) })
+    let is_new = repository.find(&format!("{stem}.wesl")).is_none();
+    Ok(Made { files, next: steps(&stem, &reference, &new, is_new) })
 }
 
-fn steps(stem: &str, reference: &str, signature: &Signature<'_>) -> Vec<String> {
-    let Signature { folder, module, formula, .. } = signature;
+/// Compiles the formula in its module, in WESL and then in GLSL. If it cannot be translated for GLSL,
+/// the new function is told why.
+fn complete_formula(
+    repository: &Repository<'_>,
+    new: &mut Signature<'_>,
+    [(in_wesl, _), (in_glsl, _), ..]: &[(String, Edit); 6],
+) -> Result<(), String> {
+    let Some(mut formula) = new.formula.take() else { return Ok(()) };
+    let path = [new.folder, new.module, new.name];
+    let old = repository.find(in_wesl);
+    let arguments = new.list(|one| one.ty.plotted.to_owned());
+    let problem_of = |body: &str| -> Result<Option<String>, String> {
+        let text = wesl_with(old.as_deref(), new, body)?;
+        let written = (in_wesl.as_str(), text.as_str());
+        Ok(first_problem(repository.root, written, path, &arguments, Language::Wesl))
+    };
+    if let Some(problem) = problem_of(&formula.in_wesl())? {
+        return Err(format!(
+            "the formula does not compile: {problem}; it may call what `{in_wesl}` declares or imports"
+        ));
+    }
+    let result = new.result.wesl;
+    formula.find_types(|body| {
+        let body = format!("{body}    return {result}();\n");
+        problem_of(&body).is_ok_and(|problem| problem.is_none())
+    });
+    let arguments = new.list(|one| format!("{}(0)", one.ty.glsl));
+    let old = repository.find(in_glsl);
+    let translated = formula.in_glsl().and_then(|body| {
+        let text = glsl_with(old.as_deref(), new, &body)?;
+        let written = (in_glsl.as_str(), text.as_str());
+        match first_problem(repository.root, written, path, &arguments, Language::Glsl) {
+            Some(problem) => Err(problem),
+            None => Ok(()),
+        }
+    });
+    new.untranslated = translated.err();
+    new.formula = Some(formula);
+    Ok(())
+}
+
+fn steps(stem: &str, reference: &str, new: &Signature<'_>, is_new: bool) -> Vec<String> {
+    let Signature { folder, module, name, formula, untranslated, .. } = new;
+    let path = format!("{folder}::{module}::{name}");
     let plain = match formula {
         Some(_) => "has the formula as it was given",
         None => "the published formula, without guards",
     };
-    vec![
+    let in_glsl = match (formula, untranslated) {
+        (Some(_), Some(problem)) => {
+            format!("the formula could not be translated ({problem}): write it; the same comment")
+        }
+        (Some(_), None) => "has the formula; the same comment and guards".to_owned(),
+        (None, _) => "the same comment and formula".to_owned(),
+    };
+    let mut steps = vec![
         format!(
             "{stem}.wesl: the formula, and each line of its comment (trial shaderlib::); `Edges:` says what it returns for zero vectors and outside the domain, `Error model:` the bound that `tolerance` states; for guards, `max(x, 1e-4)`, or `safe_pow` and `safe_normalize` of `super::super::math::safe`"
         ),
-        format!("{stem}.glsl: the same comment and formula (trial shaderlib::)"),
+        format!("{stem}.glsl: {in_glsl} (trial shaderlib::)"),
         format!("{reference}: the formula in f64, from the source and not from the shader (check)"),
         format!(
-            "{stem}.toml: `tolerance`, such as {{ ulp = 2 }}, with a power also `pow = {{ base = \"nl * nv\", exponent = \"k\", ulp = 2 }}`, `check` measures it; `laws`, such as {{ range = [0, 1] }}, `check` lists them if one is wrong"
+            "{stem}.toml: `tolerance` and `laws`, in one of the forms above them (trial new::forms); `cargo run -- check {folder}/{module}` measures the tolerance"
         ),
-        format!(
-            "tests/plain/{folder}/{module}.wesl: {plain} (trial plain::); a line `/// Reason:` only if `cargo xtask record plain::` asks for one"
-        ),
+        format!("tests/plain/{folder}/{module}.wesl: {plain} (trial plain::)"),
         format!("{stem}.plot.toml is complete, unless another parameter should be drawn"),
         format!(
-            "cargo run -- check {folder}/{module}; cargo xtask docs --costs; cargo xtask record plain:: _budget"
+            "cargo xtask docs --costs; cargo xtask record plain:: _budget; if that asks for a `Reason:`, `cargo xtask new reason {path} 'what the guards are for'`"
         ),
-    ]
+    ];
+    if is_new {
+        steps.push(
+            "cargo xtask record guide: pages of the guide count the library's files".to_owned(),
+        );
+    }
+    steps
 }
 
 struct Signature<'n> {
@@ -84,17 +142,23 @@ struct Signature<'n> {
     name: &'n str,
     parameters: Vec<Parameter<'n>>,
     result: Type,
-    /// An expression in WESL that GLSL has too, up to the names of types.
-    formula: Option<&'n str>,
+    formula: Option<Formula>,
+    /// Why GLSL does not have the formula.
+    untranslated: Option<String>,
 }
 
 impl Signature<'_> {
-    /// What the function returns.
-    fn value(&self, language: Language) -> String {
-        let (formula, result) = (self.formula, self.result);
-        match language {
-            Language::Wesl => formula.map_or(format!("{}()", result.wesl), str::to_owned),
-            Language::Glsl => formula.map_or(format!("{}(0)", result.glsl), in_glsl),
+    /// The body in WESL: the formula, or else a value of the result's type.
+    fn wesl_body(&self) -> String {
+        let nothing = || format!("    return {}();\n", self.result.wesl);
+        self.formula.as_ref().map_or_else(nothing, Formula::in_wesl)
+    }
+
+    /// The body in GLSL.
+    fn glsl_body(&self) -> Result<String, String> {
+        match &self.formula {
+            Some(formula) if self.untranslated.is_none() => formula.in_glsl(),
+            _ => Ok(format!("    return {}(0);\n", self.result.glsl)),
         }
     }
 
@@ -116,12 +180,15 @@ impl Signature<'_> {
 type Edit = fn(Option<&str>, &Signature<'_>) -> Result<String, String>;
 
 fn wesl(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
+    wesl_with(old, new, &new.wesl_body())
+}
+
+fn wesl_with(old: Option<&str>, new: &Signature<'_>, body: &str) -> Result<String, String> {
     let old = old.unwrap_or("//!\n");
     refuse_known(old, &format!("fn {}(", new.name))?;
     let parameters = new.list(|one| format!("{}: {}", one.name, one.ty.wesl));
     let (comment, name, result) = (new.comment(), new.name, new.result.wesl);
-    let value = new.value(Language::Wesl);
-    Ok(format!("{old}\n{comment}fn {name}({parameters}) -> {result} {{\n    return {value};\n}}\n"))
+    Ok(format!("{old}\n{comment}fn {name}({parameters}) -> {result} {{\n{body}}}\n"))
 }
 
 /// The formula without guards, which the library's function is compared with.
@@ -129,35 +196,18 @@ fn plain(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
     let old = old.map_or(String::new(), |old| format!("{old}\n"));
     refuse_known(&old, &format!("fn {}(", new.name))?;
     let parameters = new.list(|one| format!("{}: {}", one.name, one.ty.wesl));
-    let (name, result, value) = (new.name, new.result.wesl, new.value(Language::Wesl));
-    Ok(format!("{old}fn {name}({parameters}) -> {result} {{\n    return {value};\n}}\n"))
-}
-
-/// An expression of WESL with GLSL's names of types.
-fn in_glsl(formula: &str) -> String {
-    let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
-    let name = |word: &str| {
-        let known = TYPES.iter().find(|ty| ty.wesl == word);
-        known.map_or(word.to_owned(), |ty| ty.glsl.to_owned())
-    };
-    let ends = formula.char_indices().filter(|(_, letter)| !is_part(*letter));
-    let ends = ends
-        .map(|(at, letter)| (at, at + letter.len_utf8()))
-        .chain([(formula.len(), formula.len())]);
-    let mut start = 0;
-    let mut text = String::new();
-    for (end, next) in ends {
-        text += &name(&formula[start..end]);
-        text += &formula[end..next];
-        start = next;
-    }
-    text
+    let (name, result, body) = (new.name, new.result.wesl, new.wesl_body());
+    Ok(format!("{old}fn {name}({parameters}) -> {result} {{\n{body}}}\n"))
 }
 
 /// Gives names their prefix. It stands before the declarations and after them.
 const PREFIX: &str = "#ifdef LAMPLIGHT_PREFIX\n#include \"../prefix.glsl\"\n#endif\n";
 
 fn glsl(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
+    glsl_with(old, new, &new.glsl_body()?)
+}
+
+fn glsl_with(old: Option<&str>, new: &Signature<'_>, body: &str) -> Result<String, String> {
     let (folder, module) = (new.folder.to_uppercase(), new.module.to_uppercase());
     let guard = format!("LAMPLIGHT_{folder}_{module}_GLSL");
     let end = format!("\n{PREFIX}\n#endif\n");
@@ -167,19 +217,41 @@ fn glsl(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
     let before = old.strip_suffix(&end).ok_or_else(|| format!("does not end with\n{end}"))?;
     let parameters = new.list(|one| format!("{} {}", one.ty.glsl, one.name));
     let (comment, name, result) = (new.comment(), new.name, new.result.glsl);
-    let value = new.value(Language::Glsl);
-    Ok(format!(
-        "{before}\n{comment}{result} {name}({parameters}) {{\n    return {value};\n}}\n{end}"
-    ))
+    Ok(format!("{before}\n{comment}{result} {name}({parameters}) {{\n{body}}}\n{end}"))
 }
+
+/// The terms of a tolerance, each with a line of its own.
+pub const TOLERANCES: &str = "\
+# Choose, and delete these lines. Terms add up, as in { abs = 1e-6, ulp = 2 }; y is the expected value.
+# { ulp = 2 }: units in the last place of y
+# { abs = 1e-6 }: an error that does not grow with y
+# { rel = 1e-5 }: a share of y
+# { scaled = { by = \"dot_abs(n, l)\", ulp = 1.5 } }: units of a formula's value; for a sum, of its terms' magnitudes
+# { pow = { base = \"nl * nv\", exponent = \"k\", ulp = 2 } }: what WGSL allows for a power whose base has this error
+";
+
+/// The laws, each with a line of its own.
+pub const LAWS: &str = "\
+# Choose, and delete these lines. Laws are a list, as in [{ range = [0, 1] }, { rising = \"x\" }].
+# { range = [0, 1] }: no result is outside
+# { reaches = [0, 0.99] }: some result is as low, and some as high
+# { rising = \"x\" }, { falling = \"x\" }: over a parameter
+# { swap = [\"l\", \"v\"] }: exchanging two parameters changes nothing
+# { even = [\"n\", \"l\"] }: negating these parameters changes nothing
+# { continuous = \"x\", slope = 4 }: a small step changes the value by no more than that slope
+# { at = { d = 0 }, gives = 1 }: the value for one value of a parameter, whatever the others are
+# { integral = \"l\", about = \"n\", cosine = true, at_most = 1, within = 0.001 }: over a hemisphere; or `gives`
+# { albedo = [\"d_ggx\", \"v_smith_ggx\"], within = 0.001 }: the value is the albedo of functions' product
+# { inverse = \"g\", within = 1e-6 }: another function turns the value back into the first parameter
+";
 
 fn cases(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
     let count = new.parameters.len();
     let domains =
         new.parameters.iter().map(|one| format!("{} = {}\n", one.name, one.domain(count)));
     let case = format!(
-        "[[case]]\nfunction = \"{}\"\noracle = \"reference\"\ntolerance = {{ ulp = 0 }}\n\
-         laws = []\n\n[case.inputs]\n{}",
+        "[[case]]\nfunction = \"{}\"\noracle = \"reference\"\n{TOLERANCES}tolerance = {{ ulp = 0 }}\n\
+         {LAWS}laws = []\n\n[case.inputs]\n{}",
         new.name,
         domains.collect::<String>()
     );

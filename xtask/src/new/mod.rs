@@ -3,11 +3,15 @@
 //! The files are incomplete on purpose. A trial fails until they are completed, and [`Made::next`]
 //! names it.
 
+mod axis_places;
 mod axis_value;
+mod compiled;
 mod diagnostic;
 mod executor;
-mod function;
+mod formula;
+pub mod function;
 pub mod parameter;
+mod reason;
 mod renumber;
 mod scene;
 mod target;
@@ -32,6 +36,7 @@ pub type Make = fn(&Repository<'_>, &str, &[&str]) -> Result<Made, String>;
 /// Every kind.
 pub const KINDS: &[Kind] = &[
     function::KIND,
+    reason::KIND,
     axis_value::KIND,
     target::KIND,
     executor::KIND,

@@ -9,6 +9,8 @@ pub const KIND: Kind =
 const TARGETS: &str = "src/emit/targets";
 const EXECUTORS: &str = "src/execute/executors";
 const GUIDE: &str = "docs/guide/targets.md";
+/// What versions of GLSL lack: a line of Rust for each, with the first versions that have it.
+const LACKS: &str = "src/emit/lacks.rs";
 
 fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, String> {
     check_name(name, '_')?;
@@ -30,21 +32,22 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
     let text =
         renaming.apply(&text.replace(&format!("name: {executor:?}"), &format!("name: {name:?}")));
     let guide = in_tables(&repository.read(GUIDE)?, like, name);
+    let lacking = lacking_of(&repository.read(LACKS)?, name);
     let next = vec![
         format!(
-            "{file}: the version, `about` and the judge's rules, where they are still those of `{like}` (trials house::described, emit, judges)"
+            "{file}: its head comment and the version, `about` and the judge's rules, where they are still those of `{like}` (trials house::described, emit, judges)"
         ),
         format!("{own_executor}: likewise (trials harness::executor::{name}, frames/shipped)"),
         format!(
             "{GUIDE}: what `{name}` does unlike `{like}`, in a column of its own (trials conventions::guide, guide lists are whole)"
         ),
         format!(
-            "{GUIDE}, \"{}\": rows that hold for `{name}`; src/emit/lacks.rs has the versions",
+            "{GUIDE}, \"{}\": rows that hold for `{name}`: {lacking}",
             LACKING.trim_start_matches("## ")
         ),
         "cargo xtask record; read the difference".to_owned(),
     ];
-    let target = without_older_rules(own_ending(&target, name), name);
+    let target = with_numbers(without_older_rules(own_ending(&target, name), name), name);
     Ok(Made { files: vec![(file, target), (own_executor, text), (GUIDE.to_owned(), guide)], next })
 }
 
@@ -85,11 +88,51 @@ fn without_older_rules(text: String, name: &str) -> String {
     let number = |text: &str| -> Option<u32> {
         text.trim_matches(|letter: char| !letter.is_ascii_digit()).parse().ok()
     };
-    let rules = text.split_once(", GlslRules::Later(").and_then(|(before, rest)| {
-        let (later, after) = rest.split_once(')')?;
-        (number(later)? <= number(name)?).then(|| format!("{before}{after}"))
-    });
-    rules.unwrap_or(text)
+    let Some((before, rest)) = text.split_once("rules: &[") else { return text };
+    let Some((rules, after)) = rest.split_once(']') else { return text };
+    let is_older = |rule: &&str| {
+        rule.starts_with("\"") && number(rule) <= number(name) && number(rule).is_some()
+    };
+    let kept: Vec<&str> = rules.split(", ").filter(|rule| !is_older(rule)).collect();
+    format!("{before}rules: &[{}]{after}", kept.join(", "))
+}
+
+/// The version of GLSL in a target's name, and whether it is one of GLSL ES.
+fn glsl_version(name: &str) -> Option<(u32, bool)> {
+    let number = |kind: &str| name.strip_prefix(kind)?.parse::<u32>().ok();
+    number("glsl").map(|number| (number, false)).or(number("essl").map(|number| (number, true)))
+}
+
+/// The target whose bindings have numbers in its text, from the versions on that can say them. Earlier
+/// ones have names only.
+fn with_numbers(text: String, name: &str) -> String {
+    let has_numbers = glsl_version(name)
+        .is_some_and(|(number, is_embedded)| number >= if is_embedded { 310 } else { 420 });
+    match has_numbers {
+        true => text.replace("Numbering::Named", "Numbering::Explicit"),
+        false => text,
+    }
+}
+
+/// What a version lacks, by the table of the first versions that have it.
+fn lacking_of(table: &str, name: &str) -> String {
+    let Some((number, is_embedded)) = glsl_version(name) else {
+        return "none, since it is not GLSL".to_owned();
+    };
+    let lacks = |line: &str| -> Option<String> {
+        let (what, versions) = line.split_once("Later::since(\"")?.1.split_once("\", ")?;
+        let (desktop, embedded) = versions.trim_end_matches(");").split_once(", ")?;
+        let first =
+            if is_embedded { embedded.trim_matches(|one| "Some()".contains(one)) } else { desktop };
+        let is_there = first.parse::<u32>().is_ok_and(|first| number >= first);
+        (!is_there).then(|| what.to_owned())
+    };
+    let found: Vec<String> = table.lines().filter_map(lacks).collect();
+    let always = "matrices of two rows, and depth textures without a comparison, in every GLSL";
+    match found.is_empty() {
+        true => always.to_owned(),
+        false => format!("{}; {always}", found.join(", ")),
+    }
 }
 
 /// The section about what a version lacks. A new version may lack less.

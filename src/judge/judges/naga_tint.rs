@@ -1,24 +1,38 @@
-//! WGSL: naga, which is part of this program, and Tint.
+//! WGSL: naga, which is part of this program, and Tint, the compiler of Chromium and Dawn. There are no
+//! rules.
 
 use naga::front::wgsl;
 use naga::valid::{ValidationFlags, Validator};
 
-use super::{Found, Output, Refusal, Tint, Work, divide_group};
+use crate::judge::tint::Said;
+use crate::judge::{Entry, Found, Group, Output, Refusal, Tint, Work, divide_group};
+use crate::tools::NODE;
 use crate::validate::{CAPABILITIES, guard};
+
+/// The judge, for the table of all.
+pub const JUDGE: Entry = Entry {
+    name: "naga_tint",
+    tools: &[NODE],
+    lacks: Tint::missing,
+    version: |tint| format!("naga {} tint {}", env!("LAMPLIGHT_NAGA"), tint.version()),
+    plan,
+};
 
 /// How many texts naga gets at once, and how many each start of node.
 const BATCH: usize = 64;
 const TINT_BATCH: usize = 512;
 
-pub fn plan_wgsl<'w>(group: &'w [&'w Output], tint: Option<&'w Tint>) -> Vec<Work<'w>> {
-    let mut works = divide_group(group, BATCH, |outputs: &[&Output]| {
+fn plan<'w>(group: &Group<'w>) -> Result<Vec<Work<'w>>, String> {
+    let mut works = divide_group(group.outputs, BATCH, |outputs: &[&Output]| {
         let found = outputs.iter().map(|output| by_naga(output));
         Ok(found.collect::<Result<Vec<_>, String>>()?.into_iter().flatten().collect())
     });
-    works.extend(tint.into_iter().flat_map(|tint| {
-        divide_group(group, TINT_BATCH, move |outputs: &[&Output]| by_tint(outputs, tint))
-    }));
-    works
+    if let Some(tint) = group.tint {
+        works.extend(divide_group(group.outputs, TINT_BATCH, move |outputs: &[&Output]| {
+            by_tint(outputs, tint)
+        }));
+    }
+    Ok(works)
 }
 
 fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {
@@ -43,7 +57,7 @@ fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {
 fn by_tint(outputs: &[&Output], tint: &Tint) -> Found {
     let files: Vec<_> = outputs.iter().map(|output| &*output.file).collect();
     let said = tint.judge(&files)?;
-    let one = |said: super::tint::Said| {
+    let one = |said: Said| {
         let output = outputs.get(said.index).ok_or("Tint judged a text that it was not given")?;
         let words = format!("{}:{}: error: {}", said.line, said.column, said.message);
         Ok(Refusal { output: (*output).clone(), judge: "Tint", line: Some(said.line), words })

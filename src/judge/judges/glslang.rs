@@ -3,16 +3,31 @@
 //! Starting it takes longer than reading a text, so it gets many texts at once. When it makes
 //! SPIR-V it links all of them, which makes no sense here, so its messages about linking are
 //! ignored. Outputs with something new in them ([`novel_outputs`]) are compiled to SPIR-V one by one.
+//!
+//! | rule | judged are |
+//! |---|---|
+//! | `own` | texts of GLSL or GLSL ES, of the version that they name |
+//! | `310 es`, `330 core` | the same, with this later version in the place of their own |
+//! | `vulkan` | texts for OpenGL by the rules of Vulkan, as far as they can keep them |
+//! | `hlsl` | texts of HLSL, compiled for Vulkan |
 
 use std::path::Path;
 use std::process::Output as Said;
 
-use super::novel::novel_outputs;
-use super::{Found, Output, Refusal, Work, divide_group};
 use crate::bundle::Stage;
-use crate::emit::GlslRules;
+use crate::judge::novel::novel_outputs;
+use crate::judge::{Entry, Found, Group, Output, Refusal, Work, divide_group};
 use crate::output::Scratch;
 use crate::tools::{GLSLANG, printed_words};
+
+/// The judge, for the table of all.
+pub const JUDGE: Entry = Entry {
+    name: "glslang",
+    tools: &[GLSLANG],
+    lacks: |_| None,
+    version: |_| String::new(),
+    plan,
+};
 
 const BATCH: usize = 64;
 
@@ -27,45 +42,42 @@ fn stage_name(stage: Stage) -> &'static str {
     }
 }
 
-/// The work for texts of GLSL of one stage.
-pub fn plan_glsl<'w>(
-    group: &'w [&'w Output],
-    rules: &[GlslRules],
-    scratch: &'w Scratch,
-) -> Result<Vec<Work<'w>>, String> {
-    let Some(first) = group.first() else { return Ok(Vec::new()) };
-    let own = vec!["-S", stage_name(first.stage)];
+fn plan<'w>(group: &Group<'w>) -> Result<Vec<Work<'w>>, String> {
+    let Some(first) = group.outputs.first() else { return Ok(Vec::new()) };
     let mut works = Vec::new();
-    for rules in rules {
-        match rules {
-            GlslRules::Own => {
-                let arguments = own.clone();
-                works.extend(divide_group(group, BATCH, move |outputs| {
-                    judge_together(&arguments, outputs)
-                }));
-            }
-            GlslRules::Later(version) => {
-                let (arguments, version) = (own.clone(), *version);
-                works.extend(divide_group(group, BATCH, move |outputs| {
-                    judge_later_version(&arguments, outputs, version, scratch)
-                }));
-            }
-            GlslRules::Vulkan => {
-                // The relaxed rules accept OpenGL's names of built-in variables. They also accept
-                // uniforms outside of blocks, which get bindings.
-                let more = ["-V", "-R", "--amb", "-o", "/dev/null"];
-                works.extend(plan_compiled(group, [&own[..], &more].concat())?);
-            }
-        }
+    for rule in group.rules {
+        works.extend(plan_rule(group, first, rule)?);
     }
     Ok(works)
 }
 
-/// The work for texts of HLSL of one stage and entry point.
-pub fn plan_hlsl<'w>(group: &'w [&'w Output]) -> Result<Vec<Work<'w>>, String> {
-    let Some(first) = group.first() else { return Ok(Vec::new()) };
-    let stage = stage_name(first.stage);
-    plan_compiled(group, vec!["-D", "-V", "-S", stage, "-e", &first.entry, "-o", "/dev/null"])
+/// The work for one rule. All outputs have the stage and the entry point of the first one.
+fn plan_rule<'w>(
+    group: &Group<'w>,
+    first: &'w Output,
+    rule: &'static str,
+) -> Result<Vec<Work<'w>>, String> {
+    let (outputs, scratch) = (group.outputs, group.scratch);
+    let own = vec!["-S", stage_name(first.stage)];
+    match rule {
+        "own" => Ok(divide_group(outputs, BATCH, move |outputs| judge_together(&own, outputs))),
+        // The relaxed rules accept OpenGL's names of built-in variables. They also accept uniforms
+        // outside of blocks, which get bindings.
+        "vulkan" => {
+            let more = ["-V", "-R", "--amb", "-o", "/dev/null"];
+            plan_compiled(outputs, [&own[..], &more].concat())
+        }
+        "hlsl" => {
+            let more = ["-D", "-V", "-e", &first.entry, "-o", "/dev/null"];
+            plan_compiled(outputs, [&own[..], &more].concat())
+        }
+        version if version.starts_with(|first: char| first.is_ascii_digit()) => {
+            Ok(divide_group(outputs, BATCH, move |outputs| {
+                judge_later_version(&own, outputs, version, scratch)
+            }))
+        }
+        _ => Err(format!("glslangValidator has no rule `{rule}`")),
+    }
 }
 
 /// Reads each text, and compiles those with something new in them.

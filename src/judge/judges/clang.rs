@@ -1,15 +1,20 @@
-//! MSL: clang, with headers of our own.
+//! MSL: clang, with headers of our own in the place of Metal's. It has no rules.
 
 use std::sync::Arc;
 
-use super::{Found, Output, Refusal, Work, divide_group};
-use crate::metal::{Clang, judge_batch};
+use crate::judge::{Entry, Found, Group, Output, Refusal, Work, divide_group};
+use crate::metal::{Clang, judge_batch, shim_hash};
+use crate::tools::CLANG;
+
+/// The judge, for the table of all.
+pub const JUDGE: Entry =
+    Entry { name: "clang", tools: &[CLANG], lacks: |_| None, version: |_| shim_hash(), plan };
 
 const BATCH: usize = 64;
 
-pub fn plan_msl<'w>(group: &'w [&'w Output]) -> Result<Vec<Work<'w>>, String> {
+fn plan<'w>(group: &Group<'w>) -> Result<Vec<Work<'w>>, String> {
     let clang = Arc::new(Clang::open().map_err(|missing| missing.reason)?);
-    Ok(divide_group(group, BATCH, move |outputs| judge_msl(&clang, outputs)))
+    Ok(divide_group(group.outputs, BATCH, move |outputs| judge_msl(&clang, outputs)))
 }
 
 fn judge_msl(clang: &Clang, outputs: &[&Output]) -> Found {

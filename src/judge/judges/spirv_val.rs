@@ -1,21 +1,28 @@
-//! SPIR-V: spirv-val, which takes one file at a time.
+//! SPIR-V: spirv-val, which takes one file at a time. A rule is an environment, such as `vulkan1.0`.
 
-use super::{Found, Output, Refusal, Work, divide_group};
+use crate::judge::{Entry, Found, Group, Output, Refusal, Work, divide_group};
 use crate::tools::{SPIRV_VAL, printed_words};
+
+/// The judge, for the table of all.
+pub const JUDGE: Entry = Entry {
+    name: "spirv_val",
+    tools: &[SPIRV_VAL],
+    lacks: |_| None,
+    version: |_| String::new(),
+    plan,
+};
 
 const BATCH: usize = 16;
 
-pub fn plan_spirv<'w>(
-    group: &'w [&'w Output],
-    environments: &'static [&'static str],
-) -> Vec<Work<'w>> {
-    divide_group(group, BATCH, move |outputs| {
+fn plan<'w>(group: &Group<'w>) -> Result<Vec<Work<'w>>, String> {
+    let environments = group.rules;
+    Ok(divide_group(group.outputs, BATCH, move |outputs| {
         let mut refusals = Vec::new();
         for output in outputs {
             refusals.extend(first_refusal(output, environments)?);
         }
         Ok(refusals)
-    })
+    }))
 }
 
 /// The refusal of the first environment that does not accept it.
