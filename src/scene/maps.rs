@@ -169,16 +169,6 @@ fn open_above(at: DVec2) -> f64 {
     (0..DIRECTIONS).map(open).sum::<f64>() / DIRECTIONS as f64
 }
 
-/// Soil without a pattern. The other maps are those of [`bricks`].
-pub fn soil() -> Maps {
-    let base = Map::of(128, |at| {
-        let turn = at * TAU;
-        let grain = (5.0 * turn.x).sin() * (7.0 * turn.y).cos() + (11.0 * (turn.x + turn.y)).sin();
-        DVec4::new(0.62, 0.5, 0.36, 1.0) * (1.0 + 0.03 * grain)
-    });
-    Maps { base, ..bricks() }
-}
-
 /// Bright grass of many tones. The other maps are those of [`bricks`].
 pub fn meadow() -> Maps {
     let base = Map::of(256, |at| {

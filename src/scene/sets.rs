@@ -342,7 +342,7 @@ fn dark_tin() -> Material {
 
 /// An open cone along the lamp's axis.
 fn lamp_shade(lamp: &Lamp) -> Shape {
-    let (rim, depth) = (0.3, 0.34);
+    let (rim, depth) = (0.3, 0.26);
     let cone = Shape::surface(28, 1, |u, v| {
         let (sin, cos) = (std::f64::consts::TAU * u).sin_cos();
         let radius = 0.1 + (rim - 0.1) * v;

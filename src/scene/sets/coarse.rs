@@ -16,13 +16,14 @@ pub const SET: Set = Set {
 /// The scene itself.
 pub fn scene() -> Scene {
     let glossy = Material::default().glossy(0.7).shiny(48.0);
-    let ring = placed_at(2.0, -0.5, 0.3, -0.5) * DMat4::from_rotation_x(0.9);
+    let ring = placed_at(1.9, -0.5, 0.3, -0.5) * DMat4::from_rotation_x(0.9);
     let objects = vec![
-        Object::new(Shape::sphere(1.6, (12, 7)), placed_at(-1.1, 0.1, 0.0, 0.2), TEAL).of(glossy, 9),
-        Object::new(Shape::torus(0.95, 0.36, (13, 8)), ring, AMBER).of(glossy, 1),
+        Object::new(Shape::sphere(1.6, (12, 7)), placed_at(-1.1, 0.1, 0.0, 0.2), TEAL)
+            .of(glossy, 9),
+        Object::new(Shape::torus(0.95, 0.36, (20, 12)), ring, AMBER).of(glossy, 1),
     ];
     let eye = Eye {
-        position: DVec3::new(0.25, 1.0, 8.3),
+        position: DVec3::new(0.25, 1.0, 8.7),
         target: DVec3::new(0.3, -0.05, 0.0),
         fov_y: 0.56,
         near: 0.5,

@@ -1,102 +1,137 @@
-//! A fence and a twig with leaves: shadows with thin bars, gaps and points.
+//! A fence and a plant in a pot: shadows with thin bars, gaps and points.
 
 use glam::{DMat4, DVec2, DVec3};
 
 use super::floor::tiles;
-use super::palette::{self, AMBER, CHALK, LEAF};
+use super::palette::{self, AMBER, CHALK, CORAL, LEAF};
 use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
 /// The scene, for the table of all.
 pub const SET: Set = Set {
     name: "fence",
-    about: "a fence and a twig with leaves, whose shadows have thin bars, gaps and points",
+    about: "a fence and a plant in a pot, whose shadows have thin bars, gaps and points",
     make: scene,
 };
 
-/// Bars of the fence.
+/// Bars of the fence, and the distance between them.
 const BARS: i32 = 8;
-/// Leaves to each side of the twig.
-const LEAVES: i32 = 4;
+const STEP: f64 = 0.42;
+/// Leaves of the plant.
+const LEAVES: i32 = 9;
+
+/// A turned bar with a knob and a point: radii and heights.
+const BAR: &[(f64, f64)] = &[
+    (0.0, 0.0),
+    (0.085, 0.0),
+    (0.09, 0.01),
+    (0.09, 0.6),
+    (0.085, 1.16),
+    (0.085, 1.19),
+    (0.05, 1.21),
+    (0.05, 1.24),
+    (0.1, 1.3),
+    (0.1, 1.36),
+    (0.05, 1.47),
+    (0.0, 1.6),
+];
+
+/// The pot, from the middle of its foot to that of its soil.
+const POT: &[(f64, f64)] = &[
+    (0.0, 0.0),
+    (0.24, 0.0),
+    (0.25, 0.01),
+    (0.31, 0.38),
+    (0.31, 0.4),
+    (0.35, 0.4),
+    (0.36, 0.41),
+    (0.36, 0.52),
+    (0.35, 0.53),
+    (0.32, 0.53),
+    (SOIL, 0.5),
+    (0.28, 0.48),
+    (0.0, 0.5),
+];
+/// The radius of the soil.
+const SOIL: f64 = 0.3;
+
+fn turned_shape(profile: &[(f64, f64)], quads: (u32, u32)) -> Shape {
+    let points: Vec<DVec2> = profile.iter().map(|(r, h)| DVec2::new(*r, *h)).collect();
+    Shape::lathe(&points, quads)
+}
 
 /// Bars on two rails, along x.
 fn fence_shape() -> Shape {
-    let bar = |index: i32| {
-        let x = 0.42 * (f64::from(index) - 0.5 * f64::from(BARS - 1));
-        let body = Shape::cuboid(DVec3::new(0.11, 0.67, 0.05), 1);
-        let body = body.transformed(DMat4::from_translation(DVec3::new(x, 0.67, 0.0)));
-        body.with(bar_top().transformed(DMat4::from_translation(DVec3::new(x, 1.34, 0.0))))
+    let bar = turned_shape(BAR, (24, 44));
+    let bar_at = |index: i32| {
+        let x = STEP * (f64::from(index) - 0.5 * f64::from(BARS - 1));
+        bar.clone().transformed(DMat4::from_translation(DVec3::X * x))
     };
     let rail = |y: f64| {
-        let length = 0.21 * f64::from(BARS);
-        Shape::cuboid(DVec3::new(length, 0.05, 0.03), 1)
-            .transformed(DMat4::from_translation(DVec3::new(0.0, y, -0.07)))
+        let half = 0.5 * STEP * f64::from(BARS);
+        Shape::cuboid(DVec3::new(half, 0.05, 0.03), 1)
+            .transformed(DMat4::from_translation(DVec3::Y * y))
     };
-    (0..BARS).fold(rail(0.42).with(rail(1.05)), |shape, index| shape.with(bar(index)))
+    (0..BARS).fold(rail(0.36).with(rail(1.02)), |shape, index| shape.with(bar_at(index)))
 }
 
-/// The point of a bar: a prism on its upper side.
-fn bar_top() -> Shape {
-    let (left, right, tip) = (DVec3::X * -0.11, DVec3::X * 0.11, DVec3::Y * 0.2);
-    let depth = DVec3::Z * 0.05;
-    // The upper edge of a side is a point, so its patch is drawn twice over along the edge.
-    let side = |z: f64| {
-        Shape::surface(1, 1, move |u, v| {
-            let base = left.lerp(right, if z > 0.0 { u } else { 1.0 - u });
-            base.lerp(tip, v) + depth * z
-        })
-    };
-    side(1.0)
-        .with(side(-1.0))
-        .with(Shape::patch(right + depth, depth * -2.0, tip - right, (1, 1)))
-        .with(Shape::patch(left - depth, depth * 2.0, tip - left, (1, 1)))
-        .with(Shape::patch(left - depth, right - left, depth * 2.0, (1, 1)))
+/// A leaf along z that hangs over: thin, closed all around, and pointed at both ends.
+fn leaf_shape(length: f64) -> Shape {
+    Shape::surface(20, 14, |u, v| {
+        let ring = (std::f64::consts::PI * v).sin();
+        let (sin, cos) = (std::f64::consts::TAU * u).sin_cos();
+        let bend = 0.5 * v - 0.75 * v * v;
+        DVec3::new(0.26 * ring * cos, 0.03 * ring * sin + bend, v) * length
+    })
 }
 
-/// A bent twig with leaves to both sides: thin, and closed all around.
-fn twig_shape() -> Shape {
-    let line = [(-1.0, 0.05), (-0.3, 0.16), (0.4, 0.12), (1.1, -0.02)];
-    let radii = [0.05, 0.04, 0.03, 0.015];
+/// A stem with leaves to all sides, from the ground up.
+fn plant_shape() -> Shape {
+    let line = [(0.0, 0.0), (0.03, 0.4), (-0.03, 0.8), (0.0, 1.15)];
+    let radii = [0.04, 0.035, 0.025, 0.015];
     let points: Vec<_> =
         line.iter().zip(radii).map(|((x, y), radius)| (DVec2::new(*x, *y), radius)).collect();
     let leaf = |index: i32| {
-        let (step, side) = (index / 2, if index % 2 == 0 { 1.0 } else { -1.0 });
-        let size = 0.44 - 0.05 * f64::from(step);
-        let place = DVec3::new(-0.55 + 0.5 * f64::from(step) + 0.12 * side, 0.12, 0.0);
-        // A leaf is a ball, long and flat, whose sides meet in a point.
-        let blade = Shape::surface(20, 12, |u, v| {
-            let ring = (std::f64::consts::PI * v).sin().powf(1.6);
-            let (sin, cos) = (std::f64::consts::TAU * u).sin_cos();
-            DVec3::new(0.42 * ring * cos, 0.05 * ring * sin, 1.0 - 2.0 * v) * size
-                + DVec3::Z * size
-        });
-        let turn = DMat4::from_rotation_y(if side > 0.0 { 0.5 } else { std::f64::consts::PI - 0.5 });
-        blade.transformed(DMat4::from_translation(place) * turn * DMat4::from_rotation_x(0.15))
+        let share = f64::from(index) / f64::from(LEAVES - 1);
+        // By the golden angle, as on many plants.
+        let turn = DMat4::from_rotation_y(2.4 * f64::from(index) + 0.9);
+        let place = DMat4::from_translation(DVec3::Y * (0.3 + 0.8 * share));
+        leaf_shape(0.8 - 0.3 * share).transformed(place * turn)
     };
-    (0..2 * LEAVES).fold(Shape::tube(&points, (12, 24)), |shape, index| shape.with(leaf(index)))
+    (0..LEAVES).fold(Shape::tube(&points, (12, 24)), |shape, index| shape.with(leaf(index)))
+}
+
+/// The pot with its soil.
+fn pot_shape() -> Shape {
+    turned_shape(POT, (40, 48)).map(|vertex| {
+        let is_soil = vertex.position.y > 0.4 && vertex.position.x.hypot(vertex.position.z) < SOIL;
+        vertex.color = if is_soil { DVec3::new(0.12, 0.08, 0.05) } else { CORAL };
+    })
 }
 
 /// The scene itself.
 pub fn scene() -> Scene {
     let matt = Material::default().glossy(0.08).shiny(20.0);
+    let glossy = Material::default().glossy(0.7).shiny(24.0);
+    let pot = DVec3::new(1.27, 0.0, 0.9);
     let objects = vec![
         Object::new(tiles(12, 1.4, [CHALK, CHALK * 0.86], 2), DMat4::IDENTITY, DVec3::ONE)
             .of(matt, 7),
-        Object::new(fence_shape(), placed_at(-0.75, 0.0, -0.45, 0.25), AMBER * 0.9).of(matt, 1),
-        Object::new(twig_shape(), placed_at(1.6, 0.95, 0.85, -0.5) * DMat4::from_rotation_x(0.2), LEAF)
-            .of(matt, 12),
+        Object::new(fence_shape(), placed_at(-0.9, 0.0, -0.7, 0.25), AMBER * 0.9).of(glossy, 1),
+        Object::new(plant_shape(), placed_at(pot.x, 0.48, pot.z, 0.0), LEAF).of(glossy, 12),
+        Object::new(pot_shape(), DMat4::from_translation(pot), DVec3::ONE).of(matt, 0),
     ];
     let eye = Eye {
-        position: DVec3::new(1.25, 4.3, 7.8),
-        target: DVec3::new(0.7, 0.45, 0.75),
-        fov_y: 0.62,
+        position: DVec3::new(1.0, 4.3, 7.6),
+        target: DVec3::new(0.75, 0.42, 0.5),
+        fov_y: 0.59,
         near: 0.5,
         far: 40.0,
     };
     let key = Lamp {
         color: DVec3::new(1.0, 0.97, 0.9),
-        position: DVec3::new(-4.0, 6.2, -4.2),
-        target: DVec3::new(0.2, 0.3, 0.7),
+        position: DVec3::new(-4.3, 6.9, -3.5),
+        target: DVec3::new(0.5, 0.3, 0.6),
         half_angle: 0.46,
         kind: LampKind::Spot,
     };

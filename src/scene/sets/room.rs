@@ -6,7 +6,10 @@ use glam::{DMat4, DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::palette::{self, AMBER, CHALK, CORAL, LEAF};
-use super::{Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base_scene, maps, placed_at};
+use super::{
+    Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base_scene, glow,
+    glowing_material, maps, placed_at,
+};
 use crate::scene::shape::Shape;
 
 /// Half of the room along each axis, its middle at the origin.
@@ -18,6 +21,14 @@ const CRATE: (DVec3, DVec3, f64) =
 const BALL: (DVec3, f64) = (DVec3::new(-1.35, -1.4, -0.2), 0.8);
 /// The lamp in the ceiling: half its sides along x and z, just below the ceiling.
 const PANEL: (f64, f64) = (1.0, 0.7);
+
+/// Bricks of the texture, by column and row: a matt one, and one that is polished metal in the
+/// textures of `material_maps`.
+const MATT: (f64, f64) = (0.0, 4.0);
+const POLISHED: (f64, f64) = (1.0, 0.0);
+
+/// Which of the walls is the ceiling.
+const CEILING: usize = 4;
 
 /// The walls that are seen: a corner, along, up, the colour, and repetitions of the texture.
 fn room_walls() -> [(DVec3, DVec3, DVec3, DVec3, DVec2); 5] {
@@ -45,10 +56,11 @@ fn crate_place() -> DMat4 {
     placed_at(middle.x, middle.y, middle.z, turn)
 }
 
-/// Charts of the lightmap, in rows: the walls, the ball, the crate's sides.
-const CHARTS: (usize, usize) = (4, 3);
+/// Charts of the lightmap, in rows: the walls, the ball, the crate's sides, the lamp.
+const CHARTS: (usize, usize) = (4, 4);
 const BALL_CHART: usize = 5;
 const CRATE_CHART: usize = 6;
+const PANEL_CHART: usize = 12;
 /// Texels along the side of a chart.
 const CHART: usize = 48;
 
@@ -75,20 +87,24 @@ pub fn scene() -> Scene {
         .into_iter()
         .enumerate()
         .map(|(index, (corner, along, up, color, times))| {
-            let shape = charted_shape(Shape::patch(corner, along, up, (16, 16)), index).tiled(times);
+            let shape = charted_shape(Shape::patch(corner, along, up, (16, 16)), index);
+            let is_plain = index == CEILING;
+            let shape = if is_plain { on_brick(shape, MATT, 0.02) } else { shape.tiled(times) };
             Object::new(shape, DMat4::IDENTITY, color).of(plaster, 7)
         })
         .collect();
     let wood = Material::default().glossy(0.2);
     let sides = crate_sides().into_iter().enumerate();
     let sides = sides.map(|(index, (corner, along, up))| {
-        charted_shape(Shape::patch(corner, along, up, (6, 6)), CRATE_CHART + index)
+        let side = charted_shape(Shape::patch(corner, along, up, (6, 6)), CRATE_CHART + index);
+        on_brick(side, MATT, 1.0)
     });
     objects.push(
         Object::new(sides.fold(Shape::default(), Shape::with), crate_place(), AMBER).of(wood, 3),
     );
     let (middle, radius) = BALL;
-    let ball = charted_shape(Shape::sphere(radius, (40, 20)), BALL_CHART).tiled(DVec2::new(3.0, 2.0));
+    let ball = charted_shape(Shape::sphere(radius, (40, 20)), BALL_CHART);
+    let ball = on_brick(ball, POLISHED, 0.02);
     objects.push(
         Object::new(ball, placed_at(middle.x, middle.y, middle.z, 0.0), CHALK)
             .of(Material::default().glossy(0.5), 5),
@@ -107,7 +123,26 @@ pub fn scene() -> Scene {
         half_angle: 0.75,
         kind: LampKind::Point,
     };
+    objects.push(panel_object(&key));
     Scene { maps: room_textures, ..base_scene(objects, eye, palette::lamps(key, 2.6, 1.6, 0.2)) }
+}
+
+/// The lamp, just below the ceiling. It casts no shadow.
+fn panel_object(lamp: &Lamp) -> Object {
+    let corner = DVec3::new(-PANEL.0, HALF.y - 0.02, -PANEL.1);
+    let (along, up) = (DVec3::X * 2.0 * PANEL.0, DVec3::Z * 2.0 * PANEL.1);
+    let shape = charted_shape(Shape::patch(corner, along, up, (1, 1)), PANEL_CHART);
+    let shape = on_brick(shape, MATT, 0.02);
+    let panel = Object::new(shape, DMat4::IDENTITY, glow(lamp)).of(glowing_material(lamp), 7);
+    Object { casts: false, ..panel }
+}
+
+/// The shape with a part of one brick as its texture, of that size in bricks. The brick is given by
+/// its column and row.
+fn on_brick(shape: Shape, brick: (f64, f64), part: f64) -> Shape {
+    let middle = DVec2::new(brick.0 + 0.5, brick.1 + 0.5);
+    let bricks = DVec2::new(3.0, 6.0);
+    shape.map(|vertex| vertex.uv = (middle + (vertex.uv - 0.5) * part) / bricks)
 }
 
 fn charted_shape(shape: Shape, index: usize) -> Shape {
@@ -127,7 +162,9 @@ fn baked_light() -> Map {
         let place = |at: usize| ((at % CHART) as f64 + 0.5 - 1.5) / (CHART as f64 - 3.0);
         let (point, normal) =
             surface_at(chart, DVec2::new(place(column), place(row)).clamp(DVec2::ZERO, DVec2::ONE));
-        arriving_light(point, normal).extend(1.0)
+        let light =
+            if chart == PANEL_CHART { DVec3::splat(2.0) } else { arriving_light(point, normal) };
+        light.extend(1.0)
     };
     Map { width, height, texels: (0..width * height).into_par_iter().map(texel).collect() }
 }

@@ -16,11 +16,12 @@ pub const SET: Set = Set {
 /// The scene itself.
 pub fn scene() -> Scene {
     let curl = Shape::surface(96, 24, |u, v| {
-        // A spiral that opens towards the viewer.
+        // A spiral whose outer end is behind.
         let (turn, radius) = (7.6 * u - 0.35, 0.45 + 1.55 * u);
         DVec3::new(radius * turn.cos(), 2.0 * v - 1.0, -radius * turn.sin())
     });
-    let place = placed_at(0.0, 0.0, 0.0, 0.15) * DMat4::from_rotation_x(0.55);
+    let place =
+        placed_at(0.0, 0.0, 0.0, 0.15) * DMat4::from_rotation_x(0.55) * DMat4::from_rotation_y(0.8);
     let objects = vec![
         Object::new(curl, place, CHALK * 1.2).of(Material::default().glossy(0.5).shiny(40.0), 9),
     ];
@@ -33,7 +34,7 @@ pub fn scene() -> Scene {
     };
     let key = Lamp {
         color: DVec3::splat(1.0),
-        position: DVec3::new(-2.2, 5.5, 4.5),
+        position: DVec3::new(-2.2, 1.0, 6.5),
         target: DVec3::ZERO,
         half_angle: 0.55,
         kind: LampKind::Directional,

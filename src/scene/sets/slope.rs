@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec3};
 
 use super::palette::{self, CHALK, CORAL, TEAL};
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
 /// The slope falls towards +x by this angle, radians.
@@ -12,7 +12,7 @@ const ANGLE: f64 = 0.45;
 /// The scene, for the table of all.
 pub const SET: Set = Set {
     name: "slope",
-    about: "a ball and a thin board on a slope under a low lamp, which grazes it",
+    about: "a ball and a post on a slope under a low lamp, which grazes it",
     make: scene,
 };
 
@@ -24,23 +24,26 @@ pub fn scene() -> Scene {
     let half = DVec3::new(6.0, 0.0, 6.0);
     let ground =
         Shape::patch(DVec3::new(-half.x, 0.0, half.z), DVec3::X * 12.0, DVec3::Z * -12.0, (24, 24));
-    let board = Shape::cuboid(DVec3::new(0.06, 0.55, 0.9), 1);
+    // Upright and partly in the ground, with an edge towards the lamp, so that no side is grazed.
+    let post = Shape::cuboid(DVec3::new(0.16, 0.9, 0.16), 1);
+    let post_place = on_slope(DVec3::new(-1.0, 0.0, 1.35)) * turned.inverse();
+    let post_place = post_place * placed_at(0.0, 0.3, 0.0, 0.785);
     let objects = vec![
         Object::new(ground, turned, CHALK).of(matt, 7),
-        Object::new(Shape::sphere(0.8, (72, 36)), on_slope(DVec3::new(-0.7, 0.8, 0.5)), CORAL)
+        Object::new(Shape::sphere(0.8, (72, 36)), on_slope(DVec3::new(-0.8, 0.8, -0.6)), CORAL)
             .of(matt, 0),
-        Object::new(board, on_slope(DVec3::new(0.5, 0.55, -1.6)), TEAL).of(matt, 9),
+        Object::new(post, post_place, TEAL).of(matt, 9),
     ];
     let eye = Eye {
         position: DVec3::new(1.2, 4.6, 6.8),
-        target: DVec3::new(0.5, -0.05, 0.0),
-        fov_y: 0.52,
+        target: DVec3::new(0.45, 0.3, 0.0),
+        fov_y: 0.54,
         near: 0.5,
         far: 40.0,
     };
     let key = Lamp {
         color: DVec3::new(1.0, 0.97, 0.9),
-        position: DVec3::new(-6.0, 5.0, 1.8),
+        position: DVec3::new(-6.0, 5.0, 0.9),
         target: DVec3::new(0.3, 0.0, 0.0),
         half_angle: 0.48,
         kind: LampKind::Spot,

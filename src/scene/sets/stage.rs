@@ -8,38 +8,35 @@ use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, place
 use crate::scene::shape::Shape;
 
 /// The scene, for the table of all.
-pub const SET: Set = Set {
-    name: "stage",
-    about: "a floor with two balls under lamps that are seen",
-    make: scene,
-};
+pub const SET: Set =
+    Set { name: "stage", about: "a floor with two balls under lamps that are seen", make: scene };
 
 /// The scene itself.
 pub fn scene() -> Scene {
-    let floor = tiles(14, 1.0, [CHALK, SLATE * 1.4], 5);
+    let floor = tiles(24, 1.0, [CHALK, SLATE * 1.4], 5);
     let glossy = Material::default().glossy(0.3).shiny(60.0);
     let ball = |x: f64, z: f64, color| {
         Object::new(Shape::sphere(0.45, (64, 32)), placed_at(x, 0.45, z, 0.0), color).of(glossy, 0)
     };
     let objects = vec![
         Object::new(floor, DMat4::IDENTITY, DVec3::ONE).of(glossy, 7),
-        ball(0.55, 0.15, CORAL),
-        ball(-1.35, 1.1, TEAL),
+        ball(1.25, -0.35, CORAL),
+        ball(-1.2, 0.5, TEAL),
     ];
     let eye = Eye {
-        position: DVec3::new(0.0, 3.7, 9.6),
-        target: DVec3::new(0.0, 1.0, 0.0),
-        fov_y: 0.6,
+        position: DVec3::new(0.0, 4.1, 12.2),
+        target: DVec3::new(0.0, 1.4, 0.0),
+        fov_y: 0.62,
         near: 0.5,
         far: 40.0,
     };
     let key = Lamp {
         color: DVec3::new(1.0, 0.96, 0.88),
-        position: DVec3::new(-0.9, 2.9, -0.9),
-        target: DVec3::new(0.1, 0.0, 0.3),
+        position: DVec3::new(-0.5, 4.3, -0.5),
+        target: DVec3::new(0.0, 0.0, 0.4),
         half_angle: 0.5,
         kind: LampKind::Spot,
     };
-    let lamps = palette::lamps(key, 5.0, 2.1, 0.55);
+    let lamps = palette::lamps(key, 3.4, 3.6, 0.55);
     Scene { shows_lamps: true, ..base_scene(objects, eye, lamps) }
 }
