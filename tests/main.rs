@@ -44,6 +44,7 @@ mod migrate;
 mod mutate;
 mod new;
 mod one_meaning;
+mod oracles;
 mod packages;
 mod permute;
 mod pipelines;
@@ -105,6 +106,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     mutate::trials,
     new::trials,
     one_meaning::trials,
+    oracles::trials,
     packages::trials,
     permute::trials,
     pipelines::trials,

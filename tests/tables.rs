@@ -1,5 +1,7 @@
 //! Checks the tables of `shaderlib/tables` with formulas that do not share code with the generator.
 
+mod sample;
+
 use std::f64::consts::PI;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,6 +19,9 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("tables::dfg", dfg),
         Trial::test("tables::sheen", sheen),
         Trial::test("tables::ltc", ltc),
+        Trial::test("tables::dfg_of_all_columns", sample::dfg),
+        Trial::test("tables::sheen_of_all_columns", sample::sheen),
+        Trial::test("tables::ltc_of_all_columns", sample::ltc),
         Trial::test("tables::blue_noise", blue_noise),
     ]
 }
@@ -37,7 +42,7 @@ fn values(name: &str, channels: usize) -> Result<Vec<f64>, Failed> {
 }
 
 /// The texture `.ktx2` has the values of the `.bin`, read with the crate `ktx2`. The description
-/// `.toml` has the same number of channels, and an error.
+/// `.toml` has the same number of channels, an error, and the hash of the `.bin`.
 fn files_agree() -> Outcome {
     let formats = [
         ("blue_noise", 1, ktx2::Format::R32_SFLOAT),
@@ -58,6 +63,10 @@ fn files_agree() -> Outcome {
         let text = fs::read_to_string(folder().join(format!("{name}.toml")))?;
         let told: toml::Table = text.parse()?;
         let listed = told.get("channels").and_then(|channels| channels.as_array()).map(Vec::len);
+        let hash = told.get("blake3").and_then(|hash| hash.as_str());
+        if hash != Some(&*sample::hash_of(name)?.to_hex()) {
+            return Err(format!("{name}.toml describes another {name}.bin").into());
+        }
         if listed != Some(channels) || told.get("error").is_none_or(|error| !error.is_str()) {
             return Err(format!("{name}.toml does not describe the table: {text}").into());
         }
@@ -139,30 +148,35 @@ fn dfg() -> Outcome {
     Ok(())
 }
 
-/// The albedo of both sheen lobes is that of a sum over the light's directions.
-fn sheen() -> Outcome {
-    let table = values("sheen", 2)?;
+/// The cosine of the light times the lobe of cloth with the visibility of Neubelt, and of Charlie.
+fn cloth_lobe(nl: f64, nv: f64, nh: f64, alpha: f64) -> [f64; 2] {
     let curve = |x: f64, t: f64| {
         let mix = |rough: f64, smooth: f64| rough * (1.0 - t) + smooth * t;
         mix(21.5473, 25.3245) / (1.0 + mix(3.82987, 3.32435) * x.powf(mix(0.19823, 0.16801)))
             + mix(-1.97760, -1.27393) * x
             + mix(-4.32054, -4.85967)
     };
-    let lambda = |z: f64, alpha: f64| {
+    let lambda = |z: f64| {
         let t = (1.0 - alpha).powi(2);
         if z < 0.5 { curve(z, t).exp() } else { (2.0 * curve(0.5, t) - curve(1.0 - z, t)).exp() }
     };
+    let sine = (1.0 - nh * nh).max(0.0).sqrt();
+    let distribution = (2.0 + 1.0 / alpha) * sine.powf(1.0 / alpha) / (2.0 * PI);
+    let neubelt = nl / (4.0 * (nl + nv - nl * nv));
+    let charlie = 1.0 / ((1.0 + lambda(nl) + lambda(nv)) * 4.0 * nv);
+    [neubelt, charlie].map(|visibility| distribution * visibility)
+}
+
+/// The albedo of both sheen lobes is that of a sum over the light's directions.
+fn sheen() -> Outcome {
+    let table = values("sheen", 2)?;
     for (column, row) in wide_cells() {
         let (alpha, nv) = cell(column, row);
         let v = viewer(nv);
         let mut wanted = [0.0; 2];
         for (l, size) in directions() {
-            let (nh, _) = half(v, l);
-            let sine = (1.0 - nh * nh).max(0.0).sqrt();
-            let cloth = (2.0 + 1.0 / alpha) * sine.powf(1.0 / alpha) / (2.0 * PI) * size;
-            let (nl, masked) = (l[2], 1.0 + lambda(l[2], alpha) + lambda(nv, alpha));
-            wanted[0] += cloth * nl / (4.0 * (nl + nv - nl * nv));
-            wanted[1] += cloth / (masked * 4.0 * nv);
+            let both = cloth_lobe(l[2], nv, half(v, l).0, alpha);
+            wanted = [0, 1].map(|i| wanted[i] + both[i] * size);
         }
         let start = 2 * (row * SIDE + column);
         for (wanted, found) in wanted.iter().zip(&table[start..start + 2]) {

@@ -87,6 +87,18 @@ const CASE_ERRORS: &[(&str, &str)] = &[
         "[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\nformula = \"x\"\nlaws = { integral = \"x\", gives = 1, within = 1 }\n",
         "mine.toml:5:8: error[case-invalid]: `x` is not a direction",
     ),
+    (
+        "[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\nformula = \"x\"\nlaws = { swap = \"x\" }\n",
+        "mine.toml:5:17: error[case-invalid]: parameters are exchanged in pairs",
+    ),
+    (
+        "[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\nformula = \"x\"\nlaws = { area = \"half\", from = 0, to = 1, within = 1 }\n",
+        "mine.toml:5:8: error[case-invalid]: `along` is missing",
+    ),
+    (
+        "[[case]]\nfunction = \"half\"\ninputs = { x = 1 }\nformula = \"x\"\nlaws = { equal = \"wrong\", with = { x = \"z\" }, within = 1 }\n",
+        "mine.toml:5:",
+    ),
     ("[[case]]\nfunction = \"hal\"\ninputs = { x = 1 }\n", "mine.toml:2:12: error["),
     (
         "[[case]]\nfunction = \"half\"\ninputs = { x = { hemisphere = \"n\", count = 2 } }\nformula = \"x\"\n",

@@ -86,7 +86,7 @@ const COMMANDS: &[Command] = &[
     ),
     (
         "tables",
-        "make the tables that techniques read: blue noise, DFG, LTC, sheen (a minute): [NAME]...",
+        "make the tables that techniques read: blue noise, DFG, LTC, sheen (a minute): [--check] [NAME]...",
         tables::run,
     ),
     (

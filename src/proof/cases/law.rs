@@ -3,7 +3,9 @@
 use super::Text;
 use super::reader::{Node, Value};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::proof::laws::{self, Albedo, Integral, Inverse, Law, Over, Takes, Wanted};
+use crate::proof::laws::{
+    self, Albedo, Area, Equality, Formulas, Integral, Inverse, Law, Over, Takes, Wanted,
+};
 
 /// Reads one law.
 pub fn read_law(node: &Node) -> Result<Law, Diagnostic> {
@@ -34,7 +36,7 @@ pub fn read_law(node: &Node) -> Result<Law, Diagnostic> {
 fn fill_law(mut law: Law, node: &Node, value: &Node) -> Result<Law, Diagnostic> {
     match law.kind.takes {
         Takes::Numbers => law.numbers = value.numbers()?,
-        Takes::Names => law.names = read_texts(value)?,
+        Takes::Names => law.names = read_names(law.kind.name, value)?,
         Takes::Slope => {
             law.names = read_texts(value)?;
             law.numbers = vec![node.required("slope")?.number()?];
@@ -57,12 +59,29 @@ fn fill_law(mut law: Law, node: &Node, value: &Node) -> Result<Law, Diagnostic> 
             law.partners = vec![value.text()?.to_owned()];
             law.inverse = Some(read_inverse(node)?);
         }
+        Takes::Equality => {
+            law.partners = read_texts(value)?;
+            law.equality = Some(read_equality(node)?);
+        }
+        Takes::Area => {
+            law.partners = read_texts(value)?;
+            law.area = Some(read_area(node)?);
+        }
     }
     Ok(law)
 }
 
 fn read_texts(node: &Node) -> Result<Vec<String>, Diagnostic> {
     node.one_or_more().iter().map(|one| one.text().map(str::to_owned)).collect()
+}
+
+/// Names of parameters: those that a law exchanges are in pairs.
+fn read_names(kind: &str, node: &Node) -> Result<Vec<String>, Diagnostic> {
+    let names = read_texts(node)?;
+    match kind == "swap" && (names.is_empty() || names.len() % 2 != 0) {
+        true => Err(node.error("parameters are exchanged in pairs")),
+        false => Ok(names),
+    }
 }
 
 fn read_integral(node: &Node) -> Result<Integral, Diagnostic> {
@@ -88,29 +107,52 @@ fn read_albedo(node: &Node) -> Result<Albedo, Diagnostic> {
     let text = |name: &str| node.get(name).map(|node| node.text().map(str::to_owned)).transpose();
     let over =
         [("l", Over::Light), ("h", Over::Half), ("below", Over::Below), ("sphere", Over::Sphere)];
-    let wanted = match (node.get("gives"), node.get("at_most")) {
-        (Some(gives), _) => Wanted::Exactly(read_formula(gives)?),
-        (None, Some(most)) => Wanted::AtMost(read_formula(most)?),
-        (None, None) => Wanted::Own,
-    };
     Ok(Albedo {
         over: node.get("over").map_or(Ok(Over::Light), |node| node.choice(&over))?,
         view: text("view")?.unwrap_or_else(|| "nv".to_owned()),
         azimuth: node.get("azimuth").map_or(Ok(0.0), Node::number)?,
         peak: node.get("peak").map(Text::read).transpose()?,
-        with: node.get("with").map_or(Ok(Vec::new()), read_formulas)?,
+        with: node.get("with").map_or(Ok(Formulas::new()), read_formulas)?,
         component: node
             .get("component")
             .map(|node| node.count(0, 3).map(|component| component as usize))
             .transpose()?,
         steps: read_steps(node)?,
         within: node.required("within")?.number()?,
-        wanted,
+        wanted: read_wanted(node)?,
+    })
+}
+
+fn read_wanted(node: &Node) -> Result<Wanted, Diagnostic> {
+    Ok(match (node.get("gives"), node.get("at_most")) {
+        (Some(gives), _) => Wanted::Exactly(read_formula(gives)?),
+        (None, Some(most)) => Wanted::AtMost(read_formula(most)?),
+        (None, None) => Wanted::Own,
+    })
+}
+
+fn read_equality(node: &Node) -> Result<Equality, Diagnostic> {
+    let tables = node.get("with").map_or(&[][..], Node::one_or_more);
+    let with = tables.iter().map(read_formulas).collect::<Result<_, _>>()?;
+    Ok(Equality { with, within: node.required("within")?.number()? })
+}
+
+fn read_area(node: &Node) -> Result<Area, Diagnostic> {
+    Ok(Area {
+        along: node.required("along")?.text()?.to_owned(),
+        from: read_formula(node.required("from")?)?,
+        to: read_formula(node.required("to")?)?,
+        finest: node.get("finest").map(read_formula).transpose()?,
+        times: node.get("times").map(read_formula).transpose()?,
+        with: node.get("with").map_or(Ok(Formulas::new()), read_formulas)?,
+        steps: read_steps(node)?,
+        within: node.required("within")?.number()?,
+        wanted: read_wanted(node)?,
     })
 }
 
 /// Formulas by name.
-fn read_formulas(node: &Node) -> Result<Vec<(String, Text)>, Diagnostic> {
+fn read_formulas(node: &Node) -> Result<Formulas, Diagnostic> {
     let entries = node.entries()?.iter();
     entries.map(|(key, value)| Ok((key.name.clone(), read_formula(value)?))).collect()
 }

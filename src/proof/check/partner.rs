@@ -10,7 +10,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::execute::kernel::{self, Kernel, word_value};
 use crate::proof::cases::{Rows, word_of};
 use crate::proof::formula::{Formula, Scope};
-use crate::proof::laws::{Albedo, Inverse, Law, Wanted};
+use crate::proof::laws::{self, Albedo, Area, Equality, Inverse, Law, Wanted};
 
 /// Another function that a law is about.
 pub struct Partner {
@@ -28,7 +28,7 @@ pub fn prepare_partners(
     rows: &Rows,
     scope: &Scope<'_>,
 ) -> Result<Vec<Partner>, Diagnostic> {
-    let partner = |name: &String| {
+    let partner = |(index, name): (usize, &String)| {
         let (module, function) = name.rsplit_once("::").unwrap_or((module, name));
         let kernels = languages
             .iter()
@@ -39,13 +39,11 @@ pub fn prepare_partners(
                 Ok((*language, kernel.map_err(|error| error.at(law.span, "named here"))?))
             })
             .collect::<Result<Vec<_>, Diagnostic>>()?;
-        let factor = |albedo: &Albedo| {
-            let parameters = kernels.iter().take(1).flat_map(|(_, kernel)| kernel.words());
-            albedo.rows(rows, scope, &Scope(parameters.collect()), law.span)
-        };
-        Ok(Partner { rows: law.albedo.as_ref().map(factor).transpose()?, kernels })
+        let parameters = kernels.iter().take(1).flat_map(|(_, kernel)| kernel.words());
+        let own = Scope(parameters.collect());
+        Ok(Partner { rows: laws::partner_rows(law, index, rows, (scope, &own))?, kernels })
     };
-    law.partners.iter().map(partner).collect()
+    law.partners.iter().enumerate().map(partner).collect()
 }
 
 fn first_error(errors: Diagnostics, law: &Law, name: &str) -> Diagnostic {
@@ -65,15 +63,25 @@ pub fn judge_partners(
     results: &[u32],
     session: &mut dyn Session,
 ) -> Result<Option<LawVerdict>, Diagnostic> {
-    match (&bound.law.albedo, &bound.law.inverse, bound.partners.first()) {
-        (Some(rule), _, Some(_)) => {
-            judge_albedo(job, bound, rule, language, results, session).map(Some)
-        }
-        (None, Some(rule), Some(partner)) => {
-            judge_inverse(job, (bound.law, rule, partner), language, results, session).map(Some)
-        }
-        _ => Ok(None),
+    let law = bound.law;
+    if let Some((rule, partner)) = law.inverse.as_ref().zip(bound.partners.first()) {
+        return judge_inverse(job, (law, rule, partner), language, results, session).map(Some);
     }
+    if bound.partners.is_empty() {
+        return Ok(None);
+    }
+    let values = partner_product(bound, language, session)?;
+    if values.is_empty() {
+        let example = Some("no row is left to compare".to_owned());
+        return Ok(Some(LawVerdict { broken: 1, example, ..LawVerdict::new(law) }));
+    }
+    let verdict = match (&law.albedo, &law.area, &law.equality) {
+        (Some(rule), ..) => judge_albedo(job, law, rule, &values, results)?,
+        (_, Some(rule), _) => judge_area(job, law, rule, &values, results)?,
+        (_, _, Some(rule)) => judge_equality(job, law, rule, &values, results),
+        _ => return Ok(None),
+    };
+    Ok(Some(verdict))
 }
 
 /// The components of a function's values, one list for each call.
@@ -105,41 +113,90 @@ fn component_product(left: &Values, right: &Values) -> Values {
     left.iter().zip(right).map(one).collect()
 }
 
-fn judge_albedo(
-    job: &Job<'_>,
+/// The product of the law's functions, one value for each call.
+fn partner_product(
     bound: &BoundLaw<'_>,
-    rule: &Albedo,
     language: Language,
-    results: &[u32],
     session: &mut dyn Session,
-) -> Result<LawVerdict, Diagnostic> {
-    let scope = Scope(job.kernel().words().collect());
+) -> Result<Values, Diagnostic> {
     let mut values: Option<Values> = None;
     for partner in &bound.partners {
         let Some(rows) = &partner.rows else { continue };
         let found = run_partner(partner, language, rows, session)?;
         values = Some(values.map_or(found.clone(), |values| component_product(&values, &found)));
     }
-    let values = values.unwrap_or_default();
-    let wanted = wanted_formula(rule, &scope)?;
-    let mut verdict = LawVerdict::new(bound.law);
+    Ok(values.unwrap_or_default())
+}
+
+fn judge_albedo(
+    job: &Job<'_>,
+    law: &Law,
+    rule: &Albedo,
+    values: &Values,
+    results: &[u32],
+) -> Result<LawVerdict, Diagnostic> {
+    let scope = Scope(job.kernel().words().collect());
     let components = match rule.component {
         Some(component) => component..component + 1,
         None => 0..values.first().map_or(0, Vec::len),
     };
+    let target =
+        Target { wanted: &rule.wanted, within: rule.within, chosen: rule.chosen(&job.rows) };
+    let mut verdict = LawVerdict::new(law);
     for component in components {
         let column: Vec<f64> = values.iter().map(|call| component_of(call, component)).collect();
         let sums = rule.sums(&job.rows, &scope, &column)?;
-        for (row, sum) in rule.chosen(&job.rows).into_iter().zip(sums) {
-            let inputs = job.rows.row(row);
+        target.judge(job, results, (component, &sums), &mut verdict)?;
+    }
+    Ok(verdict)
+}
+
+fn judge_area(
+    job: &Job<'_>,
+    law: &Law,
+    rule: &Area,
+    values: &Values,
+    results: &[u32],
+) -> Result<LawVerdict, Diagnostic> {
+    let scope = Scope(job.kernel().words().collect());
+    let target =
+        Target { wanted: &rule.wanted, within: rule.within, chosen: rule.chosen(&job.rows) };
+    let mut verdict = LawVerdict::new(law);
+    for component in 0..values.first().map_or(0, Vec::len) {
+        let column: Vec<f64> = values.iter().map(|call| component_of(call, component)).collect();
+        let sums = rule.sums(&job.rows, &scope, &column)?;
+        target.judge(job, results, (component, &sums), &mut verdict)?;
+    }
+    Ok(verdict)
+}
+
+/// What integrals must be, and the rows of the case that they belong to.
+struct Target<'a> {
+    wanted: &'a Wanted,
+    within: f64,
+    chosen: Vec<usize>,
+}
+
+impl Target<'_> {
+    /// Judges the integrals of one component.
+    fn judge(
+        &self,
+        job: &Job<'_>,
+        results: &[u32],
+        (component, sums): (usize, &[f64]),
+        verdict: &mut LawVerdict,
+    ) -> Result<(), Diagnostic> {
+        let wanted = wanted_formula(self.wanted, &Scope(job.kernel().words().collect()))?;
+        let at_most = matches!(self.wanted, Wanted::AtMost(_));
+        for (row, sum) in self.chosen.iter().zip(sums) {
+            let inputs = job.rows.row(*row);
             let wanted = match &wanted {
                 Some(formula) => component_of(&formula.eval(inputs), component),
-                None => own_component(job, results, row, component),
+                None => own_component(job, results, *row, component),
             };
-            let at_most = matches!(rule.wanted, Wanted::AtMost(_));
-            let off = if at_most { (sum - wanted).max(0.0) } else { (sum - wanted).abs() };
+            let off = if at_most && *sum <= wanted { 0.0 } else { (sum - wanted).abs() };
             // An error of NaN counts as too large.
-            if off.is_nan() || off > rule.within {
+            if off.is_nan() || off > self.within {
                 verdict.broken += 1;
                 let most = if at_most { "at most " } else { "" };
                 verdict.example.get_or_insert_with(|| {
@@ -149,12 +206,44 @@ fn judge_albedo(
                 });
             }
         }
+        Ok(())
     }
-    Ok(verdict)
 }
 
-fn wanted_formula(rule: &Albedo, scope: &Scope<'_>) -> Result<Option<Formula>, Diagnostic> {
-    match &rule.wanted {
+fn judge_equality(
+    job: &Job<'_>,
+    law: &Law,
+    rule: &Equality,
+    values: &Values,
+    results: &[u32],
+) -> LawVerdict {
+    let (mut verdict, count) = (LawVerdict::new(law), job.kernel().result_words() as usize);
+    for (row, other) in values.iter().enumerate() {
+        let inputs = job.rows.row(row);
+        let unknown = job.expected.get(row).is_some_and(judge::is_indeterminate);
+        if unknown || judge::is_ambiguous(job, inputs) {
+            continue;
+        }
+        let own: Vec<f64> =
+            (0..count).map(|component| own_component(job, results, row, component)).collect();
+        let off = |component: usize| {
+            let wanted = component_of(other, component);
+            (own[component] - wanted).abs() / wanted.abs().max(1.0)
+        };
+        let worst = (0..count).map(off).fold(0.0, nan_max);
+        if worst.is_nan() || worst > rule.within {
+            verdict.broken += 1;
+            verdict.example.get_or_insert_with(|| {
+                let names = law.partners.join("` * `");
+                format!("{inputs:?} gives {own:?}, and `{names}` {other:?}: off by {worst:e}")
+            });
+        }
+    }
+    verdict
+}
+
+fn wanted_formula(wanted: &Wanted, scope: &Scope<'_>) -> Result<Option<Formula>, Diagnostic> {
+    match wanted {
         Wanted::Own => Ok(None),
         Wanted::Exactly(text) | Wanted::AtMost(text) => text.bind(scope).map(Some),
     }

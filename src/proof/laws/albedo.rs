@@ -18,10 +18,11 @@
 
 use std::f64::consts::PI;
 
+use super::factor::{Factor, Formulas};
 use super::integral::{MOST_CALLS, MOST_ROWS};
-use crate::diagnostic::{Diagnostic, codes};
-use crate::proof::cases::{Rows, Text, word_of};
-use crate::proof::formula::{Formula, Scope};
+use crate::diagnostic::Diagnostic;
+use crate::proof::cases::{Rows, Text};
+use crate::proof::formula::Scope;
 use crate::quadrature::gauss_legendre;
 
 /// How an albedo is integrated, and what it must be.
@@ -35,7 +36,7 @@ pub struct Albedo {
     /// The width of the lobe around the half vector.
     pub peak: Option<Text>,
     /// Formulas for parameters that neither the geometry nor the case has.
-    pub with: Vec<(String, Text)>,
+    pub with: Formulas,
     /// The component of the function's value and of the product that is the albedo.
     pub component: Option<usize>,
     /// Steps in the cosine. There are twice as many azimuths.
@@ -121,22 +122,14 @@ impl Albedo {
         factor: &Scope<'_>,
         span: crate::source::Span,
     ) -> Result<Rows, Diagnostic> {
-        let kinds: Vec<_> = factor.0.iter().flat_map(|(_, shape)| shape.kinds()).collect();
-        let bound = |(name, text): &(String, Text)| Ok((name.clone(), text.bind(case)?));
-        let with = self.with.iter().map(bound).collect::<Result<Vec<_>, Diagnostic>>()?;
+        let factor = Factor::new(case, factor, &self.with, span)?;
         let mut words = Vec::new();
         for row in self.chosen(rows) {
             for (geometry, _) in self.nodes(rows.row(row), case)? {
-                let mut values = Vec::new();
-                for (name, shape) in &factor.0 {
-                    let found = factor_value(name, &geometry, rows.row(row), (case, &with));
-                    let value = found.filter(|value| value.len() == shape.words() as usize);
-                    values.extend(value.ok_or_else(|| unknown_factor(name, span))?);
-                }
-                words.extend(values.iter().zip(&kinds).map(|(value, kind)| word_of(*value, *kind)));
+                factor.push_call(&mut words, rows.row(row), |name| geometry.value(name))?;
             }
         }
-        Ok(Rows::of(words, kinds))
+        Ok(Rows::of(words, factor.kinds()))
     }
 
     /// The directions and weights of the rule for one row. Calls without weight are included.
@@ -184,31 +177,15 @@ impl Albedo {
     }
 }
 
-/// The value of a factor's parameter, from a row of the case or from the formulas that the law
-/// gives.
-fn factor_value(
-    name: &str,
-    geometry: &Geometry,
-    row: &[f64],
-    (case, with): (&Scope<'_>, &[(String, Formula)]),
-) -> Option<Vec<f64>> {
-    let with = with.iter().find(|(known, _)| known == name).map(|(_, formula)| formula.eval(row));
-    let cosine = COSINES.iter().find(|(known, _)| *known == name);
-    let direction = DIRECTIONS.iter().find(|(known, _)| *known == name);
-    let own = || {
-        let (first, shape) = case.find(&[name.to_owned()])?;
-        Some(row[first..first + shape.words() as usize].to_vec())
-    };
-    with.or_else(|| cosine.map(|(_, cosine)| vec![cosine(geometry)]))
-        .or_else(|| direction.map(|(_, direction)| direction(geometry).to_vec()))
-        .or_else(own)
-}
-
-fn unknown_factor(name: &str, span: crate::source::Span) -> Diagnostic {
-    let message = format!("neither the geometry nor the case gives a `{name}` of this type");
-    Diagnostic::error(codes::CASE_INVALID, message)
-        .at(span, "in this law")
-        .note("a value for it is given by `with`, such as `with = { f90 = 1 }`")
+impl Geometry {
+    /// A cosine or a direction by the name of a parameter.
+    fn value(&self, name: &str) -> Option<Vec<f64>> {
+        let cosine = COSINES.iter().find(|(known, _)| *known == name);
+        let direction = DIRECTIONS.iter().find(|(known, _)| *known == name);
+        cosine
+            .map(|(_, cosine)| vec![cosine(self)])
+            .or_else(|| direction.map(|(_, direction)| direction(self).to_vec()))
+    }
 }
 
 /// Even azimuths and Gauss-Legendre in the cosine, from `low` to 1, with their solid angles.

@@ -94,9 +94,12 @@ impl Integral {
         2 * self.steps * self.steps
     }
 
-    /// How far a sum is from the right one.
+    /// How far a sum is from the right one; NaN for a sum of NaN, which `max` would make 0.
     pub fn off(&self, sum: f64, wanted: f64) -> f64 {
-        if self.at_most { (sum - wanted).max(0.0) } else { (sum - wanted).abs() }
+        match self.at_most && sum <= wanted {
+            true => 0.0,
+            false => (sum - wanted).abs(),
+        }
     }
 }
 

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `range = [low, high]` | every component lies there, bounds included, exactly |
 //! | `rising = "x"`, `falling = "x"` | a larger `x` never gives a smaller (larger) value, up to the tolerance |
-//! | `swap = ["l", "v"]` | exchanging the parameters changes nothing: symmetry, reciprocity |
+//! | `swap = ["l", "v"]` | exchanging the parameters, pair by pair, changes nothing: symmetry, reciprocity |
 //! | `even = ["n", "l"]` | negating the parameters changes nothing |
 //! | `continuous = "x", slope = 4` | `x` a little larger changes the value by no more than that slope allows: no jumps |
 //! | `at = { d = 0 }, gives = 1` | the value there, whatever the other parameters are |
@@ -12,14 +12,20 @@
 //! | `reaches = [low, high]` | some row comes at least that low and some that high: the inputs are no trivial ones |
 //! | `albedo = ["d_ggx", "v_smith_ggx"], within = 0.001` | the function's value is the directional albedo of the product of these, by quadrature (see [`Albedo`]); or `gives`, `at_most` |
 //! | `inverse = "g", within = 1e-6` | `g` of the value gives the first parameter back, or that named by `of` |
+//! | `equal = "g", with = { b = "a" }, within = 1e-6` | the function's value is that of `g`, or the product of several functions (see [`Equality`]) |
+//! | `area = "g", along = "r", from = 0, to = "r", within = 1e-6` | the function's value is the integral of `g`, or of a product, along one parameter (see [`Area`]); or `gives`, `at_most` |
 //!
-//! The last two are also about other functions. Those of the same module are given by name, others
+//! The last four are also about other functions. Those of the same module are given by name, others
 //! by path.
 
 mod albedo;
+mod area;
+mod factor;
 mod integral;
 
 pub use albedo::{Albedo, Over, Wanted};
+pub use area::{Area, Equality};
+pub use factor::Formulas;
 pub use integral::Integral;
 
 use std::ops::Range;
@@ -52,6 +58,10 @@ pub enum Takes {
     Albedo,
     /// A function that leads back; see [`Inverse`].
     Inverse,
+    /// Functions whose product the value is; see [`Equality`].
+    Equality,
+    /// Functions whose integral the value is; see [`Area`].
+    Area,
 }
 
 impl Takes {
@@ -75,6 +85,11 @@ impl Takes {
                 "within",
             ],
             Self::Inverse => &["of", "within"],
+            Self::Equality => &["with", "within"],
+            Self::Area => &[
+                "along", "from", "to", "finest", "times", "with", "steps", "gives", "at_most",
+                "within",
+            ],
         }
     }
 }
@@ -92,6 +107,8 @@ pub const KINDS: &[Kind] = &[
     Kind { name: "integral", takes: Takes::Integral },
     Kind { name: "albedo", takes: Takes::Albedo },
     Kind { name: "inverse", takes: Takes::Inverse },
+    Kind { name: "equal", takes: Takes::Equality },
+    Kind { name: "area", takes: Takes::Area },
 ];
 
 /// One law of a case.
@@ -105,6 +122,8 @@ pub struct Law {
     pub integral: Option<Integral>,
     pub albedo: Option<Albedo>,
     pub inverse: Option<Inverse>,
+    pub equality: Option<Equality>,
+    pub area: Option<Area>,
     /// The other functions that the law is about, by their names in the file.
     pub partners: Vec<String>,
 }
@@ -139,7 +158,7 @@ pub fn law_toml(law: &Law) -> String {
     let value = match law.kind.takes {
         Takes::Numbers => format!("{:?}", law.numbers),
         Takes::Names => format!("[{names}]"),
-        Takes::Integral | Takes::Albedo | Takes::Inverse => names,
+        Takes::Integral | Takes::Albedo | Takes::Inverse | Takes::Equality | Takes::Area => names,
         Takes::Slope => format!("{names}, slope = {:?}", law.number(0)),
         Takes::Point => format!("{{ {} }}, gives = {:?}", point(), law.numbers),
     };
@@ -158,6 +177,8 @@ impl Law {
             integral: None,
             albedo: None,
             inverse: None,
+            equality: None,
+            area: None,
             partners: Vec::new(),
         }
     }
@@ -214,6 +235,23 @@ pub fn transform_rows(
     Ok(Some(rows.with_words(words)))
 }
 
+/// The calls of one of the law's other functions, where they do not depend on results. `own` has its
+/// parameters.
+pub fn partner_rows(
+    law: &Law,
+    index: usize,
+    rows: &Rows,
+    (case, own): (&Scope<'_>, &Scope<'_>),
+) -> Result<Option<Rows>, Diagnostic> {
+    if let Some(albedo) = &law.albedo {
+        return albedo.rows(rows, case, own, law.span).map(Some);
+    }
+    if let Some(equality) = &law.equality {
+        return equality.rows(index, rows, (case, own), law.span).map(Some);
+    }
+    law.area.as_ref().map(|area| area.rows(rows, (case, own), law.span)).transpose()
+}
+
 fn argument_place<'a>(
     law: &Law,
     name: &str,
@@ -260,7 +298,8 @@ fn raise_word(word: &mut u32, kind: ScalarKind) {
 }
 
 fn swap_arguments(row: &mut [u32], places: &[(usize, &Shape)]) {
-    if let [(first, shape), (second, other)] = places {
+    let (pairs, _) = places.as_chunks::<2>();
+    for [(first, shape), (second, other)] in pairs {
         for word in 0..shape.words().min(other.words()) as usize {
             row.swap(first + word, second + word);
         }

@@ -3,10 +3,14 @@
 //! Each table becomes `NAME.bin` (32-bit floats, little-endian, row by row), `NAME.ktx2` (the same
 //! as a texture) and `NAME.toml` (what it is, and how far off it is at most). Columns are of
 //! perceptual roughness, rows of the viewer's cosine, as `lighting::area::ltc_uv` reads them.
+//!
+//! `cargo xtask tables --check` computes every cell of the files again by a finer rule, and fails if
+//! one is further off than its description says.
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod dfg;
+mod header;
 mod ktx2;
 mod ltc;
 mod noise;
@@ -30,8 +34,18 @@ pub struct Table {
     /// What each channel is.
     pub channels: &'static [&'static str],
     make: fn() -> Vec<Vec<f64>>,
-    /// Describes the worst error over all cells, computed from the values that are shipped.
-    error: fn(&[f32]) -> String,
+    /// The errors of the values that are shipped.
+    errors: fn(&[f32]) -> Errors,
+}
+
+/// How far a table is off.
+pub struct Errors {
+    pub text: String,
+    /// The worst of each column, rounded up. A table whose errors do not depend on the column has one
+    /// number, an exact one has none.
+    pub worst: Vec<f64>,
+    /// For a table whose last row, of a viewer on the horizon, is worse: that row by itself.
+    pub horizon: Vec<f64>,
 }
 
 const TABLES: &[Table] = &[
@@ -41,7 +55,11 @@ const TABLES: &[Table] = &[
         source: "Ulichney, \"The Void-and-Cluster Method for Dither Array Generation\", 1993",
         channels: &["rank over the number of cells, in (0, 1)"],
         make: noise::rows,
-        error: |_| "none: every rank is there once".to_owned(),
+        errors: |_| Errors {
+            text: "none: every rank is there once".to_owned(),
+            worst: Vec::new(),
+            horizon: Vec::new(),
+        },
     },
     Table {
         name: "dfg",
@@ -49,7 +67,7 @@ const TABLES: &[Table] = &[
         source: "Karis, \"Real Shading in Unreal Engine 4\", 2013; Heitz, \"Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs\", 2014, equation 99",
         channels: &["scale of f0, in [0, 1]", "scale of f90, in [0, 1]"],
         make: || cells(dfg::cell),
-        error: |values| worst(values, |at| dfg::albedo(at.nv(), at.alpha(), 200).to_vec()),
+        errors: |values| worst(values, |at| dfg::albedo(at.nv(), at.alpha(), 200).to_vec()),
     },
     Table {
         name: "ltc",
@@ -62,7 +80,7 @@ const TABLES: &[Table] = &[
             "z of the third column",
         ],
         make: ltc::rows,
-        error: misplaced,
+        errors: misplaced,
     },
     Table {
         name: "sheen",
@@ -70,7 +88,7 @@ const TABLES: &[Table] = &[
         source: "Estevez, Kulla, \"Production Friendly Microfacet Sheen BRDF\", 2017",
         channels: &["with `v_neubelt`", "with `v_charlie`"],
         make: || cells(sheen::cell),
-        error: |values| worst(values, |at| sheen::albedo(at.nv(), at.alpha(), 200).to_vec()),
+        errors: |values| worst(values, |at| sheen::albedo(at.nv(), at.alpha(), 200).to_vec()),
     },
 ];
 
@@ -123,15 +141,23 @@ fn by_rows<T: Send>(of: &(dyn Fn(Cell) -> T + Sync)) -> Vec<T> {
 }
 
 /// The largest difference of a shipped value from a finer rule's.
-fn worst(values: &[f32], finer: fn(Cell) -> Vec<f64>) -> String {
+fn worst(values: &[f32], finer: fn(Cell) -> Vec<f64>) -> Errors {
     let wanted = by_rows(&finer).into_iter().flatten();
     let apart = values.iter().zip(wanted).map(|(found, wanted)| (f64::from(*found) - wanted).abs());
     let most = apart.fold(0.0, f64::max);
-    format!("at most {most:.1e}, against a rule with more than twice as many nodes")
+    Errors {
+        text: format!("at most {most:.1e}, against a rule with more than twice as many nodes"),
+        worst: vec![rounded_up(most, 1e5)],
+        horizon: Vec::new(),
+    }
+}
+
+fn rounded_up(value: f64, steps: f64) -> f64 {
+    (value * steps).ceil() / steps
 }
 
 /// The share of light that the fits put in the wrong place: the largest, and the mean.
-fn misplaced(values: &[f32]) -> String {
+fn misplaced(values: &[f32]) -> Errors {
     let share = |at: Cell| {
         let start = 4 * at.index();
         let numbers = [0, 1, 2, 3].map(|i| f64::from(values[start + i]));
@@ -139,54 +165,73 @@ fn misplaced(values: &[f32]) -> String {
         ltc::misplaced(numbers, scale + offset, at)
     };
     let shares = by_rows(&share);
+    let (above, horizon) = shares.split_at(SIDE * (SIDE - 1));
     let most = |shares: &[f64]| 100.0 * shares.iter().copied().fold(0.0, f64::max);
     let mean = 100.0 * shares.iter().sum::<f64>() / shares.len() as f64;
-    format!(
-        "of a lobe's light {mean:.1} % lies elsewhere in the fit on average, at most {:.1} %, and {:.1} % \
-         in the last row, of a viewer on the horizon",
-        most(&shares[..SIDE * (SIDE - 1)]),
-        most(&shares[SIDE * (SIDE - 1)..])
-    )
-}
-
-/// The description beside a table.
-fn header(table: &Table, error: &str) -> String {
-    let channels: Vec<String> =
-        table.channels.iter().map(|channel| format!("    {channel:?},\n")).collect();
-    format!(
-        "# Made by `cargo xtask tables`.\n\nname = {:?}\nabout = {:?}\nsource = {:?}\n\
-         licence = \"MIT OR Apache-2.0\"\nsize = [{SIDE}, {SIDE}]\nformat = \"f32, little-endian, row by row\"\n\
-         channels = [\n{}]\nerror = {error:?}\n",
-        table.name,
-        table.about,
-        table.source,
-        channels.concat()
-    )
+    let column =
+        |column: usize| above.iter().skip(column).step_by(SIDE).copied().fold(0.0, f64::max);
+    Errors {
+        text: format!(
+            "of a lobe's light {mean:.1} % lies elsewhere in the fit on average, at most {:.1} %, and {:.1} % \
+             in the last row, of a viewer on the horizon",
+            most(above),
+            most(horizon)
+        ),
+        worst: (0..SIDE).map(|index| rounded_up(column(index), 1e3)).collect(),
+        horizon: horizon.iter().map(|share| rounded_up(*share, 1e3)).collect(),
+    }
 }
 
 /// Makes one table and writes its files.
 fn make(folder: &Path, table: &Table) -> Result<(), String> {
     let values: Vec<f32> = (table.make)().into_iter().flatten().map(|value| value as f32).collect();
-    let error = (table.error)(&values);
+    let errors = (table.errors)(&values);
     let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
     let texture = ktx2::file(table, &values).ok_or("no format has so many channels")?;
-    let files = [("bin", bytes), ("ktx2", texture), ("toml", header(table, &error).into_bytes())];
+    let header = header::header_text(table, &errors, &bytes);
+    let files = [("bin", bytes), ("ktx2", texture), ("toml", header.into_bytes())];
     for (extension, bytes) in files {
         let path = folder.join(format!("{}.{extension}", table.name));
         lamplight::output::write(&path, &bytes).map_err(|error| error.to_string())?;
     }
-    println!("{}: {error}", table.name);
+    println!("{}: {}", table.name, errors.text);
     Ok(())
 }
 
-/// `FOLDER [NAME]...`: writes all tables, or those that are named.
+/// Compares the files of one table with each other, and its errors with those that are published.
+/// Its description must be what is computed now, so no error may be larger.
+fn check_table(folder: &Path, table: &Table) -> Result<(), String> {
+    let read = |extension: &str| {
+        let path = folder.join(format!("{}.{extension}", table.name));
+        std::fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))
+    };
+    let bytes = read("bin")?;
+    let (words, rest) = bytes.as_chunks::<4>();
+    let values: Vec<f32> = words.iter().map(|word| f32::from_le_bytes(*word)).collect();
+    if values.len() != SIDE * SIDE * table.channels.len() || !rest.is_empty() {
+        return Err(format!("{}.bin has {} bytes", table.name, bytes.len()));
+    }
+    if ktx2::file(table, &values) != Some(read("ktx2")?) {
+        return Err(format!("{}.ktx2 has other values than {}.bin", table.name, table.name));
+    }
+    let published = String::from_utf8_lossy(&read("toml")?).into_owned();
+    let errors = (table.errors)(&values);
+    header::check_header(&published, &errors, &bytes)
+        .map_err(|error| format!("{}: {error}", table.name))?;
+    println!("{}: {}, as published", table.name, errors.text);
+    Ok(())
+}
+
+/// `FOLDER [--check] [NAME]...`: writes, or checks, all tables or those that are named.
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
     let Some(folder) = arguments.next().map(PathBuf::from) else {
-        eprintln!("usage: lamplight-tables FOLDER [NAME]...");
+        eprintln!("usage: lamplight-tables FOLDER [--check] [NAME]...");
         return ExitCode::from(2);
     };
-    let names: Vec<String> = arguments.collect();
+    let mut names: Vec<String> = arguments.collect();
+    let is_check = names.iter().any(|name| name == "--check");
+    names.retain(|name| name != "--check");
     if let Some(name) = names.iter().find(|name| TABLES.iter().all(|table| table.name != **name)) {
         let known: Vec<&str> = TABLES.iter().map(|table| table.name).collect();
         eprintln!("there is no table `{name}`; there are: {}", known.join(", "));
@@ -195,7 +240,8 @@ fn main() -> ExitCode {
     let is_wanted =
         |table: &&Table| names.is_empty() || names.iter().any(|name| name == table.name);
     for table in TABLES.iter().filter(is_wanted) {
-        if let Err(reason) = make(&folder, table) {
+        let work = if is_check { check_table } else { make };
+        if let Err(reason) = work(&folder, table) {
             eprintln!("{reason}");
             return ExitCode::from(1);
         }

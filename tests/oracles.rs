@@ -1,0 +1,96 @@
+//! Functions compared with what their formulas stand for, where this is no property of single values
+//! that a case file could hold: a sum without end, a whole march, random distributions of depths.
+
+mod depths;
+mod film;
+mod march;
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+
+use lamplight::bundle::Language;
+use lamplight::diagnostic::Diagnostic;
+use lamplight::execute::kernel::Kernel;
+use lamplight::execute::{Session, executors, kernel, on_thread};
+use lamplight::proof::library::Library;
+use lamplight::source::SourceSet;
+use libtest_mimic::{Failed, Trial};
+
+/// A property of functions that are called in one language.
+type Property = fn(&mut Calls<'_>) -> Result<(), String>;
+
+const PROPERTIES: &[(&str, Property)] = &[
+    ("film_orders_sum_up_to_airy", film::orders_sum_up),
+    ("film_two_orders", film::two_orders),
+    ("march_in_small_steps", march::small_steps),
+    ("march_from_sphere_to_sphere", march::large_steps),
+    ("moments_bound_the_shadow", depths::bound_the_shadow),
+    ("moments_of_three_depths", depths::three_depths),
+];
+
+pub fn trials() -> Vec<Trial> {
+    let trial = |(name, property): &(&str, Property)| {
+        let property = *property;
+        Trial::test(format!("oracles::{name}"), move || in_both_languages(property))
+    };
+    PROPERTIES.iter().map(trial).collect()
+}
+
+/// The evaluator and a language.
+struct Calls<'a> {
+    session: &'a mut dyn Session,
+    language: Language,
+}
+
+fn in_both_languages(property: Property) -> Result<(), Failed> {
+    let outcome = on_thread(|| {
+        let entry = executors::ALL.iter().find(|entry| entry.name == "eval").ok_or("no `eval`")?;
+        let mut session = entry.start()?;
+        for language in [Language::Wesl, Language::Glsl] {
+            let mut calls = Calls { session: session.as_mut(), language };
+            property(&mut calls).map_err(|error| format!("{language:?}: {error}"))?;
+        }
+        Ok(())
+    });
+    outcome.ok_or("panicked")?.map_err(|error: String| Failed::from(error))
+}
+
+impl Calls<'_> {
+    /// A function of the library.
+    fn kernel(&self, module: &str, function: &str) -> Result<Kernel, String> {
+        let sources = Mutex::new(SourceSet::default());
+        let library = Library::embedded();
+        let naga = library.module(&sources, module, self.language, &[function.to_owned()]);
+        let naga = naga.map_err(|errors| said(&errors))?;
+        kernel::build_kernel(&naga, function, &BTreeMap::new()).map_err(|error| said(&[error]))
+    }
+
+    /// The results for rows of f32 arguments, one after another.
+    fn run(&mut self, kernel: &Kernel, rows: &[Vec<f64>]) -> Result<Vec<f64>, String> {
+        let words: Vec<u32> =
+            rows.iter().flatten().map(|value| (*value as f32).to_bits()).collect();
+        let results = self.session.run(kernel, &words).map_err(|error| said(&[error]))?;
+        Ok(results.into_iter().map(|word| f64::from(f32::from_bits(word))).collect())
+    }
+}
+
+fn said(errors: &[Diagnostic]) -> String {
+    errors.iter().map(|error| error.message.clone()).collect::<Vec<_>>().join("; ")
+}
+
+/// Random numbers in [0, 1): the generator splitmix64 (Steele, Lea, Flood, 2014).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+}
