@@ -242,7 +242,7 @@ float mean_blocker(LAMPLIGHT_COLOR_MAP(depths, depths_smp), ShadowUv at, float r
 /// A shadow that is sharp near its caster and soft far from it.
 ///
 /// The map is read in two ways, so it is bound twice: some targets cannot compare and read through one binding.
-/// The penumbra's width is computed as if the map's depths were distances from the light. This is exact for linear depths, and an approximation for perspective ones.
+/// The penumbra's width is computed as if the map's depths were distances from the light. This is exact for linear depths, and an approximation for perspective ones. For those, make distances of the depths of the point and of `mean_blocker`, and filter over half of `shadow::penumbra::pcss_width`, as the program `forward` does.
 ///
 /// Parameters: `map`, `smp` depth map and comparison sampler; `depths`, `depths_smp` the same map as a plain texture, with a sampler that does not filter; `at` place in the map; `light_size` width of the light, texels of the map; `phi` turn of the disks, radians.
 /// Returns: visibility, [0, 1].

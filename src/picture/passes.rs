@@ -41,8 +41,9 @@ struct Studio<'a> {
 }
 
 /// The smallest and the largest shadow map, in texels along an edge. In between, a map has twice
-/// the picture's size. Maps of moments are blurred, so half of that is enough.
-const MAP_SIZES: (u32, u32) = (256, 1024);
+/// the picture's size. Maps of moments are blurred, so half of that is enough. The last one is the
+/// largest that a preset may ask for.
+const MAP_SIZES: (u32, u32, u32) = (256, 1024, 4096);
 
 /// The scene of a plan with what lights it.
 pub(super) struct Lit<'p> {
@@ -66,7 +67,10 @@ impl<'p> Lit<'p> {
             return Err(vec![no_frame()]);
         };
         let twice = (2 * shot.size[0].max(shot.size[1])).next_power_of_two();
-        let size = scene.map_size.unwrap_or_else(|| twice.clamp(MAP_SIZES.0, MAP_SIZES.1));
+        let published = plan.number("depth_pass", "size").and_then(|size| size.first().copied());
+        let published = published.map(|size| size.clamp(1.0, f64::from(MAP_SIZES.2)) as u32);
+        let fitting = || twice.clamp(MAP_SIZES.0, MAP_SIZES.1);
+        let size = published.or(scene.map_size).unwrap_or_else(fitting);
         Ok(Self { key: *key, scene, last, lit, size })
     }
 }

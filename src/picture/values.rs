@@ -10,7 +10,7 @@ use super::needs::Cleared;
 use super::plan::{Pass, Plan};
 use super::textures::LEVELS;
 use super::{Shot, Surroundings};
-use crate::scene::sets::{Eye, LampKind, Material, Object, Scene};
+use crate::scene::sets::{Eye, Lamp, LampKind, Material, Object, Scene};
 use crate::scene::{
     Clip, Clusters, Depth, ProbeField, directions, normal_matrix, perspective, sh9_project,
 };
@@ -279,9 +279,21 @@ impl Values<'_> {
             "near" => vec![self.light.near],
             "far" => vec![self.light.far],
             "texel" => vec![self.light.texel],
+            "light_size" => vec![self.light_size()],
             "normal_offset" => vec![offset],
             _ => return None,
         })
+    }
+
+    /// How wide the light that casts the shadow is: as a lamp with an area is high. For light of one
+    /// direction, that is divided by the distance of the lamp.
+    fn light_size(&self) -> f64 {
+        let (lamp, width) = (self.scene.lamps.first(), 2.0 * self.scene.lamp_size().y);
+        let distance = match self.lit.needs.caster {
+            Some(LampKind::Directional) => lamp.map_or(1.0, Lamp::reach).max(1e-6),
+            _ => 1.0,
+        };
+        width / distance
     }
 
     /// The polygon offset of the depth pass: the source's, or as much as the filter needs.

@@ -6,6 +6,7 @@
 //! looks down its -z axis, with +y up. Lengths are in scene units, angles in radians. Cast the
 //! results (`as_mat4`, `as_vec3`) where they enter a uniform buffer.
 
+mod chessmen;
 mod clusters;
 mod environment;
 mod field;
@@ -23,6 +24,7 @@ mod rays;
 pub mod sets;
 mod shape;
 mod sky;
+mod turned;
 mod view;
 
 pub use clusters::{Cells, ClusterError, Clusters, MOST_CELLS, MOST_INDICES, MOST_LAMPS, Reach};

@@ -11,6 +11,7 @@ pub const FORMS: &[(&str, Form)] = &[
     ("shadow_border", border),
     ("shadow_acne", acne),
     ("shadow_penumbra", penumbra),
+    ("shadow_softness", softness),
 ];
 
 /// The width and the height of a frame, in pixels.
@@ -198,6 +199,17 @@ fn around_ball(
     shadow: &str,
     more: Numbers<'_>,
 ) -> Result<(Vec<(f64, f64)>, f64), String> {
+    let (measured, texel) = below_ball(bench, shadow, more)?;
+    let without_way = measured.into_iter().map(|(distance, _, visible)| (distance, visible));
+    Ok((without_way.collect(), texel))
+}
+
+/// As [`around_ball`], with the way from each fragment to the ball's middle, along the light.
+fn below_ball(
+    bench: &Bench<'_>,
+    shadow: &str,
+    more: Numbers<'_>,
+) -> Result<(Vec<(f64, f64, f64)>, f64), String> {
     let (casters, towards) = (casters()?, TOWARDS.normalize());
     let axis = (-towards).to_array();
     let mut numbers: Vec<(&str, &str, &[f64])> =
@@ -217,7 +229,8 @@ fn around_ball(
     });
     let measured = alone.filter_map(|fragment| {
         let distance = casters.beside_ball(fragment.position, towards)? - 1.0;
-        Some((distance, visibility(fragment, towards)))
+        let way = (casters.ball - fragment.position).dot(towards);
+        Some((distance, way, visibility(fragment, towards)))
     });
     Ok((measured.collect(), texel))
 }
@@ -312,6 +325,33 @@ fn penumbra(bench: &Bench<'_>) -> Result<(), String> {
         if !rises || first > 0.05 || last < 0.95 || between < 3 {
             return Err(format!("{shadow} should rise from 0 to 1 over the border: {means:.3?}"));
         }
+    }
+    Ok(())
+}
+
+/// With `pcss`, the border of a shadow is as wide as the light is large, times the way to what casts
+/// the shadow.
+fn softness(bench: &Bench<'_>) -> Result<(), String> {
+    /// A band around the border, wider than the penumbra.
+    const BAND: f64 = 0.4;
+    let spread = |size: f64, low: f64, high: f64| {
+        let (measured, _) = below_ball(bench, "pcss", &[("caster", "light_size", &[size])])?;
+        let near = measured
+            .iter()
+            .filter(|(distance, way, _)| distance.abs() < BAND && (low..high).contains(way));
+        let products: Vec<f64> = near.map(|(_, _, visible)| visible * (1.0 - visible)).collect();
+        if products.len() < 100 {
+            return Err(format!("{} fragments have a way from {low} to {high}", products.len()));
+        }
+        // A ramp of some width has a sixth of it as the sum of these products.
+        Ok(products.iter().sum::<f64>() / products.len() as f64 * 6.0 * 2.0 * BAND)
+    };
+    let (short, long) = (spread(0.3, 0.6, 0.85)?, spread(0.3, 1.35, 1.6)?);
+    let sharp = spread(0.0, 1.35, 1.6)?;
+    // What blocks light near the border is up to half a radius before the ball's middle.
+    let is_wide = (0.6..2.0).contains(&(long / (0.3 * 1.475)));
+    if !is_wide || long < 1.3 * short || long < 2.0 * sharp {
+        return Err(format!("widths of {short:.3}, {long:.3}, and {sharp:.3} for a small light"));
     }
     Ok(())
 }

@@ -15,7 +15,8 @@
 layout(std140, set = 0, binding = 4) uniform Caster {
     /// Spot and directional lights: projection times view of the shadow map.
     mat4 clip_from_world;
-    /// Point lights: distances of the near and far plane of the faces, in scene units.
+    /// Distances of the near and far plane of the map or of a cube's faces, in scene units: for point
+    /// lights and for `pcss`.
     float near;
     float far;
     /// Which of the lamps, below `max_lights`.
@@ -28,7 +29,7 @@ layout(std140, set = 0, binding = 4) uniform Caster {
     float normal_offset;
     /// Size of a texel in scene units: everywhere for directional lights, at distance 1 for others.
     float texel;
-    /// `pcf_random16`, `pcf_vogel`: radius of the filter; `pcss`: width of the light; in texels.
+    /// `pcf_random16`, `pcf_vogel`: radius of the filter; `pcss`: its largest radius; in texels.
     float radius;
     /// `evsm`: the positive and the negative exponent; `esm`: the sharpness and 0; as in `moments`.
     vec2 exponents;
@@ -38,6 +39,8 @@ layout(std140, set = 0, binding = 4) uniform Caster {
     float bleed;
     /// `vsm`: least visibility.
     float least;
+    /// `pcss`: width of a spot light in scene units; diameter over distance of a directional light.
+    float light_size;
 } caster;
 
 #if !CASCADES
@@ -110,8 +113,72 @@ float visibility(Surface surface, vec2 pixel) {
 layout(set = 0, binding = 5) uniform texture2D shadow_map;
 layout(set = 0, binding = 7) uniform samplerShadow shadow_sampler;
 #if SHADOW == SHADOW_PCSS
+#include "../../shadow/penumbra.glsl"
+
 layout(set = 0, binding = 8) uniform texture2D shadow_depth;
 layout(set = 0, binding = 9) uniform sampler depth_sampler;
+
+/// Half of the width of a penumbra on the receiver, scene units.
+float half_penumbra(float receiver, float blocker) {
+#if SHADOW_LIGHT == SHADOW_LIGHT_DIRECTIONAL
+    return 0.5 * pcss_width_directional(receiver, blocker, caster.light_size);
+#else
+    return 0.5 * pcss_width(receiver, blocker, caster.light_size);
+#endif
+}
+
+/// The distance from a spot light, or from the near plane of a directional light's map, that a depth
+/// of the map stands for.
+///
+/// The mean of perspective depths stands for the mean of the inverse distances. The width of a
+/// penumbra is linear in the inverse distance of its blocker, so this gives the mean of the widths.
+float light_distance(float depth) {
+#if SHADOW_LIGHT == SHADOW_LIGHT_DIRECTIONAL
+    return depth * (caster.far - caster.near);
+#else
+    return linearize_depth(depth, caster.near, caster.far);
+#endif
+}
+
+/// Unit direction from the surface to the light that casts the shadow.
+vec3 towards_caster(Surface surface) {
+    Light light = lamps.lights[caster.light];
+#if SHADOW_LIGHT == SHADOW_LIGHT_DIRECTIONAL
+    return -light.axis;
+#else
+    return safe_normalize(light.position - surface.position, vec3(0.0));
+#endif
+}
+
+/// A shadow that is sharp near its caster and soft far from it: Fernando, "Percentage-Closer Soft
+/// Shadows", 2005.
+float soft_shadow(Surface surface, ShadowUv at, float phi) {
+    if (!at.inside) {
+        return 1.0;
+    }
+    float receiver = light_distance(at.depth);
+#if SHADOW_LIGHT == SHADOW_LIGHT_DIRECTIONAL
+    float texel = caster.texel;
+#else
+    float texel = caster.texel * receiver;
+#endif
+    float widest = max(caster.radius, 1.0);
+    // Nothing shadows the point from farther aside than something at the near plane could.
+    float search = clamp(half_penumbra(receiver, light_distance(0.0)) / texel, 1.0, widest);
+    float depth = mean_blocker(shadow_depth, depth_sampler, at, search, phi);
+    if (!(depth < at.depth)) {
+        return 1.0;
+    }
+    float blocker = light_distance(depth);
+    float radius = clamp(half_penumbra(receiver, blocker) / texel, 1.0, widest);
+    // The surface must not shadow itself within the filter, whose radius is known only now. Half of
+    // the way to what shadows it is left.
+    float way = at.depth - depth;
+    float rise = way * radius * texel / max(receiver - blocker, 1e-6 * receiver);
+    float bias = slope_bias(dot(surface.normal, towards_caster(surface)), rise, 0.5 * way);
+    ShadowUv biased = ShadowUv(at.uv, constant_bias(at.depth, bias), true);
+    return pcf_vogel(shadow_map, shadow_sampler, biased, 16, radius, phi);
+}
 #endif
 
 #if CASCADES
@@ -139,7 +206,7 @@ float visibility(Surface surface, vec2 pixel) {
 #elif SHADOW == SHADOW_PCF_VOGEL
     return pcf_vogel(shadow_map, shadow_sampler, at, 16, caster.radius, phi);
 #else
-    return pcss(shadow_map, shadow_sampler, shadow_depth, depth_sampler, at, caster.radius, phi);
+    return soft_shadow(surface, at, phi);
 #endif
 }
 #endif

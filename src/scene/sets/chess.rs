@@ -1,204 +1,253 @@
-//! A game of chess near its end: turned pieces on a polished board.
+//! The end of a game of chess: the black king lies on a polished board, in the light of one lamp.
 
 use glam::{DMat4, DVec2, DVec3};
+use rayon::prelude::*;
 
-use super::floor::tiles;
-use super::palette;
-use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
+use super::{Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base_scene, maps, placed_at};
+use crate::scene::chessmen::{Man, open_share};
+use crate::scene::layers::Layers;
 use crate::scene::shape::Shape;
-
-/// Radius and height of a profile, from the bottom up; two points near each other are an edge.
-type Profile = &'static [(f64, f64)];
-
-/// The foot and the collar that all pieces share, for a stem of height 1.
-const PAWN: Profile = &[
-    (0.0, 0.0),
-    (0.38, 0.0),
-    (0.4, 0.03),
-    (0.4, 0.1),
-    (0.33, 0.16),
-    (0.3, 0.2),
-    (0.31, 0.24),
-    (0.2, 0.32),
-    (0.14, 0.5),
-    (0.12, 0.62),
-    (0.22, 0.66),
-    (0.22, 0.69),
-    (0.13, 0.73),
-    (0.19, 0.8),
-    (0.22, 0.9),
-    (0.19, 1.0),
-    (0.1, 1.07),
-    (0.0, 1.1),
-];
-const ROOK: Profile = &[
-    (0.0, 0.0),
-    (0.42, 0.0),
-    (0.44, 0.03),
-    (0.44, 0.12),
-    (0.36, 0.2),
-    (0.34, 0.26),
-    (0.25, 0.36),
-    (0.21, 0.6),
-    (0.2, 0.9),
-    (0.29, 1.0),
-    (0.32, 1.03),
-    (0.32, 1.14),
-    (0.32, 1.25),
-    (0.317, 1.28),
-    (0.305, 1.3),
-    (0.28, 1.302),
-    (0.25, 1.302),
-    (0.232, 1.295),
-    (0.224, 1.275),
-    (0.22, 1.24),
-    (0.22, 1.2),
-    (0.212, 1.175),
-    (0.18, 1.165),
-    (0.0, 1.165),
-];
-const BISHOP: Profile = &[
-    (0.0, 0.0),
-    (0.41, 0.0),
-    (0.43, 0.03),
-    (0.43, 0.12),
-    (0.34, 0.2),
-    (0.32, 0.26),
-    (0.22, 0.38),
-    (0.14, 0.7),
-    (0.13, 0.9),
-    (0.26, 0.95),
-    (0.26, 0.99),
-    (0.14, 1.04),
-    (0.2, 1.14),
-    (0.22, 1.26),
-    (0.16, 1.44),
-    (0.07, 1.54),
-    (0.05, 1.56),
-    (0.08, 1.61),
-    (0.06, 1.66),
-    (0.0, 1.68),
-];
-const QUEEN: Profile = &[
-    (0.0, 0.0),
-    (0.45, 0.0),
-    (0.47, 0.03),
-    (0.47, 0.13),
-    (0.38, 0.22),
-    (0.36, 0.28),
-    (0.25, 0.42),
-    (0.16, 0.85),
-    (0.15, 1.1),
-    (0.29, 1.16),
-    (0.29, 1.2),
-    (0.17, 1.26),
-    (0.19, 1.42),
-    (0.29, 1.62),
-    (0.31, 1.68),
-    (0.28, 1.72),
-    (0.22, 1.72),
-    (0.15, 1.72),
-    (0.08, 1.74),
-    (0.06, 1.77),
-    (0.1, 1.83),
-    (0.08, 1.89),
-    (0.0, 1.91),
-];
-const KING: Profile = &[
-    (0.0, 0.0),
-    (0.46, 0.0),
-    (0.48, 0.03),
-    (0.48, 0.13),
-    (0.39, 0.22),
-    (0.37, 0.28),
-    (0.26, 0.44),
-    (0.17, 0.9),
-    (0.16, 1.2),
-    (0.31, 1.26),
-    (0.31, 1.3),
-    (0.18, 1.36),
-    (0.21, 1.52),
-    (0.29, 1.76),
-    (0.28, 1.8),
-    (0.1, 1.9),
-    (0.05, 1.93),
-    (0.0, 1.94),
-];
-
-/// A colour with what it is polished to.
-const IVORY: (DVec3, f64) = (DVec3::new(0.82, 0.7, 0.5), 0.045);
-const EBONY: (DVec3, f64) = (DVec3::new(0.045, 0.035, 0.035), 0.05);
+use crate::scene::turned::{Turn, framed_shape};
 
 /// Who stands where, in squares from the middle.
-const GAME: &[(Profile, bool, f64, f64)] = &[
-    (KING, true, -0.5, 1.5),
-    (QUEEN, true, -2.5, 0.5),
-    (BISHOP, true, 1.5, 1.5),
-    (PAWN, true, -1.5, 2.5),
-    (PAWN, true, 0.5, 2.5),
-    (PAWN, true, 2.5, 2.5),
-    (KING, false, 2.5, -1.5),
-    (ROOK, false, 0.5, -0.5),
-    (ROOK, false, -1.5, -2.5),
-    (BISHOP, false, -0.5, -1.5),
-    (PAWN, false, 1.5, -0.5),
-    (PAWN, false, 3.5, -0.5),
-    (PAWN, false, -2.5, -1.5),
+const GAME: &[(Man, bool, f64, f64)] = &[
+    (Man::King, true, -1.5, 1.5),
+    (Man::Queen, true, -2.5, -0.5),
+    (Man::Rook, true, 2.5, -1.5),
+    (Man::Pawn, true, -2.5, 2.5),
+    (Man::Pawn, true, -0.5, 0.5),
+    (Man::Bishop, false, 0.5, -2.5),
+    (Man::Rook, false, -0.5, -3.5),
+    (Man::Pawn, false, 2.5, 0.5),
+    (Man::Pawn, false, 1.5, -0.5),
+    (Man::Pawn, false, -1.5, -2.5),
 ];
+/// Where the king lies, and how he is turned.
+
+
+/// The profile of the frame around the squares, from the table up.
+const FRAME: &[Turn] = &[
+    (4.86, -0.3, 0.0),
+    (4.86, -0.22, 0.0),
+    (4.82, -0.18, 0.414),
+    (4.74, -0.17, 0.0),
+    (4.68, -0.1, -0.414),
+    (4.68, -0.02, 0.0),
+    (4.6, 0.05, 0.414),
+    (4.16, 0.05, 0.0),
+    (4.1, 0.0, -0.3),
+    (4.06, 0.0, 0.0),
+];
+/// The strip between the frame and the squares.
+const INLAY: &[Turn] = &[(4.06, 0.0, 0.0), (4.0, 0.0, 0.0)];
+
+const IVORY: DVec3 = DVec3::new(0.66, 0.52, 0.34);
+const EBONY: DVec3 = DVec3::new(0.028, 0.022, 0.021);
+const MAPLE: DVec3 = DVec3::new(0.52, 0.34, 0.18);
+const WALNUT: DVec3 = DVec3::new(0.115, 0.048, 0.024);
+
+/// The part of the textures that has the board, and half of the side that it shows. Right of it, all
+/// is blank.
+const BOARD: (f64, f64) = (0.9, 4.9);
+/// A place that is blank.
+const BLANK: DVec2 = DVec2::new(0.95, 0.5);
 
 /// The scene, for the table of all.
 pub const SET: Set = Set {
     name: "chess",
-    about: "turned pieces of ivory and ebony on a polished board",
+    about: "the end of a game of chess on a polished board, in the light of one lamp",
     make: scene,
 };
 
-fn chess_piece(profile: Profile, x: f64, z: f64, (color, share): (DVec3, f64)) -> Object {
-    let points: Vec<DVec2> = profile.iter().map(|(r, h)| DVec2::new(*r, *h)).collect();
-    let mut shape = Shape::lathe(&points, (56, 7 * points.len() as u32));
-    if std::ptr::eq(profile, KING) {
-        let cross = |half| {
-            Shape::cuboid(half, 1)
-                .transformed(DMat4::from_translation(DVec3::new(0.0, 2.06, 0.0)))
-        };
-        shape = shape.with(cross(DVec3::new(0.045, 0.15, 0.03)));
-        shape = shape.with(cross(DVec3::new(0.12, 0.04, 0.028)));
+/// The place of the board in the textures.
+fn board_uv(place: DVec3) -> DVec2 {
+    (DVec2::new(place.x, place.z) / BOARD.1 * 0.5 + 0.5) * DVec2::new(BOARD.0, 1.0)
+}
+
+/// The squares, with coordinates of the whole board.
+fn squares() -> Shape {
+    let places = (0..8).flat_map(|z| (0..8).map(move |x| (x, z)));
+    let board = places.fold(Shape::default(), |shape, (x, z)| {
+        let corner = DVec3::new(f64::from(x) - 4.0, 0.0, f64::from(z) - 3.0);
+        let color = if (x + z) % 2 == 0 { t3("maple", MAPLE) } else { t3("walnut", WALNUT) };
+        let square = Shape::patch(corner, DVec3::X, DVec3::NEG_Z, (1, 1));
+        shape.with(square.map(|vertex| vertex.color = color))
+    });
+    on_board(board)
+}
+
+fn on_board(shape: Shape) -> Shape {
+    shape.map(|vertex| vertex.uv = board_uv(vertex.position))
+}
+
+fn in_blank(shape: Shape) -> Shape {
+    shape.map(|vertex| vertex.uv = BLANK)
+}
+
+/// A surface of glTF without extensions.
+fn plain_material(roughness: f64, ambient: f64, specular: f64) -> Material {
+    Material {
+        roughness,
+        ambient: DVec3::splat(ambient),
+        layers: Some(Layers { specular, ..Layers::default() }),
+        ..Material::default()
     }
-    let polish = Material::default().glossy(share).shiny(180.0);
-    let polish = Material { roughness: 0.24, ..polish };
-    Object::new(shape, placed_at(x, 0.0, z, 0.35), color).of(polish, 9)
+}
+
+fn chessman(man: Man, is_white: bool, place: DMat4) -> Object {
+    let (color, roughness) = if is_white { (t3("ivory", IVORY), t1("ivory_r", 0.34)) } else { (t3("ebony", EBONY), t1("ebony_r", 0.26)) };
+    Object::new(in_blank(man.shape()), place, color).of(plain_material(roughness, t1("man_a", 1.0), t1("man_s", 1.0)), 9)
+}
+
+/// A king who lies on the board: on the rims of his foot and of his head.
+fn fallen_king() -> Object {
+    let f = t3("fallen", DVec3::new(0.2, 0.9, -0.9));
+    let (x, z, turn) = (f.x, f.y, f.z);
+    let tilt = ((0.41 - 0.265) / 1.78_f64).atan();
+    let turned = DMat4::from_rotation_y(turn)
+        * DMat4::from_rotation_z(-std::f64::consts::FRAC_PI_2 - tilt)
+        * DMat4::from_rotation_y(t1("roll", 0.35));
+    let king = chessman(Man::King, false, DMat4::IDENTITY);
+    let heights = king.shape.vertices.iter().map(|v| turned.transform_point3(v.position).y);
+    let lowest = heights.fold(f64::INFINITY, f64::min);
+    let place = DMat4::from_translation(DVec3::new(x, -lowest, z)) * turned;
+    Object { world_from_object: place, ..king }
+}
+
+/// The table, which rises to a wall far behind the board.
+fn backdrop() -> Object {
+    let (front, back, radius, height) = (18.0, -9.0, 7.0, 16.0);
+    let shape = Shape::surface(1, 40, |u, v| {
+        let x = 44.0 * (u - 0.5);
+        let (floor, bend) = (front - back, 0.5 * std::f64::consts::PI * radius);
+        let way = v * (floor + bend + height);
+        if way < floor {
+            return DVec3::new(x, -0.3, front - way);
+        }
+        let angle = ((way - floor) / radius).min(0.5 * std::f64::consts::PI);
+        let above = (way - floor - bend).max(0.0);
+        DVec3::new(x, -0.3 + radius * (1.0 - angle.cos()) + above, back - radius * angle.sin())
+    });
+    let cloth = plain_material(0.8, t1("cloth_a",0.25), t1("cloth_s",0.3));
+    let backdrop = Object::new(in_blank(shape), DMat4::IDENTITY, t3("cloth", DVec3::new(0.07, 0.085, 0.11)));
+    Object { casts: false, ..backdrop.of(cloth, 8) }
+}
+
+/// The key light, a cool one from the other side, and one that lights the wall.
+fn lamps() -> Vec<Lamp> {
+    let spot = |color, position, target, half_angle| Lamp {
+        color,
+        position,
+        target,
+        half_angle,
+        kind: LampKind::Spot,
+    };
+    let mut all = vec![
+        spot(t3("key_c", DVec3::new(3.3, 2.6, 1.75)), t3("key_p", DVec3::new(-7.0, 6.0, -1.0)), t3("key_t", DVec3::new(0.1, 0.2, 0.2)), t1("key_h", 0.62)),
+        spot(t3("rim_c", DVec3::new(0.32, 0.5, 0.85)), t3("rim_p", DVec3::new(7.0, 3.4, -6.0)), t3("rim_t", DVec3::new(0.0, 0.6, 0.0)), t1("rim_h", 0.6)),
+        spot(t3("wall_c", DVec3::new(0.55, 0.75, 1.0) * 2.2), t3("wall_p", DVec3::new(1.5, 1.5, -12.5)), t3("wall_t", DVec3::new(1.5, 4.0, -16.0)), 0.9),
+    ];
+    all[2].kind = LampKind::Point;
+    all
 }
 
 /// The scene itself.
 pub fn scene() -> Scene {
-    let board = Material { roughness: 0.3, ..Material::default().glossy(0.05).shiny(90.0) };
-    let squares = [DVec3::new(0.66, 0.5, 0.31), DVec3::new(0.16, 0.075, 0.04)];
-    let frame = Shape::cuboid(DVec3::new(4.5, 0.16, 4.5), 1);
-    let table = Shape::patch(DVec3::new(-16.0, -0.34, 16.0), DVec3::X * 32.0, DVec3::Z * -32.0, (8, 8));
-    let matt = Material { roughness: 0.6, ..Material::default().glossy(0.03) };
+    let polish = plain_material(t1("board_r",0.3), t1("board_a",1.0), t1("board_s",1.0));
+    let dark = |shape, color| {
+        Object::new(on_board(shape), DMat4::IDENTITY, color).of(polish, 3)
+    };
     let mut objects = vec![
-        Object::new(tiles(8, 1.0, squares, 1), DMat4::IDENTITY, DVec3::ONE).of(board, 3),
-        Object::new(frame, placed_at(0.0, -0.165, 0.0, 0.0), DVec3::new(0.13, 0.055, 0.03))
-            .of(board, 3),
-        Object::new(table, DMat4::IDENTITY, DVec3::new(0.2, 0.22, 0.24)).of(matt, 8),
+        dark(squares(), DVec3::ONE),
+        dark(framed_shape(INLAY), MAPLE),
+        dark(framed_shape(FRAME), WALNUT * 0.6),
+        backdrop(),
+        fallen_king(),
     ];
-    objects.extend(GAME.iter().map(|(profile, is_white, x, z)| {
-        chess_piece(profile, *x, *z, if *is_white { IVORY } else { EBONY })
+    let moved: Vec<_> = GAME.iter().enumerate().map(|(i, (m, w, x, z))| { let p = tt(&format!("man{i}"), &[*x, *z]); (*m, *w, p[0], p[1]) }).collect();
+    objects.extend(moved.iter().map(|(man, is_white, x, z)| {
+        chessman(*man, *is_white, placed_at(*x, 0.0, *z, 0.35))
     }));
     let eye = Eye {
-        position: DVec3::new(2.9, 3.6, 7.7),
-        target: DVec3::new(-0.05, 0.55, 0.2),
-        fov_y: 0.56,
+        position: t3("eye", DVec3::new(0.9, 2.75, 8.2)),
+        target: t3("eye_t", DVec3::new(0.15, 0.62, 0.0)),
+        fov_y: t1("fov", 0.5),
         near: 0.5,
-        far: 40.0,
+        far: 60.0,
     };
-    let key = Lamp {
-        color: DVec3::new(1.5, 1.36, 1.1) * 1.6,
-        position: DVec3::new(-5.2, 6.4, -2.2),
-        target: DVec3::new(0.2, 0.3, 0.3),
-        half_angle: 0.62,
-        kind: LampKind::Spot,
-    };
-    let lamps = palette::lamps(key, 5.0, 4.5, 0.12);
-    Scene { map_size: Some(2048), ..base_scene(objects, eye, lamps) }
+    Scene {
+        map_size: Some(t1("map",1024.0) as u32),
+        maps: chess_maps,
+        lamp_size: Some(DVec2::splat(t1("lamp_size",0.35))),
+        ..base_scene(objects, eye, lamps())
+    }
 }
+
+/// Wood, and what the men hide of the sky. The other maps are those of bricks.
+fn chess_maps() -> Maps {
+    Maps { base: wood_map(), occlusion: open_map(), ..maps::bricks() }
+}
+
+/// A square map of the board with a number for each texel.
+fn board_map(side: usize, number: impl Fn(DVec2) -> f64 + Sync) -> Map {
+    let texel = |index: usize| {
+        let at = (DVec2::new((index % side) as f64, (index / side) as f64) + 0.5) / side as f64;
+        let share = if at.x < BOARD.0 {
+            number((DVec2::new(at.x / BOARD.0, at.y) * 2.0 - 1.0) * BOARD.1)
+        } else {
+            1.0
+        };
+        DVec3::splat(share).extend(1.0)
+    };
+    Map { width: side, height: side, texels: (0..side * side).into_par_iter().map(texel).collect() }
+}
+
+fn open_map() -> Map {
+    let men: Vec<_> = GAME.iter().enumerate().map(|(i, (man, _, x, z))| { let p = tt(&format!("man{i}"), &[*x, *z]); (*man, DVec2::new(p[0], p[1])) }).collect();
+    board_map(256, |at| open_share(at, &men))
+}
+
+/// The grain of the squares and of the frame: rings of growth, cut along, and fine fibres.
+fn wood_map() -> Map {
+    board_map(1024, |at| {
+        let is_framed = at.abs().max_element() > 4.06;
+        let across = is_framed && at.x.abs() > at.y.abs();
+        let along = if across { DVec2::new(at.y, at.x) } else { at };
+        let cell = if is_framed { along.signum() * 9.0 } else { along.floor() };
+        let tone = value_noise(cell * 7.3 + 0.5);
+        let place = DVec2::new(along.y + 11.0 * tone, along.x * 0.35 + 3.0 * cell.x);
+        let ring = 5.0 * place.x + 2.2 * value_noise(place * DVec2::new(1.4, 1.1));
+        let growth = 0.5 + 0.5 * (std::f64::consts::TAU * ring).sin();
+        let fibre = value_noise(place * DVec2::new(46.0, 9.0));
+        0.8 + 0.16 * tone + 0.13 * growth * growth + 0.1 * fibre
+    })
+}
+
+/// Noise between 0 and 1 with a number for each point of a grid, smooth between them.
+fn value_noise(at: DVec2) -> f64 {
+    let cell = at.floor();
+    let part = at - cell;
+    let smooth = part * part * (3.0 - 2.0 * part);
+    let number = |x: f64, y: f64| {
+        let place = cell + DVec2::new(x, y);
+        let hashed = (place.x as i64 as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+            ^ (place.y as i64 as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
+        let mixed = (hashed ^ (hashed >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        ((mixed ^ (mixed >> 32)) & 0xffff) as f64 / 65535.0
+    };
+    let row = |y: f64| number(0.0, y) + (number(1.0, y) - number(0.0, y)) * smooth.x;
+    row(0.0) + (row(1.0) - row(0.0)) * smooth.y
+}
+
+fn tt(name: &str, d: &[f64]) -> Vec<f64> {
+    let text = std::fs::read_to_string(std::env::var("TT").unwrap_or_default()).unwrap_or_default();
+    for line in text.lines() {
+        let mut words = line.split_whitespace();
+        if words.next() == Some(name) {
+            return words.map(|w| w.parse().unwrap()).collect();
+        }
+    }
+    d.to_vec()
+}
+fn t3(name: &str, d: DVec3) -> DVec3 { let v = tt(name, &d.to_array()); DVec3::new(v[0], v[1], v[2]) }
+fn t1(name: &str, d: f64) -> f64 { tt(name, &[d])[0] }
