@@ -29,10 +29,10 @@ float ddgi_chebyshev(float mean, float mean2, float dist, float least) {
 /// Parameters: `n` unit normal of the surface; `dir` unit, from the point to the probe; `tri` the probe's trilinear share, [0, 1]; `visibility` as from `ddgi_chebyshev`, [0, 1].
 /// Returns: the weight, above 0: a weight w below 0.2 counts as w^3/0.04, so that the curve has no jump.
 /// Source: Majercik, Guertin, Nowrouzezahrai, McGuire, "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields", 2019, section 5.2 and its listing.
-/// Edges: the weight counts as at least 1e-6, the share as at least 0.001.
+/// Edges: the weight counts as at least 1e-6, the share as at least 0.001; the cosine of `n` and `dir` is clamped to [-1, 1], so zero vectors count as at a right angle.
 /// Error model: relative 2^-20.
 float ddgi_crushed(vec3 n, vec3 dir, float tri, float visibility) {
-    float wrapped = 0.5 * dot(n, dir) + 0.5;
+    float wrapped = 0.5 * clamp(dot(n, dir), -1.0, 1.0) + 0.5;
     float weight = max((wrapped * wrapped + 0.2) * visibility, 1e-6);
     float crushed = (weight < 0.2 ? weight * weight * weight * 25.0 : weight);
     return crushed * max(tri, 0.001);

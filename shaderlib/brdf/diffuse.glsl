@@ -69,10 +69,11 @@ float oren_nayar(vec3 n, vec3 l, vec3 v, float sigma) {
 /// Parameters: `nl`, `nv`, `lh` cosines n.l, n.v, l.h, [0, 1]; `roughness` perceptual, [0, 1].
 /// Returns: `(1 + (f90 - 1)(1 - nl)^5)(1 + (f90 - 1)(1 - nv)^5)/pi` with `f90 = 0.5 + 2*roughness*lh^2`: a BRDF, 1/sr, at least 0; the caller multiplies by `nl`.
 /// Source: Burley, "Physically-Based Shading at Disney", 2012, section 5.3.
-/// Edges: cosines outside [0, 1] are clamped to it.
+/// Edges: cosines and roughnesses outside [0, 1] are clamped to it.
 /// Error model: 12 ULP.
 float burley(float nl, float nv, float lh, float roughness) {
-    float rise = 2.0 * roughness * lh * lh - 0.5;
+    float half_cosine = clamp(lh, 0.0, 1.0);
+    float rise = 2.0 * clamp(roughness, 0.0, 1.0) * half_cosine * half_cosine - 0.5;
     float x = 1.0 - clamp(nl, 0.0, 1.0);
     float y = 1.0 - clamp(nv, 0.0, 1.0);
     float x2 = x * x;

@@ -20,7 +20,7 @@ float phong(vec3 n, vec3 l, vec3 v, float s) {
     if (!(dot(n, l) > 0.0)) {
         return 0.0;
     }
-    return safe_pow(dot(reflect(-l, n), v), s);
+    return safe_pow(min(dot(reflect(-l, n), v), 1.0), max(s, 0.0));
 }
 
 /// Phong's lobe as the book's shadow example computes it.
@@ -66,7 +66,7 @@ float blinn_phong_half(vec3 n, vec3 h, float n_dot_l, float s) {
     if (!(n_dot_l > 0.0)) {
         return 0.0;
     }
-    return safe_pow(dot(n, h), s);
+    return safe_pow(min(dot(n, h), 1.0), max(s, 0.0));
 }
 
 /// Blinn's lobe around the half vector.
@@ -103,7 +103,7 @@ float blinn_phong_hpg(vec3 n, vec3 l, vec3 v, float s) {
 /// Error model: that of `blinn_phong` + 3 ULP; 0 where the lobe is below 2^-126.
 float blinn_phong_normalized(vec3 n, vec3 l, vec3 v, float s) {
     // 1/(8*pi)
-    return (s + 8.0) * 0.039788736 * blinn_phong(n, l, v, s);
+    return (max(s, 0.0) + 8.0) * 0.039788736 * blinn_phong(n, l, v, s);
 }
 
 /// The GGX distribution of microfacet normals, in the form that stays accurate for small alpha.
@@ -113,11 +113,12 @@ float blinn_phong_normalized(vec3 n, vec3 l, vec3 v, float s) {
 /// Parameters: `nh` cosine n.h, [0, 1]; `n_cross_h2` squared length of n x h, [0, 1]; `alpha` squared perceptual roughness, [0, 1].
 /// Returns: `(alpha/(n_cross_h2 + (nh*alpha)^2))^2/pi`, 1/sr, at least 0.
 /// Source: Walter, Marschner, Li, Torrance, "Microfacet Models for Refraction through Rough Surfaces", 2007, equation 33; the form with the cross product: Filament, "Physically Based Rendering in Filament", section 4.4.1.
-/// Edges: 0 for alpha = 0, the mirror direction included.
+/// Edges: 0 for alpha = 0, the mirror direction included; never above 3.2e37, which it reaches where both `nh` and `n_cross_h2` are 0, as for a zero normal. A negative alpha counts as its magnitude.
 /// Error model: 11 ULP, relative, beside twice the relative error of n_cross_h2.
 float d_ggx(float nh, float n_cross_h2, float alpha) {
     float a = nh * alpha;
-    float k = alpha / max(n_cross_h2 + a * a, SMALLEST_NORMAL);
+    // The square of a larger quotient overflows.
+    float k = min(abs(alpha) / max(n_cross_h2 + a * a, SMALLEST_NORMAL), 1.0e19);
     return k * k * 0.31830989;
 }
 
@@ -132,7 +133,7 @@ float v_smith_ggx(float nv, float nl, float alpha) {
     if (!(nv > 0.0 && nl > 0.0)) {
         return 0.0;
     }
-    float a2 = alpha * alpha;
+    float a2 = min(alpha * alpha, 1.0);
     float from_view = nl * sqrt(nv * nv * (1.0 - a2) + a2);
     float from_light = nv * sqrt(nl * nl * (1.0 - a2) + a2);
     return 0.5 / max(from_view + from_light, SMALLEST_NORMAL);

@@ -83,10 +83,10 @@ float btdf_thin(vec3 n, vec3 l, vec3 v, float alpha) {
     }
     vec3 h = safe_normalize(l + 2.0 * nl * n + v, n);
     vec3 across = cross(n, h);
-    float a2 = alpha * alpha;
+    float a2 = min(alpha * alpha, 1.0);
     float from_light = nl + sqrt(a2 + (1.0 - a2) * nl * nl);
     float from_view = nv + sqrt(a2 + (1.0 - a2) * nv * nv);
-    return d_ggx(dot(n, h), dot(across, across), alpha) / max(from_light * from_view, 1e-12);
+    return min(d_ggx(dot(n, h), dot(across, across), alpha), 1e25) / max(from_light * from_view, 1e-12);
 }
 
 /// Three indices of refraction, for the red, green and blue part of a spectrum.
@@ -128,11 +128,14 @@ float btdf_volume(vec3 n, vec3 l, vec3 v, float alpha, float ior) {
         return 0.0;
     }
     vec3 across = cross(n, h);
-    float a2 = alpha * alpha;
+    float a2 = min(alpha * alpha, 1.0);
     float from_light = nl + sqrt(a2 + (1.0 - a2) * nl * nl);
     float from_view = nv + sqrt(a2 + (1.0 - a2) * nv * nv);
-    float spread = -4.0 * lw * vw / max(size2 * size2, 1e-30);
-    return spread * d_ggx(nh, dot(across, across), alpha) / max(from_light * from_view, 1e-12);
+    // The product of the squared sizes would overflow for long vectors.
+    float shrink = 1.0 / max(size2, 1e-15);
+    float spread = -4.0 * (lw * shrink) * (vw * shrink);
+    float lobe = spread * min(d_ggx(nh, dot(across, across), alpha), 1e25) / max(from_light * from_view, 1e-12);
+    return min(lobe, 1e38);
 }
 
 #ifdef LAMPLIGHT_PREFIX

@@ -14,7 +14,7 @@
 /// Parameters: `y0` height of the eye, scene units; `base` height at which the fog has its density, scene units; `dy` the unit view direction's component upwards, [-1, 1]; `dist` length of the view, scene units, at least 0; `density` at the base, 1/scene units, at least 0; `falloff` of the density with height, 1/scene units, at least 0.
 /// Returns: `density*exp(-falloff*(y0 - base))*(1 - exp(-x))/x*dist` with `x = falloff*dy*dist`, at least 0.
 /// Source: Wenzel, "Real-time Atmospheric Effects in Games", SIGGRAPH 2006; Quilez, "Better Fog", 2010.
-/// Edges: constant fog for a falloff of 0; `density*dist` at a level view at the base; negative distances, densities and falloffs count as 0, both exponents are clamped to [-60, 60], densities to 1e6 and distances to 1e6.
+/// Edges: constant fog for a falloff of 0; `density*dist` at a level view at the base; negative distances, densities and falloffs count as 0, both exponents are clamped to [-60, 60], densities to 1e6 and distances to 1e6; never above 1e30.
 /// Error model: relative 2^-20 + 2^-23*(|falloff*(y0 - base)| + |x|).
 float fog_height(float y0, float dy, float dist, float density, float falloff, float base) {
     float fall = max(falloff, 0.0);
@@ -23,9 +23,9 @@ float fog_height(float y0, float dy, float dist, float density, float falloff, f
     float here = clamp(density, 0.0, 1e6) * exp(clamp(fall * (base - y0), -60.0, 60.0));
     // (1 - exp(-x))/x loses its digits near 0, where its series has few terms.
     if (abs(x) < 0.1) {
-        return far * here * (1.0 - x * (0.5 - x * (0.16666667 - x * 0.041666668)));
+        return min(far * here * (1.0 - x * (0.5 - x * (0.16666667 - x * 0.041666668))), 1e30);
     }
-    return far * here * ((1.0 - exp(-x)) / x);
+    return min(far * here * ((1.0 - exp(-x)) / x), 1e30);
 }
 
 /// What fog of an optical depth leaves of the light.

@@ -32,7 +32,7 @@ float polynomial(float d, vec3 k) {
 /// Edges: 0 everywhere for a radius of 0 or less; exactly 0 at and beyond the radius.
 /// Error model: absolute 2.5*2^-23*min(d/radius, 1) + 2^-24.
 float linear_radius(float d, float radius) {
-    if (!(d < radius)) {
+    if (!(max(d, 0.0) < radius)) {
         return 0.0;
     }
     return 1.0 - max(d, 0.0) / radius;
@@ -57,7 +57,7 @@ float inverse_square(float d2, float min_d2) {
 /// Edges: 1 at the light; exactly 0 at and beyond the range.
 /// Error model: absolute 2^-23 + 8*w*x*2^-23, with x = (d/range)^4 and w = 1 - x.
 float window(float d2, float inv_range2) {
-    float x = min(d2 * inv_range2, 1.0);
+    float x = clamp(d2 * inv_range2, 0.0, 1.0);
     float w = 1.0 - x * x;
     return w * w;
 }
@@ -75,7 +75,7 @@ float range_gltf(float d, float range) {
     if (!(range > 0.0)) {
         return 1.0;
     }
-    float x = min(d / range, 1.0);
+    float x = clamp(d / range, 0.0, 1.0);
     float x2 = x * x;
     return 1.0 - x2 * x2;
 }

@@ -42,7 +42,7 @@ float cone_exponent(float c, float cutoff, float e) {
     if (!(c >= cutoff)) {
         return 0.0;
     }
-    return safe_pow(c, e);
+    return safe_pow(min(c, 1.0), max(e, 0.0));
 }
 
 /// A smooth step from 0 at the outer cone to 1 at the inner one.

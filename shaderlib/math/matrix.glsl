@@ -14,7 +14,7 @@
 /// Parameters: `m` any matrix.
 /// Returns: its inverse.
 /// Source: Cramer's rule: the rows of the inverse are the cross products of the columns, divided by the determinant.
-/// Edges: all zeros where the determinant's magnitude is below 2^-126, a singular matrix included.
+/// Edges: all zeros where the determinant's magnitude is below 2^-126, a singular matrix included; members beyond 3e38 count as that.
 /// Error model: absolute 3*2^-23*(s^2/|det| + s^5/det^2) per element, with s the longest column's length.
 mat3 inverse3(mat3 m) {
     vec3 yz = cross(m[1], m[2]);
@@ -22,7 +22,11 @@ mat3 inverse3(mat3 m) {
     if (!(abs(det) >= SMALLEST_NORMAL)) {
         return mat3(vec3(0.0), vec3(0.0), vec3(0.0));
     }
-    return transpose(mat3(yz / det, cross(m[2], m[0]) / det, cross(m[0], m[1]) / det));
+    return transpose(mat3(
+        clamp(yz / det, vec3(-3e38), vec3(3e38)),
+        clamp(cross(m[2], m[0]) / det, vec3(-3e38), vec3(3e38)),
+        clamp(cross(m[0], m[1]) / det, vec3(-3e38), vec3(3e38))
+    ));
 }
 
 /// The normal matrix of a model matrix: the inverse transpose of its upper left 3x3 part.
@@ -30,7 +34,7 @@ mat3 inverse3(mat3 m) {
 /// Parameters: `model` an affine transform, for column vectors.
 /// Returns: the normal matrix; its results are not unit. A rotation with one scale for all axes may use the 3x3 part itself.
 /// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, chapter 7, and every tutorial after it.
-/// Edges: for a flattened model the division by the determinant is left out: the directions are still right.
+/// Edges: for a flattened model the division by the determinant is left out: the directions are still right; members beyond 3e38 count as that.
 /// Error model: that of `inverse3`.
 mat3 normal_matrix(mat4 model) {
     vec3 x = model[0].xyz;
@@ -39,7 +43,11 @@ mat3 normal_matrix(mat4 model) {
     vec3 yz = cross(y, z);
     float det = dot(x, yz);
     float scale = abs(det) >= SMALLEST_NORMAL ? det : 1.0;
-    return mat3(yz / scale, cross(z, x) / scale, cross(x, y) / scale);
+    return mat3(
+        clamp(yz / scale, vec3(-3e38), vec3(3e38)),
+        clamp(cross(z, x) / scale, vec3(-3e38), vec3(3e38)),
+        clamp(cross(x, y) / scale, vec3(-3e38), vec3(3e38))
+    );
 }
 
 #ifdef LAMPLIGHT_PREFIX

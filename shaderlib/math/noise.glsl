@@ -71,12 +71,12 @@ float random_hpg(vec4 seed) {
 /// Parameters: `i` number of the point, from 0 to `count - 1`; `count` how many points; `phi` turn of the whole spiral, radians.
 /// Returns: a point at distance `sqrt((i + 0.5)/count)` from the origin, below 1.
 /// Source: Vogel, "A Better Way to Construct the Sunflower Head", 1979: the golden angle, 2.399963 radians.
-/// Edges: a count below 1 counts as 1.
+/// Edges: a count below 1 counts as 1; a negative point is the middle.
 /// Error model: absolute 2^-11 (sine and cosine, as WGSL promises them) + 1.5*2^-23*(2.4*i + |phi|); the angle is reduced to [-pi, pi], outside of which no bound holds.
 vec2 vogel_disk(int i, int count, float phi) {
     float turn = fract(float(i) * 0.38196601 + phi * 0.15915494);
     float angle = (turn - 0.5) * 6.2831853;
-    float r = sqrt((float(i) + 0.5) / float(max(count, 1)));
+    float r = sqrt(max(float(i) + 0.5, 0.0) / float(max(count, 1)));
     return vec2(-cos(angle), -sin(angle)) * r;
 }
 

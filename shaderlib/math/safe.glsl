@@ -33,7 +33,7 @@ vec3 safe_normalize(vec3 v, vec3 fallback) {
 /// Parameters: `x` base, any number; `e` exponent, at least 0.
 /// Returns: a number of at least 0; in [0, 1] for `x` up to 1.
 /// Source: WGSL specification, "pow": the result is indeterminate for a negative base, which lighting meets behind a surface.
-/// Edges: 1 for `e` = 0, whatever `x`; else 0 for `x` at or below 0, for a negative `e` too.
+/// Edges: 1 for `e` = 0, whatever `x`; else 0 for `x` at or below 0, for a negative `e` too; never above 3.4e38.
 /// Error model: relative `e*ln2*2^-21 + |t|*ln2*u + (3 + 2|t|)*u + e*rel(x)` with `t = e*log2(x)`, `u = 2^-23`.
 float safe_pow(float x, float e) {
     if (e == 0.0) {
@@ -42,7 +42,7 @@ float safe_pow(float x, float e) {
     if (!(x > 0.0)) {
         return 0.0;
     }
-    return pow(x, e);
+    return min(pow(x, e), 3.4e38);
 }
 
 /// Whether `x` is not a number, read from its bits.

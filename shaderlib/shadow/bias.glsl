@@ -27,7 +27,7 @@ float constant_bias(float d, float b) {
 /// Error model: 6 ULP.
 float slope_bias(float n_dot_l, float b, float limit) {
     // The square as a product keeps its digits where the cosine is near 1.
-    float rise = b * sqrt(max((1.0 - n_dot_l) * (1.0 + n_dot_l), 0.0));
+    float rise = max(b, 0.0) * sqrt(max((1.0 - n_dot_l) * (1.0 + n_dot_l), 0.0));
     if (!(n_dot_l > 0.0 && rise < limit * n_dot_l)) {
         return limit;
     }
@@ -59,7 +59,8 @@ vec2 receiver_plane(vec2 duv_dx, vec2 duv_dy, vec2 dz) {
     if (!(abs(det) >= 1.0e-30)) {
         return vec2(0.0);
     }
-    return vec2(duv_dy.y * dz.x - duv_dx.y * dz.y, duv_dx.x * dz.y - duv_dy.x * dz.x) / det;
+    vec2 change = vec2(duv_dy.y * dz.x - duv_dx.y * dz.y, duv_dx.x * dz.y - duv_dy.x * dz.x) / det;
+    return clamp(change, vec2(-1e30), vec2(1e30));
 }
 
 /// The size of a texel of a cube map with a depth.

@@ -83,9 +83,10 @@ vec2 cascade_snap(vec2 origin, float size) {
 /// Error model: 2^-21 of the centre, 2^-21*(far + radius) of the radius.
 vec2 bounding_sphere(float near, float far, vec2 tangents) {
     float k2 = dot(tangents, tangents);
-    float centre = min(0.5 * (near + far) * (1.0 + k2), far);
-    float behind = far - centre;
-    return vec2(centre, sqrt(behind * behind + far * far * k2));
+    float end = max(far, 0.0);
+    float centre = clamp(0.5 * (near + end) * (1.0 + k2), 0.0, end);
+    float behind = end - centre;
+    return vec2(centre, sqrt(behind * behind + end * end * k2));
 }
 
 #ifdef LAMPLIGHT_PREFIX

@@ -270,13 +270,15 @@ float pcss(
 
 /// One comparison with a cube map: the shadow of a point light.
 ///
-/// Parameters: `cube`, `smp` depth cube map and comparison sampler; `offset` from the light to the point, in the cube's space, any length above 0; `depth` reference, [0, 1], computed as for the faces: by `cube_depth` for perspective faces.
+/// Parameters: `cube`, `smp` depth cube map and comparison sampler; `offset` from the light to the point, in the cube's space, any length; `depth` reference, [0, 1], computed as for the faces: by `cube_depth` for perspective faces.
 /// Returns: visibility, [0, 1].
 /// Source: Gerasimov, "Omnidirectional Shadow Mapping", GPU Gems, 2004, chapter 12; Igalia, "Working with lights and shadows", part II, whose faces must be 90 degrees wide, not 45.
-/// Edges: 1 for a reference outside [0, 1].
+/// Edges: 1 for a reference outside [0, 1]; a point at the light is looked up along z.
 /// Error model: that of `compare_tap`.
 float cube_compare(LAMPLIGHT_DEPTH_CUBE(cube, smp), vec3 offset, float depth) {
-    float visible = textureGrad(LAMPLIGHT_CUBE_SAMPLER(cube, smp), vec4(offset, depth), vec3(0.0), vec3(0.0));
+    // A direction of length 0 has no face.
+    vec3 direction = offset == vec3(0.0) ? vec3(0.0, 0.0, 1.0) : offset;
+    float visible = textureGrad(LAMPLIGHT_CUBE_SAMPLER(cube, smp), vec4(direction, depth), vec3(0.0), vec3(0.0));
     return depth >= 0.0 && depth <= 1.0 ? visible : 1.0;
 }
 

@@ -75,11 +75,12 @@ ShadowUv project_gl(vec4 sc, float min_w) {
 /// Parameters: `d` depth, [0, 1] from near to far; `near`, `far` plane distances, scene units, above 0. For reversed depth swap the planes.
 /// Returns: `near*far/(far - d*(far - near))`, scene units, between `near` and `far`.
 /// Source: the inverse of a perspective projection to [0, 1]; stands for the depth view of Igalia, "Working with lights and shadows", part II.
-/// Edges: a denominator at or below 0, beyond any far plane, counts as 2^-126.
+/// Edges: never above 1e30, which is also the result beyond any far plane; 0 for a plane at 0 or below.
 /// Error model: 6 ULP for d in [0, 1]; the depth's own error weighs far/near times as much near d = 1.
 float linearize_depth(float d, float near, float far) {
     // The weighted sum does not cancel near d = 1, as far - d*(far - near) does.
-    return near * far / max(far * (1.0 - d) + near * d, SMALLEST_NORMAL);
+    float product = max(near, 0.0) * max(far, 0.0);
+    return product / max(far * (1.0 - d) + near * d, max(1e-30 * product, SMALLEST_NORMAL));
 }
 
 /// The brightness Igalia's tutorial shows for a depth.
@@ -100,11 +101,13 @@ float depth_view_igl(float d) {
 /// Parameters: `offset` from the light to the point, in the cube's space, scene units; `near`, `far` plane distances of the faces, scene units, above 0.
 /// Returns: depth, [0, 1] from near to far, for faces of 90 degrees and depths in [0, 1].
 /// Source: Gerasimov, "Omnidirectional Shadow Mapping", GPU Gems, 2004, chapter 12: the largest component is the distance along the face's axis.
-/// Edges: points nearer than `near` count as at `near`; equal planes give 0.
+/// Edges: points nearer than `near` count as at `near`; negative planes count as at 0; never above 1e30, as beyond equal planes, which give 0 before them.
 /// Error model: absolute 6*2^-23*far/(far - near).
 float cube_depth(vec3 offset, float near, float far) {
-    float z = max(max(max(abs(offset.x), abs(offset.y)), abs(offset.z)), max(near, SMALLEST_NORMAL));
-    return far / max(far - near, SMALLEST_NORMAL) * ((z - near) / z);
+    float start = max(near, 0.0);
+    float end = max(far, 0.0);
+    float z = max(max(max(abs(offset.x), abs(offset.y)), abs(offset.z)), max(start, SMALLEST_NORMAL));
+    return end / max(end - start, max(1e-30 * end, SMALLEST_NORMAL)) * ((z - start) / z);
 }
 
 /// The place in a paraboloid map of a point in front of the light: half of all directions in one texture.

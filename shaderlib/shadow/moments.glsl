@@ -64,11 +64,11 @@ float vsm_visibility(vec2 m, float t, float min_variance, float least, float ble
 /// Parameters: `d` depth, [0, 1] from near to far; `exponents` positive and negative, above 0: up to 42 for moments of 32 bits, 5.5 for 16.
 /// Returns: `(exp(x*z), -exp(-y*z))` with `z = 2*d - 1`: both rise with the depth.
 /// Source: Lauritzen, McCool, "Layered Variance Shadow Maps", 2008, section 5: exponential variance shadow maps.
-/// Edges: beyond the exponents above, the second moments overflow.
+/// Edges: exponents count as at most 42 over the depth, so that second moments do not overflow.
 /// Error model: relative (3.5 + 3*e)*2^-23, with e the exponent.
 vec2 evsm_warp(float d, vec2 exponents) {
     float z = 2.0 * d - 1.0;
-    return vec2(exp(exponents.x * z), -exp(-exponents.y * z));
+    return vec2(exp(min(exponents.x * z, 42.0)), -exp(min(-exponents.y * z, 42.0)));
 }
 
 /// The four moments of a warped depth: two for each exponential.

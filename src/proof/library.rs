@@ -163,10 +163,11 @@ impl Library {
                     format!("there is no case file `{path}`"),
                 )]
             })?;
-            files.push((
-                path.trim_end_matches(".toml").replace('/', "::"),
-                cases::parse_cases(&sources, id)?,
-            ));
+            let mut file = cases::parse_cases(&sources, id)?;
+            if self.has_references() {
+                file.promise_finite();
+            }
+            files.push((path.trim_end_matches(".toml").replace('/', "::"), file));
         }
         Ok(files)
     }

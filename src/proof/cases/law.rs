@@ -67,6 +67,12 @@ fn fill_law(mut law: Law, node: &Node, value: &Node) -> Result<Law, Diagnostic> 
             law.partners = read_texts(value)?;
             law.area = Some(read_area(node)?);
         }
+        Takes::Finite => {
+            law.numbers = vec![value.number()?];
+            law.filter = node.get("where").map(Text::read).transpose()?;
+            law.reason =
+                node.get("because").map(|node| node.text().map(str::to_owned)).transpose()?;
+        }
     }
     Ok(law)
 }

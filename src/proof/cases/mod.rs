@@ -56,13 +56,14 @@ mod rows;
 mod values;
 
 pub use domain::{Domain, word_of};
+pub use random::Random;
 pub use rows::{Rows, case_rows, spend_steps, words_to_numbers};
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::formula::{Formula, Mistake, Scope};
-use super::laws::Law;
+use super::laws::{self, Law};
 use super::tolerance::{self, Term};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::fixture::Fixture;
@@ -90,6 +91,28 @@ const CASE_KEYS: &[&str] = &[
 #[derive(Debug)]
 pub struct File {
     pub cases: Vec<Case>,
+}
+
+impl File {
+    /// Adds the law that values are finite to the first case of each function that does not have
+    /// it.
+    pub fn promise_finite(&mut self) {
+        let Some(kind) = laws::find_kind(laws::FINITE) else { return };
+        let mut done: Vec<String> = Vec::new();
+        let has_law = |case: &Case| case.laws.iter().any(|law| law.kind.name == laws::FINITE);
+        let given: Vec<String> = self
+            .cases
+            .iter()
+            .filter(|case| has_law(case))
+            .map(|case| case.function.clone())
+            .collect();
+        for case in &mut self.cases {
+            if !given.contains(&case.function) && !done.contains(&case.function) {
+                case.laws.push(Law::finite(kind, laws::finite::UP_TO, case.span));
+                done.push(case.function.clone());
+            }
+        }
+    }
 }
 
 /// One function with inputs and expectations. Formulas are kept as texts until the function's

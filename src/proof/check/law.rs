@@ -43,6 +43,7 @@ pub fn judge_law(job: &Job<'_>, law: &Law, given: &Given<'_>) -> LawVerdict {
     let kinds = job.kernel().result_kinds();
     match (law.kind.name, &law.integral, given.transformed) {
         ("reaches", ..) => judge_reaches(law, given.results, &kinds),
+        (laws::FINITE, ..) => judge_finite(job, law, given, &kinds),
         (_, Some(rule), Some((rows, found))) => {
             judge_integral(job, law, rule, (rows, found), &kinds)
         }
@@ -138,6 +139,34 @@ fn judge_integral(
             };
             verdict.example.get_or_insert_with(text);
         }
+    }
+    verdict
+}
+
+/// Judges the law's own rows, and those of the case whose arguments it is about.
+fn judge_finite(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> LawVerdict {
+    let mut verdict = LawVerdict::new(law);
+    let mut judge = |rows: &Rows, found: &[u32]| {
+        for (index, words) in found.chunks(kinds.len().max(1)).enumerate() {
+            let values = words.iter().zip(kinds).map(|(word, kind)| word_value(*word, *kind));
+            let row = rows.row(index);
+            let is_meant = row.iter().zip(&rows.kinds).all(|(argument, kind)| {
+                *kind != ScalarKind::Float || argument.abs() <= law.number(0)
+            });
+            let Some(value) = values.clone().find(|value| !value.is_finite() && is_meant) else {
+                continue;
+            };
+            verdict.broken += 1;
+            verdict.example.get_or_insert_with(|| {
+                format!("{} gives {value}", profile::arguments_text(job, row))
+            });
+        }
+    };
+    if let Some((rows, found)) = given.transformed {
+        judge(rows, found);
+    }
+    if law.filter.is_none() {
+        judge(given.rows, given.results);
     }
     verdict
 }

@@ -14,13 +14,15 @@
 //! | `inverse = "g", within = 1e-6` | `g` of the value gives the first parameter back, or that named by `of` |
 //! | `equal = "g", with = { b = "a" }, within = 1e-6` | the function's value is that of `g`, or the product of several functions (see [`Equality`]) |
 //! | `area = "g", along = "r", from = 0, to = "r", within = 1e-6` | the function's value is the integral of `g`, or of a product, along one parameter (see [`Area`]); or `gives`, `at_most` |
+//! | `finite = 1e9` | no value is NaN or infinite for arguments up to that magnitude, whatever they are (see [`finite`]); `where` keeps some of them, `because` says why |
 //!
-//! The last four are also about other functions. Those of the same module are given by name, others
-//! by path.
+//! The four before it are also about other functions. Those of the same module are given by name,
+//! others by path.
 
 mod albedo;
 mod area;
 mod factor;
+pub mod finite;
 mod integral;
 
 pub use albedo::{Albedo, Over, Wanted};
@@ -30,7 +32,7 @@ pub use integral::Integral;
 
 use std::ops::Range;
 
-use super::cases::Rows;
+use super::cases::{Rows, Text};
 use super::formula::Scope;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::kernel::Shape;
@@ -62,6 +64,8 @@ pub enum Takes {
     Equality,
     /// Functions whose integral the value is; see [`Area`].
     Area,
+    /// The largest magnitude of an argument; see [`finite`].
+    Finite,
 }
 
 impl Takes {
@@ -90,9 +94,13 @@ impl Takes {
                 "along", "from", "to", "finest", "times", "with", "steps", "gives", "at_most",
                 "within",
             ],
+            Self::Finite => &["where", "because"],
         }
     }
 }
+
+/// The law that no value is NaN or infinite. Functions of the library are judged by it unasked.
+pub const FINITE: &str = "finite";
 
 /// Every kind.
 pub const KINDS: &[Kind] = &[
@@ -109,6 +117,7 @@ pub const KINDS: &[Kind] = &[
     Kind { name: "inverse", takes: Takes::Inverse },
     Kind { name: "equal", takes: Takes::Equality },
     Kind { name: "area", takes: Takes::Area },
+    Kind { name: FINITE, takes: Takes::Finite },
 ];
 
 /// One law of a case.
@@ -126,6 +135,10 @@ pub struct Law {
     pub area: Option<Area>,
     /// The other functions that the law is about, by their names in the file.
     pub partners: Vec<String>,
+    /// Which of its own arguments the law `finite` is about; all without it.
+    pub filter: Option<Text>,
+    /// Why the law is about fewer arguments than others of its kind.
+    pub reason: Option<String>,
 }
 
 /// An inverse: called with a row's value, and with the row's other parameters by name, the function
@@ -157,6 +170,7 @@ pub fn law_toml(law: &Law) -> String {
     };
     let value = match law.kind.takes {
         Takes::Numbers => format!("{:?}", law.numbers),
+        Takes::Finite => format!("{:?}", law.number(0)),
         Takes::Names => format!("[{names}]"),
         Takes::Integral | Takes::Albedo | Takes::Inverse | Takes::Equality | Takes::Area => names,
         Takes::Slope => format!("{names}, slope = {:?}", law.number(0)),
@@ -166,6 +180,11 @@ pub fn law_toml(law: &Law) -> String {
 }
 
 impl Law {
+    /// The law that values are finite for arguments up to a magnitude.
+    pub fn finite(kind: &'static Kind, up_to: f64, span: Span) -> Self {
+        Self { numbers: vec![up_to], ..Self::new(kind, span) }
+    }
+
     /// A law of a kind, without any of its values yet.
     pub fn new(kind: &'static Kind, span: Span) -> Self {
         Self {
@@ -180,6 +199,8 @@ impl Law {
             equality: None,
             area: None,
             partners: Vec::new(),
+            filter: None,
+            reason: None,
         }
     }
 
@@ -205,6 +226,9 @@ pub fn transform_rows(
 ) -> Result<Option<Rows>, Diagnostic> {
     if !law.partners.is_empty() {
         return Ok(None);
+    }
+    if law.kind.takes == Takes::Finite {
+        return finite_rows(law, scope);
     }
     if let Some(integral) = &law.integral {
         let direction = |name: &String| direction_words(law, name, scope);
@@ -250,6 +274,18 @@ pub fn partner_rows(
         return equality.rows(index, rows, (case, own), law.span).map(Some);
     }
     law.area.as_ref().map(|area| area.rows(rows, (case, own), law.span)).transpose()
+}
+
+/// The own rows of the law `finite`; none for a function without parameters.
+fn finite_rows(law: &Law, scope: &Scope<'_>) -> Result<Option<Rows>, Diagnostic> {
+    let filter = law.filter.as_ref().map(|text| text.bind(scope)).transpose()?;
+    let rows = finite::edge_rows(scope, law.number(0), filter.as_ref());
+    if rows.is_empty() && !scope.0.is_empty() {
+        let error =
+            Diagnostic::error(codes::CASE_INVALID, "`where` leaves no arguments to the law");
+        return Err(error.at(law.span, "here"));
+    }
+    Ok(Some(rows).filter(|rows| !rows.is_empty()))
 }
 
 fn argument_place<'a>(
