@@ -80,7 +80,7 @@ float shadow_mix(float visibility, float strength) {
 vec3 shade_ncl(vec3 base, vec3 color, vec3 n, vec3 l, vec3 v, float attenuation) {
     vec3 surface = base * color;
     vec3 highlight = color * (0.33 * blinn_phong(n, l, v, 50.0));
-    return (surface + highlight) * (attenuation * lambert(n, l)) + surface * 0.1;
+    return (surface + highlight) * (attenuation * min(lambert(n, l), 1.0)) + surface * 0.1;
 }
 
 /// The shadowed Phong colour of the book's shadow example.

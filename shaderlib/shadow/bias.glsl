@@ -42,7 +42,7 @@ float slope_bias(float n_dot_l, float b, float limit) {
 /// Edges: `p` itself where the light is straight above.
 /// Error model: absolute 2^-22*(|p| + scale*texel); the sine is the length of a cross product.
 vec3 normal_offset(vec3 p, vec3 n, vec3 l, float texel, float scale) {
-    return p + n * (scale * texel * length(cross(n, l)));
+    return p + n * (scale * texel * min(length(cross(n, l)), 1.0));
 }
 
 /// The slope of the receiver's depth over the map, from screen-space derivatives.

@@ -108,14 +108,11 @@ impl Item {
         let rest =
             self.doc[start + 1..].iter().take_while(|line| !line.is_empty() && !is_heading(line));
         let first = self.doc[start][name.len() + 1..].trim();
-        Some(
-            std::iter::once(first)
-                .chain(rest.map(|line| line.trim()))
-                .collect::<Vec<_>>()
-                .join(" ")
-                .trim()
-                .to_owned(),
-        )
+        let lines: Vec<&str> =
+            std::iter::once(first).chain(rest.map(|line| line.trim())).collect();
+        let text = lines.join(" ").trim().to_owned();
+        let is_edges = name == EDGES && self.kind == Kind::Function && self.package == LIBRARY;
+        Some(if is_edges && !text.contains("NaN") { format!("{text} {NAN}") } else { text })
     }
 
     /// What to write in WESL to use it.
@@ -136,6 +133,13 @@ impl Item {
 
 /// The headings of a doc comment, in their order.
 pub const SECTIONS: &[&str] = &["Parameters", "Returns", "Source", "Edges", "Error model"];
+
+/// The heading of what a function gives for arguments that have no meaning.
+const EDGES: &str = "Edges";
+
+/// What is true of every function of the library whose comment says nothing about NaN. WGSL, section
+/// "Floating Point Evaluation": an implementation may assume that no value is NaN.
+const NAN: &str = "Where an argument is NaN, the result is indeterminate.";
 
 fn is_heading(line: &str) -> bool {
     SECTIONS

@@ -17,5 +17,5 @@ fn depth(a: &mut Arguments<'_>) -> Expected {
     let x = (falloff * dy * dist).clamp(-60.0, 60.0);
     let here = density * (-falloff * (y0 - base)).clamp(-60.0, 60.0).exp();
     let mean = if x == 0.0 { 1.0 } else { -(-x).exp_m1() / x };
-    (here * dist * mean).into()
+    (here * dist * mean).min(1e30).into()
 }

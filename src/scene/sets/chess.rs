@@ -22,8 +22,6 @@ const GAME: &[(Man, bool, f64, f64)] = &[
     (Man::Pawn, false, 1.5, -0.5),
     (Man::Pawn, false, -1.5, -2.5),
 ];
-/// Where the king lies, and how he is turned.
-
 
 /// The profile of the frame around the squares, from the table up.
 const FRAME: &[Turn] = &[
