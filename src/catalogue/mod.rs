@@ -108,8 +108,7 @@ impl Item {
         let rest =
             self.doc[start + 1..].iter().take_while(|line| !line.is_empty() && !is_heading(line));
         let first = self.doc[start][name.len() + 1..].trim();
-        let lines: Vec<&str> =
-            std::iter::once(first).chain(rest.map(|line| line.trim())).collect();
+        let lines: Vec<&str> = std::iter::once(first).chain(rest.map(|line| line.trim())).collect();
         let text = lines.join(" ").trim().to_owned();
         let is_edges = name == EDGES && self.kind == Kind::Function && self.package == LIBRARY;
         Some(if is_edges && !text.contains("NaN") { format!("{text} {NAN}") } else { text })
