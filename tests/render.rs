@@ -31,7 +31,6 @@ use lamplight::execute::frame::{Buffers, EntryPoint};
 use lamplight::execute::{Session, executors, on_thread};
 use lamplight::picture::frame::{Programs, probe as watch};
 use lamplight::picture::{Linear, Picture, Plan, Prepared, Shot, Surroundings, prepare_passes};
-use lamplight::scene::environment;
 use libtest_mimic::{Failed, Trial};
 
 use crate::fragments::{self, Tally, Watched};
@@ -140,14 +139,7 @@ fn linear_picture(
 }
 
 pub fn shot(size: [u32; 2], samples: u32, language: Language) -> Shot {
-    Shot {
-        size,
-        samples,
-        exposure: 0.0,
-        cascades: 1,
-        language,
-        surroundings: Surroundings::Formula(environment("studio").unwrap()),
-    }
+    Shot { size, samples, exposure: 0.0, cascades: 1, language, surroundings: Surroundings::Usual }
 }
 
 pub fn said(problems: Diagnostics) -> String {

@@ -41,8 +41,12 @@ use glam::DVec3;
 use crate::bundle::Language;
 use crate::diagnostic::Diagnostics;
 use crate::execute::Session;
-use crate::scene::{Equirect, Sky};
+use crate::scene::sets::Scene;
+use crate::scene::{Equirect, Sky, environment};
 use frame::Programs;
+
+/// The name of the environment that most scenes have around them.
+const STUDIO: &str = "studio";
 
 /// How a picture of a plan is taken.
 #[derive(Clone)]
@@ -64,14 +68,33 @@ pub struct Shot {
 /// The radiance from every direction.
 #[derive(Clone)]
 pub enum Surroundings {
+    /// Those that the scene has, or else the studio.
+    Usual,
     Formula(fn(DVec3) -> DVec3),
     Image(Arc<Equirect>),
 }
 
 impl Surroundings {
+    /// Those of that name; `None` if there are none.
+    pub fn named(name: &str) -> Option<Self> {
+        let formula = environment(name)?;
+        Some(if name == STUDIO { Self::Usual } else { Self::Formula(formula) })
+    }
+
+    /// What is around a scene of its own choice, if nothing else is asked for.
+    fn around_scene(&self, scene: &Scene) -> Self {
+        match self {
+            Self::Usual => {
+                environment(scene.around.unwrap_or(STUDIO)).map_or(Self::Usual, Self::Formula)
+            }
+            asked => asked.clone(),
+        }
+    }
+
     /// Radiance from a unit direction.
     pub fn radiance(&self, direction: DVec3) -> DVec3 {
         match self {
+            Self::Usual => environment(STUDIO).map_or(DVec3::ZERO, |sky| sky(direction)),
             Self::Formula(sky) => sky(direction),
             Self::Image(image) => image.radiance(direction),
         }

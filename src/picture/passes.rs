@@ -86,6 +86,12 @@ pub fn prepare_passes(
     shot: &Shot,
 ) -> Result<Prepared, Diagnostics> {
     let Lit { mut scene, key, last, lit, size } = Lit::of(plan, shot)?;
+    let (fine, shot) = (fineness(last, shot.samples), shot);
+    let shot = &Shot {
+        size: shot.size.map(|side| side * fine),
+        surroundings: shot.surroundings.around_scene(&scene),
+        ..shot.clone()
+    };
     let slice = |scene: &Scene, light: LightView| {
         let values = Values {
             plan,
@@ -103,7 +109,7 @@ pub fn prepare_passes(
         for pass in &plan.passes[..plan.passes.len() - 1] {
             studio.draw(pass, &mut left)?;
         }
-        studio.ready(last, &left)
+        Ok(Prepared { fine, ..studio.ready(last, &left)? })
     };
     if shot.cascades <= 1 {
         let eye = eye_projection(&scene.eye, shot);
@@ -125,6 +131,15 @@ pub fn prepare_passes(
     let mut slices = slices.into_iter();
     let nearest = slices.next().ok_or_else(|| vec![no_frame()])?;
     Ok(Prepared { farther: slices.collect(), ..nearest })
+}
+
+/// How many times finer than the picture all passes of the viewer are drawn. What a pass reads at a
+/// pixel of an earlier one must be of the same point of the scene. So samples cannot be moved within
+/// a pixel, and smaller pixels are averaged instead.
+fn fineness(last: &Pass, samples: u32) -> u32 {
+    /// More would take too much memory: a picture of the gallery has 100 MB for each colour.
+    const FINEST: u32 = 3;
+    if last.needs.seen_before() == 0 { 1 } else { samples.isqrt().clamp(1, FINEST) }
 }
 
 /// The viewer's depth in parts. The splits are where the scene is, and the ends are those of the
@@ -267,6 +282,7 @@ impl Studio<'_> {
             eye,
             background,
             encoded,
+            fine: 1,
             farther: Vec::new(),
         })
     }

@@ -171,6 +171,28 @@ impl Linear {
         self.samples += 1;
     }
 
+    /// Fewer pixels, each the mean of `factor` by `factor`. Its first sample is in their middle.
+    #[must_use]
+    pub fn shrunk(&self, factor: u32) -> Self {
+        let size = self.size.map(|side| side / factor.max(1));
+        let at = |x: u32, y: u32| (y * self.size[0] + x) as usize;
+        let mean = |x: u32, y: u32| {
+            let parts = (0..factor).flat_map(|j| (0..factor).map(move |i| (i, j)));
+            let sum: DVec3 =
+                parts.map(|(i, j)| self.sums[at(factor * x + i, factor * y + j)]).sum();
+            sum / f64::from(factor * factor)
+        };
+        let middle =
+            |x: u32, y: u32| self.first[at(factor * x + factor / 2, factor * y + factor / 2)];
+        let places = || (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
+        Self {
+            size,
+            sums: places().map(|(x, y)| mean(x, y)).collect(),
+            first: places().map(|(x, y)| middle(x, y)).collect(),
+            samples: self.samples,
+        }
+    }
+
     /// What was drawn at a pixel, neither clamped nor averaged; `None` for the background.
     pub fn drawn(&self, x: u32, y: u32) -> Option<DVec3> {
         self.first.get((y * self.size[0] + x) as usize).copied().flatten()

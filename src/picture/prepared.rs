@@ -32,6 +32,8 @@ pub struct Prepared {
     pub(super) background: Background,
     /// Whether the colours are code values of a display.
     pub(super) encoded: bool,
+    /// How many times finer than the picture its passes are drawn.
+    pub(super) fine: u32,
     /// The same pass for the farther parts of the viewer's depth, nearest first. They are visible
     /// where no nearer part drew anything.
     pub farther: Vec<Self>,
@@ -126,6 +128,16 @@ impl Prepared {
     /// # Errors
     /// The painter's.
     pub fn photograph(&self, painter: &dyn Session, shot: &Shot) -> Result<Linear, Diagnostics> {
+        if self.fine > 1 {
+            let size = shot.size.map(|side| side * self.fine);
+            let one = Shot { size, samples: 1, ..shot.clone() };
+            return Ok(self.sampled(painter, &one)?.shrunk(self.fine));
+        }
+        self.sampled(painter, shot)
+    }
+
+    /// The same without finer pixels.
+    fn sampled(&self, painter: &dyn Session, shot: &Shot) -> Result<Linear, Diagnostics> {
         let shifts: Vec<[f64; 2]> =
             (0..shot.samples.max(1)).map(|index| sample_shift(index, shot.samples)).collect();
         let views = self.eye_views(&shifts, shot.size)?;

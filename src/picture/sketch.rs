@@ -195,6 +195,7 @@ impl Sketch {
             eye,
             background: Background::backdrop(eye),
             encoded: false,
+            fine: 1,
             farther: Vec::new(),
         })
     }

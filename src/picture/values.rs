@@ -114,6 +114,7 @@ impl Values<'_> {
             }
             "probes" => self.probe_number(path.field),
             "clusters" => self.cluster(path.index, path.field),
+            "room" => self.room(path.field),
             "profiles" => self.profile(path.index, path.field),
             "materials" => self.materials(path.index, path.field),
             "surroundings" => self.surroundings(&path),
@@ -221,6 +222,17 @@ impl Values<'_> {
     /// The nine coefficients: the published ones, or those of the surroundings.
     pub fn probe(&self) -> [[f64; 3]; 9] {
         self.plan.probe.unwrap_or_else(|| projected_light(&self.shot.surroundings))
+    }
+
+    /// The box that the environment is on.
+    fn room(&self, field: &str) -> Option<Vec<f64>> {
+        let [low, high, centre] = self.scene.room?;
+        Some(vector_values(match field {
+            "low" => low,
+            "high" => high,
+            "centre" => centre,
+            _ => return None,
+        }))
     }
 
     fn haze(&self, field: &str) -> Option<Vec<f64>> {

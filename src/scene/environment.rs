@@ -4,6 +4,7 @@ use glam::DVec3;
 use image::ImageDecoder as _;
 use image::codecs::hdr::HdrDecoder;
 
+use super::interior::interior_light;
 use super::sky::Equirect;
 use crate::limits::ENVIRONMENT_PIXELS;
 use crate::rehearse::rehearse;
@@ -15,6 +16,9 @@ pub type Environment = fn(DVec3) -> DVec3;
 pub const ENVIRONMENTS: &[(&str, &str, Environment)] = &[
     ("studio", "a grey room with a large soft box, a strip light and a warm lamp", studio_sky),
     ("daylight", "a blue sky with a sun over brown earth", daylight_sky),
+    ("dusk", "the studio with its lamps dimmed, so that white surfaces are not clipped", dusk_sky),
+    ("parlour", "a room with windows, pictures and an open door", interior_light),
+    ("checks", "a studio with a wall of coloured and black squares", checks_sky),
     ("constant", "radiance 1 from everywhere", constant_sky),
 ];
 
@@ -47,6 +51,29 @@ fn softbox_light(d: DVec3, towards: DVec3, half: (f64, f64)) -> f64 {
     }
     let inside = |place: f64, half: f64| 1.0 - smoothstep(half, 1.25 * half, (place / depth).abs());
     inside(d.dot(right), half.0) * inside(d.dot(right.cross(forward)), half.1)
+}
+
+fn dusk_sky(d: DVec3) -> DVec3 {
+    0.52 * studio_sky(d)
+}
+
+/// The studio, with squares of 12 degrees on the side that viewers look at.
+fn checks_sky(d: DVec3) -> DVec3 {
+    const SQUARE: f64 = 0.2;
+    const COLORS: [DVec3; 4] = [
+        DVec3::new(0.9, 0.86, 0.78),
+        DVec3::new(0.85, 0.24, 0.1),
+        DVec3::new(0.9, 0.86, 0.78),
+        DVec3::new(0.06, 0.36, 0.5),
+    ];
+    let (around, up) = (d.x.atan2(-d.z), d.y.clamp(-1.0, 1.0).asin());
+    let wall = 1.0 - smoothstep(1.2, 1.25, around.abs());
+    let wall = wall * (1.0 - smoothstep(0.8, 0.82, up.abs()));
+    let (column, row) = ((around / SQUARE).floor(), (up / SQUARE).floor());
+    let is_dark = (column + row).rem_euclid(2.0) == 0.0;
+    let color = COLORS[(column + 3.0 * row).rem_euclid(8.0) as usize / 2];
+    let squares = if is_dark { DVec3::splat(0.025) } else { color };
+    studio_sky(d).lerp(squares, wall)
 }
 
 fn daylight_sky(d: DVec3) -> DVec3 {

@@ -102,7 +102,7 @@ pub fn bricks() -> Maps {
             let brick = Brick::at(at);
             let clay = DVec3::new(0.86, 0.8, 0.76)
                 * (0.8 + 0.35 * brick.tone)
-                * (0.92 + 0.08 * fine_grain(at));
+                * (0.95 + 0.12 * rough_noise(at, 16));
             DVec3::new(0.55, 0.54, 0.52).lerp(clay, brick.height).extend(1.0)
         }),
         normal: Map::of(256, |at| {
@@ -172,8 +172,9 @@ fn open_above(at: DVec2) -> f64 {
 /// Bright grass of many tones. The other maps are those of [`bricks`].
 pub fn meadow() -> Maps {
     let base = Map::of(256, |at| {
-        let tone = 0.9 + 0.06 * fine_grain(at) + 0.04 * fine_grain(at * 2.0);
-        DVec4::new(tone, tone, tone, 1.0)
+        let tone = 0.85 + 0.3 * rough_noise(at, 12);
+        let dry = 0.5 + 0.5 * value_noise(at + 0.37, 8);
+        (DVec3::new(1.0 + 0.12 * dry, 1.0, 1.0 - 0.18 * dry) * tone).extend(1.0)
     });
     Maps { base, ..bricks() }
 }
@@ -205,8 +206,38 @@ impl Brick {
     }
 }
 
-/// Fine noise that repeats with the texture, [-1, 1].
-fn fine_grain(at: DVec2) -> f64 {
-    let turn = at * std::f64::consts::TAU;
-    ((23.0 * turn.x).sin() * (31.0 * turn.y).cos() + (47.0 * turn.x + 19.0 * turn.y).sin()) * 0.5
+/// Noise that repeats with the texture, in [-1, 1]: random values at the corners of a grid of `cells`
+/// by `cells`, smooth between them (value noise: Ebert et al., "Texturing and Modeling", 3rd edition,
+/// 2003, chapter 2).
+fn value_noise(at: DVec2, cells: u32) -> f64 {
+    let place = at.rem_euclid(DVec2::ONE) * f64::from(cells);
+    let cell = place.floor();
+    let t = place - cell;
+    let t = t * t * (3.0 - 2.0 * t);
+    let corner =
+        |x: u32, y: u32| random_at((cell.x as u32 + x) % cells, (cell.y as u32 + y) % cells, cells);
+    let along = |y: u32| corner(0, y) + (corner(1, y) - corner(0, y)) * t.x;
+    2.0 * (along(0) + (along(1) - along(0)) * t.y) - 1.0
+}
+
+/// A random number of a cell, [0, 1): O'Neill's hash of the PCG family, as `pcg3d` of Jarzynski and
+/// Olano, "Hash Functions for GPU Rendering", 2020.
+pub(super) fn random_at(x: u32, y: u32, seed: u32) -> f64 {
+    let mut v = [x, y, seed].map(|part| part.wrapping_mul(1_664_525).wrapping_add(1_013_904_223));
+    for turn in 0..2 {
+        for (to, one, other) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            v[to] = v[to].wrapping_add(v[one].wrapping_mul(v[other]));
+        }
+        if turn == 0 {
+            v = v.map(|part| part ^ (part >> 16));
+        }
+    }
+    f64::from(v[0]) / 2.0_f64.powi(32)
+}
+
+/// Noise of several sizes that repeats with the texture, [-1, 1]. The largest spots are a share
+/// `1 / cells` of the texture.
+fn rough_noise(at: DVec2, cells: u32) -> f64 {
+    let octave = |index: i32| 0.5_f64.powi(index + 1) * value_noise(at, cells << index);
+    (0..4).map(octave).sum()
 }

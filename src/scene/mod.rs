@@ -6,11 +6,13 @@
 //! looks down its -z axis, with +y up. Lengths are in scene units, angles in radians. Cast the
 //! results (`as_mat4`, `as_vec3`) where they enter a uniform buffer.
 
+mod bulbs;
 mod chessmen;
 mod clusters;
 mod environment;
 mod field;
 mod frustum;
+mod interior;
 mod kernel;
 mod layers;
 mod maps;

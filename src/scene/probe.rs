@@ -121,14 +121,16 @@ pub fn prefilter(sky: &Sky<'_>, exponent: f64, size: usize, rows: usize) -> Cube
         .into_iter()
         .map(|(direction, weight)| (direction, weight, sky(direction)))
         .collect();
+    // Where the weight is below a billionth of the largest, or the direction is behind the lobe.
+    let outside = if exponent > 0.0 { 1e-9_f64.powf(exponent.recip()) } else { 0.0 };
     let texel = |index: usize| {
         let (face, row, column) = (index / (size * size), index / size % size, index % size);
         let n = CubeMap::direction(size, face, column, row);
         let (mut sum, mut all) = (DVec3::ZERO, 0.0);
         for (direction, solid_angle, radiance) in &seen {
             let cosine = n.dot(*direction).max(0.0);
-            // Half of the directions are behind the lobe, and a power takes most of the time.
-            if cosine == 0.0 && exponent > 0.0 {
+            // Most directions are outside of the lobe, and a power takes most of the time.
+            if cosine < outside {
                 continue;
             }
             let weight = cosine.powf(exponent) * solid_angle;

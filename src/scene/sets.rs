@@ -47,6 +47,10 @@ pub struct Scene {
     pub probes: Option<Probes>,
     /// Half of the width and height of lamps with an area, if they are not of the usual size.
     pub lamp_size: Option<DVec2>,
+    /// The name of the environment around it, if that is not the usual one.
+    pub around: Option<&'static str>,
+    /// The box that its environment is on: two corners, and from where it is seen.
+    pub room: Option<[DVec3; 3]>,
 }
 
 /// A shape with its place in the scene.
@@ -204,7 +208,7 @@ impl Material {
 }
 
 impl Object {
-    fn new(shape: Shape, place: DMat4, color: DVec3) -> Self {
+    pub(super) fn new(shape: Shape, place: DMat4, color: DVec3) -> Self {
         Self {
             shape,
             world_from_object: place,
@@ -220,7 +224,7 @@ impl Object {
         Self::new(shape, place, color).of(material, 0)
     }
 
-    fn of(self, material: Material, material_index: u32) -> Self {
+    pub(super) fn of(self, material: Material, material_index: u32) -> Self {
         Self { material, material_index, ..self }
     }
 }
@@ -267,49 +271,9 @@ impl Scene {
         base_scene(objects, eye, lamps)
     }
 
-    /// A lamp as it is drawn: a bulb, and for a spot light a shade behind it.
-    pub fn bulb(lamp: &Lamp, kind: LampKind) -> Vec<Object> {
-        let place = DMat4::from_translation(lamp.position);
-        let ball = Shape::sphere(0.11, (24, 12));
-        let ball = Object::new(ball, place, glow(lamp)).of(glowing_material(lamp), 7);
-        let shade = Object::new(lamp_shade(lamp), place, DVec3::splat(0.16)).of(dark_tin(), 8);
-        let parts = [Some(ball), (kind == LampKind::Spot).then_some(shade)];
-        parts.into_iter().flatten().map(|part| Object { casts: false, ..part }).collect()
-    }
-
     /// Half of the width and height of lamps with an area.
     pub fn lamp_size(&self) -> DVec2 {
         self.lamp_size.unwrap_or(DVec2::new(0.6, 0.4))
-    }
-
-    /// A lamp with an area, as it is drawn. A rectangle has a frame behind it.
-    pub fn wide_lamp(&self, lamp: &Lamp, shape: LampShape) -> Vec<Object> {
-        let size = self.lamp_size();
-        let (right, up) = lamp.sides();
-        let patch = |size: DVec2, depth: f64| {
-            let (right, up) = (right * size.x, up * size.y);
-            Shape::patch(lamp.axis() * depth - right - up, 2.0 * right, 2.0 * up, (1, 1))
-        };
-        let radius = shape.radius(size);
-        let surface = match shape {
-            LampShape::Rectangle => patch(size, 0.0),
-            LampShape::Sphere => Shape::sphere(radius, (48, 24)),
-            LampShape::Tube => {
-                let ends = [-size.x - radius, -size.x, size.x, size.x + radius];
-                let radii = [0.0, radius, radius, 0.0];
-                let points: Vec<_> = ends.iter().map(|x| DVec2::new(*x, 0.0)).zip(radii).collect();
-                let turn = glam::DQuat::from_rotation_arc(DVec3::X, right);
-                Shape::tube(&points, (24, 48)).transformed(DMat4::from_quat(turn))
-            }
-        };
-        let place = DMat4::from_translation(lamp.position);
-        let frame = (shape == LampShape::Rectangle).then(|| {
-            let wider = patch(size + DVec2::splat(0.05), -0.01);
-            Object::new(wider, place, DVec3::splat(0.16)).of(dark_tin(), 8)
-        });
-        let glowing = Object::new(surface, place, glow(lamp)).of(glowing_material(lamp), 7);
-        let parts = [Some(glowing), frame].into_iter().flatten();
-        parts.map(|part| Object { casts: false, ..part }).collect()
     }
 
     /// Every vertex of every object that casts a shadow, in world space.
@@ -325,31 +289,6 @@ impl Scene {
         };
         self.objects.iter().filter(|object| object.casts).flat_map(of).collect()
     }
-}
-
-/// The colour of a lamp, as bright as can be.
-fn glow(lamp: &Lamp) -> DVec3 {
-    lamp.color / lamp.color.max_element().max(1e-6)
-}
-
-fn glowing_material(lamp: &Lamp) -> Material {
-    Material { emission: glow(lamp) * 1.5, ..Material::default().glossy(0.0) }
-}
-
-fn dark_tin() -> Material {
-    Material { emission: DVec3::splat(0.015), ..Material::default().glossy(0.1) }
-}
-
-/// An open cone along the lamp's axis.
-fn lamp_shade(lamp: &Lamp) -> Shape {
-    let (rim, depth) = (0.3, 0.26);
-    let cone = Shape::surface(28, 1, |u, v| {
-        let (sin, cos) = (std::f64::consts::TAU * u).sin_cos();
-        let radius = 0.1 + (rim - 0.1) * v;
-        DVec3::new(radius * cos, 0.2 - depth * v, radius * sin)
-    });
-    let turn = glam::DQuat::from_rotation_arc(DVec3::NEG_Y, lamp.axis());
-    cone.transformed(DMat4::from_quat(turn))
 }
 
 /// A scene, by its name: one file of `sets/` each.
@@ -393,5 +332,7 @@ fn base_scene(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Scene {
         shows_lamps: false,
         probes: None,
         lamp_size: None,
+        around: None,
+        room: None,
     }
 }

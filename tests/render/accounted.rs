@@ -14,8 +14,8 @@ use naga::{Expression, Function, Module, TypeInner};
 use super::{library, plan, said};
 
 /// Structures of uniforms, the group of a preset's numbers for each, and fields that describe the
-/// scene, which a source does not give. `Cascades`, `Clusters` and `Probes` are not among them: their
-/// numbers must agree with maps and lists that are made of the scene.
+/// scene, which a source does not give. `Cascades`, `Clusters`, `Probes` and `Room` are not among
+/// them: their numbers must agree with maps and lists that are made of the scene.
 const STRUCTURES: &[(&str, &str, &[&str])] = &[
     ("Object", "object", &["world_from_object", "normal_from_object"]),
     ("Light", "light", &["kind", "shadow_layer"]),

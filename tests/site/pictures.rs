@@ -17,7 +17,6 @@ use lamplight::picture::sketch::{Setting, Sketch};
 use lamplight::picture::{self, Picture, Plan, Shot, Surroundings};
 use lamplight::project;
 use lamplight::resolve::{self, Packages};
-use lamplight::scene::environment;
 use lamplight::source::SourceSet;
 use lamplight::validate::validate;
 use libtest_mimic::Failed;
@@ -150,6 +149,6 @@ fn shot(size: u32) -> Option<Shot> {
         exposure: 0.0,
         cascades: 1,
         language: Language::Wesl,
-        surroundings: Surroundings::Formula(environment("studio")?),
+        surroundings: Surroundings::Usual,
     })
 }

@@ -28,7 +28,7 @@ use lamplight::execute::frame::{self, Frame};
 use lamplight::execute::kernel::Kernel;
 use lamplight::picture::frame::Programs;
 use lamplight::picture::{self, Plan, Prepared, Shot, Surroundings};
-use lamplight::scene::{ENVIRONMENTS, environment, sets};
+use lamplight::scene::{ENVIRONMENTS, sets};
 use tsify::Ts;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -289,7 +289,7 @@ fn number_of(components: &[f64]) -> Number {
 fn shot(request: &PictureRequest) -> Result<Shot, Diagnostics> {
     const LARGEST: u32 = 2048;
     let name = request.environment.as_deref().unwrap_or("studio");
-    let formula = environment(name)
+    let surroundings = Surroundings::named(name)
         .ok_or_else(|| vec![refused(&format!("there is no environment `{name}`"))])?;
     Ok(Shot {
         size: [request.width, request.height].map(|side| side.clamp(1, LARGEST)),
@@ -297,7 +297,7 @@ fn shot(request: &PictureRequest) -> Result<Shot, Diagnostics> {
         exposure: request.exposure.clamp(-32.0, 32.0),
         cascades: 1,
         language: if request.glsl { Language::Glsl } else { Language::Wesl },
-        surroundings: Surroundings::Formula(formula),
+        surroundings,
     })
 }
 

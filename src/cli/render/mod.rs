@@ -30,7 +30,7 @@ use crate::picture::frame::Programs;
 use crate::picture::gallery::SAMPLES;
 use crate::picture::strip::{self, Comparison};
 use crate::picture::{self, Picture, Plan, Shot, Surroundings, is_own_png};
-use crate::scene::{ENVIRONMENTS, Equirect, environment, sets};
+use crate::scene::{ENVIRONMENTS, Equirect, sets};
 
 /// Draw a picture of a preset, a permutation or your own model.
 #[derive(Args, Clone)]
@@ -350,8 +350,8 @@ fn make_shot(arguments: &Arguments, executor: &Entry) -> Result<Shot, Failure> {
 
 /// What is around a scene, by name or from a file.
 fn find_surroundings(name: &str) -> Result<Surroundings, Failure> {
-    if let Some(formula) = environment(name) {
-        return Ok(Surroundings::Formula(formula));
+    if let Some(named) = Surroundings::named(name) {
+        return Ok(named);
     }
     let known = ENVIRONMENTS.iter().map(|(name, _, _)| *name);
     let bytes = match crate::input::read_file(Path::new(name), ENVIRONMENT_BYTES) {

@@ -221,14 +221,18 @@ fn geometry_text(scene: &str) -> String {
         shows_lamps,
         lamp_size,
         probes,
+        around,
+        room,
         maps: _,
         own_maps: _,
     } = (set.make)();
     let seen = (objects, eye, lamps, materials);
     let size = lamp_size.map(|size| format!(" {size}")).unwrap_or_default();
     let probes = probes.map(|probes| format!(" {probes:?}")).unwrap_or_default();
+    let around = around.map(|around| format!(" {around}")).unwrap_or_default();
+    let room = room.map(|room| format!(" {room:?}")).unwrap_or_default();
     format!(
-        "{seen:.3?} {ambient} {sky} {ground} {haze} {haze_range:?} {map_size:?} {shows_lamps}{size}{probes}"
+        "{seen:.3?} {ambient} {sky} {ground} {haze} {haze_range:?} {map_size:?} {shows_lamps}{size}{probes}{around}{room}"
     )
 }
 

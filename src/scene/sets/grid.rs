@@ -27,7 +27,7 @@ pub fn scene() -> Scene {
         let x = 1.4 * (column as f64 - 0.5 * (columns - 1.0));
         let place = placed_at(x, 1.4 * (1.0 - row as f64), 0.0, 0.0);
         let shininess = 4.0 * 1.55_f64.powi(index as i32);
-        let roughness = 0.9 - 0.065 * index as f64;
+        let roughness = 0.92 - 0.06 * index as f64;
         let own = Material { ambient: INDIGO, diffuse: INDIGO, ..Material::default() };
         let material = Material { roughness, ..own.glossy(0.3).shiny(shininess) };
         Object::new(ball.clone(), place, DVec3::ONE).of(material, index as u32)

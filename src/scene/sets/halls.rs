@@ -49,9 +49,9 @@ pub fn scene() -> Scene {
         objects.push(Object::new(block, at, CHALK).of(plaster, 7));
     }
     let eye = Eye {
-        position: DVec3::new(0.0, 0.3, 11.0),
+        position: DVec3::new(0.25, 0.35, 8.2),
         target: DVec3::new(0.0, -0.05, 0.0),
-        fov_y: 0.54,
+        fov_y: 0.58,
         near: 1.0,
         far: 30.0,
     };
@@ -63,7 +63,7 @@ pub fn scene() -> Scene {
         kind: LampKind::Spot,
     };
     Scene {
-        probes: Some(Probes { counts: [12, 4, 8], beyond: DVec3::ZERO }),
+        probes: Some(Probes { counts: [20, 8, 14], beyond: DVec3::ZERO }),
         ..base_scene(objects, eye, palette::lamps(key, 2.6, 1.2, 0.0))
     }
 }

@@ -7,9 +7,10 @@ use glam::{DMat4, DVec3};
 use super::floor::tiles;
 use super::palette::{self, AMBER, CHALK, CORAL, INDIGO, LEAF, SLATE};
 use super::{
-    Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, glow, glowing_material,
+    Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene,
     placed_at,
 };
+use crate::scene::bulbs::{glow, glowing_material};
 use crate::scene::shape::Shape;
 
 /// The colours of the balls, then of the posts.

@@ -1,6 +1,6 @@
 //! Balls with every layer of glTF: none on the left, all of it on the right.
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 
 use super::palette::{self, AMBER, TEAL};
 use super::{Eye, Layers, Material, Object, Scene, Set, base_scene, placed_at};
@@ -10,6 +10,9 @@ use crate::scene::shape::Shape;
 const COLUMNS: usize = 5;
 /// The colour and the roughness of each row.
 const ROWS: [(DVec3, f64); 2] = [(AMBER, 0.18), (TEAL, 0.5)];
+
+/// How rough the sheen of each row is.
+const SHEEN_ROUGHNESS: [f64; 2] = [0.28, 0.6];
 
 /// The scene, for the table of all.
 pub const SET: Set = Set {
@@ -23,9 +26,13 @@ pub fn scene() -> Scene {
     let ball = Shape::sphere(0.66, (96, 48));
     let object = |(row, column): (usize, usize)| {
         let x = 1.42 * (column as f64 - 0.5 * (COLUMNS - 1) as f64);
-        let place = placed_at(x, 0.74 - 1.48 * row as f64, 0.0, 0.0);
+        // Tilted, so that the pole above, where tangents meet, is on the far side.
+        let tilt = DMat4::from_rotation_x(-0.3);
+        let place = placed_at(x, 0.74 - 1.48 * row as f64, 0.0, 0.0) * tilt;
         let (color, roughness) = ROWS[row];
-        let layers = Some(all_layers(column as f64 / (COLUMNS - 1) as f64));
+        let sheen_roughness = SHEEN_ROUGHNESS[row];
+        let share = column as f64 / (COLUMNS - 1) as f64;
+        let layers = Some(Layers { sheen_roughness, ..all_layers(share) });
         let material = Material { roughness, layers, ..Material::default() };
         Object::new(ball.clone(), place, color).of(material, column as u32)
     };
@@ -44,9 +51,8 @@ pub fn scene() -> Scene {
 fn all_layers(share: f64) -> Layers {
     Layers {
         clearcoat: share,
-        clearcoat_roughness: 0.03,
+        clearcoat_roughness: 0.1,
         sheen_color: DVec3::new(0.85, 0.88, 1.0) * share,
-        sheen_roughness: 0.35,
         anisotropy: 0.85 * share,
         iridescence: share.min(0.25) * 4.0,
         iridescence_thickness: 180.0 + 320.0 * share,

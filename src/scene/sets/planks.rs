@@ -18,6 +18,13 @@ const ROUGHNESS: [f64; 4] = [0.1, 0.25, 0.45, 0.7];
 /// The width of a plank, and how far it reaches to the front and to the back.
 const WIDTH: f64 = 1.5;
 const REACH: f64 = 3.0;
+/// The colours of the lamps.
+const COLORS: [DVec3; 4] = [
+    DVec3::new(1.0, 0.6, 0.26),
+    DVec3::new(1.0, 0.4, 0.36),
+    DVec3::new(0.36, 0.9, 0.5),
+    DVec3::new(0.34, 0.6, 1.0),
+];
 /// How far the lamps are behind the middle, and how high.
 const BEHIND: f64 = 1.4;
 const HEIGHT: f64 = 0.62;
@@ -38,18 +45,19 @@ pub fn scene() -> Scene {
     };
     let objects = ROUGHNESS.iter().enumerate().map(plank).collect();
     let eye = Eye {
-        position: DVec3::new(0.0, 4.2, 15.0),
-        target: DVec3::new(0.0, 0.15, 0.0),
-        fov_y: 0.31,
+        position: DVec3::new(0.0, 3.6, 11.0),
+        target: DVec3::new(0.0, -0.12, 0.3),
+        fov_y: 0.42,
         near: 0.5,
         far: 40.0,
     };
     let lamp = |index: usize| {
-        let warm = DVec3::new(1.0, 0.86, 0.68).lerp(DVec3::new(0.72, 0.86, 1.0), index as f64 / 3.0);
+        let position = DVec3::new(1.06 * middle(index), HEIGHT, -BEHIND);
         Lamp {
-            color: warm * 0.75,
-            position: DVec3::new(1.06 * middle(index), HEIGHT, -BEHIND),
-            target: DVec3::new(1.06 * middle(index), 0.35, 0.0),
+            color: COLORS[index] * 0.075,
+            position,
+            // At the near ends of the planks, so that the range of the lamps is beyond them.
+            target: DVec3::new(position.x, 0.1, REACH),
             half_angle: 1.2,
             kind: LampKind::Point,
         }

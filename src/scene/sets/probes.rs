@@ -32,5 +32,5 @@ pub fn scene() -> Scene {
         near: 0.5,
         far: 40.0,
     };
-    base_scene(objects, eye, palette::over_the_shoulder())
+    Scene { around: Some("dusk"), ..base_scene(objects, eye, palette::over_the_shoulder()) }
 }

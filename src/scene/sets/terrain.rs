@@ -7,9 +7,9 @@ use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, maps}
 use crate::scene::shape::Shape;
 
 /// Along each side, scene units.
-const SIDE: f64 = 16.0;
+const SIDE: f64 = 34.0;
 /// Quads along each side.
-const CELLS: u32 = 120;
+const CELLS: u32 = 190;
 
 /// Hills of several sizes around a valley, in scene units.
 pub fn height(x: f64, z: f64) -> f64 {
@@ -17,7 +17,7 @@ pub fn height(x: f64, z: f64) -> f64 {
     let ridge = 1.0 - ((0.8 * (0.45 * x + 0.9 * (0.3 * z).sin()).sin()).powi(2) + 0.01).sqrt();
     let valley = 1.0 - (-(x - 0.6 * (0.5 * z).sin()).powi(2) / 3.0).exp();
     let bumps = 0.16 * (1.9 * x + 0.7).sin() * (1.7 * z).cos()
-        + 0.07 * (3.7 * x + 1.3 * z).sin() * (3.1 * z - 0.4).cos();
+        + 0.04 * (3.7 * x + 1.3 * z).sin() * (3.1 * z - 0.4).cos();
     valley * (1.5 * ridge * ridge + 0.4) + bumps
 }
 
@@ -28,9 +28,9 @@ pub const SET: Set =
 /// The scene itself.
 pub fn scene() -> Scene {
     let eye = Eye {
-        position: DVec3::new(3.2, 6.6, 10.5),
-        target: DVec3::new(0.0, -0.3, -1.0),
-        fov_y: 0.72,
+        position: DVec3::new(1.6, 3.3, 12.5),
+        target: DVec3::new(-0.6, 0.75, 2.0),
+        fov_y: 0.62,
         near: 0.5,
         far: 60.0,
     };
@@ -44,7 +44,7 @@ pub fn scene() -> Scene {
         let steep = ((0.93 - vertex.normal.y) * 6.0).clamp(0.0, 1.0);
         let high = ((vertex.position.y - 1.25) * 3.0).clamp(0.0, 1.0);
         vertex.color = grass.lerp(snow, high).lerp(rock, steep);
-        vertex.uv *= 8.0;
+        vertex.uv *= 17.0;
     });
     let objects = vec![
         Object::new(land, DMat4::IDENTITY, DVec3::ONE)
@@ -58,7 +58,7 @@ pub fn scene() -> Scene {
         kind: LampKind::Directional,
     };
     let mut scene = base_scene(objects, eye, palette::lamps(key, 6.0, 4.0, 0.4));
-    scene.haze_range = (6.0, 30.0);
+    scene.haze_range = (4.0, 20.0);
     scene.maps = maps::meadow;
     scene
 }
