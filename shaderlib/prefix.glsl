@@ -85,6 +85,7 @@
 #define decay_cutoff(p0, p1, p2) lamplight_decay_cutoff(p0, p1, p2)
 #define depth_view_igl(p0) lamplight_depth_view_igl(p0)
 #define dfg_approx(p0, p1) lamplight_dfg_approx(p0, p1)
+#define dfg_approx_hill(p0, p1) lamplight_dfg_approx_hill(p0, p1)
 #define dfg_approx_karis(p0, p1) lamplight_dfg_approx_karis(p0, p1)
 #define dfg_approx_lazarov(p0, p1) lamplight_dfg_approx_lazarov(p0, p1)
 #define diffuse_transmission(p0, p1) lamplight_diffuse_transmission(p0, p1)
@@ -380,6 +381,7 @@
 #undef decay_cutoff
 #undef depth_view_igl
 #undef dfg_approx
+#undef dfg_approx_hill
 #undef dfg_approx_karis
 #undef dfg_approx_lazarov
 #undef diffuse_transmission

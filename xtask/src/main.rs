@@ -89,6 +89,7 @@ const COMMANDS: &[Command] = &[
         "make the tables that techniques read: blue noise, DFG, LTC, sheen (a minute): [--check] [NAME]...",
         tables::run,
     ),
+    ("fit", "fit `dfg_approx` to quadratures, and print its coefficients (a minute)", tables::fit),
     (
         "faults",
         "make calls of the system fail, or end runs at them: the bundle stays whole",

@@ -4,8 +4,15 @@ use crate::{Outcome, test};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../shaderlib/tables");
 
+const RUN: [&str; 6] = ["run", "--quiet", "--release", "--package", "lamplight-tables", "--"];
+
 /// Makes the tables of those names, or all of them.
 pub fn run(arguments: &[String]) -> Outcome {
-    let run = ["run", "--quiet", "--release", "--package", "lamplight-tables", "--", FOLDER];
-    test::cargo(&run, arguments)
+    let names: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    test::cargo(&[&RUN[..], &[FOLDER], &names].concat(), &[])
+}
+
+/// Fits `brdf::energy::dfg_approx` to quadratures, and prints its coefficients.
+pub fn fit(arguments: &[String]) -> Outcome {
+    test::cargo(&[&RUN[..], &["--fit"]].concat(), arguments)
 }

@@ -1,5 +1,6 @@
 //! Sources: this library's fit, whose coefficients are repeated; Turquin, 2019, equation 16;
-//! Fdez-Agüera, 2019; Kulla and Conty, 2017; Karis, 2014; Lazarov, 2013, as Knarkowicz has it.
+//! Fdez-Agüera, 2019; Kulla and Conty, 2017; Hill, in MaterialX; Karis, 2014; Lazarov, 2013, as
+//! Knarkowicz has it.
 
 use super::{Arguments, Entry, Expected};
 use glam::DVec3;
@@ -11,6 +12,7 @@ pub const REFERENCES: Entry = Entry {
         ("energy_compensation", energy_compensation),
         ("split_sum_multi", split_sum_multi),
         ("ms_lobe", ms_lobe),
+        ("dfg_approx_hill", |a| hill(a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0))),
         ("dfg_approx_karis", |a| karis(a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0))),
         ("dfg_approx_lazarov", |a| lazarov(a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0))),
     ],
@@ -21,40 +23,40 @@ fn polynomial(x: f64, r: f64, terms: &[(f64, i32, i32)]) -> f64 {
     terms.iter().map(|(coefficient, i, j)| coefficient * x.powi(*i) * r.powi(*j)).sum()
 }
 
-/// What is lost, and what light at grazing angles adds, as quotients of polynomials in the cosine
-/// and the roughness.
+/// What is lost, and how much more than `(1 - nv)^5` of the rest is at grazing incidence, as quotients
+/// of polynomials in the root of the cosine and the roughness.
 fn dfg_approx(a: &mut Arguments<'_>) -> Expected {
     let (x, r) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(f64::from(0.001f32), 1.0));
-    let lost = polynomial(
-        x,
-        r,
+    let quotient = |above: &[(f64, i32, i32)], below: &[(f64, i32, i32)]| {
+        polynomial(x.sqrt(), r, above) / polynomial(x.sqrt(), r, below)
+    };
+    let lost = quotient(
         &[
-            (0.23276, 1, 2),
-            (-0.515853, 1, 3),
-            (1.65042, 1, 4),
-            (-0.195382, 2, 2),
-            (0.113177, 0, 4),
-            (-0.449665, 0, 5),
-            (0.389169, 0, 6),
+            (-0.0977434, 2, 2),
+            (0.584869, 1, 3),
+            (-0.0749448, 0, 4),
+            (2.75245, 1, 7),
+            (-0.059179, 0, 8),
+        ],
+        &[
+            (1.0, 4, 0),
+            (5.44816, 0, 4),
+            (-3.04355, 0, 6),
+            (2.15307, 0, 8),
+            (1.33161, 2, 2),
+            (3.50483, 2, 4),
+            (-2.4634, 4, 2),
+            (-3.83077, 1, 3),
+            (0.373359, 5, 3),
         ],
     );
-    let below_lost =
-        [(0.662638, 0, 4), (0.615166, 1, 2), (0.752615, 1, 3), (1.0, 2, 0), (-1.29414, 2, 1)];
-    let rim =
-        [(0.000408534, 0, 0), (1.0, 0, 1), (1.04599, 0, 2), (1.57997, 1, 0), (-4.38461, 1, 1)];
-    let below_rim = [
-        (0.000408534, 0, 0),
-        (0.995197, 0, 1),
-        (4.01817, 0, 2),
-        (35.8067, 0, 4),
-        (1.52364, 1, 0),
-        (-7.0989, 1, 1),
-        (5.55121, 2, 0),
-    ];
-    let albedo = 1.0 - lost / polynomial(x, r, &below_lost);
-    let offset = (1.0 - x).powi(3) * polynomial(x, r, &rim) / polynomial(x, r, &below_rim);
-    let offset = offset.clamp(0.0, 1.0);
-    Expected::words([(albedo - offset).clamp(0.0, 1.0), offset])
+    let rim = quotient(
+        &[(0.0406518, 0, 2), (-6.45071, 0, 4), (-1.51886, 0, 3), (4.0002, 4, 2)],
+        &[(1.0, 2, 0), (-0.395461, 1, 1), (1.16293, 0, 2), (7.21068, 0, 4)],
+    );
+    let albedo = (1.0 - lost).clamp(0.0, 1.0);
+    let offset = (albedo * (1.0 - x).powi(5) * (1.0 + rim)).clamp(0.0, albedo);
+    Expected::words([albedo - offset, offset])
 }
 
 /// 1 + f0*(1 - E)/E.
@@ -86,6 +88,27 @@ fn ms_lobe(a: &mut Arguments<'_>) -> Expected {
         white * f * f * kept * bounces
     };
     a.vec3().clamp(DVec3::ZERO, DVec3::ONE).map(one).into()
+}
+
+/// Quotients of polynomials in the cosine and alpha: the coefficients of each power are those of the
+/// two numerators, then of the two denominators.
+fn hill(nv: f64, r: f64) -> Expected {
+    let terms: [([f64; 4], i32, i32); 9] = [
+        ([0.1003, 0.9345, 1.0, 1.0], 0, 0),
+        ([-0.6303, -2.323, -1.765, 0.2281], 1, 0),
+        ([9.748, 2.229, 8.263, 15.94], 0, 2),
+        ([-2.038, -3.748, 11.53, -55.83], 1, 2),
+        ([29.34, 1.424, 28.96, 13.08], 2, 0),
+        ([-8.245, -0.7684, -7.507, 41.26], 0, 4),
+        ([-26.44, 1.436, -36.11, 54.9], 2, 2),
+        ([19.99, 0.2913, 15.86, 300.2], 1, 4),
+        ([-5.448, 0.6286, 33.37, -285.1], 2, 4),
+    ];
+    let part = |index: usize| {
+        let own: Vec<_> = terms.iter().map(|(c, i, j)| (c[index], *i, *j)).collect();
+        polynomial(nv, r, &own)
+    };
+    Expected::words([0, 1].map(|index| (part(index) / part(index + 2)).clamp(0.0, 1.0)))
 }
 
 fn karis(nv: f64, r: f64) -> Expected {

@@ -5,11 +5,13 @@
 //! perceptual roughness, rows of the viewer's cosine, as `lighting::area::ltc_uv` reads them.
 //!
 //! `cargo xtask tables --check` computes every cell of the files again by a finer rule, and fails if
-//! one is further off than its description says.
+//! one is further off than its description says. `cargo xtask fit` prints the coefficients of a
+//! function that is fitted to one of them.
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod dfg;
+mod fit;
 mod header;
 mod ktx2;
 mod ltc;
@@ -223,12 +225,17 @@ fn check_table(folder: &Path, table: &Table) -> Result<(), String> {
 }
 
 /// `FOLDER [--check] [NAME]...`: writes, or checks, all tables or those that are named.
+/// `--fit`: prints coefficients.
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
     let Some(folder) = arguments.next().map(PathBuf::from) else {
-        eprintln!("usage: lamplight-tables FOLDER [--check] [NAME]...");
+        eprintln!("usage: lamplight-tables FOLDER [--check] [NAME]..., or --fit");
         return ExitCode::from(2);
     };
+    if folder == Path::new("--fit") {
+        print!("{}", fit::report());
+        return ExitCode::SUCCESS;
+    }
     let mut names: Vec<String> = arguments.collect();
     let is_check = names.iter().any(|name| name == "--check");
     names.retain(|name| name != "--check");
