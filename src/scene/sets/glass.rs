@@ -32,7 +32,7 @@ pub fn scene() -> Scene {
     };
     let all = (0..2).flat_map(|row| (0..COLUMNS).map(move |column| (row, column)));
     let eye = Eye {
-        position: DVec3::new(0.0, 0.0, 6.2),
+        position: DVec3::new(0.0, 0.0, 8.2),
         target: DVec3::ZERO,
         fov_y: 0.56,
         near: 0.5,

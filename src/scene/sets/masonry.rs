@@ -52,14 +52,15 @@ fn stone() -> Material {
     Material::default().glossy(0.04).shiny(16.0)
 }
 
-/// A column on a square base, with a ring at its foot.
-fn column_parts() -> [Object; 3] {
+/// A column between two square slabs, with a ring at its foot.
+fn column_parts() -> [Object; 4] {
     let at = |height: f64| placed_at(2.25, height, -0.35, 0.35);
     let shaft = [(0.3, 0.0), (0.27, 0.4), (0.26, 1.2), (0.25, 1.7)].map(|(r, y)| DVec2::new(r, y));
     [
         Object::new(Shape::cuboid(DVec3::new(0.52, 0.12, 0.52), 1), at(0.12), CHALK),
         Object::new(Shape::torus(0.34, 0.1, (56, 20)), at(0.34), CHALK),
         Object::new(Shape::lathe(&shaft, (56, 24)), at(0.34), CHALK),
+        Object::new(Shape::cuboid(DVec3::new(0.36, 0.07, 0.36), 1), at(2.09), CHALK),
     ]
     .map(|part| part.of(stone(), 7))
 }
