@@ -9,7 +9,6 @@ use lamplight::diagnostic::Diagnostics;
 use lamplight::execute::{Session, executors, on_thread};
 use lamplight::picture::frame::Programs;
 use lamplight::picture::{Plan, Shot, Surroundings, render_plan};
-use lamplight::scene::environment;
 
 use crate::Outcome;
 
@@ -57,7 +56,7 @@ fn time_presets(painter: &dyn Session, samples: u32) -> Result<Vec<Timed>, Box<d
         exposure: 0.0,
         cascades: 1,
         language: Language::Wesl,
-        surroundings: Surroundings::Formula(environment("studio").ok_or("no such environment")?),
+        surroundings: Surroundings::Usual,
     };
     let mut timed = Vec::new();
     for preset in &presets {

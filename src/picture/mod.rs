@@ -77,8 +77,7 @@ pub enum Surroundings {
 impl Surroundings {
     /// Those of that name; `None` if there are none.
     pub fn named(name: &str) -> Option<Self> {
-        let formula = environment(name)?;
-        Some(if name == STUDIO { Self::Usual } else { Self::Formula(formula) })
+        environment(name).map(Self::Formula)
     }
 
     /// What is around a scene of its own choice, if nothing else is asked for.

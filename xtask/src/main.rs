@@ -81,7 +81,7 @@ const COMMANDS: &[Command] = &[
     ),
     (
         "bench",
-        "measure, beside peers where there are any: compose, eval, gen, load or scale",
+        "measure, beside peers where there are any: compose, eval, gen, load, lsp, migrate, render, scale or site",
         bench::run,
     ),
     (

@@ -81,9 +81,10 @@ pub struct Arguments {
     /// The source language.
     #[arg(long, value_enum, default_value = "wesl")]
     lang: LanguageName,
-    /// The environment: `studio`, `daylight`, `constant`, or a Radiance file (`.hdr`).
-    #[arg(long, value_name = "NAME|FILE", default_value = "studio")]
-    environment: String,
+    /// The environment: `studio`, `daylight`, `dusk`, `parlour`, `checks`, `constant`, or a Radiance
+    /// file (`.hdr`) [default: that of the scene, else `studio`].
+    #[arg(long, value_name = "NAME|FILE")]
+    environment: Option<String>,
     #[command(flatten)]
     overwrite: Overwrite,
 }
@@ -344,12 +345,15 @@ fn make_shot(arguments: &Arguments, executor: &Entry) -> Result<Shot, Failure> {
         cascades: arguments.cascades,
         exposure: arguments.exposure.clamp(-32.0, 32.0),
         language: Language::from(arguments.lang),
-        surroundings: find_surroundings(&arguments.environment)?,
+        surroundings: find_surroundings(arguments.environment.as_deref())?,
     })
 }
 
 /// What is around a scene, by name or from a file.
-fn find_surroundings(name: &str) -> Result<Surroundings, Failure> {
+fn find_surroundings(name: Option<&str>) -> Result<Surroundings, Failure> {
+    let Some(name) = name else {
+        return Ok(Surroundings::Usual);
+    };
     if let Some(named) = Surroundings::named(name) {
         return Ok(named);
     }
