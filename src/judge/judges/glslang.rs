@@ -21,13 +21,8 @@ use crate::output::Scratch;
 use crate::tools::{GLSLANG, printed_words};
 
 /// The judge, for the table of all.
-pub const JUDGE: Entry = Entry {
-    name: "glslang",
-    tools: &[GLSLANG],
-    lacks: |_| None,
-    version: |_| String::new(),
-    plan,
-};
+pub const JUDGE: Entry =
+    Entry { name: "glslang", tools: &[GLSLANG], lacks: |_| None, version: |_| String::new(), plan };
 
 const BATCH: usize = 64;
 

@@ -7,11 +7,7 @@ use glam::DVec3;
 
 pub const REFERENCES: Entry = Entry {
     module: "brdf::coat",
-    functions: &[
-        ("coat_mix", coat_mix),
-        ("coat_f0", coat_f0),
-        ("coat_darkening", coat_darkening),
-    ],
+    functions: &[("coat_mix", coat_mix), ("coat_f0", coat_f0), ("coat_darkening", coat_darkening)],
 };
 
 fn coat_mix(a: &mut Arguments<'_>) -> Expected {

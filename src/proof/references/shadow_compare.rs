@@ -136,7 +136,9 @@ fn castano_row(a: &mut Arguments<'_>) -> Expected {
 fn depths_around(map: &Texture, sampler: Sampler, uv: DVec2, off: f64) -> Vec<f64> {
     let sides = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
     let mut depths: Vec<f64> = sides
-        .map(|(x, y)| sampling::read_channel(map, sampler, uv + off * DVec2::new(x, y) / size(map), 0))
+        .map(|(x, y)| {
+            sampling::read_channel(map, sampler, uv + off * DVec2::new(x, y) / size(map), 0)
+        })
         .into();
     depths.sort_by(f64::total_cmp);
     depths.dedup();

@@ -3,7 +3,9 @@
 use glam::{DMat4, DVec2, DVec3};
 use rayon::prelude::*;
 
-use super::{Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base_scene, maps, placed_at};
+use super::{
+    Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base_scene, maps, placed_at,
+};
 use crate::scene::chessmen::{Man, open_share};
 use crate::scene::layers::Layers;
 use crate::scene::shape::Shape;
@@ -14,7 +16,6 @@ const GAME: &[(Man, bool, f64, f64)] = &[
     (Man::King, true, -1.5, 1.5),
     (Man::Queen, true, -2.5, -0.5),
     (Man::Rook, true, 2.5, -1.5),
-    (Man::Pawn, true, -2.5, 2.5),
     (Man::Pawn, true, -0.5, 0.5),
     (Man::Bishop, false, 0.5, -2.5),
     (Man::Rook, false, -0.5, -3.5),
@@ -67,7 +68,7 @@ fn squares() -> Shape {
     let places = (0..8).flat_map(|z| (0..8).map(move |x| (x, z)));
     let board = places.fold(Shape::default(), |shape, (x, z)| {
         let corner = DVec3::new(f64::from(x) - 4.0, 0.0, f64::from(z) - 3.0);
-        let color = if (x + z) % 2 == 0 { t3("maple", MAPLE) } else { t3("walnut", WALNUT) };
+        let color = if (x + z) % 2 == 0 { MAPLE } else { WALNUT };
         let square = Shape::patch(corner, DVec3::X, DVec3::NEG_Z, (1, 1));
         shape.with(square.map(|vertex| vertex.color = color))
     });
@@ -93,18 +94,18 @@ fn plain_material(roughness: f64, ambient: f64, specular: f64) -> Material {
 }
 
 fn chessman(man: Man, is_white: bool, place: DMat4) -> Object {
-    let (color, roughness) = if is_white { (t3("ivory", IVORY), t1("ivory_r", 0.34)) } else { (t3("ebony", EBONY), t1("ebony_r", 0.26)) };
-    Object::new(in_blank(man.shape()), place, color).of(plain_material(roughness, t1("man_a", 1.0), t1("man_s", 1.0)), 9)
+    let (color, roughness) = if is_white { (IVORY, 0.34) } else { (EBONY, 0.26) };
+    Object::new(in_blank(man.shape()), place, color).of(plain_material(roughness, 1.0, 1.0), 9)
 }
 
 /// A king who lies on the board: on the rims of his foot and of his head.
 fn fallen_king() -> Object {
-    let f = t3("fallen", DVec3::new(0.2, 0.9, -0.9));
+    let f = DVec3::new(0.2, 0.9, -0.9);
     let (x, z, turn) = (f.x, f.y, f.z);
     let tilt = ((0.41 - 0.265) / 1.78_f64).atan();
     let turned = DMat4::from_rotation_y(turn)
         * DMat4::from_rotation_z(-std::f64::consts::FRAC_PI_2 - tilt)
-        * DMat4::from_rotation_y(t1("roll", 0.35));
+        * DMat4::from_rotation_y(0.35);
     let king = chessman(Man::King, false, DMat4::IDENTITY);
     let heights = king.shape.vertices.iter().map(|v| turned.transform_point3(v.position).y);
     let lowest = heights.fold(f64::INFINITY, f64::min);
@@ -126,8 +127,8 @@ fn backdrop() -> Object {
         let above = (way - floor - bend).max(0.0);
         DVec3::new(x, -0.3 + radius * (1.0 - angle.cos()) + above, back - radius * angle.sin())
     });
-    let cloth = plain_material(0.8, t1("cloth_a",0.25), t1("cloth_s",0.3));
-    let backdrop = Object::new(in_blank(shape), DMat4::IDENTITY, t3("cloth", DVec3::new(0.07, 0.085, 0.11)));
+    let cloth = plain_material(0.8, 0.25, 0.3);
+    let backdrop = Object::new(in_blank(shape), DMat4::IDENTITY, DVec3::new(0.07, 0.085, 0.11));
     Object { casts: false, ..backdrop.of(cloth, 8) }
 }
 
@@ -141,9 +142,24 @@ fn lamps() -> Vec<Lamp> {
         kind: LampKind::Spot,
     };
     let mut all = vec![
-        spot(t3("key_c", DVec3::new(3.3, 2.6, 1.75)), t3("key_p", DVec3::new(-7.0, 6.0, -1.0)), t3("key_t", DVec3::new(0.1, 0.2, 0.2)), t1("key_h", 0.62)),
-        spot(t3("rim_c", DVec3::new(0.32, 0.5, 0.85)), t3("rim_p", DVec3::new(7.0, 3.4, -6.0)), t3("rim_t", DVec3::new(0.0, 0.6, 0.0)), t1("rim_h", 0.6)),
-        spot(t3("wall_c", DVec3::new(0.55, 0.75, 1.0) * 2.2), t3("wall_p", DVec3::new(1.5, 1.5, -12.5)), t3("wall_t", DVec3::new(1.5, 4.0, -16.0)), 0.9),
+        spot(
+            DVec3::new(3.3, 2.6, 1.75),
+            DVec3::new(-7.0, 6.0, -1.0),
+            DVec3::new(0.1, 0.2, 0.2),
+            0.62,
+        ),
+        spot(
+            DVec3::new(0.32, 0.5, 0.85),
+            DVec3::new(7.0, 3.4, -6.0),
+            DVec3::new(0.0, 0.6, 0.0),
+            0.6,
+        ),
+        spot(
+            DVec3::new(0.55, 0.75, 1.0) * 2.2,
+            DVec3::new(1.5, 1.5, -12.5),
+            DVec3::new(1.5, 4.0, -16.0),
+            0.9,
+        ),
     ];
     all[2].kind = LampKind::Point;
     all
@@ -151,10 +167,8 @@ fn lamps() -> Vec<Lamp> {
 
 /// The scene itself.
 pub fn scene() -> Scene {
-    let polish = plain_material(t1("board_r",0.3), t1("board_a",1.0), t1("board_s",1.0));
-    let dark = |shape, color| {
-        Object::new(on_board(shape), DMat4::IDENTITY, color).of(polish, 3)
-    };
+    let polish = plain_material(0.3, 1.0, 1.0);
+    let dark = |shape, color| Object::new(on_board(shape), DMat4::IDENTITY, color).of(polish, 3);
     let mut objects = vec![
         dark(squares(), DVec3::ONE),
         dark(framed_shape(INLAY), MAPLE),
@@ -162,21 +176,21 @@ pub fn scene() -> Scene {
         backdrop(),
         fallen_king(),
     ];
-    let moved: Vec<_> = GAME.iter().enumerate().map(|(i, (m, w, x, z))| { let p = tt(&format!("man{i}"), &[*x, *z]); (*m, *w, p[0], p[1]) }).collect();
-    objects.extend(moved.iter().map(|(man, is_white, x, z)| {
-        chessman(*man, *is_white, placed_at(*x, 0.0, *z, 0.35))
-    }));
+    objects.extend(
+        GAME.iter()
+            .map(|(man, is_white, x, z)| chessman(*man, *is_white, placed_at(*x, 0.0, *z, 0.35))),
+    );
     let eye = Eye {
-        position: t3("eye", DVec3::new(0.9, 2.75, 8.2)),
-        target: t3("eye_t", DVec3::new(0.15, 0.62, 0.0)),
-        fov_y: t1("fov", 0.5),
+        position: DVec3::new(0.9, 2.75, 8.2),
+        target: DVec3::new(0.15, 0.62, 0.0),
+        fov_y: 0.5,
         near: 0.5,
         far: 60.0,
     };
     Scene {
-        map_size: Some(t1("map",1024.0) as u32),
+        map_size: Some(1024),
         maps: chess_maps,
-        lamp_size: Some(DVec2::splat(t1("lamp_size",0.35))),
+        lamp_size: Some(DVec2::splat(0.35)),
         ..base_scene(objects, eye, lamps())
     }
 }
@@ -201,7 +215,7 @@ fn board_map(side: usize, number: impl Fn(DVec2) -> f64 + Sync) -> Map {
 }
 
 fn open_map() -> Map {
-    let men: Vec<_> = GAME.iter().enumerate().map(|(i, (man, _, x, z))| { let p = tt(&format!("man{i}"), &[*x, *z]); (*man, DVec2::new(p[0], p[1])) }).collect();
+    let men: Vec<_> = GAME.iter().map(|(man, _, x, z)| (*man, DVec2::new(*x, *z))).collect();
     board_map(256, |at| open_share(at, &men))
 }
 
@@ -236,16 +250,3 @@ fn value_noise(at: DVec2) -> f64 {
     let row = |y: f64| number(0.0, y) + (number(1.0, y) - number(0.0, y)) * smooth.x;
     row(0.0) + (row(1.0) - row(0.0)) * smooth.y
 }
-
-fn tt(name: &str, d: &[f64]) -> Vec<f64> {
-    let text = std::fs::read_to_string(std::env::var("TT").unwrap_or_default()).unwrap_or_default();
-    for line in text.lines() {
-        let mut words = line.split_whitespace();
-        if words.next() == Some(name) {
-            return words.map(|w| w.parse().unwrap()).collect();
-        }
-    }
-    d.to_vec()
-}
-fn t3(name: &str, d: DVec3) -> DVec3 { let v = tt(name, &d.to_array()); DVec3::new(v[0], v[1], v[2]) }
-fn t1(name: &str, d: f64) -> f64 { tt(name, &[d])[0] }

@@ -40,9 +40,8 @@ pub fn scene() -> Scene {
     let (thickness, back) = BETWEEN;
     let length = 0.5 * (HALF.z - back);
     let between = Shape::cuboid(DVec3::new(thickness, HALF.y, length), 6);
-    objects.push(
-        Object::new(between, placed_at(0.0, 0.0, back + length, 0.0), CHALK).of(plaster, 7),
-    );
+    objects
+        .push(Object::new(between, placed_at(0.0, 0.0, back + length, 0.0), CHALK).of(plaster, 7));
     for (place, turn) in [(-1.3, 0.5), (1.5, -0.4)] {
         let block = Shape::cuboid(DVec3::new(0.4, 0.55, 0.4), 4);
         let at = placed_at(place, 0.55 - HALF.y, 0.2, turn);

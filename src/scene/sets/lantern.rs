@@ -6,10 +6,7 @@ use glam::{DMat4, DVec3};
 
 use super::floor::tiles;
 use super::palette::{self, AMBER, CHALK, CORAL, INDIGO, LEAF, SLATE};
-use super::{
-    Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene,
-    placed_at,
-};
+use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::bulbs::{glow, glowing_material};
 use crate::scene::shape::Shape;
 

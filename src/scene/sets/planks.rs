@@ -36,11 +36,8 @@ pub fn scene() -> Scene {
         let corner = DVec3::new(middle(index) - 0.5 * WIDTH + 0.015, 0.0, REACH);
         let along = DVec3::X * (WIDTH - 0.03);
         let shape = Shape::patch(corner, along, DVec3::NEG_Z * 2.0 * REACH, (6, 24));
-        let material = Material {
-            roughness: *roughness,
-            specular: DVec3::splat(0.06),
-            ..Material::default()
-        };
+        let material =
+            Material { roughness: *roughness, specular: DVec3::splat(0.06), ..Material::default() };
         Object::new(shape, DMat4::IDENTITY, CHALK * 0.32).of(material, 7)
     };
     let objects = ROUGHNESS.iter().enumerate().map(plank).collect();

@@ -21,7 +21,8 @@ pub fn scene() -> Scene {
     let box_place = placed_at(2.2, -0.25, -0.9, 0.7) * DMat4::from_rotation_x(0.25);
     let ring_place = placed_at(1.5, -0.75, 1.5, 0.5) * DMat4::from_rotation_x(1.1);
     let objects = vec![
-        Object::new(Shape::sphere(1.55, (96, 48)), placed_at(-1.1, 0.0, 0.0, 0.0), WHITE).of(matt, 7),
+        Object::new(Shape::sphere(1.55, (96, 48)), placed_at(-1.1, 0.0, 0.0, 0.0), WHITE)
+            .of(matt, 7),
         Object::new(Shape::cuboid(DVec3::splat(0.85), 1), box_place, WHITE).of(matt, 7),
         Object::new(Shape::torus(0.6, 0.22, (80, 32)), ring_place, WHITE).of(matt, 7),
     ];

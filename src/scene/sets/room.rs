@@ -7,8 +7,7 @@ use rayon::prelude::*;
 
 use super::palette::{self, AMBER, CHALK, CORAL, LEAF};
 use super::{
-    Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base_scene,
-    maps, placed_at,
+    Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base_scene, maps, placed_at,
 };
 use crate::scene::bulbs::{glow, glowing_material};
 use crate::scene::shape::Shape;
