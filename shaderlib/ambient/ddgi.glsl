@@ -12,7 +12,7 @@
 /// Parameters: `mean`, `mean2` mean of the distance and of its square towards the point, scene units and scene units^2; `dist` distance of the point from the probe, scene units; `least` value that is left where all is hidden, [0, 1].
 /// Returns: Chebyshev's bound cubed, [least, 1]; 1 up to the mean.
 /// Source: Majercik, Guertin, Nowrouzezahrai, McGuire, "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields", 2019, section 5.2.
-/// Edges: `least` beyond a mean without variance.
+/// Edges: `least` where `dist` is beyond a `mean` without variance; a `mean2` below the square of `mean` counts as if it were as far above it; a `least` outside [0, 1] counts as the nearer bound; negative distances are compared as they are.
 /// Error model: relative 2^-20 + 2^-21*mean^2/variance.
 float ddgi_chebyshev(float mean, float mean2, float dist, float least) {
     if (!(dist > mean)) {
@@ -29,7 +29,7 @@ float ddgi_chebyshev(float mean, float mean2, float dist, float least) {
 /// Parameters: `n` unit normal of the surface; `dir` unit, from the point to the probe; `tri` the probe's trilinear share, [0, 1]; `visibility` as from `ddgi_chebyshev`, [0, 1].
 /// Returns: the weight, above 0: a weight w below 0.2 counts as w^3/0.04, so that the curve has no jump.
 /// Source: Majercik, Guertin, Nowrouzezahrai, McGuire, "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields", 2019, section 5.2 and its listing.
-/// Edges: the weight counts as at least 1e-6, the share as at least 0.001; the cosine of `n` and `dir` is clamped to [-1, 1], so zero vectors count as at a right angle.
+/// Edges: `tri` counts as at least 0.001, and a weight from a `visibility` of 0 or below as 1e-6; the cosine of `n` and `dir` is clamped to [-1, 1], so zero vectors count as at a right angle.
 /// Error model: relative 2^-20.
 float ddgi_crushed(vec3 n, vec3 dir, float tri, float visibility) {
     float wrapped = 0.5 * clamp(dot(n, dir), -1.0, 1.0) + 0.5;
@@ -43,7 +43,7 @@ float ddgi_crushed(vec3 n, vec3 dir, float tri, float visibility) {
 /// Parameters: `n` unit normal of the surface; `dir` unit, from the point to the probe, the same space; `tri` the probe's trilinear share, [0, 1]; `mean`, `mean2` mean of the distance and of its square that the probe sees towards the point, scene units and scene units^2; `dist` distance of the point from the probe, scene units.
 /// Returns: the weight, above 0.
 /// Source: Majercik, Guertin, Nowrouzezahrai, McGuire, "Dynamic Diffuse Global Illumination with Ray-Traced Irradiance Fields", 2019, section 5.2 and its listing: a wrapped cosine, visibility, and small weights crushed.
-/// Edges: never 0, so that the sum of eight is not; a share below 0.001 counts as that.
+/// Edges: never 0, so that the sum of eight is not: a `tri` below 0.001 counts as that; a zero `n` or `dir` counts as at a right angle; `mean`, `mean2` and `dist` as for `ddgi_chebyshev`.
 /// Error model: relative 2^-19 + 2^-19*mean^2/variance.
 float ddgi_weight(vec3 n, vec3 dir, float tri, float mean, float mean2, float dist) {
     return ddgi_crushed(n, dir, tri, ddgi_chebyshev(mean, mean2, dist, 0.0));

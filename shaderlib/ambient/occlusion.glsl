@@ -43,7 +43,7 @@ vec3 multibounce(float ao, vec3 albedo) {
 /// Parameters: `r` unit, the mirrored direction; `n` unit normal of the geometry, the same space; `k` sharpness, at least 0: 1.3 is usual.
 /// Returns: `min(1 + k*dot(r, n), 1)^2`, [0, 1].
 /// Source: Russell, "Horizon Occlusion for Normal Mapped Reflections", 2015.
-/// Edges: 1 above the horizon; a negative `k` counts as 0.
+/// Edges: 1 above the horizon, and where `r` or `n` is zero; a negative `k` counts as 0, which gives 1.
 /// Error model: absolute 4*2^-23*(1 + k).
 float horizon_occlusion(vec3 r, vec3 n, float k) {
     float x = clamp(1.0 + max(k, 0.0) * dot(r, n), 0.0, 1.0);
@@ -57,7 +57,7 @@ float horizon_occlusion(vec3 r, vec3 n, float k) {
 /// Parameters: `h` angle of the horizon from the viewer's direction, radians, negative on one side; `gamma` angle of the projected normal from the viewer's direction, radians, [-pi/2, pi/2].
 /// Returns: `(cos(gamma) + 2*h*sin(gamma) - cos(2*h - gamma))/4`.
 /// Source: Jimenez, Wu, Pesce, Jarabo, "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016, equation 7.
-/// Edges: `h` is clamped to within pi/2 of the normal: beyond it the surface itself is the horizon.
+/// Edges: `h` is clamped to within pi/2 of the normal: beyond it the surface itself is the horizon; a `gamma` outside its range is not clamped.
 /// Error model: absolute 2^-10, of which the bound of WGSL for sines is all but 2^-20.
 float gtao_arc(float h, float gamma) {
     float edge = clamp(h, gamma - 1.5707964, gamma + 1.5707964);
@@ -69,7 +69,7 @@ float gtao_arc(float h, float gamma) {
 /// Parameters: `i` index, [0, count); `count` number of points, at least 1.
 /// Returns: a vector about z, of a length in [0.1, 1]; z is at least 0.
 /// Source: cosine-weighted directions at the points of `r2_sequence`; lengths as in Chapman, "SSAO Tutorial", 2013: `mix(0.1, 1, (i/count)^2)`.
-/// Edges: an index beyond `count` counts as that; a count of 0 counts as 1.
+/// Edges: a point whose `i` is `count` or more has a length of 1; a `count` of 0 counts as 1.
 /// Error model: absolute 2^-11, of which the bound of WGSL for sines is all but 2^-20.
 vec3 ssao_kernel(uint i, uint count) {
     vec2 u = r2_sequence(i);
@@ -84,7 +84,7 @@ vec3 ssao_kernel(uint i, uint count) {
 /// Parameters: `bent` unit, the mean open direction; `r` unit, the mirrored direction, the same space; `ao` ambient occlusion, [0, 1], 1 is open; `alpha` squared perceptual roughness, [0, 1].
 /// Returns: the part of the lobe's cone that the open cone covers, [0, 1].
 /// Source: Jimenez, Wu, Pesce, Jarabo, "Practical Realtime Strategies for Accurate Indirect Occlusion", 2016, with the intersection of cones by a smooth step; the cones as in Guy, Agopian, Filament, 2018: cosines `sqrt(1 - ao)` and `2^(-3.321928*alpha^2)`.
-/// Edges: fades to 1 for an alpha from 0.09 to 0.01, whose cone has no width; parameters outside [0, 1] are clamped.
+/// Edges: fades to 1 for an alpha from 0.09 to 0.01, whose cone has no width; parameters outside [0, 1] are clamped; a zero `bent` or `r` counts as at a right angle.
 /// Error model: absolute 2^-9, from the arc cosines.
 float gtso(vec3 bent, vec3 r, float ao, float alpha) {
     float a = clamp(alpha, 0.0, 1.0);

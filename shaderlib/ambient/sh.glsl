@@ -14,10 +14,10 @@
 
 /// Irradiance from nine coefficients of the radiance.
 ///
-/// Parameters: `n` unit normal in the space of the coefficients; `sh` nine linear RGB coefficients.
+/// Parameters: `n` unit normal in the space of the coefficients; `sh` nine linear RGB coefficients of any sign.
 /// Returns: irradiance, linear; may be below 0 for an environment of strong contrast.
 /// Source: Ramamoorthi, Hanrahan, "An Efficient Representation for Irradiance Environment Maps", 2001, equation 13; Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, equation 7.1 and example 7.14.
-/// Edges: a zero normal gives `0.886227*L00 - 0.247708*L20`.
+/// Edges: a zero `n` gives `0.886227*L00 - 0.247708*L20`.
 /// Error model: absolute 12*2^-23 of the sum of the terms' magnitudes.
 vec3 sh9_irradiance(vec3 n, vec3 sh[9]) {
     vec3 second = 0.429043 * sh[8] * (n.x * n.x - n.y * n.y) + sh[6] * (0.743125 * n.z * n.z - 0.247708);
@@ -28,10 +28,10 @@ vec3 sh9_irradiance(vec3 n, vec3 sh[9]) {
 
 /// Irradiance from nine coefficients, without the negative light that ringing leaves.
 ///
-/// Parameters: `n` unit normal in the space of the coefficients; `sh` nine linear RGB coefficients.
+/// Parameters: `n` unit normal in the space of the coefficients; `sh` nine linear RGB coefficients of any sign.
 /// Returns: `max(sh9_irradiance, 0)` per channel, linear, at least 0.
 /// Source: as `sh9_irradiance`; the clamp because Grace Cathedral's blue reaches -0.0056.
-/// Edges: 0 where the sum is negative.
+/// Edges: 0 where the sum is negative; a zero `n` as for `sh9_irradiance`.
 /// Error model: that of `sh9_irradiance`.
 vec3 sh9_irradiance_clamped(vec3 n, vec3 sh[9]) {
     return max(sh9_irradiance(n, sh), vec3(0.0));
@@ -39,10 +39,10 @@ vec3 sh9_irradiance_clamped(vec3 n, vec3 sh[9]) {
 
 /// Irradiance from the first four coefficients of the radiance: constant and linear bands.
 ///
-/// Parameters: `n` unit normal in the space of the coefficients; `sh` four linear RGB coefficients: L00, L1m1, L10, L11.
+/// Parameters: `n` unit normal in the space of the coefficients; `sh` four linear RGB coefficients of any sign: L00, L1m1, L10, L11.
 /// Returns: irradiance, linear; may be below 0 opposite a strong light.
 /// Source: Ramamoorthi, Hanrahan, "An Efficient Representation for Irradiance Environment Maps", 2001, equation 13 without its quadratic terms.
-/// Edges: a zero normal gives `0.886227*L00`.
+/// Edges: a zero `n` gives `0.886227*L00`.
 /// Error model: absolute 6*2^-23 of the sum of the terms' magnitudes.
 vec3 sh4_irradiance(vec3 n, vec3 sh[4]) {
     return 0.886227 * sh[0] + 1.023328 * (sh[3] * n.x + sh[1] * n.y + sh[2] * n.z);
@@ -92,10 +92,10 @@ float geomerics_channel(vec3 n, float constant, vec3 axis) {
 
 /// Irradiance from four coefficients that is never negative: a nonlinear lobe in place of the linear band.
 ///
-/// Parameters: `n` unit normal in the space of the coefficients; `sh` four linear RGB coefficients of the radiance: L00, L1m1, L10, L11.
+/// Parameters: `n` unit normal in the space of the coefficients; `sh` four linear RGB coefficients of the radiance, of any sign: L00, L1m1, L10, L11.
 /// Returns: irradiance, linear, at least 0; its mean over all directions is `0.886227*L00`, its largest value four times that.
 /// Source: Hazel, "Reconstructing Diffuse Lighting from Spherical Harmonic Data", Geomerics, 2015: `R0*(a + (1 - a)*(p + 1)*q^p)`, each channel about its own axis.
-/// Edges: the constant term where a channel has no direction; 0 where its constant is 0 or less; a linear band that is longer than that of light from one direction counts as that long.
+/// Edges: the constant term where a channel has no direction; 0 where its constant is 0 or less; a linear band that is longer than that of light from one direction counts as that long; a zero `n` counts as at a right angle to the directions of all channels.
 /// Error model: relative 2^-18.
 vec3 sh4_irradiance_geomerics(vec3 n, vec3 sh[4]) {
     vec3 axis_r = vec3(sh[3].x, sh[1].x, sh[2].x);
@@ -106,10 +106,10 @@ vec3 sh4_irradiance_geomerics(vec3 n, vec3 sh[4]) {
 
 /// Irradiance from four coefficients and a guess of the next band from them.
 ///
-/// Parameters: `n` unit normal in the space of the coefficients; `sh` four linear RGB coefficients of the radiance: L00, L1m1, L10, L11.
+/// Parameters: `n` unit normal in the space of the coefficients; `sh` four linear RGB coefficients of the radiance, of any sign: L00, L1m1, L10, L11.
 /// Returns: irradiance, linear; may be below 0 opposite a strong light.
 /// Source: Roughton, Sloan, Silvennoinen, Iwanicki, Shirley, "ZH3: Quadratic Zonal Harmonics", 2024: band 2 is `L00*(0.08*r + 0.6*r^2)` about the axis of the luminance, with r the linear band along it over L00.
-/// Edges: `sh4_irradiance` where the luminance has no direction, and for channels whose constant is 0 or less.
+/// Edges: `sh4_irradiance` where the luminance has no direction, and for channels whose constant is 0 or less; a zero `n` counts as at a right angle to the luminance's direction.
 /// Error model: absolute 2^-20 of the sum of the terms' magnitudes.
 vec3 sh4_irradiance_zh3(vec3 n, vec3 sh[4]) {
     vec3 luma = vec3(0.2126, 0.7152, 0.0722);
@@ -129,7 +129,7 @@ vec3 sh4_irradiance_zh3(vec3 n, vec3 sh[4]) {
 /// Parameters: `band` 0 for the constant, 1 for the linear one, and so on; `width` of the window, bands, above 0: smaller ones blur more.
 /// Returns: `(1 + cos(pi*band/width))/2`, [0, 1]: a factor of the band's coefficients.
 /// Source: Sloan, "Stupid Spherical Harmonics (SH) Tricks", 2008, "Windowing": the Hanning window.
-/// Edges: 0 from `width` on; 1 for band 0, whatever the width.
+/// Edges: 1 for a `band` of 0 or below, whatever the `width`; 0 for every other band from `width` on, so for all of them where `width` is 0 or below.
 /// Error model: absolute 2^-12, of which the bound of WGSL for sines is all but 2^-20.
 float sh_window(float band, float width) {
     if (!(band > 0.0)) {

@@ -13,7 +13,7 @@
 /// Parameters: `n`, `l` unit, one space, `l` away from the surface.
 /// Returns: `max(n.l, 0)`, in [0, 1].
 /// Source: Lambert, Photometria, 1760; Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.3.
-/// Edges: 0 where the light is behind the surface, and for a zero vector.
+/// Edges: 0 where the light is behind the surface, and where `n` or `l` is zero.
 /// Error model: absolute 1.5*2^-23*sum|n_i*l_i|.
 float lambert(vec3 n, vec3 l) {
     return max(dot(n, l), 0.0);
@@ -24,7 +24,7 @@ float lambert(vec3 n, vec3 l) {
 /// Parameters: `n`, `l` unit, one space, `l` away from the surface.
 /// Returns: `(0.5*n.l + 0.5)^2`, in [0, 1].
 /// Source: Mitchell, McTaggart, Green, "Shading in Valve's Source Engine", 2006.
-/// Edges: 0 only where the light is straight behind; 0.25 for a zero vector.
+/// Edges: 0 only where the light is straight behind; 0.25 where `n` or `l` is zero.
 /// Error model: absolute 1.5*2^-23*(1 + sum|n_i*l_i|).
 float half_lambert(vec3 n, vec3 l) {
     float x = 0.5 * dot(n, l) + 0.5;
@@ -36,7 +36,7 @@ float half_lambert(vec3 n, vec3 l) {
 /// Parameters: `n`, `l` unit, one space, `l` away from the surface; `w` wrap, [0, 1]: 0 is Lambert, 1 reaches the far side.
 /// Returns: `max((n.l + w)/(1 + w), 0)`, in [0, 1].
 /// Source: Green, "Real-Time Approximations to Subsurface Scattering", GPU Gems, 2004, chapter 16.
-/// Edges: a negative `w` counts as 0.
+/// Edges: a negative `w` counts as 0, one above 1 lights the far side too; `w/(1 + w)` where `n` or `l` is zero.
 /// Error model: absolute 2^-24 + 2.5*2^-23*(1 + sum|n_i*l_i|).
 float wrap(vec3 n, vec3 l, float w) {
     float amount = max(w, 0.0);
@@ -48,7 +48,7 @@ float wrap(vec3 n, vec3 l, float w) {
 /// Parameters: `n`, `l`, `v` unit, one space, `l` and `v` away from the surface; `sigma` standard deviation of the facets' slope, radians, at least 0.
 /// Returns: `n.l*(A + B*max(cos(phi), 0)*sin(a)*tan(b))`, at least 0, with `A = 1 - 0.5*sigma^2/(sigma^2 + 0.33)`, `B = 0.45*sigma^2/(sigma^2 + 0.09)`, a and b the larger and the smaller angle of `l` and `v` to `n`, phi the azimuth between `l` and `v`; Lambert's cosine for sigma 0.
 /// Source: Oren, Nayar, "Generalization of Lambert's Reflectance Model", 1994, equation 30, without albedo/pi.
-/// Edges: 0 where the light is at or behind the horizon; a viewer behind the surface counts as at the horizon.
+/// Edges: 0 where the light is at or behind the horizon, so where `n` or `l` is zero; a viewer behind the surface counts as at the horizon; `n.l*A` for a zero `v`; a negative `sigma` counts as its magnitude.
 /// Error model: absolute 2^-18, from the dot products; the quotient is of a cosine by a larger one.
 float oren_nayar(vec3 n, vec3 l, vec3 v, float sigma) {
     float nl = dot(n, l);
@@ -69,7 +69,7 @@ float oren_nayar(vec3 n, vec3 l, vec3 v, float sigma) {
 /// Parameters: `nl`, `nv`, `lh` cosines n.l, n.v, l.h, [0, 1]; `roughness` perceptual, [0, 1].
 /// Returns: `(1 + (f90 - 1)(1 - nl)^5)(1 + (f90 - 1)(1 - nv)^5)/pi` with `f90 = 0.5 + 2*roughness*lh^2`: a BRDF, 1/sr, at least 0; the caller multiplies by `nl`.
 /// Source: Burley, "Physically-Based Shading at Disney", 2012, section 5.3.
-/// Edges: cosines and roughnesses outside [0, 1] are clamped to it.
+/// Edges: parameters outside [0, 1] are clamped to it.
 /// Error model: 12 ULP.
 float burley(float nl, float nv, float lh, float roughness) {
     float half_cosine = clamp(lh, 0.0, 1.0);
@@ -111,7 +111,7 @@ float eon_albedo(float mu, float roughness) {
 /// Parameters: `albedo` linear colour of the facets, [0, 1]; `roughness` of the model, [0, 1]; `nl`, `nv`, `lv` cosines n.l, n.v and l.v.
 /// Returns: a BRDF, 1/sr, at least 0; `albedo/pi` for a roughness of 0; the caller multiplies by `nl`.
 /// Source: Portsmouth, Kutz, Hill, "EON: A Practical Energy-Preserving Rough Diffuse BRDF", 2025.
-/// Edges: 0 where the light or the viewer is at or behind the horizon; cosines of both below 1e-6 count as 1e-6 in the retroreflection; albedo and roughness outside [0, 1] are clamped to it.
+/// Edges: 0 where `nl` or `nv` is 0 or below: the light or the viewer is at or behind the horizon; cosines of both below 1e-6 count as 1e-6 in the retroreflection; `albedo` and `roughness` outside [0, 1] are clamped to it, `lv` is not clamped.
 /// Error model: 40 ULP beside 2*2^-23*roughness/max(nl, nv).
 vec3 eon(vec3 albedo, float roughness, float nl, float nv, float lv) {
     if (!(nl > 0.0 && nv > 0.0)) {
@@ -153,7 +153,7 @@ float burley_albedo(float nv, float roughness) {
 /// Parameters: `nl` cosine n.l, [-1, 1]: negative for a light behind the sheet; `w` share that passes through, [0, 1].
 /// Returns: `mix(max(nl, 0), max(-nl, 0), w)/pi`, 1/sr with the cosine in it, [0, 1/pi].
 /// Source: Khronos Group, KHR_materials_diffuse_transmission, 2024.
-/// Edges: a share outside [0, 1] is clamped to it.
+/// Edges: 0 for an `nl` of 0; a `w` outside [0, 1] is clamped to it.
 /// Error model: 3 ULP.
 float diffuse_transmission(float nl, float w) {
     float share = clamp(w, 0.0, 1.0);
@@ -165,7 +165,7 @@ float diffuse_transmission(float nl, float w) {
 /// Parameters: `nl` cosine n.l, [-1, 1]; `w` wrap, [0, 1]: 0 is Lambert, 1 reaches the far side.
 /// Returns: `saturate((nl + w)/(1 + w)^2)`, [0, 1]: its integral over the sphere is pi for every wrap.
 /// Source: McAuley, "Energy-Conserving Wrapped Diffuse", 2011; Guy, Agopian, "Physically Based Rendering in Filament", section 4.10.
-/// Edges: 0 where the light is farther behind than the wrap reaches; a negative `w` counts as 0.
+/// Edges: 0 where `nl` is at or below `-w`: the light is farther behind than the wrap reaches; a negative `w` counts as 0.
 /// Error model: absolute 4*2^-23.
 float fd_wrap(float nl, float w) {
     float amount = max(w, 0.0);

@@ -24,7 +24,7 @@ struct SplitSum {
 /// Parameters: `nv` cosine n.v, [0, 1]; `roughness` perceptual, [0, 1].
 /// Returns: `(scale, offset)`, [0, 1]: the albedo is `f0*scale + f90*offset`.
 /// Source: the split: Karis, "Real Shading in Unreal Engine 4", 2013; the coefficients are this library's.
-/// Edges: a cosine outside [0, 1] and a roughness outside [0.001, 1] are clamped to it.
+/// Edges: an `nv` outside [0, 1] and a `roughness` outside [0.001, 1] are clamped to it.
 /// Error model: absolute 2^-20; for roughness from 0.05 and cosines from 0.01 on, both numbers are within 0.005 of those of the lobe, and their sum is within 0.4 % of its own; everywhere, both are within 0.026, and the sum is within 0.009.
 vec2 dfg_approx(float nv, float roughness) {
     float x = clamp(nv, 0.0, 1.0);
@@ -46,7 +46,7 @@ vec2 dfg_approx(float nv, float roughness) {
 /// Parameters: `f0` linear reflectance at normal incidence, [0, 1]; `dfg` scale and offset of the lobe's albedo.
 /// Returns: `1 + f0*(1/(dfg.x + dfg.y) - 1)`, at least 1.
 /// Source: Turquin, "Practical Multiple Scattering Compensation for Microfacet Models", 2019, equation 16; Guy, Agopian, "Physically Based Rendering in Filament", section 4.7.2.
-/// Edges: an albedo outside [0.05, 1] is clamped to it: no lobe has less.
+/// Edges: a sum of `dfg` outside [0.05, 1] is clamped to it: no lobe has a smaller albedo; 1 for a black `f0`, and less than 1 for a negative one.
 /// Error model: 6 ULP.
 vec3 energy_compensation(vec3 f0, vec2 dfg) {
     float albedo = clamp(dfg.x + dfg.y, 0.05, 1.0);
@@ -60,7 +60,7 @@ vec3 energy_compensation(vec3 f0, vec2 dfg) {
 /// Parameters: `f0` linear reflectance at normal incidence, [0, 1]; `ks` the reflectance that the scale is for: `f0`, or Schlick's with `max(1 - roughness, f0)` at grazing incidence; `dfg` scale and offset of the lobe's albedo.
 /// Returns: the factors of the prefiltered and of the diffuse environment.
 /// Source: Fdez-Agüera, "A Multiple-Scattering Microfacet Model for Real-Time Image-Based Lighting", 2019.
-/// Edges: an albedo outside [0.05, 1] and an `f0` outside [0, 1] count as the bound; for a white `f0` and `ks` the parts sum up to 1.
+/// Edges: a sum of `dfg` outside [0.05, 1] and an `f0` outside [0, 1] count as the nearer bound, `ks` is not clamped; for a white `f0` and `ks` the parts sum up to 1.
 /// Error model: absolute 2^-20 for factors up to 1.
 SplitSum split_sum_multi(vec3 f0, vec3 ks, vec2 dfg) {
     vec3 single = ks * dfg.x + vec3(dfg.y);

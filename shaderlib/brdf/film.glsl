@@ -17,7 +17,7 @@
 /// Parameters: `difference` optical path difference, nanometres, [0, 1e6]; `phase` 1 or -1 for each channel: the sign of a cosine shifted by an even or odd number of half waves.
 /// Returns: the interference term, (1.205, 0.948, 0.909) for no difference: the responses' own white.
 /// Source: Belcour, Barla, "A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence", 2017, with the coefficients of its supplement; Khronos Group, KHR_materials_iridescence, 2022.
-/// Edges: tends to 0 for differences beyond some micrometres.
+/// Edges: tends to 0 for differences beyond some micrometres; a negative `difference` counts as its magnitude; 0 for a `phase` of zeros.
 /// Error model: absolute 3e-6 + 2^-21*difference/500.
 vec3 film_sensitivity(float difference, vec3 phase) {
     vec3 turns = vec3(1.681e-3, 1.7953e-3, 2.2084e-3) * difference;
@@ -39,7 +39,7 @@ vec3 film_sensitivity(float difference, vec3 phase) {
 /// Parameters: `eta_out`, `eta_film` indices of refraction of the outside and of the film, from 1 on; `f0` linear reflectance of the material at normal incidence in air, [0, 1]; `nm` thickness of the film, nanometres, at least 0; `mu` cosine of the angle of incidence, [0, 1].
 /// Returns: linear reflectance, [0, 1], in place of a Fresnel term.
 /// Source: Belcour, Barla, "A Practical Extension to Microfacet Theory for the Modeling of Varying Iridescence", 2017; Khronos Group, KHR_materials_iridescence, 2022.
-/// Edges: the film's index fades to the outside's below 0.03 nm, so that no film leaves the material within 0.008; 1 where the film reflects totally; indices are clamped to [1, 10], the thickness to [0, 100000], the cosine to [0, 1].
+/// Edges: no film, and one of the outside's index, leave the material within 0.04 at normal incidence: `eta_film` fades to `eta_out` below 0.03 nm; at grazing angles Schlick's form lets such a film still reflect, at the cosine 0.3 up to 0.36 for an `f0` of 0.04; 1 where the film reflects totally; indices are clamped to [1, 10], `nm` to [0, 100000], `mu` to [0, 1], `f0` to [0, 0.9999].
 /// Error model: absolute 2^-16 + 2^-20*nm*eta_film/500; near total reflection in the film also 16*2^-23/c, c the cosine within the film.
 vec3 iridescence(float eta_out, float eta_film, vec3 f0, float nm, float mu) {
     float outside = clamp(eta_out, 1.0, 10.0);

@@ -40,7 +40,7 @@ float ior_from_f0(float f0) {
 /// Parameters: `mu` cosine of the angle of incidence, [0, 1]; `eta` index of refraction of the far side over that of the near side, at least 0.
 /// Returns: reflectance, [0, 1]; 1 beyond the critical angle of an `eta` below 1.
 /// Source: Cook, Torrance, "A Reflectance Model for Computer Graphics", 1982; Lagarde, "Memo on Fresnel equations", 2013.
-/// Edges: a cosine outside [0, 1] is clamped to it; 0 for an `eta` of 1 at every angle; a negative `eta` counts as 0, which reflects everything.
+/// Edges: a `mu` outside [0, 1] is clamped to it; 0 for an `eta` of 1 at every angle; a negative `eta` counts as 0, which reflects everything, one above 1e9 as that.
 /// Error model: relative 40*2^-23; near the critical angle absolute 8*2^-23/g, with `g^2 = eta^2 - 1 + mu^2`.
 float f_dielectric(float mu, float eta) {
     float c = clamp(mu, 0.0, 1.0);
@@ -88,7 +88,7 @@ float f_conductor_channel(float c, float n, float k) {
 /// Parameters: `mu` cosine of the angle of incidence, [0, 1]; `n`, `k` real and imaginary part of the index of refraction, over that of the near side, at least 0.
 /// Returns: reflectance, [0, 1]; that of the dielectric `n` for a `k` of 0.
 /// Source: Lagarde, "Memo on Fresnel equations", 2013; Pharr, Jakob, Humphreys, Physically Based Rendering, 4th edition, 2023, section 9.3.6.
-/// Edges: a cosine outside [1e-7, 1] is clamped to it, `n` to [1e-4, 1e4], `k` to [0, 1e4]: beyond, the squares would overflow or vanish.
+/// Edges: a `mu` outside [1e-7, 1] is clamped to it, `n` to [1e-4, 1e4], `k` to [0, 1e4]: beyond, the squares would overflow or vanish.
 /// Error model: absolute 8*2^-23; near the critical angle of an `n` below 1 with a `k` near 0 also 8*2^-23/sqrt(q), `q^2 = (n^2 - k^2 - s^2)^2 + (2*n*k)^2`, s the sine.
 vec3 f_conductor(float mu, vec3 n, vec3 k) {
     float c = clamp(mu, 1e-7, 1.0);
@@ -104,7 +104,7 @@ vec3 f_conductor(float mu, vec3 n, vec3 k) {
 /// Parameters: `f0` linear reflectance at normal incidence, [0, 1]; `tint` what the reflectance at the cosine 1/7 is multiplied by, [0, 1]; `mu` cosine of the angle of incidence, [0, 1].
 /// Returns: `S(mu) - mu*(1 - mu)^6/(m*(1 - m)^6)*S(m)*(1 - tint)`, m = 1/7, S Schlick's approximation with 1 at grazing incidence; at least 0.
 /// Source: Kutz, Hašan, Edmondson, "Novel aspects of the Adobe Standard Material", 2021; Academy Software Foundation, OpenPBR Surface 1.1, 2024.
-/// Edges: a cosine outside [0, 1] is clamped to it; a dark `f0` with a dark `tint` would fall below 0 between 1/7 and 1, and is 0 there.
+/// Edges: a `mu` outside [0, 1] is clamped to it; a dark `f0` with a dark `tint` would fall below 0 between 1/7 and 1, and is 0 there; neither is clamped.
 /// Error model: absolute 8*2^-23.
 vec3 f_schlick_f82(vec3 f0, vec3 tint, float mu) {
     float c = clamp(mu, 0.0, 1.0);
@@ -123,7 +123,7 @@ vec3 f_schlick_f82(vec3 f0, vec3 tint, float mu) {
 /// Parameters: `f0`, `f90` linear reflectance at normal and at grazing incidence, [0, 1].
 /// Returns: `f0 + (f90 - f0)/21`, between the two.
 /// Source: Jakob et al., "A Comprehensive Framework for Rendering Layered Materials", 2014: the integral of `2*mu*(1 - mu)^5` is 1/21.
-/// Edges: none.
+/// Edges: neither `f0` nor `f90` is clamped: the result is between the two, whatever they are.
 /// Error model: absolute 3*2^-23*max(f0, f90).
 vec3 f_average_schlick(vec3 f0, vec3 f90) {
     return f0 + (f90 - f0) * 0.047619048;

@@ -16,7 +16,7 @@
 /// Parameters: `th`, `bh`, `nh` cosines t.h, b.h and n.h, [-1, 1], the last at least 0; `at`, `ab` alpha along the tangent and the bitangent, [0, 1].
 /// Returns: `1/(pi*at*ab*s^2)` with `s = (th/at)^2 + (bh/ab)^2 + nh^2`, 1/sr, at least 0; `d_ggx` where both alphas are the same.
 /// Source: Burley, "Physically-Based Shading at Disney", 2012, appendix B.2, equation 13.
-/// Edges: 0 where an alpha is below 1e-9, the mirror direction included; `s` is 1 or more for unit vectors, and counts as 1 where it is less.
+/// Edges: 0 where `at` or `ab` is below 1e-9, the mirror direction included; `s` is 1 or more for unit vectors, and counts as 1 where it is less; `th`, `bh` and `nh` count as their magnitudes.
 /// Error model: 20 ULP.
 float d_ggx_aniso(float th, float bh, float nh, float at, float ab) {
     if (!(min(at, ab) >= 1e-9)) {
@@ -35,7 +35,7 @@ float d_ggx_aniso(float th, float bh, float nh, float at, float ab) {
 /// Parameters: `tv`, `bv`, `nv` cosines t.v, b.v and n.v; `tl`, `bl`, `nl` those of the light, [-1, 1]; `at`, `ab` alpha along the tangent and the bitangent, [0, 1].
 /// Returns: `0.5/(nl*|(at*tv, ab*bv, nv)| + nv*|(at*tl, ab*bl, nl)|)`, at least 0; `v_smith_ggx` where both alphas are the same.
 /// Source: Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", 2014, equations 86 and 99.
-/// Edges: 0 where the light or the viewer is at or behind the horizon.
+/// Edges: 0 where `nv` or `nl` is 0 or below: the light or the viewer is at or behind the horizon; `tv`, `bv`, `tl`, `bl`, `at` and `ab` count as their magnitudes, and are not clamped; a denominator below 2^-126 counts as that.
 /// Error model: 14 ULP.
 float v_smith_ggx_aniso(float tv, float bv, float nv, float tl, float bl, float nl, float at, float ab) {
     if (!(nv > 0.0 && nl > 0.0)) {
@@ -64,7 +64,7 @@ vec2 alpha_aniso(float alpha, float strength) {
 /// Parameters: `alpha` squared perceptual roughness, [0, 1]; `dx`, `dy` change of the unit normal from this pixel to the next, across and down; `sigma2` variance of the pixel's filter, pixels^2, at least 0: 0.25 or 1/(2*pi), by publication; `limit` largest number that is added to alpha squared, 0.18 in the source.
 /// Returns: `sqrt(alpha^2 + min(2*sigma2*(dx.dx + dy.dy), limit))`, [0, 1].
 /// Source: Tokuyoshi, Kaplanyan, "Improved Geometric Specular Antialiasing", 2019.
-/// Edges: alpha itself for a flat surface; sums outside [0, 1] are clamped to it.
+/// Edges: `alpha` itself for a flat surface, where `dx` and `dy` are zero, and for a `sigma2` or `limit` of 0; negative ones make it smaller; a negative `alpha` counts as its magnitude; sums outside [0, 1] are clamped to it.
 /// Error model: 8 ULP.
 float specular_aa(float alpha, vec3 dx, vec3 dy, float sigma2, float limit) {
     float added = min(2.0 * sigma2 * (dot(dx, dx) + dot(dy, dy)), limit);
@@ -78,7 +78,7 @@ float specular_aa(float alpha, vec3 dx, vec3 dy, float sigma2, float limit) {
 /// Parameters: `v`, `n` unit, one space, `v` away from the surface; `b` unit bitangent, that space; `strength` of the anisotropy, [0, 1]; `roughness` perceptual, [0, 1].
 /// Returns: unit direction, that space: `reflect(-v, normalize(mix(bent, n, (1 - strength*(1 - roughness))^4)))`, with `bent` the part of `v` across `b`.
 /// Source: Khronos Group, KHR_materials_anisotropy, 2023: image-based lighting.
-/// Edges: where `v` is along `b`, or the mixture is zero, as for an isotropic surface; parameters outside [0, 1] are clamped to it.
+/// Edges: where `v` is along `b`, or the mixture is zero, as for an isotropic surface; parameters outside [0, 1] are clamped to it; zero for a zero `v`; for a zero `b`, `bent` is along `v`.
 /// Error model: absolute 16*2^-23/|v - b*(b.v)|.
 vec3 bent_reflection(vec3 v, vec3 n, vec3 b, float strength, float roughness) {
     vec3 bent = safe_normalize(v - b * dot(b, v), n);
@@ -150,7 +150,7 @@ float v_kelemen(float lh) {
 /// Parameters: `v` unit, towards the viewer, z along the normal, at least 0; `at`, `ab` alpha along x and y, [0, 1]; `u` two independent numbers in [0, 1).
 /// Returns: unit vector, z at least 0.
 /// Source: Dupuy, Benyoub, "Sampling Visible GGX Normals with Spherical Caps", 2023, listing 3, with the azimuth `2*pi*(u.x - 1/2)`.
-/// Edges: the normal for alphas of 0, and where the sum of the facet and the viewer is zero; a viewer below the horizon counts as one at it; a facet at the horizon for a second number above 1.
+/// Edges: the normal where `at` and `ab` are 0, and where the sum of the facet and the viewer is zero; negative ones mirror the sample; a `v` below the horizon counts as one at it, a zero one as the normal; a facet at the horizon where the second number of `u` is above 1; the first is a turn, and may be any number.
 /// Error model: absolute 2^-9*max(at, ab)/(1 - u.y): the sine and cosine may be off by 2^-11.
 vec3 sample_ggx_visible(vec3 v, float at, float ab, vec2 u) {
     vec3 up = vec3(0.0, 0.0, 1.0);

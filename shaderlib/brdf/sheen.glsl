@@ -16,7 +16,7 @@
 /// Parameters: `nh` cosine n.h, [0, 1]; `alpha` squared perceptual roughness, [0, 1].
 /// Returns: `(2 + 1/alpha)*s^(1/alpha)/(2*pi)` with s the sine, 1/sr, at least 0.
 /// Source: Estevez, Kulla, "Production Friendly Microfacet Sheen BRDF", 2017; Khronos Group, KHR_materials_sheen, 2020.
-/// Edges: 0 along the normal; a cosine outside [0, 1] is clamped to it; an alpha below 0.001 counts as 0.001.
+/// Edges: 0 along the normal; an `nh` outside [0, 1] is clamped to it; an `alpha` below 0.001 counts as 0.001, one above 1 is not clamped.
 /// Error model: relative that of `pow((1 - nh)*(1 + nh), 0.5/alpha)` + 10*2^-23.
 float d_charlie(float nh, float alpha) {
     float c = clamp(nh, 0.0, 1.0);
@@ -31,7 +31,7 @@ float d_charlie(float nh, float alpha) {
 /// Parameters: `nl`, `nv` cosines n.l and n.v, [0, 1].
 /// Returns: `1/(4*(nl + nv - nl*nv))`, at least 0.
 /// Source: Neubelt, Pettineo, "Crafting a Next-Gen Material Pipeline for The Order: 1886", 2013.
-/// Edges: 0 where the light or the viewer is at or behind the horizon; a sum below 1e-6 counts as 1e-6.
+/// Edges: 0 where `nl` or `nv` is 0 or below: the light or the viewer is at or behind the horizon; a sum below 1e-6 counts as 1e-6.
 /// Error model: 6 ULP.
 float v_neubelt(float nl, float nv) {
     if (!(nl > 0.0 && nv > 0.0)) {
@@ -45,7 +45,7 @@ float v_neubelt(float nl, float nv) {
 /// Parameters: `x` cosine, (0, 0.5]; `w` weight of the coefficients for roughness 0, `(1 - alpha)^2`.
 /// Returns: `a/(1 + b*x^c) + d*x + e`.
 /// Source: as `v_charlie`.
-/// Edges: indeterminate for a cosine of 0 or below.
+/// Edges: indeterminate for an `x` of 0 or below; `w` is not clamped.
 /// Error model: absolute 64*2^-23.
 float charlie_exponent(float x, float w) {
     float a = 21.5473 + 3.7772 * w;
@@ -61,7 +61,7 @@ float charlie_exponent(float x, float w) {
 /// Parameters: `mu` cosine to the normal, (0, 1]; `alpha` squared perceptual roughness, [0, 1].
 /// Returns: at least 0, about 1e9 for the horizon.
 /// Source: as `v_charlie`.
-/// Edges: a cosine outside [1e-6, 1 - 1e-6] is clamped to it, an alpha outside [0, 1] too.
+/// Edges: a `mu` outside [1e-6, 1 - 1e-6] is clamped to it, an `alpha` outside [0, 1] too.
 /// Error model: relative 100*2^-23.
 float charlie_lambda(float mu, float alpha) {
     float x = clamp(mu, 1e-6, 0.999999);
@@ -78,7 +78,7 @@ float charlie_lambda(float mu, float alpha) {
 /// Parameters: `nl`, `nv` cosines n.l and n.v, [0, 1]; `alpha` squared perceptual roughness, [0, 1].
 /// Returns: `1/((1 + L(nv) + L(nl))*4*nl*nv)`, L being Charlie's Lambda, at least 0.
 /// Source: Estevez, Kulla, "Production Friendly Microfacet Sheen BRDF", 2017; Khronos Group, KHR_materials_sheen, 2020.
-/// Edges: 0 where the light or the viewer is at or behind the horizon; a product `nl*nv` below 1e-12 counts as 1e-12.
+/// Edges: 0 where `nl` or `nv` is 0 or below: the light or the viewer is at or behind the horizon; a product `nl*nv` below 1e-12 counts as 1e-12; an `alpha` outside [0, 1] is clamped to it.
 /// Error model: relative 110*2^-23.
 float v_charlie(float nl, float nv, float alpha) {
     if (!(nl > 0.0 && nv > 0.0)) {
@@ -108,7 +108,7 @@ float sheen_albedo(float nv, float alpha) {
 /// Parameters: `color` linear colour of the sheen, [0, 1]; `ev`, `el` albedo of a white sheen towards the viewer and the light, [0, 1].
 /// Returns: `min(1 - m*ev, 1 - m*el)` with m the largest channel, [0, 1].
 /// Source: Khronos Group, KHR_materials_sheen, 2020: albedo scaling.
-/// Edges: 1 for a black sheen; never below 0.
+/// Edges: 1 for a black `color`, and where `ev` and `el` are 0; the result is clamped to [0, 1], its parameters are not.
 /// Error model: absolute 2^-23.
 float sheen_scale(vec3 color, float ev, float el) {
     float largest = max(max(color.x, color.y), color.z);
@@ -120,7 +120,7 @@ float sheen_scale(vec3 color, float ev, float el) {
 /// Parameters: `nv` cosine n.v, [0, 1]; `roughness` perceptual, [0, 1].
 /// Returns: `(a, b, R)`: two entries of the inverse matrix for `sheen_ltc_lobe`, and the share of light that the sheen reflects, [0, 1]. What is left for the material below is `1 - R`.
 /// Source: Zeltner, Burley, Chiang, "Practical Multiple-Scattering Sheen Using Linearly Transformed Cosines", 2022, in the fit of Academy Software Foundation, MaterialX, 2023.
-/// Edges: a cosine outside [0, 1] and a roughness outside [0.01, 1] are clamped to it.
+/// Edges: an `nv` outside [0, 1] and a `roughness` outside [0.01, 1] are clamped to it.
 /// Error model: relative 2^-18.
 vec3 sheen_ltc(float nv, float roughness) {
     float x = clamp(nv, 0.0, 1.0);
@@ -141,7 +141,7 @@ vec3 sheen_ltc(float nv, float roughness) {
 /// Parameters: `t` the result of `sheen_ltc`; `w` unit direction of the light in the frame whose z is the normal and whose x is the viewer's direction along the surface.
 /// Returns: the lobe with its cosine, 1/sr, at least 0: its integral over all directions is 1. Multiply it by `t.z` and the sheen's colour.
 /// Source: Zeltner, Burley, Chiang, "Practical Multiple-Scattering Sheen Using Linearly Transformed Cosines", 2022, equation 6.
-/// Edges: 0 where the transformed direction is below the horizon, and for a zero vector; a length below 1e-9 counts as that.
+/// Edges: 0 where the transformed direction is at or below the horizon, and where `t` or `w` is zero; a length below 1e-9 counts as that.
 /// Error model: relative 24*2^-23 of the value without its cosine.
 float sheen_ltc_lobe(vec3 t, vec3 w) {
     vec3 wo = vec3(t.x * w.x + t.y * w.z, t.x * w.y, w.z);

@@ -12,7 +12,7 @@
 /// Parameters: `r` distance on the surface, scene units, at least 0; `s` the result of `diffusion_s` divided by the mean free path, 1/scene unit, above 0.
 /// Returns: `s*(exp(-s*r) + exp(-s*r/3))/(8*pi*r)`, 1/scene unit^2: its integral over the plane is 1.
 /// Source: Christensen, Burley, "Approximate Reflectance Profiles for Efficient Subsurface Scattering", 2015.
-/// Edges: a product `s*r` below 0.0001 counts as 0.0001, so the peak is finite; a negative `r` counts as 0, `s` is clamped to [0, 1e6].
+/// Edges: a product `s*r` below 0.0001 counts as 0.0001, so the peak is finite; a negative `r` counts as 0, `s` is clamped to [0, 1e6]; 0 for an `s` of 0 or below.
 /// Error model: relative (8 + 2*s*r)*2^-23.
 float diffusion_profile(float r, float s) {
     float k = clamp(s, 0.0, 1e6);
@@ -25,7 +25,7 @@ float diffusion_profile(float r, float s) {
 /// Parameters: `r` distance on the surface, scene units, at least 0; `s` as for `diffusion_profile`.
 /// Returns: `1 - exp(-s*r)/4 - 3*exp(-s*r/3)/4`, [0, 1].
 /// Source: Christensen, Burley, "Approximate Reflectance Profiles for Efficient Subsurface Scattering", 2015.
-/// Edges: 0 for a product `s*r` of 0 or below.
+/// Edges: 0 where the product of `s` and `r` is 0 or below; neither is clamped.
 /// Error model: absolute 4*2^-23.
 float diffusion_cdf(float r, float s) {
     float x = max(s * r, 0.0);

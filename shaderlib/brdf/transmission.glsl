@@ -18,7 +18,7 @@
 /// Parameters: `ior` index of refraction, from 1 on, or 0 for a full reflection; `weight` of the reflection, [0, 1]; `color` linear, at least 0.
 /// Returns: `min(f0_from_ior(ior)*color, 1)*weight`, [0, 1].
 /// Source: Khronos Group, KHR_materials_specular, 2021, and KHR_materials_ior, 2021.
-/// Edges: the weight itself for an `ior` of 0 and white; a weight outside [0, 1] is clamped to it; negative colours count as 0.
+/// Edges: `weight` itself for an `ior` of 0, as which a negative one counts, and a white `color`; 0 for an `ior` of 1; a `weight` outside [0, 1] is clamped to it; negative colours count as 0.
 /// Error model: 9 ULP.
 vec3 specular_f0(float ior, float weight, vec3 color) {
     return clamp(f0_from_ior(ior) * color, vec3(0.0), vec3(1.0)) * clamp(weight, 0.0, 1.0);
@@ -29,7 +29,7 @@ vec3 specular_f0(float ior, float weight, vec3 color) {
 /// Parameters: `color` linear colour that white light has after the distance `d`, [0, 1]; `x` length of the path through the volume, scene units; `d` distance at which white light has this colour, scene units.
 /// Returns: `color^(x/d)`, [0, 1].
 /// Source: Beer's law; Khronos Group, KHR_materials_volume, 2021.
-/// Edges: 1 for a path of 0 or below, and for a distance of 0 or below, which counts as infinite; colours outside [0, 1] are clamped to it; x/d is at most 1e6.
+/// Edges: 1 for an `x` of 0 or below, and for a `d` of 0 or below, which counts as infinite; a `color` outside [0, 1] is clamped to it; x/d is at most 1e6.
 /// Error model: that of `safe_pow` with an exponent of relative error 2^-22.
 vec3 volume_transmittance(vec3 color, float x, float d) {
     if (!(x > 0.0 && d > 0.0)) {
@@ -45,7 +45,7 @@ vec3 volume_transmittance(vec3 color, float x, float d) {
 /// Parameters: `v`, `n` unit, one space, `v` away from the surface, on the side of `n`; `ior` index of refraction, from 1 on; `thickness` length of the way, scene units.
 /// Returns: `refract(-v, n, 1/ior)*thickness`, the space of `v`, scene units.
 /// Source: Khronos Group, KHR_materials_volume, 2021, as the glTF Sample Viewer reads it.
-/// Edges: straight on for an index of 1, or below, which counts as 1; `-n*thickness*sqrt(1 - 1/ior^2)` for a zero `v`.
+/// Edges: straight on for an `ior` of 1, or below, which counts as 1; `-n*thickness*sqrt(1 - 1/ior^2)` for a zero `v`, `-v*thickness/ior` for a zero `n`; zero for a `thickness` of 0, and backwards for a negative one.
 /// Error model: absolute 8*2^-23*thickness.
 vec3 refract_exit(vec3 v, vec3 n, float ior, float thickness) {
     float eta = 1.0 / max(ior, 1.0);
@@ -60,7 +60,7 @@ vec3 refract_exit(vec3 v, vec3 n, float ior, float thickness) {
 /// Parameters: `roughness` perceptual, or alpha, [0, 1]; `ior` index of refraction, from 1 on.
 /// Returns: `roughness*saturate(2*ior - 2)`.
 /// Source: Khronos Group, glTF Sample Viewer, 2021.
-/// Edges: 0 for an index of 1 or below, `roughness` from 1.5 on.
+/// Edges: 0 for an `ior` of 1 or below, `roughness` from 1.5 on; `roughness` is not clamped.
 /// Error model: 2 ULP.
 float transmission_roughness(float roughness, float ior) {
     return roughness * clamp(2.0 * ior - 2.0, 0.0, 1.0);
@@ -73,7 +73,7 @@ float transmission_roughness(float roughness, float ior) {
 /// Parameters: `n`, `l`, `v` unit, one space, away from the surface; `l` on the far side of the sheet; `alpha` squared perceptual roughness, [0, 1].
 /// Returns: a BTDF, 1/sr, at least 0: `d_ggx` of the mirrored light with the product of both sides' Smith visibilities.
 /// Source: Khronos Group, KHR_materials_transmission, 2021, which has the visibilities separate where the reflection has them correlated.
-/// Edges: 0 where the light is on the viewer's side or at the horizon, and where the viewer is behind it; 0 for an alpha of 0; a product of the visibilities' denominators below 1e-12 counts as 1e-12.
+/// Edges: 0 where the light is on the viewer's side or at the horizon, and where the viewer is behind it, so where `n`, `l` or `v` is zero; 0 for an `alpha` of 0, and a negative one counts as its magnitude; a product of the visibilities' denominators below 1e-12 counts as 1e-12.
 /// Error model: relative 2^-17/alpha^2, from the half vector.
 float btdf_thin(vec3 n, vec3 l, vec3 v, float alpha) {
     float nl = -dot(n, l);
@@ -94,7 +94,7 @@ float btdf_thin(vec3 n, vec3 l, vec3 v, float alpha) {
 /// Parameters: `ior` index of refraction in the middle of the spectrum, from 1 on; `dispersion` 20 over the Abbe number, at least 0.
 /// Returns: `(ior - h, ior, ior + h)`, each at least 1, with half the spread `h = (ior - 1)*0.025*dispersion`.
 /// Source: Khronos Group, KHR_materials_dispersion, 2024.
-/// Edges: red is never below 1; an index below 1 and a negative dispersion count as 1 and 0.
+/// Edges: red is never below 1; an `ior` below 1 and a negative `dispersion` count as 1 and 0.
 /// Error model: 3 ULP.
 vec3 dispersion_ior(float ior, float dispersion) {
     float n = max(ior, 1.0);
@@ -109,7 +109,7 @@ vec3 dispersion_ior(float ior, float dispersion) {
 /// Parameters: `n`, `l`, `v` unit, one space, away from the surface; `l` on the far side, within the body; `alpha` squared perceptual roughness, [0, 1]; `ior` index of refraction of the body over that of the viewer's side, above 0.
 /// Returns: a BTDF, 1/sr, at least 0: `|l.h|*|v.h|/(|n.l|*n.v)*G*D/(ior*l.h + v.h)^2`, with h along `ior*l + v` and the product of both sides' Smith terms for `G`.
 /// Source: Walter, Marschner, Li, Torrance, "Microfacet Models for Refraction through Rough Surfaces", 2007, equation 21; Khronos Group, KHR_materials_volume, 2021, has the Smith terms separate.
-/// Edges: 0 where the light is on the viewer's side or at the horizon, where the viewer is behind the surface, where no facet refracts the one to the other, and for an alpha of 0; an index of 1 bends nothing: `btdf_thin` is for it.
+/// Edges: 0 where the light is on the viewer's side or at the horizon, where the viewer is behind the surface, so where `n`, `l` or `v` is zero, where no facet refracts the one to the other, and for an `alpha` of 0, of which a negative one counts as its magnitude; an `ior` of 1 bends nothing: `btdf_thin` is for it; an `ior` of 0 or below has no meaning, and gives some number of at least 0.
 /// Error model: relative 2^-17/alpha^2/(ior - 1)^2, from the half vector.
 float btdf_volume(vec3 n, vec3 l, vec3 v, float alpha, float ior) {
     float nl = -dot(n, l);

@@ -158,7 +158,7 @@ vec3 hable(vec3 c) {
 /// Parameters: `c` linear colour, at least 0; `white` least light that is white, above 0.
 /// Returns: `c*(1 + c/white^2)/(1 + c)`, by channel, linear, from 0 to 1 but for rounding.
 /// Source: Reinhard, Stark, Shirley, Ferwerda, "Photographic Tone Reproduction for Digital Images", 2002, equation 4.
-/// Edges: channels below 0 count as 0; a white below 0.001 counts as that.
+/// Edges: channels of `c` below 0 count as 0; a `white` below 0.001 counts as that.
 /// Error model: 5 ULP.
 vec3 reinhard_extended(vec3 c, float white) {
     float least = max(white, 0.001);

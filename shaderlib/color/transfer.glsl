@@ -89,7 +89,7 @@ vec3 tonemap_aces(vec3 c) {
 /// Parameters: `d` distance to the viewer, scene units; `start`, `end` distances where fog begins and hides all, scene units.
 /// Returns: `clamp((end - d)/(end - start), 0, 1)`: 1 is clear, 0 all fog: mix(fog, colour, share).
 /// Source: OpenGL 2.1 specification, section 3.10 "Fog", linear.
-/// Edges: a hard edge at `end`, itself clear, where `end` is not beyond `start`.
+/// Edges: 1 for a `d` before both `start` and `end`, so for negative ones; a hard edge at `end`, itself clear, where `end` is not beyond `start`.
 /// Error model: absolute 2^-23*(|end| + |d|)/(end - start) + 3*2^-23.
 float fog_linear(float d, float start, float end) {
     if (!(end > start)) {
@@ -103,7 +103,7 @@ float fog_linear(float d, float start, float end) {
 /// Parameters: `d` distance to the viewer, scene units, at least 0; `density` 1/scene units, at least 0.
 /// Returns: `exp(-density*d)`, [0, 1]: 1 is clear, 0 all fog.
 /// Source: OpenGL 2.1 specification, section 3.10 "Fog", exponential.
-/// Edges: 1 for a negative distance or density.
+/// Edges: 1 where the product of `d` and `density` is 0 or below, so where one of them is negative.
 /// Error model: relative (3 + 2*x)*2^-23 + x*2^-24, with x = density*d.
 float fog_exp(float d, float density) {
     return exp(-max(density * d, 0.0));
@@ -114,7 +114,7 @@ float fog_exp(float d, float density) {
 /// Parameters: `d` distance to the viewer, scene units, at least 0; `density` 1/scene units, at least 0.
 /// Returns: `exp(-(density*d)^2)`, [0, 1]: 1 is clear, 0 all fog.
 /// Source: OpenGL 2.1 specification, section 3.10 "Fog", exponential squared.
-/// Edges: none.
+/// Edges: 1 where `d` or `density` is 0; both count as their magnitudes.
 /// Error model: relative (3 + 2*x)*2^-23 + 3*x*2^-24, with x = (density*d)^2.
 float fog_exp2(float d, float density) {
     float x = density * d;
@@ -180,7 +180,7 @@ float linear_from_hlg(float code) {
 /// Parameters: `c` colour as the display codes it, [0, 1]; `noise` a number in [0, 1), another for each pixel; `steps` how many steps the display has from 0 to 1: 255 for eight bits.
 /// Returns: `c + (noise - 1/2)/steps`, clamped to [0, 1]; where it is not clamped, the mean of what it is rounded to is `c`.
 /// Source: Roberts, "Picture Coding Using Pseudo-Random Noise", 1962: noise of one step, evenly distributed.
-/// Edges: fewer than one step count as one.
+/// Edges: `steps` below 1 count as 1; `c` and `noise` are not clamped, but the result is.
 /// Error model: absolute 3*2^-24.
 vec3 dither(vec3 c, float noise, float steps) {
     return clamp(c + (noise - 0.5) / max(steps, 1.0), vec3(0.0), vec3(1.0));

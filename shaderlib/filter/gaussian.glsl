@@ -28,7 +28,7 @@ float gaussian21(int i) {
 /// Parameters: `map`, `smp` texture and sampler, read at its first mip; `uv` texture coordinates; `direction` step between taps, texels: (1, 0) or (0, 1).
 /// Returns: the weighted sum of 21 reads; the weights' sum is 1.
 /// Source: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, variance shadow mapping.
-/// Edges: reads beyond the edge follow the sampler: clamp it to the edge.
+/// Edges: a `uv` beyond the edge follows the sampler: clamp it to the edge; a zero `direction` leaves the map as it is there.
 /// Error model: absolute 2^-19 of the largest read; the sampler's own weights where uv is not at a texel's centre.
 vec4 blur21(LAMPLIGHT_COLOR_MAP(map, smp), vec2 uv, vec2 direction) {
     vec2 stride = direction / vec2(textureSize(LAMPLIGHT_COLOR_SAMPLER(map, smp), 0));

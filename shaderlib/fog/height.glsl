@@ -14,7 +14,7 @@
 /// Parameters: `y0` height of the eye, scene units; `base` height at which the fog has its density, scene units; `dy` the unit view direction's component upwards, [-1, 1]; `dist` length of the view, scene units, at least 0; `density` at the base, 1/scene units, at least 0; `falloff` of the density with height, 1/scene units, at least 0.
 /// Returns: `density*exp(-falloff*(y0 - base))*(1 - exp(-x))/x*dist` with `x = falloff*dy*dist`, at least 0.
 /// Source: Wenzel, "Real-time Atmospheric Effects in Games", SIGGRAPH 2006; Quilez, "Better Fog", 2010.
-/// Edges: constant fog for a falloff of 0; `density*dist` at a level view at the base; negative distances, densities and falloffs count as 0, both exponents are clamped to [-60, 60], densities to 1e6 and distances to 1e6; never above 1e30.
+/// Edges: constant fog for a `falloff` of 0; `density*dist` at a level view at the base; a negative `dist`, `density` or `falloff` counts as 0, both exponents are clamped to [-60, 60], densities to 1e6 and distances to 1e6; never above 1e30; `y0`, `base` and `dy` are not clamped.
 /// Error model: relative 2^-20 + 2^-23*(|falloff*(y0 - base)| + |x|).
 float fog_height(float y0, float dy, float dist, float density, float falloff, float base) {
     float fall = max(falloff, 0.0);

@@ -67,7 +67,7 @@ float cornette_shanks(float cos_theta, float g) {
 /// Parameters: `cos_theta` cosine of the angle by which the light is turned, [-1, 1]; `diameter` of the drops, micrometres, [5, 50].
 /// Returns: the phase function, 1/sr.
 /// Source: Jendersie, d'Eon, "An Approximate Mie Scattering Function for Fog and Cloud Rendering", 2023, equations 4 to 7.
-/// Edges: diameters outside [5, 50] are clamped to it.
+/// Edges: a `cos_theta` outside [-1, 1] and a `diameter` outside [5, 50] are clamped to it.
 /// Error model: relative 2^-14: the peak's width is 1 - g, of which g leaves few digits.
 float fog_droplet(float cos_theta, float diameter) {
     float d = clamp(diameter, 5.0, 50.0);

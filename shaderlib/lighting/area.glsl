@@ -14,7 +14,7 @@
 /// Parameters: `a`, `b` unit directions to the ends of the edge, in a frame whose z is the normal.
 /// Returns: the unit normal of the plane of both, times the angle between them over 2*pi; components in [-0.5, 0.5].
 /// Source: Lambert, Photometria, 1760; the rational fit of the angle: Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016, code of the supplement.
-/// Edges: zero for equal directions, for opposite ones, whose plane is not known, and for a zero vector.
+/// Edges: zero where `a` and `b` are equal, where they are opposite, whose plane is not known, and where one is zero.
 /// Error model: relative 2e-6 + 2^-22/s, with s the sine of the angle.
 vec3 ltc_edge(vec3 a, vec3 b) {
     vec3 c = cross(a, b);
@@ -42,10 +42,10 @@ vec3 any_tangent(vec3 n) {
 ///
 /// With the identity for `minv` it is the rectangle's form factor: irradiance over pi of a light of radiance 1.
 ///
-/// Parameters: `n`, `v` unit, one space, `v` away from the surface; `p` the lit point, that space, scene units; `minv` inverse of the lobe's matrix in the frame of `n` and `v`, as from `ltc_matrix`, with a positive determinant; `quad` corners of a plane convex quadrilateral, the space of `p`: it shines to the side that sees them counter-clockwise.
+/// Parameters: `n`, `v` unit, one space, `v` away from the surface; `p` the lit point, anywhere in that space, scene units; `minv` inverse of the lobe's matrix in the frame of `n` and `v`, as from `ltc_matrix`, with a positive determinant; `quad` corners of a plane convex quadrilateral, the space of `p`: it shines to the side that sees them counter-clockwise.
 /// Returns: the integral, in [0, 1] up to rounding. Multiply it by the light's radiance and the lobe's albedo to get the reflected radiance.
 /// Source: Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016; the polygon is cut exactly at the horizon.
-/// Edges: 0 from behind the light, below the horizon, and for a rectangle without area; the frame's azimuth is any where `v` is along `n`.
+/// Edges: 0 from behind the light, below the horizon, for a `quad` without area, and where `n` or `minv` is zero; the frame's azimuth is any where `v` is along `n` or zero.
 /// Error model: absolute 2^-17 for a light that is as large as it is far away; differences of corners and `p` cancel for a point far from the origin.
 float ltc_rect(vec3 n, vec3 v, vec3 p, mat3 minv, vec3 quad[4]) {
     vec3 t1 = safe_normalize(v - n * dot(v, n), any_tangent(n));
@@ -99,7 +99,7 @@ vec2 ltc_uv(float nv, float roughness) {
 /// Parameters: `t` entries of the inverse, column by column: x of the first column, z of the first, x of the third, z of the third.
 /// Returns: the matrix for `ltc_rect`. Of the entries that `t` does not hold, the middle one is 1 and the others are 0.
 /// Source: Heitz, Dupuy, Hill, Neubelt, "Real-Time Polygonal-Light Shading with Linearly Transformed Cosines", 2016, code of the supplement.
-/// Edges: (1, 0, 0, 1) is the identity: a cosine lobe.
+/// Edges: (1, 0, 0, 1) is the identity: a cosine lobe; zeros flatten all to a line, over which `ltc_rect` is 0; nothing is clamped.
 /// Error model: exact.
 mat3 ltc_matrix(vec4 t) {
     return mat3(vec3(t.x, 0.0, t.y), vec3(0.0, 1.0, 0.0), vec3(t.z, 0.0, t.w));
@@ -130,7 +130,7 @@ float sphere_irradiance(float mu, float sin2) {
 /// Parameters: `mu` cosine of the angle between the normal and the direction to the centre, [-1, 1]; `facing` cosine of the angle between the disk's normal and the direction from its centre to the point, [-1, 1]; `sin2` squared sine of half the angle that the disk subtends for a point on its axis, [0, 1]: `R^2/(R^2 + d^2)` for its radius `R` and the distance `d` of its centre.
 /// Returns: irradiance, [0, pi].
 /// Source: Lagarde, de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 4.7.2.2 "Disk area lights".
-/// Edges: 0 from behind; as for `sphere_irradiance`; exact for a disk that faces the point.
+/// Edges: as for `sphere_irradiance`; 0 from behind, for a `facing` of 0 or below; exact for a disk that faces the point.
 /// Error model: that of `sphere_irradiance`, and 1 ULP.
 float disk_irradiance(float mu, float facing, float sin2) {
     return sphere_irradiance(mu, sin2) * clamp(facing, 0.0, 1.0);
@@ -141,7 +141,7 @@ float disk_irradiance(float mu, float facing, float sin2) {
 /// Parameters: `l` vector from the lit point to the centre, scene units, any length; `r` unit mirror direction, the space of `l`: the direction to the viewer, mirrored at the normal; `radius` of the sphere, scene units, at least 0.
 /// Returns: vector from the lit point to that point, scene units. If the mirror ray meets the sphere, it is the ray's point nearest to the centre, else the sphere's point nearest to the ray.
 /// Source: Karis, "Real Shading in Unreal Engine 4", 2013, "Representative Point Method"; for a mirrored direction away from the light the ray ends at the lit point.
-/// Edges: `l` for a radius of 0 or less, and where the ray goes through the centre.
+/// Edges: `l` for a `radius` of 0 or less, and where the ray goes through the centre; for a zero `r` the point of the sphere, or of what is in it, that is nearest to the lit point.
 /// Error model: absolute 2^-20*|l|.
 vec3 nearest_sphere(vec3 l, vec3 r, float radius) {
     vec3 c = r * max(dot(l, r), 0.0) - l;
@@ -158,7 +158,7 @@ vec3 nearest_sphere(vec3 l, vec3 r, float radius) {
 /// Parameters: `l0`, `l1` vectors from the lit point to the ends of the tube's axis, scene units; `r` unit mirror direction, the same space; `radius` of the tube, scene units, at least 0.
 /// Returns: vector from the lit point to that point, as from `nearest_sphere` at the axis' point nearest to the line of `r`.
 /// Source: Karis, "Real Shading in Unreal Engine 4", 2013, "Tube lights": the smallest distance of the axis to the line.
-/// Edges: the sphere at `l0` for an axis along `r` or without length.
+/// Edges: the sphere at `l0` for an axis along `r` or without length, where `l0` and `l1` are equal; the axis' point for a `radius` of 0 or less; as for `nearest_sphere` for a zero `r`, at the axis' point that is nearest to the lit point.
 /// Error model: absolute 2^-20*(|l0| + |l1|)/sin(a)^2, with a the angle between the axis and `r`.
 vec3 nearest_tube(vec3 l0, vec3 l1, vec3 r, float radius) {
     vec3 axis = l1 - l0;
@@ -175,7 +175,7 @@ vec3 nearest_tube(vec3 l0, vec3 l1, vec3 r, float radius) {
 /// Parameters: `alpha` squared perceptual roughness, [0, 1]; `radius` of the light, scene units, at least 0; `d` distance to it, scene units, above 0.
 /// Returns: `alpha + radius/(2*d)`, clamped to [0, 1].
 /// Source: Karis, "Real Shading in Unreal Engine 4", 2013, "Specular D Modification": half of `radius/d`, of which other versions take a third.
-/// Edges: 1 for a distance of 0 or less from a light with a size; `alpha` for no size.
+/// Edges: 1 for a `d` of 0 or less from a light with a size; `alpha`, clamped, for a `radius` of 0 or less.
 /// Error model: 3 ULP.
 float area_alpha(float alpha, float radius, float d) {
     float size = max(radius, 0.0);
@@ -208,10 +208,10 @@ float area_energy(float alpha, float wide) {
 ///
 /// With the identity for `minv` it is the form factor: irradiance over pi of a light of radiance 1.
 ///
-/// Parameters: `n`, `v` unit, one space, `v` away from the surface; `p` the lit point, that space, scene units; `minv` as for `ltc_rect`; `center`, `ex`, `ey` centre and half axes of the ellipse, the space of `p`: it shines to the side to which the cross product of its axes points.
+/// Parameters: `n`, `v` unit, one space, `v` away from the surface; `p` the lit point, anywhere in that space, scene units; `minv` as for `ltc_rect`; `center`, `ex`, `ey` centre and half axes of the ellipse, the space of `p`: it shines to the side to which the cross product of its axes points.
 /// Returns: the integral, in [0, 1] up to rounding. Multiply it by the light's radiance and the lobe's albedo to get the reflected radiance.
 /// Source: Heitz, Hill, "Real-Time Line- and Disk-Light Shading with Linearly Transformed Cosines", SIGGRAPH, 2017: `L1*L2/sqrt((1 + L1^2)*(1 + L2^2))` with the half axes of the cone of directions, whose largest eigenvalue is found here by Newton's method.
-/// Edges: 0 from behind the light and below the horizon, and for an ellipse without area; where the horizon cuts the light, a sphere of the same form factor stands for it.
+/// Edges: 0 from behind the light and below the horizon, for an ellipse without area, so where `ex` or `ey` is zero, where `center` is at `p`, and where `n` or `minv` is zero; the frame's azimuth is any where `v` is along `n` or zero; where the horizon cuts the light, a sphere of the same form factor stands for it.
 /// Error model: absolute 2^-18 for a light that is as large as it is far away, beside what the sphere is off at the horizon.
 float ltc_disk(vec3 n, vec3 v, vec3 p, mat3 minv, vec3 center, vec3 ex, vec3 ey) {
     vec3 t1 = safe_normalize(v - n * dot(v, n), any_tangent(n));
@@ -251,7 +251,7 @@ float ltc_disk(vec3 n, vec3 v, vec3 p, mat3 minv, vec3 center, vec3 ex, vec3 ey)
 /// Parameters: `n`, `v`, `p`, `minv` as for `ltc_rect`; `a`, `b` ends of the tube's axis, the space of `p`, scene units; `radius` of the tube, scene units, small compared to its distance.
 /// Returns: the integral, [0, 1], without the caps. Multiply it by the light's radiance and the lobe's albedo to get the reflected radiance.
 /// Source: Heitz, Hill, "Real-Time Line- and Disk-Light Shading with Linearly Transformed Cosines", SIGGRAPH, 2017: `l/(d*(d^2 + l^2)) + atan(l/d)/d^2` from end to end, times the radius over pi, without the differences that cancel.
-/// Edges: the part below the horizon is cut off; 0 for a line without length or through the point; a tube that is too thick for its distance counts as one that covers the hemisphere; a negative radius counts as 0.
+/// Edges: the part below the horizon is cut off; 0 where `a` and `b` are equal, where the line goes through `p`, and where `n` or `minv` is zero; the frame's azimuth is any where `v` is along `n` or zero; a tube that is too thick for its distance counts as one that covers the hemisphere; a negative `radius` counts as 0, which gives 0.
 /// Error model: absolute 2^-18 for a tube of a tenth of its distance.
 float ltc_line(vec3 n, vec3 v, vec3 p, mat3 minv, vec3 a, vec3 b, float radius) {
     vec3 t1 = safe_normalize(v - n * dot(v, n), any_tangent(n));

@@ -14,7 +14,7 @@
 /// Parameters: `d` distance to the light, scene units, at least 0; `k` constant, linear and quadratic coefficients (1, 1/unit, 1/unit^2), at least 0.
 /// Returns: `1 / (k.x + k.y*d + k.z*d*d)`: in (0, 1] where `k.x` is at least 1, above 1 where the polynomial is below 1.
 /// Source: Shreiner, Sellers, Kessenich, Licea-Kane, OpenGL Programming Guide, 8th edition, 2013, example 7.4.
-/// Edges: 1 where the polynomial is 0 or negative: no coefficients mean no attenuation.
+/// Edges: 1 where the polynomial is below 2^-126, so where it is 0 or negative: a `k` of zeros means no attenuation; a negative `d` is not clamped.
 /// Error model: 2.5 ULP (division) + 3 ULP (sum and products of terms of at least 0).
 float polynomial(float d, vec3 k) {
     float q = k.x + d * (k.y + d * k.z);
@@ -29,7 +29,7 @@ float polynomial(float d, vec3 k) {
 /// Parameters: `d` distance to the light, scene units, at least 0; `radius` reach of the light, scene units.
 /// Returns: `1 - clamp(d/radius, 0, 1)`, in [0, 1].
 /// Source: Newcastle University, Graphics for Games, tutorial 11 "Real-Time Lighting A".
-/// Edges: 0 everywhere for a radius of 0 or less; exactly 0 at and beyond the radius.
+/// Edges: 0 everywhere for a `radius` of 0 or less; exactly 0 at and beyond the radius; 1 for a negative `d` otherwise.
 /// Error model: absolute 2.5*2^-23*min(d/radius, 1) + 2^-24.
 float linear_radius(float d, float radius) {
     if (!(max(d, 0.0) < radius)) {
@@ -43,7 +43,7 @@ float linear_radius(float d, float radius) {
 /// Parameters: `d2` squared distance to the light, scene units^2, at least 0; `min_d2` squared size of the light, scene units^2, above 0.
 /// Returns: `1 / max(d2, min_d2)`, at least 0: above 1 within one scene unit, since it is a physical falloff and not a share.
 /// Source: Lagarde, de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 4.5.
-/// Edges: at most 2^126, where both squares vanish.
+/// Edges: at most 2^126, where `d2` and `min_d2` are both 0 or below.
 /// Error model: 2.5 ULP.
 float inverse_square(float d2, float min_d2) {
     return 1.0 / max(max(d2, min_d2), SMALLEST_NORMAL);
@@ -54,7 +54,7 @@ float inverse_square(float d2, float min_d2) {
 /// Parameters: `d2` squared distance to the light, scene units^2, at least 0; `inv_range2` 1/range^2, 1/scene units^2, at least 0, where 0 means no range.
 /// Returns: `saturate(1 - (d/range)^4)^2`, in [0, 1], with slope 0 at the range.
 /// Source: Karis, "Real Shading in Unreal Engine 4", 2013, equation 9; Lagarde, de Rousiers, 2014, section 4.5.
-/// Edges: 1 at the light; exactly 0 at and beyond the range.
+/// Edges: 1 where `d2` or `inv_range2` is 0, and where one of them is negative; exactly 0 at and beyond the range.
 /// Error model: absolute 2^-23 + 8*w*x*2^-23, with x = (d/range)^4 and w = 1 - x.
 float window(float d2, float inv_range2) {
     float x = clamp(d2 * inv_range2, 0.0, 1.0);
@@ -69,7 +69,7 @@ float window(float d2, float inv_range2) {
 /// Parameters: `d` distance to the light, scene units, at least 0; `range` reach of the light, scene units, where 0 or less means no range.
 /// Returns: `clamp(1 - (d/range)^4, 0, 1)`.
 /// Source: Khronos Group, glTF extension KHR_lights_punctual, "Range Property".
-/// Edges: 1 where there is no range; exactly 0 at and beyond the range.
+/// Edges: 1 for a `range` of 0 or less, and for a negative `d`; exactly 0 at and beyond the range.
 /// Error model: absolute 12*x*2^-23 + 2^-24, with x = min((d/range)^4, 1).
 float range_gltf(float d, float range) {
     if (!(range > 0.0)) {
@@ -85,7 +85,7 @@ float range_gltf(float d, float range) {
 /// Parameters: `d` distance to the light, scene units, at least 0; `cutoff` reach, scene units, 0 or less means none; `decay` exponent, 2 is physical.
 /// Returns: `window / max(d^decay, 0.01)`, in [0, 100].
 /// Source: three.js, "getDistanceAttenuation" since revision 147, after Lagarde, de Rousiers, 2014.
-/// Edges: at most 100, near the light; exactly 0 at and beyond the cutoff.
+/// Edges: at most 100, near the light, so for a `d` of 0 or below without a `cutoff`; exactly 0 at and beyond the cutoff, where a negative `d` counts as its magnitude; the window alone for a `decay` of 0, and a negative one brightens with the distance.
 /// Error model: that of `safe_pow(d, decay)` + 4 ULP + absolute 24*x*2^-23 of the falloff, with x = min((d/cutoff)^4, 1).
 float decay_cutoff(float d, float cutoff, float decay) {
     float falloff = 1.0 / max(safe_pow(d, decay), 0.01);

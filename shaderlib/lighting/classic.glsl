@@ -29,7 +29,7 @@ struct Accum {
 /// Parameters: `accum` sums so far; `material` reflectances; `light` colours and strength; `lit` factors at the point; `ambient` factor on ambient light, [0, 1]; `diffuse` and `specular` terms of the reflection, at least 0, as from `lambert` and `blinn_phong`; `visibility` unshadowed share, [0, 1].
 /// Returns: sums with the light's terms added, linear.
 /// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, examples 7.8 and 7.10.
-/// Edges: if `lit` comes from `sample_light`, a light that is off adds nothing but its ambient light, which is 0 if `ambient` is 0.
+/// Edges: if `lit` comes from `sample_light`, a light that is off adds nothing but its ambient light, which is 0 if `ambient` is 0; no parameter is clamped.
 /// Error model: 4 ULP + absolute 8*2^-23 of the largest term.
 Accum accumulate(
     Accum accum,
@@ -53,7 +53,7 @@ Accum accumulate(
 /// Parameters: `base` the surface's linear colour, [0, 1]; `material` its `emission` is read; `accum` the loop's sums.
 /// Returns: `emission + base*scattered + reflected`, linear, not clamped.
 /// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, examples 7.8 and 7.10, without their clamp to 1.
-/// Edges: none.
+/// Edges: no parameter is clamped: negative sums take light away.
 /// Error model: 2 ULP + absolute 2^-23, beside the sums' own errors.
 vec3 resolve(vec3 base, Material material, Accum accum) {
     return material.emission + base * accum.scattered + accum.reflected;
@@ -64,7 +64,7 @@ vec3 resolve(vec3 base, Material material, Accum accum) {
 /// Parameters: `visibility` unshadowed share, [0, 1]; `strength` how much a full shadow takes away, [0, 1].
 /// Returns: `1 - strength*(1 - visibility)`, in [0, 1].
 /// Source: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, shadow mapping: a strength of 0.5.
-/// Edges: 1 for strength 0, `visibility` for strength 1.
+/// Edges: 1 for a `strength` of 0, `visibility` for a `strength` of 1; neither is clamped.
 /// Error model: absolute 2^-23.
 float shadow_mix(float visibility, float strength) {
     return 1.0 - strength * (1.0 - visibility);
@@ -75,7 +75,7 @@ float shadow_mix(float visibility, float strength) {
 /// Parameters: `base` surface's linear colour, [0, 1]; `color` light's linear colour; `n`, `l`, `v` unit, one space, `l` and `v` away from the surface; `attenuation` of the light, [0, 1], `linear_radius` in the tutorial.
 /// Returns: `(base*color + color*0.33*max(n.h, 0)^50)*attenuation*max(n.l, 0) + 0.1*base*color`, linear.
 /// Source: Newcastle University, Graphics for Games, tutorial 11 "Real-Time Lighting A": its code, which multiplies the highlight by Lambert's term; its text does not.
-/// Edges: ambient light alone where the light is behind the surface; no highlight where `l = -v`.
+/// Edges: ambient light alone where the light is behind the surface, so where `n` or `l` is zero; no highlight where `l = -v`, and one about `l` for a zero `v`; `base`, `color` and `attenuation` are not clamped.
 /// Error model: that of `blinn_phong` at 50 on the highlight + 4 ULP of the sum of terms.
 vec3 shade_ncl(vec3 base, vec3 color, vec3 n, vec3 l, vec3 v, float attenuation) {
     vec3 surface = base * color;

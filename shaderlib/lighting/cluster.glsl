@@ -14,7 +14,7 @@
 /// Parameters: `z` distance along the view axis, scene units; `near`, `far` range of the slices, scene units, `0 < near < far`; `count` number of slices, [1, 4096].
 /// Returns: 0 to `count - 1`: `floor(count*log(z/near)/log(far/near))`.
 /// Source: Olsson, Billeter, Assarsson, "Clustered Deferred and Forward Shading", 2012, section 3.2; Sousa, Geffroy, "The Devil Is in the Details: idTech 666", 2016.
-/// Edges: the first slice before `near`, the last beyond `far`; 0 for a range without depth, and for no slices; `near` counts as at least 1e-6.
+/// Edges: the first slice for a `z` up to `near`, negative ones too, the last beyond `far`; 0 for a `far` that is not beyond `near`, and for a `count` of 0; `near` counts as at least 1e-6; indeterminate where `far` or `far/near` is above 1e38, so for a plane at the largest number.
 /// Error model: exact but within 2^-20*count/log2(far/near) of a border, where it is either slice.
 uint cluster_slice(float z, float near, float far, uint count) {
     float first = max(near, 1e-6);
@@ -30,7 +30,7 @@ uint cluster_slice(float z, float near, float far, uint count) {
 /// Parameters: `index` of the slice; `near`, `far` range of the slices, scene units, `0 < near < far`; `count` number of slices, at least 1.
 /// Returns: `near*(far/near)^(index/count)`, scene units: `near` for 0, `far` for `count`.
 /// Source: Olsson, Billeter, Assarsson, "Clustered Deferred and Forward Shading", 2012, section 3.2.
-/// Edges: `near` for a range without depth and for no slices; an index beyond `count` counts as that; `near` counts as at least 1e-6.
+/// Edges: `near` for a `far` that is not beyond it, and for a `count` of 0; an `index` beyond `count` counts as that; `near` counts as at least 1e-6; indeterminate where `far` or `far/near` is above 1e38, so for a plane at the largest number.
 /// Error model: relative 2^-21 + 2^-22*log2(far/near).
 float slice_depth(uint index, float near, float far, uint count) {
     float first = max(near, 1e-6);
@@ -43,7 +43,7 @@ float slice_depth(uint index, float near, float far, uint count) {
 /// Parameters: `uv` place on the screen, [0, 1]; `z` distance along the view axis, scene units; `near`, `far` range of the slices, scene units; `counts` number of cells across, down and in depth, each at least 1.
 /// Returns: `x + counts.x*(y + counts.y*z)`, below the product of the counts.
 /// Source: Olsson, Billeter, Assarsson, "Clustered Deferred and Forward Shading", 2012, section 3.2.
-/// Edges: places beside the screen count as its edge; 0 for no cells.
+/// Edges: a `uv` beside the screen counts as its edge; a count of 0 in `counts` leaves its coordinate and those after it 0; `z`, `near` and `far` as for `cluster_slice`.
 /// Error model: exact but at the borders of cells; see `cluster_slice`.
 uint cluster_index(vec2 uv, float z, float near, float far, uvec3 counts) {
     vec2 size = vec2(float(counts.x), float(counts.y));

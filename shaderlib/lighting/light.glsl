@@ -99,7 +99,7 @@ LightSample sample_point(Light light, vec3 p) {
 /// Parameters: `light` the light: `position`, `attenuation`, `axis`, `cutoff` and `exponent` are read; `p` the lit point, scene units, in the light's space.
 /// Returns: as `sample_point`, with the cone factor of `cone_exponent`.
 /// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.5.
-/// Edges: at the light itself the cosine is 0.
+/// Edges: at the light itself, and for a zero `axis`, the cosine is 0.
 /// Error model: that of `sample_point`; for the cone that of `cone_exponent` at a cosine with the error of `l`.
 LightSample sample_spot(Light light, vec3 p) {
     LightSample lit = sample_point(light, p);

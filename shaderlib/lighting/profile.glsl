@@ -24,7 +24,7 @@ float ies_u(float c) {
 /// Parameters: `l` unit, from the point to the light; `axis` unit, the light's direction into the scene, the same space; `right` unit, at right angles to `axis`: the half plane of the horizontal angle 0.
 /// Returns: `ies_u` in x; in y the horizontal angle over 2*pi, [0, 1], from `right` towards `cross(axis, right)`.
 /// Source: IES LM-63: vertical and horizontal angles of type C.
-/// Edges: y is 0 on the axis and for zero vectors.
+/// Edges: y is 0 where `l` is along `axis`, and where `l` or `right` is zero; x is 0.5 where `l` or `axis` is zero, and y is 0 or 0.5 for a zero `axis`.
 /// Error model: absolute 3e-6 + 2^-23/s in y, with s the sine of the vertical angle.
 vec2 ies_uv(vec3 l, vec3 axis, vec3 right) {
     vec3 away = -l;
@@ -43,7 +43,7 @@ vec2 ies_uv(vec3 l, vec3 axis, vec3 right) {
 /// Parameters: `p` the lit point, scene units; `m` from the space of `p` to the light's texture coordinates: a projection, then a scale of 0.5 and an offset of 0.5.
 /// Returns: the coordinates in xy; z is 1 before the light and 0 behind it, where nothing is projected.
 /// Source: Segal et al., "Fast Shadows and Lighting Effects Using Texture Mapping", 1992, section 3.
-/// Edges: zero where the last homogeneous coordinate is 1e-30 or less.
+/// Edges: zero where the last homogeneous coordinate of `p` is 1e-30 or less, so for an `m` of zeros.
 /// Error model: 8*2^-23 of the sums of the terms' magnitudes over w.
 vec3 cookie_uv(vec3 p, mat4 m) {
     vec4 q = m * vec4(p, 1.0);

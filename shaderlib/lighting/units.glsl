@@ -14,7 +14,7 @@
 /// Parameters: `lm` luminous power, lumens, at least 0.
 /// Returns: `lm/(4*pi)`, candelas: over a distance squared it is illuminance.
 /// Source: Lagarde, de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 4.5.
-/// Edges: 0 for no power.
+/// Edges: 0 for no power; a negative one is not clamped.
 /// Error model: 1.5 ULP.
 float intensity_point(float lm) {
     return lm * 0.07957747;
@@ -25,7 +25,7 @@ float intensity_point(float lm) {
 /// Parameters: `lm` luminous power, lumens, at least 0; `cos_outer` cosine of the cone's half angle, [-1, 1].
 /// Returns: `lm/(2*pi*(1 - cos_outer))`, candelas.
 /// Source: Lagarde, de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 4.5; the solid angle of a cone.
-/// Edges: that of a point light for a cosine of -1 or less; `1 - cos_outer` counts as at least 1e-6, a tenth of a degree.
+/// Edges: 0 for an `lm` of 0, and a negative one is not clamped; that of a point light for a `cos_outer` of -1 or less; `1 - cos_outer` counts as at least 1e-6, a tenth of a degree.
 /// Error model: 3.5 ULP.
 float intensity_spot(float lm, float cos_outer) {
     return lm * 0.15915494 / clamp(1.0 - cos_outer, 1e-6, 2.0);
@@ -36,7 +36,7 @@ float intensity_spot(float lm, float cos_outer) {
 /// Parameters: `lm` luminous power, lumens, at least 0: the power that a cone with a half angle of 60 degrees, and so a solid angle of pi, would emit.
 /// Returns: `lm/pi`, candelas.
 /// Source: Guy, Agopian, "Physically Based Rendering in Filament", 2018, section 5.2.2.2 "Spot lights": the spot light with a light absorber.
-/// Edges: 0 for no power.
+/// Edges: 0 for no power; a negative one is not clamped.
 /// Error model: 1.5 ULP.
 float intensity_spot_filament(float lm) {
     return lm * 0.31830987;
@@ -47,7 +47,7 @@ float intensity_spot_filament(float lm) {
 /// Parameters: `lm` luminous power, lumens, [0, 1e20]; `area` of the surface that shines, square metres, above 0.
 /// Returns: `lm/(pi*area)`, candelas per square metre.
 /// Source: Lagarde, de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 4.7.1.
-/// Edges: an area below a square micrometre, 1e-12, counts as that.
+/// Edges: 0 for an `lm` of 0, and a negative one is not clamped; an `area` below a square micrometre, 1e-12, counts as that.
 /// Error model: 3 ULP.
 float luminance_area(float lm, float area) {
     return lm * 0.31830987 / max(area, 1e-12);

@@ -12,7 +12,7 @@
 /// Parameters: `pixel` framebuffer position, pixels, at least 0.
 /// Returns: a number in [0, 1).
 /// Source: Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014.
-/// Edges: 0 at the origin; the pattern loses its spread beyond about 2^17 pixels.
+/// Edges: 0 at the origin; the pattern goes on over negative positions, and loses its spread beyond about 2^17 pixels.
 /// Error model: absolute 80*2^-23*(0.067*pixel.x + 0.0058*pixel.y + 1), modulo 1.
 float interleaved_gradient_noise(vec2 pixel) {
     return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715))));
@@ -36,7 +36,7 @@ uint hash_pcg(uint seed) {
 /// Parameters: `pixel` framebuffer position, pixels, at least 0, of which fractions are dropped.
 /// Returns: a number of 32 bits.
 /// Source: the nested hash of Jarzynski, Olano, "Hash Functions for GPU Rendering", 2020.
-/// Edges: a negative position counts as 0.
+/// Edges: a negative position counts as 0; indeterminate from 2^32 on.
 /// Error model: exact.
 uint pixel_seed(vec2 pixel) {
     return hash_pcg(uint(max(pixel.x, 0.0)) + hash_pcg(uint(max(pixel.y, 0.0))));
@@ -68,10 +68,10 @@ float random_hpg(vec4 seed) {
 
 /// A point of a spiral that fills the unit disk evenly.
 ///
-/// Parameters: `i` number of the point, from 0 to `count - 1`; `count` how many points; `phi` turn of the whole spiral, radians.
+/// Parameters: `i` number of the point, from 0 to `count - 1`; `count` how many points; `phi` turn of the whole spiral, any angle, radians.
 /// Returns: a point at distance `sqrt((i + 0.5)/count)` from the origin, below 1.
 /// Source: Vogel, "A Better Way to Construct the Sunflower Head", 1979: the golden angle, 2.399963 radians.
-/// Edges: a count below 1 counts as 1; a negative point is the middle.
+/// Edges: a `count` below 1 counts as 1; a negative `i` is the middle, and one from `count` on is outside the unit disk.
 /// Error model: absolute 2^-11 (sine and cosine, as WGSL promises them) + 1.5*2^-23*(2.4*i + |phi|); the angle is reduced to [-pi, pi], outside of which no bound holds.
 vec2 vogel_disk(int i, int count, float phi) {
     float turn = fract(float(i) * 0.38196601 + phi * 0.15915494);
@@ -96,7 +96,7 @@ vec2 r2_sequence(uint i) {
 /// Parameters: `pixel` framebuffer position, pixels, at least 0; `frame` number of the frame.
 /// Returns: `interleaved_gradient_noise` at a pixel that moves by 5.588238 to the right and down in each of 64 frames, [0, 1).
 /// Source: Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014; Wolfe, "Interleaved Gradient Noise: A Different Kind of Low Discrepancy Sequence", 2022, has the step.
-/// Edges: `interleaved_gradient_noise` for frame 0; frames repeat after 64.
+/// Edges: `interleaved_gradient_noise` for a `frame` of 0; frames repeat after 64; negative positions of `pixel` as for `interleaved_gradient_noise`.
 /// Error model: absolute 80*2^-23*(0.067*pixel.x + 0.0058*pixel.y + 28), modulo 1.
 float ign_time(vec2 pixel, uint frame) {
     return interleaved_gradient_noise(pixel + 5.588238 * float(frame % 64u));

@@ -19,7 +19,7 @@
 /// Parameters: `map`, `smp` depth map and comparison sampler; `uv` texture coordinates; `depth` reference, [0, 1].
 /// Returns: the lit share of the 2x2 texels around, [0, 1].
 /// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.21, which smears the edge instead.
-/// Edges: 1 where uv is not in [0, 1].
+/// Edges: 1 where `uv` is not in [0, 1]; a `depth` outside [0, 1] is clamped by a map of normalised integers, and not by one of floats.
 /// Error model: the sampler's two weights, of at least 8 bits each: absolute 2^-7.
 float compare_tap(LAMPLIGHT_DEPTH_MAP(map, smp), vec2 uv, float depth) {
     float visible = textureLod(LAMPLIGHT_DEPTH_SAMPLER(map, smp), vec3(uv, depth), 0.0);
@@ -45,7 +45,7 @@ float hard(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
 /// Parameters: `map`, `smp` depth map and comparison sampler; `at` place in the map; `reach` comparisons on each side of the middle, at least 0.
 /// Returns: visibility, [0, 1].
 /// Source: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, percentage closer filtering.
-/// Edges: 1 where `at` is outside; each comparison beyond the map's edge counts as lit.
+/// Edges: 1 where `at` is outside; each comparison beyond the map's edge counts as lit; 0 for a negative `reach`, which compares nothing.
 /// Error model: that of `compare_tap` + absolute 2^-20 (sum and division).
 float pcf_grid(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, int reach) {
     if (!at.inside) {
@@ -116,7 +116,7 @@ float pcf_castano_3(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
 /// Parameters: `map`, `smp` depth map and comparison sampler; `columns` the three u coordinates; `v` the row's; `weights` of the columns; `depth` reference, [0, 1].
 /// Returns: the weighted sum, [0, sum of the weights].
 /// Source: as `pcf_castano_5`.
-/// Edges: each comparison beyond the map's edge counts as lit.
+/// Edges: each comparison of `columns` and `v` beyond the map's edge counts as lit; `weights` are not clamped; `depth` as for `compare_tap`.
 /// Error model: that of `compare_tap`, times the weights.
 float castano_row(LAMPLIGHT_DEPTH_MAP(map, smp), vec3 columns, float v, vec3 weights, float depth) {
     float left = compare_tap(LAMPLIGHT_DEPTH_ARG(map, smp), vec2(columns.x, v), depth);
@@ -155,7 +155,7 @@ float pcf_castano_5(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at) {
 /// Parameters: `map`, `smp` depth map and comparison sampler; `at` place in the map; `radius` half the square's side, texels; `pixel` framebuffer position, which chooses the places.
 /// Returns: visibility, [0, 1].
 /// Source: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, percentage closer filtering, with the square centred, measured after the division, and an integer hash.
-/// Edges: 1 where `at` is outside; each comparison beyond the map's edge counts as lit.
+/// Edges: 1 where `at` is outside; each comparison beyond the map's edge counts as lit; a `radius` of 0 compares at the point alone, and a negative one mirrors the square; negative positions of `pixel` count as 0.
 /// Error model: that of `compare_tap` + absolute 2^-20; the places are exact to 2^-23 of the radius.
 float pcf_random16(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, float radius, vec2 pixel) {
     if (!at.inside) {
@@ -180,10 +180,10 @@ float pcf_random16(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, float radius, vec
 /// by 0.125/w along both axes of the map, and the blur shrinks with distance. The offsets come from `random_hpg`, seeded with
 /// the pixel, its coordinates in the orders x, y, x and y, x, y, and the number of the comparison.
 ///
-/// Parameters: `map`, `smp` depth map and comparison sampler; `sc` clip coordinates from `shadow_coord`; `min_w` as for `project`; `pixel` framebuffer position.
+/// Parameters: `map`, `smp` depth map and comparison sampler; `sc` clip coordinates from `shadow_coord`; `min_w` as for `project`; `pixel` any framebuffer position.
 /// Returns: visibility, [0, 1].
 /// Source: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, percentage closer filtering.
-/// Edges: 1 where `project` finds the point outside; each comparison beyond the map's edge counts as lit.
+/// Edges: 1 where `project` finds the point outside, for `sc` and `min_w` as for `project`; each comparison beyond the map's edge counts as lit.
 /// Error model: none for the places: `random_hpg` depends on the driver. The mean is in [0, 1].
 float pcf_random16_hpg(LAMPLIGHT_DEPTH_MAP(map, smp), vec4 sc, float min_w, vec2 pixel) {
     ShadowUv at = project(sc, min_w);
@@ -201,10 +201,10 @@ float pcf_random16_hpg(LAMPLIGHT_DEPTH_MAP(map, smp), vec4 sc, float min_w, vec2
 
 /// Comparisons on a spiral disk around the point, averaged.
 ///
-/// Parameters: `map`, `smp` depth map and comparison sampler; `at` place in the map; `count` how many, at least 1; `radius` of the disk, texels; `phi` turn of the disk, radians: noise times 2*pi hides the pattern.
+/// Parameters: `map`, `smp` depth map and comparison sampler; `at` place in the map; `count` how many, at least 1; `radius` of the disk, texels; `phi` turn of the disk, any angle, radians: noise times 2*pi hides the pattern.
 /// Returns: visibility, [0, 1].
 /// Source: Vogel, "A Better Way to Construct the Sunflower Head", 1979, as the places of percentage closer filtering.
-/// Edges: 1 where `at` is outside; each comparison beyond the map's edge counts as lit; a count below 1 counts as 1.
+/// Edges: 1 where `at` is outside; each comparison beyond the map's edge counts as lit; a `count` below 1 counts as 1; a `radius` of 0 compares at the point alone, and a negative one turns the disk by half.
 /// Error model: that of `compare_tap` + absolute count*2^-24; the places have that of `vogel_disk` times the radius.
 float pcf_vogel(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, int count, float radius, float phi) {
     if (!at.inside) {
@@ -221,10 +221,10 @@ float pcf_vogel(LAMPLIGHT_DEPTH_MAP(map, smp), ShadowUv at, int count, float rad
 
 /// The mean depth of what is nearer to the light, on a disk around a place in the map.
 ///
-/// Parameters: `depths`, `depths_smp` the depth map as a plain texture and a sampler that does not filter; `at` place in the map; `radius` of the disk, texels; `phi` turn of the disk, radians.
+/// Parameters: `depths`, `depths_smp` the depth map as a plain texture and a sampler that does not filter; `at` place in the map; `radius` of the disk, texels; `phi` turn of the disk, any angle, radians.
 /// Returns: the mean depth of the nearer ones among 16 samples, [0, 1]; `at.depth` where none is.
 /// Source: Fernando, "Percentage-Closer Soft Shadows", 2005: the blocker search.
-/// Edges: samples beyond the map's edge are those at it, where the sampler clamps.
+/// Edges: samples beyond the map's edge are those at it, where the sampler clamps; a `radius` of 0 reads one place, and a negative one turns the disk by half.
 /// Error model: absolute 2^-20; a sample counts or not where it is closer to `at.depth` than their errors.
 float mean_blocker(LAMPLIGHT_COLOR_MAP(depths, depths_smp), ShadowUv at, float radius, float phi) {
     vec2 reach = radius / vec2(textureSize(LAMPLIGHT_COLOR_SAMPLER(depths, depths_smp), 0));
@@ -244,7 +244,7 @@ float mean_blocker(LAMPLIGHT_COLOR_MAP(depths, depths_smp), ShadowUv at, float r
 /// The map is read in two ways, so it is bound twice: some targets cannot compare and read through one binding.
 /// The penumbra's width is computed as if the map's depths were distances from the light. This is exact for linear depths, and an approximation for perspective ones. For those, make distances of the depths of the point and of `mean_blocker`, and filter over half of `shadow::penumbra::pcss_width`, as the program `forward` does.
 ///
-/// Parameters: `map`, `smp` depth map and comparison sampler; `depths`, `depths_smp` the same map as a plain texture, with a sampler that does not filter; `at` place in the map; `light_size` width of the light, texels of the map; `phi` turn of the disks, radians.
+/// Parameters: `map`, `smp` depth map and comparison sampler; `depths`, `depths_smp` the same map as a plain texture, with a sampler that does not filter; `at` place in the map; `light_size` width of the light, texels of the map; `phi` turn of the disks, any angle, radians.
 /// Returns: visibility, [0, 1].
 /// Source: Fernando, "Percentage-Closer Soft Shadows", 2005: penumbra = (receiver - blocker)*light/blocker.
 /// Edges: 1 where `at` is outside and where nothing is nearer to the light; the penumbra is kept between 1 texel and `light_size`, which is at least 1.
@@ -273,7 +273,7 @@ float pcss(
 /// Parameters: `cube`, `smp` depth cube map and comparison sampler; `offset` from the light to the point, in the cube's space, any length; `depth` reference, [0, 1], computed as for the faces: by `cube_depth` for perspective faces.
 /// Returns: visibility, [0, 1].
 /// Source: Gerasimov, "Omnidirectional Shadow Mapping", GPU Gems, 2004, chapter 12; Igalia, "Working with lights and shadows", part II, whose faces must be 90 degrees wide, not 45.
-/// Edges: 1 for a reference outside [0, 1]; a point at the light is looked up along z.
+/// Edges: 1 for a `depth` outside [0, 1]; a zero `offset`, a point at the light, is looked up along z.
 /// Error model: that of `compare_tap`.
 float cube_compare(LAMPLIGHT_DEPTH_CUBE(cube, smp), vec3 offset, float depth) {
     // A direction of length 0 has no face.

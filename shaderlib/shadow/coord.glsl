@@ -32,10 +32,10 @@ bool is_on_map(vec2 uv) {
 
 /// A point in the light's clip space.
 ///
-/// Parameters: `m` the light's projection times its view, for column vectors; `p_world` the point, world space, scene units.
+/// Parameters: `m` the light's projection times its view, for column vectors; `p_world` the point, anywhere in world space, scene units.
 /// Returns: clip coordinates, before the division by w.
 /// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.20; its bias matrix is `project` here.
-/// Edges: none.
+/// Edges: w is 0 or below at and behind a perspective light, which `project` finds; zero for an `m` of zeros.
 /// Error model: absolute 4*2^-23*sum|m_ij*p_j| per component.
 vec4 shadow_coord(mat4 m, vec3 p_world) {
     return m * vec4(p_world, 1.0);
@@ -48,7 +48,7 @@ vec4 shadow_coord(mat4 m, vec3 p_world) {
 /// Parameters: `sc` clip coordinates from `shadow_coord`; `min_w` smallest light-space depth that can be shadowed, scene units for a perspective light, at least 0.
 /// Returns: `uv = (0.5*x + 0.5, 0.5 - 0.5*y)` and `depth = z` after division by w; `inside` where uv and depth are in [0, 1] and `w > min_w`.
 /// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.19, for another clip space; the guard on w: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, shadow mapping (there 1, its near plane).
-/// Edges: outside, with uv and depth 0, where w is at or below `min_w` (0 at least): behind the light.
+/// Edges: outside, with uv and depth 0, where the w of `sc` is at or below `min_w` (0 at least): behind the light.
 /// Error model: absolute 4*2^-23*(|x/w| + 1), beside the error of `sc` divided by w.
 ShadowUv project(vec4 sc, float min_w) {
     if (!(sc.w > max(min_w, SMALLEST_NORMAL))) {
@@ -75,7 +75,7 @@ ShadowUv project_gl(vec4 sc, float min_w) {
 /// Parameters: `d` depth, [0, 1] from near to far; `near`, `far` plane distances, scene units, above 0. For reversed depth swap the planes.
 /// Returns: `near*far/(far - d*(far - near))`, scene units, between `near` and `far`.
 /// Source: the inverse of a perspective projection to [0, 1]; stands for the depth view of Igalia, "Working with lights and shadows", part II.
-/// Edges: never above 1e30, which is also the result beyond any far plane; 0 for a plane at 0 or below.
+/// Edges: never above 1e30, which is also the result beyond any far plane; 0 for a `near` or a `far` of 0 or below; a `d` outside [0, 1] is not clamped.
 /// Error model: 6 ULP for d in [0, 1]; the depth's own error weighs far/near times as much near d = 1.
 float linearize_depth(float d, float near, float far) {
     // The weighted sum does not cancel near d = 1, as far - d*(far - near) does.
@@ -101,7 +101,7 @@ float depth_view_igl(float d) {
 /// Parameters: `offset` from the light to the point, in the cube's space, scene units; `near`, `far` plane distances of the faces, scene units, above 0.
 /// Returns: depth, [0, 1] from near to far, for faces of 90 degrees and depths in [0, 1].
 /// Source: Gerasimov, "Omnidirectional Shadow Mapping", GPU Gems, 2004, chapter 12: the largest component is the distance along the face's axis.
-/// Edges: points nearer than `near` count as at `near`; negative planes count as at 0; never above 1e30, as beyond equal planes, which give 0 before them.
+/// Edges: an `offset` nearer than `near`, a zero one too, counts as at `near`; a negative plane counts as 0: every depth is 1 for a `near` of 0, and 0 for a `far` of 0; never above 1e30, towards which depths beyond `near` rise where `far` is not beyond it.
 /// Error model: absolute 6*2^-23*far/(far - near).
 float cube_depth(vec3 offset, float near, float far) {
     float start = max(near, 0.0);

@@ -14,7 +14,7 @@
 /// Parameters: `d` depth, [0, 1] from near to far, bias added.
 /// Returns: `(d, d^2)`, to be stored and filtered.
 /// Source: Donnelly, Lauritzen, "Variance Shadow Maps", 2006; Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, variance shadow mapping.
-/// Edges: none.
+/// Edges: `d` is not clamped.
 /// Error model: 1 ULP.
 vec2 vsm_moments(float d) {
     return vec2(d, d * d);
@@ -25,7 +25,7 @@ vec2 vsm_moments(float d) {
 /// Parameters: `d` depth, [0, 1] from near to far; `dx`, `dy` its change per texel: the screen-space derivatives of the depth pass.
 /// Returns: `(d, d^2 + 0.25*(dx^2 + dy^2))`, to be stored and filtered.
 /// Source: Lauritzen, "Summed-Area Variance Shadow Maps", GPU Gems 3, 2007, chapter 8.
-/// Edges: none; a steep edge may need its derivatives bounded.
+/// Edges: `d`, `dx` and `dy` are not clamped: a steep edge may need its derivatives bounded.
 /// Error model: 3 ULP; the derivatives themselves have no bound.
 vec2 vsm_moments_slope(float d, float dx, float dy) {
     return vec2(d, d * d + 0.25 * (dx * dx + dy * dy));
@@ -36,7 +36,7 @@ vec2 vsm_moments_slope(float d, float dx, float dy) {
 /// Parameters: `m` first and second moment; `t` the depth; `min_variance` least variance, above 0, against rounding; `bleed` share of the bound to cut off, [0, 1).
 /// Returns: 1 where `t <= m.x`, else `saturate((p - bleed)/(1 - bleed))` with `p = var/(var + (t - m.x)^2)`: in [0, 1].
 /// Source: Donnelly, Lauritzen, "Variance Shadow Maps", 2006; the cut against light bleeding: Lauritzen, GPU Gems 3, 2007, chapter 8.
-/// Edges: 0 beyond the mean for a bleed of 1 or more; a variance of 0 counts as 2^-126.
+/// Edges: 1 for every `t` up to the mean of `m`, negative ones too; 0 beyond the mean for a `bleed` of 1 or more, and a negative one brightens; a variance below `min_variance`, negative ones too, counts as that, and as at least 2^-126.
 /// Error model: absolute p*(1 - p)*(rel(var) + 2*rel(t - m.x)) + 4*2^-23, over 1 - bleed, where rel(var) is 2^-22*m.y/var and rel(t - m.x) is 2^-23*t/(t - m.x).
 float chebyshev(vec2 m, float t, float min_variance, float bleed) {
     if (t <= m.x) {
@@ -53,7 +53,7 @@ float chebyshev(vec2 m, float t, float min_variance, float bleed) {
 /// Parameters: `m` filtered `vsm_moments`; `t` the point's depth, [0, 1]; `min_variance` least variance, 0.00002 in the recipe; `least` least visibility, [0, 1], 0.2 in the recipe; `bleed` share of the bound to cut off, [0, 1), 0 in the recipe.
 /// Returns: visibility, [least, 1].
 /// Source: Movania et al., OpenGL: Build High Performance Graphics, 2017, chapter 4, variance shadow mapping.
-/// Edges: 1 where `t <= m.x`, and `least` only beyond: a full shadow is not darker.
+/// Edges: 1 where `t <= m.x`, and `least` only beyond: a full shadow is not darker; `least` is not clamped; `m`, `t`, `min_variance` and `bleed` as for `chebyshev`.
 /// Error model: that of `chebyshev`.
 float vsm_visibility(vec2 m, float t, float min_variance, float least, float bleed) {
     return max(chebyshev(m, t, min_variance, bleed), least);
@@ -64,7 +64,7 @@ float vsm_visibility(vec2 m, float t, float min_variance, float least, float ble
 /// Parameters: `d` depth, [0, 1] from near to far; `exponents` positive and negative, above 0: up to 42 for moments of 32 bits, 5.5 for 16.
 /// Returns: `(exp(x*z), -exp(-y*z))` with `z = 2*d - 1`: both rise with the depth.
 /// Source: Lauritzen, McCool, "Layered Variance Shadow Maps", 2008, section 5: exponential variance shadow maps.
-/// Edges: exponents count as at most 42 over the depth, so that second moments do not overflow.
+/// Edges: `exponents` count as at most 42 over the depth, so that second moments do not overflow; (1, -1) for zeros; `d` is not clamped.
 /// Error model: relative (3.5 + 3*e)*2^-23, with e the exponent.
 vec2 evsm_warp(float d, vec2 exponents) {
     float z = 2.0 * d - 1.0;
@@ -88,7 +88,7 @@ vec4 evsm_moments(float d, vec2 exponents) {
 /// Parameters: `m4` filtered `evsm_moments`; `t` the point's depth, [0, 1]; `exponents` those the moments were made with; `min_variance` least variance, in depth squared; `bleed` share of the bounds to cut off, [0, 1).
 /// Returns: the smaller of the two bounds, visibility, [0, 1].
 /// Source: Lauritzen, McCool, "Layered Variance Shadow Maps", 2008, section 5; the least variance is scaled by the slope of the warp at `t`.
-/// Edges: as `chebyshev`.
+/// Edges: as `chebyshev`, with depths and exponents as for `evsm_warp`.
 /// Error model: that of `chebyshev`, with the relative errors of `evsm_moments` for those of the moments; 2^-18 for mixtures of two depths and exponents up to 40.
 float evsm_visibility(vec4 m4, float t, vec2 exponents, float min_variance, float bleed) {
     vec2 w = evsm_warp(t, exponents);
@@ -125,7 +125,7 @@ float esm_visibility(float m, float t, float c) {
 /// Parameters: `d` depth, [0, 1] from near to far.
 /// Returns: `(d, d^2, d^3, d^4)`.
 /// Source: Peters, Klein, "Moment Shadow Mapping", 2015, section 3.
-/// Edges: none.
+/// Edges: `d` is not clamped.
 /// Error model: 1.5 ULP.
 vec4 msm_moments(float d) {
     float d2 = d * d;
@@ -139,7 +139,7 @@ vec4 msm_moments(float d) {
 /// Parameters: `m` moments of depths in [0, 1].
 /// Returns: the quantised form, in [0, 1] up to rounding.
 /// Source: Peters, Klein, "Moment Shadow Mapping", 2015, section 3.5 and its listing: a row vector times the matrix.
-/// Edges: none.
+/// Edges: `m` is not clamped; (0.035955884801, 0, 0, 0) for zeros.
 /// Error model: absolute 2^-23 times the sum of the terms' magnitudes, at most 2e-5.
 vec4 msm_quantise(vec4 m) {
     vec4 turned = m.x * vec4(-2.07224649, 13.7948857237, 0.105877704, 9.7924062118) + m.y * vec4(32.23703778, -59.4683975703, -1.9077466311, -33.7652110555)
@@ -152,7 +152,7 @@ vec4 msm_quantise(vec4 m) {
 /// Parameters: `q` as from `msm_quantise`, after storing and filtering.
 /// Returns: the moments.
 /// Source: Peters, Klein, "Moment Shadow Mapping", 2015, section 3.5 and its listing.
-/// Edges: none.
+/// Edges: `q` is not clamped; zeros for (0.035955884801, 0, 0, 0).
 /// Error model: absolute 4*2^-23 times the sum of the terms' magnitudes.
 vec4 msm_dequantise(vec4 q) {
     return (q.x - 0.035955884801) * vec4(0.2227744146, 0.1549679261, 0.1451988946, 0.163127443)
@@ -168,7 +168,7 @@ vec4 msm_dequantise(vec4 q) {
 /// Parameters: `m` filtered moments of depths in [0, 1]; `t` depth of the lit point; `bias` weight, [0, 1], of the moments (0.5, 0.5, 0.5, 0.5) that are mixed in against rounding: 3e-5 for moments in 32 bits, 6e-5 for 16.
 /// Returns: visibility, [0, 1].
 /// Source: Peters, Klein, "Moment Shadow Mapping", 2015, algorithm 3, by Cholesky's factors of the Hankel matrix.
-/// Edges: where the moments are of a single depth, 1 up to it and 0 beyond; for moments that no depths have, some number in [0, 1].
+/// Edges: where the moments `m` are of a single depth, 1 for a `t` up to it and 0 beyond; for moments that no depths have, as a `bias` outside [0, 1] may make them, some number in [0, 1].
 /// Error model: absolute 2^-22/D, with D the determinant of the Hankel matrix of the mixed moments; the bias alone makes it 1e-8.
 float msm_visibility(vec4 m, float t, float bias) {
     vec4 b = mix(m, vec4(0.5), bias);

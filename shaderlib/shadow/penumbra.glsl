@@ -12,7 +12,7 @@
 /// Parameters: `receiver`, `blocker` linear distances from the light to the lit point and to what shadows it, scene units, above 0; `size` of the light, scene units, at least 0.
 /// Returns: `(receiver - blocker)*size/blocker`, scene units at the lit point.
 /// Source: Fernando, "Percentage-Closer Soft Shadows", 2005: similar triangles; with linear distances, which a depth buffer does not hold.
-/// Edges: 0 where the blocker is not before the lit point, and where there is none: a blocker of 0 or less; never more than 1e6 times the size.
+/// Edges: 0 where `blocker` is not before `receiver`, and where there is none: a `blocker` of 0 or less; a negative `size` counts as 0; never more than 1e6 times the size.
 /// Error model: 3 ULP, and 2^-23*receiver*size/blocker.
 float pcss_width(float receiver, float blocker, float size) {
     if (!(blocker > 0.0 && receiver > blocker)) {
@@ -26,7 +26,7 @@ float pcss_width(float receiver, float blocker, float size) {
 /// Parameters: `receiver`, `blocker` linear distances along the light's direction, scene units; `size` diameter of the light over its distance, at least 0: 0.0093 for the sun.
 /// Returns: `(receiver - blocker)*size`, scene units.
 /// Source: Fernando, "Percentage-Closer Soft Shadows", 2005, for a light at infinity.
-/// Edges: 0 where the blocker is not before the lit point.
+/// Edges: 0 where `blocker` is not before `receiver`, and for a `size` of 0 or below; distances may have any sign.
 /// Error model: 2 ULP, and 2^-23*(|receiver| + |blocker|)*size.
 float pcss_width_directional(float receiver, float blocker, float size) {
     return max(receiver - blocker, 0.0) * max(size, 0.0);

@@ -14,7 +14,7 @@
 /// Parameters: `res` the least share so far, [0, 1]; `h` signed distance from this point of the ray to the scene, scene units; `ph` that distance at the previous step, which is also the length of that step, scene units; `t` distance of this point along the ray, scene units; `k` sharpness: the distance of the light over its radius, at least 0.
 /// Returns: x the least share, [0, 1]; y the distance here, at least 0, for the next step.
 /// Source: Quilez, "Soft Shadows in Raymarched SDFs", 2010, with the nearest point between two steps: Aaltonen, "GPU-Based Clay Simulation and Ray-Tracing Tech in Claybook", 2018.
-/// Edges: 0 inside an object; without a previous step, only the distance at this point counts; `res` where the nearest point is behind the start.
+/// Edges: 0 for an `h` of 0 or below, inside an object, and for a `k` of 0 or below; without a previous step, a `ph` of 0 or below, only the distance at this point counts; `res`, clamped to [0, 1], where the nearest point is behind the start, so for a `t` of 0 or below.
 /// Error model: 6 ULP, and 2^-22*k*h^2/((t - y)*d).
 vec2 sdf_soft_step(float res, float h, float ph, float t, float k) {
     float here = max(h, 0.0);

@@ -16,7 +16,7 @@
 /// Parameters: `a`, `b`, `c` corners, one space, scene units.
 /// Returns: `(b - a) x (c - a)`, scene units^2, in that space.
 /// Source: Newcastle University, Graphics for Games, tutorial 11 "Real-Time Lighting A".
-/// Edges: zero for a triangle without area.
+/// Edges: zero for a triangle without area, so where two of `a`, `b` and `c` are equal.
 /// Error model: absolute 2*2^-23*|b - a|*|c - a|.
 vec3 face_normal_area(vec3 a, vec3 b, vec3 c) {
     return cross(b - a, c - a);
@@ -27,7 +27,7 @@ vec3 face_normal_area(vec3 a, vec3 b, vec3 c) {
 /// Parameters: `a`, `b`, `c` corners, one space, scene units.
 /// Returns: unit vector along `(b - a) x (c - a)`, in that space.
 /// Source: Newcastle University, Graphics for Games, tutorial 11 "Real-Time Lighting A".
-/// Edges: (0, 0, 1) for a triangle without area.
+/// Edges: (0, 0, 1) for a triangle without area, so where two of `a`, `b` and `c` are equal.
 /// Error model: that of `safe_normalize` + 4*2^-23*|b - a|*|c - a|/area; the differences cancel for corners far from the origin.
 vec3 face_normal(vec3 a, vec3 b, vec3 c) {
     return safe_normalize(face_normal_area(a, b, c), vec3(0.0, 0.0, 1.0));
@@ -38,7 +38,7 @@ vec3 face_normal(vec3 a, vec3 b, vec3 c) {
 /// Parameters: `n` unit normal; `tangent` unit tangent in `xyz`, the same space, with the bitangent's sign, 1 or -1, in `w`; `texel` value of the normal map, [0, 1] in each channel, where 0.5 stands for 0.
 /// Returns: unit normal, in that space.
 /// Source: Blinn, "Simulation of Wrinkled Surfaces", 1978; the tangent's sign as in Khronos Group, glTF 2.0, "Meshes".
-/// Edges: `n` where the tangent is zero or along `n`, and for a texel of 0.5, 0.5, 0.5.
+/// Edges: `n` where `tangent` is zero or along `n`, and for a `texel` of 0.5, 0.5, 0.5, which is not clamped; for a zero `n` only the tangent's part is left.
 /// Error model: absolute 6*2^-23/(sin(a)*min(|2*texel - 1|, 1)), with a the angle between `n` and the tangent.
 vec3 perturb_normal(vec3 n, vec4 tangent, vec3 texel) {
     vec3 t = safe_normalize(tangent.xyz - n * dot(n, tangent.xyz), vec3(0.0));
@@ -55,7 +55,7 @@ vec3 perturb_normal(vec3 n, vec4 tangent, vec3 texel) {
 /// Parameters: `n` unit normal of the front; `front` whether the front side is visible.
 /// Returns: `n` in front, `-n` behind.
 /// Source: an addition to Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, example 7.11. The example does not flip the normal, so its back faces have no diffuse light.
-/// Edges: none.
+/// Edges: zero for a zero `n`.
 /// Error model: exact.
 vec3 flip_if_back(vec3 n, bool front) {
     return front ? n : -n;
@@ -66,7 +66,7 @@ vec3 flip_if_back(vec3 n, bool front) {
 /// Parameters: `base`, `detail` unit normals in tangent space, z out of the surface, `base.z` above -1.
 /// Returns: unit normal in tangent space.
 /// Source: Hill, "Blending in Detail", 2012: reoriented normal mapping.
-/// Edges: `detail` for a base of z, `base` for a detail of z; `base` where it looks straight down, and for zero vectors.
+/// Edges: `detail` for a base of z, `base` for a detail of z; `base` where it looks straight down, and for a zero `detail`; `detail` without its z for a zero `base`.
 /// Error model: absolute 8*2^-23/(1 + base.z).
 vec3 blend_rnm(vec3 base, vec3 detail) {
     vec3 t = vec3(base.xy, base.z + 1.0);
@@ -82,7 +82,7 @@ vec3 blend_rnm(vec3 base, vec3 detail) {
 /// Parameters: `base`, `detail` unit normals in tangent space, z out of the surface.
 /// Returns: unit normal along `(base.xy + detail.xy, base.z)`, tangent space.
 /// Source: Hill, "Blending in Detail", 2012, after Epic Games' Unreal Developer Network: UDN blending.
-/// Edges: `base` where the sum is zero.
+/// Edges: `base` where the sum is zero; `base`, normalised, for a zero `detail`.
 /// Error model: absolute 8*2^-23 over the length of the sum.
 vec3 blend_udn(vec3 base, vec3 detail) {
     return safe_normalize(vec3(base.xy + detail.xy, base.z), base);
@@ -93,7 +93,7 @@ vec3 blend_udn(vec3 base, vec3 detail) {
 /// Parameters: `base`, `detail` unit normals in tangent space, z out of the surface.
 /// Returns: unit normal along `(base.xy + detail.xy, base.z*detail.z)`, tangent space.
 /// Source: Oat, Tatarchuk, Isidoro, "Layered Car Paint Shader", ShaderX 2, 2003; Hill, "Blending in Detail", 2012: whiteout blending.
-/// Edges: `base` where the sum is zero.
+/// Edges: `base` where the sum is zero; without a z where `base` or `detail` is zero.
 /// Error model: absolute 8*2^-23 over the length of the sum.
 vec3 blend_whiteout(vec3 base, vec3 detail) {
     return safe_normalize(vec3(base.xy + detail.xy, base.z * detail.z), base);
@@ -104,7 +104,7 @@ vec3 blend_whiteout(vec3 base, vec3 detail) {
 /// Parameters: `n` unit normal in view space, z towards the viewer.
 /// Returns: `n.xy/sqrt(8*n.z + 8) + 1/2`, a disk in [0, 1].
 /// Source: Mittring, "A bit more deferred - CryEngine 3", 2009: the sphere map transform, which is Lambert's azimuthal projection of equal area.
-/// Edges: a `1 + n.z` below 1e-7 counts as that: straight away from the viewer is the centre of the disk, like straight towards.
+/// Edges: (0.5, 0.5), the centre of the disk, for a zero `n`; a `1 + n.z` below 1e-7 counts as that: straight away from the viewer is the centre, like straight towards.
 /// Error model: absolute 2^-23 + 2^-24/(1 + n.z).
 vec2 spheremap_encode(vec3 n) {
     return n.xy / sqrt(8.0 * max(1.0 + n.z, 1e-7)) + 0.5;
