@@ -71,6 +71,7 @@ pub fn trials() -> Vec<Trial> {
     let mut trials = vec![
         Trial::test("shaderlib::pairs", every_module_has_its_twin),
         Trial::test("shaderlib::names", names_are_unique),
+        Trial::test("shaderlib::edges", documented::silent_parameters_are_found),
         Trial::test("shaderlib::together", modules_go_together),
         Trial::test("shaderlib::prefixed", modules_go_beside_names),
         Trial::test("shaderlib::prefixed_include_path", modules_go_beside_names_elsewhere),
