@@ -103,7 +103,7 @@ float fog_linear(float d, float start, float end) {
 /// Parameters: `d` distance to the viewer, scene units, at least 0; `density` 1/scene units, at least 0.
 /// Returns: `exp(-density*d)`, [0, 1]: 1 is clear, 0 all fog.
 /// Source: OpenGL 2.1 specification, section 3.10 "Fog", exponential.
-/// Edges: 1 where the product of `d` and `density` is 0 or below, so where one of them is negative.
+/// Edges: 1 where the product of `d` and `density` is 0 or below; two negative ones count as their magnitudes.
 /// Error model: relative (3 + 2*x)*2^-23 + x*2^-24, with x = density*d.
 float fog_exp(float d, float density) {
     return exp(-max(density * d, 0.0));

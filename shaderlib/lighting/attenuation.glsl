@@ -54,7 +54,7 @@ float inverse_square(float d2, float min_d2) {
 /// Parameters: `d2` squared distance to the light, scene units^2, at least 0; `inv_range2` 1/range^2, 1/scene units^2, at least 0, where 0 means no range.
 /// Returns: `saturate(1 - (d/range)^4)^2`, in [0, 1], with slope 0 at the range.
 /// Source: Karis, "Real Shading in Unreal Engine 4", 2013, equation 9; Lagarde, de Rousiers, 2014, section 4.5.
-/// Edges: 1 where `d2` or `inv_range2` is 0, and where one of them is negative; exactly 0 at and beyond the range.
+/// Edges: 1 where the product of `d2` and `inv_range2` is 0 or below; exactly 0 at and beyond the range.
 /// Error model: absolute 2^-23 + 8*w*x*2^-23, with x = (d/range)^4 and w = 1 - x.
 float window(float d2, float inv_range2) {
     float x = clamp(d2 * inv_range2, 0.0, 1.0);

@@ -70,7 +70,7 @@ float ev100(float aperture, float shutter, float iso) {
 /// Parameters: `luminance` mean of the scene, candelas per square metre, above 0.
 /// Returns: `log2(8*luminance)`, stops.
 /// Source: ISO 2720:1974 with a meter's constant K of 12.5; Lagarde, de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 5.1.2.
-/// Edges: -126 for no light.
+/// Edges: -126 for no light, and for a negative luminance.
 /// Error model: absolute 2^-21 + 2^-22*|result|.
 float ev100_from_luminance(float luminance) {
     return log2(max(8.0 * luminance, SMALLEST_NORMAL));
@@ -81,7 +81,7 @@ float ev100_from_luminance(float luminance) {
 /// Parameters: `illuminance` on the scene, lux, above 0.
 /// Returns: `log2(illuminance/2.5)`, stops.
 /// Source: ISO 2720:1974 with a meter's constant C of 250; Lagarde, de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014, section 5.1.2.
-/// Edges: -126 for no light.
+/// Edges: -126 for no light, and for a negative illuminance.
 /// Error model: absolute 2^-21 + 2^-22*|result|.
 float ev100_from_illuminance(float illuminance) {
     return log2(max(0.4 * illuminance, SMALLEST_NORMAL));

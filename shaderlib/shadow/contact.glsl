@@ -24,7 +24,7 @@ bool contact_hit(float ray, float scene, float bias, float thickness) {
 /// Parameters: `start` the lit point; `l` unit, the same space, towards the light; `reach` length of the march, scene units; `index` of the step, from 0; `count` number of steps, at least 1; `jitter` [0, 1): moves all points by a part of a step, by pixel.
 /// Returns: `start + l*reach*(index + jitter)/count`, the space of `start`.
 /// Source: even steps along the ray, as in Sousa, Kasyan, Schulz, "Secrets of CryENGINE 3 Graphics Technology", 2011.
-/// Edges: `start` for a zero `l` and for a `reach` of 0; a negative `reach` goes away from the light; a `count` of 0 counts as 1; an `index` from `count` on is beyond the reach; `jitter` is not clamped.
+/// Edges: `start` for a zero `l` and for a `reach` of 0; a negative `reach` goes away from the light; a `count` of 0 counts as 1; an `index` from `count` on is at the end of the march or beyond; `jitter` is not clamped.
 /// Error model: absolute 2^-22*(|start| + reach).
 vec3 march_point(vec3 start, vec3 l, float reach, uint index, uint count, float jitter) {
     return start + l * (reach * ((float(index) + jitter) / float(max(count, 1u))));
