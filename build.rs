@@ -1,5 +1,5 @@
-//! Finds the crate's open sets by their files, so that adding a diagnostic, a target, a
-//! judge, an executor, a reference, a scene or a snippet is adding a file. Writes one Rust table for each.
+//! Finds the crate's open sets by their files, so that adding a diagnostic, a target, a judge, an
+//! executor, a reference, a scene or a snippet is adding a file. Writes one Rust table for each.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

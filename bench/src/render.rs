@@ -46,7 +46,7 @@ fn time_presets(painter: &dyn Session, samples: u32) -> Result<Vec<Timed>, Box<d
     let told = |problems: Diagnostics| format!("{problems:?}");
     let programs = Programs::load().map_err(|(_, problems)| told(problems))?;
     let (presets, probes) = programs.with_texts(|texts| {
-        let probes = probe::library(texts).map_err(told)?;
+        let probes = probe::library_probes(texts).map_err(told)?;
         let presets = preset::library_presets(texts, programs.manifest(), &probes);
         presets.map(|presets| (presets, probes)).map_err(told)
     })?;

@@ -86,7 +86,7 @@ pub fn prepare_passes(
     shot: &Shot,
 ) -> Result<Prepared, Diagnostics> {
     let Lit { mut scene, key, last, lit, size } = Lit::of(plan, shot)?;
-    let (fine, shot) = (fineness(last, shot.samples), shot);
+    let fine = fineness(last, shot);
     let shot = &Shot {
         size: shot.size.map(|side| side * fine),
         surroundings: shot.surroundings.around_scene(&scene),
@@ -136,10 +136,16 @@ pub fn prepare_passes(
 /// How many times finer than the picture all passes of the viewer are drawn. What a pass reads at a
 /// pixel of an earlier one must be of the same point of the scene. So samples cannot be moved within
 /// a pixel, and smaller pixels are averaged instead.
-fn fineness(last: &Pass, samples: u32) -> u32 {
+fn fineness(last: &Pass, shot: &Shot) -> u32 {
     /// More would take too much memory: a picture of the gallery has 100 MB for each colour.
     const FINEST: u32 = 3;
-    if last.needs.seen_before() == 0 { 1 } else { samples.isqrt().clamp(1, FINEST) }
+    /// Texels along an edge that every GPU can draw into.
+    const WIDEST: u32 = 8192;
+    if last.needs.seen_before() == 0 {
+        return 1;
+    }
+    let side = shot.size[0].max(shot.size[1]).max(1);
+    shot.samples.isqrt().min(WIDEST / side).clamp(1, FINEST)
 }
 
 /// The viewer's depth in parts. The splits are where the scene is, and the ends are those of the

@@ -297,8 +297,8 @@ impl Values<'_> {
         })
     }
 
-    /// How wide the light that casts the shadow is: as a lamp with an area is high. For light of one
-    /// direction, that is divided by the distance of the lamp.
+    /// The width of the light that casts the shadow: the height of the scene's lamps that have an
+    /// area. For light of one direction, that is divided by the distance of the lamp.
     fn light_size(&self) -> f64 {
         let (lamp, width) = (self.scene.lamps.first(), 2.0 * self.scene.lamp_size().y);
         let distance = match self.lit.needs.caster {

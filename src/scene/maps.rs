@@ -209,15 +209,21 @@ impl Brick {
 /// Noise that repeats with the texture, in [-1, 1]: random values at the corners of a grid of `cells`
 /// by `cells`, smooth between them (value noise: Ebert et al., "Texturing and Modeling", 3rd edition,
 /// 2003, chapter 2).
-fn value_noise(at: DVec2, cells: u32) -> f64 {
+pub(super) fn value_noise(at: DVec2, cells: u32) -> f64 {
     let place = at.rem_euclid(DVec2::ONE) * f64::from(cells);
+    2.0 * grid_noise(place, |x, y| random_at(x % cells, y % cells, cells)) - 1.0
+}
+
+/// A blend of the numbers at the four corners around a place in a grid, smooth over the cells.
+pub(super) fn grid_noise(place: DVec2, corner: impl Fn(u32, u32) -> f64) -> f64 {
     let cell = place.floor();
     let t = place - cell;
     let t = t * t * (3.0 - 2.0 * t);
-    let corner =
-        |x: u32, y: u32| random_at((cell.x as u32 + x) % cells, (cell.y as u32 + y) % cells, cells);
-    let along = |y: u32| corner(0, y) + (corner(1, y) - corner(0, y)) * t.x;
-    2.0 * (along(0) + (along(1) - along(0)) * t.y) - 1.0
+    // Cells below 0 wrap, which is as random as any other number.
+    let (left, low) = (cell.x as i64 as u32, cell.y as i64 as u32);
+    let (right, high) = (left.wrapping_add(1), low.wrapping_add(1));
+    let along = |y: u32| corner(left, y) + (corner(right, y) - corner(left, y)) * t.x;
+    along(low) + (along(high) - along(low)) * t.y
 }
 
 /// A random number of a cell, [0, 1): O'Neill's hash of the PCG family, as `pcg3d` of Jarzynski and

@@ -91,13 +91,20 @@ pub struct CubeMap {
 }
 
 impl CubeMap {
-    /// An environment as it is, sampled in the middle of each texel.
+    /// An environment as it is: the mean over each texel, so that edges are smooth.
     pub fn of(sky: &Sky<'_>, size: usize) -> Self {
+        /// Places in a texel along each side.
+        const PLACES: usize = 4;
+        let fine = size * PLACES;
         let texel = |index: usize| {
             let (face, row, column) = (index / (size * size), index / size % size, index % size);
-            sky(Self::direction(size, face, column, row))
+            let place = |at: usize| {
+                let (x, y) = (column * PLACES + at % PLACES, row * PLACES + at / PLACES);
+                sky(Self::direction(fine, face, x, y))
+            };
+            (0..PLACES * PLACES).map(place).sum::<DVec3>() / (PLACES * PLACES) as f64
         };
-        Self { size, texels: (0..6 * size * size).map(texel).collect() }
+        Self { size, texels: (0..6 * size * size).into_par_iter().map(texel).collect() }
     }
 
     /// The direction through the middle of a texel, as every graphics API reads cube maps.

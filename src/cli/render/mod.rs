@@ -65,7 +65,8 @@ pub struct Arguments {
     /// Width and height in pixels [default: 512x512; 960x720 with `--all`].
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<[u32; 2]>,
-    /// Samples of each pixel, which are averaged [default: 4; 16 with `--all`; 1 on `eval`].
+    /// Samples of each pixel, which are averaged [default: 4; 16 with `--all`; 1 on `eval`]. A
+    /// picture that reads earlier passes of the viewer has at most nine: all passes are drawn finer.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     samples: Option<u32>,
     /// Exposure in stops: each stop doubles all light.

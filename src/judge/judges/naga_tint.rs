@@ -1,5 +1,5 @@
-//! WGSL: naga, which is part of this program, and Tint, the compiler of Chromium and Dawn. There are no
-//! rules.
+//! WGSL: naga, which is part of this program, and Tint, the compiler of Chromium and Dawn. There are
+//! no rules.
 
 use naga::front::wgsl;
 use naga::valid::{ValidationFlags, Validator};

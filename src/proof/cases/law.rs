@@ -68,13 +68,24 @@ fn fill_law(mut law: Law, node: &Node, value: &Node) -> Result<Law, Diagnostic> 
             law.area = Some(read_area(node)?);
         }
         Takes::Finite => {
-            law.numbers = vec![value.number()?];
+            law.numbers = vec![read_magnitude(value)?];
             law.filter = node.get("where").map(Text::read).transpose()?;
-            law.reason =
-                node.get("because").map(|node| node.text().map(str::to_owned)).transpose()?;
+            let reason = node.get("because").map(Node::text).transpose()?;
+            if law.filter.is_some() && reason.is_none_or(str::is_empty) {
+                return Err(node.error("a law with `where` says why in `because`"));
+            }
         }
     }
     Ok(law)
+}
+
+/// The largest magnitude of arguments.
+fn read_magnitude(node: &Node) -> Result<f64, Diagnostic> {
+    let number = node.number()?;
+    match number > 0.0 && number.is_finite() {
+        true => Ok(number),
+        false => Err(node.error("expected a magnitude above 0")),
+    }
 }
 
 fn read_texts(node: &Node) -> Result<Vec<String>, Diagnostic> {

@@ -16,7 +16,7 @@
 //! | `area = "g", along = "r", from = 0, to = "r", within = 1e-6` | the function's value is the integral of `g`, or of a product, along one parameter (see [`Area`]); or `gives`, `at_most` |
 //! | `finite = 1e9` | no value is NaN or infinite for arguments up to that magnitude, whatever they are (see [`finite`]); `where` keeps some of them, `because` says why |
 //!
-//! The four before it are also about other functions. Those of the same module are given by name,
+//! `albedo`, `inverse`, `equal` and `area` are also about other functions. Those of the same module are given by name,
 //! others by path.
 
 mod albedo;
@@ -137,8 +137,6 @@ pub struct Law {
     pub partners: Vec<String>,
     /// Which of its own arguments the law `finite` is about; all without it.
     pub filter: Option<Text>,
-    /// Why the law is about fewer arguments than others of its kind.
-    pub reason: Option<String>,
 }
 
 /// An inverse: called with a row's value, and with the row's other parameters by name, the function
@@ -200,7 +198,6 @@ impl Law {
             area: None,
             partners: Vec::new(),
             filter: None,
-            reason: None,
         }
     }
 

@@ -8,6 +8,7 @@ use super::{
 };
 use crate::scene::chessmen::{Man, open_share};
 use crate::scene::layers::Layers;
+use crate::scene::maps::{grid_noise, random_at};
 use crate::scene::shape::Shape;
 use crate::scene::turned::{Turn, framed_shape};
 
@@ -100,16 +101,14 @@ fn chessman(man: Man, is_white: bool, place: DMat4) -> Object {
 
 /// A king who lies on the board: on the rims of his foot and of his head.
 fn fallen_king() -> Object {
-    let f = DVec3::new(0.2, 0.9, -0.9);
-    let (x, z, turn) = (f.x, f.y, f.z);
     let tilt = ((0.41 - 0.265) / 1.78_f64).atan();
-    let turned = DMat4::from_rotation_y(turn)
+    let turned = DMat4::from_rotation_y(-0.9)
         * DMat4::from_rotation_z(-std::f64::consts::FRAC_PI_2 - tilt)
         * DMat4::from_rotation_y(0.35);
     let king = chessman(Man::King, false, DMat4::IDENTITY);
     let heights = king.shape.vertices.iter().map(|v| turned.transform_point3(v.position).y);
     let lowest = heights.fold(f64::INFINITY, f64::min);
-    let place = DMat4::from_translation(DVec3::new(x, -lowest, z)) * turned;
+    let place = DMat4::from_translation(DVec3::new(0.2, -lowest, 0.9)) * turned;
     Object { world_from_object: place, ..king }
 }
 
@@ -226,27 +225,16 @@ fn wood_map() -> Map {
         let across = is_framed && at.x.abs() > at.y.abs();
         let along = if across { DVec2::new(at.y, at.x) } else { at };
         let cell = if is_framed { along.signum() * 9.0 } else { along.floor() };
-        let tone = value_noise(cell * 7.3 + 0.5);
+        let tone = wood_noise(cell * 7.3 + 0.5);
         let place = DVec2::new(along.y + 11.0 * tone, along.x * 0.35 + 3.0 * cell.x);
-        let ring = 5.0 * place.x + 2.2 * value_noise(place * DVec2::new(1.4, 1.1));
+        let ring = 5.0 * place.x + 2.2 * wood_noise(place * DVec2::new(1.4, 1.1));
         let growth = 0.5 + 0.5 * (std::f64::consts::TAU * ring).sin();
-        let fibre = value_noise(place * DVec2::new(46.0, 9.0));
+        let fibre = wood_noise(place * DVec2::new(46.0, 9.0));
         0.8 + 0.16 * tone + 0.13 * growth * growth + 0.1 * fibre
     })
 }
 
-/// Noise between 0 and 1 with a number for each point of a grid, smooth between them.
-fn value_noise(at: DVec2) -> f64 {
-    let cell = at.floor();
-    let part = at - cell;
-    let smooth = part * part * (3.0 - 2.0 * part);
-    let number = |x: f64, y: f64| {
-        let place = cell + DVec2::new(x, y);
-        let hashed = (place.x as i64 as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15)
-            ^ (place.y as i64 as u64).wrapping_mul(0xc2b2_ae3d_27d4_eb4f);
-        let mixed = (hashed ^ (hashed >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        ((mixed ^ (mixed >> 32)) & 0xffff) as f64 / 65535.0
-    };
-    let row = |y: f64| number(0.0, y) + (number(1.0, y) - number(0.0, y)) * smooth.x;
-    row(0.0) + (row(1.0) - row(0.0)) * smooth.y
+/// Noise between 0 and 1, with cells of one unit.
+fn wood_noise(at: DVec2) -> f64 {
+    grid_noise(at, |x, y| random_at(x, y, 0))
 }

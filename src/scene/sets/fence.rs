@@ -55,14 +55,14 @@ const POT: &[(f64, f64)] = &[
 /// The radius of the soil.
 const SOIL: f64 = 0.3;
 
-fn turned_shape(profile: &[(f64, f64)], quads: (u32, u32)) -> Shape {
+fn lathed_shape(profile: &[(f64, f64)], quads: (u32, u32)) -> Shape {
     let points: Vec<DVec2> = profile.iter().map(|(r, h)| DVec2::new(*r, *h)).collect();
     Shape::lathe(&points, quads)
 }
 
 /// Bars on two rails, along x.
 fn fence_shape() -> Shape {
-    let bar = turned_shape(BAR, (24, 44));
+    let bar = lathed_shape(BAR, (24, 44));
     let bar_at = |index: i32| {
         let x = STEP * (f64::from(index) - 0.5 * f64::from(BARS - 1));
         bar.clone().transformed(DMat4::from_translation(DVec3::X * x))
@@ -103,7 +103,7 @@ fn plant_shape() -> Shape {
 
 /// The pot with its soil.
 fn pot_shape() -> Shape {
-    turned_shape(POT, (40, 48)).map(|vertex| {
+    lathed_shape(POT, (40, 48)).map(|vertex| {
         let is_soil = vertex.position.y > 0.4 && vertex.position.x.hypot(vertex.position.z) < SOIL;
         vertex.color = if is_soil { DVec3::new(0.12, 0.08, 0.05) } else { CORAL };
     })

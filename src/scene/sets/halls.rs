@@ -42,7 +42,11 @@ pub fn scene() -> Scene {
     let between = Shape::cuboid(DVec3::new(thickness, HALF.y, length), 6);
     objects
         .push(Object::new(between, placed_at(0.0, 0.0, back + length, 0.0), CHALK).of(plaster, 7));
-    for (place, turn) in [(-1.3, 0.5), (1.5, -0.4)] {
+    // The end of the wall is cut open towards the viewer, where no probe is before it.
+    let cut = Shape::cuboid(DVec3::new(thickness + 0.005, HALF.y, 0.01), 1);
+    let cut = Object::new(cut, placed_at(0.0, 0.0, HALF.z + 0.01, 0.0), DVec3::ZERO);
+    objects.push(Object { casts: false, ..cut.of(plaster, 7) });
+    for (place, turn) in [(-1.3, 0.5), (1.5, 0.5)] {
         let block = Shape::cuboid(DVec3::new(0.4, 0.55, 0.4), 4);
         let at = placed_at(place, 0.55 - HALF.y, 0.2, turn);
         objects.push(Object::new(block, at, CHALK).of(plaster, 7));

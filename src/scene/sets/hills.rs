@@ -54,34 +54,13 @@ pub fn scene() -> Scene {
 /// Earth with patches of grass. The other maps are those of bricks.
 fn hill_textures() -> Maps {
     let base = Map::of(512, |at| {
-        let fine = lumpy_noise(at, 60);
-        let tone = 0.8 + 0.25 * fine + 0.15 * lumpy_noise(at, 170);
-        let lumps = 0.6 * lumpy_noise(at, 5) + 0.4 * lumpy_noise(at, 14);
+        let lumpy_noise = |cells| 0.5 + 0.5 * maps::value_noise(at, cells);
+        let fine = lumpy_noise(60);
+        let tone = 0.8 + 0.25 * fine + 0.15 * lumpy_noise(170);
+        let lumps = 0.6 * lumpy_noise(5) + 0.4 * lumpy_noise(14);
         let grass = ((lumps + 0.25 * (fine - 0.5) - 0.46) / 0.1).clamp(0.0, 1.0);
         let color = DVec3::new(0.6, 0.45, 0.3).lerp(DVec3::new(0.34, 0.45, 0.16), grass);
         (color * tone).extend(1.0)
     });
     Maps { base, ..maps::bricks() }
-}
-
-/// Smooth noise that repeats with the texture: random numbers of so many places along each side, and
-/// a blend between them, [0, 1].
-fn lumpy_noise(at: DVec2, places: u32) -> f64 {
-    let place = at * f64::from(places);
-    let (first, part) = (place.floor(), place - place.floor());
-    let blend = part * part * (3.0 - 2.0 * part);
-    let random = |x: u32, y: u32| {
-        let corner = |first: f64, step: u32| (first as u32 + step) % places;
-        random_share(corner(first.x, x), corner(first.y, y))
-    };
-    let row = |y: u32| random(0, y) + (random(1, y) - random(0, y)) * blend.x;
-    row(0) + (row(1) - row(0)) * blend.y
-}
-
-/// A random number of a place, [0, 1].
-fn random_share(x: u32, y: u32) -> f64 {
-    let mixed = x.wrapping_mul(0x9E37_79B1) ^ y.wrapping_mul(0x85EB_CA77);
-    let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x2C1B_3C6D);
-    let mixed = (mixed ^ (mixed >> 12)).wrapping_mul(0x297A_2D39);
-    f64::from(mixed ^ (mixed >> 15)) / f64::from(u32::MAX)
 }

@@ -19,7 +19,8 @@ const STONES: u32 = 6;
 const ROWS: u32 = 4;
 /// Half of a stone.
 const HALF: DVec3 = DVec3::new(0.4, 0.22, 0.3);
-const PEBBLES: u32 = 60;
+/// Pebbles on the ground, less those that would lie within another one.
+const PEBBLES: u32 = 90;
 
 /// A number of a thing, from -1 to 1.
 fn varied(index: u32, what: u32) -> f64 {
@@ -38,12 +39,24 @@ fn wall_stone(index: u32) -> Object {
     Object::new(shape, place, color).of(stone(), 7)
 }
 
+/// A pebble that may lie on the ground: the place of its middle, and its radius.
+fn pebble(index: u32) -> (DVec2, f64) {
+    let place = DVec2::new(3.4 * varied(index, 5), 1.25 + 1.15 * varied(index, 6));
+    (place, 0.1 + 0.06 * varied(index, 7))
+}
+
+/// Whether an earlier pebble lies there.
+fn is_taken(index: u32) -> bool {
+    let (place, radius) = pebble(index);
+    (0..index).map(pebble).any(|(other, size)| place.distance(other) < 1.4 * (radius + size))
+}
+
 /// A pebble on the ground, flat and turned.
 fn small_stone(index: u32) -> Object {
-    let (x, z) = (3.4 * varied(index, 5), 1.25 + 1.15 * varied(index, 6));
-    let radius = 0.1 + 0.06 * varied(index, 7);
+    let (at, radius) = pebble(index);
     let size = DVec3::new(1.3, 0.75, 1.0) * radius;
-    let place = placed_at(x, 0.8 * size.y, z, 3.0 * varied(index, 8)) * DMat4::from_scale(size);
+    let place = placed_at(at.x, 0.8 * size.y, at.y, 3.0 * varied(index, 8));
+    let place = place * DMat4::from_scale(size);
     let color = CHALK.lerp(AMBER * 0.7, 0.25 + 0.25 * varied(index, 9));
     Object::new(Shape::sphere(1.0, (24, 12)), place, color).of(stone(), 7)
 }
@@ -81,7 +94,7 @@ pub fn scene() -> Scene {
     };
     objects.extend((0..3).map(step));
     objects.extend(column_parts());
-    objects.extend((0..PEBBLES).map(small_stone));
+    objects.extend((0..PEBBLES).filter(|index| !is_taken(*index)).map(small_stone));
     let eye = Eye {
         position: DVec3::new(0.9, 3.0, 6.6),
         target: DVec3::new(0.05, 0.55, -0.2),

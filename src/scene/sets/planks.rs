@@ -42,9 +42,9 @@ pub fn scene() -> Scene {
     };
     let objects = ROUGHNESS.iter().enumerate().map(plank).collect();
     let eye = Eye {
-        position: DVec3::new(0.0, 3.6, 11.0),
+        position: DVec3::new(0.0, 5.0, 10.4),
         target: DVec3::new(0.0, -0.12, 0.3),
-        fov_y: 0.42,
+        fov_y: 0.46,
         near: 0.5,
         far: 40.0,
     };

@@ -57,7 +57,7 @@ fn column(index: usize) -> Object {
         (0.32, 2.5),
     ];
     let profile = profile.map(|(radius, height)| DVec2::new(radius, height));
-    let at = around((index as f64 + 0.5) / COLUMNS as f64, RADIUS, 0.0);
+    let at = around(index as f64 / COLUMNS as f64, RADIUS, 0.0);
     Object::new(Shape::lathe(&profile, (40, 60)), placed_at(at.x, 0.0, at.z, 0.0), CHALK)
         .of(stone(), 7)
 }
@@ -81,7 +81,7 @@ pub fn scene() -> Scene {
         Object::new(floor, DMat4::IDENTITY, DVec3::ONE).of(stone(), 7),
         round_step(2.1, 0.0, 0.2),
         round_step(1.6, 0.2, 0.4),
-        Object::new(Shape::sphere(0.85, (96, 48)), placed_at(0.0, 1.25, 0.0, 0.0), CHALK * 0.7)
+        Object::new(Shape::sphere(0.85, (96, 48)), placed_at(0.0, 1.25, 0.0, 0.0), CHALK)
             .of(glossy, 5),
     ];
     objects.extend((0..COLUMNS).map(column));
@@ -95,7 +95,7 @@ pub fn scene() -> Scene {
     let low = |index: usize| {
         let share = index as f64 / LOW as f64;
         let at = around(share, 2.6, 0.3);
-        small_lamp(at, at - DVec3::Y * 0.8, hue(share) * 0.35)
+        small_lamp(at, at - DVec3::Y * 1.3, hue(share) * 0.35)
     };
     let high = |index: usize| {
         let share = (index as f64 + 0.5) / HIGH as f64;
@@ -103,6 +103,6 @@ pub fn scene() -> Scene {
         small_lamp(at, at - DVec3::Y * 1.1, hue(share + 0.5) * 0.4)
     };
     let lamps = (0..LOW).map(low).chain((0..HIGH).map(high)).collect();
-    let ambient = DVec3::new(0.02, 0.022, 0.03);
+    let ambient = DVec3::new(0.03, 0.033, 0.045);
     Scene { shows_lamps: true, ambient, ..base_scene(objects, eye, lamps) }
 }

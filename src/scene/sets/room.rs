@@ -22,9 +22,10 @@ const BALL: (DVec3, f64) = (DVec3::new(-1.35, -1.4, -0.2), 0.8);
 /// The lamp in the ceiling: half its sides along x and z, just below the ceiling.
 const PANEL: (f64, f64) = (1.0, 0.7);
 
-/// Bricks of the texture, by column and row: a matt one, and one that is polished metal in the
-/// textures of `material_maps`.
+/// Bricks of the texture, by column and row: a matt one, and in the textures of `material_maps` one
+/// that glows and one of polished metal.
 const MATT: (f64, f64) = (0.0, 4.0);
+const GLOWING: (f64, f64) = (0.0, 0.0);
 const POLISHED: (f64, f64) = (1.0, 0.0);
 
 /// Which of the walls is the ceiling.
@@ -132,7 +133,7 @@ fn panel_object(lamp: &Lamp) -> Object {
     let corner = DVec3::new(-PANEL.0, HALF.y - 0.02, -PANEL.1);
     let (along, up) = (DVec3::X * 2.0 * PANEL.0, DVec3::Z * 2.0 * PANEL.1);
     let shape = charted_shape(Shape::patch(corner, along, up, (1, 1)), PANEL_CHART);
-    let shape = on_brick(shape, MATT, 0.02);
+    let shape = on_brick(shape, GLOWING, 0.02);
     let panel = Object::new(shape, DMat4::IDENTITY, glow(lamp)).of(glowing_material(lamp), 7);
     Object { casts: false, ..panel }
 }

@@ -44,7 +44,7 @@ pub fn scene() -> Scene {
         let steep = ((0.93 - vertex.normal.y) * 6.0).clamp(0.0, 1.0);
         let high = ((vertex.position.y - 1.25) * 3.0).clamp(0.0, 1.0);
         vertex.color = grass.lerp(snow, high).lerp(rock, steep);
-        vertex.uv *= 17.0;
+        vertex.uv *= 34.0;
     });
     let objects = vec![
         Object::new(land, DMat4::IDENTITY, DVec3::ONE)

@@ -147,7 +147,7 @@ use crate::bundle::Target;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::Session;
 use crate::execute::emitted::emit_kernel;
-use crate::execute::gpu::{input_texels, run_batches, unpack_results};
+use crate::execute::gpu::run_batches;
 use crate::execute::kernel::{ENTRY, INPUT_WIDTH, Kernel, TARGET_WIDTH};
 
 /// The executor, for the table of all.
@@ -161,7 +161,7 @@ pub const EXECUTOR: Entry = Entry {
     before_threads: None,
     // How many places in each pixel of a picture are averaged; `None` if it draws no frames.
     samples: None,
-    open: || Ok(Box::new(Own { adapter: open_device()?, runs: 0 })),
+    open: || Ok(Box::new(Own { adapter: open_device()? })),
     // `Some(Shipping { target, open })` if it draws the files of a target as they are.
     shipping: None,
 };
@@ -170,8 +170,6 @@ pub const EXECUTOR: Entry = Entry {
 struct Own {
     /// Its name, driver and version.
     adapter: String,
-    /// How many draws there were, so that each writes something else.
-    runs: u32,
 }
 
 /// Opens the device, or says why it is not available on this machine.
@@ -188,13 +186,9 @@ impl Session for Own {
     // once. `draw_frames` and `draw_shipped` draw pictures; without them, both refuse.
 
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
-        run_batches(kernel, inputs, |batch, count| {
-            self.runs = self.runs.wrapping_add(1);
-            let (rows, header) = kernel.draw_header(count, self.runs);
-            let texels = input_texels(kernel, batch, header);
+        run_batches(kernel, inputs, |texels, rows| {
             let text = emit_kernel(kernel, Target::WGSL)?.bytes;
-            let pixels = draw_pixels(kernel, &text, &texels, rows)?;
-            unpack_results(kernel, &pixels, header)
+            draw_pixels(kernel, &text, texels, rows)
         })
     }
 }

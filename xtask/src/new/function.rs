@@ -236,13 +236,16 @@ pub const LAWS: &str = "\
 # { range = [0, 1] }: no result is outside
 # { reaches = [0, 0.99] }: some result is as low, and some as high
 # { rising = \"x\" }, { falling = \"x\" }: over a parameter
-# { swap = [\"l\", \"v\"] }: exchanging two parameters changes nothing
+# { swap = [\"l\", \"v\"] }: exchanging two parameters changes nothing; several pairs are exchanged at once
 # { even = [\"n\", \"l\"] }: negating these parameters changes nothing
 # { continuous = \"x\", slope = 4 }: a small step changes the value by no more than that slope
 # { at = { d = 0 }, gives = 1 }: the value for one value of a parameter, whatever the others are
 # { integral = \"l\", about = \"n\", cosine = true, at_most = 1, within = 0.001 }: over a hemisphere; or `gives`
 # { albedo = [\"d_ggx\", \"v_smith_ggx\"], within = 0.001 }: the value is the albedo of functions' product
 # { inverse = \"g\", within = 1e-6 }: another function turns the value back into the first parameter
+# { equal = \"g\", within = 1e-6 }: the value is that of another function, or of a product of functions
+# { area = \"g\", along = \"r\", from = 0, to = \"r\", within = 1e-6 }: the value is an integral of another function
+# { finite = 1e9 }: no value is NaN or infinite for arguments up to that magnitude; the library's functions have it
 ";
 
 fn cases(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {

@@ -9,7 +9,6 @@ use super::{LAVAPIPE_BLOCKS, Meshes, Stages};
 use crate::bundle::{SamplerHeap, Stage, Target};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::Pair;
-
 use crate::execute::frame::{Drawing, Frame, Place};
 use crate::execute::shipped::{Format, Shipped};
 
