@@ -208,10 +208,11 @@ fn check_map(sources: &SourceSet, composed: &Composed) -> Result<(), Failed> {
 }
 
 fn validate(composed: &Composed) -> Result<(), Failed> {
-    let (stage, name) = match composed.stage.unwrap() {
-        Stage::Vertex => (naga::ShaderStage::Vertex, "vert"),
-        Stage::Fragment => (naga::ShaderStage::Fragment, "frag"),
-        Stage::Compute => (naga::ShaderStage::Compute, "comp"),
+    let composed_stage = composed.stage.unwrap();
+    let stage = match composed_stage {
+        Stage::Vertex => naga::ShaderStage::Vertex,
+        Stage::Fragment => naga::ShaderStage::Fragment,
+        Stage::Compute => naga::ShaderStage::Compute,
     };
     let module = naga::front::glsl::Frontend::default()
         .parse(&naga::front::glsl::Options::from(stage), &composed.text)
@@ -224,7 +225,7 @@ fn validate(composed: &Composed) -> Result<(), Failed> {
     )
     .validate(&module)
     .map_err(|error| format!("naga: {}", error.emit_to_string(&composed.text)))?;
-    glslang(&composed.text, name)
+    glslang(&composed.text, composed_stage.suffix())
 }
 
 /// Asks glslangValidator. Passes if it is not installed.

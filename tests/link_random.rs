@@ -12,7 +12,6 @@ mod names;
 mod numbers;
 mod outside;
 mod program;
-mod random;
 mod run;
 mod shrink;
 mod stages;
@@ -25,12 +24,12 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use crate::random::Random;
 use judge::{Finding, Output, Verdict};
 use lamplight::bundle::Target;
 use lamplight::execute::on_thread;
 use libtest_mimic::{Failed, Trial};
 use program::Program;
-use random::Random;
 use run::{Ran, Runnable, Runner};
 
 /// How many programs the tests make.

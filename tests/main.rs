@@ -51,6 +51,7 @@ mod pipelines;
 mod plain;
 mod programs;
 mod published;
+mod random;
 mod regressions;
 mod render;
 mod report;

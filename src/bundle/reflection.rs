@@ -12,6 +12,16 @@ pub enum Language {
     Glsl,
 }
 
+impl Language {
+    /// One word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Wesl => "wesl",
+            Self::Glsl => "glsl",
+        }
+    }
+}
+
 /// Stage of an entry point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -31,6 +41,15 @@ impl Stage {
             Self::Vertex => "vertex",
             Self::Fragment => "fragment",
             Self::Compute => "compute",
+        }
+    }
+
+    /// How the names of files end that glslang and Arm's compiler read the stage from.
+    pub fn suffix(self) -> &'static str {
+        match self {
+            Self::Vertex => "vert",
+            Self::Fragment => "frag",
+            Self::Compute => "comp",
         }
     }
 }

@@ -10,7 +10,6 @@ use serde_json::Value;
 
 use super::pipeline::Words;
 use super::stages::settled_words;
-use crate::bundle::Stage;
 use crate::emit::spirv;
 use crate::tools::{Tool, printed_words};
 
@@ -98,8 +97,8 @@ struct Property {
     value: Value,
 }
 
-/// Compiles a stage for a core. `file` is where its SPIR-V is written; its name must end as
-/// [`file_ending`] says.
+/// Compiles a stage for a core. `file` has its SPIR-V. The compiler reads the stage from the name,
+/// which ends in `.spv` after the stage's suffix.
 ///
 /// # Errors
 /// The compiler's message where it refuses the stage, or what is wrong with its report.
@@ -176,13 +175,4 @@ fn variant_of(core: &str, reported: &Reported) -> Result<Variant, String> {
 /// The bytes of a stage's file.
 pub fn file_bytes(stage: &Words) -> Vec<u8> {
     spirv::bytes(&settled_words(stage))
-}
-
-/// How the name of a stage's file ends: the compiler reads the stage from it.
-pub fn file_ending(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Vertex => ".vert.spv",
-        Stage::Fragment => ".frag.spv",
-        Stage::Compute => ".comp.spv",
-    }
 }

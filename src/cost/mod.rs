@@ -24,14 +24,13 @@ pub mod statistics;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use naga::valid::{ValidationFlags, Validator};
 use rayon::prelude::*;
 
 use crate::bundle::{Conventions, Language, Stage};
 use crate::cache::Cache;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::kernel::{ENTRY, varying_modules};
-use crate::validate::{CAPABILITIES, Validated, on_large_stack};
+use crate::validate::{Validated, info_of, on_large_stack};
 use device::Device;
 use gpu::Gpu;
 use pipeline::{Known, Pipeline};
@@ -89,8 +88,7 @@ pub fn function_subject(
 }
 
 fn stage_alone(module: naga::Module, conventions: Conventions) -> Result<Pipeline, String> {
-    let info = Validator::new(ValidationFlags::all(), CAPABILITIES).validate(&module);
-    let info = info.map_err(|error| error.to_string())?;
+    let info = info_of(&module).map_err(|error| error.to_string())?;
     let validated = Validated { language: Language::Wesl, module, info };
     Pipeline::new(Known::of_module(&validated, ENTRY, conventions)?, None)
 }

@@ -9,7 +9,7 @@ use crate::bundle::{Binding, Conventions, Kind, Language, Reflection, Stage, Tar
 use crate::diagnostic::Diagnostic;
 use crate::emit;
 use crate::emit::spirv;
-use crate::validate::{CAPABILITIES, Validated};
+use crate::validate::{Validated, info_of};
 
 /// A stage in SPIR-V.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -158,9 +158,7 @@ fn scalar_and_count(ty: &str) -> Result<(ScalarKind, u8), String> {
 fn partner_stage(text: &str) -> Result<Known, String> {
     let told = |error: &dyn std::fmt::Display| format!("the stage added to it: {error}");
     let module = naga::front::wgsl::parse_str(text).map_err(|error| told(&error))?;
-    let flags = naga::valid::ValidationFlags::all();
-    let info = naga::valid::Validator::new(flags, CAPABILITIES).validate(&module);
-    let info = info.map_err(|error| told(&error))?;
+    let info = info_of(&module).map_err(|error| told(&error))?;
     let validated = Validated { language: Language::Wesl, module, info };
     Known::of_module(&validated, PARTNER, Conventions::default())
 }

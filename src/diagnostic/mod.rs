@@ -10,7 +10,7 @@ mod obeyed;
 mod read;
 pub mod render;
 
-pub use obeyed::{escape_obeyed, is_obeyed};
+pub use obeyed::{escape_markup, escape_obeyed, is_obeyed};
 
 use crate::source::{SourceId, Span};
 

@@ -1,4 +1,4 @@
-//! Characters that a program obeys instead of showing them.
+//! Characters that a program obeys instead of showing them, and those that markup gives a meaning.
 
 /// Whether a program would obey a character: control characters other than line ends and tabs, and
 /// marks of writing direction. All of them have 16 bits.
@@ -19,6 +19,22 @@ pub fn escape_obeyed(text: &str) -> String {
         match is_obeyed(character) {
             true => escaped += &format!("\\u{:04x}", u32::from(character)),
             false => escaped.push(character),
+        }
+    }
+    escaped
+}
+
+/// Text with the letters that HTML and XML give a meaning replaced, and those XML refuses left out.
+pub fn escape_markup(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => escaped += "&amp;",
+            '<' => escaped += "&lt;",
+            '>' => escaped += "&gt;",
+            '"' => escaped += "&quot;",
+            letter if is_obeyed(letter) || matches!(letter, '\u{fffe}' | '\u{ffff}') => {}
+            letter => escaped.push(letter),
         }
     }
     escaped

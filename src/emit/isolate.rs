@@ -1,10 +1,9 @@
 //! Reduces a module to one entry point and what it needs.
 
 use naga::compact::{KeepUnused, compact};
-use naga::valid::{ValidationFlags, Validator};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::validate::{CAPABILITIES, Validated, guard, on_large_stack};
+use crate::validate::{Validated, guard, info_unchecked, on_large_stack};
 
 /// Keeps one entry point and what it reaches.
 ///
@@ -22,13 +21,9 @@ fn keep_entry(validated: &Validated, index: usize) -> Result<Validated, Diagnost
     module.entry_points = vec![module.entry_points.swap_remove(index)];
     compact(&mut module, KeepUnused::No);
     // The module is part of a valid one, so only the analysis is repeated and not the checks.
-    let info = Validator::new(ValidationFlags::empty(), CAPABILITIES).validate(&module).map_err(
-        |error| {
-            Diagnostic::error(
-                codes::NAGA_INTERNAL,
-                format!("a compacted module is not valid: {error}"),
-            )
-        },
-    )?;
+    let info = info_unchecked(&module).map_err(|error| {
+        let message = format!("a compacted module is not valid: {error}");
+        Diagnostic::error(codes::NAGA_INTERNAL, message)
+    })?;
     Ok(Validated { language: validated.language, module, info })
 }

@@ -6,14 +6,14 @@
 
 use std::collections::BTreeMap;
 
-use naga::valid::{FunctionInfo, ModuleInfo, ValidationFlags, Validator};
+use naga::valid::{FunctionInfo, ModuleInfo};
 use naga::{
     Arena, BinaryOperator, Block, Expression, Function, FunctionArgument, FunctionResult, Handle,
     Module, Range, Scalar, ScalarKind, Span, Statement, Type, TypeInner, VectorSize,
 };
 
 use super::blocks::inner_blocks_mut;
-use crate::validate::CAPABILITIES;
+use crate::validate::info_unchecked;
 
 /// The name of the functions, as naga has it in other languages.
 const NAME: &str = "naga_mod";
@@ -69,7 +69,7 @@ pub fn with_defined_remainders(
         call_helpers(&mut point.function, &moved, &helpers, &found.next().unwrap_or_default());
     }
     module.functions = functions;
-    let info = Validator::new(ValidationFlags::empty(), CAPABILITIES).validate(&module);
+    let info = info_unchecked(&module);
     let info = info.map_err(|error| format!("a module with remainders is not valid: {error}"))?;
     Ok(Some((module, info)))
 }

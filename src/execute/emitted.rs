@@ -1,7 +1,6 @@
 //! Emits kernels in the languages of the targets.
 
 use naga::Module;
-use naga::valid::{ValidationFlags, Validator};
 
 use crate::bundle::{Language, Native, Target};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -9,7 +8,7 @@ use crate::emit::Emitted;
 use crate::execute::executor_failed;
 use crate::execute::kernel::{ENTRY, Kernel};
 use crate::link::{self, Linker};
-use crate::validate::{CAPABILITIES, Validated};
+use crate::validate::{Validated, info_of};
 
 /// Emits the kernel's entry point in a target's language. Executors of emitted files get their
 /// bytes only from here.
@@ -31,9 +30,8 @@ pub fn of_module(
     target: Target,
     linker: &Linker<'_>,
 ) -> Result<(Emitted, Validated), Diagnostic> {
-    let info = Validator::new(ValidationFlags::all(), CAPABILITIES).validate(module);
-    let info =
-        info.map_err(|error| executor_failed(format!("the module is not valid: {error}")))?;
+    let info = info_of(module)
+        .map_err(|error| executor_failed(format!("the module is not valid: {error}")))?;
     let validated = Validated { language: Language::Wesl, module: module.clone(), info };
     match link::module_linked(&validated, entry, target, linker) {
         Ok(artifact) => {

@@ -39,6 +39,12 @@ pub struct Unavailable {
     pub reason: String,
 }
 
+impl From<String> for Unavailable {
+    fn from(reason: String) -> Self {
+        Self { reason }
+    }
+}
+
 impl Entry {
     /// Opens the executor. The error is a message for someone on whose machine it is missing. Open,
     /// use and drop it inside of [`on_thread`](super::on_thread).
@@ -64,10 +70,16 @@ const DEVICE_SAMPLES: u32 = 4;
 /// A session on a device of wgpu.
 #[cfg(not(target_family = "wasm"))]
 fn open_gpu(wanted: super::gpu::Wanted) -> Result<Box<dyn Session>, Unavailable> {
-    match super::gpu::open_gpu(wanted) {
-        Ok(gpu) => Ok(Box::new(gpu)),
-        Err(reason) => Err(Unavailable { reason }),
-    }
+    Ok(Box::new(super::gpu::open_gpu(wanted)?))
+}
+
+/// A session on the Vulkan driver with that name.
+#[cfg(not(target_family = "wasm"))]
+fn open_vulkan(
+    named: super::gpu::Named,
+    shaders: super::gpu::Shaders,
+) -> Result<Box<dyn Session>, Unavailable> {
+    open_gpu(super::gpu::Wanted { backend: wgpu::Backends::VULKAN, named, shaders })
 }
 
 /// A session on a context of OpenGL, for the texts of a target. The target's version of GLSL says
@@ -76,23 +88,14 @@ fn open_gpu(wanted: super::gpu::Wanted) -> Result<Box<dyn Session>, Unavailable>
 fn opened_opengl(target: Target) -> Result<Box<dyn Session>, Unavailable> {
     let version = crate::emit::targets::find(target).and_then(|entry| entry.glsl);
     let not_glsl = || format!("`{target}` is not GLSL: its file has no version");
-    let opened = version.ok_or_else(not_glsl).and_then(|version| {
-        let api = super::gpu::Api::of_glsl(version);
-        super::gpu::OpenGl::open(api, target)
-    });
-    match opened {
-        Ok(opengl) => Ok(Box::new(opengl)),
-        Err(reason) => Err(Unavailable { reason }),
-    }
+    let api = super::gpu::Api::of_glsl(version.ok_or_else(not_glsl)?);
+    Ok(Box::new(super::gpu::OpenGl::open(api, target)?))
 }
 
 /// A session in a page of a browser.
 #[cfg(not(target_family = "wasm"))]
 fn opened_page(api: super::web::Api) -> Result<Box<dyn Session>, Unavailable> {
-    match super::web::Web::open(api) {
-        Ok(web) => Ok(Box::new(web)),
-        Err(reason) => Err(Unavailable { reason }),
-    }
+    Ok(Box::new(super::web::Web::open(api)?))
 }
 
 include!(concat!(env!("OUT_DIR"), "/executors.rs"));

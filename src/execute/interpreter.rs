@@ -2,12 +2,11 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::executor_failed;
 use super::fixture::{Fixture, Sampler, Texture, TextureKind};
 use super::kernel::{Kernel, ParameterKind};
+use super::module_info;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::eval::{self, FunctionId, Machine, Number, Program, Resources, Texels};
-use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, ScalarKind};
 
 /// A kernel's module, lowered.
@@ -47,10 +46,7 @@ impl Interpreter {
 
     /// As [`Self::new`], with another module that has the kernel's function at the same handle.
     pub fn of(kernel: &Kernel, module: &Module) -> Result<Self, Diagnostic> {
-        let validated =
-            Validator::new(ValidationFlags::all(), Capabilities::all()).validate(module);
-        let info = validated
-            .map_err(|error| executor_failed(format!("the kernel is not valid: {error}")))?;
+        let info = module_info("kernel", module)?;
         let program = Program::new(module, &info).map_err(eval_failed)?;
         let slots = argument_slots(kernel, &program)?;
         Ok(Self {

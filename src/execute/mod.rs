@@ -25,6 +25,8 @@ pub mod shipped;
 #[cfg(not(target_family = "wasm"))]
 pub mod web;
 
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+
 use crate::diagnostic::{Diagnostic, codes};
 use frame::{Drawing, Frame};
 use kernel::Kernel;
@@ -90,6 +92,12 @@ pub struct Pair<'a> {
 /// What went wrong with an executor, which is no mistake of a function.
 fn executor_failed(message: impl Into<String>) -> Diagnostic {
     Diagnostic::error(codes::EXECUTOR_FAILED, message)
+}
+
+/// What naga finds out about a module of an executor, which is `what`.
+pub(crate) fn module_info(what: &str, module: &naga::Module) -> Result<ModuleInfo, Diagnostic> {
+    let validated = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(module);
+    validated.map_err(|error| executor_failed(format!("the {what} is not valid: {error}")))
 }
 
 fn draws_none() -> Diagnostic {

@@ -79,11 +79,7 @@ fn of_file(
 impl Entry {
     /// For people: `forward fs_main (glsl)`.
     pub fn title(&self) -> String {
-        let language = match self.language {
-            Language::Wesl => "wesl",
-            Language::Glsl => "glsl",
-        };
-        format!("{} {} ({language})", self.program, self.label)
+        format!("{} {} ({})", self.program, self.label, self.language.name())
     }
 }
 

@@ -121,12 +121,8 @@ impl Recipe<'_> {
             UnitId::Entry => "entry",
             UnitId::Function(_) => "function",
         };
-        let language = match outline.language {
-            Language::Wesl => "wesl",
-            Language::Glsl => "glsl",
-        };
         let stage = if outline.stage == ShaderStage::Vertex { "vertex" } else { "fragment" };
-        let head = [unit, language, stage, &outline.header];
+        let head = [unit, outline.language.name(), stage, &outline.header];
         let mut parts: Vec<&[u8]> = head.map(str::as_bytes).to_vec();
         for list in [&self.others, &self.variables] {
             parts.extend(list.iter().map(declared).chain([&[][..]]));

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use naga::front::{glsl, wgsl};
-use naga::valid::{ModuleInfo, ValidationFlags, Validator};
+use naga::valid::ModuleInfo;
 use naga::{Function, Module};
 use rustc_hash::FxHashSet;
 
@@ -21,7 +21,7 @@ use crate::bundle::{Conventions, Native, Reflection, Target};
 use crate::compose::Composed;
 use crate::emit;
 use crate::emit::spirv::words;
-use crate::validate::{CAPABILITIES, Validated, guard, is_bounded, is_calm, on_large_stack};
+use crate::validate::{Validated, guard, info_of, is_bounded, is_calm, on_large_stack};
 
 /// A unit in every target.
 pub struct Translated {
@@ -88,9 +88,7 @@ fn translate_inner(
     }
     show_stubs(outline, recipe, &mut module)?;
     call_function(outline, recipe, &mut module)?;
-    let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
-        .validate(&module)
-        .map_err(|_| Reason::Refused)?;
+    let info = info_of(&module).map_err(|_| Reason::Refused)?;
     let summary = checked_summary(outline, recipe, &module, &info)?;
     let is_entry = recipe.unit == UnitId::Entry;
     if is_entry && !summary.is_for(outline.stage) {

@@ -5,12 +5,13 @@ mod columns;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use super::Origin;
 use super::plot::{Series, error_plot, heat_map};
-use super::{Origin, escape_markup};
 use crate::bundle::Language;
+use crate::diagnostic::escape_markup;
 use crate::proof::check::{
-    Input, Outcome, Proof, Report, Verdict, failures_as_text, headroom_text, language_name,
-    of_outcome, short_number,
+    Input, Outcome, Proof, Report, Verdict, failures_as_text, headroom_text, of_outcome,
+    short_number,
 };
 
 const STYLE: &str = include_str!("style.css");
@@ -248,12 +249,7 @@ fn html_cell(passed: bool, share: f64) -> String {
 }
 
 fn write_row(html: &mut String, outcome: &Outcome) {
-    let _ = write!(
-        html,
-        "<tr><td>{}</td><td>{}</td>",
-        outcome.executor,
-        language_name(outcome.language)
-    );
+    let _ = write!(html, "<tr><td>{}</td><td>{}</td>", outcome.executor, outcome.language.name());
     match &outcome.verdict {
         Err(error) => {
             let _ = write!(
@@ -365,7 +361,7 @@ fn write_inputs(html: &mut String, outcomes: &[&Outcome]) {
         html,
         "<details><summary>worst inputs ({}, {})</summary><table><tbody>",
         outcome.executor,
-        language_name(outcome.language)
+        outcome.language.name()
     );
     for Input { words, worst } in worst {
         let words: Vec<String> = words

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::Origin;
 use crate::diagnostic::escape_obeyed;
-use crate::proof::check::{Input, Outcome, Proof, Report, Verdict, Worst, language_name};
+use crate::proof::check::{Input, Outcome, Proof, Report, Verdict, Worst};
 
 /// The report as indented JSON.
 pub fn json_report(report: &Report, origin: &Origin<'_>) -> String {
@@ -33,7 +33,7 @@ fn outcome_json(outcome: &Outcome, origin: &Origin<'_>) -> Value {
         "case": outcome.case,
         "file": file,
         "line": line,
-        "language": language_name(outcome.language),
+        "language": outcome.language.name(),
         "executor": outcome.executor,
         "adapter": outcome.adapter,
         "passed": outcome.passed(),

@@ -3,9 +3,9 @@
 
 use std::fmt::Write as _;
 
-use super::{Origin, escape_markup};
-use crate::diagnostic::Diagnostic;
-use crate::proof::check::{Report, failures_as_text, language_name, of_outcome, of_proof};
+use super::Origin;
+use crate::diagnostic::{Diagnostic, escape_markup};
+use crate::proof::check::{Report, failures_as_text, of_outcome, of_proof};
 
 /// A test case: the module it belongs to, its name, how it failed, and why it cannot run.
 struct Test<'a> {
@@ -44,7 +44,7 @@ fn junit_tests<'a>(report: &'a Report, origin: &'a Origin<'_>) -> Vec<Test<'a>> 
             "{} case {} {} {}",
             outcome.function,
             outcome.case + 1,
-            language_name(outcome.language),
+            outcome.language.name(),
             outcome.executor
         ),
         place: origin.place(outcome.span),

@@ -8,7 +8,6 @@ mod json;
 mod junit;
 mod plot;
 
-use crate::diagnostic::is_obeyed;
 use crate::proof::check::Report;
 use crate::source::{SourceSet, Span};
 
@@ -41,20 +40,3 @@ pub const ALL: &[Entry] = &[
     Entry { file: "report.json", text: json::json_report },
     Entry { file: "junit.xml", text: junit::junit_report },
 ];
-
-/// Text with the letters that HTML and XML give a meaning replaced, and those XML refuses left out.
-fn escape_markup(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '&' => escaped += "&amp;",
-            '<' => escaped += "&lt;",
-            '>' => escaped += "&gt;",
-            '"' => escaped += "&quot;",
-            '\n' | '\t' => escaped.push(letter),
-            letter if is_obeyed(letter) || matches!(letter, '\u{fffe}' | '\u{ffff}') => {}
-            letter => escaped.push(letter),
-        }
-    }
-    escaped
-}

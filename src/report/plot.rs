@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::escape_markup;
+use crate::diagnostic::escape_markup;
 use crate::proof::check::{Axis, BINS, CELLS, Map, Profile, Scale, short_number};
 
 const WIDTH: f64 = 250.0;

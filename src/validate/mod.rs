@@ -24,7 +24,7 @@ pub use rehearsal::{Job, Outputs, STAGE, rehearse};
 pub use uniformity::{has_lints, lint};
 
 use naga::front::{glsl, wgsl};
-use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::valid::{Capabilities, ModuleInfo, ValidationError, ValidationFlags, Validator};
 
 use crate::bundle::{Language, Stage};
 use crate::compose::Composed;
@@ -118,10 +118,22 @@ fn analyse_module(composed: &Composed, module: naga::Module) -> Result<Validated
     if let Some(name) = compute_with_inputs(&module) {
         return Err(vec![inputs_of_compute(composed, name)]);
     }
-    let info = Validator::new(ValidationFlags::all(), CAPABILITIES)
-        .validate(&module)
+    let info = info_of(&module)
         .map_err(|error| vec![report::validation_error(composed, &module, &error)])?;
     Ok(Validated { language: composed.language, module, info })
+}
+
+/// naga's error about a module.
+pub(crate) type Invalid = Box<naga::WithSpan<ValidationError>>;
+
+/// What naga finds out about a module that it accepts.
+pub(crate) fn info_of(module: &naga::Module) -> Result<ModuleInfo, Invalid> {
+    Validator::new(ValidationFlags::all(), CAPABILITIES).validate(module).map_err(Box::new)
+}
+
+/// The same for a module that was made from a valid one: the analysis without the checks.
+pub(crate) fn info_unchecked(module: &naga::Module) -> Result<ModuleInfo, Invalid> {
+    Validator::new(ValidationFlags::empty(), CAPABILITIES).validate(module).map_err(Box::new)
 }
 
 /// Finds a compute shader with an input that only another stage could give. naga accepts it, and

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 
 use super::peer::{Files, Flags};
 
-pub use random::Random;
+use crate::random::Random;
 
 use imports::Imports;
 use writer::Writer;

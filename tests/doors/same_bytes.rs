@@ -73,11 +73,7 @@ fn compare(bundle: &Bundle, program: &str, key: &str) -> Result<(usize, usize), 
     let (mut count, mut glsl) = (0, 0);
     for (language, entry) in known.entries() {
         let shader = known.entry(language, entry)?;
-        let stage = match shader.get(key, Target::WGSL)?.reflection.stage {
-            lamplight::bundle::Stage::Vertex => "vert",
-            lamplight::bundle::Stage::Fragment => "frag",
-            lamplight::bundle::Stage::Compute => "comp",
-        };
+        let stage = shader.get(key, Target::WGSL)?.reflection.stage.suffix();
         let (file, name) = root(program, language, entry, stage)?;
         compile(&file, key, &name, folder.path())?;
         for target in Target::ALL {

@@ -65,7 +65,7 @@ fn table(contents: &Contents) -> Result<String, Failed> {
     targets.iter().try_for_each(|target| write!(text, " {target:12}"))?;
     text = text.trim_end().to_owned() + "\n";
     for ((program, language, stage), entry) in entries(contents) {
-        let name = format!("{program} {} {stage}", word(language));
+        let name = format!("{program} {} {stage}", language.name());
         write!(text, "{name:32}")?;
         for target in &targets {
             write!(text, " {:12}", hash(entry, target))?;
@@ -90,13 +90,6 @@ fn entries<'c>(contents: &'c Contents) -> BTreeMap<Name<'c>, &'c EntryContents> 
             })
         })
         .collect()
-}
-
-fn word(language: Language) -> &'static str {
-    match language {
-        Language::Wesl => "wesl",
-        Language::Glsl => "glsl",
-    }
 }
 
 fn targets(entry: &EntryContents) -> Vec<&str> {
@@ -202,13 +195,13 @@ pub fn difference(old: &Contents, new: &Contents) -> Result<String, Failed> {
         if differing.is_empty() {
             continue;
         }
-        writeln!(text, "{program} {} {stage}: {} of {all} keys", word(*language), differing.len())?;
+        writeln!(text, "{program} {} {stage}: {} of {all} keys", language.name(), differing.len())?;
         for (key, difference) in differing.iter().take(SHOWN - shown.min(SHOWN)) {
             shown += 1;
             writeln!(
                 text,
                 "\n{program} [{key}] {} {stage}: {}",
-                word(*language),
+                language.name(),
                 difference.text()?
             )?;
         }

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::names::Names;
-use super::random::Random;
 use super::types::{AXES, FLOAT, INT, Member, Scalar, Spelling, Struct, Type, UINT, When};
+use crate::random::Random;
 
 /// A constant, a variable of the module, or a member of a block.
 #[derive(Debug, Clone)]

@@ -15,8 +15,8 @@ use lamplight::source::{Memory, Package, SourceSet};
 use lamplight::validate::validate;
 
 use super::program::Program;
-use super::random::Random;
 use super::run::Runnable;
+use crate::random::Random;
 
 /// A mistake that was found: its kind, and the details.
 #[derive(Debug, Clone)]

@@ -5,7 +5,7 @@ mod taken;
 
 use std::collections::BTreeSet;
 
-use super::random::Random;
+use crate::random::Random;
 
 use taken::NAMES;
 

@@ -8,8 +8,8 @@ use naga::back::glsl::Version;
 
 use super::body::{Body, Local};
 use super::draft::{Draft, Parameter, Signature, Texture, TextureKind, Value};
-use super::random::Random;
 use super::types::{AXES, FLOAT, INT, Scalar, Spelling, Type, UINT, When};
+use crate::random::Random;
 
 /// A program, as it is given to the crate.
 #[derive(Debug, Clone)]

@@ -29,8 +29,8 @@ use lamplight::picture::frame::{pack_buffer, probe};
 use lamplight::validate::{Validated, validate};
 
 use super::judge::Finding;
-use super::random::Random;
 use crate::frames::fixture;
+use crate::random::Random;
 
 use evaluated::Evaluator;
 use metal::Metal;

@@ -1,6 +1,7 @@
 //! Visibility from four moments of random depths, some of which the point is behind.
 
-use super::{Calls, Random};
+use super::Calls;
+use crate::random::Random;
 
 /// The share of the bias that rounding to 32 bits needs.
 const BIAS: f64 = 3e-5;
@@ -12,10 +13,10 @@ impl Depths {
     /// Depths that are at least `apart` from each other.
     fn random(random: &mut Random, count: usize, apart: f64) -> Self {
         loop {
-            let mut depths: Vec<f64> = (0..count).map(|_| random.next()).collect();
+            let mut depths: Vec<f64> = (0..count).map(|_| random.fraction()).collect();
             depths.sort_by(f64::total_cmp);
             if depths.windows(2).all(|pair| pair[1] - pair[0] >= apart) {
-                let weights: Vec<f64> = depths.iter().map(|_| 0.05 + random.next()).collect();
+                let weights: Vec<f64> = depths.iter().map(|_| 0.05 + random.fraction()).collect();
                 let sum: f64 = weights.iter().sum();
                 let one = |(depth, weight)| (depth, weight / sum);
                 return Self(depths.into_iter().zip(weights).map(one).collect());
@@ -41,7 +42,7 @@ pub fn bound_the_shadow(calls: &mut Calls<'_>) -> Result<(), String> {
     let (mut rows, mut lit) = (Vec::new(), Vec::new());
     for index in 0..20_000 {
         let depths = Depths::random(&mut random, 2 + index % 4, 0.02);
-        let t = f64::from(random.next() as f32);
+        let t = f64::from(random.fraction() as f32);
         rows.push([depths.moments(), vec![t, BIAS]].concat());
         lit.push(depths.lit(t));
     }

@@ -1,7 +1,8 @@
 //! Soft shadows: what a march through spheres beside a ray finds of the light's cone, compared with
 //! the distances at very many points of the ray.
 
-use super::{Calls, Random};
+use super::Calls;
+use crate::random::Random;
 use lamplight::execute::kernel::Kernel;
 
 /// Where the marches end, and where they begin.
@@ -16,7 +17,7 @@ struct Scene(Vec<([f64; 2], f64)>);
 
 impl Scene {
     fn random(random: &mut Random) -> Self {
-        let count = 1 + (random.next() * 3.0) as usize;
+        let count = 1 + (random.fraction() * 3.0) as usize;
         let sphere = |random: &mut Random| {
             let radius = random.between(0.1, 1.0);
             let beside = radius + random.between(0.05, 1.5);

@@ -8,7 +8,7 @@ use lamplight::source::SourceSet;
 use libtest_mimic::Failed;
 
 use super::laws::{ensure, random_spaces, read};
-use super::random::Random;
+use crate::random::Random;
 
 /// Every point has a key of its own, and the key is read as that point.
 pub fn keys_round_trip() -> Result<(), Failed> {

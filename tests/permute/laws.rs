@@ -12,10 +12,10 @@ use lamplight::permute::{
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 
+use crate::random::Random;
+
 use super::key_laws::{grown, keys_round_trip, keys_survive_growth, loader_and_tools_read_alike};
-use super::random::{
-    NOWHERE, Random, axis, constraint, is_valid, is_wanted, ordinals, product, space,
-};
+use super::random::{NOWHERE, axis, constraint, is_valid, is_wanted, ordinals, product, space};
 
 type Law = fn() -> Result<(), Failed>;
 

@@ -5,21 +5,7 @@ use lamplight::permute::space::{Constraint, Formula, Lists, Slice};
 use lamplight::permute::{Assignment, Setting, Space};
 use lamplight::source::{SourceId, Span};
 
-/// SplitMix64 (Steele, Lea and Flood, "Fast Splittable Pseudorandom Number Generators", 2014).
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ mixed >> 31
-    }
-
-    pub fn below(&mut self, bound: usize) -> usize {
-        (self.next() % bound as u64) as usize
-    }
-}
+use crate::random::Random;
 
 pub const NOWHERE: Span = Span { source: SourceId(0), start: 0, end: 0 };
 

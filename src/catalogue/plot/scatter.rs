@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use super::Unit;
 use super::scale::{Scale, fitted_bounds, tick_label};
-use super::svg::{BOTTOM, INK, LEFT, RIGHT, TOP, escape_xml, rounded_place, svg_head};
+use super::svg::{BOTTOM, INK, LEFT, RIGHT, TOP, rounded_place, svg_head};
+use crate::diagnostic::escape_markup;
 
 const POINT: &str = "#3987e5";
 /// The width of a letter and the height of a line.
@@ -38,13 +39,13 @@ pub fn draw_scatter(title: &str, labels: [&str; 2], points: &[(String, f64, f64)
     draw_grid(&mut svg, &x, &y);
     draw_points(&mut svg, &x, &y, points);
     let middle = (LEFT + RIGHT) / 2.0;
-    let [cost, error] = labels.map(escape_xml);
+    let [cost, error] = labels.map(escape_markup);
     let _ = writeln!(
         svg,
         "<text x=\"{LEFT}\" y=\"22\" fill=\"{INK}\" font-weight=\"600\">{}</text>\n\
          <text x=\"{RIGHT}\" y=\"22\" fill=\"{INK}\" text-anchor=\"end\">{error}</text>\n\
          <text x=\"{middle}\" y=\"290\" fill=\"{INK}\" text-anchor=\"middle\">{cost}</text>\n</svg>",
-        escape_xml(title)
+        escape_markup(title)
     );
     svg
 }
@@ -121,7 +122,7 @@ fn draw_points(svg: &mut String, x: &Scale, y: &Scale, points: &[(String, f64, f
             rounded_place(up),
             rounded_place(at + across),
             rounded_place(up + down),
-            escape_xml(name)
+            escape_markup(name)
         );
     }
 }

@@ -7,6 +7,7 @@ use std::fmt::Write as _;
 
 use super::scale::{Scale, fitted_bounds, tick_label};
 use super::{Curves, Plot, Unit};
+use crate::diagnostic::escape_markup;
 
 const WIDTH: f64 = 560.0;
 const HEIGHT: f64 = 300.0;
@@ -70,7 +71,7 @@ pub(super) fn svg_head(title: &str) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" width=\"{WIDTH}\" height=\"{HEIGHT}\" \
          role=\"img\" font-family=\"system-ui, sans-serif\" font-size=\"12\">\n<title>{}</title>\n",
-        escape_xml(title)
+        escape_markup(title)
     )
 }
 
@@ -148,7 +149,7 @@ fn draw_captions(svg: &mut String, title: &str, plot: &Plot) {
     let _ = writeln!(
         svg,
         "<text x=\"{LEFT}\" y=\"22\" fill=\"{INK}\" font-weight=\"600\">{}</text>",
-        escape_xml(title)
+        escape_markup(title)
     );
     let stems = plot.x.unit == Unit::Integers;
     let mut right = RIGHT;
@@ -158,7 +159,7 @@ fn draw_captions(svg: &mut String, title: &str, plot: &Plot) {
             svg,
             "<text x=\"{}\" y=\"22\" fill=\"{INK}\">{}</text>",
             rounded_place(start),
-            escape_xml(text)
+            escape_markup(text)
         );
         let line = format!("M{} 18h22", rounded_place(start - 28.0));
         let _ = writeln!(
@@ -173,7 +174,7 @@ fn draw_captions(svg: &mut String, title: &str, plot: &Plot) {
     let _ = writeln!(
         svg,
         "<text x=\"{middle}\" y=\"290\" fill=\"{INK}\" text-anchor=\"middle\">{}</text>",
-        escape_xml(&(plot.x.label.clone() + &note))
+        escape_markup(&(plot.x.label.clone() + &note))
     );
 }
 
@@ -236,8 +237,4 @@ fn keep_bends(points: &[(f64, f64)], kept: &mut [bool], first: usize, last: usiz
 pub(super) fn rounded_place(value: f64) -> String {
     let rounded = (value * 10.0).round() / 10.0;
     rounded.to_string()
-}
-
-pub(super) fn escape_xml(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -39,7 +39,7 @@ pub fn module_stem(file: &Path) -> String {
 /// A file for each target of a shader, and one for its reflection.
 pub fn files_of(stem: &str, shader: &Shader, wanted: &[Target], reflection: bool) -> Vec<File> {
     let named = |ending: &str| format!("{stem}.{}.{ending}", shader.entry);
-    let stage = stage_name(shader.stage);
+    let stage = shader.made.unit.reflection.stage.suffix();
     let mut files = Vec::new();
     for &target in wanted {
         let (Some(entry), Some(artifact)) =
@@ -64,14 +64,6 @@ pub fn files_of(stem: &str, shader: &Shader, wanted: &[Target], reflection: bool
         files.push(File { name, binary: false, bytes: format!("{json:#}\n").into_bytes() });
     }
     files
-}
-
-fn stage_name(stage: naga::ShaderStage) -> &'static str {
-    match stage {
-        naga::ShaderStage::Vertex => "vert",
-        naga::ShaderStage::Fragment => "frag",
-        _ => "comp",
-    }
 }
 
 /// The ending of a file. Files of several targets must not share a name, and GLSL files end as

@@ -84,7 +84,7 @@ fn ask_mali<'s>(
     let next = AtomicUsize::new(0);
     let ask = |words: &Words| {
         let number = next.fetch_add(1, Ordering::Relaxed);
-        let name = format!("{number}{}", mali::file_ending(words.stage));
+        let name = format!("{number}.{}.spv", words.stage.suffix());
         let file = scratch.stage(&name, &mali::file_bytes(words));
         let file = file.map_err(|error| error.to_string())?;
         let entry = words.entry.to_string_lossy();

@@ -9,14 +9,13 @@ mod spirv;
 mod text;
 
 use naga::back::wgsl::{WriterFlags, write_string};
-use naga::valid::{ValidationFlags, Validator};
 use naga::{Expression, Handle, Literal, Module, Override, Scalar, ScalarKind, TypeInner};
 
 use super::{Emitted, Entry, Overrides, Source};
 use crate::bundle::Choice;
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::validate::{CAPABILITIES, Validated};
+use crate::validate::{Validated, info_unchecked};
 
 /// An override that stays open.
 struct Open {
@@ -191,9 +190,7 @@ fn opened_module(
     for (point, original) in module.entry_points.iter_mut().zip(&source.module.entry_points) {
         point.name.clone_from(&original.name);
     }
-    let info = Validator::new(ValidationFlags::empty(), CAPABILITIES)
-        .validate(&module)
-        .map_err(|error| error.to_string())?;
+    let info = info_unchecked(&module).map_err(|error| error.to_string())?;
     Ok((module, info))
 }
 

@@ -79,7 +79,13 @@ impl Body<'_, '_> {
             return Ok(loc);
         }
         if let (Kind::Float, Some(op)) = (kind, comparison_of(op)) {
-            return self.compare(handle, op, left, right);
+            return self.each2(handle, [left, right], |n, to, a, b| Instruction::Compare {
+                op,
+                n,
+                to,
+                a,
+                b,
+            });
         }
         let meaning = MEANINGS.iter().find(|meaning| meaning.0 == op);
         let swapped = matches!(op, BinaryOperator::Greater | BinaryOperator::GreaterEqual);
@@ -133,16 +139,28 @@ impl Body<'_, '_> {
         Ok(Some(Loc::dense(to, false)))
     }
 
-    fn compare(
+    /// An instruction for each component of an operand.
+    pub(super) fn each1(
         &mut self,
         handle: Handle<Expression>,
-        op: Compare,
-        left: Handle<Expression>,
-        right: Handle<Expression>,
+        a: Handle<Expression>,
+        instruction: impl FnOnce(u8, Slot, Operand) -> Instruction,
+    ) -> Result<Loc, Error> {
+        let ((to, n), a) = (self.fresh(handle)?, self.operand(a)?);
+        self.emit(instruction(n as u8, to, a));
+        Ok(Loc::dense(to, false))
+    }
+
+    /// An instruction for each pair of components. A scalar is repeated.
+    fn each2(
+        &mut self,
+        handle: Handle<Expression>,
+        [a, b]: [Handle<Expression>; 2],
+        instruction: impl FnOnce(u8, Slot, Operand, Operand) -> Instruction,
     ) -> Result<Loc, Error> {
         let (to, n) = self.fresh(handle)?;
-        let (a, b) = (self.spread(left, n)?, self.spread(right, n)?);
-        self.emit(Instruction::Compare { op, n: n as u8, to, a, b });
+        let (a, b) = (self.spread(a, n)?, self.spread(b, n)?);
+        self.emit(instruction(n as u8, to, a, b));
         Ok(Loc::dense(to, false))
     }
 
@@ -152,9 +170,7 @@ impl Body<'_, '_> {
         op: Unary,
         a: Handle<Expression>,
     ) -> Result<Loc, Error> {
-        let ((to, n), a) = (self.fresh(handle)?, self.operand(a)?);
-        self.emit(Instruction::Float1 { op, n: n as u8, to, a });
-        Ok(Loc::dense(to, false))
+        self.each1(handle, a, |n, to, a| Instruction::Float1 { op, n, to, a })
     }
 
     pub(super) fn float2(
@@ -164,10 +180,7 @@ impl Body<'_, '_> {
         a: Handle<Expression>,
         b: Handle<Expression>,
     ) -> Result<Loc, Error> {
-        let (to, n) = self.fresh(handle)?;
-        let (a, b) = (self.spread(a, n)?, self.spread(b, n)?);
-        self.emit(Instruction::Float2 { op, n: n as u8, to, a, b });
-        Ok(Loc::dense(to, false))
+        self.each2(handle, [a, b], |n, to, a, b| Instruction::Float2 { op, n, to, a, b })
     }
 
     pub(super) fn word1(
@@ -176,9 +189,7 @@ impl Body<'_, '_> {
         op: Word1,
         a: Handle<Expression>,
     ) -> Result<Loc, Error> {
-        let ((to, n), a) = (self.fresh(handle)?, self.operand(a)?);
-        self.emit(Instruction::Word1 { op, n: n as u8, to, a });
-        Ok(Loc::dense(to, false))
+        self.each1(handle, a, |n, to, a| Instruction::Word1 { op, n, to, a })
     }
 
     pub(super) fn word2(
@@ -188,10 +199,7 @@ impl Body<'_, '_> {
         a: Handle<Expression>,
         b: Handle<Expression>,
     ) -> Result<Loc, Error> {
-        let (to, n) = self.fresh(handle)?;
-        let (a, b) = (self.spread(a, n)?, self.spread(b, n)?);
-        self.word2_at(op, n, to, a, b);
-        Ok(Loc::dense(to, false))
+        self.each2(handle, [a, b], |n, to, a, b| Instruction::Word2 { op, n, to, a, b })
     }
 
     pub(super) fn word2_at(&mut self, op: Word2, n: u32, to: Slot, a: Operand, b: Operand) {
@@ -262,9 +270,7 @@ impl Body<'_, '_> {
         op: Convert,
         expr: Handle<Expression>,
     ) -> Result<Loc, Error> {
-        let ((to, n), a) = (self.fresh(handle)?, self.operand(expr)?);
-        self.emit(Instruction::Convert { op, n: n as u8, to, a });
-        Ok(Loc::dense(to, false))
+        self.each1(handle, expr, |n, to, a| Instruction::Convert { op, n, to, a })
     }
 }
 

@@ -6,7 +6,7 @@
 use super::{Entry, Shipping, Unavailable, swiftshader};
 use crate::bundle::Target;
 use crate::execute::Session;
-use crate::execute::gpu::{Named, Shaders, Wanted};
+use crate::execute::gpu::{Named, Shaders};
 use crate::tools::{GLSLANG, SPIRV_OPT};
 
 pub const EXECUTOR: Entry = Entry {
@@ -21,12 +21,8 @@ pub const EXECUTOR: Entry = Entry {
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {
     if let Some(tool) = [GLSLANG, SPIRV_OPT].iter().find(|tool| tool.path().is_none()) {
-        return Err(Unavailable { reason: format!("`{}` is not installed", tool.program) });
+        return Err(format!("`{}` is not installed", tool.program).into());
     }
     swiftshader::installed()?;
-    super::open_gpu(Wanted {
-        backend: wgpu::Backends::VULKAN,
-        named: Named::With(swiftshader::NAME),
-        shaders: Shaders::Emitted(Target::HLSL),
-    })
+    super::open_vulkan(Named::With(swiftshader::NAME), Shaders::Emitted(Target::HLSL))
 }

@@ -19,8 +19,5 @@ pub const EXECUTOR: Entry = Entry {
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {
-    match Metal::open() {
-        Ok(metal) => Ok(Box::new(metal)),
-        Err(missing) => Err(Unavailable { reason: missing.reason }),
-    }
+    Ok(Box::new(Metal::open().map_err(|missing| missing.reason)?))
 }

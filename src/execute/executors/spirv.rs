@@ -4,7 +4,7 @@
 
 use super::{Entry, Shipping, swiftshader};
 use crate::bundle::Target;
-use crate::execute::gpu::{Named, Shaders, Wanted};
+use crate::execute::gpu::{Named, Shaders};
 
 pub const EXECUTOR: Entry = Entry {
     name: "spirv",
@@ -13,22 +13,14 @@ pub const EXECUTOR: Entry = Entry {
     before_threads: None,
     samples: None,
     open: || {
-        super::open_gpu(Wanted {
-            backend: wgpu::Backends::VULKAN,
-            named: Named::Without(swiftshader::NAME),
-            shaders: Shaders::Emitted(Target::SPIRV),
-        })
+        super::open_vulkan(Named::Without(swiftshader::NAME), Shaders::Emitted(Target::SPIRV))
     },
     shipping: Some(Shipping {
         target: Target::SPIRV,
         // lavapipe crashes where a stage has four uniform blocks.
         open: || {
             swiftshader::installed()?;
-            super::open_gpu(Wanted {
-                backend: wgpu::Backends::VULKAN,
-                named: Named::With(swiftshader::NAME),
-                shaders: Shaders::Emitted(Target::SPIRV),
-            })
+            super::open_vulkan(Named::With(swiftshader::NAME), Shaders::Emitted(Target::SPIRV))
         },
     }),
 };

@@ -9,7 +9,7 @@ use std::sync::Once;
 use super::{DEVICE_SAMPLES, Entry, Shipping, Unavailable};
 use crate::bundle::Target;
 use crate::execute::Session;
-use crate::execute::gpu::{Named, Shaders, Wanted};
+use crate::execute::gpu::{Named, Shaders};
 
 pub const EXECUTOR: Entry = Entry {
     name: "swiftshader",
@@ -24,19 +24,13 @@ pub const EXECUTOR: Entry = Entry {
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {
     installed()?;
-    super::open_gpu(Wanted {
-        backend: wgpu::Backends::VULKAN,
-        named: Named::With(NAME),
-        shaders: Shaders::Translated,
-    })
+    super::open_vulkan(Named::With(NAME), Shaders::Translated)
 }
 
 /// Whether the driver is installed. If so, it is announced to the loader.
 pub fn installed() -> Result<(), Unavailable> {
     announce();
-    driver_manifest()
-        .map(|_| ())
-        .ok_or(Unavailable { reason: format!("there is no {NAME} driver") })
+    Ok(driver_manifest().map(|_| ()).ok_or_else(|| format!("there is no {NAME} driver"))?)
 }
 
 /// Part of the adapter's name.

@@ -3,7 +3,7 @@
 //! Runs on: every system but WebAssembly
 
 use super::{DEVICE_SAMPLES, Entry, swiftshader};
-use crate::execute::gpu::{Named, Shaders, Wanted};
+use crate::execute::gpu::{Named, Shaders};
 
 pub const EXECUTOR: Entry = Entry {
     name: "vulkan",
@@ -11,12 +11,6 @@ pub const EXECUTOR: Entry = Entry {
     needs: &["mesa-vulkan-drivers", "libvulkan1"],
     before_threads: None,
     samples: Some(DEVICE_SAMPLES),
-    open: || {
-        super::open_gpu(Wanted {
-            backend: wgpu::Backends::VULKAN,
-            named: Named::Without(swiftshader::NAME),
-            shaders: Shaders::Translated,
-        })
-    },
+    open: || super::open_vulkan(Named::Without(swiftshader::NAME), Shaders::Translated),
     shipping: None,
 };

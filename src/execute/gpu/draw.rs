@@ -7,7 +7,6 @@ mod target;
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, StorageAccess};
 use wgpu::util::DeviceExt;
 
@@ -16,6 +15,7 @@ use crate::diagnostic::Diagnostic;
 use crate::execute::frame::{
     Attribute, Drawing, EntryPoint, Frame, Mesh, Place, Side, State, VertexFormat,
 };
+use crate::execute::module_info;
 use crate::execute::shipped::Format;
 use bindings::Bindings;
 use target::{DEPTH_FORMAT, Targets};
@@ -276,9 +276,7 @@ fn bytes_of_words(words: &[u32]) -> Vec<u8> {
 
 /// The bindings that the entry point uses, which are those of the derived layout.
 fn used_bindings(stage: EntryPoint<'_>) -> Result<BTreeSet<Place>, Diagnostic> {
-    let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(stage.module);
-    let info =
-        info.map_err(|error| executor_failed(format!("the program is not valid: {error}")))?;
+    let info = module_info("program", stage.module)?;
     let index = stage.module.entry_points.iter().position(|point| point.name == stage.entry);
     let index = index.ok_or_else(|| {
         executor_failed(format!("the program has no entry point `{}`", stage.entry))

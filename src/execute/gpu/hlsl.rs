@@ -60,11 +60,6 @@ pub fn compile_hlsl(
     native: &Native,
     group: u32,
 ) -> Result<Vec<u32>, String> {
-    let stage = match stage {
-        Stage::Vertex => "vert",
-        Stage::Fragment => "frag",
-        Stage::Compute => "comp",
-    };
     let compiled = GLSLANG.pipe(
         &[
             "--stdin",
@@ -75,7 +70,7 @@ pub fn compile_hlsl(
             "vulkan1.1",
             "-fhlsl_functionality1",
             "-S",
-            stage,
+            stage.suffix(),
             "-e",
             &native.entry_name,
             "-o",

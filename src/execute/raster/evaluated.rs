@@ -1,6 +1,5 @@
 //! Runs stages on our own evaluator, in f32 rounded to nearest, on all cores.
 
-use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Binding, BuiltIn};
 use rayon::prelude::*;
 
@@ -8,9 +7,9 @@ use super::corners::{Corner, Source, scalar_sources, vertex_attribute};
 use super::{Quad, Shaded, Shading};
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Batch, Function, FunctionId, Kind, Machine, Number, Program, Resources};
-use crate::execute::executor_failed;
 use crate::execute::frame::{Buffers, Drawing, EntryPoint, Mesh};
 use crate::execute::interpreter::eval_failed;
+use crate::execute::{executor_failed, module_info};
 
 /// How many fragments or vertices are worth a task of their own.
 const CHUNK: usize = 256;
@@ -42,9 +41,7 @@ struct Lowered {
 
 impl Lowered {
     fn new(stage: EntryPoint<'_>) -> Result<Self, Diagnostic> {
-        let info: ModuleInfo = Validator::new(ValidationFlags::all(), Capabilities::all())
-            .validate(stage.module)
-            .map_err(|error| executor_failed(format!("the program is not valid: {error}")))?;
+        let info = module_info("program", stage.module)?;
         let program = Program::new(stage.module, &info).map_err(eval_failed)?;
         // GLSL also has a plain function of that name. Entry points come after functions, so the
         // last one is meant.

@@ -14,7 +14,6 @@
 use std::path::Path;
 use std::process::Output as Said;
 
-use crate::bundle::Stage;
 use crate::judge::novel::novel_outputs;
 use crate::judge::{Entry, Found, Group, Output, Refusal, Work, divide_group};
 use crate::output::Scratch;
@@ -27,15 +26,6 @@ pub const JUDGE: Entry =
 const BATCH: usize = 64;
 
 const NAME: &str = "glslangValidator";
-
-/// A stage as glslangValidator calls it.
-fn stage_name(stage: Stage) -> &'static str {
-    match stage {
-        Stage::Vertex => "vert",
-        Stage::Fragment => "frag",
-        Stage::Compute => "comp",
-    }
-}
 
 fn plan<'w>(group: &Group<'w>) -> Result<Vec<Work<'w>>, String> {
     let Some(first) = group.outputs.first() else { return Ok(Vec::new()) };
@@ -53,7 +43,7 @@ fn plan_rule<'w>(
     rule: &'static str,
 ) -> Result<Vec<Work<'w>>, String> {
     let (outputs, scratch) = (group.outputs, group.scratch);
-    let own = vec!["-S", stage_name(first.stage)];
+    let own = vec!["-S", first.stage.suffix()];
     match rule {
         "own" => Ok(divide_group(outputs, BATCH, move |outputs| judge_together(&own, outputs))),
         // The relaxed rules accept OpenGL's names of built-in variables. They also accept uniforms

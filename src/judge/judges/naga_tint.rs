@@ -2,12 +2,11 @@
 //! no rules.
 
 use naga::front::wgsl;
-use naga::valid::{ValidationFlags, Validator};
 
 use crate::judge::tint::Said;
 use crate::judge::{Entry, Found, Group, Output, Refusal, Tint, Work, divide_group};
 use crate::tools::NODE;
-use crate::validate::{CAPABILITIES, guard};
+use crate::validate::{guard, info_of};
 
 /// The judge, for the table of all.
 pub const JUDGE: Entry = Entry {
@@ -43,8 +42,7 @@ fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {
             let line = error.location(&text).map(|place| place.line_number);
             told(line, error.emit_to_string(&text))
         })?;
-        let judged = Validator::new(ValidationFlags::all(), CAPABILITIES).validate(&module);
-        judged.map(|_| ()).map_err(|error| {
+        info_of(&module).map(|_| ()).map_err(|error| {
             let line = error.location(&text).map(|place| place.line_number);
             told(line, error.emit_to_string(&text))
         })

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{Card, SIZE, StripCard, THUMB, first_alike, picture_files, strip_file};
+use crate::diagnostic::escape_markup;
 
 const HEAD: &str = "<!doctype html>
 <html lang=\"en\">
@@ -41,7 +42,7 @@ pub fn html_page(cards: &[&Card], strips: &[StripCard]) -> String {
     text.push_str("<nav>\n");
     let compared = strips.iter().map(|card| &card.comparison.name);
     for name in compared.chain(cards.iter().map(|card| &card.preset.name)) {
-        let name = escape_html(name);
+        let name = escape_markup(name);
         let _ = writeln!(text, "<a href=\"#{name}\">{name}</a>");
     }
     text.push_str("</nav>\n");
@@ -52,7 +53,7 @@ pub fn html_page(cards: &[&Card], strips: &[StripCard]) -> String {
     for (card, first) in cards.iter().zip(firsts) {
         if card.preset.work() != here {
             here = card.preset.work();
-            let _ = writeln!(text, "<h2>{}</h2>", escape_html(here));
+            let _ = writeln!(text, "<h2>{}</h2>", escape_markup(here));
         }
         write_article(&mut text, card, cards[first]);
     }
@@ -61,7 +62,7 @@ pub fn html_page(cards: &[&Card], strips: &[StripCard]) -> String {
 }
 
 fn write_strip(text: &mut String, card: &StripCard) {
-    let (name, file) = (escape_html(&card.comparison.name), strip_file(&card.comparison.name));
+    let (name, file) = (escape_markup(&card.comparison.name), strip_file(&card.comparison.name));
     let _ = writeln!(
         text,
         "<section id=\"{name}\">\n<h3>{name}</h3>\n<p>{}</p>\n<p class=\"look\">{}</p>\n\
@@ -69,13 +70,13 @@ fn write_strip(text: &mut String, card: &StripCard) {
          <pre>{}</pre>\n</section>",
         html_prose(&card.comparison.doc),
         html_prose(&card.comparison.look),
-        escape_html(&card.command())
+        escape_markup(&card.command())
     );
 }
 
 fn write_article(text: &mut String, card: &Card, first: &Card) {
     let preset = &card.preset;
-    let name = escape_html(&preset.name);
+    let name = escape_markup(&preset.name);
     let [picture, thumb] = picture_files(&name);
     let [width, height] = SIZE.map(|side| side / THUMB);
     let _ = writeln!(
@@ -85,16 +86,16 @@ fn write_article(text: &mut String, card: &Card, first: &Card) {
          <p>{}</p>\n<p class=\"look\">{}</p>\n<pre>{}</pre>\n<ul>",
         html_prose(&preset.doc),
         html_prose(&preset.look),
-        escape_html(&card.command())
+        escape_markup(&card.command())
     );
     for deviation in &preset.deviations {
         let _ = writeln!(text, "<li>differs from the source: {}</li>", html_prose(deviation));
     }
-    let _ = writeln!(text, "<li>{}</li>", escape_html(&preset.source));
+    let _ = writeln!(text, "<li>{}</li>", escape_markup(&preset.source));
     for (program, key) in card.passes() {
         let page =
             html_link(&format!("../catalogue/programs.md#{}", program.replace('_', "-")), program);
-        let _ = writeln!(text, "<li>{page}: <code>{}</code></li>", escape_html(&key));
+        let _ = writeln!(text, "<li>{page}: <code>{}</code></li>", escape_markup(&key));
     }
     let functions: Vec<String> =
         card.functions().map(|(name, page)| html_link(&page, name)).collect();
@@ -111,31 +112,27 @@ fn write_article(text: &mut String, card: &Card, first: &Card) {
 /// Scene, numbers, light probe.
 fn write_facts(text: &mut String, card: &Card) {
     let preset = &card.preset;
-    let _ = writeln!(text, "<li>scene: {}</li>", escape_html(&preset.scene));
+    let _ = writeln!(text, "<li>scene: {}</li>", escape_markup(&preset.scene));
     for (group, fields) in &preset.numbers {
         for (field, value) in fields {
-            let name = escape_html(&format!("{group}.{field}"));
+            let name = escape_markup(&format!("{group}.{field}"));
             let _ = writeln!(text, "<li><code>{name} = {value}</code></li>");
         }
     }
     if let Some(probe) = &preset.probe {
-        let _ = writeln!(text, "<li>light probe: {}</li>", escape_html(probe));
+        let _ = writeln!(text, "<li>light probe: {}</li>", escape_markup(probe));
     }
 }
 
 fn html_link(page: &str, words: &str) -> String {
-    format!("<a href=\"{}\">{}</a>", escape_html(page), escape_html(words))
+    format!("<a href=\"{}\">{}</a>", escape_markup(page), escape_markup(words))
 }
 
 /// Text with its code marked as such.
 fn html_prose(text: &str) -> String {
     let part = |(index, part): (usize, &str)| match index % 2 {
-        1 => format!("<code>{}</code>", escape_html(part)),
-        _ => escape_html(part),
+        1 => format!("<code>{}</code>", escape_markup(part)),
+        _ => escape_markup(part),
     };
     text.split('`').enumerate().map(part).collect()
-}
-
-fn escape_html(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -15,9 +15,7 @@ pub use judge::{Verdict, Worst};
 pub use law::LawVerdict;
 pub use profile::{Axis, BINS, Bin, CELLS, Input, Map, Profile, Scale};
 pub use proof::{Parity, Proof, Spec, Value};
-pub use report::{
-    headroom_text, lacking_text, language_name, report_table, short_number, stricter_cases,
-};
+pub use report::{headroom_text, lacking_text, report_table, short_number, stricter_cases};
 pub use told::{failures_as_text, of_outcome, of_proof, report_failures};
 
 use std::sync::Arc;

@@ -1,7 +1,6 @@
 //! Writes a report as text.
 
 use super::{Outcome, Proof, Report};
-use crate::bundle::Language;
 
 const HEADINGS: [&str; COLUMNS] = [
     "function",
@@ -42,7 +41,7 @@ pub fn report_table(report: &Report) -> String {
 
 fn table_row(outcome: &Outcome) -> [String; COLUMNS] {
     let name = format!("{}::{}", outcome.module, outcome.function);
-    let head = [name, language_name(outcome.language).to_owned(), outcome.executor.to_owned()];
+    let head = [name, outcome.language.name().to_owned(), outcome.executor.to_owned()];
     let tail = match &outcome.verdict {
         Err(_) => {
             let headroom = if outcome.lacks().is_some() { "cannot run" } else { "not run" };
@@ -98,18 +97,10 @@ pub fn stricter_cases(report: &Report) -> String {
 pub fn lacking_text(report: &Report) -> String {
     let line = |outcome: &Outcome| {
         let (reason, case) = (&outcome.lacks()?.message, outcome.case + 1);
-        let (path, language) = (outcome.path(), language_name(outcome.language));
+        let (path, language) = (outcome.path(), outcome.language.name());
         Some(format!("{path} (case {case}, {language} on {}): {reason}\n", outcome.executor))
     };
     report.outcomes.iter().filter_map(line).collect()
-}
-
-/// Name of a language.
-pub fn language_name(language: Language) -> &'static str {
-    match language {
-        Language::Wesl => "wesl",
-        Language::Glsl => "glsl",
-    }
 }
 
 /// How much of the tolerance the error leaves, in percent.

@@ -1,6 +1,6 @@
 //! Turns what failed in a check into diagnostics at the cases.
 
-use super::report::{language_name, short_number};
+use super::report::short_number;
 use super::{Outcome, Proof, Report, Verdict};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::proof::ratchet::SLACK;
@@ -54,8 +54,7 @@ pub fn of_outcome(outcome: &Outcome) -> Option<Diagnostic> {
     if !outcome.failed() {
         return None;
     }
-    let of =
-        format!("{}, {} on {}", language_name(outcome.language), outcome.executor, outcome.adapter);
+    let of = format!("{}, {} on {}", outcome.language.name(), outcome.executor, outcome.adapter);
     let error = match &outcome.verdict {
         Err(error) => {
             let message = format!("`{}` did not run ({of}): {}", outcome.path(), error.message);

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
-use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use naga::valid::ModuleInfo;
 use naga::{Expression, Function, Handle, Module, ScalarKind};
 use rayon::prelude::*;
 
@@ -16,6 +16,7 @@ use crate::compose::SourceMap;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::eval::Machine;
 use crate::execute::interpreter::{Calls, Interpreter, slot_value};
+use crate::execute::module_info;
 use crate::proof::cases::{File, Rows};
 use crate::proof::check::Options;
 use crate::proof::check::job::{self, BoundOracle, Goal, Job};
@@ -114,7 +115,7 @@ fn make_suite<'f>(
     let mut whole = validated.module;
     let parsed = Arc::new(whole.clone());
     naga::compact::compact(&mut whole, naga::compact::KeepUnused::Yes);
-    let info = module_info(&whole).ok_or_else(|| vec![internal_error(module)])?;
+    let info = module_info(module, &whole).map_err(|_| vec![internal_error(module)])?;
     let subjects = find_subjects(sources, module, &composed.map, &whole);
     let jobs = match file {
         Some(file) => job::prepare_jobs(
@@ -134,10 +135,6 @@ fn make_suite<'f>(
 
 fn internal_error(name: &str) -> Diagnostic {
     Diagnostic::error(codes::EVAL_INTERNAL, format!("`{name}` is not valid after compaction"))
-}
-
-pub fn module_info(module: &Module) -> Option<ModuleInfo> {
-    Validator::new(ValidationFlags::all(), Capabilities::all()).validate(module).ok()
 }
 
 fn find_subjects(

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use super::random::Random;
 use super::{Item, file, segments};
+use crate::random::Random;
 
 /// The imports of a module: its local names, and the statements that import them.
 pub struct Imports {

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use super::imports::Imports;
-use super::random::Random;
 use super::{Item, Kind, NAMES, reaches};
+use crate::random::Random;
 
 pub struct Writer<'a> {
     pub random: &'a mut Random,

@@ -9,7 +9,7 @@ use lamplight::picture::frame::probe;
 use lamplight::validate::{Validated, validate};
 
 use super::{Partner, interpolated, number};
-use crate::link_random::random::Random;
+use crate::random::Random;
 
 /// A vertex stage for a fragment stage.
 pub fn partner(

@@ -16,7 +16,7 @@ use naga::{Binding, BuiltIn};
 
 use super::evaluated::{agree, components, entry_point, four, resources};
 use super::{Drawn, Partner, Ran, Ready, SIZE, interpolated, number};
-use crate::link_random::random::Random;
+use crate::random::Random;
 
 /// The error of interpolation, as a share of the largest of the three values. Both the plane
 /// equation of a software driver and the division by w round a few times.

@@ -174,7 +174,7 @@ struct Own {
 
 /// Opens the device, or says why it is not available on this machine.
 fn open_device() -> Result<String, Unavailable> {
-    Err(Unavailable { reason: "`NAME` opens no device yet".to_owned() })
+    Err("`NAME` opens no device yet".to_owned().into())
 }
 
 impl Session for Own {
