@@ -7,7 +7,6 @@
 //! of the first such text in the output. `invalid = reason` says that validators need not accept
 //! the output, and why.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -20,8 +19,10 @@ use lamplight::diagnostic::Diagnostic;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::permute::{Setting, Settings};
 use lamplight::resolve::{Packages, glsl::load};
-use lamplight::source::{Files, Memory, Package, SourceSet};
+use lamplight::source::{Memory, Package, SourceSet};
 use libtest_mimic::{Failed, Trial};
+
+use crate::folders::packages_in;
 
 /// How a failing case is accepted.
 const ACCEPT: &str = "\n(`cargo xtask record compose_` accepts this)";
@@ -53,7 +54,8 @@ struct Case {
 fn check(folder: &Path) -> Result<(), Failed> {
     let case = read_case(folder);
     let mut sources = SourceSet::default();
-    let packages = packages(folder);
+    let is_source = |name: &str| name != "settings" && !name.starts_with("expected.");
+    let packages = packages_in(folder, "root", is_source);
     let result = load(&mut sources, &packages, &case.root).and_then(|graph| {
         let first = compose(&graph, &case.settings, &case.options);
         let second = compose(&graph, &case.settings, &case.options);
@@ -100,57 +102,6 @@ fn read_case(folder: &Path) -> Case {
         }
     }
     case
-}
-
-fn packages(folder: &Path) -> Packages {
-    let mut files = BTreeMap::new();
-    read_files(folder, "", &mut files);
-    let mut root = Memory::default();
-    let mut dependencies: BTreeMap<String, Memory> = BTreeMap::new();
-    for (path, text) in files {
-        match path.strip_prefix("deps/").and_then(|rest| rest.split_once('/')) {
-            Some((name, rest)) => {
-                drop(dependencies.entry(name.into()).or_default().0.insert(rest.into(), text))
-            }
-            None => drop(root.0.insert(path, text)),
-        }
-    }
-    let dependencies = dependencies.into_iter().map(|(name, files)| {
-        let files = Box::new(Named(name.clone(), files));
-        Package { name, files }
-    });
-    Packages {
-        root: Package { name: "root".into(), files: Box::new(root) },
-        dependencies: dependencies.collect(),
-    }
-}
-
-fn read_files(folder: &Path, prefix: &str, files: &mut BTreeMap<String, String>) {
-    for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
-        let name = format!("{prefix}{}", entry.file_name().to_string_lossy());
-        if entry.path().is_dir() {
-            read_files(&entry.path(), &format!("{name}/"), files);
-        } else if name != "settings" && !name.starts_with("expected.") {
-            files.insert(name, fs::read_to_string(entry.path()).unwrap());
-        }
-    }
-}
-
-/// A package whose files are shown with the package's name in front.
-struct Named(String, Memory);
-
-impl Files for Named {
-    fn read(&self, path: &str) -> Result<Option<String>, lamplight::source::ReadError> {
-        self.1.read(path)
-    }
-
-    fn list(&self, extensions: &[&str]) -> Vec<String> {
-        self.1.list(extensions)
-    }
-
-    fn display(&self, path: &str) -> String {
-        format!("{}/{path}", self.0)
-    }
 }
 
 fn shown(sources: &SourceSet, case: &Case, composed: &Composed) -> String {

@@ -17,8 +17,10 @@ use lamplight::diagnostic::render::{Form, render};
 use lamplight::permute::{Setting, Settings};
 use lamplight::resolve::Packages;
 use lamplight::resolve::wesl::{Graph, load};
-use lamplight::source::{Files, Memory, Package, SourceSet};
+use lamplight::source::{Memory, Package, SourceSet};
 use libtest_mimic::{Failed, Trial};
+
+use crate::folders::packages_in;
 
 /// How a failing case is accepted.
 const ACCEPT: &str = "\n(`cargo xtask record compose_` accepts this)";
@@ -87,7 +89,7 @@ impl Case {
 
 fn check(folder: &Path) -> Result<(), Failed> {
     let case = Case::read(folder);
-    let packages = packages(folder);
+    let packages = packages_in(folder, "app", is_source);
     let mut sources = SourceSet::default();
     let root = case.root.as_deref().unwrap_or("main.wesl");
     let outcome = load(&mut sources, &packages, root)
@@ -165,64 +167,9 @@ fn map_errors(sources: &SourceSet, composed: &Composed) -> String {
     errors
 }
 
-fn packages(folder: &Path) -> Packages {
-    let mut root = Memory::default();
-    let mut dependencies: BTreeMap<String, Memory> = BTreeMap::new();
-    for (path, text) in files(folder, "") {
-        match path.strip_prefix("deps/").and_then(|rest| rest.split_once('/')) {
-            Some((package, path)) => drop(
-                dependencies.entry(package.to_owned()).or_default().0.insert(path.to_owned(), text),
-            ),
-            None => drop(root.0.insert(path, text)),
-        }
-    }
-    let package = |(name, files): (String, Memory)| Package {
-        name: name.clone(),
-        files: Box::new(Shown { name, files }),
-    };
-    Packages {
-        root: Package { name: "app".to_owned(), files: Box::new(root) },
-        dependencies: dependencies.into_iter().map(package).collect(),
-    }
-}
-
-/// A dependency whose files are shown with the package's name in front.
-struct Shown {
-    name: String,
-    files: Memory,
-}
-
-impl Files for Shown {
-    fn read(&self, path: &str) -> Result<Option<String>, lamplight::source::ReadError> {
-        self.files.read(path)
-    }
-
-    fn list(&self, extensions: &[&str]) -> Vec<String> {
-        self.files.list(extensions)
-    }
-
-    fn display(&self, path: &str) -> String {
-        format!("{}/{path}", self.name)
-    }
-}
-
-fn files(folder: &Path, prefix: &str) -> Vec<(String, String)> {
-    let mut found = Vec::new();
-    for entry in fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        let name = format!("{prefix}{}", path.file_name().unwrap().to_string_lossy());
-        match path.is_dir() {
-            true => found.extend(files(&path, &format!("{name}/"))),
-            false
-                if name.ends_with(".wesl")
-                    || (name.ends_with(".wgsl") && name != "expected.wgsl") =>
-            {
-                found.push((name, fs::read_to_string(&path).unwrap()));
-            }
-            false => {}
-        }
-    }
-    found
+/// Whether a file of a case belongs to a package.
+fn is_source(name: &str) -> bool {
+    name.ends_with(".wesl") || (name.ends_with(".wgsl") && !name.ends_with("expected.wgsl"))
 }
 
 /// Files on disk that cannot be read: not UTF-8, a link out of the package, and a folder named like

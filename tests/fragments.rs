@@ -42,6 +42,21 @@ impl Tally {
     }
 }
 
+impl Tally {
+    /// The counts, if enough fragments were compared, and at most a share `most` of them is open.
+    pub fn judged(self, least: usize, most: f64) -> Result<Self, String> {
+        match self {
+            Self { tried, .. } if tried < least => {
+                Err(format!("{tried} fragments were compared, expected at least {least}"))
+            }
+            Self { tried, open, .. } if open as f64 > most * tried as f64 => {
+                Err(format!("{open} of {tried} fragments are open, at most {most} of them may be"))
+            }
+            tally => Ok(tally),
+        }
+    }
+}
+
 impl std::fmt::Display for Tally {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(

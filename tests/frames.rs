@@ -327,11 +327,5 @@ fn agrees(renderer: &dyn Session, scene: &Scene, most: f64) -> Result<Tally, Str
     let resources = fragments::resources(buffers.clone(), &scene.fixtures, &BTreeMap::new());
     let watched = Watched { size: [WIDTH, HEIGHT], targets: &frame.targets };
     fragments::recompute(fragment, resources, &watched, STEP, &mut tally)?;
-    match tally {
-        Tally { tried, .. } if tried < LEAST => Err(format!("{tried} of {LEAST} fragments")),
-        Tally { tried, open, .. } if open as f64 > most * tried as f64 => {
-            Err(format!("{open} of {tried} fragments are open, at most {most} of them may be"))
-        }
-        tally => Ok(tally),
-    }
+    tally.judged(LEAST, most)
 }

@@ -25,6 +25,7 @@ mod emit;
 mod energy;
 mod eval;
 mod examples;
+mod folders;
 mod fragments;
 mod frames;
 mod generate;

@@ -22,6 +22,7 @@ mod shadows;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
+use glam::DVec3;
 use lamplight::bundle::Language;
 use lamplight::catalogue::preset::{self, Preset};
 use lamplight::catalogue::probe::{self, Probe};
@@ -120,6 +121,24 @@ pub fn on_device(
 /// Opens an executor by name.
 pub fn start(name: &str) -> Result<Box<dyn Session>, String> {
     executors::find_executor(name).ok_or("no such executor")?.start()
+}
+
+/// A pixel, and its colours in two pictures.
+type Compared = ([u32; 2], [DVec3; 2]);
+
+/// The pixels where two pictures show a surface. Where only one of them does, they differ.
+fn surface_pixels(
+    found: &Linear,
+    wanted: &Linear,
+    [width, height]: [u32; 2],
+) -> Result<Vec<Compared>, String> {
+    let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+    let both = |[x, y]: [u32; 2]| match (found.drawn(x, y), wanted.drawn(x, y)) {
+        (Some(found), Some(wanted)) => Some(Ok(([x, y], [found, wanted]))),
+        (None, None) => None,
+        _ => Some(Err(format!("only one of them shows a surface at {x}, {y}"))),
+    };
+    places.filter_map(both).collect()
 }
 
 /// The colours of a permutation of a program, neither clamped nor encoded.

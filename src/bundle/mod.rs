@@ -44,6 +44,8 @@ pub use reflection::{
 };
 pub use target::Target;
 pub use usage::Usage;
+#[cfg(feature = "compile")]
+pub(crate) use usage::usage_lines;
 
 /// Version of both forms; a loader reads exactly one.
 pub const VERSION: u32 = 1;

@@ -21,6 +21,19 @@ const HEADER: &str = "# Permutations asked for: a program and a key, one a line.
 /// Bytes of a list in a file.
 const MOST_BYTES: u64 = 256 << 20;
 
+/// The lines of a list that say something, without spaces around them. Each has its number from 1
+/// and its first byte.
+pub(crate) fn usage_lines(text: &str) -> impl Iterator<Item = (usize, usize, &str)> {
+    let mut start = 0;
+    text.split_inclusive('\n').enumerate().filter_map(move |(index, line)| {
+        let said = line.trim();
+        let at = start + line.len() - line.trim_start().len();
+        start += line.len();
+        let says = !said.is_empty() && !said.starts_with('#');
+        says.then_some((index + 1, at, said))
+    })
+}
+
 /// Keys by program, in canonical form.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Usage {
@@ -32,12 +45,8 @@ impl Usage {
     /// Reads a list. The error is the number, from 1, of a line that is not an entry.
     pub fn parse(text: &str) -> Result<Self, usize> {
         let mut usage = Self::default();
-        for (index, line) in text.lines().enumerate() {
-            let line = line.trim();
-            if line.is_empty() || line.starts_with('#') {
-                continue;
-            }
-            let (program, key) = line.split_once(char::is_whitespace).ok_or(index + 1)?;
+        for (number, _, line) in usage_lines(text) {
+            let (program, key) = line.split_once(char::is_whitespace).ok_or(number)?;
             usage.keys.entry(program.to_owned()).or_default().insert(key.trim().to_owned());
         }
         Ok(usage)

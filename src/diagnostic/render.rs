@@ -30,8 +30,8 @@ const SHOWN: usize = crate::limits::DIAGNOSTICS;
 /// Of those after the first hundred, only the number is printed.
 pub fn render(sources: &SourceSet, diagnostics: &[Diagnostic], form: Form) -> String {
     let one = |diagnostic: &Diagnostic| match form {
-        Form::Human => human_form(sources, diagnostic),
-        Form::Coloured => coloured_form(sources, diagnostic),
+        Form::Human => excerpt_form(sources, diagnostic, false),
+        Form::Coloured => excerpt_form(sources, diagnostic, true),
         Form::Short => short_form(sources, diagnostic) + "\n",
         Form::Json => json_form(sources, diagnostic).to_string() + "\n",
     };
@@ -48,34 +48,23 @@ fn count_of_rest(diagnostics: &[Diagnostic]) -> Option<Diagnostic> {
     })
 }
 
-fn human_form(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
+fn excerpt_form(sources: &SourceSet, diagnostic: &Diagnostic, is_coloured: bool) -> String {
     let spans: Vec<Span> = diagnostic.labels.iter().map(|label| label.span).collect();
     let excerpts = Excerpts::new(sources, &spans);
+    let (found, config) = (to_codespan(diagnostic, &excerpts), term::Config::default());
     let mut text = String::new();
-    // Writing to a string fails only for spans outside of the files. Then the short form is used.
-    match term::emit_to_string(
-        &mut text,
-        &term::Config::default(),
-        &excerpts,
-        &to_codespan(diagnostic, &excerpts),
-    ) {
-        Ok(()) => text,
-        Err(_) => short_form(sources, diagnostic) + "\n",
-    }
-}
-
-fn coloured_form(sources: &SourceSet, diagnostic: &Diagnostic) -> String {
-    let spans: Vec<Span> = diagnostic.labels.iter().map(|label| label.span).collect();
-    let excerpts = Excerpts::new(sources, &spans);
-    let styles = term::Styles::default();
-    let mut ansi = term::termcolor::Ansi::new(Vec::new());
-    let mut writer = term::StylesWriter::new(&mut ansi, &styles);
-    let found = to_codespan(diagnostic, &excerpts);
-    let config = term::Config::default();
-    match term::emit_to_write_style(&mut writer, &config, &excerpts, &found) {
-        Ok(()) => String::from_utf8_lossy(ansi.get_ref()).into_owned(),
-        Err(_) => short_form(sources, diagnostic) + "\n",
-    }
+    let written = if is_coloured {
+        let styles = term::Styles::default();
+        let mut ansi = term::termcolor::Ansi::new(Vec::new());
+        let mut writer = term::StylesWriter::new(&mut ansi, &styles);
+        let written = term::emit_to_write_style(&mut writer, &config, &excerpts, &found);
+        text = String::from_utf8_lossy(ansi.get_ref()).into_owned();
+        written
+    } else {
+        term::emit_to_string(&mut text, &config, &excerpts, &found)
+    };
+    // Writing to memory fails only for spans outside of the files. Then the short form is used.
+    written.map_or_else(|_| short_form(sources, diagnostic) + "\n", |()| text)
 }
 
 fn to_codespan(diagnostic: &Diagnostic, excerpts: &Excerpts<'_>) -> codespan::Diagnostic<usize> {

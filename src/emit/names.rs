@@ -1,5 +1,7 @@
 //! Types and built-ins as WGSL spells them.
 
+use std::fmt::Display;
+
 use naga::common::wgsl::{ToWgsl, TypeContext};
 use naga::{Handle, Module, Type, TypeInner};
 
@@ -10,6 +12,12 @@ pub fn type_name(module: &Module, ty: Handle<Type>) -> String {
         Type { name: None, inner: TypeInner::Struct { .. } } => "struct".to_owned(),
         _ => module.to_ctx().type_to_string(ty),
     }
+}
+
+/// The name that a writer gave the entry point.
+pub fn first_entry_name<E: Display>(names: Vec<Result<String, E>>) -> Result<String, String> {
+    let first = names.into_iter().next().ok_or("no entry point was written")?;
+    first.map_err(|error| error.to_string())
 }
 
 /// The built-in's name in `@builtin`.

@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 
 use super::members::members_at;
 use super::package::{Modules, Opened, Symbol};
-use super::place::{self, Lines};
+use super::place;
+use super::told::hover_json;
 use super::{Server, glsl, look};
 use crate::catalogue::{self, Item, cost, pages};
 use crate::parse::wesl::ItemKind;
@@ -47,11 +48,7 @@ pub fn hover_at(server: &mut Server, parameters: &Value) -> Result<Value, String
         }
     };
     let Some(text) = text else { return Ok(Value::Null) };
-    let lines = Lines::new(&modules.sources.get(span.source).text);
-    Ok(json!({
-        "contents": { "kind": "markdown", "value": text },
-        "range": lines.range(span.range()),
-    }))
+    Ok(hover_json(&text, &modules.sources.get(span.source).text, span.range()))
 }
 
 /// The members that the name behind a point may mean, each with its struct.
@@ -68,11 +65,7 @@ fn hover_member(server: &mut Server, parameters: &Value) -> Result<Value, String
         format!("```wgsl\n{}\n```\n`{}::{owner}`", member.text, member.node.label)
     });
     let text = told.collect::<Vec<_>>().join("\n\n");
-    let lines = Lines::new(&modules.sources.get(span.source).text);
-    Ok(json!({
-        "contents": { "kind": "markdown", "value": text },
-        "range": lines.range(span.range()),
-    }))
+    Ok(hover_json(&text, &modules.sources.get(span.source).text, span.range()))
 }
 
 /// An item of the library as `show` tells it; any other by its comment and declaration.

@@ -1,6 +1,6 @@
 //! Where names are declared and used, and giving them others.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use serde_json::{Value, json};
@@ -149,18 +149,13 @@ pub fn rename_symbol(server: &mut Server, parameters: &Value) -> Result<Value, S
     if modules.sources.text(last_name(&modules.sources.get(span.source).text, span)) != old {
         return Err("this is another name for it: rename it in its import".to_owned());
     }
-    let mut edits: BTreeMap<String, Vec<Value>> = BTreeMap::new();
-    for span in modules.references(symbol) {
-        let text = &modules.sources.get(span.source).text;
+    let places = modules.references(symbol).into_iter().filter_map(|span| {
+        let text: &str = &modules.sources.get(span.source).text;
         let name = last_name(text, span);
-        if modules.sources.text(name) != old {
-            continue;
-        }
-        let uri = told::address_of(&modules.sources, span.source, &*server.library);
-        let edit = json!({ "range": Lines::new(text).range(name.range()), "newText": new });
-        edits.entry(uri.ok_or("a place has no address")?).or_default().push(edit);
-    }
-    Ok(json!({ "changes": edits }))
+        let uri = || told::address_of(&modules.sources, span.source, &*server.library);
+        (modules.sources.text(name) == old).then(|| (uri(), text, name.range()))
+    });
+    told::rename_json(&new, places)
 }
 
 /// The module that has the name already where the symbol is declared or used.

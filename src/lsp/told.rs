@@ -1,5 +1,7 @@
 //! Diagnostics as editors show them.
 
+use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
@@ -20,6 +22,27 @@ pub fn address_of(
     }
     let path = Path::new(&source.path);
     Some(file_address(&path.canonicalize().unwrap_or_else(|_| path.to_owned())))
+}
+
+/// The answer to a hover: words about a range of a text.
+pub fn hover_json(words: &str, text: &str, range: Range<usize>) -> Value {
+    json!({
+        "contents": { "kind": "markdown", "value": words },
+        "range": Lines::new(text).range(range),
+    })
+}
+
+/// The answer to a rename: the new name at ranges of texts, each with the address of its text.
+pub fn rename_json<'t>(
+    new: &str,
+    places: impl Iterator<Item = (Option<String>, &'t str, Range<usize>)>,
+) -> Result<Value, String> {
+    let mut edits: BTreeMap<String, Vec<Value>> = BTreeMap::new();
+    for (uri, text, range) in places {
+        let edit = json!({ "range": Lines::new(text).range(range), "newText": new });
+        edits.entry(uri.ok_or("a place has no address")?).or_default().push(edit);
+    }
+    Ok(json!({ "changes": edits }))
 }
 
 /// One diagnostic at its first place.

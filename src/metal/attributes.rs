@@ -1,6 +1,7 @@
 //! Checks the attributes of a text, since clang ignores those that it does not know.
 
-use super::token::{Token, line_and_column, msl_tokens};
+use super::token::{Token, msl_tokens};
+use crate::source::line_and_column;
 
 /// What an attribute may have in its brackets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -38,11 +38,3 @@ pub fn msl_tokens(text: &str) -> Vec<Token<'_>> {
     }
     found
 }
-
-/// Line and column of a byte, both from 1.
-pub fn line_and_column(text: &str, at: usize) -> (usize, usize) {
-    let before = text.get(..at).unwrap_or(text);
-    let line = before.matches('\n').count() + 1;
-    let start = before.rfind('\n').map_or(0, |end| end + 1);
-    (line, before[start..].chars().count() + 1)
-}

@@ -8,6 +8,7 @@ use super::lint;
 use super::manifest::Program;
 use super::quoted::Quoted;
 use super::space::{Lists, Slice, Space};
+use crate::bundle::usage_lines;
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use crate::source::{SourceId, SourceSet, Span};
 
@@ -84,14 +85,8 @@ pub fn unknown(programs: &[Program], sources: &SourceSet, list: SourceId) -> Vec
 
 /// The lines of a list that say something, each with its place.
 fn list_lines(sources: &SourceSet, list: SourceId) -> impl Iterator<Item = (Span, &str)> {
-    let mut start = 0;
-    sources.get(list).text.split_inclusive('\n').filter_map(move |line| {
-        let text = line.trim();
-        let at = start + line.len() - line.trim_start().len();
-        start += line.len();
-        let says = !text.is_empty() && !text.starts_with('#');
-        says.then(|| (Span::new(list, at..at + text.len()), text))
-    })
+    let lines = usage_lines(&sources.get(list).text);
+    lines.map(move |(_, at, text)| (Span::new(list, at..at + text.len()), text))
 }
 
 /// The keys that the list has for the program, each with its place.

@@ -314,10 +314,7 @@ impl Picture {
     pub fn part(&self, [left, top]: [u32; 2], [width, height]: [u32; 2]) -> Self {
         let mut part = Self::filled(width, height, [0; 3]);
         let places = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
-        for [x, y] in places.filter(|[x, y]| left + x < self.width && top + y < self.height) {
-            let at = 3 * ((top + y) as usize * self.width as usize + (left + x) as usize);
-            part.set([x, y], [self.pixels[at], self.pixels[at + 1], self.pixels[at + 2]]);
-        }
+        places.for_each(|[x, y]| part.set([x, y], self.pixel([left + x, top + y])));
         part
     }
 
@@ -348,7 +345,7 @@ impl Picture {
             };
             let all = (0..factor).flat_map(|j| (0..factor).map(move |i| (i, j)));
             let sum: f64 = all.map(|(i, j)| at(i, j)).sum();
-            (srgb_encoded(sum / f64::from(factor * factor)) * 255.0).round() as u8
+            srgb_code(sum / f64::from(factor * factor))
         };
         let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         let pixels = places.flat_map(|(x, y)| [0, 1, 2].map(|channel| mean(x, y, channel)));

@@ -84,9 +84,13 @@ impl SourceSet {
 
     /// Line and column, both from 1, of a byte; the column counts characters.
     pub fn position(&self, id: SourceId, byte: usize) -> (usize, usize) {
-        let text = &self.get(id).text;
-        let before = &text[..text.floor_char_boundary(byte.min(text.len()))];
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+        line_and_column(&self.get(id).text, byte)
     }
+}
+
+/// Line and column, both from 1, of a byte; the column counts characters.
+pub(crate) fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
+    let before = &text[..text.floor_char_boundary(byte.min(text.len()))];
+    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
 }

@@ -120,15 +120,7 @@ fn agrees(
     let watched = Watched { size: SIZE, targets: &targets };
     let mut tally = Tally::default();
     fragments::recompute(fragment, resources, &watched, STEP, &mut tally)?;
-    match tally {
-        Tally { tried, .. } if tried < LEAST => {
-            Err(format!("{tried} fragments were compared, expected at least {LEAST}"))
-        }
-        Tally { tried, open, .. } if open as f64 > most * tried as f64 => {
-            Err(format!("{open} of {tried} fragments are open, at most {most} of them may be"))
-        }
-        tally => Ok(tally),
-    }
+    tally.judged(LEAST, most)
 }
 
 fn stage(composed: &Composed) -> EntryPoint<'_> {

@@ -4,7 +4,7 @@ use lamplight::bundle::Language;
 use lamplight::execute::Session;
 use libtest_mimic::Trial;
 
-use super::{BACKENDS, linear_picture, on_device};
+use super::{BACKENDS, linear_picture, on_device, surface_pixels};
 
 /// Programs, and keys without `clustered`. With the second falloff lamps reach everything, so every
 /// list has all of them.
@@ -44,14 +44,8 @@ fn same(painter: &dyn Session, language: Language, program: &str, key: &str) -> 
     let drawn = |key: &str| linear_picture(painter, language, (program, key), "fair", SIZE);
     let wanted = drawn(key)?;
     let found = drawn(&format!("{key},clustered"))?;
-    let [width, height] = SIZE;
     let (mut seen, mut largest) = (0_u32, 0.0_f64);
-    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-        let (found, wanted) = match (found.drawn(x, y), wanted.drawn(x, y)) {
-            (Some(found), Some(wanted)) => (found, wanted),
-            (None, None) => continue,
-            _ => return Err(format!("only one of them shows a surface at {x}, {y}")),
-        };
+    for ([x, y], [found, wanted]) in surface_pixels(&found, &wanted, SIZE)? {
         let error = (found - wanted).abs().max_element();
         if error.is_nan() || error > TOLERANCE * wanted.abs().max_element().max(1.0) {
             return Err(format!("{found} at {x}, {y}, without lists {wanted}"));
@@ -59,6 +53,6 @@ fn same(painter: &dyn Session, language: Language, program: &str, key: &str) -> 
         (seen, largest) = (seen + 1, largest.max(error));
     }
     println!("{program} [{key}]: {seen} pixels, the largest difference is {largest:e}");
-    let least = (SEEN * f64::from(width * height)) as u32;
+    let least = (SEEN * f64::from(SIZE[0] * SIZE[1])) as u32;
     if seen >= least { Ok(()) } else { Err(format!("{seen} pixels show a surface")) }
 }

@@ -5,7 +5,7 @@
 use lamplight::execute::Session;
 use libtest_mimic::Trial;
 
-use super::{BACKENDS, linear_picture, on_device};
+use super::{BACKENDS, linear_picture, on_device, surface_pixels};
 use lamplight::bundle::Language;
 
 /// Keys of `deferred`, and of `forward` for the same picture.
@@ -63,21 +63,15 @@ fn same(
     };
     let found = drawn("deferred", deferred)?;
     let wanted = drawn("forward", forward)?;
-    let [width, height] = SIZE;
     let (mut seen, mut beyond, mut largest) = (0, 0, 0.0_f64);
-    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
-        let (found, wanted) = match (found.drawn(x, y), wanted.drawn(x, y)) {
-            (Some(found), Some(wanted)) => (found, wanted),
-            (None, None) => continue,
-            _ => return Err(format!("only one of them shows a surface at {x}, {y}")),
-        };
+    for (_, [found, wanted]) in surface_pixels(&found, &wanted, SIZE)? {
         let error = (found - wanted).abs().max_element();
         // A number that is none is no small error.
         let is_near = error <= TOLERANCE * wanted.abs().max_element().max(1.0);
         (seen, beyond) = (seen + 1, beyond + usize::from(!is_near));
         largest = largest.max(error);
     }
-    let pixels = f64::from(width * height);
+    let pixels = f64::from(SIZE[0] * SIZE[1]);
     println!("{deferred}: {beyond} of {seen} pixels differ, the largest difference is {largest:e}");
     if (seen as f64) < SEEN * pixels || beyond as f64 > BEYOND * seen as f64 {
         let what = format!("{beyond} of {seen} pixels differ by more than {TOLERANCE:e}");

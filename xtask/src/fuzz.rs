@@ -164,7 +164,7 @@ fn work(kind: &Kind, seed: u64, seconds: u64) -> Outcome {
     let place = current(kind);
     fs::create_dir_all(place.parent().unwrap_or(Path::new("."))).map_err(environment)?;
     let (corpus, words): (_, Vec<&str>) = (
-        mutate::corpus(&root(), kind),
+        mutate::corpus_of(&root(), kind.corpus),
         kind.words.split(' ').filter(|word| !word.is_empty()).collect(),
     );
     let (mut random, started, mut inputs) = (Random(seed), Instant::now(), 0u64);

@@ -14,6 +14,7 @@ use naga::back::hlsl::{
 
 use crate::bundle::{HeapSampler, Kind, Native, Place, SamplerHeap, Semantic, Target};
 use crate::emit::reflect::{binding_kind, entry_inputs};
+use crate::emit::names::first_entry_name;
 use crate::emit::slots::{Numbering, assign_slots, native_reflection};
 use crate::emit::text::Text;
 use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip, setters, zeros};
@@ -85,12 +86,7 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     let mut text = Text::default();
     let written = Writer::new(&mut text, &options, &pipeline).write(module, source.info, None);
     let info = written.map_err(|error| text.explain(error))?;
-    let name = info
-        .entry_point_names
-        .into_iter()
-        .next()
-        .ok_or("no entry point was written")?
-        .map_err(|error| error.to_string())?;
+    let name = first_entry_name(info.entry_point_names)?;
     let text = setters::by_reference(&lists::with_plain_constants(&text.0));
     let text = columns::without_casts(&zeros::without_casts(&text));
     Ok(Emitted { bytes: text.into_bytes(), native: hlsl_reflection(source, &name, &options) })

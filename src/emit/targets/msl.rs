@@ -10,6 +10,7 @@ use naga::back::msl::{
 };
 
 use crate::bundle::{BufferSizes, Kind, Target};
+use crate::emit::names::first_entry_name;
 use crate::emit::slots::{Numbering, assign_slots, native_reflection};
 use crate::emit::text::Text;
 use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip, rename};
@@ -51,12 +52,7 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     let written = Writer::new(&mut text).write(module, source.info, &options, &pipeline);
     let info = written.map_err(|error| text.explain(error))?;
     let text = text.0;
-    let name = info
-        .entry_point_names
-        .into_iter()
-        .next()
-        .ok_or("no entry point was written")?
-        .map_err(|error| error.to_string())?;
+    let name = first_entry_name(info.entry_point_names)?;
     let mut native = native_reflection(source, &name, Numbering::PerKind);
     native.buffer_sizes = buffer_sizes(source, &text);
     Ok(Emitted { bytes: text.into_bytes(), native })

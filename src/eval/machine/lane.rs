@@ -93,7 +93,8 @@ pub(super) fn run_lane<N: Number>(
                 return Ok(Stop::Quad);
             }
             Instruction::Image { access } => {
-                texture::run_single(env, access, &mut lane.memory, at, watch)?
+                let access = &env.program.images[access as usize];
+                texture::apply_access(env, access, &mut lane.memory[..], None, (at, watch))?
             }
             _ => lane.compute(instruction, at, watch),
         }

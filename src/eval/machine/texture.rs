@@ -72,17 +72,6 @@ pub fn gradient_of(coordinates: &[Option<[f64; 3]>; 4], lane: usize) -> Gradient
     })
 }
 
-/// Runs an access of one lane.
-pub(super) fn run_single<N: Number>(
-    env: Env,
-    index: u32,
-    memory: &mut [N],
-    pc: u32,
-    watch: &mut Watch,
-) -> Result<(), Error> {
-    apply_access(env, &env.program.images[index as usize], memory, None, (pc, watch))
-}
-
 /// Runs an access on the memory of a lane.
 pub fn apply_access<N: Number>(
     env: Env,

@@ -131,8 +131,7 @@ pub fn hover_at(server: &mut Server, parameters: &Value) -> Result<Value, String
         Meaning::Macro(name) => describe_macro(server, &asked, name),
     };
     let Some(text) = text else { return Ok(Value::Null) };
-    let range = Lines::new(&module.text).range(place.start as usize..place.end as usize);
-    Ok(json!({ "contents": { "kind": "markdown", "value": text }, "range": range }))
+    Ok(told::hover_json(&text, &module.text, place.start as usize..place.end as usize))
 }
 
 /// The axis that a macro is, or that it names a value of.

@@ -1,8 +1,8 @@
 //! Gives names of GLSL others, where no condition and no macro can make that wrong.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::refer::{Asked, PLACES, asked_at};
 use super::text_of;
@@ -31,15 +31,12 @@ pub fn rename_symbol(server: &mut Server, parameters: &Value) -> Result<Value, S
     let asked = asked_at(server, parameters)?.ok_or("there is no name here")?;
     let places = renamed_places(&asked)?;
     check_new(&asked, &places, &new)?;
-    let mut edits: BTreeMap<String, Vec<Value>> = BTreeMap::new();
-    for place in &places {
+    let places = places.iter().map(|place| {
         let module = asked.whole.units.module(place.file);
         let uri = told::address_of(&asked.whole.opened.sources, module.source, &*server.library);
-        let range = Lines::new(&module.text).range(place.start as usize..place.end as usize);
-        let edit = json!({ "range": range, "newText": new });
-        edits.entry(uri.ok_or("a place has no address")?).or_default().push(edit);
-    }
-    Ok(json!({ "changes": edits }))
+        (uri, &*module.text, place.start as usize..place.end as usize)
+    });
+    told::rename_json(&new, places)
 }
 
 /// Every place that writes the name.

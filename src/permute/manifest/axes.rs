@@ -72,17 +72,8 @@ fn read_default(reader: &mut Reader, axis: &Axis, value: &Value) -> Option<usize
 }
 
 fn read_mode(reader: &mut Reader, value: &Value) -> Option<Mode> {
-    let text = reader.string(value, "`mode`")?;
-    let found = Mode::ALL.iter().find(|(name, _)| *name == text.text).map(|(_, mode)| *mode);
-    if found.is_none() {
-        let unknown =
-            Diagnostic::error(codes::UNKNOWN_VALUE, format!("there is no mode `{}`", text.text))
-                .at(text.span, "not a mode");
-        let names = || Mode::ALL.iter().map(|(name, _)| *name);
-        let listed = format!("modes: {}", names().collect::<Vec<_>>().join(", "));
-        reader.problems.push(unknown.suggest(&text.text, names()).note(listed));
-    }
-    found
+    let unknown = (codes::UNKNOWN_VALUE, ["there is no mode", "not a mode", "modes"]);
+    reader.choice(value, "`mode`", Mode::ALL.iter().copied(), unknown)
 }
 
 /// The values, if there is at least one and nothing is wrong with any.

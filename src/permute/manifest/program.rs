@@ -4,8 +4,8 @@ use toml::de::DeTable;
 
 use super::reader::{Name, Reader, Value};
 use super::{axes, lists, names};
-use crate::bundle::{Bounds, Convention, Conventions, Target};
-use crate::diagnostic::{Code, Diagnostic, Severity, codes};
+use crate::bundle::{Bounds, Clip, Convention, Conventions, Target};
+use crate::diagnostic::{Diagnostic, Severity, codes};
 use crate::permute::axis::Axis;
 use crate::permute::space::{Constraint, Lists, Space, TooComplex};
 use crate::permute::{lint, report};
@@ -156,52 +156,23 @@ fn read_targets(reader: &mut Reader, value: &Value) -> Vec<Target> {
 }
 
 fn read_target(reader: &mut Reader, value: &Value) -> Option<Target> {
-    let text = reader.string(value, "a target")?;
-    let found = Target::find(&text.text);
-    if found.is_none() {
-        let names = || Target::ALL.iter().map(|target| target.name());
-        let unknown =
-            Diagnostic::error(codes::UNKNOWN_TARGET, format!("there is no target `{}`", text.text))
-                .at(text.span, "not a target");
-        reader.problems.push(
-            unknown
-                .suggest(&text.text, names())
-                .note(format!("targets: {}", names().collect::<Vec<_>>().join(", "))),
-        );
-    }
-    found
+    let unknown = (codes::UNKNOWN_TARGET, ["there is no target", "not a target", "targets"]);
+    let known = Target::ALL.iter().map(|target| (target.name(), *target));
+    reader.choice(value, "a target", known, unknown)
 }
 
 /// The conventions of a program. Where a name is wrong, the error is kept and the default stands.
 fn read_conventions(reader: &mut Reader, table: &DeTable) -> Conventions {
     let clip = table.get("clip").and_then(|value| {
-        let unknown = (codes::UNKNOWN_CLIP, "there is no clip space", "clip spaces");
-        read_convention(reader, value, "`clip`", unknown)
+        let unknown = (codes::UNKNOWN_CLIP, ["there is no clip space", "not one", "clip spaces"]);
+        reader.choice(value, "`clip`", Clip::ALL.iter().copied(), unknown)
     });
     let bounds = table.get("bounds").and_then(|value| {
-        let unknown = (codes::UNKNOWN_BOUNDS, "there is no choice of checks", "checks");
-        read_convention::<Bounds>(reader, value, "`bounds`", unknown)
+        let unknown =
+            (codes::UNKNOWN_BOUNDS, ["there is no choice of checks", "not one", "checks"]);
+        reader.choice(value, "`bounds`", Bounds::ALL.iter().copied(), unknown)
     });
     Conventions { clip: clip.unwrap_or_default(), bounds: bounds.unwrap_or_default() }
-}
-
-/// `unknown` is the code of an unknown name, the beginning of its message, and what the names are.
-fn read_convention<C: Convention>(
-    reader: &mut Reader,
-    value: &Value,
-    key: &str,
-    unknown: (&'static Code, &str, &str),
-) -> Option<C> {
-    let text = reader.string(value, key)?;
-    let found = C::find(&text.text);
-    if found.is_none() {
-        let (code, message, known) = unknown;
-        let known = format!("{known}: {}", C::names().collect::<Vec<_>>().join(", "));
-        let error = Diagnostic::error(code, format!("{message} `{}`", text.text));
-        let error = error.at(text.span, "not one").suggest(&text.text, C::names());
-        reader.problems.push(error.note(known));
-    }
-    found
 }
 
 /// The words of `features_default`, with the value of a feature that no axis declares.

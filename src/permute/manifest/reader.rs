@@ -5,7 +5,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeArray, DeString, DeTable, DeValue};
 
-use crate::diagnostic::{Diagnostic, codes};
+use crate::diagnostic::{Code, Diagnostic, codes};
 use crate::permute::Setting;
 use crate::permute::quoted::Quoted;
 use crate::source::{SourceId, SourceSet, Span};
@@ -77,6 +77,27 @@ impl<'s> Reader<'s> {
             .as_str()
             .map(|text| Quoted::toml(self.sources, self.span(value.span()), text));
         self.expect(found, value, what, "a string")
+    }
+
+    /// One of the known words. For another, `unknown` has the code, the beginning of the message, the
+    /// label, and what the words are.
+    pub fn choice<T: Copy>(
+        &mut self,
+        value: &Value,
+        what: &str,
+        known: impl Iterator<Item = (&'static str, T)> + Clone,
+        (code, [message, label, words]): (&'static Code, [&str; 3]),
+    ) -> Option<T> {
+        let text = self.string(value, what)?;
+        let found = known.clone().find(|(name, _)| *name == text.text);
+        if found.is_none() {
+            let names = || known.clone().map(|(name, _)| name);
+            let listed = format!("{words}: {}", names().collect::<Vec<_>>().join(", "));
+            let error = Diagnostic::error(code, format!("{message} `{}`", text.text));
+            let error = error.at(text.span, label).suggest(&text.text, names());
+            self.problems.push(error.note(listed));
+        }
+        found.map(|(_, choice)| choice)
     }
 
     pub fn integer(&mut self, value: &Value, what: &str) -> Option<i64> {

@@ -84,7 +84,7 @@ pub fn fuzz(surface: &Surface, seed: u64, seconds: u64) -> Result<usize, Failure
     for (name, text) in surface.beside {
         fs::write(folder.join(name), text).map_err(environment)?;
     }
-    let corpus = files(&root().join(surface.corpus.0), surface.corpus.1);
+    let corpus = mutate::corpus_of(&root(), &[surface.corpus]);
     let words: Vec<&str> = surface.words.split(' ').filter(|word| !word.is_empty()).collect();
     let (mut random, started) = (Random(seed), Instant::now());
     let (mut inputs, mut findings) = (0u64, 0);
@@ -99,18 +99,6 @@ pub fn fuzz(surface: &Surface, seed: u64, seconds: u64) -> Result<usize, Failure
     }
     println!("{}: {inputs} inputs, {findings} findings", surface.name);
     Ok(findings)
-}
-
-/// The files of a folder with an ending, sorted; a single empty one where there are none.
-fn files(folder: &Path, ending: &str) -> Vec<Vec<u8>> {
-    let mut files = Vec::new();
-    mutate::collect(folder, ending, &mut files);
-    files.sort();
-    let mut inputs: Vec<Vec<u8>> = files.iter().filter_map(|path| fs::read(path).ok()).collect();
-    if inputs.is_empty() {
-        inputs.push(Vec::new());
-    }
-    inputs
 }
 
 /// What is wrong with a run.

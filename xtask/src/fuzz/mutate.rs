@@ -4,8 +4,6 @@
 use std::fs;
 use std::path::Path;
 
-use super::kinds::Kind;
-
 /// The most bytes of one input. Larger ones find nothing new and take longer.
 const MOST_BYTES: usize = 200_000;
 
@@ -25,10 +23,10 @@ impl Random {
     }
 }
 
-/// The valid inputs of a kind, sorted by path; a single empty one where there are none.
-pub fn corpus(root: &Path, kind: &Kind) -> Vec<Vec<u8>> {
+/// The files of folders with an ending, sorted by path; a single empty one where there are none.
+pub fn corpus_of(root: &Path, folders: &[(&str, &str)]) -> Vec<Vec<u8>> {
     let mut files = Vec::new();
-    for (folder, ending) in kind.corpus {
+    for (folder, ending) in folders {
         collect(&root.join(folder), ending, &mut files);
     }
     files.sort();
