@@ -210,21 +210,21 @@ limits! {
     BUNDLE_FACTOR: u64 = 128, Count, "further such bytes for each byte of its file", "memory, time",
         "the bundle is damaged";
     ENVIRONMENT_BYTES: u64 = 128 << 20, Bytes, "bytes of a Radiance file", "memory",
-        "has more bytes than are allowed";
+        "the file has more bytes than are allowed";
     ENVIRONMENT_PIXELS: u64 = 1 << 24, Count, "pixels of the image, by its header", "memory",
-        "pixels are more than";
-    MODEL_BYTES: u64 = 256 << 20, Bytes, "bytes of a model", "memory", "bytes are more than";
+        "... pixels are more than ...";
+    MODEL_BYTES: u64 = 256 << 20, Bytes, "bytes of a model", "memory", "... bytes are more than ...";
     MODEL_JSON_BYTES: usize = 4 << 20, Bytes, "bytes of the JSON document in it", "memory",
-        "has more bytes than";
+        "its document has more bytes than ...";
     MODEL_NODES: usize = 100_000, Count, "nodes of a model, counted at each place where they occur",
-        "time", "more nodes than";
+        "time", "more than ... nodes, or nesting deeper than ...";
     MODEL_NESTING: usize = 256, Count, "depth of nested nodes",
-        "the stack, against cycles of nodes", "within each other";
+        "the stack, against cycles of nodes", "more than ... nodes, or nesting deeper than ...";
     MODEL_CORNERS: usize = 1 << 20, Count, "vertices of all triangles of a model", "memory",
-        "corners";
-    MODEL_TEXTURES: usize = 64, Count, "sets of textures of a model", "time", "sets of textures";
+        "more than ... vertices of triangles";
+    MODEL_TEXTURES: usize = 64, Count, "sets of textures of a model", "time", "more than ... sets of textures";
     MODEL_PIXELS: u64 = 1 << 24, Count, "pixels of one of its images", "memory",
-        "pixels are more than";
+        "... pixels are more than ...";
     CACHE_BYTES: usize = 64 << 20, Bytes, "bytes of a cache record, compressed or not", "memory",
         "no error: the record counts as missing";
     CASE_ROWS: usize = 1 << 20, Count, "inputs of the numeric cases of a file", "memory, time",

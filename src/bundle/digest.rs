@@ -77,7 +77,7 @@ struct Hashed {
     hash: Hash,
 }
 
-/// Values by their address, which stays theirs as long as they are kept here.
+/// Values by their address. The stored `Arc` keeps the address from being reused.
 #[derive(Debug)]
 struct Known<T>(Mutex<ByAddress<T>>);
 

@@ -18,6 +18,7 @@ mod layout;
 mod loader;
 mod manifest;
 mod merge;
+mod names;
 mod pack;
 mod reflection;
 mod reload;
@@ -36,11 +37,12 @@ pub use key::canonical;
 pub use loader::{Bundle, Constant, Found, Program, Shader, constants};
 pub use manifest::SCHEMA;
 pub use merge::{merge, merge_into, patch_directory};
+pub use names::{Language, Stage};
 pub use pack::{pack, replace_file, write_file};
 pub use reflection::{
-    Binding, BufferSizes, Choice, ClipSpace, Combined, FrontFace, HeapSampler, Kind, Language,
-    Member, Native, Override, Pair, Place, Reflection, Rows, SamplerHeap, Semantic, Slot, Stage,
-    Varying, Viewport, YAxis,
+    Binding, BufferSizes, Choice, ClipSpace, Combined, FrontFace, HeapSampler, Kind, Member,
+    Native, Override, Pair, Place, Reflection, Rows, SamplerHeap, Semantic, Slot, Varying,
+    Viewport, YAxis,
 };
 pub use target::Target;
 pub use usage::Usage;

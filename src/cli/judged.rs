@@ -15,7 +15,7 @@ use crate::project;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
 
-/// The judges of a run's targets, which are all installed.
+/// The judges of a run's targets. All of them are installed.
 pub struct Judges {
     tint: Tint,
 }

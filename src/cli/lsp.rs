@@ -42,7 +42,7 @@ pub fn run_lsp(_: Arguments) -> Result<(), Failure> {
     // naga's stack, so that no keystroke waits for another thread to run.
     match on_large_stack(move || serve_editor(&receiver))? {
         0 => Ok(()),
-        _ => Err(Failure::input("the editor left without `shutdown`")),
+        _ => Err(Failure::input("the editor closed the connection without `shutdown`")),
     }
 }
 

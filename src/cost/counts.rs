@@ -1,6 +1,6 @@
 //! Counts the instructions of SPIR-V by kind, after `spirv-opt -O`. This needs no driver.
 //!
-//! Each instruction counts once, also within a loop. What is only structure or declaration is not
+//! Each instruction counts once, even within a loop. What is only structure or declaration is not
 //! counted: labels, merges, variables, parameters, line numbers.
 
 use std::ops::RangeInclusive;

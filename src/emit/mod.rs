@@ -262,9 +262,9 @@ fn find_target(validated: &Validated, entry: &str) -> Result<usize, Diagnostic> 
     points.iter().position(|point| point.name == entry).ok_or_else(|| {
         let names: Vec<&str> = points.iter().map(|point| point.name.as_str()).collect();
         let list = if names.is_empty() {
-            "there are none".to_owned()
+            "there are no entry points".to_owned()
         } else {
-            format!("there are: {}", names.join(", "))
+            format!("entry points: {}", names.join(", "))
         };
         Diagnostic::error(codes::UNKNOWN_ENTRY_POINT, format!("no entry point is named `{entry}`"))
             .suggest(entry, names.iter().copied())

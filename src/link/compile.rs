@@ -171,7 +171,7 @@ fn compile_unit(
     Ok(Unit { reflection, targets })
 }
 
-/// Gives an error of a writer its place: the function that the target has no words for, or else the
+/// Gives an error of a writer its place: the function that the target cannot express, or else the
 /// entry point.
 fn place_error(
     error: Diagnostic,
@@ -187,7 +187,7 @@ fn place_error(
     let function = culprit.as_deref().and_then(|name| text.composed.function(name));
     let function = function.or_else(|| text.composed.function(entry));
     match function.and_then(|function| text.composed.place_of(function)) {
-        Some(span) => error.at(span, format!("`{target}` has no words for this function")),
+        Some(span) => error.at(span, format!("`{target}` cannot express this function")),
         None => error,
     }
 }

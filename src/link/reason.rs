@@ -25,7 +25,7 @@ pub enum Reason {
     Initialiser,
     /// An identifier has the form of a mark.
     MarkedName,
-    /// Functions call each other in a circle, or are nested too deeply.
+    /// Functions call each other in a cycle, or are nested too deeply.
     Recursion,
     /// A function is very large or names very much: translating each by itself would take longer
     /// than the whole.
@@ -64,7 +64,7 @@ impl Reason {
             Self::Declaration => "the text has a declaration that cannot be separated",
             Self::Initialiser => "a variable is initialised from another variable",
             Self::MarkedName => "an identifier looks like a mark of the linker",
-            Self::Recursion => "functions call each other in a circle or nest too deeply",
+            Self::Recursion => "functions call each other in a cycle or nest too deeply",
             Self::Large => "a function is too large, or functions name too much",
             Self::Refused => "naga refuses a function by itself",
             Self::Stub => "a stub cannot stand for a function",

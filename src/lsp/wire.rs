@@ -74,7 +74,7 @@ pub fn write_message(stream: &mut impl Write, message: &Value) -> io::Result<()>
     stream.flush()
 }
 
-/// JSON-RPC's codes for what is no message, no method, or no arguments of it.
+/// JSON-RPC's error codes: parse error, method not found, invalid parameters.
 pub const PARSE_ERROR: i32 = -32700;
 pub const NO_METHOD: i32 = -32601;
 pub const WRONG_PARAMETERS: i32 = -32602;

@@ -51,7 +51,8 @@ type Read<T> = Result<T, Stop>;
 const STEPS: usize = 400;
 const STEPS_AT_LEAST: usize = 200_000;
 
-/// Reads a file. The error is the byte from which on it cannot be understood.
+/// Reads a file. The error is the byte from which on it cannot be understood, and whether that is
+/// because reading took too many steps.
 pub fn read_elements<'a>(
     text: &'a str,
     nodes: &'a [Node],

@@ -32,7 +32,7 @@ pub fn mesh_objects(
         let count = primitive.get(&gltf::Semantic::Positions).map_or(0, |rows| rows.count());
         *corners += indices.len().max(count);
         if *corners > MODEL_CORNERS {
-            return Err(format!("{place}: more than {MODEL_CORNERS} corners of triangles"));
+            return Err(format!("{place}: more than {MODEL_CORNERS} vertices of triangles"));
         }
         let own = sheet.coordinates(reader, &primitive.material())?;
         if own.set > 0 && primitive.get(&gltf::Semantic::TexCoords(own.set)).is_none() {
@@ -78,14 +78,14 @@ fn triangle_indices(
     };
     let count = positions.count();
     if count > MODEL_CORNERS {
-        return Err(format!("{place}: more than {MODEL_CORNERS} corners"));
+        return Err(format!("{place}: more than {MODEL_CORNERS} vertices"));
     }
     let listed = match primitive.indices() {
         Some(accessor) => reader.indices(&accessor, &format!("{place}.indices"))?,
         None => (0..count as u32).collect(),
     };
     if let Some(index) = listed.iter().find(|index| **index as usize >= count) {
-        return Err(format!("{place}.indices: {index} is beyond the last of {count} corners"));
+        return Err(format!("{place}.indices: {index} is beyond the last of {count} vertices"));
     }
     let step = |at: usize| match primitive.mode() {
         Mode::TriangleStrip if at % 2 == 1 => [at + 1, at, at + 2],

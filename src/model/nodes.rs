@@ -51,7 +51,7 @@ pub fn walk_scene(reader: &mut Reader<'_>) -> Result<Placed, String> {
         // A node below itself has no end.
         if seen > MODEL_NODES || depth > MODEL_NESTING {
             return Err(format!(
-                "{place}: more than {MODEL_NODES} nodes, or than {MODEL_NESTING} within each other"
+                "{place}: more than {MODEL_NODES} nodes, or nesting deeper than {MODEL_NESTING}"
             ));
         }
         let own = node.transform().matrix().map(|column| column.map(f64::from));

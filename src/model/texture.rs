@@ -114,7 +114,7 @@ fn texture_cells(
             let rows = mesh_coordinates(reader, &primitive, cell.own, &place)?;
             corners += rows.len();
             if corners > MODEL_CORNERS {
-                return Err(format!("{place}: more than {MODEL_CORNERS} corners of triangles"));
+                return Err(format!("{place}: more than {MODEL_CORNERS} vertices of triangles"));
             }
             let (low, high) =
                 bounds.entry(cell.index).or_insert((DVec2::INFINITY, DVec2::NEG_INFINITY));

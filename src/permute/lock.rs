@@ -87,7 +87,7 @@ pub fn parse(sources: &SourceSet, id: SourceId) -> Result<Lock, Diagnostics> {
 fn read_digit(before: &Lock, line: &str) -> Result<Digit, String> {
     let mut words = line.split_whitespace();
     let (Some(program), Some(axis)) = (words.next(), words.next()) else {
-        return Err("a line is a program, an axis and its values".to_owned());
+        return Err("expected `PROGRAM AXIS VALUES`".to_owned());
     };
     let mut words = words.peekable();
     let added = words.next_if_eq(&"+").is_some();

@@ -106,7 +106,7 @@ fn listed_keys(
             }
             Some(_) => {}
             None => problems.push(
-                Diagnostic::error(codes::USAGE_SYNTAX, "a line is a program and a key")
+                Diagnostic::error(codes::USAGE_SYNTAX, "expected `PROGRAM KEY`")
                     .at(span, "only one word"),
             ),
         }

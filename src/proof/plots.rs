@@ -33,7 +33,7 @@ pub fn plot_curves(
     if kernel.input_words() != 2 || kernel.result_words() != 1 {
         return Err(vec![Diagnostic::error(
             codes::UNTESTABLE_FUNCTION,
-            format!("the plot of `{path}` is not one number over two"),
+            format!("the plot of `{path}` needs a function of two numbers that gives one"),
         )]);
     }
     let values = plot.curves.as_ref().map_or(vec![0.0], |curves| curves.values.clone());

@@ -41,7 +41,7 @@ pub enum ClusterError {
     Cells,
     /// The range of the slices is empty, or the projection has no sides.
     Camera,
-    /// An index is a byte.
+    /// There are too many lamps: an index is one byte.
     Lamps,
     /// The block is full. Fewer cells or shorter ranges need fewer indices.
     Indices,

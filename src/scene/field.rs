@@ -30,7 +30,8 @@ pub struct ProbeField {
     depths: Vec<Vec<DVec2>>,
 }
 
-/// Texels along an edge of a probe's light, and of its distances, without the border of one texel.
+/// Texels along an edge of a probe's tile: of light, then of distances. A border of one texel is
+/// added.
 pub const PROBE_SIDES: (usize, usize) = (6, 14);
 /// The rows of the quadrature over the directions of a probe.
 const ROWS: usize = 12;

@@ -28,7 +28,7 @@ impl std::fmt::Display for MeshError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Incomplete { corners } => {
-                write!(f, "{corners} corners make no whole number of triangles")
+                write!(f, "{corners} vertices make no whole number of triangles")
             }
             Self::Beyond { index, vertices } => {
                 write!(f, "the index {index} is beyond the last of {vertices} vertices")

@@ -69,7 +69,7 @@ fn exhausted_process(composed: &Composed, how: &rehearse::Exhausted) -> Diagnost
         _ => error,
     };
     error.note(
-        "help: make smaller what is marked, or divide the shader: naga's time and memory may grow \
-         with the square of it, or faster",
+        "help: shorten the marked code, or split the shader: naga's time and memory may grow with \
+         the square of it, or faster",
     )
 }

@@ -158,7 +158,7 @@ fn chosen_entries(
             let message = format!("`{}` has no entry point `{name}`", file.display());
             Diagnostic::error(codes::UNKNOWN_ENTRY_POINT, message)
                 .suggest(name, known())
-                .note(format!("there are: {}", known().collect::<Vec<_>>().join(", ")))
+                .note(format!("entry points: {}", known().collect::<Vec<_>>().join(", ")))
         })
         .collect();
     if !errors.is_empty() {

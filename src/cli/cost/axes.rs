@@ -12,8 +12,8 @@ use crate::permute::Manifest;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
 
-/// What each value of each axis of a program changes, over all its permutations; in WESL where it
-/// has that. Nothing where no GPU is asked for.
+/// What each value of each axis of a program changes, over all its permutations: in WESL,
+/// or in GLSL if the program has no WESL. Nothing where no GPU is asked for.
 pub fn axis_changes(
     sources: &mut SourceSet,
     packages: &Packages,

@@ -5,7 +5,7 @@ use serde_json::json;
 use super::{Library, Shown};
 use crate::cli::text;
 
-/// Everything with the word, or with all of several words; `None` if there is nothing.
+/// The items that contain every word of the search; `None` if there are none.
 pub fn search_library(library: &Library, asked: &str) -> Option<Shown> {
     let words: Vec<String> = asked.split_whitespace().map(str::to_lowercase).collect();
     let has = |text: &str| {

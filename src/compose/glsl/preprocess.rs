@@ -338,7 +338,7 @@ impl<'g> State<'g, '_> {
             codes::INCLUDE_CYCLE,
             format!("files include each other without end: {}", names.join(" -> ")),
         )
-        .at(place, "closes the circle")
+        .at(place, "closes the cycle")
         .note("help: give the file an include guard or `#pragma once`")
     }
 }

@@ -149,7 +149,7 @@ impl<'p, N: Number> Machine<'p, N> {
         if first + slots.len() > super::layout::MAX_SLOTS as usize {
             return Err(Error::too_large("a buffer is too large for the CPU executor"));
         }
-        // The least size counts one element of the array. Everything before that is fixed.
+        // `least` is the size with one element, so `least - element` is the part before the array.
         let fixed = (least - element) as usize;
         let elements = slots.len().saturating_sub(fixed) / element.max(1) as usize;
         self.lane.memory.extend(slots);

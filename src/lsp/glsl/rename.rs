@@ -88,7 +88,7 @@ fn check_readable(units: &Units, files: &BTreeSet<usize>) -> Result<(), String> 
         if let Some(error) = module.errors.first() {
             let byte = error.labels.first().map_or(0, |label| label.span.start);
             return Err(format!(
-                "{} has to be mended first: {}",
+                "fix this first: {}: {}",
                 shown_place(units, file, byte),
                 error.message
             ));

@@ -149,7 +149,7 @@ impl Node {
         let text = self.text()?;
         known.iter().find(|(name, _)| *name == text).map(|(_, value)| *value).ok_or_else(|| {
             let names: Vec<_> = known.iter().map(|(name, _)| format!("`{name}`")).collect();
-            let error = self.error(format!("`{text}` is none of {}", names.join(", ")));
+            let error = self.error(format!("expected one of {}, found `{text}`", names.join(", ")));
             error.suggest(text, known.iter().map(|(name, _)| *name))
         })
     }

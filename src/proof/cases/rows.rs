@@ -173,10 +173,8 @@ fn ordered_columns<'a>(case: &'a Case, scope: &Scope<'_>) -> Result<Vec<Column<'
             .position(|(_, domain, _)| domain.needs().iter().all(|need| done.contains(need)));
         let Some(ready) = ready else {
             let (_, domain, span) = left[0];
-            let message = format!(
-                "`{}` is given no values, or only in a circle",
-                domain.needs().join("`, `")
-            );
+            let message =
+                format!("`{}` is given no values, or only in a cycle", domain.needs().join("`, `"));
             return Err(Diagnostic::error(codes::CASE_INVALID, message).at(*span, "needed here"));
         };
         let (path, domain, span) = left.remove(ready);

@@ -111,7 +111,7 @@ pub struct Node {
     pub lints: Vec<Diagnostic>,
     /// What led here first; `None` for the root module.
     pub importer: Option<Importer>,
-    /// Where its entries start in the tables over all modules.
+    /// Offsets of this module's items, conditions and bindings in the tables over all modules.
     pub bases: Bases,
 }
 

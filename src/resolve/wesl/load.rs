@@ -275,7 +275,8 @@ impl<'a> Loader<'a> {
         std::iter::once(first).chain(path.iter().map(String::as_str)).collect::<Vec<_>>().join("::")
     }
 
-    /// Imports are met in the order of their file, so that its text is read once for all of them.
+    /// Where an import stands, as `imported by FILE:LINE:COLUMN`. Lines are counted on from the
+    /// import before, so each file is read once.
     fn note(&mut self, span: Span) -> String {
         let (at, text) = (span.start as usize, &self.sources.get(span.source).text);
         let known = self.positions.get(&span.source).copied().filter(|(before, ..)| *before <= at);

@@ -343,6 +343,6 @@ impl Loader<'_> {
 }
 
 fn cyclic_import(span: Span) -> Diagnostic {
-    Diagnostic::error(codes::CYCLIC_IMPORT, "imported names that stand for each other")
+    Diagnostic::error(codes::CYCLIC_IMPORT, "imports refer to each other in a cycle")
         .at(span, "leads back to itself")
 }

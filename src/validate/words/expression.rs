@@ -14,7 +14,7 @@ pub fn expression_words(module: &Module, error: &ExpressionError) -> Said {
         E::InvalidIndexType(_) => "an index is an integer",
         E::NegativeIndex(_) => "an index is not negative",
         E::IndexOutOfBounds(_, index) => {
-            return Said::plain(format!("there is no element {index}: there are fewer"));
+            return Said::plain(format!("index {index} is out of bounds"));
         }
         E::InvalidPointerType(_) => "there is nothing to be read here",
         E::InvalidArrayType(_) => "only arrays in storage buffers have a length to ask for",

@@ -86,9 +86,10 @@ pub fn literal_words(error: &LiteralError) -> Said {
 
 pub fn compose_words(module: &Module, error: &ComposeError) -> Said {
     match error {
-        ComposeError::Type(handle) => {
-            Said::plain(format!("{} has no constructor of components", type_text(module, *handle)))
-        }
+        ComposeError::Type(handle) => Said::plain(format!(
+            "{} cannot be constructed from components",
+            type_text(module, *handle)
+        )),
         ComposeError::ComponentCount { given, expected } => Said::coded(
             codes::CALL_MISMATCH,
             format!("a constructor takes {expected} components, not {given}"),
@@ -109,7 +110,7 @@ pub fn constant_words(module: &Module, error: &ConstExpressionError) -> Said {
         ConstExpressionError::InvalidSplatType(_) => {
             Said::plain("only a scalar can fill all components of a vector")
         }
-        ConstExpressionError::Type(_) => Said::plain("the type of a constant cannot be found out"),
+        ConstExpressionError::Type(_) => Said::plain("the type of a constant cannot be inferred"),
         ConstExpressionError::Literal(error) => literal_words(error),
         ConstExpressionError::Width(error) => width_words(error),
     }

@@ -41,7 +41,7 @@ const WRONG: &[Wrong] = &[
     (
         "many_rows",
         || changed(|document| document["accessors"][0]["count"] = json!(4_000_000_000_u32)),
-        "corners",
+        "vertices",
     ),
     (
         "sparse",

@@ -31,7 +31,7 @@ pub fn polar(c: f64, s: f64, azimuth: f64) -> Direction {
     [s * azimuth.cos(), s * azimuth.sin(), c]
 }
 
-/// The light's direction that a facet of normal `h` mirrors to the viewer `v`.
+/// `v` reflected about the facet's normal `h`.
 pub fn mirrored(v: Direction, h: Direction) -> Direction {
     let twice = 2.0 * dot(v, h);
     [0, 1, 2].map(|i| twice * h[i] - v[i])
