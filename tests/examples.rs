@@ -47,7 +47,7 @@ fn loads_a_bundle() -> Result<(), Failed> {
         targets: vec![Target::WGSL],
         ..Request::default()
     };
-    let made = in_memory(&mut sources, &project::library(), &manifest, &request, &|_| {})
+    let made = in_memory(&mut sources, &project::library_packages(), &manifest, &request, &|_| {})
         .map_err(|problems| format!("{problems:?}"))?;
     bundle::write_file(&made.contents, &path)?;
     let path = path.to_string_lossy().into_owned();

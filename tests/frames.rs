@@ -243,7 +243,7 @@ pub fn bundle(
     program.space.undeclared = sources.space.undeclared;
     let request = Request { program: Some(sources.program.to_owned()), ..Request::default() };
     let mut texts = sources.programs.texts();
-    let made = in_memory(&mut texts, &project::library(), &manifest, &request, &|_| ());
+    let made = in_memory(&mut texts, &project::library_packages(), &manifest, &request, &|_| ());
     let made = made.map_err(|problems| render(&texts, &problems, Form::Human))?;
     if let Some(whole) = made.summary.whole.first() {
         return Err(format!("expected every text to be linked; as a whole: {whole:?}"));

@@ -75,7 +75,7 @@ fn review(name: &str, text: &str) -> Result<(), Failed> {
         only: Some(Quoted::whole(&sources, id)),
         ..Request::default()
     };
-    let made = in_memory(&mut sources, &project::library(), &manifest, &request, &|_| ());
+    let made = in_memory(&mut sources, &project::library_packages(), &manifest, &request, &|_| ());
     let made = made.map_err(|errors| render(&sources, &errors, Form::Human))?;
     let shipped = made.contents.programs.get("forward").ok_or("no program `forward` is made")?;
     for (path, language, entry) in roots(program) {
@@ -118,7 +118,7 @@ fn composed(
     (path, language, entry): Root<'_>,
     settings: &Settings,
 ) -> Result<String, Failed> {
-    let packages = project::library();
+    let packages = project::library_packages();
     let graph = resolve::load(sources, &packages, path, language)
         .map_err(|errors| render(sources, &errors, Form::Human))?;
     let keep = if language == Language::Wesl {
@@ -163,8 +163,13 @@ fn contents() -> Result<&'static Contents, Failed> {
 fn library() -> Result<Contents, String> {
     let (mut sources, manifest) = project::library_manifest()
         .map_err(|(sources, errors)| render(&sources, &errors, Form::Human))?;
-    let generated =
-        in_memory(&mut sources, &project::library(), &manifest, &Request::default(), &|_| {});
+    let generated = in_memory(
+        &mut sources,
+        &project::library_packages(),
+        &manifest,
+        &Request::default(),
+        &|_| {},
+    );
     generated
         .map(|generated| generated.contents)
         .map_err(|errors| render(&sources, &errors, Form::Human))

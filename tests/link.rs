@@ -137,7 +137,7 @@ fn forward() -> Outcome {
     let (mut sources, mut manifest) = project::library_manifest()
         .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
     manifest.programs.retain(|program| program.name == "forward");
-    let together = agree(&mut sources, &project::library(), &manifest, STEP)?;
+    let together = agree(&mut sources, &project::library_packages(), &manifest, STEP)?;
     all_linked(&together)
 }
 
@@ -170,7 +170,7 @@ fn whole_and_linked() -> Outcome {
     // naga's GLSL front end numbers values and orders statements by what else the module has, so
     // outputs of GLSL sources cannot be compared as texts. `frames` and `metal` draw them instead.
     manifest.programs.iter_mut().for_each(|program| program.glsl = None);
-    compare::all(&mut sources, &project::library(), &manifest, STEP)
+    compare::all(&mut sources, &project::library_packages(), &manifest, STEP)
 }
 
 /// Writes a package of one module to a folder, and reads it.

@@ -18,8 +18,9 @@ use std::path::{Path, PathBuf};
 
 use lamplight::execute::compiled::Program;
 use lamplight::execute::compiled::request::{Bound, Fragment};
-use lamplight::metal::judge_texts;
+use lamplight::metal::{Clang, Missing, Refusal, judge_batch};
 use libtest_mimic::{Failed, Trial};
+use rayon::prelude::*;
 use references::{REFERENCES, Reference};
 
 type Outcome = Result<(), Failed>;
@@ -49,12 +50,20 @@ fn told(wrong: &[String]) -> Outcome {
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n").into()) }
 }
 
+/// What the judge refuses. Each refusal has the index of its text.
+fn judge_texts(texts: &[String]) -> Result<Vec<Refusal>, String> {
+    let reason = |missing: Missing| missing.reason;
+    let clang = Clang::open().map_err(reason)?;
+    let views: Vec<(usize, &str)> = texts.iter().map(String::as_str).enumerate().collect();
+    let judged = views.par_chunks(64).map(|batch| judge_batch(&clang, batch));
+    Ok(judged.collect::<Result<Vec<_>, _>>().map_err(reason)?.concat())
+}
+
 /// The judge refuses every text with a mistake, at its line and with its message.
 fn mistakes() -> Outcome {
     let files = files("refused");
     let texts: Vec<String> = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
-    let views: Vec<&str> = texts.iter().map(String::as_str).collect();
-    let refusals = judge_texts(&views, &|_| ()).map_err(|missing| missing.reason)?;
+    let refusals = judge_texts(&texts)?;
     let mut wrong = Vec::new();
     for (index, text) in texts.iter().enumerate() {
         let expected = text.lines().next().unwrap().strip_prefix("// mistake in line ").unwrap();

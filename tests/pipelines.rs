@@ -143,7 +143,8 @@ fn generated(
     sources: &mut lamplight::source::SourceSet,
     manifest: &Manifest,
 ) -> Result<lamplight::bundle::Contents, lamplight::diagnostic::Diagnostics> {
-    Ok(in_memory(sources, &project::library(), manifest, &Request::default(), &|_| ())?.contents)
+    Ok(in_memory(sources, &project::library_packages(), manifest, &Request::default(), &|_| ())?
+        .contents)
 }
 
 /// The stages of one permutation in one language, in both targets.

@@ -164,7 +164,7 @@ fn permutation(
         asked.shaders.push(request);
         let settings = program.space.settings(&point);
         let name = format!("{} of {}", text, root.path);
-        shader(asked, &name, &project::library(), &root.path, &settings)?;
+        shader(asked, &name, &project::library_packages(), &root.path, &settings)?;
     }
     Ok(())
 }

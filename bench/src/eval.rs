@@ -29,9 +29,12 @@ pub fn run() -> Outcome {
 
 fn program() -> Result<Program, Box<dyn Error>> {
     let told = |problems: Diagnostics| format!("{problems:?}");
-    let graph =
-        resolve::wesl::load(&mut SourceSet::default(), &lamplight::project::library(), MODULE)
-            .map_err(told)?;
+    let graph = resolve::wesl::load(
+        &mut SourceSet::default(),
+        &lamplight::project::library_packages(),
+        MODULE,
+    )
+    .map_err(told)?;
     let options = Options { keep: Keep::Items(vec![FUNCTION.to_owned()]), ..Options::default() };
     let composed = composer::compose(&graph, &Settings::default(), &options).map_err(told)?;
     let validated = validate(&composed).map_err(told)?;

@@ -142,7 +142,7 @@ fn generated(manifest: &Manifest) -> Result<(), String> {
     let request = Request { program: Some(PROGRAM.to_owned()), ..Request::default() };
     let generated = generate(
         &mut SourceSet::default(),
-        &project::library(),
+        &project::library_packages(),
         manifest,
         &request,
         &Tools { sink: &Discard::default(), cache: None, progress: &|_| {} },
@@ -155,8 +155,13 @@ fn generated(manifest: &Manifest) -> Result<(), String> {
 /// once.
 fn packed(manifest: &Manifest) -> Outcome {
     let request = Request { program: Some(PROGRAM.to_owned()), ..Request::default() };
-    let generated =
-        in_memory(&mut SourceSet::default(), &project::library(), manifest, &request, &|_| {});
+    let generated = in_memory(
+        &mut SourceSet::default(),
+        &project::library_packages(),
+        manifest,
+        &request,
+        &|_| {},
+    );
     let generated = generated.map_err(|diagnostics| format!("{diagnostics:?}"))?;
     let raw: u64 = generated.summary.targets.iter().map(|target| target.bytes).sum();
     let start = Instant::now();
@@ -190,7 +195,7 @@ fn graphs(program: &Program, language: Language) -> Result<Vec<Graph>, String> {
         Language::Glsl => glsl.collect(),
     };
     let load = |path: &str| {
-        resolve::load(&mut SourceSet::default(), &project::library(), path, language)
+        resolve::load(&mut SourceSet::default(), &project::library_packages(), path, language)
             .map_err(|diagnostics| format!("{diagnostics:?}"))
     };
     roots.into_iter().map(|root| load(&root.path)).collect()

@@ -47,7 +47,7 @@ fn roots() -> impl Iterator<Item = &'static str> {
 }
 
 fn ours() -> Result<Duration, Box<dyn Error>> {
-    let packages = lamplight::project::library();
+    let packages = lamplight::project::library_packages();
     let load = |root: &str| {
         resolve::wesl::load(&mut SourceSet::default(), &packages, &format!("{root}.wesl"))
     };

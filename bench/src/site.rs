@@ -145,7 +145,7 @@ fn keystroke() -> Result<Duration, Diagnostics> {
 
 /// The graph of `forward`, and the settings of the keys.
 fn chosen() -> Result<(Graph, Vec<Settings>), Diagnostics> {
-    let packages = project::library();
+    let packages = project::library_packages();
     let graph = resolve::load(&mut SourceSet::default(), &packages, FORWARD, Language::Wesl)?;
     Ok((graph, KEYS.map(settings).into_iter().collect::<Result<_, _>>()?))
 }

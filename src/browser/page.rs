@@ -83,7 +83,8 @@ impl Page {
         }
     }
 
-    /// Waits until an expression is true. It may fail meanwhile, as it does before a page is loaded.
+    /// Waits until an expression is true. It may fail meanwhile, as it does before a page is
+    /// loaded.
     ///
     /// # Errors
     /// It is not true within the time, or the page or the browser is gone.

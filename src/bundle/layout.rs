@@ -87,9 +87,9 @@ pub struct KeySet {
     /// Where the records start in KEYS.
     pub records: u32,
     /// Where the hash slots start in KEYS, and how many there are, which is a power of two. A slot
-    /// has 96 bits of a key's [`hash_key`] above one more than the index of its record, or is zero. A
-    /// lookup compares these bits and not the text, since reading the text would be one more access
-    /// to distant memory. Two keys have the same bits with a probability of 2^-96.
+    /// has 96 bits of a key's [`hash_key`] above one more than the index of its record, or is zero.
+    /// A lookup compares these bits and not the text, since reading the text would be one more
+    /// access to distant memory. Two keys have the same bits with a probability of 2^-96.
     pub slots: u32,
     pub slot_count: u32,
 }

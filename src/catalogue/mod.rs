@@ -2,8 +2,9 @@
 //! that show them.
 //!
 //! Everything is read from the library's own files: names, signatures and documentation from the
-//! modules, [`plot`]s from `NAME.plot.toml` and [`figure`]s from `NAME.figure.toml` beside a module, [`preset`]s from `presets.toml`,
-//! [`probe`]s from `data/sh9_probes.toml`, recorded [`cost`]s from `costs.toml`. [`pages`] writes the catalogue from them.
+//! modules, [`plot`]s from `NAME.plot.toml` and [`figure`]s from `NAME.figure.toml` beside a
+//! module, [`preset`]s from `presets.toml`, [`probe`]s from `data/sh9_probes.toml`, recorded
+//! [`cost`]s from `costs.toml`. [`pages`] writes the catalogue from them.
 
 pub mod cost;
 pub mod figure;
@@ -136,8 +137,8 @@ pub const SECTIONS: &[&str] = &["Parameters", "Returns", "Source", "Edges", "Err
 /// The heading of what a function gives for arguments that have no meaning.
 const EDGES: &str = "Edges";
 
-/// What is true of every function of the library whose comment says nothing about NaN. WGSL, section
-/// "Floating Point Evaluation": an implementation may assume that no value is NaN.
+/// What is true of every function of the library whose comment says nothing about NaN. WGSL,
+/// section "Floating Point Evaluation": an implementation may assume that no value is NaN.
 const NAN: &str = "Where an argument is NaN, the result is indeterminate.";
 
 fn is_heading(line: &str) -> bool {

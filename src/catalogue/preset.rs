@@ -81,12 +81,6 @@ impl Preset {
         }
         self.source.split(", ").next().unwrap_or_default()
     }
-
-    /// Whether the source's number of a field is known, or is known to be open.
-    pub fn accounts_for(&self, group: &str, field: &str) -> bool {
-        self.numbers.get(group).is_some_and(|fields| fields.contains_key(field))
-            || self.open.contains(&format!("{group}.{field}"))
-    }
 }
 
 /// An earlier pass.
@@ -184,7 +178,8 @@ struct PassEntry {
 /// Path of the presets below the library's root.
 pub const PATH: &str = "presets.toml";
 
-/// The library's presets, in their natural order; its manifest comes from [`crate::project::library_manifest`].
+/// The library's presets, in their natural order; its manifest comes from
+/// [`crate::project::library_manifest`].
 pub fn library_presets(
     sources: &mut SourceSet,
     manifest: &Manifest,
@@ -194,7 +189,8 @@ pub fn library_presets(
     parse_presets(sources, id, manifest, probes)
 }
 
-/// Reads the presets that are in the set, in their natural order; programs and keys are the manifest's.
+/// Reads the presets that are in the set, in their natural order; programs and keys are the
+/// manifest's.
 ///
 /// Every mistake is reported: programs, scenes and probes that do not exist, keys that are not
 /// canonical, break a constraint or do not ship.

@@ -72,7 +72,8 @@ fn make_probe(name: String, entry: &Entry) -> Option<Probe> {
 
 /// First lines of both modules.
 const HEAD: &str = "\
-//! Published light probes: radiance around ten places as nine spherical harmonics, for `ambient::sh`.
+//! Published light probes: radiance around ten places as nine spherical harmonics, for
+//! `ambient::sh`.
 //!
 //! Made from `data/sh9_probes.toml` by `cargo xtask docs`: edit that file, not this one.
 ";

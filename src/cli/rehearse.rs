@@ -32,7 +32,7 @@ pub fn install_rehearsal() {
 
 /// Runs in the other process: the job is on standard input.
 pub fn run_rehearsal(arguments: Arguments) -> Result<(), Failure> {
-    limited()?;
+    limit_process()?;
     let mut job = Vec::new();
     std::io::stdin().lock().read_to_end(&mut job)?;
     match arguments.stage.as_str() {
@@ -49,7 +49,7 @@ pub fn run_rehearsal(arguments: Arguments) -> Result<(), Failure> {
 /// Limits the resources of this process. On systems other than Linux only its time is limited, by
 /// the caller.
 #[cfg(target_os = "linux")]
-fn limited() -> Result<(), Failure> {
+fn limit_process() -> Result<(), Failure> {
     use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 
     // No limit is raised above what the user allows. Of memory the job gets half of that, since the
@@ -69,7 +69,7 @@ fn limited() -> Result<(), Failure> {
 }
 
 #[cfg(not(target_os = "linux"))]
-fn limited() -> Result<(), Failure> {
+fn limit_process() -> Result<(), Failure> {
     Ok(())
 }
 

@@ -3,9 +3,9 @@
 //! What commands print holds names, paths and messages from elsewhere: a bundle's programs, a
 //! cached message, an argument that is echoed. A terminal obeys control characters, so such a name
 //! could hide lines, move the cursor or reverse the writing direction. Everything that is printed
-//! goes through [`Escaping`]. Bytes that are a result ([`write_data`]) do so only on a terminal, and are
-//! unchanged in pipes and files. No other file of the command line may name the streams of the
-//! standard library; `house::one_way_to_the_terminal` checks that.
+//! goes through [`Escaping`]. Bytes that are a result ([`write_data`]) do so only on a terminal,
+//! and are unchanged in pipes and files. No other file of the command line may name the streams of
+//! the standard library; `house::one_way_to_the_terminal` checks that.
 
 use std::io::{self, IsTerminal, Write};
 

@@ -203,7 +203,7 @@ pub fn open_manifest(
                     diagnostics
                 })?;
             *sources = library;
-            Ok((manifest, project::library()))
+            Ok((manifest, project::library_packages()))
         }
     }
 }

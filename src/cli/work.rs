@@ -1,5 +1,5 @@
-//! What `gen` and `watch` share: they open a package with its manifest and its cache, and generate its
-//! bundle.
+//! What `gen` and `watch` share: they open a package with its manifest and its cache, and generate
+//! its bundle.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -5,8 +5,8 @@
 //! alone are compiled once, and an edited comment does not cause any compilation.
 //!
 //! Type aliases are replaced by what they stand for. naga makes a type of its own for an alias, so
-//! in Metal an array and its alias would be two types. Variables of GLSL that are called as a member
-//! of a block get another name, since naga would take one for the other.
+//! in Metal an array and its alias would be two types. Variables of GLSL that are called as a
+//! member of a block get another name, since naga would take one for the other.
 
 use std::borrow::Cow;
 use std::ops::Range;

@@ -18,7 +18,7 @@ pub fn rename_like_members(composed: Composed) -> Composed {
         return composed;
     }
     let names = new_names(&composed);
-    if names.is_empty() { composed } else { renamed(&composed, &names) }
+    if names.is_empty() { composed } else { renamed_members(&composed, &names) }
 }
 
 /// The new name of each variable and constant that needs one.
@@ -54,8 +54,8 @@ fn is_block(composed: &Composed, part: &Part) -> bool {
     part.kind == PartKind::Variable && words(behind).next().is_some()
 }
 
-/// The words between a block's braces, but those within brackets, which are lengths of arrays. Types
-/// are among them, and no variable has the name of a type.
+/// The words between a block's braces, but those within brackets, which are lengths of arrays.
+/// Types are among them, and no variable has the name of a type.
 fn members<'c>(composed: &'c Composed, block: &Part) -> impl Iterator<Item = &'c str> {
     let text = &composed.text[block.range.clone()];
     let open = text.find('{').map_or(text.len(), |at| at + 1);
@@ -83,7 +83,7 @@ impl Brackets {
     }
 }
 
-fn renamed(composed: &Composed, names: &BTreeMap<String, String>) -> Composed {
+fn renamed_members(composed: &Composed, names: &BTreeMap<String, String>) -> Composed {
     let mut text = String::with_capacity(composed.text.len());
     let mut parts = Vec::with_capacity(composed.parts.len());
     let mut end = 0;
@@ -92,7 +92,7 @@ fn renamed(composed: &Composed, names: &BTreeMap<String, String>) -> Composed {
         end = part.range.end;
         let start = text.len();
         let declares_members = part.kind == PartKind::Struct || is_block(composed, part);
-        append(&composed.text[part.range.clone()], names, declares_members, &mut text);
+        append_renamed(&composed.text[part.range.clone()], names, declares_members, &mut text);
         let new = |name: &String| names.get(name).unwrap_or(name).clone();
         let own = part.names.iter().map(new).collect();
         let mut uses = part.uses.clone();
@@ -114,7 +114,12 @@ fn is_named(text: &str, part: &Part, names: &BTreeMap<String, String>) -> bool {
 /// Appends a part. Names behind a point are members. So are those of a structure or block, except
 /// within brackets, where the length of an array stands. A qualifier of a layout is no name either,
 /// but what it is set to may be one.
-fn append(text: &str, names: &BTreeMap<String, String>, declares_members: bool, out: &mut String) {
+fn append_renamed(
+    text: &str,
+    names: &BTreeMap<String, String>,
+    declares_members: bool,
+    out: &mut String,
+) {
     let (mut before, mut brackets, mut in_layout) = (' ', Brackets::default(), false);
     for piece in pieces(text) {
         match piece.text {

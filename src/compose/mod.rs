@@ -1,4 +1,5 @@
-//! Writes the modules that an entry point reaches as one text, with a map back to the authors' files.
+//! Writes the modules that an entry point reaches as one text, with a map back to the authors'
+//! files.
 
 pub mod glsl;
 pub mod lean;

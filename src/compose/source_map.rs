@@ -52,7 +52,8 @@ impl SourceMap {
         Some(Span { source: span.source, start, end })
     }
 
-    /// Where the last byte before `end` came from, if in the same source at or after segment `first`.
+    /// Where the last byte before `end` came from, if in the same source at or after segment
+    /// `first`.
     fn end(&self, first: usize, end: usize, source: crate::source::SourceId) -> Option<u32> {
         let last = self
             .segments

@@ -16,7 +16,7 @@ const KIND: &str = "costs";
 ///
 /// # Errors
 /// What the driver says where it refuses the pipeline.
-pub fn figures(
+pub fn known_figures(
     device: &Device,
     pipeline: &Pipeline,
     cache: Option<&Cache>,
@@ -32,7 +32,8 @@ pub fn figures(
     Ok(figures)
 }
 
-/// A hash of all that figures depend on: the pipeline, the GPU, the driver, and how this crate asks.
+/// A hash of all that figures depend on: the pipeline, the GPU, the driver, and how this crate
+/// asks.
 fn figures_key(device: &Device, pipeline: &Pipeline) -> Hash {
     let mut hasher = Digest(blake3::Hasher::new());
     (BUILD, &device.driver, device.gpu.name, pipeline).hash(&mut hasher);

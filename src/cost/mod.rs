@@ -6,8 +6,8 @@
 //!
 //! `subject -> pipeline -> device -> statistics`
 //!
-//! Two more compilers are programs of their own: `subject -> stages -> counts` asks `spirv-opt`, and
-//! `subject -> stages -> mali` asks Arm's compiler.
+//! Two more compilers are programs of their own: `subject -> stages -> counts` asks `spirv-opt`,
+//! and `subject -> stages -> mali` asks Arm's compiler.
 
 pub mod baseline;
 pub mod counts;
@@ -138,7 +138,7 @@ pub fn measure_subjects(
         .collect();
     let (done, total) = (AtomicUsize::new(0), jobs.len());
     let one = |(device, pipeline, name): &(&Device, &Pipeline, &str)| {
-        let figures = known::figures(device, pipeline, cache);
+        let figures = known::known_figures(device, pipeline, cache);
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
         figures.map_err(|reason| format!("`{name}` on {}: {reason}", device.gpu.name))
     };

@@ -1,8 +1,9 @@
 //! Signed remainders in GLSL.
 //!
-//! WGSL truncates: `-5 % 3` is -2. GLSL leaves `%` undefined where an operand is negative (Kessenich,
-//! Baldwin and Rost, "The OpenGL Shading Language", version 4.50, section 5.9), and naga writes it
-//! all the same. A function computes `a - a / b * b` instead, since division truncates.
+//! WGSL truncates: `-5 % 3` is -2. GLSL leaves `%` undefined where an operand is negative
+//! (Kessenich, Baldwin and Rost, "The OpenGL Shading Language", version 4.50, section 5.9), and
+//! naga writes it all the same. A function computes `a - a / b * b` instead, since division
+//! truncates.
 
 use std::collections::BTreeMap;
 

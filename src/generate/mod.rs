@@ -105,7 +105,8 @@ pub struct Generated {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Composes, validates and emits every permutation asked for; units go to the sink as they are made.
+/// Composes, validates and emits every permutation asked for; units go to the sink as they are
+/// made.
 ///
 /// # Errors
 /// Diagnostics of the permutations that fail, each once, with the key of the first permutation

@@ -7,7 +7,7 @@ use crate::diagnostic::Diagnostics;
 use crate::link::{self, Linker, Made};
 use crate::permute::Settings;
 use crate::resolve::Graph;
-use crate::validate::{every, naga_stage, on_large_stack, validate};
+use crate::validate::{naga_stage, on_large_stack, validate, validate_every};
 
 /// The entry point of every GLSL text.
 const GLSL_ENTRY: &str = "main";
@@ -49,7 +49,7 @@ pub fn entry_points(composed: &Composed) -> Result<Vec<(String, naga::ShaderStag
     }
     // The lean text is what will be compiled. If it is not valid, the author's text shows what is
     // wrong.
-    let validated = validate(&lean(composed)).or_else(|_| every(composed))?;
+    let validated = validate(&lean(composed)).or_else(|_| validate_every(composed))?;
     let points = validated.module.entry_points.into_iter();
     Ok(points.map(|point| (point.name, point.stage)).collect())
 }

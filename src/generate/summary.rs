@@ -107,7 +107,8 @@ pub(super) fn program(name: &str, permutations: usize, results: &[EntryResult]) 
     ProgramSummary { name: name.to_owned(), permutations, entries: entries.collect() }
 }
 
-/// Counts the distinct outputs of each target; `results` are those of one program, with its targets.
+/// Counts the distinct outputs of each target; `results` are those of one program, with its
+/// targets.
 #[derive(Debug, Default)]
 pub(super) struct Outputs(BTreeMap<Target, BTreeMap<Hash, u32>>);
 

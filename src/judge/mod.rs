@@ -2,8 +2,9 @@
 //!
 //! `files of a bundle -> outputs -> verdict (those that passed before are known) -> blame (the author's places)`
 //!
-//! Each file of `judges/` is a judge, and each target names one, so no target is without one. Programs
-//! are started for batches of outputs. If a batch is refused, its outputs are judged again one by one.
+//! Each file of `judges/` is a judge, and each target names one, so no target is without one.
+//! Programs are started for batches of outputs. If a batch is refused, its outputs are judged again
+//! one by one.
 
 mod blame;
 mod known;

@@ -61,7 +61,7 @@ mod translate;
 mod uses;
 
 pub use compile::{Made, Text, compile, perform_job};
-pub use module::{compile_module, module_linked};
+pub use module::module_linked;
 pub use reason::Reason;
 
 use std::collections::BTreeSet;

@@ -13,23 +13,11 @@ use crate::validate::Validated;
 
 const FILE: &str = "module.wgsl";
 
-/// The output of a module's entry point, as a bundle would hold it.
+/// The output of a module's entry point, as a bundle would hold it. The linker is one of that target.
+/// It may be kept, so that functions which modules share are translated once.
 ///
 /// # Errors
 /// As of [`compile()`]; places are those of the text that the module became.
-pub fn compile_module(
-    validated: &Validated,
-    entry: &str,
-    target: Target,
-) -> Result<Artifact, Diagnostics> {
-    module_linked(validated, entry, target, &Linker::new(&[target]))
-}
-
-/// As [`compile_module`], with a linker of that target which may be kept, so that functions which
-/// modules share are translated once.
-///
-/// # Errors
-/// Those of [`compile_module`].
 pub fn module_linked(
     validated: &Validated,
     entry: &str,

@@ -11,9 +11,10 @@ pub enum Reason {
     /// There is not exactly one entry point, or it is a compute shader.
     EntryPoint,
     Override,
-    /// A storage buffer: writers pass the lengths of its arrays to the functions that need them. This
-    /// breaks the first assumption that the documentation of `src/link/mod.rs` lists. `refuse_part` in
-    /// `outline.rs` finds declarations; `uses.rs` finds pointers in an address space that no stub has.
+    /// A storage buffer: writers pass the lengths of its arrays to the functions that need them.
+    /// This breaks the first assumption that the documentation of `src/link/mod.rs` lists.
+    /// `refuse_part` in `outline.rs` finds declarations; `uses.rs` finds pointers in an address
+    /// space that no stub has.
     StorageBuffer,
     /// An array of bindings: writers ask whether its index is uniform.
     BindingArray,
@@ -38,10 +39,10 @@ pub enum Reason {
     Sampling,
     /// The stage lacks an operation that is used. The whole text shows what is wrong.
     Stage,
-    /// naga wrote an output in a form that this crate does not know. `cut.rs` divides an output into
-    /// declarations, and finds in them the marks that stand for names. `names.rs` asks how the target
-    /// spells a name. `translate.rs` and `texts.rs` write and read an entry point's native names as
-    /// JSON. `pool.rs` looks for the piece of each target, which is text or SPIR-V.
+    /// naga wrote an output in a form that this crate does not know. `cut.rs` divides an output
+    /// into declarations, and finds in them the marks that stand for names. `names.rs` asks how the
+    /// target spells a name. `translate.rs` and `texts.rs` write and read an entry point's native
+    /// names as JSON. `pool.rs` looks for the piece of each target, which is text or SPIR-V.
     Shape,
     /// The lines before the declarations of two outputs cannot be merged.
     Header,

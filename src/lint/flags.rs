@@ -7,7 +7,7 @@ use crate::resolve::Graph;
 
 /// An error for each flag of the package's own conditions that neither an axis nor an option gives
 /// a value, unless a value for undeclared features was chosen.
-pub fn undeclared(graph: &Graph, request: &Request<'_>) -> Diagnostics {
+pub fn undeclared_flags(graph: &Graph, request: &Request<'_>) -> Diagnostics {
     let mut known = request.settings.clone();
     for program in request.manifest.iter().flat_map(|manifest| &manifest.programs) {
         let Settings { values, undeclared, .. } =

@@ -63,7 +63,7 @@ pub fn lint(sources: &mut SourceSet, request: &Request<'_>) -> Linted {
     }
     let included = included_files(sources, &graphs);
     for (path, graph) in &graphs {
-        found.extend(flags::undeclared(graph, request));
+        found.extend(flags::undeclared_flags(graph, request));
         // A GLSL file that others include is checked where it is included.
         if !included.contains(&request.packages.root.files.display(path)) {
             found.extend(lint_module(graph, request, path));
@@ -90,12 +90,12 @@ fn included_files(sources: &SourceSet, graphs: &BTreeMap<String, Graph>) -> BTre
 fn lint_module(graph: &Graph, request: &Request<'_>, path: &str) -> Diagnostics {
     let mut found = Diagnostics::new();
     let mut texts = BTreeSet::new();
-    for settings in settings::candidates(graph, request, path) {
-        let composed = compose::compose(graph, &settings, &options(graph, path));
+    for settings in settings::candidate_settings(graph, request, path) {
+        let composed = compose::compose(graph, &settings, &lint_options(graph, path));
         match composed {
             Ok(composed) => {
                 if texts.insert(composed.text.clone()) {
-                    found.extend(graph.traced(text(graph, &composed)));
+                    found.extend(graph.traced(lint_text(graph, &composed)));
                 }
             }
             Err(errors) => {
@@ -113,7 +113,7 @@ fn one_by_one(graph: &Graph, settings: &Settings) -> Diagnostics {
     for name in graph.root_items() {
         let options = Options { keep: Keep::Items(vec![name]), ..Options::default() };
         match compose::compose(graph, settings, &options) {
-            Ok(composed) => found.extend(graph.traced(text(graph, &composed))),
+            Ok(composed) => found.extend(graph.traced(lint_text(graph, &composed))),
             // An item that was asked for by name has no place if it is missing.
             Err(errors) => {
                 found.extend(errors.into_iter().filter(|error| !error.labels.is_empty()))
@@ -125,7 +125,7 @@ fn one_by_one(graph: &Graph, settings: &Settings) -> Diagnostics {
 
 /// Options that keep everything a WESL module declares. For GLSL they also keep what it includes,
 /// since that is needed to see the whole file.
-pub fn options(graph: &Graph, path: &str) -> Options {
+pub fn lint_options(graph: &Graph, path: &str) -> Options {
     let stem = path.strip_suffix(".glsl").unwrap_or(path);
     let has_stage = [".vert", ".frag", ".comp"].iter().any(|ending| stem.ends_with(ending));
     let keep = match graph {
@@ -136,9 +136,9 @@ pub fn options(graph: &Graph, path: &str) -> Options {
 }
 
 /// The warnings from composing a text, then what naga finds in it.
-pub fn text(graph: &Graph, composed: &Composed) -> Diagnostics {
+pub fn lint_text(graph: &Graph, composed: &Composed) -> Diagnostics {
     let warnings = graph.own(composed.warnings.clone());
-    match validate::every(composed) {
+    match validate::validate_every(composed) {
         Ok(validated) => {
             let more = graph.own(validate::lint(composed, &validated));
             warnings.into_iter().chain(more).collect()

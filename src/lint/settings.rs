@@ -12,7 +12,7 @@ const MOST: usize = 64;
 /// The settings to check a module with. If a program has it as a root, or it asks for a program's
 /// axes: permutations that cover every pair of values of the axes that it may ask for. Otherwise
 /// the settings that were chosen.
-pub fn candidates(graph: &Graph, request: &Request<'_>, path: &str) -> Vec<Settings> {
+pub fn candidate_settings(graph: &Graph, request: &Request<'_>, path: &str) -> Vec<Settings> {
     let programs = || request.manifest.iter().flat_map(|manifest| &manifest.programs);
     let is_root = |program: &&Program| program.files().any(|file| file.path == path);
     let asked =

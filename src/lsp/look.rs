@@ -65,8 +65,8 @@ pub fn module_problems(graph: &Graph, settings: &Settings, path: &str) -> Diagno
     let mut found = graph.undeclared(settings);
     // What nothing declares is told on its own; what else is wrong is looked for without it.
     let settings = Settings { undeclared: settings.undeclared.or(Some(false)), ..settings.clone() };
-    match compose::compose(graph, &settings, &lint::options(graph, path)) {
-        Ok(composed) => found.extend(lint::text(graph, &composed)),
+    match compose::compose(graph, &settings, &lint::lint_options(graph, path)) {
+        Ok(composed) => found.extend(lint::lint_text(graph, &composed)),
         Err(errors) => found.extend(errors),
     }
     found

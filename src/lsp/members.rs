@@ -60,10 +60,10 @@ fn named_members<'m>(node: &'m Node, item: &'m Item, name: &str) -> Vec<Member<'
         text: &node.module.text[whole.start as usize..whole.end as usize],
     };
     let declared = declared_members(&node.module.text, item);
-    declared.into_iter().filter(|(range, _)| spelt(node, range) == name).map(member).collect()
+    declared.into_iter().filter(|(range, _)| node_text(node, range) == name).map(member).collect()
 }
 
-fn spelt<'m>(node: &'m Node, range: &Range<u32>) -> &'m str {
+fn node_text<'m>(node: &'m Node, range: &Range<u32>) -> &'m str {
     &node.module.text[range.start as usize..range.end as usize]
 }
 

@@ -1,18 +1,11 @@
 //! Judges whether texts in MSL are well formed: attributes by a table, everything else by clang.
 
 use std::fmt::Write as _;
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-use rayon::prelude::*;
 
 use super::adapt::adapt_text;
 use super::attributes;
 use super::clang::{Clang, Missing};
 use super::token::msl_tokens;
-
-/// Bytes of texts that one run of clang gets: enough that the headers cost little, few enough that
-/// a refused text is found quickly.
-const BATCH: usize = 1 << 20;
 
 /// A text that is not well formed.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -21,25 +14,6 @@ pub struct Refusal {
     pub index: usize,
     /// What is wrong with it, as `line:column: error: ...`, a line for each.
     pub errors: String,
-}
-
-/// Judges texts on all cores. `progress` is called with the number that is done.
-///
-/// # Errors
-/// clang is missing or cannot be run.
-pub fn judge_texts(texts: &[&str], progress: &(dyn Fn(usize) + Sync)) -> Refusals {
-    let clang = Clang::open()?;
-    let texts: Vec<Text<'_>> = texts.iter().copied().enumerate().collect();
-    let batches = divide_batches(&texts);
-    let done = AtomicUsize::new(0);
-    let judged = batches.par_iter().map(|batch| {
-        let refusals = judge_batch(&clang, batch);
-        progress(done.fetch_add(batch.len(), Ordering::Relaxed) + batch.len());
-        refusals
-    });
-    let mut refusals = judged.collect::<Result<Vec<_>, Missing>>()?.concat();
-    refusals.sort();
-    Ok(refusals)
 }
 
 type Refusals = Result<Vec<Refusal>, Missing>;
@@ -74,18 +48,6 @@ fn before_clang(text: &str) -> Option<String> {
 }
 
 type Text<'t> = (usize, &'t str);
-
-fn divide_batches<'b, 't>(texts: &'b [Text<'t>]) -> Vec<&'b [Text<'t>]> {
-    let (mut batches, mut start, mut bytes) = (Vec::new(), 0, 0);
-    for (index, (_, text)) in texts.iter().enumerate() {
-        bytes += text.len();
-        if bytes >= BATCH || index + 1 == texts.len() {
-            batches.push(&texts[start..=index]);
-            (start, bytes) = (index + 1, 0);
-        }
-    }
-    batches
-}
 
 /// Judges a batch. If it is refused, it is divided in halves until the texts at fault are found,
 /// since a mistake in one text may make others look wrong.

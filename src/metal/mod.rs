@@ -13,4 +13,4 @@ pub mod judge;
 pub mod token;
 
 pub use clang::{Clang, Missing, clang_version, shim_hash};
-pub use judge::{Refusal, judge_batch, judge_texts};
+pub use judge::{Refusal, judge_batch};

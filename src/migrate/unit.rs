@@ -51,8 +51,7 @@ type Read<T> = Result<T, Stop>;
 const STEPS: usize = 400;
 const STEPS_AT_LEAST: usize = 200_000;
 
-/// Reads a file. The error is the byte from which on it cannot be understood, and whether that is
-/// because reading took too many steps.
+/// Reads a file. The error is where it cannot be understood, and whether that took too many steps.
 pub fn read_elements<'a>(
     text: &'a str,
     nodes: &'a [Node],

@@ -24,7 +24,7 @@ use self::surface::Means;
 use self::texture::Sheet;
 use crate::limits::{MODEL_BYTES, MODEL_JSON_BYTES};
 use crate::scene::sets::{Eye, Lamp, LampKind, Scene};
-use crate::validate::caught;
+use crate::validate::catch_panics;
 
 /// A model, ready to be drawn.
 #[derive(Debug)]
@@ -44,8 +44,8 @@ pub struct Model {
 }
 
 impl Model {
-    /// The scene for a permutation, which may not have all textures: materials have their means then,
-    /// which is the second value in words.
+    /// The scene for a permutation, which may not have all textures: materials have their means
+    /// then, which is the second value in words.
     pub fn scene_of(mut self, lacks: Lacks) -> (Scene, Option<String>) {
         for (object, means) in self.scene.objects.iter_mut().zip(&self.means) {
             means.apply(&mut object.material, lacks);
@@ -101,7 +101,7 @@ pub fn read_model(bytes: &[u8], view: View) -> Result<Model, String> {
         let mut reader = Reader { document: &document, blob, notes, means, all_unlit: false };
         model_scene(&mut reader, view)
     };
-    caught(read).unwrap_or_else(|reason| Err(format!("the document is broken: {reason}")))
+    catch_panics(read).unwrap_or_else(|reason| Err(format!("the document is broken: {reason}")))
 }
 
 /// The document of a binary file, and its bytes.

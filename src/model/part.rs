@@ -23,8 +23,8 @@ pub struct Part {
 
 const RGB: &[usize] = &[0, 1, 2];
 
-/// A texture of an extension that the parser does not know: the extension, its field, the name of the
-/// binding, the channels, and whether it is a colour.
+/// A texture of an extension that the parser does not know: the extension, its field, the name of
+/// the binding, the channels, and whether it is a colour.
 type Field = (&'static str, &'static str, &'static str, &'static [usize], bool);
 
 const FIELDS: [Field; 9] = [

@@ -80,8 +80,8 @@ pub struct Lacks {
     pub occlusion: bool,
 }
 
-/// A surface that shows its colour and nothing else. If all are unlit, no lamp shines. Beside others,
-/// a black surface gives the colour off.
+/// A surface that shows its colour and nothing else. If all are unlit, no lamp shines. Beside
+/// others, a black surface gives the colour off.
 fn unlit_surface(all_unlit: bool, color: DVec3) -> (DVec3, Material) {
     if all_unlit {
         return (color, Material::default());

@@ -94,7 +94,8 @@ pub fn texture_sheet(reader: &mut Reader<'_>, placed: &Placed) -> Result<Sheet, 
     Ok(Sheet { maps, names, cells })
 }
 
-/// A cell for each set of textures. One set alone is repeated by the sampler, others in their cells.
+/// A cell for each set of textures. One set alone is repeated by the sampler, others in their
+/// cells.
 fn texture_cells(
     reader: &Reader<'_>,
     placed: &Placed,

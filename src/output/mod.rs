@@ -19,15 +19,15 @@
 //! 5. The scratch folder is removed: when it is dropped, or by the next run if this one was killed.
 //!
 //! For a folder, the record of hashes is written before the files, with the old and the new hash of
-//! each, and once more at the end. So neither a killed run nor a loss of power leaves a file that the
-//! next run takes for a foreign one.
+//! each, and once more at the end. So neither a killed run nor a loss of power leaves a file that
+//! the next run takes for a foreign one.
 //!
 //! A command flattens `Overwrite` of `src/cli/overwrite.rs`, which adds `--force`, and passes
-//! `overwrite.replace()`; `src/cli/export/mod.rs` is an example. A command that writes has one line in
-//! the tables of `tests/traps.rs`, which set a trap at each of its files. A trial finds top-level
-//! commands with `--force` that have none; it does not see subcommands, further forms of a command,
-//! and commands that write without this module. `cargo xtask faults` makes calls of the system fail
-//! in `gen`, and ends it at them.
+//! `overwrite.replace()`; `src/cli/export/mod.rs` is an example. A command that writes has one line
+//! in the tables of `tests/traps.rs`, which set a trap at each of its files. A trial finds
+//! top-level commands with `--force` that have none; it does not see subcommands, further forms of
+//! a command, and commands that write without this module. `cargo xtask faults` makes calls of the
+//! system fail in `gen`, and ends it at them.
 //!
 //! What holds for all of it:
 //!

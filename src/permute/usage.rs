@@ -18,7 +18,7 @@ use crate::source::{SourceId, SourceSet, Span};
 ///
 /// # Errors
 /// `usage-syntax` for lines that are no program and key.
-pub fn narrow(
+pub fn narrow_to_list(
     program: &mut Program,
     sources: &mut SourceSet,
     list: SourceId,
@@ -67,7 +67,11 @@ pub fn narrow(
 }
 
 /// A warning for each program that a list names and the manifest does not declare, once.
-pub fn unknown(programs: &[Program], sources: &SourceSet, list: SourceId) -> Vec<Diagnostic> {
+pub fn unknown_programs(
+    programs: &[Program],
+    sources: &SourceSet,
+    list: SourceId,
+) -> Vec<Diagnostic> {
     let known = || programs.iter().map(|program| program.name.as_str());
     let mut seen = BTreeSet::new();
     let of_line = |(span, text): (Span, &str)| {

@@ -36,8 +36,8 @@ pub(super) fn seen_range(scene: &Scene) -> (f64, f64) {
 }
 
 impl Cascades {
-    /// The parts of the depths from `near` to `far`, for a viewer with this projection. At each side
-    /// of a part, `rim` texels are left for lookups.
+    /// The parts of the depths from `near` to `far`, for a viewer with this projection. At each
+    /// side of a part, `rim` texels are left for lookups.
     pub fn new(eye: &Eye, projection: DMat4, (near, far): (f64, f64), size: u32, rim: f64) -> Self {
         let ends = cascade_splits(near, far, CASCADES, SPLIT);
         let mut splits: [f64; CASCADES] =

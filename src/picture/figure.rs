@@ -40,7 +40,8 @@ const FUNCTION: &str = "lamplight_figure";
 /// PNG files by path below the catalogue's folder.
 pub type Pictures = BTreeMap<String, Vec<u8>>;
 
-/// All figures. A picture that exists is kept if a part of its pixels, computed again, is as it was.
+/// All figures. A picture that exists is kept if a part of its pixels, computed again, is as it
+/// was.
 ///
 /// # Errors
 /// Those of the functions and expressions, with the figure's name.

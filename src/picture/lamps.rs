@@ -53,8 +53,8 @@ impl Fading {
 }
 
 impl Shining {
-    /// The light that arrives at a point across its direction, and where it comes from. A spot fades
-    /// towards the edge of its cone as with `cone=smooth`.
+    /// The light that arrives at a point across its direction, and where it comes from. A spot
+    /// fades towards the edge of its cone as with `cone=smooth`.
     pub fn arriving(&self, at: DVec3) -> (DVec3, DVec3) {
         if self.kind == LampKind::Directional {
             return (self.color, at - self.axis * FAR_AWAY * self.reach);

@@ -51,8 +51,8 @@ impl Frustum {
     }
 }
 
-/// How many texels around a point a lookup reads. It reads some to each side of a point that is moved
-/// by some.
+/// How many texels around a point a lookup reads. It reads some to each side of a point that is
+/// moved by some.
 fn lookup_rim(plan: &Plan, last: &Pass) -> f64 {
     let number = |field: &str| {
         let changed = plan.changes.uniforms.get(&format!("caster.{field}")).cloned();
@@ -122,8 +122,8 @@ impl LightView {
         Self::around(view, if is_seen { bounds } else { whole }, size)
     }
 
-    /// The views of a directional light for four parts of the viewer's depth. Each map fits around a
-    /// sphere, so that it keeps its size however the viewer turns, and moves by whole texels.
+    /// The views of a directional light for four parts of the viewer's depth. Each map fits around
+    /// a sphere, so that it keeps its size however the viewer turns, and moves by whole texels.
     fn parted(scene: &Scene, lamp: &Lamp, size: u32, rim: f64, eye: DMat4) -> Self {
         let view = look_along(lamp.position, lamp.axis(), DVec3::Y);
         let whole = fit(view, &scene.points()).unwrap_or(UNIT);

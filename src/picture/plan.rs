@@ -147,8 +147,8 @@ impl Plan {
         passes.find(|pass| pass.integer(LAMPS).is_some()).or_else(|| self.last())
     }
 
-    /// Whether a pass shows what the viewer sees, and not what the light sees: the last one, and those
-    /// right before it that it reads so.
+    /// Whether a pass shows what the viewer sees, and not what the light sees: the last one, and
+    /// those right before it that it reads so.
     pub(super) fn is_of_viewer(&self, pass: &Pass) -> bool {
         let over = self.last().map_or(0, |last| last.needs.seen_before());
         self.passes.iter().rev().take(1 + over).any(|one| std::ptr::eq(one, pass))

@@ -110,7 +110,8 @@ impl Sketch {
         };
         let points = &mut validated.module.entry_points;
         let name = points.iter_mut().find(is_fragment).map(|point| point.name.clone());
-        let name = name.ok_or_else(|| refused("there is no fragment entry point to draw"))?;
+        let name =
+            name.ok_or_else(|| sketch_refused("there is no fragment entry point to draw"))?;
         for point in points {
             if point.name == name {
                 ENTRY.clone_into(&mut point.name);
@@ -125,11 +126,11 @@ impl Sketch {
         };
         if let Some(large) = reflection.bindings.iter().find(|one| is_large(one)) {
             let reason = format!("`{}` has more than {UNIFORM_BYTES} bytes", large.name);
-            return Err(refused(&reason));
+            return Err(sketch_refused(&reason));
         }
         let is_colour = |one: &Varying| one.location == Some(0) && one.ty == "vec4<f32>";
         if !reflection.outputs.iter().any(is_colour) {
-            return Err(refused(&format!("`{name}` returns no `vec4f` at location 0")));
+            return Err(sketch_refused(&format!("`{name}` returns no `vec4f` at location 0")));
         }
         let validated = Arc::new(validated);
         let functions = Arc::from(Vec::new());
@@ -141,7 +142,7 @@ impl Sketch {
     /// The inputs with the names of their sources.
     pub fn inputs(&self, setting: &Setting) -> Vec<(String, String, &'static str)> {
         let located = self.stage.reflection.inputs.iter().filter(|one| one.location.is_some());
-        located.map(|one| (label(one), one.ty.clone(), source_of(one, setting))).collect()
+        located.map(|one| (input_label(one), one.ty.clone(), source_of(one, setting))).collect()
     }
 
     /// The uniforms with their numbers, as many as a page has room for. Matrices are left out.
@@ -163,11 +164,11 @@ impl Sketch {
     /// A binding that nothing can be bound to, and an input that no vertex stage can give.
     pub fn prepare(&self, setting: &Setting, shot: &Shot) -> Result<Prepared, Diagnostics> {
         let vertex = vertex_stage(&self.stage.reflection, setting)?;
-        let eye = Camera::of_viewer(&viewer(setting.turn), shot);
+        let eye = Camera::of_viewer(&turned_eye(setting.turn), shot);
         let (mut buffers, mut fixtures) = (Buffers::new(), BTreeMap::new());
         for binding in &self.stage.reflection.bindings {
             let place = (binding.group, binding.binding);
-            match bound(binding, setting, shot).map_err(|problem| vec![problem])? {
+            match bound_input(binding, setting, shot).map_err(|problem| vec![problem])? {
                 Bound::Buffer(bytes) => drop(buffers.insert(place, bytes)),
                 Bound::Fixture(fixture) => drop(fixtures.insert(place, Arc::new(fixture))),
             }
@@ -201,7 +202,7 @@ impl Sketch {
     }
 }
 
-fn refused(message: &str) -> Diagnostic {
+fn sketch_refused(message: &str) -> Diagnostic {
     Diagnostic::error(codes::PICTURE_INVALID, message)
 }
 
@@ -210,20 +211,20 @@ fn model(name: &str) -> Object {
     Object::made(shape(), DMat4::IDENTITY, DVec3::ONE, Material::default())
 }
 
-fn viewer([around, up]: [f64; 2]) -> Eye {
+fn turned_eye([around, up]: [f64; 2]) -> Eye {
     let up = up.clamp(0.05 - FRAC_PI_2, FRAC_PI_2 - 0.05);
     let turned = DQuat::from_rotation_y(around) * DQuat::from_rotation_x(-up);
     Eye { position: turned * DVec3::Z * 4.0, target: DVec3::ZERO, fov_y: 0.6, near: 0.5, far: 10.0 }
 }
 
-fn label(input: &Varying) -> String {
+fn input_label(input: &Varying) -> String {
     let place = || format!("location({})", input.location.unwrap_or_default());
     input.name.clone().unwrap_or_else(place)
 }
 
 /// The source of an input: the one that was chosen, or that its name suggests.
 fn source_of(input: &Varying, setting: &Setting) -> &'static str {
-    let name = label(input);
+    let name = input_label(input);
     let chosen = setting.inputs.get(&name);
     if let Some((source, _)) =
         SOURCES.iter().find(|(source, _)| Some(*source) == chosen.map(String::as_str))
@@ -264,7 +265,7 @@ enum Bound {
     Fixture(Fixture),
 }
 
-fn bound(binding: &Binding, setting: &Setting, shot: &Shot) -> Result<Bound, Diagnostic> {
+fn bound_input(binding: &Binding, setting: &Setting, shot: &Shot) -> Result<Bound, Diagnostic> {
     match binding.kind {
         Kind::Uniform => {
             let leaves: BTreeMap<String, Vec<f64>> = buffer_leaves(binding)
@@ -282,7 +283,10 @@ fn bound(binding: &Binding, setting: &Setting, shot: &Shot) -> Result<Bound, Dia
 }
 
 fn unbound(binding: &Binding) -> Diagnostic {
-    refused(&format!("nothing can be bound to `{}: {}` in a sketch", binding.name, binding.ty))
+    sketch_refused(&format!(
+        "nothing can be bound to `{}: {}` in a sketch",
+        binding.name, binding.ty
+    ))
 }
 
 /// The vertex stage that gives a fragment stage what it asks for.

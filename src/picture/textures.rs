@@ -66,13 +66,14 @@ pub struct Library<'a> {
 
 /// Texels along an edge of the environment's own cube map.
 const ENVIRONMENT: usize = 64;
-/// The edges of the environment's filtered cube maps, and the rows of the quadratures that fill them.
+/// The edges of the environment's filtered cube maps, and the rows of the quadratures that fill
+/// them.
 const DIFFUSE: (usize, usize) = (12, 24);
 const SPECULAR: (usize, usize) = (32, 36);
 /// The exponent of the specular map.
 const LOBE: f64 = 60.0;
-/// Levels of the specular map where it has one for each roughness, even in perceptual roughness. The
-/// first is the environment itself.
+/// Levels of the specular map where it has one for each roughness, even in perceptual roughness.
+/// The first is the environment itself.
 pub const LEVELS: usize = 5;
 /// The rows of the quadratures for the others.
 const LEVEL_ROWS: [usize; LEVELS - 1] = [40, 24, 24, 24];

@@ -57,8 +57,8 @@ pub fn packages(root: &Path, sources: &mut SourceSet) -> Result<Packages, Diagno
     Ok(Packages { root: root_package(Box::new(disk)), dependencies })
 }
 
-/// A package that has no folder yet, with the library beside it. Its files come from elsewhere, such
-/// as an editor.
+/// A package that has no folder yet, with the library beside it. Its files come from elsewhere,
+/// such as an editor.
 pub fn packages_without_folder() -> Packages {
     let files = Box::new(Memory::default());
     Packages { root: root_package(files), dependencies: vec![library_package()] }
@@ -74,7 +74,7 @@ pub fn library_package() -> Package {
 }
 
 /// The shader library itself as a package, from the binary.
-pub fn library() -> Packages {
+pub fn library_packages() -> Packages {
     Packages { root: root_package(Box::new(Embedded)), dependencies: Vec::new() }
 }
 
@@ -188,7 +188,7 @@ pub fn lock(manifest: &Path, sources: &mut SourceSet) -> Result<Lock, Diagnostic
 /// The manifest of the embedded library.
 pub fn library_manifest() -> Result<(SourceSet, Manifest), (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
-    match parse_manifest(&library().root, MANIFEST, &mut sources) {
+    match parse_manifest(&library_packages().root, MANIFEST, &mut sources) {
         Ok(manifest) => Ok((sources, manifest)),
         Err(diagnostics) => Err((sources, diagnostics)),
     }
@@ -229,14 +229,14 @@ fn parse_manifest(
         let list = source::read(sources, package, &file.path)
             .map_err(|error| vec![Diagnostic::from(error).at(file.span, "named here")])?;
         let list = list.ok_or_else(|| vec![no_list(&file)])?;
-        let warnings = usage::narrow(program, sources, list)?;
+        let warnings = usage::narrow_to_list(program, sources, list)?;
         manifest.warnings.extend(warnings);
         if lists.iter().all(|(path, _)| *path != file.path) {
             lists.push((file.path, list));
         }
     }
     for (_, list) in lists {
-        manifest.warnings.extend(usage::unknown(&manifest.programs, sources, list));
+        manifest.warnings.extend(usage::unknown_programs(&manifest.programs, sources, list));
     }
     Ok(manifest)
 }

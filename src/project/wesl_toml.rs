@@ -124,7 +124,8 @@ fn refuse_broken(root: &Path, sources: &mut SourceSet) -> Result<(), Diagnostics
     Ok(())
 }
 
-/// The tables of a folder's `wesl.toml`, which is there; `shown` is the folder's name in diagnostics.
+/// The tables of a folder's `wesl.toml`, which is there; `shown` is the folder's name in
+/// diagnostics.
 fn parse_tables(
     folder: &Path,
     shown: &Path,

@@ -13,7 +13,8 @@ use crate::source::SourceSet;
 /// Name of the function around a plot's expression.
 const FUNCTION: &str = "lamplight_plot";
 
-/// The value of each of a plot's curves at each of its inputs. `path` is the function's in the library.
+/// The value of each of a plot's curves at each of its inputs. `path` is the function's in the
+/// library.
 pub fn plot_curves(
     library: &Library,
     sources: &Mutex<SourceSet>,

@@ -154,8 +154,8 @@ fn filtered_comparison(map: &Texture, x: f64, y: f64) -> f64 {
     above * (1.0 - down) + below * down
 }
 
-/// The albedo of a white lobe of GGX with the height-correlated visibility: a mean over half vectors
-/// in proportion to their density (Walter et al., "Microfacet Models for Refraction", 2007,
+/// The albedo of a white lobe of GGX with the height-correlated visibility: a mean over half
+/// vectors in proportion to their density (Walter et al., "Microfacet Models for Refraction", 2007,
 /// equations 35 and 36; Heitz, "Understanding the Masking-Shadowing Function", 2014).
 fn ggx_albedo(nv: f64, roughness: f64) -> f64 {
     const STEPS: u32 = 64;

@@ -115,8 +115,8 @@ fn result_part(path: &str, result: &[Shape]) -> Option<std::ops::Range<usize>> {
     Some(first as usize..(first + shape.words()) as usize)
 }
 
-/// The value of each formula in the terms of a tolerance, for one row of inputs. All components of the
-/// result share these values, so they are computed once.
+/// The value of each formula in the terms of a tolerance, for one row of inputs. All components of
+/// the result share these values, so they are computed once.
 pub fn formula_values(terms: &[Bound], row: &[f64]) -> Vec<f64> {
     terms.iter().flat_map(|bound| &bound.term.formulas).map(|formula| formula.scalar(row)).collect()
 }

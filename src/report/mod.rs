@@ -1,4 +1,5 @@
-//! A check's report as files: a page to look at, JSON for programs, JUnit for continuous integration.
+//! A check's report as files: a page to look at, JSON for programs, JUnit for continuous
+//! integration.
 //!
 //! Each is a function from the [`Report`] and its [`Origin`] to a text; the command line writes
 //! them.

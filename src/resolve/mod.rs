@@ -61,7 +61,8 @@ impl Graph {
         warnings.into_iter().filter(own).collect()
     }
 
-    /// Warnings about flags of conditions that no setting declares and that nothing has asked for yet.
+    /// Warnings about flags of conditions that no setting declares and that nothing has asked for
+    /// yet.
     pub fn undeclared(&self, settings: &Settings) -> Diagnostics {
         match self {
             Self::Wesl(graph) => wesl::undeclared_flags(graph, settings),

@@ -185,8 +185,8 @@ fn cross_shape() -> Shape {
         .fold(Shape::default(), |shape, (length, turn)| shape.with(arm(length, TAU * turn)))
 }
 
-/// The share of the sky, weighted by the cosine to the ground's normal, that is seen from the ground
-/// between upright men.
+/// The share of the sky, weighted by the cosine to the ground's normal, that is seen from the
+/// ground between upright men.
 pub fn open_share(at: DVec2, men: &[(Man, DVec2)]) -> f64 {
     const DIRECTIONS: u32 = 24;
     const FARTHEST: f64 = 2.5;

@@ -121,7 +121,8 @@ impl ProbeField {
         field
     }
 
-    /// The light that falls onto a point with a unit normal, as a share of what a white surface shows.
+    /// The light that falls onto a point with a unit normal, as a share of what a white surface
+    /// shows.
     pub fn light_at(&self, position: DVec3, normal: DVec3) -> DVec3 {
         let grid = &self.grid;
         let point = position + normal * grid.bias;

@@ -147,8 +147,8 @@ pub fn brick_materials() -> BTreeMap<&'static str, Map> {
     ])
 }
 
-/// How open the wall is to light at a place: the mean over directions of the cosine-weighted part of
-/// the sky above the horizon that the relief has there.
+/// How open the wall is to light at a place: the mean over directions of the cosine-weighted part
+/// of the sky above the horizon that the relief has there.
 fn open_above(at: DVec2) -> f64 {
     /// Height of a brick above the joint, in widths of the texture. The relief of the occlusion is
     /// deeper than that of the normals, as where mortar is raked out.

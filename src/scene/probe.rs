@@ -118,10 +118,11 @@ impl CubeMap {
 
 /// An environment filtered for a Phong lobe around each direction, as a cube map.
 ///
-/// Parameters: `exponent` of the cosine: 1 is the diffuse map, 50 and above are shiny; `size` texels
-/// along an edge; `rows` of the quadrature ([`directions`]), which must grow with the exponent.
-/// Returns: the mean radiance, weighted by `max(cos, 0)^exponent`: a constant sky stays as it is, and
-/// the diffuse map times pi is the irradiance.
+/// Parameters: `exponent` of the cosine: 1 is the diffuse map, 50 and above are shiny; `size`
+/// texels along an edge; `rows` of the quadrature ([`directions`]), which must grow with the
+/// exponent.
+/// Returns: the mean radiance, weighted by `max(cos, 0)^exponent`: a constant sky stays as it is,
+/// and the diffuse map times pi is the irradiance.
 /// Source: Shreiner et al., OpenGL Programming Guide, 8th edition, 2013, "Image-Based Lighting".
 pub fn prefilter(sky: &Sky<'_>, exponent: f64, size: usize, rows: usize) -> CubeMap {
     let seen: Vec<(DVec3, f64, DVec3)> = directions(rows)

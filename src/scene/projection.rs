@@ -16,7 +16,8 @@ pub enum Clip {
 /// Which end of the depth range is near.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Depth {
-    /// The near plane has the lowest depth of the clip space: 0, or -1 in OpenGL. The far plane has 1.
+    /// The near plane has the lowest depth of the clip space: 0, or -1 in OpenGL. The far plane has
+    /// 1.
     Normal,
     /// Near is 1: with floating-point depth buffers the precision is spread evenly.
     Reversed,

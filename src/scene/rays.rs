@@ -37,8 +37,8 @@ struct Triangle {
 struct Node {
     low: DVec3,
     high: DVec3,
-    /// A leaf has a range of triangles. Another node has two nodes, of which it holds the second; the
-    /// first one comes right after it.
+    /// A leaf has a range of triangles. Another node has two nodes, of which it holds the second;
+    /// the first one comes right after it.
     content: Content,
 }
 
@@ -194,8 +194,8 @@ impl Triangle {
         (a + b + c) / 3.0
     }
 
-    /// Where a ray meets it: Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection",
-    /// 1997.
+    /// Where a ray meets it: Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle
+    /// Intersection", 1997.
     fn met(&self, from: DVec3, towards: DVec3) -> Option<f64> {
         let [a, b, c] = self.corners;
         let (along, up) = (b - a, c - a);

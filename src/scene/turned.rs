@@ -78,7 +78,8 @@ pub fn waved_shape(profile: &[Turn], around: u32, raised: impl Fn(f64, DVec2) ->
     })
 }
 
-/// A profile along the four sides of a square, mitred at the corners. The radius is half of the side.
+/// A profile along the four sides of a square, mitred at the corners. The radius is half of the
+/// side.
 pub fn framed_shape(profile: &[Turn]) -> Shape {
     let side = |turn: u32| {
         let matrix = glam::DMat4::from_rotation_y(0.5 * PI * f64::from(turn));

@@ -25,7 +25,7 @@ const STOPPING: [&Code; 4] =
 ///
 /// # Errors
 /// Each mistake once, in the order of the composed text's places.
-pub fn every(composed: &Composed) -> Result<Validated, Diagnostics> {
+pub fn validate_every(composed: &Composed) -> Result<Validated, Diagnostics> {
     // A large text is tried in another process, and so would be each of its parts.
     let is_calm = is_calm(composed).unwrap_or(false);
     let first = match if is_calm { read_text(composed) } else { validate(composed) } {
@@ -150,8 +150,8 @@ impl Search<'_> {
 }
 
 thread_local! {
-    /// The rests of texts that naga accepted last. While an author writes a function, the rest stays
-    /// the same.
+    /// The rests of texts that naga accepted last. While an author writes a function, the rest
+    /// stays the same.
     static ACCEPTED: RefCell<VecDeque<String>> = const { RefCell::new(VecDeque::new()) };
 }
 

@@ -35,14 +35,14 @@ pub fn on_large_stack<R: Send>(work: impl FnOnce() -> R + Send) -> R {
 
 /// Runs `work`, which calls naga with `text`. A panic becomes a diagnostic and prints nothing.
 pub fn guard<R>(text: &str, work: impl FnOnce() -> R) -> Result<R, Diagnostic> {
-    caught(work).map_err(|reason| {
+    catch_panics(work).map_err(|reason| {
         Diagnostic::error(codes::NAGA_INTERNAL, format!("{}: {reason}", stopped_message("naga")))
             .note(quote_start(text))
     })
 }
 
 /// Runs `work`, which calls code of others; a panic becomes its message, and prints nothing.
-pub fn caught<R>(work: impl FnOnce() -> R) -> Result<R, String> {
+pub fn catch_panics<R>(work: impl FnOnce() -> R) -> Result<R, String> {
     hush_panics();
     let outer = GUARDED.replace(true);
     // A panic may leave values half changed. They are dropped with `work`, since callers keep only

@@ -15,8 +15,8 @@ mod sizes;
 mod uniformity;
 mod words;
 
-pub use every::every;
-pub use guard::{caught, guard, on_large_stack};
+pub use every::validate_every;
+pub use guard::{catch_panics, guard, on_large_stack};
 pub use hints::glsl_words;
 pub use limits::{LIMITS, Limits};
 #[doc(hidden)]

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use lamplight::bundle::{Language, Stage, Target};
 use lamplight::compose::Composed;
-use lamplight::metal::judge_texts;
+use lamplight::link::Linker;
 use lamplight::validate::{Validated, validate};
 use lamplight::{emit, link};
 
-use super::{Outcome, files, told};
+use super::{Outcome, files, judge_texts, told};
 
 pub fn outputs() -> Outcome {
     let mut paths = files("accepted");
@@ -19,6 +19,7 @@ pub fn outputs() -> Outcome {
     paths.extend(others.collect::<Result<Vec<_>, _>>()?);
     paths.sort();
     let (mut names, mut texts) = (Vec::new(), Vec::new());
+    let linker = Linker::new(&[Target::MSL]);
     for path in &paths {
         let validated = read(path)?;
         for point in &validated.module.entry_points {
@@ -29,14 +30,13 @@ pub fn outputs() -> Outcome {
                 .map_err(|error| format!("{name}: {}", error.message))?;
             texts.push(String::from_utf8(whole.bytes)?);
             names.push(name.clone());
-            let linked = link::compile_module(&alone, &point.name, Target::MSL)
+            let linked = link::module_linked(&alone, &point.name, Target::MSL, &linker)
                 .map_err(|errors| format!("{name}: {errors:?}"))?;
             texts.push(String::from_utf8(linked.bytes.to_vec())?);
             names.push(format!("{name}, as it ships"));
         }
     }
-    let views: Vec<&str> = texts.iter().map(String::as_str).collect();
-    let refusals = judge_texts(&views, &|_| ()).map_err(|missing| missing.reason)?;
+    let refusals = judge_texts(&texts)?;
     let wrong: Vec<String> = refusals
         .iter()
         .map(|refusal| {

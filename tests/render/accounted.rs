@@ -113,7 +113,12 @@ fn fields(
 /// The numbers that are read and neither given nor open, and those that are open and not read.
 fn unaccounted(preset: &Preset) -> Result<(Vec<String>, Vec<String>), String> {
     let read = numbers_read(preset)?;
-    let missing = read.iter().filter(|(group, field)| !preset.accounts_for(group, field));
+    let is_given = |group: &str, field: &String| {
+        preset.numbers.get(group).is_some_and(|fields| fields.contains_key(field))
+    };
+    let is_open = |group: &str, field: &str| preset.open.contains(&format!("{group}.{field}"));
+    let missing =
+        read.iter().filter(|(group, field)| !is_given(group, field) && !is_open(group, field));
     let missing = missing.map(|(group, field)| format!("{group}.{field}")).collect();
     let read: BTreeSet<String> =
         read.iter().map(|(group, field)| format!("{group}.{field}")).collect();

@@ -48,7 +48,7 @@ impl Value {
 /// The package and what it may import. Every package may import the library.
 pub fn packages(files: Option<&Files>) -> Packages {
     match files {
-        None => project::library(),
+        None => project::library_packages(),
         Some(files) => Packages {
             root: Package { name: "package".to_owned(), files: Box::new(Memory(files.clone())) },
             dependencies: vec![project::library_package()],

@@ -9,9 +9,9 @@
 //! note = "cutoff 0.5"                          # what was fixed
 //! ```
 //!
-//! `x`, `y` and `curves` may have a `unit`: `degrees`, or `integers` for `x`, whose values are drawn
-//! as stems. `labels` of `curves` stand for their values; curves that are called red, green and blue
-//! have these colours.
+//! `x`, `y` and `curves` may have a `unit`: `degrees`, or `integers` for `x`, whose values are
+//! drawn as stems. `labels` of `curves` stand for their values; curves that are called red, green
+//! and blue have these colours.
 //!
 //! Functions of the module are called by name, others by their path from the library's root.
 //! The values come from outside: `draw` takes them as curves and returns an SVG.

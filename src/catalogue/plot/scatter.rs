@@ -102,7 +102,7 @@ fn draw_points(svg: &mut String, x: &Scale, y: &Scale, points: &[(String, f64, f
         let is_free = |place: &&(&str, f64, f64)| {
             let label = boxed(**place);
             let within = label[0] >= LEFT && label[2] <= RIGHT + 6.0 && label[3] <= BOTTOM + 6.5;
-            within && !taken.iter().any(|other| overlap(&label, other))
+            within && !taken.iter().any(|other| boxes_overlap(&label, other))
         };
         let (anchor, across, down) = *PLACES.iter().find(is_free).unwrap_or(&PLACES[0]);
         taken.push(boxed((anchor, across, down)));
@@ -127,6 +127,6 @@ fn draw_points(svg: &mut String, x: &Scale, y: &Scale, points: &[(String, f64, f
     }
 }
 
-fn overlap(one: &[f64; 4], other: &[f64; 4]) -> bool {
+fn boxes_overlap(one: &[f64; 4], other: &[f64; 4]) -> bool {
     one[0] < other[2] && other[0] < one[2] && one[1] < other[3] && other[1] < one[3]
 }

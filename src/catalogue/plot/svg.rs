@@ -38,7 +38,7 @@ pub fn draw_plot(title: &str, plot: &Plot, curves: &[Vec<f64>]) -> String {
     let y = Scale { from, to, start: BOTTOM, end: TOP };
     let mut svg = svg_head(title);
     draw_axes(&mut svg, (&x, plot.x.unit), (&y, plot.y.map_or(Unit::Numbers, |range| range.unit)));
-    let looks = looks(plot);
+    let looks = curve_looks(plot);
     for (index, values) in curves.iter().enumerate() {
         let points = curve_points(plot, values, &x, &y);
         if plot.x.unit == Unit::Integers {
@@ -53,7 +53,7 @@ pub fn draw_plot(title: &str, plot: &Plot, curves: &[Vec<f64>]) -> String {
 }
 
 /// The colour and the dash of each curve.
-fn looks(plot: &Plot) -> Vec<(&'static str, &'static str)> {
+fn curve_looks(plot: &Plot) -> Vec<(&'static str, &'static str)> {
     let count = plot.curves.as_ref().map_or(1, |curves| curves.values.len());
     let label = |index: usize| plot.curves.as_ref().map(|curves| curves.label(index));
     let named = |index: usize| {
@@ -153,7 +153,7 @@ fn draw_captions(svg: &mut String, title: &str, plot: &Plot) {
     );
     let stems = plot.x.unit == Unit::Integers;
     let mut right = RIGHT;
-    for (text, (colour, dashes)) in legend_entries(plot).iter().zip(looks(plot)).rev() {
+    for (text, (colour, dashes)) in legend_entries(plot).iter().zip(curve_looks(plot)).rev() {
         let start = right - 7.0 * text.chars().count() as f64;
         let _ = writeln!(
             svg,

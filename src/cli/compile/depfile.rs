@@ -31,8 +31,8 @@ pub fn write_depfile(
     Ok(output::write_file(path, rule.as_bytes(), is_ours, replace)?)
 }
 
-/// A name in the syntax of make. A line end in a name would begin a rule of its own, and make has no
-/// way to write one.
+/// A name in the syntax of make. A line end in a name would begin a rule of its own, and make has
+/// no way to write one.
 fn escape_for_make(path: &str) -> Result<String, Failure> {
     if path.contains(['\n', '\r']) {
         return Err(Failure::input(format!(

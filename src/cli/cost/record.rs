@@ -111,7 +111,7 @@ fn of_axes(devices: &[Device]) -> Result<Vec<AxisCost>, Failure> {
     let library = project::library_manifest();
     let (mut sources, manifest): (SourceSet, _) =
         library.map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))?;
-    let packages = project::library();
+    let packages = project::library_packages();
     let mut axes = Vec::new();
     for program in &manifest.programs {
         let name = &program.name;

@@ -23,7 +23,7 @@ use crate::project;
 use crate::proof::library::Library;
 use crate::resolve::{Graph, Packages};
 use crate::source::SourceSet;
-use crate::validate::every;
+use crate::validate::validate_every;
 
 /// What was asked for, in order.
 pub fn asked_subjects(
@@ -145,7 +145,7 @@ fn module_subjects(
     composed: &Composed,
     conventions: Conventions,
 ) -> Result<Vec<Subject>, Diagnostics> {
-    let module = every(composed)?.module;
+    let module = validate_every(composed)?.module;
     let own = graph.root_items();
     let functions = composed.parts.iter().filter(|part| part.kind == PartKind::Function);
     let functions = functions.flat_map(|part| &part.names).filter(|name| own.contains(*name));

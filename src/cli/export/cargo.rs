@@ -2,7 +2,8 @@
 
 use super::{Contents, DESCRIPTION, KEYWORDS, files_below, license_files, wesl_toml};
 
-/// The crate's name, with the suffix that shader packages have; imports begin with the package's, `lamplight`.
+/// The crate's name, with the suffix that shader packages have; imports begin with the package's,
+/// `lamplight`.
 pub const NAME: &str = "lamplight_wgsl";
 
 const ROOT: &str = "src/shaders";

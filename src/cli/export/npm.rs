@@ -5,7 +5,8 @@ use serde_json::{Value, json};
 use super::{Contents, DESCRIPTION, EDITION, KEYWORDS, files_below, license_files, wesl_toml};
 use crate::project::LIBRARY;
 
-/// The package's name. wesl-js finds a package by the first name of an import path, so it is that of the library.
+/// The package's name. wesl-js finds a package by the first name of an import path, so it is that
+/// of the library.
 pub const NAME: &str = LIBRARY;
 
 pub fn npm_contents(modules: Contents, glsl: Contents) -> Contents {

@@ -101,7 +101,8 @@ pub fn model_scene(model: Model, plan: &Plan) -> Result<Scene, Failure> {
     Ok(scene)
 }
 
-/// Says on standard error which values of axes the model asks for and the permutation does not have.
+/// Says on standard error which values of axes the model asks for and the permutation does not
+/// have.
 fn tell_left_out(values: &[&str]) -> Result<(), Failure> {
     if !values.is_empty() {
         let values = values.join(", ");

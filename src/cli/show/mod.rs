@@ -28,8 +28,8 @@ use crate::project::{self, LIBRARY};
 #[derive(Args)]
 pub struct Arguments {
     /// An item (`brdf::specular::blinn_phong`), a module (`brdf::specular`), a program
-    /// (`forward`), an axis (`forward.shadow`), a preset (`hpg_5_shadow`) or a light probe; your own
-    /// items are below `package`. Any other word is searched for.
+    /// (`forward`), an axis (`forward.shadow`), a preset (`hpg_5_shadow`) or a light probe; your
+    /// own items are below `package`. Any other word is searched for.
     path: String,
     /// Print a JSON object.
     #[arg(long)]

@@ -1,6 +1,6 @@
-//! Warns of `#ifdef`, `#ifndef` and `defined` of a setting. Such a condition has one result only, since
-//! every setting is defined: as 0 if it is off. There is no warning if the setting is on, or if
-//! `#ifndef X` gives `X` a default.
+//! Warns of `#ifdef`, `#ifndef` and `defined` of a setting. Such a condition has one result only,
+//! since every setting is defined: as 0 if it is off. There is no warning if the setting is on, or
+//! if `#ifndef X` gives `X` a default.
 
 use super::expand::Expander;
 use super::table::Meaning;

@@ -36,7 +36,8 @@ thread_local! {
     static ROOM: Cell<Vec<Tok>> = const { Cell::new(Vec::new()) };
 }
 
-/// One permutation of a GLSL file: `#version`, extensions and pragmas, then the items that are kept.
+/// One permutation of a GLSL file: `#version`, extensions and pragmas, then the items that are
+/// kept.
 ///
 /// The settings are macros: `two_sided` is `TWO_SIDED` (1 or 0), `max_lights` is `MAX_LIGHTS`, and
 /// an enum axis `shadow` is `SHADOW`, with `SHADOW_NONE` and so on for the numbers of its values.

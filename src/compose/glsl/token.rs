@@ -18,7 +18,8 @@ pub struct Tok {
     pub end: u32,
     /// Index of the module that has these bytes.
     pub module: u32,
-    /// The author's token whose leading space and comments precede this one; `NONE` inside expansions.
+    /// The author's token whose leading space and comments precede this one; `NONE` inside
+    /// expansions.
     pub before: u32,
     /// The author's token whose trailing comments follow this one.
     pub after: u32,

@@ -182,7 +182,8 @@ impl Run<'_> {
         After::Split
     }
 
-    /// Runs an instruction that whole quads need. If lanes of a quad are elsewhere, the group waits.
+    /// Runs an instruction that whole quads need. If lanes of a quad are elsewhere, the group
+    /// waits.
     fn meet(&mut self, instruction: &Instruction, group: &Group) -> Option<After> {
         let are_whole = group.alone
             && (0..LANES / 4).all(|quad| matches!(group.mask >> (4 * quad) & 0xf, 0 | 0xf));

@@ -204,8 +204,8 @@ impl Bounded {
         Self::new(value, if is_coarse { Self::raised_range(x, y, value) } else { error })
     }
 
-    /// The error of a power with a positive exponent, by its monotony: it is between the powers of the
-    /// least and the largest base.
+    /// The error of a power with a positive exponent, by its monotony: it is between the powers of
+    /// the least and the largest base.
     ///
     /// With `t` for `y log2 x`, the rounding of a smaller power is at most that of the largest: its
     /// parts grow as `2^t` and `|t| 2^t` do, and of the second the maximum below 0 is at

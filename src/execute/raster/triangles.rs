@@ -143,7 +143,8 @@ fn place_fan(
     Some(Triangle { item, corners, first, front, points, area: area.abs() })
 }
 
-/// Twice the area of a triangle, positive where the place is to the right of the way from a to b, y down.
+/// Twice the area of a triangle, positive where the place is to the right of the way from a to b, y
+/// down.
 fn edge_area(a: Point, b: Point, x: f64, y: f64) -> f64 {
     (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)
 }

@@ -2,7 +2,8 @@
 //!
 //! Starting it takes longer than reading a text, so it gets many texts at once. When it makes
 //! SPIR-V it links all of them, which makes no sense here, so its messages about linking are
-//! ignored. Outputs with something new in them ([`novel_outputs`]) are compiled to SPIR-V one by one.
+//! ignored. Outputs with something new in them ([`novel_outputs`]) are compiled to SPIR-V one by
+//! one.
 //!
 //! | rule | judged are |
 //! |---|---|

@@ -1,4 +1,5 @@
-//! SPIR-V: spirv-val, which takes one file at a time. A rule is an environment, such as `vulkan1.0`.
+//! SPIR-V: spirv-val, which takes one file at a time. A rule is an environment, such as
+//! `vulkan1.0`.
 
 use crate::judge::{Entry, Found, Group, Output, Refusal, Work, divide_group};
 use crate::tools::{SPIRV_VAL, printed_words};

@@ -98,7 +98,8 @@ struct Declaration {
     piece: Piece,
 }
 
-/// Declarations (types, constants, module variables, imports, helper functions), each once, by content.
+/// Declarations (types, constants, module variables, imports, helper functions), each once, by
+/// content.
 #[derive(Debug, Default)]
 pub struct Pool {
     declarations: Vec<Declaration>,

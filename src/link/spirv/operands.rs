@@ -16,9 +16,9 @@ pub enum Section {
 }
 use Section::{Body, Either, Global, Head};
 
-/// The section of an opcode and the layout of its operands: `i` an id, `r` the id that is defined, `l` a
-/// literal, `s` a string, `I` ids to the end, `L` literals to the end, `P` pairs of a literal and an id to
-/// the end, `m` image operands, and `a` a memory access.
+/// The section of an opcode and the layout of its operands: `i` an id, `r` the id that is defined,
+/// `l` a literal, `s` a string, `I` ids to the end, `L` literals to the end, `P` pairs of a literal
+/// and an id to the end, `m` image operands, and `a` a memory access.
 fn operand_layout(op: u16) -> Option<(Section, &'static str)> {
     Some(match op {
         1 => (Either, "ir"),                   // Undef
@@ -70,8 +70,8 @@ fn operand_layout(op: u16) -> Option<(Section, &'static str)> {
         56 | 252 | 253 | 255 | 5380 => (Body, ""),
         // CopyObject, Transpose, Image, ImageQuerySize, ImageQueryLevels, ImageQuerySamples
         83 | 84 | 100 | 104 | 106 | 107 => (Body, "iri"),
-        // conversions (ConvertFToU to QuantizeToF16), Bitcast, SNegate, FNegate, Any, All, IsNan, IsInf,
-        // LogicalNot, Not, BitReverse, BitCount, derivatives (DPdx to FwidthCoarse)
+        // conversions (ConvertFToU to QuantizeToF16), Bitcast, SNegate, FNegate, Any, All, IsNan,
+        // IsInf, LogicalNot, Not, BitReverse, BitCount, derivatives (DPdx to FwidthCoarse)
         109..=116 | 124 | 126 | 127 | 154..=157 | 168 | 200 | 204 | 205 | 207..=215 => {
             (Body, "iri")
         }

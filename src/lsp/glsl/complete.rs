@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::names::Names;
 use super::outline::Kind;
-use super::{Asked, read_names, spellings};
+use super::{Asked, asked_spellings, read_names};
 use crate::catalogue;
 use crate::lsp::Server;
 use crate::lsp::complete::{
@@ -76,7 +76,7 @@ fn complete_paths(asked: &Asked, written: &str) -> Value {
     };
     let before = &written[1..];
     let mut parts = BTreeSet::new();
-    for path in spellings(asked, first == '<') {
+    for path in asked_spellings(asked, first == '<') {
         let Some(rest) = path.strip_prefix(before) else { continue };
         let end = rest.find('/').map_or(rest.len(), |at| at + 1);
         parts.insert(rest[..end].to_owned());

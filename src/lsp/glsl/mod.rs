@@ -185,7 +185,8 @@ pub fn document_symbols(server: &mut Server, parameters: &Value) -> Result<Value
     Ok(symbols.collect())
 }
 
-/// The protocol's number of what a declaration is: that of the same in WESL. Members are not listed.
+/// The protocol's number of what a declaration is: that of the same in WESL. Members are not
+/// listed.
 fn symbol_kind(kind: Kind) -> u32 {
     navigate::symbol_kind(match kind {
         Kind::Function => ItemKind::Function,
@@ -196,6 +197,6 @@ fn symbol_kind(kind: Kind) -> u32 {
 }
 
 /// How a file may be named in an `#include` of the root file.
-fn spellings(asked: &Asked, angled: bool) -> Vec<String> {
+fn asked_spellings(asked: &Asked, angled: bool) -> Vec<String> {
     glsl::include_spellings(&asked.opened.packages, &asked.path, angled)
 }

@@ -272,7 +272,8 @@ impl Reader<'_> {
     }
 
     /// Parameters and variables between two tokens of a function. A variable is known to the end of
-    /// its block, or of the statement whose header declares it; a parameter to that of the function.
+    /// its block, or of the statement whose header declares it; a parameter to that of the
+    /// function.
     fn read_locals(&mut self, first: usize, last: usize) {
         let mut start = first;
         // For each open parenthesis the end of its statement, if statements begin within it.

@@ -46,8 +46,9 @@ pub const STATEMENTS: &[&str] = &[
     "while",
 ];
 
-/// Keywords, words reserved for later, and functions (The OpenGL Shading Language 4.60, sections 3.6
-/// and 8; the OpenGL ES Shading Language 3.20). Types with a number of parts are in [`is_type`].
+/// Keywords, words reserved for later, and functions (The OpenGL Shading Language 4.60, sections
+/// 3.6 and 8; the OpenGL ES Shading Language 3.20). Types with a number of parts are in
+/// [`is_type`].
 const WORDS: &str = "\
     EmitStreamVertex EmitVertex EndPrimitive EndStreamPrimitive abs acos acosh active all \
     allInvocations allInvocationsEqual any anyInvocation asin asinh asm atan atanh atomicAdd \

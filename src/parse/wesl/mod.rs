@@ -56,7 +56,7 @@ fn parse_with(source: SourceId, text: Arc<str>, names: &mut Names, locals: bool)
         errors: Vec::new(),
         warnings: Vec::new(),
     };
-    match token::tokenise(&text, source, names) {
+    match token::tokenize(&text, source, names) {
         Ok(tokens) => {
             let found = item::split_items(&mut module, &tokens, names);
             body::scan_body(&mut module, &tokens, names, found, locals);

@@ -31,7 +31,7 @@ pub struct Token {
 }
 
 /// Splits a text into tokens. The error is about the first thing that cannot be a token.
-pub fn tokenise(text: &str, source: SourceId, names: &mut Names) -> Result<Vec<Token>, Diagnostic> {
+pub fn tokenize(text: &str, source: SourceId, names: &mut Names) -> Result<Vec<Token>, Diagnostic> {
     let mut scanner = Scanner { text, bytes: text.as_bytes(), at: 0, source };
     let mut tokens: Vec<Token> = Vec::with_capacity(text.len() / 4);
     let mut open: Vec<u32> = Vec::new();

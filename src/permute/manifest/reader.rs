@@ -79,8 +79,8 @@ impl<'s> Reader<'s> {
         self.expect(found, value, what, "a string")
     }
 
-    /// One of the known words. For another, `unknown` has the code, the beginning of the message, the
-    /// label, and what the words are.
+    /// One of the known words. For another, `unknown` has the code, the beginning of the message,
+    /// the label, and what the words are.
     pub fn choice<T: Copy>(
         &mut self,
         value: &Value,

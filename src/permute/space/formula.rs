@@ -247,8 +247,8 @@ impl Conditions {
         Ok(Some(simpler))
     }
 
-    /// Adds an atom to those of its axis. Returns whether they changed, or `None` if the atom decides
-    /// the whole condition.
+    /// Adds an atom to those of its axis. Returns whether they changed, or `None` if the atom
+    /// decides the whole condition.
     fn merge(
         &self,
         join: Join,

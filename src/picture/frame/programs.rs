@@ -177,8 +177,12 @@ impl Programs {
         if let Some(graph) = kept.graphs.get(&file.path) {
             return Ok(graph.clone());
         }
-        let graph =
-            Arc::new(resolve::load(&mut kept.texts, &project::library(), &file.path, language)?);
+        let graph = Arc::new(resolve::load(
+            &mut kept.texts,
+            &project::library_packages(),
+            &file.path,
+            language,
+        )?);
         kept.graphs.insert(file.path.clone(), graph.clone());
         Ok(graph)
     }

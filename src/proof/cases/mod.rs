@@ -31,7 +31,8 @@
 //! `count`); `random` (also `seed`); `unit = COUNT` (the axes first); `hemisphere = "n"` (unit, on
 //! the side of the parameter `n`), `grazing = "n"` (unit, nearly at right angles to it), both with
 //! `count`; `same = "n"`; `around = VALUE` with `ulps`; `special = "plain" | "small" | "all"`; and
-//! arrays of these, in which an array lists values: `n = [{ unit = 8 }, [[0, 0, 0], [0, 0, 1]]]`. Fields of structs are named by path (`light.kind = 3`); those not named are 0.
+//! arrays of these, in which an array lists values: `n = [{ unit = 8 }, [[0, 0, 0], [0, 0, 1]]]`.
+//! Fields of structs are named by path (`light.kind = 3`); those not named are 0.
 //!
 //! Oracles, of which only the first needs Rust:
 //!

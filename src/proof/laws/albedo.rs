@@ -2,9 +2,10 @@
 //! reflects to all directions. It works for functions of cosines and for functions of directions.
 //!
 //! The factors' parameters are found by name. Those of the geometry (`nl nv nh lh vh lv th bh tl bl
-//! tv bv n_cross_h2 mu cos_theta`, or the directions `n l v h`) come from the rule, the others from the case's
-//! row, or as formulas from `with`. `n` is z, the tangent x, the bitangent y; `view` names the case's parameter
-//! that is the cosine n.v, `azimuth` turns the viewer about the normal. `mu` is v.h, `cos_theta` -l.v.
+//! tv bv n_cross_h2 mu cos_theta`, or the directions `n l v h`) come from the rule, the others from
+//! the case's row, or as formulas from `with`. `n` is z, the tangent x, the bitangent y; `view`
+//! names the case's parameter that is the cosine n.v, `azimuth` turns the viewer about the normal.
+//! `mu` is v.h, `cos_theta` -l.v.
 //!
 //! | `over` | the integral is |
 //! |---|---|

@@ -256,8 +256,8 @@ pub fn transform_rows(
     Ok(Some(rows.with_words(words)))
 }
 
-/// The calls of one of the law's other functions, where they do not depend on results. `own` has its
-/// parameters.
+/// The calls of one of the law's other functions, where they do not depend on results. `own` has
+/// its parameters.
 pub fn partner_rows(
     law: &Law,
     index: usize,

@@ -248,8 +248,8 @@ impl Finder<'_> {
         }
     }
 
-    /// Whether it is a variable that naga made for `&&` or `||`. Mistakes in its branches are covered
-    /// by mistakes in the operator.
+    /// Whether it is a variable that naga made for `&&` or `||`. Mistakes in its branches are
+    /// covered by mistakes in the operator.
     fn is_unnamed(&self, pointer: Handle<Expression>) -> bool {
         match self.function.expressions[pointer] {
             Expression::LocalVariable(variable) => {

@@ -1,6 +1,6 @@
 //! Sources: Lambert, "Photometria", 1760; Valve's half Lambert; Green, GPU Gems, 2004, chapter 16
-//! (wrap); Oren and Nayar, 1994 (qualitative model); Burley, 2012, section 5.3; Portsmouth, Kutz and
-//! Hill, 2025 (EON); Hill's fit in MaterialX, 2021; Khronos Group,
+//! (wrap); Oren and Nayar, 1994 (qualitative model); Burley, 2012, section 5.3; Portsmouth, Kutz
+//! and Hill, 2025 (EON); Hill's fit in MaterialX, 2021; Khronos Group,
 //! KHR_materials_diffuse_transmission, 2024; McAuley, 2011 (energy of a wrap).
 
 use super::{Arguments, Entry, Expected};

@@ -23,8 +23,8 @@ fn polynomial(x: f64, r: f64, terms: &[(f64, i32, i32)]) -> f64 {
     terms.iter().map(|(coefficient, i, j)| coefficient * x.powi(*i) * r.powi(*j)).sum()
 }
 
-/// What is lost, and how much more than `(1 - nv)^5` of the rest is at grazing incidence, as quotients
-/// of polynomials in the root of the cosine and the roughness.
+/// What is lost, and how much more than `(1 - nv)^5` of the rest is at grazing incidence, as
+/// quotients of polynomials in the root of the cosine and the roughness.
 fn dfg_approx(a: &mut Arguments<'_>) -> Expected {
     let (x, r) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(f64::from(0.001f32), 1.0));
     let quotient = |above: &[(f64, i32, i32)], below: &[(f64, i32, i32)]| {
@@ -90,8 +90,8 @@ fn ms_lobe(a: &mut Arguments<'_>) -> Expected {
     a.vec3().clamp(DVec3::ZERO, DVec3::ONE).map(one).into()
 }
 
-/// Quotients of polynomials in the cosine and alpha: the coefficients of each power are those of the
-/// two numerators, then of the two denominators.
+/// Quotients of polynomials in the cosine and alpha: the coefficients of each power are those of
+/// the two numerators, then of the two denominators.
 fn hill(nv: f64, r: f64) -> Expected {
     let terms: [([f64; 4], i32, i32); 9] = [
         ([0.1003, 0.9345, 1.0, 1.0], 0, 0),

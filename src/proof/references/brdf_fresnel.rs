@@ -88,8 +88,8 @@ fn f_average_schlick(a: &mut Arguments<'_>) -> Expected {
     (f0 + (f90 - f0) / 21.0).into()
 }
 
-/// The fit, in the Fresnel amplitude at normal incidence; from the denser side by reciprocity: as much
-/// light enters as leaves, spread over n^2 of the solid angle.
+/// The fit, in the Fresnel amplitude at normal incidence; from the denser side by reciprocity: as
+/// much light enters as leaves, spread over n^2 of the solid angle.
 pub fn average(eta: f64) -> f64 {
     let eta = eta.clamp(0.0, 1e6);
     let amplitude = ((eta - 1.0) / (eta + 1.0)).abs();

@@ -1,7 +1,7 @@
-//! Sources: Lambert, "Photometria", 1760; Heitz, Dupuy, Hill and Neubelt, "Real-Time Polygonal-Light
-//! Shading with Linearly Transformed Cosines", 2016; Lagarde and de Rousiers, "Moving Frostbite to
-//! Physically Based Rendering", 2014, section 4.7; Karis, "Real Shading in Unreal Engine 4", 2013;
-//! Heitz and Hill, 2017 (lines and disks).
+//! Sources: Lambert, "Photometria", 1760; Heitz, Dupuy, Hill and Neubelt, "Real-Time
+//! Polygonal-Light Shading with Linearly Transformed Cosines", 2016; Lagarde and de Rousiers,
+//! "Moving Frostbite to Physically Based Rendering", 2014, section 4.7; Karis, "Real Shading in
+//! Unreal Engine 4", 2013; Heitz and Hill, 2017 (lines and disks).
 
 use super::{Arguments, Entry, Expected};
 use glam::{DMat3, DVec2, DVec3};
@@ -145,8 +145,8 @@ fn frame_of(n: DVec3, v: DVec3) -> DMat3 {
     DMat3::from_cols(t1, n.cross(t1), n).transpose()
 }
 
-/// The vector irradiance of the transformed ellipse as an integral over its outline, which converges
-/// fast; a sphere of its length and direction is cut at the horizon.
+/// The vector irradiance of the transformed ellipse as an integral over its outline, which
+/// converges fast; a sphere of its length and direction is cut at the horizon.
 fn ltc_disk(a: &mut Arguments<'_>) -> Expected {
     let (n, v, p, minv) = (a.vec3(), a.vec3(), a.vec3(), a.mat3());
     let inside = minv * frame_of(n, v);

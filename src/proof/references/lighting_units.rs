@@ -1,5 +1,5 @@
-//! Sources: Lagarde and de Rousiers, 2014, sections 4.5, 4.7 and 5.1; ISO 2720:1974; ISO 12232:2006;
-//! Guy and Agopian, 2018, section 5.2.2.2.
+//! Sources: Lagarde and de Rousiers, 2014, sections 4.5, 4.7 and 5.1; ISO 2720:1974; ISO
+//! 12232:2006; Guy and Agopian, 2018, section 5.2.2.2.
 
 use super::{Arguments, Entry, Expected};
 use std::f64::consts::PI;

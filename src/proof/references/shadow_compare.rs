@@ -99,7 +99,8 @@ fn random16(a: &mut Arguments<'_>, _: &At) -> Taps {
     (0..16).map(|_| (1.0, radius * DVec2::new(next(), next()))).collect()
 }
 
-/// Sixteen places to the right and below, up to a quarter of the map over `w`, by sines of the pixel.
+/// Sixteen places to the right and below, up to a quarter of the map over `w`, by sines of the
+/// pixel.
 fn random16_hpg(a: &mut Arguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (sc, least, pixel) = (a.vec4(), a.f64(), a.vec2());

@@ -41,8 +41,8 @@ fn chebyshev(m: DVec2, t: f64, min_variance: f64, bleed: f64) -> f64 {
     if bleed >= 1.0 { 0.0 } else { ((p - bleed) / (1.0 - bleed)).clamp(0.0, 1.0) }
 }
 
-/// 1 up to the mean depth. Beyond it, Chebyshev's upper bound after the correction of light bleeding,
-/// but at least `least`.
+/// 1 up to the mean depth. Beyond it, Chebyshev's upper bound after the correction of light
+/// bleeding, but at least `least`.
 fn vsm_visibility(a: &mut Arguments<'_>) -> Expected {
     let (m, t, min_variance, least, bleed) = (a.vec2(), a.f64(), a.f64(), a.f64(), a.f64());
     chebyshev(m, t, min_variance, bleed).max(least).into()

@@ -1,5 +1,6 @@
-//! Parsed texts, and what their names mean, that are kept from one reading of a package to the next,
-//! as editors need it: after a keystroke, all files but one have the text that they had before.
+//! Parsed texts, and what their names mean, that are kept from one reading of a package to the
+//! next, as editors need it: after a keystroke, all files but one have the text that they had
+//! before.
 
 use std::sync::Arc;
 

@@ -46,8 +46,8 @@ const EBONY: DVec3 = DVec3::new(0.028, 0.022, 0.021);
 const MAPLE: DVec3 = DVec3::new(0.52, 0.34, 0.18);
 const WALNUT: DVec3 = DVec3::new(0.115, 0.048, 0.024);
 
-/// The part of the textures that has the board, and half of the side that it shows. Right of it, all
-/// is blank.
+/// The part of the textures that has the board, and half of the side that it shows. Right of it,
+/// all is blank.
 const BOARD: (f64, f64) = (0.9, 4.9);
 /// A place that is blank.
 const BLANK: DVec2 = DVec2::new(0.95, 0.5);

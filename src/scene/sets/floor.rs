@@ -10,8 +10,8 @@ use glam::DMat4;
 /// Tiles along each side.
 const TILES: i32 = 12;
 
-/// A checkerboard of `count` by `count` square tiles. `side` is the length of a tile's edge. Each tile is
-/// a grid of `quads` by `quads` quadrilaterals.
+/// A checkerboard of `count` by `count` square tiles. `side` is the length of a tile's edge. Each
+/// tile is a grid of `quads` by `quads` quadrilaterals.
 pub fn tiles(count: i32, side: f64, colors: [DVec3; 2], quads: u32) -> Shape {
     let half = 0.5 * side * f64::from(count);
     let places = (0..count).flat_map(|z| (0..count).map(move |x| (x, z)));

@@ -1,5 +1,5 @@
-//! Two rooms beside each other, seen from where their front walls were: a lamp shines onto the coloured
-//! wall of one, and only an opening at the back leads to the other.
+//! Two rooms beside each other, seen from where their front walls were: a lamp shines onto the
+//! coloured wall of one, and only an opening at the back leads to the other.
 
 use glam::{DMat4, DVec3};
 
