@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::proof::library::Library;
-use lamplight::proof::mutate::{self, Fate, Report};
+use lamplight::proof::mutate::{self, Fate, MutantReport};
 use lamplight::source::{Memory, SourceSet};
 use libtest_mimic::{Failed, Trial};
 use toml::Table;
@@ -27,7 +27,7 @@ pub fn trials() -> Vec<Trial> {
     cases.into_iter().map(|(name, case)| Trial::test(format!("mutate::{name}"), case)).collect()
 }
 
-fn mutants(library: &Library, modules: &[&str]) -> Result<Report, Failed> {
+fn mutants(library: &Library, modules: &[&str]) -> Result<MutantReport, Failed> {
     let sources = Mutex::new(SourceSet::default());
     let modules: Vec<String> = modules.iter().map(|module| (*module).to_owned()).collect();
     let report = mutate::run_mutants(library, &sources, &modules);

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::contents::{checksum, from_hex, refuse_control_characters, to_hex};
 use super::layout::MOST_GROUP_BYTES;
 use super::manifest::{self, Manifest, ManifestArtifact, ManifestUnit};
-use super::store::{self, Artifact, Program, Programs, Store};
+use super::store::{self, Program, Programs, Store, StoredArtifact};
 use super::{Axis, Error, Hash, Native, Reflection, Stage};
 use crate::input;
 
@@ -180,7 +180,7 @@ impl Store for Directory {
         Ok(())
     }
 
-    fn unit(&self, unit: u32) -> Result<store::Unit, Error> {
+    fn unit(&self, unit: u32) -> Result<store::StoredUnit, Error> {
         let (reflection, targets) = self
             .units
             .get(unit as usize)
@@ -192,14 +192,14 @@ impl Store for Directory {
                 .ok_or_else(|| Error::corrupt(MANIFEST, "an artifact names no native"))?;
             Ok((
                 target.clone(),
-                Artifact {
+                StoredArtifact {
                     extension: artifact.extension.clone(),
                     native: native.clone(),
                     blob: *blob,
                 },
             ))
         });
-        Ok(store::Unit {
+        Ok(store::StoredUnit {
             reflection: reflection.clone(),
             targets: targets.collect::<Result<_, Error>>()?,
         })

@@ -12,7 +12,7 @@ use serde::de::DeserializeOwned;
 
 use super::contents::{Hash, checksum, refuse_control_characters, to_hex};
 use super::layout::*;
-use super::store::{Artifact, Program, Programs, Store, Unit};
+use super::store::{Program, Programs, Store, StoredArtifact, StoredUnit};
 use super::{Axis, Error, Reflection, VERSION};
 use crate::input;
 use crate::packing;
@@ -234,9 +234,14 @@ impl Packed {
         Ok((target, u32_at(units, at + 4, "units")?, u32_at(units, at + 8, "units")?))
     }
 
-    fn artifact_of(&self, target: &TargetMeta, native: u32, blob: u32) -> Result<Artifact, Error> {
+    fn artifact_of(
+        &self,
+        target: &TargetMeta,
+        native: u32,
+        blob: u32,
+    ) -> Result<StoredArtifact, Error> {
         let (extension, native) = (target.extension.clone(), Arc::new(self.text(native)?));
-        Ok(Artifact { extension, native, blob })
+        Ok(StoredArtifact { extension, native, blob })
     }
 
     /// A decompressed group, kept or from the file.
@@ -338,17 +343,21 @@ impl Store for Packed {
         Ok(())
     }
 
-    fn unit(&self, unit: u32) -> Result<Unit, Error> {
+    fn unit(&self, unit: u32) -> Result<StoredUnit, Error> {
         let (reflection, first, count) = self.unit_record(unit)?;
         let mut targets = BTreeMap::new();
         for artifact in first..first + count {
             let (target, native, blob) = self.artifact_record(artifact)?;
             targets.insert(target.name.clone(), self.artifact_of(target, native, blob)?);
         }
-        Ok(Unit { reflection: Arc::new(self.text(reflection)?), targets })
+        Ok(StoredUnit { reflection: Arc::new(self.text(reflection)?), targets })
     }
 
-    fn artifact(&self, unit: u32, target: &str) -> Result<(Arc<Reflection>, Artifact), Error> {
+    fn artifact(
+        &self,
+        unit: u32,
+        target: &str,
+    ) -> Result<(Arc<Reflection>, StoredArtifact), Error> {
         let (reflection, first, count) = self.unit_record(unit)?;
         let mut known = Vec::new();
         for artifact in first..first + count {

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::diff::{Change, Difference};
 use super::loader::{self, Bundle};
-use super::store::{Store, Unit};
+use super::store::{Store, StoredUnit};
 use super::{Error, Language};
 
 impl Bundle {
@@ -107,8 +107,8 @@ fn entry_changes(
 
 /// `reflection`, and the targets that differ. Bytes are compared by their hashes.
 fn changed_parts(
-    (old, before): (&dyn Store, &Unit),
-    (new, after): (&dyn Store, &Unit),
+    (old, before): (&dyn Store, &StoredUnit),
+    (new, after): (&dyn Store, &StoredUnit),
 ) -> Result<Vec<String>, Error> {
     let mut found = Vec::new();
     if before.reflection != after.reflection {

@@ -17,13 +17,13 @@ pub struct Program {
 }
 
 /// A unit whose bytes were not read yet.
-pub struct Unit {
+pub struct StoredUnit {
     pub reflection: Arc<Reflection>,
-    pub targets: BTreeMap<String, Artifact>,
+    pub targets: BTreeMap<String, StoredArtifact>,
 }
 
 /// One target of a unit.
-pub struct Artifact {
+pub struct StoredArtifact {
     pub extension: String,
     pub native: Arc<Native>,
     /// Number of the blob in its store.
@@ -40,10 +40,14 @@ pub trait Store: Send + Sync {
     /// Every key, sorted, with its unit.
     fn each_key(&self, entry: usize, visit: &mut dyn FnMut(&str, u32)) -> Result<(), Error>;
 
-    fn unit(&self, unit: u32) -> Result<Unit, Error>;
+    fn unit(&self, unit: u32) -> Result<StoredUnit, Error>;
 
     /// One target of a unit and its reflection, without reading the other targets.
-    fn artifact(&self, unit: u32, target: &str) -> Result<(Arc<Reflection>, Artifact), Error> {
+    fn artifact(
+        &self,
+        unit: u32,
+        target: &str,
+    ) -> Result<(Arc<Reflection>, StoredArtifact), Error> {
         let mut unit = self.unit(unit)?;
         match unit.targets.remove(target) {
             Some(artifact) => Ok((unit.reflection, artifact)),

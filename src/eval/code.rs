@@ -249,9 +249,9 @@ pub struct Table {
     pub default: u32,
 }
 
-/// How the level of a sample is chosen.
+/// How the level of detail of a sample is chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Level {
+pub enum Lod {
     Auto,
     Zero,
     Exact(Slot),
@@ -265,7 +265,7 @@ pub enum Ask {
     Sample {
         sampler: Slot,
         gather: Option<u8>,
-        level: Level,
+        level: Lod,
         offset: Option<Slot>,
         reference: Option<Slot>,
         clamp_to_edge: bool,
@@ -299,6 +299,6 @@ pub struct Access {
 impl Access {
     /// Whether the level depends on how the coordinates differ between neighbouring fragments.
     pub fn implicit(&self) -> bool {
-        matches!(self.ask, Ask::Sample { level: Level::Auto | Level::Bias(_), gather: None, .. })
+        matches!(self.ask, Ask::Sample { level: Lod::Auto | Lod::Bias(_), gather: None, .. })
     }
 }

@@ -21,7 +21,7 @@ pub struct Pool {
     units: RwLock<FxHashMap<Key, Result<Arc<Unit>, Reason>>>,
     /// What the functions of each target share, in the order of the targets.
     texts: Vec<RwLock<Texts>>,
-    words: RwLock<spirv::Pool>,
+    words: RwLock<spirv::DeclarationPool>,
     /// Bytes of all units, roughly.
     size: AtomicUsize,
 }
@@ -72,7 +72,7 @@ impl Pool {
         for (texts, target) in self.texts.iter().zip(targets) {
             *write(texts) = Texts::new(*target);
         }
-        *write(&self.words) = spirv::Pool::default();
+        *write(&self.words) = spirv::DeclarationPool::default();
         self.size.store(0, Ordering::Relaxed);
     }
 
@@ -186,7 +186,7 @@ fn text_pieces<'p>(parts: &'p Parts<'_>, index: usize) -> Result<Vec<&'p TextPie
 }
 
 fn words_piece(
-    pool: &mut spirv::Pool,
+    pool: &mut spirv::DeclarationPool,
     words: &[u32],
     native: Native,
     function: Option<&str>,

@@ -3,7 +3,7 @@
 
 use super::condition::Condition;
 use super::import;
-use super::tree::{Branch, Bytes, Choice, Import, Kind, Line, Node, Scanned, Token};
+use super::tree::{Branch, Bytes, Choice, Import, Line, Node, Scanned, Token, TokenKind};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::parse::wesl::blank::{block_comment, comment_length, without_comments};
 use crate::parse::words::{begins_word, continues_word, leading_word, number_end};
@@ -297,27 +297,27 @@ impl Scanner<'_> {
         Ok(())
     }
 
-    fn kind(&mut self) -> Result<(Kind, usize), Diagnostic> {
+    fn kind(&mut self) -> Result<(TokenKind, usize), Diagnostic> {
         let rest = self.rest();
         let first = rest.chars().next().unwrap_or_default();
         let length = first.len_utf8();
         let dotted = first == '.' && rest[1..].starts_with(|next: char| next.is_ascii_digit());
         match first {
-            _ if begins_word(first) => Ok((Kind::Word, leading_word(rest).len())),
-            _ if first.is_ascii_digit() || dotted => Ok((Kind::Number, number_end(rest, 0))),
-            ':' if rest.starts_with("::") => Ok((Kind::Path, 2)),
+            _ if begins_word(first) => Ok((TokenKind::Word, leading_word(rest).len())),
+            _ if first.is_ascii_digit() || dotted => Ok((TokenKind::Number, number_end(rest, 0))),
+            ':' if rest.starts_with("::") => Ok((TokenKind::Path, 2)),
             '#' => self.def(),
             '"' => match rest[1..].find(['"', '\n']) {
-                Some(end) if rest[1 + end..].starts_with('"') => Ok((Kind::Word, end + 2)),
+                Some(end) if rest[1 + end..].starts_with('"') => Ok((TokenKind::Word, end + 2)),
                 _ => Err(self.wrong("quotes that are never closed", self.at..self.at + 1)),
             },
-            _ if first.is_ascii_graphic() => Ok((Kind::Mark(first as u8), length)),
+            _ if first.is_ascii_graphic() => Ok((TokenKind::Mark(first as u8), length)),
             _ => Err(self.wrong("a character that WGSL does not have", self.at..self.at + length)),
         }
     }
 
     /// `#NAME` or `#{NAME}`.
-    fn def(&mut self) -> Result<(Kind, usize), Diagnostic> {
+    fn def(&mut self) -> Result<(TokenKind, usize), Diagnostic> {
         let rest = self.rest();
         let after = rest[1..].trim_start();
         let (name, length) = match after.strip_prefix('{') {
@@ -338,7 +338,7 @@ impl Scanner<'_> {
         }
         let span = Span::new(self.source, place);
         self.found.asked.constants.entry(name.to_owned()).or_insert(span);
-        Ok((Kind::Def, length))
+        Ok((TokenKind::Def, length))
     }
 }
 

@@ -41,11 +41,11 @@ pub enum Node {
 pub struct Token {
     pub lead: Bytes,
     pub range: Bytes,
-    pub kind: Kind,
+    pub kind: TokenKind,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum TokenKind {
     Word,
     Number,
     /// `::`

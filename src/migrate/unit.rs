@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 use super::condition::{Condition, Facts};
 use super::level::{Level, Unit};
-use super::tree::{Choice, Import, Kind, Line, Node, Token};
+use super::tree::{Choice, Import, Line, Node, Token, TokenKind};
 
 #[derive(Debug)]
 pub enum Element<'a> {
@@ -146,7 +146,7 @@ impl<'a> Reader<'a> {
 
     fn mark(&self, node: Option<&&'a Node>) -> Option<u8> {
         match node {
-            Some(Node::Token(Token { kind: Kind::Mark(mark), .. })) => Some(*mark),
+            Some(Node::Token(Token { kind: TokenKind::Mark(mark), .. })) => Some(*mark),
             _ => None,
         }
     }
@@ -372,8 +372,8 @@ impl<'a> Reader<'a> {
             match row.get(*at) {
                 Some(Node::Token(token)) => {
                     match token.kind {
-                        Kind::Mark(b'(' | b'[' | b'{') => depth += 1,
-                        Kind::Mark(b')' | b']' | b'}') => depth -= 1,
+                        TokenKind::Mark(b'(' | b'[' | b'{') => depth += 1,
+                        TokenKind::Mark(b')' | b']' | b'}') => depth -= 1,
                         _ => {}
                     }
                     parts.push(Part::Token(token));

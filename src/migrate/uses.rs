@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::names::{Modules, Place};
-use super::tree::{Bytes, Kind, Node, Scanned, Token};
+use super::tree::{Bytes, Node, Scanned, Token, TokenKind};
 
 /// Why a use has no form in WESL, and where.
 type Wrong = (String, Bytes);
@@ -39,8 +39,8 @@ impl Uses<'_> {
                     choice.branches.iter().try_for_each(|branch| self.nodes(&branch.nodes))?;
                     at += 1;
                 }
-                Node::Token(token) if token.kind == Kind::Word => at = self.word(nodes, at)?,
-                Node::Token(token) if token.kind == Kind::Def => {
+                Node::Token(token) if token.kind == TokenKind::Word => at = self.word(nodes, at)?,
+                Node::Token(token) if token.kind == TokenKind::Def => {
                     self.value(token, token_at(nodes, at + 1))?;
                     at += 1;
                 }
@@ -59,7 +59,8 @@ impl Uses<'_> {
         let mut tokens: Vec<&Token> = Vec::new();
         let mut end = at;
         while let Some(token) = token_at(nodes, end) {
-            let expected = if tokens.len().is_multiple_of(2) { Kind::Word } else { Kind::Path };
+            let expected =
+                if tokens.len().is_multiple_of(2) { TokenKind::Word } else { TokenKind::Path };
             if token.kind != expected {
                 break;
             }
@@ -118,7 +119,7 @@ impl Uses<'_> {
         let name = self.text_of(def).trim_matches(|mark| "#{} \t".contains(mark)).to_owned();
         let value = format!("constants::{name}");
         let pasted = next.filter(|next| next.lead.is_empty());
-        let pasted = pasted.filter(|next| matches!(next.kind, Kind::Word | Kind::Number));
+        let pasted = pasted.filter(|next| matches!(next.kind, TokenKind::Word | TokenKind::Number));
         let text = match pasted.map(|next| self.text_of(next)) {
             None => value,
             Some("u") => format!("u32({value})"),

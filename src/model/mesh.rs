@@ -5,7 +5,7 @@ use gltf::mesh::Mode;
 
 use super::Reader;
 use super::coordinates::Coordinates;
-use super::nodes::Part;
+use super::nodes::PlacedMesh;
 use super::surface::{Means, read_surface};
 use super::texture::Sheet;
 use crate::limits::MODEL_CORNERS;
@@ -15,7 +15,7 @@ use crate::scene::{Shape, Vertex, smooth_normals};
 /// The objects of a mesh in its place: one for each primitive of triangles.
 pub fn mesh_objects(
     reader: &mut Reader<'_>,
-    part: &Part,
+    part: &PlacedMesh,
     sheet: &Sheet,
     corners: &mut usize,
 ) -> Result<Vec<(Object, Means)>, String> {

@@ -9,7 +9,7 @@ use crate::limits::{MODEL_NESTING, MODEL_NODES};
 use crate::scene::sets::{Eye, Lamp, LampKind, Object};
 
 /// A mesh in its place.
-pub struct Part {
+pub struct PlacedMesh {
     pub mesh: usize,
     pub world_from_mesh: DMat4,
 }
@@ -24,7 +24,7 @@ pub struct Camera {
 /// All that a document places.
 #[derive(Default)]
 pub struct Placed {
-    pub parts: Vec<Part>,
+    pub parts: Vec<PlacedMesh>,
     pub cameras: Vec<Camera>,
     /// What arrives at distance 1 or everywhere, the kind, the place, half the angle of a cone.
     lights: Vec<(DVec3, LampKind, DMat4, f64)>,
@@ -71,7 +71,7 @@ fn take_node(reader: &mut Reader<'_>, node: &gltf::Node<'_>, world: DMat4, place
     }
     placed
         .parts
-        .extend(node.mesh().map(|mesh| Part { mesh: mesh.index(), world_from_mesh: world }));
+        .extend(node.mesh().map(|mesh| PlacedMesh { mesh: mesh.index(), world_from_mesh: world }));
     let camera = node.camera();
     match camera.as_ref().map(gltf::Camera::projection) {
         Some(Projection::Perspective(view)) => placed.cameras.push(Camera {

@@ -69,7 +69,7 @@ pub struct Needs {
     pub material_array: bool,
     /// Whether that array has a material for each side.
     pub sides: bool,
-    pub background: Background,
+    pub background: BackgroundKind,
     /// Whether haze behind everything is brighter towards the sun.
     pub sun: bool,
     /// Whether the specular map of the surroundings has a level for each roughness.
@@ -98,7 +98,7 @@ pub enum Falloff {
 /// decides.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Background {
+pub enum BackgroundKind {
     /// A dark background, darker towards the edges.
     #[default]
     Backdrop,
@@ -143,7 +143,7 @@ struct Row {
     faceted: bool,
     materials: Option<Materials>,
     sides: bool,
-    background: Background,
+    background: BackgroundKind,
     sun: bool,
     levels: bool,
     cleared: Option<Cleared>,

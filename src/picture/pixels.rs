@@ -7,7 +7,7 @@ use image::ImageEncoder as _;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 
 use super::Surroundings;
-use super::needs;
+use super::needs::BackgroundKind;
 use super::values::{Camera, Values};
 use crate::scene::{irradiance_sh9, linear_from_srgb};
 
@@ -84,19 +84,17 @@ impl Background {
     pub fn new(values: &Values<'_>, eye: Camera) -> Self {
         let needs = &values.lit.needs;
         let kind = match needs.background {
-            needs::Background::Haze => {
+            BackgroundKind::Haze => {
                 let color = values.number("haze.color").and_then(|color| color.try_into().ok());
                 let sun = if needs.sun { Sun::of(values) } else { None };
                 Seen::Haze(color.map_or(values.scene.haze, DVec3::from_array), sun)
             }
-            needs::Background::Surroundings => Seen::Around(values.shot.surroundings.clone()),
-            needs::Background::Probe if needs.unlit => {
+            BackgroundKind::Surroundings => Seen::Around(values.shot.surroundings.clone()),
+            BackgroundKind::Probe if needs.unlit => {
                 Seen::Probe(Box::new(values.probe().map(DVec3::from_array)), 0.5 / PI)
             }
-            needs::Background::Hemisphere => {
-                Seen::Hemisphere(values.scene.ground, values.scene.sky)
-            }
-            needs::Background::Probe | needs::Background::Backdrop => Seen::Backdrop,
+            BackgroundKind::Hemisphere => Seen::Hemisphere(values.scene.ground, values.scene.sky),
+            BackgroundKind::Probe | BackgroundKind::Backdrop => Seen::Backdrop,
         };
         Self { world_from_clip: eye.clip_from_world.inverse(), kind }
     }

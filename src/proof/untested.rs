@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::cases::File;
-use crate::parse::glsl::{self, Kind, Part, Symbol, Symbols, Token, known};
+use crate::parse::glsl::{self, Part, Symbol, Symbols, Token, TokenKind, known};
 use crate::parse::wesl::{self, Event, Item, ItemKind, Module, Name, Names, Reference};
 use crate::source::{SourceId, SourceSet};
 
@@ -70,11 +70,12 @@ fn function_definitions(module: &glsl::Module) -> BTreeMap<Symbol, Vec<Symbol>> 
         let next = |at: usize| tokens.get(at).map(|token| token.symbol);
         if next(at) == Some(known::OPEN_BRACE) {
             at = closing_token(&tokens, at, known::OPEN_BRACE, known::CLOSE_BRACE);
-        } else if tokens[at].kind == Kind::Identifier && next(at + 1) == Some(known::OPEN) {
+        } else if tokens[at].kind == TokenKind::Identifier && next(at + 1) == Some(known::OPEN) {
             let body = closing_token(&tokens, at + 1, known::OPEN, known::CLOSE);
             if next(body) == Some(known::OPEN_BRACE) {
                 let end = closing_token(&tokens, body, known::OPEN_BRACE, known::CLOSE_BRACE);
-                let words = tokens[body..end].iter().filter(|word| word.kind == Kind::Identifier);
+                let words =
+                    tokens[body..end].iter().filter(|word| word.kind == TokenKind::Identifier);
                 found.entry(tokens[at].symbol).or_default().extend(words.map(|word| word.symbol));
                 at = end;
             } else {

@@ -3,7 +3,7 @@
 use super::expand::Expander;
 use super::token::{NO_SETTING, Tok};
 use crate::diagnostic::{Code, Diagnostic, codes};
-use crate::parse::glsl::{Kind, Symbol, known};
+use crate::parse::glsl::{Symbol, TokenKind, known};
 use crate::source::{LIMITS, Span};
 
 /// Evaluates the expanded tokens of a condition. Operands that `&&` and `||` skip are not
@@ -133,8 +133,8 @@ impl Parser<'_, '_, '_> {
             known::OPEN => self.parenthesised(live)?,
             known::DEFINED => self.defined(&token)?,
             _ if token.setting != NO_SETTING => self.setting(&token, live)?,
-            _ if token.kind == Kind::Number => self.literal(&token)?,
-            _ if token.kind == Kind::Identifier => self.undefined(&token, live)?,
+            _ if token.kind == TokenKind::Number => self.literal(&token)?,
+            _ if token.kind == TokenKind::Identifier => self.undefined(&token, live)?,
             _ => {
                 return Err(self.error(
                     &token,
@@ -166,7 +166,9 @@ impl Parser<'_, '_, '_> {
         if parenthesised {
             name = self.next()?;
         }
-        if name.kind != Kind::Identifier || (parenthesised && self.next()?.symbol != known::CLOSE) {
+        if name.kind != TokenKind::Identifier
+            || (parenthesised && self.next()?.symbol != known::CLOSE)
+        {
             return Err(self.error(
                 defined,
                 "`defined` needs the name of a macro",

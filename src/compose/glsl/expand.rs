@@ -9,7 +9,7 @@ use super::table::{Meaning, Table};
 use super::token::{NO_SETTING, NONE, Tok};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::limits::count_steps;
-use crate::parse::glsl::{BodyToken, Kind, Macro, Module, Symbol, known};
+use crate::parse::glsl::{BodyToken, Macro, Module, Symbol, TokenKind, known};
 use crate::resolve::glsl::Graph;
 use crate::source::LIMITS;
 
@@ -126,7 +126,7 @@ impl<'g, 's> Expander<'g, 's> {
     fn copy_plain(&mut self, input: &mut Input<'_>, out: &mut Vec<Tok>) {
         let defined = if self.in_condition { known::DEFINED } else { known::HASH };
         let is_plain = |kind, symbol| {
-            kind != Kind::Identifier || (symbol != defined && !self.table.has(symbol))
+            kind != TokenKind::Identifier || (symbol != defined && !self.table.has(symbol))
         };
         match input {
             Input::Source { module, at, end } => {
@@ -157,7 +157,7 @@ impl<'g, 's> Expander<'g, 's> {
     /// macro inside its own expansion is marked, so that it is not expanded again.
     fn next(&mut self, floor: usize, input: &mut Input<'_>) -> Option<Tok> {
         let mut token = self.take(floor, input)?;
-        if token.kind == Kind::Identifier && self.table.is_active(token.symbol) {
+        if token.kind == TokenKind::Identifier && self.table.is_active(token.symbol) {
             token.painted = true;
         }
         Some(token)
@@ -216,7 +216,7 @@ impl<'g, 's> Expander<'g, 's> {
         input: &mut Input<'_>,
         out: &mut Vec<Tok>,
     ) -> Result<(), Fatal> {
-        if token.kind != Kind::Identifier || token.painted {
+        if token.kind != TokenKind::Identifier || token.painted {
             out.push(token);
             return Ok(());
         }
@@ -231,7 +231,7 @@ impl<'g, 's> Expander<'g, 's> {
             }
             Some(meaning) => {
                 let (symbol, setting) = self.number(meaning, &token);
-                out.push(Tok { symbol, setting, kind: Kind::Number, expanded: true, ..token });
+                out.push(Tok { symbol, setting, kind: TokenKind::Number, expanded: true, ..token });
             }
         }
         Ok(())

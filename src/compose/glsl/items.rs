@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::token::Tok;
 use crate::diagnostic::{Diagnostic, codes};
-use crate::parse::glsl::{Kind, Module, Symbol, known};
+use crate::parse::glsl::{Module, Symbol, TokenKind, known};
 use crate::source::LIMITS;
 
 /// A top-level declaration.
@@ -114,7 +114,7 @@ fn declared_names(item: &[Tok], give: &mut impl FnMut(Symbol)) -> bool {
                 at = next_declarator(item, at);
                 continue;
             }
-            _ if token.kind == Kind::Identifier && !is_qualifier(token.symbol) => match next {
+            _ if token.kind == TokenKind::Identifier && !is_qualifier(token.symbol) => match next {
                 Some(known::OPEN) => {
                     give(token.symbol);
                     return true;
@@ -144,7 +144,7 @@ fn declared_names(item: &[Tok], give: &mut impl FnMut(Symbol)) -> bool {
 fn member_names(members: &[Tok], give: &mut impl FnMut(Symbol)) {
     for pair in members.windows(2) {
         let ends = matches!(pair[1].symbol, known::SEMICOLON | known::COMMA | known::OPEN_BRACKET);
-        if ends && pair[0].kind == Kind::Identifier {
+        if ends && pair[0].kind == TokenKind::Identifier {
             give(pair[0].symbol);
         }
     }
@@ -160,7 +160,7 @@ fn is_type(item: &[Tok], at: usize) -> bool {
     while item.get(after).is_some_and(|token| token.symbol == known::OPEN_BRACKET) {
         after = close_of(item, after) + 1;
     }
-    item.get(after).is_some_and(|token| token.kind == Kind::Identifier)
+    item.get(after).is_some_and(|token| token.kind == TokenKind::Identifier)
 }
 
 /// The bracket that closes the one at `open`, or the last token.

@@ -7,7 +7,7 @@ use super::items::{Item, Items};
 use super::preprocess::Preprocessed;
 use super::token::Tok;
 use crate::compose::{Part, PartKind};
-use crate::parse::glsl::{Kind, Symbol, known};
+use crate::parse::glsl::{Symbol, TokenKind, known};
 
 /// The most declarations of one name: a text with more gets no parts. Only overloads share a name,
 /// and following very many would take too long.
@@ -118,7 +118,7 @@ fn used_parts(item: &[Tok], own: u32, declared: &Declared, parts: &[Part]) -> Ve
             *part != own && (is_call || parts[*part as usize].kind != PartKind::Function)
         };
         // After a dot the name is a member's, not one of this scope.
-        if token.kind == Kind::Identifier && previous != known::DOT {
+        if token.kind == TokenKind::Identifier && previous != known::DOT {
             uses.extend(declared.of(token.symbol).filter(is_use));
         }
         previous = token.symbol;

@@ -5,7 +5,7 @@ use super::table::Spellings;
 use super::token::Tok;
 use crate::compose::Keep;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::parse::glsl::{Kind, Symbol, known};
+use crate::parse::glsl::{Symbol, TokenKind, known};
 
 /// Whether each item is kept: those that `keep` names, and those that they reach by name. Overloads
 /// share a name, so they are kept together.
@@ -107,7 +107,7 @@ impl Search {
             let mut previous = known::SEMICOLON;
             for token in &tokens[range] {
                 // After a dot the name is a member's, not one of this scope.
-                if token.kind == Kind::Identifier && previous != known::DOT {
+                if token.kind == TokenKind::Identifier && previous != known::DOT {
                     self.name(token.symbol);
                 }
                 previous = token.symbol;

@@ -1,6 +1,6 @@
 //! Tokens after preprocessing.
 
-use crate::parse::glsl::{Kind, Module, Symbol, Token};
+use crate::parse::glsl::{Module, Symbol, Token, TokenKind};
 use crate::source::Span;
 
 /// No token.
@@ -25,7 +25,7 @@ pub struct Tok {
     pub after: u32,
     /// The setting whose value this token is, if it is one.
     pub setting: u16,
-    pub kind: Kind,
+    pub kind: TokenKind,
     pub spaced: bool,
     /// Never to be expanded again.
     pub painted: bool,

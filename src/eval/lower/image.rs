@@ -1,7 +1,7 @@
 //! Lowers accesses to textures.
 
 use super::{Body, Loc};
-use crate::eval::code::{Access, Ask, Instruction, Level, Slot};
+use crate::eval::code::{Access, Ask, Instruction, Lod, Slot};
 use crate::eval::error::Error;
 use crate::eval::layout::Kind;
 use naga::{Expression, Handle, ImageClass, ImageQuery, SampleLevel, TypeInner};
@@ -83,17 +83,17 @@ impl Body<'_, '_> {
         handle.map(|handle| self.dense(handle)).transpose()
     }
 
-    fn level(&mut self, level: SampleLevel) -> Result<Level, Error> {
+    fn level(&mut self, level: SampleLevel) -> Result<Lod, Error> {
         Ok(match level {
-            SampleLevel::Auto => Level::Auto,
-            SampleLevel::Zero => Level::Zero,
+            SampleLevel::Auto => Lod::Auto,
+            SampleLevel::Zero => Lod::Zero,
             // The level of a depth texture is an integer, which is converted to a float here.
             SampleLevel::Exact(level) if self.kind(level)? != Kind::Float => {
-                Level::Exact(self.float_of(level)?)
+                Lod::Exact(self.float_of(level)?)
             }
-            SampleLevel::Exact(level) => Level::Exact(self.dense(level)?),
-            SampleLevel::Bias(bias) => Level::Bias(self.dense(bias)?),
-            SampleLevel::Gradient { x, y } => Level::Gradient(self.dense(x)?, self.dense(y)?),
+            SampleLevel::Exact(level) => Lod::Exact(self.dense(level)?),
+            SampleLevel::Bias(bias) => Lod::Bias(self.dense(bias)?),
+            SampleLevel::Gradient { x, y } => Lod::Gradient(self.dense(x)?, self.dense(y)?),
         })
     }
 

@@ -1,6 +1,6 @@
 //! Runs accesses to textures: finds what is bound, chooses the level, and stores the result.
 
-use super::super::code::{Access, Ask, Axis, Level};
+use super::super::code::{Access, Ask, Axis, Lod};
 use super::super::error::{Error, Kind};
 use super::super::number::Number;
 use super::super::resources::{Filter, Sampler, Shape, Texture};
@@ -185,15 +185,15 @@ fn sample_texture<N: Number>(
         gathered_component(&footprint, usize::from(component), &mut doubt)
     } else {
         let slopes = match level {
-            Level::Gradient(x, y) => Some([x, y].map(|slot| values_at(m, slot, access.dimensions))),
+            Lod::Gradient(x, y) => Some([x, y].map(|slot| values_at(m, slot, access.dimensions))),
             _ => gradient,
         };
         let level = match level {
-            Level::Zero => 0.0,
+            Lod::Zero => 0.0,
             _ if clamp_to_edge => 0.0,
-            Level::Exact(slot) => m.get(slot).value(),
-            Level::Bias(slot) => detail_level(texture, coordinate, slopes) + m.get(slot).value(),
-            Level::Auto | Level::Gradient(..) => detail_level(texture, coordinate, slopes),
+            Lod::Exact(slot) => m.get(slot).value(),
+            Lod::Bias(slot) => detail_level(texture, coordinate, slopes) + m.get(slot).value(),
+            Lod::Auto | Lod::Gradient(..) => detail_level(texture, coordinate, slopes),
         };
         between_levels(&footprint, level, &mut doubt)
     };

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use rustc_hash::FxHashMap;
 
 use super::capabilities::{SHADER, required_extensions};
-use super::{DEPTH, HEADER, MEMORY_MODEL, Piece, Pool, Ref, SHELVES, Shelf, Text};
+use super::{DEPTH, DeclarationPool, HEADER, MEMORY_MODEL, Piece, Ref, SHELVES, Shelf, Text};
 use crate::emit::spirv::{first_word, op};
 
 /// A piece that the new module has.
@@ -23,7 +23,7 @@ const OPEN: u32 = u32::MAX;
 
 /// Collects the pieces of a new module, each after what it needs.
 struct Linker<'n, 'a> {
-    pool: &'n Pool,
+    pool: &'n DeclarationPool,
     function: &'n dyn Fn(&str) -> Option<&'a Piece>,
     nodes: Vec<Node<'n>>,
     /// The references of all nodes: first as numbers of nodes, then as ids.
@@ -135,7 +135,7 @@ fn write_extension(name: &str, out: &mut Vec<u32>) {
 
 /// Puts an entry point and the functions that it reaches together.
 pub fn assemble_module<'a>(
-    pool: &Pool,
+    pool: &DeclarationPool,
     entry: &'a Piece,
     function: &dyn Fn(&str) -> Option<&'a Piece>,
 ) -> Result<Vec<u32>, String> {

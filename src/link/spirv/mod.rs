@@ -101,13 +101,13 @@ struct Declaration {
 /// Declarations (types, constants, module variables, imports, helper functions), each once, by
 /// content.
 #[derive(Debug, Default)]
-pub struct Pool {
+pub struct DeclarationPool {
     declarations: Vec<Declaration>,
     /// The number of each declaration, by its content as words.
     numbers: FxHashMap<Box<[u32]>, u32>,
 }
 
-impl Pool {
+impl DeclarationPool {
     /// The number of a known declaration.
     fn number(&self, key: &[u32]) -> Option<u32> {
         self.numbers.get(key).copied()
@@ -127,7 +127,7 @@ impl Pool {
 
 /// The pieces of one module that were wanted.
 #[derive(Clone, Debug)]
-pub struct Parts {
+pub struct SplitParts {
     /// The author's functions with their names, in the order of the module.
     pub functions: Vec<(String, Piece)>,
     /// The entry point.

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::module::{Function, Module, Role, find_functions};
 use super::operands::Inst;
-use super::{DEPTH, Declaration, Parts, Piece, Pool, Ref, Shelf, Text};
+use super::{DEPTH, Declaration, DeclarationPool, Piece, Ref, Shelf, SplitParts, Text};
 use crate::emit::spirv::op;
 
 /// Takes a module apart into pieces.
@@ -15,16 +15,16 @@ use crate::emit::spirv::op;
 /// a function may have too. Nothing that these do not need is looked at.
 pub fn split_module(
     words: &[u32],
-    pool: &mut Pool,
+    pool: &mut DeclarationPool,
     is_user: &dyn Fn(&str) -> bool,
     is_wanted: &dyn Fn(&str) -> bool,
-) -> Result<Parts, String> {
+) -> Result<SplitParts, String> {
     let module = Module::read(words)?;
     let point = module.entry_point()?;
     let functions = find_functions(&module, is_user)?;
     module.check()?;
     let mut splitter = Splitter::new(&module, pool, &functions);
-    let mut parts = Parts { functions: vec![], entry: None };
+    let mut parts = SplitParts { functions: vec![], entry: None };
     for function in &functions {
         match &function.role {
             Role::User(name) if is_wanted(name) => {
@@ -81,7 +81,7 @@ impl Draft {
 /// Makes the pieces of one module.
 struct Splitter<'m, 'a> {
     module: &'m Module<'a>,
-    pool: &'m mut Pool,
+    pool: &'m mut DeclarationPool,
     functions: &'m [Function],
     ids: Vec<Id>,
     /// The numbers of the variables that are in the pool already.
@@ -89,7 +89,11 @@ struct Splitter<'m, 'a> {
 }
 
 impl<'m, 'a> Splitter<'m, 'a> {
-    fn new(module: &'m Module<'a>, pool: &'m mut Pool, functions: &'m [Function]) -> Self {
+    fn new(
+        module: &'m Module<'a>,
+        pool: &'m mut DeclarationPool,
+        functions: &'m [Function],
+    ) -> Self {
         Self {
             module,
             pool,

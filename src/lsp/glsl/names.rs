@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::outline::{Declaration, Kind, Local, Outline, outline_of};
 use crate::catalogue::prefix;
-use crate::parse::glsl::{Directive, Kind as Class, Part, Symbol, known};
+use crate::parse::glsl::{Directive, Part, Symbol, TokenKind, known};
 use crate::resolve::glsl::{Graph, Target};
 
 /// A file, all that it may include, and what each of these declares.
@@ -76,7 +76,7 @@ impl Names {
         let after = tokens.partition_point(|token| token.start <= byte);
         // Between two tokens, the name before counts if the other is none.
         let mut near = (after.saturating_sub(2)..after).rev();
-        near.find(|at| tokens[*at].kind == Class::Identifier && byte <= tokens[*at].end)
+        near.find(|at| tokens[*at].kind == TokenKind::Identifier && byte <= tokens[*at].end)
     }
 
     /// Locals that are known at a byte.

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::tokens::{Placed, ends_of_blocks, matching_parentheses, text_tokens};
 use super::words::{QUALIFIERS, STATEMENTS};
-use crate::parse::glsl::{Directive, Kind as Class, Module, Part, Symbol, Symbols, known};
+use crate::parse::glsl::{Directive, Module, Part, Symbol, Symbols, TokenKind, known};
 
 /// What a declaration is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,7 +101,7 @@ impl Reader<'_> {
     fn is_name(&self, at: usize) -> bool {
         self.tokens.get(at).is_some_and(|placed| {
             let text = self.symbols.text(placed.token.symbol);
-            placed.token.kind == Class::Identifier
+            placed.token.kind == TokenKind::Identifier
                 && !QUALIFIERS.contains(&text)
                 && !STATEMENTS.contains(&text)
         })

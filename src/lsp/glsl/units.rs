@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::names::Names;
 use super::outline::{Declaration, Kind};
 use crate::catalogue::prefix;
-use crate::parse::glsl::{Directive, Kind as Class, Module, Part, Symbol, known};
+use crate::parse::glsl::{Directive, Module, Part, Symbol, TokenKind, known};
 use crate::resolve::glsl::{Graph, Target};
 
 /// Tokens of a `layout` that are looked at.
@@ -113,7 +113,7 @@ impl Units {
     pub fn tokens_of(&self, file: usize, name: Symbol) -> impl Iterator<Item = usize> + '_ {
         let tokens = self.module(file).tokens.iter().enumerate();
         let named = tokens
-            .filter(move |(_, token)| token.symbol == name && token.kind == Class::Identifier);
+            .filter(move |(_, token)| token.symbol == name && token.kind == TokenKind::Identifier);
         named.map(|(at, _)| at)
     }
 

@@ -1,8 +1,8 @@
 //! Reads directives.
 
 use super::{
-    BodyToken, DIRECTIVES, Directive, Include, Kind, Macro, Module, Part, Symbol, Symbols, Token,
-    known,
+    BodyToken, DIRECTIVES, Directive, Include, Macro, Module, Part, Symbol, Symbols, Token,
+    TokenKind, known,
 };
 use crate::diagnostic::{Code, Diagnostic, codes};
 use crate::source::{LIMITS, Span};
@@ -190,7 +190,7 @@ impl Line<'_> {
 
     fn name(&self, directive: &str) -> Result<(Symbol, Span), Diagnostic> {
         match self.token(0) {
-            Some(token) if token.kind == Kind::Identifier => {
+            Some(token) if token.kind == TokenKind::Identifier => {
                 Ok((token.symbol, self.span_of(token)))
             }
             _ => {
@@ -286,7 +286,7 @@ impl Line<'_> {
         loop {
             match self.token(index) {
                 Some(token)
-                    if token.kind == Kind::Identifier
+                    if token.kind == TokenKind::Identifier
                         && names.len() < LIMITS.nesting
                         && !names.contains(&token.symbol) =>
                 {
@@ -367,7 +367,7 @@ impl Line<'_> {
             .collect();
         match (self.token(0), words.as_slice()) {
             (Some(name), [_, ":", "require" | "enable" | "warn" | "disable"])
-                if name.kind == Kind::Identifier =>
+                if name.kind == TokenKind::Identifier =>
             {
                 Ok(Directive::Extension { name: name.symbol, line: self.whole() })
             }

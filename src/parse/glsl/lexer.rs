@@ -5,7 +5,7 @@ use crate::parse::words::is_word_byte;
 
 /// What a token is, as far as that matters to the preprocessor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum TokenKind {
     Identifier,
     Number,
     Punctuation,
@@ -23,7 +23,7 @@ pub struct Token {
     /// One past the last byte.
     pub end: u32,
     /// Class.
-    pub kind: Kind,
+    pub kind: TokenKind,
     /// Whether white space or a comment stands before it.
     pub spaced: bool,
     /// Whether it is the first of its logical line.
@@ -157,17 +157,17 @@ fn without_splices(spelling: &str) -> String {
     spelling.replace("\\\r\n", "").replace("\\\n", "")
 }
 
-fn scan_token(text: &str, start: usize) -> (Kind, usize) {
+fn scan_token(text: &str, start: usize) -> (TokenKind, usize) {
     let bytes = text.as_bytes();
     match bytes[start] {
-        b'a'..=b'z' | b'A'..=b'Z' | b'_' => (Kind::Identifier, word_end(bytes, start)),
-        b'0'..=b'9' => (Kind::Number, number_end(bytes, start)),
+        b'a'..=b'z' | b'A'..=b'Z' | b'_' => (TokenKind::Identifier, word_end(bytes, start)),
+        b'0'..=b'9' => (TokenKind::Number, number_end(bytes, start)),
         b'.' if bytes.get(start + 1).is_some_and(u8::is_ascii_digit) => {
-            (Kind::Number, number_end(bytes, start))
+            (TokenKind::Number, number_end(bytes, start))
         }
         _ => match punctuation_length(&bytes[start..]) {
-            0 => (Kind::Other, start + text[start..].chars().next().map_or(1, char::len_utf8)),
-            length => (Kind::Punctuation, start + length),
+            0 => (TokenKind::Other, start + text[start..].chars().next().map_or(1, char::len_utf8)),
+            length => (TokenKind::Punctuation, start + length),
         },
     }
 }
@@ -209,10 +209,10 @@ fn punctuation_length(rest: &[u8]) -> usize {
 }
 
 /// The class of a spelling, if that is exactly one token.
-pub fn single_token(text: &str) -> Option<Kind> {
+pub fn single_token(text: &str) -> Option<TokenKind> {
     if text.is_empty() {
         return None;
     }
     let (kind, end) = scan_token(text, 0);
-    (end == text.len() && kind != Kind::Other).then_some(kind)
+    (end == text.len() && kind != TokenKind::Other).then_some(kind)
 }

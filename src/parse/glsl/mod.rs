@@ -9,7 +9,7 @@ mod symbols;
 use std::ops::Range;
 use std::sync::Arc;
 
-pub use lexer::{Kind, Token, single_token};
+pub use lexer::{Token, TokenKind, single_token};
 pub use symbols::{Symbol, Symbols, known};
 
 use crate::diagnostic::{Diagnostic, codes};
@@ -139,7 +139,7 @@ pub struct Macro {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BodyToken {
     pub symbol: Symbol,
-    pub kind: Kind,
+    pub kind: TokenKind,
     pub spaced: bool,
     /// The index of the parameter that it names, if it names one.
     pub parameter: Option<u16>,

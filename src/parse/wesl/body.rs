@@ -13,7 +13,7 @@ use super::module::{
 };
 use super::name::{Name, Names};
 use super::scope::{Meaning, Scopes};
-use super::token::{Kind, Token};
+use super::token::{Token, TokenKind};
 use super::trivia;
 use crate::diagnostic::Diagnostic;
 
@@ -162,9 +162,9 @@ impl Scanner<'_, '_> {
         let mut depth = 0i32;
         while at < close {
             match self.tokens.kind(at) {
-                Some(Kind::Mark(b'<')) => depth += 1,
-                Some(Kind::Mark(b'>')) => depth -= 1,
-                Some(Kind::Mark(b',')) if depth <= 0 => return at,
+                Some(TokenKind::Mark(b'<')) => depth += 1,
+                Some(TokenKind::Mark(b'>')) => depth -= 1,
+                Some(TokenKind::Mark(b',')) if depth <= 0 => return at,
                 _ => at = self.tokens.partner(at).max(at),
             }
             at += 1;
@@ -247,8 +247,8 @@ impl Scanner<'_, '_> {
     pub(super) fn uses(&mut self, mut at: usize, end: usize) -> Result<(), Diagnostic> {
         while at < end {
             at = match self.tokens.kind(at) {
-                Some(Kind::Word(name)) => self.word(at, name)?,
-                Some(Kind::Mark(b'@')) => self.stray_attribute(at)?,
+                Some(TokenKind::Word(name)) => self.word(at, name)?,
+                Some(TokenKind::Mark(b'@')) => self.stray_attribute(at)?,
                 _ => at + 1,
             };
         }
@@ -274,7 +274,7 @@ impl Scanner<'_, '_> {
 
     fn word(&mut self, at: usize, name: Name) -> Result<usize, Diagnostic> {
         let member = at > 0 && self.tokens.is(at - 1, b'.');
-        let path = self.tokens.kind(at + 1) == Some(Kind::Path);
+        let path = self.tokens.kind(at + 1) == Some(TokenKind::Path);
         match name {
             _ if member => Ok(at + 1),
             Name::PACKAGE | Name::SUPER => self.path(at),
@@ -315,7 +315,7 @@ impl Scanner<'_, '_> {
         loop {
             segments.push(self.tokens.identifier(end, "a name")?);
             end += 1;
-            if self.tokens.kind(end) != Some(Kind::Path) {
+            if self.tokens.kind(end) != Some(TokenKind::Path) {
                 break;
             }
             end += 1;

@@ -7,7 +7,7 @@ use super::module::{
     Comparison, Condition, ConditionId, Expression, ExpressionId, Module, Operand,
 };
 use super::name::Name;
-use super::token::Kind;
+use super::token::TokenKind;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::source::LIMITS;
 
@@ -281,19 +281,21 @@ impl Reader<'_, '_> {
 
     fn operand(&mut self) -> Result<Operand, Diagnostic> {
         let start = self.at;
-        if self.tokens.is(self.at, b'-') && self.tokens.kind(self.at + 1) == Some(Kind::Number) {
+        if self.tokens.is(self.at, b'-') && self.tokens.kind(self.at + 1) == Some(TokenKind::Number)
+        {
             self.at += 1;
         }
         let (kind, negative) = (self.tokens.kind(self.at), self.at > start);
         self.at += 1;
         let range: Range<u32> = self.tokens.range(start, self.at.min(self.tokens.len()));
         match kind {
-            Some(Kind::Number) => match parse_integer(self.tokens.text(self.at - 1), negative) {
+            Some(TokenKind::Number) => match parse_integer(self.tokens.text(self.at - 1), negative)
+            {
                 Some(value) => Ok(Operand::Integer(value, range)),
                 None => Err(unexpected_token(self.tokens, self.at - 1)
                     .note("only integers may be compared")),
             },
-            Some(Kind::Word(name)) if !name.is_keyword() => Ok(Operand::Name(name, range)),
+            Some(TokenKind::Word(name)) if !name.is_keyword() => Ok(Operand::Name(name, range)),
             _ => Err(unexpected_token(self.tokens, start)),
         }
     }

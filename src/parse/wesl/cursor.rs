@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::name::{Name, Names};
-use super::token::{Kind, Token};
+use super::token::{Token, TokenKind};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::source::{SourceId, Span};
 
@@ -21,22 +21,22 @@ impl<'a> Tokens<'a> {
         self.tokens.len()
     }
 
-    pub fn kind(self, at: usize) -> Option<Kind> {
+    pub fn kind(self, at: usize) -> Option<TokenKind> {
         self.tokens.get(at).map(|token| token.kind)
     }
 
     pub fn is(self, at: usize, mark: u8) -> bool {
-        self.kind(at) == Some(Kind::Mark(mark))
+        self.kind(at) == Some(TokenKind::Mark(mark))
     }
 
     pub fn is_word(self, at: usize, name: Name) -> bool {
-        self.kind(at) == Some(Kind::Word(name))
+        self.kind(at) == Some(TokenKind::Word(name))
     }
 
     /// The word at a token, if it is one.
     pub fn word(self, at: usize) -> Option<Name> {
         match self.kind(at) {
-            Some(Kind::Word(name)) => Some(name),
+            Some(TokenKind::Word(name)) => Some(name),
             _ => None,
         }
     }

@@ -3,7 +3,7 @@
 use super::cursor::Tokens;
 use super::module::{ConditionId, Import, Module, Origin, Parts, Path};
 use super::name::Name;
-use super::token::Kind;
+use super::token::TokenKind;
 use crate::diagnostic::{Diagnostic, codes};
 
 /// Reads the statement whose `import` is at `at`; returns the index past its semicolon.
@@ -35,7 +35,7 @@ pub fn read_origin(tokens: Tokens<'_>, at: usize) -> Result<(Origin, usize), Dia
     while (word == Some(Name::PACKAGE) && end == at)
         || (word == Some(Name::SUPER) && tokens.is_word(end, Name::SUPER))
     {
-        if tokens.kind(end + 1) != Some(Kind::Path) {
+        if tokens.kind(end + 1) != Some(TokenKind::Path) {
             return Err(tokens.expected(end + 1, "`::`"));
         }
         end += 2;
@@ -51,7 +51,7 @@ pub fn read_origin(tokens: Tokens<'_>, at: usize) -> Result<(Origin, usize), Dia
 
 /// The error for `as` where a path has a name.
 fn misplaced_as(tokens: Tokens<'_>, at: usize) -> Diagnostic {
-    let is_path = |at: usize| tokens.kind(at) == Some(Kind::Path);
+    let is_path = |at: usize| tokens.kind(at) == Some(TokenKind::Path);
     let error = Diagnostic::error(codes::SYNTAX_ERROR, "`as` cannot be a name in a path")
         .at(tokens.span(at), "a keyword");
     match at > 1 && is_path(at - 1) && is_path(at + 1) && tokens.word(at + 2).is_some() {
@@ -91,7 +91,7 @@ impl Reader<'_, '_> {
             path.parts.last = place;
             path.segments.push(name);
             self.at += 1;
-            if self.tokens.kind(self.at) != Some(Kind::Path) {
+            if self.tokens.kind(self.at) != Some(TokenKind::Path) {
                 break;
             }
             self.at += 1;

@@ -9,7 +9,7 @@ use crate::source::{LIMITS, SourceId, Span};
 /// What a token is. `<` and `>` are always single tokens: `>>` and `>=` are two tokens each. So a
 /// `>` that ends a template list needs no special case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum TokenKind {
     Word(Name),
     Number,
     /// `::`
@@ -23,7 +23,7 @@ pub enum Kind {
 /// A token and its bytes.
 #[derive(Debug, Clone, Copy)]
 pub struct Token {
-    pub kind: Kind,
+    pub kind: TokenKind,
     pub start: u32,
     pub end: u32,
     /// Index of the matching bracket; its own for anything else.
@@ -51,8 +51,10 @@ pub fn tokenize(text: &str, source: SourceId, names: &mut Names) -> Result<Vec<T
             .at(scanner.span(start), "the first one too many"));
         }
         match kind {
-            Kind::Mark(b'(' | b'[' | b'{') => push_bracket(&mut open, index, scanner.span(start))?,
-            Kind::Mark(mark @ (b')' | b']' | b'}')) => {
+            TokenKind::Mark(b'(' | b'[' | b'{') => {
+                push_bracket(&mut open, index, scanner.span(start))?
+            }
+            TokenKind::Mark(mark @ (b')' | b']' | b'}')) => {
                 close_bracket(&mut tokens, &mut open, mark, &scanner, start)?
             }
             _ => {}
@@ -92,8 +94,8 @@ fn close_bracket(
         .at(scanner.span(start), "no open bracket before this"));
     };
     let expected = match tokens[opener as usize].kind {
-        Kind::Mark(b'(') => b')',
-        Kind::Mark(b'[') => b']',
+        TokenKind::Mark(b'(') => b')',
+        TokenKind::Mark(b'[') => b']',
         _ => b'}',
     };
     if mark != expected {
@@ -110,7 +112,7 @@ fn close_bracket(
 }
 
 fn unclosed_bracket(token: &Token, source: SourceId) -> Diagnostic {
-    let mark = if let Kind::Mark(mark) = token.kind { mark as char } else { '{' };
+    let mark = if let TokenKind::Mark(mark) = token.kind { mark as char } else { '{' };
     Diagnostic::error(codes::UNBALANCED_BRACKET, format!("`{mark}` is never closed"))
         .at(span_of(token, source), "opened here")
 }
@@ -172,14 +174,14 @@ impl Scanner<'_> {
             .note("block comments nest: each `/*` inside needs a `*/` of its own"))
     }
 
-    fn token(&mut self, names: &mut Names) -> Result<Kind, Diagnostic> {
+    fn token(&mut self, names: &mut Names) -> Result<TokenKind, Diagnostic> {
         let start = self.at;
         match self.bytes[start] {
             b'a'..=b'z' | b'A'..=b'Z' | b'_' => Ok(self.word(names)),
             b'0'..=b'9' => Ok(self.number()),
             b'.' if self.peek(1).is_ascii_digit() => Ok(self.number()),
-            b':' if self.peek(1) == b':' => Ok(self.two(Kind::Path)),
-            b'-' if self.peek(1) == b'>' => Ok(self.two(Kind::Arrow)),
+            b':' if self.peek(1) == b':' => Ok(self.two(TokenKind::Path)),
+            b'-' if self.peek(1) == b'>' => Ok(self.two(TokenKind::Arrow)),
             mark @ (b'!'
             | b'%'
             | b'&'
@@ -191,7 +193,7 @@ impl Scanner<'_> {
             | b'^'
             | b'{'..=b'~') => {
                 self.at += 1;
-                Ok(Kind::Mark(mark))
+                Ok(TokenKind::Mark(mark))
             }
             _ => match self.character() {
                 Some(letter) if begins_word(letter) => Ok(self.word(names)),
@@ -200,7 +202,7 @@ impl Scanner<'_> {
         }
     }
 
-    fn two(&mut self, kind: Kind) -> Kind {
+    fn two(&mut self, kind: TokenKind) -> TokenKind {
         self.at += 2;
         kind
     }
@@ -222,15 +224,15 @@ impl Scanner<'_> {
         }
     }
 
-    fn word(&mut self, names: &mut Names) -> Kind {
+    fn word(&mut self, names: &mut Names) -> TokenKind {
         let start = self.at;
         self.at = word_end(self.text, start);
-        Kind::Word(names.intern(&self.text[start..self.at]))
+        TokenKind::Word(names.intern(&self.text[start..self.at]))
     }
 
     /// A numeric literal. It is not checked here, since naga does that.
-    fn number(&mut self) -> Kind {
+    fn number(&mut self) -> TokenKind {
         self.at = number_end(self.text, self.at);
-        Kind::Number
+        TokenKind::Number
     }
 }

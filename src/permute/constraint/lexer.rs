@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::parse::words::{begins_word, word_end};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum TokenKind {
     /// An identifier, `in`, `true` and `false` among them.
     Word,
     /// A decimal integer, perhaps negative.
@@ -20,7 +20,7 @@ pub enum Kind {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Token<'a> {
-    pub kind: Kind,
+    pub kind: TokenKind,
     pub text: &'a str,
     pub range: Range<usize>,
 }
@@ -29,7 +29,7 @@ pub struct Token<'a> {
 const SIGNS: &[&str] =
     &["=>", "==", "!=", "<=", ">=", "&&", "||", "!", "(", ")", "[", "]", ",", "<", ">"];
 
-/// The tokens of the text, closed by one of kind [`Kind::End`].
+/// The tokens of the text, closed by one of kind [`TokenKind::End`].
 pub fn constraint_tokens(text: &str) -> Vec<Token<'_>> {
     let mut tokens = Vec::new();
     let mut at = 0;
@@ -42,19 +42,19 @@ pub fn constraint_tokens(text: &str) -> Vec<Token<'_>> {
         tokens.push(Token { kind, text: &text[at..at + length], range: at..at + length });
         at += length;
     }
-    tokens.push(Token { kind: Kind::End, text: "", range: text.len()..text.len() });
+    tokens.push(Token { kind: TokenKind::End, text: "", range: text.len()..text.len() });
     tokens
 }
 
-fn next_token(rest: &str, first: char) -> (Kind, usize) {
+fn next_token(rest: &str, first: char) -> (TokenKind, usize) {
     let run = |from: usize| word_end(rest, from);
     if let Some(sign) = SIGNS.iter().find(|sign| rest.starts_with(**sign)) {
-        return (Kind::Sign, sign.len());
+        return (TokenKind::Sign, sign.len());
     }
     match first {
-        '-' if rest[1..].starts_with(|c: char| c.is_ascii_digit()) => (Kind::Number, run(1)),
-        _ if first.is_ascii_digit() => (Kind::Number, run(0)),
-        _ if begins_word(first) => (Kind::Word, run(0)),
-        _ => (Kind::Stray, first.len_utf8()),
+        '-' if rest[1..].starts_with(|c: char| c.is_ascii_digit()) => (TokenKind::Number, run(1)),
+        _ if first.is_ascii_digit() => (TokenKind::Number, run(0)),
+        _ if begins_word(first) => (TokenKind::Word, run(0)),
+        _ => (TokenKind::Stray, first.len_utf8()),
     }
 }

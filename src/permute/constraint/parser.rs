@@ -1,6 +1,6 @@
 //! Parses constraints by recursive descent. It ends at the first mistake.
 
-use super::lexer::{Kind as Token, constraint_tokens};
+use super::lexer::{TokenKind, constraint_tokens};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::permute::Setting;
 use crate::permute::axis::{Axis, Kind, ValueSet};
@@ -17,7 +17,7 @@ pub fn parse(axes: &[Axis], text: &Quoted) -> Result<Formula, Diagnostic> {
     let mut parser = Parser { axes, text, tokens: constraint_tokens(&text.text), at: 0, depth: 0 };
     let formula = parser.condition()?;
     match parser.kind() {
-        Token::End => Ok(formula),
+        TokenKind::End => Ok(formula),
         _ => Err(parser.unexpected("`&&`, `||`, `=>` or the end")),
     }
 }
@@ -82,7 +82,7 @@ impl<'a> Parser<'a> {
     }
 
     fn atom(&mut self) -> Result<Formula, Diagnostic> {
-        if self.kind() != Token::Word || self.is_keyword() {
+        if self.kind() != TokenKind::Word || self.is_keyword() {
             return Err(self.unexpected("an axis, `!` or `(`"));
         }
         let span = self.span();
@@ -102,7 +102,7 @@ impl<'a> Parser<'a> {
         if self.take("!=") {
             return Ok(all.without(ValueSet::single(self.value(found)?)));
         }
-        if self.kind() == Token::Word && self.tokens[self.at].text == "in" {
+        if self.kind() == TokenKind::Word && self.tokens[self.at].text == "in" {
             self.at += 1;
             return self.list(found);
         }
@@ -111,7 +111,7 @@ impl<'a> Parser<'a> {
             None if found.kind == Kind::Bool => {
                 Ok(found.ordinal(&Setting::Bool(true)).into_iter().collect())
             }
-            None if self.kind() == Token::Stray => Err(self.unexpected("a comparison")),
+            None if self.kind() == TokenKind::Stray => Err(self.unexpected("a comparison")),
             None => Err(self.bare(found, span)),
         }
     }
@@ -130,7 +130,7 @@ impl<'a> Parser<'a> {
                 .at(axis.span, "declared here"));
         }
         let Some(bound) =
-            self.tokens[self.at].text.parse().ok().filter(|_| self.kind() == Token::Number)
+            self.tokens[self.at].text.parse().ok().filter(|_| self.kind() == TokenKind::Number)
         else {
             return Err(self.unexpected("an integer of 64 bits"));
         };
@@ -150,7 +150,7 @@ impl<'a> Parser<'a> {
     }
 
     fn value(&mut self, axis: &Axis) -> Result<usize, Diagnostic> {
-        if !matches!(self.kind(), Token::Word | Token::Number) {
+        if !matches!(self.kind(), TokenKind::Word | TokenKind::Number) {
             return Err(self.unexpected(&format!("a value of `{}`", axis.name)));
         }
         let span = self.span();
@@ -185,7 +185,7 @@ impl<'a> Parser<'a> {
         found
     }
 
-    fn kind(&self) -> Token {
+    fn kind(&self) -> TokenKind {
         self.tokens[self.at].kind
     }
 
@@ -205,7 +205,7 @@ impl<'a> Parser<'a> {
     }
 
     fn take(&mut self, sign: &str) -> bool {
-        let found = self.kind() == Token::Sign && self.tokens[self.at].text == sign;
+        let found = self.kind() == TokenKind::Sign && self.tokens[self.at].text == sign;
         self.at += usize::from(found);
         found
     }
@@ -216,7 +216,7 @@ impl<'a> Parser<'a> {
 
     fn unexpected(&self, expected: &str) -> Diagnostic {
         let found = match self.kind() {
-            Token::End => "the end".to_owned(),
+            TokenKind::End => "the end".to_owned(),
             _ => format!("`{}`", self.tokens[self.at].text),
         };
         let diagnostic = Diagnostic::error(

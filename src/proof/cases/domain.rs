@@ -1,7 +1,7 @@
 //! The values that a parameter takes in a case.
 
 use super::random::Random;
-use super::reader::{Node, Value};
+use super::reader::{CaseValue, Node};
 use super::values::{
     even_steps, neighbours_of, related_directions, special_values, specials, unit_vectors,
     value_grid,
@@ -134,7 +134,7 @@ pub fn read_domains(
     found: &mut Vec<(String, Domain, Node)>,
 ) -> Result<(), Diagnostics> {
     match &node.value {
-        Value::Table(entries) if !is_domain(node) => {
+        CaseValue::Table(entries) if !is_domain(node) => {
             for (key, inner) in entries {
                 read_domains(&format!("{path}.{}", key.name), inner, found)?;
             }
@@ -159,10 +159,10 @@ fn domain_keys(kind: &Kind) -> Vec<&'static str> {
 
 fn read_domain(node: &Node) -> Result<Domain, Diagnostic> {
     match &node.value {
-        Value::Array(elements) => {
+        CaseValue::Array(elements) => {
             elements.iter().map(read_part).collect::<Result<_, _>>().map(Domain::Union)
         }
-        Value::Table(_) => match KINDS.iter().find(|kind| node.get(kind.key).is_some()) {
+        CaseValue::Table(_) => match KINDS.iter().find(|kind| node.get(kind.key).is_some()) {
             Some(kind) => (kind.read)(node.required(kind.key)?, node),
             None => Err(node.error("this table is not a domain").note(format!(
                 "domains are {}",
@@ -177,7 +177,7 @@ fn read_domain(node: &Node) -> Result<Domain, Diagnostic> {
 /// itself.
 fn read_part(node: &Node) -> Result<Domain, Diagnostic> {
     match &node.value {
-        Value::Array(values) => {
+        CaseValue::Array(values) => {
             values.iter().map(Node::numbers).collect::<Result<_, _>>().map(Domain::Values)
         }
         _ => read_domain(node),

@@ -1,7 +1,7 @@
 //! Reads laws from a case file.
 
 use super::Text;
-use super::reader::{Node, Value};
+use super::reader::{CaseValue, Node};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::proof::laws::{
     self, Albedo, Area, Equality, Formulas, Integral, Inverse, Law, Over, Takes, Wanted,
@@ -103,7 +103,8 @@ fn read_names(kind: &str, node: &Node) -> Result<Vec<String>, Diagnostic> {
 
 fn read_integral(node: &Node) -> Result<Integral, Diagnostic> {
     let about = node.get("about").map(|about| about.text().map(str::to_owned)).transpose()?;
-    let cosine = node.get("cosine").is_some_and(|cosine| matches!(cosine.value, Value::Bool(true)));
+    let cosine =
+        node.get("cosine").is_some_and(|cosine| matches!(cosine.value, CaseValue::Bool(true)));
     if cosine && about.is_none() {
         return Err(node.error("`cosine` is that to `about`, which is missing"));
     }
@@ -176,7 +177,7 @@ fn read_formulas(node: &Node) -> Result<Formulas, Diagnostic> {
 
 /// A formula, or plain numbers.
 fn read_formula(node: &Node) -> Result<Text, Diagnostic> {
-    if let Value::Text(_) = node.value {
+    if let CaseValue::Text(_) = node.value {
         return Text::read(node);
     }
     let numbers: Vec<String> =

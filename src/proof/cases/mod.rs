@@ -324,7 +324,7 @@ fn values_by_path(
     {
         let path = format!("{prefix}{}", key.name);
         match inner.value {
-            reader::Value::Table(_) => {
+            reader::CaseValue::Table(_) => {
                 values.extend(values_by_path(&format!("{path}."), inner, &[])?)
             }
             _ => values.push((path, inner.numbers()?)),

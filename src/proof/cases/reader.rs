@@ -9,13 +9,13 @@ use crate::source::{SourceId, Span};
 /// A value of a case file, and its place.
 #[derive(Debug, Clone)]
 pub struct Node {
-    pub value: Value,
+    pub value: CaseValue,
     pub span: Span,
 }
 
 /// A value.
 #[derive(Debug, Clone)]
-pub enum Value {
+pub enum CaseValue {
     Bool(bool),
     Number(f64),
     Text(String),
@@ -43,21 +43,21 @@ pub fn read_toml(text: &str, source: SourceId) -> Result<Node, Diagnostic> {
 fn node_of(value: &Spanned<DeValue<'_>>, source: SourceId) -> Node {
     let span = Span::new(source, value.span());
     let value = match value.get_ref() {
-        DeValue::Boolean(value) => Value::Bool(*value),
+        DeValue::Boolean(value) => CaseValue::Bool(*value),
         DeValue::Integer(value) => i64::from_str_radix(value.as_str(), value.radix())
-            .map_or(Value::Number(f64::NAN), |n| Value::Number(n as f64)),
-        DeValue::Float(value) => Value::Number(value.as_str().parse().unwrap_or(f64::NAN)),
-        DeValue::String(value) => Value::Text(value.to_string()),
-        DeValue::Datetime(value) => Value::Text(value.to_string()),
+            .map_or(CaseValue::Number(f64::NAN), |n| CaseValue::Number(n as f64)),
+        DeValue::Float(value) => CaseValue::Number(value.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::String(value) => CaseValue::Text(value.to_string()),
+        DeValue::Datetime(value) => CaseValue::Text(value.to_string()),
         DeValue::Array(values) => {
-            Value::Array(values.iter().map(|value| node_of(value, source)).collect())
+            CaseValue::Array(values.iter().map(|value| node_of(value, source)).collect())
         }
         DeValue::Table(values) => table_of(values, source),
     };
     Node { value, span }
 }
 
-fn table_of(table: &DeTable<'_>, source: SourceId) -> Value {
+fn table_of(table: &DeTable<'_>, source: SourceId) -> CaseValue {
     let key = |key: &Spanned<std::borrow::Cow<'_, str>>| Key {
         name: key.get_ref().to_string(),
         span: Span::new(source, key.span()),
@@ -65,7 +65,7 @@ fn table_of(table: &DeTable<'_>, source: SourceId) -> Value {
     let mut entries: Vec<_> =
         table.iter().map(|(name, value)| (key(name), node_of(value, source))).collect();
     entries.sort_by_key(|(key, _)| key.span.start);
-    Value::Table(entries)
+    CaseValue::Table(entries)
 }
 
 impl Node {
@@ -77,7 +77,7 @@ impl Node {
     /// The entries of a table.
     pub fn entries(&self) -> Result<&[(Key, Node)], Diagnostic> {
         match &self.value {
-            Value::Table(entries) => Ok(entries),
+            CaseValue::Table(entries) => Ok(entries),
             _ => Err(self.error("expected a table")),
         }
     }
@@ -85,7 +85,7 @@ impl Node {
     /// The elements of an array.
     pub fn elements(&self) -> Result<&[Node], Diagnostic> {
         match &self.value {
-            Value::Array(elements) => Ok(elements),
+            CaseValue::Array(elements) => Ok(elements),
             _ => Err(self.error("expected an array")),
         }
     }
@@ -93,7 +93,7 @@ impl Node {
     /// An array's elements, or the value itself as the only one.
     pub fn one_or_more(&self) -> &[Node] {
         match &self.value {
-            Value::Array(elements) => elements,
+            CaseValue::Array(elements) => elements,
             _ => std::slice::from_ref(self),
         }
     }
@@ -101,7 +101,7 @@ impl Node {
     /// A text.
     pub fn text(&self) -> Result<&str, Diagnostic> {
         match &self.value {
-            Value::Text(text) => Ok(text),
+            CaseValue::Text(text) => Ok(text),
             _ => Err(self.error("expected a string")),
         }
     }
@@ -109,8 +109,8 @@ impl Node {
     /// A number; true and false are 1 and 0.
     pub fn number(&self) -> Result<f64, Diagnostic> {
         match self.value {
-            Value::Number(number) if !number.is_nan() => Ok(number),
-            Value::Bool(value) => Ok(f64::from(u8::from(value))),
+            CaseValue::Number(number) if !number.is_nan() => Ok(number),
+            CaseValue::Bool(value) => Ok(f64::from(u8::from(value))),
             _ => Err(self.error("expected a number")),
         }
     }
@@ -127,7 +127,7 @@ impl Node {
     /// All numbers of an array, with those of arrays within it; or a single number.
     pub fn numbers(&self) -> Result<Vec<f64>, Diagnostic> {
         match &self.value {
-            Value::Array(elements) => elements
+            CaseValue::Array(elements) => elements
                 .iter()
                 .map(Self::numbers)
                 .collect::<Result<Vec<_>, _>>()
@@ -162,7 +162,7 @@ impl Node {
     /// The value of a key.
     pub fn get(&self, name: &str) -> Option<&Self> {
         match &self.value {
-            Value::Table(entries) => {
+            CaseValue::Table(entries) => {
                 entries.iter().find(|(key, _)| key.name == name).map(|(_, node)| node)
             }
             _ => None,

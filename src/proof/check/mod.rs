@@ -14,7 +14,7 @@ mod told;
 pub use judge::{Verdict, Worst};
 pub use law::LawVerdict;
 pub use profile::{Axis, BINS, Bin, CELLS, Input, Map, Profile, Scale};
-pub use proof::{Parity, Proof, Spec, Value};
+pub use proof::{Parity, Proof, Spec, ValueProof};
 pub use report::{headroom_text, lacking_text, report_table, short_number, stricter_cases};
 pub use told::{failures_as_text, of_outcome, of_proof, report_failures};
 

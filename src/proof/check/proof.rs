@@ -36,7 +36,7 @@ pub struct Proof {
     /// What WGSL allows, compared with what the case allows; or why that is not known.
     pub spec: Result<Spec, String>,
     /// The code in f64 compared with the oracle, unless the oracle is the code itself.
-    pub value: Option<Value>,
+    pub value: Option<ValueProof>,
     /// WESL compared with GLSL in f64, if both exist.
     pub parity: Option<Result<Parity, String>>,
 }
@@ -58,7 +58,7 @@ pub struct Spec {
 
 /// How far the code is from the oracle before any rounding to f32.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Value {
+pub struct ValueProof {
     /// Rows that were compared: those where no comparison is in doubt.
     pub rows: usize,
     /// Rows whose error leaves too little of the tolerance for rounding.
@@ -186,12 +186,12 @@ fn spec_proof(job: &Job<'_>, bounds: &[Goal], kinds: &[ScalarKind]) -> Spec {
     spec
 }
 
-fn value_proof(job: &Job<'_>, found: &[Goal]) -> Option<Value> {
+fn value_proof(job: &Job<'_>, found: &[Goal]) -> Option<ValueProof> {
     if matches!(job.oracle, BoundOracle::Eval(_)) || job.expected.is_empty() {
         return None;
     }
     let limit = if matches!(job.case.oracle, Oracle::Table(_)) { VALUE_OF_TABLE } else { VALUE };
-    let mut value = Value::default();
+    let mut value = ValueProof::default();
     for (row, (found, goal)) in found.iter().zip(&job.expected).enumerate() {
         let inputs = job.rows.row(row);
         if found.doubtful || judge::is_indeterminate(goal) || judge::is_ambiguous(job, inputs) {
@@ -201,7 +201,7 @@ fn value_proof(job: &Job<'_>, found: &[Goal]) -> Option<Value> {
         let share = error_share(job, inputs, found, goal);
         value.off += usize::from(share > limit);
         if share > value.share {
-            value = Value { share, row, ..value };
+            value = ValueProof { share, row, ..value };
         }
     }
     Some(value)

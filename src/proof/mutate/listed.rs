@@ -14,7 +14,7 @@
 
 use std::fmt;
 
-use super::report::Outcome;
+use super::report::MutantOutcome;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::proof::library::Library;
 
@@ -34,7 +34,7 @@ pub struct Listed {
 
 impl Listed {
     /// Whether the entry is about this mutant.
-    pub fn is(&self, outcome: &Outcome) -> bool {
+    pub fn is(&self, outcome: &MutantOutcome) -> bool {
         self.function == outcome.function
             && self.line == outcome.line
             && self.mutation == outcome.words

@@ -21,7 +21,7 @@ mod suite;
 mod words;
 
 pub use coverage::{Coverage, Place, measure_coverage};
-pub use report::{Fate, Outcome, Report};
+pub use report::{Fate, MutantOutcome, MutantReport};
 
 use std::sync::Mutex;
 
@@ -43,7 +43,7 @@ pub fn run_mutants(
     library: &Library,
     sources: &Mutex<SourceSet>,
     modules: &[String],
-) -> Result<Report, Diagnostics> {
+) -> Result<MutantReport, Diagnostics> {
     let listed = listed::read_list(library)?;
     on_large_stack(|| {
         let files = suite::case_files(library, sources, modules)?;
@@ -84,7 +84,7 @@ fn mutant_outcome(
     suite: &Suite<'_>,
     subject: &Subject,
     site: &Site,
-) -> Option<Outcome> {
+) -> Option<MutantOutcome> {
     let fate = suite.fate(subject, site)?;
     let text = words::Text {
         sources,
@@ -92,7 +92,7 @@ fn mutant_outcome(
         function: &suite.whole.functions[subject.function],
     };
     let (place, line) = text.place(site.span);
-    let mut outcome = Outcome {
+    let mut outcome = MutantOutcome {
         function: format!("{}::{}", suite.module, subject.name),
         place,
         line,

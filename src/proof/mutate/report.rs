@@ -7,7 +7,7 @@ pub const LEAST_SHARE: f64 = 0.99;
 
 /// The fate of one mutant, and where its mistake is.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Outcome {
+pub struct MutantOutcome {
     /// `lighting::spot::cone_hard`.
     pub function: String,
     /// The author's `file:line`.
@@ -34,15 +34,15 @@ pub enum Fate {
 
 /// All mutants, in the order of modules, functions and text.
 #[derive(Debug, Default)]
-pub struct Report {
-    pub outcomes: Vec<Outcome>,
+pub struct MutantReport {
+    pub outcomes: Vec<MutantOutcome>,
     /// Entries of the list that match no surviving mutant.
     pub stale: Vec<String>,
     /// Reasons of the list's entries.
     reasons: Vec<String>,
 }
 
-pub fn make_report(outcomes: Vec<Outcome>, listed: &[Listed]) -> Report {
+pub fn make_report(outcomes: Vec<MutantOutcome>, listed: &[Listed]) -> MutantReport {
     let used = |index: usize| {
         outcomes.iter().any(|outcome| {
             [Fate::Equivalent(index), Fate::Explained(index)].contains(&outcome.fate)
@@ -54,10 +54,14 @@ pub fn make_report(outcomes: Vec<Outcome>, listed: &[Listed]) -> Report {
         .filter(|(index, _)| !used(*index))
         .map(|(_, listed)| listed.to_string())
         .collect();
-    Report { outcomes, stale, reasons: listed.iter().map(|listed| listed.reason.clone()).collect() }
+    MutantReport {
+        outcomes,
+        stale,
+        reasons: listed.iter().map(|listed| listed.reason.clone()).collect(),
+    }
 }
 
-impl Report {
+impl MutantReport {
     /// How many mutants were killed, and how many count: all but those listed as equivalent.
     pub fn killed(&self) -> (usize, usize) {
         let of = |fates: fn(Fate) -> bool| {
@@ -82,7 +86,7 @@ impl Report {
             }
             Fate::Killed | Fate::Equivalent(_) => None,
         });
-        let line = |(outcome, why): (&Outcome, &str)| {
+        let line = |(outcome, why): (&MutantOutcome, &str)| {
             let why = if why.is_empty() { String::new() } else { format!(" ({why})") };
             format!("{}: {}: {}{why}\n", outcome.place, outcome.function, outcome.words)
         };
