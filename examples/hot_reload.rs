@@ -55,9 +55,9 @@ pub fn draw(path: &Path, swaps: usize, tell: &mut dyn FnMut(String)) -> Outcome<
     let mut pipeline = gpu.pipeline(&bundle)?;
     let (mut shown, mut swapped) = (None, 0);
     for frame in 0u64.. {
-        let colour = gpu.frame(&pipeline)?;
-        if shown.replace(colour) != Some(colour) {
-            tell(format!("frame {frame}: {colour:?}"));
+        let color = gpu.frame(&pipeline)?;
+        if shown.replace(color) != Some(color) {
+            tell(format!("frame {frame}: {color:?}"));
         }
         if swapped == swaps {
             break;

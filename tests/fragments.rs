@@ -104,7 +104,7 @@ impl Watched<'_> {
         four(&self.targets[0], pixel) != [SENTINEL; 4]
     }
 
-    pub fn colour(&self, pixel: usize) -> [f64; 4] {
+    pub fn color(&self, pixel: usize) -> [f64; 4] {
         four(&self.targets[0], pixel).map(|word| f64::from(f32::from_bits(word)))
     }
 
@@ -210,20 +210,20 @@ fn judge(
         } else if is_discarded {
             tally.tried += 1;
         } else {
-            judge_colour(watched, pixel, &wanted.results[lane], wanted.doubt, &mut tally)?;
+            judge_color(watched, pixel, &wanted.results[lane], wanted.doubt, &mut tally)?;
         }
     }
     Ok(tally)
 }
 
-fn judge_colour(
+fn judge_color(
     watched: &Watched<'_>,
     pixel: usize,
     wanted: &[Bounded],
     doubt: bool,
     tally: &mut Tally,
 ) -> Result<(), String> {
-    let found = watched.colour(pixel);
+    let found = watched.color(pixel);
     let share = |(found, wanted): (f64, &Bounded)| {
         if found == wanted.value() { 0.0 } else { (found - wanted.value()).abs() / wanted.error() }
     };

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::ValueEnum;
 
 use super::guide;
-use crate::cli::terminal::{coloured_stderr, is_person, stderr};
+use crate::cli::terminal::{colored_stderr, is_person, stderr};
 use crate::diagnostic::render::{Form, render};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, escape_obeyed};
 use crate::source::SourceSet;
@@ -68,9 +68,9 @@ impl Failure {
                     DiagnosticForm::Human | DiagnosticForm::Short => {
                         writeln!(stderr(), "error: {message}")
                     }
-                    DiagnosticForm::Coloured => {
+                    DiagnosticForm::Colored => {
                         let message = escape_obeyed(&message);
-                        writeln!(coloured_stderr(), "\x1b[1;31merror\x1b[0m: {message}")
+                        writeln!(colored_stderr(), "\x1b[1;31merror\x1b[0m: {message}")
                     }
                 };
                 ExitCode::from(code)
@@ -83,7 +83,7 @@ impl Failure {
 fn explain_diagnostics(sources: &SourceSet, diagnostics: &[Diagnostic], form: DiagnosticForm) {
     print_warnings(sources, diagnostics, form);
     let reading = guide::after_errors(diagnostics);
-    if let (Some(reading), DiagnosticForm::Human | DiagnosticForm::Coloured) = (reading, form) {
+    if let (Some(reading), DiagnosticForm::Human | DiagnosticForm::Colored) = (reading, form) {
         let _ = stderr().write_all(reading.as_bytes());
     }
 }
@@ -108,7 +108,7 @@ pub fn print_warnings(sources: &SourceSet, diagnostics: &[Diagnostic], form: Dia
     let text = render(sources, diagnostics, form.into());
     let _ = match form {
         // Control characters were removed from quoted text before.
-        DiagnosticForm::Coloured => coloured_stderr().write_all(text.as_bytes()),
+        DiagnosticForm::Colored => colored_stderr().write_all(text.as_bytes()),
         _ => stderr().write_all(text.as_bytes()),
     };
 }
@@ -119,9 +119,9 @@ pub enum DiagnosticForm {
     /// With excerpts of the text.
     #[default]
     Human,
-    /// The same in colours: what [`Colour`] makes of it.
+    /// The same in colours: what [`Color`] makes of it.
     #[value(skip)]
-    Coloured,
+    Colored,
     /// One line each.
     Short,
     /// One JSON object a line.
@@ -132,7 +132,7 @@ impl From<DiagnosticForm> for Form {
     fn from(form: DiagnosticForm) -> Self {
         match form {
             DiagnosticForm::Human => Self::Human,
-            DiagnosticForm::Coloured => Self::Coloured,
+            DiagnosticForm::Colored => Self::Colored,
             DiagnosticForm::Short => Self::Short,
             DiagnosticForm::Json => Self::Json,
         }
@@ -141,7 +141,7 @@ impl From<DiagnosticForm> for Form {
 
 /// When to write colours.
 #[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub enum Colour {
+pub enum Color {
     /// On a terminal, unless `NO_COLOR` is set.
     #[default]
     Auto,
@@ -149,11 +149,11 @@ pub enum Colour {
     Never,
 }
 
-impl Colour {
+impl Color {
     /// The form in colours, where they are wanted.
     pub fn of(self, form: DiagnosticForm) -> DiagnosticForm {
         match (form, self.is_wanted()) {
-            (DiagnosticForm::Human, true) => DiagnosticForm::Coloured,
+            (DiagnosticForm::Human, true) => DiagnosticForm::Colored,
             (form, _) => form,
         }
     }

@@ -63,7 +63,7 @@ struct Cli {
     diagnostics: failure::DiagnosticForm,
     /// When to print colours.
     #[arg(long, global = true, value_enum, default_value_t)]
-    color: failure::Colour,
+    color: failure::Color,
 }
 
 #[derive(Subcommand)]
@@ -124,12 +124,12 @@ impl Command {
 
 /// The command line with examples and pages in its help.
 fn described_command() -> clap::Command {
-    guide::in_help(Cli::command()).color(asked_for_colour())
+    guide::in_help(Cli::command()).color(asked_for_color())
 }
 
 /// What `--color` says, read before the other options: help and wrong usage are printed before
 /// those are read.
-fn asked_for_colour() -> clap::ColorChoice {
+fn asked_for_color() -> clap::ColorChoice {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let value = |index: usize| match arguments[index].strip_prefix("--color") {
         Some("") => arguments.get(index + 1).map(String::as_str),
@@ -166,7 +166,7 @@ fn wrong_usage<T>(error: clap::Error) -> T {
     if !error.use_stderr() {
         error.exit();
     }
-    let in_colour = match asked_for_colour() {
+    let in_color = match asked_for_color() {
         clap::ColorChoice::Always => true,
         clap::ColorChoice::Never => false,
         clap::ColorChoice::Auto => {
@@ -174,8 +174,8 @@ fn wrong_usage<T>(error: clap::Error) -> T {
         }
     };
     let text = error.render();
-    let _ = match in_colour {
-        true => write!(terminal::coloured_stderr(), "{}", text.ansi()),
+    let _ = match in_color {
+        true => write!(terminal::colored_stderr(), "{}", text.ansi()),
         false => write!(terminal::stderr(), "{text}"),
     };
     std::process::exit(error.exit_code())

@@ -22,8 +22,8 @@ pub fn stderr() -> Escaping<io::Stderr> {
 }
 
 /// Standard error, for text with colours of our own.
-pub fn coloured_stderr() -> Escaping<io::Stderr> {
-    Escaping { out: io::stderr(), has_colours: true, cut: Vec::new() }
+pub fn colored_stderr() -> Escaping<io::Stderr> {
+    Escaping { out: io::stderr(), has_colors: true, cut: Vec::new() }
 }
 
 /// Whether standard output is a terminal.
@@ -56,25 +56,25 @@ pub fn flush_stdout() -> io::Result<()> {
 pub struct Escaping<W: Write> {
     out: W,
     /// Whether sequences that choose a colour are kept.
-    has_colours: bool,
+    has_colors: bool,
     /// The first bytes of a character whose other bytes were not written yet.
     cut: Vec<u8>,
 }
 
 impl<W: Write> Escaping<W> {
     pub fn new(out: W) -> Self {
-        Self { out, has_colours: false, cut: Vec::new() }
+        Self { out, has_colors: false, cut: Vec::new() }
     }
 
     fn text(&mut self, text: &str) -> io::Result<()> {
         let mut rest = text;
         while let Some(at) = rest.find(is_obeyed) {
-            let colour = if self.has_colours { colour_length(&rest[at..]) } else { 0 };
+            let color = if self.has_colors { color_length(&rest[at..]) } else { 0 };
             // A character that is obeyed has at least one byte, and so has an own colour.
-            let length = rest[at..].chars().next().map_or(0, char::len_utf8).max(colour);
+            let length = rest[at..].chars().next().map_or(0, char::len_utf8).max(color);
             let (before, found) = rest[..at + length].split_at(at);
             self.out.write_all(before.as_bytes())?;
-            match colour {
+            match color {
                 0 => self.out.write_all(escape_obeyed(found).as_bytes())?,
                 _ => self.out.write_all(found.as_bytes())?,
             }
@@ -85,7 +85,7 @@ impl<W: Write> Escaping<W> {
 }
 
 /// Length of the sequence that chooses a colour, if the text begins with one.
-fn colour_length(text: &str) -> usize {
+fn color_length(text: &str) -> usize {
     let Some(rest) = text.strip_prefix("\u{1b}[") else { return 0 };
     let end = rest.find(|letter: char| !(letter.is_ascii_digit() || letter == ';'));
     end.filter(|end| rest[*end..].starts_with('m')).map_or(0, |end| end + 3)

@@ -15,7 +15,7 @@ pub enum Form {
     #[default]
     Human,
     /// The same in colours, for a terminal.
-    Coloured,
+    Colored,
     /// `path:line:column: error[code]: message`.
     Short,
     /// One JSON object a line.
@@ -31,7 +31,7 @@ const SHOWN: usize = crate::limits::DIAGNOSTICS;
 pub fn render(sources: &SourceSet, diagnostics: &[Diagnostic], form: Form) -> String {
     let one = |diagnostic: &Diagnostic| match form {
         Form::Human => excerpt_form(sources, diagnostic, false),
-        Form::Coloured => excerpt_form(sources, diagnostic, true),
+        Form::Colored => excerpt_form(sources, diagnostic, true),
         Form::Short => short_form(sources, diagnostic) + "\n",
         Form::Json => json_form(sources, diagnostic).to_string() + "\n",
     };
@@ -48,12 +48,12 @@ fn count_of_rest(diagnostics: &[Diagnostic]) -> Option<Diagnostic> {
     })
 }
 
-fn excerpt_form(sources: &SourceSet, diagnostic: &Diagnostic, is_coloured: bool) -> String {
+fn excerpt_form(sources: &SourceSet, diagnostic: &Diagnostic, is_colored: bool) -> String {
     let spans: Vec<Span> = diagnostic.labels.iter().map(|label| label.span).collect();
     let excerpts = Excerpts::new(sources, &spans);
     let (found, config) = (to_codespan(diagnostic, &excerpts), term::Config::default());
     let mut text = String::new();
-    let written = if is_coloured {
+    let written = if is_colored {
         let styles = term::Styles::default();
         let mut ansi = term::termcolor::Ansi::new(Vec::new());
         let mut writer = term::StylesWriter::new(&mut ansi, &styles);

@@ -47,7 +47,7 @@ impl std::error::Error for Error {}
 
 /// What a run reports when it looks for numeric trouble.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum FindingKind {
     /// The result is NaN, though no operand was.
     NotANumber,
     /// The result is infinite, though all operands were finite.
@@ -72,7 +72,7 @@ pub enum Kind {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finding {
     /// What was computed.
-    pub kind: Kind,
+    pub kind: FindingKind,
     /// The place in the text that naga parsed.
     pub span: Span,
     /// How often.

@@ -31,7 +31,7 @@ mod resources;
 
 pub use batch::Batch;
 pub use code::Compare;
-pub use error::{Error, Finding, Kind as FindingKind};
+pub use error::{Error, Finding, FindingKind};
 pub use layout::{Kind, MAX_SLOTS};
 pub use machine::{LOOP_LIMIT, Machine};
 pub use number::{Bounded, Number, half_from, half_to};

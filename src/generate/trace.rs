@@ -80,7 +80,7 @@ pub struct Told {
     texts: Vec<String>,
 }
 
-const FORMS: [Form; 4] = [Form::Human, Form::Coloured, Form::Short, Form::Json];
+const FORMS: [Form; 4] = [Form::Human, Form::Colored, Form::Short, Form::Json];
 
 impl Told {
     /// The warnings of a run, as each form writes them.

@@ -156,7 +156,7 @@ fn mesh_vertices(
         Vertex {
             position: *position,
             normal,
-            color: row(&colors, index).map_or(DVec3::ONE, |colour| vector(&colour)),
+            color: row(&colors, index).map_or(DVec3::ONE, |color| vector(&color)),
             uv,
             light_uv: uv,
             tangent: row(&tangents, index).map_or(DVec4::ZERO, DVec4::from_array),

@@ -85,13 +85,13 @@ fn take_node(reader: &mut Reader<'_>, node: &gltf::Node<'_>, world: DMat4, place
         None => {}
     }
     placed.lights.extend(node.light().map(|light| {
-        let colour = DVec3::from_array(light.color().map(f64::from)) * f64::from(light.intensity());
+        let color = DVec3::from_array(light.color().map(f64::from)) * f64::from(light.intensity());
         let (kind, angle) = match light.kind() {
             Kind::Directional => (LampKind::Directional, 0.7),
             Kind::Point => (LampKind::Point, 0.7),
             Kind::Spot { outer_cone_angle, .. } => (LampKind::Spot, f64::from(outer_cone_angle)),
         };
-        (colour, kind, world, angle.clamp(0.02, 1.5))
+        (color, kind, world, angle.clamp(0.02, 1.5))
     }));
 }
 

@@ -138,7 +138,7 @@ impl Panels {
     }
 
     /// The linear colour at samples of a panel's pixels.
-    fn colours(
+    fn colors(
         &self,
         session: &mut dyn Session,
         value: f64,
@@ -152,8 +152,8 @@ impl Panels {
         let words: Vec<u32> = words.collect();
         let found = session.run(&self.kernel, &words).map_err(|error| vec![error])?;
         let number = |word: &u32| f64::from(f32::from_bits(*word));
-        let colour = |words: &[u32; 3]| DVec3::from_array(words.each_ref().map(number));
-        Ok(found.as_chunks::<3>().0.iter().map(colour).collect())
+        let color = |words: &[u32; 3]| DVec3::from_array(words.each_ref().map(number));
+        Ok(found.as_chunks::<3>().0.iter().map(color).collect())
     }
 
     /// Some pixels of a panel, in sRGB.
@@ -167,8 +167,8 @@ impl Panels {
         for index in 0..SAMPLES {
             let shift = sample_shift(index, SAMPLES);
             let place = |pixel: &[u32; 2]| [0, 1].map(|at| f64::from(pixel[at]) + 0.5 + shift[at]);
-            let colours = self.colours(session, value, pixels.iter().map(place))?;
-            linear.add_all(colours.into_iter(), 0.0);
+            let colors = self.colors(session, value, pixels.iter().map(place))?;
+            linear.add_all(colors.into_iter(), 0.0);
         }
         Ok(linear.develop())
     }
@@ -200,10 +200,10 @@ impl Panels {
         for (index, value) in self.values.iter().enumerate() {
             let Ok(row) = self.develop(session.as_mut(), *value, &pixels) else { return false };
             let left = index as u32 * (SIDE + GAP);
-            for ([x, y], colour) in pixels.iter().zip(row.pixels.as_chunks::<3>().0) {
+            for ([x, y], color) in pixels.iter().zip(row.pixels.as_chunks::<3>().0) {
                 let old = picture.pixel([left + x, *y]);
                 let is_close = |(one, other): (&u8, &u8)| one.abs_diff(*other) <= CLOSE;
-                alike += u32::from(old.iter().zip(colour).all(is_close));
+                alike += u32::from(old.iter().zip(color).all(is_close));
                 all += 1;
             }
         }

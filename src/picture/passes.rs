@@ -12,7 +12,7 @@ use super::light::LightView;
 use super::mesh::{self, vertex_attributes};
 use super::pixels::Background;
 use super::plan::{Pass, Plan};
-use super::prepared::{Prepared, no_frame, pixel_colour};
+use super::prepared::{Prepared, no_frame, pixel_color};
 use super::textures::{Left, Library, binding_sampler};
 use super::values::{Camera, Values, eye_projection};
 use crate::bundle::{Binding, Kind};
@@ -233,7 +233,7 @@ impl Studio<'_> {
         let behind = |index: usize| {
             let (x, y) = (index as u32 % size[0], index as u32 / size[0]);
             let (u, v) = ((f64::from(x) + 0.5) / width, (f64::from(y) + 0.5) / height);
-            prepared.background.colour(u, v).extend(1.0).as_vec4().to_array()
+            prepared.background.color(u, v).extend(1.0).as_vec4().to_array()
         };
         let cleared = |index| if targets == 1 { behind(index) } else { [0.0; 4] };
         left.colors.clear();
@@ -391,7 +391,7 @@ fn color_texture(
     let words = words.ok_or_else(|| vec![no_frame()])?;
     let texels = words.chunks(4).enumerate();
     let texels = texels
-        .flat_map(|(index, pixel)| pixel_colour(pixel).unwrap_or_else(|| cleared(index)))
+        .flat_map(|(index, pixel)| pixel_color(pixel).unwrap_or_else(|| cleared(index)))
         .collect();
     Ok(Texture { kind: TextureKind::Color2d, width, height, texels })
 }

@@ -106,7 +106,7 @@ impl Background {
 
     /// The background at a place of the picture. Both coordinates are in [0, 1], from the upper
     /// left.
-    pub(super) fn colour(&self, u: f64, v: f64) -> DVec3 {
+    pub(super) fn color(&self, u: f64, v: f64) -> DVec3 {
         let at = |depth: f64| {
             self.world_from_clip.project_point3(DVec3::new(2.0 * u - 1.0, 1.0 - 2.0 * v, depth))
         };
@@ -138,20 +138,20 @@ impl Linear {
     /// Adds one sample of every pixel, taken at an offset from the pixel's centre.
     pub fn add(
         &mut self,
-        colours: impl Iterator<Item = Option<[f32; 4]>>,
+        colors: impl Iterator<Item = Option<[f32; 4]>>,
         shift: [f64; 2],
         background: &Background,
         exposure: f64,
     ) {
         let [width, height] = self.size.map(f64::from);
         let factor = exposure.exp2();
-        for (index, colour) in colours.enumerate().take(self.sums.len()) {
+        for (index, color) in colors.enumerate().take(self.sums.len()) {
             let (x, y) =
                 ((index as u32 % self.size[0]) as f64, (index as u32 / self.size[0]) as f64);
             // A picture that is moved to the right shows the background that was left of it.
             let behind =
-                || background.colour((x + 0.5 - shift[0]) / width, (y + 0.5 + shift[1]) / height);
-            let drawn = colour.map(|[r, g, b, _]| DVec3::new(r.into(), g.into(), b.into()));
+                || background.color((x + 0.5 - shift[0]) / width, (y + 0.5 + shift[1]) / height);
+            let drawn = color.map(|[r, g, b, _]| DVec3::new(r.into(), g.into(), b.into()));
             self.sums[index] += visible_part(drawn.unwrap_or_else(behind) * factor);
             if self.samples == 0 {
                 self.first[index] = drawn;
@@ -161,10 +161,10 @@ impl Linear {
     }
 
     /// Adds one sample of every pixel, where all pixels were drawn.
-    pub fn add_all(&mut self, colours: impl Iterator<Item = DVec3>, exposure: f64) {
+    pub fn add_all(&mut self, colors: impl Iterator<Item = DVec3>, exposure: f64) {
         let factor = exposure.exp2();
-        for (sum, colour) in self.sums.iter_mut().zip(colours) {
-            *sum += visible_part(colour * factor);
+        for (sum, color) in self.sums.iter_mut().zip(colors) {
+            *sum += visible_part(color * factor);
         }
         self.samples += 1;
     }
@@ -279,15 +279,15 @@ impl Picture {
     }
 
     /// One colour everywhere.
-    pub fn filled(width: u32, height: u32, colour: [u8; 3]) -> Self {
-        Self { width, height, pixels: colour.repeat(width as usize * height as usize) }
+    pub fn filled(width: u32, height: u32, color: [u8; 3]) -> Self {
+        Self { width, height, pixels: color.repeat(width as usize * height as usize) }
     }
 
     /// Gives a pixel a colour, if there is one at that place.
-    pub fn set(&mut self, [x, y]: [u32; 2], colour: [u8; 3]) {
+    pub fn set(&mut self, [x, y]: [u32; 2], color: [u8; 3]) {
         if x < self.width && y < self.height {
             let at = 3 * (y as usize * self.width as usize + x as usize);
-            self.pixels[at..at + 3].copy_from_slice(&colour);
+            self.pixels[at..at + 3].copy_from_slice(&color);
         }
     }
 
@@ -301,9 +301,9 @@ impl Picture {
 
     /// Puts another picture over this one.
     pub fn place(&mut self, other: &Self, [left, top]: [u32; 2]) {
-        for (index, colour) in other.pixels.as_chunks::<3>().0.iter().enumerate() {
+        for (index, color) in other.pixels.as_chunks::<3>().0.iter().enumerate() {
             let index = index as u32;
-            self.set([left + index % other.width, top + index / other.width], *colour);
+            self.set([left + index % other.width, top + index / other.width], *color);
         }
     }
 
@@ -317,14 +317,14 @@ impl Picture {
     }
 
     /// Draws a frame that is one pixel wide.
-    pub fn outline(&mut self, [left, top]: [u32; 2], [width, height]: [u32; 2], colour: [u8; 3]) {
+    pub fn outline(&mut self, [left, top]: [u32; 2], [width, height]: [u32; 2], color: [u8; 3]) {
         for x in left..left + width {
-            self.set([x, top], colour);
-            self.set([x, (top + height).saturating_sub(1)], colour);
+            self.set([x, top], color);
+            self.set([x, (top + height).saturating_sub(1)], color);
         }
         for y in top..top + height {
-            self.set([left, y], colour);
-            self.set([(left + width).saturating_sub(1), y], colour);
+            self.set([left, y], color);
+            self.set([(left + width).saturating_sub(1), y], color);
         }
     }
 

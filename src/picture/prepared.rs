@@ -146,18 +146,16 @@ impl Prepared {
         let bytes = 16 * shot.size[0] as usize * shot.size[1] as usize;
         let at_once = (AT_ONCE / bytes.max(1)).max(1);
         for (views, shifts) in views.chunks(at_once).zip(shifts.chunks(at_once)) {
-            let nearest = self.colours(painter, views, shot.size)?;
+            let nearest = self.colors(painter, views, shot.size)?;
             let mut farther = Vec::new();
             for slice in &self.farther {
                 let views = slice.eye_views(shifts, shot.size)?;
-                farther.push(slice.colours(painter, &views, shot.size)?);
+                farther.push(slice.colors(painter, &views, shot.size)?);
             }
-            for (index, (colours, shift)) in nearest.iter().zip(shifts).enumerate() {
+            for (index, (colors, shift)) in nearest.iter().zip(shifts).enumerate() {
                 let behind = |pixel: usize| farther.iter().find_map(|slice| slice[index][pixel]);
-                let seen = colours
-                    .iter()
-                    .enumerate()
-                    .map(|(pixel, colour)| colour.or_else(|| behind(pixel)));
+                let seen =
+                    colors.iter().enumerate().map(|(pixel, color)| color.or_else(|| behind(pixel)));
                 picture.add(seen, *shift, &self.background, shot.exposure);
             }
         }
@@ -165,23 +163,23 @@ impl Prepared {
     }
 
     /// The colours of each view; `None` where nothing was drawn.
-    fn colours(
+    fn colors(
         &self,
         painter: &dyn Session,
         views: &[Buffers],
         size: [u32; 2],
     ) -> Result<Vec<Vec<Option<[f32; 4]>>>, Diagnostics> {
-        let colours = |frame: Frame| {
+        let colors = |frame: Frame| {
             frame
                 .targets
                 .first()
                 .map_or(&[][..], Vec::as_slice)
                 .chunks(4)
-                .map(pixel_colour)
-                .map(|colour| if self.encoded { colour.map(decoded_colour) } else { colour })
+                .map(pixel_color)
+                .map(|color| if self.encoded { color.map(decoded_color) } else { color })
                 .collect()
         };
-        Ok(self.draw_colors(painter, views, size, 0)?.into_iter().map(colours).collect())
+        Ok(self.draw_colors(painter, views, size, 0)?.into_iter().map(colors).collect())
     }
 }
 
@@ -204,13 +202,13 @@ pub(super) fn sample_shift(index: u32, samples: u32) -> [f64; 2] {
 }
 
 /// The colour of a pixel; `None` where nothing was drawn.
-pub(super) fn pixel_colour(pixel: &[u32]) -> Option<[f32; 4]> {
+pub(super) fn pixel_color(pixel: &[u32]) -> Option<[f32; 4]> {
     let words: [u32; 4] = pixel.try_into().ok()?;
     (words != [SENTINEL; 4]).then(|| words.map(f32::from_bits))
 }
 
 /// The linear colour that a picture, which is sRGB, shows as these code values.
-fn decoded_colour([r, g, b, a]: [f32; 4]) -> [f32; 4] {
+fn decoded_color([r, g, b, a]: [f32; 4]) -> [f32; 4] {
     let [r, g, b] = [r, g, b].map(|code| linear_from_srgb(f64::from(code)) as f32);
     [r, g, b, a]
 }

@@ -32,15 +32,15 @@ pub fn columns() -> Texture {
 
 /// Squares of four colours on black.
 pub fn image() -> Texture {
-    let colour = |index: u32| {
+    let color = |index: u32| {
         let [x, y] = [index % TEXELS, index / TEXELS];
         let [column, row] = [x / (TEXELS / 2), y / (TEXELS / 2)];
         let inside = [x, y].iter().all(|at| (8..24).contains(&(at % (TEXELS / 2))));
-        let colours = [[0.9, 0.25, 0.1], [0.95, 0.8, 0.2], [0.1, 0.5, 0.9], [0.3, 0.8, 0.35]];
-        let [r, g, b] = if inside { colours[(2 * row + column) as usize % 4] } else { [0.0; 3] };
+        let colors = [[0.9, 0.25, 0.1], [0.95, 0.8, 0.2], [0.1, 0.5, 0.9], [0.3, 0.8, 0.35]];
+        let [r, g, b] = if inside { colors[(2 * row + column) as usize % 4] } else { [0.0; 3] };
         [r, g, b, 1.0]
     };
-    let texels = (0..TEXELS * TEXELS).flat_map(colour).collect();
+    let texels = (0..TEXELS * TEXELS).flat_map(color).collect();
     let kind = TextureKind::Color2d;
     Texture { kind, width: TEXELS, height: TEXELS, texels }
 }

@@ -128,8 +128,8 @@ impl Sketch {
             let reason = format!("`{}` has more than {UNIFORM_BYTES} bytes", large.name);
             return Err(sketch_refused(&reason));
         }
-        let is_colour = |one: &Varying| one.location == Some(0) && one.ty == "vec4<f32>";
-        if !reflection.outputs.iter().any(is_colour) {
+        let is_color = |one: &Varying| one.location == Some(0) && one.ty == "vec4<f32>";
+        if !reflection.outputs.iter().any(is_color) {
             return Err(sketch_refused(&format!("`{name}` returns no `vec4f` at location 0")));
         }
         let validated = Arc::new(validated);

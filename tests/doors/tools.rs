@@ -16,7 +16,7 @@ pub const CASES: &[Case] = &[
     ("lint_of_glsl", lint_glsl),
     ("examples_of_help", examples),
     ("completions_and_manual", completions),
-    ("colours", colours),
+    ("colours", colors),
     ("own_functions", own),
     ("checks_under_settings", settings),
     ("checks_without_macros_of_others", macros_of_others),
@@ -211,7 +211,7 @@ fn completions() -> Outcome {
 }
 
 /// Colours are printed if they are asked for, and otherwise not to a file or a pipe.
-fn colours() -> Outcome {
+fn colors() -> Outcome {
     let package = Package::new(&[("a.wesl", "fn f() { let a = ; }\n")])?;
     let escape = "\u{1b}[";
     for plain in ["", "--color never", "--color auto", "--diagnostics json --color always"] {

@@ -121,14 +121,14 @@ impl Draft {
     /// Adds a fragment stage. It returns a colour or a structure, or an axis decides which of them.
     fn fragment_stage(&mut self, taken: usize, drawn: usize) {
         let name = self.name();
-        let colour = |draft: &mut Self, when| draft.fragment(&name, taken, None, when);
+        let color = |draft: &mut Self, when| draft.fragment(&name, taken, None, when);
         let many = |draft: &mut Self, when| draft.fragment(&name, taken, Some(drawn), when);
         let text = match self.random.below(4) {
-            0 => colour(self, None),
+            0 => color(self, None),
             1 => many(self, None),
             _ => {
                 let when = self.when();
-                let (some, other) = (many(self, Some(when)), colour(self, None));
+                let (some, other) = (many(self, Some(when)), color(self, None));
                 self.spelling.either(when, &some, Some(&other))
             }
         };

@@ -129,7 +129,7 @@ fn stage(composed: &Composed) -> EntryPoint<'_> {
 
 /// The colour, and then the inputs in the order of the evaluator's function, four words a target.
 fn in_order(stage: &Composed, targets: &[Vec<u32>]) -> Result<Vec<Vec<u32>>, String> {
-    let (Some(colour), Some((front, rest))) = (targets.first(), targets.split_last()) else {
+    let (Some(color), Some((front, rest))) = (targets.first(), targets.split_last()) else {
         return Err("there are no targets".to_owned());
     };
     let (position, locations) = rest[1..].split_last().ok_or("there is no position")?;
@@ -150,9 +150,9 @@ fn in_order(stage: &Composed, targets: &[Vec<u32>]) -> Result<Vec<Vec<u32>>, Str
         };
         inputs.push((target, component));
     }
-    let mut ordered = vec![colour.clone()];
+    let mut ordered = vec![color.clone()];
     for four in inputs.chunks(4) {
-        let pixels = 0..colour.len() / 4;
+        let pixels = 0..color.len() / 4;
         let word = |pixel: usize, i: usize| {
             four.get(i).map_or(0, |(target, component)| target[4 * pixel + component])
         };

@@ -107,15 +107,15 @@ fn hemisphere(bench: &Bench<'_>) -> Result<(), String> {
         .fragments(&bench.plan("ambient=hemisphere,lights=none", "spheres", numbers)?, SIZE)?;
     for fragment in &fragments {
         let wanted = fragment.base * ground.lerp(sky, 0.5 + 0.5 * fragment.normal.y);
-        close("light", fragment.colour.distance(wanted), 0.0, 1e-4)?;
+        close("light", fragment.color.distance(wanted), 0.0, 1e-4)?;
     }
     for (height, share) in [(0.9, 0.95), (0.0, 0.5), (-0.5, 0.25)] {
         let nearest = fragments
             .iter()
             .min_by(|a, b| (a.normal.y - height).abs().total_cmp(&(b.normal.y - height).abs()));
         let found = nearest.ok_or("nothing was drawn")?;
-        let weight = (found.colour / found.base - ground).dot(sky - ground)
-            / (sky - ground).length_squared();
+        let weight =
+            (found.color / found.base - ground).dot(sky - ground) / (sky - ground).length_squared();
         close(&format!("the sky's share where the normal's y is {height}"), weight, share, 0.01)?;
     }
     Ok(())
@@ -138,7 +138,7 @@ fn sh9(bench: &Bench<'_>) -> Result<(), String> {
     let fragments = bench.fragments(&plan, SIZE)?;
     for fragment in &fragments {
         let wanted = fragment.base * irradiance_sh9(fragment.normal, &coefficients);
-        close("light", fragment.colour.distance(wanted), 0.0, 1e-3)?;
+        close("light", fragment.color.distance(wanted), 0.0, 1e-3)?;
     }
     for (axis, wanted) in AXES {
         let nearest =
@@ -148,7 +148,7 @@ fn sh9(bench: &Bench<'_>) -> Result<(), String> {
         let missing = found.normal.dot(axis).clamp(-1.0, 1.0).acos();
         close(
             &format!("{axis}"),
-            (found.colour / found.base).distance(wanted),
+            (found.color / found.base).distance(wanted),
             0.0,
             1e-3 + missing,
         )?;

@@ -27,13 +27,13 @@ pub struct Fragment {
     /// The colour of the surface.
     pub base: DVec3,
     /// The drawn colour, neither clamped nor encoded.
-    pub colour: DVec3,
+    pub color: DVec3,
 }
 
 impl Fragment {
     /// The drawn green over the surface's green. For white light, this is the light.
     pub fn light(&self) -> f64 {
-        self.colour.y / self.base.y
+        self.color.y / self.base.y
     }
 }
 
@@ -89,12 +89,12 @@ impl Bench<'_> {
             };
             let vector =
                 |location| DVec3::new(part(location, 0), part(location, 1), part(location, 2));
-            let [r, g, b, _] = watched.colour(pixel);
+            let [r, g, b, _] = watched.color(pixel);
             Fragment {
                 position: vector(0),
                 normal: vector(1).normalize_or_zero(),
                 base: vector(2),
-                colour: DVec3::new(r, g, b),
+                color: DVec3::new(r, g, b),
             }
         };
         Ok((0..(size * size) as usize)

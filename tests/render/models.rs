@@ -16,8 +16,8 @@ use tempfile::TempDir;
 
 pub fn trials() -> Vec<Trial> {
     let drawn = [
-        Trial::test("render/model/unlit_colour_is_exact", unlit_colour_is_exact),
-        Trial::test("render/model/unlit_colours_are_multiplied", unlit_colours_are_multiplied),
+        Trial::test("render/model/unlit_colour_is_exact", unlit_color_is_exact),
+        Trial::test("render/model/unlit_colours_are_multiplied", unlit_colors_are_multiplied),
         Trial::test("render/model/all_of_it_is_seen", all_of_it_is_seen),
         Trial::test("render/model/textures_stand_upright", textures_stand_upright),
         Trial::test("render/model/mirrored_is_the_same", mirrored_is_the_same),
@@ -145,7 +145,7 @@ fn demand(holds: bool, otherwise: impl FnOnce() -> String) -> Result<(), Failed>
 
 /// An unlit surface has exactly the colour in the file: in sRGB 0.25 is 137 of 255, 0.5 is 188, and
 /// 1 is 255.
-fn unlit_colour_is_exact() -> Result<(), Failed> {
+fn unlit_color_is_exact() -> Result<(), Failed> {
     let (mut document, buffer) = square(&[]);
     document["extensionsUsed"] = json!(["KHR_materials_unlit"]);
     document["materials"] = json!([{
@@ -183,7 +183,7 @@ fn add_attribute<const N: usize>(
 
 /// The colour of an unlit surface is that of its factor, its texture and its corners, multiplied, and
 /// nothing else, in the permutation that the command says.
-fn unlit_colours_are_multiplied() -> Result<(), Failed> {
+fn unlit_colors_are_multiplied() -> Result<(), Failed> {
     // In sRGB 188 is a half.
     let (mut document, mut buffer) = square(&[image([[188, 255, 188]; 4])?]);
     add_attribute(&mut document, &mut buffer, "COLOR_0", &[[0.5, 0.5, 1.0]; 4])?;

@@ -85,8 +85,8 @@ fn gallery_is_current() -> Result<(), Failed> {
     let strips: Vec<gallery::StripCard> = strips.collect::<Result<_, _>>().map_err(said)?;
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(GALLERY);
     let mut files = gallery::composed(&cards);
-    files.push(("README.md".to_owned(), gallery::markdown(&cards, &strips)));
-    files.push(("index.html".to_owned(), gallery::html(&cards, &strips)));
+    files.push(("README.md".to_owned(), gallery::markdown_page(&cards, &strips)));
+    files.push(("index.html".to_owned(), gallery::html_page(&cards, &strips)));
     let mut stale = unlinked_texts(&folder, &files)?;
     for (path, wanted) in files {
         let found = std::fs::read_to_string(folder.join(&path)).unwrap_or_default();

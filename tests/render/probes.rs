@@ -46,7 +46,7 @@ fn same_field(bench: &Bench<'_>) -> Result<(), String> {
     let (mut seen, mut largest) = (0, 0.0_f64);
     for fragment in bench.fragments(&plan, SIZE)?.iter().filter(|one| one.position.x > -2.99) {
         let wanted = fragment.base * field.light_at(fragment.position, fragment.normal);
-        let error = (fragment.colour - wanted).abs().max_element();
+        let error = (fragment.color - wanted).abs().max_element();
         if error.is_nan() || error > 1e-3 {
             return Err(format!("{fragment:?}: the host has {wanted}"));
         }
@@ -137,7 +137,7 @@ fn beside_wall(fragments: &[Fragment]) -> [DVec3; 2] {
             let at = fragment.position;
             fragment.normal.y > 0.99 && at.y < -1.39 && from < at.x && at.x < to && at.z > 1.0
         });
-        let light: Vec<DVec3> = inside.map(|fragment| fragment.colour / fragment.base).collect();
+        let light: Vec<DVec3> = inside.map(|fragment| fragment.color / fragment.base).collect();
         light.iter().sum::<DVec3>() / light.len().max(1) as f64
     };
     [mean(-0.6, -0.1), mean(0.1, 0.6)]

@@ -176,7 +176,7 @@ fn readable(opened: &Opened) -> Outcome {
     let page = opened.page("#/guide")?;
     for scheme in ["light", "dark"] {
         in_scheme(&page, scheme)?;
-        let colour = |name: &str| -> Result<f64, Failed> {
+        let color = |name: &str| -> Result<f64, Failed> {
             let value = format!(
                 "getComputedStyle(document.documentElement).getPropertyValue({}).trim()",
                 Value::from(name)
@@ -186,7 +186,7 @@ fn readable(opened: &Opened) -> Outcome {
         };
         for ink in ["--ink", "--quiet", "--accent", "--wrong", "--added"] {
             for paper in ["--paper", "--card"] {
-                let (a, b) = (colour(ink)?, colour(paper)?);
+                let (a, b) = (color(ink)?, color(paper)?);
                 let contrast = (a.max(b) + 0.05) / (a.min(b) + 0.05);
                 assert!(contrast >= CONTRAST, "{scheme}: {ink} on {paper} has {contrast:.2}");
             }
@@ -196,8 +196,8 @@ fn readable(opened: &Opened) -> Outcome {
 }
 
 /// Relative luminance of a colour in six hexadecimal digits, as WCAG defines it.
-fn luminance(colour: &str) -> Option<f64> {
-    let digits = colour.strip_prefix('#').filter(|digits| digits.len() == 6)?;
+fn luminance(color: &str) -> Option<f64> {
+    let digits = color.strip_prefix('#').filter(|digits| digits.len() == 6)?;
     let linear = |at: usize| {
         let code = f64::from(u8::from_str_radix(digits.get(at..at + 2)?, 16).ok()?) / 255.0;
         Some(if code <= 0.04045 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) })

@@ -58,11 +58,11 @@ fn curve_looks(plot: &Plot) -> Vec<(&'static str, &'static str)> {
     let label = |index: usize| plot.curves.as_ref().map(|curves| curves.label(index));
     let named = |index: usize| {
         let label = label(index)?;
-        NAMED.iter().find(|(name, _)| *name == label).map(|(_, colour)| *colour)
+        NAMED.iter().find(|(name, _)| *name == label).map(|(_, color)| *color)
     };
     let of = |index: usize| {
-        let (colour, dashes) = CURVES[index % CURVES.len()];
-        (named(index).unwrap_or(colour), dashes)
+        let (color, dashes) = CURVES[index % CURVES.len()];
+        (named(index).unwrap_or(color), dashes)
     };
     (0..count).map(of).collect()
 }
@@ -107,10 +107,10 @@ fn draw_axes(svg: &mut String, (x, across): (&Scale, Unit), (y, up): (&Scale, Un
     svg.push_str("</g>\n");
 }
 
-fn draw_curve(svg: &mut String, (colour, dashes): (&str, &str), path: &str) {
+fn draw_curve(svg: &mut String, (color, dashes): (&str, &str), path: &str) {
     let _ = writeln!(
         svg,
-        "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\" stroke-linejoin=\"round\"{}/>",
+        "<path d=\"{path}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"2\" stroke-linejoin=\"round\"{}/>",
         dash_attribute(dashes)
     );
 }
@@ -119,7 +119,7 @@ fn draw_curve(svg: &mut String, (colour, dashes): (&str, &str), path: &str) {
 /// side.
 fn draw_stems(
     svg: &mut String,
-    colour: &str,
+    color: &str,
     points: &[Option<(f64, f64)>],
     y: &Scale,
     (index, count): (usize, usize),
@@ -136,7 +136,7 @@ fn draw_stems(
     }
     let _ = writeln!(
         svg,
-        "<path d=\"{lines}\" stroke=\"{colour}\" stroke-width=\"1.5\"/>\n<g fill=\"{colour}\">\n{dots}</g>"
+        "<path d=\"{lines}\" stroke=\"{color}\" stroke-width=\"1.5\"/>\n<g fill=\"{color}\">\n{dots}</g>"
     );
 }
 
@@ -153,7 +153,7 @@ fn draw_captions(svg: &mut String, title: &str, plot: &Plot) {
     );
     let stems = plot.x.unit == Unit::Integers;
     let mut right = RIGHT;
-    for (text, (colour, dashes)) in legend_entries(plot).iter().zip(curve_looks(plot)).rev() {
+    for (text, (color, dashes)) in legend_entries(plot).iter().zip(curve_looks(plot)).rev() {
         let start = right - 7.0 * text.chars().count() as f64;
         let _ = writeln!(
             svg,
@@ -164,7 +164,7 @@ fn draw_captions(svg: &mut String, title: &str, plot: &Plot) {
         let line = format!("M{} 18h22", rounded_place(start - 28.0));
         let _ = writeln!(
             svg,
-            "<path d=\"{line}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"{}/>",
+            "<path d=\"{line}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"2\"{}/>",
             dash_attribute(if stems { "" } else { dashes })
         );
         right = start - 44.0;

@@ -43,11 +43,11 @@ pub fn draw_gallery(
     let (strips, drawn) = draw_strips(painter, programs, shot, &mut folder, compared)?;
     lines += &drawn;
     let cards: Vec<&Card> = exhibits.iter().map(|exhibit| &exhibit.card).collect();
-    folder.write("README.md", gallery::markdown(&cards, &strips).as_bytes())?;
+    folder.write("README.md", gallery::markdown_page(&cards, &strips).as_bytes())?;
     for (path, text) in gallery::composed(&cards) {
         folder.write(&path, text.as_bytes())?;
     }
-    folder.write("index.html", gallery::html(&cards, &strips).as_bytes())?;
+    folder.write("index.html", gallery::html_page(&cards, &strips).as_bytes())?;
     folder.write("adapters.txt", lines.as_bytes())?;
     let shown = folder.path().display().to_string();
     folder.finish()?;

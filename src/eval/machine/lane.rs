@@ -1,7 +1,7 @@
 //! One thread of the shader: its memory, its position in the code, and the loop that runs it.
 
 use super::super::code::Instruction;
-use super::super::error::{Error, Kind};
+use super::super::error::{Error, FindingKind};
 use super::super::number::Number;
 use super::super::program::Program;
 use super::super::resources::Bound;
@@ -123,7 +123,7 @@ impl<N: Number> Lane<N> {
         let mut doubt = false;
         compute(instruction, &mut self.memory, &mut doubt);
         if doubt {
-            watch.note(Kind::Ambiguous, at);
+            watch.note(FindingKind::Ambiguous, at);
         }
         if watch.sanitize {
             watch.inspect(instruction, &self.memory, at);

@@ -1,7 +1,7 @@
 //! Four fragments in lock-step. Each runs alone up to a derivative, where it waits for the others.
 
 use super::super::code::{Axis, Binary, Instruction, Unary};
-use super::super::error::{Error, Kind};
+use super::super::error::{Error, FindingKind};
 use super::super::number::Number;
 use super::super::program::FunctionId;
 use super::lane::{self, Env, Lane, Stop};
@@ -79,7 +79,7 @@ impl<N: Number> Machine<'_, N> {
                 .collect();
             let at = lanes[first].pc;
             if group.len() < 4 {
-                self.watch.note(Kind::DivergentDerivative, at);
+                self.watch.note(FindingKind::DivergentDerivative, at);
             }
             match self.program.code[at as usize] {
                 Instruction::Derivative { axis, coarse, n, to, a } => {

@@ -1,7 +1,7 @@
 //! Runs accesses to textures: finds what is bound, chooses the level, and stores the result.
 
 use super::super::code::{Access, Ask, Axis, Lod};
-use super::super::error::{Error, Kind};
+use super::super::error::{Error, FindingKind};
 use super::super::number::Number;
 use super::super::resources::{Filter, Sampler, Shape, Texture};
 use super::filter::{Footprint, Point, combine, gathered_component, project};
@@ -150,7 +150,7 @@ fn load_texel<N: Number>(
         usize::try_from(level.map_or(0, word)).ok().and_then(|level| texture.levels.get(level));
     let texel = level.and_then(|level| level.texel(at));
     if texel.is_none() {
-        watch.note(Kind::OutOfBounds, pc);
+        watch.note(FindingKind::OutOfBounds, pc);
     }
     store_result(m, access, texel.unwrap_or_default().map(|value| (value, 0.0)));
 }
@@ -198,7 +198,7 @@ fn sample_texture<N: Number>(
         between_levels(&footprint, level, &mut doubt)
     };
     if doubt {
-        notes.1.note(Kind::Ambiguous, notes.0);
+        notes.1.note(FindingKind::Ambiguous, notes.0);
     }
     store_result(m, access, result);
     Ok(())

@@ -1,7 +1,7 @@
 //! What a run reports: coverage, and trouble with numbers.
 
 use super::super::code::{Binary, Convert, Geometry, Instruction, Operand, Unary, Word2};
-use super::super::error::{Finding, Kind};
+use super::super::error::{Finding, FindingKind};
 use super::super::number::Number;
 use super::super::program::Program;
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ const MAX_FINDINGS: usize = 10_000;
 pub struct Watch {
     pub sanitize: bool,
     pub hits: Vec<u64>,
-    findings: BTreeMap<(Kind, u32), u64>,
+    findings: BTreeMap<(FindingKind, u32), u64>,
 }
 
 impl Watch {
@@ -29,7 +29,7 @@ impl Watch {
 
     /// Counts a finding at an instruction.
     #[cold]
-    pub fn note(&mut self, kind: Kind, pc: u32) {
+    pub fn note(&mut self, kind: FindingKind, pc: u32) {
         if self.findings.len() < MAX_FINDINGS || self.findings.contains_key(&(kind, pc)) {
             *self.findings.entry((kind, pc)).or_default() += 1;
         }
@@ -55,7 +55,7 @@ impl Watch {
         match *instruction {
             Instruction::Float1 { op, n, to, a } => {
                 let outside = (0..n).any(|i| outside1(op, memory[a.at(u32::from(i))].value()));
-                self.judge(outside.then_some(Kind::Domain), memory, &[(a, n)], (to, n), pc);
+                self.judge(outside.then_some(FindingKind::Domain), memory, &[(a, n)], (to, n), pc);
             }
             Instruction::Float2 { op, n, to, a, b } => {
                 let trouble = (0..u32::from(n))
@@ -67,7 +67,7 @@ impl Watch {
             }
             Instruction::Convert { op, n, a, .. } => {
                 let wild = (0..u32::from(n)).any(|i| does_not_fit(op, memory[a.at(i)].value()));
-                self.note_if(wild, Kind::Conversion, pc);
+                self.note_if(wild, FindingKind::Conversion, pc);
             }
             Instruction::Word2 {
                 op: Word2::DivideS | Word2::DivideU | Word2::RemainderS | Word2::RemainderU,
@@ -76,27 +76,27 @@ impl Watch {
                 ..
             } => {
                 let zero = (0..u32::from(n)).any(|i| memory[b.at(i)].word() == 0);
-                self.note_if(zero, Kind::DivisionByZero, pc);
+                self.note_if(zero, FindingKind::DivisionByZero, pc);
             }
             Instruction::Geometry { op: Geometry::Normalize, n, a, .. } => {
                 let zero = (a..a + u32::from(n)).all(|slot| read(slot) == 0.0);
-                self.note_if(zero, Kind::Domain, pc);
+                self.note_if(zero, FindingKind::Domain, pc);
             }
             Instruction::Geometry { op: Geometry::Dot | Geometry::Length, n, to, a, .. } => {
                 self.judge(None, memory, &[(Operand { slot: a, stride: 1 }, n)], (to, 1), pc);
             }
             Instruction::Index { index, count, .. } => {
                 let outside = memory[index as usize].word() >= memory[count as usize].word();
-                self.note_if(outside, Kind::OutOfBounds, pc);
+                self.note_if(outside, FindingKind::OutOfBounds, pc);
             }
             Instruction::Pick { index, count, .. } => {
-                self.note_if(memory[index as usize].word() >= count, Kind::OutOfBounds, pc)
+                self.note_if(memory[index as usize].word() >= count, FindingKind::OutOfBounds, pc)
             }
             _ => {}
         }
     }
 
-    fn note_if(&mut self, when: bool, kind: Kind, pc: u32) {
+    fn note_if(&mut self, when: bool, kind: FindingKind, pc: u32) {
         if when {
             self.note(kind, pc);
         }
@@ -105,7 +105,7 @@ impl Watch {
     /// Reports trouble with the operands, or else a result that is not finite although they are.
     fn judge<N: Number>(
         &mut self,
-        trouble: Option<Kind>,
+        trouble: Option<FindingKind>,
         memory: &[N],
         operands: &[(Operand, u8)],
         to: (u32, u8),
@@ -120,8 +120,8 @@ impl Watch {
         match trouble {
             Some(kind) => self.note(kind, pc),
             None if !operands.iter().all(finite) => {}
-            None if nan => self.note(Kind::NotANumber, pc),
-            None if infinite => self.note(Kind::Infinity, pc),
+            None if nan => self.note(FindingKind::NotANumber, pc),
+            None if infinite => self.note(FindingKind::Infinity, pc),
             None => {}
         }
     }
@@ -137,11 +137,11 @@ fn outside1(op: Unary, x: f64) -> bool {
     }
 }
 
-fn outside2(op: Binary, a: f64, b: f64) -> Option<Kind> {
+fn outside2(op: Binary, a: f64, b: f64) -> Option<FindingKind> {
     match op {
-        Binary::Divide | Binary::Remainder if b == 0.0 => Some(Kind::DivisionByZero),
-        Binary::Pow if a < 0.0 || a == 0.0 && b <= 0.0 => Some(Kind::Domain),
-        Binary::Atan2 if a == 0.0 && b == 0.0 => Some(Kind::Domain),
+        Binary::Divide | Binary::Remainder if b == 0.0 => Some(FindingKind::DivisionByZero),
+        Binary::Pow if a < 0.0 || a == 0.0 && b <= 0.0 => Some(FindingKind::Domain),
+        Binary::Atan2 if a == 0.0 && b == 0.0 => Some(FindingKind::Domain),
         _ => None,
     }
 }

@@ -24,7 +24,7 @@ pub fn watch_entry(module: &Module, entry: &str) -> Option<Watched> {
     let (mut module, index) = (module.clone(), find_entry(module, entry)?);
     let inner = inner_function(&mut module, index)?;
     let mut body = entry_body(&mut module, index);
-    let mut components = vec![body.colour(inner, 0)?];
+    let mut components = vec![body.color(inner, 0)?];
     components.extend(body.input_words());
     let targets = components.len() as u32;
     body.finish_entry(components, index);
@@ -56,8 +56,8 @@ pub fn bits_module(module: &Module, entry: &str, location: u32) -> Option<Module
     let (mut module, index) = (module.clone(), find_entry(module, entry)?);
     let inner = inner_function(&mut module, index)?;
     let mut body = entry_body(&mut module, index);
-    let colour = body.colour(inner, location)?;
-    body.finish_entry(vec![colour], index);
+    let color = body.color(inner, location)?;
+    body.finish_entry(vec![color], index);
     Some(module)
 }
 
@@ -105,13 +105,13 @@ impl Body<'_> {
     }
 
     /// The bits of what the function returns at a location.
-    fn colour(&mut self, inner: Handle<Function>, location: u32) -> Option<Value> {
+    fn color(&mut self, inner: Handle<Function>, location: u32) -> Option<Value> {
         let arguments = self.argument_values();
         let ty = self.module.functions[inner].result.as_ref()?.ty;
         let member = match &self.module.types[ty].inner {
             TypeInner::Vector { size: VectorSize::Quad, .. } => None,
             TypeInner::Struct { members, .. } => {
-                Some(members.iter().position(|member| is_colour(self.module, member, location))?)
+                Some(members.iter().position(|member| is_color(self.module, member, location))?)
             }
             _ => return None,
         };
@@ -122,8 +122,8 @@ impl Body<'_> {
             Span::UNDEFINED,
         );
         let index = |index: usize| Expression::AccessIndex { base: result, index: index as u32 };
-        let colour = member.map_or(result, |member| self.add(index(member)));
-        Some(self.add(Expression::As { expr: colour, kind: ScalarKind::Uint, convert: None }))
+        let color = member.map_or(result, |member| self.add(index(member)));
+        Some(self.add(Expression::As { expr: color, kind: ScalarKind::Uint, convert: None }))
     }
 
     /// Returns one value of four words at each location.
@@ -156,7 +156,7 @@ impl Body<'_> {
     }
 }
 
-fn is_colour(module: &Module, member: &StructMember, location: u32) -> bool {
+fn is_color(module: &Module, member: &StructMember, location: u32) -> bool {
     matches!(member.binding, Some(Binding::Location { location: found, .. }) if found == location)
         && matches!(module.types[member.ty].inner, TypeInner::Vector { size: VectorSize::Quad, .. })
 }

@@ -3,8 +3,8 @@
 mod html;
 mod markdown;
 
-pub use html::html_page as html;
-pub use markdown::markdown_page as markdown;
+pub use html::html_page;
+pub use markdown::markdown_page;
 
 use std::sync::Arc;
 

@@ -43,11 +43,11 @@ impl DrawTarget for Page<'_> {
     where
         I: IntoIterator<Item = Pixel<Rgb888>>,
     {
-        for Pixel(Point { x, y }, colour) in pixels {
+        for Pixel(Point { x, y }, color) in pixels {
             if let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y))
                 && x < self.right
             {
-                self.picture.set([x, y], [colour.r(), colour.g(), colour.b()]);
+                self.picture.set([x, y], [color.r(), color.g(), color.b()]);
             }
         }
         Ok(())

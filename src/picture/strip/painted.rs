@@ -46,17 +46,17 @@ pub fn paint_expression(
     let mut picture = Linear::new(shot.size);
     for index in 0..shot.samples.max(1) {
         let places = pixel_centres(shot.size, sample_shift(index, shot.samples));
-        let mut colours = Vec::with_capacity(places.len() / 2);
+        let mut colors = Vec::with_capacity(places.len() / 2);
         for some in places.chunks(2 * AT_ONCE) {
             let words = painter.run(&kernel, some).map_err(|error| vec![error])?;
-            colours.extend(words.chunks_exact(3).map(colour_of_words));
+            colors.extend(words.chunks_exact(3).map(color_of_words));
         }
-        picture.add_all(colours.into_iter(), shot.exposure);
+        picture.add_all(colors.into_iter(), shot.exposure);
     }
     Ok(picture)
 }
 
-fn colour_of_words(words: &[u32]) -> DVec3 {
+fn color_of_words(words: &[u32]) -> DVec3 {
     let number = |index: usize| f64::from(f32::from_bits(words[index]));
     DVec3::new(number(0), number(1), number(2))
 }

@@ -88,8 +88,8 @@ fn eon(a: &mut Arguments<'_>) -> Expected {
         return single.into();
     }
     let lost = |mu: f64| (1.0 - eon_albedo(mu, roughness)).max(0.0);
-    let colour = albedo * albedo * average / (1.0 - albedo * (1.0 - average));
-    (single + colour * FRAC_1_PI * lost(nl) * lost(nv) / (1.0 - average)).into()
+    let color = albedo * albedo * average / (1.0 - albedo * (1.0 - average));
+    (single + color * FRAC_1_PI * lost(nl) * lost(nv) / (1.0 - average)).into()
 }
 
 /// From the smooth to the rough end: a fifth power, and a cubic.

@@ -61,9 +61,9 @@ fn turned_quarter() -> Result<(), Failed> {
 /// Two textures of a material with transformations of their own are where each of them says: the
 /// colour is not moved, and the emission is moved by half of its image.
 fn each_its_own() -> Result<(), Failed> {
-    let colour = image([[40, 0, 0], [0, 40, 0], [0, 0, 40], [40; 3]])?;
+    let color = image([[40, 0, 0], [0, 40, 0], [0, 0, 40], [40; 3]])?;
     let glow = image([WHITE, [0; 3], [0; 3], [0; 3]])?;
-    let (mut document, buffer) = square(&[colour, glow]);
+    let (mut document, buffer) = square(&[color, glow]);
     document["extensionsUsed"] = json!(["KHR_texture_transform"]);
     let moved = json!({ "KHR_texture_transform": { "offset": [0.5, 0.0] } });
     document["materials"] = json!([{

@@ -15,7 +15,7 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
     if presets.contains(&format!("[tech_{name}]\n")) {
         return Err(format!("`{PRESETS}` has `[tech_{name}]` already"));
     }
-    let [shapes, colours] = [
+    let [shapes, colors] = [
         declared(&repository.read("src/scene/shape.rs")?, "    pub fn ", " -> Self"),
         declared(&repository.read("src/scene/palette.rs")?, "pub const ", ": DVec3"),
     ];
@@ -25,7 +25,7 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
             "{file}: `about`, objects, the viewer and the lamp (trials house::described, scene)"
         ),
         format!("  shapes: {}", shapes),
-        format!("  colours: {}", colours),
+        format!("  colours: {}", colors),
         format!("{PRESETS}: `doc`, `look` and `source` of `tech_{name}` (trial catalogue)"),
         format!("cargo run --release -- render tech_{name} -o {picture}; look at it"),
         "cargo xtask record render/; cargo run --release -- render --all --force -o docs/gallery"
