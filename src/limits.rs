@@ -210,7 +210,7 @@ limits! {
     BUNDLE_FACTOR: u64 = 128, Count, "further such bytes for each byte of its file", "memory, time",
         "the bundle is damaged";
     ENVIRONMENT_BYTES: u64 = 128 << 20, Bytes, "bytes of a Radiance file", "memory",
-        "the file has more bytes than are allowed";
+        "has ... bytes, more than the ... that are allowed";
     ENVIRONMENT_PIXELS: u64 = 1 << 24, Count, "pixels of the image, by its header", "memory",
         "... pixels are more than ...";
     MODEL_BYTES: u64 = 256 << 20, Bytes, "bytes of a model", "memory", "... bytes are more than ...";

@@ -169,7 +169,7 @@ fn map_errors(sources: &SourceSet, composed: &Composed) -> String {
 
 /// Whether a file of a case belongs to a package.
 fn is_source(name: &str) -> bool {
-    name.ends_with(".wesl") || (name.ends_with(".wgsl") && !name.ends_with("expected.wgsl"))
+    name.ends_with(".wesl") || (name.ends_with(".wgsl") && name != "expected.wgsl")
 }
 
 /// Files on disk that cannot be read: not UTF-8, a link out of the package, and a folder named like

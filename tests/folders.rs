@@ -8,7 +8,7 @@ use std::path::Path;
 use lamplight::resolve::Packages;
 use lamplight::source::{Files, Memory, Package, ReadError};
 
-/// The packages of a folder. `is_source` says by the name of a file whether it belongs to one.
+/// The packages of a folder. `is_source` says by the path of a file whether it belongs to one.
 pub fn packages_in(folder: &Path, root: &str, is_source: fn(&str) -> bool) -> Packages {
     let mut files = BTreeMap::new();
     read_files(folder, "", is_source, &mut files);
