@@ -17,8 +17,6 @@ const GLSL_ENTRY: &str = "main";
 pub struct Shader {
     /// Its name in the source.
     pub entry: String,
-    /// Stage of the entry point.
-    pub stage: naga::ShaderStage,
     /// Its outputs.
     pub made: Made,
 }
@@ -78,9 +76,9 @@ impl Root<'_> {
         linker: &Linker<'_>,
     ) -> Result<Vec<Shader>, Diagnostics> {
         let (mut shaders, mut errors) = (Vec::new(), Diagnostics::new());
-        for (entry, stage) in entries {
+        for (entry, _) in entries {
             match on_large_stack(|| self.one(entry, linker)) {
-                Ok(made) => shaders.push(Shader { entry: entry.clone(), stage: *stage, made }),
+                Ok(made) => shaders.push(Shader { entry: entry.clone(), made }),
                 Err(found) => errors.extend(found),
             }
         }

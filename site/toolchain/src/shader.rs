@@ -333,11 +333,6 @@ fn named<C: Convention>(
 }
 
 fn entry(shader: &Shader, wanted: &[Target]) -> EntryPoint {
-    let stage = match shader.stage {
-        naga::ShaderStage::Vertex => "vertex",
-        naga::ShaderStage::Fragment => "fragment",
-        _ => "compute",
-    };
     let unit = &shader.made.unit;
     let output = |target: &Target| {
         let (known, artifact) = (targets::find(*target)?, unit.targets.get(target.name())?);
@@ -351,7 +346,7 @@ fn entry(shader: &Shader, wanted: &[Target]) -> EntryPoint {
     };
     EntryPoint {
         name: shader.entry.clone(),
-        stage: stage.to_owned(),
+        stage: unit.reflection.stage.name().to_owned(),
         reflection: Reflection::clone(&unit.reflection),
         outputs: wanted.iter().filter_map(output).collect(),
     }
