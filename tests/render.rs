@@ -149,11 +149,20 @@ fn linear_picture(
     scene: &str,
     size: [u32; 2],
 ) -> Result<Linear, String> {
-    let programs = &library().programs;
-    let mut plan = Plan::of_key(programs, program, key).map_err(said)?;
+    let mut plan = Plan::of_key(&library().programs, program, key).map_err(said)?;
     plan.scene = scene.to_owned();
+    linear_plan(painter, language, &plan, size)
+}
+
+/// The colours of a plan, before they become those of a picture.
+fn linear_plan(
+    painter: &dyn Session,
+    language: Language,
+    plan: &Plan,
+    size: [u32; 2],
+) -> Result<Linear, String> {
     let shot = shot(size, 1, language);
-    let prepared = prepare_passes(painter, programs, &plan, &shot).map_err(said)?;
+    let prepared = prepare_passes(painter, &library().programs, plan, &shot).map_err(said)?;
     prepared.photograph(painter, &shot).map_err(said)
 }
 

@@ -13,7 +13,7 @@ use libtest_mimic::{Failed, Trial};
 
 pub use sets::nothing_is_shown;
 
-use sets::{clusters, environments, scenes, volumes};
+use sets::{clusters, environments, numbers, scenes, volumes};
 
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
@@ -22,7 +22,7 @@ const CLIPS: [Clip; 3] = [Clip::Wgpu, Clip::Vulkan, Clip::OpenGl];
 const DEPTHS: [Depth; 2] = [Depth::Normal, Depth::Reversed];
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 21] = [
+    let cases: [Case; 22] = [
         ("views", views),
         ("views_by_angles", angles),
         ("perspective", perspective),
@@ -44,6 +44,7 @@ pub fn trials() -> Vec<Trial> {
         ("volumes_of_shapes", volumes),
         ("normals_of_scenes", scenes),
         ("environments", environments),
+        ("numbers_of_materials", numbers),
     ];
     cases.into_iter().map(|(name, run)| Trial::test(format!("scene::{name}"), run)).collect()
 }

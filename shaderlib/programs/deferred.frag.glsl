@@ -28,6 +28,9 @@ layout(set = 2, binding = 4) uniform texture2D surface_depth;
 layout(set = 2, binding = 2) uniform texture2D surface_color;
 layout(set = 2, binding = 3) uniform texture2D surface_normal;
 layout(set = 2, binding = 5) uniform sampler surface_sampler;
+#if METALLIC_ROUGHNESS
+layout(set = 2, binding = 6) uniform texture2D surface_factors;
+#endif
 
 #if OCCLUSION == OCCLUSION_SCREEN
 #include "../ambient/occlusion.glsl"
@@ -40,6 +43,7 @@ float open_share() {
     return textureLod(sampler2D(seen_occlusion, open_sampler), place, 0.0).x;
 }
 
+#if !METALLIC_ROUGHNESS
 /// The squared roughness of the highlight, for how wide it mirrors the surroundings.
 float highlight_alpha(Material material) {
 #if SPECULAR == SPECULAR_GGX
@@ -49,6 +53,7 @@ float highlight_alpha(Material material) {
     return sqrt(2.0 / (max(material.shininess, 0.0) + 2.0));
 #endif
 }
+#endif
 #endif
 
 #if LIGHTS != LIGHTS_NONE
@@ -67,9 +72,20 @@ vec3 shade(vec3 base, vec3 normal, uint material) {
 #else
     surface.material = materials.items[0];
 #endif
+#if METALLIC_ROUGHNESS
+    vec4 factors = textureLod(sampler2D(surface_factors, surface_sampler), in_uv, 0.0);
+    surface.material.roughness = factors.y;
+    Factors own = plain_factors();
+    own.metallic = factors.x;
+    surface.layered = layered(base, factors.y, surface.normal, surface.view, own);
+#endif
 #if OCCLUSION == OCCLUSION_SCREEN
     float open = open_share();
+#if METALLIC_ROUGHNESS
+    surface.material.ambient *= multibounce(open, base);
+#else
     surface.material.ambient *= multibounce(open, base * surface.material.diffuse);
+#endif
 #endif
 #if CASCADES
     surface.visibility = cascaded_visibility(surface, gl_FragCoord.xy);
@@ -83,6 +99,13 @@ vec3 shade(vec3 base, vec3 normal, uint material) {
     surface.lobe = table_lobe(dot(surface.normal, surface.view), surface.material.roughness);
 #endif
     Accum sum = lit(surface);
+#if METALLIC_ROUGHNESS
+    Around around = light_around(surface, sum.scattered);
+#if OCCLUSION == OCCLUSION_SCREEN && AMBIENT == AMBIENT_IBL
+    around = occluded(around, surface.layered, open);
+#endif
+    return layered_ambient(surface.layered, around, surface.material.emission) + sum.reflected;
+#else
 #if AMBIENT == AMBIENT_IBL
 #if OCCLUSION == OCCLUSION_SCREEN
     // The highlights of lamps are summed up, so only the mirrored environment loses by occlusion.
@@ -92,6 +115,7 @@ vec3 shade(vec3 base, vec3 normal, uint material) {
     sum = add_environment(sum, surface);
 #endif
     return resolve(base, surface.material, sum);
+#endif
 }
 #endif
 

@@ -196,19 +196,7 @@ float open_share() {
 #endif
 }
 
-#if METALLIC_ROUGHNESS
-/// The light around a layered surface without what is hidden of the mirrored environment. What falls
-/// onto its front has lost that already, by the share of ambient light of its material.
-Around occluded(Around around, Layered at, float open) {
-    Around seen = around;
-    seen.mirrored *= specular_occlusion(dot(at.normal, at.view), open, at.roughness * at.roughness);
-#if CLEARCOAT
-    float rough = at.own.clearcoat_roughness;
-    seen.coated *= specular_occlusion(dot(at.coat_normal, at.view), open, rough * rough);
-#endif
-    return seen;
-}
-#else
+#if !METALLIC_ROUGHNESS
 /// The squared roughness of the highlight, for how wide it mirrors the surroundings.
 float highlight_alpha(Material material) {
 #if SPECULAR == SPECULAR_GGX

@@ -5,11 +5,14 @@
 #include "../ambient/octahedral.glsl"
 #include "../lighting/material.glsl"
 #include "../math/safe.glsl"
+#if METALLIC_ROUGHNESS
+#include "forward/factors.glsl"
+#endif
 #include "../surface/normal.glsl"
 
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec4 in_color;
-#if BASE_MAP || NORMAL_MAP
+#if BASE_MAP || NORMAL_MAP || METALLIC_ROUGHNESS_MAP
 layout(location = 3) in vec2 in_uv;
 #endif
 #if NORMAL_MAP
@@ -19,6 +22,9 @@ layout(location = 6) flat in uint in_material;
 
 layout(location = 0) out vec4 out_color;
 layout(location = 1) out vec4 out_surface;
+#if METALLIC_ROUGHNESS
+layout(location = 2) out vec4 out_factors;
+#endif
 
 #if BASE_MAP
 layout(set = 1, binding = 1) uniform texture2D base_map;
@@ -26,8 +32,35 @@ layout(set = 1, binding = 1) uniform texture2D base_map;
 #if NORMAL_MAP
 layout(set = 1, binding = 2) uniform texture2D normal_map;
 #endif
-#if BASE_MAP || NORMAL_MAP
+#if BASE_MAP || NORMAL_MAP || METALLIC_ROUGHNESS_MAP
 layout(set = 1, binding = 4) uniform sampler map_sampler;
+#endif
+#if METALLIC_ROUGHNESS_MAP
+layout(set = 2, binding = 7) uniform texture2D metallic_roughness_map;
+#endif
+
+#if METALLIC_ROUGHNESS
+#if TWO_SIDED
+#define MATERIALS 28
+#else
+#define MATERIALS 14
+#endif
+
+/// Materials in one array: pairs of front and back with `two_sided`.
+layout(std140, set = 1, binding = 0) uniform Materials {
+    Material items[MATERIALS];
+} materials;
+
+/// The share of metal and the perceptual roughness, as `forward` has them.
+vec2 metal_and_roughness(uint material) {
+    float roughness = materials.items[min(material, uint(MATERIALS - 1))].roughness;
+#if METALLIC_ROUGHNESS_MAP
+    vec4 texel = texture(sampler2D(metallic_roughness_map, map_sampler), in_uv);
+    return vec2(layers.metallic * texel.z, roughness * texel.y);
+#else
+    return vec2(layers.metallic, roughness);
+#endif
+}
 #endif
 
 void main() {
@@ -50,4 +83,7 @@ void main() {
 #endif
     out_color = base;
     out_surface = vec4(0.5 + 0.5 * octahedral_encode(normal), material / 255.0, 1.0);
+#if METALLIC_ROUGHNESS
+    out_factors = vec4(metal_and_roughness(uint(material)), 0.0, 1.0);
+#endif
 }

@@ -5,7 +5,7 @@
 layout(location = 0) in vec3 in_position;
 layout(location = 1) in vec3 in_normal;
 layout(location = 2) in vec4 in_color;
-#if BASE_MAP || NORMAL_MAP
+#if BASE_MAP || NORMAL_MAP || METALLIC_ROUGHNESS_MAP
 layout(location = 3) in vec2 in_uv;
 #endif
 #if NORMAL_MAP
@@ -15,7 +15,7 @@ layout(location = 6) in uint in_material;
 
 layout(location = 1) out vec3 out_normal;
 layout(location = 2) out vec4 out_color;
-#if BASE_MAP || NORMAL_MAP
+#if BASE_MAP || NORMAL_MAP || METALLIC_ROUGHNESS_MAP
 layout(location = 3) out vec2 out_uv;
 #endif
 #if NORMAL_MAP
@@ -41,7 +41,7 @@ void main() {
     gl_Position = camera.clip_from_world * (object.world_from_object * vec4(in_position, 1.0));
     out_normal = (object.normal_from_object * vec4(in_normal, 0.0)).xyz;
     out_color = in_color * object.color;
-#if BASE_MAP || NORMAL_MAP
+#if BASE_MAP || NORMAL_MAP || METALLIC_ROUGHNESS_MAP
     out_uv = in_uv;
 #endif
 #if NORMAL_MAP

@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::needs::Falloff;
-use super::plan::LAMPS;
+use super::plan::{LAMPS, with_numbers};
 use super::values::{Values, eye_projection, matrix_columns, vector_of, vector_values};
+use crate::diagnostic::Diagnostics;
 use crate::scene::sets::{Lamp, LampKind, Scene};
 use crate::scene::{Cells, Clusters, Reach, between_middles};
 
@@ -235,10 +236,13 @@ impl Values<'_> {
     }
 
     /// The scene, with the lamps that have a position as objects, if it shows them.
-    pub(super) fn with_bulbs(&self) -> Option<Scene> {
+    ///
+    /// # Errors
+    /// It has too many materials for one array.
+    pub(super) fn with_bulbs(&self) -> Result<Option<Scene>, Diagnostics> {
         let Self { scene, lit, .. } = self;
         if !scene.shows_lamps || lit.needs.unlit {
-            return None;
+            return Ok(None);
         }
         let shining = scene.lamps.iter().enumerate().take(self.lamps().unwrap_or(0));
         let kinds = shining.map(|(index, lamp)| (lamp, self.kind(index, lamp)));
@@ -248,6 +252,6 @@ impl Values<'_> {
             None => Scene::bulb(lamp, kind),
         });
         let objects = scene.objects.iter().cloned().chain(bulbs).collect();
-        Some(Scene { objects, ..(*scene).clone() })
+        with_numbers(Scene { objects, ..(*scene).clone() }, &lit.needs).map(Some)
     }
 }

@@ -69,6 +69,8 @@ pub struct Needs {
     pub material_array: bool,
     /// Whether that array has a material for each side.
     pub sides: bool,
+    /// Whether that array has the materials of the objects, and not those that all scenes share.
+    pub own_materials: bool,
     pub background: BackgroundKind,
     /// Whether haze behind everything is brighter towards the sun.
     pub sun: bool,
@@ -132,6 +134,8 @@ pub enum Cleared {
 #[serde(deny_unknown_fields, default)]
 struct Row {
     before: Vec<String>,
+    /// By program.
+    with: BTreeMap<String, String>,
     seen: Vec<String>,
     reach: Option<f64>,
     lamps: Option<LampKind>,
@@ -143,6 +147,7 @@ struct Row {
     faceted: bool,
     materials: Option<Materials>,
     sides: bool,
+    own: bool,
     background: BackgroundKind,
     sun: bool,
     levels: bool,
@@ -225,12 +230,12 @@ impl Table {
         let Some(found) = self.programs.get(program) else { return needs };
         needs.before.extend(split_passes(&found.before));
         needs.screen = found.screen;
-        for (axis, rows) in &found.axes {
-            let value = settings.values.get(axis).map(ToString::to_string);
-            if let Some(row) = value.and_then(|value| rows.get(&value)) {
-                needs.add(row);
-            }
-        }
+        let value = |axis: &String| settings.values.get(axis).map(ToString::to_string);
+        let chosen = found.axes.iter().filter_map(|(axis, rows)| rows.get(&value(axis)?));
+        let rows: Vec<&Row> = chosen.collect();
+        rows.iter().for_each(|row| needs.add(row));
+        // The pass may be that of a later row.
+        rows.iter().flat_map(|row| &row.with).for_each(|more| needs.add_settings(more));
         needs
     }
 }
@@ -274,6 +279,7 @@ impl Needs {
         self.faceted |= row.faceted;
         self.material_array |= row.materials.is_some();
         self.sides |= row.sides;
+        self.own_materials |= row.own;
         self.background = self.background.max(row.background);
         self.sun |= row.sun;
         self.levels |= row.levels;
@@ -284,6 +290,13 @@ impl Needs {
         for (block, fields) in &row.uniforms {
             let all = self.uniforms.entry(block.clone()).or_default();
             all.extend(fields.iter().map(|(field, number)| (field.clone(), number.clone())));
+        }
+    }
+
+    /// Adds settings to the keys of the passes of a program.
+    fn add_settings(&mut self, (program, settings): (&String, &String)) {
+        for (_, key) in self.before.iter_mut().filter(|(name, _)| name == program) {
+            *key = if key.is_empty() { settings.clone() } else { format!("{key},{settings}") };
         }
     }
 }

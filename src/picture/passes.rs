@@ -102,7 +102,7 @@ pub fn prepare_passes(
             clusters: OnceCell::new(),
             probes: OnceCell::new(),
         };
-        let with_lamps = values.with_bulbs();
+        let with_lamps = values.with_bulbs()?;
         let values = Values { scene: with_lamps.as_ref().unwrap_or(scene), ..values };
         let studio = Studio { painter, programs, values };
         let mut left = Left::default();

@@ -157,7 +157,7 @@ impl Plan {
     /// The scene, with its lamps where the source has them or where they were moved.
     ///
     /// # Errors
-    /// There is no such scene, or it has no lamp.
+    /// There is no such scene, it has no lamp, or it has too many materials for one array.
     pub(super) fn staged(&self) -> Result<Scene, Diagnostics> {
         let failed = |message| vec![Diagnostic::error(codes::EXECUTOR_FAILED, message)];
         let scene = self.model.as_deref().cloned().or_else(|| sets::scene(&self.scene));
@@ -170,7 +170,10 @@ impl Plan {
                 lamp.position = *place;
             }
         }
-        Ok(scene)
+        match self.lit() {
+            Some(lit) => with_numbers(scene, &lit.needs),
+            None => Ok(scene),
+        }
     }
 
     /// Moves a lamp to where the source has it, so that its shadow falls from there.
@@ -196,6 +199,18 @@ impl Plan {
     pub fn number(&self, group: &str, field: &str) -> Option<Vec<f64>> {
         self.numbers.get(group)?.get(field).map(Number::to_vec)
     }
+}
+
+/// The scene, whose array has the materials of the objects where a picture needs them.
+///
+/// # Errors
+/// It has too many materials for one array.
+pub(super) fn with_numbers(mut scene: Scene, needs: &Needs) -> Result<Scene, Diagnostics> {
+    if needs.own_materials {
+        let failed = |message| vec![Diagnostic::error(codes::EXECUTOR_FAILED, message)];
+        scene.number_materials().map_err(failed)?;
+    }
+    Ok(scene)
 }
 
 /// The program of that name.

@@ -171,6 +171,7 @@ impl Left {
             "seen_occlusion" => one(self.over.get("gtao").cloned()),
             "seen_contact" => one(self.over.get("contact_shadows").cloned()),
             "surface_normal" => one(color(1)),
+            "surface_factors" => one(color(2)),
             "surface_depth" | "depth_buffer" => {
                 one(self.seen.as_ref().map(|(depths, size)| as_color(depths, *size)))
             }

@@ -17,6 +17,7 @@ mod kernel;
 mod layers;
 mod maps;
 mod mesh;
+mod numbering;
 mod palette;
 mod probe;
 mod probing;

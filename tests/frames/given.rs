@@ -242,7 +242,7 @@ impl Given {
             "surface_normal" if is_sensitive => Self::NearOctahedral,
             "ltc_table" => Self::Lobes,
             "anisotropy_map" => Self::Directions,
-            "metallic_roughness_map" | "clearcoat_map" => Self::Roughnesses,
+            "metallic_roughness_map" | "surface_factors" | "clearcoat_map" => Self::Roughnesses,
             _ => Self::Colors,
         }
     }

@@ -2,11 +2,18 @@
 //! each other, and compared with `forward` pixel by pixel. Moments of shadows are not compared: their
 //! map has levels, and at the edges of things the level depends on neighbouring pixels.
 
+use std::sync::Arc;
+
+use glam::DVec3;
+use lamplight::bundle::Language;
+use lamplight::catalogue::preset::Preset;
 use lamplight::execute::Session;
+use lamplight::picture::{Pass, Plan};
+use lamplight::scene::sets::{self, Maps, Material};
+use lamplight::scene::{Layers, brick_materials, bricks};
 use libtest_mimic::Trial;
 
-use super::{BACKENDS, linear_picture, on_device, surface_pixels};
-use lamplight::bundle::Language;
+use super::{BACKENDS, library, linear_plan, on_device, said, surface_pixels};
 
 /// Keys of `deferred`, and of `forward` for the same picture.
 const KEYS: &[(&str, &str, &str)] = &[
@@ -30,6 +37,20 @@ const KEYS: &[(&str, &str, &str)] = &[
     ("unlit", "ambient=sh9,lights=none", "ambient=sh9,lights=none"),
 ];
 
+/// Keys of surfaces of glTF, which are the same for both.
+const GLTF: &[(&str, &str)] = &[
+    ("gltf", "metallic_roughness,specular=ggx"),
+    ("gltf_shadowed", "ambient=ibl,metallic_roughness,shadow=pcf_vogel,specular=ggx"),
+    ("gltf_occluded", "ambient=ibl,metallic_roughness,occlusion=screen,specular=ggx"),
+    (
+        "gltf_wide",
+        "area=rectangle,attenuation=inverse_square_window,metallic_roughness,specular=ggx",
+    ),
+];
+/// What the shapes of the scene are: share of metal and emission.
+const SURFACES: [(f64, DVec3); 4] =
+    [(0.0, DVec3::ZERO), (1.0, DVec3::ZERO), (0.0, DVec3::new(0.0, 0.02, 0.1)), (0.6, DVec3::ZERO)];
+
 /// The size of the frames.
 const SIZE: [u32; 2] = [128, 96];
 /// The largest difference of a channel: positions and normals pass through textures of f32, which
@@ -41,28 +62,76 @@ const BEYOND: f64 = 0.002;
 /// The least share of the pixels that show a surface.
 const SEEN: f64 = 0.3;
 
+/// The plans of `deferred` and of `forward` for the same picture.
+type Both = Result<[Plan; 2], String>;
+
 pub fn trials() -> Vec<Trial> {
     let on = |(backend, language): (&'static str, Language)| {
-        KEYS.iter().map(move |(name, deferred, forward)| {
+        let trial = move |name: &str, both: Box<dyn FnOnce() -> Both + Send>| {
             Trial::test(format!("render/deferred_is_forward/{name}/{backend}"), move || {
-                on_device(backend, |painter| same(painter, language, deferred, forward))
+                on_device(backend, |painter| same(painter, language, &both()?))
             })
-        })
+        };
+        let classic = KEYS.iter().map(move |(name, deferred, forward)| {
+            trial(
+                name,
+                Box::new(|| Ok([plan_of("deferred", deferred)?, plan_of("forward", forward)?])),
+            )
+        });
+        let gltf = GLTF.iter().map(move |(name, key)| trial(name, Box::new(|| of_gltf(key))));
+        classic.chain(gltf).chain([trial("gltf_maps", Box::new(with_map))])
     };
     BACKENDS.into_iter().flat_map(on).collect()
+}
+
+fn plan_of(program: &str, key: &str) -> Result<Plan, String> {
+    let plan = Plan::of_key(&library().programs, program, key).map_err(said)?;
+    Ok(Plan { scene: "casters".to_owned(), ..plan })
+}
+
+/// The same scene with surfaces of glTF.
+fn of_gltf(key: &str) -> Both {
+    let mut scene = sets::scene("casters").ok_or("no such scene")?;
+    for (object, (metallic, emission)) in scene.objects.iter_mut().zip(SURFACES) {
+        let layers = Some(Layers { metallic, ..Layers::default() });
+        object.material = Material { layers, emission, ..object.material };
+    }
+    let model = Some(Arc::new(scene));
+    let (deferred, forward) = (plan_of("deferred", key)?, plan_of("forward", key)?);
+    Ok([Plan { model: model.clone(), ..deferred }, Plan { model, ..forward }])
+}
+
+/// The same with a texture of metal and roughness, and with blank textures otherwise.
+fn with_map() -> Both {
+    const KEY: &str = "metallic_roughness,specular=ggx";
+    let [mut deferred, forward] = of_gltf(KEY)?;
+    let mut scene = forward.model.as_deref().cloned().ok_or("no scene")?;
+    let mut maps = brick_materials();
+    maps.retain(|name, _| *name == "metallic_roughness_map");
+    scene.own_maps = Some(Arc::new(Maps { material: maps, ..bricks() }));
+    let model = Some(Arc::new(scene));
+    let forward = plan_of("forward", &format!("material_maps,{KEY}"))?;
+    deferred.passes[0] = surface_pass("metallic_roughness,metallic_roughness_map")?;
+    Ok([Plan { model: model.clone(), ..deferred }, Plan { model, ..forward }])
+}
+
+/// The pass that draws the surfaces, which is no picture by itself.
+fn surface_pass(key: &str) -> Result<Pass, String> {
+    let known = library().presets.first().ok_or("no preset")?;
+    let (program, key) = ("gbuffer".to_owned(), key.to_owned());
+    let preset = Preset { program, key, passes: Vec::new(), ..known.clone() };
+    let mut plan = Plan::of_preset(&library().programs, &preset, &[]).map_err(said)?;
+    plan.passes.pop().ok_or_else(|| "no pass".to_owned())
 }
 
 fn same(
     painter: &dyn Session,
     language: Language,
-    deferred: &str,
-    forward: &str,
+    [deferred, forward]: &[Plan; 2],
 ) -> Result<(), String> {
-    let drawn = |program: &str, key: &str| {
-        linear_picture(painter, language, (program, key), "casters", SIZE)
-    };
-    let found = drawn("deferred", deferred)?;
-    let wanted = drawn("forward", forward)?;
+    let found = linear_plan(painter, language, deferred, SIZE)?;
+    let wanted = linear_plan(painter, language, forward, SIZE)?;
+    let key = deferred.last().map_or("", |pass| &pass.key);
     let (mut seen, mut beyond, mut largest) = (0, 0, 0.0_f64);
     for (_, [found, wanted]) in surface_pixels(&found, &wanted, SIZE)? {
         let error = (found - wanted).abs().max_element();
@@ -72,7 +141,7 @@ fn same(
         largest = largest.max(error);
     }
     let pixels = f64::from(SIZE[0] * SIZE[1]);
-    println!("{deferred}: {beyond} of {seen} pixels differ, the largest difference is {largest:e}");
+    println!("{key}: {beyond} of {seen} pixels differ, the largest difference is {largest:e}");
     if (seen as f64) < SEEN * pixels || beyond as f64 > BEYOND * seen as f64 {
         let what = format!("{beyond} of {seen} pixels differ by more than {TOLERANCE:e}");
         return Err(format!("{what}, at most {BEYOND} of them may; the largest is {largest:e}"));

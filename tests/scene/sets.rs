@@ -156,3 +156,27 @@ fn refused_clusters(cells: &Cells, projection: DMat4, view: DMat4) -> Outcome {
         Some((found, wanted)) => Err(format!("{found:?}, expected {wanted:?}").into()),
     }
 }
+
+/// Objects have the numbers of their materials. Equal ones are one, each has both sides, and more
+/// than an array has are an error.
+pub fn numbers() -> Outcome {
+    let mut scene = sets::scene("spheres").ok_or("no such scene")?;
+    for (object, roughness) in scene.objects.iter_mut().zip([0.2, 0.5, 0.2, 0.7, 0.5]) {
+        object.material = sets::Material { roughness, ..sets::Material::default() };
+    }
+    scene.number_materials()?;
+    let numbers: Vec<u32> = scene.objects.iter().map(|object| object.material_index).collect();
+    let kept = scene.materials.iter().map(|sides| sides.map(|side| side.roughness));
+    let kept: Vec<[f64; 2]> = kept.collect();
+    if numbers != [0, 1, 0, 2, 1] || kept != [[0.2; 2], [0.5; 2], [0.7; 2]] {
+        return Err(format!("numbers {numbers:?} of {kept:?}").into());
+    }
+    let mut many = sets::scene("grid").ok_or("no such scene")?;
+    many.number_materials()?;
+    let extra = sets::Material { roughness: 0.01, ..sets::Material::default() };
+    many.objects.push(sets::Object { material: extra, ..many.objects[0].clone() });
+    match many.number_materials() {
+        Err(error) if error.contains("15 materials") => Ok(()),
+        other => Err(format!("15 materials in one array: {other:?}").into()),
+    }
+}

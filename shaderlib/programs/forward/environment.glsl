@@ -24,6 +24,9 @@ vec3 towards_wall(Surface surface, vec3 direction) {
 
 #if METALLIC_ROUGHNESS
 #include "../../ambient/ibl.glsl"
+#if OCCLUSION != OCCLUSION_NONE
+#include "../../ambient/occlusion.glsl"
+#endif
 
 #if AMBIENT != AMBIENT_NONE && AMBIENT != AMBIENT_CONSTANT
 /// The light of the surroundings on a side of the surface.
@@ -110,6 +113,20 @@ Around light_around(Surface surface, vec3 scattered) {
 #endif
     return around;
 }
+
+#if OCCLUSION != OCCLUSION_NONE
+/// The light around a layered surface without what is hidden of the mirrored environment. What falls
+/// onto its front has lost that already, by the share of ambient light of its material.
+Around occluded(Around around, Layered at, float open) {
+    Around seen = around;
+    seen.mirrored *= specular_occlusion(dot(at.normal, at.view), open, at.roughness * at.roughness);
+#if CLEARCOAT
+    float rough = at.own.clearcoat_roughness;
+    seen.coated *= specular_occlusion(dot(at.coat_normal, at.view), open, rough * rough);
+#endif
+    return seen;
+}
+#endif
 #elif AMBIENT == AMBIENT_IBL
 /// The sums with the light of the environment maps.
 Accum add_environment(Accum sum, Surface surface) {
