@@ -1,9 +1,9 @@
-//! A row of spheres of rising shininess.
+//! A row of spheres of rising shininess. As surfaces of glTF, they are more and more metal.
 
 use glam::DVec3;
 
 use super::palette::{self, AMBER, CORAL, INDIGO, LEAF, TEAL};
-use super::{Eye, Material, Object, Scene, Set, base_scene, placed_at};
+use super::{Eye, Layers, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
 const COLORS: [DVec3; 5] = [CORAL, AMBER, LEAF, TEAL, INDIGO];
@@ -23,6 +23,9 @@ pub fn scene() -> Scene {
         let step = index as f64 - 2.0;
         let place = placed_at(1.38 * step, 0.57 * step, -1.1 * step, 0.0);
         let material = Material::default().glossy(0.55).shiny(16.0 * 2.2_f64.powi(index as i32));
+        let metallic = index as f64 / (COLORS.len() - 1) as f64;
+        let layers = Some(Layers { metallic, ..Layers::default() });
+        let material = Material { layers, ..material };
         Object::new(ball.clone(), place, *color).of(material, index as u32)
     };
     let objects = COLORS.iter().enumerate().map(object).collect();
