@@ -9,7 +9,7 @@ use crate::scene::{Bounds, bounding_sphere, cascade_splits, depth_range};
 pub(super) const CASCADES: usize = 4;
 
 /// The weight of the logarithmic split against the even one.
-pub(super) const SPLIT: f64 = 0.7;
+const SPLIT: f64 = 0.7;
 /// Before its end a part fades into the next one, over this share of the first part.
 const OVERLAP: f64 = 0.2;
 
@@ -102,4 +102,19 @@ pub(super) fn quartered_map(parts: &[Vec<f32>], size: u32) -> Vec<f32> {
         part.and_then(|part| part.get(x % size + size * (y % size))).copied().unwrap_or(1.0)
     };
     (0..4 * size * size).map(texel).collect()
+}
+
+/// The viewer's depth in parts. The splits are where the scene is, and the ends are those of the
+/// viewer. A part begins a little before the one in front of it ends: where both are cut at one
+/// plane, rounding leaves pixels that neither of them draws.
+pub(super) fn slices_of(scene: &Scene, count: u32) -> Vec<(f64, f64)> {
+    let eye = &scene.eye;
+    let (near, far) = seen_range(scene);
+    let mut ends = cascade_splits(near, far, count as usize, SPLIT);
+    if let Some(last) = ends.last_mut() {
+        *last = eye.far;
+    }
+    let starts: Vec<f64> =
+        std::iter::once(eye.near).chain(ends.iter().map(|end| 0.999 * end)).collect();
+    starts.into_iter().zip(ends).collect()
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use super::Shot;
-use super::cascades::{SPLIT, quartered_map, seen_range};
+use super::cascades::{quartered_map, slices_of};
 use super::light::LightView;
 use super::mesh::{self, vertex_attributes};
 use super::pixels::Background;
@@ -21,7 +21,6 @@ use crate::execute::Session;
 use crate::execute::fixture::{Fixture, Texture, TextureKind};
 use crate::execute::frame::{Buffers, Frame, Mesh, Side, State};
 use crate::picture::frame::{Composed, Programs, Stages, pack_buffer};
-use crate::scene::cascade_splits;
 use crate::scene::sets::{Eye, Lamp, Scene};
 
 /// What all objects and views of a pass share, by group and binding.
@@ -87,11 +86,7 @@ pub fn prepare_passes(
 ) -> Result<Prepared, Diagnostics> {
     let Lit { mut scene, key, last, lit, size } = Lit::of(plan, shot)?;
     let fine = fineness(last, shot);
-    let shot = &Shot {
-        size: shot.size.map(|side| side * fine),
-        surroundings: shot.surroundings.around_scene(&scene),
-        ..shot.clone()
-    };
+    let shot = &finer_shot(shot, &scene, fine);
     let slice = |scene: &Scene, light: LightView| {
         let values = Values {
             plan,
@@ -133,6 +128,12 @@ pub fn prepare_passes(
     Ok(Prepared { farther: slices.collect(), ..nearest })
 }
 
+/// The shot with so many times the pixels along each side, and with what is around the scene.
+fn finer_shot(shot: &Shot, scene: &Scene, fine: u32) -> Shot {
+    let size = shot.size.map(|side| side * fine);
+    Shot { size, surroundings: shot.surroundings.around_scene(scene), ..shot.clone() }
+}
+
 /// How many times finer than the picture all passes of the viewer are drawn. What a pass reads at a
 /// pixel of an earlier one must be of the same point of the scene. So samples cannot be moved within
 /// a pixel, and smaller pixels are averaged instead.
@@ -146,21 +147,6 @@ fn fineness(last: &Pass, shot: &Shot) -> u32 {
     }
     let side = shot.size[0].max(shot.size[1]).max(1);
     shot.samples.isqrt().min(WIDEST / side).clamp(1, FINEST)
-}
-
-/// The viewer's depth in parts. The splits are where the scene is, and the ends are those of the
-/// viewer. A part begins a little before the one in front of it ends: where both are cut at one
-/// plane, rounding leaves pixels that neither of them draws.
-fn slices_of(scene: &Scene, count: u32) -> Vec<(f64, f64)> {
-    let eye = &scene.eye;
-    let (near, far) = seen_range(scene);
-    let mut ends = cascade_splits(near, far, count as usize, SPLIT);
-    if let Some(last) = ends.last_mut() {
-        *last = eye.far;
-    }
-    let starts: Vec<f64> =
-        std::iter::once(eye.near).chain(ends.iter().map(|end| 0.999 * end)).collect();
-    starts.into_iter().zip(ends).collect()
 }
 
 fn no_cascades(pass: &Pass) -> Diagnostic {

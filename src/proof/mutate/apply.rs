@@ -40,9 +40,7 @@ pub fn apply_mutation(
             })
         }
         Edit::NoStore { statement } => {
-            change_statement(&mut function.body, *statement, &mut |found| {
-                *found = Statement::Block(Block::new())
-            })
+            change_statement(&mut function.body, *statement, &mut remove_statement)
         }
         Edit::Argument { statement, result, argument } => {
             let Some(with) = inner(*argument).and_then(|inner| equal_value(&inner, *argument))
@@ -56,6 +54,10 @@ pub fn apply_mutation(
                 })
         }
     }
+}
+
+fn remove_statement(found: &mut Statement) {
+    *found = Statement::Block(Block::new());
 }
 
 /// Only one branch of an `if` remains.

@@ -22,7 +22,6 @@ const LEAVES: i32 = 9;
 
 /// A turned bar with a knob and a point: radii and heights.
 const BAR: &[(f64, f64)] = &[
-    (0.0, 0.0),
     (0.085, 0.0),
     (0.09, 0.01),
     (0.09, 0.6),
@@ -36,9 +35,8 @@ const BAR: &[(f64, f64)] = &[
     (0.0, 1.6),
 ];
 
-/// The pot, from the middle of its foot to that of its soil.
+/// The pot, from its foot to the middle of its soil.
 const POT: &[(f64, f64)] = &[
-    (0.0, 0.0),
     (0.24, 0.0),
     (0.25, 0.01),
     (0.31, 0.38),
