@@ -1,4 +1,5 @@
-//! Published light probes: radiance around ten places as nine spherical harmonics, for `ambient::sh`.
+//! Published light probes: radiance around ten places as nine spherical harmonics, for
+//! `ambient::sh`.
 //!
 //! Made from `data/sh9_probes.toml` by `cargo xtask docs`: edit that file, not this one.
 

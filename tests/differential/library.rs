@@ -155,8 +155,13 @@ fn flag(axis: &str, value: &str) -> String {
     format!("{axis}_is_{value}")
 }
 
+/// The values of a program's flags. The crate has no value for a flag that no axis declares, so the
+/// flags of all programs get the one that the manifest states.
 fn flags(program: &Program, point: &Assignment) -> Flags {
-    let mut flags = Flags::new();
+    let mut flags = match program.space.undeclared {
+        Some(is_on) => declared_anywhere().map(|name| (name, is_on)).collect(),
+        None => Flags::new(),
+    };
     for (index, axis) in program.space.axes().iter().enumerate() {
         let chosen = program.space.value(index, point);
         match chosen {
@@ -169,6 +174,17 @@ fn flags(program: &Program, point: &Assignment) -> Flags {
         }
     }
     flags
+}
+
+/// The names of the flags of all programs.
+fn declared_anywhere() -> impl Iterator<Item = String> {
+    let programs = project::library_manifest().map(|(_, manifest)| manifest.programs);
+    let names = |program: Program| {
+        let flags = program.space.axes().iter();
+        let flags = flags.filter(|axis| matches!(axis.values.first(), Some(Setting::Bool(_))));
+        flags.map(|axis| axis.name.clone()).collect::<Vec<_>>()
+    };
+    programs.unwrap_or_default().into_iter().flat_map(names)
 }
 
 fn constants(settings: &Settings) -> String {
