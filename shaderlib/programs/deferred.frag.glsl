@@ -42,18 +42,6 @@ float open_share() {
     vec2 place = gl_FragCoord.xy / vec2(textureSize(sampler2D(seen_occlusion, open_sampler), 0));
     return textureLod(sampler2D(seen_occlusion, open_sampler), place, 0.0).x;
 }
-
-#if !METALLIC_ROUGHNESS
-/// The squared roughness of the highlight, for how wide it mirrors the surroundings.
-float highlight_alpha(Material material) {
-#if SPECULAR == SPECULAR_GGX
-    return material.roughness * material.roughness;
-#else
-    // The width of the lobe of Blinn and Phong.
-    return sqrt(2.0 / (max(material.shininess, 0.0) + 2.0));
-#endif
-}
-#endif
 #endif
 
 #if LIGHTS != LIGHTS_NONE

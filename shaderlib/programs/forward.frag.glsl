@@ -195,18 +195,6 @@ float open_share() {
     return textureLod(sampler2D(seen_occlusion, open_sampler), place, 0.0).x;
 #endif
 }
-
-#if !METALLIC_ROUGHNESS
-/// The squared roughness of the highlight, for how wide it mirrors the surroundings.
-float highlight_alpha(Material material) {
-#if SPECULAR == SPECULAR_GGX
-    return material.roughness * material.roughness;
-#else
-    // The width of the lobe of Blinn and Phong.
-    return sqrt(2.0 / (max(material.shininess, 0.0) + 2.0));
-#endif
-}
-#endif
 #endif
 
 /// The colour of the surface.

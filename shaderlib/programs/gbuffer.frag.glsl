@@ -7,6 +7,7 @@
 #include "../math/safe.glsl"
 #if METALLIC_ROUGHNESS
 #include "forward/factors.glsl"
+#include "forward/materials.glsl"
 #endif
 #include "../surface/normal.glsl"
 
@@ -40,17 +41,6 @@ layout(set = 2, binding = 7) uniform texture2D metallic_roughness_map;
 #endif
 
 #if METALLIC_ROUGHNESS
-#if TWO_SIDED
-#define MATERIALS 28
-#else
-#define MATERIALS 14
-#endif
-
-/// Materials in one array: pairs of front and back with `two_sided`.
-layout(std140, set = 1, binding = 0) uniform Materials {
-    Material items[MATERIALS];
-} materials;
-
 /// The share of metal and the perceptual roughness, as `forward` has them.
 vec2 metal_and_roughness(uint material) {
     float roughness = materials.items[min(material, uint(MATERIALS - 1))].roughness;

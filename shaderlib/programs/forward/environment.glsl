@@ -128,6 +128,18 @@ Around occluded(Around around, Layered at, float open) {
 }
 #endif
 #elif AMBIENT == AMBIENT_IBL
+#if OCCLUSION != OCCLUSION_NONE
+/// The squared roughness of the highlight, for how wide it mirrors the surroundings.
+float highlight_alpha(Material material) {
+#if SPECULAR == SPECULAR_GGX
+    return material.roughness * material.roughness;
+#else
+    // The width of the lobe of Blinn and Phong.
+    return sqrt(2.0 / (max(material.shininess, 0.0) + 2.0));
+#endif
+}
+#endif
+
 /// The sums with the light of the environment maps.
 Accum add_environment(Accum sum, Surface surface) {
     vec3 diffuse = texture(samplerCube(sky_diffuse, sky_sampler), surface.normal).rgb;

@@ -1,11 +1,12 @@
-//! The materials of `forward`, for the stages that read them.
+//! The materials of `forward`, for the stages that read them. A program without the axis `material`
+//! has an array.
 
 #ifndef LAMPLIGHT_PROGRAMS_FORWARD_MATERIALS_GLSL
 #define LAMPLIGHT_PROGRAMS_FORWARD_MATERIALS_GLSL
 
 #include "../../lighting/material.glsl"
 
-#if MATERIAL == MATERIAL_SINGLE
+#if defined(MATERIAL) && MATERIAL == MATERIAL_SINGLE
 #define MATERIALS 1
 #elif TWO_SIDED
 #define MATERIALS 28
