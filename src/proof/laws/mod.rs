@@ -16,8 +16,8 @@
 //! | `area = "g", along = "r", from = 0, to = "r", within = 1e-6` | the function's value is the integral of `g`, or of a product, along one parameter (see [`Area`]); or `gives`, `at_most` |
 //! | `finite = 1e9` | no value is NaN or infinite for arguments up to that magnitude, whatever they are (see [`finite`]); `where` keeps some of them, `because` says why |
 //!
-//! `albedo`, `inverse`, `equal` and `area` are also about other functions. Those of the same module are given by name,
-//! others by path.
+//! `albedo`, `inverse`, `equal` and `area` are also about other functions. Those of the same module
+//! are given by name, others by path.
 
 mod albedo;
 mod area;
