@@ -5,7 +5,7 @@
 //! for each value: `shadow == vsm` becomes `shadow_is_vsm`.
 
 use lamplight::compose::Mangle;
-use lamplight::permute::{Assignment, Program, Setting, Settings, cover};
+use lamplight::permute::{Assignment, Axis, Program, Setting, Settings, cover};
 use lamplight::project;
 use lamplight::source::{Embedded, Files as _};
 use libtest_mimic::{Failed, Trial};
@@ -176,15 +176,17 @@ fn flags(program: &Program, point: &Assignment) -> Flags {
     flags
 }
 
-/// The names of the flags of all programs.
+/// The names of the flags of all programs, also of those that stand for the values of an axis.
 fn declared_anywhere() -> impl Iterator<Item = String> {
     let programs = project::library_manifest().map(|(_, manifest)| manifest.programs);
-    let names = |program: Program| {
-        let flags = program.space.axes().iter();
-        let flags = flags.filter(|axis| matches!(axis.values.first(), Some(Setting::Bool(_))));
-        flags.map(|axis| axis.name.clone()).collect::<Vec<_>>()
+    let names = |axis: &Axis| match axis.values.first() {
+        Some(Setting::Bool(_)) => vec![axis.name.clone()],
+        _ => axis.values.iter().map(|value| flag(&axis.name, &value.to_string())).collect(),
     };
-    programs.unwrap_or_default().into_iter().flat_map(names)
+    let programs = programs.unwrap_or_default().into_iter();
+    programs.flat_map(move |program| {
+        program.space.axes().iter().flat_map(names).collect::<Vec<String>>()
+    })
 }
 
 fn constants(settings: &Settings) -> String {
