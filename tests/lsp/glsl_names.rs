@@ -268,7 +268,7 @@ fn refused_in(session: &mut Session) -> Outcome {
         ("struct Lamp", "struct Case { float x; };\nstruct Lamp", "x; }", "part of a vector"),
         ("struct Lamp", "#define JOIN(a) a##x\nstruct Lamp", "fade(float(", "with `##`"),
         ("struct Lamp", "#include \"gone.glsl\"\nstruct Lamp", "fade(float(", "`#include` in"),
-        ("struct Lamp", "#if FOG\nstruct Lamp", "fade(float(", "mended first"),
+        ("struct Lamp", "#if FOG\nstruct Lamp", "fade(float(", "fix this first"),
         (
             "    float cone = 1.0;\n#else",
             "    float gain = 1.0;\n#else\n    sum *= gain;",
