@@ -108,10 +108,11 @@ fn glsl_version(name: &str) -> Option<(u32, bool)> {
 fn with_numbers(text: String, name: &str) -> String {
     let has_numbers = glsl_version(name)
         .is_some_and(|(number, is_embedded)| number >= if is_embedded { 310 } else { 420 });
-    match has_numbers {
-        true => text.replace("Numbering::Named", "Numbering::Explicit"),
-        false => text,
-    }
+    let (other, own) = match has_numbers {
+        true => ("Numbering::Named", "Numbering::Explicit"),
+        false => ("Numbering::Explicit", "Numbering::Named"),
+    };
+    text.replace(other, own)
 }
 
 /// What a version lacks, by the table of the first versions that have it.
