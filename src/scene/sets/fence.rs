@@ -6,6 +6,7 @@ use super::floor::tiles;
 use super::palette::{self, AMBER, CHALK, CORAL, LEAF};
 use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
+use crate::scene::turned::{Turn, turned_shape};
 
 /// The scene, for the table of all.
 pub const SET: Set = Set {
@@ -20,47 +21,35 @@ const STEP: f64 = 0.42;
 /// Leaves of the plant.
 const LEAVES: i32 = 9;
 
-/// A turned bar with a knob and a point: radii and heights.
-const BAR: &[(f64, f64)] = &[
-    (0.085, 0.0),
-    (0.09, 0.01),
-    (0.09, 0.6),
-    (0.085, 1.16),
-    (0.085, 1.19),
-    (0.05, 1.21),
-    (0.05, 1.24),
-    (0.1, 1.3),
-    (0.1, 1.36),
-    (0.05, 1.47),
-    (0.0, 1.6),
+/// A turned bar with a knob and a point.
+const BAR: &[Turn] = &[
+    (0.09, 0.0, 0.0),
+    (0.09, 1.16, 0.0),
+    (0.055, 1.19, 0.0),
+    (0.055, 1.24, 0.0),
+    (0.1, 1.33, 0.3),
+    (0.06, 1.45, 0.2),
+    (0.0, 1.6, -0.1),
 ];
 
 /// The pot, from its foot to the middle of its soil.
-const POT: &[(f64, f64)] = &[
-    (0.24, 0.0),
-    (0.25, 0.01),
-    (0.31, 0.38),
-    (0.31, 0.4),
-    (0.35, 0.4),
-    (0.36, 0.41),
-    (0.36, 0.52),
-    (0.35, 0.53),
-    (0.32, 0.53),
-    (SOIL, 0.5),
-    (0.28, 0.48),
-    (0.0, 0.5),
+const POT: &[Turn] = &[
+    (0.24, 0.0, 0.0),
+    (0.31, 0.4, 0.0),
+    (0.345, 0.4, 0.0),
+    (0.36, 0.415, 0.414),
+    (0.36, 0.515, 0.0),
+    (0.345, 0.53, 0.414),
+    (0.32, 0.53, 0.0),
+    (SOIL, 0.48, 0.0),
+    (0.0, 0.5, 0.0),
 ];
 /// The radius of the soil.
 const SOIL: f64 = 0.3;
 
-fn lathed_shape(profile: &[(f64, f64)], quads: (u32, u32)) -> Shape {
-    let points: Vec<DVec2> = profile.iter().map(|(r, h)| DVec2::new(*r, *h)).collect();
-    Shape::lathe(&points, quads)
-}
-
 /// Bars on two rails, along x.
 fn fence_shape() -> Shape {
-    let bar = lathed_shape(BAR, (24, 44));
+    let bar = turned_shape(BAR, 24);
     let bar_at = |index: i32| {
         let x = STEP * (f64::from(index) - 0.5 * f64::from(BARS - 1));
         bar.clone().transformed(DMat4::from_translation(DVec3::X * x))
@@ -101,8 +90,9 @@ fn plant_shape() -> Shape {
 
 /// The pot with its soil.
 fn pot_shape() -> Shape {
-    lathed_shape(POT, (40, 48)).map(|vertex| {
-        let is_soil = vertex.position.y > 0.4 && vertex.position.x.hypot(vertex.position.z) < SOIL;
+    turned_shape(POT, 40).map(|vertex| {
+        let radius = vertex.position.x.hypot(vertex.position.z);
+        let is_soil = vertex.normal.y > 0.5 && radius < SOIL + 1e-6 && vertex.position.y > 0.4;
         vertex.color = if is_soil { DVec3::new(0.12, 0.08, 0.05) } else { CORAL };
     })
 }
