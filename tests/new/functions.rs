@@ -188,7 +188,7 @@ pub fn reason() -> Outcome {
     let made = text(&files, path)?;
     let old = std::fs::read_to_string(root().join(path))?;
     let line = format!("/// Reason: {why}\n");
-    if !made.contains(&format!("\n{line}fn wrap(")) || made.replace(&line, "") != old {
+    if !made.contains(&format!("{line}fn wrap(")) || made.replace(&line, "") != old {
         return Err(format!("{path} should only gain a reason for `wrap`:\n{made}").into());
     }
     for (name, rest, expected) in [

@@ -13,8 +13,8 @@ use naga::back::hlsl::{
 };
 
 use crate::bundle::{HeapSampler, Kind, Native, Place, SamplerHeap, Semantic, Target};
-use crate::emit::reflect::{binding_kind, entry_inputs};
 use crate::emit::names::first_entry_name;
+use crate::emit::reflect::{binding_kind, entry_inputs};
 use crate::emit::slots::{Numbering, assign_slots, native_reflection};
 use crate::emit::text::Text;
 use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip, setters, zeros};

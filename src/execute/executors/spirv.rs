@@ -12,9 +12,7 @@ pub const EXECUTOR: Entry = Entry {
     needs: &["mesa-vulkan-drivers", "libvulkan1"],
     before_threads: None,
     samples: None,
-    open: || {
-        super::open_vulkan(Named::Without(swiftshader::NAME), Shaders::Emitted(Target::SPIRV))
-    },
+    open: || super::open_vulkan(Named::Without(swiftshader::NAME), Shaders::Emitted(Target::SPIRV)),
     shipping: Some(Shipping {
         target: Target::SPIRV,
         // lavapipe crashes where a stage has four uniform blocks.
