@@ -66,7 +66,7 @@ pub fn steps_taken() -> u64 {
     TAKEN.get()
 }
 
-/// Counts steps of a loop that has a bound of another kind, such as on what it gives.
+/// Counts steps of a loop that has a bound of another kind, such as one on its output.
 pub fn count_steps(steps: u64) {
     TAKEN.set(TAKEN.get().wrapping_add(steps));
 }

@@ -1,8 +1,9 @@
-//! The rule of Gauss and Legendre, which laws, scenes and tables integrate with.
+//! Gauss-Legendre quadrature, with which laws, scenes and tables integrate.
 
 use std::f64::consts::PI;
 
-/// Nodes and weights on [-1, 1]: the zeros of Legendre's polynomial, found by Newton's method.
+/// The nodes and weights of the rule on [-1, 1]. The nodes are the zeros of the Legendre
+/// polynomial, found by Newton's method.
 pub fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
     let node = |index: usize| {
         let mut x = (PI * (index as f64 + 0.75) / (count as f64 + 0.5)).cos();
@@ -16,7 +17,7 @@ pub fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
     (0..count).map(node).collect()
 }
 
-/// Legendre's polynomial of a degree and its derivative, by the three-term recurrence.
+/// The Legendre polynomial of a degree at `x`, and its derivative, by the three-term recurrence.
 fn legendre(degree: usize, x: f64) -> (f64, f64) {
     let (mut before, mut value) = (1.0, x);
     for n in 2..=degree {

@@ -45,7 +45,8 @@ pub type Runner = fn(stage: &str, job: &[u8]) -> Result<(), Exhausted>;
 /// The result of each job, by the hash of its stage and bytes.
 type Known = BTreeMap<[u8; 32], Result<(), Exhausted>>;
 
-/// How many jobs are remembered, since one error is found several times on its way to its author.
+/// How many results are remembered. One job may be rehearsed several times before its error is
+/// reported.
 const REMEMBERED: usize = 1024;
 
 static RUNNER: OnceLock<Runner> = OnceLock::new();

@@ -39,7 +39,8 @@ struct Palette { values: array<vec4f, 3>, count: u32 }
 
 const MANIFEST: &str = "[program.one]\nwesl = \"one.wesl\"\n";
 
-/// The signs of the checks of arrays, texture loads and loops in an output.
+/// Text by which a target's output shows that array indices, texture loads and loops are checked.
+/// `None` where naga's writer has no such check.
 struct Signs {
     target: Target,
     array: Option<&'static str>,
@@ -47,9 +48,9 @@ struct Signs {
     round: Option<&'static str>,
 }
 
-/// What naga's writers have. WebGPU's implementations check by themselves, D3D defines loads beyond
-/// a texture, and OpenGL's drivers are asked for robust access. GLSL 3.30 and GLSL ES 3.00 cannot ask
-/// for the number of a texture's levels.
+/// The checks of naga's writers. WebGPU's implementations check by themselves, D3D defines loads
+/// beyond a texture, and OpenGL's drivers are asked for robust access. GLSL 3.30 and GLSL ES 3.00
+/// cannot ask for the number of a texture's levels.
 const SIGNS: [Signs; 6] = [
     Signs {
         target: Target::MSL,
@@ -99,7 +100,7 @@ fn checks_by_target() -> Outcome {
     }
     let [unchecked, restrict] =
         ["unchecked", "restrict"].map(|out| output(&package, out, Target::SPIRV));
-    // Two indices and two coordinates.
+    // Two array indices and the two coordinates of the texture load are clamped.
     let (without, with) = (minima(&unchecked?), minima(&restrict?));
     match (without, with) {
         (0, 4..) => Ok(()),
@@ -118,8 +119,8 @@ fn minima(bytes: &[u8]) -> usize {
     instructions(&words).filter(is_minimum).count()
 }
 
-/// The option goes before the manifest, the cache keeps the two apart, and `compile` gives what
-/// `gen` gives.
+/// The option overrides the manifest, the cache does not mix up outputs with checks and without,
+/// and `compile` gives what `gen` gives.
 fn checks_are_those_of_the_manifest() -> Outcome {
     let package = Package::new(&format!("{MANIFEST}bounds = \"restrict\"\n"), SHADER)?;
     let runs: [(&[&str], bool); 4] = [

@@ -62,8 +62,8 @@ fn pages() -> Outcome {
     Ok(())
 }
 
-/// A page draws and notices what is in view while other pages are open. Behind them it would wait
-/// for ever.
+/// A page gets animation frames and notices what is in view while other pages are open. A page that
+/// the browser takes for hidden would wait for them for ever.
 fn nothing_is_hidden() -> Outcome {
     let server = served(&[("index.html", "<!doctype html><link rel=icon href=data:,><p>text")])?;
     let browser = Browser::shared()?;

@@ -157,7 +157,8 @@ fn presets() -> Result<Vec<preset::Preset>, Failed> {
         .map_err(|problems| render(&sources, &problems, Form::Human).into())
 }
 
-/// There are presets enough, and each is described. Reading them already checks their programs, keys, scenes and probes.
+/// There are presets enough, and each is described. Reading them already checks their programs,
+/// keys, scenes and probes.
 fn presets_ship() -> Result<(), Failed> {
     let presets = presets()?;
     let count = presets.len();

@@ -44,8 +44,9 @@ pub fn trials() -> Vec<Trial> {
     trials
 }
 
-/// `settings.txt`: `set NAME = VALUE`, `constant NAME = LITERAL`, `enum NAME = A, B`, `integer NAME`, `keep all|A,B`,
-/// `mangle underscore`, `root FILE`, `reads`, `unparsed` (naga need not accept the text).
+/// `settings.txt`: `set NAME = VALUE`, `constant NAME = LITERAL`, `enum NAME = A, B`, `integer
+/// NAME`, `keep all|A,B`, `mangle underscore`, `root FILE`, `reads`, `unparsed` (naga need not
+/// accept the text).
 #[derive(Default)]
 struct Case {
     settings: Settings,

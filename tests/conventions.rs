@@ -109,8 +109,8 @@ fn clip_spaces() -> Outcome {
     Ok(())
 }
 
-/// The option `--clip` goes before the manifest's clip space. The cache keeps the two apart, and
-/// both forms of a bundle say which clip space they have.
+/// The option `--clip` overrides the manifest's clip space. The cache does not mix up the outputs
+/// of the two, and both forms of a bundle say which clip space they have.
 fn clip_in_manifest_and_cache() -> Outcome {
     let package = Package::new(&format!("{MANIFEST}clip = \"native\"\n"), SHADER)?;
     let is_converted = |out: &str| -> Result<bool, Failed> {

@@ -1,10 +1,12 @@
-//! The white furnace of the whole of `forward` with `metallic_roughness`: what a white surface gives
-//! back of light of radiance 1 from everywhere. It is 1 where no light is lost or made.
+//! The white furnace test of the whole program `forward` with `metallic_roughness`: the radiance
+//! that a white surface reflects under light of radiance 1 from all directions. It is 1 if no
+//! energy is lost or gained.
 //!
 //! The evaluator runs the fragment stage once for each direction of the light. The directions are
 //! those of several strategies, weighted by the balance heuristic (Veach, *Robust Monte Carlo
-//! Methods for Light Transport Simulation*, 1997, chapter 9), at points of a lattice. `docs/energy.md`
-//! has all results. The trial computes some of them again, and all with `UPDATE_EXPECT=1`.
+//! Methods for Light Transport Simulation*, 1997, chapter 9), at points of a lattice.
+//! `docs/energy.md` has all results. The trial computes some of them again, and all with
+//! `UPDATE_EXPECT=1`.
 
 mod page;
 
@@ -35,8 +37,8 @@ const ROUGHNESS: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
 /// Angles of the viewer to the normal, degrees.
 const ANGLES: [f64; 3] = [0.0, 60.0, 80.0];
 
-/// Layers over a white base: the axes, what is said about their factors, and the factors for a
-/// roughness.
+/// Layers over a white base: the axes, the page's words about their factors, and the factors for a
+/// roughness of the base.
 struct Case {
     axes: &'static str,
     about: &'static str,
@@ -98,7 +100,7 @@ const CASES: [Case; 8] = [
 /// A place in the tables: the case, whether the base is a metal, the roughness, the angle.
 type Place = (usize, bool, usize, usize);
 
-/// What a white surface gives back: of the light of lamps, and of ambient light.
+/// The radiance that a white surface reflects: under lamps, and under ambient light.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cell {
     lamps: f64,
@@ -205,7 +207,8 @@ impl Surface {
         DVec3::new(sin, 0.0, cos)
     }
 
-    /// The light of lamps of radiance 1 over all directions.
+    /// The reflected radiance if lamps give radiance 1 from all directions, by Monte Carlo
+    /// integration.
     fn lit_by_lamps(&self, furnace: &Furnace) -> Result<f64, String> {
         let mut run = furnace.run(&|path| self.number(path, true))?;
         let ways = self.strategies();
@@ -221,7 +224,7 @@ impl Surface {
         Ok(sum)
     }
 
-    /// The ambient light of colour 1.
+    /// The reflected radiance under ambient light of colour 1.
     fn lit_by_ambient(&self, furnace: &Furnace) -> Result<f64, String> {
         let mut run = furnace.run(&|path| self.number(path, false))?;
         run.shade(self.view(), DVec3::Z)
@@ -263,7 +266,7 @@ impl Surface {
     }
 }
 
-/// Directions of the light: of one strategy, and there are as many of each.
+/// How many directions of the light are sampled by each strategy.
 const SAMPLES: usize = 1536;
 
 /// Points of the plane that are spread evenly (Roberts, "The Unreasonable Effectiveness of
@@ -273,10 +276,11 @@ fn lattice_point(index: usize) -> DVec2 {
     DVec2::new(at(0.754_877_666_246_692_7), at(0.569_840_290_998_053_2))
 }
 
-/// How directions are chosen: on the viewer's side (1) or on the other one (-1).
+/// A sampling strategy for directions of the light. The last field is 1 for the viewer's side of
+/// the surface, and -1 for the other side.
 enum Way {
     Cosine(f64),
-    /// Mirrored by facets of this alpha.
+    /// The view direction, reflected at GGX microfacet normals of this alpha.
     Facets(f64, f64),
 }
 
@@ -299,7 +303,7 @@ impl Way {
         (l.z > 0.0).then_some(DVec3::new(l.x, l.y, l.z * side))
     }
 
-    /// Per steradian.
+    /// The probability density of sampling a direction, per steradian.
     fn density(&self, view: DVec3, l: DVec3) -> f64 {
         let (Self::Cosine(side) | Self::Facets(_, side)) = self;
         if l.z * side <= 0.0 {

@@ -1,7 +1,7 @@
 //! Draws permutations of `forward`, and of programs that are drawn over the screen, on each driver,
 //! and computes a sample of the fragments again with the evaluator. Trials named `shipped` draw the
-//! WGSL of a bundle, which was linked from functions of many permutations, and compute from the
-//! composed text.
+//! WGSL of a bundle, which was linked from functions of many permutations. Their fragments too are
+//! computed from the composed text.
 
 mod given;
 mod shipped;
@@ -40,8 +40,9 @@ const HEIGHT: u32 = 64;
 const STEP: usize = 29;
 /// The least number of fragments of a permutation that must be compared.
 const LEAST: usize = 200;
-/// The largest share of a permutation's fragments that may be open (see [`crate::fragments`]). What
-/// was in textures has wider bounds, so that more comparisons are within them.
+/// The largest share of a permutation's fragments that may be open (see [`crate::fragments`]).
+/// Values from textures have wider error bounds, so `deferred`, which reads its surface from
+/// textures, has more open fragments.
 pub fn most_open(program: &str) -> f64 {
     if program == "deferred" { 0.03 } else { 0.01 }
 }

@@ -39,6 +39,7 @@ pub fn trials() -> Vec<Trial> {
         }),
         Trial::test("keys::lock_is_up_to_date", up_to_date),
         Trial::test("keys::growth_changes_no_key", growth),
+        Trial::test("keys::incomplete_lock_gives_no_numbers", incomplete),
     ]
 }
 
@@ -115,6 +116,24 @@ const NEWER: &str = "[program.p]\nwesl = \"a.wesl\"\n[program.p.axis]\n\
     lamp = { values = [\"sky\", \"none\", \"spot\", \"area\", \"point\"], default = \"spot\" }\n\
     lit = { values = [true, false] }\ncount = { values = [1, 4, 10] }\n\
     moving = { values = [\"on\", \"off\"], mode = \"dynamic\" }\n";
+
+/// With a lock file that lacks a value, here `count=10`, two keys would have the same number. So
+/// the written keys have no numbers.
+fn incomplete() -> Outcome {
+    let mut sources = SourceSet::default();
+    let id = sources.add("lamplight.lock", OLDER_LOCK);
+    let older =
+        lock::parse(&sources, id).map_err(|problems| render(&sources, &problems, Form::Human))?;
+    let newer = parsed(NEWER)?;
+    for name in ["rust", "c", "ts"] {
+        let language = keys::find(name).ok_or("no such language")?;
+        let with = |lock: Option<&Lock>| keys::write(&newer, lock, language);
+        if with(Some(&older)) != with(None) || with(Some(&extended(&older, &newer))) == with(None) {
+            return Err(format!("{name}: only a complete lock should give numbers").into());
+        }
+    }
+    Ok(())
+}
 
 /// The keys of a language agree with `permute`, for the library and for a manifest that has changed
 /// since its lock file was begun.

@@ -225,7 +225,7 @@ fn judge_all(out: &Path) -> Outcome {
     }
 }
 
-/// A fragment shader with more declarations and statements.
+/// A fragment shader with the declarations `more` and the statements `body`.
 fn fragment(more: &str, body: &str) -> String {
     format!(
         "@group(0) @binding(0) var map: texture_2d<f32>; @group(0) @binding(1) var smp: sampler;
@@ -300,7 +300,9 @@ fn reasons() -> Outcome {
             return Err(format!("`{more} {body}` should be linked, found {reasons:?}").into());
         }
     }
-    for (more, body, reason) in WHOLE {
+    let many: String = (0..2050).map(|index| format!("const C{index} = 1;\n")).collect();
+    let many = (many.as_str(), "let d = C0;", Reason::Large);
+    for (more, body, reason) in WHOLE.iter().chain([&many]) {
         // Only these targets are asked for, since not every target has storage buffers.
         let targets = "targets = [\"spirv\", \"wgsl\"]";
         let reasons = reasons_of(&fragment(more, body), targets)?;

@@ -44,9 +44,9 @@ const RUN: u64 = 2;
 const BATCH: u64 = 64;
 /// How many percent of the programs the crate may refuse. The generator does not know every rule.
 const REFUSED: usize = 10;
-/// How many stages, in percent of the programs, may be drawn differently on a driver and be right with
-/// other numbers of ids, or may have an unused function that naga refuses. Of both kinds, there is
-/// about one in several thousand programs.
+/// How many cases are excused at most, in percent of the programs: stages that a driver draws wrong
+/// until their ids are renumbered, and programs with an unused function that naga refuses. Each
+/// kind occurs about once in several thousand programs.
 const EXCUSED: usize = 1;
 
 pub fn trials() -> Vec<Trial> {
@@ -271,7 +271,7 @@ fn refusal(output: &Output, words: &str) -> Finding {
     Finding::new(kind, format!("{words}\n{text}"))
 }
 
-/// The start of an error, without the place and the names in it.
+/// The start of an error, without its place and without digits, which differ between programs.
 fn first_words(words: &str) -> String {
     let line = words.lines().next().unwrap_or_default();
     let message = line.split_once("error").map_or(line, |(_, message)| message);

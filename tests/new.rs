@@ -146,8 +146,8 @@ fn target_version() -> Outcome {
     Ok(())
 }
 
-/// An executor without wgpu has a session, with what a kernel is and what is expected of it. The
-/// file for a device of wgpu explains what may be wanted of the device.
+/// The file of an executor without wgpu has a session with all of its functions. The file of an
+/// executor for a device of wgpu names the choices of devices and of shaders.
 fn own_executor() -> Outcome {
     let path = "src/execute/executors/fresh.rs";
     for (rest, parts) in [
@@ -208,7 +208,8 @@ fn scene() -> Outcome {
     }
 }
 
-/// An interface that only some systems have is for these systems, and is a feature of wgpu.
+/// If only some systems have the graphics API of a new executor, the executor is built for these
+/// systems only, and wgpu's feature for the API is turned on.
 fn interface() -> Outcome {
     let folder = tempfile::tempdir()?;
     let wgpu = "[dependencies]\nwgpu = { version = \"30\", features = [\"std\", \"gles\"] }\n";

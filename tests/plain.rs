@@ -39,7 +39,8 @@ const GPU: &str = "navi21";
 const SHARE: f64 = 0.1;
 /// ... or so many instructions, whichever is more.
 const INSTRUCTIONS: i64 = 2;
-/// How far two values of one formula may be from each other: the plain text may cancel.
+/// How far two values of one formula may be from each other: the plain text may lose digits by
+/// cancellation.
 const TOLERANCE: f64 = 2e-4;
 
 fn folder() -> PathBuf {
@@ -176,8 +177,8 @@ fn arguments_of(item: &Item) -> Result<String, Failed> {
 }
 
 /// The plain formula and the library have the same value inside the domain. Functions that sample
-/// textures are left out, which no expression can name: their plain texts differ from the library's
-/// in the functions that they call, and in the tests of places off the map.
+/// textures are left out, since no expression can name a texture: their plain texts differ from the
+/// library's in the functions that they call, and in the tests of places off the map.
 fn agree() -> Outcome {
     let plain = plain_functions()?;
     let samples = |item: &Item| item.members.iter().any(|member| member.ty.contains("texture"));

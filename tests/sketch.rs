@@ -65,8 +65,9 @@ fn middle(picture: &Picture) -> [u8; 3] {
     [0, 1, 2].map(|channel| picture.pixels[at + channel])
 }
 
-/// The stage gets the normal of the model, which looks at the viewer in the middle of each model but
-/// the plane and the hole of the torus. A chosen source replaces the one that the name suggests.
+/// The stage gets the normal of the model. In the middle of the picture it points to the viewer,
+/// except on the plane, and on the torus, which has its hole there. A chosen source replaces the
+/// one that the name suggests.
 fn inputs() -> Outcome {
     const TEXT: &str = "@fragment fn fs_main(@location(0) world_normal: vec3f, @location(3) k: f32)
         -> @location(0) vec4f { return vec4f(normalize(world_normal), k); }";
@@ -109,8 +110,9 @@ fn uniforms() -> Outcome {
     Ok(())
 }
 
-/// The loops of a stage make 4,096 trips in all: 2,048 of 8,192 in the first, and the rest in the
-/// second, which never ends by itself. With a derivative, each call counts by itself.
+/// The loops of a stage make at most 4,096 trips in all. Here the first call makes 2,048, and the
+/// second, which would hardly end by itself, makes the rest. If the stage has a derivative, the
+/// trips of each call are limited separately.
 fn loops_end() -> Outcome {
     let text = |ends: &str| {
         format!(

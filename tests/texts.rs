@@ -36,7 +36,7 @@ fn words_are_whole() -> Outcome {
     Ok(())
 }
 
-/// The same rule, in whole lines.
+/// A second implementation of the same rule, which works line by line. The results must be equal.
 fn line_by_line(text: &str) -> String {
     let (mut plain, mut rest) = (String::new(), text);
     while let Some((before, comment)) = rest.split_once('/') {

@@ -24,7 +24,7 @@ use lamplight::{catalogue, lint};
 use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
 
-/// About as many permutations of each program are compared at most; every second one in GLSL.
+/// At most this many permutations of each program are compared, every second one in GLSL.
 const PERMUTATIONS: usize = 300;
 
 pub fn trials() -> Vec<Trial> {

@@ -1,5 +1,5 @@
-//! What Lamplight makes of a migrated root, and what of a module is the same in that of another
-//! composer. The trials of `lamplight migrate` use this file too.
+//! Composes a migrated root with Lamplight, and normalises modules so that those of two composers
+//! can be compared. The trials of `lamplight migrate` use this file too.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
@@ -9,7 +9,7 @@ use lamplight::permute::{Setting, Settings};
 use lamplight::resolve::{self, Packages};
 use lamplight::source::{Memory, Package, SourceSet};
 
-/// Values of shader defs that texts name: any will do.
+/// The value of every shader def whose value a text reads. Any number will do.
 pub const VALUE: u32 = 4;
 
 pub fn packages(migrated: &Migrated) -> Packages {
@@ -144,14 +144,14 @@ pub fn prefixes(migrated: &Migrated) -> Vec<String> {
     prefixes
 }
 
-/// A short word for what a root is for a choice of shader defs, to record it.
+/// A hash of a normalised root, to record what a choice of shader defs makes of it.
 pub fn fingerprint(found: &BTreeSet<String>) -> String {
     let text: Vec<&str> = found.iter().map(String::as_str).collect();
     let mix = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
     format!("{:016x}", text.join("\n").bytes().fold(0xcbf2_9ce4_8422_2325, mix))
 }
 
-/// Each way in which features can be on and off.
+/// Every combination of features that are on and off.
 pub fn choices(migrated: &Migrated) -> Vec<BTreeMap<String, bool>> {
     let names: Vec<&String> = migrated.features.iter().collect();
     let one = |choice: u32| {

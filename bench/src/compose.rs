@@ -139,8 +139,8 @@ fn told(diagnostics: Diagnostics) -> String {
     format!("{diagnostics:?}")
 }
 
-/// How often all texts are composed. One time takes some 30 ms, which differs by half from run to run;
-/// the mean is told. The other tools take seconds.
+/// How often all texts are composed. One pass takes some 30 ms, which differs by half from run to
+/// run, so the mean is reported. The other tools take seconds.
 const RUNS: u32 = 20;
 
 fn compose(graphs: &[Graph]) -> Result<Timed<Vec<String>>, String> {

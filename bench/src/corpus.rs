@@ -100,8 +100,8 @@ pub fn lines(dialect: Dialect) -> usize {
     (0..MODULES).map(|index| module(index, dialect).lines().count()).sum()
 }
 
-/// A function of another module. Where a flag chooses between two functions, it has another name
-/// here.
+/// A function of another module. Where a flag chooses between two functions, the import has an
+/// alias.
 struct Import {
     module: usize,
     function: usize,
@@ -126,7 +126,7 @@ fn part(module: usize) -> usize {
     module / UNITS % PARTS
 }
 
-/// Modules of the layers just below. One of four is from another part.
+/// The imports of a module: from the two layers below it, one of four from any part.
 fn imports(module: usize, random: &mut Random) -> Vec<Import> {
     let below = |random: &mut Random| {
         let layer = layer(module) - 1 - random.below(layer(module).min(2));

@@ -18,7 +18,8 @@ const MODULE: &str = "brdf/specular.wesl";
 const FUNCTION: &str = "blinn_phong";
 const CALLS: u32 = 1_000_000;
 
-/// Prints every kind of number; the last line is that of `f64`.
+/// Prints the rate with each type of number that the evaluator can compute with. The last line is
+/// that of `f64`.
 pub fn run() -> Outcome {
     let program = program()?;
     println!("f32: {:.0} calls/s", rate(&mut Machine::<f32>::new(&program)?)?);

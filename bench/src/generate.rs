@@ -30,10 +30,10 @@ const PROGRAM: &str = "forward";
 
 const LANGUAGES: [Language; 2] = [Language::Wesl, Language::Glsl];
 
-/// The most repetitions of a run of ours and one of the loop. The best of each counts.
+/// How often our run and the plain loop are repeated at most. The best time of each counts.
 const ROUNDS: usize = 3;
 
-/// How many shaders a tool gets that must be started once for each.
+/// How many shaders are compiled with a tool that must be started once for each.
 const SAMPLE: usize = 40;
 
 /// Prints every figure; the last line is the rate and the ratio.

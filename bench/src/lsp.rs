@@ -1,4 +1,5 @@
-//! The language server: a keystroke in a large package, from the editor's change to what is wrong.
+//! The language server in a large package: the time from an edit to its diagnostics, and from a
+//! request to its answer.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -47,11 +48,11 @@ pub fn run() -> Outcome {
     Ok(fs::remove_dir_all(&folder)?)
 }
 
-/// From a keystroke to what is wrong.
+/// Times edits: from a keystroke to its diagnostics.
 fn time_keystrokes(server: &mut Server, uri: &str, text: &str) -> Outcome {
     let mut times = Vec::new();
     for stroke in 0..KEYSTROKES {
-        // A letter more in a comment, in a name, and gone again.
+        // Up to seven letters are added to a comment, a name or a use of it.
         let place = ["// Sum", "var sum", "return sum"][stroke % 3];
         let text = text.replacen(place, &format!("{place}{}", &"abcdefgh"[..stroke % 8]), 1);
         times.push(server.change(uri, stroke, &text)?);
@@ -60,7 +61,7 @@ fn time_keystrokes(server: &mut Server, uri: &str, text: &str) -> Outcome {
     Ok(())
 }
 
-/// From a question about a name to the answer, each after an edit.
+/// Times requests about a name, each after an edit.
 fn time_answers(
     server: &mut Server,
     uri: &str,
@@ -93,7 +94,8 @@ fn module(index: usize) -> String {
     format!("part_{}/module_{index}.wesl", index % FOLDERS)
 }
 
-/// A package whose modules import those before them, with blocks under conditions; its lines.
+/// Writes a package whose modules import those before them, with blocks under conditions. Returns
+/// its number of lines.
 fn write(folder: &Path) -> Result<usize, Box<dyn std::error::Error>> {
     let mut manifest = "[package]\nedition = \"2026_pre\"\nroot = \".\"\n\n[features]\n".to_owned();
     (0..FEATURES)
@@ -184,7 +186,7 @@ impl Server {
         self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": parameters }))
     }
 
-    /// Until what is wrong with a changed text is told.
+    /// Sends a changed text; returns the time until its diagnostics are published.
     fn change(
         &mut self,
         uri: &str,
@@ -201,14 +203,14 @@ impl Server {
         self.told()
     }
 
-    /// Until what is wrong is told.
+    /// The time until diagnostics are published.
     fn told(&mut self) -> Result<Duration, Box<dyn std::error::Error>> {
         let start = Instant::now();
         while self.receive()?["method"] != "textDocument/publishDiagnostics" {}
         Ok(start.elapsed())
     }
 
-    /// Until the answer is here.
+    /// Sends a request; returns the time until its answer.
     fn ask(
         &mut self,
         method: &str,
@@ -239,7 +241,7 @@ impl Server {
         Ok(serde_json::from_slice(&bytes)?)
     }
 
-    /// Kilobytes that the process has taken at most.
+    /// The peak memory of the process in kilobytes.
     fn memory(&self) -> Result<u64, Box<dyn std::error::Error>> {
         let status = fs::read_to_string(format!("/proc/{}/status", self.child.id()))?;
         let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).ok_or("no VmHWM")?;

@@ -18,7 +18,7 @@ use naga_oil::compose::{
 use crate::Outcome;
 use crate::alike::{VALUE, choices, fingerprint, normalised, ours, packages, prefixes, validator};
 
-/// Random choices of shader defs for each root, beside none of them.
+/// Random choices of shader defs for each root, besides the choice that turns none on.
 const CHOICES: usize = 24;
 
 /// Prints how many files are migrated, composed, and the same.
@@ -72,11 +72,11 @@ struct Counts {
     whole: usize,
     /// Roots that `naga_oil` composes for no choice.
     unknown: usize,
-    /// Choices with the same module.
+    /// Choices for which both composers make the same module.
     same: usize,
-    /// Choices with another module.
+    /// Choices for which the modules differ.
     other: usize,
-    /// Choices that are composed from the original alone.
+    /// Choices that only `naga_oil` composes, from the original.
     failed: usize,
     /// Choices that `naga_oil` or naga refuses in the original.
     refused: usize,
@@ -114,7 +114,8 @@ fn has_entry(text: &str) -> bool {
     ["@vertex", "@fragment", "@compute"].iter().any(|entry| text.contains(entry))
 }
 
-/// A choice of shader defs: none, those of the file, or any.
+/// The shader defs of a choice. Choice 0 turns none on; others turn on random ones, odd choices
+/// only ones that the text names.
 fn defs(migrated: &Migrated, text: &str, choice: usize) -> BTreeMap<String, bool> {
     let mut state = (choice as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ text.len() as u64;
     let mut random = move |bound: u64| {
@@ -167,7 +168,8 @@ fn is_module(text: &str) -> bool {
     text.contains("#define_import_path")
 }
 
-/// All modules, each once those that it imports are there.
+/// A composer of `naga_oil` with all modules. Each is added once those that it imports have been
+/// added.
 fn modules(files: &BTreeMap<String, String>) -> Composer {
     let mut composer = Composer::non_validating();
     composer.capabilities = naga::valid::Capabilities::all();

@@ -24,8 +24,8 @@ use corpus::{FEATURES, FILES, PACKAGES, ROOTS, Style};
 /// Permutations of each root.
 const PERMUTATIONS: usize = 4;
 
-/// How often our texts are composed. One time takes a few milliseconds, which differs by half from
-/// run to run; the mean is told. `wesl` takes about a second.
+/// How often our texts are composed. One pass takes a few milliseconds, which differs by half from
+/// run to run, so the mean is reported. `wesl` takes about a second.
 const RUNS: u32 = 20;
 
 /// Prints how often each tool composes the roots in a second.
@@ -54,8 +54,8 @@ pub fn run() -> Outcome {
     Ok(())
 }
 
-/// What naga reads in a text, in any order. `wesl` keeps the braces of blocks in functions, which
-/// then are blocks of WGSL.
+/// The declarations that naga reads in a text, in any order. `wesl` keeps the braces of blocks in
+/// functions, which then are blocks of WGSL.
 fn declarations(text: &str) -> Result<std::collections::BTreeSet<String>, String> {
     let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
     let flat = |declaration: String| {

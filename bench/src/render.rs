@@ -1,4 +1,5 @@
-//! Pictures: how long each preset takes at 512 x 512 pixels, and the goal that it should stay under.
+//! Pictures: how long each preset takes at 512 x 512 pixels, and the goal that it should stay
+//! under.
 
 use std::error::Error;
 use std::time::{Duration, Instant};

@@ -76,7 +76,7 @@ fn words(problems: &[Diagnostic]) -> String {
     problems.iter().map(|problem| problem.message.clone()).collect::<Vec<_>>().join("\n")
 }
 
-/// The median time of a task, which runs once before.
+/// The median time of a task, after one run to warm up.
 fn median(run: impl FnMut(usize) -> Result<(), Diagnostics>) -> Result<Duration, Diagnostics> {
     median_of(COUNT, run)
 }
@@ -124,7 +124,7 @@ fn keystroke() -> Result<Duration, Diagnostics> {
     let text = text.replace("import package::", "import lamplight::");
     let manifest = Embedded.read(MANIFEST).ok().flatten().ok_or_else(Diagnostics::new)?;
     let linker = Linker::with(&[Target::WGSL], Conventions::default());
-    // As the page keeps them: a manifest that has not changed, and parsed texts.
+    // The parsed manifest and the parsed texts are kept, as the page keeps them.
     let mut read = SourceSet::default();
     let id = read.add(MANIFEST, manifest);
     let manifest = manifest::parse(&read, id)?;
@@ -175,7 +175,7 @@ fn evaluating() -> Result<Duration, Diagnostics> {
     })
 }
 
-/// The keys of permutations that nothing was drawn with before, as the page has them.
+/// Keys of permutations that were not drawn before: the same keys as on the page.
 fn new_keys() -> Vec<String> {
     let diffuse = ["half_lambert", "wrap", "oren_nayar"];
     let specular = ["phong", "blinn_phong_normalized", "ggx"];
@@ -183,8 +183,8 @@ fn new_keys() -> Vec<String> {
     diffuse.iter().flat_map(|d| specular.iter().map(move |s| key(d, s))).collect()
 }
 
-/// From a key to the picture, which Vulkan draws. With as many keys as there are turns, each
-/// permutation is drawn for the first time.
+/// From a key to the picture, which Vulkan draws. With as many keys as runs, each permutation is
+/// drawn for the first time.
 fn switched_axis(count: usize, keys: &[String]) -> Result<Duration, Diagnostics> {
     let programs = Programs::load().map_err(|(_, problems)| problems)?;
     let shot = Shot {
@@ -197,7 +197,7 @@ fn switched_axis(count: usize, keys: &[String]) -> Result<Duration, Diagnostics>
     };
     let painter = executors::vulkan::EXECUTOR.start().map_err(|_| Diagnostics::new())?;
     median_of(count, |index| {
-        // The turn before the others draws the default.
+        // The run that warms up draws the default.
         let key = if index == count { "" } else { &keys[index % keys.len()] };
         let plan = Plan::of_key(&programs, "forward", key)?;
         picture::render_plan(painter.as_ref(), &programs, &plan, &shot).map(drop)

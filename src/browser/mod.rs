@@ -22,7 +22,7 @@ pub use page::{Page, Screenshot};
 use process::Process;
 use wire::Wire;
 
-/// The Debian package.
+/// The Debian package that has the browser.
 pub const PACKAGE: &str = "chromium";
 
 /// The longest wait for something that a browser does at once.
@@ -31,9 +31,9 @@ pub const PATIENCE: Duration = Duration::from_secs(30);
 /// What can go wrong with a browser or a page of it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Problem {
-    /// There is none, or it does not start.
+    /// The browser is not installed, or does not start.
     Missing(String),
-    /// It has ended; with its last words.
+    /// The browser has ended; with its last output.
     Gone(String),
     /// The page's process has ended.
     Crashed,
@@ -141,7 +141,7 @@ impl Browser {
         self.call(None, method, parameters, PATIENCE)
     }
 
-    /// Ends it at once, whatever it is doing.
+    /// Ends the browser at once, whatever it is doing.
     fn kill(&self) {
         self.wire.close();
         self.process.terminate();

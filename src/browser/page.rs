@@ -157,7 +157,7 @@ impl Page {
 
 impl Drop for Page {
     fn drop(&mut self) {
-        // A page that hangs is closed too, so nobody waits for the answer.
+        // The answer is hardly waited for, since a page that hangs must be closed too.
         let parameters = json!({ "targetId": self.target });
         let _ = self.browser.call(None, "Target.closeTarget", parameters, LOOK);
     }

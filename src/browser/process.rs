@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 
 use super::{PACKAGE, Problem};
 
-/// How long it may take to end after the pipes are closed. Then it is killed.
+/// How long the browser may take to end after the pipes are closed, before it is killed.
 const END: Duration = Duration::from_secs(5);
-/// How many bytes of its last output are kept.
+/// How many bytes of the browser's last output are kept.
 const WORDS: usize = 4 << 10;
 
 /// No profile of the user's, no windows, no network of its own, and a GPU that is emulated: the
@@ -92,7 +92,7 @@ impl Process {
         Ok((Self { shell, words }, stdin, stdout))
     }
 
-    /// Its last output, without messages that it always prints.
+    /// The last lines that the browser printed, without messages that it always prints.
     pub fn words(&self) -> String {
         let words = self.words.lock().unwrap_or_else(PoisonError::into_inner);
         let text = String::from_utf8_lossy(&words);
@@ -102,7 +102,7 @@ impl Process {
         last.join("\n")
     }
 
-    /// Waits until it has ended, with the pipes closed.
+    /// Waits until the browser has ended. The pipes must be closed before.
     pub fn end(&mut self) {
         if !self.has_ended(END) {
             self.terminate();
@@ -131,7 +131,7 @@ impl Process {
     }
 }
 
-/// Keeps the last bytes of its output.
+/// Keeps the last bytes of the browser's output.
 fn keep_last_output(mut stderr: ChildStderr, kept: &Mutex<Vec<u8>>) {
     let mut buffer = [0; 1024];
     while let Ok(count @ 1..) = stderr.read(&mut buffer) {

@@ -121,13 +121,13 @@ impl Wire {
         lock_state(&self.state).outgoing.is_none()
     }
 
-    /// Closes what is written to. The browser ends.
+    /// Closes the connection to the browser, which then ends.
     pub fn close(&self) {
         lock_state(&self.state).outgoing = None;
     }
 }
 
-/// Passes on what comes until the connection ends.
+/// Passes on messages until the connection ends.
 fn receive_messages(from: impl Read, state: &Mutex<State>) {
     let mut from = BufReader::with_capacity(1 << 20, from);
     let mut bytes = Vec::new();

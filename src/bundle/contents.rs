@@ -1,4 +1,4 @@
-//! A bundle in memory: what a writer takes and what a loader can give back whole.
+//! A bundle in memory: what the writers take, and what `Bundle::contents` returns.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -40,7 +40,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// All of its names.
+    /// Every string in it: its name, its default, its mode and its values.
     pub(super) fn names(&self) -> impl Iterator<Item = &String> {
         [&self.name, &self.default, &self.mode].into_iter().chain(&self.values)
     }
@@ -76,7 +76,8 @@ pub struct Artifact {
 }
 
 impl Unit {
-    /// Hashes everything, each byte once.
+    /// The hash of the unit, with the hashes of its reflection and of each target's blob and names.
+    /// Each blob is read only once.
     ///
     /// # Errors
     /// [`Error::Io`] for a blob of 4 GiB or more.
@@ -106,7 +107,7 @@ impl Contents {
         languages.flat_map(BTreeMap::values)
     }
 
-    /// As [`Self::entries`], to be changed.
+    /// As [`Self::entries`], but mutable.
     pub fn entries_mut(&mut self) -> impl Iterator<Item = &mut EntryContents> {
         let programs = self.programs.values_mut();
         programs.flat_map(|program| program.languages.values_mut()).flat_map(BTreeMap::values_mut)
@@ -115,7 +116,8 @@ impl Contents {
     /// Adds the programs, units and keys of another bundle, as from another shard.
     ///
     /// # Errors
-    /// [`Error::Conflict`] where both have a key or a program's axes and disagree.
+    /// [`Error::Conflict`] if both have different shaders for a key, or different axes for a
+    /// program.
     pub fn merge(&mut self, other: Self) -> Result<(), Error> {
         for (name, program) in other.programs {
             let mine = self.programs.entry(name.clone()).or_insert_with(|| ProgramContents {
@@ -148,8 +150,8 @@ fn merge_entry(mine: &mut EntryContents, other: EntryContents) -> Result<(), Err
     Ok(())
 }
 
-/// Refuses names with control characters, which would do more than show a name when they are
-/// printed.
+/// Refuses names with control characters, since printing such a name could change the state of a
+/// terminal.
 pub(super) fn refuse_control_characters<'a>(
     part: &str,
     names: impl IntoIterator<Item = &'a String>,

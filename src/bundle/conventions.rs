@@ -1,6 +1,6 @@
-//! What an output is asked for beyond its target.
+//! What is chosen for an output besides its target: the clip space and the checks of indices.
 
-/// What an author chooses by name, in a manifest and on the command line.
+/// A choice that an author makes by name, in a manifest or on the command line.
 pub trait Convention: Copy + PartialEq + 'static {
     /// All choices by their names. The first is the default.
     const ALL: &'static [(&'static str, Self)];
@@ -35,15 +35,15 @@ impl Convention for Clip {
     const ALL: &'static [(&'static str, Self)] = &[("wgpu", Self::Wgpu), ("native", Self::Native)];
 }
 
-/// What an output does about indices beyond the end of an array, texture coordinates beyond the
-/// texture of `textureLoad`, and loops that do not end.
+/// What an output does about indices beyond the end of an array, coordinates of `textureLoad` that
+/// are outside the texture, and loops that do not end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub enum Bounds {
     /// Nothing beyond what the author wrote.
     #[default]
     Unchecked,
-    /// Indices and coordinates are clamped to the last element, and loops end after 2^64 rounds, as
-    /// far as naga's writer of the target has such checks.
+    /// Indices and coordinates are clamped to the last element, and loops end after 2^64
+    /// iterations, as far as naga's writer of the target has such checks.
     Restrict,
 }
 
@@ -52,7 +52,7 @@ impl Convention for Bounds {
         &[("unchecked", Self::Unchecked), ("restrict", Self::Restrict)];
 }
 
-/// What an output is asked for beyond its target.
+/// What is chosen for an output besides its target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct Conventions {
     /// The clip space of vertex stages.
@@ -61,7 +61,7 @@ pub struct Conventions {
     pub bounds: Bounds,
 }
 
-/// Conventions that go before those of a program.
+/// Conventions that are asked for, such as on the command line. They override those of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct AskedConventions {
     /// The clip space of vertex stages.
@@ -71,7 +71,7 @@ pub struct AskedConventions {
 }
 
 impl AskedConventions {
-    /// What is asked for, and the program's own where nothing is.
+    /// What is asked for; where nothing is, the program's own convention.
     pub fn or(self, own: Conventions) -> Conventions {
         Conventions {
             clip: self.clip.unwrap_or(own.clip),

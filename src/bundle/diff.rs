@@ -28,12 +28,12 @@ pub struct Change {
     pub key: String,
     /// `added`, `removed`, or `changed`.
     pub kind: &'static str,
-    /// Of a changed one: `reflection`, and the targets whose bytes or slots changed.
+    /// For `changed`: `reflection` if it changed, and the targets whose bytes or names changed.
     pub parts: Vec<String>,
 }
 
 impl Difference {
-    /// Whether the bundles hold the same.
+    /// Whether the bundles have equal contents.
     pub fn is_empty(&self) -> bool {
         self.axes.is_empty() && self.permutations.is_empty()
     }

@@ -8,7 +8,8 @@ use serde::Serialize;
 use super::contents::{checksum, shortened_hash, to_json};
 use super::{Error, Hash, Native, Reflection, Unit};
 
-/// How many values of a kind a [`Digester`] remembers.
+/// How many reflections, and how many natives, a [`Digester`] remembers before it forgets all of
+/// them.
 const REMEMBERED: usize = 4096;
 
 /// The hashes of a unit.
@@ -18,7 +19,7 @@ pub struct Digest {
     pub unit: Hash,
     /// The checksum of the reflection as JSON.
     pub reflection: Hash,
-    /// What the targets have, in their order.
+    /// The hashes of each target, in the order of [`Unit::targets`].
     pub targets: Box<[TargetDigest]>,
 }
 
@@ -34,7 +35,8 @@ pub struct TargetDigest {
 }
 
 /// Hashes units, and remembers the hashes of what many units share: the reflection of an entry
-/// point, and what a target calls the things in it. A digest does not depend on what is remembered.
+/// point, and each target's names and numbers for it. A digest does not depend on what is
+/// remembered.
 #[derive(Debug, Default)]
 pub struct Digester {
     reflections: Known<Reflection>,
@@ -42,7 +44,8 @@ pub struct Digester {
 }
 
 impl Digester {
-    /// Hashes everything, each byte once.
+    /// The hash of the unit, with the hashes of its reflection and of each target's blob and names.
+    /// Each blob is read only once.
     ///
     /// # Errors
     /// [`Error::Io`] for a blob of 4 GiB or more.
@@ -77,7 +80,8 @@ struct Hashed {
     hash: Hash,
 }
 
-/// Values by their address. The stored `Arc` keeps the address from being reused.
+/// The hashes of values, by the address of the value. The stored `Arc` keeps the address from being
+/// reused.
 #[derive(Debug)]
 struct Known<T>(Mutex<ByAddress<T>>);
 

@@ -88,7 +88,7 @@ pub fn open(path: &Path) -> Result<Directory, Error> {
     Ok(directory)
 }
 
-/// A file of a directory bundle: what wrote it, and for which stage.
+/// The file of one blob of a directory bundle, with its target and its stage.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct BlobFile {
     /// Name of the target.
@@ -99,7 +99,7 @@ pub struct BlobFile {
     pub entry: String,
     /// The file.
     pub path: PathBuf,
-    /// A unit that has it.
+    /// A unit that has this blob.
     pub unit: Hash,
 }
 
@@ -109,7 +109,7 @@ pub fn blob_files(path: impl AsRef<Path>) -> Result<BTreeSet<BlobFile>, Error> {
     blob_files_of_manifest(&read_manifest(path)?, &|name| path.join(BLOBS).join(name))
 }
 
-/// The distinct blobs of a manifest, which are where `place` says.
+/// The distinct blobs of a manifest. `place` returns the path of a blob's file, given its name.
 pub(super) fn blob_files_of_manifest(
     manifest: &Manifest,
     place: &dyn Fn(&str) -> PathBuf,
@@ -234,8 +234,8 @@ impl Store for Directory {
         }
     }
 
-    /// Bounds the memory that reading may take: a blob is read once, however many units name it,
-    /// and none is larger than a group.
+    /// Refuses nothing. Each blob is read once, however many units name it, and no blob may be
+    /// larger than a group, so the memory is in proportion to the bundle.
     fn measure(&self) -> Result<(), Error> {
         Ok(())
     }

@@ -22,7 +22,7 @@ use super::{Contents, Digest, Digester, Error, Unit};
 use crate::limits::GROUP_BYTES;
 use crate::output::{self, Foreign, Replace, Scratch};
 
-/// Lists the blobs that only the bundle before this one has, one on each line.
+/// The file that lists the blobs that only the bundle before this one has, one on each line.
 const RETIRED: &str = ".lamplight-retired";
 const RETIRED_HEADER: &str =
     "# Blobs of the bundle that was here before this one. The next run removes them.\n";
@@ -49,7 +49,7 @@ pub struct DirectoryWriter {
     manifest: Mutex<Manifest>,
     /// Files of blobs in the scratch folder.
     staged: Mutex<BTreeSet<String>>,
-    /// Held until the writer is dropped.
+    /// A lock that makes other runs wait. It is held until the writer is dropped.
     _turn: Option<File>,
 }
 
@@ -203,7 +203,8 @@ impl DirectoryWriter {
         let is_same = fs::read(&place).is_ok_and(|found| found == text);
         let staged = self.staged.lock().unwrap_or_else(PoisonError::into_inner);
         self.check_blobs(&staged)?;
-        // No manifest names a blob that a loss of power could take.
+        // The blobs are synced before a manifest names them. So a loss of power cannot leave a
+        // manifest whose blobs are missing.
         self.scratch.sync(&staged.iter().map(String::as_str).collect::<Vec<_>>())?;
         let written = self.scratch.write(MANIFEST, &text)?;
         self.remove_retired(&next);
@@ -246,7 +247,7 @@ impl DirectoryWriter {
         Ok(())
     }
 
-    /// Removes the blobs that only the bundle before the present one has.
+    /// Removes the blobs that only the bundle before the present one has, except those in `next`.
     fn remove_retired(&self, next: &BTreeSet<String>) {
         for name in self.retired.difference(next).filter(|name| !self.live.contains(*name)) {
             remove_blob(&self.path.join(BLOBS).join(name));
@@ -281,7 +282,8 @@ fn foreign_file(path: &Path) -> Foreign {
     Foreign::file(path, "is a file that Lamplight did not write")
 }
 
-/// The blobs of the manifest that is there; `None` if there is none.
+/// The blobs of the manifest that is there; `None` if there is none of ours. A manifest of ours
+/// that cannot be read counts as one without blobs.
 fn survey_manifest(path: &Path, replace: Replace) -> Result<Option<BTreeSet<String>>, Error> {
     let place = path.join(MANIFEST);
     let Some(text) = read_own(&place)? else { return Ok(None) };
@@ -358,7 +360,8 @@ fn survey_strangers(path: &Path, scratch: &Scratch, has_blobs: bool) -> Result<(
     Err(Error::Foreign(Foreign::file(path, found)))
 }
 
-/// Removes blobs that a killed run moved and that no manifest names.
+/// Removes blobs that a killed run moved and that no manifest names. `left` is the scratch folder
+/// that this run left.
 fn remove_unfinished(left: &Path, blobs: &Path, known: [&BTreeSet<String>; 2]) {
     let Ok(Some(text)) = read_own(&left.join(MANIFEST)) else { return };
     let Before::Whole(files) = manifest::kind_of_manifest(&text) else { return };

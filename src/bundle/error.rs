@@ -8,11 +8,12 @@ use crate::output::{self, Foreign};
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Error {
-    /// The operating system's words.
+    /// Reading or writing failed, with the reason: an error of the operating system, or a limit
+    /// that is exceeded.
     Io(String),
-    /// Something that is not a bundle of ours is where one would be written.
+    /// Where the bundle would be written, there is something that Lamplight did not write.
     Foreign(Foreign),
-    /// Bytes are not what was written: which part, and what is wrong with it.
+    /// The bundle is damaged, or it is not a bundle.
     Corrupt {
         /// Which part of the bundle.
         part: String,
@@ -44,7 +45,7 @@ pub enum Error {
     },
     /// The bundle has no such permutation.
     Miss(Box<Miss>),
-    /// Two bundles to merge disagree.
+    /// Two bundles to merge disagree about what the text says.
     Conflict(String),
 }
 
@@ -53,7 +54,8 @@ pub enum Error {
 pub struct Miss {
     /// The key that was asked for, in canonical form.
     pub asked: String,
-    /// The permutation that differs in the fewest axes; of several, the first by text.
+    /// The permutation that differs in the fewest axes; of several, the first by text. `None` if
+    /// the entry point has no permutations.
     pub nearest: Option<String>,
 }
 

@@ -63,7 +63,7 @@ pub fn open(path: &Path) -> Result<Packed, Error> {
     parse_file(Bytes::Mapped(map))
 }
 
-/// As [`Self::open`], for bytes in memory.
+/// As [`open`], for bytes in memory.
 pub fn from_bytes(bytes: Vec<u8>) -> Result<Packed, Error> {
     parse_file(Bytes::Owned(bytes))
 }
@@ -244,7 +244,7 @@ impl Packed {
         Ok(StoredArtifact { extension, native, blob })
     }
 
-    /// A decompressed group, kept or from the file.
+    /// A decompressed group: one that was kept, or else one that is decompressed now.
     fn group(&self, group: u32) -> Result<Arc<[u8]>, Error> {
         if let Ok(kept) = self.groups.lock()
             && let Some((_, bytes)) = kept.iter().find(|(index, _)| *index == group)

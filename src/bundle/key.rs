@@ -19,7 +19,7 @@ pub const ASSIGNS: char = '=';
 /// The value that an axis has where a key names it alone.
 pub const IMPLIED: &str = "true";
 
-/// The mode of axes in which permutations do not differ.
+/// The mode of axes whose value the host sets at run time. Keys do not name such axes.
 const DYNAMIC: &str = "dynamic";
 
 /// A word of a key, without the blanks around it.
@@ -89,7 +89,8 @@ pub fn write<'a>(differing: impl IntoIterator<Item = (&'a str, &'a str)>) -> Str
 /// The canonical form of a key: axes sorted, defaults left out.
 ///
 /// # Errors
-/// [`Error::BadKey`] where it names an axis or a value that does not exist, or an axis twice.
+/// [`Error::BadKey`] if it names an axis or a value that does not exist, a dynamic axis, or an axis
+/// twice.
 pub fn canonical(axes: &[Axis], key: &str) -> Result<String, Error> {
     let mut chosen: Vec<(&str, &str)> = Vec::new();
     for part in parts(key) {

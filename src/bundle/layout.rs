@@ -43,7 +43,7 @@ pub const GROUP_BYTES: usize = 32;
 /// The most bytes of a group before compression. It bounds what a damaged length can allocate.
 pub const MOST_GROUP_BYTES: usize = crate::limits::GROUP_BYTES;
 
-/// The most slots that a lookup passes. With keys that nobody chose for their hashes, this many
+/// The most slots that a lookup reads. Unless keys are chosen for their hashes, this many
 /// collisions do not occur: in the worst of a million tables a few dozen keys share a slot.
 pub const PROBES: usize = 4096;
 
@@ -86,16 +86,18 @@ pub struct KeySet {
     pub count: u32,
     /// Where the records start in KEYS.
     pub records: u32,
-    /// Where the hash slots start in KEYS, and how many there are, which is a power of two. A slot
-    /// has 96 bits of a key's [`hash_key`] above one more than the index of its record, or is zero.
-    /// A lookup compares these bits and not the text, since reading the text would be one more
-    /// access to distant memory. Two keys have the same bits with a probability of 2^-96.
+    /// Where the hash slots start in KEYS, and how many there are, which is a power of two. An
+    /// empty slot is zero. In any other slot, the upper 96 bits are those of a key's [`hash_key`],
+    /// and the lower 32 bits are the index of its record, plus one. A lookup compares only the 96
+    /// bits, since reading the key's text would cost another cache miss. Two keys have the same 96
+    /// bits with a probability of 2^-96.
     pub slots: u32,
     pub slot_count: u32,
 }
 
-/// A hash of 128 bits. Two chains of multiplications go over the key's words, and each product is
-/// folded so that all its bits count.
+/// A 128-bit hash of a key. Two chains of multiplications run over the key's 64-bit words. Each
+/// product of 128 bits is folded to 64 by combining its halves with XOR, so that all its bits
+/// count.
 pub fn hash_key(key: &[u8]) -> u128 {
     // Odd numbers from the fractions of the square roots of 2, 3, 5 and 7.
     const ROOTS: [u64; 4] = [

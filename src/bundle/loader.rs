@@ -28,7 +28,7 @@ use super::{
 pub struct Bundle {
     store: Box<dyn Store>,
     recorder: Option<Recorder>,
-    /// Where it was opened.
+    /// Where it was opened. `None` for a bundle in memory.
     path: Option<PathBuf>,
 }
 
@@ -134,8 +134,8 @@ impl Bundle {
         self.store.verify()
     }
 
-    /// Everything, in memory: to merge, compare, or write in the other form. A blob is there once,
-    /// even if many units share it.
+    /// Everything, in memory: to merge, compare, or write in the other form. Units with the same
+    /// blob share its memory.
     pub fn contents(&self) -> Result<Contents, Error> {
         self.store.measure()?;
         let mut blobs = BTreeMap::new();
@@ -226,8 +226,7 @@ impl<'a> Program<'a> {
         })
     }
 
-    /// An entry point in a language that has it. If both have it this is WESL; the two are proven
-    /// to agree.
+    /// An entry point, in whichever language has it. If both have it, this is the one in WESL.
     pub fn shader(&self, name: &str) -> Result<Shader<'a>, Error> {
         let language =
             self.entries().find(|(_, found)| *found == name).map(|(language, _)| language);

@@ -25,7 +25,8 @@ pub struct Manifest {
     pub units: BTreeMap<String, ManifestUnit>,
     pub reflections: BTreeMap<String, Reflection>,
     pub natives: BTreeMap<String, Native>,
-    /// The checksum of the file's text with zeros instead of it. It is the last value of the file.
+    /// The checksum of the file's text, in which zeros stand for the checksum itself. It is the
+    /// last value of the file.
     pub checksum: String,
 }
 
@@ -86,7 +87,7 @@ fn blob_file_name(blob: &str, extension: &str) -> Option<String> {
     (is_hex && parts.all(is_part)).then(|| format!("{}.{extension}", &blob[..16]))
 }
 
-/// Writes the text of a manifest, and at its end the checksum of everything before.
+/// Writes the text of a manifest, with its checksum at the end.
 pub fn write_manifest(manifest: &Manifest, out: impl io::Write) -> Result<(), Error> {
     let mut out = io::BufWriter::with_capacity(
         1 << 16,
@@ -98,7 +99,8 @@ pub fn write_manifest(manifest: &Manifest, out: impl io::Write) -> Result<(), Er
     out.into_inner().map_err(|error| Error::Io(error.to_string()))?.seal()
 }
 
-/// Passes a text on and hashes it, but holds back its end, which gets the checksum.
+/// Passes a text on and hashes it, but holds back its end, so that [`Self::seal`] can write the
+/// checksum there.
 struct Sealing<W> {
     out: W,
     hasher: blake3::Hasher,
@@ -163,7 +165,7 @@ pub enum Before {
     Foreign,
 }
 
-/// The parts of a manifest that every version has, and by which it is known.
+/// The parts of a manifest that every version has, and by which a file is recognised as one.
 #[derive(Deserialize)]
 struct Mark {
     #[serde(rename = "version")]
@@ -186,7 +188,7 @@ struct MarkArtifact {
     extension: String,
 }
 
-/// What a text of that name is.
+/// Whether the text of a file with the name of a manifest is one of ours.
 pub fn kind_of_manifest(text: &[u8]) -> Before {
     let Ok(text) = std::str::from_utf8(text) else { return Before::Foreign };
     let Ok(mark) = serde_json::from_str::<Mark>(text) else {
@@ -213,7 +215,8 @@ fn is_marked(text: &str) -> bool {
     begins || ends
 }
 
-/// A manifest of another version need not have this one's fields.
+/// The error for a manifest of another version, which need not have this version's fields. `None`
+/// if the version is not the reason.
 fn version_error(text: &str) -> Option<Error> {
     #[derive(Deserialize)]
     struct OnlyVersion {
@@ -267,7 +270,7 @@ impl Manifest {
         Ok(())
     }
 
-    /// Takes the units of another manifest.
+    /// Adds the units of another manifest, with their reflections and natives.
     pub fn absorb(&mut self, other: Self) {
         self.units.extend(other.units);
         self.reflections.extend(other.reflections);

@@ -7,10 +7,11 @@ use std::path::Path;
 use super::directory_writer::DirectoryWriter;
 use super::{Bundle, Contents, EntryContents, Error, ProgramContents};
 
-/// Everything of several bundles, every byte verified.
+/// The contents of several bundles in one. Every byte of them is verified first.
 ///
 /// # Errors
-/// [`Error::Conflict`] where two have a key or a program's axes and disagree.
+/// [`Error::Conflict`] if two bundles have different shaders for a key, or different axes for a
+/// program.
 pub fn merge(bundles: &[Bundle]) -> Result<Contents, Error> {
     bundles.iter().try_for_each(Bundle::verify)?;
     let mut all = Contents::default();
@@ -28,15 +29,16 @@ pub fn merge_into(bundles: &[Bundle], writer: DirectoryWriter) -> Result<(), Err
     writer.finish(&all)
 }
 
-/// Replaces or adds permutations of a directory: what it has of others stays, and units that no
-/// key refers to any more stay until it is written anew.
+/// Adds permutations to a bundle that is a directory, or replaces those with the same keys. All
+/// other permutations stay. Units that no key refers to any more stay too, until the whole bundle
+/// is written again.
 pub fn patch_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<(), Error> {
     let writer = DirectoryWriter::reopen(path)?;
     writer.add_all(contents)?;
     writer.patch(contents)
 }
 
-/// Writes the units of a bundle; its programs and keys.
+/// Writes the units of a bundle. Returns its programs and keys, without the units.
 fn copy_units(bundle: &Bundle, writer: &DirectoryWriter) -> Result<Contents, Error> {
     let mut contents = Contents::default();
     let mut digests = BTreeMap::new();

@@ -2,8 +2,8 @@
 //!
 //! The directory form is for reading and for version control: `manifest.json`, described by
 //! [`SCHEMA`], and `blobs/` named by content. The single file is for shipping: see [`pack`].
-//! Of the crate, this module uses the compression of the single file, the one way to write files,
-//! and nothing else.
+//! Of the rest of the crate, this module uses only what reads, writes and compresses files, and the
+//! limits on them.
 
 pub(crate) mod contents;
 mod conventions;

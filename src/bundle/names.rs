@@ -44,7 +44,7 @@ impl Stage {
         }
     }
 
-    /// How the names of files end that glslang and Arm's compiler read the stage from.
+    /// The file extension from which glslang and Arm's compiler tell the stage.
     pub fn suffix(self) -> &'static str {
         match self {
             Self::Vertex => "vert",

@@ -114,7 +114,8 @@ impl Packer {
         Ok(())
     }
 
-    /// Writes the keys of an entry point as a set, unless an earlier one has the same.
+    /// Writes the keys of an entry point as a set, unless an earlier entry point of the program has
+    /// the same keys.
     fn key_set<'a>(
         &mut self,
         sets: &mut BTreeMap<Vec<&'a str>, KeySet>,
@@ -233,7 +234,8 @@ impl Packer {
     }
 }
 
-/// Units in the order of their first key, so that neighbours differ little.
+/// The unit of each key, in the order of the keys, so that neighbours differ little. A unit comes
+/// once for each of its keys.
 fn in_key_order(entry: &EntryContents) -> impl Iterator<Item = &Unit> {
     entry.keys.values().filter_map(|hash| entry.units.get(hash))
 }

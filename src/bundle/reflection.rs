@@ -223,9 +223,9 @@ pub enum YAxis {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Viewport {
-    /// As usual.
+    /// A positive height, as usual.
     Positive,
-    /// Upside down: it starts at the bottom.
+    /// A negative height: the viewport starts at the bottom, so the picture is flipped.
     Negative,
 }
 
@@ -239,7 +239,7 @@ pub enum Rows {
     BottomFirst,
 }
 
-/// Winding for the API against winding in the picture.
+/// The winding that the API sees for a triangle that is counter-clockwise in the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FrontFace {
@@ -251,8 +251,8 @@ pub enum FrontFace {
 
 /// How a target takes the value of an override.
 ///
-/// - WGSL: as the pipeline constant of its `@id`; or `symbol`, where it was given another name; or else
-///   its name.
+/// - WGSL: as the pipeline constant of its `@id`; or `symbol`, where it was given another name; or
+///   else its name.
 /// - SPIR-V: as the specialisation constant `id`.
 /// - MSL: as the function constant `id`.
 /// - Others: as the macro `symbol`, defined before the text (in GLSL after `#version`).

@@ -17,7 +17,7 @@ impl Bundle {
     /// the bundle stays at its present generation. A bundle from memory never changes.
     ///
     /// # Errors
-    /// As of [`Bundle::open`].
+    /// Those of [`Bundle::open`].
     ///
     /// ```no_run
     /// # fn main() -> Result<(), lamplight::bundle::Error> {

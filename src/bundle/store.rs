@@ -30,7 +30,8 @@ pub struct StoredArtifact {
     pub blob: u32,
 }
 
-/// A form of a bundle. Its numbers are indices, which are checked on each use.
+/// An open bundle of one form. Entry points, units and blobs are named by their index, which is
+/// checked on each use.
 pub trait Store: Send + Sync {
     fn programs(&self) -> &Programs;
 

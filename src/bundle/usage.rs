@@ -18,11 +18,11 @@ use crate::{input, output};
 
 const HEADER: &str = "# Permutations asked for: a program and a key, one a line.";
 
-/// Bytes of a list in a file.
+/// The most bytes that a list in a file may have.
 const MOST_BYTES: u64 = 256 << 20;
 
-/// The lines of a list that say something, without spaces around them. Each has its number from 1
-/// and its first byte.
+/// The lines of a list that are neither blank nor comments, without the spaces around them. Before
+/// each line come its number, from 1, and the offset of its first byte in the text.
 pub(crate) fn usage_lines(text: &str) -> impl Iterator<Item = (usize, usize, &str)> {
     let mut start = 0;
     text.split_inclusive('\n').enumerate().filter_map(move |(index, line)| {

@@ -65,7 +65,7 @@ pub struct Job<'a> {
     pub options: &'a Options,
     /// Targets that are asked for, in order.
     pub targets: &'a [Target],
-    /// What its outputs are asked for beyond their target.
+    /// The clip space and the checks of its outputs.
     pub conventions: Conventions,
 }
 
@@ -126,7 +126,7 @@ impl Cache {
         self.hits.load(Ordering::Relaxed)
     }
 
-    /// How many reads and writes the storages refused.
+    /// How many reads and writes of the storages failed.
     pub fn failures(&self) -> usize {
         self.storages.iter().map(|storage| storage.failures.load(Ordering::Relaxed)).sum()
     }

@@ -57,7 +57,8 @@ fn record_checksum(name: &str, packed: &[u8]) -> Hash {
 /// What is written before the bytes of a unit's targets.
 #[derive(Serialize, Deserialize)]
 struct Head<'a> {
-    /// Whether there are warnings. They have places, and so a record of their own.
+    /// Whether there are warnings. They have a record of their own, since they have places, which
+    /// the unit's key does not cover.
     has_warnings: bool,
     reflection: Cow<'a, Reflection>,
     targets: BTreeMap<Cow<'a, str>, Part<'a>>,
@@ -70,7 +71,7 @@ struct Part<'a> {
     bytes: usize,
 }
 
-/// The length of the head, the head, the bytes of each target.
+/// A unit as bytes: the length of the head, the head, and the bytes of each target.
 pub fn encode_unit(unit: &Unit, has_warnings: bool) -> Option<Vec<u8>> {
     let mut targets = BTreeMap::new();
     for (target, artifact) in &unit.targets {

@@ -20,14 +20,14 @@
 //! `layers`, `surroundings`, `haze`, `caster`, `moments`, `display`, `march`, `horizon` and `lobe`
 //! have the numbers that the source publishes, named after the fields of the uniform they go to.
 //! Those of `object` are for all objects. `depth_pass` has what the shadow map is drawn with:
-//! `polygon_offset`, `cull_front`, `size` in texels along an edge of a map of depths (maps of moments
-//! and the faces of cube maps have half of it), and of a spot light the whole angle `fov` in degrees
-//! and the planes `near` and `far` in scene units. `open` names the numbers that the source leaves to
-//! its reader, or to models of its own: the scene and the renderer choose them. Every number that
-//! the permutation reads is in one or the other; those of the blocks `cascades`, `clusters`, `probes`
-//! and `room` are neither, since they must agree with maps and lists that are made of the scene.
-//! `deviations` says how the picture differs from the example, and why. It is empty if it does not
-//! differ.
+//! `polygon_offset`, `cull_front`, `size` in texels along an edge of a map of depths (maps of
+//! moments and the faces of cube maps have half of it), and of a spot light the whole angle `fov`
+//! in degrees and the planes `near` and `far` in scene units. `open` names the numbers that the
+//! source leaves to its reader, or to models of its own: the scene and the renderer choose them.
+//! Every number that the permutation reads is in one or the other; those of the blocks `cascades`,
+//! `clusters`, `probes` and `room` are neither, since they must agree with maps and lists that are
+//! made of the scene. `deviations` says how the picture differs from the example, and why. It is
+//! empty if it does not differ.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -69,7 +69,8 @@ pub struct Preset {
     pub deviations: Vec<String>,
 }
 
-/// How names of presets begin that are techniques and not examples from a book, and their heading.
+/// The prefix of presets that show a technique instead of an example from a book, and the heading
+/// of these presets.
 const TECHNIQUES: (&str, &str) = ("tech_", "Techniques of today");
 
 impl Preset {

@@ -26,13 +26,13 @@ pub struct Group {
     pub doc: String,
     /// What the error is.
     pub label: String,
-    /// Whether the error is in percent of what is exact.
+    /// Whether the error is in percent of the exact value.
     #[serde(default)]
     pub relative: bool,
-    /// Whether there is a depth map with an edge.
+    /// Whether the expressions read a depth map with an edge in it.
     #[serde(default)]
     pub edge: bool,
-    /// Of the entries that have none.
+    /// The reference for entries without one of their own.
     pub reference: Option<Reference>,
     /// Paths below the library's root, with lists in braces.
     pub imports: Vec<String>,

@@ -43,7 +43,7 @@ pub fn read_own<T: DeserializeOwned>(
     read_data(sources, id)
 }
 
-/// Something in a data file is not as expected.
+/// The error about a place in a data file that is not as expected.
 pub fn invalid_data(span: Span, message: impl Into<String>) -> Diagnostic {
     Diagnostic::error(codes::DATA_SYNTAX, message).at(span, "in this data file")
 }

@@ -1,4 +1,4 @@
-//! `lamplight bundle`: a look inside.
+//! `lamplight bundle`: lists, reads, verifies, packs and compares bundles.
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -26,7 +26,8 @@ impl Cached {
         Ok((!storages.is_empty()).then(|| Cache::new(storages)))
     }
 
-    /// The folder of the cache. There is none where nobody names one and there is no place for it.
+    /// The cache folder as a storage. The list is empty with `--no-cache`, and where no folder is
+    /// named and no default folder exists.
     pub fn storages(&self, manifest: Option<&Path>) -> Result<Vec<Box<dyn Storage>>, Failure> {
         if self.no_cache {
             return Ok(Vec::new());

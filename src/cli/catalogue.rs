@@ -77,7 +77,7 @@ pub fn run_catalogue(arguments: Arguments, gpus: cost::Opened) -> Result<(), Fai
             false => Err(Failure::check(outdated_message(&outdated))),
         };
     }
-    // Pictures in the folder that are still true are kept.
+    // A picture in the folder that still shows its figure is kept.
     let pictures = if is_drawn { with_figures(folder, draw_figures)? } else { Pictures::new() };
     let texts = files.iter().map(|(path, text)| (path.as_str(), text.as_bytes()));
     let drawn = pictures.iter().map(|(path, png)| (path.as_str(), png.as_slice()));
@@ -92,14 +92,15 @@ pub fn run_catalogue(arguments: Arguments, gpus: cost::Opened) -> Result<(), Fai
     )?)
 }
 
-/// What is done with figures: their kinds, all of them, and the pictures that a folder has.
+/// A function over figures. Its arguments are the kinds of figures, all figures, and a function
+/// that reads a figure's picture from the folder.
 type Work<T> = fn(
     &figure::Kinds,
     &figure::Figures,
     &(dyn Fn(&str) -> Option<Vec<u8>> + Sync),
 ) -> Result<T, Diagnostics>;
 
-/// Does something with the library's figures and their pictures in the folder.
+/// Calls `work` with the library's figures and their pictures in the folder.
 fn with_figures<T>(folder: &Path, work: Work<T>) -> Result<T, Failure> {
     let mut sources = SourceSet::default();
     let read = |sources: &mut SourceSet| {

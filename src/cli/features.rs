@@ -1,4 +1,4 @@
-//! `--features-default`: what an undeclared feature is; `--constant`: numbers from outside.
+//! `--features-default`: the value of an undeclared feature; `--constant`: values of constants.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ pub struct Arguments {
     constant: Vec<(String, String)>,
 }
 
-/// A constant as the option has it.
+/// Parses `NAME=VALUE` of `--constant`.
 fn parse_constant(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
     Ok((plain_name(name)?, constant::parse(value)?))
@@ -40,7 +40,8 @@ impl Arguments {
         self.constant.iter().cloned().collect()
     }
 
-    /// What was asked for, or else what the manifest says.
+    /// The value of undeclared features: that of the option, or else that of the manifest. `None`
+    /// means that asking for such a feature is an error.
     pub fn undeclared(&self, of_manifest: Option<bool>) -> Option<bool> {
         match self.features_default {
             None => of_manifest,

@@ -8,8 +8,8 @@ use super::terminal::is_person;
 use crate::diagnostic::{Diagnostic, Severity, guide};
 
 /// What is added to a command's help: the title of its page, and examples. They work in a package
-/// that `lamplight init` has written, once `lamplight gen` has run there. That of `migrate` takes
-/// shaders of naga_oil in `old/`.
+/// that `lamplight init` has written, once `lamplight gen` has run there. The example of `migrate`
+/// expects naga_oil shaders in `old/`.
 struct Entry {
     command: &'static str,
     page: &'static str,
@@ -110,7 +110,7 @@ const ENTRIES: &[Entry] = &[
     guide_entry("cost", "Cost on GPUs", &["lamplight cost lighting::spot --gpu navi21"]),
 ];
 
-/// Codes that one line names.
+/// The most codes that the line names.
 const CODES: usize = 3;
 
 /// Adds examples and the page of each command to its help.

@@ -88,7 +88,7 @@ enum MangleName {
     Underscore,
 }
 
-/// An axis with its value, as an option has it.
+/// Parses an option's `AXIS=VALUE`.
 pub fn axis_value(text: &str) -> Result<(String, Setting), String> {
     let (name, value) = text.split_once('=').ok_or("expected AXIS=VALUE")?;
     Ok((plain_name(name)?, Setting::parse(value)))
@@ -98,7 +98,7 @@ fn is_integer(setting: &&(String, Setting)) -> bool {
     matches!(setting.1, Setting::Int(_))
 }
 
-/// A name of a feature, an axis or a constant, as an option has it.
+/// Checks that text from an option can name a feature, an axis or a constant.
 pub fn plain_name(name: &str) -> Result<String, String> {
     if name.is_ascii() && is_word(name) {
         Ok(name.to_owned())
@@ -107,7 +107,7 @@ pub fn plain_name(name: &str) -> Result<String, String> {
     }
 }
 
-/// A feature, on unless it says otherwise, as an option has it.
+/// Parses the value of `--feature`: `NAME` turns a feature on, `NAME=BOOL` chooses its value.
 pub fn parse_feature(text: &str) -> Result<(String, Setting), String> {
     let (name, value) = text.split_once('=').unwrap_or((text, "true"));
     match Setting::parse(value) {
@@ -116,8 +116,8 @@ pub fn parse_feature(text: &str) -> Result<(String, Setting), String> {
     }
 }
 
-/// The error about a permutation that breaks a constraint, labelled at the source that names all of
-/// its values.
+/// An error for each constraint that a permutation breaks. Its label is the whole source `id`,
+/// which holds the permutation's key.
 pub fn broken_constraint(
     program: &Program,
     point: &Assignment,
@@ -147,18 +147,19 @@ pub struct Context {
     pub graph: Graph,
     pub settings: Settings,
     pub options: Options,
-    /// Those of the file's program, or else the defaults.
+    /// The conventions of the program that the file belongs to, or else the defaults.
     pub conventions: Conventions,
     permutation: Option<String>,
 }
 
 impl Context {
-    /// Warnings with the permutation, without those that only the author of a dependency can mend.
+    /// Adds the permutation to warnings as a note, and drops those that only the author of a
+    /// dependency can mend.
     pub fn own(&self, warnings: Diagnostics) -> Diagnostics {
         of_permutation(self.graph.own(warnings), self.permutation.as_deref())
     }
 
-    /// Adds the chain of imports and the permutation.
+    /// Adds the chain of imports and the permutation as notes.
     pub fn explain(&self, diagnostics: Diagnostics) -> Diagnostics {
         of_permutation(self.graph.traced(diagnostics), self.permutation.as_deref())
     }
@@ -173,11 +174,11 @@ fn of_permutation(diagnostics: Diagnostics, permutation: Option<&str>) -> Diagno
 struct Chosen {
     settings: Settings,
     conventions: Conventions,
-    /// A note that names them.
+    /// The text of a note that names the chosen settings.
     permutation: Option<String>,
     /// Whether the axes come from a manifest.
     declared: bool,
-    /// Their names.
+    /// Names of the axes.
     axes: Vec<String>,
     warnings: Diagnostics,
 }
@@ -331,7 +332,7 @@ impl Input {
     fn free(&self, root: &Path, sources: &mut SourceSet) -> Result<Chosen, Diagnostics> {
         let mut settings = Settings {
             values: self.chosen().cloned().collect(),
-            // Who gives a number by hand says that it is one.
+            // A setting that `--set` gives a number is an integer.
             integers: self.set.iter().filter(is_integer).map(|(name, _)| name.clone()).collect(),
             undeclared: self.features.undeclared(None),
             constants: self.features.constants(),

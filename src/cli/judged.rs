@@ -29,7 +29,7 @@ pub struct Inputs<'a> {
 }
 
 impl Judges {
-    /// Checks that all judges are installed. Tint is beside the cache folder.
+    /// Checks that all judges are installed. Tint is looked for beside the cache folder.
     pub fn open(
         manifest: &Manifest,
         request: &Request,

@@ -85,8 +85,8 @@ fn open_manifest(path: Option<&Path>) -> Result<(SourceSet, Manifest), Failure> 
     }
 }
 
-/// The lock from which numbers are written: the file beside the manifest. If it is to be written,
-/// what it lacks is added.
+/// The lock that integer keys are made from: the file beside the manifest. With `--lock`, the axes
+/// and values that it lacks are added.
 fn read_lock(
     path: &Path,
     arguments: &Arguments,

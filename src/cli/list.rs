@@ -45,7 +45,7 @@ enum What {
     Executors,
 }
 
-/// Things, each as an object. The table shows some of their keys and wraps the last one.
+/// Rows as JSON objects. The table shows the fields in `shown`, and wraps the last one.
 struct Table {
     shown: &'static [&'static str],
     things: Vec<Value>,
@@ -186,12 +186,12 @@ fn executor_table() -> Table {
     Table { shown: &["executor", "summary", "needs"], things: things.collect() }
 }
 
-/// A count as a number, or as text beyond what JSON's readers keep exact.
+/// A count as a number, or as text if it does not fit into 64 bits.
 pub fn count_json(count: u128) -> Value {
     u64::try_from(count).map_or_else(|_| json!(count.to_string()), |count| json!(count))
 }
 
-/// A value of an axis, as what it is.
+/// A value of an axis as a boolean, a number or a string.
 pub fn setting_json(setting: &Setting) -> Value {
     match setting {
         Setting::Bool(value) => json!(value),

@@ -24,12 +24,13 @@ use crate::validate::on_large_stack;
 #[derive(Args)]
 pub struct Arguments {}
 
-/// How long to wait for more keystrokes before looking at documents.
+/// How long to wait for more messages before analysing changed documents.
 const PAUSE: Duration = Duration::from_millis(1);
 
 pub fn run_lsp(_: Arguments) -> Result<(), Failure> {
     let (sender, receiver) = channel();
-    // Reading goes on while documents are looked at, so that a keystroke is noticed at once.
+    // A thread of its own reads messages, so that a keystroke is noticed while a document is
+    // analysed.
     thread::spawn(move || {
         let mut stream = BufReader::new(stdin().lock());
         while let Ok(incoming) = wire::read_message(&mut stream) {
@@ -39,7 +40,8 @@ pub fn run_lsp(_: Arguments) -> Result<(), Failure> {
             }
         }
     });
-    // naga's stack, so that no keystroke waits for another thread to run.
+    // The server runs on a thread with the large stack that naga needs, so that no keystroke waits
+    // for a switch to another thread.
     match on_large_stack(move || serve_editor(&receiver))? {
         0 => Ok(()),
         _ => Err(Failure::input("the editor closed the connection without `shutdown`")),
@@ -92,7 +94,7 @@ fn guard_request(
 }
 
 /// A copy of the library where editors can open its files, written when the first one is asked for.
-/// It has all files, since each leads to others.
+/// All files are written, since the definitions in one lead to others.
 fn library_copy() -> Library {
     let copy = OnceCell::new();
     Box::new(move |name| {

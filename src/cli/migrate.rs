@@ -55,7 +55,7 @@ pub fn run_migrate(arguments: Arguments, form: DiagnosticForm) -> Result<(), Fai
     print_warnings(&sources, &migrated.diagnostics, form);
     print_summary(&migrated, count, declares)?;
     let is_error = |one: &Diagnostic| one.severity == Severity::Error;
-    // What is wrong has been told.
+    // The diagnostics have been printed already.
     match migrated.diagnostics.iter().any(is_error) {
         true => Err(Failure::Input(sources, Vec::new())),
         false => Ok(()),
@@ -97,7 +97,8 @@ fn read_shaders(
     Ok((files, unread))
 }
 
-/// What is written, by path, and whether a `wesl.toml` is among it. One that is there stays.
+/// The texts to write, by path, and whether `wesl.toml` is one of them. A `wesl.toml` that
+/// `migrate` did not write is kept.
 fn written_texts(migrated: &Migrated, out: &Path) -> (Vec<(String, String)>, bool) {
     let wesl = |path: &String| format!("{}.wesl", path.strip_suffix(".wgsl").unwrap_or(path));
     let mut texts: Vec<(String, String)> =

@@ -98,7 +98,7 @@ enum Command {
 }
 
 impl Command {
-    /// The executors that it asks for.
+    /// The executors that the command names.
     fn executors(&self) -> Vec<&'static executors::Entry> {
         let names = match self {
             Self::Check(arguments) => arguments.executor.as_slice(),
@@ -109,7 +109,7 @@ impl Command {
         names.iter().filter_map(|name| executors::find_executor(name)).collect()
     }
 
-    /// The GPUs that it asks for, opened while there is one thread.
+    /// The GPUs that the command names. They are opened here, while the process has one thread.
     fn gpus(&self) -> cost::Opened {
         match self {
             Self::Cost(arguments) => arguments.open_gpus(),

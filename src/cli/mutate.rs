@@ -1,4 +1,5 @@
-//! `lamplight mutate`: how many mistakes put into a package's functions its numeric cases notice.
+//! `lamplight mutate`: mutation testing. Mistakes are put into a package's functions, to see how
+//! many of them its numeric cases notice.
 
 use std::io::Write;
 use std::path::PathBuf;

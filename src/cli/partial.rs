@@ -8,7 +8,8 @@ use crate::bundle::{self, Bundle};
 use crate::generate::Request;
 use crate::permute::{Manifest, Program};
 
-/// Fails if the bundle at `out` has a program whole and the run would leave a part of it.
+/// Fails if the bundle at `out` has every permutation of a program, and the run would write fewer
+/// permutations or leave out one of its targets.
 pub fn refuse_partial(manifest: &Manifest, request: &Request, out: &Path) -> Result<(), Failure> {
     let Ok(there) = Bundle::open(out) else { return Ok(()) };
     for program in &manifest.programs {
@@ -36,7 +37,7 @@ pub fn refuse_partial(manifest: &Manifest, request: &Request, out: &Path) -> Res
     Ok(())
 }
 
-/// The targets of a program of which the bundle has every permutation.
+/// The targets of a program in the bundle; `None` unless the bundle has every permutation of it.
 fn targets_of_whole(
     known: &bundle::Program<'_>,
     program: &Program,

@@ -20,7 +20,8 @@ pub struct Arguments {
     stage: String,
 }
 
-/// The limit in real time. Waiting for a processor does not count as work, but must end too.
+/// The limit in wall-clock time. The main limit is in processor time, which does not advance while
+/// a process waits.
 const LONGEST: Duration = Duration::from_secs(12 * REHEARSAL_SECONDS);
 /// How many bytes of a process's error output are read.
 const WORDS: u64 = 64 << 10;
@@ -52,8 +53,8 @@ pub fn run_rehearsal(arguments: Arguments) -> Result<(), Failure> {
 fn limit_process() -> Result<(), Failure> {
     use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 
-    // No limit is raised above what the user allows. Of memory the job gets half of that, since the
-    // process that starts it has threads and files of its own.
+    // No limit is raised above what the user allows. The job gets at most half of the memory that
+    // the user allows, since the process that starts it has threads and files of its own.
     let limits = [
         (Resource::As, crate::limits::REHEARSAL_BYTES, 2),
         (Resource::Cpu, REHEARSAL_SECONDS, 1),
@@ -106,7 +107,7 @@ fn in_a_child(stage: &str, job: &[u8]) -> Result<(), Exhausted> {
     })
 }
 
-/// How a process ended by itself.
+/// The exit status of a process; `None` if it had to be killed after [`LONGEST`].
 fn exit_status(child: &mut Child) -> Option<ExitStatus> {
     let started = Instant::now();
     while started.elapsed() < LONGEST {

@@ -17,7 +17,7 @@ pub fn is_stream(path: &Path) -> bool {
         || fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
 }
 
-/// The text of a stream, as long as a file may be.
+/// Reads the text of a stream. It may be as long as a file may be.
 pub fn read_stream(path: &Path) -> Result<String, Failure> {
     let most = LIMITS.file_bytes as u64;
     let mut bytes = Vec::new();
@@ -54,7 +54,7 @@ pub fn stream_name(language: Language, stage: Option<Stage>) -> String {
     }
 }
 
-/// The files of a package, with a text instead of one of them.
+/// The files of a package, with `text` in the place of the file `name`.
 pub struct Overlay {
     pub below: Box<dyn Files>,
     pub name: String,

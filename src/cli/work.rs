@@ -54,7 +54,7 @@ impl Places {
 pub struct Work {
     pub sources: SourceSet,
     pub out: PathBuf,
-    /// Of the manifest.
+    /// The path of the manifest.
     path: PathBuf,
     packages: Packages,
     manifest: Manifest,
@@ -64,7 +64,8 @@ pub struct Work {
     cache_folder: Option<PathBuf>,
     judges: Option<Judges>,
     replace: Replace,
-    /// The manifest and what declares packages, which are read before the packages are.
+    /// The texts that are read before the packages: the manifest, and the files that declare
+    /// packages.
     declared: SourceSet,
 }
 
@@ -91,14 +92,15 @@ impl Work {
         })
     }
 
-    /// From now on, lets the judges of the request's targets check what runs make.
+    /// Opens the judges (validators) of the request's targets. Later runs let them check each
+    /// output.
     pub fn judge(&mut self, request: &Request) -> Result<(), Failure> {
         let cache = self.cache_folder.clone();
         self.judges = Some(Judges::open(&self.manifest, request, &self.path, cache)?);
         Ok(())
     }
 
-    /// Judges the bundle that is there, if anything needs to be judged.
+    /// Lets the judges, if there are any, check the bundle on disk.
     pub fn judge_bundle(&mut self) -> Result<Option<Judged>, Failure> {
         let (out, bar) = (self.out.clone(), Bar::new());
         let (judges, inputs) = self.judges();
@@ -175,7 +177,7 @@ impl Work {
             .map_err(|error| write_failure(&self.out, error))
     }
 
-    /// Writes a directory, unit by unit.
+    /// Generates into a bundle directory. Each unit is written as soon as it is made.
     fn streamed(&mut self, request: &Request, bar: &Bar) -> Result<Generated, Failure> {
         let writer =
             DirectoryWriter::take_over(&self.out, self.replace, &|| tell_waiting(&self.out));
@@ -193,7 +195,8 @@ impl Work {
         Ok(generated)
     }
 
-    /// Compares with what is there, or writes a single file, which can only be ordered at the end.
+    /// Generates in memory, then compares with the bundle on disk, or writes a single file. The
+    /// order of its parts is known only at the end.
     fn in_memory(
         &mut self,
         request: &Request,

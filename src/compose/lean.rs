@@ -5,8 +5,8 @@
 //! alone are compiled once, and an edited comment does not cause any compilation.
 //!
 //! Type aliases are replaced by what they stand for. naga makes a type of its own for an alias, so
-//! in Metal an array and its alias would be two types. Variables of GLSL that are called as a
-//! member of a block get another name, since naga would take one for the other.
+//! in Metal an array and its alias would be two types. GLSL variables with the name of a block's
+//! member are renamed, since naga would take one for the other.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -23,10 +23,11 @@ use crate::parse::wesl::blank::{comment_length, is_blank};
 /// How deeply aliases may refer to each other. Deeper ones are kept, so that naga reports them.
 const ALIAS_DEPTH: usize = 64;
 
-/// Bytes to which the aliases of one part may expand.
+/// How many bytes longer a part may get by the expansion of its aliases. If it gets longer than
+/// that, its aliases are kept.
 const ALIAS_BYTES: usize = 1 << 16;
 
-/// Bytes of parts after which they are forgotten.
+/// If the remembered parts and their lean forms have more bytes than this, all are forgotten.
 const REMEMBERED_BYTES: usize = 16 << 20;
 
 /// The text to compile. It has no map to the author's files: to get errors with places, validate
@@ -107,8 +108,8 @@ impl Leaner {
     }
 }
 
-/// The text of a part in which aliases are replaced by what they stand for; `None` for an alias,
-/// unless it could not be replaced.
+/// The text of a part in which aliases are replaced by what they stand for; `None` for the
+/// declaration of an alias, unless it could not be expanded.
 fn without_aliases<'c>(composed: &'c Composed, part: &Part) -> Option<Cow<'c, str>> {
     let author = Cow::Borrowed(&composed.text[part.range.clone()]);
     let whole = match part.aliases.is_empty() {
@@ -268,7 +269,8 @@ pub fn lean_glsl(text: &str) -> String {
     lean
 }
 
-/// Byte by byte, since a first generation runs this without optimisation, where iterators are slow.
+/// Byte by byte, since iterators are slow without optimisation, and a dev build of the crate is not
+/// optimised.
 fn append_glsl(text: &str, lean: &mut String) {
     let bytes = text.as_bytes();
     let (mut at, mut line) = (0, Line::Empty);
@@ -319,7 +321,7 @@ impl Line {
     }
 }
 
-/// The end of what has neither blanks nor comments, from its first byte on.
+/// The end of the run without blanks and comments that begins at `start`.
 fn glsl_word_end(text: &str, start: usize) -> usize {
     let bytes = text.as_bytes();
     let mut at = start;
@@ -333,8 +335,8 @@ fn glsl_word_end(text: &str, start: usize) -> usize {
     at
 }
 
-/// Length of the comment at the start of the text; 0 where there is none. Block comments do not
-/// nest.
+/// Length of the comment that a text with `/` as its first byte begins with; 0 if that is no
+/// comment. Block comments do not nest.
 fn glsl_comment_length(text: &str) -> usize {
     match text.as_bytes() {
         [_, b'/', ..] => text.find(['\n', '\r']).unwrap_or(text.len()),

@@ -47,7 +47,8 @@ fn new_names(composed: &Composed) -> BTreeMap<String, String> {
     names
 }
 
-/// Whether a part is a block with an instance name: one that declares that name only.
+/// Whether a part is a GLSL interface block with an instance name. Such a block declares only that
+/// name in the global scope, not its members.
 fn is_block(composed: &Composed, part: &Part) -> bool {
     let text = &composed.text[part.range.clone()];
     let behind = text.rsplit_once('}').map_or("", |(_, behind)| behind);
@@ -67,12 +68,12 @@ fn members<'c>(composed: &'c Composed, block: &Part) -> impl Iterator<Item = &'c
     })
 }
 
-/// Whether a text is within brackets.
+/// Follows the pieces of a text, and counts the `[` that are open.
 #[derive(Default)]
 struct Brackets(u32);
 
 impl Brackets {
-    /// Goes on to the next piece; whether that is outside.
+    /// Takes the next piece. Returns whether no bracket is open after it.
     fn is_outside(&mut self, piece: &str) -> bool {
         match piece {
             "[" => self.0 += 1,

@@ -65,6 +65,7 @@ pub struct Composed {
     /// Leads from the text back to the authors' files.
     pub map: SourceMap,
     /// The declarations of the text, in its order. Beside them it has only comments and blanks.
+    /// There are none for a text that was not composed, or if too many declarations share a name.
     pub parts: Vec<Part>,
     /// The settings that were asked for and their values, in the order of asking. Another
     /// permutation with the same values for these composes to the same text.

@@ -35,8 +35,8 @@ impl SourceMap {
 
     /// The author's span for a range of the output, if its first byte has an author.
     ///
-    /// A range over several segments gives a span that ends where the author's text is no longer
-    /// contiguous.
+    /// For a range over several segments, the span ends where the last byte of the range came from
+    /// if that is in the same source, and else with the first segment.
     pub fn lookup(&self, range: Range<usize>) -> Option<Span> {
         let first = self
             .segments

@@ -12,7 +12,7 @@ use crate::bundle::{
     self, Axis, Choice, Constant, EntryContents, Hash, Language, ProgramContents, Stage, Target,
 };
 
-/// Every permutation of a program that has its SPIR-V, by key.
+/// A subject for every permutation of a program for which there is SPIR-V. Its name is the key.
 ///
 /// # Errors
 /// A permutation that no pipeline can be made of, and why.

@@ -1,4 +1,4 @@
-//! What is compiled at once: the SPIR-V of the stages, and the state around them.
+//! A pipeline to compile: the SPIR-V of its stages, and the state around them.
 
 use std::collections::BTreeSet;
 use std::ffi::CString;
@@ -154,7 +154,7 @@ fn scalar_and_count(ty: &str) -> Result<(ScalarKind, u8), String> {
     shape.ok_or_else(|| format!("a value of type `{ty}` at a location has no format of 32 bits"))
 }
 
-/// A stage from a text of ours.
+/// Compiles the WGSL text of a partner stage.
 fn partner_stage(text: &str) -> Result<Known, String> {
     let told = |error: &dyn std::fmt::Display| format!("the stage added to it: {error}");
     let module = naga::front::wgsl::parse_str(text).map_err(|error| told(&error))?;

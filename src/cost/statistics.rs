@@ -27,7 +27,8 @@ pub struct Statistics {
     pub inverse_throughput: i64,
 }
 
-/// A figure: its key in JSON, its heading in a table, what Mesa calls it, whether more is worse.
+/// A figure: its key in JSON, its heading in a table, Mesa's name for it, and whether more is
+/// worse.
 pub struct Figure {
     pub key: &'static str,
     pub heading: &'static str,

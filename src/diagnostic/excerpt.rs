@@ -61,7 +61,8 @@ struct Line {
     origin: usize,
     /// Which bytes of the author's line are shown.
     shown: Range<usize>,
-    /// How many bytes of the page come before them, for text that was left out.
+    /// How many bytes of the page's line come before them: those of [`GAP`] if text was left out
+    /// there, or else none.
     lead: usize,
 }
 

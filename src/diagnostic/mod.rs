@@ -75,12 +75,12 @@ pub struct Diagnostic {
     pub labels: Vec<Label>,
     /// Lines under the excerpt.
     pub notes: Vec<String>,
-    /// The item that the diagnostic is about, if it was asked for by name and not in a text:
-    /// whoever asked knows its place.
+    /// The name of the item that the diagnostic is about, if a caller asked for it by name. The
+    /// caller knows which place to point to.
     pub item: Option<String>,
 }
 
-/// Several diagnostics, at least one of them an error.
+/// Several diagnostics: errors, warnings or both.
 pub type Diagnostics = Vec<Diagnostic>;
 
 impl Diagnostic {

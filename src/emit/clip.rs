@@ -34,14 +34,14 @@ const WEBGPU: ClipSpace = ClipSpace {
 /// Metal, Direct3D and WebGPU have one clip space.
 pub const SHARED: Spaces = Spaces { wgpu: WEBGPU, native: WEBGPU };
 
-/// Vulkan's y axis points down, unless the viewport is turned over.
+/// Vulkan's y axis points down, unless the viewport has a negative height.
 pub const VULKAN: Spaces = Spaces {
     wgpu: ClipSpace { viewport: Viewport::Negative, ..WEBGPU },
     native: ClipSpace { y: YAxis::Down, ..WEBGPU },
 };
 
 /// OpenGL stores the lowest row first, and its depths go from -1 to 1. To store the top row first,
-/// the output turns the picture over. This reverses the winding of triangles too.
+/// the output flips y. This reverses the winding of triangles too.
 pub const OPENGL: Spaces = Spaces {
     wgpu: ClipSpace { is_converted: true, front_face: FrontFace::Reversed, ..WEBGPU },
     native: ClipSpace { near: -1, rows: Rows::BottomFirst, ..WEBGPU },

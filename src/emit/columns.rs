@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use naga::valid::ModuleInfo;
 use naga::{Expression, Handle, Module, Span, TypeInner, VectorSize};
 
-/// How the structures of columns begin: no name of an author's does in HLSL.
+/// The prefix of the names of the structures of columns. In HLSL no author's name begins with it.
 pub const STRUCTURE: &str = "__mat";
 
 /// Kinds of numbers, and the bits that the structure's name has.
@@ -27,7 +27,7 @@ struct Shape {
     columns: usize,
     /// The outermost first.
     sizes: Vec<usize>,
-    /// From columns to matrices.
+    /// Whether the cast is from columns to matrices, rather than from matrices to columns.
     is_read: bool,
 }
 
@@ -42,7 +42,7 @@ pub fn without_casts(text: &str) -> String {
     shapes.iter().fold(changed, |text, shape| shape.declared_in(text))
 }
 
-/// `((float3x2[4])a)` as a call.
+/// Replaces casts such as `((float3x2[4])a)` by calls.
 fn rewrite_read(line: &str, shapes: &mut BTreeSet<Shape>) -> String {
     let mut changed = String::with_capacity(line.len());
     let mut parts = line.split("((");
@@ -65,7 +65,7 @@ fn rewrite_read(line: &str, shapes: &mut BTreeSet<Shape>) -> String {
     changed
 }
 
-/// `a = (__mat3x2_f32[4])b;` with a call.
+/// Replaces the cast in a line such as `a = (__mat3x2_f32[4])b;` by a call.
 fn rewrite_write(line: &str, shapes: &mut BTreeSet<Shape>) -> String {
     let changed = line.split_once(" = (").and_then(|(before, cast)| {
         let (ty, value) = cast.strip_suffix(";\n")?.split_once(')')?;
@@ -117,14 +117,14 @@ impl Shape {
         format!("{}{}x2", self.scalar, self.columns)
     }
 
-    /// Names that begin so are naga's.
+    /// The name of the function. It begins with `naga_`, as no author's name does in the output.
     fn function(&self) -> String {
         let way = if self.is_read { "from" } else { "to" };
         let sizes: String = self.sizes.iter().map(|size| format!("_{size}")).collect();
         format!("naga_{way}_mat{}x2_f{}{sizes}", self.columns, self.bits)
     }
 
-    /// The text with the function behind those that naga has for these columns.
+    /// The text with the function declared behind those that naga declares for these columns.
     fn declared_in(&self, text: String) -> String {
         let last = format!("void __set_el_of_mat{}x2_f{}(", self.columns, self.bits);
         let end = text.find(&last).and_then(|at| Some(at + text[at..].find("\n}\n")? + 3));
@@ -141,7 +141,7 @@ impl Shape {
         };
         let sizes: String = self.sizes.iter().map(|size| format!("[{size}]")).collect();
         let function = self.function();
-        // HLSL has no other way to return an array.
+        // Functions of HLSL can return an array only if its type has a name.
         let (typedef, result) = match self.sizes.is_empty() {
             true => (String::new(), made.clone()),
             false => {
@@ -170,8 +170,8 @@ impl Shape {
     }
 }
 
-/// Where such an array is taken from a structure that is not a variable: naga writes columns where
-/// matrices are needed.
+/// The places where an array of matrices of two rows is taken from a structure that is a value and
+/// not a variable. For these, naga writes columns where matrices are needed.
 pub fn taken_from_values<'m>(
     module: &'m Module,
     info: &'m ModuleInfo,

@@ -88,7 +88,7 @@ const WORDS: &[&str] = &[
     "workgroupcoherent",
 ];
 
-/// How the names of types with a size begin; a number of components may follow.
+/// How the names of types with a size begin, such as `f16vec2`. One of `KINDS` follows.
 const SIZED: &[&str] = &["f16", "f32", "f64", "i16", "i32", "i64", "i8", "u16", "u32", "u64", "u8"];
 const KINDS: &[&str] = &["image", "mat", "sampler", "subpass", "texture", "vec"];
 
@@ -98,8 +98,8 @@ fn is_taken(name: &str) -> bool {
         SIZED.iter().filter_map(behind).any(|rest| KINDS.iter().any(|kind| rest.starts_with(kind)));
     let number = ["uint", "int", "float"].iter().find_map(behind);
     let is_number = number.is_some_and(|bits| matches!(bits, "8_t" | "16_t" | "32_t" | "64_t"));
-    // A second variable of that name would become `gl_1`. naga itself makes such names, so it would
-    // put `gen_` before this one.
+    // naga itself makes names with this beginning, so it would put `gen_` before the author's. `gl`
+    // is taken since naga would call a second variable of that name `gl_1`.
     let is_nagas = name.starts_with("_group");
     is_sized || is_number || is_nagas || WORDS.contains(&name) || name.trim_end_matches('_') == "gl"
 }
@@ -137,8 +137,8 @@ pub const BLOCK: &str = "_block_";
 /// The keywords that declare a block.
 const BLOCK_KEYWORDS: [&str; 2] = ["uniform", "buffer"];
 
-/// The name of a block's type, as the block's own name begins. naga ends names with an underscore,
-/// and browsers refuse two in a row in GLSL ES.
+/// The name of a block's type in the form that the block's own name begins with. naga ends names
+/// with an underscore, and browsers refuse two in a row in GLSL ES.
 pub fn before_block(ty: &str) -> &str {
     ty.trim_end_matches('_')
 }
@@ -154,7 +154,8 @@ fn name_blocks(source: &Source<'_>, text: &mut String, info: &mut ReflectionInfo
             (numbered, place_of(source.module, *handle))
         {
             let own = format!("{}{BLOCK}{group}_{binding}{stage}", before_block(ty));
-            // A structure of the author may have the name that naga gave the block.
+            // Only the name behind the keyword is replaced: a structure of the author may have the
+            // same name.
             for keyword in BLOCK_KEYWORDS {
                 if let Some(at) = text.find(&format!("{keyword} {name} {{")) {
                     let start = at + keyword.len() + 1;

@@ -30,7 +30,7 @@ type Structs<'t> = HashMap<&'t str, Vec<Member>>;
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Member {
     Value,
-    /// It is only there to fill a gap.
+    /// Padding.
     Gap,
     /// An array of matrices of two rows, which are structures of columns.
     Columns,
@@ -97,7 +97,7 @@ fn filled_members(
     values.next().is_none().then_some(list)
 }
 
-/// The columns of a matrix of two rows.
+/// The columns of a value, if it is a matrix of two rows.
 fn columns_of(value: &str) -> Option<Vec<&str>> {
     let (word, columns) = parse_call(value)?;
     matches!(word, "float2x2" | "float3x2" | "float4x2").then_some(columns)

@@ -48,7 +48,7 @@ use crate::validate::{Validated, guard, on_large_stack};
 pub struct Entry {
     /// Its name.
     pub target: Target,
-    /// Of files, without the dot.
+    /// The extension of its files, without the dot.
     pub extension: &'static str,
     /// Whether the output is bytes rather than text.
     pub binary: bool,
@@ -114,7 +114,7 @@ pub struct Source<'a> {
     pub entry: &'a str,
     /// Index of the entry point in the module.
     pub index: usize,
-    /// What else the output is asked for.
+    /// The clip space and the bounds checks that are asked for.
     pub conventions: Conventions,
 }
 
@@ -272,7 +272,7 @@ fn find_target(validated: &Validated, entry: &str) -> Result<usize, Diagnostic> 
     })
 }
 
-/// Whether a module's stage is one the crate handles.
+/// The stage, if it is one that the crate handles.
 fn known_stage(stage: ShaderStage) -> Option<bundle::Stage> {
     match stage {
         ShaderStage::Vertex => Some(bundle::Stage::Vertex),

@@ -47,7 +47,7 @@ fn entry_point(validated: &Validated, index: usize) -> Result<Reflection, Diagno
     })
 }
 
-/// What enters an entry point, by location.
+/// The inputs of an entry point: locations in order, then built-ins.
 pub fn entry_inputs(module: &Module, function: &naga::Function) -> Vec<Varying> {
     let arguments = function.arguments.iter();
     sorted_varyings(
@@ -206,7 +206,7 @@ fn make_member(module: &Module, member: &naga::StructMember, layouter: &Layouter
     }
 }
 
-/// The place of a global that has one.
+/// The group and binding of a global that has them.
 pub(super) fn place_of(module: &Module, handle: Handle<GlobalVariable>) -> Option<Place> {
     module.global_variables[handle].binding.map(|binding| [binding.group, binding.binding])
 }

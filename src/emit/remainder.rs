@@ -19,7 +19,7 @@ use crate::validate::info_unchecked;
 /// The name of the functions, as naga has it in other languages.
 const NAME: &str = "naga_mod";
 
-/// What a remainder is of.
+/// The type of a remainder's operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Shape {
     /// `None` for a scalar.
@@ -163,7 +163,8 @@ type Helpers = BTreeMap<Shape, Handle<Function>>;
 /// The call that computes an expression.
 type Calls = BTreeMap<Handle<Expression>, Statement>;
 
-/// Calls helpers in the place of remainders, and all other functions where they are now.
+/// Replaces remainders by calls of helpers, and gives all other calls the new handles of their
+/// functions.
 fn call_helpers(
     function: &mut Function,
     moved: &Moved,

@@ -13,8 +13,8 @@ pub fn rename_taken(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<
     let mut module = module.clone();
     let change = |name: &mut String| {
         if is_taken(name) {
-            // naga does the same with names that it knows to be taken, but for two underscores in a
-            // row.
+            // naga puts `gen_` before the names that it knows to be taken. Unlike naga, this makes
+            // no two underscores in a row.
             name.insert_str(0, if name.starts_with('_') { "gen" } else { "gen_" });
         }
     };
@@ -47,8 +47,9 @@ pub fn rename_taken(module: &Module, is_taken: &dyn Fn(&str) -> bool) -> Option<
     Some(module)
 }
 
-/// The module with other names for structures that are called as a member; `None` where none is. In
-/// C++ and HLSL, the name means the member in all that follows within the structure.
+/// The module with other names for structures that have the name of a member of some structure;
+/// `None` where none has. In C++ and HLSL, the name means the member in all that follows within the
+/// structure.
 pub fn rename_types_like_members(module: &Module) -> Option<Module> {
     let alike: Vec<_> = module.types.iter().filter(|(_, ty)| is_like_member(module, ty)).collect();
     if alike.is_empty() {

@@ -2,15 +2,15 @@
 //! calls functions that take what they change by value, so the store is lost. Here that becomes an
 //! `inout` parameter.
 
-/// How these functions begin, as no name of an author's does in HLSL, and the parameter that they
-/// change.
+/// How the declarations of these functions begin, and the parameter that they change. In HLSL no
+/// author's name begins like theirs.
 const SETTERS: [(&str, &str); 3] = [
     ("void SetMat", " obj, "),
     ("void __set_col_of_mat", " mat, "),
     ("void __set_el_of_mat", " mat, "),
 ];
 
-/// The text with what is changed passed by reference to the functions that change it.
+/// The text with `inout` before the first parameter of these functions, which they change.
 pub fn by_reference(text: &str) -> String {
     if !SETTERS.iter().any(|(start, _)| text.contains(start)) {
         return text.to_owned();

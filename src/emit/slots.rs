@@ -19,7 +19,7 @@ pub enum Numbering {
     Named,
 }
 
-/// Groups and bindings that [`Numbering::Explicit`] can tell apart.
+/// [`Numbering::Explicit`] has numbers only for groups and bindings below this.
 pub const EXPLICIT_LIMIT: u32 = 16;
 
 /// Every used binding, sorted, with its kind and its number in the target.

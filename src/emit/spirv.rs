@@ -45,7 +45,7 @@ pub fn bytes(words: &[u32]) -> Vec<u8> {
 /// One instruction.
 #[derive(Debug, Clone, Copy)]
 pub struct Instruction<'a> {
-    /// What it does.
+    /// Its opcode.
     pub op: u16,
     /// All its words, the first of which holds its length and its opcode.
     pub words: &'a [u32],

@@ -8,7 +8,8 @@ use std::fmt;
 
 use crate::limits::GROUP_BYTES;
 
-/// A text of at most [`GROUP_BYTES`].
+/// A text that refuses further writes once it has [`GROUP_BYTES`]. The last write before that may
+/// go beyond.
 #[derive(Debug, Default)]
 pub struct Text(pub String);
 

@@ -11,7 +11,8 @@ pub use super::operation::{
     Binary, Compare, Convert, Geometry, Packing, Product, Ternary, Unary, Word1, Word2,
 };
 
-/// An operand: its first slot, and a stride of 1; or 0 if all components share that slot.
+/// An operand: its first slot, and the distance between the slots of its components, which is 1, or
+/// 0 if all components share one slot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Operand {
     pub slot: Slot,
@@ -155,7 +156,7 @@ pub enum Instruction {
         size: u32,
         count: Slot,
     },
-    /// A component of a value by index, clamped.
+    /// Copies the component of a value at an index, which is clamped.
     Pick {
         to: Slot,
         from: Slot,
@@ -211,7 +212,8 @@ pub enum Instruction {
 }
 
 impl Instruction {
-    /// What the instruction counts against the limit: copies count by their length.
+    /// How many steps the instruction counts as against the limit. Long copies count as more than
+    /// one.
     #[inline(always)]
     pub fn steps(&self) -> u64 {
         match *self {
@@ -234,7 +236,7 @@ impl Instruction {
     }
 }
 
-/// Direction of a derivative.
+/// Direction of a derivative. `Width` is that of `fwidth`: the sum of both magnitudes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
     X,
@@ -242,7 +244,7 @@ pub enum Axis {
     Width,
 }
 
-/// Where a `switch` goes.
+/// The jump targets of a `switch`: each case's value with its instruction.
 #[derive(Debug, Clone, Default)]
 pub struct Table {
     pub cases: Vec<(u32, u32)>,
@@ -281,7 +283,7 @@ pub enum Ask {
     Samples,
 }
 
-/// An access to a texture: operands are dense vectors.
+/// An access to a texture. The components of each operand are in consecutive slots.
 #[derive(Debug, Clone, Copy)]
 pub struct Access {
     pub image: Slot,

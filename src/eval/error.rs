@@ -48,7 +48,7 @@ impl std::error::Error for Error {}
 /// What a run reports when it looks for numeric trouble.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FindingKind {
-    /// The result is NaN, though no operand was.
+    /// The result is NaN, though all operands were finite.
     NotANumber,
     /// The result is infinite, though all operands were finite.
     Infinity,
@@ -64,14 +64,15 @@ pub enum FindingKind {
     /// The two sides of a comparison, or an argument and a jump of the function, are closer than
     /// their errors.
     Ambiguous,
-    /// A derivative in non-uniform control flow: not all lanes of the quad reached it together.
+    /// A derivative in non-uniform control flow, or a sample that takes its level of detail from
+    /// one: not all lanes of the quad reached it together.
     DivergentDerivative,
 }
 
 /// Something that a run reported: where, and how often.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finding {
-    /// What was computed.
+    /// What kind of trouble it is.
     pub kind: FindingKind,
     /// The place in the text that naga parsed.
     pub span: Span,

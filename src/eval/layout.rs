@@ -3,17 +3,17 @@
 use super::Error;
 use naga::{ArraySize, Binding, Handle, Scalar, ScalarKind, Type, TypeInner, UniqueArena};
 
-/// The most slots of a program: 64 MiB of `f64` for the four lanes of a quad.
+/// The most slots of a program. The four lanes of a quad then take 64 MiB of `f64`.
 pub const MAX_SLOTS: u32 = crate::limits::EVAL_SLOTS;
 
 /// What one slot of an argument or result holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A number with a fraction.
+    /// A floating-point number.
     Float,
-    /// An integer with a sign.
+    /// A signed integer.
     Sint,
-    /// An integer without a sign.
+    /// An unsigned integer.
     Uint,
     /// True or false.
     Bool,
@@ -23,7 +23,7 @@ pub enum Kind {
     Handle,
 }
 
-/// The kind of a scalar; `None` for scalars that the evaluator lacks.
+/// The kind of a scalar. `None` if the evaluator does not support the scalar.
 pub fn kind_of(scalar: Scalar) -> Option<Kind> {
     match (scalar.kind, scalar.width) {
         (ScalarKind::Bool, _) => Some(Kind::Bool),
@@ -35,7 +35,8 @@ pub fn kind_of(scalar: Scalar) -> Option<Kind> {
     }
 }
 
-/// The slots of each type of a module, by its handle; none for types that the evaluator lacks.
+/// How many slots each type of a module takes, by its handle. `None` if the evaluator does not
+/// support the type.
 #[derive(Debug)]
 pub struct Layout<'m> {
     pub types: &'m UniqueArena<Type>,
@@ -67,7 +68,7 @@ impl<'m> Layout<'m> {
         self.measure(inner).ok_or_else(|| self.unsupported(inner))
     }
 
-    /// Kinds of the slots, in order.
+    /// Appends the kind of each slot of a type, in order.
     pub fn kinds(&self, ty: Handle<Type>, to: &mut Vec<Kind>) -> Result<(), Error> {
         let slots = self.size(ty)?;
         if slots > MAX_SLOTS {
@@ -88,7 +89,7 @@ impl<'m> Layout<'m> {
         Ok(())
     }
 
-    /// The binding of each slot of an entry point's argument or result.
+    /// Appends the binding of each slot of an entry point's argument or result.
     pub fn bindings(
         &self,
         ty: Handle<Type>,
@@ -106,8 +107,8 @@ impl<'m> Layout<'m> {
         }
     }
 
-    /// The first slot of a component and the number of its slots. A component is a member, an
-    /// element, a column or a scalar.
+    /// The offset of a component, in slots. A component is a member, an element, a column or a
+    /// scalar.
     pub fn component(&self, inner: &TypeInner, index: u32) -> Result<u32, Error> {
         match *inner {
             TypeInner::Struct { ref members, .. } => {

@@ -59,7 +59,8 @@ pub enum Ternary {
     SmoothStep,
 }
 
-/// Comparisons of floats.
+/// Comparisons of floats. In a comparison sampler, the left side is the reference, and the right
+/// side is the stored depth.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Compare {
     /// `reference == stored`
@@ -124,7 +125,7 @@ pub enum Word2 {
     DotBytesU,
 }
 
-/// Changes between numbers and words.
+/// Conversions between floats and words, and tests of floats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Convert {
     FloatFromS,
@@ -177,7 +178,7 @@ pub enum Packing {
     Unpack4U,
 }
 
-/// Products of matrices, column by column in memory.
+/// Products of matrices and vectors. Matrices are stored column by column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Product {
     MatrixVector,

@@ -61,7 +61,8 @@ pub struct Function {
     pub error: Option<Error>,
 }
 
-/// Where a parameter is, and the type that it points to if it is a pointer.
+/// The slots of a parameter. For a pointer, `pointee` is the first slot of the value that it points
+/// to.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Parameter {
     pub slot: Slot,
@@ -126,7 +127,8 @@ pub(super) enum Role {
     /// Initialised at each call, from the slot or with zero.
     Private(Option<Slot>),
     Buffer,
-    /// A runtime-sized array behind the memory: the slots of its address and its length, and how
+    /// A buffer that ends in a runtime-sized array. It is appended to the memory when it is bound.
+    /// `address` and `count` are the slots of its address and the array's length, `element` is how
     /// many slots an element has.
     Runtime {
         address: Slot,
@@ -171,7 +173,8 @@ impl Program {
             .map(|(index, function)| (FunctionId(index as u32), function))
     }
 
-    /// The slots of private variables, and those of their initial values; zero without any.
+    /// The slots of private variables, and those of their initial values. `None` if the initial
+    /// value is zero.
     pub(super) fn privates(
         &self,
     ) -> impl Iterator<Item = (std::ops::Range<usize>, Option<std::ops::Range<usize>>)> {

@@ -79,11 +79,11 @@ pub struct Level {
 pub enum Texels {
     /// Four components each.
     Whole(Vec<[f64; 4]>),
-    /// Some components each, side by side. The others are 0.
+    /// `count` components each, interleaved. The missing ones are 0.
     Channels {
         /// How many components a texel has, 1 to 4.
         count: usize,
-        /// Those of all texels.
+        /// The components of all texels.
         values: Vec<f32>,
     },
 }
@@ -139,7 +139,7 @@ pub enum Filter {
     /// The one texel that is nearest.
     #[default]
     Nearest,
-    /// The mean of the texels around, weighted by distance.
+    /// A weighted mean of the nearest texels.
     Linear,
 }
 
@@ -154,7 +154,7 @@ pub struct Sampler {
     pub min: Filter,
     /// Between two levels.
     pub mipmap: Filter,
-    /// Least and greatest level; `(0, 0)` keeps the first.
+    /// Least and greatest level of detail; with `(0, 0)` only the first level is used.
     pub levels: (f64, f64),
     /// How a reference is compared with what is stored, in a sampler that compares.
     pub compare: Option<Compare>,

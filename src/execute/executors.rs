@@ -14,8 +14,8 @@ pub struct Entry {
     pub needs: &'static [&'static str],
     /// What must be done before the executor is opened, while the process has only one thread.
     pub before_threads: Option<fn()>,
-    /// How many places in each pixel of a picture are averaged, where no other number is asked for.
-    /// `None` if the executor does not draw frames.
+    /// The default number of samples per pixel of a picture. `None` if the executor does not draw
+    /// frames.
     pub samples: Option<u32>,
     /// Opens a device.
     pub open: Open,
@@ -46,13 +46,13 @@ impl From<String> for Unavailable {
 }
 
 impl Entry {
-    /// Opens the executor. The error is a message for someone on whose machine it is missing. Open,
-    /// use and drop it inside of [`on_thread`](super::on_thread).
+    /// Opens the executor. The error is a message that also says how to install it. Open, use and
+    /// drop it inside of [`on_thread`](super::on_thread).
     pub fn start(&self) -> Result<Box<dyn Session>, String> {
         (self.open)().map_err(|unavailable| self.missing(&unavailable))
     }
 
-    /// The message for someone on whose machine it is missing.
+    /// The message for someone on whose machine it is missing, with the command that installs it.
     pub fn missing(&self, unavailable: &Unavailable) -> String {
         let install = if self.needs.is_empty() {
             String::new()
@@ -63,7 +63,7 @@ impl Entry {
     }
 }
 
-/// How many places in each pixel devices average.
+/// The default number of samples per pixel on devices.
 #[cfg(not(target_family = "wasm"))]
 const DEVICE_SAMPLES: u32 = 4;
 

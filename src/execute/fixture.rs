@@ -65,7 +65,7 @@ pub struct Sampler {
 }
 
 impl Sampler {
-    /// The address mode and the comparison in WebGPU's words.
+    /// WebGPU's names of the address mode and of the comparison.
     pub fn web_words(self) -> (&'static str, Option<String>) {
         let address = match self.address {
             Address::Clamp => "clamp-to-edge",

@@ -28,7 +28,7 @@ pub struct Attribute {
     pub format: VertexFormat,
 }
 
-/// What an attribute is in a vertex.
+/// The format of a vertex attribute.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VertexFormat {
     Uint32,
@@ -131,13 +131,13 @@ pub struct Item<'a> {
 pub struct State {
     /// Whether nearer fragments (of smaller depth) hide others.
     pub depth_test: bool,
-    /// Whether the frame keeps its depth.
+    /// Whether [`Frame::depth`] is filled.
     pub keep_depth: bool,
     pub cull: Option<Side>,
     /// Whether front faces wind clockwise in the frame, because it is drawn mirrored.
     pub mirrored: bool,
-    /// Polygon offset: the factor of the slope, and the number of smallest steps that are added to
-    /// depths.
+    /// Polygon offset (depth bias): the factor of the slope, and a constant in smallest steps of
+    /// depth.
     pub offset: [f32; 2],
 }
 

@@ -44,7 +44,8 @@ impl Interpreter {
         Self::of(kernel, &kernel.module)
     }
 
-    /// As [`Self::new`], with another module that has the kernel's function at the same handle.
+    /// As [`Self::new`], for a changed copy of the kernel's module, such as a mutant. The kernel's
+    /// function must have the same handle in it.
     pub fn of(kernel: &Kernel, module: &Module) -> Result<Self, Diagnostic> {
         let info = module_info("kernel", module)?;
         let program = Program::new(module, &info).map_err(eval_failed)?;

@@ -143,7 +143,7 @@ fn emitted_text(emitted: Emitted) -> Result<(String, Native), Diagnostic> {
     Ok((text, emitted.native))
 }
 
-/// The fragments at four places.
+/// The fragments of the quad whose first pixel is (x, y).
 fn quad_fragments(x: u32, y: u32) -> [Fragment; 4] {
     [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].map(|(x, y)| Fragment {
         position: [x as f32 + 0.5, y as f32 + 0.5, 0.0, 1.0],
@@ -152,7 +152,7 @@ fn quad_fragments(x: u32, y: u32) -> [Fragment; 4] {
     })
 }
 
-/// Binds the inputs and the fixtures of a kernel, where its text has them.
+/// Binds the inputs and the fixtures of a kernel to the slots that its text declares.
 fn bind_kernel(kernel: &Kernel, native: &Native, texels: &[u32]) -> Bound {
     let mut bound = Bound::default();
     for slot in &native.slots {

@@ -94,7 +94,7 @@ fn executor_failed(message: impl Into<String>) -> Diagnostic {
     Diagnostic::error(codes::EXECUTOR_FAILED, message)
 }
 
-/// What naga finds out about a module of an executor, which is `what`.
+/// Validates a module for an executor; returns naga's analysis. `what` names the module in errors.
 pub(crate) fn module_info(what: &str, module: &naga::Module) -> Result<ModuleInfo, Diagnostic> {
     let validated = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(module);
     validated.map_err(|error| executor_failed(format!("the {what} is not valid: {error}")))

@@ -6,7 +6,8 @@ use glam::{DVec2, DVec3};
 
 use super::fixture::{Sampler, Texture};
 
-/// The share of the texels around a place that pass the sampler's comparison.
+/// The comparison's result, filtered as the sampler says: the weighted share of the texels that
+/// pass.
 pub fn compare_depth(map: &Texture, sampler: Sampler, uv: DVec2, depth: f64) -> f64 {
     filter_texels(map, sampler, uv, 0, |stored| passes_comparison(sampler, depth, stored), 0)
 }
@@ -17,7 +18,7 @@ pub fn compare_cube(map: &Texture, sampler: Sampler, direction: DVec3, depth: f6
     filter_texels(map, sampler, uv, face, |stored| passes_comparison(sampler, depth, stored), 0)
 }
 
-/// One channel of a colour texture.
+/// One channel of a colour texture, filtered as the sampler says.
 pub fn read_channel(map: &Texture, sampler: Sampler, uv: DVec2, channel: usize) -> f64 {
     filter_texels(map, sampler, uv, 0, |stored| stored, channel)
 }

@@ -39,11 +39,12 @@ pub struct EntryResult {
     pub whole: BTreeMap<(Reason, Target), (usize, String)>,
 }
 
-/// Makes something of each text of a batch. All texts are new.
+/// What is done with the new texts of a batch: they are compiled, or only counted. There is one
+/// result for each text.
 pub type Make<'a> = dyn Fn(&[(&Text, &Entry)]) -> Vec<Result<Compiled, Diagnostics>> + 'a;
 
-/// Composes every entry point for every permutation, a batch of permutations at a time, and makes
-/// something of each new text.
+/// Composes every entry point for every permutation, a batch of permutations at a time, and passes
+/// the new texts of each batch to `make`.
 pub fn compose_all(
     entries: &[Entry],
     space: &Space,
@@ -230,8 +231,8 @@ fn collect_values<T>(results: Vec<Result<T, Diagnostics>>) -> Result<Vec<T>, Dia
     if errors.is_empty() { Ok(values) } else { Err(errors) }
 }
 
-/// Keeps a diagnostic unless it is known. The same mistake in many permutations is reported for the
-/// first.
+/// Adds a diagnostic unless an equal one is there already. So a mistake that many permutations have
+/// is reported only for the first of them.
 fn keep_new(errors: &mut Diagnostics, error: Diagnostic) {
     let same = |known: &Diagnostic| {
         known.code == error.code && known.message == error.message && known.labels == error.labels

@@ -16,7 +16,7 @@ use crate::permute::{Assignment, Program, cover};
 use crate::resolve::Graph;
 use crate::source::{SourceSet, Span};
 
-/// How many permutations are shown to conditions one after the other.
+/// How many permutations conditions are evaluated for before the others are, in parallel.
 const FIRST_POINTS: usize = 64;
 
 /// A place, by the name of its file, since programs that share a file each read it.
@@ -25,9 +25,10 @@ type Place = (String, u32, u32);
 /// What has been seen of the programs so far.
 #[derive(Default)]
 pub struct Lints {
-    /// How many programs have a condition.
+    /// For each condition, how many programs have it.
     conditions: BTreeMap<Place, usize>,
-    /// For each message, how often a condition was found to decide nothing.
+    /// For each condition and message, in how many programs the condition was found to decide
+    /// nothing, with the warning.
     constant: BTreeMap<(Place, String), (usize, Diagnostic)>,
     found: Diagnostics,
 }
@@ -109,7 +110,7 @@ impl Lints {
 
     fn see_reads(&mut self, program: &Program, entries: &[Entry], results: &[EntryResult]) {
         let read = |name: &String| results.iter().any(|result| result.reads.contains(name));
-        // The number of such an axis stays open, so no composition asks for it.
+        // The pipeline may choose the value of a spec axis. Then no composition asks for it.
         let is_open = |axis: &Axis| {
             axis.mode == Mode::Spec && entries.iter().any(|entry| entry.graph.may_ask(&axis.name))
         };
@@ -138,8 +139,8 @@ impl Lints {
     }
 }
 
-/// Shows permutations to the conditions that are still open: some first, since they settle most
-/// conditions, and the others in parallel.
+/// Evaluates the conditions that are not settled yet for permutations: for some first, since they
+/// settle most conditions, and for the others in parallel.
 fn see_points<'g>(
     outcomes: Outcomes<'g>,
     program: &Program,

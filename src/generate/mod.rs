@@ -44,7 +44,7 @@ use entry::Entry;
 use lint::Lints;
 use summary::Outputs;
 
-/// Once an entry point has so many diagnostics, no more are looked for.
+/// The most errors that are reported of the permutations of a program.
 const REPORTED: usize = 20;
 
 /// What of a manifest to generate; by default all of it.
@@ -86,11 +86,11 @@ pub struct Tools<'a> {
 /// How far a run is.
 #[derive(Debug, Clone)]
 pub struct Progress {
-    /// The program and the entry point that are compiled now.
+    /// The name of the program that is compiled now.
     pub stage: String,
     /// Permutations that are done.
     pub done: usize,
-    /// Permutations of that entry point.
+    /// Permutations of that program.
     pub total: usize,
 }
 
@@ -161,7 +161,7 @@ pub fn generate(
 /// A program with its permutations and its entry points.
 type Prepared<'a> = (&'a Program, Vec<Assignment>, Vec<Entry>);
 
-/// Every program that is asked for. Errors of one do not hide errors of another.
+/// Every program that is asked for. Errors in the sources of one do not hide those of another.
 fn prepare_programs<'a>(
     sources: &mut SourceSet,
     packages: &Packages,
@@ -190,7 +190,7 @@ fn prepare_programs<'a>(
 /// [`generate`] with every unit in the contents, for callers that want the bundle in memory.
 ///
 /// # Errors
-/// As of [`generate`].
+/// Those of [`generate`].
 pub fn in_memory(
     sources: &mut SourceSet,
     packages: &Packages,
@@ -214,7 +214,7 @@ pub fn in_memory(
 /// which axes each entry point asks for.
 ///
 /// # Errors
-/// As of [`generate`], of composing.
+/// Those of [`generate`] that come from composing.
 pub fn survey(
     sources: &mut SourceSet,
     packages: &Packages,

@@ -45,7 +45,7 @@ impl Permutation {
 /// Composes a shader of the manifest; `None` where it has no such shader.
 ///
 /// # Errors
-/// As of composing it.
+/// What is wrong with the key, or with the text when it is composed.
 pub fn permutation(
     sources: &mut SourceSet,
     packages: &Packages,

@@ -30,7 +30,7 @@ pub struct Root<'a> {
     pub settings: &'a Settings,
     /// How it is composed.
     pub options: &'a Options,
-    /// What its outputs are asked for beyond their target.
+    /// The clip space and the checks of its outputs.
     pub conventions: Conventions,
 }
 
@@ -105,8 +105,8 @@ impl Root<'_> {
     }
 }
 
-/// What the text of one entry point keeps. In GLSL that is the whole file, since a file has one
-/// entry point.
+/// What the text of one entry point keeps. A GLSL file has only one entry point, which needs no
+/// name.
 pub fn kept_items(graph: &Graph, options: &Options, entry: &str) -> Keep {
     match (graph_language(graph), &options.keep) {
         (_, Keep::All) => Keep::All,

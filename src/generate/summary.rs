@@ -1,4 +1,4 @@
-//! The account of a run.
+//! The summary of a run.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -107,8 +107,8 @@ pub(super) fn program(name: &str, permutations: usize, results: &[EntryResult]) 
     ProgramSummary { name: name.to_owned(), permutations, entries: entries.collect() }
 }
 
-/// Counts the distinct outputs of each target; `results` are those of one program, with its
-/// targets.
+/// The distinct outputs of each target: the length of each by its hash. [`Self::add`] takes the
+/// results of one program.
 #[derive(Debug, Default)]
 pub(super) struct Outputs(BTreeMap<Target, BTreeMap<Hash, u32>>);
 

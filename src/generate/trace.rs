@@ -40,7 +40,7 @@ impl Observer {
         }
     }
 
-    /// Whether the files still give the same answers. Each file is asked once.
+    /// Whether the files still give the same answers. Each recorded question is asked once.
     pub fn is_current(&self, packages: &Packages) -> bool {
         is_current(&self.answers(), packages)
     }

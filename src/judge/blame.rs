@@ -92,7 +92,7 @@ fn find_shader<'c>(contents: &'c Contents, output: &Output) -> Option<Named<'c>>
     found.next()
 }
 
-/// The declaration and the text of the line at fault.
+/// The name of the declaration that the line at fault is in, and the text of the line.
 type Line = (Option<String>, String);
 
 fn refused_line(refusal: &Refusal) -> Option<Line> {

@@ -7,8 +7,8 @@ use crate::cache::{Cache, hash_parts};
 
 const KIND: &str = "judged";
 
-/// With more names than this, only those of the last run are kept. Otherwise a bundle that changes
-/// often would collect them for ever.
+/// If more names than this are stored, all are forgotten, and their outputs are judged again.
+/// Otherwise a bundle that changes often would collect names for ever.
 const MOST: usize = 200_000;
 
 /// The outputs of one target that passed, by their names, which are hashes of their content.

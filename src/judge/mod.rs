@@ -1,6 +1,7 @@
 //! Judges whether the outputs in a bundle are well formed, with the judge of each target.
 //!
-//! `files of a bundle -> outputs -> verdict (those that passed before are known) -> blame (the author's places)`
+//! `files of a bundle -> outputs -> verdict -> blame (the author's places)`; the verdict skips
+//! outputs that are known to have passed before.
 //!
 //! Each file of `judges/` is a judge, and each target names one, so no target is without one.
 //! Programs are started for batches of outputs. If a batch is refused, its outputs are judged again
@@ -94,7 +95,7 @@ impl Output {
     }
 }
 
-/// The outputs that a bundle's files are.
+/// The outputs in the files of a bundle.
 ///
 /// # Errors
 /// Where a file is of a target that this build does not know.
@@ -180,7 +181,7 @@ pub struct Verdict {
     pub refusals: Vec<Refusal>,
 }
 
-/// How many judgements are done, of how many.
+/// Called with the number of judgements that are done and the number of all.
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// Judges the outputs that are not known to pass, on all cores. Those that pass are remembered in
@@ -272,7 +273,7 @@ fn plan_group<'w>(
     (judge.plan)(&Group { outputs, rules: judged.rules, tint, scratch })
 }
 
-/// Divides a group into works that do the same.
+/// Divides a group into works of at most `size` outputs each, which call `run`.
 fn divide_group<'w>(
     group: &'w [&'w Output],
     size: usize,

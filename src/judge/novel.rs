@@ -28,7 +28,7 @@ pub fn novel_outputs<'o>(outputs: &[&'o Output]) -> Result<Vec<&'o Output>, Stri
     Ok(found)
 }
 
-/// Adds the pairs of a line; whether one of them is new.
+/// Adds the pairs of a line. Returns whether one of them is new.
 fn add_pairs(line: &str, pairs: &mut HashSet<(String, String)>) -> bool {
     let tokens = line_tokens(line);
     let ends = [""].into_iter().chain(tokens.iter().copied());

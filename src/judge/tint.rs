@@ -29,7 +29,7 @@ pub struct Said {
     pub message: String,
 }
 
-/// The last line of the script.
+/// The last line that the script prints: how many texts it judged.
 #[derive(Deserialize)]
 struct Done {
     judged: usize,
@@ -67,7 +67,7 @@ impl Tint {
         })
     }
 
-    /// The version that is installed; none where nothing is.
+    /// The version that is installed; empty where none is.
     pub(super) fn version(&self) -> String {
         let file = self.folder.join("node_modules").join(PACKAGE).join("package.json");
         let text = std::fs::read(file).unwrap_or_default();

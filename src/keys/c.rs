@@ -124,7 +124,7 @@ impl Named<'_> {
         }
     }
 
-    /// The value of that index.
+    /// The value of that index, as an expression.
     fn value(&self, index: usize) -> String {
         match self.axis.kind {
             Kind::Bool => self.axis.values[index].to_string(),
@@ -301,7 +301,8 @@ fn to_ordinal(name: &str, function: &str, axes: &[Named<'_>], ordinals: &Ordinal
     text + "    return number;\n}\n"
 }
 
-/// What an axis adds, and the index of what a key adds.
+/// The numbers that the values of an axis add, and the expression for the index of the one that a
+/// key adds.
 fn added_numbers(named: &Named<'_>, adds: &[u64]) -> (Vec<u64>, String) {
     let field = &named.field;
     match named.axis.kind {

@@ -1,10 +1,11 @@
 //! Typed keys: a manifest's programs as types of an engine's language, so that a wrong key does not
 //! compile.
 //!
-//! Every language gets an enum for each axis and a structure for each program, which can be written
-//! as the canonical key. That leaves out defaults, so code that was generated before axes and
-//! values were added still names the same permutations. Dynamic axes are left out: permutations do
-//! not differ in them. With a lock file, keys become its numbers and numbers keys.
+//! Every language gets a type for the values of each axis, and a structure for each program, which
+//! can be written as the canonical key. That leaves out defaults, so code that was generated before
+//! axes and values were added still names the same permutations. Dynamic axes are left out:
+//! permutations do not differ in them. With a lock file, there are also functions from keys to the
+//! numbers that this file gives them, and back.
 
 mod c;
 mod names;

@@ -49,7 +49,7 @@ impl Taken {
     }
 }
 
-/// Lines of a comment, one for each of the text's.
+/// The lines of a text as lines of a comment.
 pub fn comment_lines(prefix: &str, text: &str) -> String {
     // Each of these characters ends a line comment in some language. A lone carriage return is an
     // error in a comment of Rust.

@@ -4,7 +4,7 @@ use crate::permute::{Axis, Lock, Mode, Program};
 
 /// How the keys of a program become numbers and back.
 pub struct Ordinals {
-    /// The sum of what the axes add that keys leave out.
+    /// What the dynamic axes, which keys leave out, add to each number.
     pub constant: u64,
     /// For each axis of keys, what each of its values adds.
     pub of_values: Vec<Vec<u64>>,
@@ -34,8 +34,8 @@ pub enum Says {
     Gone,
 }
 
-/// The numbers of a program's keys; `None` if the lock lacks a value of it, or if a number may be
-/// larger than `most`.
+/// How the keys of a program become numbers. `None` if the lock lacks a value of the program, or if
+/// there are more than `most` numbers.
 pub fn key_ordinals(program: &Program, lock: &Lock, most: u64) -> Option<Ordinals> {
     let space = &program.space;
     let default = lock.dense(&program.name, space, &space.default_assignment())?;
@@ -56,7 +56,7 @@ pub fn key_ordinals(program: &Program, lock: &Lock, most: u64) -> Option<Ordinal
         }
         digits.push(Digit { weight, radix: line.radix() as u64, axis, says });
     }
-    if range > u128::from(most) {
+    if range > u128::from(most) || !has_all_values(&axes, &digits) {
         return None;
     }
     // Dynamic axes have digits too, which are always those of their defaults.
@@ -64,6 +64,14 @@ pub fn key_ordinals(program: &Program, lock: &Lock, most: u64) -> Option<Ordinal
     let constant = u64::try_from(default).ok()?.checked_sub(of_axes)?;
     debug_assert!(space.axes().iter().any(|axis| axis.mode == Mode::Dynamic) || constant == 0);
     Some(Ordinals { constant, of_values, digits, range })
+}
+
+/// Whether each value of each axis is in some digit.
+fn has_all_values(axes: &[&Axis], digits: &[Digit]) -> bool {
+    axes.iter().enumerate().all(|(axis, of)| {
+        let of_axis = || digits.iter().filter(|digit| digit.axis == axis);
+        (0..of.values.len()).all(|value| of_axis().any(|d| d.says.contains(&Says::Value(value))))
+    })
 }
 
 fn digit_comment(axis: &Axis, setting: Option<&crate::permute::Setting>, digit: u128) -> Says {

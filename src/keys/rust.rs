@@ -127,7 +127,7 @@ fn write_structure(axes: &[Named<'_>]) -> String {
     text
 }
 
-/// Keys as numbers, and back.
+/// The functions from a key to its number, and back.
 fn number_functions(axes: &[Named<'_>], ordinals: &Ordinals) -> String {
     let mut text = String::from(
         "\n    impl Key {\n        /// The number in the lock file: it stays what it is when axes and values are added.\n",

@@ -35,7 +35,8 @@ function keyText(key: object, axes: readonly (readonly [string, Value])[]): stri
 }
 ";
 
-/// What numbers of keys need. `from` is undefined where the lock has a value that no longer exists.
+/// The functions that convert keys to numbers and back. `numberKey` returns undefined if a digit of
+/// the number stands for a value that no longer exists.
 const NUMBERS: &str = "
 /** A field with its default, and what each of its values adds to a number. */
 type Field = readonly [string, Value, readonly (readonly [Value, number])[]];
@@ -61,7 +62,7 @@ function numberKey(number: number, digits: readonly Digit[]): Record<string, Val
 }
 ";
 
-/// The same for numbers that only a `bigint` holds.
+/// As [`NUMBERS`], for numbers that only a `bigint` can hold.
 const BIG_NUMBERS: &str = "
 type BigField = readonly [string, Value, readonly (readonly [Value, bigint])[]];
 
@@ -234,7 +235,7 @@ fn value_union(axis: &Axis) -> String {
     }
 }
 
-/// Integers that a number cannot hold are of type `bigint`.
+/// A value as a literal. Integers that a `number` cannot hold are of type `bigint`.
 fn value_literal(value: &Setting) -> String {
     match value {
         Setting::Name(name) => format!("\"{name}\""),

@@ -1,5 +1,5 @@
-//! The text in which a function is translated: the function and what it names. Nothing of the text
-//! depends on other functions of the program.
+//! The text in which a function is translated: the function and what it names. Functions that it
+//! does not call have no influence on this text.
 //!
 //! A callee is a stub: its signature, and in place of its body only what its callers can notice
 //! ([`Summary`]). An entry point that does nothing is added, since naga's writers need one.
@@ -96,7 +96,8 @@ pub fn make_recipe<'s>(
     Ok(Recipe { unit, function, others, variables, stubs, interface })
 }
 
-/// All that `open` names, itself or through others, but functions; in the order of the text.
+/// The declarations in `open`, and those that they name, directly or through others. Functions are
+/// left out. The order is that of the text.
 fn named_closure(outline: &Outline<'_>, mut open: Vec<usize>) -> BTreeSet<usize> {
     let mut reached = BTreeSet::new();
     while let Some(index) = open.pop() {

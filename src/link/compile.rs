@@ -81,7 +81,7 @@ fn rehearse_and_validate(
         Some(validate::Outputs { entry: entry.to_owned(), targets, clip, bounds })
     };
     match validate::rehearse(text.lean, text.composed, outputs) {
-        // The lean text is validated faster. Only the whole text has places for its mistakes.
+        // The lean text is validated faster. Only the author's text has places for errors.
         Ok(()) => validate_rehearsed(text.lean).or_else(|_| validate(text.composed)),
         Err(error) if error.code == codes::NAGA_EXHAUSTED => Err(vec![error]),
         // Expanded aliases can make the lean text too large where the author's text is not.

@@ -28,8 +28,8 @@ pub struct Cut {
     pub header: String,
     /// Types, constants and functions that the writer made. Each comes after those that it names.
     pub shared: Vec<Shared>,
-    /// Bound variables, and those that enter and leave the stage: the entry point's output has all
-    /// of them.
+    /// Bound variables, and those that enter and leave the stage. Only the entry point's cut has
+    /// them, since its output declares all of them.
     pub globals: Vec<Fragment>,
     pub body: Fragment,
 }
@@ -67,7 +67,7 @@ impl Hash for Fragment {
 /// A reference to one of the author's declarations.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reference {
-    /// Where it belongs in the text.
+    /// The byte offset in the text at which the name is inserted.
     pub at: usize,
     pub name: String,
     /// Whether it is a variable that the writer named after a declaration, in lower case.
@@ -77,7 +77,7 @@ pub struct Reference {
 /// Divides an output.
 ///
 /// # Errors
-/// `shape` where something is not as naga 30 writes it.
+/// [`Reason::Shape`] if the output has a form that naga 30 does not write.
 pub fn cut_output(text: &str, wanted: &Wanted<'_>) -> Result<Cut, Reason> {
     let (header, declared) = text::split_declarations(text).map_err(|_| Reason::Shape)?;
     let mut cut = Cut { header: header.to_owned(), ..Cut::default() };
@@ -241,9 +241,9 @@ impl Fragment {
 }
 
 impl Cut {
-    /// Notes which identifiers the unit's function declares itself. `bases` are names that the
-    /// author gave inside it; naga may append an underscore or a number to them. The entry point's
-    /// name does not count as a local, even where a local has the same name.
+    /// Collects the unit's local identifiers. `bases` are the names of its parameters and variables
+    /// in the source; naga may append underscores or digits to them. The entry point's own name is
+    /// left out, even if a local has the same name.
     pub fn add_locals(&mut self, bases: &FxHashSet<&str>, entry: &str) {
         let is_local = |word: &&str| {
             if *word == entry {

@@ -3,11 +3,12 @@
 //! A mark holds the number of a declaration and nothing of its name. No keyword, built-in or name
 //! of a writer's own looks like one, so each mark in an output is a reference to one of the
 //! author's declarations, and nothing else is. Writers put marks into longer names, such as
-//! `ConstructMARK`, and one writer uses them in lower case for a variable of that type.
+//! `ConstructMARK`, and one writer names a variable by the mark of its type in lower case.
 
 use std::fmt::Write;
 
-/// The number for names that no output keeps: arguments of stubs, and entry points that were added.
+/// The number for names that no output keeps: those of the local variables of stubs, and of entry
+/// points, functions and variables that were added.
 pub const SCRATCH: u32 = 0;
 
 /// A mark within a text.

@@ -30,13 +30,14 @@
 //! - A writer translates a function from its body, from the types, constants and variables that it
 //!   names, and from nothing of its callees but names, arguments, results, and the variables of the
 //!   module that they use (Metal passes those along, in the order of the module).
-//! - Names of types, constants, variables and functions are names and nothing else; the namer
-//!   leaves a mark as it is.
-//! - HLSL writes a structure that an entry point returns in another way, whatever function uses
-//!   it: the canonical text's entry point returns it too.
-//! - GLSL's own variables enter a module in the order in which its text names them: the canonical
-//!   text names them in an order of their own first, since Metal passes them along in that order.
-//! - GLSL takes a texture for a depth texture if a callee compares with it: stubs compare too.
+//! - A writer's output depends on the names of types, constants, variables and functions only where
+//!   it writes them; the namer leaves a mark as it is.
+//! - HLSL declares a structure differently if an entry point returns it, and every function that
+//!   uses it gets that declaration. So the canonical text's entry point returns it too.
+//! - GLSL's built-in variables enter a module in the order in which its text names them, and Metal
+//!   passes them along in that order. So the canonical text first names them in a fixed order.
+//! - A texture in GLSL is taken for a depth texture if a callee samples it with a comparison. So
+//!   stubs do this too.
 //!
 //! `link::whole_and_linked` in the tests compares what is linked with what naga writes of the whole
 //! text, declaration by declaration and up to names, for every target: it fails where a version of
@@ -82,11 +83,11 @@ use translate::translate_unit;
 /// to the same bytes.
 const SIZE: usize = 96 << 20;
 
-/// The bound where more than a quarter of the units were new: units that no other text uses are not
-/// worth keeping.
+/// The bound instead of [`SIZE`] if more than a quarter of the units were new: units that no other
+/// text uses are not worth keeping.
 const SIZE_UNSHARED: usize = 2 << 20;
 
-/// Keeps functions in some targets, each translated once.
+/// Links texts for a list of targets. It keeps the translated functions, so that texts share them.
 pub struct Linker<'a> {
     targets: &'a [Target],
     conventions: Conventions,
@@ -178,8 +179,9 @@ impl<'a> Linker<'a> {
         None
     }
 
-    /// The unit, translated now if the pool lacks it. `left` is how many bytes may still be read,
-    /// whether or not they were read before.
+    /// The unit, translated now if the pool lacks it. `left` is how many bytes of declarations the
+    /// units of this text may still have in total. A declaration counts for each unit that names
+    /// it.
     fn unit(
         &self,
         outline: &Outline<'_>,

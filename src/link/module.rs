@@ -13,11 +13,11 @@ use crate::validate::Validated;
 
 const FILE: &str = "module.wgsl";
 
-/// The output of a module's entry point, as a bundle would hold it. The linker is one of that target.
-/// It may be kept, so that functions which modules share are translated once.
+/// The output of a module's entry point, as a bundle would hold it. `linker` must be one for this
+/// target alone. It can be used again, so that functions which modules share are translated once.
 ///
 /// # Errors
-/// As of [`compile()`]; places are those of the text that the module became.
+/// Those of [`compile()`]; places are in the WGSL text that the module is written as.
 pub fn module_linked(
     validated: &Validated,
     entry: &str,

@@ -149,7 +149,7 @@ impl Names {
         Ok(renames)
     }
 
-    /// Whether an identifier is what one of a text's names became.
+    /// Whether an identifier is the form that some name of the author's has in the text.
     pub fn is_name(&self, identifier: &Identifier, chosen: &Chosen) -> bool {
         let (text, word) = match identifier {
             Identifier::Usual(word) => (None, Some(*word)),

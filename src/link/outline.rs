@@ -12,7 +12,7 @@ use crate::bundle::{Language, Stage};
 use crate::compose::{Composed, Part, PartKind};
 use crate::parse::words::words;
 
-/// Identifies content.
+/// 128 bits of a hash, which identify content.
 pub type Key = [u8; 16];
 
 /// A text with more declarations is compiled as a whole.
@@ -69,7 +69,10 @@ impl<'a> Outline<'a> {
         if lean.parts.is_empty() {
             return Err(Reason::NoParts);
         }
-        if lean.parts.len() > DECLARATIONS || mark::occurs_in(&lean.text) {
+        if lean.parts.len() > DECLARATIONS {
+            return Err(Reason::Large);
+        }
+        if mark::occurs_in(&lean.text) {
             return Err(Reason::MarkedName);
         }
         let stage = entry_stage(lean, entry)?;
@@ -222,7 +225,7 @@ fn find_head_uses(declared: &mut [Declaration<'_>]) {
     }
 }
 
-/// An expanded alias stands for the declarations that it named.
+/// The declarations that an expanded alias named, directly or through other aliases.
 fn all_of(lean: &Composed, alias: u32, numbers: &[usize]) -> Vec<usize> {
     let (mut open, mut seen, mut found) = (vec![alias], BTreeSet::new(), Vec::new());
     while let Some(part) = open.pop() {
@@ -238,7 +241,7 @@ fn all_of(lean: &Composed, alias: u32, numbers: &[usize]) -> Vec<usize> {
 /// Refuses a text with a declaration that cannot be separated from the others.
 fn refuse_any(lean: &Composed, kept: &[(usize, &Part)]) -> Result<(), Reason> {
     let mut functions: FxHashSet<&String> = FxHashSet::default();
-    // Few texts ask for their line, so one search spares most texts the search in each declaration.
+    // Few texts use `__LINE__`, so one search spares most texts the search in each declaration.
     let asks_line = lean.language == Language::Glsl && lean.text.contains("__LINE__");
     for (_, part) in kept {
         let text = &lean.text[part.range.clone()];
@@ -278,7 +281,9 @@ fn refuse_part(part: &Part, text: &str, language: Language) -> Result<(), Reason
     }
 }
 
-/// Variables are sorted by name, so none may need another for its initial value.
+/// Whether a declaration other than a function or an assertion names a variable, such as in an
+/// initial value. Canonical texts sort variables by name, so a variable could come before the one
+/// that it needs.
 fn initialised_by_variables(declared: &[Declaration<'_>]) -> bool {
     let is_variable = |index: &usize| declared[*index].kind == PartKind::Variable;
     let early = |declaration: &&Declaration<'_>| {

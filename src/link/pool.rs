@@ -76,8 +76,9 @@ impl Pool {
         self.size.store(0, Ordering::Relaxed);
     }
 
-    /// Keeps a unit. `function` is its author's name, `None` for an entry point; `callees` are the
-    /// names of the functions that it may call. Of a unit that two threads translate, one is kept.
+    /// Keeps a unit. `function` is the author's name of its function, `None` for an entry point.
+    /// `callees` are the names of the functions that it may call. If two threads translate the same
+    /// unit, one result is kept.
     pub fn keep(
         &self,
         key: Key,

@@ -1,5 +1,5 @@
-//! A fragment, ready to be written: its text has the usual names, and it knows the places where a
-//! text may need others.
+//! A fragment that is prepared to be written into texts. Its own text has the usual names, with a
+//! list of the places where a text may need other names.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -132,7 +132,7 @@ impl Bits {
         self.0[number / 64] & 1 << (number % 64) != 0
     }
 
-    /// Adds a number; whether it was there already.
+    /// Adds a number, and returns whether it was there already.
     pub fn insert(&mut self, number: usize) -> bool {
         let had = self.has(number);
         self.0[number / 64] |= 1 << (number % 64);
@@ -152,7 +152,7 @@ impl Bits {
     }
 }
 
-/// An identifier of the writer's own with references in it, such as `ConstructMaterial`.
+/// An identifier that the writer made from a reference, such as `ConstructMaterial`.
 struct Derived {
     /// Its number, with all names in their usual form.
     word: u32,
@@ -193,7 +193,7 @@ impl Ready {
         }
     }
 
-    /// Its identifiers with references in them, where other names were chosen for some.
+    /// The identifiers that the writer made from references, with the names that were chosen.
     pub fn derived(&self, renames: &Renames) -> impl Iterator<Item = Identifier> {
         self.derived.iter().map(|derived| {
             let spots = &self.template.spots[derived.spots.clone()];
@@ -215,14 +215,14 @@ pub enum Identifier {
     Text(String),
 }
 
-/// Sorted, each once.
+/// The numbers, sorted and each once.
 fn sorted_numbers(mut numbers: Vec<u32>) -> Vec<u32> {
     numbers.sort_unstable();
     numbers.dedup();
     numbers
 }
 
-/// Finds the identifiers that have references in them.
+/// Finds the identifiers that are longer than the references in them.
 fn find_derived(template: &Template, names: &mut Names) -> Vec<Derived> {
     let mut derived: Vec<Derived> = Vec::new();
     for (index, spot) in template.spots.iter().enumerate() {
@@ -257,7 +257,7 @@ fn name_small(mut fragment: Fragment, names: &mut Names) -> Result<Fragment, Rea
         let usual = names.usual(number).to_owned();
         let base = usual.trim_end_matches('_').to_owned();
         let around = around_small(&fragment, &name);
-        // naga puts numbers behind such a name, which may lead to the name of another local.
+        // naga appends numbers to such a name, which may give the name of another local.
         let is_free = |name: &String| {
             around.iter().all(|(start, end)| !taken.contains(&format!("{start}{name}{end}")))
         };
@@ -269,7 +269,8 @@ fn name_small(mut fragment: Fragment, names: &mut Names) -> Result<Fragment, Rea
     Ok(fragment)
 }
 
-/// What stands before and behind a small reference in its identifiers.
+/// For each identifier with a reference in lower case to `name`: its parts before and after the
+/// reference.
 fn around_small(fragment: &Fragment, name: &str) -> BTreeSet<(String, String)> {
     let is_it = |reference: &&Reference| reference.small && reference.name == name;
     let around = |reference: &Reference| {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Each reason is told in the summary of a run, with an example.
+/// The summary of a run reports each reason, with an example.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reason {
@@ -28,16 +28,19 @@ pub enum Reason {
     MarkedName,
     /// Functions call each other in a cycle, or are nested too deeply.
     Recursion,
-    /// A function is very large or names very much: translating each by itself would take longer
-    /// than the whole.
+    /// The text has very many declarations, or a function is very large or names very much:
+    /// translating each by itself would take longer than the whole.
     Large,
-    /// naga refused a function by itself. The whole text shows what is wrong.
+    /// naga refused a function by itself. The text is compiled as a whole, so that naga reports
+    /// why.
     Refused,
-    /// naga's analysis finds something else in a stub than in its function.
+    /// A stub cannot stand for its function: for example, naga's analysis finds that it uses other
+    /// variables.
     Stub,
     /// A texture is sampled in a way that no stub can repeat.
     Sampling,
-    /// The stage lacks an operation that is used. The whole text shows what is wrong.
+    /// A vertex entry point uses what only fragment shaders have: a derivative or `discard`. The
+    /// text is compiled as a whole, so that naga reports the error.
     Stage,
     /// naga wrote an output in a form that this crate does not know. `cut.rs` divides an output
     /// into declarations, and finds in them the marks that stand for names. `names.rs` asks how the
@@ -66,7 +69,7 @@ impl Reason {
             Self::Initialiser => "a variable is initialised from another variable",
             Self::MarkedName => "an identifier looks like a mark of the linker",
             Self::Recursion => "functions call each other in a cycle or nest too deeply",
-            Self::Large => "a function is too large, or functions name too much",
+            Self::Large => "the text or a function is too large, or functions name too much",
             Self::Refused => "naga refuses a function by itself",
             Self::Stub => "a stub cannot stand for a function",
             Self::Sampling => "a texture is sampled in a way that a stub cannot repeat",

@@ -51,7 +51,7 @@ pub struct Shape {
     pub coordinates: u8,
     pub cube: bool,
     pub arrayed: bool,
-    /// A depth texture, and whether its sampler compares.
+    /// `depth` is for a depth texture, `compares` for a comparison sampler.
     pub depth: bool,
     pub compares: bool,
 }
@@ -66,7 +66,7 @@ pub fn name_of(module: &Module, variable: &GlobalVariable) -> Option<String> {
     }
 }
 
-/// Names of the variables that a function uses.
+/// Names of the module's variables that a function uses. `None` if one of them has no name.
 pub fn used_globals(module: &Module, info: &FunctionInfo) -> Option<BTreeSet<String>> {
     let used = module.global_variables.iter().filter(|(handle, _)| !info[*handle].is_empty());
     used.map(|(_, variable)| name_of(module, variable)).collect()

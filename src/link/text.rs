@@ -44,7 +44,7 @@ fn header_length(text: &str) -> usize {
 
 /// Length of the declaration at the start of the text, with the semicolon after its brackets.
 fn declaration_length(text: &str) -> Option<usize> {
-    // A structure without a tag is named after its brackets.
+    // In `typedef struct { ... } name;` the name comes after the brackets.
     let names_what_it_holds = text.starts_with("typedef ");
     let mut depth = 0_usize;
     for (at, byte) in text.bytes().enumerate() {
@@ -122,7 +122,7 @@ fn declaration_head(text: &str) -> Head<'_> {
             b'(' if is_attribute => at += text[at..].find(')').map_or(0, |found| found + 1),
             b'<' => at += text[at..].find('>').map_or(0, |found| found + 1),
             b':' if bytes.get(at) == Some(&b':') => at += 1,
-            // GLSL has the length of what a function returns before the function's name.
+            // If a function of GLSL returns an array, its length comes before the function's name.
             b'[' if let Some(length) = array_of_result(&text[at..]) => at += length,
             b'(' | b'{' | b'=' | b'[' | b';' | b':' => return Head { words, stop: byte },
             // Attributes of WGSL and layouts of GLSL have arguments of their own, which are

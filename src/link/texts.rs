@@ -46,10 +46,11 @@ struct Declared {
     ready: Ready,
     declares: Template,
     twin: u32,
-    /// Texts write declarations by kind first. A declaration's kind is at least that of all it
-    /// uses,
+    /// Texts sort declarations by kind, and those of one kind by height. The kind is never lower
+    /// than that of a declaration that this one uses.
     kind: Kind,
-    /// and then by height, which is greater than that of all it uses. So each comes after those.
+    /// Higher than that of each declaration that this one uses. So each comes after those that it
+    /// uses.
     height: u32,
 }
 
@@ -58,7 +59,8 @@ impl Declared {
         (self.kind, self.height, &self.ready.template.text)
     }
 
-    /// What distinguishes functions of one name from each other.
+    /// The text before a function's body, which distinguishes functions of one name from each
+    /// other; empty for other declarations.
     fn head(&self) -> &str {
         section_heading(self.kind, &self.ready)
     }
@@ -125,7 +127,7 @@ impl Texts {
         Ok(number)
     }
 
-    /// Finds the place of the newest declaration in the order.
+    /// Inserts the newest declaration into the order, and gives it its rank.
     fn rank(&mut self, number: u32) {
         let of = |number: &u32| self.declarations[*number as usize].order();
         let place = self.order.partition_point(|other| of(other) < of(&number));

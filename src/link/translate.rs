@@ -115,7 +115,7 @@ fn parse_recipe(outline: &Outline<'_>, text: &str) -> Result<Module, Reason> {
     }
 }
 
-/// The summary of the unit. Before that it is checked that every stub shows what its function does.
+/// The summary of the unit, after a check that every stub uses the same variables as its function.
 fn checked_summary(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,

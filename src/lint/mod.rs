@@ -123,8 +123,8 @@ fn one_by_one(graph: &Graph, settings: &Settings) -> Diagnostics {
     found
 }
 
-/// Options that keep everything a WESL module declares. For GLSL they also keep what it includes,
-/// since that is needed to see the whole file.
+/// Options that keep everything that a module declares. For a GLSL file with a stage in its name
+/// they also keep what it includes.
 pub fn lint_options(graph: &Graph, path: &str) -> Options {
     let stem = path.strip_suffix(".glsl").unwrap_or(path);
     let has_stage = [".vert", ".frag", ".comp"].iter().any(|ending| stem.ends_with(ending));

@@ -1,4 +1,4 @@
-//! Edits that mend what is wrong, and layout.
+//! Code actions that mend what a diagnostic reports, and formatting.
 
 use std::ops::Range;
 use std::path::Path;
@@ -9,7 +9,7 @@ use super::place::{self, Lines};
 use super::{Server, complete, format};
 use crate::project::MANIFEST;
 
-/// Imports that are offered for one name.
+/// The most imports that are offered for one name.
 const OFFERED: usize = 8;
 
 /// `textDocument/codeAction`.
@@ -61,18 +61,18 @@ pub fn code_actions(server: &mut Server, parameters: &Value) -> Result<Value, St
     Ok(Value::Array(found))
 }
 
-/// The edit that adds an import behind those that are there, or else on the first line.
+/// The edit that adds an import after the existing ones, or else on the first line.
 pub fn import_edit(text: &str, lines: &Lines<'_>, path: &str) -> Value {
     import_edit_at(text, lines, import_place(text), path)
 }
 
-/// The edit that adds an import at a place of [`import_place`].
+/// The edit that adds an import at `at`, which comes from [`import_place`].
 pub fn import_edit_at(text: &str, lines: &Lines<'_>, at: usize, path: &str) -> Value {
     let before = if at > 0 && !text[..at].ends_with('\n') { "\n" } else { "" };
     json!({ "range": lines.range(at..at), "newText": format!("{before}import {path};\n") })
 }
 
-/// Behind the imports that are there, or else the first byte.
+/// Where to add an import: the byte after the existing imports, or else the first byte.
 pub fn import_place(text: &str) -> usize {
     let mut at = 0;
     let mut start = 0;
@@ -86,7 +86,7 @@ pub fn import_place(text: &str) -> usize {
     at
 }
 
-/// What goes with an imported name: its statement, or its part of the braces.
+/// The range to delete to remove an imported name: its whole statement, or its part of the braces.
 fn import_part(text: &str, word: Range<usize>) -> Option<Range<usize>> {
     let start = text[..word.start].rfind("import")?;
     let end = word.end + text[word.end..].find(';')? + 1;
@@ -99,7 +99,8 @@ fn import_part(text: &str, word: Range<usize>) -> Option<Range<usize>> {
     let from = text[..word.start].rfind(['{', ',', ';'])? + 1;
     let until = word.end + text[word.end..].find(['}', ','])?;
     match (text[..from].ends_with('{'), text[until..].starts_with(',')) {
-        // The only one of its braces: what is left would be no path.
+        // The only name in the braces. Empty braces are not valid, so the whole statement is
+        // deleted.
         (true, false) if text[start..from].matches('{').count() == 1 => Some(start..end),
         (true, false) => None,
         (false, _) => Some(from - 1..until),

@@ -57,7 +57,7 @@ fn read_choice(text: &str) -> Result<look::Choice, String> {
     key::parts(text).map(one).collect()
 }
 
-/// `workspace/executeCommand`: the same, and the composed text.
+/// `workspace/executeCommand`: chooses a permutation, or returns the composed text.
 pub fn execute_command(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let name = parameters.get("command").and_then(Value::as_str).ok_or_else(String::new)?;
     let argument = |index: usize| parameters.pointer(&format!("/arguments/{index}")).cloned();

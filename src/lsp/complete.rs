@@ -1,4 +1,4 @@
-//! What may be written at a place.
+//! Completion: what may be written at a position.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use crate::parse::wesl::{ItemKind, Name, keywords};
 use crate::permute::Setting;
 use crate::source::Files;
 
-/// The protocol's numbers of what a completion is.
+/// The protocol's `CompletionItemKind`.
 pub const FUNCTION: u32 = 3;
 pub const FIELD: u32 = 5;
 pub const VARIABLE: u32 = 6;
@@ -179,7 +179,7 @@ fn written_path(before: &str) -> Vec<String> {
             parts.push(shorter[name.clone()].to_owned());
             rest = shorter[..name.start].trim_end();
         }
-        // `import a::{b, c::`: on from before the brace that is open.
+        // `import a::{b, c::`: continues with the path before the open brace.
         let mut depth = 0;
         let open = rest.char_indices().rev().find(|(_, letter)| {
             depth += i32::from(*letter == '}') - i32::from(*letter == '{');

@@ -51,7 +51,7 @@ pub fn hover_at(server: &mut Server, parameters: &Value) -> Result<Value, String
     Ok(hover_json(&text, &modules.sources.get(span.source).text, span.range()))
 }
 
-/// The members that the name behind a point may mean, each with its struct.
+/// Hover for a name after a dot: the members that it may mean, each with its struct.
 fn hover_member(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let Some((modules, node, byte)) = server.asked_module(parameters)? else {
         return Ok(Value::Null);

@@ -3,16 +3,16 @@
 
 use crate::parse::wesl::blank;
 
-/// Empty lines in a row that stay.
+/// The most empty lines in a row that are kept.
 const EMPTY: usize = 1;
 const INDENT: &str = "    ";
 
-/// The text laid out; nothing where its brackets or comments do not close.
+/// The formatted text; `None` where its brackets or comments do not close.
 pub fn format_text(text: &str) -> Option<String> {
     let mut out = String::with_capacity(text.len());
     let (mut depth, mut empty, mut comment) = (0_usize, 0_usize, 0_usize);
     let mut before = ";".to_owned();
-    // Open brackets with the indentation of the lines in them.
+    // For each open bracket, the indentation of the line that opens it.
     let mut open: Vec<usize> = Vec::new();
     for line in text.lines() {
         if comment > 0 {
@@ -62,8 +62,7 @@ fn code_of_line(line: &str) -> &str {
     line.split("//").next().unwrap_or_default().trim_end()
 }
 
-/// Whether what comes behind a line belongs to its statement. Attributes stand on lines of their
-/// own.
+/// Whether the next line continues the statement of a line. Attributes stand on lines of their own.
 fn continues_statement(before: &str) -> bool {
     !before.is_empty()
         && !before.starts_with('@')

@@ -1,5 +1,4 @@
-//! A module under the permutation that the editor shows: what is wrong with it, and what of it is
-//! not there.
+//! A module under the permutation that the editor shows: its diagnostics, and its inactive parts.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -18,8 +17,8 @@ use crate::resolve::{self, Graph};
 /// What was chosen for a package, by axis or feature.
 pub type Choice = BTreeMap<String, Setting>;
 
-/// The settings of a module, and how they are told: those of the program that has it as a root, or
-/// else of one that knows what it asks for.
+/// The settings of a module, and a note that names the permutation. They are those of the program
+/// that has the module as a root, or else of the manifest's first program.
 pub fn module_settings(opened: &Opened, path: &str, choice: &Choice) -> (Settings, String) {
     let programs = || opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     let is_root = |program: &&Program| program.files().any(|file| file.path == path);
@@ -46,7 +45,7 @@ pub fn module_settings(opened: &Opened, path: &str, choice: &Choice) -> (Setting
     (settings, format!("in permutation `{chosen}` of {what}"))
 }
 
-/// A graph with the module as its root, and what is wrong so far.
+/// A graph with the module as its root, or the diagnostics of loading it.
 pub fn module_graph(
     opened: &mut Opened,
     path: &str,
@@ -63,7 +62,7 @@ pub fn module_graph(
 /// What is wrong with a module under the settings: names, conditions, then what naga says.
 pub fn module_problems(graph: &Graph, settings: &Settings, path: &str) -> Diagnostics {
     let mut found = graph.undeclared(settings);
-    // What nothing declares is told on its own; what else is wrong is looked for without it.
+    // Undeclared features are reported above. For the other checks they count as off.
     let settings = Settings { undeclared: settings.undeclared.or(Some(false)), ..settings.clone() };
     match compose::compose(graph, &settings, &lint::lint_options(graph, path)) {
         Ok(composed) => found.extend(lint::lint_text(graph, &composed)),
@@ -110,7 +109,7 @@ pub fn inactive_ranges(graph: &Graph, settings: &Settings) -> Vec<Range<u32>> {
     found
 }
 
-/// What is known of a WESL or GLSL file by its name.
+/// Whether a path names a WESL or GLSL file, by its extension.
 pub fn is_module(path: &str) -> bool {
     lint::language(path).is_some()
 }

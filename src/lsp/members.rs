@@ -1,5 +1,5 @@
-//! Members of structs in WESL. The type of what is before the point is not known, so a name means
-//! each member that has it: of the structs that the module names, or else of all.
+//! Members of structs in WESL. The type of the expression before the dot is not known, so a name
+//! means each member of this name: in the structs that the module names, or else in all.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -22,7 +22,7 @@ pub struct Member<'m> {
     pub text: &'m str,
 }
 
-/// The members that a name behind a point may mean, with the place of the name.
+/// The members that a name after a dot may mean, with the place of the name.
 pub fn members_at(modules: &Modules, node: u32, byte: usize) -> Option<(Span, Vec<Member<'_>>)> {
     let module = &modules.graph.nodes[node as usize].module;
     let word = word_at_byte(&module.text, byte);
@@ -43,7 +43,7 @@ pub fn members_at(modules: &Modules, node: u32, byte: usize) -> Option<(Span, Ve
     Some((module.span(word.start as u32..word.end as u32), found))
 }
 
-/// Whether a name chooses parts of a vector.
+/// Whether a name is a swizzle.
 fn is_swizzle(name: &str) -> bool {
     let of = |letters: &str| name.chars().all(|letter| letters.contains(letter));
     name.len() <= 4 && (of("xyzw") || of("rgba"))
@@ -67,7 +67,7 @@ fn node_text<'m>(node: &'m Node, range: &Range<u32>) -> &'m str {
     &node.module.text[range.start as usize..range.end as usize]
 }
 
-/// The names of a struct's members, and each with its type.
+/// For each member of a struct: the range of its name, and the range of its name with its type.
 fn declared_members(text: &str, item: &Item) -> Vec<(Range<u32>, Range<u32>)> {
     let start = item.name_range.end as usize;
     let body = without_comments(&text[start..item.range.end as usize]);

@@ -1,9 +1,9 @@
 //! A language server over WESL, WGSL and GLSL: what editors ask, answered from the same stages
 //! that composing goes through.
 //!
-//! [`Server::receive`] takes one message and gives those to send; [`Server::look`] gives what is
-//! wrong with documents that changed. Nothing here reads or writes a stream, and whatever comes in
-//! has an answer.
+//! [`Server::receive`] takes one message and returns the messages to send; [`Server::look`] returns
+//! the diagnostics of documents that changed. Nothing here reads or writes a stream, and a message
+//! that is not valid has an answer too.
 
 mod act;
 mod choose;
@@ -57,21 +57,21 @@ struct Document {
 /// The state of one session.
 pub struct Server {
     documents: BTreeMap<PathBuf, Document>,
-    /// By root folder of a package.
+    /// The permutation that the editor chose, by root folder of a package.
     choices: BTreeMap<PathBuf, Choice>,
     /// By root folder of a package: what was parsed, which a keystroke in one file does not change.
     kept: RefCell<BTreeMap<PathBuf, Kept>>,
     unchanged: Arc<unchanged::Unchanged>,
-    /// Of the package that was asked about last, until a document changes.
+    /// The modules of the package that was asked about last, kept until a document changes.
     modules: Option<(PathBuf, Arc<Modules>)>,
-    /// The same of GLSL files.
+    /// The same for the GLSL files of a package.
     whole: Option<(PathBuf, Arc<glsl::Whole>)>,
-    /// Documents to look at, the one that was edited last first.
+    /// Documents to analyse, the one that was edited last first.
     changed: VecDeque<PathBuf>,
     items: Option<Arc<Vec<catalogue::Module>>>,
     library: Library,
     is_shut_down: bool,
-    /// The exit code, once the editor said that it is over.
+    /// The exit code, once the editor sent `exit`.
     pub exit: Option<u8>,
 }
 
@@ -98,7 +98,7 @@ const REQUESTS: &[(&str, Handler)] = &[
 ];
 
 impl Server {
-    /// A session that has not begun.
+    /// A session before `initialize`.
     pub fn new(library: Library) -> Self {
         Self {
             documents: BTreeMap::new(),
@@ -115,7 +115,7 @@ impl Server {
         }
     }
 
-    /// Takes a message; gives those to send.
+    /// Handles a message; returns the messages to send.
     pub fn receive(&mut self, message: &Value) -> Vec<Value> {
         let nothing = Value::Null;
         let method = message.get("method").and_then(Value::as_str);
@@ -123,7 +123,7 @@ impl Server {
         match (method, message.get("id")) {
             (Some(method), Some(id)) => vec![self.request(method, id, parameters)],
             (Some(method), None) => self.notified(method, parameters),
-            // Answers to what this server asks: it asks nothing.
+            // An answer to a request of the server, which sends no requests.
             (None, _) if message.get("result").or(message.get("error")).is_some() => Vec::new(),
             (None, id) => {
                 vec![error_message(
@@ -199,7 +199,8 @@ impl Server {
         let changes = parameters.get("contentChanges").and_then(Value::as_array);
         for change in changes.into_iter().flatten() {
             let Some(new) = change.get("text").and_then(Value::as_str) else { continue };
-            // The place is looked for from the start, and what lies behind it is moved.
+            // An edit searches its position from the start of the text, and moves the text after
+            // it.
             if steps.spend((2 * document.text.len() + new.len()) as u64).is_err() {
                 return self.close_overloaded(path);
             }
@@ -218,8 +219,8 @@ impl Server {
         Vec::new()
     }
 
-    /// A document that not all edits could be made to is another one in the editor: no answer about
-    /// it would be right.
+    /// Forgets a document whose edits were too large to apply: its text is no longer that of the
+    /// editor, so no answer about it would be right.
     fn close_overloaded(&mut self, path: &Path) -> Vec<Value> {
         self.documents.remove(path);
         self.forget(None);
@@ -230,7 +231,8 @@ impl Server {
         vec![notification_message("window/showMessage", json!({ "type": 1, "message": words }))]
     }
 
-    /// Something changed: every open document is to be looked at again, the edited one first.
+    /// Drops cached results after a change. Every open document is analysed again, the edited one
+    /// first.
     fn forget(&mut self, edited: Option<&Path>) {
         self.modules = None;
         self.whole = None;
@@ -242,12 +244,13 @@ impl Server {
         self.kept.get_mut().retain(|root, _| is_open(root));
     }
 
-    /// Whether every document was looked at since it changed.
+    /// Whether every document was analysed since it changed.
     pub fn is_idle(&self) -> bool {
         self.changed.is_empty()
     }
 
-    /// What is wrong with the next document; to be called when nothing else waits.
+    /// The message with the diagnostics of the next changed document. To be called when no message
+    /// waits.
     pub fn look(&mut self) -> Vec<Value> {
         let next = self.changed.pop_front();
         next.and_then(|path| self.look_at(&path)).into_iter().collect()
@@ -256,7 +259,7 @@ impl Server {
     fn look_at(&self, file: &Path) -> Option<Value> {
         let uri = place::file_address(file);
         let Some(document) = self.documents.get(file) else {
-            // Closed: what was told of it is told no longer.
+            // The document was closed: its diagnostics are cleared.
             let parameters = json!({ "uri": uri, "diagnostics": [] });
             return Some(notification_message("textDocument/publishDiagnostics", parameters));
         };

@@ -1,4 +1,4 @@
-//! Where names are declared and used, and giving them others.
+//! Definitions, references, renaming and lists of symbols.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::parse::words::is_word;
 use crate::project;
 use crate::source::Span;
 
-/// Names that a workspace's answer has at most.
+/// The most symbols in an answer to `workspace/symbol`.
 const SYMBOLS: usize = 500;
 
 impl Server {
@@ -79,7 +79,7 @@ pub fn references_at(server: &mut Server, parameters: &Value) -> Result<Value, S
     Ok(places.filter_map(|span| server.location(&modules, span)).collect())
 }
 
-/// Why a symbol keeps its name, if it does.
+/// Why a symbol cannot be renamed; `None` if it can.
 fn why_fixed(modules: &Modules, symbol: Symbol) -> Option<&'static str> {
     match symbol {
         Symbol::Items { node, .. } if modules.graph.nodes[node as usize].package != 0 => {
@@ -91,7 +91,8 @@ fn why_fixed(modules: &Modules, symbol: Symbol) -> Option<&'static str> {
     }
 }
 
-/// Fails for the copy of the library that editors are led to: it is written anew.
+/// Fails for the copy of the library that editors show: edits there would be lost when it is
+/// written again.
 fn refuse_copy(server: &Server, parameters: &Value) -> Result<(), String> {
     let root = &server.document(parameters)?.root;
     let copy = (server.library)(project::MANIFEST);
@@ -158,7 +159,7 @@ pub fn rename_symbol(server: &mut Server, parameters: &Value) -> Result<Value, S
     told::rename_json(&new, places)
 }
 
-/// The module that has the name already where the symbol is declared or used.
+/// A module that declares or uses the symbol and already has the new name.
 fn name_taken_in(modules: &Modules, symbol: Symbol, new: &str) -> Option<String> {
     let name: Name = modules.graph.names.find(new)?;
     let places = modules.references(symbol);
@@ -172,7 +173,7 @@ fn name_taken_in(modules: &Modules, symbol: Symbol, new: &str) -> Option<String>
     used.find(has).map(|node| node.label.clone())
 }
 
-/// The protocol's number of what an item is.
+/// The protocol's `SymbolKind` of an item.
 pub(super) fn symbol_kind(kind: ItemKind) -> u32 {
     match kind {
         ItemKind::Function => 12,

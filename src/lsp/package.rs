@@ -1,4 +1,4 @@
-//! All modules of a package as one graph, and what stands at a place of it.
+//! All modules of a package as one graph, and the symbol at a position in it.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -18,7 +18,7 @@ use crate::source::{Files, Package, ReadError, SourceSet, Span};
 /// Texts of open documents by their path below a package's root.
 pub type Texts = Arc<BTreeMap<String, String>>;
 
-/// Files of a package with those in the place of some that an editor has open.
+/// The files of a package, with the texts of open documents in place of the files on disk.
 struct Overlay {
     root: PathBuf,
     below: Box<dyn Files>,
@@ -50,7 +50,7 @@ impl Files for Overlay {
         found
     }
 
-    // An open file has its address in the editor, whether or not it was ever saved.
+    // An open file has an address in the editor, whether or not it was ever saved.
     fn display(&self, path: &str) -> String {
         match self.open.contains_key(path) {
             true => self.root.join(path).to_string_lossy().into_owned(),
@@ -70,11 +70,12 @@ pub struct Opened {
     pub packages: Packages,
     pub manifest: Option<Manifest>,
     pub features: Features,
-    /// What is wrong with the files that declare it.
+    /// The diagnostics of the files that declare the package.
     pub problems: Diagnostics,
 }
 
-/// Opens the package of a root folder. A manifest with errors is as good as none, and told.
+/// Opens the package of a root folder. A manifest with errors is treated as missing, and its errors
+/// are among the problems.
 pub fn open_package(
     root: &Path,
     texts: &Texts,
@@ -108,7 +109,8 @@ pub fn open_package(
     Ok(Opened { root: root.to_owned(), sources, packages, manifest, features, problems })
 }
 
-/// Puts open texts in the place of files, and those that were read before and have not changed.
+/// Makes a package read open texts in place of files, and cached texts of files that have not
+/// changed.
 fn cover_files(package: &mut Package, root: &Path, texts: &Texts, unchanged: &Arc<Unchanged>) {
     let below = std::mem::replace(&mut package.files, Box::new(crate::source::Embedded));
     package.files = Box::new(Overlay {
@@ -153,7 +155,7 @@ impl Modules {
         self.graph.nodes.iter().position(is_it).map(|index| index as u32)
     }
 
-    /// What stands at a byte of a module, with its place there.
+    /// The symbol at a byte of a module, with the range of its name there.
     pub fn symbol(&self, node: u32, byte: u32) -> Option<(Symbol, Range<u32>)> {
         let module = &self.graph.nodes[node as usize].module;
         let has = |range: &Range<u32>| range.start <= byte && byte <= range.end;

@@ -61,7 +61,7 @@ pub fn byte_of_position(text: &str, position: &Value) -> Option<usize> {
     Some(start + line.len())
 }
 
-/// Bytes between two marks.
+/// Bytes between two of [`Lines::marks`].
 const STEP: usize = 256;
 
 /// Lines of a text, so that many positions cost little, in long lines too.

@@ -1,4 +1,4 @@
-//! What of a document is not there under the permutation that the editor shows.
+//! The inactive code of a document: what the permutation that the editor shows leaves out.
 
 use std::ops::Range;
 
@@ -74,7 +74,7 @@ pub fn semantic_tokens(server: &mut Server, parameters: &Value) -> Result<Value,
     Ok(json!({ "data": data }))
 }
 
-/// `textDocument/inlayHint`: a word at the end of the first line of what is not there.
+/// `textDocument/inlayHint`: a hint at the end of the first line of each inactive part.
 pub fn inlay_hints(server: &mut Server, parameters: &Value) -> Result<Value, String> {
     let (text, inactive) = server.shaded(parameters)?;
     let lines = Lines::new(text);

@@ -45,7 +45,7 @@ pub fn rename_json<'t>(
     Ok(json!({ "changes": edits }))
 }
 
-/// One diagnostic at its first place.
+/// A diagnostic in the protocol's form, at its first label. `None` if it has no label.
 pub fn diagnostic_json(
     sources: &SourceSet,
     found: &Diagnostic,

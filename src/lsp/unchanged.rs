@@ -28,7 +28,7 @@ struct Stamp {
 pub struct Unchanged(Mutex<HashMap<PathBuf, (Stamp, String)>>);
 
 impl Unchanged {
-    /// The text that was read of a file, if the file is still as it was; else what reads it gives.
+    /// The cached text of a file if the file has not changed, or else the result of `read`.
     pub fn or_read<E>(
         &self,
         path: &Path,

@@ -1,5 +1,5 @@
-//! Messages on a stream: headers, a blank line, JSON. What is malformed is skipped or answered,
-//! and reading goes on behind it.
+//! Messages on a stream: headers, a blank line, JSON. Malformed input is skipped or answered with
+//! an error, and reading continues after it.
 
 use std::io::{self, BufRead, Read, Write};
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use crate::limits::MESSAGE_BYTES;
 
-/// Bytes of a line of a header.
+/// The most bytes of a line of a header.
 const HEADER_LINE: u64 = 1 << 10;
 
 /// What came in.
@@ -17,7 +17,7 @@ pub enum Incoming {
     Message(Value),
     /// Bytes that are no message, with the answer that says so.
     Malformed(Value),
-    /// Nothing comes any more.
+    /// The end of the stream.
     End,
 }
 
@@ -91,7 +91,7 @@ pub fn error_message(id: &Value, code: i32, words: &str) -> Value {
     json!({ "jsonrpc": "2.0", "id": id, "error": { "code": code, "message": words } })
 }
 
-/// Something that nobody asked for.
+/// A notification: a message that answers no request.
 pub fn notification_message(method: &str, parameters: Value) -> Value {
     json!({ "jsonrpc": "2.0", "method": method, "params": parameters })
 }

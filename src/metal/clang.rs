@@ -66,7 +66,7 @@ pub fn shim_hash() -> String {
 /// The version that the installed clang reports.
 ///
 /// # Errors
-/// There is none.
+/// No clang can be run, or it does not tell its version.
 pub fn clang_version() -> Result<String, Missing> {
     let output = Command::new(CLANG.program).arg("--version").output().map_err(missing_reason)?;
     let text = String::from_utf8_lossy(&output.stdout);
@@ -93,7 +93,7 @@ impl Clang {
         Ok(clang)
     }
 
-    /// A file in the folder.
+    /// The path of a file in the folder.
     pub fn path(&self, name: &str) -> PathBuf {
         self.folder.join(name)
     }
@@ -105,7 +105,7 @@ impl Clang {
         fs::write(path, bytes)
     }
 
-    /// Reads a source as shaders are read, with more arguments.
+    /// Compiles a source with the flags for shaders and more arguments.
     pub fn compile(&self, source: &str, arguments: &[&str]) -> Result<Output, Missing> {
         let mut command = Command::new(CLANG.program);
         command.args(FLAGS).arg("-isystem").arg(&self.folder).args(arguments).arg("-");

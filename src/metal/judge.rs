@@ -34,8 +34,8 @@ pub fn judge_batch(clang: &Clang, batch: &[Text<'_>]) -> Refusals {
     Ok(refusals)
 }
 
-/// Checks without clang: that the header is included, which a batch has anyway, that there is an
-/// entry point, and the attributes.
+/// What is wrong with a text that clang would not report in a batch: the header is not included (a
+/// batch includes it itself), there is no entry point, or an attribute is wrong.
 fn before_clang(text: &str) -> Option<String> {
     if !text.lines().any(|line| line.trim() == "#include <metal_stdlib>") {
         return Some("1:1: error: `metal_stdlib` is not included".to_owned());

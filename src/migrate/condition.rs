@@ -7,7 +7,7 @@ use super::tree::{Bytes, Scanned};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::source::{SourceId, Span};
 
-/// A shader def that has to be there, or to compare as it says.
+/// A test of a shader def: whether it is defined, or how its number compares.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Condition {
     pub asked: Question,
@@ -33,7 +33,7 @@ impl Condition {
         self
     }
 
-    /// `#if NAME OPERATOR VALUE`; `None` where that means nothing.
+    /// `#if NAME OPERATOR VALUE`; `None` if the operator or the value has no meaning there.
     pub fn compared(name: &str, operator: &str, value: &str) -> Option<Self> {
         let defined = Self::defined(name);
         match (operator, value) {
@@ -78,7 +78,7 @@ fn opposite_operator(operator: &str) -> &str {
     }
 }
 
-/// All of them, as `@if` has it.
+/// All conditions joined with `&&`, each once, as in `@if(...)`.
 pub fn joined_conditions(conditions: &[Condition]) -> String {
     let mut texts: Vec<String> = Vec::new();
     for text in conditions.iter().map(Condition::text) {
@@ -132,7 +132,7 @@ impl Asked {
     }
 }
 
-/// Names that are asked for in two ways.
+/// An error for each name that is both compared with a number and tested with `#ifdef`.
 pub fn asked_twice<'a>(files: impl Iterator<Item = &'a Scanned>) -> Vec<Diagnostic> {
     let (mut features, mut numbers) = (BTreeMap::new(), BTreeMap::new());
     for file in files {

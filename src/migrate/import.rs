@@ -26,7 +26,7 @@ pub fn parse_import(text: &str, place: Bytes) -> Result<Leaf, Wrong> {
     }
 }
 
-/// What an import gives names to.
+/// The names that an import brings into scope, with their whole paths.
 pub fn import_paths(tree: &Leaf) -> Vec<Path> {
     let mut found = Vec::new();
     collect_paths(tree, &[], &mut found);
@@ -54,7 +54,7 @@ struct Reader<'a> {
     offset: usize,
 }
 
-/// Braces in braces.
+/// How deeply braces may nest.
 const DEEPEST: usize = 32;
 
 impl Reader<'_> {
@@ -130,7 +130,7 @@ impl Reader<'_> {
         Ok(leaf)
     }
 
-    /// Past the opening brace.
+    /// Reads a list in braces, from behind the opening brace.
     fn braces(&mut self, leaf: &mut Leaf, depth: usize) -> Result<(), Wrong> {
         let start = self.offset + self.at - 1;
         if depth == DEEPEST {
@@ -252,7 +252,8 @@ fn write_import(
     Ok(())
 }
 
-/// Braces as they were written, with a comment in place of what is not there.
+/// Braces as they were written, with a comment in place of each name that is absent. `None` if all
+/// are.
 fn listed_in(
     text: &str,
     leaf: &Leaf,
@@ -284,7 +285,7 @@ fn bare_of_blanks(lead: &str) -> String {
     if words.is_empty() { String::new() } else { format!("/* {} */", words.replace("*/", "")) }
 }
 
-/// One name.
+/// The path of the WESL import of one name; `None` if there is none.
 fn import_one(path: &[String], leaf: &Leaf, modules: &Modules) -> Result<Option<String>, String> {
     let Some(last) = path.last() else { return Ok(None) };
     if modules.lacks(&path[..path.len() - 1], last) {

@@ -1,9 +1,9 @@
-//! What lists have, and where one unit of a list ends.
+//! The kinds of lists, and the state of a unit of a list while it is read.
 
 use super::unit::Part;
 use crate::parse::words::begins_word;
 
-/// What a list has.
+/// The kind of the units in a list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Level {
     Declarations,
@@ -14,12 +14,12 @@ pub enum Level {
 }
 
 impl Level {
-    /// Whether commas part its units.
+    /// Whether commas separate its units.
     pub fn has_commas(self) -> bool {
         matches!(self, Self::Members | Self::Parameters)
     }
 
-    /// Whether a condition may stand before braces around several.
+    /// Whether a condition may stand before braces around several of its units.
     pub fn has_blocks(self) -> bool {
         matches!(self, Self::Declarations | Self::Statements)
     }
@@ -32,7 +32,7 @@ pub struct Unit<'a> {
     /// Its first word that is not of an attribute.
     pub first: String,
     before: String,
-    /// Templates that are open.
+    /// How many `<` are open.
     pub angles: usize,
     has_parameters: bool,
 }
@@ -63,7 +63,7 @@ impl Unit<'_> {
         found
     }
 
-    /// What the braces here hold.
+    /// The kind of the units in braces at this place; `None` if braces cannot be here.
     pub fn inner(&self) -> Option<Level> {
         match self.level {
             Level::Declarations if self.first == "struct" => Some(Level::Members),

@@ -1,4 +1,5 @@
-//! Import paths to files: in `naga_oil` a file says its path, in WESL its place is its path.
+//! Maps import paths to files. In `naga_oil` a file declares its path; in WESL the path follows
+//! from where the file is.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +13,7 @@ use crate::source::{SourceId, Span};
 pub struct Modules {
     /// The path in WESL of each module, by its path in `naga_oil`.
     paths: BTreeMap<Vec<String>, Result<String, String>>,
-    /// The same by file.
+    /// The path in WESL of each file.
     files: BTreeMap<String, Result<String, String>>,
     /// Modules that no file defines, each with the first place that imports from it.
     foreign: BTreeMap<String, Span>,
@@ -26,7 +27,7 @@ pub enum Place {
     Known(String),
     /// No file defines it: it may be a package.
     Foreign,
-    /// Some modules start with it.
+    /// No module has this path, but the paths of some modules start with it.
     Prefix,
 }
 
@@ -50,7 +51,8 @@ impl Modules {
             let span = Span::new(id, range.clone());
             let segments: Vec<String> = name.split("::").map(str::to_owned).collect();
             let words = compiled_words(text, &found.nodes);
-            // Of two the one that says more: the other is there for builds without it.
+            // Of two files that define a module, the one with more words counts. The other one is a
+            // substitute for builds without it.
             let other = places.get(&segments).copied();
             let counts = modules.words.get(&segments).is_none_or(|known| known.len() < words.len());
             let (kept, left) =
@@ -150,13 +152,13 @@ impl Modules {
         self.foreign.iter().map(one).collect()
     }
 
-    /// First segments of what no file defines.
+    /// The first segments of the paths that no file defines.
     pub fn packages(&self) -> BTreeSet<&str> {
         self.foreign.keys().map(String::as_str).collect()
     }
 }
 
-/// Every word that is compiled.
+/// The text of every token, in every branch. Comments and imports are not included.
 fn compiled_words(text: &str, nodes: &[Node]) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     for node in nodes {

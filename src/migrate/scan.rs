@@ -1,5 +1,5 @@
-//! A text to tokens and directives. Lines that start with `#` are directives, as `naga_oil` reads
-//! them; comments may hold any.
+//! Splits a text into tokens and directives. As in `naga_oil`, a line that starts with `#` and the
+//! name of a directive is a directive, unless it is in a comment.
 
 use super::condition::Condition;
 use super::import;
@@ -114,7 +114,7 @@ impl Scanner<'_> {
         DIRECTIVES.contains(&word).then(|| word.to_owned())
     }
 
-    /// The whole line here, and where its directive ends.
+    /// Takes the whole line, and finds where its directive ends.
     fn line(&mut self) -> Line {
         let start = self.line_start();
         let end = self.at + self.rest().find('\n').unwrap_or(self.rest().len());
@@ -167,7 +167,8 @@ impl Scanner<'_> {
         }
     }
 
-    /// `#define NAME` holds for all that the file imports, which no file of WESL can say.
+    /// Notes that a definition must be given from outside in WESL: `#define NAME` holds for all
+    /// that the file imports, which no file of WESL can say.
     fn defined(&mut self, text: &str, line: &Line) {
         let mut words = text.split_whitespace().skip(1);
         let name = words.next().unwrap_or_default();
@@ -236,7 +237,7 @@ impl Scanner<'_> {
         Ok(())
     }
 
-    /// Whole lines, up to the one that closes the last brace.
+    /// Reads an import: whole lines, up to the one that closes the last brace.
     fn import(&mut self) -> Result<(), Diagnostic> {
         let start = self.at;
         let mut line = self.line();

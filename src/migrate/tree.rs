@@ -14,7 +14,7 @@ pub struct Scanned {
     pub nodes: Vec<Node>,
     /// What follows the last node.
     pub tail: Bytes,
-    /// Imports that stand behind a declaration or among them, with the conditions around them.
+    /// Imports that stand behind or between declarations, with the conditions around them.
     pub late: Vec<(Vec<Condition>, Import)>,
     /// Every import, wherever it stands.
     pub imports: Vec<Path>,

@@ -1,8 +1,8 @@
 //! Tokens as lists: declarations, statements, members, parameters, cases of a `switch`.
 //!
-//! A condition of WESL stands around whole ones. Where one of `naga_oil` cuts through the middle,
-//! what it cuts is written once for each way that it can go. Such variants share the shortest run
-//! of whole ones behind which all of them go on at the same place.
+//! A condition of WESL stands around whole units of such lists. Where one of `naga_oil` cuts
+//! through a unit, that unit is written once for each way that the condition can go. Such a variant
+//! goes on with further units until all variants continue at the same place.
 
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -26,7 +26,7 @@ pub enum Part<'a> {
     List(Level, Vec<Element<'a>>),
 }
 
-/// Elements of which one branch is there.
+/// A choice: a list of elements for each branch.
 #[derive(Debug)]
 pub struct Chosen<'a> {
     /// What the author wrote, if the condition stands around whole units there.
@@ -37,17 +37,17 @@ pub struct Chosen<'a> {
 /// Why a list or a unit could not be read.
 #[derive(Debug)]
 enum Stop {
-    /// The choice at this index cuts through.
+    /// The choice at this index of the row cuts through a unit.
     Cut(usize),
     Broken(usize),
     TooMuch,
 }
 
-/// Nodes in a row; choices that are decided are not among them.
+/// Nodes in a row. In place of a choice whose outcome is known, it has the nodes of the branch.
 type Row<'a> = Vec<&'a Node>;
 type Read<T> = Result<T, Stop>;
 
-/// Steps for each token of a file, beyond those of a small one.
+/// How many steps reading a file may take for each of its nodes, in addition to `STEPS_AT_LEAST`.
 const STEPS: usize = 400;
 const STEPS_AT_LEAST: usize = 200_000;
 
@@ -115,7 +115,7 @@ pub fn explicit_conditions(conditions: &[Option<Condition>]) -> Vec<Vec<Conditio
     conditions.iter().map(one).collect()
 }
 
-/// A way through a choice, read as far as it is known.
+/// One way through a choice, with the elements that were read so far.
 struct Variant<'a> {
     row: Row<'a>,
     at: usize,
@@ -327,7 +327,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether an `else` follows. A choice of which one way starts with it cuts the `if`.
+    /// Whether an `else` follows. A choice with a branch that starts with `else` cuts through the
+    /// `if`.
     fn goes_on(&self, row: &Row<'a>, at: usize, facts: &Facts) -> Read<bool> {
         match row.get(at) {
             Some(Node::Choice(choice)) => {
@@ -387,7 +388,8 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The branch that is known to be there; `Some` of nothing where none is.
+/// The branch that the facts decide for, which is empty if all conditions are known to be false;
+/// `None` if the facts do not decide.
 fn decided_branch<'a>(choice: &'a Choice, facts: &Facts) -> Option<&'a [Node]> {
     for branch in &choice.branches {
         match branch.condition.as_ref().map_or(Some(true), |condition| facts.holds(condition)) {

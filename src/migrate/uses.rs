@@ -1,4 +1,4 @@
-//! What stands for tokens that WESL writes otherwise: paths, and values of shader defs.
+//! Replaces tokens that WESL writes differently: paths, and values of shader defs.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -105,7 +105,7 @@ impl Uses<'_> {
         let mut targets = targets.iter();
         let (Some(target), None) = (targets.next(), targets.next()) else { return Ok(None) };
         match self.modules.place(target)? {
-            // The import is there no more.
+            // WESL has no such import, so the whole path is written here.
             Place::Prefix => {
                 let whole: Vec<String> = target.iter().chain(&path[1..]).cloned().collect();
                 Ok(known(self.modules.place(&whole)?))
@@ -114,7 +114,7 @@ impl Uses<'_> {
         }
     }
 
-    /// `#{NAME}`, and what the value was pasted to.
+    /// Replaces `#{NAME}`, and a suffix that directly follows it.
     fn value(&mut self, def: &Token, next: Option<&Token>) -> Result<(), Wrong> {
         let name = self.text_of(def).trim_matches(|mark| "#{} \t".contains(mark)).to_owned();
         let value = format!("constants::{name}");

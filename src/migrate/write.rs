@@ -1,4 +1,4 @@
-//! Lists of units to WESL, with the comments and the layout that they had.
+//! Writes lists of units as WESL, with the comments and the layout that they had.
 
 use std::collections::BTreeMap;
 
@@ -99,7 +99,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Blanks and comments.
+    /// Writes blanks and comments.
     fn lead(&mut self, lead: &Bytes) {
         let lead = &self.text[lead.clone()];
         let fresh = self.out.is_empty() || self.out.ends_with('\n');
@@ -113,7 +113,7 @@ impl Writer<'_> {
         self.text[line.range.start..line.words.start].to_owned()
     }
 
-    /// The comment behind a directive, and the line break.
+    /// Writes the comment behind a directive, and the line break.
     fn rest_of(&mut self, line: &Line) {
         let rest = &self.text[line.words.end..line.range.end];
         if !rest.trim().is_empty() {
@@ -123,7 +123,7 @@ impl Writer<'_> {
         self.out.push('\n');
     }
 
-    /// A directive that goes; its comment stays.
+    /// Leaves out a directive, but writes its comment.
     fn gone(&mut self, line: &Line) {
         self.lead(&line.lead);
         if !self.text[line.words.end..line.range.end].trim().is_empty() {
@@ -167,7 +167,8 @@ impl Writer<'_> {
         self.comma = (level.has_commas() && last != Some(",")).then_some(self.out.len());
     }
 
-    /// What stands between two tokens before a directive that was between them.
+    /// Writes the blanks and comments that stand between two tokens before a directive that was
+    /// between them.
     fn gap(&mut self, end: usize, next: usize) {
         if end == next {
             return;
@@ -220,7 +221,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Imports that stood among declarations, below the others.
+    /// Writes imports that stood among declarations below the other imports.
     fn late(&mut self, found: &Scanned) {
         let mut lines = Vec::new();
         for (around, import) in &found.late {
@@ -301,7 +302,7 @@ impl Writer<'_> {
         }
     }
 
-    /// What the author wrote once, once for each way.
+    /// Writes the variants of units that a condition cuts through.
     fn variants(&mut self, level: Level, chosen: &Chosen<'_>) {
         let lead = common_lead(chosen).unwrap_or(0..0);
         let lead_text = &self.text[lead.clone()];

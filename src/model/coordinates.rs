@@ -36,7 +36,7 @@ impl Coordinates {
     /// Those of a texture with a set of its own, and the value of the extension, if it has one.
     ///
     /// # Errors
-    /// A value that is none, after the place of the texture.
+    /// A value that is not valid, with its place.
     pub fn read(set: u32, extension: Option<&Value>, place: &str) -> Result<Self, String> {
         let Some(value) = extension else { return Ok(Self { set, transform: None }) };
         let place = format!("{place}.extensions.{TRANSFORM}");
@@ -102,7 +102,7 @@ impl Window {
 
     /// The smallest window of whole repetitions around some coordinates.
     pub fn around(low: DVec2, high: DVec2) -> Self {
-        /// More of them have too few texels each.
+        /// With more repetitions, each would get too few texels.
         const MOST: f64 = 32.0;
         if !low.is_finite() || !high.is_finite() {
             return Self::UNIT;

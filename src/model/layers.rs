@@ -24,7 +24,8 @@ const AXES: [Needs; 8] = [
     }),
 ];
 
-/// The extensions that the parser does not know, and those of others whose values it gives.
+/// The extensions that the parser does not know and that are read here. Any other unknown one is
+/// noted as left out.
 const READ: [&str; 6] = [
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -34,7 +35,7 @@ const READ: [&str; 6] = [
     "KHR_materials_sheen",
 ];
 
-/// Whether what passes the surface goes through a body.
+/// Whether light that is transmitted by the surface goes through a volume.
 fn has_body(layers: &Layers) -> bool {
     layers.thickness > 0.0 && (layers.transmission > 0.0 || layers.diffuse_transmission > 0.0)
 }
@@ -52,7 +53,7 @@ pub fn layer_axes(objects: &[Object]) -> Vec<String> {
 /// The layers of a material, apart from its colour, roughness and emission.
 ///
 /// # Errors
-/// A value that is none, with its place.
+/// A value that is not valid, with its place.
 pub fn read_layers(
     reader: &mut Reader<'_>,
     material: &gltf::Material<'_>,
@@ -105,7 +106,7 @@ fn parsed_layers(material: &gltf::Material<'_>, place: &str) -> Result<Layers, S
     let mut layers =
         Layers { metallic: f64::from(own.metallic_factor()).clamp(0.0, 1.0), ..Layers::default() };
     if let Some(ior) = material.ior() {
-        // 0 is a full reflection, and below 1 there is nothing else.
+        // 0 stands for full reflection. Any other value must be at least 1.
         let least = if ior == 0.0 { 0.0 } else { 1.0 };
         layers.ior = bounded(ior.into(), least, f64::MAX, &at("KHR_materials_ior.ior"))?;
     }
@@ -126,7 +127,7 @@ fn parsed_layers(material: &gltf::Material<'_>, place: &str) -> Result<Layers, S
     Ok(layers)
 }
 
-/// What passes a body, and how long it is under way.
+/// The thickness and the attenuation of a volume.
 fn volume_layers(
     material: &gltf::Material<'_>,
     place: &str,

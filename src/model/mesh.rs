@@ -28,7 +28,7 @@ pub fn mesh_objects(
             reader.notes.insert("morph targets are left out".to_owned());
         }
         let Some(indices) = triangle_indices(reader, &primitive, &place)? else { continue };
-        // Corners that no triangle has take memory too, once for each place.
+        // Vertices that no triangle uses take memory too, again for each node that has the mesh.
         let count = primitive.get(&gltf::Semantic::Positions).map_or(0, |rows| rows.count());
         *corners += indices.len().max(count);
         if *corners > MODEL_CORNERS {
@@ -46,7 +46,7 @@ pub fn mesh_objects(
         let shape =
             if part.world_from_mesh.determinant() < 0.0 { mirror_winding(shape) } else { shape };
         let (color, mut material, means) = read_surface(reader, &primitive.material())?;
-        // Bodies are as thick as they are large.
+        // The thickness of a volume scales with the mesh.
         let scale = part.world_from_mesh.determinant().abs().cbrt();
         if let Some(layers) = &mut material.layers {
             layers.thickness *= scale;
@@ -67,7 +67,7 @@ fn mirror_winding(mut shape: Shape) -> Shape {
     shape
 }
 
-/// Indices of triangles, or `None` where the primitive has others.
+/// The indices of triangles, three for each; `None` for points and lines.
 fn triangle_indices(
     reader: &mut Reader<'_>,
     primitive: &gltf::Primitive<'_>,
@@ -108,7 +108,8 @@ fn triangle_indices(
     }))
 }
 
-/// The coordinates of a primitive's corners, moved as the textures are.
+/// The texture coordinates of a primitive's vertices, with the textures' transform applied. Empty
+/// if it has none.
 pub fn mesh_coordinates(
     reader: &Reader<'_>,
     primitive: &gltf::Primitive<'_>,
@@ -169,9 +170,9 @@ fn mesh_vertices(
     Ok(vertices)
 }
 
-/// Tangents along u, of all triangles around a corner (Lengyel, *Foundations of Game Engine
-/// Development* 2, 7.5). Textures of normals have their green part upwards in the image, which is
-/// against v in glTF.
+/// Tangents along u, from the sum over all triangles at a vertex (Lengyel, *Foundations of Game
+/// Engine Development* 2, 7.5). Green in a normal map points up in the image, which is against v in
+/// glTF.
 fn set_tangents(vertices: &mut [Vertex], indices: &[u32]) {
     let mut sums = vec![(DVec3::ZERO, DVec3::ZERO); vertices.len()];
     for triangle in indices.chunks_exact(3) {

@@ -39,13 +39,14 @@ pub struct Model {
     pub layers: Vec<String>,
     /// The textures that at least one material has, by the names of their bindings.
     textures: BTreeSet<&'static str>,
-    /// Means of textures, one for each object.
+    /// The means of the textures of each object.
     means: Vec<Means>,
 }
 
 impl Model {
-    /// The scene for a permutation, which may not have all textures: materials have their means
-    /// then, which is the second value in words.
+    /// The scene for a permutation. The means of textures that the permutation does not have are
+    /// multiplied into the factors of the materials. The second value is a note that lists such
+    /// textures, if there are any.
     pub fn scene_of(mut self, lacks: Lacks) -> (Scene, Option<String>) {
         for (object, means) in self.scene.objects.iter_mut().zip(&self.means) {
             means.apply(&mut object.material, lacks);
@@ -73,7 +74,7 @@ pub enum View {
     At(DVec3, DVec3),
 }
 
-/// What is gathered on the way.
+/// A document that is being read, and what is gathered from it.
 struct Reader<'b> {
     document: &'b gltf::Document,
     blob: &'b [u8],
@@ -87,7 +88,8 @@ struct Reader<'b> {
 /// Reads a binary glTF file.
 ///
 /// # Errors
-/// In words, with the place in the document: a file that is none, or that is broken or too large.
+/// In words, with the place in the document: a file that is not binary glTF, or that is broken or
+/// too large.
 pub fn read_model(bytes: &[u8], view: View) -> Result<Model, String> {
     if bytes.len() as u64 > MODEL_BYTES {
         return Err(format!("{} bytes are more than {MODEL_BYTES}", bytes.len()));
@@ -104,7 +106,7 @@ pub fn read_model(bytes: &[u8], view: View) -> Result<Model, String> {
     catch_panics(read).unwrap_or_else(|reason| Err(format!("the document is broken: {reason}")))
 }
 
-/// The document of a binary file, and its bytes.
+/// The JSON document of a binary file, and the bytes of its buffer.
 fn document_and_bytes(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
     const HEADER: usize = 12;
     if !bytes.starts_with(b"glTF") {
@@ -195,7 +197,8 @@ fn drawn_materials<'d>(
     meshes.flat_map(|mesh| mesh.primitives().map(|part| part.material()).collect::<Vec<_>>())
 }
 
-/// Microfacets as in glTF, as many lamps as there are, and textures where there are any.
+/// The values of axes for the model: microfacets as in glTF, as many lamps as there are, and
+/// textures where there are any.
 fn model_axes(
     reader: &Reader<'_>,
     placed: &nodes::Placed,
@@ -213,7 +216,7 @@ fn model_axes(
         Some(LampKind::Spot) => "shadow=pcf_3x3,shadow_light=spot",
         _ => "shadow=none",
     };
-    // Layers mirror their surroundings, or show them.
+    // Layers reflect or transmit their surroundings, so they need image-based lighting.
     let ambient = if layers.len() > 1 { "ibl" } else { "hemisphere" };
     let mut chosen = format!("specular=ggx,ambient={ambient},max_lights={most},{shadow}");
     if sheet.names.contains("base_map") {

@@ -1,4 +1,4 @@
-//! Nodes: what stands where.
+//! Walks the nodes of a scene: meshes, cameras and lights with their transforms.
 
 use glam::{DMat4, DVec3};
 use gltf::camera::Projection;
@@ -8,29 +8,30 @@ use super::Reader;
 use crate::limits::{MODEL_NESTING, MODEL_NODES};
 use crate::scene::sets::{Eye, Lamp, LampKind, Object};
 
-/// A mesh in its place.
+/// A mesh and its transform to world space.
 pub struct PlacedMesh {
     pub mesh: usize,
     pub world_from_mesh: DMat4,
 }
 
-/// A camera in its place.
+/// A camera and its transform to world space.
 pub struct Camera {
     world_from_camera: DMat4,
     fov_y: f64,
     planes: (f64, Option<f64>),
 }
 
-/// All that a document places.
+/// All meshes, cameras and lights of a scene.
 #[derive(Default)]
 pub struct Placed {
     pub parts: Vec<PlacedMesh>,
     pub cameras: Vec<Camera>,
-    /// What arrives at distance 1 or everywhere, the kind, the place, half the angle of a cone.
+    /// Of each light: its colour times its intensity (in lux if it is directional, else in
+    /// candela), its kind, its transform to world space, and half the angle of its cone.
     lights: Vec<(DVec3, LampKind, DMat4, f64)>,
 }
 
-/// A ball around all corners.
+/// A ball around all vertices.
 pub struct Ball {
     pub middle: DVec3,
     pub radius: f64,
@@ -48,7 +49,7 @@ pub fn walk_scene(reader: &mut Reader<'_>) -> Result<Placed, String> {
     while let Some((node, parent, depth)) = open.pop() {
         seen += 1;
         let place = format!("nodes[{}]", node.index());
-        // A node below itself has no end.
+        // A node that is its own descendant would be walked without end.
         if seen > MODEL_NODES || depth > MODEL_NESTING {
             return Err(format!(
                 "{place}: more than {MODEL_NODES} nodes, or nesting deeper than {MODEL_NESTING}"
@@ -95,7 +96,7 @@ fn take_node(reader: &mut Reader<'_>, node: &gltf::Node<'_>, world: DMat4, place
     }));
 }
 
-/// A ball around the corners of all objects.
+/// A ball around the vertices of all objects.
 pub fn bounding_ball(objects: &[Object]) -> Ball {
     let points = || {
         objects.iter().flat_map(|object| object.shape.vertices.iter().map(|vertex| vertex.position))
@@ -107,7 +108,7 @@ pub fn bounding_ball(objects: &[Object]) -> Ball {
     Ball { middle, radius: radius.max(1e-6) }
 }
 
-/// A lamp above the viewer's left shoulder, whose cone has all of the model.
+/// A lamp above the viewer's left shoulder, with all of the model in its cone.
 fn key_lamp(bounds: &Ball, eye: &Eye) -> Lamp {
     let towards = (eye.position - bounds.middle).normalize_or(DVec3::Z);
     let left = DVec3::Y.cross(towards).normalize_or(DVec3::X) * -1.0;
@@ -137,7 +138,8 @@ pub fn model_lamps(placed: &Placed, bounds: &Ball, eye: &Eye) -> Vec<Lamp> {
             LampKind::Point => (position, bounds.middle),
             LampKind::Spot => (position, position + axis * reach),
         };
-        // Candelas become lux at the target; a matt surface shows their share of pi.
+        // Candelas become lux at the target. A white diffuse surface reflects that over pi as
+        // radiance.
         let falloff = if *kind == LampKind::Directional { 1.0 } else { reach * reach };
         let color = *color / falloff / std::f64::consts::PI;
         Lamp { color, position, target, half_angle: *half_angle, kind: *kind }
@@ -146,7 +148,7 @@ pub fn model_lamps(placed: &Placed, bounds: &Ball, eye: &Eye) -> Vec<Lamp> {
 }
 
 impl Camera {
-    /// As a viewer of a model.
+    /// The camera as the viewer of the scene.
     pub fn eye(&self, bounds: &Ball) -> Eye {
         let position = self.world_from_camera.transform_point3(DVec3::ZERO);
         let ahead = self.world_from_camera.transform_vector3(DVec3::NEG_Z);

@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::Reader;
 use super::coordinates::{Coordinates, TRANSFORM, set_of};
 
-/// Channels of an image in a texture, where they keep their places.
+/// Channels of an image that go to the same channels of a texture of `forward`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Part {
     /// The name of the texture's binding.
@@ -17,7 +17,7 @@ pub struct Part {
     /// Whether the image is coded as sRGB.
     pub is_color: bool,
     pub coordinates: Coordinates,
-    /// The bits of the share that the image has over 1.
+    /// The bits of the strength of the image, an `f32`; see [`Part::weakened`].
     strength: u32,
 }
 
@@ -66,7 +66,7 @@ impl Part {
         Self { coordinates, ..self }
     }
 
-    /// A texel, as far as it counts.
+    /// A texel, mixed with 1: at strength 0 the result is 1, at strength 1 the texel.
     pub fn weakened(&self, texel: DVec4) -> DVec4 {
         DVec4::ONE.lerp(texel, f32::from_bits(self.strength).clamp(0.0, 1.0).into())
     }
@@ -93,7 +93,7 @@ pub fn material_parts(
     if let Some(info) = own.base_color_texture() {
         parts.push(known(&info, "base_map", RGB, true));
     }
-    // What is unlit has no other textures.
+    // An unlit material uses no other textures.
     if material.unlit() {
         return Ok(parts);
     }

@@ -7,11 +7,11 @@ use super::layers::read_layers;
 use crate::scene::Layers;
 use crate::scene::sets::Material;
 
-/// The colour of a surface, what it does with light, and the means of its textures, which the
-/// factors of glTF do not have yet.
+/// The colour of a surface, its material, and the means of its textures, which [`Means::apply`]
+/// multiplies into the material.
 ///
 /// # Errors
-/// A value of an extension that is none.
+/// A value of an extension that is not valid.
 pub fn read_surface(
     reader: &mut Reader<'_>,
     material: &gltf::Material<'_>,
@@ -22,7 +22,8 @@ pub fn read_surface(
     let layers = read_layers(reader, material)?;
     left_out(reader, material);
     let means = if material.unlit() { Means::default() } else { texture_means(reader, material)? };
-    // Surfaces that are not glTF's have no textures of metal and roughness.
+    // Diffuse, specular and shininess are for permutations without glTF's material model. These
+    // have no textures of metalness and roughness, so the means are multiplied in here.
     let metal = layers.metallic * means.metal;
     let factor = f64::from(own.roughness_factor()).clamp(0.0, 1.0);
     let rough = factor * means.rough;
@@ -39,7 +40,7 @@ pub fn read_surface(
     let share = layers.specular_color * layers.specular;
     let normal = (((layers.ior - 1.0) / (layers.ior + 1.0)).powi(2) * share).min(DVec3::ONE);
     let specular = normal.lerp(color, metal);
-    // Light of the surroundings is reflected by metals too, in their colour.
+    // Metals reflect no light diffusely. Ambient light they do reflect, in their colour.
     let matt = DVec3::splat(1.0 - metal);
     let alpha = (rough * rough).max(1e-3);
     Ok((
@@ -58,7 +59,7 @@ pub fn read_surface(
 }
 
 impl Means {
-    /// Multiplies the factors of a material that a permutation has no textures for.
+    /// Multiplies the means of textures that a permutation does not have into a material.
     pub fn apply(&self, material: &mut Material, lacks: Lacks) {
         if lacks.occlusion {
             material.ambient *= self.open;
@@ -80,8 +81,8 @@ pub struct Lacks {
     pub occlusion: bool,
 }
 
-/// A surface that shows its colour and nothing else. If all are unlit, no lamp shines. Beside
-/// others, a black surface gives the colour off.
+/// A surface that shows its colour and nothing else. If all are unlit, no lamp shines. Beside lit
+/// ones, it is a black surface that emits its colour.
 fn unlit_surface(all_unlit: bool, color: DVec3) -> (DVec3, Material) {
     if all_unlit {
         return (color, Material::default());
@@ -98,7 +99,7 @@ fn unlit_surface(all_unlit: bool, color: DVec3) -> (DVec3, Material) {
 pub struct Means {
     metal: f64,
     rough: f64,
-    /// The share of the light from around that arrives.
+    /// From the occlusion: the share of the ambient light that arrives.
     open: f64,
     emission: DVec3,
 }
@@ -109,8 +110,8 @@ impl Default for Means {
     }
 }
 
-/// The means of a material's textures. A factor of 1 that a texture lowers everywhere would make
-/// everything metal.
+/// The means of a material's textures. Without them, a metallic factor of 1 that a texture lowers
+/// everywhere would make the whole surface metal.
 fn texture_means(reader: &mut Reader<'_>, material: &gltf::Material<'_>) -> Result<Means, String> {
     let mut means = Means::default();
     if let Some(info) = material.pbr_metallic_roughness().metallic_roughness_texture() {

@@ -1,4 +1,5 @@
-//! Textures of all materials on one sheet, since the programs have one texture of each kind.
+//! Puts the textures of all materials on one sheet (an atlas), since the programs have one texture
+//! of each kind.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
@@ -16,7 +17,7 @@ use crate::limits::{MODEL_CORNERS, MODEL_PIXELS, MODEL_TEXTURES};
 use crate::scene::sets::{Map, Maps};
 use crate::scene::{Shape, blank_texel};
 
-/// All textures of a model, each in a cell.
+/// All textures of a model: each set of them, as a material has it, is in a cell.
 #[derive(Default)]
 pub struct Sheet {
     pub maps: Option<Maps>,
@@ -29,15 +30,17 @@ pub struct Sheet {
 #[derive(Debug, Clone, Copy)]
 struct Cell {
     index: usize,
-    /// The coordinates that the surfaces have, or those of the textures where all have the same.
+    /// The coordinates of the surfaces with this set: those of the textures if all of them have the
+    /// same, else a set of coordinates without a transform.
     own: Coordinates,
     is_shared: bool,
     window: Window,
 }
 
 impl Cell {
-    /// The coordinates of a material's surfaces. A texture with another set cannot be on the same
-    /// sheet; textures that are moved differently are moved in their images.
+    /// The cell for the textures of a material. If their transforms differ, these are applied to
+    /// the images as they are drawn into the cell. A texture with another set of coordinates than
+    /// the first cannot be drawn into the cell.
     fn new(index: usize, parts: &[Part]) -> Self {
         let first = parts.first().map_or_else(Coordinates::default, |part| part.coordinates);
         let is_shared = parts.iter().all(|part| part.coordinates == first);
@@ -45,7 +48,7 @@ impl Cell {
         Self { index, own, is_shared, window: Window::UNIT }
     }
 
-    /// Where a texture has its pixel for a share of the cell.
+    /// The coordinates in a texture, in [0, 1), of a position in the cell, in [0, 1].
     fn in_texture(&self, part: &Part, share: DVec2) -> DVec2 {
         let at = self.window.at(share);
         let at = if self.is_shared {
@@ -94,8 +97,8 @@ pub fn texture_sheet(reader: &mut Reader<'_>, placed: &Placed) -> Result<Sheet, 
     Ok(Sheet { maps, names, cells })
 }
 
-/// A cell for each set of textures. One set alone is repeated by the sampler, others in their
-/// cells.
+/// A cell for each set of textures. A single set is repeated by the sampler. With several, the
+/// repetitions are drawn into the cells.
 fn texture_cells(
     reader: &Reader<'_>,
     placed: &Placed,
@@ -133,7 +136,7 @@ fn texture_cells(
     Ok(cells)
 }
 
-/// Texels along an edge of a sheet. There may be ten of them.
+/// Texels along an edge of a sheet. A model may need ten sheets.
 fn sheet_side(map: &str) -> usize {
     if matches!(map, "base_map" | "normal_map") { 2048 } else { 1024 }
 }
@@ -191,7 +194,7 @@ impl Reader<'_> {
         if self.means.len() >= MODEL_TEXTURES {
             return Err(format!("materials: more than {MODEL_TEXTURES} sets of textures"));
         }
-        // What cannot be read changes nothing.
+        // A texture that cannot be read counts as 1, which changes no factor.
         let mean = self.image(key.0, is_color)?.map_or(DVec3::ONE, |map| map.mean().truncate());
         self.means.insert(key, mean);
         Ok(mean)

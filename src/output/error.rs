@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 pub enum Error {
     /// Something is there that we did not write.
     Foreign(Foreign),
-    /// The operating system's words.
+    /// The operating system refused, with its message.
     Io { path: PathBuf, kind: io::ErrorKind, reason: String },
 }
 
@@ -24,12 +24,12 @@ pub struct Foreign {
 }
 
 impl Foreign {
-    /// What may be replaced if the user says so.
+    /// Something that is replaced if the user asks for it with `--force`.
     pub fn file(path: &Path, found: impl Into<String>) -> Self {
         Self { path: path.to_owned(), found: found.into(), can_be_forced: true }
     }
 
-    /// What is never replaced.
+    /// Something that is never replaced.
     pub fn never(path: &Path, found: impl Into<String>) -> Self {
         Self { path: path.to_owned(), found: found.into(), can_be_forced: false }
     }

@@ -9,12 +9,12 @@
 //!
 //! A write takes these steps, in this order, so that a crash between two of them loses nothing:
 //!
-//! 1. `Scratch::new` makes a folder beside the place. The run keeps a file in it locked, which tells
-//!    a later run whether this one is still alive.
+//! 1. `Scratch::new` makes a folder beside the place. The run keeps a file in it locked, which
+//!    tells a later run whether this one is still alive.
 //! 2. `Scratch::write` writes the bytes to a new file in this folder, and waits until they are on
 //!    the disk.
-//! 3. `put_file` in `file.rs` gives the file the permissions of the one that it replaces, and renames
-//!    it into its place. In an output folder, `Folder::put` in `folder.rs` only renames it.
+//! 3. `put_file` in `file.rs` gives the file the permissions of the one that it replaces, and
+//!    renames it into its place. In an output folder, `Folder::put` in `folder.rs` only renames it.
 //! 4. `sync_folder` in `scratch.rs` syncs the folder, so that the new name survives a loss of power.
 //! 5. The scratch folder is removed: when it is dropped, or by the next run if this one was killed.
 //!
@@ -31,12 +31,14 @@
 //!
 //! What holds for all of it:
 //!
-//! - A file is written in a [`Scratch`] folder beside its place, synced, and renamed into it. A run
-//!   that is killed leaves the older file whole, and the next run removes what it left.
+//! - A file is written in a [`Scratch`] folder beside its place, synced, and renamed into it. Only
+//!   records of the cache are not synced. A run that is killed leaves the older file whole, and the
+//!   next run removes what it left.
 //! - Only what is absent, empty or ours is replaced. Ours is decided by content: a mark that the
 //!   file carries, or the hash that [`write_folder`] recorded. [`Replace::Any`] stands for a user
 //!   who said `--force`.
-//! - Nothing is deleted here but scratch folders that carry our mark and that no run holds.
+//! - Nothing is deleted here but scratch folders that no run holds: those that carry our mark, and
+//!   empty ones.
 //! - Inside an output folder no link is followed. A file that the user names may be a link, whose
 //!   target is written, or a stream (a pipe, a terminal, `/dev/null`), which is written to.
 

@@ -39,7 +39,7 @@ impl Scratch {
         Self::after(parent, &mut |_| ())
     }
 
-    /// As [`Self::new`]; `look` sees the folder of each killed run before it is removed.
+    /// As [`Self::new`]; `look` is called with the folder of each killed run before it is removed.
     pub fn after(parent: &Path, look: &mut dyn FnMut(&Path)) -> Result<Self, Error> {
         for (folder, _mark) in left_folders(parent) {
             look(&folder);
@@ -157,7 +157,7 @@ fn left_folders(parent: &Path) -> Vec<(PathBuf, File)> {
     found
 }
 
-/// The mark of a folder that no run holds.
+/// The mark of a scratch folder, locked. `None` if a run holds it, or if it is not our mark.
 fn dead_mark(path: &Path) -> Option<File> {
     if !fs::symlink_metadata(path).ok()?.is_file() {
         return None;

@@ -1,5 +1,5 @@
-//! What stands for the compression of single-file bundles in a build without the feature
-//! `single-file`: directories only.
+//! Replaces the compression of single-file bundles in a build without the feature `single-file`.
+//! Such a build supports only directories.
 
 use std::io;
 

@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// zstd's: higher ones gain a few percent and cost several times as long.
+/// The compression level of zstd. Higher levels save a few percent and take several times as long.
 const LEVEL: i32 = 9;
 
 /// One frame that holds `raw`.
@@ -10,7 +10,7 @@ pub fn compress(raw: &[u8]) -> io::Result<Vec<u8>> {
     zstd::bulk::compress(raw, LEVEL)
 }
 
-/// What `packed` holds, at most `most` bytes of it.
+/// The content of `packed`. Fails if it has more than `most` bytes.
 pub fn decompress(packed: &[u8], most: usize) -> io::Result<Vec<u8>> {
     zstd::bulk::decompress(packed, most)
 }

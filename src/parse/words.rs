@@ -6,8 +6,8 @@
 
 use std::ops::Range;
 
-/// Whether an identifier may begin with a letter: as in WGSL, whose rule contains that of GLSL and
-/// of the C family.
+/// Whether an identifier may begin with the character. The rule is that of WGSL, which includes
+/// those of GLSL and of the C family.
 pub fn begins_word(letter: char) -> bool {
     match letter {
         'a'..='z' | 'A'..='Z' | '_' => true,
@@ -15,7 +15,7 @@ pub fn begins_word(letter: char) -> bool {
     }
 }
 
-/// Whether an identifier may go on with a letter.
+/// Whether an identifier may have the character after its first one.
 pub fn continues_word(letter: char) -> bool {
     match u8::try_from(letter) {
         Ok(byte) if byte.is_ascii() => is_word_byte(byte),
@@ -29,7 +29,8 @@ pub fn is_word_byte(byte: u8) -> bool {
     IS_WORD_BYTE[byte as usize]
 }
 
-/// A table, since the first generation asks for millions of bytes without optimisation.
+/// A table, which is fast without optimisation too. A dev build of the crate is not optimised, and
+/// looks up millions of bytes.
 const IS_WORD_BYTE: [bool; 256] = {
     let mut table = [false; 256];
     let mut byte = 0;
@@ -72,7 +73,7 @@ pub fn word_around(text: &str, range: Range<usize>) -> Range<usize> {
     text[..range.start].trim_end_matches(continues_word).len()..word_end(text, range.end)
 }
 
-/// The character at a byte where ASCII ends.
+/// The character at a byte, if it is not ASCII.
 fn beyond_ascii(text: &str, at: usize) -> Option<char> {
     if text.as_bytes()[at].is_ascii() { None } else { text.get(at..)?.chars().next() }
 }
@@ -98,13 +99,13 @@ pub fn number_end(text: &str, start: usize) -> usize {
 pub enum PieceKind {
     Word,
     Number,
-    /// White space, as long as it goes on.
+    /// A run of white space.
     Blank,
     /// Any other single character.
     Sign,
 }
 
-/// A piece of a text. The pieces of a text are all of it.
+/// A piece of a text. All pieces of a text, joined, are the text again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Piece<'a> {
     pub kind: PieceKind,
@@ -186,7 +187,7 @@ pub fn has_word(text: &str, word: &str) -> bool {
     words(text).any(|found| found.text == word)
 }
 
-/// Whether both are the same, in constants too.
+/// Whether both are the same. Unlike `==`, this can be used in constants.
 pub const fn same_bytes(left: &[u8], right: &[u8]) -> bool {
     let mut index = 0;
     while index < left.len() && index < right.len() && left[index] == right[index] {

@@ -19,7 +19,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// As the manifest's reader would call it.
+    /// The name in messages and reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Bool => "boolean",

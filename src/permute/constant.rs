@@ -3,7 +3,8 @@
 /// The most digits of a number.
 const LONGEST: usize = 64;
 
-/// The text of a literal of WGSL, whose suffix is its type: `true`, `4`, `4u`, `-4i`, `0.5f`.
+/// Checks that a text is a literal of WGSL, and returns it. A suffix is the type of the literal:
+/// `true`, `4`, `4u`, `-4i`, `0.5f`.
 ///
 /// # Errors
 /// What is wrong with it.
@@ -24,7 +25,7 @@ pub fn parse(text: &str) -> Result<String, String> {
     if fits { Ok(text.to_owned()) } else { Err(format!("`{text}` does not fit its type")) }
 }
 
-/// Whether an integer fits the type that its suffix names; `None` if it is none.
+/// Whether an integer fits the type that its suffix names; `None` if the text is not an integer.
 fn integer_fits(text: &str) -> Option<bool> {
     let (number, range) = match text.as_bytes().last()? {
         b'u' => (text.strip_suffix('u')?, 0..=i128::from(u32::MAX)),
@@ -44,7 +45,7 @@ fn integer_fits(text: &str) -> Option<bool> {
     Some(range.contains(&(sign * value)))
 }
 
-/// Whether a number with a point or an exponent fits its type; `None` if it is none.
+/// Whether a number with a point or an exponent fits its type; `None` if the text is not a number.
 fn float_fits(text: &str) -> Option<bool> {
     let (number, most) = match text.strip_suffix('f') {
         Some(number) => (number, f64::from(f32::MAX)),

@@ -27,7 +27,7 @@ pub struct Cover {
     pub infeasible: Vec<Pair>,
 }
 
-/// Covers every pair of values that the constraints allow; the lists of the space do not count.
+/// Covers every pair of values that the constraints allow; the lists of the space are ignored.
 ///
 /// The search is greedy and deterministic. It pins the first uncovered pair. Then each other axis
 /// takes the value that covers the most uncovered pairs and still leads to a valid point.
@@ -60,9 +60,11 @@ pub fn covering_space(program: &Program) -> Space {
     let include = pairwise(space).points;
     let lists = Lists { only: Vec::new(), exclude: vec![everything], include };
     let covering = Space::new(space.axes().to_vec(), space.constraints().to_vec(), lists);
-    // The axes and constraints were read without errors, and the points are valid.
+    // The axes and constraints were read without errors. If the list of points is too complex to
+    // count, all permutations ship.
     let mut covering = covering.unwrap_or_else(|_| space.clone());
     covering.undeclared = space.undeclared;
+    covering.features = space.features.clone();
     covering
 }
 

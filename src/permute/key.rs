@@ -116,7 +116,8 @@ fn named_choice(
     Ok((axis, ordinal, span))
 }
 
-/// The index of an axis that permutations differ in.
+/// The index of an axis, by its name. Dynamic axes are refused, since permutations do not differ in
+/// them.
 pub(super) fn find_axis(axes: &[Axis], name: &str, span: Span) -> Result<usize, Diagnostic> {
     match axes.iter().position(|axis| axis.name == name) {
         Some(index) if axes[index].mode == Mode::Dynamic => Err(dynamic_axis(&axes[index], span)),

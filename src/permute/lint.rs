@@ -36,7 +36,7 @@ pub fn lint(space: &Space, what: &str, place: Span) -> Vec<Diagnostic> {
     warnings
 }
 
-/// A space in which the lists leave no permutation.
+/// The warning for a space in which the lists leave no permutation.
 pub fn nothing_wanted(space: &Space, what: &str, place: Span) -> Option<Diagnostic> {
     (space.count() == 0).then(|| {
         let message = format!("the lists of {what} leave no permutation");

@@ -204,7 +204,7 @@ fn in_order(axis: &Axis) -> impl Iterator<Item = &Setting> {
 }
 
 impl fmt::Display for Lock {
-    /// The file.
+    /// The text of the file.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{HEADER}")?;
         for Digit { program, axis, added, values } in &self.lines {

@@ -88,7 +88,7 @@ fn continuation_length(rest: &str) -> usize {
     if swallowed == 0 { 0 } else { 1 + swallowed + continuation_length(&after[swallowed..]) }
 }
 
-/// The length of what writes one character.
+/// How many bytes of the literal stand for one character.
 fn written_length(rest: &str, character: char, escapes: bool) -> usize {
     match rest.strip_prefix('\\').filter(|_| escapes).and_then(|after| after.chars().next()) {
         Some('x') => 4,

@@ -40,7 +40,7 @@ pub struct Report {
 pub struct StageCount {
     /// Name of the stage or entry point.
     pub stage: String,
-    /// How many permutations it can tell apart.
+    /// How many distinct compositions it has.
     pub unique: u64,
     /// Axes that never change it.
     pub blind: Vec<String>,

@@ -87,7 +87,7 @@ pub fn unknown_programs(
     list_lines(sources, list).filter_map(of_line).collect()
 }
 
-/// The lines of a list that say something, each with its place.
+/// The lines of a list that are neither blank nor comments, each with its place.
 fn list_lines(sources: &SourceSet, list: SourceId) -> impl Iterator<Item = (Span, &str)> {
     let lines = usage_lines(&sources.get(list).text);
     lines.map(move |(_, at, text)| (Span::new(list, at..at + text.len()), text))

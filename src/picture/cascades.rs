@@ -5,10 +5,10 @@ use glam::{DMat4, DVec3};
 use crate::scene::sets::{Eye, Scene};
 use crate::scene::{Bounds, bounding_sphere, cascade_splits, depth_range};
 
-/// How many parts the map has, as quarters.
+/// How many cascades the map has. Each is a quarter of the map.
 pub(super) const CASCADES: usize = 4;
 
-/// The weight of the logarithmic split against the even one.
+/// The weight of the logarithmic split. The rest is the weight of the uniform split.
 const SPLIT: f64 = 0.7;
 /// Before its end a part fades into the next one, over this share of the first part.
 const OVERLAP: f64 = 0.2;
@@ -16,7 +16,7 @@ const OVERLAP: f64 = 0.2;
 /// The parts, from the nearest to the farthest.
 #[derive(Debug, Clone)]
 pub struct Cascades {
-    /// The middle and the radius of a sphere around what each part covers.
+    /// The centre and the radius of a sphere around what each part covers.
     spheres: [(DVec3, f64); CASCADES],
     /// The size of a texel of each.
     pub texels: [f64; CASCADES],
@@ -57,7 +57,7 @@ impl Cascades {
         Self { spheres, texels, splits, overlap, size: f64::from(size) }
     }
 
-    /// The sides of a part in the light's view, moved to whole texels.
+    /// The sides of a part in the light's view, snapped to whole texels.
     pub fn bounds(&self, index: usize, view: DMat4) -> Bounds {
         let (texel, (middle, _)) = (self.texels[index], self.spheres[index]);
         let at = (view.transform_point3(middle) / texel).round() * texel;
@@ -72,7 +72,8 @@ impl Cascades {
         }
     }
 
-    /// The numbers of a field of the block `cascades`. The matrices are those of the parts alone.
+    /// The numbers of a field of the block `cascades`. `parts` are the matrices from world space to
+    /// each part's own clip space.
     pub fn number(&self, parts: &[DMat4], index: usize, field: &str) -> Option<Vec<f64>> {
         Some(match field {
             "clip_from_world" => {
@@ -104,9 +105,10 @@ pub(super) fn quartered_map(parts: &[Vec<f32>], size: u32) -> Vec<f32> {
     (0..4 * size * size).map(texel).collect()
 }
 
-/// The viewer's depth in parts. The splits are where the scene is, and the ends are those of the
-/// viewer. A part begins a little before the one in front of it ends: where both are cut at one
-/// plane, rounding leaves pixels that neither of them draws.
+/// The near and the far plane of each of `count` slices of the viewer's depth. The splits between
+/// them are chosen for the depths of the scene. The first and the last plane are those of the
+/// viewer. Each slice begins a little before the previous one ends: if both were clipped at the
+/// same plane, rounding would leave pixels that neither of them draws.
 pub(super) fn slices_of(scene: &Scene, count: u32) -> Vec<(f64, f64)> {
     let eye = &scene.eye;
     let (near, far) = seen_range(scene);

@@ -19,7 +19,7 @@ use crate::scene::sets::LampKind;
 /// Everything that can be changed, as [`Changes`](super::Changes) take it.
 #[derive(Debug, Clone)]
 pub struct Controls {
-    /// From world space to the picture.
+    /// From world space to the clip space of the picture.
     pub clip_from_world: DMat4,
     /// The lamps that shine, or whose shadow falls.
     pub lamps: Vec<LampControl>,
@@ -47,7 +47,7 @@ pub struct Uniform {
     pub path: String,
     /// Type in WGSL.
     pub ty: String,
-    /// What the picture has. Where each object has its own, that of the first.
+    /// Its numbers in the picture. Where each object has its own, those of the first object.
     pub numbers: Vec<f64>,
 }
 

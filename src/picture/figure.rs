@@ -21,14 +21,13 @@ use crate::project::LIBRARY;
 use crate::proof::library::Library;
 use crate::source::SourceSet;
 
-/// The side of a panel in pixels, and what is between panels.
+/// The side of a panel and the gap between panels, in pixels, and the colour of the gap.
 pub const SIDE: u32 = 144;
 const GAP: u32 = 4;
 const GROUND: [u8; 3] = [24, 26, 30];
-/// How many places of each pixel are averaged.
+/// Samples per pixel.
 const SAMPLES: u32 = 4;
-/// A check computes every pixel whose row and column are multiples of this, from the middle of the
-/// first such square on.
+/// A check computes only the middle pixel of each square with this side, in pixels.
 const SPARSE: u32 = 9;
 /// Part of the pixels that must be as they were, within `CLOSE` of 255. Sines and powers differ
 /// between systems in their last digit, and an edge may then fall on another pixel.
@@ -215,7 +214,8 @@ fn evaluator() -> Result<Box<dyn Session>, Diagnostics> {
     EXECUTOR.start().map_err(|_| not_written("the evaluator could not be started".to_owned()))
 }
 
-/// A module whose function has the place and the second parameter, and returns a colour.
+/// A module whose function takes a place in a panel and the value of the panel, and returns a
+/// colour.
 fn figure_text(kind: &Kind, path: &str, figure: &Figure) -> String {
     let name = figure.panels.as_ref().map_or("unused", |panels| &panels.name);
     let code = kind.code.replace("VALUE", &figure.value);

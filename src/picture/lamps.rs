@@ -11,7 +11,7 @@ use crate::scene::{Cells, Clusters, Reach, between_middles};
 
 /// The range of falloffs that have one, as a multiple of the target's distance.
 const RANGE: f64 = 2.4;
-/// How far away a directional light is, in reaches of its lamp.
+/// How far away a directional light is, as a multiple of the reach of its lamp.
 const FAR_AWAY: f64 = 100.0;
 
 /// How a lamp fades with distance.
@@ -21,7 +21,7 @@ struct Fading {
     range: f64,
 }
 
-/// A lamp, as it lights things that are not seen.
+/// A lamp with the numbers that the program has of it, to compute the light that probes get.
 pub(super) struct Shining {
     kind: LampKind,
     color: DVec3,
@@ -54,8 +54,8 @@ impl Fading {
 }
 
 impl Shining {
-    /// The light that arrives at a point across its direction, and where it comes from. A spot
-    /// fades towards the edge of its cone as with `cone=smooth`.
+    /// The light that a surface at a point gets if it faces the lamp, and the place that the light
+    /// comes from. A spot fades towards the edge of its cone as with `cone=smooth`.
     pub fn arriving(&self, at: DVec3) -> (DVec3, DVec3) {
         if self.kind == LampKind::Directional {
             return (self.color, at - self.axis * FAR_AWAY * self.reach);
@@ -70,7 +70,8 @@ impl Shining {
 }
 
 impl Values<'_> {
-    /// How many lamps shine: those of the scene, as far as the array has room.
+    /// How many lamps shine: those of the scene, as far as the array has room. `None` if the
+    /// program has no lamps.
     pub fn lamps(&self) -> Option<usize> {
         let most = usize::try_from(self.lit.integer(LAMPS)?).ok()?;
         Some(self.scene.lamps.len().min(most))
@@ -172,7 +173,7 @@ impl Values<'_> {
         published.and_then(|range| range.first().copied()).unwrap_or(RANGE * distance)
     }
 
-    /// The extent of a lamp.
+    /// The numbers of a lamp in the block `areas`: its extent.
     pub(super) fn area(&self, index: usize, field: &str) -> Option<Vec<f64>> {
         let Some(lamp) = self.scene.lamps.get(index) else { return Some(Vec::new()) };
         let (right, up) = lamp.sides();
@@ -185,7 +186,7 @@ impl Values<'_> {
         })
     }
 
-    /// How a lamp reads its profile.
+    /// The numbers of a lamp in the block `profiles`: how it reads its profile.
     pub(super) fn profile(&self, index: usize, field: &str) -> Option<Vec<f64>> {
         let Some(lamp) = self.scene.lamps.get(index) else { return Some(Vec::new()) };
         let [scale_x, scale_y, x, y] = between_middles(&self.lit.needs.profile?.map()).to_array();
@@ -201,7 +202,7 @@ impl Values<'_> {
         })
     }
 
-    /// The lists of lamps for the parts of the view.
+    /// The numbers of the block `clusters`: the lists of lamps for the cells of the view.
     pub(super) fn cluster(&self, index: usize, field: &str) -> Option<Vec<f64>> {
         let eye = &self.scene.eye;
         let cells = Cells { counts: [16, 8, 16], near: eye.near, far: eye.far };
@@ -226,7 +227,7 @@ impl Values<'_> {
         })
     }
 
-    /// Where a lamp shines. Only some falloffs end.
+    /// The sphere that a lamp lights. It is infinite if the falloff has no end.
     fn lamp_reach(&self, index: usize, lamp: &Lamp) -> Reach {
         let ends =
             matches!(self.lit.needs.falloff, Falloff::LinearRadius | Falloff::InverseSquareWindow);
@@ -235,7 +236,8 @@ impl Values<'_> {
         Reach { position: lamp.position, range }
     }
 
-    /// The scene, with the lamps that have a position as objects, if it shows them.
+    /// The scene with objects added for the lamps that have a position. `None` if the scene does
+    /// not show its lamps.
     ///
     /// # Errors
     /// It has too many materials for one array.

@@ -19,9 +19,10 @@ pub struct LightView {
     pub far: f64,
     /// Texels along an edge.
     pub size: u32,
-    /// The size of a texel: the same everywhere for directional lights, at distance 1 for others.
+    /// The size of a texel: for directional lights the same everywhere (with cascades, that of the
+    /// first part), for others at distance 1.
     pub texel: f64,
-    /// The parts of a map that is one of cascades.
+    /// The parts of the map, if it has cascades.
     pub parts: Option<Cascades>,
 }
 
@@ -51,8 +52,8 @@ impl Frustum {
     }
 }
 
-/// How many texels around a point a lookup reads. It reads some to each side of a point that is
-/// moved by some.
+/// How many texels to each side of a point a shadow lookup may read: the radius of its filter, plus
+/// the offset by which it moves the point, plus a margin.
 fn lookup_rim(plan: &Plan, last: &Pass) -> f64 {
     let number = |field: &str| {
         let changed = plan.changes.uniforms.get(&format!("caster.{field}")).cloned();

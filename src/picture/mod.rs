@@ -53,9 +53,9 @@ const STUDIO: &str = "studio";
 pub struct Shot {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// How many places of each pixel are averaged, at least 1.
+    /// Samples per pixel, at least 1.
     pub samples: u32,
-    /// A factor for all light, as a power of two.
+    /// In stops: all light is multiplied by 2 to this power.
     pub exposure: f64,
     /// How many shadow maps a directional light has, one for each part of the viewer's depth; 1 for
     /// one map of the whole scene.
@@ -80,7 +80,7 @@ impl Surroundings {
         environment(name).map(Self::Formula)
     }
 
-    /// What is around a scene of its own choice, if nothing else is asked for.
+    /// What is around a scene: for [`Self::Usual`] what the scene itself chooses, or else these.
     fn around_scene(&self, scene: &Scene) -> Self {
         match self {
             Self::Usual => {
@@ -99,7 +99,7 @@ impl Surroundings {
         }
     }
 
-    /// Calls a function that takes a sky.
+    /// Calls a function with these surroundings as a sky.
     pub fn with_sky<T>(&self, run: impl FnOnce(&Sky<'_>) -> T) -> T {
         run(&|direction| self.radiance(direction))
     }

@@ -44,11 +44,12 @@ struct ProgramNeeds {
 pub struct Needs {
     /// The passes before it: programs, and keys where these are not the default.
     pub before: Vec<(String, String)>,
-    /// The passes after those that show what the viewer sees, for it to read.
+    /// The passes after those. They show what the viewer sees, and this one reads them.
     pub seen: Vec<(String, String)>,
-    /// Whether it is drawn over the screen, from what the viewer sees in the pass right before it.
+    /// Whether it is a full-screen pass. It reads the pass right before it, which shows what the
+    /// viewer sees.
     pub screen: bool,
-    /// Whether the colours are code values of a display. A picture shows them as they are.
+    /// Whether the colours are already encoded for a display. A picture then has them unchanged.
     pub encoded: bool,
     /// How many texels to each side a shadow lookup reads.
     pub reach: f64,
@@ -57,9 +58,10 @@ pub struct Needs {
     /// The kind of the lamp that casts the shadow.
     pub caster: Option<LampKind>,
     pub falloff: Falloff,
-    /// The area of lamps that have a place. With `None` they are points.
+    /// The shape of the area of lamps that have a position. With `None` they are points.
     pub shape: Option<LampShape>,
-    /// What lamps send where. With `None` it is the same everywhere.
+    /// How the light of lamps depends on its direction. With `None` it is the same in all
+    /// directions.
     pub profile: Option<LampProfile>,
     /// Whether no lamp shines.
     pub unlit: bool,
@@ -67,7 +69,8 @@ pub struct Needs {
     pub faceted: bool,
     /// Whether one block holds the materials of all objects.
     pub material_array: bool,
-    /// Whether that array has a material for each side.
+    /// Whether each entry of that array is two materials: of the front and of the back of a
+    /// surface.
     pub sides: bool,
     /// Whether that array has the materials of the objects, and not those that all scenes share.
     pub own_materials: bool,
@@ -76,7 +79,7 @@ pub struct Needs {
     pub sun: bool,
     /// Whether the specular map of the surroundings has a level for each roughness.
     pub levels: bool,
-    /// What made the moments of depth 1.
+    /// The technique that the moments of depth 1 belong to. Empty texels have these.
     pub cleared: Cleared,
     /// Whether the shadow map has four parts, for parts of the viewer's depth.
     pub cascades: bool,

@@ -40,8 +40,8 @@ struct Studio<'a> {
 }
 
 /// The smallest and the largest shadow map, in texels along an edge. In between, a map has twice
-/// the picture's size. Maps of moments are blurred, so half of that is enough. The last one is the
-/// largest that a preset may ask for.
+/// the picture's size. Maps of moments are blurred, so half of that is enough. The third size is
+/// the largest that a preset may ask for.
 const MAP_SIZES: (u32, u32, u32) = (256, 1024, 4096);
 
 /// The scene of a plan with what lights it.
@@ -128,15 +128,15 @@ pub fn prepare_passes(
     Ok(Prepared { farther: slices.collect(), ..nearest })
 }
 
-/// The shot with so many times the pixels along each side, and with what is around the scene.
+/// The shot with `fine` times the pixels along each side, and with the surroundings of the scene.
 fn finer_shot(shot: &Shot, scene: &Scene, fine: u32) -> Shot {
     let size = shot.size.map(|side| side * fine);
     Shot { size, surroundings: shot.surroundings.around_scene(scene), ..shot.clone() }
 }
 
-/// How many times finer than the picture all passes of the viewer are drawn. What a pass reads at a
-/// pixel of an earlier one must be of the same point of the scene. So samples cannot be moved within
-/// a pixel, and smaller pixels are averaged instead.
+/// By how much the passes of the viewer are supersampled, along each side. What a pass reads at a
+/// pixel of an earlier one must be of the same point of the scene. So samples cannot be moved
+/// within a pixel, and smaller pixels are averaged instead.
 fn fineness(last: &Pass, shot: &Shot) -> u32 {
     /// More would take too much memory: a picture of the gallery has 100 MB for each colour.
     const FINEST: u32 = 3;
@@ -196,7 +196,8 @@ impl Studio<'_> {
         Ok(())
     }
 
-    /// Draws over the screen, and keeps what was seen before.
+    /// Draws a full-screen pass, and keeps its colours by the name of its program. What earlier
+    /// passes have drawn is kept too.
     fn draw_over(
         &self,
         pass: &Pass,
@@ -210,7 +211,7 @@ impl Studio<'_> {
     }
 
     /// Draws what the viewer sees: depths, colours, or several targets. Where nothing is drawn, a
-    /// picture has its background, and other targets have zeros.
+    /// single target has the background, and several targets have zeros.
     fn draw_seen(&self, prepared: &Prepared, left: &mut Left) -> Result<(), Diagnostics> {
         let size = self.values.shot.size;
         let views = [prepared.eye_view([0.0; 2], size).map_err(|problem| vec![problem])?];
@@ -360,14 +361,14 @@ impl Studio<'_> {
 /// Blocks of `forward` that only affect colours.
 const PLAIN: &[&str] = &["materials", "layers", "haze", "surroundings"];
 
-/// Whether each view or each object fills the block. A pass over the screen has no objects, so that
-/// all materials are in one block.
+/// Whether the block is filled for each view or for each object, and not once for the pass. A pass
+/// over the screen has no objects, so that all materials are in one block.
 fn is_own(name: &str, has_objects: bool) -> bool {
     name == "camera" || has_objects && matches!(name, "object" | "materials" | "layers")
 }
 
-/// The first of the frames as a texture. What is in the texels that nothing was drawn into depends
-/// on their index.
+/// The first target of the first frame as a texture. `cleared` gives the texels that nothing was
+/// drawn into, by their index.
 fn color_texture(
     frames: &[Frame],
     [width, height]: [u32; 2],
@@ -382,7 +383,8 @@ fn color_texture(
     Ok(Texture { kind: TextureKind::Color2d, width, height, texels })
 }
 
-/// The bindings of both stages, each once, with the members that either of them has.
+/// The bindings of both stages, each once. If both stages have a binding, it is that of the
+/// fragment stage.
 pub(super) fn stage_bindings(stages: &Stages) -> Vec<Binding> {
     let of = |stage: &Composed| stage.reflection.bindings.clone();
     let all = of(&stages.vertex).into_iter().chain(stages.fragment.iter().flat_map(of));

@@ -43,7 +43,8 @@ enum Seen {
     /// A dark background, darker towards the edges.
     Backdrop,
     Around(Surroundings),
-    /// The light of the probe, as a surface across the direction would receive it.
+    /// The irradiance that the probe gives a surface whose normal is the direction, and a factor
+    /// for it.
     Probe(Box<[DVec3; 9]>, f64),
     /// The colour from below, and from above.
     Hemisphere(DVec3, DVec3),
@@ -57,7 +58,7 @@ struct Sun {
     light: DVec3,
     /// Unit, towards it.
     direction: DVec3,
-    /// The mean cosine of the angle by which the fog turns light.
+    /// The mean cosine of the angle by which the fog scatters light.
     forwardness: f64,
 }
 
@@ -71,7 +72,8 @@ impl Sun {
         })
     }
 
-    /// What fog without end scatters into a direction: Henyey and Greenstein's phase function.
+    /// The sunlight that an infinite fog scatters to the viewer along a direction, by Henyey and
+    /// Greenstein's phase function.
     fn scattered(&self, view: DVec3) -> DVec3 {
         let g = self.forwardness;
         let spread = 1.0 + g * g - 2.0 * g * view.dot(self.direction);
@@ -80,7 +82,7 @@ impl Sun {
 }
 
 impl Background {
-    /// The background that fits the light of the last pass.
+    /// The background that fits the pass that lights the scene.
     pub fn new(values: &Values<'_>, eye: Camera) -> Self {
         let needs = &values.lit.needs;
         let kind = match needs.background {
@@ -99,7 +101,7 @@ impl Background {
         Self { world_from_clip: eye.clip_from_world.inverse(), kind }
     }
 
-    /// The dark one, whatever is drawn.
+    /// The dark backdrop.
     pub fn backdrop(eye: Camera) -> Self {
         Self { world_from_clip: eye.clip_from_world.inverse(), kind: Seen::Backdrop }
     }
@@ -135,7 +137,7 @@ impl Linear {
         Self { size, sums: vec![DVec3::ZERO; pixels], first: vec![None; pixels], samples: 0 }
     }
 
-    /// Adds one sample of every pixel, taken at an offset from the pixel's centre.
+    /// Adds one sample of every pixel, from a picture that was moved by `shift` pixels.
     pub fn add(
         &mut self,
         colors: impl Iterator<Item = Option<[f32; 4]>>,
@@ -148,7 +150,8 @@ impl Linear {
         for (index, color) in colors.enumerate().take(self.sums.len()) {
             let (x, y) =
                 ((index as u32 % self.size[0]) as f64, (index as u32 / self.size[0]) as f64);
-            // A picture that is moved to the right shows the background that was left of it.
+            // The projection was moved by `shift` (x to the right, y upwards), in pixels. So each
+            // pixel shows the background that lies `shift` to the left of it and below it.
             let behind =
                 || background.color((x + 0.5 - shift[0]) / width, (y + 0.5 + shift[1]) / height);
             let drawn = color.map(|[r, g, b, _]| DVec3::new(r.into(), g.into(), b.into()));
@@ -169,7 +172,8 @@ impl Linear {
         self.samples += 1;
     }
 
-    /// Fewer pixels, each the mean of `factor` by `factor`. Its first sample is in their middle.
+    /// Downsamples with a box filter: each pixel is the mean of a block of `factor` x `factor`.
+    /// [`Self::drawn`] then returns the value of the pixel nearest to the block's middle.
     #[must_use]
     pub fn shrunk(&self, factor: u32) -> Self {
         let size = self.size.map(|side| side / factor.max(1));
@@ -208,13 +212,13 @@ impl Linear {
     }
 }
 
-/// The part of a colour that can be shown.
+/// The colour clamped to what can be shown. NaN becomes 0.
 fn visible_part(seen: DVec3) -> DVec3 {
     let parts = seen.to_array().map(|part| if part.is_nan() { 0.0 } else { part });
     DVec3::from_array(parts).clamp(DVec3::ZERO, DVec3::ONE)
 }
 
-/// A number of sRGB in eight bits.
+/// The 8-bit sRGB code of a linear number.
 fn srgb_code(linear: f64) -> u8 {
     (srgb_encoded(linear) * 255.0).round() as u8
 }
@@ -222,8 +226,8 @@ fn srgb_code(linear: f64) -> u8 {
 /// How many parts the numbers from 0 to 1 are divided into.
 const PARTS: usize = 4096;
 
-/// [`srgb_code`] of many numbers, without a power for each. The function rises, so a part whose two
-/// ends have the same code has it everywhere.
+/// A table of [`srgb_code`], which saves the power for most numbers. The function is monotonic, so
+/// if both ends of a part have the same code, the whole part has it.
 struct Codes(Vec<Option<u8>>);
 
 impl Codes {
@@ -244,7 +248,7 @@ fn srgb_encoded(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// The signature of a PNG file and its first chunk, which is the header.
+/// Bytes of the signature of a PNG file and of its first chunk, the header.
 const PNG_HEADER_BYTES: usize = 8 + 25;
 
 /// A PNG chunk that names the program: length, type, keyword and text, checksum. A picture with it
@@ -316,7 +320,7 @@ impl Picture {
         part
     }
 
-    /// Draws a frame that is one pixel wide.
+    /// Draws the outline of a rectangle, one pixel wide.
     pub fn outline(&mut self, [left, top]: [u32; 2], [width, height]: [u32; 2], color: [u8; 3]) {
         for x in left..left + width {
             self.set([x, top], color);
@@ -328,8 +332,8 @@ impl Picture {
         }
     }
 
-    /// The picture with fewer pixels: each is the mean of the light of `factor` by `factor` pixels.
-    /// What remains at the right and the bottom is cut off.
+    /// The picture, downsampled with a box filter: each pixel is the mean of a block of `factor` x
+    /// `factor` pixels in linear light. What remains at the right and the bottom is cut off.
     #[must_use]
     pub fn shrunk(&self, factor: u32) -> Self {
         let factor = factor.max(1);

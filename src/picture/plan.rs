@@ -15,7 +15,7 @@ use crate::picture::frame::Programs;
 use crate::scene::sets::{self, Lamp, Scene};
 use crate::source::SourceSet;
 
-/// The axis of programs that have lamps: how many.
+/// The axis that says how many lamps a program can have.
 pub(super) const LAMPS: &str = "max_lights";
 
 /// Everything about a picture, except how it is taken.
@@ -23,7 +23,7 @@ pub(super) const LAMPS: &str = "max_lights";
 pub struct Plan {
     /// The name of the scene, one of [`sets::ALL`](crate::scene::sets::ALL).
     pub scene: String,
-    /// A scene that was read, instead of that one.
+    /// A scene that was read from a file, instead of the named one.
     pub model: Option<Arc<Scene>>,
     /// The passes in order. The last one draws the picture.
     pub passes: Vec<Pass>,
@@ -35,7 +35,7 @@ pub struct Plan {
     pub changes: Changes,
 }
 
-/// Changes over what the source published and over what the scene has.
+/// Changes. They take precedence over what the source published and over what the scene has.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Changes {
     /// Places of lamps by their index. A lamp that is moved shines at the same point as before.
@@ -58,7 +58,7 @@ impl Plan {
     /// The passes and numbers of a preset.
     ///
     /// # Errors
-    /// Programs and keys that the manifest does not have; the library's presets have none.
+    /// Programs and keys that the manifest does not have. The library's presets have no such error.
     pub fn of_preset(
         programs: &Programs,
         preset: &Preset,
@@ -148,7 +148,7 @@ impl Plan {
     }
 
     /// Whether a pass shows what the viewer sees, and not what the light sees: the last one, and
-    /// those right before it that it reads so.
+    /// the passes right before it that [`Needs::seen_before`] counts.
     pub(super) fn is_of_viewer(&self, pass: &Pass) -> bool {
         let over = self.last().map_or(0, |last| last.needs.seen_before());
         self.passes.iter().rev().take(1 + over).any(|one| std::ptr::eq(one, pass))
@@ -201,7 +201,7 @@ impl Plan {
     }
 }
 
-/// The scene, whose array has the materials of the objects where a picture needs them.
+/// The scene. If the picture needs the objects' own materials, the scene's array has these.
 ///
 /// # Errors
 /// It has too many materials for one array.

@@ -30,9 +30,9 @@ pub struct Prepared {
     pub(super) camera: Option<Binding>,
     pub(super) eye: Camera,
     pub(super) background: Background,
-    /// Whether the colours are code values of a display.
+    /// Whether the colours are already encoded for a display.
     pub(super) encoded: bool,
-    /// How many times finer than the picture its passes are drawn.
+    /// The factor of supersampling, along each side of the picture.
     pub(super) fine: u32,
     /// The same pass for the farther parts of the viewer's depth, nearest first. They are visible
     /// where no nearer part drew anything.
@@ -49,7 +49,7 @@ impl Prepared {
         self.camera.iter().map(buffer).collect()
     }
 
-    /// The buffers of the viewer, moved by a part of a pixel.
+    /// The buffers of the viewer, with the projection moved by `shift` pixels.
     ///
     /// # Errors
     /// A field of the camera without a number.
@@ -136,7 +136,7 @@ impl Prepared {
         self.sampled(painter, shot)
     }
 
-    /// The same without finer pixels.
+    /// As [`Self::photograph`], without supersampling by smaller pixels.
     fn sampled(&self, painter: &dyn Session, shot: &Shot) -> Result<Linear, Diagnostics> {
         let shifts: Vec<[f64; 2]> =
             (0..shot.samples.max(1)).map(|index| sample_shift(index, shot.samples)).collect();

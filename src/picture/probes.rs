@@ -8,7 +8,7 @@ use crate::scene::sets::{Map, Object};
 use crate::scene::{Look, PROBE_SIDES, ProbeField, ProbeGrid, Surfaces};
 
 impl Values<'_> {
-    /// What the probes see.
+    /// The light and the depths of all probes, computed on first use.
     fn probe_field(&self) -> &ProbeField {
         self.probes.get_or_init(|| {
             let surfaces = Surfaces::with_looks(self.scene, |object| self.look(object));
@@ -23,7 +23,7 @@ impl Values<'_> {
         })
     }
 
-    /// What the program has of an object's colours.
+    /// The colours of an object that its uniforms have.
     fn look(&self, object: &Object) -> Look {
         let index = object.material_index as usize * if self.lit.needs.sides { 2 } else { 1 };
         let index = if self.lit.needs.material_array { index } else { 0 };
@@ -68,7 +68,8 @@ impl Values<'_> {
     }
 }
 
-/// The light of all lamps that falls onto a point, as a share of what a white surface shows.
+/// The light of all lamps that arrives at a point of a surface, with shadows. If a white diffuse
+/// surface gets light of 1, it shows the colour 1.
 fn direct_light(lamps: &[Shining], surfaces: &Surfaces, at: DVec3, normal: DVec3) -> DVec3 {
     let light = lamps.iter().map(|lamp| {
         let (color, from) = lamp.arriving(at);

@@ -5,8 +5,8 @@ use crate::execute::fixture::{Texture, TextureKind};
 /// Texels in each direction.
 const TEXELS: u32 = 64;
 
-/// The depths of a fence whose posts lean: the lower a post, the nearer it is to the ground, which
-/// is at depth 0.6.
+/// The depths of a fence of leaning posts, on a ground at depth 0.6. The lower a part of a post is
+/// in the texture, the closer it is to the ground.
 pub fn fence(kind: TextureKind) -> Texture {
     let depth = |index: u32| {
         let [x, y] = [index % TEXELS, index / TEXELS].map(|at| f64::from(at) / f64::from(TEXELS));

@@ -1,7 +1,8 @@
 //! A fragment stage drawn on a model by itself: what an author has before there is a program.
 //!
 //! A vertex stage is written that gives it its inputs. Each is taken from one of [`SOURCES`], which
-//! its name suggests or somebody chose. Uniforms that have no number are 0.5 in each component.
+//! its name suggests or somebody chose. Uniforms that have no number are 0.5 in each component, or
+//! 1 for integers. Matrices are the identity.
 
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_PI_2;
@@ -49,7 +50,7 @@ pub const SOURCES: &[(&str, &[&str])] = &[
 /// A model, by its name.
 pub type Model = (&'static str, fn() -> Shape);
 
-/// What there is to draw on. Each fits in a ball of radius 1 around the origin.
+/// What there is to draw on. Each fits in a ball of radius 1.2 around the origin.
 pub const MODELS: &[Model] = &[
     ("sphere", || Shape::sphere(1.0, (96, 48))),
     ("torus", || Shape::torus(0.68, 0.32, (96, 48))),
@@ -85,7 +86,7 @@ pub struct Setting {
     pub uniforms: BTreeMap<String, Vec<f64>>,
 }
 
-/// How many trips the loops of a fragment make. A text that never ends would otherwise stop the
+/// How many trips the loops of a fragment may make. A text that never ends would otherwise stop the
 /// device, and with it the browser.
 const TRIPS: u32 = 4096;
 

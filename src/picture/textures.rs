@@ -31,7 +31,7 @@ pub struct Left {
     pub over: BTreeMap<String, Texture>,
 }
 
-/// Samplers of textures that are not filtered.
+/// The names of the samplers that do not filter.
 const NEAREST: [&str; 4] = ["depth_sampler", "depths_smp", "surface_sampler", "open_sampler"];
 
 /// The sampler of a binding.
@@ -70,12 +70,12 @@ const ENVIRONMENT: usize = 64;
 /// them.
 const DIFFUSE: (usize, usize) = (12, 24);
 const SPECULAR: (usize, usize) = (32, 36);
-/// The exponent of the specular map.
+/// The exponent of the cosine lobe with which the specular map is filtered.
 const LOBE: f64 = 60.0;
-/// Levels of the specular map where it has one for each roughness, even in perceptual roughness.
-/// The first is the environment itself.
+/// Levels of the specular map where it has one for each roughness, in equal steps of perceptual
+/// roughness. The first is the environment itself.
 pub const LEVELS: usize = 5;
-/// The rows of the quadratures for the others.
+/// The rows of the quadratures for the other levels.
 const LEVEL_ROWS: [usize; LEVELS - 1] = [40, 24, 24, 24];
 
 impl<'a> Library<'a> {
@@ -134,7 +134,7 @@ impl<'a> Library<'a> {
             .collect()
     }
 
-    /// A texture of a material, whose texels are all the same if the material has none.
+    /// A texture of a material. If there is none, it has the single texel `blank`.
     fn material_map(&mut self, name: &str, blank: DVec4) -> Vec<Texture> {
         let found = match &self.values.scene.own_maps {
             Some(maps) => maps.material.get(name).cloned(),

@@ -23,9 +23,9 @@ pub struct Values<'a> {
     pub lit: &'a Pass,
     pub light: &'a LightView,
     pub shot: &'a Shot,
-    /// The lists of lamps for the parts of the view, once they are asked for.
+    /// The lists of lamps for the cells of the view, computed on first use.
     pub clusters: OnceCell<Option<Clusters>>,
-    /// The light probes, once they are asked for.
+    /// The light probes, computed on first use.
     pub probes: OnceCell<ProbeField>,
 }
 
@@ -80,7 +80,7 @@ pub(super) fn follows(path: &str) -> bool {
 }
 
 impl Camera {
-    /// The viewer's.
+    /// The camera of the viewer.
     pub fn of_viewer(eye: &Eye, shot: &Shot) -> Self {
         let view = eye.view();
         Self { clip_from_world: eye_projection(eye, shot) * view, world_from_view: view.inverse() }
@@ -159,8 +159,9 @@ impl Values<'_> {
         }
     }
 
-    /// What somebody changed a uniform to. The exponents of moments are those of the lookup in all
-    /// passes, or else those that the moments are made with.
+    /// What somebody changed a uniform to. The exponents of moments must be the same in all passes.
+    /// Those of the lookup (`caster`) come first, then those that the moments are made with
+    /// (`terms`).
     fn changed(&self, path: &str) -> Option<Vec<f64>> {
         if follows(path) {
             return None;
@@ -219,12 +220,13 @@ impl Values<'_> {
         })
     }
 
-    /// The nine coefficients: the published ones, or those of the surroundings.
+    /// The nine spherical harmonics coefficients of the ambient light: the published ones, or those
+    /// of the surroundings.
     pub fn probe(&self) -> [[f64; 3]; 9] {
         self.plan.probe.unwrap_or_else(|| projected_light(&self.shot.surroundings))
     }
 
-    /// The box that the environment is on.
+    /// The numbers of the block `room`: the box that the environment is projected onto.
     fn room(&self, field: &str) -> Option<Vec<f64>> {
         let [low, high, centre] = self.scene.room?;
         Some(vector_values(match field {
@@ -248,7 +250,8 @@ impl Values<'_> {
         })
     }
 
-    /// How the viewer's screen and the scene belong together.
+    /// The matrices between the viewer's clip space, view space and the world, and the planes of
+    /// the view.
     fn screen(&self, field: &str) -> Option<Vec<f64>> {
         let eye = &self.scene.eye;
         let projection = eye_projection(eye, self.shot);
@@ -270,7 +273,8 @@ impl Values<'_> {
         (eye_projection(eye, self.shot) * turned).inverse()
     }
 
-    /// The first lamp in the view's space: where it is and 1, or where its light comes from and 0.
+    /// The first lamp in view space, in homogeneous coordinates: its position and 1, or the
+    /// direction towards a directional light and 0.
     fn marched_light(&self) -> Vec<f64> {
         let Some(lamp) = self.scene.lamps.first() else { return vec![0.0; 4] };
         let view = self.scene.eye.view();

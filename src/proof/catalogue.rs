@@ -14,10 +14,11 @@ use crate::permute::Manifest;
 use crate::project;
 use crate::source::{Embedded, SourceSet};
 
-/// Path below a folder and text.
+/// The texts of files, by their paths below a folder.
 pub type Files = BTreeMap<String, String>;
 
-/// The catalogue's files. Errors are about the library, and come with its texts.
+/// Makes the files of the catalogue. Errors come with the sources of the library, which they point
+/// into.
 pub fn catalogue_files() -> Result<Files, (SourceSet, Diagnostics)> {
     let (sources, manifest) = project::library_manifest()?;
     let sources = Mutex::new(sources);
@@ -26,8 +27,8 @@ pub fn catalogue_files() -> Result<Files, (SourceSet, Diagnostics)> {
     made.map_err(|problems| (sources.into_inner().unwrap_or_default(), problems))
 }
 
-/// Files of the library that are made from others, by path below the library: modules and cases
-/// from its data, and the names with a prefix.
+/// The files of the library that are generated, by path below the library: the module of the
+/// ambient probes with its cases, and the file of prefixed names.
 pub fn made_modules() -> Result<Files, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
     let probes = match probe::library_probes(&mut sources) {
@@ -65,7 +66,7 @@ fn read_contents(sources: &Mutex<SourceSet>, manifest: &Manifest) -> Result<File
     }))
 }
 
-/// The errors of everything in `quality.toml`.
+/// Measures the errors of every group in `quality.toml`.
 fn measure_quality(sources: &Mutex<SourceSet>) -> Result<Vec<Measured>, Diagnostics> {
     let (executor, library) = (executors::eval::EXECUTOR, Library::embedded());
     let mut session = executor.start().map_err(|_| vec![drawing_stopped()])?;
@@ -74,7 +75,7 @@ fn measure_quality(sources: &Mutex<SourceSet>) -> Result<Vec<Measured>, Diagnost
     found.into_iter().map(measure).collect()
 }
 
-/// Every plot, by the path of its function.
+/// Draws every plot, by the path of its function.
 fn draw_plots(
     sources: &Mutex<SourceSet>,
     modules: &[Module],

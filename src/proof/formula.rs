@@ -29,7 +29,7 @@ pub enum Formula {
 /// A binary operator: spelling, precedence, meaning.
 type Operator = (&'static str, u8, fn(f64, f64) -> f64);
 
-/// Longer ones before those that they begin with.
+/// An operator stands before those that it begins with: `<=` before `<`.
 const OPERATORS: &[Operator] = &[
     ("||", 1, |a, b| truth_value(a != 0.0 || b != 0.0)),
     ("&&", 2, |a, b| truth_value(a != 0.0 && b != 0.0)),
@@ -45,7 +45,7 @@ const OPERATORS: &[Operator] = &[
     ("/", 5, |a, b| a / b),
 ];
 
-/// A function of formulas.
+/// A function that formulas may call.
 #[derive(Debug)]
 pub struct Function {
     pub name: &'static str,
@@ -57,7 +57,7 @@ pub struct Function {
 /// Every function, by name.
 pub const FUNCTIONS: &[Function] = functions::ALL;
 
-/// Why and where a text is not a formula.
+/// Why a text is not a formula, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mistake {
     /// Bytes of the text.
@@ -87,7 +87,7 @@ impl Formula {
         Ok(formula)
     }
 
-    /// The components over one row of words.
+    /// The components of the value for one row of words.
     pub fn eval(&self, row: &[f64]) -> Vec<f64> {
         match self {
             Self::Number(value) => vec![*value],
@@ -102,7 +102,7 @@ impl Formula {
         }
     }
 
-    /// Steps that evaluating it takes.
+    /// How many steps its evaluation takes.
     pub fn parts(&self) -> usize {
         match self {
             Self::Number(_) => 1,
@@ -113,13 +113,13 @@ impl Formula {
         }
     }
 
-    /// The first component.
+    /// The first component of the value for one row of words.
     pub fn scalar(&self, row: &[f64]) -> f64 {
         self.eval(row).first().copied().unwrap_or(f64::NAN)
     }
 }
 
-/// Names and shapes of the words of a row, in order.
+/// Names and shapes of the parameters, in the order of their words in a row.
 pub struct Scope<'a>(pub Vec<(&'a str, &'a Shape)>);
 
 impl Scope<'_> {
@@ -164,7 +164,8 @@ struct Parser<'a> {
     at: usize,
     /// How deeply parentheses and operands nest here.
     depth: usize,
-    /// How many operands and operators there are so far; the formula cannot be deeper.
+    /// How many operands and signs there are so far. This bounds the depth of the formula, which a
+    /// chain of operators makes deep without nesting.
     parts: usize,
     scope: &'a Scope<'a>,
 }

@@ -27,7 +27,7 @@ pub struct Library {
 }
 
 impl Library {
-    /// The library that is in the binary.
+    /// The shipped library, which is embedded in the binary.
     pub fn embedded() -> Self {
         Self::new(LIBRARY, Arc::new(Embedded), Vec::new())
     }
@@ -41,7 +41,7 @@ impl Library {
         Self { name: name.to_owned(), files, dependencies, settings: Settings::default() }
     }
 
-    /// The same, composed under settings.
+    /// The same package, composed under other settings.
     pub fn with_settings(self, settings: Settings) -> Self {
         Self { settings, ..self }
     }
@@ -105,7 +105,7 @@ impl Library {
         self.check_with(sources, paths, languages, open, &options)
     }
 
-    /// Whether the crate's references are about this package.
+    /// Whether the references in `src/proof/references/` are about this package.
     pub fn has_references(&self) -> bool {
         self.name == LIBRARY
     }
@@ -186,7 +186,7 @@ impl Library {
         Ok((composed, validated))
     }
 
-    /// A module with the named functions of a module of the package.
+    /// Composes a module of the package, with only the named functions and what they need.
     pub fn module(
         &self,
         sources: &Mutex<SourceSet>,
@@ -218,7 +218,8 @@ impl Library {
             .map(|validated| Arc::new(validated.module))
     }
 
-    /// A module of its own package, which imports this one by name.
+    /// Composes a root file (its path and its text) in a package of its own, which imports this
+    /// package by name. Only `function` and what it needs are kept.
     pub fn importing(
         &self,
         sources: &Mutex<SourceSet>,
@@ -294,8 +295,8 @@ fn composed(
     }
 }
 
-/// The settings that a graph of GLSL may ask for. The others are those of the package's other
-/// programs: their macros could replace names that this module declares.
+/// The settings that the files of a GLSL graph may test. Other settings belong to other programs of
+/// the package, and their macros could replace names that this module declares.
 fn asked_settings(graph: &resolve::glsl::Graph, settings: &Settings) -> Settings {
     let mut asked = settings.clone();
     asked.values.retain(|name, _| graph.may_ask(name));
@@ -303,7 +304,7 @@ fn asked_settings(graph: &resolve::glsl::Graph, settings: &Settings) -> Settings
     asked
 }
 
-/// The files of a package, with some texts of our own added.
+/// The files of a package, and texts that are added to them here.
 struct Overlay {
     base: Arc<dyn Files>,
     extra: BTreeMap<String, String>,

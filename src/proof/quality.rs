@@ -1,4 +1,5 @@
-//! Errors of ways to compute the same thing, for the catalogue's pictures of cost against quality.
+//! Measures the errors of different functions for the same task, for the catalogue's pictures of
+//! cost against quality.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -15,14 +16,14 @@ use crate::source::SourceSet;
 /// Name of the function around an entry's expression.
 pub const FUNCTION: &str = "lamplight_quality";
 
-/// Texels of the depth map in each direction, and depths on both sides of its edge.
+/// Texels of the depth map along each side, and the depths on the two sides of its edge.
 const SIZE: u32 = 64;
 const DEPTHS: [f32; 2] = [0.25, 0.75];
-/// The radius of the wanted penumbra in texels, and the comparisons of its reference.
+/// The radius of the wanted penumbra in texels, and how many comparisons its reference averages.
 const RADIUS: f64 = 4.0;
 const TAPS: u32 = 1024;
 
-/// The module of an expression of a group: a function of `x` and `y`.
+/// The module of one expression of a group, as a function of `x` and `y`.
 pub fn quality_module(
     library: &Library,
     sources: &Mutex<SourceSet>,
@@ -76,7 +77,7 @@ fn root_mean_square(values: &[f64]) -> f64 {
     (sum / values.len().max(1) as f64).sqrt()
 }
 
-/// The places of a group: `x` fastest.
+/// The inputs `x` and `y` of a group. `x` changes fastest.
 fn grid_places(group: &Group) -> impl Iterator<Item = (f64, f64)> {
     let x = group.x;
     group.y.values().flat_map(move |y| x.values().map(move |x| (x, y)))

@@ -119,7 +119,7 @@ impl Ratchet {
         text
     }
 
-    /// Only the waivers, for what is to be measured again.
+    /// The waivers without any adapters and shares, so that everything is measured again.
     pub fn waivers_only(&self) -> Self {
         Self { waivers: self.waivers.clone(), ..Self::default() }
     }
@@ -176,8 +176,8 @@ fn measured_shares(report: &Report) -> BTreeMap<(String, &'static str), f64> {
     found
 }
 
-/// An adapter's name without what is in parentheses, since the width of vectors differs between
-/// processors.
+/// An adapter's name without what is in parentheses, such as the width of vectors, which differs
+/// between processors.
 pub fn pinned_adapter(adapter: &str) -> String {
     let mut depth = 0;
     let mut kept = String::new();

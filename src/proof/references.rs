@@ -1,5 +1,5 @@
-//! What functions should return, in f64: one file of `references/` for each module. A reference is
-//! written from the published formula and never from the shader's text.
+//! References: what functions should return, in f64, with one file of `references/` for each
+//! module. A reference is written from the published formula and never from the shader's text.
 
 use std::sync::Arc;
 

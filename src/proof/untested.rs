@@ -22,7 +22,8 @@ pub fn untested_functions(module: &str, text: &str, file: &File) -> Vec<String> 
     function_paths(module, missed.map(|item| names.text(item.name)))
 }
 
-/// The same for a GLSL module, whichever of its conditions hold.
+/// As [`untested_functions`], for a GLSL module. Functions in all branches of its preprocessor
+/// conditions count.
 pub fn of_glsl(module: &str, text: &str, file: &File) -> Vec<String> {
     let (mut sources, mut symbols) = (SourceSet::default(), Symbols::default());
     let id = sources.add(format!("{module}.glsl"), text);

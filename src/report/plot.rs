@@ -23,7 +23,7 @@ pub struct Series<'a> {
     pub profile: &'a Profile,
 }
 
-/// Error and what is allowed over one parameter, the error by its logarithm.
+/// Plots the error and the tolerance over one parameter, on a logarithmic scale.
 pub fn error_plot(index: usize, series: &[Series<'_>]) -> Option<String> {
     let axes: Vec<(&Series<'_>, &Axis)> =
         series.iter().filter_map(|one| Some((one, one.profile.axes.get(index)?))).collect();
@@ -72,7 +72,7 @@ impl Frame {
         HEIGHT - BOTTOM - place * (HEIGHT - BOTTOM - TOP)
     }
 
-    /// The area below what is allowed.
+    /// The area below the tolerance.
     fn area(&self, axes: &[(&Series<'_>, &Axis)]) -> String {
         let allowed = |index: usize| {
             axes.iter()
@@ -119,7 +119,7 @@ fn write_labels(svg: &mut String, frame: &Frame, scale: Scale) {
     }
 }
 
-/// The share of what is allowed over two parameters, light to dark.
+/// A heat map over two parameters: the error as a share of the tolerance, from light to dark.
 pub fn heat_map(map: &Map, profile: &Profile) -> Option<String> {
     let (x, y) = (profile.axes.get(map.across)?, profile.axes.get(map.up)?);
     let side = HEIGHT - TOP - BOTTOM;

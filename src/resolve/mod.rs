@@ -61,8 +61,8 @@ impl Graph {
         warnings.into_iter().filter(own).collect()
     }
 
-    /// Warnings about flags of conditions that no setting declares and that nothing has asked for
-    /// yet.
+    /// Warnings about flags of conditions that no setting declares. A composition that evaluates
+    /// such a flag fails, so these are in conditions that no composition evaluated.
     pub fn undeclared(&self, settings: &Settings) -> Diagnostics {
         match self {
             Self::Wesl(graph) => wesl::undeclared_flags(graph, settings),

@@ -47,7 +47,7 @@ impl Scene {
     }
 }
 
-/// The colour of a lamp, as bright as can be.
+/// The colour of a lamp, scaled so that its largest channel is 1.
 pub(super) fn glow(lamp: &Lamp) -> DVec3 {
     lamp.color / lamp.color.max_element().max(1e-6)
 }

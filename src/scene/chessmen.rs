@@ -7,7 +7,7 @@ use glam::{DMat4, DVec2, DVec3};
 use super::shape::Shape;
 use super::turned::{Turn, profile_arcs, turned_shape, waved_shape};
 
-/// A kind of chessman. Knights are not turned, so there is none.
+/// A kind of chessman. There is no knight, since a lathe cannot turn one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Man {
     Pawn,
@@ -131,14 +131,14 @@ impl Man {
         }
     }
 
-    /// The man, upright on the origin.
+    /// The man as a shape. It stands on the origin.
     pub fn shape(self) -> Shape {
         match self {
             Self::Pawn | Self::Bishop => turned_shape(self.profile(), AROUND),
             Self::Rook => (0..6)
                 .fold(turned_shape(ROOK, AROUND), |shape, index| shape.with(merlon_shape(index))),
             Self::Queen => waved_shape(QUEEN, 2 * AROUND, |u, point| {
-                // The points of the crown are on its rim alone.
+                // The crown has its points on the rim alone.
                 let share = ((point.y - 1.6) / 0.08).clamp(0.0, 1.0) * (point.x / 0.25).powi(6);
                 0.03 * share * (9.0 * TAU * u).cos()
             }),
@@ -147,7 +147,7 @@ impl Man {
     }
 }
 
-/// A part of the wall on a rook's tower.
+/// One of the six merlons on the tower of a rook.
 fn merlon_shape(index: u32) -> Shape {
     let (inner, outer, low, high) = (0.19, 0.28, 1.09, 1.19);
     let start = f64::from(index) / 6.0;
@@ -196,7 +196,8 @@ pub fn open_share(at: DVec2, men: &[(Man, DVec2)]) -> f64 {
         let slopes =
             near.iter().map(|(man, place)| steepest_slope(man.profile(), at - *place, ahead));
         let slope = slopes.fold(0.0, f64::max);
-        // The share above an elevation is the square of its cosine.
+        // The cosine-weighted share of the sky above an elevation is the square of the cosine of
+        // the elevation.
         1.0 / (1.0 + slope * slope)
     };
     (0..DIRECTIONS).map(open).sum::<f64>() / f64::from(DIRECTIONS)

@@ -19,16 +19,18 @@ pub struct Reach {
 pub struct Cells {
     /// Number of cells across, down and in depth, each at least 1.
     pub counts: [u32; 3],
-    /// Where the slices begin, scene units, more than 0. The first one holds what is before, too.
+    /// Where the slices begin, scene units, more than 0. The first slice also holds what is nearer.
     pub near: f64,
-    /// Where they end, scene units, more than `near`. The last one holds what is behind, too.
+    /// Where the slices end, scene units, more than `near`. The last slice also holds what is
+    /// farther.
     pub far: f64,
 }
 
 /// The lists as the uniform block `clusters` has them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Clusters {
-    /// For each cell the place of its first index, and from bit 16 on how many there are.
+    /// For each cell, the place of its first index in the low 16 bits, and how many indices there
+    /// are in the high 16 bits.
     pub cells: Vec<u32>,
     /// Indices of lamps, four in a word, the lowest bits first.
     pub indices: Vec<u32>,
@@ -39,7 +41,7 @@ pub struct Clusters {
 pub enum ClusterError {
     /// The counts have a 0, or their product is too large.
     Cells,
-    /// The range of the slices is empty, or the projection has no sides.
+    /// The range of the slices is empty, or the projection does not scale x or y.
     Camera,
     /// There are too many lamps: an index is one byte.
     Lamps,
@@ -130,7 +132,7 @@ impl Clusters {
 #[derive(Default)]
 struct Lists {
     indices: Vec<u8>,
-    /// Where each list is.
+    /// The word of `cells` for each list that is stored.
     known: BTreeMap<Vec<u8>, u32>,
 }
 
@@ -149,14 +151,14 @@ impl Lists {
     }
 }
 
-/// What the camera sees, in cells.
+/// The view frustum of the camera, divided into cells.
 struct Frustum<'a> {
     cells: &'a Cells,
     clip_from_view: DMat4,
 }
 
 impl Frustum<'_> {
-    /// Whether each direction on the screen is one of the view.
+    /// Whether the projection scales both x and y, so that cells have sides in view space.
     fn has_sides(&self) -> bool {
         let [x, y] = [self.clip_from_view.x_axis.x, self.clip_from_view.y_axis.y];
         x != 0.0 && y != 0.0 && self.clip_from_view.is_finite()
@@ -170,7 +172,7 @@ impl Frustum<'_> {
             let Cells { near, far, .. } = self.cells;
             near * (far / near).powf(slice as f64 / deep as f64)
         };
-        // What is before the first slice counts to it, and what is behind the last one to that.
+        // The first slice also holds what is nearer, and the last one what is farther.
         let first = if at[2] == 0 { 0.0 } else { depth(at[2]) };
         let is_last = at[2] + 1 == deep;
         let reaches = |ball: &Reach| {

@@ -17,7 +17,7 @@ pub struct ProbeGrid {
     pub spacing: DVec3,
     /// How many along each axis, at least 2.
     pub counts: [u32; 3],
-    /// How far off a surface it is looked up, along the normal, scene units.
+    /// How far off a surface the field is looked up, along the normal, scene units.
     pub bias: f64,
 }
 
@@ -35,17 +35,18 @@ pub struct ProbeField {
 pub const PROBE_SIDES: (usize, usize) = (6, 14);
 /// The rows of the quadrature over the directions of a probe.
 const ROWS: usize = 12;
-/// How often light is scattered between surfaces.
+/// The largest number of surfaces that scatter light on its way to a probe.
 const BOUNCES: usize = 3;
 /// The exponent of the lobe that distances are averaged over.
 const SHARPNESS: i32 = 50;
-/// Weights below this are left out.
+/// Directions with a weight below this are left out.
 const LEAST: f64 = 1e-6;
 
 /// What a probe sees in a direction.
 struct Seen {
     distance: f64,
-    /// What is seen without the light of the field.
+    /// The emission of what is seen, and the light of lamps that it scatters. The light of the
+    /// field is not included.
     light: DVec3,
     /// The surface, where it scatters light: its place, normal and albedo.
     surface: Option<[DVec3; 3]>,
@@ -75,7 +76,7 @@ fn counts_vector(counts: [u32; 3]) -> DVec3 {
 }
 
 impl ProbeField {
-    /// What the probes of a grid see between surfaces.
+    /// Computes what the probes of a grid see between surfaces.
     ///
     /// Parameters: `direct` the light that falls from lamps onto a point with a unit normal, as a
     /// share of what a white surface shows; `beyond` what is seen where there is no surface.
@@ -94,7 +95,8 @@ impl ProbeField {
                 let seen = Seen { distance: farthest, light: beyond, surface: None };
                 let Some(hit) = surfaces.hit(from, towards) else { return seen };
                 let distance = hit.distance.min(farthest);
-                // The back of a surface is the inside of a thing, from where nothing is to be seen.
+                // A probe that sees the back of a surface is inside an object. It gets no light
+                // from there, and a shorter distance, so that few points see it.
                 if hit.normal.dot(towards) >= 0.0 {
                     return Seen { distance: 0.2 * distance, light: DVec3::ZERO, ..seen };
                 }
@@ -154,12 +156,13 @@ impl ProbeField {
         sum / total
     }
 
-    /// The light of all probes as a texture: a row of squares for each height, with a border.
+    /// The light of all probes as a texture. Each y of the grid is a row of tiles, which hold one
+    /// probe each and have a border.
     pub fn light_map(&self) -> Map {
         self.map(PROBE_SIDES.0, |probe, texel| self.light[probe][texel].extend(1.0))
     }
 
-    /// The mean distances and their mean squares, in the same way.
+    /// The mean distances and their mean squares, as a texture of the same layout.
     pub fn depth_map(&self) -> Map {
         self.map(PROBE_SIDES.1, |probe, texel| {
             let moments = self.depths[probe][texel];
@@ -182,8 +185,8 @@ impl ProbeField {
     }
 }
 
-/// The texel of an octahedral square at a place that may be one texel outside. Beyond an edge the
-/// square goes on where the edge, turned around its middle, comes back.
+/// The texel of an octahedral map at a place that may be one texel outside. Beyond an edge, the map
+/// continues at the same edge, mirrored about the middle of the edge.
 fn wrapped_texel(x: i64, y: i64, side: usize) -> usize {
     let last = side as i64 - 1;
     let (mut x, mut y) = (x, y);
@@ -196,7 +199,7 @@ fn wrapped_texel(x: i64, y: i64, side: usize) -> usize {
     x as usize + side * y as usize
 }
 
-/// A value of an octahedral square in a direction, linear between texels.
+/// The value of an octahedral map in a direction, interpolated linearly between texels.
 fn sampled_texel<T>(texels: &[T], side: usize, direction: DVec3) -> T
 where
     T: Copy + std::ops::Mul<f64, Output = T> + std::ops::Add<Output = T>,
@@ -209,15 +212,15 @@ where
     row(0) * (1.0 - share.y) + row(1) * share.y
 }
 
-/// A direction as a point of a square: Cigolle et al., "A Survey of Efficient Representations for
-/// Independent Unit Vectors", 2014.
+/// The point of an octahedral map for a direction, in [-1, 1]^2: Cigolle et al., "A Survey of
+/// Efficient Representations for Independent Unit Vectors", 2014.
 fn octahedral_square(direction: DVec3) -> DVec2 {
     let m = direction / direction.abs().element_sum().max(1e-30);
     let e = DVec2::new(m.x, m.y);
     if m.z >= 0.0 { e } else { (DVec2::ONE - DVec2::new(e.y, e.x).abs()) * side_of(e) }
 }
 
-/// The direction of a point of the square.
+/// The direction for a point of an octahedral map.
 fn square_direction(at: DVec2) -> DVec3 {
     let height = 1.0 - at.x.abs() - at.y.abs();
     (at - side_of(at) * (-height).max(0.0)).extend(height).normalize_or(DVec3::Z)
@@ -228,7 +231,7 @@ fn side_of(at: DVec2) -> DVec2 {
     DVec2::new(sign(at.x), sign(at.y))
 }
 
-/// The directions of the texels of a square.
+/// The directions of the texels of an octahedral map.
 fn texel_directions(side: usize) -> impl Iterator<Item = DVec3> {
     (0..side * side).map(move |index| {
         let at = DVec2::new((index % side) as f64, (index / side) as f64) + 0.5;
@@ -236,8 +239,8 @@ fn texel_directions(side: usize) -> impl Iterator<Item = DVec3> {
     })
 }
 
-/// How much each direction of a probe counts for each texel of a square, with the sum of a texel.
-/// Directions that count next to nothing are left out.
+/// For each texel of an octahedral map: the weights of the directions of a probe, by index, and
+/// their sum. Directions with next to no weight are left out.
 struct Weights(Vec<(Vec<(usize, f64)>, f64)>);
 
 impl Weights {
@@ -254,7 +257,7 @@ impl Weights {
         Self(texel_directions(side).map(texel).collect())
     }
 
-    /// The mean over directions for each texel.
+    /// The weighted mean over the directions, for each texel.
     fn means<T>(&self, of: impl Fn(usize) -> T) -> Vec<T>
     where
         T: std::iter::Sum + std::ops::Mul<f64, Output = T> + std::ops::Div<f64, Output = T>,
@@ -266,7 +269,8 @@ impl Weights {
     }
 }
 
-/// The light of a probe, with what surfaces scatter of the light that the field has so far.
+/// The texels of a probe's light: what it sees, and what the surfaces scatter of the light that the
+/// field has so far.
 fn light_texels(seen: &[Seen], field: &ProbeField, weights: &Weights) -> Vec<DVec3> {
     let scattered = |one: &Seen| {
         let [at, normal, albedo] = one.surface?;

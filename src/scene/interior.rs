@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 pub const LOW: DVec3 = DVec3::new(-4.0, 0.0, -5.0);
 /// See [`LOW`].
 pub const HIGH: DVec3 = DVec3::new(4.0, 4.4, 5.0);
-/// From where the environment is seen.
+/// The point from which the environment is seen.
 pub const CENTRE: DVec3 = DVec3::new(0.0, 1.8, 0.0);
 
 /// Sides of the room.
@@ -25,7 +25,7 @@ pub enum Side {
 /// A rectangle on a side of the room.
 #[derive(Debug, Clone, Copy)]
 pub struct Panel {
-    /// Where it is.
+    /// The side that it is on.
     pub side: Side,
     /// Its lower corner along [`Side::axes`], scene units.
     pub low: DVec2,
@@ -40,7 +40,7 @@ impl Side {
     pub const ALL: [Self; 6] =
         [Self::Floor, Self::Ceiling, Self::Left, Self::Right, Self::Back, Self::Front];
 
-    /// The axis across it, and a place on it: 0 to 2 for x to z, and whether it is at [`HIGH`].
+    /// The axis perpendicular to the side, 0 to 2 for x to z, and whether the side is at [`HIGH`].
     fn across(self) -> (usize, bool) {
         match self {
             Self::Floor => (1, false),
@@ -52,7 +52,7 @@ impl Side {
         }
     }
 
-    /// The axes along it: of the first and of the second coordinate of panels.
+    /// The axes along the side: that of the first and that of the second coordinate of panels.
     pub fn axes(self) -> [usize; 2] {
         match self.across().0 {
             0 => [2, 1],
@@ -87,10 +87,15 @@ const FRAME: DVec3 = DVec3::new(0.05, 0.035, 0.025);
 const SKY: DVec3 = DVec3::new(1.9, 2.5, 3.4);
 const GARDEN: DVec3 = DVec3::new(0.35, 0.62, 0.16);
 const LAMP: DVec3 = DVec3::new(6.0, 4.6, 3.0);
+/// Light of the floor's light and dark tiles.
+const TILES: [DVec3; 2] = [DVec3::new(0.135, 0.12, 0.105), DVec3::new(0.045, 0.04, 0.035)];
+/// Tiles along each edge of the floor.
+pub const TILES_ALONG: i32 = 10;
 
 /// The panels of the room; later ones hide earlier ones.
 pub fn panels() -> Vec<Panel> {
     let mut all: Vec<Panel> = Side::ALL.into_iter().map(whole_side).collect();
+    all.extend(light_tiles());
     for side in [Side::Left, Side::Right, Side::Back, Side::Front] {
         let (low, high) = side.extent();
         all.push(panel(side, low, DVec2::new(high.x, 0.9), WOOD));
@@ -120,11 +125,22 @@ fn panel(side: Side, low: DVec2, high: DVec2, color: DVec3) -> Panel {
 fn whole_side(side: Side) -> Panel {
     let (low, high) = side.extent();
     let color = match side {
-        Side::Floor => DVec3::new(0.09, 0.08, 0.07),
+        Side::Floor => TILES[1],
         Side::Ceiling => DVec3::new(0.42, 0.4, 0.37),
         _ => PLASTER,
     };
     panel(side, low, high, color)
+}
+
+/// The light tiles of a checkerboard, whose dark tiles are the floor itself.
+fn light_tiles() -> impl Iterator<Item = Panel> {
+    let (low, high) = Side::Floor.extent();
+    let step = (high - low) / f64::from(TILES_ALONG);
+    let places = (0..TILES_ALONG).flat_map(|z| (0..TILES_ALONG).map(move |x| (x, z)));
+    places.filter(|(x, z)| (x + z) % 2 == 0).map(move |(x, z)| {
+        let corner = low + step * DVec2::new(f64::from(x), f64::from(z));
+        panel(Side::Floor, corner, corner + step, TILES[0])
+    })
 }
 
 /// A window of two by three panes: the sky above a garden.
@@ -164,10 +180,16 @@ fn painting_panels(side: Side, middle: f64) -> Vec<Panel> {
     all
 }
 
+/// The panels of each side, in the order of [`Side::ALL`]. Earlier ones hide later ones.
+fn panels_by_side() -> [Vec<Panel>; 6] {
+    let all = panels();
+    Side::ALL.map(|side| all.iter().rev().filter(|panel| panel.side == side).copied().collect())
+}
+
 /// The light that arrives at the middle of the room from a direction.
 pub fn interior_light(direction: DVec3) -> DVec3 {
     thread_local! {
-        static PANELS: Vec<Panel> = panels();
+        static PANELS: [Vec<Panel>; 6] = panels_by_side();
     }
     let far = |axis: usize| {
         let wall = if direction[axis] > 0.0 { HIGH[axis] } else { LOW[axis] };
@@ -176,12 +198,15 @@ pub fn interior_light(direction: DVec3) -> DVec3 {
     let distances = [far(0), far(1), far(2)];
     let nearest = (0..3).min_by(|a, b| distances[*a].total_cmp(&distances[*b])).unwrap_or(0);
     let point = CENTRE + direction * distances[nearest];
-    let is_hit = |side: Side| side.across() == (nearest, direction[nearest] > 0.0);
+    let across = (nearest, direction[nearest] > 0.0);
     PANELS.with(|panels| {
-        let found = panels.iter().rev().find(|panel| {
-            let [first, second] = panel.side.axes();
-            let at = DVec2::new(point[first], point[second]);
-            is_hit(panel.side) && at.cmpge(panel.low).all() && at.cmple(panel.high).all()
+        let hit = Side::ALL.iter().position(|side| side.across() == across);
+        let found = hit.and_then(|side| {
+            panels[side].iter().find(|panel| {
+                let [first, second] = panel.side.axes();
+                let at = DVec2::new(point[first], point[second]);
+                at.cmpge(panel.low).all() && at.cmple(panel.high).all()
+            })
         });
         found.map_or(PLASTER, |panel| panel.color)
     })

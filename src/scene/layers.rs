@@ -33,13 +33,13 @@ pub struct Layers {
     pub iridescence_ior: f64,
     /// Thickness of the film, nanometres.
     pub iridescence_thickness: f64,
-    /// The same where a texture has none, nanometres.
+    /// Thickness of the film where its texture is 0, nanometres.
     pub iridescence_least: f64,
     /// Share of the light that passes the surface, [0, 1].
     pub transmission: f64,
     /// How far light goes through the body, scene units.
     pub thickness: f64,
-    /// Linear colour of white light after the distance.
+    /// Linear colour that white light has after `attenuation_distance`.
     pub attenuation_color: DVec3,
     /// The distance of that colour, scene units; 0 for a volume that absorbs nothing.
     pub attenuation_distance: f64,
@@ -81,7 +81,7 @@ impl Default for Layers {
 }
 
 impl Layers {
-    /// The numbers of a field of the block.
+    /// The numbers of a field of the block; `None` for a name that it does not have.
     pub fn number(&self, field: &str) -> Option<Vec<f64>> {
         let vector = |value: DVec3| value.to_array().to_vec();
         Some(match field {

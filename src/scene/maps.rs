@@ -24,15 +24,16 @@ pub struct Maps {
     pub base: Map,
     /// Normals in tangent space, from -1 to 1 written as 0 to 1.
     pub normal: Map,
-    /// The open share of the surroundings, in red.
+    /// Ambient occlusion, in red: 1 where nothing occludes.
     pub occlusion: Map,
     /// Light that was computed beforehand.
     pub light: Map,
-    /// Those of `material_maps`, by the names of their bindings. The others are blank.
+    /// The textures of `material_maps`, by the names of their bindings. Those that are missing are
+    /// blank.
     pub material: BTreeMap<&'static str, Map>,
 }
 
-/// The textures of `material_maps`, and their texels where a material has none.
+/// The textures of `material_maps`, and the texel of each that changes nothing.
 const BLANK: [(&str, DVec4); 9] = [
     ("anisotropy_map", DVec4::new(1.0, 0.5, 1.0, 1.0)),
     ("clearcoat_map", DVec4::ONE),
@@ -51,7 +52,8 @@ pub fn blank_texel(name: &str) -> Option<DVec4> {
 }
 
 impl Map {
-    /// A square of `side` texels, each from its middle in [0, 1].
+    /// A map of `side` by `side` texels. `at` gives the value at the middle of a texel, in [0,
+    /// 1]^2.
     pub fn of(side: usize, at: impl Fn(DVec2) -> DVec4) -> Self {
         let place = |index: usize| {
             (DVec2::new((index % side) as f64, (index / side) as f64) + 0.5) / side as f64
@@ -84,18 +86,18 @@ impl Map {
         self.texels.iter().sum::<DVec4>() / self.texels.len().max(1) as f64
     }
 
-    /// The map and all its smaller levels.
+    /// The map and all its mip levels.
     pub fn levels(self) -> Vec<Self> {
         std::iter::successors(Some(self), Self::half).collect()
     }
 }
 
-/// The linear share of light of an encoded one (IEC 61966-2-1, sRGB).
+/// Linear light from a value that is encoded as sRGB (IEC 61966-2-1).
 pub fn linear_from_srgb(encoded: f64) -> f64 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
-/// A wall of bricks in a bond. Its baked light is a soft spot.
+/// A wall of bricks in running bond. Its baked light is a soft spot.
 pub fn bricks() -> Maps {
     Maps {
         base: Map::of(256, |at| {
@@ -179,7 +181,7 @@ pub fn meadow() -> Maps {
     Maps { base, ..bricks() }
 }
 
-/// A place of the wall, relative to its brick.
+/// The height and the tone of the wall at a place.
 struct Brick {
     /// 0 in the joint, 1 on the brick.
     height: f64,
@@ -214,7 +216,7 @@ pub(super) fn value_noise(at: DVec2, cells: u32) -> f64 {
     2.0 * grid_noise(place, |x, y| random_at(x % cells, y % cells, cells)) - 1.0
 }
 
-/// A blend of the numbers at the four corners around a place in a grid, smooth over the cells.
+/// The numbers at the four corners of the cell around a place, interpolated smoothly.
 pub(super) fn grid_noise(place: DVec2, corner: impl Fn(u32, u32) -> f64) -> f64 {
     let cell = place.floor();
     let t = place - cell;

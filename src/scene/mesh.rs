@@ -39,7 +39,8 @@ impl std::fmt::Display for MeshError {
 
 impl std::error::Error for MeshError {}
 
-/// The unit normal of each triangle, `(b - a) x (c - a)`: counter-clockwise faces look at you.
+/// The unit normal of each triangle, `(b - a) x (c - a)`: a viewer whom it points to sees the
+/// corners counter-clockwise.
 ///
 /// Parameters: `positions` in any space; `indices` of the triangles' corners, or `None` where each
 /// three positions are a triangle.
@@ -82,7 +83,7 @@ pub fn smooth_normals(
     Ok(vertex.iter().map(|vertex| sums[*vertex].try_normalize().unwrap_or(UNUSED_NORMAL)).collect())
 }
 
-/// Twice the area of a triangle, along its normal.
+/// A vector along the normal of a triangle, whose length is twice the area.
 fn double_area(positions: &[DVec3], [a, b, c]: [usize; 3]) -> DVec3 {
     (positions[b] - positions[a]).cross(positions[c] - positions[a])
 }

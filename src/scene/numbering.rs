@@ -2,12 +2,12 @@
 
 use super::sets::{Material, Scene};
 
-/// How many materials the array of the library's programs has.
+/// How many entries the array of materials has in the library's programs.
 const MATERIALS: usize = 14;
 
 impl Scene {
-    /// Puts the materials of the objects into the array, each for both of its sides, and gives the
-    /// objects their numbers. Materials are one if a surface of glTF reads the same from them.
+    /// Puts the materials of the objects into the array, each as front and back, and gives the
+    /// objects their indices. Materials from which a glTF surface reads the same share one entry.
     ///
     /// # Errors
     /// The objects have more materials than the array.
@@ -29,7 +29,8 @@ impl Scene {
     }
 }
 
-/// Whether surfaces of glTF read the same from both. The block `layers` has the rest.
+/// Whether a glTF surface reads the same from both materials. It reads everything else from the
+/// block `layers`.
 fn is_same(one: &Material, other: &Material) -> bool {
     let read = |material: &Material| (material.emission, material.ambient, material.roughness);
     read(one) == read(other)

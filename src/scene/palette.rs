@@ -39,7 +39,8 @@ pub fn materials() -> Vec<[Material; 2]> {
     FRONTS.iter().enumerate().map(|(index, front)| [material(*front), back(index)]).collect()
 }
 
-/// The lamps of shapes that float: the first shines from beside the viewer, everywhere alike.
+/// Lamps for shapes that float in space. The first one is a directional light from beside the
+/// viewer.
 pub fn over_the_shoulder() -> Vec<Lamp> {
     let key = Lamp {
         color: DVec3::splat(0.95),

@@ -62,8 +62,8 @@ pub fn irradiance_sh9(n: DVec3, coefficients: &[DVec3; 9]) -> DVec3 {
     terms.map(|(index, (coefficient, harmonic))| *coefficient * (harmonic * band(index))).sum()
 }
 
-/// Directions over the whole sphere with their solid angles: exact for polynomials of a degree
-/// below twice `rows`.
+/// Directions over the whole sphere with their solid angles. A sum with them integrates polynomials
+/// of a degree below twice `rows` exactly.
 ///
 /// Returns: `2 * rows * rows` of them; the solid angles add up to 4 pi.
 pub fn directions(rows: usize) -> Vec<(DVec3, f64)> {
@@ -91,9 +91,10 @@ pub struct CubeMap {
 }
 
 impl CubeMap {
-    /// An environment as it is: the mean over each texel, so that edges are smooth.
+    /// An environment without a filter. Each texel is a mean of several directions, so that edges
+    /// are smooth.
     pub fn of(sky: &Sky<'_>, size: usize) -> Self {
-        /// Places in a texel along each side.
+        /// Samples in a texel along each side.
         const PLACES: usize = 4;
         let fine = size * PLACES;
         let texel = |index: usize| {
@@ -129,7 +130,8 @@ pub fn prefilter(sky: &Sky<'_>, exponent: f64, size: usize, rows: usize) -> Cube
         .into_iter()
         .map(|(direction, weight)| (direction, weight, sky(direction)))
         .collect();
-    // Where the weight is below a billionth of the largest, or the direction is behind the lobe.
+    // Directions with a cosine below this are left out: their weight is below a billionth of the
+    // largest, or they are behind the lobe.
     let outside = if exponent > 0.0 { 1e-9_f64.powf(exponent.recip()) } else { 0.0 };
     let texel = |index: usize| {
         let (face, row, column) = (index / (size * size), index / size % size, index % size);

@@ -6,8 +6,9 @@ use glam::{DVec2, DVec3, DVec4};
 
 use super::maps::Map;
 
-/// What a luminaire sends, over its strongest direction: angles to the axis in columns, from 0 to
-/// pi, and angles around it in rows, from 0 to 2 pi. Both ends of a range are middles of texels.
+/// The intensity of a luminaire over that of its strongest direction: angles to the axis in
+/// columns, from 0 to pi, and angles around it in rows, from 0 to 2 pi. Both ends of a range are
+/// middles of texels.
 pub fn luminaire() -> Map {
     const SIDE: usize = 64;
     Map::of(SIDE, |at| {
@@ -36,7 +37,8 @@ pub fn window() -> Map {
     })
 }
 
-/// From coordinates in [0, 1] to those of a texture, so that the ends are middles of texels.
+/// The scale (xy) and the offset (zw) from coordinates in [0, 1] to those of a texture, so that
+/// both ends are middles of texels.
 pub fn between_middles(map: &Map) -> DVec4 {
     let size = DVec2::new(map.width as f64, map.height as f64);
     let (scale, offset) = ((size - 1.0) / size, 0.5 / size);

@@ -1,4 +1,4 @@
-//! What rays meet: the triangles of a scene, in a tree of boxes.
+//! Casts rays against the triangles of a scene, in a bounding volume hierarchy.
 
 use glam::DVec3;
 
@@ -15,7 +15,7 @@ pub struct Surfaces {
 /// What a ray meets first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
-    /// In lengths of the ray's direction.
+    /// The distance, as a multiple of the length of the ray's direction.
     pub distance: f64,
     /// Of unit length, on the front of the triangle.
     pub normal: DVec3,
@@ -37,8 +37,8 @@ struct Triangle {
 struct Node {
     low: DVec3,
     high: DVec3,
-    /// A leaf has a range of triangles. Another node has two nodes, of which it holds the second;
-    /// the first one comes right after it.
+    /// A leaf has a range of triangles. An inner node has the index of its second child; its first
+    /// child comes right after it.
     content: Content,
 }
 
@@ -50,7 +50,7 @@ enum Content {
 
 /// The most triangles of a leaf.
 const LEAF: usize = 4;
-/// Hits that are nearer than this are those of the surface that the ray starts from.
+/// Nearer hits are ignored: they are on the surface that the ray starts from.
 const NEAREST: f64 = 1e-6;
 
 impl Surfaces {
@@ -59,7 +59,7 @@ impl Surfaces {
         Self::with_looks(scene, Look::of)
     }
 
-    /// The same, with other colours.
+    /// The same, with the colours that `look` gives.
     pub fn with_looks(scene: &Scene, look: impl Fn(&Object) -> Look) -> Self {
         let casting = scene.objects.iter().filter(|object| object.casts);
         let mut triangles: Vec<Triangle> =
@@ -72,7 +72,8 @@ impl Surfaces {
         Self { triangles, nodes }
     }
 
-    /// What a ray meets first, from either side. The direction need not be of unit length.
+    /// The first triangle that a ray meets, from either side. The direction need not be of unit
+    /// length.
     pub fn hit(&self, from: DVec3, towards: DVec3) -> Option<Hit> {
         let mut best = f64::INFINITY;
         let mut found = None;
@@ -142,7 +143,7 @@ fn object_triangles(object: &Object, look: &Look) -> Vec<Triangle> {
     object.shape.indices.chunks(3).filter_map(triangle).collect()
 }
 
-/// Adds the tree of a range of triangles, which it sorts.
+/// Adds the tree of a range of triangles, which it reorders.
 fn build_node(all: &mut [Triangle], range: std::ops::Range<usize>, nodes: &mut Vec<Node>) {
     let triangles = &mut all[range.clone()];
     let corners = || triangles.iter().flat_map(|triangle| triangle.corners);
@@ -178,7 +179,7 @@ impl Node {
             let (a, b) = ((self.low[axis] - start) / step, (self.high[axis] - start) / step);
             (enter, leave) = (enter.max(a.min(b)), leave.min(a.max(b)));
         }
-        // Boxes may be flat.
+        // The margin is for boxes without a thickness.
         enter <= leave * (1.0 + 1e-12) + 1e-12
     }
 }

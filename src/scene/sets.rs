@@ -37,7 +37,7 @@ pub struct Scene {
     pub haze_range: (f64, f64),
     /// Makes the textures. They are made only when they are asked for.
     pub maps: fn() -> Maps,
-    /// Textures that were read, instead of those.
+    /// Textures of a model that was read, which replace those of `maps`.
     pub own_maps: Option<Arc<Maps>>,
     /// Texels along an edge of the shadow map, if that does not depend on the picture's size.
     pub map_size: Option<u32>,
@@ -47,9 +47,10 @@ pub struct Scene {
     pub probes: Option<Probes>,
     /// Half of the width and height of lamps with an area, if they are not of the usual size.
     pub lamp_size: Option<DVec2>,
-    /// The name of the environment around it, if that is not the usual one.
+    /// The name of the environment, if that is not the usual one.
     pub around: Option<&'static str>,
-    /// The box that its environment is on: two corners, and from where it is seen.
+    /// The box whose walls the environment shows: two opposite corners, and the point from which
+    /// the environment is seen.
     pub room: Option<[DVec3; 3]>,
 }
 
@@ -113,20 +114,21 @@ pub enum LampKind {
     Spot,
 }
 
-/// The area of a lamp that has a place.
+/// The shape of an area light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LampShape {
-    /// Shines along the lamp's axis.
+    /// A rectangle that shines along the axis of the lamp.
     Rectangle,
-    /// As high as the rectangle.
+    /// A sphere as high as the rectangle.
     Sphere,
-    /// As wide as the rectangle.
+    /// A tube as wide as the rectangle.
     Tube,
 }
 
 impl LampShape {
-    /// The radius of a round lamp, from half of the width and height of lamps.
+    /// The radius of a sphere or tube, from half of the width and height of area lights; 0 for a
+    /// rectangle.
     pub fn radius(self, size: DVec2) -> f64 {
         match self {
             Self::Rectangle => 0.0,
@@ -136,13 +138,13 @@ impl LampShape {
     }
 }
 
-/// What a lamp sends where, if that is not the same everywhere.
+/// The texture that varies the light of a lamp with the direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LampProfile {
-    /// As was measured of a luminaire.
+    /// Intensities by angle, as an IES file has them for a luminaire.
     Ies,
-    /// A projected picture.
+    /// A picture that the lamp projects.
     Cookie,
 }
 
@@ -175,7 +177,7 @@ pub struct Material {
     pub specular: DVec3,
     /// Roughness of Oren and Nayar, radians.
     pub sigma: f64,
-    /// What it has as a surface of glTF; without them, pictures choose.
+    /// Its factors as a glTF surface. Without them, pictures choose them.
     pub layers: Option<Layers>,
 }
 
@@ -219,7 +221,7 @@ impl Object {
         }
     }
 
-    /// With a material of its own, the first of the array.
+    /// An object with a material of its own. Its index in the array is 0.
     pub fn made(shape: Shape, place: DMat4, color: DVec3, material: Material) -> Self {
         Self::new(shape, place, color).of(material, 0)
     }
@@ -235,7 +237,7 @@ impl Lamp {
         (self.target - self.position).normalize_or(DVec3::NEG_Y)
     }
 
-    /// Directions to the right and up: the cross product of both is the axis.
+    /// Unit vectors to the right and up, whose cross product is the axis.
     pub fn sides(&self) -> (DVec3, DVec3) {
         let axis = self.axis();
         let right = DVec3::Y.cross(axis).normalize_or(DVec3::X);
@@ -291,7 +293,7 @@ impl Scene {
     }
 }
 
-/// A scene, by its name: one file of `sets/` each.
+/// A scene with its name. Each has a file of `sets/`.
 #[derive(Debug)]
 pub struct Set {
     /// As presets and the command line name it.

@@ -19,7 +19,7 @@ pub struct Vertex {
     pub uv: DVec2,
     /// Coordinates in the lightmap, [0, 1].
     pub light_uv: DVec2,
-    /// Along u, of unit length; w is the bitangent's sign.
+    /// The direction of u, of unit length; w is the sign of the bitangent.
     pub tangent: DVec4,
 }
 
@@ -61,7 +61,7 @@ impl Shape {
         shape
     }
 
-    /// A flat parallelogram of `across` by `up` quads from a corner along two edges.
+    /// A flat parallelogram from a corner along two edges, of `quads.0` by `quads.1` quads.
     pub fn patch(corner: DVec3, along: DVec3, up: DVec3, quads: (u32, u32)) -> Self {
         Self::surface(quads.0, quads.1, |u, v| corner + along * u + up * v)
     }
@@ -139,7 +139,7 @@ impl Shape {
         self
     }
 
-    /// Moved, turned, scaled.
+    /// The shape moved, turned or scaled by a matrix.
     #[must_use]
     pub fn transformed(self, matrix: DMat4) -> Self {
         let normals = normal_matrix(matrix);
@@ -153,7 +153,7 @@ impl Shape {
         })
     }
 
-    /// Textures repeated so often along u and v.
+    /// The shape with its textures repeated `times` along u and v.
     #[must_use]
     pub fn tiled(self, times: DVec2) -> Self {
         self.map(|vertex| vertex.uv *= times)
@@ -164,7 +164,7 @@ impl Shape {
     #[must_use]
     pub fn faceted(&self) -> Self {
         let positions: Vec<DVec3> = self.vertices.iter().map(|vertex| vertex.position).collect();
-        // Indices out of range give no faces.
+        // With indices out of range, there are no faces.
         let normals = face_normals(&positions, Some(&self.indices)).unwrap_or_default();
         let corners = normals.iter().zip(self.indices.chunks(3));
         let vertices: Vec<Vertex> = corners
@@ -179,16 +179,17 @@ impl Shape {
     }
 }
 
-/// A point on a circle around the y axis.
+/// A point on the circle around the y axis, after a share `u` of the way around.
 fn point_around(u: f64, radius: f64) -> DVec3 {
     let (sin, cos) = (TAU * u).sin_cos();
     DVec3::new(radius * cos, 0.0, -radius * sin)
 }
 
-/// A corner of a surface, with the normal that its neighbourhood has.
+/// A vertex of a surface. Its normal and tangent are from central differences.
 fn surface_vertex(at: &impl Fn(f64, f64) -> DVec3, u: f64, v: f64) -> Vertex {
     const STEP: f64 = 1e-4;
-    // A little away from the edges, since a pole has no direction there.
+    // The differences are taken a little away from the edges, since the surface may shrink to a
+    // point there.
     let inside = |x: f64| x.clamp(2.0 * STEP, 1.0 - 2.0 * STEP);
     let (s, t) = (inside(u), inside(v));
     let along = at(s + STEP, t) - at(s - STEP, t);
@@ -203,7 +204,7 @@ fn surface_vertex(at: &impl Fn(f64, f64) -> DVec3, u: f64, v: f64) -> Vertex {
     }
 }
 
-/// A curve through points, even in their number (Catmull and Rom).
+/// A Catmull-Rom spline through points, which are at even steps of `at` from 0 to 1.
 fn smooth_curve(points: &[DVec2], at: f64) -> DVec2 {
     let Some(last) = points.len().checked_sub(1) else { return DVec2::ZERO };
     let place = at.clamp(0.0, 1.0) * last as f64;

@@ -66,7 +66,7 @@ impl Equirect {
         let down = (FRAC_PI_2 - d.y.clamp(-1.0, 1.0).asin()) / PI * self.height as f64 - 0.5;
         let (height, top) = (self.height as f64, down.floor());
         let row = |row: f64| {
-            // Beyond a pole the same row goes on, half way round.
+            // Beyond a pole, the image continues in the nearest rows, half way around.
             let beyond = row < 0.0 || row >= height;
             let inside = if row < 0.0 { -1.0 - row } else { row.min(2.0 * height - 1.0 - row) };
             let around = if beyond { around + 0.5 * self.width as f64 } else { around };

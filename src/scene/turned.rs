@@ -17,9 +17,9 @@ const ANGLE: f64 = PI / 9.0;
 #[derive(Debug, Clone, Copy)]
 pub struct Arc {
     from: DVec2,
-    /// Of unit length, where the arc begins.
+    /// The direction in which it begins, of unit length.
     ahead: DVec2,
-    /// Its length if it is a line.
+    /// The distance between its ends.
     chord: f64,
     angle: f64,
 }
@@ -35,7 +35,7 @@ impl Arc {
         Self { from, ahead, chord: chord.length(), angle: 4.0 * bulge.atan() }
     }
 
-    /// The point after a share of the way.
+    /// The point after a share of the length.
     pub fn point(&self, share: f64) -> DVec2 {
         let inwards = DVec2::new(-self.ahead.y, self.ahead.x);
         if self.angle.abs() < 1e-6 {
@@ -60,7 +60,7 @@ pub fn profile_arcs(profile: &[Turn]) -> impl Iterator<Item = Arc> {
     })
 }
 
-/// A profile, rotated around the y axis, with so many quads around.
+/// A profile rotated around the y axis, of `around` quads in each row.
 pub fn turned_shape(profile: &[Turn], around: u32) -> Shape {
     waved_shape(profile, around, |_, _| 0.0)
 }

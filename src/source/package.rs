@@ -63,7 +63,8 @@ pub trait Files: Send + Sync {
     fn read(&self, path: &str) -> Result<Option<String>, ReadError>;
 
     /// Every file with one of the extensions, sorted by bytes. Modules are looked up in it, so the
-    /// order matters.
+    /// order matters. [`Disk`] leaves out hidden files and folders, `target` and `node_modules`,
+    /// and lists at most [`Limits::files`] files.
     fn list(&self, extensions: &[&str]) -> Vec<String>;
 
     /// How diagnostics name a file of this package.
@@ -99,7 +100,7 @@ impl Disk {
         Ok(Self { root: folder.canonicalize()?, shown })
     }
 
-    /// Whether the folder is this one or below it, with links followed.
+    /// Whether this folder is `real` or below it. `real` is a path in which links were followed.
     pub fn is_below(&self, real: &Path) -> bool {
         self.root.starts_with(real)
     }

@@ -18,7 +18,7 @@ pub struct ReadFailure {
 /// Reads `path` of `package` into the set. `None` where there is no such file.
 ///
 /// # Errors
-/// The failure does not know the place that asked for the file.
+/// The file cannot be read. The failure does not know the place that asked for it.
 pub fn read(
     sources: &mut SourceSet,
     package: &Package,

@@ -20,8 +20,8 @@ pub const HELP: &str =
 /// How long a server may take for its first answer.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// How long it may take for each later answer. A server that is slower does not help. One that
-/// never answers is not asked any more after a few failures.
+/// How long it may take for each later answer. A slower server would save no time. A server that
+/// does not answer is not asked any more after a few failures.
 const SHORT_PATIENCE: Duration = Duration::from_secs(2);
 
 /// The start of all names in the store, so that others can use the same server.

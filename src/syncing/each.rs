@@ -1,4 +1,4 @@
-//! Waits for the disk where the system has no call for many files at once.
+//! Syncs files to the disk one by one, on systems that have no call to sync many at once.
 
 use std::fs::File;
 use std::io;

@@ -1,16 +1,17 @@
-//! Waits for the disk on Linux.
+//! Syncs files to the disk on Linux.
 
 use std::fs::File;
 use std::io;
 use std::path::Path;
 
-/// Fewer files than this are waited for one by one: what other programs write is not waited for.
+/// Fewer files than this are synced one by one, since syncing a whole file system also waits for
+/// what other programs have written.
 const MANY: usize = 64;
 
 /// Returns when the files of a folder are on the disk.
 ///
-/// Many files cost one wait instead of one each: the system is asked for all that is not written
-/// yet of the disk that the folder is on.
+/// Many files are synced by one call of `syncfs`, which writes all unwritten data of the file
+/// system that the folder is on. So there is one wait instead of one for each file.
 pub fn files(folder: &Path, names: &[&str]) -> io::Result<()> {
     if names.len() >= MANY {
         return Ok(rustix::fs::syncfs(File::open(folder)?)?);

@@ -21,7 +21,7 @@ struct Constant<'a> {
     is_global: bool,
 }
 
-/// The first place where constants exceed a part of their bounds.
+/// The first place where constants exceed their bounds, divided by `part`.
 pub fn scan_constants(text: &str, language: Language, part: u64) -> Option<Excess> {
     let (most_parts, most_uses) = (CONSTANT_PARTS / part, CONSTANT_USES / part);
     let constants = find_constants(text, language);

@@ -10,7 +10,7 @@ use crate::bundle::Language;
 use crate::compose::{Composed, PartKind};
 use crate::diagnostic::{Code, Diagnostic, Diagnostics, codes};
 
-/// A text with this many declarations is searched only for its first mistake.
+/// A text with more declarations than this is searched only for its first mistake.
 const PARTS: usize = 500;
 
 /// After so many mistakes no more are looked for.
@@ -53,7 +53,8 @@ struct Search<'c> {
 
 impl Search<'_> {
     /// Reads the text again and again, each time without the parts whose mistakes are known and
-    /// those that need them, until nothing is wrong. False if a mistake has no part.
+    /// those that need them, until nothing is wrong. Returns false if it cannot go on: a mistake is
+    /// not in a single part, or no new mistake is found.
     fn without_wrong(&mut self) -> bool {
         let mut errors = self.found.clone();
         while self.found.len() < MOST {
@@ -136,7 +137,7 @@ impl Search<'_> {
         }
     }
 
-    /// Adds mistakes that are not known yet, and gives them.
+    /// Adds mistakes that are not known yet, and returns those.
     fn take_new(&mut self, errors: Diagnostics) -> Diagnostics {
         let is_new = |error: &Diagnostic| {
             !STOPPING.contains(&error.code)
@@ -150,12 +151,12 @@ impl Search<'_> {
 }
 
 thread_local! {
-    /// The rests of texts that naga accepted last. While an author writes a function, the rest
-    /// stays the same.
+    /// The texts that naga accepted last after the parts with mistakes were left out, as
+    /// [`joined_parts`] gives them. While an author edits one function, that rest stays the same.
     static ACCEPTED: RefCell<VecDeque<String>> = const { RefCell::new(VecDeque::new()) };
 }
 
-/// Rests that are kept.
+/// How many accepted texts are kept.
 const KEPT: usize = 4;
 
 fn was_accepted(rest: &String) -> bool {
@@ -169,7 +170,8 @@ fn keep_accepted(rest: String) {
     });
 }
 
-/// What naga reads of some parts, without the blanks in place of the others: they say nothing.
+/// A key for what naga reads if only some parts are needed: the language, the stage, and the text
+/// without the other parts.
 fn joined_parts(composed: &Composed, needed: &[bool]) -> String {
     let mut text = format!("{:?} {:?}\n", composed.language, composed.stage);
     let mut at = 0;
@@ -182,7 +184,7 @@ fn joined_parts(composed: &Composed, needed: &[bool]) -> String {
     text + composed.text.get(at..).unwrap_or_default()
 }
 
-/// The same mistake at the same place.
+/// Whether two errors are the same mistake at the same place.
 fn same_mistake(one: &Diagnostic, other: &Diagnostic) -> bool {
     one.code == other.code
         && one.labels.first().map(|label| label.span)

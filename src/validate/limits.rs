@@ -52,7 +52,7 @@ pub fn check_limits(composed: &Composed) -> Result<Option<Excess>, Diagnostic> {
         .map_or(Ok(Some(large)), |excess| Err(report_excess(composed, &excess)))
 }
 
-/// The first place that exceeds a part of any limit.
+/// The first place that exceeds any limit, divided by `part`.
 fn beyond_limits(composed: &Composed, part: usize) -> Option<Excess> {
     let text = &composed.text;
     let limit = LIMITS.bytes / part;
@@ -143,7 +143,7 @@ fn scan_text(bytes: &[u8], part: usize) -> Option<Excess> {
 }
 
 impl Scan<'_> {
-    /// What exceeds a part of its bound so far, with the bound.
+    /// What exceeds its bound, divided by `part`, so far; with the divided bound.
     #[inline]
     fn excess(&self, part: usize) -> Option<(&'static str, usize)> {
         let counts = [
@@ -208,7 +208,8 @@ impl Scan<'_> {
         self.bytes.get(self.at).copied()
     }
 
-    /// Reads an identifier or keyword. Keywords that nest statements without brackets count.
+    /// Reads an identifier or keyword, and updates the counts. `if`, `else`, `for`, `while`, `do`
+    /// and `switch` count as one operator each, since they nest statements even without braces.
     fn word(&mut self) {
         let start = self.at - 1;
         while self.peek().is_some_and(is_word_byte) {
@@ -261,7 +262,8 @@ impl Scan<'_> {
         }
     }
 
-    /// Closes a bracket. It is as deep as its deepest part, and one step more.
+    /// Closes a bracket. For the level around it, the bracket counts as one operator more than its
+    /// deepest part has.
     fn close(&mut self) {
         if self.levels.len() > 1
             && let Some(inner) = self.levels.pop()

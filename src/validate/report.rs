@@ -130,7 +130,8 @@ pub fn validation_error(
     said.notes.into_iter().fold(diagnostic, Diagnostic::note)
 }
 
-/// A label if the range has an author, else a note that quotes the composed text.
+/// Adds a label if the range comes from an author's file, else a note that quotes the composed
+/// text.
 fn label_or_note(
     diagnostic: Diagnostic,
     composed: &Composed,

@@ -1,4 +1,5 @@
-//! A digester remembers the hashes of what units share. Each digest is that of the unit by itself.
+//! A digester remembers the hashes of values that several units share. Each of its digests must be
+//! equal to [`Unit::digest`], which remembers nothing.
 
 use std::sync::Arc;
 
@@ -9,8 +10,8 @@ use super::{Outcome, check, unit};
 /// More units than a digester remembers values of.
 const UNITS: usize = 6_000;
 
-/// Some units share a value of the unit before them, by its address. Others have an equal value of
-/// their own, or another one, perhaps at an address that a unit had which is gone.
+/// Some units share the `Arc`s of an earlier unit. Others have equal values in `Arc`s of their own,
+/// or different values, perhaps at the address of a value that was freed.
 pub fn remembered() -> Outcome {
     let digester = Digester::default();
     let mut kept: Option<Unit> = None;
@@ -29,7 +30,7 @@ pub fn remembered() -> Outcome {
         }
         let (found, alone) = (digester.digest(&unit)?, unit.digest()?);
         check(found == alone, &format!("unit {number}: {found:?} instead of {alone:?}"))?;
-        // Nothing else holds the units that are not kept.
+        // A unit that is not kept is freed, so that a later value may reuse its address.
         kept = (number % 4 != 3).then_some(unit);
     }
     Ok(())

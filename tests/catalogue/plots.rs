@@ -9,7 +9,8 @@ use lamplight::proof::plots::plot_curves;
 use lamplight::source::{Embedded, Files as _, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
-/// Part of the height that must be between two curves somewhere. It is two widths of a line.
+/// How far apart two curves must be at some point, as a fraction of the plot's height. It is the
+/// width of two lines.
 const APART: f64 = 0.02;
 
 pub fn trials() -> Vec<Trial> {
@@ -64,8 +65,8 @@ fn bounds(curves: &[Vec<f64>]) -> (f64, f64) {
     values.fold((f64::MAX, f64::MIN), |(low, high), value| (low.min(value), high.max(value)))
 }
 
-/// Angles are in degrees, and are not replaced by their cosines. Parameters that an expression
-/// converts to integers have stems, unless there are too many to draw.
+/// Angles are in degrees, and are not replaced by their cosines. A parameter that the expression
+/// converts to an integer is plotted with stems at integers, unless there are too many to draw.
 fn angles_are_in_degrees() -> Result<(), Failed> {
     const MOST_STEMS: f64 = 100.0;
     let mut wrong = Vec::new();

@@ -43,7 +43,7 @@ pub fn taps_are_counted() -> Outcome {
     Ok(())
 }
 
-/// A key's values of specialisation constants are settled before the optimiser sees the module.
+/// The specialisation constants get the values of the key before the optimiser sees the module.
 pub fn constants_are_settled() -> Outcome {
     let folder = tempfile::tempdir()?;
     fs::write(folder.path().join("lamplight.toml"), OWN_MANIFEST)?;
@@ -54,7 +54,7 @@ pub fn constants_are_settled() -> Outcome {
     let output = command.current_dir(folder.path()).output()?;
     let found: Vec<Value> = serde_json::from_slice(&output.stdout).map_err(|_| said(&output))?;
     let of = |index: usize, kind: &str| count(&found[index], "counts", kind);
-    // The loop has a sine and a root. If it never turns, nothing is left of it.
+    // The loop has a sine and a root. With no iterations, the optimiser removes it.
     if of(0, "functions")? != 0 || of(1, "functions")? < 2 {
         return Err(format!("`loops` is not settled: {found:#?}").into());
     }
@@ -135,8 +135,8 @@ fn ask_mali(folder: &Path, options: &[&str]) -> Result<Output, Failed> {
     command.output().map_err(Failed::from)
 }
 
-/// malioc's report is read, with what it does not know. The program got a module of SPIR-V with a
-/// name that says its stage.
+/// malioc's report is read, and figures that it leaves open are `null`. The program was given a
+/// SPIR-V module in a file whose name ends with the stage.
 pub fn mali_is_asked() -> Outcome {
     let folder = tempfile::tempdir()?;
     stand_in(folder.path(), REPORT)?;

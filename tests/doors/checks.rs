@@ -53,7 +53,8 @@ fn places() -> Outcome {
     equal(junit.contains("file=\"below/light.toml\" line=\"7\""), true)
 }
 
-/// A broken law is told with the input and the result, and not with values of our own types.
+/// A broken law is reported with the input and the result, as numbers and not in the debug form of
+/// Rust's types.
 fn laws() -> Outcome {
     let run = package(&[LAW])?.run("check below/light.toml")?.ends(3)?;
     let words = ["the law `range` is broken 7 times: x = 0.4000000059604645 gives 1.2"];

@@ -147,14 +147,14 @@ fn features_default() -> Outcome {
         package.run(&format!("compose {file} --features-default error"))?.ends(1)?;
         package.run(&format!("compose {file}"))?.ends(1)?;
     }
-    // A value that is given for a feature goes before the default.
+    // A value that is given for a feature overrides the default.
     let run =
         package.run("compile a.wesl --target wgsl --features-default on --feature fog=false")?;
     run.ends(0)?.is_silent_of(&["0.5"])?;
     Ok(())
 }
 
-/// The manifest has a key for the same. The option goes before the key.
+/// The manifest's key `features_default` does the same. The option overrides the key.
 fn manifest_features() -> Outcome {
     let manifest =
         "[program.p]\nwesl = \"a.wesl\"\ntargets = [\"wgsl\"]\nfeatures_default = \"off\"\n";

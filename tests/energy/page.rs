@@ -65,7 +65,8 @@ fn table(metal: bool, cells: &BTreeMap<&Place, &Cell>) -> String {
     format!("{text}\nLight of {}; {}.\n\n", said[0], said[1])
 }
 
-/// In how many cells the surface gives back what it gets within 1 %, and how far off it is elsewhere.
+/// In how many cells the reflected radiance is 1 within 1 %, and the range of all cells if it is
+/// not in every one.
 fn verdict(kind: &str, values: &[f64]) -> String {
     // As the page shows them, so that the page can be made from its own numbers.
     let shown: Vec<f64> = values.iter().map(|value| (value * 1000.0).round() / 1000.0).collect();

@@ -13,7 +13,8 @@ use libtest_mimic::{Failed, Trial};
 /// Steps of a sweep.
 const STEPS: u32 = 200;
 
-/// Further expressions of x. Rust has no function for them, so their meaning is not used.
+/// Further expressions of x. They are only compared with the evaluator, so their Rust functions are
+/// placeholders.
 const MORE: &[One] = &[
     ("cross(vec3f(x, 1.0, 2.0), vec3f(2.0, x, -1.0)).z", |_| 0.0, -5.0, 5.0),
     ("reflect(vec2f(x, -1.0), vec2f(0.6, 0.8)).x", |_| 0.0, -5.0, 5.0),

@@ -1,5 +1,5 @@
-//! Lookups that stay in one image take a shorter way than others. Runs with bounds of errors never
-//! take it, so both ways are compared: every value must be the same to the bit.
+//! Texture lookups within one image have a fast path. Runs with error bounds ([`Bounded`]) never
+//! take it, so the two paths are compared: their values must be bit-identical.
 
 use std::sync::Arc;
 
@@ -76,7 +76,8 @@ fn compare_ways() -> Result<(), Failed> {
     Ok(())
 }
 
-/// Mostly inside of the texture; also far outside, at its edge, and nowhere.
+/// A texture coordinate: mostly inside of the texture, but also far outside, at its edges, infinite
+/// or NaN.
 fn random_place(dice: &mut Dice) -> f64 {
     let fine = f64::from(dice.roll(10_000)) / 10_000.0;
     match dice.roll(14) {
@@ -134,7 +135,7 @@ fn chain(dice: &mut Dice, shape: Shape, [width, height, layers]: [u32; 3]) -> Te
     texture
 }
 
-/// Texels of `count` components, in one of the two forms. Some are negative zeros.
+/// Texels of `count` components, in one of the two forms of [`Texels`]. Some are negative zeros.
 fn random_texture(
     dice: &mut Dice,
     shape: Shape,

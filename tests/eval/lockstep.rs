@@ -1,5 +1,5 @@
-//! Lanes in lock-step give the bits that lanes by themselves give: for random programs, whose lanes
-//! part and meet in every statement that there is, and for every function of the library.
+//! Lanes in lock-step give the same bits as lanes that run alone: for random programs, whose lanes
+//! diverge and reconverge in every kind of statement, and for every function of the library.
 
 mod draft;
 
@@ -16,7 +16,7 @@ use libtest_mimic::{Failed, Trial};
 
 /// How many random programs run.
 const PROGRAMS: u32 = 300;
-/// Quads of each run: more than a batch has, and not a whole number of batches.
+/// Quads of each run: more than fit in a batch, and not a whole number of batches.
 const QUADS: usize = 6;
 
 pub fn trials() -> Vec<Trial> {
@@ -78,7 +78,7 @@ fn random_programs() -> Result<(), Failed> {
             None => refused += 1,
         }
     }
-    // Programs that end at once, or give all lanes the same, would test nothing.
+    // Programs that end at once, or give all lanes the same result, would test nothing.
     println!("{parted} of {PROGRAMS} programs give lanes different results, {refused} fail");
     println!("{finite} lanes give finite numbers");
     assert!(finite > PROGRAMS as usize * QUADS, "too few lanes give finite numbers");
@@ -139,13 +139,14 @@ fn compare_quads(
     }
 }
 
-/// The bits of slots. All that is not a number has the same.
+/// The bits of slots. Every NaN has the same bits here.
 fn bits_of(slots: &[f32]) -> Vec<u32> {
     let canonical = |slot: &f32| if slot.is_nan() { f32::NAN } else { *slot };
     slots.iter().map(|slot| canonical(slot).to_bits()).collect()
 }
 
-/// Each lane of a call gets its own inputs, and a number of lanes that is no multiple of a batch's.
+/// Calls of every function of the library agree. Each lane has its own inputs, and the number of
+/// lanes is not a multiple of [`Batch::LANES`].
 fn library_functions() -> Result<(), Failed> {
     let modules = Embedded.list(&["wesl"]);
     let is_module = |path: &&String| path.contains('/') && !path.starts_with("programs/");
@@ -200,8 +201,8 @@ fn compare_calls(program: &Program, id: FunctionId) -> Result<(), String> {
     }
 }
 
-/// A lane that runs too long stops the call, whatever the other lanes do; a program that takes too
-/// much memory for many lanes runs one by one.
+/// A lane that exceeds the limit of loop trips stops the call, whatever the other lanes do. A
+/// program that takes too much memory for many lanes runs lane by lane.
 fn limits() -> Result<(), Failed> {
     let text = "fn spin(n: f32) -> f32 { var s = n; for (var i = 0.0; i < n; i += 1.0) { s += i; } return s; }
         var<private> large: array<f32, 300000>;

@@ -5,7 +5,8 @@ use lamplight::bundle::Kind as BindingKind;
 use lamplight::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
 use lamplight::scene::{Clip, Depth, perspective};
 
-/// Values for any uniform. Those that the picture depends on are chosen, the others vary.
+/// Values for any uniform. Some are chosen, so that the picture shows something; the others vary
+/// with the name.
 pub fn number(path: &str) -> Vec<f64> {
     let (_, name) = path.rsplit_once('.').unwrap_or(("", path));
     let index =
@@ -57,7 +58,7 @@ pub fn number(path: &str) -> Vec<f64> {
     }
 }
 
-/// Values of which a picture needs more than that they vary.
+/// Chosen values for the uniforms that need them. `None` where any values will do.
 fn special(path: &str, name: &str, index: usize) -> Option<Vec<f64>> {
     let found = matrix(path, name).or_else(|| room(name));
     found
@@ -67,7 +68,8 @@ fn special(path: &str, name: &str, index: usize) -> Option<Vec<f64>> {
         .or_else(|| probes(path, name))
 }
 
-/// How a lamp reads its profile: beside its axis, and not up to the border of the texture.
+/// How a lamp reads its light profile: from which direction angles around its axis count, and the
+/// part of the texture, which does not reach its border.
 fn profile(path: &str, name: &str, index: usize) -> Option<Vec<f64>> {
     const RIGHT: [[f64; 3]; 3] = [[0.8, -0.6, 0.0], [1.0, 0.0, 0.0], [0.8, 0.0, 0.6]];
     match name {
@@ -79,7 +81,7 @@ fn profile(path: &str, name: &str, index: usize) -> Option<Vec<f64>> {
     }
 }
 
-/// Lists of one to three lamps, in cells that are small where the sheet is.
+/// The clusters of lamps: the counts of cells, and the list of one to three lamps of each cell.
 fn cluster(name: &str, index: usize) -> Option<Vec<f64>> {
     match name {
         "counts" => Some(vec![4.0, 3.0, 24.0]),
@@ -93,7 +95,7 @@ fn cluster(name: &str, index: usize) -> Option<Vec<f64>> {
     }
 }
 
-/// Parts of a shadow map whose ends cross the sheet.
+/// Shadow cascades whose split distances cross the sheet.
 fn cascade(path: &str, name: &str) -> Option<Vec<f64>> {
     match name {
         _ if path.starts_with("cascades.clip_from_world") => matrix("", "clip_from_world"),
@@ -118,12 +120,12 @@ fn probes(path: &str, name: &str) -> Option<Vec<f64>> {
     }
 }
 
-/// The four words of a vector, each by its number.
+/// The four components of the vector at an index. `word` gives each by its number in the array.
 fn words(index: usize, word: impl Fn(usize) -> usize) -> Vec<f64> {
     (4 * index..4 * index + 4).map(|number| word(number) as f64).collect()
 }
 
-/// A room around the sheet, by the name of a corner.
+/// A box around the sheet, by the names of its corners and of its centre.
 fn room(name: &str) -> Option<Vec<f64>> {
     match name {
         "low" => Some(vec![-4.0, -3.0, -5.0]),
@@ -143,7 +145,7 @@ fn matrix(path: &str, name: &str) -> Option<Vec<f64>> {
         "clip_from_world" => {
             vec![0.5, 0., 0., 0., 0., 0.5, 0., 0.05, 0.1, 0., -0.3, 0., 0.03, 0.02, 0.5, 1.]
         }
-        // One side of the sheet is beside the picture.
+        // One side of the sheet lies outside of the texture.
         "uv_from_world" => {
             vec![0.56, 0., 0., 0., 0., 0.45, 0., 0.05, 0.02, 0., 0.3, 0.1, 0.5, 0.48, 0.2, 1.]
         }
@@ -160,7 +162,7 @@ fn matrix(path: &str, name: &str) -> Option<Vec<f64>> {
     })
 }
 
-/// The projection of the viewer, for places on the screen.
+/// The viewer's projection, for programs that convert between view space and the screen.
 fn view_projection() -> DMat4 {
     perspective(1.2, 1.0, 0.1, 12.0, Clip::Wgpu, Depth::Normal)
 }
@@ -210,22 +212,22 @@ pub fn fixture(kind: BindingKind, name: &str, ty: &str, key: &str) -> Fixture {
     }
 }
 
-/// What the colours of a texture are.
+/// What the texels of a colour texture mean.
 #[derive(Clone, Copy)]
 enum Given {
     Colors,
-    /// Four moments of the depth, which vary little, since a solution for four of them loses digits.
+    /// Four moments of the depth. They vary little, since solving for four moments loses precision.
     FourMoments,
-    /// Normals near that of the surface, so that the errors of their directions are small.
+    /// Normals near that of the surface, so that errors change their directions little.
     Normals,
-    /// Normals that vary by a sixteenth of that. The formulas of lamps with an area, of what brushed
-    /// surfaces mirror, and of light probes multiply the errors of directions.
+    /// Normals that vary a sixteenth as much as [`Self::Normals`], since the formulas of area
+    /// lights, of anisotropic reflections and of light probes amplify errors of directions.
     NearNormals,
-    /// Octahedral normals that vary as little.
+    /// Normals that vary as little as [`Self::NearNormals`], in octahedral encoding.
     NearOctahedral,
-    /// Matrices of wide lobes, with a positive determinant.
+    /// Matrices of linearly transformed cosines, of wide lobes and with a positive determinant.
     Lobes,
-    /// Directions that are far from none.
+    /// Directions whose vectors are not near zero, so that normalising them is accurate.
     Directions,
     /// Roughnesses, so large that errors stay small.
     Roughnesses,
@@ -251,7 +253,8 @@ impl Given {
     fn color(self, value: impl Fn(usize) -> f32, index: usize, channel: usize) -> f32 {
         let turned = value(index + 5 * channel);
         match (self, channel) {
-            // The moments of three depths.
+            // The moments of three depths, which `factor` gives as multiples of powers of one
+            // depth.
             (Self::FourMoments, _) => {
                 let factor = [1.0, 1.42667, 2.28, 3.83307][channel];
                 factor * (0.49 + 0.02 * value(index)).powi(channel as i32 + 1)

@@ -2,7 +2,8 @@
 //! those of the evaluator.
 //!
 //! Its fragments are not computed again with error bounds, as those of other programs are: WGSL
-//! promises no accuracy for the cosine of an angle beyond pi, which an arc has.
+//! promises no accuracy for the cosine of an angle beyond pi, and the formula for an arc takes such
+//! cosines.
 
 use lamplight::bundle::{Bundle, Language};
 use lamplight::execute::frame::{Drawing, EntryPoint, Item};
@@ -90,7 +91,7 @@ fn differing(
     let targets = driver.frame(bundle, (PROGRAM, language), key, scene);
     let targets = targets.map_err(|error| error.message)?;
     let found = colors(targets.first().ok_or("no target")?);
-    // A number that is none is not near.
+    // A NaN is not near.
     let is_near = |(found, wanted): &(&Option<f32>, &Option<f32>)| match (found, wanted) {
         (Some(found), Some(wanted)) => (found - wanted).abs() <= TOLERANCE,
         (found, wanted) => found.is_some() == wanted.is_some(),

@@ -18,7 +18,8 @@ fn program(axes: usize, values: usize, constraints: impl Iterator<Item = String>
     vec![("lamplight.toml", manifest), ("s.wesl", SHADER.to_owned())]
 }
 
-/// Constraints that each connect three of many axes, so that the axes cannot be counted apart.
+/// Constraints that each connect three of many axes, so that no part of the axes can be counted by
+/// itself.
 fn entangled(count: usize) -> impl Iterator<Item = String> {
     (0..count).map(|i| {
         let (a, b, c) = (i % 120, (i * 7 + 3) % 120, (i * 13 + 1) % 120);

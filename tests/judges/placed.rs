@@ -61,8 +61,8 @@ fn looked(at: vec3f) -> vec4f { return textureSample(cubes, smp, at, 1); }
     expect(&package.run(&["gen", "--no-cache"])?, 1, &words)
 }
 
-/// Code for which the GLSL output would be accepted and compute something else, or that the language
-/// cannot express, is refused at the author's line. For other targets it is compiled.
+/// Code is refused at the author's line if GLSL cannot express it, or if its GLSL output would be
+/// valid and compute something else. For other targets it is compiled.
 pub fn glsl_means_something_else() -> Outcome {
     let fragment = |body: &str| {
         format!(

@@ -81,7 +81,7 @@ fn gl_1(x: f32) -> f32 { let gl = x; return gl; }
 }
 
 /// In HLSL, an array of matrices of two rows within a structure has a structure of columns as its
-/// element. Its declaration ends with its name, which the output must have.
+/// element type. naga's declaration of this structure ends with its name. The output must have it.
 pub fn matrices_of_two_rows() -> Outcome {
     let text = "
 struct Turns { all: array<mat3x2f, 4>, one: mat4x2f }

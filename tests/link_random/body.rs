@@ -91,7 +91,8 @@ impl<'d> Body<'d> {
         self.draft.spelling.is_glsl()
     }
 
-    /// Paths to all variables, members and elements of a type, which can be read or written.
+    /// Paths to all variables, members and elements of a type that can be read, or that can be
+    /// written if `is_written` is set.
     pub fn paths(&mut self, ty: &Type, is_written: bool) -> Vec<String> {
         let mut found = Vec::new();
         let index = self.index();
@@ -301,7 +302,7 @@ impl<'d> Body<'d> {
             1 => {
                 let other = self.value(&Type::Vector(size, Scalar::Float), depth);
                 match scalar {
-                    // As for single numbers: GLSL leaves open what a negative one becomes.
+                    // As for scalars: GLSL does not define what a negative float becomes.
                     Scalar::Uint if self.draft.has_two_rows => format!("{name}({other})"),
                     Scalar::Uint if self.has("abs") => format!("{name}(abs({other}))"),
                     Scalar::Uint => one,

@@ -1,4 +1,4 @@
-//! Writes expressions that are one number, with the built-in functions for which writers add helpers.
+//! Writes scalar expressions, with the built-in functions for which writers add helpers.
 
 use super::body::Body;
 use super::types::{FLOAT, INT, Scalar, Type, UINT};
@@ -54,8 +54,9 @@ impl Body<'_> {
         format!("{}({number})", self.draft.spelling.scalar(Scalar::Float))
     }
 
-    /// A float as an integer. GLSL leaves open what a negative one becomes without a sign, and naga
-    /// passes that on. A program with matrices of two rows has no target in GLSL.
+    /// Converts a float to an integer. GLSL does not define what a negative float becomes as a
+    /// `uint`, and naga writes the conversion as it is, so the float is made positive first. A
+    /// program with matrices of two rows has no GLSL target and does not need that.
     fn whole(&mut self, scalar: Scalar, one: String, depth: usize) -> String {
         let (name, number) = (self.draft.spelling.scalar(scalar), self.value(&FLOAT, depth));
         match scalar {

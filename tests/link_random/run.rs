@@ -365,7 +365,7 @@ fn interpolated(input: &Varying) -> String {
     }
 }
 
-/// A number from -2 to 2 that is exact in few digits.
+/// A multiple of 1/16 from -2 to 2, which is exact in f32.
 fn number(random: &mut Random) -> f64 {
     random.below(65) as f64 / 16.0 - 2.0
 }

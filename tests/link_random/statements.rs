@@ -167,8 +167,8 @@ impl Body<'_> {
         Some(kept)
     }
 
-    /// Adds a variable with the result of a call. A call within an expression would be in an order
-    /// that languages do not define, and calls change variables.
+    /// Adds a variable with the result of a call, and gives its name. Calls change variables, and
+    /// not every language defines the order of calls within an expression.
     fn kept(&mut self, ty: &Type, call: &str) -> String {
         let kept = self.name();
         let glsl = self.draft.spelling.is_glsl();

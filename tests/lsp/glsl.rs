@@ -161,8 +161,8 @@ pub fn symbols() -> Outcome {
     expect(names == ["normal", "colour", "Lamp", "fade", "main"], &names)
 }
 
-/// Every name of the library's modules has an outline: what the catalogue tells of a module is what
-/// the server finds in its file. Half of a file is answered too.
+/// The outline (`documentSymbol`) of each of the library's modules has every name that the
+/// catalogue lists for it. A request for half of a file is answered too.
 pub fn library() -> Outcome {
     use lamplight::source::{Embedded, Files as _};
     let known = lamplight::catalogue::library_modules();

@@ -1,4 +1,4 @@
-//! Who uses a name of GLSL, in all files of a package, and giving it another one.
+//! References and renames of GLSL names in all files of a package, and signatures and symbols.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -106,8 +106,8 @@ fn places(session: &Session, found: &Value) -> Result<Vec<String>, Failed> {
     Ok(found.as_array().into_iter().flatten().map(place).collect())
 }
 
-/// Functions with all of their forms, locals, members, macros, files and names of the library are
-/// found in every file that is compiled with their declaration.
+/// Functions with all of their overloads, locals, members, macros, files and names of the library
+/// are found in every file that is compiled with their declaration.
 pub fn references() -> Outcome {
     let mut session = session()?;
     for (file, words, found) in [
@@ -287,8 +287,8 @@ fn refused_in(session: &mut Session) -> Outcome {
     Ok(())
 }
 
-/// Every form of a function, with the argument that the position is in; macros, structs, and
-/// functions of the library.
+/// Signature help has every overload of a function, with the argument at the position; macros,
+/// structs, and functions of the library have signatures too.
 pub fn signature() -> Outcome {
     let mut session = session()?;
     for (file, words, labels, argument) in [
@@ -306,7 +306,8 @@ pub fn signature() -> Outcome {
     Ok(())
 }
 
-/// Names of every file of the package, and of the library's files that they include.
+/// Workspace symbols are the names of every file of the package, and of the library's files that
+/// they include.
 pub fn workspace() -> Outcome {
     let mut session = session()?;
     for (query, name, file) in [

@@ -69,7 +69,7 @@ impl Editor {
         self.server.receive(&message).pop().unwrap_or_default()
     }
 
-    /// What is wrong with each file, once every file was looked at.
+    /// Lets the server check all files, and stores the diagnostics that it publishes for each.
     fn look(&mut self) {
         while !self.server.is_idle() {
             for message in self.server.look() {
@@ -87,7 +87,7 @@ struct Trial {
     open: BTreeMap<usize, String>,
     chosen: Option<&'static str>,
     random: Random,
-    /// What had an answer that is not empty at least once.
+    /// The requests that had an answer that is not empty at least once.
     answered: BTreeSet<&'static str>,
 }
 
@@ -215,7 +215,7 @@ impl Trial {
         self.uri(*self.open.keys().next().ok_or("nothing is open")?)
     }
 
-    /// A server that has seen nothing but the texts of now.
+    /// A new server that has seen only the current texts.
     fn fresh(&self) -> Result<Editor, Failed> {
         let mut fresh = Editor::new();
         for (index, text) in &self.open {
@@ -295,7 +295,8 @@ pub fn as_fresh() -> Outcome {
     Ok(())
 }
 
-/// A name that an import gives to a module is that of an item, once the module above has one.
+/// `import package::a::b` means the module `a/b.wesl` until the module `a` declares an item `b`.
+/// Then it means this item, and the server notices.
 pub fn module_becomes_item() -> Outcome {
     let folder = tempfile::tempdir()?;
     let root = folder.path().canonicalize()?;

@@ -3,7 +3,7 @@
 use super::Calls;
 use crate::random::Random;
 
-/// The share of the bias that rounding to 32 bits needs.
+/// The bias of the moments, as large as rounding to 32 bits needs.
 const BIAS: f64 = 3e-5;
 
 /// Depths and their weights, whose sum is 1.
@@ -34,9 +34,9 @@ impl Depths {
     }
 }
 
-/// For two to five random depths, the result is at least the lit share, but for the share of the bias.
-/// Peters and Klein, "Moment Shadow Mapping", 2015, section 3.2: the shadow is a lower bound, so that
-/// no surface shadows itself.
+/// For two to five random depths, the result is at least the lit share, apart from an error of the
+/// bias. Peters and Klein, "Moment Shadow Mapping", 2015, section 3.2: the shadow is a lower bound,
+/// so that no surface shadows itself.
 pub fn bound_the_shadow(calls: &mut Calls<'_>) -> Result<(), String> {
     let mut random = Random(1);
     let (mut rows, mut lit) = (Vec::new(), Vec::new());

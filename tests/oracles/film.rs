@@ -20,7 +20,7 @@ const RGB: [[f64; 3]; 3] = [
     [0.0556434, -0.2040259, 1.0572252],
 ];
 
-/// Points of the rule over a response, which ends at seven standard deviations.
+/// Points of the quadrature over a response, which ends at seven standard deviations.
 const POINTS: usize = 600;
 
 /// A film in air on a grey material.
@@ -32,11 +32,11 @@ struct Film {
     mu: f64,
 }
 
-/// What both sides of a film reflect, and what happens on the way between.
+/// The reflectances of a film's upper and lower side, and the phases of the light between them.
 struct Sides {
     upper: f64,
     lower: f64,
-    /// Cosine of the half waves by which both reflections from within shift.
+    /// 1 or -1: the cosine of the phase shift of both internal reflections together.
     sign: f64,
     /// Difference of the optical paths, metres.
     difference: f64,
@@ -52,7 +52,8 @@ impl Film {
         Sides {
             upper: schlick(facing(self.eta), self.mu),
             lower: schlick(facing(base / self.eta), inner),
-            // From within, the upper side is that of a thinner medium.
+            // Seen from within the film, the upper side leads to a lower index, so only the lower
+            // side can shift the phase.
             sign: if base < self.eta { 1.0 } else { -1.0 },
             difference: 2.0 * self.eta * self.nm * 1e-9 * inner,
         }
@@ -127,8 +128,8 @@ pub fn orders_sum_up(_: &mut Calls<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// Reflectances, cosines, and how far two orders are from all of them at most. The error is that of
-/// the third order, whose height is the third power of both amplitudes: it grows with the
+/// Reflectances, cosines, and the largest difference of two orders from all orders. The error is
+/// that of the third order, whose height is the third power of both amplitudes: it grows with the
 /// reflectance and towards the horizon. No material has the index of a film, where the phase jumps;
 /// the first has nearly that of one of them, and the error is that of the least interference.
 const ERRORS: [(&[f64], &[f64], f64); 9] = [

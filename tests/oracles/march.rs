@@ -31,7 +31,7 @@ impl Scene {
         self.0.iter().map(one).fold(f64::INFINITY, f64::min)
     }
 
-    /// The smallest share at the points of a march from sphere to sphere.
+    /// The smallest share at the points of sphere tracing, without estimates between the points.
     fn plain_march(&self, k: f64) -> f64 {
         let (mut t, mut least) = (START, 1.0_f64);
         while t < RANGE {
@@ -42,7 +42,8 @@ impl Scene {
         least
     }
 
-    /// The smallest share of the cone by its definition: the distance over the distance on the ray.
+    /// The smallest visible share of the light's cone by its definition: at each point of the ray,
+    /// `k` times the distance to the scene, over the distance along the ray.
     fn least(&self, k: f64) -> f64 {
         let place = |i: usize| START + (RANGE - START) * i as f64 / (DENSE - 1) as f64;
         let share = |t: f64| k * self.distance(t) / t;
@@ -50,7 +51,8 @@ impl Scene {
     }
 }
 
-/// A ray on its way: its scene, sharpness, place, and the two numbers of the function.
+/// A ray that is being marched: its scene, the sharpness `k`, the distance `t` so far, and what the
+/// function returned: the smallest share `res`, and the previous distance to the scene, `ph`.
 struct Ray {
     scene: Scene,
     k: f64,
@@ -90,7 +92,8 @@ fn advance_rays(
     Ok(rows.len())
 }
 
-/// In small steps, each without a previous one, the function is the definition.
+/// In small steps, each with a previous distance of 0, the function gives the share of the
+/// definition.
 pub fn small_steps(calls: &mut Calls<'_>) -> Result<(), String> {
     let (kernel, mut rays) = (calls.kernel("shadow::sdf", "sdf_soft_step")?, random_rays());
     let length = (RANGE - START) / 512.0;
@@ -103,9 +106,9 @@ pub fn small_steps(calls: &mut Calls<'_>) -> Result<(), String> {
     }
 }
 
-/// From sphere to sphere it estimates the nearest point between two steps, where the spheres of both
-/// meet. That is no bound: the share is up to a tenth too small, and a little too large, though less
-/// so than with the distances at the march's points alone.
+/// In sphere tracing, the function estimates the nearest point between two steps, where the spheres
+/// of both meet. That is no bound: the share is up to a tenth too small, and a little too large,
+/// though less so than with the distances at the march's points alone.
 pub fn large_steps(calls: &mut Calls<'_>) -> Result<(), String> {
     let (kernel, mut rays) = (calls.kernel("shadow::sdf", "sdf_soft_step")?, random_rays());
     let advanced = |ray: &mut Ray, ph: f64| {

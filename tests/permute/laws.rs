@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
+use lamplight::diagnostic::render::{Form, render};
 use lamplight::permute::axis::ValueSet;
-use lamplight::permute::cover::{Pair, pairwise};
+use lamplight::permute::cover::{Pair, covering_space, pairwise};
 use lamplight::permute::space::{Formula, Lists, Slice};
 use lamplight::permute::{
     Lock, Quoted, ReadTree, Setting, Settings, Space, key, lock, manifest, report,
@@ -26,6 +27,7 @@ const LAWS: &[(&str, Law)] = &[
     ("keys_survive_growth", keys_survive_growth),
     ("loader_and_tools_read_alike", loader_and_tools_read_alike),
     ("pairwise_covers_what_is_feasible", pairwise_covers_what_is_feasible),
+    ("covering_space_keeps_features", covering_space_keeps_features),
     ("huge_space_answers_at_once", huge_space_answers_at_once),
     ("entangled_space_is_refused", entangled_space_is_refused),
     ("lock_is_stable", lock_is_stable),
@@ -91,6 +93,22 @@ pub fn read(space: &Space, text: &str) -> Option<lamplight::permute::Assignment>
     let mut sources = SourceSet::default();
     let id = sources.add("key", text);
     key::parse(space, &Quoted::whole(&sources, id)).ok()
+}
+
+/// A covering set composes with the features that the program has at every other point.
+fn covering_space_keeps_features() -> Result<(), Failed> {
+    let text = "[features]\nshiny = true\n[program.p]\nwesl = \"p.wesl\"\n\
+        [program.p.axis]\na = { values = [false, true] }\n";
+    let mut sources = SourceSet::default();
+    let id = sources.add("lamplight.toml", text);
+    let manifest = manifest::parse(&sources, id);
+    let manifest = manifest.map_err(|found| render(&sources, &found, Form::Human))?;
+    let program = &manifest.programs[0];
+    let features = covering_space(program).features;
+    if features.is_empty() || features != program.space.features {
+        return Err(format!("expected {:?}, found {features:?}", program.space.features).into());
+    }
+    Ok(())
 }
 
 /// The pairwise cover has only valid points, has every pair of values that a valid point has, and

@@ -81,7 +81,7 @@ fn measured_sum(arguments: &[&str]) -> Result<i64, Failed> {
     Ok(found.iter().filter_map(|one| one["figures"]["inverse_throughput"].as_i64()).sum())
 }
 
-/// A text in which the body of a function is another.
+/// The text, with the body of a function replaced.
 fn with_body(text: &str, function: &str, body: &str) -> Result<String, Failed> {
     let missing = || format!("there is no function `{function}`");
     let head = text.find(&format!("\nfn {function}(")).ok_or_else(missing)?;

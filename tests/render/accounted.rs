@@ -57,7 +57,7 @@ fn numbers_read(preset: &Preset) -> Result<BTreeSet<(&'static str, String)>, Str
             read_by(&composed.validated, &mut found);
         }
     }
-    // Depths that the viewer sees are no map of a light.
+    // A pass with depths as the viewer sees them is not a shadow map.
     let last = plan.last().ok_or("no pass")?;
     let before = plan.passes.len() - 1 - last.needs.seen_before();
     let is_map = |pass: &Pass| ["depth", "moments"].contains(&&*pass.program);

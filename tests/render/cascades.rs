@@ -128,7 +128,8 @@ fn parts_of_a_map(bench: &Bench<'_>) -> Result<(), String> {
     compare_pictures(bench, &parted, &single)
 }
 
-/// What is farthest from the viewer has its whole shadow: here it falls onto the wall at the back.
+/// The surfaces that are farthest from the viewer receive the whole shadow: here, on the wall at
+/// the back.
 fn farthest_shadow(bench: &Bench<'_>) -> Result<(), String> {
     let scene = sets::scene("room").ok_or("no room")?;
     let (surfaces, towards) = (Surfaces::of(&scene), DVec3::new(0.4, 0.3, 1.0).normalize());

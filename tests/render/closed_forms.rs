@@ -1,4 +1,4 @@
-//! Compares whole frames of light without shadows with its formulas.
+//! Compares whole frames, lit without shadows, with the formulas of the light.
 
 use glam::DVec3;
 use lamplight::scene::irradiance_sh9;
@@ -121,8 +121,8 @@ fn hemisphere(bench: &Bench<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// The example of the book: irradiance by the normal has the evaluated formula's values, and those
-/// that were recorded for five of the six axes.
+/// The published preset for spherical harmonics: the irradiance depends on the normal as the
+/// formula says, and has the recorded values for five of the six axes.
 fn sh9(bench: &Bench<'_>) -> Result<(), String> {
     const AXES: [(DVec3, DVec3); 5] = [
         (DVec3::X, DVec3::new(0.705119, 0.669402, 0.628144)),

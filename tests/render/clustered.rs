@@ -1,4 +1,5 @@
-//! Lists of lamps change no colour: `clustered` gives the picture that all lamps give.
+//! Clustered lists of lamps do not change the picture: `clustered` gives the same colours as a loop
+//! over all lamps.
 
 use lamplight::bundle::Language;
 use lamplight::execute::Session;
@@ -6,8 +7,8 @@ use libtest_mimic::Trial;
 
 use super::{BACKENDS, linear_picture, on_device, surface_pixels};
 
-/// Programs, and keys without `clustered`. With the second falloff lamps reach everything, so every
-/// list has all of them.
+/// A name, a program, and a key without `clustered`. With the falloff of the second one, lamps have
+/// no range, so every list has all of them.
 const KEYS: [(&str, &str, &str); 3] = [
     (
         "short",

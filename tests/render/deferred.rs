@@ -1,6 +1,6 @@
 //! Deferred shading gives the colours of forward shading: `gbuffer` and `deferred` are drawn after
-//! each other, and compared with `forward` pixel by pixel. Moments of shadows are not compared: their
-//! map has levels, and at the edges of things the level depends on neighbouring pixels.
+//! each other, and compared with `forward` pixel by pixel. Shadows from moments are not compared:
+//! their map has mip levels, and at the edges of objects the level depends on neighbouring pixels.
 
 use std::sync::Arc;
 
@@ -47,7 +47,7 @@ const GLTF: &[(&str, &str)] = &[
         "area=rectangle,attenuation=inverse_square_window,metallic_roughness,specular=ggx",
     ),
 ];
-/// What the shapes of the scene are: share of metal and emission.
+/// The materials of the scene's shapes: the metallic factor, and the emission.
 const SURFACES: [(f64, DVec3); 4] =
     [(0.0, DVec3::ZERO), (1.0, DVec3::ZERO), (0.0, DVec3::new(0.0, 0.02, 0.1)), (0.6, DVec3::ZERO)];
 
@@ -135,7 +135,7 @@ fn same(
     let (mut seen, mut beyond, mut largest) = (0, 0, 0.0_f64);
     for (_, [found, wanted]) in surface_pixels(&found, &wanted, SIZE)? {
         let error = (found - wanted).abs().max_element();
-        // A number that is none is no small error.
+        // A NaN is not near.
         let is_near = error <= TOLERANCE * wanted.abs().max_element().max(1.0);
         (seen, beyond) = (seen + 1, beyond + usize::from(!is_near));
         largest = largest.max(error);

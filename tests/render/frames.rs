@@ -37,7 +37,7 @@ impl Fragment {
     }
 }
 
-/// Numbers by group and field, which go before those of the scene.
+/// Numbers by group and field, which override those of the scene.
 pub type Numbers<'a> = &'a [(&'a str, &'a str, &'a [f64])];
 
 impl Bench<'_> {

@@ -379,7 +379,7 @@ fn means_of_textures() -> Result<(), Failed> {
     demand(darker[0] + 5 < found[0], || format!("{darker:?} should be darker than {found:?}"))
 }
 
-/// The user's settings go before those that the model asks for, even if they exclude these.
+/// The user's settings override those that the model asks for, even if they rule these out.
 fn choices_of_the_user() -> Result<(), Failed> {
     let (document, buffer) = square(&[]);
     let folder = TempDir::new()?;

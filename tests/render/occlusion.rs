@@ -1,7 +1,8 @@
-//! Ambient occlusion: the drivers draw of `gtao` what the evaluator draws, and an open plane is open.
+//! Ambient occlusion: the drivers' frames of `gtao` are those of the evaluator, and a plane without
+//! occluders is hardly darkened.
 //!
-//! Fragments are not computed again with error bounds: an arc has the cosine of an angle beyond pi,
-//! for which WGSL promises no accuracy.
+//! Fragments are not computed again with error bounds: the formula for an arc takes the cosine of
+//! an angle beyond pi, for which WGSL promises no accuracy.
 
 use lamplight::bundle::Language;
 use lamplight::execute::Session;
@@ -19,9 +20,11 @@ const TOLERANCE: f64 = 0.01;
 /// The share of the pixels that may differ by more. A texel is found by rounding, so that drivers
 /// may read the one beside it.
 const BEYOND: f64 = 0.02;
-/// The least mean of a plane. Its horizons have the errors of depths in f32.
+/// The least mean visibility of a plane without occluders. It is below 1, since depths in f32 give
+/// its horizons errors.
 const OPEN: f64 = 0.97;
-/// A place under something has less than this, and there is one.
+/// The scene has a place under an object, whose visibility must be below this. The mean must be
+/// above.
 const CLOSED: f64 = 0.6;
 
 pub fn trials() -> Vec<Trial> {
@@ -58,7 +61,7 @@ fn same(painter: &dyn Session, language: Language, key: &str) -> Result<(), Stri
     let found = drawn(painter, language, key, "casters")?;
     let evaluator = start("eval")?;
     let wanted = drawn(evaluator.as_ref(), language, key, "casters")?;
-    // A number that is none is not near.
+    // A NaN is not near.
     let is_near = |(found, wanted): &(&Option<f64>, &Option<f64>)| match (found, wanted) {
         (Some(found), Some(wanted)) => (found - wanted).abs() <= TOLERANCE,
         (found, wanted) => found.is_some() == wanted.is_some(),
@@ -75,7 +78,7 @@ fn same(painter: &dyn Session, language: Language, key: &str) -> Result<(), Stri
 }
 
 fn open_plane(painter: &dyn Session, language: Language) -> Result<(), String> {
-    // A single slice of a pixel may be more than open, and is clamped, so its mean is less.
+    // The visibility of a single slice may exceed 1 and is clamped, so its mean is lower.
     for key in KEYS.iter().filter(|key| !key.contains("slices=1")) {
         let seen: Vec<f64> =
             drawn(painter, language, key, "floor")?.into_iter().flatten().collect();

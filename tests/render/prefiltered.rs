@@ -1,4 +1,4 @@
-//! What `prefilter` makes of an environment has the values of quadratures in f64.
+//! Compares the maps that `prefilter` computes from an environment with quadratures in f64.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -19,7 +19,7 @@ const WINDOW: f64 = 4.0;
 /// The largest error of the maps, as a share of the brightest value: 256 directions, and an
 /// environment of 64 texels along an edge.
 const OF_MAPS: f64 = 0.01;
-/// The largest error of the table: 256 facets that the viewer sees.
+/// The largest error of the table, which is a sum over 256 facets that the viewer sees.
 const OF_TABLE: f64 = 0.005;
 /// The table is compared from this roughness and this cosine on. Sharper lobes need more steps than
 /// the quadrature has.
@@ -53,7 +53,8 @@ fn drawn(painter: &dyn Session, language: Language, what: &str) -> Result<Linear
     prepared.photograph(painter, &shot).map_err(said)
 }
 
-/// An environment that differs in every direction, and has no lamps: a few directions are enough.
+/// An environment that differs in every direction. It has no small bright lamps, so that a few
+/// directions are enough.
 fn smooth_sky(at: DVec3) -> DVec3 {
     DVec3::new(0.6 + 0.4 * at.x, 0.5 + 0.5 * at.y * at.z, 0.2 + 0.7 * at.z * at.z)
 }
@@ -68,7 +69,8 @@ fn pixels(frame: &Linear) -> Result<Vec<([f64; 2], DVec3)>, String> {
     all.map(pixel).collect()
 }
 
-/// The means of the environment with a weight for each cosine are those of a frame.
+/// Fails unless each pixel of a frame has the mean of the environment. `weight` is the weight of a
+/// direction by the cosine of its angle to the pixel's direction.
 fn mean(frame: &Linear, weight: impl Fn(f64) -> f64) -> Result<(), String> {
     let eye = sets::scene("screen").ok_or("no scene")?.eye;
     let turned = DMat4::from_mat3(DMat3::from_mat4(eye.view()));
@@ -89,7 +91,7 @@ fn mean(frame: &Linear, weight: impl Fn(f64) -> f64) -> Result<(), String> {
         worst = worst.max((found - sum / all).abs().max_element());
     }
     println!("the largest error is {:.4} of the brightest value", worst / brightest);
-    // A number that is none is no small error.
+    // A NaN is not near.
     let is_near = worst <= OF_MAPS * brightest;
     if is_near { Ok(()) } else { Err(format!("off by {worst}, the brightest is {brightest}")) }
 }
@@ -108,7 +110,8 @@ fn specular(painter: &dyn Session, language: Language) -> Result<(), String> {
     mean(&drawn(painter, language, "specular")?, weight)
 }
 
-/// Each column has the integral of the environment times a harmonic, less what the window takes.
+/// Each column has the integral of the environment times a spherical harmonic, times the window's
+/// factor for its band.
 fn harmonics(painter: &dyn Session, language: Language) -> Result<(), String> {
     let sky = directions(ROWS).into_iter().map(|(at, angle)| (at, angle, smooth_sky(at)));
     let mut expected = sh9_project(sky);
@@ -151,7 +154,8 @@ fn split_sum(painter: &dyn Session, language: Language) -> Result<(), String> {
     if count >= 100 { Ok(()) } else { Err(format!("{count} texels were compared")) }
 }
 
-/// The integral of `D V nl` over all directions of the light, in the two parts of Schlick's term.
+/// The integral of `D V nl` over all directions of the light, as the scale and the offset of
+/// Schlick's F0.
 fn albedo(nv: f64, alpha: f64) -> (f64, f64) {
     let (v, a2) = (DVec3::new((1.0 - nv * nv).sqrt(), 0.0, nv), alpha * alpha);
     let masked = |c: f64, other: f64| other * (c * c * (1.0 - a2) + a2).sqrt();

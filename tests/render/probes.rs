@@ -59,8 +59,9 @@ fn same_field(bench: &Bench<'_>) -> Result<(), String> {
     }
 }
 
-/// The probes are lit by the lamps and the colours that the program has, also where somebody changed
-/// them. Their own numbers must agree with their textures, and nobody changes them.
+/// The probes are lit by the lamps and the colours of the plan, with the user's changes. The
+/// uniforms of the probes themselves cannot be changed, since they must agree with the probes'
+/// textures.
 fn follow_changes(bench: &Bench<'_>) -> Result<(), String> {
     let key = format!("{KEY},attenuation=inverse_square_window,cone=smooth");
     let light = |change: Option<(&str, &[f64])>| -> Result<_, String> {
@@ -99,7 +100,7 @@ fn follow_changes(bench: &Bench<'_>) -> Result<(), String> {
             return Err(format!("`{path}` is changed"));
         }
     }
-    // A range of zero is none, and not no light.
+    // A range of zero means that the range is not limited, not that there is no light.
     let endless = light(Some(("lamps.lights[0].range", &[0.0])))?;
     match endless.0.iter().sum::<f32>() >= before.0.iter().sum::<f32>() {
         true => Ok(()),

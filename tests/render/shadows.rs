@@ -204,7 +204,8 @@ fn around_ball(
     Ok((without_way.collect(), texel))
 }
 
-/// As [`around_ball`], with the way from each fragment to the ball's middle, along the light.
+/// As [`around_ball`]. The second number is the distance from the fragment to the ball's centre,
+/// along the direction of the light.
 fn below_ball(
     bench: &Bench<'_>,
     shadow: &str,
@@ -329,8 +330,8 @@ fn penumbra(bench: &Bench<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// With `pcss`, the border of a shadow is as wide as the light is large, times the way to what casts
-/// the shadow.
+/// With `pcss`, the penumbra is as wide as the size of the light times the distance to the
+/// occluder.
 fn softness(bench: &Bench<'_>) -> Result<(), String> {
     /// A band around the border, wider than the penumbra.
     const BAND: f64 = 0.4;
@@ -343,7 +344,7 @@ fn softness(bench: &Bench<'_>) -> Result<(), String> {
         if products.len() < 100 {
             return Err(format!("{} fragments have a way from {low} to {high}", products.len()));
         }
-        // A ramp of some width has a sixth of it as the sum of these products.
+        // The integral of `v * (1 - v)` over a linear ramp from 0 to 1 is a sixth of its width.
         Ok(products.iter().sum::<f64>() / products.len() as f64 * 6.0 * 2.0 * BAND)
     };
     let (short, long) = (spread(0.3, 0.6, 0.85)?, spread(0.3, 1.35, 1.6)?);

@@ -6,7 +6,7 @@ use lamplight::scene::{ProbeField, ProbeGrid, Shape, Surfaces};
 
 use super::{Outcome, close, near};
 
-/// A box seen from inside, whose walls scatter and glow.
+/// A box seen from inside, with walls that are diffuse and emissive.
 fn closed_box(albedo: f64, emission: f64) -> Scene {
     let inside = Shape::cuboid(DVec3::new(2.0, 1.0, 1.5), 3);
     let mut turned = inside;
@@ -46,8 +46,8 @@ pub fn rays() -> Outcome {
     }
 }
 
-/// Walls that glow light a closed box everywhere alike: by the sum of a geometric series. Where there
-/// is nothing, what is beyond lights everything.
+/// In a closed box, emissive walls give the same light everywhere: the sum of a geometric series
+/// over the bounces. Without surfaces, every probe has the light from beyond the scene.
 pub fn fields() -> Outcome {
     let (albedo, emission): (f64, f64) = (0.5, 0.8);
     let glowing = ProbeField::new(

@@ -135,7 +135,7 @@ pub fn clusters() -> Outcome {
     refused_clusters(&cells, projection, view)
 }
 
-/// Lists of lamps that reach everything are one list; too many lamps and cells are errors.
+/// If all lamps reach everything, all cells share one list. Too many lamps or cells are errors.
 fn refused_clusters(cells: &Cells, projection: DMat4, view: DMat4) -> Outcome {
     let made = |lamps: &[Reach]| Clusters::new(cells, projection, view, lamps);
     let endless = Reach { position: DVec3::ZERO, range: f64::INFINITY };
@@ -157,8 +157,8 @@ fn refused_clusters(cells: &Cells, projection: DMat4, view: DMat4) -> Outcome {
     }
 }
 
-/// Objects have the numbers of their materials. Equal ones are one, each has both sides, and more
-/// than an array has are an error.
+/// Objects get the indices of their materials. Equal materials have the same index, each material
+/// has an entry for both sides, and more materials than the array can hold are an error.
 pub fn numbers() -> Outcome {
     let mut scene = sets::scene("spheres").ok_or("no such scene")?;
     for (object, roughness) in scene.objects.iter_mut().zip([0.2, 0.5, 0.2, 0.7, 0.5]) {

@@ -55,7 +55,7 @@ fn focus(page: &Page, selector: &str) -> Outcome {
 const CONTROLS: &str = "[...document.querySelectorAll('a[href], button, input, select, summary, [tabindex=\"0\"], .cm-content')]
     .filter((it) => it.tabIndex >= 0 && !it.disabled && it.checkVisibility())";
 
-/// Whether the focus is on something that is framed and not beside the page.
+/// Whether the focused element has an outline and is not outside of the page.
 const SEEN: &str = "(() => {
     const it = document.activeElement;
     if (it === document.body) return true;
@@ -64,7 +64,8 @@ const SEEN: &str = "(() => {
     return outlineStyle !== 'none' && outlineWidth !== '0px' && width > 0 && right > 0 && left < innerWidth;
 })()";
 
-/// Goes through the page by Tab, and by Escape before it where Tab types something.
+/// Visits every control of the page by Tab. In the editor, where Tab types, Escape is pressed
+/// first.
 fn reached(page: &Page, name: &str) -> Outcome {
     page.evaluate(
         "(() => { document.activeElement?.blur(); getSelection().removeAllRanges(); window.reached = [];
@@ -154,7 +155,7 @@ fn playground(opened: &Opened) -> Outcome {
     wait(&page, "document.activeElement.matches('[role=tab][aria-selected=true]')")?;
     wait(&page, "document.activeElement.textContent === 'lamp.wesl'")?;
     wait(&page, "document.querySelector('.cm-content').textContent.includes('fn falloff')")?;
-    // It has no entry point, but is no mistake.
+    // A file without an entry point is not an error.
     wait(&page, "document.querySelector('.status').textContent.startsWith('no errors')")?;
     wait(&page, "document.querySelector('.texts').textContent.includes('fn falloff')")?;
     let indented = "document.querySelector('.cm-line').textContent.startsWith('  ')";

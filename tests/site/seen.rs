@@ -46,10 +46,10 @@ const PAGES: [Shown; 5] = [
     ("guide", "#/guide", "document.querySelector('.guide h1')"),
 ];
 
-/// The main pages at the widths of a phone and of a desktop screen, and in dark, look as they did when
-/// somebody looked at them. No page is wider than the screen, every control has a name for screen readers,
-/// and texts can be read in light and dark. Before the toolchain, a page loads little, and only the
-/// site's own files.
+/// The main pages at the widths of a phone and of a desktop screen, and in dark, look as they did
+/// when somebody looked at them. No page is wider than the screen, every control has a name for
+/// screen readers, and texts can be read in light and dark. Before the toolchain, a page loads
+/// little, and only the site's own files.
 pub fn seen() -> Outcome {
     let opened = Opened::new()?;
     let mut wrong = Vec::new();

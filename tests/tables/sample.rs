@@ -16,7 +16,7 @@ pub fn hash_of(name: &str) -> Result<blake3::Hash, Failed> {
     Ok(blake3::hash(&fs::read(folder().join(format!("{name}.bin")))?))
 }
 
-/// A cell of each column, of the viewers above the horizon.
+/// One cell of each column. Rows whose viewer is at the horizon are left out.
 fn sampled_cells(name: &str) -> Result<Vec<(usize, usize)>, Failed> {
     let hash = hash_of(name)?;
     let row = |column: usize| {
@@ -27,7 +27,7 @@ fn sampled_cells(name: &str) -> Result<Vec<(usize, usize)>, Failed> {
     Ok((0..SIDE).map(|column| (column, row(column))).collect())
 }
 
-/// The published errors of the columns; a single one is that of all.
+/// The published error of each column. A single one holds for all columns.
 fn published_errors(name: &str) -> Result<Vec<f64>, Failed> {
     let told: toml::Table = fs::read_to_string(folder().join(format!("{name}.toml")))?.parse()?;
     let worst = told.get("worst").and_then(|worst| worst.as_array()).ok_or("no `worst`")?;
@@ -40,7 +40,8 @@ fn published_errors(name: &str) -> Result<Vec<f64>, Failed> {
 }
 
 /// Directions of light that half vectors mirror to a viewer, with their solid angles and half
-/// vectors. `cosine` gives the half vector's cosine and its slope for a number in [0, 1].
+/// vectors. For a number in [0, 1], `cosine` gives the half vector's cosine, and the derivative by
+/// which the solid angle is scaled.
 fn mirrored_lights(
     v: Direction,
     cosine: impl Fn(f64) -> (f64, f64),
@@ -57,7 +58,8 @@ fn mirrored_lights(
     })
 }
 
-/// Half vectors whose slopes are those of facets of a width, times r/(1 - r).
+/// Half vectors with the slope `alpha * r / (1 - r)`, so that most of them are where a lobe of this
+/// alpha has its facets.
 fn by_slopes(alpha: f64) -> impl Fn(f64) -> (f64, f64) {
     move |r| {
         let slope = alpha * r / (1.0 - r);
@@ -66,7 +68,8 @@ fn by_slopes(alpha: f64) -> impl Fn(f64) -> (f64, f64) {
     }
 }
 
-/// GGX with Schlick's term, in the half vectors' slopes.
+/// Cells of `dfg` are the albedo of GGX with Schlick's term, integrated over the half vectors'
+/// slopes.
 pub fn dfg() -> Outcome {
     let (table, errors) = (values("dfg", 2)?, published_errors("dfg")?);
     for (column, row) in sampled_cells("dfg")? {
@@ -83,7 +86,8 @@ pub fn dfg() -> Outcome {
     Ok(())
 }
 
-/// Both lobes of cloth, in the half vectors' cosines.
+/// Cells of `sheen` are the albedos of both lobes of cloth, integrated over the half vectors'
+/// cosines.
 pub fn sheen() -> Outcome {
     let (table, errors) = (values("sheen", 2)?, published_errors("sheen")?);
     for (column, row) in sampled_cells("sheen")? {

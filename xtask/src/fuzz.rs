@@ -26,7 +26,7 @@ use mutate::Random;
 const USAGE: &str = "usage: cargo xtask fuzz [--seconds N] [--seed N] [KIND]...\n       cargo xtask fuzz link [--programs N] [--seed N]";
 /// A worker that gives no sign of life for this long is in an endless loop.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// With how many smaller inputs a finding is tried.
+/// The most smaller inputs that are tried to shrink a finding.
 const SHRINKS: usize = 400;
 
 /// What was asked for.
@@ -139,8 +139,8 @@ fn spawn(arguments: &[&str]) -> Result<Child, Failure> {
         .map_err(environment)
 }
 
-/// What a worker found wrong. `sign` is a file that a live worker keeps writing; a worker whose file
-/// is old is killed.
+/// Waits for a worker, and returns what it found wrong. `sign` is a file that a live worker keeps
+/// writing; a worker whose file is old is killed.
 fn outcome(mut worker: Child, sign: Option<&Path>) -> Result<Option<String>, Failure> {
     let started = Instant::now();
     loop {
@@ -187,7 +187,7 @@ fn judge_file(kind: &Kind, file: &Path) -> Outcome {
     judge::judge(kind, &input).map_or(Ok(()), |reason| Err(Failure::check(reason)))
 }
 
-/// Saves a finding, made as small as possible while the same is wrong.
+/// Saves a finding, shrunk as far as it still fails for the same reason.
 fn keep(kind: &Kind, input: Vec<u8>, reason: &str) -> Outcome {
     println!("{}: {reason} ({} bytes)", kind.name, input.len());
     let small = shrunk(kind, input, reason)?;
@@ -201,7 +201,7 @@ fn keep(kind: &Kind, input: Vec<u8>, reason: &str) -> Outcome {
     fs::write(folder.join(name), small).map_err(environment)
 }
 
-/// Removes ever smaller parts of the input.
+/// Removes ever smaller parts of the input, as long as it still fails for the same reason.
 fn shrunk(kind: &Kind, mut input: Vec<u8>, reason: &str) -> Result<Vec<u8>, Failure> {
     let file = current(kind).with_extension("small");
     let (mut size, mut at, mut tries) = (input.len() / 2, 0, 0);

@@ -103,7 +103,7 @@ fn judged(
     }
 }
 
-/// Fails with the author's places for what the judges refused.
+/// Fails if the judges refused an output. The errors point to places in the author's sources.
 fn refuse(
     sources: &mut SourceSet,
     packages: &Packages,

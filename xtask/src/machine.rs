@@ -76,8 +76,8 @@ pub fn prepare() -> Outcome {
     }
 }
 
-/// The package and the purpose of everything that is missing. The files of judges list their programs
-/// themselves.
+/// The package and the purpose of everything that is missing. The files of judges list their
+/// programs themselves.
 fn missing() -> Vec<(&'static str, &'static str)> {
     let listed = NEEDS.iter().filter(|need| !(need.found)());
     let tools = judges::ALL.iter().flat_map(|judge| judge.tools);

@@ -27,7 +27,7 @@ type Command = (&'static str, &'static str, fn(&[String]) -> Outcome);
 /// Exit code 0, or another with its reason on standard error.
 type Outcome = Result<(), Failure>;
 
-/// Why a command failed, with the exit code of the contract.
+/// Why a command failed, with the documented exit code.
 struct Failure {
     code: u8,
     message: String,

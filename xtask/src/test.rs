@@ -3,8 +3,8 @@
 use crate::{Failure, Outcome, machine, site};
 use std::process::Command;
 
-/// All tests together gain more by this setting than the build loses. Whoever runs `cargo test` for a
-/// few of them waits for the build, so it is not in `Cargo.toml`.
+/// All tests together gain more by this setting than the build loses. Whoever runs `cargo test` for
+/// a few of them waits for the build, so it is not in `Cargo.toml`.
 const OPTIMISED: [&str; 2] = ["--config", "profile.test.package.lamplight.opt-level=2"];
 
 /// Prepares the machine, then runs every test. Arguments are passed to the test binary.

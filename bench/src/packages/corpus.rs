@@ -25,9 +25,9 @@ const FUNCTIONS: usize = 7;
 /// How packages and conditions over several declarations are written.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Style {
-    /// Packages by their names, and blocks.
+    /// Packages are imported by name, and one condition covers a block of declarations.
     Blocks,
-    /// Packages as folders of one package, and a condition at each declaration.
+    /// Packages are folders of one package, and each declaration has its own condition.
     Each,
 }
 
@@ -35,8 +35,8 @@ pub enum Style {
 enum Part {
     /// One declaration or import.
     One(String),
-    /// Variants of which the first one counts whose condition holds. Without a condition, it always
-    /// does.
+    /// Alternatives, as in `@if`, `@elif` and `@else`: the first one whose condition holds is used.
+    /// `None` always holds.
     Variants(Vec<(Option<String>, Vec<Part>)>),
 }
 
@@ -96,7 +96,7 @@ pub fn module(module: usize, style: Style) -> String {
     text
 }
 
-/// Modules of the two layers below.
+/// The modules that a module imports: up to five, from the two layers below it.
 fn imported(module: usize, random: &mut Random) -> Vec<usize> {
     let layer = module / UNITS;
     let mut found = Vec::new();
@@ -124,8 +124,8 @@ fn path_from(here: Option<usize>, module: usize, style: Style) -> String {
     format!("{package}::{}", names.join("::"))
 }
 
-/// The first module has another one in its place where a feature is off. The second is imported
-/// only where a feature is on, with a constant.
+/// The imports of the modules in `imported`. Where a feature is off, another module replaces the
+/// first one. The second is imported only where a feature is on, with a constant.
 fn imports(module: usize, imported: &[usize], random: &mut Random, style: Style) -> Vec<Part> {
     let unit = letters(module);
     let path = |other: usize| path_from(Some(module), other, style);

@@ -26,7 +26,7 @@ fn bind(module: &str, folder: &str) -> Result<(), String> {
     let mut bindgen = Bindgen::new();
     bindgen.input_path(module).out_name("toolchain").typescript(true);
     bindgen.remove_name_section(true).remove_producers_section(true);
-    // After a trap the module is begun again.
+    // Lets the page restart the module after a trap.
     bindgen.reset_state_function(true);
     let bindgen = bindgen.web(true).map_err(|error| format!("{error:?}"))?;
     bindgen.generate(folder).map_err(|error| format!("{error:?}"))

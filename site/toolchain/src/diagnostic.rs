@@ -44,7 +44,7 @@ pub struct Position {
     pub offset: u32,
 }
 
-/// All diagnostics, errors first as on the command line.
+/// All diagnostics, in their order.
 pub fn diagnostics(sources: &SourceSet, found: &Diagnostics) -> Vec<Diagnostic> {
     found.iter().map(|one| told(sources, one)).collect()
 }

@@ -24,7 +24,7 @@ fn answer<T: Tsify + serde::Serialize>(value: &T) -> Answer<T> {
     value.into_ts().map_err(JsError::from)
 }
 
-/// Version of Lamplight, and of naga below it.
+/// Name and version of Lamplight.
 #[wasm_bindgen]
 pub fn version() -> String {
     format!("lamplight {}", env!("CARGO_PKG_VERSION"))

@@ -5,14 +5,14 @@ use std::cell::RefCell;
 use lamplight::bundle::{Conventions, Target};
 use lamplight::link::Linker;
 
-/// Linkers with functions that were translated before, by targets and conventions. An output depends
-/// on its text alone, so an edit costs only what it changes.
+/// Linkers with functions that were translated before, by targets and conventions. An output
+/// depends on its text alone, so an edit costs only what it changes.
 #[derive(Default)]
 pub struct Linkers(Vec<(&'static [Target], Conventions, Linker<'static>)>);
 
 impl Linkers {
-    /// The linker of some targets and conventions. Lists of targets are few, so each is kept as long
-    /// as the page.
+    /// The linker of some targets and conventions. Lists of targets are few, so each is kept as
+    /// long as the page.
     pub fn of(&mut self, targets: &[Target], conventions: Conventions) -> &Linker<'static> {
         let is_it =
             |(known, asked): (&[Target], Conventions)| known == targets && asked == conventions;

@@ -121,7 +121,7 @@ pub struct CurveResult {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// One of them.
+/// One curve.
 #[derive(Serialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct Curve {
@@ -131,7 +131,7 @@ pub struct Curve {
     pub single: Vec<f64>,
     /// In f64.
     pub double: Vec<f64>,
-    /// How far an implementation within WGSL's bounds may be from that.
+    /// How far an implementation within WGSL's bounds may be from `double`.
     pub error: Vec<f64>,
 }
 

@@ -2,9 +2,9 @@
 //!
 //! A picture has passes, and each pass needs what the one before it drew. The devices of a page
 //! answer asynchronously. So after each answer the passes are computed again from the first, with
-//! the frames that are there. That stops at the first frame that is missing, and returns the drawing
-//! for it. Once all passes but the last are drawn, what was prepared is kept. The rest of the code is
-//! that of `lamplight render`.
+//! the frames that are there. That stops at the first frame that is missing, and returns the
+//! drawing for it. Once all passes but the last are drawn, what was prepared is kept. The rest of
+//! the code is that of `lamplight render`.
 //!
 //! A pass that draws the same as in an earlier picture, such as a shadow map while materials change,
 //! is not drawn again.

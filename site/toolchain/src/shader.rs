@@ -109,7 +109,7 @@ pub struct Output {
 }
 
 mod bytes {
-    /// As one array of the page's.
+    /// Writes all bytes as one array of the page, a `Uint8Array`.
     pub fn serialize<S: serde::Serializer>(bytes: &[u8], to: S) -> Result<S::Ok, S::Error> {
         to.serialize_bytes(bytes)
     }

@@ -4,7 +4,7 @@
 use super::*;
 use crate::limits::{BUNDLE_BYTES, BUNDLE_FACTOR, Steps};
 
-/// How many bytes may still be asked for.
+/// How many bytes one part of the bundle may still have, in total.
 struct Budget {
     left: Steps,
     part: &'static str,
@@ -48,7 +48,8 @@ impl Packed {
         Ok(())
     }
 
-    /// Reads only tables: nothing is decompressed, parsed or copied.
+    /// Checks that each part is within its budget. It reads only tables: nothing is decompressed,
+    /// parsed or copied.
     pub(super) fn within_budget(&self) -> Result<(), Error> {
         let mut groups = Budget::new(self.bytes.len(), "data");
         for group in 0..self.meta.groups {
@@ -120,7 +121,7 @@ impl Packed {
         }
     }
 
-    /// Whether the blobs of a group fill it.
+    /// Checks that a group ends at `at`, where its last blob ends.
     fn ends(&self, group: u32, at: usize) -> Result<(), Error> {
         match self.group_record(group)?.2 == at {
             true => Ok(()),

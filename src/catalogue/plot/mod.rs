@@ -34,7 +34,7 @@ use crate::source::{SourceId, SourceSet};
 /// Points at which a curve over a continuous parameter is computed.
 pub const SAMPLES: usize = 321;
 
-/// What numbers count.
+/// The unit of the numbers on an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Unit {
@@ -73,7 +73,7 @@ pub struct Plot {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Axis {
-    /// What is at it, with its unit unless that is given apart.
+    /// The text beside the axis, with the unit unless `unit` gives it.
     pub label: String,
     pub from: f64,
     pub to: f64,
@@ -91,7 +91,7 @@ pub struct Range {
     pub unit: Unit,
 }
 
-/// A second parameter.
+/// A second parameter, with one curve for each of its values.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Curves {

@@ -34,7 +34,7 @@ pub fn fitted_bounds(values: impl Iterator<Item = f64>) -> (f64, f64) {
     if low > high {
         return (0.0, 1.0);
     }
-    // Most functions of light start at 0, so a scale that nearly starts there does.
+    // Most functions of light start at 0, so a scale that would start near 0 starts there.
     let low = if low > 0.0 && low < 0.4 * high { 0.0 } else { low };
     let step = tick_step((high - low).max(high.abs().max(1e-6) * 0.01) / 4.0, Unit::Numbers);
     let (from, to) = ((low / step + 1e-6).floor() * step, (high / step - 1e-6).ceil() * step);

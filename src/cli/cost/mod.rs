@@ -1,4 +1,4 @@
-//! `lamplight cost`: what functions and permutations cost on GPUs that are not there.
+//! `lamplight cost`: what functions and permutations cost on GPUs that the machine need not have.
 
 mod axes;
 mod offline;

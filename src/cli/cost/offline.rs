@@ -1,4 +1,4 @@
-//! Asks compilers that are programs of their own: `lamplight cost --spirv` and `--mali`.
+//! Costs from compilers that run as external programs: `lamplight cost --spirv` and `--mali`.
 
 use std::io::Write;
 use std::path::Path;
@@ -18,7 +18,7 @@ use crate::cost::stages::{Found, ask_stages};
 use crate::output::Scratch;
 use crate::tools::{SPIRV_OPT, printed_words};
 
-/// Asks the compiler that the arguments name about everything that they ask for.
+/// Runs the compiler that the arguments choose on all subjects, and prints its figures.
 pub fn run_offline(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let missing = match arguments.spirv {
         true => SPIRV_OPT.path().is_none().then(|| SPIRV_OPT.missing()),
@@ -73,7 +73,7 @@ fn print_counts(arguments: &Arguments, found: &[Found<'_, Counts>]) -> Result<()
     Ok(stdout().write_all(text::table_text(&columns, &rows).as_bytes())?)
 }
 
-/// Every stage on every core.
+/// Compiles every stage for every core.
 fn ask_mali<'s>(
     cores: &[String],
     subjects: &'s [Subject],

@@ -17,7 +17,7 @@ use crate::proof::library::{Library, lock_sources};
 use crate::proof::quality::{FUNCTION, quality_module};
 use crate::source::SourceSet;
 
-/// Measures all of it, of the library.
+/// Measures every cost that the catalogue shows of the library.
 pub fn record_costs(opened: Opened) -> Result<Costs, Failure> {
     let devices = opened.map_err(Failure::environment)?;
     let modules = catalogue::library_modules();
@@ -34,7 +34,7 @@ pub fn record_costs(opened: Opened) -> Result<Costs, Failure> {
     })
 }
 
-/// What is recorded is always measured.
+/// A meter without a cache: costs that are recorded are always measured anew.
 fn uncached(devices: &[Device]) -> Meter<'_> {
     Meter { devices, cache: None }
 }
@@ -73,7 +73,7 @@ fn by_function(devices: &[Device], costs: &[Cost]) -> BTreeMap<String, Vec<[i64;
     functions
 }
 
-/// The expressions that the catalogue plots.
+/// Measures the expressions that the catalogue plots.
 fn of_expressions(devices: &[Device]) -> Result<BTreeMap<String, [i64; FIGURES.len()]>, Failure> {
     let (library, sources) = (Library::embedded(), Mutex::new(SourceSet::default()));
     let told = |problems| Failure::Input(lock_sources(&sources).clone(), problems);

@@ -53,8 +53,8 @@ pub fn asked_subjects(
     Ok(subjects)
 }
 
-/// Separates paths of the library from keys. A key has a sign that only keys have, or it is a word
-/// that names an axis of the program and no path of the library.
+/// Separates paths of the library from keys. An argument is a key if it contains `=` or `,`, or if
+/// it is `default` or names an axis of the program and is no path of the library.
 fn separate_paths<'a>(
     arguments: &Arguments,
     items: &[&Item],

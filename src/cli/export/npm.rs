@@ -24,8 +24,8 @@ pub fn npm_contents(modules: Contents, glsl: Contents) -> Contents {
         .collect()
 }
 
-/// Written by hand, since the order of conditions matters: tools take the first one that they know,
-/// and `types` must come before `import`.
+/// The text of `package.json`. It is a template, since the order of the conditions in `exports`
+/// matters: tools take the first one that they know, and `types` must come before `import`.
 fn npm_manifest() -> String {
     let (name, description) = (json!(NAME), json!(DESCRIPTION));
     let keywords = json!(KEYWORDS);

@@ -60,7 +60,8 @@ pub fn draw_gallery(
     )?)
 }
 
-/// Finds files that are not ours before the drawing, which takes minutes.
+/// Fails if a file that would be replaced is not ours. This is checked first, since drawing takes
+/// minutes.
 fn check_folder(
     folder: &Folder,
     presets: &[Preset],
@@ -75,7 +76,8 @@ fn check_folder(
     Ok(())
 }
 
-/// Draws all comparisons into the folder. Returns what the page says about them, and who drew them.
+/// Draws all comparisons into the folder. Returns a card for each, and the lines of `adapters.txt`
+/// that name the adapter of each.
 fn draw_strips(
     painter: &mut dyn Session,
     programs: &Programs,

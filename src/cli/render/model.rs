@@ -47,7 +47,8 @@ pub fn read_model(arguments: &Arguments) -> Result<Option<Model>, Failure> {
     Ok(Some(model))
 }
 
-/// The permutation that shows a model: that of the user, whose axes go before the model's own.
+/// The permutation that shows a model. Axes that the user chose take precedence over those that the
+/// model asks for.
 pub fn model_plan(
     programs: &Programs,
     arguments: &Arguments,
@@ -64,7 +65,8 @@ pub fn model_plan(
         .filter(|value| axis_value(value).is_ok_and(|(axis, _)| !is_chosen(&axis)))
         .collect();
     let is_layer = |value: &str| model.layers.iter().any(|layer| layer == value);
-    // What the user chose may exclude what the model would have. The kept part shrinks by steps.
+    // The user's choices may exclude values that the model asks for. Each step keeps fewer of
+    // these, until the constraints hold.
     let kept: [&dyn Fn(&str) -> bool; 5] = [
         &|_| true,
         &|value| value != "dispersion=true",
@@ -87,7 +89,8 @@ pub fn model_plan(
     Ok(plan)
 }
 
-/// The scene of a model for a permutation, and a word about textures that this does not have.
+/// The scene of a model for a permutation. A note on standard error names the textures that the
+/// permutation cannot show.
 pub fn model_scene(model: Model, plan: &Plan) -> Result<Scene, Failure> {
     let key = plan.last().map_or("", |pass| pass.key.as_str());
     let lacks = Lacks {

@@ -38,7 +38,7 @@ pub struct Arguments {
     own: Own,
 }
 
-/// One thing, in both forms.
+/// One thing, as text and as JSON.
 struct Shown {
     text: String,
     json: Value,

@@ -15,7 +15,7 @@ pub fn always_warning(
 ) -> Option<Diagnostic> {
     let Part::Directive(directive, span) = module.parts.get(index)? else { return None };
     let (name, negated) = asked_macro(module, directive)?;
-    // A setting that is on is defined, as whoever asks expects.
+    // If the setting is on, `defined` gives the same answer as its value, so nothing is odd.
     match expander.table.get(name)? {
         Meaning::Setting(setting) if !expander.reads.is_on(setting) => {}
         _ => return None,
@@ -36,7 +36,8 @@ pub fn always_warning(
     )
 }
 
-/// The macro that a directive asks about, and whether the branch is for its absence.
+/// The macro that a directive tests for being defined, and whether the test is negated. `None` if
+/// the directive tests anything else.
 fn asked_macro(module: &Module, directive: &Directive) -> Option<(Symbol, bool)> {
     match directive {
         Directive::Ifdef { name: Ok(name), negated, .. } => Some((*name, *negated)),

@@ -23,7 +23,8 @@ pub fn evaluate_condition(
     }
 }
 
-/// Errors of a composition for which names are suggested.
+/// How many errors of one composition may suggest a similar name. Later ones suggest none, since
+/// the search through all names is slow.
 const SUGGESTED: usize = 100;
 
 struct Parser<'a, 'g, 's> {
@@ -67,8 +68,8 @@ impl Parser<'_, '_, '_> {
         Ok(token)
     }
 
-    /// An expression of operators with at least this precedence. `live` is false in operands that
-    /// are skipped.
+    /// Evaluates an expression whose binary operators have a higher precedence than `least`. `live`
+    /// is false in operands that `&&` or `||` skip.
     fn binary(&mut self, least: u8, live: bool) -> Result<i32, Diagnostic> {
         let mut left = self.unary(live)?;
         while let Some(operator) = self.peek() {
@@ -212,8 +213,8 @@ impl Parser<'_, '_, '_> {
 
     fn undefined(&self, token: &Tok, live: bool) -> Result<i32, Diagnostic> {
         if !live {
-            // The parentheses of a macro that is not defined cannot be skipped: they need not hold
-            // an expression.
+            // Only the name is skipped. Parentheses after a macro that is not defined stay an
+            // error, since they need not hold an expression.
             return Ok(0);
         }
         let name = self.expander.table.spellings.text(token.symbol);

@@ -20,7 +20,7 @@ pub type Fatal = Box<Diagnostic>;
 pub enum Input<'t> {
     /// Tokens `at..end` of a module.
     Source { module: u32, at: u32, end: u32 },
-    /// Tokens that were read before.
+    /// The tokens of a macro's argument, which were read before.
     Tokens { tokens: &'t [Tok], at: usize },
 }
 
@@ -34,9 +34,9 @@ pub struct Expander<'g, 's> {
     pub line_shift: i64,
     /// The value of `__FILE__`.
     pub file_number: i64,
-    /// GLSL ES, which has no `##`.
+    /// Whether the language is GLSL ES, which has no `##`.
     pub es: bool,
-    /// Whether this is a condition, in which the name after `defined` is not expanded.
+    /// Whether the input is a condition, in which the name after `defined` is not expanded.
     pub in_condition: bool,
     frames: Vec<Frame>,
     work: usize,
@@ -153,8 +153,9 @@ impl<'g, 's> Expander<'g, 's> {
         }
     }
 
-    /// The next token: from the expansions above `floor` first, then from the input. The name of a
-    /// macro inside its own expansion is marked, so that it is not expanded again.
+    /// The next token: from the frames above index `floor`, which belong to this run, then from the
+    /// input. The name of a macro inside its own expansion is marked, so that it is not expanded
+    /// again.
     fn next(&mut self, floor: usize, input: &mut Input<'_>) -> Option<Tok> {
         let mut token = self.take(floor, input)?;
         if token.kind == TokenKind::Identifier && self.table.is_active(token.symbol) {

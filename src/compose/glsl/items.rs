@@ -26,8 +26,8 @@ pub struct Items {
     pub names: Vec<(Symbol, u32)>,
 }
 
-/// Cuts tokens into items at top level. Brackets nest up to a limit. Text without an end is an item
-/// of its own.
+/// Cuts tokens into items at top level. Brackets nest up to a limit. Tokens at the end that no `;`
+/// or `}` closes are an item too.
 pub fn split_items(tokens: &[Tok], modules: &[Module]) -> Result<Items, Diagnostic> {
     let mut items = Items::default();
     let mut start = 0;
@@ -82,7 +82,7 @@ fn end_of(tokens: &[Tok], start: usize) -> Result<usize, &Tok> {
     Ok(tokens.len())
 }
 
-/// Gives the names that an item declares. Returns whether the item is a function.
+/// Calls `give` with each name that an item declares. Returns whether the item is a function.
 fn give_names(item: &[Tok], give: &mut impl FnMut(Symbol)) -> bool {
     match item {
         [first, ..] if first.symbol == known::PRECISION => false,

@@ -92,7 +92,7 @@ fn warn_unversioned(
     )
 }
 
-/// What the names of files end with.
+/// How the names of files end, before an optional `.glsl`, and the stage that this stands for.
 const STAGES: &[(&str, Stage)] =
     &[("vert", Stage::Vertex), ("frag", Stage::Fragment), ("comp", Stage::Compute)];
 

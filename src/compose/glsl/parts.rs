@@ -59,7 +59,7 @@ struct Declared {
     /// For each symbol, one more than the index in `links` of the last part that declares it; 0 for
     /// none.
     heads: Vec<u32>,
-    /// A part, and the link before it for the same name, in the same form.
+    /// A part, and one more than the index of the previous link for the same name; 0 for none.
     links: Vec<(u32, u32)>,
 }
 

@@ -165,7 +165,7 @@ impl<'g> State<'g, '_> {
             Directive::If { .. } | Directive::Ifdef { .. } => {
                 return self.choose(open.module, open.part - 1);
             }
-            // Reached from the branch before, which was active: the others are skipped.
+            // Reached at the end of the branch that was taken: the other branches are skipped.
             Directive::Elif { end, .. } | Directive::Else { end } => self.jump(*end),
             Directive::Endif | Directive::Empty => {}
             Directive::Error(words) => self.author_error(*words, span),
@@ -246,7 +246,8 @@ impl<'g> State<'g, '_> {
             Some(first) => {
                 self.expander.errors.push(error.at(line, "a second one").at(first, "the first one"))
             }
-            // This part was counted already, so the `#version` is the first.
+            // `open.part` already points behind this directive, so 1 means the first part of the
+            // file.
             None if open.module == 0 && open.part == 1 && self.open.len() == 1 => {
                 self.version = Some(line)
             }

@@ -64,10 +64,10 @@ fn start_at(
 struct Search {
     kept: Vec<bool>,
     work: Vec<u32>,
-    /// For each symbol, one more than the index in `links` of the first item that declares it; 0
-    /// for none, or for one that was visited.
+    /// For each symbol, one more than the index in `links` of the last item that declares it; 0 if
+    /// no item does, or if the symbol was visited.
     heads: Vec<u32>,
-    /// An item, and one more than the index of the next link of the same name.
+    /// An item, and one more than the index of the previous link for the same name; 0 for none.
     links: Vec<(u32, u32)>,
 }
 

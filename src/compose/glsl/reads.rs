@@ -10,8 +10,7 @@ pub struct Reads<'s> {
     order: Vec<u16>,
     /// How many reads there were.
     pub count: usize,
-    /// The value of an undefined macro in a condition. If there is none, it is an error to ask for
-    /// one.
+    /// The value of an undefined macro in a condition. If it is `None`, such a macro is an error.
     pub undeclared: Option<bool>,
 }
 

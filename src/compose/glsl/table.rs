@@ -12,7 +12,7 @@ pub enum Meaning<'g> {
         definition: &'g Macro,
         active: bool,
     },
-    /// The value of a setting, by its number in [`Reads`].
+    /// The value of a setting, by its number in [`Reads`](super::reads::Reads).
     Setting(u16),
     /// A fixed number.
     Number(Symbol),
@@ -88,8 +88,8 @@ impl<'g> Table<'g> {
         } else {
             table.number("GL_core_profile", 1);
         }
-        // The version of Vulkan's semantics (GL_KHR_vulkan_glsl), which exist from `#version 450`
-        // on.
+        // The version of Vulkan's semantics (GL_KHR_vulkan_glsl). They are assumed from `#version
+        // 440` on.
         if !es && version >= 440 {
             table.number("VULKAN", 100);
         }

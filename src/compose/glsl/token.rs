@@ -3,10 +3,10 @@
 use crate::parse::glsl::{Module, Symbol, Token, TokenKind};
 use crate::source::Span;
 
-/// No token.
+/// In `before` and `after` of a [`Tok`]: no token.
 pub const NONE: u32 = u32::MAX;
 
-/// No setting.
+/// In `setting` of a [`Tok`]: no setting.
 pub const NO_SETTING: u16 = u16::MAX;
 
 /// A token of the result, or one that is still being expanded.

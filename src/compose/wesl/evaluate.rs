@@ -32,7 +32,8 @@ pub struct Evaluator<'a> {
     unknown: HashSet<Name>,
     /// Where flags are named, once one of them has no value.
     places: Option<FxHashMap<Name, Vec<Span>>>,
-    /// By module and guard: whether it or one behind it holds.
+    /// By node and guard: whether the condition of that guard, or of one after it in its chain,
+    /// holds.
     guards: FxHashMap<(u32, u32), bool>,
 }
 
@@ -100,8 +101,8 @@ impl<'a> Evaluator<'a> {
         count_steps(steps);
     }
 
-    /// Whether a use means a local declaration whose condition holds. Uses share the guards behind
-    /// theirs, and each is looked at once.
+    /// Whether a use means a local declaration whose condition holds. The chains of guards share
+    /// their ends, so the answer for each guard is remembered.
     fn is_local(&mut self, node: u32, guard: u32) -> bool {
         let graph = self.graph;
         let (mut guard, mut passed, mut answer) = (Some(guard), Vec::new(), false);
@@ -123,8 +124,8 @@ impl<'a> Evaluator<'a> {
         answer
     }
 
-    /// The default of a setting whose number stays open. It is not recorded, since the text is the
-    /// same whatever the value is.
+    /// The default of a setting that becomes an `override`. It is not recorded as read, since the
+    /// text is the same whatever value the permutation has.
     pub fn open(&self, name: Name) -> Option<Setting> {
         self.settings
             .open

@@ -26,7 +26,7 @@ struct Condition {
 }
 
 impl<'g> Outcomes<'g> {
-    /// Nothing is known yet of what permutations use.
+    /// No permutation was shown yet.
     pub fn new(graph: &'g Graph) -> Self {
         let own = graph.nodes.iter().enumerate().filter(|(_, node)| node.package == 0);
         let conditions = own.flat_map(|(index, node)| {

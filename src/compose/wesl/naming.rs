@@ -100,12 +100,12 @@ fn name_hold(graph: &Graph, thing: Thing) -> Hold {
     }
 }
 
-/// Who claims each name, by name.
+/// Tables over all names of the graph: which kept things have each name.
 struct Table<'a> {
     graph: &'a Graph,
     reached: &'a Reached,
     claims: Vec<u32>,
-    /// Whether the name is used for something predeclared.
+    /// Whether a kept item uses the name for something predeclared.
     free: Vec<bool>,
     /// The thing that has the name and is never renamed.
     firm: Vec<Option<Thing>>,

@@ -44,7 +44,8 @@ struct Walk<'a, 'b, 'c> {
     graph: &'a Graph,
     evaluator: &'c mut Evaluator<'b>,
     all: bool,
-    /// Whether items were asked for by name: errors elsewhere in their module do not count then.
+    /// Whether items were asked for by name. Then a name that is declared twice is an error only if
+    /// something kept uses it.
     some: bool,
     reached: Reached,
     queue: Vec<(u32, u32)>,

@@ -47,7 +47,8 @@ struct Writer<'a> {
     names: &'a Renames,
     text: String,
     map: SourceMap,
-    /// Where the last copied text ended, as long as nothing else was written after it.
+    /// What was copied last, if nothing of the composer's own was written after it. After a rename
+    /// it is a span that no copied text continues.
     copied: Option<Span>,
     /// What was written so far. Uses are indices into the tables over all things.
     parts: Vec<Part>,

@@ -75,7 +75,7 @@ fn dependent_overrides(module: &Module) -> impl Iterator<Item = (&str, naga::Spa
     })
 }
 
-/// A number, written as a literal or as the name of a constant.
+/// The value of an expression that is a literal, a zero value, or a constant with such a value.
 pub fn literal_of(module: &Module, expression: Handle<Expression>) -> Option<Literal> {
     match module.global_expressions[expression] {
         Expression::Literal(literal) => Some(literal),

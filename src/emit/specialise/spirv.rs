@@ -11,7 +11,7 @@ use super::{Open, choice_of};
 use crate::bundle::Choice;
 use crate::emit::spirv::{self, HEADER_WORDS, Instruction, first_word, instructions, op, string};
 
-/// Opcodes of types and constants, which follow all decorations.
+/// Opcodes of types. The first type follows all decorations.
 const TYPES: std::ops::RangeInclusive<u16> = 19..=39;
 const SPEC_ID: u32 = 1;
 

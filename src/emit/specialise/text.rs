@@ -6,7 +6,7 @@ use super::{Open, choice_of};
 use crate::bundle::Choice;
 use crate::emit::{Entry, Overrides, is_header_line};
 
-/// Opens the variables that the text declares.
+/// Opens the variables of overrides that the text declares; returns how each is chosen.
 pub fn open_text(
     bytes: &mut Vec<u8>,
     opens: &[Open],

@@ -59,7 +59,7 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
 }
 
 /// The argument with sizes of buffers, if naga gave the entry point one. It has a member for each
-/// buffer of the module that needs one, named after the place of its variable in the module.
+/// buffer of the module that needs one, named after the index of its variable in the module.
 fn buffer_sizes(source: &Source<'_>, text: &str) -> Option<BufferSizes> {
     let argument = format!("[[buffer({SIZES_BUFFER})]]");
     text.lines().find(|line| line.contains("_mslBufferSizes&") && line.contains(&argument))?;

@@ -49,7 +49,7 @@ fn order_variables(words: &[u32]) -> Vec<u32> {
         |found: &Instruction<'_>| found.op == op::VARIABLE && found.words.get(3) == Some(&FUNCTION);
     let mut made = words.get(..HEADER_WORDS).unwrap_or_default().to_vec();
     let mut run: Vec<&[u32]> = Vec::new();
-    // The last one stands for the end.
+    // The `None` stands for the end, so that the last run is written too.
     for instruction in instructions(words).map(Some).chain([None]) {
         if let Some(local) = instruction.filter(is_local) {
             run.push(local.words);

@@ -28,7 +28,8 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     let written = Writer::new(&mut text, WriterFlags::empty()).write(source.module, source.info);
     written.map_err(|error| text.explain(error))?;
     let text = text.0;
-    // naga does not tell the names that it wrote, and it appends to names that end with a digit.
+    // naga does not tell the names that it wrote, and it appends an underscore to names that end
+    // with a digit.
     let entry =
         declared_names(&text, "fn", Some("@")).next().ok_or("no entry point was written")?;
     let mut native = native_reflection(source, entry, Numbering::Author);
@@ -46,8 +47,8 @@ fn override_choice((constant, written): (&naga::Override, &str)) -> Option<Choic
     Some(Choice { name, id: constant.id.map(u32::from), symbol })
 }
 
-/// The names of declarations that begin with `keyword`, in the order of the text. With `after`,
-/// only those that follow a line which begins with it.
+/// The names of declarations that begin with `word`, in the order of the text. With `after`, only
+/// those that follow a line which begins with `after`.
 fn declared_names<'t>(
     text: &'t str,
     word: &'static str,

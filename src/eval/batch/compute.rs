@@ -58,7 +58,8 @@ pub fn compute(instruction: &Instruction, rows: &mut Rows<'_>) {
     }
 }
 
-/// Runs something on all lanes if they have the same word, or else on each.
+/// If the slot has the same word in all active lanes, calls `all` once with that word. Otherwise
+/// calls `one` for each active lane with the lane's own word.
 #[inline(always)]
 fn moved(
     rows: &mut Rows<'_>,
@@ -93,7 +94,8 @@ fn seldom(instruction: &Instruction, rows: &mut Rows<'_>) {
         }
         Instruction::Convert { op, n, to, a } => convert(rows, op, n, to, a),
         Instruction::Pack { op, to, from } => {
-            // No form has more than four slots on either side.
+            // No packing function has more than four slots on either side. The slots of the result
+            // that it does not write keep their values.
             on_each_lane(rows, &[(from, 4)], (to, 4), |m| pack(m, op, 4, 0, &mut false));
         }
         Instruction::Reduce { all, n, to, a } => {
@@ -120,20 +122,20 @@ fn seldom(instruction: &Instruction, rows: &mut Rows<'_>) {
     }
 }
 
-/// Runs something on the slots of each lane by itself. They are given side by side, the operands
-/// first and the result after them.
+/// Calls a function once for each active lane. The function gets a copy of the lane's slots in one
+/// slice: the operands in order, then the result. Afterwards the result is copied back.
 pub fn on_each_lane(
     rows: &mut Rows<'_>,
     operands: &[(u32, u32)],
     (to, n): (u32, u32),
     run: impl Fn(&mut [f32]),
 ) {
-    // Two matrices are the most that any form has.
+    // The most is a 4x4 inverse, with one matrix as the operand and one as the result.
     let mut m = [0.0; 32];
     let slots = || operands.iter().flat_map(|(slot, n)| *slot..slot + n).chain(to..to + n);
     let result: usize = operands.iter().map(|(_, n)| *n as usize).sum();
     for lane in lanes_of(rows.mask) {
-        // No form reads what is beyond the memory's end.
+        // `operands` may name slots beyond the memory's end. No function uses these.
         for (value, slot) in m.iter_mut().zip(slots()) {
             *value = rows.m.get(slot as usize).map_or(0.0, |row| row[lane]);
         }
@@ -176,7 +178,7 @@ fn each3(
     }
 }
 
-/// As the others, for a function of the lane and its word.
+/// As [`each1`], for a function of the lane's index and its word.
 #[inline(always)]
 fn each_row(rows: &mut Rows<'_>, n: u8, to: u32, a: Operand, f: impl Fn(usize, u32) -> u32) {
     for part in 0..u32::from(n) {
@@ -185,8 +187,8 @@ fn each_row(rows: &mut Rows<'_>, n: u8, to: u32, a: Operand, f: impl Fn(usize, u
     }
 }
 
-/// A function that takes long: once if the arguments of all lanes are the same, else only for the
-/// lanes that run.
+/// Applies an expensive function: once if the arguments of all active lanes are the same, else once
+/// for each active lane.
 #[inline(always)]
 fn costly<const K: usize>(
     rows: &mut Rows<'_>,
@@ -208,8 +210,8 @@ fn costly<const K: usize>(
     }
 }
 
-/// A `match` with an arm for each operation named, so that each has a loop of its own that the
-/// compiler turns into instructions for many numbers.
+/// A `match` with an arm for each named operation. In an arm the operation is a constant, so that
+/// the compiler can vectorize the arm's loop.
 macro_rules! by_name {
     ($ty:ident, $op:expr, [$($name:ident)*], |$known:ident| $quick:expr, $other:expr) => {
         match $op {

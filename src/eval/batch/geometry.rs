@@ -103,14 +103,15 @@ fn length(vector: &Vector, n: usize) -> Row {
     each_lane(|i| square[i].sqrt())
 }
 
-/// Products of matrices; a column of `b` at a time.
+/// Products of matrices and vectors, computed by columns of `b`.
 pub fn matrix_product(
     rows: &mut Rows<'_>,
     op: Product,
     [inner, height, columns]: [u32; 3],
     [to, a, b]: [u32; 3],
 ) {
-    // Element k of row r of `a`. A vector on the left of a matrix has one row.
+    // The distance in slots between the elements of a row of `a`. A vector on the left of a matrix
+    // is a matrix of one row.
     let stride = if op == Product::VectorMatrix { 1 } else { height };
     for column in 0..columns {
         let right = load(rows, b + column * inner, inner);

@@ -1,4 +1,4 @@
-//! Accesses to textures and derivatives, for the lanes that run.
+//! Accesses to textures, and derivatives, for the active lanes.
 
 use super::super::code::{Axis, Binary, Unary};
 use super::super::machine::{
@@ -7,7 +7,7 @@ use super::super::machine::{
 use super::super::number::Number;
 use super::rows::{ALL, LANES, Mask, Row, Rows, kept_lanes, lanes_of};
 
-/// Runs an access of each lane by itself.
+/// Runs an access for each active lane, without the gradients of a quad. `None` if it fails.
 pub fn run_single(env: Env<'_>, index: u32, rows: &mut Rows<'_>, at: u32) -> Option<()> {
     let access = env.program.access(index)?;
     let mut watch = Watch::default();
@@ -17,7 +17,8 @@ pub fn run_single(env: Env<'_>, index: u32, rows: &mut Rows<'_>, at: u32) -> Opt
     Some(())
 }
 
-/// Runs an access whose level depends on the neighbours, for the lanes that reached it.
+/// Runs an access whose level of detail comes from the gradients within a quad, for the lanes of
+/// `mask`. `None` if it fails.
 pub fn run_quads(env: Env<'_>, index: u32, memory: &mut [Row], mask: Mask) -> Option<()> {
     let access = env.program.access(index)?;
     let mut watch = Watch::default();
@@ -37,7 +38,8 @@ pub fn run_quads(env: Env<'_>, index: u32, memory: &mut [Row], mask: Mask) -> Op
     Some(())
 }
 
-/// The difference between neighbours of a slot, for the lanes that reached it.
+/// Writes the derivative of a slot for the lanes of `mask`: the difference of two lanes of the
+/// quad, or 0 if one of these is not in `mask`.
 pub fn derivative(
     memory: &mut [Row],
     mask: Mask,

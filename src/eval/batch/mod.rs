@@ -1,6 +1,6 @@
-//! Many lanes in lock-step: each instruction is read once for all lanes that are at it. Every lane
-//! gets the bits that [`Machine::call`] and [`Machine::quad`] would give it. Where these report an
-//! error, so does a batch, in the words of the machine.
+//! Many lanes in lock-step: each instruction is decoded once for all lanes that are at it. Every
+//! lane gets the bits that [`Machine::call`] and [`Machine::quad`] would give it. If a lane fails,
+//! the machine runs the lanes again one by one, and its error is returned.
 
 mod compute;
 mod geometry;
@@ -25,7 +25,7 @@ pub struct Batch<'p> {
     /// A row for each slot; empty for a program that is too large.
     memory: Vec<Row>,
     lanes: Lanes,
-    /// The result of each lane, side by side.
+    /// A row for each slot of the result.
     results: Vec<Row>,
 }
 
@@ -36,7 +36,7 @@ impl<'p> Batch<'p> {
     /// How many lanes run together.
     pub const LANES: usize = LANES;
 
-    /// The lanes of a machine with what is bound to it.
+    /// Takes a machine with its constants and all that is bound to it.
     pub fn new(machine: Machine<'p, f32>) -> Self {
         let slots = machine.memory();
         let memory = match slots.len() <= MOST_SLOTS {
@@ -46,7 +46,8 @@ impl<'p> Batch<'p> {
         Self { machine, memory, lanes: Lanes::default(), results: Vec::new() }
     }
 
-    /// Runs a function on the arguments of any number of lanes by themselves.
+    /// Runs a function once for each element of `arguments`. The lanes are independent, so
+    /// derivatives are not possible.
     ///
     /// # Errors
     /// Those of [`Machine::call`].
@@ -99,7 +100,8 @@ impl<'p> Batch<'p> {
         Ok(())
     }
 
-    /// Runs up to [`Self::LANES`] lanes. `None` where the machine has to say what is wrong.
+    /// Runs up to [`Self::LANES`] lanes. `None` if a lane fails or the program is too large: the
+    /// caller then runs the lanes on the machine, which also finds the error.
     fn run(&mut self, id: FunctionId, arguments: &[&[f32]], is_quads: bool) -> Option<()> {
         if self.memory.is_empty() {
             return None;

@@ -14,13 +14,12 @@ pub type Mask = u32;
 /// All lanes.
 pub const ALL: Mask = (1 << LANES) - 1;
 
-/// All bits for each lane of a mask, and none for the others.
+/// A word for each lane: all bits set if the lane is in the mask, else 0.
 pub fn kept_lanes(mask: Mask) -> [u32; LANES] {
     each_lane(|lane| 0u32.wrapping_sub(mask >> lane & 1))
 }
 
-/// What a function gives for each lane. It is a plain loop, which the compiler turns into
-/// instructions for many numbers.
+/// The results of a function for each lane. It is a plain loop, which the compiler vectorizes.
 #[inline(always)]
 pub fn each_lane<T: Copy + Default>(f: impl Fn(usize) -> T) -> [T; LANES] {
     let mut row = [T::default(); LANES];
@@ -38,9 +37,9 @@ pub fn lanes_of(mask: Mask) -> impl Iterator<Item = usize> {
 /// The memory, and the lanes that an instruction writes.
 pub struct Rows<'m> {
     pub m: &'m mut [Row],
-    /// The lanes that run. All others keep what they have, unless `whole` is set.
+    /// The active lanes. Writes leave the other lanes as they are, unless `whole` is set.
     pub mask: Mask,
-    /// Whether nothing is lost if the other lanes are written too.
+    /// Set if no other lane has work left. Writes may then overwrite all lanes, which is faster.
     pub whole: bool,
     /// [`kept_lanes`] of the mask.
     keep: &'m [u32; LANES],
@@ -82,7 +81,7 @@ impl<'m> Rows<'m> {
         self.put(slot, each_lane(|lane| f32::from_bits(words[lane])));
     }
 
-    /// The lanes that run and have something else than 0 in a slot.
+    /// The active lanes whose word in a slot is not 0.
     #[inline(always)]
     pub fn truth(&self, slot: u32) -> Mask {
         if let Some(word) = self.common(slot) {
@@ -96,13 +95,13 @@ impl<'m> Rows<'m> {
         truth & self.mask
     }
 
-    /// The first lane that runs.
+    /// The first active lane.
     #[inline(always)]
     pub fn first(&self) -> usize {
         (self.mask.trailing_zeros() as usize).min(LANES - 1)
     }
 
-    /// Whether all lanes that run have the same bits in a row.
+    /// Whether all active lanes have the same bits in a row.
     #[inline(always)]
     pub fn is_same(&self, row: &Row) -> bool {
         let first = row[self.first()].to_bits();
@@ -113,15 +112,15 @@ impl<'m> Rows<'m> {
         other == 0
     }
 
-    /// The word of a slot, if all lanes that run have the same.
+    /// The word of a slot, if it is the same in all active lanes.
     #[inline(always)]
     pub fn common(&self, slot: u32) -> Option<u32> {
         let row = &self.m[slot as usize];
         self.is_same(row).then(|| row[self.first()].to_bits())
     }
 
-    /// Copies slots, which may overlap. As for a single lane, an address outside of the memory
-    /// reads nothing.
+    /// Copies slots; the ranges may overlap. If a range is not inside the memory, nothing is
+    /// copied, as for a single lane.
     #[inline(always)]
     pub fn copy(&mut self, to: u32, from: u32, n: u32) {
         let (first, last) = (from as usize, from as usize + n as usize);

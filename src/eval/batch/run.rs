@@ -1,4 +1,4 @@
-//! The loop that runs lanes.
+//! The interpreter's loop for many lanes.
 
 use super::super::code::Instruction;
 use super::super::machine::{Env, jump_target};
@@ -10,7 +10,7 @@ use super::schedule::{Group, Lanes};
 /// The first slot of the function's result, and where the results of lanes are kept.
 type Results<'r> = (u32, &'r mut [Row]);
 
-/// Runs all lanes until they have ended. `None` if one of them cannot.
+/// Runs all lanes until they have ended. `None` if one of them fails.
 pub fn run_lanes(
     env: Env<'_>,
     memory: &mut [Row],
@@ -33,7 +33,7 @@ struct Run<'r> {
     env: Env<'r>,
     memory: &'r mut [Row],
     lanes: &'r mut Lanes,
-    /// The lanes of the group that runs.
+    /// [`kept_lanes`] of the group that runs.
     keep: [u32; LANES],
     results: Results<'r>,
 }
@@ -42,18 +42,19 @@ struct Run<'r> {
 enum After {
     /// It goes on.
     Next,
-    /// It goes on, unless others may have to go before it.
+    /// Its call depth changed. It goes on only if no other lane is left, since lanes at another
+    /// depth may now come first.
     Moved,
-    /// Its lanes go to different places, which are noted.
+    /// Its lanes diverged. Their program counters are already stored.
     Split,
-    /// It waits for other lanes.
+    /// It waits for other lanes of its quads.
     Waits,
     /// It has ended.
     Ended,
 }
 
 impl Run<'_> {
-    /// Runs a group until others have to run.
+    /// Runs a group until it ends, waits or diverges, or until other lanes come first.
     fn advance(&mut self, mut group: Group) -> Option<()> {
         let began = (group.steps_left, group.trips_left);
         self.keep = kept_lanes(group.mask);
@@ -182,8 +183,8 @@ impl Run<'_> {
         After::Split
     }
 
-    /// Runs an instruction that whole quads need. If lanes of a quad are elsewhere, the group
-    /// waits.
+    /// Runs an instruction that needs values from all lanes of a quad. The group waits if it has
+    /// only some lanes of a quad, or if other lanes have not ended.
     fn meet(&mut self, instruction: &Instruction, group: &Group) -> Option<After> {
         let are_whole = group.alone
             && (0..LANES / 4).all(|quad| matches!(group.mask >> (4 * quad) & 0xf, 0 | 0xf));
@@ -207,7 +208,8 @@ impl Run<'_> {
         }
     }
 
-    /// Lets lanes go on of which no lane of their quads can run.
+    /// Called when no lane can run. In each quad, runs the instruction for those waiting lanes that
+    /// are furthest behind, and lets them go on.
     fn release(&mut self) -> Option<()> {
         for quad in 0..LANES / 4 {
             let Some((pc, mask)) = self.lanes.furthest_behind(quad) else { continue };

@@ -1,15 +1,15 @@
-//! Which lanes run next. Lanes that are apart meet again, since those run first that are deepest in
-//! calls, and of them those that are furthest behind in the code.
+//! Which lanes run next: those with the greatest call depth, and of these the ones with the lowest
+//! program counter. So lanes that diverged meet again.
 
 use super::rows::{ALL, LANES, Mask, lanes_of};
 use crate::limits::EVAL_STEPS;
 
-/// Where all lanes are.
+/// The control flow state of all lanes.
 #[derive(Debug, Default)]
 pub struct Lanes {
     pub pc: [u32; LANES],
     depth: [u32; LANES],
-    /// What calls return to, for each depth.
+    /// The return addresses of calls, for each call depth.
     returns: Vec<[u32; LANES]>,
     steps: [u64; LANES],
     trips: [u64; LANES],
@@ -20,18 +20,20 @@ pub struct Lanes {
     pub killed: Mask,
 }
 
-/// Lanes that are at the same place.
+/// Lanes with the same program counter and call depth.
 #[derive(Debug, Clone, Copy)]
 pub struct Group {
     pub mask: Mask,
     pub pc: u32,
     pub depth: u32,
-    /// Where other lanes are that are as deep in calls, and further ahead.
+    /// The lowest program counter of the other runnable lanes of the same call depth. The group
+    /// runs alone only as long as it is below this.
     pub next: u32,
     /// Whether no other lane has anything left to do.
     pub alone: bool,
-    /// Steps and trips of loops that are left to the lane that has made most of them.
+    /// The steps that are left until the limit, for the lane of the group that has made the most.
     pub steps_left: u64,
+    /// The same for loop iterations.
     pub trips_left: u64,
 }
 
@@ -41,7 +43,7 @@ impl Lanes {
         *self = Self { pc: [entry; LANES], runnable: running, returns, ..Self::default() };
     }
 
-    /// The lanes that run next.
+    /// The lanes that run next. `None` if no lane is runnable.
     pub fn next_group(&self, loop_limit: u64) -> Option<Group> {
         let deepest = lanes_of(self.runnable).map(|lane| self.depth[lane]).max()?;
         let as_deep = || lanes_of(self.runnable).filter(|lane| self.depth[*lane] == deepest);
@@ -61,7 +63,8 @@ impl Lanes {
         })
     }
 
-    /// Keeps where a group has come to, with what it had left when it was chosen.
+    /// Writes the position of a group back to its lanes, and adds the steps and trips that it made.
+    /// `began` is how many of both it had left when it was chosen.
     pub fn leave(&mut self, group: &Group, began: (u64, u64)) {
         let (steps, trips) = (began.0 - group.steps_left, began.1 - group.trips_left);
         for lane in lanes_of(group.mask) {
@@ -72,7 +75,7 @@ impl Lanes {
         }
     }
 
-    /// Notes what a call of a group returns to.
+    /// Stores the return address of a call that a group makes.
     pub fn enter(&mut self, group: &Group, to: u32) {
         let depth = group.depth as usize;
         if self.returns.len() <= depth {
@@ -85,19 +88,20 @@ impl Lanes {
         }
     }
 
-    /// What a lane returns to from a depth.
+    /// The return address of the call that a lane made at a call depth.
     pub fn return_of(&self, lane: usize, depth: u32) -> u32 {
         self.returns.get(depth as usize).map_or(0, |row| row[lane])
     }
 
-    /// Where a lane waits: the calls that it is in, and the instruction.
+    /// Where a lane waits: the return addresses of its calls, then its instruction.
     fn position(&self, lane: usize) -> impl Iterator<Item = u32> + '_ {
         let calls = self.returns.iter().take(self.depth[lane] as usize);
         calls.map(move |row| row[lane]).chain([self.pc[lane]])
     }
 
-    /// Of a quad whose lanes all wait or have ended, those lanes that are furthest behind, since
-    /// the others may wait at a place that those still reach.
+    /// For a quad whose lanes all wait or have ended: the waiting lanes that are furthest behind,
+    /// and their instruction. They go first, since they may still reach the place where the others
+    /// wait.
     pub fn furthest_behind(&self, quad: usize) -> Option<(u32, Mask)> {
         let waiting = || lanes_of(self.waiting & 0xf << (4 * quad));
         let first = waiting().min_by(|a, b| self.position(*a).cmp(self.position(*b)))?;

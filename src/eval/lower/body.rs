@@ -1,4 +1,4 @@
-//! Lowers a body: what all kinds of expressions and statements share.
+//! Lowers a body: what the lowering of all expressions and statements shares.
 
 use naga::{Arena, Expression, Handle, Span, TypeInner};
 
@@ -57,7 +57,8 @@ impl<'b, 'm> Body<'b, 'm> {
             .ok_or_else(|| Error::unsupported("an operation on this type"))
     }
 
-    /// The operand of a value, whose components have slots of their own or share one.
+    /// The operand of a value, whose components have slots of their own or share one. For a pointer
+    /// it is the slot that holds the address.
     pub(super) fn operand(&mut self, handle: Handle<Expression>) -> Result<Operand, Error> {
         match self.loc(handle)? {
             Loc::Value { operand, .. } => Ok(operand),
@@ -83,7 +84,7 @@ impl<'b, 'm> Body<'b, 'm> {
         Ok(to)
     }
 
-    /// A slot that holds the address.
+    /// A slot that holds the address of a pointer.
     pub(super) fn address(&mut self, pointer: Loc) -> Result<Slot, Error> {
         match pointer {
             Loc::Value { operand, .. } => Ok(operand.slot),

@@ -1,4 +1,4 @@
-//! Lowers expressions. Most of naga's only name slots, so that no instruction is needed.
+//! Lowers expressions. Many of naga's expressions only select slots, and need no instruction.
 
 use super::{Body, Loc};
 use crate::eval::code::{Axis, Instruction, Operand, Slot};

@@ -21,9 +21,9 @@ use std::collections::BTreeMap;
 enum Loc {
     /// In slots. If `constant`, functions never write to them.
     Value { operand: Operand, constant: bool },
-    /// A pointer to a slot that is known now.
+    /// A pointer to a slot that is known when the program is lowered.
     Place(Slot),
-    /// A pointer that a slot holds, plus an offset.
+    /// A pointer whose address is the value of a slot plus an offset.
     Through { slot: Slot, offset: u32 },
 }
 
@@ -39,7 +39,7 @@ struct Build<'m> {
     constants: Vec<Option<Loc>>,
 }
 
-/// A body of expressions that is being lowered.
+/// The function, or the module-scope constants, that are being lowered.
 struct Body<'b, 'm> {
     build: &'b mut Build<'m>,
     expressions: &'m Arena<Expression>,
@@ -302,8 +302,8 @@ impl<'m> Build<'m> {
         body.whole(function)
     }
 
-    /// A parameter with the kinds of its scalars. What is behind a pointer after the call follows
-    /// the first `results` scalars of the result.
+    /// A parameter with the kinds of its scalars. The value that a pointer points to is also part
+    /// of the function's result, after the first `results` scalars: the caller gets it from there.
     fn parameter(
         &mut self,
         argument: &naga::FunctionArgument,

@@ -10,7 +10,9 @@ use naga::{
     BinaryOperator, Expression, Handle, RelationalFunction, ScalarKind, TypeInner, UnaryOperator,
 };
 
-/// What an operator is for floats, signed and unsigned integers; `None` where it does not exist.
+/// An operator with its operations on floats, on signed and on unsigned integers. `None` where
+/// there is none here: comparisons of floats are in [`comparison_of`]. `>` and `>=` have the
+/// operations of `<` and `<=`, with swapped operands.
 type Meaning = (BinaryOperator, Option<Binary>, Option<Word2>, Option<Word2>);
 
 const MEANINGS: &[Meaning] = &[

@@ -125,7 +125,7 @@ impl Body<'_, '_> {
         }
     }
 
-    /// The type a pointer points to, or the value's own.
+    /// The type that a pointer points to, or the type of a value.
     fn pointee(&self, handle: Handle<Expression>) -> &TypeInner {
         match *self.inner(handle) {
             TypeInner::Pointer { base, .. } => &self.build.module.types[base].inner,

@@ -45,7 +45,8 @@ impl Body<'_, '_> {
         if let Some(branch) = branch {
             self.mark(branch);
             if block.is_empty() {
-                // A branch that is not written has the place of its statement.
+                // An empty block has no statements, so it gets the span of the statement that it is
+                // a part of.
                 self.cover(whole);
             }
         }
@@ -184,7 +185,8 @@ impl Body<'_, '_> {
         Ok(())
     }
 
-    /// `break` or `continue` of the innermost loop or switch.
+    /// Emits the jump of a `break` (`out`) or a `continue`. Its target is set by
+    /// [`Self::land_all`].
     fn leave(&mut self, out: bool) -> Result<(), Error> {
         let jump = self.jump(Instruction::Jump { to: 0 });
         let targets = if out { &mut self.breaks } else { &mut self.continues };
@@ -204,8 +206,8 @@ impl Body<'_, '_> {
         Ok(())
     }
 
-    /// Implements `discard`: the lane continues as a helper of its quad, and a function that ends
-    /// so returns zero.
+    /// Implements `discard`: the lane continues as a helper invocation of its quad. If its function
+    /// ends without a further `return`, the result is zero.
     fn kill(&mut self) -> Result<(), Error> {
         let function = &self.build.program.functions[self.function as usize];
         let (to, n) = (function.result_slot, function.returned);

@@ -108,8 +108,8 @@ pub(super) fn compute<N: Number>(instruction: &Instruction, m: &mut [N], doubt: 
 #[inline(always)]
 fn copy_slots<N: Number>(m: &mut [N], to: u32, from: u32, n: u32) {
     let (to, from, n) = (to as usize, from as usize, n as usize);
-    // An address outside the memory can only come from a buffer that is not bound. It reads
-    // nothing.
+    // An address outside the memory can only come from a buffer that is not bound. Nothing is
+    // copied then.
     if from + n <= m.len() && to + n <= m.len() {
         m.copy_within(from..from + n, to);
     }
@@ -131,7 +131,7 @@ fn convert<N: Number>(m: &mut [N], op: Convert, n: u8, to: u32, a: Operand, doub
     each_component(m, n, to, |m, i| convert_slot(op, m[a.at(i)], doubt));
 }
 
-/// Changes one slot from a word to a number, or the other way.
+/// Converts one slot between words and numbers.
 #[inline(always)]
 pub fn convert_slot<N: Number>(op: Convert, x: N, doubt: &mut bool) -> N {
     match op {
@@ -147,14 +147,14 @@ pub fn convert_slot<N: Number>(op: Convert, x: N, doubt: &mut bool) -> N {
     }
 }
 
-/// An integer as a number, rounded as an f32 must be.
+/// An integer as a number. Its error is twice that of rounding to f32.
 #[inline(always)]
 fn whole_number<N: Number>(value: f64) -> N {
     let rounded = f64::from(value as f32);
     N::with_error(value, 2.0 * (value - rounded).abs())
 }
 
-/// Products of matrices; a column of `b` at a time.
+/// Products of matrices and vectors, computed by columns of `b`.
 fn matrix_product<N: Number>(
     m: &mut [N],
     op: Product,
@@ -171,7 +171,8 @@ fn matrix_product<N: Number>(
         a as usize,
         b as usize,
     );
-    // Element k of row r of `a`. A vector on the left of a matrix has one row.
+    // The distance in slots between the elements of a row of `a`. A vector on the left of a matrix
+    // is a matrix of one row.
     let stride = if op == Product::VectorMatrix { 1 } else { rows };
     for column in 0..columns {
         let mut right = [N::default(); 4];

@@ -4,15 +4,16 @@ use super::super::number::Number;
 use super::super::resources::{Address, Filter, Level, Sampler, Shape, Texture};
 use super::quick::filter_image;
 
-/// The precision of the fraction between two texels that hardware must have.
+/// The precision that hardware must have for the position between two texels, which gives the
+/// weights of a linear filter.
 ///
 /// Eight bits, as Direct3D asks for and Mesa's drivers have; Vulkan alone would allow four.
 const SUBTEXEL: f64 = 1.0 / 256.0;
-/// How many texels on each side are looked at for the error of a filter. Where a coordinate's error
-/// is larger, the error of the result is that of a whole footprint anyway.
+/// The largest distance, in texels, within which texels are compared for the error of a linear
+/// filter. A larger error of a coordinate does not widen this range.
 const WIDEST: f64 = 2.0;
 
-/// A place in a texture: coordinates in [0, 1] on a layer, with a bound of their errors.
+/// A place in a texture: normalised coordinates on a layer, with a bound of their errors.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
     pub shape: Shape,
@@ -72,7 +73,7 @@ pub(super) fn project(shape: Shape, coordinate: [f64; 3], error: [f64; 3], layer
 }
 
 impl Point {
-    /// How the place on the face moves when the direction moves.
+    /// How the place on the face changes, to first order, when the direction changes by `step`.
     pub fn slope(&self, direction: [f64; 3], step: [f64; 3]) -> [f64; 3] {
         let (major, sign, s, t) = FACES[self.face];
         let size = direction[major].abs();
@@ -85,11 +86,12 @@ impl Point {
 
 /// The filtered value of each component, with its error.
 ///
-/// A device may look up any place within the coordinate's error, and it rounds the fractions
-/// between texels to [`SUBTEXEL`]. A linear filter is a continuous surface. Its slope along an axis
-/// is at most the difference of two neighbouring texels. So the error is at most this reach times
-/// the largest difference of the texels within it. Those are one row or column more than are
-/// filtered, since the place may cross the middle of a texel or the seam of a cube.
+/// A device may sample any place within the coordinate's error, and it rounds the position between
+/// texels to [`SUBTEXEL`]. The sum of both is the reach. A linear filter is a continuous surface.
+/// Its slope along an axis is at most the difference of two neighbouring texels. So the error is at
+/// most the reach, in texels, times the largest difference of the texels within reach. These are
+/// one row or column more than the filter uses, since the place may cross the centre of a texel or
+/// the seam of a cube.
 pub(super) fn combine<N: Number>(footprint: &Footprint<N>, doubt: &mut bool) -> [(f64, f64); 4] {
     let level = &footprint.texture.levels[footprint.level];
     if !N::BOUNDED
@@ -126,7 +128,7 @@ pub(super) fn combine<N: Number>(footprint: &Footprint<N>, doubt: &mut bool) -> 
     })
 }
 
-/// How far from the place a device may look along each axis, in texels.
+/// How far from the place a device may sample along each axis, in texels.
 fn reach_of<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
     let (size, point) = (sizes_of(footprint, level), &footprint.point);
     std::array::from_fn(|i| if size[i] == 0.0 { 0.0 } else { point.error[i] * size[i] + SUBTEXEL })
@@ -178,7 +180,7 @@ pub(super) fn gathered_component<N: Number>(
     })
 }
 
-/// The sizes of the directions that are filtered; 0 for the others.
+/// The size of the level along each axis that is filtered; 0 for the other axes.
 fn sizes_of<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
     let depth = if footprint.point.shape == Shape::D3 { level.layers } else { 0 };
     let height = if footprint.point.shape == Shape::D1 { 0 } else { level.height };
@@ -243,15 +245,15 @@ impl<N: Number> Footprint<'_, N> {
 }
 
 impl<N: Number> Footprint<'_, N> {
-    /// A texel, or the outcome of its comparison.
+    /// A texel, or the result of its comparison in each component: 1 if it passes, else 0.
     pub fn shown(&self, texel: [f64; 4]) -> [f64; 4] {
         self.compared(Tap { weight: 1.0, texel }, &mut false).texel
     }
 }
 
 impl<N> Footprint<'_, N> {
-    /// Calls back with the texel at a column and a row, and its weight. Beyond the corner of a cube
-    /// there is none: its weight is divided among the three texels that meet there.
+    /// Calls `add` with the texel at a column and a row, and its weight. Beyond the corner of a
+    /// cube's face there is no texel: the weight is divided among the three texels that meet there.
     fn taps(&self, level: &Level, at: [i64; 3], weight: f64, add: &mut impl FnMut(Tap)) {
         let inside = |i: usize| at[i].clamp(0, i64::from(level.width) - 1);
         if self.point.shape != Shape::Cube || inside(0) == at[0] || inside(1) == at[1] {

@@ -16,7 +16,7 @@ use crate::limits::EVAL_STEPS;
 pub(super) struct Lane<N> {
     pub memory: Vec<N>,
     pub pc: u32,
-    /// The instructions that calls return to.
+    /// The return addresses of the calls that the lane is in.
     pub calls: Vec<u32>,
     pub trips: u64,
     /// Steps of this call so far. A copy counts by its length.
@@ -35,7 +35,7 @@ pub struct Env<'e> {
 }
 
 impl Env<'_> {
-    /// The place of an instruction.
+    /// The place of an instruction in the text that naga parsed.
     pub fn span(&self, pc: u32) -> naga::Span {
         self.program.spans.get(pc as usize).copied().unwrap_or_default()
     }
@@ -102,7 +102,7 @@ pub(super) fn run_lane<N: Number>(
 }
 
 impl<N: Number> Lane<N> {
-    /// The next instruction, which counts as run.
+    /// Fetches the next instruction, advances `pc` and counts the steps.
     #[inline(always)]
     fn fetch<'e>(&mut self, env: Env<'e>) -> Result<&'e Instruction, Error> {
         let at = self.pc;

@@ -30,7 +30,7 @@ pub(in crate::eval) use word::{extract_bits, insert_bits, word1, word2};
 /// How many loop iterations one call may make unless set otherwise, all loops together.
 pub const LOOP_LIMIT: u64 = crate::limits::LOOP_TRIPS;
 
-/// A program with its memory. Calls use the memory again, and none of them allocates.
+/// A program with its memory. All calls use the same memory, so [`Self::call`] need not allocate.
 #[derive(Debug)]
 pub struct Machine<'p, N> {
     program: &'p Program,
@@ -42,9 +42,9 @@ pub struct Machine<'p, N> {
     quad: Vec<Lane<N>>,
     killed: [bool; 4],
     watch: Watch,
-    /// The arguments of `call_words`; the memory is used again.
+    /// The arguments of `call_words`, kept so that the next call need not allocate.
     words: Vec<N>,
-    /// Which globals have a buffer.
+    /// Which globals have a buffer that is large enough.
     bound: Vec<bool>,
     /// How many loop iterations one call may make, all loops together.
     pub loop_limit: u64,
@@ -81,7 +81,7 @@ impl<'p, N: Number> Machine<'p, N> {
         Ok(machine)
     }
 
-    /// The program that this is the memory of.
+    /// The program that this machine runs.
     pub fn program(&self) -> &'p Program {
         self.program
     }
@@ -136,7 +136,7 @@ impl<'p, N: Number> Machine<'p, N> {
         }
     }
 
-    /// Adds a buffer that ends in a runtime-sized array behind the memory.
+    /// Appends a buffer that ends in a runtime-sized array to the memory.
     fn append(
         &mut self,
         slots: Vec<N>,
@@ -238,7 +238,7 @@ impl<'p, N: Number> Machine<'p, N> {
         (are_fit && is_ready).then_some(function)
     }
 
-    /// What lanes share.
+    /// What all lanes share.
     pub(super) fn env(&self, quad: bool) -> Env<'_> {
         Env { program: self.program, bound: &self.resolved, loop_limit: self.loop_limit, quad }
     }
@@ -248,12 +248,12 @@ impl<'p, N: Number> Machine<'p, N> {
         self.lane.killed
     }
 
-    /// Instructions of the last call, copies by their length.
+    /// Steps of the last call. Long copies count as more than one.
     pub fn steps(&self) -> u64 {
         self.lane.steps
     }
 
-    /// The flattened result of the last call, which was of this function.
+    /// The flattened result of the last call, which must have been a call of this function.
     pub fn result(&self, id: FunctionId) -> &[N] {
         let function = self.program.signature(id);
         function.map_or(&[], |function| result_slots(&self.lane, function))

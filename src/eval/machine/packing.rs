@@ -72,11 +72,10 @@ fn signed_part(word: u32, width: u32, index: usize) -> f64 {
     f64::from((unsigned_part(word, width, index) << (32 - width)) as i32 >> (32 - width))
 }
 
-/// `floor(0.5 + scale * clamp(x, low, 1))`. There is doubt where the error reaches the next
-/// integer.
+/// `floor(0.5 + scale * clamp(x, low, 1))`. `doubt` is set where the error reaches another integer.
 fn normalised_word<N: Number>(x: N, low: f64, scale: f64, doubt: &mut bool) -> u32 {
     let clamped = x.value().clamp(low, 1.0);
-    // The product and the sum are rounded, unless the exact values are f32.
+    // The product and the sum are rounded, unless f32 can represent their exact values.
     let exact = |value: f64| f64::from(value as f32) == value;
     let product = scale * clamped;
     let rounding = if exact(product) && exact(product + 0.5) {

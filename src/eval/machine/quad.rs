@@ -1,4 +1,5 @@
-//! Four fragments in lock-step. Each runs alone up to a derivative, where it waits for the others.
+//! Runs the four fragments of a quad. Each runs alone up to a derivative, where it waits for the
+//! others.
 
 use super::super::code::{Axis, Binary, Instruction, Unary};
 use super::super::error::{Error, FindingKind};
@@ -97,7 +98,7 @@ impl<N: Number> Machine<'_, N> {
     }
 }
 
-/// Where a lane waits: the calls that it is in, and the instruction.
+/// Where a lane waits: the return addresses of its calls, then its instruction.
 fn waiting_position<N>(lane: &Lane<N>) -> impl Iterator<Item = u32> + '_ {
     lane.calls.iter().copied().chain([lane.pc])
 }

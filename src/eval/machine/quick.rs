@@ -1,11 +1,11 @@
-//! Filters texels where every coordinate is in the same image, with the arithmetic of
-//! [`super::filter`]: a texture of two dimensions, or the inside of a face of a cube.
+//! A fast path of [`super::filter`], with the same arithmetic, for lookups whose texels are all in
+//! one image: a layer of a 2D texture, or the inside of a face of a cube.
 
 use super::super::number::Number;
 use super::super::resources::{Filter, Level, Shape, Texels};
 use super::filter::{Footprint, wrap_address};
 
-/// The image that a place is on.
+/// The layer or the cube's face that a place is on.
 struct Image<'l> {
     texels: &'l Texels,
     /// The index of its first texel.
@@ -13,7 +13,8 @@ struct Image<'l> {
     size: [u32; 2],
 }
 
-/// The filtered value of each component; `None` where it takes texels of several images.
+/// The filtered value of each component. `None` if the texels are in several images, or the texture
+/// is 1D or 3D.
 pub fn filter_image<N: Number>(footprint: &Footprint<N>, level: &Level) -> Option<[f64; 4]> {
     let layer = match footprint.point.shape {
         Shape::D2 => footprint.point.layer.min(level.layers - 1) as usize,
@@ -59,12 +60,12 @@ fn linear<N: Number>(footprint: &Footprint<N>, image: &Image<'_>) -> Option<[f64
 fn nearest<N: Number>(footprint: &Footprint<N>, image: &Image<'_>) -> Option<[f64; 4]> {
     let along = |axis: usize| {
         let place = footprint.point.at[axis] * f64::from(image.size[axis]);
-        // An infinite place is none, as where an error is added to it.
+        // This makes an infinite place NaN, as `filter` does where it adds an error times 0.
         let place = place + 0.0 * place.abs();
         place_along(footprint, image, axis, whole_part(place))
     };
     let texel = footprint.shown(image.at(along(0)?, along(1)?)?);
-    // Nothing is added to a negative zero but a zero, which makes it positive.
+    // `filter` adds the texel to a sum that starts at 0, which turns -0 into +0.
     Some(texel.map(|value| 0.0 + value))
 }
 
@@ -91,7 +92,7 @@ impl Image<'_> {
     }
 }
 
-/// The largest integer that is not above a number; 0 for what is not a number.
+/// The largest integer that is not above a number; 0 for NaN.
 #[inline(always)]
 pub fn whole_part(x: f64) -> i64 {
     let near = x as i64;

@@ -10,7 +10,7 @@ use super::quad::derivative_lanes;
 use super::watch::Watch;
 use crate::diagnostic::codes;
 
-/// The precision of the level of detail on which devices agree.
+/// The precision to which devices agree on the level of detail.
 const LEVEL_STEP: f64 = 1.0 / 64.0;
 
 /// The difference of the coordinate to the neighbour in x and to the one in y.
@@ -19,7 +19,7 @@ type Gradient = [[f64; 3]; 2];
 /// The instruction, and where to report what happens there.
 type Notes<'w> = (u32, &'w mut Watch);
 
-/// The memory of one lane, which many lanes may have together.
+/// The memory of one lane. In a batch it is a part of the memory of many lanes.
 pub trait Slots<N> {
     fn get(&self, slot: u32) -> N;
     fn set(&mut self, slot: u32, value: N);
@@ -37,7 +37,8 @@ impl<N: Copy> Slots<N> for [N] {
     }
 }
 
-/// Runs an access whose level depends on the neighbours, for the lanes that reached it.
+/// Runs an access whose level of detail comes from the gradients within a quad, for the lanes that
+/// reached it.
 pub(super) fn run_quad<N: Number>(
     env: Env,
     index: u32,
@@ -62,7 +63,8 @@ pub fn coordinate_of<N: Number>(access: &Access, m: &(impl Slots<N> + ?Sized)) -
     values_at(m, access.coordinate, access.dimensions)
 }
 
-/// How the coordinate changes around a lane of a quad; not at all where a neighbour has none.
+/// How the coordinate changes around a lane of a quad; 0 along an axis where a neighbour did not
+/// reach the access.
 pub fn gradient_of(coordinates: &[Option<[f64; 3]>; 4], lane: usize) -> Gradient {
     [Axis::X, Axis::Y].map(|axis| {
         let (low, high) = derivative_lanes(lane, axis, false);
@@ -273,7 +275,8 @@ fn between_levels<N: Number>(
     if sampler.mipmap == Filter::Nearest || level.fract() == 0.0 {
         let chosen = (level + 0.5).floor().min(last);
         let found = at(chosen);
-        // Where the level is close to where another would be chosen, a device may choose either.
+        // If the level of detail is close to the threshold between two levels, a device may choose
+        // either.
         let others = [level - LEVEL_STEP, level + LEVEL_STEP]
             .map(|level| (level + 0.5).floor().clamp(0.0, last));
         if N::BOUNDED

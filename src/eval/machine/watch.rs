@@ -35,7 +35,7 @@ impl Watch {
         }
     }
 
-    /// Findings by kind and place; one place may have several instructions.
+    /// Findings by kind and place. Those of several instructions at the same place are added up.
     pub fn findings(&self, program: &Program) -> Vec<Finding> {
         let mut found: Vec<Finding> = Vec::new();
         for (&(kind, pc), &count) in &self.findings {
@@ -82,8 +82,12 @@ impl Watch {
                 let zero = (a..a + u32::from(n)).all(|slot| read(slot) == 0.0);
                 self.note_if(zero, FindingKind::Domain, pc);
             }
-            Instruction::Geometry { op: Geometry::Dot | Geometry::Length, n, to, a, .. } => {
+            Instruction::Geometry { op: Geometry::Length, n, to, a, .. } => {
                 self.judge(None, memory, &[(Operand { slot: a, stride: 1 }, n)], (to, 1), pc);
+            }
+            Instruction::Geometry { op: Geometry::Dot, n, to, a, b, .. } => {
+                let operands = [a, b].map(|slot| (Operand { slot, stride: 1 }, n));
+                self.judge(None, memory, &operands, (to, 1), pc);
             }
             Instruction::Index { index, count, .. } => {
                 let outside = memory[index as usize].word() >= memory[count as usize].word();
@@ -102,7 +106,8 @@ impl Watch {
         }
     }
 
-    /// Reports trouble with the operands, or else a result that is not finite although they are.
+    /// Reports `trouble` if there is any. Otherwise reports a result that is not finite, if all
+    /// operands are finite.
     fn judge<N: Number>(
         &mut self,
         trouble: Option<FindingKind>,

@@ -38,7 +38,8 @@ fn times(slope: f64, error: f64) -> f64 {
 }
 
 /// The error of `log(x + sqrt(x*x + c))`, by which WGSL defines the accuracy of asinh and acosh.
-/// For negative x the sum cancels, and near an acosh of 0 the root does.
+/// Its error grows where terms cancel: in the sum for negative x, and under the root of acosh for x
+/// near 1.
 fn log_of_sum(x: f64, c: f64, value: f64) -> f64 {
     let square = (x * x + c).max(0.0);
     let (root, off) = (square.sqrt(), ulp(x * x) + ulp(square));
@@ -49,7 +50,8 @@ fn log_of_sum(x: f64, c: f64, value: f64) -> f64 {
 }
 
 impl Bounded {
-    /// Where f32 may overflow, or the value is not a number, any result is allowed.
+    /// Where f32 may overflow, or the value is NaN, any result is allowed, so the error is
+    /// infinite.
     fn new(value: f64, error: f64) -> Self {
         let held = value.abs() + error <= f64::from(f32::MAX);
         Self { value, error: if held { error } else { f64::INFINITY } }
@@ -80,7 +82,8 @@ impl Bounded {
         Self::new(value, inherited + rounding(value, inherited))
     }
 
-    /// A step function. It is constant where the argument's error does not reach a jump.
+    /// A piecewise constant function, such as `floor`. Its error is 0 where the argument's error
+    /// does not reach a jump.
     fn stepped(op: Unary, x: Self, doubt: &mut bool) -> Self {
         let mut unused = false;
         let [low, value, high] =
@@ -179,7 +182,7 @@ impl Bounded {
     }
 
     /// As `exp2(y * log2(x))`, with the relative error `ln2 (2^-21 |y| + ...) + (3 + 2|t|) u` where
-    /// `t = y log2 x`.
+    /// `t = y log2 x`, and `u` is the machine epsilon of f32.
     fn raised(x: Self, y: Self, doubt: &mut bool) -> Self {
         let value = f64::binary(Binary::Pow, x.value, y.value, doubt);
         if x.value <= 0.0 {
@@ -199,17 +202,18 @@ impl Bounded {
             + (3.0 + 2.0 * exponent.abs()) * unit;
         let error =
             times(value, relative) + if value < f64::from(f32::MIN_POSITIVE) { value } else { 0.0 };
-        // Where the base is almost exact, the slope says enough: its change is below the rounding.
+        // Where the base is almost exact, the first-order bound is enough: the terms of higher
+        // order are below the rounding.
         let is_coarse = x.error > x.value / 4096.0 && y.value > y.error;
         Self::new(value, if is_coarse { Self::raised_range(x, y, value) } else { error })
     }
 
-    /// The error of a power with a positive exponent, by its monotony: it is between the powers of
-    /// the least and the largest base.
+    /// The error of a power with a positive exponent. The power grows with the base, so it is
+    /// between the powers of the least and the largest base.
     ///
-    /// With `t` for `y log2 x`, the rounding of a smaller power is at most that of the largest: its
-    /// parts grow as `2^t` and `|t| 2^t` do, and of the second the maximum below 0 is at
-    /// `t = -1/ln2`, so that `span` stands for `|t|`.
+    /// The rounding error of the largest power also bounds that of the smaller ones. With `t` for
+    /// `y log2 x`, its parts are proportional to `2^t` and to `|t| 2^t`. For negative `t`, the
+    /// second is largest at `t = -1/ln2`. So `span`, which stands for `|t|`, is at least `1/ln2`.
     fn raised_range(x: Self, y: Self, value: f64) -> f64 {
         let unit = f64::from(f32::EPSILON);
         let least = (x.value - x.error).max(0.0).powf(y.value);
@@ -342,8 +346,8 @@ impl Number for Bounded {
         f64::compare(op, a.value, b.value, doubt)
     }
 
-    /// For any order of summing, fused or not: each of the n roundings is bounded by the sum of the
-    /// absolute products.
+    /// For any order of summing, fused or not: each of the n roundings is at most one ULP of the
+    /// sum of the absolute products.
     fn dot(a: &[Self], b: &[Self]) -> Self {
         let mut sum = (0.0, 0.0, 0.0);
         for (a, b) in a.iter().zip(b) {

@@ -9,11 +9,11 @@ pub use half::{half_from, half_to};
 
 use super::code::{Binary, Compare, Ternary, Unary};
 
-/// A number of the shader's type `f32`, and the slot that holds it. A slot also holds the words
-/// of integers and booleans; instructions know which.
+/// A slot of the memory. It holds a number of the shader's type `f32`, or the 32-bit word of an
+/// integer or a boolean; the instructions know which.
 ///
 /// `doubt` is set where the arguments of a discontinuous function are closer to a jump than their
-/// errors, so that the results on both sides are right.
+/// errors, so that the results on both sides of the jump are allowed.
 pub trait Number: Copy + Default + Send + Sync + std::fmt::Debug + 'static {
     /// Whether numbers of this kind have errors.
     const BOUNDED: bool;
@@ -35,23 +35,23 @@ pub trait Number: Copy + Default + Send + Sync + std::fmt::Debug + 'static {
     fn binary(op: Binary, a: Self, b: Self, doubt: &mut bool) -> Self;
     /// Applies a function of three arguments.
     fn ternary(op: Ternary, a: Self, b: Self, c: Self, doubt: &mut bool) -> Self;
-    /// Compares; false where a side is not a number, except for `!=`.
+    /// Compares; false where a side is NaN, except for `!=`.
     fn compare(op: Compare, a: Self, b: Self, doubt: &mut bool) -> bool;
     /// The sum of products of two slices of the same length.
     fn dot(a: &[Self], b: &[Self]) -> Self;
 
-    /// The bits as `f32`. Everything that is not a number has one pattern.
+    /// The bits as `f32`. All NaNs have the same bits.
     fn bits(self) -> u32 {
         let value = self.value() as f32;
         if value.is_nan() { f32::NAN.to_bits() } else { value.to_bits() }
     }
 
-    /// Truncated towards zero and clamped to the range of `i32`; 0 for what is not a number.
+    /// Truncated towards zero and clamped to the range of `i32`; 0 for NaN.
     fn to_i32(self, doubt: &mut bool) -> i32 {
         Self::unary(Unary::Trunc, self, doubt).value() as i32
     }
 
-    /// Truncated towards zero and clamped to the range of `u32`; 0 for what is not a number.
+    /// Truncated towards zero and clamped to the range of `u32`; 0 for NaN.
     fn to_u32(self, doubt: &mut bool) -> u32 {
         Self::unary(Unary::Trunc, self, doubt).value() as u32
     }

@@ -1,4 +1,4 @@
-//! Builds one program from many texts: compiles units of several texts on all cores, and links
+//! Builds one program from many MSL texts: compiles units of several texts on all cores, and links
 //! them.
 
 use std::fmt::Write as _;
@@ -47,7 +47,7 @@ pub fn build_program(texts: &[&str]) -> Result<Built, Missing> {
     let clang = Clang::open()?;
     let mut entries: Vec<_> = texts.iter().map(|text| Interface::read(text)).collect();
     let units = text_units(texts, &entries);
-    // The first job is the program around the units.
+    // The first job is the runtime.
     let jobs: Vec<Option<&Vec<Text<'_>>>> =
         [None].into_iter().chain(units.iter().map(Some)).collect();
     let compiled = jobs.par_iter().map(|job| match job {
@@ -67,7 +67,7 @@ pub fn build_program(texts: &[&str]) -> Result<Built, Missing> {
     Ok(Built { clang, entries })
 }
 
-/// The result for a unit, or for a text of it.
+/// The result of compiling a unit: its object file, or the errors of one of its texts.
 enum Object {
     /// The file's name.
     Compiled(String),
@@ -117,7 +117,7 @@ fn output_text(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).trim().to_owned()
 }
 
-/// The program around the shaders.
+/// Compiles the runtime, which reads requests and calls the shaders.
 fn compile_runtime(clang: &Clang) -> Objects {
     let name = "runtime.o";
     check_output(clang.call(&["-std=c++17", "-O1", "-c", "runtime.cpp", "-o", name])?)?;
@@ -168,7 +168,8 @@ fn unit_source(texts: &[&str], unit: &[Text<'_>]) -> String {
     source
 }
 
-/// The function that fills parameters and takes results, according to their attributes.
+/// Writes the C++ function that calls an entry point: it passes the arguments and stores the
+/// results, according to their attributes.
 fn write_glue(to: &mut String, index: usize, interface: &Interface) {
     let _ = writeln!(
         to,

@@ -7,7 +7,7 @@ use crate::metal::token::{Token, msl_tokens};
 /// What a parameter or a member stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
-    /// The struct of locations.
+    /// The struct of the stage's inputs: `[[stage_in]]`.
     StageIn,
     Buffer(u32),
     Texture(u32),
@@ -26,7 +26,7 @@ pub enum Role {
 pub struct Part {
     pub name: String,
     pub role: Role,
-    /// Whether it is the same for a whole triangle.
+    /// Whether it is not interpolated (`[[flat]]`).
     pub is_flat: bool,
 }
 
@@ -36,7 +36,7 @@ pub struct Interface {
     pub stage: Stage,
     pub name: String,
     pub parameters: Vec<Part>,
-    /// The struct of locations that it takes: its name and members.
+    /// The struct of its `[[stage_in]]` parameter: name and members.
     pub input: Option<(String, Vec<Part>)>,
     /// The members of its result.
     pub output: Vec<Part>,
@@ -70,7 +70,7 @@ impl Interface {
         Ok(Self { stage, name: name.to_owned(), parameters, input, output })
     }
 
-    /// How many locations it takes, and gives.
+    /// How many locations its inputs have, and its outputs.
     pub fn locations(&self) -> (u32, u32) {
         let count = |parts: &[Part]| {
             let locations = parts.iter().filter_map(|part| match part.role {

@@ -128,7 +128,8 @@ impl Program {
         Ok(answer.as_chunks::<4>().0.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect())
     }
 
-    /// How the process ended. The next request starts another one.
+    /// Ends the process; returns a message with its status and what it wrote to stderr. The next
+    /// request starts another process.
     fn ended(&mut self, error: &str) -> String {
         let Some(mut child) = self.child.take() else { return error.to_owned() };
         drop(child.stdin.take());

@@ -1,4 +1,4 @@
-//! Writes requests to the program around the shaders, as words. `shim/runtime.cpp` reads them.
+//! Writes requests to the runtime of compiled shaders, as words. `shim/runtime.cpp` reads them.
 
 use std::collections::BTreeMap;
 
@@ -76,7 +76,7 @@ pub struct Shaded {
 }
 
 impl Bound {
-    /// Places resources in the slots that the output's own tables give.
+    /// Assigns the resources to Metal's slots, by the table of slots in `native`.
     pub fn new(resources: &Resources, native: &Native, reflection: &Reflection) -> Self {
         let mut bound = Self::default();
         for slot in &native.slots {

@@ -1,4 +1,5 @@
-//! Runs the emitted SPIR-V unchanged, on the driver of `vulkan`.
+//! Runs the emitted SPIR-V unchanged, on the driver of `vulkan`. Files of bundles are drawn on
+//! SwiftShader.
 //!
 //! Runs on: every system but WebAssembly
 

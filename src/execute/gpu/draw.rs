@@ -85,7 +85,7 @@ impl Gpu {
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source })
     }
 
-    /// Makes the pipeline. Without a layout, that is derived from what the stages use.
+    /// Makes the pipeline. Without `layout`, wgpu derives the layout from what the stages use.
     fn mesh_pipeline(
         &self,
         drawing: &Drawing<'_>,
@@ -178,7 +178,8 @@ impl Meshes {
         Self(drawing.items.iter().map(|item| Uploaded::new(gpu, item.mesh)).collect())
     }
 
-    /// Draws one frame, each item with its bind groups, and copies it to where it can be read.
+    /// Draws one frame, each item with its bind groups, and copies it into buffers that can be
+    /// mapped.
     fn pass(
         &self,
         gpu: &Gpu,

@@ -69,7 +69,7 @@ pub fn create_sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler 
         address_mode_w: address,
         mag_filter: filter,
         min_filter: filter,
-        // Filters between levels too, where a texture has them.
+        // For textures with several levels, which are filtered linearly between these too.
         mipmap_filter: if sampler.linear && compare.is_none() {
             wgpu::MipmapFilterMode::Linear
         } else {

@@ -12,7 +12,7 @@ use crate::emit::spirv::{self, HEADER_WORDS, Instruction, instructions, op, stri
 use crate::parse::words::words;
 use crate::tools::{GLSLANG, SPIRV_OPT};
 
-/// Of the extension by which glslangValidator keeps semantics.
+/// Opcodes of the extension in which glslangValidator keeps the semantics of HLSL.
 const OP_DECORATE_STRING: u16 = 5632;
 const OP_MEMBER_DECORATE_STRING: u16 = 5633;
 const LOCATION: u32 = 30;
@@ -84,7 +84,7 @@ pub fn compile_hlsl(
     bind_words(&spirv::words(&legal), native, group)
 }
 
-/// Writes locations after semantics, and bindings for heaps.
+/// Takes the locations from the semantics, sets the bindings of heaps, and removes the semantics.
 fn bind_words(words: &[u32], native: &Native, group: u32) -> Result<Vec<u32>, String> {
     let places = heap_places(words, native);
     let locations = semantic_locations(words)?;

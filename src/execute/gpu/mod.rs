@@ -84,7 +84,8 @@ pub fn run_batches(
     inputs: &[u32],
     mut draw: impl FnMut(&[u32], u32) -> Result<Vec<u32>, Diagnostic>,
 ) -> Result<Vec<u32>, Diagnostic> {
-    // The number of the draw. A target that still holds the results of another draw shows it.
+    // The number of the draw, which the target echoes. So the results of another draw are
+    // recognised.
     static RUN: AtomicU32 = AtomicU32::new(1);
     let mut run = |batch: &[u32], count: u32| {
         let (rows, header) = kernel.draw_header(count, RUN.fetch_add(1, Ordering::Relaxed));
@@ -172,7 +173,7 @@ impl Gpu {
         self.mapped(buffer, |bytes| bytes.as_chunks::<4>().0.iter().map(word).collect())
     }
 
-    /// Runs something on the bytes of a buffer, once the device has written them.
+    /// Waits until the device has written a buffer, and calls a function with its bytes.
     fn mapped<T>(
         &self,
         buffer: &wgpu::Buffer,

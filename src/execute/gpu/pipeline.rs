@@ -161,8 +161,8 @@ pub fn draw_pipeline(
     })
 }
 
-/// The layout of the kernel's bindings. Samplers have a binding in any case, since wgpu numbers
-/// bindings without gaps and an emitted shader has the author's numbers.
+/// The layout of the kernel's bindings. It also has the samplers that the shader does not use: wgpu
+/// numbers bindings without gaps, but an emitted shader keeps its own numbers.
 fn bind_layout(device: &wgpu::Device, kernel: &Kernel) -> wgpu::BindGroupLayout {
     let inputs = texture_type(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
     // Not every device can filter f32 textures, so filtering is asked for only where a kernel

@@ -6,7 +6,7 @@ use crate::execute::shipped::Format;
 /// Bytes of a texel of a target.
 pub const TEXEL: u32 = 16;
 
-/// A texture of width, height and layers, without anything in it.
+/// A new texture of this width, height and number of layers, without content.
 pub fn create_texture(
     device: &wgpu::Device,
     [width, height, layers]: [u32; 3],
@@ -26,7 +26,8 @@ pub fn create_texture(
     })
 }
 
-/// Copies bytes into one level of a texture, of which width, height and layers are given.
+/// Copies bytes into one level of a texture. The size is that of the level: width, height and
+/// layers.
 pub fn write_level(
     queue: &wgpu::Queue,
     target: &wgpu::Texture,

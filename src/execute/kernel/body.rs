@@ -15,7 +15,7 @@ pub struct Body<'a> {
 }
 
 impl Body<'_> {
-    /// Adds an expression, which is evaluated here if it needs to be.
+    /// Adds an expression, and the statement that evaluates it if it needs one.
     pub fn add(&mut self, expression: Expression) -> Value {
         let emitted = !expression.needs_pre_emit();
         let value = self.function.expressions.append(expression, Span::UNDEFINED);

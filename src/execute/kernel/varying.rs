@@ -1,5 +1,5 @@
-//! Wraps a function into a fragment stage whose inputs vary and whose result is used. The costs on
-//! real GPUs are measured on this.
+//! Wraps a function into a fragment stage whose inputs are interpolated and whose result is used,
+//! so that a driver cannot remove the call. The cost on real GPUs is measured with this.
 
 use naga::{
     BinaryOperator as Op, Binding, Expression, FunctionArgument, FunctionResult, Interpolation,

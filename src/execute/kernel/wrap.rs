@@ -257,7 +257,7 @@ impl Body<'_> {
         pointer
     }
 
-    /// Writes the echo in the first and the last pixel, and the value in all others.
+    /// The echo in the first and the last pixel, and `value` in all others.
     fn echo(&mut self, place: &Place, value: Value) -> Value {
         let magic = self.literal(ECHO);
         let mark = self.binary(Op::ExclusiveOr, place.index, magic);

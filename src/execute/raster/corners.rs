@@ -12,7 +12,7 @@ pub struct Corner {
     pub slots: Vec<f32>,
 }
 
-/// Where a scalar that a stage takes comes from.
+/// What the binding of a stage's input or output says about one of its scalars.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Source {
     /// A component of what is at a location.

@@ -11,9 +11,9 @@ use crate::execute::frame::{Buffers, Drawing, EntryPoint, Mesh};
 use crate::execute::interpreter::eval_failed;
 use crate::execute::{executor_failed, module_info};
 
-/// How many fragments or vertices are worth a task of their own.
+/// The fewest fragments or vertices of a task.
 const CHUNK: usize = 256;
-/// Tasks for each thread. Some parts of a frame take longer than others.
+/// Tasks for each thread. They are several, since some parts of a frame take longer than others.
 const TASKS: usize = 8;
 
 /// The stages of a program, lowered.
@@ -53,7 +53,7 @@ impl Lowered {
         Ok(Self { program, function, signature })
     }
 
-    /// Lanes with resources.
+    /// A batch of lanes with these resources bound.
     fn batch(&self, resources: &Resources) -> Result<Batch<'_>, Diagnostic> {
         let mut machine = Machine::<f32>::new(&self.program).map_err(eval_failed)?;
         machine.bind(resources.clone()).map_err(eval_failed)?;
@@ -61,7 +61,7 @@ impl Lowered {
     }
 }
 
-/// How many of `count` things a task has, in whole quads.
+/// How many of `count` fragments or vertices a task has. They fill whole batches of lanes.
 fn task_size(count: usize) -> usize {
     let threads = rayon::current_num_threads().max(1);
     count.div_ceil(threads * TASKS).max(CHUNK).next_multiple_of(Batch::LANES)

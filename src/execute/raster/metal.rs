@@ -104,7 +104,7 @@ struct Pair<'c> {
     compiled: &'c Compiled,
     vertex: Stage,
     fragment: Option<Stage>,
-    /// How many targets hold what fragments were given, if that is asked for.
+    /// How many targets the drawing itself has, if further targets hold what fragments were given.
     watched: Option<usize>,
 }
 

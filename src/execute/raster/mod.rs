@@ -4,7 +4,8 @@
 //!
 //! The stages run on our own evaluator ([`evaluated`]) or as compiled MSL ([`metal`]). The fragment
 //! stage runs only for visible fragments, in quads of 2 x 2 in lock-step, with hidden fragments as
-//! helpers. So programs that discard fragments or write depth are not supported.
+//! helper invocations. So programs that discard fragments or write depth are drawn wrongly: what is
+//! behind a discarded fragment is missing, and the written depth is ignored.
 
 mod corners;
 mod evaluated;
@@ -29,14 +30,13 @@ pub trait Shading {
     /// Runs the vertex stage for every vertex of a mesh.
     fn corners(&self, mesh: &Mesh, resources: Resources) -> Result<Vec<Corner>, Diagnostic>;
 
-    /// What each scalar of a vertex is, and whether it is flat: the same for a whole triangle.
+    /// What each scalar in [`Corner::slots`] is, and whether it is flat: not interpolated.
     fn given(&self) -> Vec<(Source, bool)>;
 
     /// What each scalar is that the fragment stage takes; `None` if there is no fragment stage.
     fn taken(&self) -> Option<Vec<Source>>;
 
-    /// Runs the fragment stage. The first resources are buffers, the second ones textures and
-    /// samplers.
+    /// Runs the fragment stage. `textures` has the textures and the samplers.
     fn shade(
         &self,
         buffers: Buffers,
@@ -48,7 +48,7 @@ pub trait Shading {
 /// Four fragments of a triangle.
 pub struct Quad {
     pub pixels: [(u32, u32); 4],
-    /// Which of them show the triangle. The others are helpers.
+    /// Which of them show the triangle. The others are helper invocations.
     pub covered: [bool; 4],
     /// The scalars that the stage takes.
     pub arguments: [Vec<f32>; 4],

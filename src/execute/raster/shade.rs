@@ -40,8 +40,9 @@ pub fn shade_frame(
 /// The source of a scalar of the fragment stage.
 #[derive(Debug, Clone, Copy)]
 enum Wire {
-    /// A slot of the vertices, interpolated in perspective. A flat one is that of the first vertex.
+    /// A slot of the vertices, interpolated with correct perspective.
     Smooth(usize),
+    /// A slot of the first vertex.
     Flat(usize),
     Position(usize),
     Front,
@@ -69,7 +70,7 @@ struct Screen<'a> {
     wiring: Vec<Wire>,
 }
 
-/// A quad that shows a triangle.
+/// A quad in which at least one pixel shows the triangle.
 struct Place<'a> {
     triangle: &'a Triangle,
     pixels: [(u32, u32); 4],
@@ -77,7 +78,8 @@ struct Place<'a> {
 }
 
 impl<'a> Screen<'a> {
-    /// The quads that show each item; each triangle in a quad is a quad of its own.
+    /// The quads of each item. Four pixels that show several triangles are one quad for each of
+    /// these.
     fn places(&self, items: usize) -> Vec<Vec<Place<'a>>> {
         let mut places: Vec<Vec<Place<'a>>> = Vec::new();
         places.resize_with(items, Vec::new);

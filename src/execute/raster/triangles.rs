@@ -36,7 +36,8 @@ pub struct Seen {
 /// Stands for no triangle.
 pub const NONE: u32 = u32::MAX;
 
-/// How many steps a pixel has to which positions are rounded, as in hardware.
+/// The number of subpixels along a side of a pixel. Vertex positions are rounded to subpixels, as
+/// in hardware.
 const SUBPIXELS: f64 = 256.0;
 
 /// Adds the triangles of a mesh. Clipping adds vertices.
@@ -62,7 +63,8 @@ pub fn assemble_triangles(
     }
 }
 
-/// The part of a triangle between the near and the far plane, as vertices in order.
+/// The part of a triangle that is between the near and the far plane and has a positive w, as the
+/// vertices of a polygon in order.
 fn clip_triangle(three: &[u32; 3], corners: &mut Vec<Corner>) -> Vec<u32> {
     // Distances to the planes, negative outside.
     const PLANES: [fn(&[f64; 4]) -> f64; 3] =
@@ -143,21 +145,22 @@ fn place_fan(
     Some(Triangle { item, corners, first, front, points, area: area.abs() })
 }
 
-/// Twice the area of a triangle, positive where the place is to the right of the way from a to b, y
-/// down.
+/// Twice the signed area of the triangle of a, b and the point (x, y). It is positive if the point
+/// is to the right of the line from a to b, with y down.
 fn edge_area(a: Point, b: Point, x: f64, y: f64) -> f64 {
     (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)
 }
 
 impl Triangle {
-    /// The barycentric coordinates of a point on the frame, without perspective; they add up to 1.
+    /// The barycentric coordinates of a point on the frame, linear in screen space.
     fn shares(&self, x: f64, y: f64) -> [f64; 3] {
         let [a, b, c] = self.points;
         [edge_area(b, c, x, y), edge_area(c, a, x, y), edge_area(a, b, x, y)]
             .map(|share| share / self.area)
     }
 
-    /// The barycentric coordinates of a point in perspective, the depth there, and 1/w.
+    /// The barycentric coordinates of a point with perspective correction, the depth there, and
+    /// 1/w.
     pub fn at(&self, x: f64, y: f64) -> ([f64; 3], f64, f64) {
         let shares = self.shares(x, y);
         let weighted: [f64; 3] =
@@ -167,7 +170,8 @@ impl Triangle {
         (weighted.map(|weight| weight / inverse_w), depth, inverse_w)
     }
 
-    /// Whether a point on an edge belongs to the triangle: only if it is a top or a left edge.
+    /// Whether the triangle covers a point. A point on an edge is covered only if that is a top or
+    /// a left edge.
     fn covers(&self, x: f64, y: f64) -> bool {
         let [a, b, c] = self.points;
         [(b, c), (c, a), (a, b)].into_iter().all(|(from, to)| {

@@ -1,4 +1,4 @@
-//! Writes kernels, textures and samplers in the form that the scripts take.
+//! Writes kernels, textures and samplers as the JSON that the scripts take.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
@@ -72,7 +72,7 @@ pub fn unit_json(combined: &Combined) -> Value {
     })
 }
 
-/// Whether textures are filtered. Not every device can filter f32 textures.
+/// Whether a sampler filters colour textures. Not every device can filter f32 textures.
 pub fn are_filtered<'a>(mut fixtures: impl Iterator<Item = &'a Fixture>) -> bool {
     fixtures.any(|one| matches!(one, Fixture::Sampler(one) if one.linear && one.compare.is_none()))
 }

@@ -77,14 +77,14 @@ fn stage_json(shipped: &Shipped) -> Value {
     json!({ "code": shipped.text(), "entry": shipped.native.entry_name })
 }
 
-/// All bindings that one of the stages reads.
+/// The bindings of both stages.
 fn read_places(pair: Pair<'_>) -> BTreeSet<Place> {
     let stages = [pair.vertex, pair.fragment].into_iter();
     let bindings = stages.flat_map(|stage| &stage.reflection.bindings);
     bindings.map(|binding| (binding.group, binding.binding)).collect()
 }
 
-/// The layout of each group, in order.
+/// The layout of each bind group, by the group's index.
 fn layout_json(
     drawing: &Drawing<'_>,
     places: &BTreeSet<Place>,

@@ -79,7 +79,7 @@ pub struct Web {
 #[derive(Default)]
 struct State {
     page: Option<Page>,
-    /// The kernels that the page has, or why it has not.
+    /// The kernels that the page has compiled, or why it could not.
     kept: HashMap<u64, Result<(), Diagnostic>>,
 }
 
@@ -167,8 +167,7 @@ impl Web {
         Err(failure)
     }
 
-    /// Does something, and does it once more if the page is lost: another page may have caused
-    /// that.
+    /// Runs a job, and runs it once more if the page is lost: another page may have caused that.
     fn twice<T>(
         &self,
         mut job: impl FnMut(&Self, &mut State) -> Result<T, Failure>,

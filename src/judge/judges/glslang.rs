@@ -81,7 +81,7 @@ fn plan_compiled<'w>(
     Ok(works)
 }
 
-/// Judges texts as the files they are.
+/// Judges texts in one run, or one by one if the run fails.
 fn judge_together(arguments: &[&str], outputs: &[&Output]) -> Found {
     if run_glslang(arguments, outputs.iter().map(|output| &*output.file))?.status.success() {
         return Ok(Vec::new());
@@ -126,7 +126,8 @@ fn judge_later_version(
     Ok(refusals)
 }
 
-/// Reads texts by the rules of Vulkan. Linking always fails, and that is ignored.
+/// Parses texts in one run, which also tries to link them. Linking always fails, and that is
+/// ignored.
 fn judge_parse(arguments: &[&str], outputs: &[&Output]) -> Found {
     let said = run_glslang(arguments, outputs.iter().map(|output| &*output.file))?;
     let of_a_text = |line: &str| line.starts_with("ERROR: ") && !line.contains(" Linking ");

@@ -28,8 +28,8 @@ pub fn required_extensions(needs: &BTreeSet<u32>) -> BTreeSet<&'static str> {
     EXTENSIONS.iter().filter(|row| needs.contains(&row.0)).map(|row| row.1).collect()
 }
 
-/// Notes the capabilities that an instruction needs. Those that depend on another instruction are
-/// noted elsewhere.
+/// Adds the capabilities that an instruction needs to `needs`. `Module::require` adds those that
+/// depend on another instruction too.
 pub fn require_capabilities(inst: &Inst, needs: &mut BTreeSet<u32>) -> Result<(), String> {
     match inst.op {
         op::TYPE_INT if inst.word(2)? == 8 => needs.extend([39]), // Int8

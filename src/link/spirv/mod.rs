@@ -36,7 +36,7 @@ enum Ref {
     User(String),
 }
 
-/// Instructions whose ids are still open.
+/// Instructions whose ids are not yet assigned.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Text {
     words: Vec<u32>,
@@ -65,7 +65,8 @@ impl Text {
     }
 }
 
-/// A function. What it needs from outside is a reference: into the pool, or by name.
+/// A function or a declaration. What it needs from outside is a reference: into the pool, or by
+/// name.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Piece {
     /// The instruction `OpEntryPoint`; empty for all but entry points.

@@ -158,7 +158,7 @@ impl<'a> Module<'a> {
         if start.is_some() { Err("a function has no end".into()) } else { Ok(functions) }
     }
 
-    /// Notes the capabilities of an instruction.
+    /// Adds the capabilities that an instruction needs to `needs`.
     pub fn require(&self, inst: &Inst, needs: &mut BTreeSet<u32>) -> Result<(), String> {
         if inst.op == op::IMAGE_WRITE && self.lacks_format(inst.word(1)?) {
             needs.insert(STORAGE_IMAGE_WRITE_WITHOUT_FORMAT);

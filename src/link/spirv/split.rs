@@ -349,7 +349,7 @@ impl<'m, 'a> Splitter<'m, 'a> {
 }
 
 /// The content of a helper as words, after a word with which no declaration starts. `None` if it
-/// depends on its module.
+/// calls one of the author's functions.
 fn key_of_helper(piece: &Piece) -> Option<Vec<u32>> {
     let mut key = vec![u32::MAX];
     for text in [&piece.body, &piece.names, &piece.notes] {

@@ -1,4 +1,4 @@
-//! What may be written at a place of a GLSL file.
+//! Completion in a GLSL file.
 
 use std::collections::BTreeSet;
 
@@ -69,7 +69,7 @@ pub fn complete_at(server: &mut Server, parameters: &Value) -> Result<Value, Str
     Ok(complete_names(server, &asked, &text, word..byte))
 }
 
-/// Files whose paths go on from what is written.
+/// The files whose paths begin with what is written after `#include`.
 fn complete_paths(asked: &Asked, written: &str) -> Value {
     let Some(first) = written.chars().next().filter(|first| ['<', '"'].contains(first)) else {
         return json!([]);
@@ -174,7 +174,7 @@ fn includable_items(known: &[catalogue::Module], text: &str) -> Vec<(String, Val
     items.map(entry).collect()
 }
 
-/// Behind the last `#include`, or else behind `#version` and `#extension`.
+/// Where to add an `#include`: after the last of `#include`, `#version` and `#extension`.
 fn include_place(text: &str) -> usize {
     let (mut start, mut found) = (0, 0);
     for line in text.split_inclusive('\n') {

@@ -66,7 +66,7 @@ impl Asked {
         Some(json!({ "uri": uri, "range": range }))
     }
 
-    /// The library's item that a declaration is.
+    /// The description of a declaration that is an item of the library.
     fn library_item(&self, server: &mut Server, file: usize, name: &str) -> Option<String> {
         let path =
             self.names.graph.paths[file].strip_prefix("lamplight/")?.strip_suffix(".glsl")?;
@@ -185,8 +185,8 @@ pub fn document_symbols(server: &mut Server, parameters: &Value) -> Result<Value
     Ok(symbols.collect())
 }
 
-/// The protocol's number of what a declaration is: that of the same in WESL. Members are not
-/// listed.
+/// The protocol's `SymbolKind` of a declaration, as for the same kind of item in WESL. Members are
+/// not listed.
 fn symbol_kind(kind: Kind) -> u32 {
     navigate::symbol_kind(match kind {
         Kind::Function => ItemKind::Function,

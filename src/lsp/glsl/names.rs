@@ -1,4 +1,4 @@
-//! What stands at a place of a GLSL file.
+//! What an identifier in a GLSL file refers to.
 
 use std::ops::Range;
 
@@ -74,7 +74,7 @@ impl Names {
     pub fn token_at(&self, file: usize, byte: u32) -> Option<usize> {
         let tokens = &self.graph.modules.get(file)?.tokens;
         let after = tokens.partition_point(|token| token.start <= byte);
-        // Between two tokens, the name before counts if the other is none.
+        // On the border of two tokens, the one before counts if the one after is no identifier.
         let mut near = (after.saturating_sub(2)..after).rev();
         near.find(|at| tokens[*at].kind == TokenKind::Identifier && byte <= tokens[*at].end)
     }
@@ -85,8 +85,8 @@ impl Names {
         locals.filter(move |local| local.start <= byte && byte < local.end)
     }
 
-    /// Declarations of a name for all code: those of the file itself, or else of what it includes,
-    /// or else those of the library's name without its prefix.
+    /// Declarations of a name in global scope: those of the file itself, or else those of its
+    /// includes, or else those of the library's name without its prefix.
     fn global(&self, name: Symbol) -> Vec<(usize, &Declaration)> {
         let found = self.declared(name, |kind| kind != Kind::Member);
         if !found.is_empty() {

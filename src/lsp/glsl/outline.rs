@@ -18,7 +18,7 @@ pub enum Kind {
     Macro,
 }
 
-/// A name that a file declares for all code behind it, or a member of a struct or block.
+/// A name that a file declares in global scope, or a member of a struct or block.
 #[derive(Debug, Clone)]
 pub struct Declaration {
     pub kind: Kind,
@@ -38,9 +38,9 @@ pub struct Local {
     pub place: Range<u32>,
     /// From its type to its name.
     pub range: Range<u32>,
-    /// Behind its initial value, which does not know it yet.
+    /// Where its scope begins: after its initial value.
     pub start: u32,
-    /// The end of the block that it is known in.
+    /// The end of its scope.
     pub end: u32,
 }
 
@@ -58,7 +58,8 @@ pub struct Outline {
     pub locals: Vec<Local>,
 }
 
-/// Headers of one statement that are followed; one with more ends where its function does.
+/// The most headers (`for (...)`, `if (...)`) of one statement that are followed. A statement with
+/// more counts as ending where its function does.
 const HEADERS: usize = 64;
 
 /// Reads the tokens of a file.
@@ -134,7 +135,7 @@ impl Reader<'_> {
         if is_brace { next } else { next - 1 }
     }
 
-    /// Reads one declaration at the top level; returns the token behind it.
+    /// Reads one declaration at the top level; returns the token after it.
     fn read_declaration(&mut self, first: usize) -> usize {
         let mut at = first;
         let mut is_struct = false;
@@ -237,7 +238,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The names that a statement declares: one behind a type, and those behind its commas.
+    /// The names that a statement declares: the one after the type, and those after its commas.
     fn names_declared(&self, first: usize, end: usize) -> Vec<usize> {
         let mut found: Vec<usize> = Vec::new();
         let mut nested = 0_i32;
@@ -335,7 +336,7 @@ impl Reader<'_> {
     /// The last token of the statement whose header begins at a parenthesis.
     fn statement_of_header(&self, open: usize, last: usize) -> usize {
         let mut at = self.closes[open].map_or(last, |close| close + 1);
-        // Those that follow the header are part of its statement: `for (...) if (...) x; else y;`.
+        // Headers that follow this one are part of its statement: `for (...) if (...) x; else y;`.
         for _ in 0..HEADERS {
             let end = match self.symbol(at) {
                 Some(known::OPEN_BRACE) => self.close_of(at),

@@ -1,4 +1,4 @@
-//! Who names what in the GLSL files of a package: references, symbols, signatures.
+//! References, symbols and signatures in the GLSL files of a package.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -16,10 +16,10 @@ use crate::lsp::{Server, describe, told};
 use crate::project::LIBRARY;
 use crate::resolve::glsl;
 
-/// Endings of files that are read without being included.
+/// Extensions of the files that are read even if no file includes them.
 const EXTENSIONS: &[&str] = &["glsl", "vert", "frag", "comp"];
 
-/// Places that an answer has at most.
+/// The most places in an answer.
 pub const PLACES: usize = 10_000;
 
 /// A package with all of its GLSL files.
@@ -35,7 +35,7 @@ pub fn read_whole(mut opened: Opened) -> Option<Whole> {
     Some(Whole { opened, units: Units::new(graph) })
 }
 
-/// What someone asks about, in its file.
+/// The symbol that a request is about, in its file.
 pub struct Asked {
     pub whole: Arc<Whole>,
     pub file: usize,
@@ -44,7 +44,7 @@ pub struct Asked {
     pub range: Range<u32>,
 }
 
-/// What stands at the position that parameters name.
+/// The symbol at the position that the parameters name.
 pub fn asked_at(server: &mut Server, parameters: &Value) -> Result<Option<Asked>, String> {
     let (document, byte) = server.asked(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
@@ -88,7 +88,7 @@ pub fn references_at(server: &mut Server, parameters: &Value) -> Result<Value, S
     Ok(places.take(PLACES).filter_map(|place| asked.whole.location(server, place)).collect())
 }
 
-/// Where the file is included whose `#include` stands at the position.
+/// If an `#include` is at the position, all places that include the same file.
 fn including_places(server: &mut Server, parameters: &Value) -> Result<Option<Value>, String> {
     let (document, byte) = server.asked(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
@@ -99,7 +99,7 @@ fn including_places(server: &mut Server, parameters: &Value) -> Result<Option<Va
     Ok(Some(places.iter().filter_map(|place| whole.location(server, place)).collect()))
 }
 
-/// Names of all files that contain some letters, for `workspace/symbol`; at most some of them.
+/// At most `most` names of all files that contain the query, for `workspace/symbol`.
 pub fn workspace_symbols(server: &Server, whole: &Whole, query: &str, most: usize) -> Vec<Value> {
     let mut found = Vec::new();
     let units = &whole.units;
@@ -132,7 +132,7 @@ pub fn workspace_symbols(server: &Server, whole: &Whole, query: &str, most: usiz
     found
 }
 
-/// Whether a macro stands for nothing: it keeps a file from being included twice.
+/// Whether a macro has an empty body: it is an include guard.
 fn is_guard(units: &Units, file: usize, declaration: &Declaration) -> bool {
     let behind = declaration.place.end..declaration.range.end;
     declaration.kind == Kind::Macro && text_of(units.module(file), &behind).trim().is_empty()

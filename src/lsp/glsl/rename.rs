@@ -1,4 +1,4 @@
-//! Gives names of GLSL others, where no condition and no macro can make that wrong.
+//! Renames symbols of GLSL, where no condition and no macro can make that wrong.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ use crate::parse::glsl::{Directive, Part, Symbol};
 use crate::parse::words::has_word;
 use crate::resolve::glsl::Target;
 
-/// Letters that choose parts of a vector.
+/// The letters of swizzles.
 const SWIZZLES: [&str; 3] = ["xyzw", "rgba", "stpq"];
 
 /// `textDocument/prepareRename`.
@@ -42,7 +42,7 @@ pub fn rename_symbol(server: &mut Server, parameters: &Value) -> Result<Value, S
 /// Every place that writes the name.
 ///
 /// # Errors
-/// Why it keeps its name.
+/// Why the symbol cannot be renamed.
 fn renamed_places(asked: &Asked) -> Result<Vec<Place>, String> {
     let units = &asked.whole.units;
     let (all, declared) = units.places(&asked.meant, asked.file);
@@ -81,7 +81,8 @@ fn shown_place(units: &Units, file: usize, byte: u32) -> String {
     format!("`{name}:{}`", units.module(file).line(byte))
 }
 
-/// Every file that may name the symbol is read in full.
+/// Fails if a file of the package that may name the symbol has syntax errors, or includes a file
+/// that cannot be read: uses of the name could be missed.
 fn check_readable(units: &Units, files: &BTreeSet<usize>) -> Result<(), String> {
     for file in units.seen_files(files).into_iter().filter(|file| units.is_own(*file)) {
         let module = units.module(file);
@@ -103,7 +104,7 @@ fn check_readable(units: &Units, files: &BTreeSet<usize>) -> Result<(), String> 
     Ok(())
 }
 
-/// Why what is meant keeps its name, if it does.
+/// Why the symbol cannot be renamed; `None` if it can.
 fn why_fixed(asked: &Asked, name: &str, all: &[Place], declared: &[Place]) -> Option<String> {
     let units = &asked.whole.units;
     let symbol = units.names.graph.symbols.find(name)?;
@@ -130,7 +131,7 @@ fn why_fixed(asked: &Asked, name: &str, all: &[Place], declared: &[Place]) -> Op
     }
 }
 
-/// The directive that names the symbol, or may put it together.
+/// Why a directive prevents renaming: it names the symbol, or may build the name from parts.
 fn named_by_macro(units: &Units, files: &BTreeSet<usize>, symbol: Symbol) -> Option<String> {
     for file in files {
         let own = units.is_own(*file);
@@ -155,8 +156,8 @@ fn named_by_macro(units: &Units, files: &BTreeSet<usize>, symbol: Symbol) -> Opt
     None
 }
 
-/// Members of one name are not told from one another, since the type of what is before the point is
-/// not known.
+/// Why a member cannot be renamed. Members of one name cannot be told apart, since the type of the
+/// expression before the dot is not known.
 fn why_member_fixed(units: &Units, name: &str, declared: &[Place]) -> Option<String> {
     let is_swizzle = |letters: &&str| name.chars().all(|letter| letters.contains(letter));
     if name.len() <= 4 && SWIZZLES.iter().any(is_swizzle) {
@@ -173,7 +174,7 @@ fn why_member_fixed(units: &Units, name: &str, declared: &[Place]) -> Option<Str
     ))
 }
 
-/// What others find by its name: another stage, or the program that sets it.
+/// Why a variable cannot be renamed that others find by its name: another stage, or the host.
 fn why_interface_fixed(text: &str) -> Option<String> {
     let head = text.split(['=', '{']).next().unwrap_or_default();
     let is_called = text.contains('(') && !text.contains("layout");
@@ -194,7 +195,8 @@ fn why_interface_fixed(text: &str) -> Option<String> {
     None
 }
 
-/// No condition makes a use of a local one of something else.
+/// Fails if conditions of the preprocessor decide whether a use refers to a local or to something
+/// else.
 fn check_locals(asked: &Asked, files: &BTreeSet<usize>) -> Result<(), String> {
     let units = &asked.whole.units;
     let told = |file: usize, byte: u32| {
@@ -236,7 +238,7 @@ fn check_locals(asked: &Asked, files: &BTreeSet<usize>) -> Result<(), String> {
     }
 }
 
-/// Fails unless the new name is one, and means nothing yet where the old one stands.
+/// Fails unless the new name is a valid name that means nothing yet where the old one is used.
 fn check_new(asked: &Asked, places: &[Place], new: &str) -> Result<(), String> {
     let units = &asked.whole.units;
     let is_name = new.starts_with(|letter: char| letter.is_ascii_alphabetic() || letter == '_')

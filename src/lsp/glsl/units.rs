@@ -1,4 +1,5 @@
-//! All GLSL files of a package, which of them are compiled together, and who names what.
+//! All GLSL files of a package, which of them are compiled together, and what each identifier in
+//! them refers to.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -9,7 +10,7 @@ use crate::catalogue::prefix;
 use crate::parse::glsl::{Directive, Module, Part, Symbol, TokenKind, known};
 use crate::resolve::glsl::{Graph, Target};
 
-/// Tokens of a `layout` that are looked at.
+/// The most tokens of a `layout` that are searched.
 const LAYOUT: usize = 256;
 
 /// Every GLSL file of a package, and those of others that they include.
@@ -20,26 +21,26 @@ pub struct Units {
     units: Vec<BTreeSet<usize>>,
 }
 
-/// What an identifier is where it stands.
+/// The role of an identifier at its position.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Use {
     /// A local or parameter, by the place of its declaration.
     Local(Range<u32>),
-    /// Behind a point, or declared in a struct or block.
+    /// After a dot, or declared in a struct or block.
     Member,
     /// A word of a `layout`, or a parameter of a macro.
     Bound,
     /// Within a directive, which the preprocessor reads.
     Directive,
-    /// Declared for all code.
+    /// In global scope.
     Global,
 }
 
-/// What someone asks about.
+/// The symbol that a request is about.
 #[derive(Debug, Clone)]
 pub enum Meant {
-    /// The locals of a name in a function that conditions choose from: the file, their places, and
-    /// the function's bytes.
+    /// The locals of one name in a function, of which conditions choose one: the file, their
+    /// places, and the range of the function.
     Local(usize, Vec<Range<u32>>, Range<u32>),
     Member(Symbol),
     Global(Symbol),
@@ -82,7 +83,7 @@ impl Units {
         self.names.graph.packages[file] == 0
     }
 
-    /// What a token of a file is.
+    /// The role of an identifier token of a file.
     pub fn use_of(&self, file: usize, token: usize) -> Use {
         let module = self.module(file);
         let found = module.tokens[token];
@@ -122,7 +123,7 @@ impl Units {
         !self.is_own(file) && self.names.graph.paths[file].ends_with(prefix::PATH)
     }
 
-    /// What the identifier at a byte of a file stands for.
+    /// The symbol at a byte of a file, with the range of its name there.
     pub fn meant(&self, file: usize, byte: u32) -> Option<(Meant, Range<u32>)> {
         let at = self.names.token_at(file, byte)?;
         let token = self.module(file).tokens[at];
@@ -163,7 +164,7 @@ impl Units {
         vec![place.clone()]
     }
 
-    /// Whether a use of the local is not under all of the conditions of its declaration.
+    /// Whether some use of the local is outside of the conditions that its declaration is under.
     pub fn is_conditional(&self, file: usize, place: &Range<u32>) -> bool {
         let own = branches_at(self.module(file), place.start);
         !own.is_empty()
@@ -184,8 +185,9 @@ impl Units {
         tokens.filter(move |at| self.use_of(file, *at) == Use::Local(place.clone()))
     }
 
-    /// The files that have a name in common: beginning with one file, those that are compiled
-    /// together with it and have the name too, as long as that leads to more.
+    /// The files that may share the symbol of a name: the file `from`, and repeatedly each file
+    /// that uses the name and is compiled together with one of them and with a declaration of the
+    /// name.
     pub fn sharing_files(&self, name: Symbol, wanted: &Use, from: usize) -> BTreeSet<usize> {
         let has = |file: &usize| {
             self.tokens_of(*file, name).any(|at| {
@@ -220,7 +222,7 @@ impl Units {
         self.declarations_in(file, name, wanted).next().is_some()
     }
 
-    /// Declarations of a name in a file: of members, or for all code.
+    /// Declarations of a name in a file: of members, or else in global scope.
     pub fn declarations_in(
         &self,
         file: usize,

@@ -1,6 +1,6 @@
-//! Words that GLSL gives a meaning or keeps for itself, of all versions.
+//! Words that any version of GLSL reserves or gives a meaning.
 
-/// Words of a declaration that are no types.
+/// Qualifiers: words of a declaration that are no types.
 pub const QUALIFIERS: &[&str] = &[
     "attribute",
     "buffer",
@@ -86,10 +86,10 @@ const WORDS: &str = "\
     unpackUnorm4x8 unsigned using usubBorrow usubpassInput usubpassInputMS varying void volatile \
     while writeonly";
 
-/// What images and samplers are of.
+/// The dimensions in the names of image and sampler types.
 const SHAPES: [&str; 6] = ["", "1D", "2D", "3D", "Cube", "Buffer"];
 
-/// How the names of their types end.
+/// How the names of image and sampler types end.
 const ENDINGS: [&str; 8] =
     ["", "Rect", "MS", "Array", "Shadow", "MSArray", "ArrayShadow", "RectShadow"];
 

@@ -276,7 +276,7 @@ impl Line<'_> {
         Ok(Macro { name, name_span, parameters: names.map(|names| names.len()), body })
     }
 
-    /// The names between the parentheses, and how many tokens they take.
+    /// The names between the parentheses, and the number of tokens, parentheses included.
     fn parameters(&self) -> Result<(Vec<Symbol>, usize), Diagnostic> {
         let mut names = Vec::new();
         let mut index = 2;

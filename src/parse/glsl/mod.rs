@@ -42,7 +42,7 @@ pub struct Module {
     pub text: Arc<str>,
     /// All tokens, those of directives too.
     pub tokens: Vec<Token>,
-    /// The file in order.
+    /// The runs of text and the directives of the file, in order.
     pub parts: Vec<Part>,
     /// Every `#include`, active or not.
     pub includes: Vec<Include>,
@@ -67,8 +67,8 @@ pub struct Text {
     pub bytes: Range<u32>,
 }
 
-/// A line that begins with `#`. `next` and `end` are indices of parts: of the branch that follows,
-/// and of the `#endif`.
+/// A line that begins with `#`. `next` and `end` are indices of [`Module::parts`]: `next` of the
+/// branch or `#endif` that follows, `end` of the `#endif`.
 #[derive(Debug)]
 pub enum Directive {
     /// Index into [`Module::includes`].
@@ -153,7 +153,7 @@ impl Module {
         self.line_starts.partition_point(|start| *start <= byte)
     }
 
-    /// The part of the file, of text, that has a token.
+    /// The run of text that has the token; `None` for a token of a directive.
     pub fn text_part(&self, token: u32) -> Option<&Text> {
         let after = self.parts.partition_point(|part| match part {
             Part::Text(text) => text.bytes.start <= self.tokens[token as usize].start,

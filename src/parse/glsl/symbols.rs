@@ -43,7 +43,7 @@ known! {
     IN "in" OUT "out" UNIFORM "uniform" BUFFER "buffer" CONST "const"
 }
 
-/// The number of one of the spellings in `KNOWN`; an error of the compiler if it is not there.
+/// The number of one of the spellings in `KNOWN`. Any other text is an error at compile time.
 const fn known_position(text: &str) -> Symbol {
     let mut index = 0;
     while !same_bytes(KNOWN[index].as_bytes(), text.as_bytes()) {

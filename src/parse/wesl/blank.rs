@@ -1,19 +1,19 @@
 //! What stands between the tokens of WGSL: blanks and comments. WGSL has no strings, so `//` and
 //! `/*` always begin a comment.
 
-/// Each of WGSL's line breaks ends a line comment.
+/// Whether the character is one of WGSL's line breaks. Each of them ends a line comment.
 pub fn is_line_break(letter: char) -> bool {
     matches!(letter, '\n'..='\r' | '\u{85}' | '\u{2028}' | '\u{2029}')
 }
 
-/// What WGSL calls blank: line breaks and marks of direction are among it.
+/// Whether the character is blankspace in WGSL: spaces, tabs, line breaks and marks of direction.
 pub fn is_blank(letter: char) -> bool {
     matches!(letter, ' ' | '\t' | '\u{200e}' | '\u{200f}') || is_line_break(letter)
 }
 
 /// Bytes of the line comment that the text begins with, without its line break.
 pub fn line_comment(text: &str) -> usize {
-    // Looked for byte by byte as long as these are characters.
+    // The ASCII text at the start is searched byte by byte, which is faster.
     let first = text
         .bytes()
         .position(|byte| matches!(byte, b'\n'..=b'\r') || !byte.is_ascii())
@@ -52,7 +52,7 @@ pub fn comment_length(text: &str) -> usize {
     }
 }
 
-/// The text with blanks in place of its comments, byte for byte.
+/// The text with each byte of its comments replaced by a space, so that all else keeps its offset.
 pub fn without_comments(text: &str) -> String {
     let mut bare = String::with_capacity(text.len());
     while let Some(next) = text[bare.len()..].chars().next() {

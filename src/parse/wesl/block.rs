@@ -8,7 +8,7 @@ use super::cursor::Tokens;
 use super::trivia;
 use crate::diagnostic::{Diagnostic, codes};
 
-/// Skips the attributes of a block, of which only a condition is allowed.
+/// Checks the attributes of a block: only a condition is allowed.
 pub fn check_attributes(
     tokens: Tokens<'_>,
     start: usize,

@@ -11,7 +11,7 @@ use super::token::TokenKind;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::source::LIMITS;
 
-/// The conditional nodes among siblings, which tells what an `@elif` or `@else` may follow.
+/// The last condition among siblings, which an `@elif` or `@else` may follow.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Chain {
     last: Option<ConditionId>,
@@ -40,7 +40,6 @@ pub struct Attributes {
 }
 
 /// Reads the attributes that start at `at`, making a condition of the translate-time one.
-///
 pub fn read_attributes(
     module: &mut Module,
     tokens: Tokens<'_>,
@@ -197,9 +196,7 @@ impl Reader<'_, '_> {
             && self.tokens.tokens[self.at].end == self.tokens.start(self.at + 1)
     }
 
-    /// Operands joined by `&&` or by `
-    ///
-    /// `. As in WGSL the two may be mixed only with parentheses.
+    /// Operands joined by `&&` or by `||`. As in WGSL, the two may be mixed only with parentheses.
     fn expression(&mut self) -> Result<ExpressionId, Diagnostic> {
         let first = self.unary()?;
         let mark = if self.pair(b'&', b'&') { b'&' } else { b'|' };

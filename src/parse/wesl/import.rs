@@ -49,7 +49,7 @@ pub fn read_origin(tokens: Tokens<'_>, at: usize) -> Result<(Origin, usize), Dia
     Ok((origin, end))
 }
 
-/// The error for `as` where a path has a name.
+/// The error for `as` in the place of a name in a path.
 fn misplaced_as(tokens: Tokens<'_>, at: usize) -> Diagnostic {
     let is_path = |at: usize| tokens.kind(at) == Some(TokenKind::Path);
     let error = Diagnostic::error(codes::SYNTAX_ERROR, "`as` cannot be a name in a path")

@@ -31,6 +31,7 @@ const KINDS: &[(Name, ItemKind)] = &[
 ];
 
 /// Fills the module's directives, imports and items. The items do not have their events yet.
+/// Returns where each item is among the tokens.
 pub fn split_items(module: &mut Module, tokens: &[Token], names: &Names) -> Vec<Place> {
     let text = std::sync::Arc::clone(&module.text);
     let tokens = Tokens { tokens, text: &text, names, source: module.source };
@@ -72,7 +73,7 @@ struct Splitter<'a, 'b> {
     behind: u32,
     /// The end of the file, or the brace that ends the block.
     limit: usize,
-    /// Whether there was a declaration in the file or the block before.
+    /// Whether the file, or the block that is being read, has had a declaration so far.
     declared: bool,
 }
 
@@ -260,7 +261,7 @@ impl Splitter<'_, '_> {
     }
 }
 
-/// Steps over `<...>`, if that starts here.
+/// The index after the `<...>` that starts at `at`; `at` itself if none does.
 pub fn after_template(tokens: Tokens<'_>, at: usize) -> usize {
     if !tokens.is(at, b'<') {
         return at;

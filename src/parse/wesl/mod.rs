@@ -1,4 +1,4 @@
-//! Parses WESL text into a [`Module`], by one pass over the characters and one over the tokens.
+//! Parses WESL text into a [`Module`], by one pass over the characters and two over the tokens.
 //!
 //! There is no syntax tree: composing needs items, scopes and conditions, and naga parses the
 //! composed text anyway.

@@ -10,8 +10,8 @@ use crate::source::{SourceId, Span};
 /// A parsed file. Indices are into its own tables.
 #[derive(Debug)]
 pub struct Module {
-    /// The file it was parsed as. The same text may stand in another file or be read again: spans
-    /// are made by what knows the file.
+    /// The file that it was first parsed for. Another file may have the same text and share the
+    /// parsed form, so [`Placed`] makes the spans.
     pub(in crate::parse::wesl) source: SourceId,
     pub text: Arc<str>,
     pub directives: Vec<Directive>,
@@ -29,7 +29,8 @@ pub struct Module {
     pub(in crate::parse::wesl) warnings: Vec<Diagnostic>,
 }
 
-/// A parsed text as that of one file. The same parsed text serves each time that the file is read.
+/// A parsed text together with the file that it is used for. Several files, or several readings of
+/// one, may share a parsed text.
 #[derive(Debug)]
 pub struct Placed {
     pub source: SourceId,
@@ -183,7 +184,7 @@ pub struct Parts {
 pub enum Origin {
     /// The importing module's package.
     Package,
-    /// The package, by so many `super`.
+    /// The module that is so many `super` above the importing one.
     Super(u32),
     /// A name in scope, or a package.
     Scope,
@@ -232,7 +233,7 @@ pub enum Event {
     Node { condition: ConditionId, start: u32, end: u32, next: u32 },
     /// The declared name.
     Definition { start: u32, end: u32 },
-    /// A use of something global, unless one of the guards holds.
+    /// A use of something global, unless a guard in the chain that starts at `guard` holds.
     Use { reference: u32, guard: Option<u32>, start: u32, end: u32 },
 }
 
@@ -258,6 +259,6 @@ pub struct LocalUse {
 #[derive(Debug, Clone, Copy)]
 pub struct Guard {
     pub condition: ConditionId,
-    /// The next one outwards.
+    /// The guard of the next outer declaration of the name.
     pub next: Option<u32>,
 }

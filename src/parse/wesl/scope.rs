@@ -39,7 +39,7 @@ impl Scopes {
         Self { declarations: Vec::new(), innermost: vec![0; names] }
     }
 
-    /// A mark, with which leaving forgets all that is declared from here on.
+    /// Begins a scope. Calling `leave` with the returned mark ends it and removes its declarations.
     pub fn enter(&self) -> usize {
         self.declarations.len()
     }
@@ -78,7 +78,7 @@ impl Scopes {
     }
 
     /// Whether a name means a local from a conditional block that has ended. It is true only once
-    /// for each.
+    /// for each declaration.
     pub fn is_behind_block(&mut self, name: Name) -> bool {
         let index = self.innermost[name.0 as usize].checked_sub(1);
         let found = index.and_then(|index| self.declarations.get_mut(index as usize));

@@ -39,7 +39,8 @@ pub fn trailing_end(text: &str, end: u32, limit: u32) -> u32 {
 /// The text that is removed with a node: its whole lines, if nothing else is on them, and the `//`
 /// lines above.
 ///
-/// `before` and `after` are the ends of the neighbouring tokens.
+/// `before` is the end of the token before the node, and `after` is the start of the token behind
+/// it.
 pub fn removed_lines(text: &str, before: u32, node: Range<u32>, after: u32) -> Range<u32> {
     let head = &text[before as usize..node.start as usize];
     let end = trailing_end(text, node.end, after);

@@ -12,7 +12,7 @@ pub enum TokenKind {
     Number,
     /// One of [`SIGNS`].
     Sign,
-    /// A character that belongs to nothing.
+    /// A character with which no token starts.
     Stray,
     /// After the last token.
     End,
@@ -25,7 +25,7 @@ pub struct Token<'a> {
     pub range: Range<usize>,
 }
 
-/// Longer ones first.
+/// Longer signs come first, so that `<=` is not read as `<`.
 const SIGNS: &[&str] =
     &["=>", "==", "!=", "<=", ">=", "&&", "||", "!", "(", ")", "[", "]", ",", "<", ">"];
 

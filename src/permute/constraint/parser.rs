@@ -197,7 +197,7 @@ impl<'a> Parser<'a> {
         self.text.span(self.tokens[self.at].range.clone())
     }
 
-    /// The text of this token; steps to the next, of which there is one until the end.
+    /// Returns the text of this token, which must not be the end, and steps to the next token.
     fn next_text(&mut self) -> &'a str {
         let text = self.tokens[self.at].text;
         self.at += 1;

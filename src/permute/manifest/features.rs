@@ -75,7 +75,7 @@ impl Features {
     }
 }
 
-/// Reads the table of that name of a file that is in the set, and nothing else of it.
+/// Reads the table `features` of a file that is in the set, and ignores the rest of the file.
 pub fn read_file(sources: &SourceSet, id: SourceId) -> Result<Features, Diagnostics> {
     let (document, errors) = DeTable::parse_recoverable(&sources.get(id).text);
     if !errors.is_empty() {
@@ -122,7 +122,7 @@ fn read_feature(reader: &mut Reader, name: &Name, value: &Value) -> Option<Featu
     reader.check_keys(table, KEYS, &what);
     let doc = reader.doc(table);
     let default = match table.get("default") {
-        Some(value) => matches!(reader.setting(value, "`default`")?, Setting::Bool(true)),
+        Some(value) => reader.boolean(value, "`default`")?,
         None => false,
     };
     let list = table.get("excludes");

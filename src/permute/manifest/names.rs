@@ -17,7 +17,7 @@ const IN: &str = "in";
 const MACROS: &[&str] =
     &["VULKAN", "LAMPLIGHT_COMBINED_SAMPLERS", "LAMPLIGHT_PREFIX", "LAMPLIGHT_PREFIXED"];
 
-/// What a program or a value is called must be an identifier.
+/// The error if the name of a program, a feature or a value is not an identifier, or is a keyword.
 pub fn check_name(name: &str, what: &str, span: Span) -> Option<Diagnostic> {
     let problem = name_problem(name)?;
     Some(
@@ -26,7 +26,8 @@ pub fn check_name(name: &str, what: &str, span: Span) -> Option<Diagnostic> {
     )
 }
 
-/// What an axis is called must not be reserved either.
+/// The error if the name of an axis is not an identifier, is a keyword, or is a reserved word of
+/// WGSL.
 pub fn check_axis(name: &str, span: Span) -> Option<Diagnostic> {
     let reserved = || {
         naga::keywords::wgsl::RESERVED

@@ -24,7 +24,7 @@ pub struct Program {
     pub glsl: Option<Glsl>,
     /// In the order declared; all, where the manifest names none.
     pub targets: Vec<Target>,
-    /// What its outputs are asked for beyond their target.
+    /// The clip space and the checks of its outputs.
     pub conventions: Conventions,
     /// Its permutations.
     pub space: Space,
@@ -43,7 +43,7 @@ impl Program {
         self.wesl.iter().chain(glsl)
     }
 
-    /// The same, to be changed.
+    /// As [`Self::files`], but mutable.
     pub fn files_mut(&mut self) -> impl Iterator<Item = &mut File> {
         let glsl = self.glsl.iter_mut().flat_map(|glsl| [&mut glsl.vertex, &mut glsl.fragment]);
         self.wesl.iter_mut().chain(glsl.flatten())
@@ -85,7 +85,7 @@ const KEYS: &[&str] = &[
     "doc",
 ];
 
-/// Reads a program; `None` once anything is wrong with it.
+/// Reads a program; `None` if there is an error in it.
 pub fn read_program(reader: &mut Reader, name: &Name, value: &Value) -> Option<Program> {
     let errors = error_count(reader);
     let span = reader.span(name.span());
@@ -161,7 +161,8 @@ fn read_target(reader: &mut Reader, value: &Value) -> Option<Target> {
     reader.choice(value, "a target", known, unknown)
 }
 
-/// The conventions of a program. Where a name is wrong, the error is kept and the default stands.
+/// The conventions of a program. Where a name is wrong, the error is reported and the default is
+/// used.
 fn read_conventions(reader: &mut Reader, table: &DeTable) -> Conventions {
     let clip = table.get("clip").and_then(|value| {
         let unknown = (codes::UNKNOWN_CLIP, ["there is no clip space", "not one", "clip spaces"]);

@@ -43,7 +43,7 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// The value of a key that must be there; `place` is the name of the table.
+    /// The value of a key that must be there. If it is missing, the error is at `place`.
     pub fn required<'t, 'v>(
         &mut self,
         table: &'v DeTable<'t>,
@@ -98,6 +98,10 @@ impl<'s> Reader<'s> {
             self.problems.push(error.note(listed));
         }
         found.map(|(_, choice)| choice)
+    }
+
+    pub fn boolean(&mut self, value: &Value, what: &str) -> Option<bool> {
+        self.expect(value.get_ref().as_bool(), value, what, "a boolean")
     }
 
     pub fn integer(&mut self, value: &Value, what: &str) -> Option<i64> {

@@ -8,8 +8,8 @@ use super::formula::{Conditions, FALSE, Id};
 use super::{Assignment, TooComplex};
 use crate::permute::axis::ValueSet;
 
-/// A set of points. Nodes come after their children, so one forward pass computes anything that
-/// a node owes to what is below it.
+/// A set of points. Nodes come after their children. So one forward pass computes any property of
+/// the nodes that depends on the nodes below them, such as a count.
 #[derive(Debug, Clone)]
 pub struct Diagram {
     /// The axis asked at each level.
@@ -25,7 +25,7 @@ struct Node {
     children: Box<[u32]>,
 }
 
-/// No point, and the end of every point.
+/// The node below which there is no point, and the node at which every point ends.
 const DEAD: u32 = 0;
 const END: u32 = 1;
 
@@ -67,7 +67,7 @@ impl Diagram {
         })
     }
 
-    /// Every point, in an order that may change.
+    /// Every point, in no particular order.
     pub fn points(&self) -> Vec<Assignment> {
         let mut found = Vec::new();
         let mut point = vec![0; self.order.len()];

@@ -66,7 +66,7 @@ enum Join {
 }
 
 impl Join {
-    /// The constant that makes the whole this constant.
+    /// The constant that decides the whole condition, whatever its other parts are.
     fn absorbing(self) -> Id {
         match self {
             Self::All => FALSE,
@@ -74,7 +74,7 @@ impl Join {
         }
     }
 
-    /// The constant that changes nothing.
+    /// The constant that can be left out of the condition.
     fn neutral(self) -> Id {
         match self {
             Self::All => TRUE,
@@ -95,9 +95,9 @@ pub struct Conditions {
 }
 
 impl Conditions {
-    /// With so many steps before its conditions are called too complex. Counting the points that
-    /// satisfy arbitrary conditions is #P-hard, so hostile input must meet a bound; real manifests
-    /// take some thousands of steps.
+    /// A store without conditions. After `steps` steps, its conditions are called too complex.
+    /// Counting the points that satisfy arbitrary conditions is #P-hard, so hostile input must meet
+    /// a bound; real manifests take some thousands of steps.
     pub fn new(domains: Vec<ValueSet>, steps: Steps) -> Self {
         let mut store = Self {
             domains,
@@ -122,7 +122,7 @@ impl Conditions {
         self.add_signed(formula, true)
     }
 
-    /// All of the conditions.
+    /// The condition that all of the given ones hold.
     pub fn all(&mut self, parts: Vec<Id>) -> Result<Id, TooComplex> {
         self.join(Join::All, parts)
     }
@@ -189,8 +189,9 @@ impl Conditions {
         }
     }
 
-    /// Flattens, merges the atoms of each axis, and lets every atom simplify its siblings until
-    /// nothing changes (unit propagation, and its dual for `Any`).
+    /// The normal form of a conjunction or disjunction: flattens it, merges the atoms of each axis,
+    /// and simplifies the other parts by each atom until nothing changes (unit propagation, and its
+    /// dual for `Any`).
     fn join(&mut self, join: Join, parts: Vec<Id>) -> Result<Id, TooComplex> {
         let mut atoms: BTreeMap<u8, ValueSet> = BTreeMap::new();
         let mut others: BTreeSet<Id> = BTreeSet::new();
@@ -223,8 +224,8 @@ impl Conditions {
         Ok(self.joined(join, atoms.into_iter().chain(others).collect()))
     }
 
-    /// Simplifies a part by the atoms known so far; keeps it if that changes nothing, else hands
-    /// it back to be looked at again.
+    /// Simplifies a part by the atoms known so far. If that changes nothing, the part is added to
+    /// `others`. If not, the simpler part is returned, since it must be joined again.
     fn settle(
         &mut self,
         join: Join,

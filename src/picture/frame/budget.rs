@@ -10,9 +10,9 @@ use crate::emit::blocks::{inner_blocks, inner_blocks_mut};
 
 /// Ends each loop once `most` trips were made, in all functions of an invocation together.
 ///
-/// Browsers refuse derivatives in a loop that ends by a variable of the module, since invocations
-/// might differ in it. So a module with derivatives counts in each call of a function by itself,
-/// and functions that call one another in loops make as many trips as the product of theirs.
+/// Browsers refuse derivatives in a loop whose end depends on a module-scope variable, since that
+/// could differ between invocations. So in a module with derivatives, each call of a function
+/// counts its own trips. If functions call one another in loops, their numbers of trips multiply.
 pub fn bound_loops(module: &mut Module, most: u32) {
     let ty = Type { name: None, inner: TypeInner::Scalar(Scalar::U32) };
     let ty = module.types.insert(ty, Span::UNDEFINED);

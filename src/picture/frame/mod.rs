@@ -1,5 +1,5 @@
 //! Whole programs, made ready to be drawn: uniforms packed by reflection, stages composed, and
-//! fragment stages that tell what each fragment was given.
+//! fragment stages that also return what each fragment was given.
 //!
 //! `reflection + values -> buffers`, `permutation -> stages`
 //!

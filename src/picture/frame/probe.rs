@@ -68,7 +68,7 @@ fn find_entry(module: &Module, entry: &str) -> Option<usize> {
         .position(|point| point.name == entry && point.stage == naga::ShaderStage::Fragment)
 }
 
-/// Turns the entry point into a plain function.
+/// Adds a copy of the entry point to the module as a plain function.
 fn inner_function(module: &mut Module, index: usize) -> Option<Handle<Function>> {
     let mut function = module.entry_points[index].function.clone();
     function.result.as_mut()?.binding = None;

@@ -32,7 +32,7 @@ struct Kept {
 }
 
 impl Kept {
-    /// Stages that are kept, which become the latest.
+    /// Stages that are kept. They become the most recently used ones.
     fn again(&mut self, asked: &Asked) -> Option<Stages> {
         let at = self.stages.iter().position(|(known, _)| known == asked)?;
         let found = self.stages.remove(at)?;
@@ -42,7 +42,7 @@ impl Kept {
     }
 }
 
-/// What stages are asked for by.
+/// The program, settings and language of stages.
 type Asked = (String, Settings, Language);
 
 /// How many permutations are kept: as many as the passes of a picture.
@@ -99,7 +99,7 @@ impl Programs {
         self.kept().texts.clone()
     }
 
-    /// Runs something on the texts that were read so far.
+    /// Calls a function with the texts that were read so far.
     pub fn with_texts<T>(&self, run: impl FnOnce(&mut SourceSet) -> T) -> T {
         run(&mut self.kept().texts)
     }

@@ -128,7 +128,7 @@ fn html_link(page: &str, words: &str) -> String {
     format!("<a href=\"{}\">{}</a>", escape_markup(page), escape_markup(words))
 }
 
-/// Text with its code marked as such.
+/// Text as HTML. What is between backticks becomes code.
 fn html_prose(text: &str) -> String {
     let part = |(index, part): (usize, &str)| match index % 2 {
         1 => format!("<code>{}</code>", escape_markup(part)),

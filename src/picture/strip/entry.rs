@@ -32,7 +32,7 @@ pub struct Comparison {
     pub panels: Vec<Panel>,
 }
 
-/// One way.
+/// One way to draw it: a panel of the picture.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Panel {

@@ -88,12 +88,12 @@ const KINDS: &[Kind] = &[
     },
 ];
 
-/// Values that are the first to go wrong.
+/// Values at which functions fail most often.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Special {
-    /// Zeros of both signs, one and its neighbours, powers of two.
+    /// Zeros and ones of both signs, the f32 neighbours of 1, 0.5 and 2.
     Plain,
-    /// Those of `Plain`, and subnormals, the smallest normal number, and 1e-18.
+    /// Those of `Plain`, and subnormals, the smallest normal number, and 1e-18 of both signs.
     Small,
     /// Those of `Small`, and 1e18 of both signs, whose squares are still finite.
     All,
@@ -102,18 +102,18 @@ pub enum Special {
 const SPECIALS: &[(&str, Special)] =
     &[("plain", Special::Plain), ("small", Special::Small), ("all", Special::All)];
 
-/// The relation of a vector to another parameter.
+/// How a vector is chosen relative to another parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum About {
-    /// Unit, with a positive dot product.
+    /// A unit vector whose dot product with the other one is not negative.
     Hemisphere,
-    /// Unit, nearly at right angles, on both sides.
+    /// A unit vector nearly perpendicular to the other one, on either side.
     Grazing,
-    /// Equal to it.
+    /// Equal to the other one.
     Same,
 }
 
-/// A set of values, in order.
+/// A list of values for a parameter, as a case file describes it.
 #[derive(Debug, Clone)]
 pub enum Domain {
     Values(Vec<Vec<f64>>),
@@ -223,7 +223,8 @@ impl Domain {
         }
     }
 
-    /// Values that are made anew for each row: all of those that go by another parameter.
+    /// How many values are computed again for each row: those of the parts that depend on another
+    /// parameter.
     pub fn fresh(&self) -> usize {
         match self {
             Self::About { count, .. } => *count as usize,
@@ -232,7 +233,8 @@ impl Domain {
         }
     }
 
-    /// Whether every value is a unit vector.
+    /// Whether the domain, or a part of it, gives directions. Shrinking then changes the vector as
+    /// a whole, not word by word.
     pub fn is_unit(&self) -> bool {
         match self {
             Self::Unit { .. } | Self::About { .. } => true,
@@ -241,7 +243,7 @@ impl Domain {
         }
     }
 
-    /// How many values the domain has for a parameter of this shape. The values are not made.
+    /// How many values the domain has for a parameter of this shape, without making them.
     ///
     /// # Errors
     /// Why it has none: it is empty, or its values have another number of components.
@@ -340,7 +342,8 @@ impl Domain {
     }
 }
 
-/// Directions are drawn until one is near enough to the sphere, which in many dimensions none is.
+/// Random directions are drawn from a cube until one lies in the unit sphere. In many dimensions
+/// hardly any does, so a direction has at most 4 values.
 fn check_direction(size: usize) -> Result<(), String> {
     match size {
         1..=4 => Ok(()),
@@ -348,8 +351,8 @@ fn check_direction(size: usize) -> Result<(), String> {
     }
 }
 
-/// Refuses as many plain numbers as a vector has components. They would be vectors with equal
-/// components, but whoever writes them means one vector.
+/// Refuses a list of plain numbers that has as many numbers as the vector has components. Each
+/// number would be a vector with equal components, but whoever writes such a list means one vector.
 fn check_unmistakable(parts: &[Domain], size: usize) -> Result<(), String> {
     let one = |part: &Domain| match part {
         Domain::Values(values) => values.iter().map(|value| plain_number(value)).collect(),
@@ -366,7 +369,7 @@ fn check_unmistakable(parts: &[Domain], size: usize) -> Result<(), String> {
     ))
 }
 
-/// The number of a value that consists of one.
+/// The number of a value that has one component.
 fn plain_number(value: &[f64]) -> Option<f64> {
     match value {
         [number] => Some(*number),
@@ -374,7 +377,7 @@ fn plain_number(value: &[f64]) -> Option<f64> {
     }
 }
 
-/// The bits of a value of the kind.
+/// The 32-bit word of a value of the scalar kind.
 pub fn word_of(value: f64, kind: ScalarKind) -> u32 {
     match kind {
         ScalarKind::Sint => value as i32 as u32,

@@ -8,7 +8,7 @@ const TEXTURE_KEYS: &[&str] =
     &["kind", "size", "pattern", "low", "high", "cells", "edge", "texels"];
 const SAMPLER_KEYS: &[&str] = &["kind", "compare", "filter", "address"];
 
-/// A pattern: its name, and the weight of `high` at a place of a layer, in [0, 1)^2.
+/// A pattern: gives the weight of `high`, from the settings, the place in [0, 1)^2 and the layer.
 type Pattern = fn(&Settings, f64, f64, u32) -> f64;
 
 const PATTERNS: &[(&str, Pattern)] = &[

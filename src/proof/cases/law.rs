@@ -79,7 +79,7 @@ fn fill_law(mut law: Law, node: &Node, value: &Node) -> Result<Law, Diagnostic> 
     Ok(law)
 }
 
-/// The largest magnitude of arguments.
+/// Reads the largest magnitude of arguments, for the law `finite`.
 fn read_magnitude(node: &Node) -> Result<f64, Diagnostic> {
     let number = node.number()?;
     match number > 0.0 && number.is_finite() {
@@ -92,7 +92,7 @@ fn read_texts(node: &Node) -> Result<Vec<String>, Diagnostic> {
     node.one_or_more().iter().map(|one| one.text().map(str::to_owned)).collect()
 }
 
-/// Names of parameters: those that a law exchanges are in pairs.
+/// Reads names of parameters. The law `swap` needs pairs of them.
 fn read_names(kind: &str, node: &Node) -> Result<Vec<String>, Diagnostic> {
     let names = read_texts(node)?;
     match kind == "swap" && (names.is_empty() || names.len() % 2 != 0) {
@@ -175,7 +175,7 @@ fn read_formulas(node: &Node) -> Result<Formulas, Diagnostic> {
     entries.map(|(key, value)| Ok((key.name.clone(), read_formula(value)?))).collect()
 }
 
-/// A formula, or plain numbers.
+/// Reads a formula. Plain numbers become the formula `vec(...)` of them.
 fn read_formula(node: &Node) -> Result<Text, Diagnostic> {
     if let CaseValue::Text(_) = node.value {
         return Text::read(node);

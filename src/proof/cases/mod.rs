@@ -1,5 +1,5 @@
-//! Reads case files, which say what to try of a function, what to expect, and how far results may
-//! be off.
+//! Reads case files. They say which inputs to try with a function, which results to expect, and how
+//! far results may be off.
 //!
 //! A file `NAME.toml` beside `NAME.wesl` and `NAME.glsl` holds the cases of that module:
 //!
@@ -95,8 +95,8 @@ pub struct File {
 }
 
 impl File {
-    /// Adds the law that values are finite to the first case of each function that does not have
-    /// it.
+    /// Adds the law that values are finite to the first case of each function that has it in no
+    /// case.
     pub fn promise_finite(&mut self) {
         let Some(kind) = laws::find_kind(laws::FINITE) else { return };
         let mut done: Vec<String> = Vec::new();
@@ -174,7 +174,7 @@ impl Case {
 }
 
 impl Text {
-    /// The formula over the parameters of a function.
+    /// Parses the formula. `scope` has the parameters of the function.
     pub fn bind(&self, scope: &Scope<'_>) -> Result<Formula, Diagnostic> {
         Formula::parse(&self.text, scope).map_err(|Mistake { range, message, note }| {
             // The span includes the quotation marks. A text with escapes is longer in the file than
@@ -291,7 +291,7 @@ fn fixture_names(node: &Node) -> Result<Vec<(String, String)>, Diagnostic> {
         .collect()
 }
 
-/// An oracle that a case file gives by name alone.
+/// The name of an oracle that needs nothing else, and the oracle.
 type NamedOracle = (&'static str, fn() -> Oracle);
 
 const ORACLES: &[NamedOracle] =
@@ -355,7 +355,8 @@ fn tolerance_terms(node: &Node) -> Result<Vec<Term<Text>>, Diagnostic> {
     Ok(terms)
 }
 
-/// The parts of a term. A plain number is the coefficient of a term without formulas.
+/// The coefficient and the formulas of a term. A term without formulas is a plain number, which is
+/// its coefficient.
 fn term_parts(kind: &tolerance::Kind, node: &Node) -> Result<(f64, Vec<Text>), Diagnostic> {
     if kind.formulas.is_empty() {
         return Ok((node.number()?, Vec::new()));

@@ -1,4 +1,4 @@
-//! Makes the words of every invocation from the domains of a case.
+//! Makes the input words of every invocation from the domains of a case.
 
 use super::domain::{self, Domain};
 use super::{Case, Oracle, TableRow};
@@ -23,8 +23,9 @@ pub struct Rows {
     pub units: Vec<std::ops::Range<usize>>,
 }
 
-/// One column while rows are made.
+/// A parameter, or a field of one, and its domain, while rows are made.
 struct Column<'a> {
+    /// Index of its first word in a row.
     first: usize,
     shape: Shape,
     domain: &'a Domain,
@@ -49,7 +50,7 @@ impl Rows {
         self.words.is_empty()
     }
 
-    /// One row as numbers; none for a function without parameters.
+    /// One row as numbers; empty for a function without parameters.
     pub fn row(&self, index: usize) -> &[f64] {
         self.numbers.get(index * self.stride..(index + 1) * self.stride).unwrap_or(&[])
     }
@@ -72,7 +73,8 @@ impl Rows {
     }
 }
 
-/// The rows of a case over a function's parameters, within the steps that are left to it.
+/// Makes the rows of a case for the parameters of its function. The work is subtracted from
+/// `steps`.
 pub fn case_rows(case: &Case, scope: &Scope<'_>, steps: &mut Steps) -> Result<Rows, Diagnostic> {
     let kinds: Vec<ScalarKind> = scope.0.iter().flat_map(|(_, shape)| shape.kinds()).collect();
     let stride = kinds.len().max(1);
@@ -104,7 +106,7 @@ fn generate_rows(
     let count = bounded_count(case, &columns, stride)?;
     let fresh = columns.iter().map(|column| match (column.domain.fresh(), case.zip) {
         (0, _) | (_, false) => 1,
-        // All of them are made for each row, of which one is taken.
+        // With `zip`, a row computes all these values, and takes one of them.
         (_, true) => column.count,
     });
     spend_steps(case, count, fresh.fold(stride, usize::saturating_add), steps)?;
@@ -124,10 +126,10 @@ fn generate_rows(
     Ok((rows, units.collect()))
 }
 
-/// Takes so many steps for each of so many rows.
+/// Subtracts the work of a case from its steps: `each` steps for each of `rows` rows.
 ///
 /// # Errors
-/// Where the case has fewer left.
+/// The case has fewer steps left.
 pub fn spend_steps(
     case: &Case,
     rows: usize,
@@ -162,7 +164,8 @@ fn bounded_count(case: &Case, columns: &[Column<'_>], stride: usize) -> Result<u
         .note("`mode = \"zip\"` takes the domains side by side"))
 }
 
-/// The columns, each after those that it needs.
+/// The columns, each after those that its values depend on. Fails if a parameter has no values, or
+/// if columns depend on each other in a cycle.
 fn ordered_columns<'a>(case: &'a Case, scope: &Scope<'_>) -> Result<Vec<Column<'a>>, Diagnostic> {
     let mut left: Vec<_> = case.inputs.iter().collect();
     let mut done: Vec<&str> = Vec::new();
@@ -205,7 +208,8 @@ fn ordered_columns<'a>(case: &'a Case, scope: &Scope<'_>) -> Result<Vec<Column<'
     Ok(columns)
 }
 
-/// The layout of rows while columns are added to them.
+/// What is needed to add columns to rows: the kinds of the words, the parameters, and the words of
+/// a row.
 struct Grid<'g, 's> {
     kinds: &'g [ScalarKind],
     scope: &'g Scope<'s>,
@@ -228,7 +232,7 @@ impl Grid<'_, '_> {
         grown
     }
 
-    /// Combines rows and values one by one. The shorter list starts again at its end.
+    /// Gives each row one value of the column, in order. The shorter of the two lists is repeated.
     fn zipped(&self, rows: &[u32], column: &Column<'_>) -> Vec<u32> {
         let rows: Vec<&[u32]> = rows.chunks(self.stride).collect();
         let Some(first) = rows.first() else { return Vec::new() };
@@ -260,14 +264,14 @@ impl Grid<'_, '_> {
     }
 }
 
-/// Adds a row with a value put into it.
+/// Appends a copy of `row` in which `value` stands from word `first` on.
 fn push_row(rows: &mut Vec<u32>, row: &[u32], first: usize, value: &[u32]) {
     let start = rows.len() + first;
     rows.extend_from_slice(row);
     rows[start..start + value.len()].copy_from_slice(value);
 }
 
-/// The names of a path.
+/// The parts of a path: `light` and `kind` of `light.kind`.
 fn path_parts(path: &str) -> Vec<String> {
     path.split('.').map(str::to_owned).collect()
 }
@@ -305,7 +309,7 @@ fn table_words(
     Ok(words)
 }
 
-/// Words as numbers, by kind.
+/// Words as numbers. `kinds` are those of one row, and repeat.
 pub fn words_to_numbers(words: &[u32], kinds: &[ScalarKind]) -> Vec<f64> {
     words.iter().zip(kinds.iter().cycle()).map(|(word, kind)| word_value(*word, *kind)).collect()
 }

@@ -7,7 +7,7 @@ pub(super) fn even_steps(count: u32, f: impl Fn(f64) -> f64) -> Vec<f64> {
     (0..count).map(|i| f(f64::from(i) / f64::from((count - 1).max(1)))).collect()
 }
 
-/// Every combination of the values in `size` components.
+/// Every vector of `size` components whose components are among the values.
 pub(super) fn value_grid(size: usize, values: &[f64]) -> Vec<Vec<f64>> {
     (0..size).fold(vec![Vec::new()], |rows, _| {
         rows.iter()
@@ -16,7 +16,7 @@ pub(super) fn value_grid(size: usize, values: &[f64]) -> Vec<Vec<f64>> {
     })
 }
 
-/// The axes of both signs, then random directions.
+/// Unit vectors: the axes in both directions, then random ones.
 pub(super) fn unit_vectors(size: usize, count: u32, seed: u64) -> Vec<Vec<f64>> {
     let axes = (0..2 * size).map(|i| {
         (0..size).map(|c| if c == i / 2 { 1.0 - 2.0 * (i % 2) as f64 } else { 0.0 }).collect()
@@ -48,7 +48,8 @@ fn hemisphere(base: &[f64], random: &mut Random) -> Vec<f64> {
     unit.iter().map(|x| x * side).collect()
 }
 
-/// A direction at a right angle, tilted by 10^-1 to 10^-7 to either side.
+/// A unit vector perpendicular to `base`, tilted towards it or away from it. The index chooses the
+/// side and the tilt, from 10^-1 to 10^-7.
 fn grazing(base: &[f64], index: u32, random: &mut Random) -> Vec<f64> {
     let tilt =
         10f64.powi(-1 - (index / 2 % 7) as i32) * if index.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -59,14 +60,15 @@ fn grazing(base: &[f64], index: u32, random: &mut Random) -> Vec<f64> {
     tilted.iter().map(|x| x / length).collect()
 }
 
-/// The value and its neighbours in f32 on both sides. All components move together.
+/// The value and its f32 neighbours on both sides. All components move together.
 pub(super) fn neighbours_of(value: &[f64], ulps: u32) -> Vec<Vec<f64>> {
     let neighbours = |x: f64| {
         let walk = |step: fn(f32) -> f32| {
             let next = std::iter::successors(Some(x as f32), move |at| Some(step(*at)));
             next.take(ulps as usize + 1).map(f64::from).collect::<Vec<f64>>()
         };
-        // Larger in magnitude behind the value, smaller before it.
+        // The neighbours of smaller magnitude come first, then the value, then those of larger
+        // magnitude.
         let (up, down) = (walk(f32::next_up), walk(f32::next_down));
         let (behind, before) = if x as f32 >= 0.0 { (up, down) } else { (down, up) };
         before.into_iter().skip(1).rev().chain(behind).collect::<Vec<f64>>()

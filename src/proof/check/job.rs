@@ -48,12 +48,12 @@ pub struct BoundLaw<'a> {
     pub partners: Vec<Partner>,
 }
 
-/// Gives the expected value of a row. It must also answer for rows that the case does not list,
-/// since shrinking a failure tries such rows.
+/// Gives the expected value of a row. Except for `Fixed`, it also answers for rows that the case
+/// does not list, since shrinking a failure tries such rows.
 pub enum BoundOracle {
     Reference(Reference),
     Formula(Formula),
-    /// The code of the first language, computed with error bounds.
+    /// The code of the first language, evaluated in f64 with error bounds.
     Eval(Box<Interpreter>),
     /// A table, or no oracle. Only the rows of the case are known.
     Fixed,
@@ -234,7 +234,7 @@ fn make_job<'a>(
     Ok(job)
 }
 
-/// A case of a file.
+/// A case of a file, and what the cases of the file share.
 struct Place<'a, 't> {
     file: &'a File,
     index: usize,
@@ -242,7 +242,8 @@ struct Place<'a, 't> {
     total: &'t Total,
 }
 
-/// `math::safe::saturate`, and from a function's second case on `math::safe::saturate#2`.
+/// The names under which the measurements of the cases are recorded: `math::safe::saturate`, and
+/// from a function's second case on `math::safe::saturate#2`.
 fn record_names<'f>(module: &str, file: &'f File) -> Vec<String> {
     let mut seen: HashMap<&'f str, usize> = HashMap::new();
     let record = |case: &'f Case| {
@@ -326,10 +327,10 @@ fn expected_goals(job: &Job<'_>) -> Result<Vec<Goal>, Diagnostic> {
     }
 }
 
-/// How many rows a thread runs before it asks for more.
+/// How many rows one parallel task evaluates.
 const CHUNK: usize = 1024;
 
-/// The value of every row, with a bound of its error.
+/// The value of every row in f64, with a bound on its error in f32.
 pub fn bounded_goals(
     interpreter: &Interpreter,
     rows: &Rows,

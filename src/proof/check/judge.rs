@@ -22,7 +22,7 @@ pub struct Verdict {
     pub too_ambiguous: bool,
     /// The component whose error is the largest share of its tolerance.
     pub worst: Option<Worst>,
-    /// The largest error of all rows but the ambiguous ones.
+    /// The largest error of the rows that are not counted as ambiguous.
     pub largest: f64,
     /// Rows that are wrong.
     pub failing: Vec<usize>,
@@ -35,7 +35,7 @@ pub struct Verdict {
     pub profile: Option<Box<Profile>>,
 }
 
-/// One component of one row.
+/// The error of one component of one row.
 #[derive(Debug, Clone, Copy)]
 pub struct Worst {
     pub row: usize,
@@ -64,7 +64,7 @@ impl Verdict {
 }
 
 impl Worst {
-    /// The error divided by what is allowed. It passes up to 1.
+    /// The error divided by what is allowed. The component passes up to 1.
     pub fn share(&self) -> f64 {
         if self.error == 0.0 { 0.0 } else { self.error / self.allowed }
     }
@@ -114,7 +114,7 @@ pub fn judge_rows(job: &Job<'_>, rows: &Rows, expected: &[Goal], results: &[u32]
     verdict
 }
 
-/// Compares with each accepted value, and returns the worst component of the one that fits best.
+/// Compares with each accepted value, and returns the worst component for the value that fits best.
 pub fn compare_goal(
     job: &Job<'_>,
     row: &[f64],
@@ -128,8 +128,8 @@ pub fn compare_goal(
     values.filter_map(one).min_by(|a, b| a.share().total_cmp(&b.share()))
 }
 
-/// Compares with one value. `of` is the expected value and the error that each word may have beside
-/// the terms.
+/// Compares with one accepted value. `of` is that value, and for each word an error that is allowed
+/// beside the terms.
 fn compare_one(
     job: &Job<'_>,
     row: &[f64],
@@ -161,8 +161,8 @@ fn compare_one(
     (0..kinds.len()).map(component).max_by(|a, b| a.share().total_cmp(&b.share()))
 }
 
-/// The error of a component. A subnormal result may have been flushed to zero. NaN has an infinite
-/// error.
+/// The error of a component. For floats, an error up to the smallest normal number counts as 0,
+/// since a device may flush subnormal results. The error is infinite if it would be NaN.
 pub fn component_distance(found: f64, expected: f64, is_float: bool) -> f64 {
     let error = if found == expected { 0.0 } else { (found - expected).abs() };
     if error.is_nan() {
@@ -174,7 +174,8 @@ pub fn component_distance(found: f64, expected: f64, is_float: bool) -> f64 {
     }
 }
 
-/// Whether every result is accepted.
+/// Whether every result is accepted: f32 cannot represent an expected component, or the bound on
+/// its error is not finite.
 pub fn is_indeterminate(goal: &Goal) -> bool {
     let held = |value: &f64| value.is_finite() && value.abs() <= f64::from(f32::MAX);
     !goal.expected.value.iter().all(held) || !goal.errors.iter().all(|error| error.is_finite())
@@ -185,8 +186,8 @@ pub fn is_ambiguous(job: &Job<'_>, row: &[f64]) -> bool {
     job.near.as_ref().is_some_and(|(formula, margin)| formula.scalar(row).abs() <= *margin)
 }
 
-/// The distance between the results of two languages on one executor. It is infinite if values
-/// differ that are not f32.
+/// The largest distance between the results of two languages on one executor, in units in the last
+/// place. It is infinite if values differ that are not floats, or are not finite.
 pub fn language_parity(job: &Job<'_>, first: &[u32], second: &[u32]) -> f64 {
     let kinds = job.kernel().result_kinds();
     let apart = |((a, b), kind): ((&u32, &u32), &ScalarKind)| {

@@ -12,8 +12,9 @@ use naga::ScalarKind;
 #[derive(Debug)]
 pub struct LawVerdict {
     pub name: &'static str,
-    /// Rows that break it, with the first one's words.
+    /// How often it is broken: most laws count each component of each row.
     pub broken: usize,
+    /// A description of the first violation.
     pub example: Option<String>,
     /// The first row that breaks it, if a single row can break it.
     pub row: Option<usize>,
@@ -97,12 +98,12 @@ fn judge_each(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind])
     verdict
 }
 
-/// An error as people write it.
+/// An error in scientific notation; `0` for none.
 pub fn amount_text(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value:.2e}") }
 }
 
-/// The distance between the inputs of two rows.
+/// The Euclidean distance between the inputs of two rows.
 fn input_distance(row: &[f64], other: &[f64]) -> f64 {
     row.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
@@ -143,7 +144,8 @@ fn judge_integral(
     verdict
 }
 
-/// Judges the law's own rows, and those of the case whose arguments it is about.
+/// Judges the law `finite` for its own rows and, unless it has a `where`, for the case's rows. Rows
+/// with arguments above the law's magnitude are skipped.
 fn judge_finite(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> LawVerdict {
     let mut verdict = LawVerdict::new(law);
     let mut judge = |rows: &Rows, found: &[u32]| {

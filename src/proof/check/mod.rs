@@ -32,8 +32,8 @@ use crate::source::Span;
 use crate::validate::on_large_stack;
 use job::Job;
 
-/// Gives the module with some functions of a library module in a language: composed, parsed and
-/// valid. The functions keep their names.
+/// Composes the module of a path in a language, with only the named functions and what they need.
+/// The result is parsed and valid, and the functions keep their names.
 pub type Subjects<'a> =
     dyn Fn(&str, Language, &[String]) -> Result<Arc<naga::Module>, Diagnostics> + Sync + 'a;
 
@@ -114,7 +114,8 @@ impl Outcome {
         Some(share / (ratchet::SLACK * self.recorded?))
     }
 
-    /// Whether the values are within what the case states, or what a waiver allows.
+    /// Whether every row and law holds, or the only failures are errors of values that a waiver
+    /// allows.
     pub fn is_within(&self) -> bool {
         self.verdict.as_ref().is_ok_and(|verdict| verdict.passed() || self.is_waived(verdict))
     }
@@ -152,7 +153,7 @@ pub struct Options<'a> {
     pub prove: bool,
     /// Whether to judge laws about several functions.
     pub partners: bool,
-    /// What drivers were measured to need.
+    /// What drivers were measured to need, if they are judged by that.
     pub ratchet: Option<&'a Ratchet>,
 }
 
@@ -310,7 +311,8 @@ fn run_case(
     Ok(verdict)
 }
 
-/// Outcomes of all executors, side by side for each job.
+/// Merges the outcomes of the executors: for each case and language in turn, those of all
+/// executors.
 fn interleave_outcomes(columns: Vec<Vec<Outcome>>) -> Vec<Outcome> {
     let mut columns: Vec<_> = columns.into_iter().map(Vec::into_iter).collect();
     let mut outcomes = Vec::new();

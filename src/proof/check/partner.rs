@@ -15,7 +15,8 @@ use crate::proof::laws::{self, Albedo, Area, Equality, Inverse, Law, Wanted};
 /// Another function that a law is about.
 pub struct Partner {
     pub kernels: Vec<(Language, Kernel)>,
-    /// The arguments that it is called with, where they do not depend on results.
+    /// The arguments of its calls. `None` for the law `inverse`, whose arguments are results of the
+    /// case.
     rows: Option<Rows>,
 }
 
@@ -55,7 +56,8 @@ fn first_error(errors: Diagnostics, law: &Law, name: &str) -> Diagnostic {
     if error.labels.is_empty() { error.at(law.span, "named here") } else { error }
 }
 
-/// Judges a law that has partners; `results` are those of the case's own rows.
+/// Judges a law that has partners; `None` for other laws. `results` are those of the case's own
+/// rows.
 pub fn judge_partners(
     job: &Job<'_>,
     bound: &BoundLaw<'_>,
@@ -255,7 +257,7 @@ fn component_of(values: &[f64], component: usize) -> f64 {
     values.get(index).copied().unwrap_or(f64::NAN)
 }
 
-/// A component of what the case's function gave.
+/// A component of the result of the case's function. A single number stands for every component.
 fn own_component(job: &Job<'_>, results: &[u32], row: usize, component: usize) -> f64 {
     let kinds = job.kernel().result_kinds();
     let component = if kinds.len() == 1 { 0 } else { component };
@@ -303,7 +305,8 @@ fn nan_max(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
-/// The calls of the inverse: the value's words first, then parameters of the case by name.
+/// The arguments of the calls of the inverse: the words of the result, and then each further
+/// parameter from the case's parameter of the same name, or 0 where the case has none.
 fn inverse_rows(job: &Job<'_>, kernel: &Kernel, scope: &Scope<'_>, results: &[u32]) -> Rows {
     let kinds: Vec<_> = kernel.words().flat_map(|(_, shape)| shape.kinds()).collect();
     let (count, own) = (job.kernel().result_words() as usize, job.kernel().result_kinds());
@@ -311,11 +314,14 @@ fn inverse_rows(job: &Job<'_>, kernel: &Kernel, scope: &Scope<'_>, results: &[u3
     for (row, value) in results.chunks(count.max(1)).enumerate() {
         let mut call: Vec<f64> =
             value.iter().zip(&own).map(|(word, kind)| word_value(*word, *kind)).collect();
+        let mut next = 0;
         for (name, shape) in kernel.words() {
+            let (start, size) = (next, shape.words() as usize);
+            next += size;
             let at = scope.find(&[name.to_owned()]);
-            if let Some((first, _)) = at.filter(|_| call.len() < kinds.len()) {
-                let inputs = &job.rows.row(row)[first..first + shape.words() as usize];
-                call.extend(inputs);
+            if let Some((first, _)) = at.filter(|_| start >= value.len()) {
+                call.resize(start, 0.0);
+                call.extend(&job.rows.row(row)[first..first + size]);
             }
         }
         call.resize(kinds.len(), 0.0);

@@ -10,7 +10,8 @@ pub const BINS: usize = 48;
 pub const CELLS: usize = 32;
 /// How many of the worst inputs are kept.
 const WORST: usize = 5;
-/// The largest magnitude divided by the median one, above which a scale is not linear.
+/// The ratio of the largest magnitude to the median one, or of the ends of a positive range, above
+/// which a scale is logarithmic.
 const WIDE: f64 = 1e3;
 
 /// The error over the inputs of one case in one language on one executor.
@@ -54,7 +55,7 @@ pub struct Bin {
     pub ulps: f64,
 }
 
-/// The largest share of what is allowed, over two parameters.
+/// The largest errors over two parameters, each as a share of what is allowed.
 #[derive(Debug, Clone)]
 pub struct Map {
     /// Indices of the axes.
@@ -96,7 +97,7 @@ impl Scale {
         if self.bend == 0.0 { value } else { (value / self.bend).asinh() }
     }
 
-    /// Where a value lies, from 0 to 1.
+    /// Where a value lies along the scale, from 0 to 1.
     pub fn place(self, value: f64) -> f64 {
         let (low, high) = (self.bent(self.low), self.bent(self.high));
         if high > low { ((self.bent(value) - low) / (high - low)).clamp(0.0, 1.0) } else { 0.5 }
@@ -114,7 +115,7 @@ impl Scale {
     }
 }
 
-/// The profile of results of a job's rows.
+/// The profile of the results for the rows of a job.
 pub fn make_profile(job: &Job<'_>, results: &[u32]) -> Profile {
     let kinds = job.kernel().result_kinds();
     let found: Vec<Worst> = job

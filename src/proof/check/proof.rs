@@ -1,5 +1,6 @@
-//! What can be proven about a case without a device: how its tolerance compares with what WGSL
-//! allows, and whether both languages mean the same.
+//! What can be checked of a case without a device: how its tolerance compares with what WGSL
+//! allows, whether the code in f64 agrees with the oracle, and whether both languages compute the
+//! same.
 
 use rayon::prelude::*;
 
@@ -15,8 +16,9 @@ use naga::ScalarKind;
 
 /// The largest relative difference between the two languages in f64.
 const PARITY: f64 = 1e-12;
-/// The largest share of a case's tolerance that the code may be off in f64. The rest is for
-/// rounding. The digits of a table are rounded themselves.
+/// The largest error of the code in f64, as a share of the tolerance of the case. The rest of the
+/// tolerance is left for rounding to f32. The values of a table are themselves rounded, so they may
+/// use the whole tolerance.
 const VALUE: f64 = 0.5;
 const VALUE_OF_TABLE: f64 = 1.0;
 /// The rounding error in f64 as a share of the one in f32, with a few bits to spare.
@@ -31,7 +33,7 @@ pub struct Proof {
     pub case: usize,
     /// Where the case names the function.
     pub span: Span,
-    /// The arguments with the worst failure, if there is one.
+    /// The arguments of the worst failure, if there is one.
     pub arguments: Option<String>,
     /// What WGSL allows, compared with what the case allows; or why that is not known.
     pub spec: Result<Spec, String>,
@@ -49,7 +51,7 @@ pub struct Spec {
     pub rows: usize,
     /// How many of those have a tolerance below what WGSL allows.
     pub stricter: usize,
-    /// The smallest tolerance divided by bound, and both of them in units in the last place; 0
+    /// The smallest ratio of tolerance to bound, and both of them in units in the last place; 0
     /// without rows.
     pub least: f64,
     pub stated_ulps: f64,

@@ -103,7 +103,7 @@ pub fn lacking_text(report: &Report) -> String {
     report.outcomes.iter().filter_map(line).collect()
 }
 
-/// How much of the tolerance the error leaves, in percent.
+/// How much of the tolerance the error leaves, in percent; `exact` without an error.
 pub fn headroom_text(share: f64) -> String {
     if share == 0.0 { "exact".to_owned() } else { format!("{:.0} %", 100.0 * (1.0 - share)) }
 }

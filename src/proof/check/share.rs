@@ -1,4 +1,4 @@
-//! What a case may take of its file's bounds.
+//! Limits on the rows and on the work of the cases of a file.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -9,13 +9,14 @@ use crate::proof::cases::{self, Case, File, Rows};
 use crate::proof::formula::Formula;
 use crate::proof::tolerance::Bound;
 
-/// What a case may take of its file's steps: the same for every case, whatever order they run in.
+/// The steps that each case of a file may take: an equal share of the limit of the file. The order
+/// in which cases run therefore makes no difference.
 pub fn steps_of_case(file: &File) -> Steps {
     Steps::new(CASE_WORK / file.cases.len().max(1) as u64)
 }
 
-/// What the cases of a file have together. They are made in any order: whether it is too much does
-/// not depend on that.
+/// The sums over all cases of a file. Cases are prepared in any order, but whether a sum exceeds
+/// its limit does not depend on the order.
 #[derive(Default)]
 pub struct Total {
     rows: AtomicUsize,
@@ -42,7 +43,7 @@ impl Total {
     }
 }
 
-/// What is computed for each row.
+/// What is evaluated for each row of a case.
 pub struct Parts<'a> {
     pub terms: &'a [Bound],
     pub near: &'a Option<(Formula, f64)>,
@@ -51,8 +52,8 @@ pub struct Parts<'a> {
 }
 
 impl Parts<'_> {
-    /// Counts it for every row, once for the values and once for each law, before any of it is
-    /// computed or kept.
+    /// Subtracts the work of these parts from the steps, before any of it is done: for every row
+    /// once for the values and once for each law.
     pub fn spend(&self, case: &Case, rows: &Rows, steps: &mut Steps) -> Result<(), Diagnostic> {
         let near = self.near.as_ref().map_or(0, |(formula, _)| formula.parts());
         let filter = self.filter.as_ref().map_or(0, Formula::parts);

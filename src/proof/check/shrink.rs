@@ -41,7 +41,7 @@ pub fn shrink_row(
     }
 }
 
-/// The same for a row that breaks a law.
+/// As [`shrink_row`], for a row that breaks a law.
 pub fn shrink_law(
     job: &Job<'_>,
     kernel: &Kernel,
@@ -73,7 +73,8 @@ pub fn shrink_law(
     Ok(format!("{}{found}{head}{laws}inputs = {{ {} }}\n", input.text, input.lists))
 }
 
-/// The simplest input found that still fails. `first_failing` gives the index of a row that does.
+/// The simplest input found that still fails. `first_failing` gives the index of the first of some
+/// rows that fails.
 fn smallest_input(
     job: &Job<'_>,
     failing: usize,
@@ -240,7 +241,7 @@ fn case_to_paste(job: &Job<'_>, input: &Input, expected: &str, allowed: f64) -> 
     text + &format!("rows = [{{ {}{separator}expect = {expected} }}]\n", input.row)
 }
 
-/// The line that names them, if there are any.
+/// The line of a case that names its fixtures; empty if it has none.
 fn fixtures_line(job: &Job<'_>) -> String {
     let names: Vec<String> = job
         .case

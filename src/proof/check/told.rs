@@ -11,7 +11,7 @@ pub fn report_failures(report: &Report) -> Diagnostics {
     proofs.chain(report.outcomes.iter().filter_map(of_outcome)).collect()
 }
 
-/// The same without excerpts.
+/// The failures as plain text, without excerpts of the sources.
 pub fn failures_as_text(failures: &[Diagnostic]) -> String {
     let line = |failure: &Diagnostic| {
         let notes: Vec<String> = failure.notes.iter().map(|note| format!("{note}\n")).collect();

@@ -25,7 +25,8 @@ use rewrite::Rewritten;
 /// Name of the function around the expression.
 const FUNCTION: &str = "lamplight_eval";
 
-/// The components of a value, structs and arrays flattened, matrices by columns.
+/// The components of a value as words: structs and arrays are flattened, matrices go column by
+/// column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Value {
     pub words: Vec<u32>,
@@ -113,7 +114,8 @@ fn expression_module(
     }
 }
 
-/// The module with the function returning the value it binds, and the value's type.
+/// Makes the function return the last value that it binds to a name. Returns the module and the
+/// type of the value.
 fn with_result(validated: Validated) -> Result<(naga::Module, Handle<naga::Type>), Diagnostic> {
     let Validated { mut module, info, .. } = validated;
     let nothing = || Diagnostic::error(codes::UNTESTABLE_FUNCTION, "the expression has no value");

@@ -49,7 +49,8 @@ impl Rewritten {
     }
 }
 
-/// `fn lamplight_eval() { let value = (...); }`, paths into the library made absolute.
+/// Writes the WESL module `fn lamplight_eval() { let value = (...); }`. Paths into the library
+/// become absolute.
 pub fn rewrite_wesl(expression: &str, library: &Library) -> Rewritten {
     let homes = Homes::new(library);
     let mut made = Rewritten {
@@ -77,7 +78,7 @@ pub fn rewrite_wesl(expression: &str, library: &Library) -> Rewritten {
     made
 }
 
-/// Which package the first name of a path means.
+/// Finds the package of a path by the first name of the path.
 struct Homes<'a> {
     library: &'a Library,
     own: Vec<String>,
@@ -91,7 +92,8 @@ impl<'a> Homes<'a> {
         Self { library, own: library.folders(), shipped }
     }
 
-    /// The package, and whether the name is the package's own.
+    /// The package, and whether the name is `package` itself: the name of the package then replaces
+    /// it, and otherwise goes before it.
     fn of(&self, first: &str) -> Option<(&str, bool)> {
         let is = |folders: &[String]| folders.iter().any(|folder| folder == first);
         match first {
@@ -217,7 +219,8 @@ const SCALARS: &[(&str, &str, &str)] =
 /// Suffix of vectors in WGSL, prefix in GLSL.
 const SUFFIXES: &[(&str, &str)] = &[("f", ""), ("i", "i"), ("u", "u")];
 
-/// A number without WGSL's suffixes; other tokens as they are.
+/// A number without the suffixes `f` and `i`, which are not the same in GLSL. Other tokens stay as
+/// they are.
 fn glsl_literal(token: &str) -> String {
     let is_number = token.starts_with(|c: char| c.is_ascii_digit() || c == '.') && token.len() > 1;
     let is_hex = token.starts_with("0x");
@@ -252,7 +255,7 @@ fn type_name(module: &Module, ty: Handle<Type>) -> String {
     }
 }
 
-/// Words, numbers, `::`, blanks and other characters.
+/// The byte ranges of the tokens: words, numbers, `::`, blanks, and other characters one by one.
 fn expression_tokens(text: &str) -> Vec<Range<usize>> {
     let mut tokens = Vec::new();
     let mut at = 0;

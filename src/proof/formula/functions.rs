@@ -1,4 +1,5 @@
-//! The functions of formulas: those of WGSL that are about numbers, in f64, by component.
+//! The functions of formulas: the numeric built-in functions of WGSL in f64, and `dot_abs` and
+//! `vec`.
 
 use super::{Function, map_components, zip_components};
 
@@ -80,7 +81,7 @@ fn mix(a: &[f64], b: &[f64], t: &[f64]) -> Vec<f64> {
     zip_components(&times(a, &map_components(t, |t| 1.0 - t)), &times(b, t), |x, y| x + y)
 }
 
-/// `n` is unit, as in WGSL.
+/// `n` must be of unit length, as in WGSL.
 fn reflect(i: &[f64], n: &[f64]) -> Vec<f64> {
     let along: f64 = times(i, n).iter().sum();
     minus(i, &map_components(n, |x| 2.0 * along * x))

@@ -30,7 +30,7 @@ use crate::quadrature::gauss_legendre;
 #[derive(Debug, Clone)]
 pub struct Albedo {
     pub over: Over,
-    /// Parameter that is the cosine n.v.
+    /// The parameter of the case that is the cosine n.v.
     pub view: String,
     /// Angle of the viewer about the normal from the tangent, radians.
     pub azimuth: f64,
@@ -38,7 +38,8 @@ pub struct Albedo {
     pub peak: Option<Text>,
     /// Formulas for parameters that neither the geometry nor the case has.
     pub with: Formulas,
-    /// The component of the function's value and of the product that is the albedo.
+    /// The component of the function's value and of the product that is compared. Without it, all
+    /// components are.
     pub component: Option<usize>,
     /// Steps in the cosine. There are twice as many azimuths.
     pub steps: usize,
@@ -103,7 +104,7 @@ const DIRECTIONS: &[Direction] =
     &[("n", |_| [0.0, 0.0, 1.0]), ("l", |g| g.l), ("v", |g| g.v), ("h", |g| g.h)];
 
 impl Albedo {
-    /// The rows of the case that are integrated.
+    /// The indices of the rows of the case that are integrated.
     pub fn chosen(&self, rows: &Rows) -> Vec<usize> {
         let most = MOST_ROWS.min(MOST_CALLS / self.calls()).max(1);
         let count = rows.len().min(most);
@@ -189,12 +190,13 @@ impl Geometry {
     }
 }
 
-/// Even azimuths and Gauss-Legendre in the cosine, from `low` to 1, with their solid angles.
+/// Evenly spaced azimuths, and Gauss-Legendre in the cosine from `low` to 1, with their solid
+/// angles.
 fn even_directions(steps: usize, low: f64) -> Vec<(Vector, f64)> {
     ring_directions(steps, |x| (low + (1.0 - low) * x, 1.0 - low))
 }
 
-/// Half vectors as GGX of the width alpha is distributed: tan^2 = alpha^2*u/(1 - u).
+/// Half vectors distributed as those of GGX of width alpha: tan^2 = alpha^2*u/(1 - u).
 fn about_half(steps: usize, alpha: f64) -> Vec<(Vector, f64)> {
     ring_directions(steps, |u| {
         let tan2 = alpha * alpha * u / (1.0 - u);
@@ -203,7 +205,8 @@ fn about_half(steps: usize, alpha: f64) -> Vec<(Vector, f64)> {
     })
 }
 
-/// Directions at evenly spaced azimuths, whose cosine and its slope are functions on [0, 1].
+/// Directions at evenly spaced azimuths, with their solid angles. `cosine` maps [0, 1] to the
+/// cosine of the polar angle and its derivative.
 fn ring_directions(steps: usize, cosine: impl Fn(f64) -> (f64, f64)) -> Vec<(Vector, f64)> {
     let azimuths = 2 * steps;
     let mut found = Vec::new();
@@ -219,14 +222,15 @@ fn ring_directions(steps: usize, cosine: impl Fn(f64) -> (f64, f64)) -> Vec<(Vec
     found
 }
 
-/// A call for a light's direction.
+/// The geometry of a call for a direction of the light.
 fn light_call(v: Vector, l: Vector, weight: f64) -> (Geometry, f64) {
     let sum = [0, 1, 2].map(|index| l[index] + v[index]);
     let length = dot(sum, sum).sqrt().max(1e-12);
     (Geometry { l, v, h: sum.map(|value| value / length) }, weight)
 }
 
-/// A call for the light that `h` mirrors towards the viewer: dl = 4*(v.h)*dh.
+/// The geometry of a call for the light that `h` mirrors towards the viewer. The solid angle is
+/// that of `h`, and dl = 4*(v.h)*dh.
 fn mirrored_call(v: Vector, h: Vector, weight: f64) -> (Geometry, f64) {
     let vh = dot(v, h);
     let l = [0, 1, 2].map(|index| 2.0 * vh * h[index] - v[index]);
@@ -234,7 +238,7 @@ fn mirrored_call(v: Vector, h: Vector, weight: f64) -> (Geometry, f64) {
     (Geometry { l, v, h }, if seen { weight * 4.0 * vh * l[2] } else { 0.0 })
 }
 
-/// A call for a normal of the surface's facets.
+/// The geometry of a call for `h` as the normal of a microfacet, whose weight has the factor n.h.
 fn facet_call(v: Vector, h: Vector, weight: f64) -> (Geometry, f64) {
     let (geometry, _) = mirrored_call(v, h, weight);
     (geometry, weight * h[2])

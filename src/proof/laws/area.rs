@@ -1,4 +1,5 @@
-//! Integrals of other functions along one parameter, and equality with other functions.
+//! The laws `area` and `equal`: integrals of other functions along one parameter, and equality with
+//! other functions.
 
 use super::Wanted;
 use super::factor::{Factor, Formulas};
@@ -44,7 +45,7 @@ impl Equality {
     }
 }
 
-/// The area under a product of functions, by Gauss and Legendre's rule.
+/// The integral of a product of functions along one parameter, by Gauss-Legendre quadrature.
 #[derive(Debug, Clone)]
 pub struct Area {
     /// The parameter that is integrated over. It may be one of the case, whose own value the limits
@@ -73,7 +74,7 @@ struct Bound {
 }
 
 impl Area {
-    /// The rows of the case that are integrated.
+    /// The indices of the rows of the case that are integrated.
     pub fn chosen(&self, rows: &Rows) -> Vec<usize> {
         let count = rows.len().min((MOST_CALLS / self.steps).max(1));
         (0..count).map(|index| index * rows.len() / count.max(1)).collect()
@@ -103,7 +104,7 @@ impl Area {
         Ok(Rows::of(words, factor.kinds()))
     }
 
-    /// The areas of one component for the chosen rows; `values` has one value for each call.
+    /// The integrals of one component for the chosen rows; `values` has one value for each call.
     pub fn sums(
         &self,
         rows: &Rows,
@@ -111,7 +112,8 @@ impl Area {
         values: &[f64],
     ) -> Result<Vec<f64>, Diagnostic> {
         let bound = self.bind(case)?;
-        // The parameter as a number behind those of the case, or in the place that it has there.
+        // The place of `along` in a row: that of the parameter of the case, or a number after all
+        // of them.
         let mut scope = Scope(case.0.clone());
         if case.find(std::slice::from_ref(&self.along)).is_none() {
             scope.0.push((&self.along, &NUMBER));
@@ -136,7 +138,7 @@ impl Area {
         Ok(Bound { from: self.from.bind(case)?, to: self.to.bind(case)?, finest })
     }
 
-    /// Places, as the functions get them, and weights.
+    /// The nodes of the rule, rounded to f32 as the functions get them, and their weights.
     fn nodes(&self, row: &[f64], bound: &Bound) -> Vec<(f64, f64)> {
         let (from, to) = (bound.from.scalar(row), bound.to.scalar(row));
         let (length, finest) = (to - from, bound.finest.as_ref().map(|finest| finest.scalar(row)));

@@ -10,8 +10,8 @@ use crate::source::Span;
 /// Formulas over the case's parameters, by the names of parameters of other functions.
 pub type Formulas = Vec<(String, Text)>;
 
-/// Another function. Each of its arguments is the value of a formula of the law, else what the law
-/// itself gives for this name, else the case's parameter of this name.
+/// Another function that a law calls. Each of its arguments is the value of a formula of the law,
+/// else what the law itself gives for this name, else the case's parameter of this name.
 pub struct Factor<'a> {
     case: &'a Scope<'a>,
     own: &'a Scope<'a>,
@@ -37,7 +37,7 @@ impl<'a> Factor<'a> {
         self.own.0.iter().flat_map(|(_, shape)| shape.kinds()).collect()
     }
 
-    /// Appends the words of a call for a row of the case.
+    /// Appends the words of a call for a row of the case. `given` is what the law gives for a name.
     pub fn push_call(
         &self,
         words: &mut Vec<u32>,

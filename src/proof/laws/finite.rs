@@ -17,9 +17,10 @@ pub const UP_TO: f64 = 1e9;
 const ROWS: usize = 1536;
 /// The most rows of all combinations.
 const PRODUCT: usize = 4096;
-/// How many rows are drawn for each one that a law's `where` may leave.
+/// How many rows are drawn at most for each row that is wanted, since the `where` of a law may drop
+/// most of them.
 const TRIES: usize = 32;
-/// How often a value is one of the edge values, by row: each kind of row follows the others.
+/// The probability that a value is an edge value. Rows take these in turn.
 const EDGES: [f64; 4] = [1.0, 0.5, 0.2, 0.1];
 /// Rows in which every value is as large as it may be, with either sign.
 const LARGEST: usize = 64;
@@ -72,7 +73,7 @@ const INTEGERS: &[f64] = &[
     4294967295.0,
 ];
 
-/// The rows of a law whose arguments are no larger than `up_to`. `filter` says which are kept.
+/// Arguments no larger than `up_to`, as rows. `filter` says which are kept.
 pub fn edge_rows(scope: &Scope<'_>, up_to: f64, filter: Option<&Formula>) -> Rows {
     let shapes: Vec<&Shape> = scope.0.iter().map(|(_, shape)| *shape).collect();
     let kinds: Vec<ScalarKind> = shapes.iter().flat_map(|shape| shape.kinds()).collect();
@@ -138,7 +139,7 @@ struct Draw {
     up_to: f64,
     /// The vectors of this row so far, which others may be parallel or opposite to.
     seen: Vec<Vec<f64>>,
-    /// How often a value is an edge value.
+    /// The probability that a value of this row is an edge value.
     edges: f64,
 }
 
@@ -153,7 +154,8 @@ impl Draw {
         shapes.iter().flat_map(|shape| self.value(shape)).collect()
     }
 
-    /// The largest magnitude, with the same sign in the first rows.
+    /// The largest magnitude. All signs are positive in the first row and negative in the second,
+    /// and then random. An integer is any edge value.
     fn largest(&mut self, kind: ScalarKind, index: usize) -> f64 {
         let is_negative = if index < 2 { index == 1 } else { self.chance(0.5) };
         match kind {
@@ -192,7 +194,7 @@ impl Draw {
         self.random.range(0.0, high)
     }
 
-    /// A number by which a vector is made long or short.
+    /// The length of a vector: 1, or with the probability of an edge value any number.
     fn length(&mut self) -> f64 {
         if self.chance(self.edges) {
             self.number(ScalarKind::Float)

@@ -31,7 +31,7 @@ pub struct Integral {
     pub at_most: bool,
 }
 
-/// A direction of the rule and its weight. The frame is that of `about`, which is z.
+/// A direction of the rule and its weight. The z axis of its frame is `about`.
 struct Node {
     direction: [f64; 3],
     weight: f64,
@@ -53,8 +53,8 @@ impl Integral {
         rings.collect()
     }
 
-    /// The rows of a case, each once for every direction of the rule, which replaces the words
-    /// `direction`.
+    /// The rows of a case, each repeated for every direction of the rule. The direction replaces
+    /// the words `direction`.
     pub fn rows(&self, rows: &Rows, direction: Range<usize>, about: Option<Range<usize>>) -> Rows {
         let nodes = self.nodes();
         let chosen =
@@ -131,7 +131,7 @@ fn unit_vector(vector: &[f64]) -> Option<[f64; 3]> {
         .then(|| [x / length, y / length, z / length])
 }
 
-/// Three axes at right angles, the last of which is given.
+/// A right-handed orthonormal frame whose last axis is `z`.
 fn frame_around(z: [f64; 3]) -> [[f64; 3]; 3] {
     let other = if z[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
     let x = cross(other, z);

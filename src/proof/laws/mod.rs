@@ -99,7 +99,8 @@ impl Takes {
     }
 }
 
-/// The law that no value is NaN or infinite. Functions of the library are judged by it unasked.
+/// The law that no value is NaN or infinite. Functions of the library have it without being asked
+/// for it.
 pub const FINITE: &str = "finite";
 
 /// Every kind.
@@ -135,7 +136,7 @@ pub struct Law {
     pub area: Option<Area>,
     /// The other functions that the law is about, by their names in the file.
     pub partners: Vec<String>,
-    /// Which of its own arguments the law `finite` is about; all without it.
+    /// The arguments that the law `finite` tries; without it, all of them.
     pub filter: Option<Text>,
 }
 
@@ -155,8 +156,8 @@ impl std::fmt::Debug for Kind {
     }
 }
 
-/// The law as text for a case file. An integral is a property of many rows together, so no single
-/// row breaks it.
+/// The law as text for a case file, to reproduce a row that breaks it. Only laws that a single row
+/// can break are reproduced, so the other laws are written without their options.
 pub fn law_toml(law: &Law) -> String {
     let names = law.names.iter().map(|name| format!("{name:?}")).collect::<Vec<_>>().join(", ");
     let point = || {
@@ -215,7 +216,8 @@ pub fn find_kind(name: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|kind| kind.name == name)
 }
 
-/// The rows that the law compares the case's rows with; `None` for laws about single values.
+/// The rows that the law compares the case's rows with; `None` for laws about single values, and
+/// for those with partners.
 pub fn transform_rows(
     law: &Law,
     rows: &Rows,
@@ -256,8 +258,8 @@ pub fn transform_rows(
     Ok(Some(rows.with_words(words)))
 }
 
-/// The calls of one of the law's other functions, where they do not depend on results. `own` has
-/// its parameters.
+/// The arguments for one of the law's other functions; `None` where they are results. `own` has the
+/// parameters of that function.
 pub fn partner_rows(
     law: &Law,
     index: usize,
@@ -273,7 +275,7 @@ pub fn partner_rows(
     law.area.as_ref().map(|area| area.rows(rows, (case, own), law.span)).transpose()
 }
 
-/// The own rows of the law `finite`; none for a function without parameters.
+/// The rows that the law `finite` adds; `None` for a function without parameters.
 fn finite_rows(law: &Law, scope: &Scope<'_>) -> Result<Option<Rows>, Diagnostic> {
     let filter = law.filter.as_ref().map(|text| text.bind(scope)).transpose()?;
     let rows = finite::edge_rows(scope, law.number(0), filter.as_ref());
@@ -294,7 +296,7 @@ fn argument_place<'a>(
     scope.find(&parts).ok_or_else(|| scope.unknown(name).at(law.span, "in this law"))
 }
 
-/// Words of three floats.
+/// The words of a parameter that is a direction. Fails unless it has three floats.
 fn direction_words(law: &Law, name: &str, scope: &Scope<'_>) -> Result<Range<usize>, Diagnostic> {
     let (first, shape) = argument_place(law, name, scope)?;
     if shape.kinds() == [ScalarKind::Float; 3] {

@@ -5,7 +5,7 @@ use naga::{Block, Expression, Function, Handle, Range, Statement, TypeInner};
 use super::site::{Edit, Site, equal_value};
 use crate::emit::blocks::inner_blocks_mut;
 
-/// Changes the function; `false` where the site is not in it.
+/// Puts the mistake into the function; `false` if the function does not have its site.
 pub fn apply_mutation(
     function: &mut Function,
     site: &Site,
@@ -76,7 +76,8 @@ fn replace_expression(function: &mut Function, at: Handle<Expression>, with: Exp
     there
 }
 
-/// Changes the statement of that number, in the order of the text.
+/// Applies `edit` to the statement of the number `wanted`, in the order of the text; `false` if
+/// there is none.
 fn change_statement(
     block: &mut Block,
     wanted: usize,

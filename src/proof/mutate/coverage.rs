@@ -34,7 +34,7 @@ pub struct Place {
 /// A block by its function, its place in the composed text, and how it is reached.
 type Key = (String, u32, u32, u8);
 
-/// Runs every row of the modules' cases and counts.
+/// Runs every row of the cases of the modules, and finds the blocks that none reaches.
 ///
 /// # Errors
 /// Mistakes in modules and case files.

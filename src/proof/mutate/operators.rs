@@ -1,4 +1,4 @@
-//! What authors confuse: operators, built-ins, and operands that have a side.
+//! What authors confuse: operators, built-in functions, and operands that may not be swapped.
 
 use naga::{BinaryOperator as Op, MathFunction as Math};
 

@@ -5,7 +5,7 @@ use super::listed::Listed;
 /// The share of the mutants that the cases must kill.
 pub const LEAST_SHARE: f64 = 0.99;
 
-/// The fate of one mutant, and where its mistake is.
+/// One mutant: where its mistake is, and its fate.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MutantOutcome {
     /// `lighting::spot::cone_hard`.

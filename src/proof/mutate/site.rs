@@ -10,7 +10,7 @@ use naga::{
 use super::operators::{BUILT_INS, OPERATORS, SIDED, SIDED_MATH};
 use crate::emit::blocks::inner_blocks;
 
-/// One mistake: where, what, and the place in the composed text.
+/// One mistake: its place in the composed text, and the change.
 #[derive(Debug, Clone)]
 pub struct Site {
     pub span: Span,
@@ -24,9 +24,9 @@ pub enum Edit {
     Expression { at: Handle<Expression>, with: Expression, how: How },
     /// The branches of an `if` are swapped: its condition is negated.
     Negated { statement: usize, condition: Handle<Expression> },
-    /// An `if` that leaves the function is removed.
+    /// An `if` whose branch leaves the function is replaced by its `else`.
     NoExit { statement: usize, condition: Handle<Expression> },
-    /// Another `if` is removed, except for one of its branches.
+    /// Any other `if` is replaced by one of its branches.
     Decided { statement: usize, condition: Handle<Expression>, holds: bool },
     /// An assignment is removed.
     NoStore { statement: usize },
@@ -41,7 +41,7 @@ pub enum Edit {
 pub enum How {
     Swapped,
     Operator(&'static str),
-    /// Only this operand remains.
+    /// This operand replaces the expression.
     Kept(Handle<Expression>),
     NoLowerBound,
     NoUpperBound,
@@ -49,7 +49,7 @@ pub enum How {
     Whole(i64),
     Flipped,
     Function(&'static str),
-    /// These two neighbours change places.
+    /// These two neighbouring arguments of a constructor change places.
     Exchanged(Handle<Expression>, Handle<Expression>),
     /// Another component of a vector.
     Component(usize),
@@ -71,8 +71,8 @@ pub fn mutation_sites(module: &Module, info: &ModuleInfo, handle: Handle<Functio
     sites
 }
 
-/// A value that equals an operand, to replace another expression: the minimum of the operand and
-/// itself.
+/// An expression with the value of an operand, to replace another one in place: the minimum of the
+/// operand with itself, or `||` for a boolean. There is none for other types.
 pub fn equal_value(inner: &TypeInner, of: Handle<Expression>) -> Option<Expression> {
     match inner {
         TypeInner::Scalar(scalar) | TypeInner::Vector { scalar, .. }
@@ -132,7 +132,7 @@ impl Finder<'_> {
         }
     }
 
-    /// Neighbours of one type change places.
+    /// Neighbouring arguments of a constructor change places, if they have the same type.
     fn exchanged(&self, ty: Handle<Type>, components: &[Handle<Expression>]) -> Changed {
         let pairs = components.windows(2).enumerate().filter(|(_, pair)| self.can_exchange(pair));
         pairs
@@ -144,7 +144,7 @@ impl Finder<'_> {
             .collect()
     }
 
-    /// Whether both have one type, and may differ.
+    /// Whether both have the same type, and are not the same expression or literal.
     fn can_exchange(&self, pair: &[Handle<Expression>]) -> bool {
         let written = [pair[0], pair[1]].map(|side| &self.function.expressions[side]);
         let are_same = match written {
@@ -154,7 +154,7 @@ impl Finder<'_> {
         !are_same && self.ty(pair[0]) == self.ty(pair[1])
     }
 
-    /// The next component of a vector, in a circle.
+    /// The next component of the vector; after the last one, the first.
     fn component(&self, base: Handle<Expression>, index: u32) -> Changed {
         let vector = match *self.ty(base) {
             TypeInner::Pointer { base, .. } => &self.module.types[base].inner,
@@ -248,8 +248,8 @@ impl Finder<'_> {
         }
     }
 
-    /// Whether it is a variable that naga made for `&&` or `||`. Mistakes in its branches are
-    /// covered by mistakes in the operator.
+    /// Whether a store goes to a variable that naga made for `&&` or `||`. Mistakes in its branches
+    /// are covered by mistakes in the operator.
     fn is_unnamed(&self, pointer: Handle<Expression>) -> bool {
         match self.function.expressions[pointer] {
             Expression::LocalVariable(variable) => {
@@ -313,7 +313,7 @@ impl Finder<'_> {
     }
 }
 
-/// Whether nothing behind the block runs.
+/// Whether the block ends in a jump, so that nothing after it runs.
 fn ends_flow(block: &Block) -> bool {
     let ends = |statement: &Statement| {
         matches!(

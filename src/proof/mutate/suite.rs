@@ -27,14 +27,16 @@ use crate::proof::tolerance;
 use crate::source::SourceSet;
 
 /// The most loop iterations of one call: many times what any case needs, and few enough to stop a
-/// mutant without end soon.
+/// mutant soon that loops without end.
 pub const TRIPS: u64 = 20_000;
 
-/// How many rows are run before the first look at them. Each later batch is four times as large.
+/// How many rows are run before the results are judged for the first time. Each later batch is four
+/// times as large.
 const FIRST_BATCH: usize = 48;
 
-/// The allowed error in f64: a share of the value, plus a share of what the case allows in f32. The
-/// rounding error of f64 is 2^-29 of that of f32.
+/// Two parts of the allowed error in f64: a share of the value, and a share of the error that the
+/// case allows in f32. The second is 8 times the ratio of the rounding errors, which is 2^-29: a
+/// margin for functions that round more often in f64 than their error model counts.
 const RELATIVE: f64 = 1e-9;
 const OF_STATED: f64 = 1.0 / (1u64 << 26) as f64;
 
@@ -67,9 +69,10 @@ pub struct Ready<'f> {
 struct Batch {
     rows: Rows,
     expected: Vec<Goal>,
-    /// The allowed error of each word in f64. It is twice the error of the code without a mistake,
-    /// which comes from its constants in f32. It is infinite where the oracle is the code itself or
-    /// accepts every value.
+    /// The allowed error of each word in f64: twice the error of the code without a mistake, which
+    /// comes from its constants in f32, and the parts `RELATIVE` and `OF_STATED`. It is infinite
+    /// where the oracle is the code itself or accepts every value, or the code without a mistake is
+    /// off by more than the case states.
     slack: Vec<f64>,
 }
 
@@ -260,7 +263,8 @@ fn gcd(a: usize, b: usize) -> usize {
 }
 
 impl Suite<'_> {
-    /// The first case that fails, or does not run, without any mistake put in.
+    /// Checks that every case passes without a mistake put in. The error is about the first one
+    /// that does not.
     pub fn check(&self) -> Result<(), Diagnostic> {
         let failing = self.cases.iter().find(|case| self.run(case, None) != Some(Fate::Survived));
         failing.map_or(Ok(()), |case| {
@@ -273,7 +277,7 @@ impl Suite<'_> {
         })
     }
 
-    /// Whether a case notices the mistake; `None` if the mutant is not valid.
+    /// What becomes of the mutant with this mistake; `None` if the mutant is not valid.
     pub fn fate(&self, subject: &Subject, site: &Site) -> Option<Fate> {
         let reaching =
             |case: &&Ready<'_>| find_function(&case.job.kernel().module, &subject.name).is_some();
@@ -317,7 +321,8 @@ fn find_function(module: &Module, name: &str) -> Option<Handle<Function>> {
 }
 
 impl Ready<'_> {
-    /// Whether a value is wrong, a law is broken, or too many rows are ambiguous.
+    /// Whether the case fails for the mutant: a value is wrong, a law is broken, or too many rows
+    /// are ambiguous.
     fn notices(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
         Ok(self.is_off(interpreter)? || self.fails(interpreter)?)
     }
@@ -378,7 +383,7 @@ impl Ready<'_> {
         Ok(false)
     }
 
-    /// Runs every row of the case, for what the machine records during that.
+    /// Runs every row of the case, and shows `seen` what the machine recorded.
     pub fn record(
         &self,
         interpreter: &Interpreter,

@@ -11,7 +11,7 @@ use crate::source::{self, SourceSet};
 /// The most characters of an excerpt.
 const LONGEST: usize = 80;
 
-/// The source of a composed function's text.
+/// What is needed to quote a composed function as its author wrote it.
 pub struct Text<'a> {
     pub sources: &'a SourceSet,
     pub map: &'a SourceMap,
@@ -30,7 +30,7 @@ impl Text<'_> {
         (format!("{}:{line}", source.path), text.to_owned())
     }
 
-    /// What the mistake is.
+    /// A description of the mistake.
     pub fn words(&self, site: &Site) -> String {
         let whole = self.excerpt(site.span);
         match &site.edit {

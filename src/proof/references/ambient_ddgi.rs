@@ -12,7 +12,8 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-/// The cube of var/(var + (d - mean)^2) beyond the mean, not below the least.
+/// 1 up to the mean distance. Beyond it, the cube of var/(var + (d - mean)^2), but at least
+/// `least`, which is read from the arguments if it is `None`.
 fn chebyshev(a: &mut Arguments<'_>, least: Option<f64>) -> f64 {
     let (mean, mean2, dist) = (a.f64(), a.f64(), a.f64());
     let least = least.unwrap_or_else(|| a.f64()).clamp(0.0, 1.0);
@@ -24,7 +25,9 @@ fn chebyshev(a: &mut Arguments<'_>, least: Option<f64>) -> f64 {
     (variance / below).powi(3).clamp(least, 1.0)
 }
 
-/// Direction and visibility, small weights by their cube; times the trilinear share.
+/// The wrapped cosine, squared, plus 0.2, times the visibility. A weight w below 0.2 becomes
+/// w^3/0.2^2. The result is multiplied by the trilinear share. Without `least`, the visibility is
+/// an argument.
 fn weight(a: &mut Arguments<'_>, least: Option<f64>) -> Expected {
     let (n, dir, share) = (a.vec3(), a.vec3(), a.f64());
     let visibility = if least.is_some() { chebyshev(a, least) } else { a.f64() };

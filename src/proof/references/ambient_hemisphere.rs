@@ -17,7 +17,7 @@ fn weight(n: DVec3, up: DVec3) -> f64 {
     0.5 + 0.5 * n.dot(up)
 }
 
-/// 1 - sin(t)/2 up to 90 degrees, sin(t)/2 beyond.
+/// 1 - sin(t)/2 for angles t between the two directions up to 90 degrees, sin(t)/2 beyond.
 fn weight_sine(a: &mut Arguments<'_>) -> Expected {
     let (n, up) = (a.vec3(), a.vec3());
     let half = 0.5 * n.cross(up).length();

@@ -23,7 +23,7 @@ fn ibl_mix(a: &mut Arguments<'_>) -> Expected {
     c.lerp(specular + c, sp).into()
 }
 
-/// The mirrored view vector, turned from eye to world space.
+/// The mirror direction of the view vector, turned from eye to world space.
 fn reflect_world(a: &mut Arguments<'_>) -> Expected {
     let (view, n, v) = (a.mat3(), a.vec3(), a.vec3());
     (view.transpose() * (2.0 * n.dot(v) * n - v)).into()
@@ -34,7 +34,8 @@ fn split_sum(a: &mut Arguments<'_>) -> Expected {
     (prefiltered * (f0 * dfg.x + dfg.y)).into()
 }
 
-/// Where the ray meets the first of the planes that it comes to; not behind the point.
+/// The vector from the point `c` of the environment to where the ray from `p` along `r` first meets
+/// a plane of the box. Planes behind `p` count as if `p` were on them.
 fn box_project(a: &mut Arguments<'_>) -> Expected {
     let (r, p, lo, hi, c) = (a.vec3(), a.vec3(), a.vec3(), a.vec3(), a.vec3());
     if r == DVec3::ZERO {
@@ -50,7 +51,7 @@ fn box_project(a: &mut Arguments<'_>) -> Expected {
     (p + r * x.min(y).min(z) - c).into()
 }
 
-/// Even in the square root of what is left to full roughness.
+/// The mip level is proportional to 1 - (1 - roughness)^2.
 fn lod_filament(roughness: f64, mips: f64) -> f64 {
     (1.0 - (1.0 - roughness.clamp(0.0, 1.0)).powi(2)) * (mips - 1.0).max(0.0)
 }

@@ -22,7 +22,7 @@ fn specular(a: &mut Arguments<'_>) -> Expected {
     ((nv + ao).powf((-16.0 * alpha - 1.0).exp2()) - 1.0 + ao).clamp(0.0, 1.0).into()
 }
 
-/// The cubic of the occlusion whose coefficients are linear in the albedo.
+/// The cubic polynomial of the visibility whose coefficients are linear in the albedo.
 fn multibounce(a: &mut Arguments<'_>) -> Expected {
     let (v, albedo) = (a.f64().clamp(0.0, 1.0), a.vec3().clamp(DVec3::ZERO, DVec3::ONE));
     Expected::words(albedo.to_array().map(|rho| {
@@ -59,7 +59,9 @@ fn gtao_arc(a: &mut Arguments<'_>) -> Expected {
     (sum * width / 3.0).into()
 }
 
-/// Parts of a number beyond its whole ones, by the plastic number's powers.
+/// A cosine-distributed direction from point `i` of the sequence R2: fractional parts of 1/2 + i/p
+/// and 1/2 + i/p^2, with the plastic number p. Its length grows from 0.1 to 1 with the square of
+/// i/count.
 fn kernel(i: f64, count: f64) -> DVec3 {
     let p = 1.324717957244746;
     let (x, y) = ((0.5 + i / p).rem_euclid(1.0), (0.5 + i / (p * p)).rem_euclid(1.0));
@@ -69,7 +71,9 @@ fn kernel(i: f64, count: f64) -> DVec3 {
         * (0.1 + 0.9 * share * share)
 }
 
-/// Two cones: the smaller one where it is within the other, none where they are apart.
+/// The share of the cone of the reflection lobe that lies in the cone of the unoccluded directions.
+/// The area that both caps share is the smaller cap where one contains the other, 0 where they are
+/// apart, and smoothly between otherwise. The effect fades out for small alpha.
 fn gtso(a: &mut Arguments<'_>) -> Expected {
     let (bent, r) = (a.vec3(), a.vec3());
     let [ao, alpha] = [a.f64(), a.f64()].map(|x| x.clamp(0.0, 1.0));

@@ -12,7 +12,8 @@ fn sign(x: f64) -> f64 {
     if x >= 0.0 { 1.0 } else { -1.0 }
 }
 
-/// The direction scaled onto |x| + |y| + |z| = 1; the lower half mirrored at the diamond's edges.
+/// The direction scaled onto |x| + |y| + |z| = 1. The lower half is mirrored at the edges of the
+/// diamond |x| + |y| = 1.
 fn encode(a: &mut Arguments<'_>) -> Expected {
     let n = a.vec3();
     if n.abs().max_element() <= f64::from(1e-30f32) {
@@ -24,7 +25,8 @@ fn encode(a: &mut Arguments<'_>) -> Expected {
     if n.z >= 0.0 { upper.into() } else { lower.into() }
 }
 
-/// The point lifted onto the octahedron, beyond the diamond from below.
+/// The direction to the point of the octahedron: of its upper half inside the diamond |x| + |y| =
+/// 1, of its lower half outside.
 fn decode(e: DVec2) -> DVec3 {
     let e = e.clamp(DVec2::splat(-1.0), DVec2::ONE);
     let z = 1.0 - e.x.abs() - e.y.abs();

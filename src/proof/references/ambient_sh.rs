@@ -72,7 +72,7 @@ fn geomerics(a: &mut Arguments<'_>) -> Expected {
     DVec3::new(channel(0), channel(1), channel(2)).into()
 }
 
-/// The linear bands, and a zonal coefficient of band 2 about the luminance's axis.
+/// The bands 0 and 1, and for band 2 a zonal coefficient about the axis of the luminance.
 fn zh3(a: &mut Arguments<'_>) -> Expected {
     let (n, [l00, l1m1, l10, l11]) = (a.vec3(), four(a));
     let luma = DVec3::new(0.2126, 0.7152, 0.0722);
@@ -88,7 +88,7 @@ fn zh3(a: &mut Arguments<'_>) -> Expected {
     DVec3::new(channel(0), channel(1), channel(2)).into()
 }
 
-/// A half cosine from 1 at the constant band to 0 at the width.
+/// The square of a cosine: 1 at band 0, and 0 from the width on.
 fn window(band: f64, width: f64) -> f64 {
     match band {
         band if band <= 0.0 => 1.0,

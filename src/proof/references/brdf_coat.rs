@@ -15,8 +15,8 @@ fn coat_mix(a: &mut Arguments<'_>) -> Expected {
     base.lerp(coat, share).into()
 }
 
-/// The base's index, from its reflectance in air, against the coat's: ((k - n)/(k + n))^2, with
-/// the limit 1 for a reflectance of 1.
+/// The reflectance of the base, of index k, under the coat, of index n: ((k - n)/(k + n))^2. k
+/// follows from the reflectance in air. For a reflectance of 1 the result is the limit, 1.
 fn coat_f0(a: &mut Arguments<'_>) -> Expected {
     let (f0, ior) = (a.vec3(), a.f64().max(0.0));
     let one = |f0: f64| {
@@ -27,7 +27,8 @@ fn coat_f0(a: &mut Arguments<'_>) -> Expected {
     Expected::words(f0.to_array().map(one))
 }
 
-/// (1 - K)/(1 - Eb*K): the sum of all bounces below the coat.
+/// (1 - K)/(1 - Eb*K), the sum of all bounces below the coat, with the albedo Eb of the base and
+/// the internal reflectance K of the coat.
 fn coat_darkening(a: &mut Arguments<'_>) -> Expected {
     let (base, eta) = (a.vec3().clamp(DVec3::ZERO, DVec3::ONE), a.f64().clamp(1.0, 100.0));
     let (rough, seen) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));

@@ -55,7 +55,7 @@ fn burley(a: &mut Arguments<'_>) -> Expected {
     (rise(nl) * rise(nv) * FRAC_1_PI).into()
 }
 
-/// G of the published polynomial, over powers of 1 - mu.
+/// G, a polynomial in 1 - mu with the published coefficients.
 fn eon_g(mu: f64) -> f64 {
     let m = 1.0 - mu.clamp(0.0, 1.0);
     let terms = [0.0571085289, 0.491881867, -0.332181442, 0.0714429953];
@@ -92,7 +92,8 @@ fn eon(a: &mut Arguments<'_>) -> Expected {
     (single + color * FRAC_1_PI * lost(nl) * lost(nv) / (1.0 - average)).into()
 }
 
-/// From the smooth to the rough end: a fifth power, and a cubic.
+/// A blend by roughness of two fits: for a smooth surface with the fifth power of 1 - x, for a
+/// rough one a cubic in x.
 fn burley_albedo(a: &mut Arguments<'_>) -> Expected {
     let (x, r) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));
     let smooth = 0.97619 - 0.488095 * (1.0 - x).powi(5);
@@ -100,13 +101,14 @@ fn burley_albedo(a: &mut Arguments<'_>) -> Expected {
     ((1.0 - r) * smooth + r * rough).into()
 }
 
-/// Lambert's cosine on either side, by their shares.
+/// Lambert's cosine: on the viewer's side the share that is not transmitted, on the other side the
+/// rest.
 fn diffuse_transmission(a: &mut Arguments<'_>) -> Expected {
     let (nl, share) = (a.f64(), a.f64().clamp(0.0, 1.0));
     (((1.0 - share) * nl.max(0.0) + share * (-nl).max(0.0)) * FRAC_1_PI).into()
 }
 
-/// A wrapped cosine over what it adds to the integral.
+/// The wrapped cosine over (1 + w)^2, which keeps its integral over all directions.
 fn fd_wrap(nl: f64, w: f64) -> f64 {
     ((nl + w) / (1.0 + w).powi(2)).clamp(0.0, 1.0)
 }

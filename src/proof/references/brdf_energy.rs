@@ -23,8 +23,9 @@ fn polynomial(x: f64, r: f64, terms: &[(f64, i32, i32)]) -> f64 {
     terms.iter().map(|(coefficient, i, j)| coefficient * x.powi(*i) * r.powi(*j)).sum()
 }
 
-/// What is lost, and how much more than `(1 - nv)^5` of the rest is at grazing incidence, as
-/// quotients of polynomials in the root of the cosine and the roughness.
+/// Scale and bias of the split sum, from two quotients of polynomials in sqrt(nv) and the
+/// roughness: `lost` is what single scattering loses, and `1 + rim` is the bias over (1 - nv)^5 of
+/// the rest.
 fn dfg_approx(a: &mut Arguments<'_>) -> Expected {
     let (x, r) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(f64::from(0.001f32), 1.0));
     let quotient = |above: &[(f64, i32, i32)], below: &[(f64, i32, i32)]| {
@@ -66,8 +67,8 @@ fn energy_compensation(a: &mut Arguments<'_>) -> Expected {
     (1.0 + f0 * (1.0 - albedo) / albedo).into()
 }
 
-/// The light that is lost at once is reflected again and again: a geometric series of the average
-/// reflectance.
+/// Single scattering, and the light that it loses and that is reflected again: a geometric series
+/// in the average reflectance times the lost share.
 fn split_sum_multi(a: &mut Arguments<'_>) -> Expected {
     let (f0, ks, dfg) = (a.vec3().clamp(DVec3::ZERO, DVec3::ONE), a.vec3(), a.vec2());
     let single = ks * dfg.x + dfg.y;
@@ -78,7 +79,8 @@ fn split_sum_multi(a: &mut Arguments<'_>) -> Expected {
     Expected::words(single.to_array().into_iter().chain(multiple.to_array()))
 }
 
-/// What is left of light that is lost at once, then kept in part and lost in part at each bounce.
+/// The lobe of all further bounces: (1 - Eo)*(1 - Ei)/(pi*(1 - E)), with the average albedo E, for
+/// a white surface. Its colour is the sum over the bounces, of which each keeps and loses a share.
 fn ms_lobe(a: &mut Arguments<'_>) -> Expected {
     let (eo, ei) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));
     let kept = a.f64().clamp(f64::from(0.05f32), f64::from(0.9999f32));
@@ -90,8 +92,8 @@ fn ms_lobe(a: &mut Arguments<'_>) -> Expected {
     a.vec3().clamp(DVec3::ZERO, DVec3::ONE).map(one).into()
 }
 
-/// Quotients of polynomials in the cosine and alpha: the coefficients of each power are those of
-/// the two numerators, then of the two denominators.
+/// Two quotients of polynomials in the cosine and alpha. Each row has the coefficients of one
+/// power: of the two numerators, then of the two denominators.
 fn hill(nv: f64, r: f64) -> Expected {
     let terms: [([f64; 4], i32, i32); 9] = [
         ([0.1003, 0.9345, 1.0, 1.0], 0, 0),

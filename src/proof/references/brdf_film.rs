@@ -14,8 +14,8 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-/// The responses' Fourier transforms at a path difference in metres; the shifts are whole half
-/// waves, whose cosines are the signs.
+/// The Fourier transforms of the colour matching functions at an optical path difference in metres,
+/// as linear sRGB. Phase shifts are 0 or half a wave, so their cosines are the signs.
 fn sensitivity(difference: f64, signs: DVec3) -> DVec3 {
     let phase = 2.0 * PI * difference;
     let gaussian = |value: f64, place: f64, variance: f64, sign: f64| {
@@ -38,12 +38,13 @@ fn sensitivity(difference: f64, signs: DVec3) -> DVec3 {
     )
 }
 
-/// Schlick's approximation to 1 at grazing incidence.
+/// Schlick's approximation, with a reflectance of 1 at grazing incidence.
 fn schlick(f0: f64, mu: f64) -> f64 {
     f0 + (1.0 - f0) * (1.0 - mu).powi(5)
 }
 
-/// The two waves of the first orders over the constant term, with each colour's own base.
+/// The constant term of the interference series and its first two orders. Each colour channel has
+/// its own index of the base.
 fn iridescence(eta_out: f64, eta_film: f64, f0: DVec3, nm: f64, mu: f64) -> DVec3 {
     let (outside, thick, mu) = (eta_out.clamp(1.0, 10.0), nm.clamp(0.0, 1e5), mu.clamp(0.0, 1.0));
     let t = (thick / f64::from(0.03f32)).min(1.0);
@@ -60,7 +61,8 @@ fn iridescence(eta_out: f64, eta_film: f64, f0: DVec3, nm: f64, mu: f64) -> DVec
         (1.0 + s) / (1.0 - s)
     });
     let lower = DVec3::from(base.map(|base| schlick(dielectric(1.0, base / film), inner)));
-    // Half waves: at the upper side from within, and at the lower side.
+    // A reflection at a denser medium shifts the phase by half a wave. There are two: from within
+    // the film at its upper side, and at its lower side.
     let sign = |base: f64| -> f64 { if (film >= outside) != (base < film) { -1.0 } else { 1.0 } };
     let both = (upper * lower).clamp(DVec3::splat(1e-5), DVec3::splat(f64::from(0.9999f32)));
     let steady = (1.0 - upper).powi(2) * lower / (1.0 - both);

@@ -20,7 +20,8 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-/// Both amplitudes from the angles, by Snell's law; total reflection where there is no angle.
+/// The mean of the squared amplitudes of both polarisations, with the angles from Snell's law; 1,
+/// total reflection, where it gives no angle.
 pub fn dielectric(mu: f64, eta: f64) -> f64 {
     let (cos_i, eta) = (mu.clamp(0.0, 1.0), eta.clamp(0.0, 1e9));
     if eta == 1.0 {
@@ -36,7 +37,7 @@ pub fn dielectric(mu: f64, eta: f64) -> f64 {
     (across * across + along * along) / 2.0
 }
 
-/// (1 + s)/(1 - s), s the root of a reflectance of at most what f32 has for 0.9999.
+/// (1 + s)/(1 - s) with s = sqrt(f0). `f0` is clamped to at most 0.9999, rounded to f32.
 fn ior_from_f0(f0: f64) -> f64 {
     let s = f0.clamp(0.0, f64::from(0.9999f32)).sqrt();
     (1.0 + s) / (1.0 - s)
@@ -57,7 +58,8 @@ fn sqrt(z: DVec2) -> DVec2 {
     DVec2::new(((size + z.x).max(0.0) / 2.0).sqrt(), imaginary.copysign(z.y))
 }
 
-/// The amplitudes with the complex index n + ik: w = eta*cos_t = sqrt(eta^2 - sin^2).
+/// The mean of the squared amplitudes for the complex index n + ik. There w is eta*cos_t, which is
+/// sqrt(eta^2 - sin^2).
 pub fn conductor(c: f64, n: f64, k: f64) -> f64 {
     let eta2 = mul(DVec2::new(n, k), DVec2::new(n, k));
     let w = sqrt(eta2 - DVec2::new(1.0 - c * c, 0.0));
@@ -65,7 +67,8 @@ pub fn conductor(c: f64, n: f64, k: f64) -> f64 {
     (share(DVec2::new(c, 0.0), w) + share(eta2 * c, w)) / 2.0
 }
 
-/// Three wavelengths, their parameters held to the range that the documentation names.
+/// The reflectance at three wavelengths, with parameters clamped to the range that the
+/// documentation names.
 fn f_conductor(a: &mut Arguments<'_>) -> Expected {
     let (mu, n, k) = (a.f64(), a.vec3(), a.vec3());
     let [least, thin, most] = [1e-7f32, 1e-4, 1e4].map(f64::from);
@@ -74,7 +77,8 @@ fn f_conductor(a: &mut Arguments<'_>) -> Expected {
     DVec3::new(one(n.x, k.x), one(n.y, k.y), one(n.z, k.z)).into()
 }
 
-/// Schlick's approximation, and the term that gives the tint at the cosine of 1/7.
+/// Schlick's approximation, less a term by which the result at the cosine of 1/7 is `tint` times as
+/// large.
 fn f_schlick_f82(a: &mut Arguments<'_>) -> Expected {
     let (f0, tint, mu) = (a.vec3(), a.vec3(), a.f64().clamp(0.0, 1.0));
     let schlick = |mu: f64| f0 + (1.0 - f0) * (1.0 - mu).powi(5);
@@ -88,8 +92,9 @@ fn f_average_schlick(a: &mut Arguments<'_>) -> Expected {
     (f0 + (f90 - f0) / 21.0).into()
 }
 
-/// The fit, in the Fresnel amplitude at normal incidence; from the denser side by reciprocity: as
-/// much light enters as leaves, spread over n^2 of the solid angle.
+/// The average reflectance over the hemisphere: a fit in the Fresnel amplitude at normal incidence.
+/// For an index below 1, it follows by reciprocity: as much light enters as leaves, spread over n^2
+/// of the solid angle.
 pub fn average(eta: f64) -> f64 {
     let eta = eta.clamp(0.0, 1e6);
     let amplitude = ((eta - 1.0) / (eta + 1.0)).abs();
@@ -101,7 +106,8 @@ pub fn average(eta: f64) -> f64 {
     if eta < 1.0 { 1.0 - eta * eta * (1.0 - inside) } else { inside }
 }
 
-/// k from the reflectance at normal incidence, r*((n + 1)^2 + k^2) = (n - 1)^2 + k^2.
+/// n follows from the mapping of Gulbrandsen. k follows from n and the reflectance r at normal
+/// incidence: r*((n + 1)^2 + k^2) = (n - 1)^2 + k^2.
 fn ior_artistic(a: &mut Arguments<'_>) -> Expected {
     let (r, g) = (a.vec3(), a.vec3().clamp(DVec3::ZERO, DVec3::ONE));
     let r = r.clamp(DVec3::ZERO, DVec3::splat(f64::from(0.999f32)));

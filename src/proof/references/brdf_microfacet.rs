@@ -22,8 +22,8 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-/// The distribution of slopes (th/nh, bh/nh): 1/(pi*at*ab*nh^4*(1 + slopes over alphas)^2); a
-/// vector shorter than a unit vector counts as the peak.
+/// The distribution of normals by their slopes (th/nh, bh/nh): 1/(pi*at*ab*nh^4*(1 +
+/// (slopes/alphas)^2)^2). A half vector that is too short, by rounding, gives at most the peak.
 pub fn d_ggx_aniso(h: DVec3, alpha: DVec2) -> f64 {
     if alpha.min_element() < f64::from(1e-9f32) {
         return 0.0;
@@ -52,7 +52,8 @@ fn alpha_aniso(a: &mut Arguments<'_>) -> Expected {
     DVec2::new(alpha * (1.0 - share) + share, alpha).into()
 }
 
-/// The variance of the slopes within the pixel is added to that of the facets.
+/// The variance of the shading normal within the pixel, times 2 * sigma2 and limited, is added to
+/// the square of alpha.
 fn specular_aa(a: &mut Arguments<'_>) -> Expected {
     let (alpha, dx, dy, sigma2, limit) = (a.f64(), a.vec3(), a.vec3(), a.f64(), a.f64());
     let kernel = 2.0 * sigma2 * (dx.length_squared() + dy.length_squared());
@@ -73,7 +74,7 @@ fn alpha_filament(a: &mut Arguments<'_>) -> Expected {
     (alpha * DVec2::new(1.0 + strength, 1.0 - strength)).into()
 }
 
-/// The aspect is the fourth root of the ratio of the squares.
+/// The alphas are alpha/aspect and alpha*aspect, with aspect = sqrt(1 - 0.9*strength).
 fn alpha_disney(a: &mut Arguments<'_>) -> Expected {
     let (alpha, strength) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));
     let aspect = (1.0 - 0.9 * strength).sqrt();
@@ -87,8 +88,9 @@ fn alpha_openpbr(a: &mut Arguments<'_>) -> Expected {
     (alpha * ratio * (2.0 / ratio.length_squared()).sqrt()).into()
 }
 
-/// A point of the cap that the stretched viewer's direction cuts off, its height even in the second
-/// number; the facet is half way between both, and is squeezed back.
+/// Samples the visible normals by a spherical cap: a direction whose height is even in the second
+/// number from -w.z to 1, where w is the stretched view direction. The half vector of both,
+/// unstretched, is the normal.
 fn sample_visible(a: &mut Arguments<'_>) -> Expected {
     let (v, alpha, u) = (a.vec3(), a.vec2(), a.vec2());
     let stretch = alpha.extend(1.0);

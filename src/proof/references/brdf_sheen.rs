@@ -35,7 +35,8 @@ fn v_neubelt(a: &mut Arguments<'_>) -> Expected {
     (1.0 / (4.0 * (nl + nv - nl * nv).max(f64::from(1e-6f32)))).into()
 }
 
-/// The fitted curve, its five coefficients for roughness 0 and 1 mixed by the weight.
+/// The fitted curve L(x). Its five coefficients are mixed by the weight from those for roughness 0
+/// and 1.
 fn exponent(x: f64, weight: f64) -> f64 {
     let smooth = [25.3245, 3.32435, 0.16801, -1.27393, -4.85967];
     let rough = [21.5473, 3.82987, 0.19823, -1.97760, -4.32054];
@@ -48,7 +49,7 @@ fn exponent(x: f64, weight: f64) -> f64 {
     a / (1.0 + b * x.powf(c)) + d * x + e
 }
 
-/// Mirrored at 1/2 above it.
+/// exp(L(x)), where above 1/2 the exponent is 2*L(1/2) - L(1 - x).
 fn lambda(mu: f64, alpha: f64) -> f64 {
     let x = mu.clamp(f64::from(1e-6f32), f64::from(0.999999f32));
     let weight = (1.0 - alpha.clamp(0.0, 1.0)).powi(2);
@@ -69,7 +70,7 @@ fn v_charlie(a: &mut Arguments<'_>) -> Expected {
     (shown / (4.0 * (nl * nv).max(f64::from(1e-12f32)))).into()
 }
 
-/// A quotient of two quadratics in the cosine and alpha.
+/// The fit of the albedo: a quotient of two quadratics in the cosine and alpha.
 fn sheen_albedo(nv: f64, alpha: f64) -> f64 {
     let (x, y) = (nv.clamp(0.0, 1.0), alpha.clamp(0.0, 1.0));
     let terms = [1.0, x, y, x * y, x * x, y * y];
@@ -85,7 +86,7 @@ fn sheen_scale(a: &mut Arguments<'_>) -> Expected {
     left(ev).min(left(el)).clamp(0.0, 1.0).into()
 }
 
-/// Two entries of the inverse matrix, and a Gaussian of the cosine with an offset.
+/// Two entries of the inverse matrix, and the reflectance: a Gaussian of the cosine with an offset.
 fn ltc(x: f64, y: f64) -> Expected {
     let (x, y) = (x.clamp(0.0, 1.0), y.clamp(f64::from(0.01f32), 1.0));
     let a = (2.58126 * x + 0.813703 * y) * y / (1.0 + 0.310327 * x.powi(2) + 2.60994 * x * y);

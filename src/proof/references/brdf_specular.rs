@@ -38,7 +38,8 @@ fn phong_igl(a: &mut Arguments<'_>) -> Expected {
     value.into()
 }
 
-/// Not a number for a negative base, as the shader's is indeterminate there.
+/// NaN for a base of 0 or less, for which the shader's `pow` is indeterminate. Every result is
+/// accepted there.
 pub fn phong_oglpg(n: DVec3, l: DVec3, v: DVec3, s: f64) -> f64 {
     let base = mirrored(n, l).dot(v);
     if base > 0.0 { base.powf(s) } else { f64::NAN }

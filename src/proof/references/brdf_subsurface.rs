@@ -36,7 +36,7 @@ fn diffusion_s(a: &mut Arguments<'_>) -> Expected {
     }))
 }
 
-/// The distance by bisection of the share.
+/// The distance at which the cumulative distribution is `u`, by bisection.
 fn sample(u: f64, s: f64) -> f64 {
     let share = u.clamp(0.0, 1.0 - (-24f64).exp2());
     let (mut low, mut high) = (0.0, 64.0);

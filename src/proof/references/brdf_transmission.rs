@@ -35,7 +35,8 @@ fn volume_transmittance(a: &mut Arguments<'_>) -> Expected {
     Expected::words(color.to_array().map(one))
 }
 
-/// From Snell's law: the part along the surface shrinks by the index, the rest points inwards.
+/// The refracted ray inside, by Snell's law, times the thickness: the part along the surface is
+/// divided by the index, and the rest points inwards.
 fn refract_exit(a: &mut Arguments<'_>) -> Expected {
     let (v, n, ior, thickness) = (a.vec3(), a.vec3(), a.f64().max(1.0), a.f64());
     let along = -(v - n * n.dot(v)) / ior;
@@ -43,7 +44,7 @@ fn refract_exit(a: &mut Arguments<'_>) -> Expected {
     ((along - n * (1.0 - sine2).max(0.0).sqrt()) * thickness).into()
 }
 
-/// D*G1(l)*G1(v)/(4*nl*nv) of the light on the viewer's side.
+/// D*G1(l)*G1(v)/(4*nl*nv) for the light mirrored onto the viewer's side.
 fn btdf_thin(a: &mut Arguments<'_>) -> Expected {
     let (n, l, v, alpha) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
     let l = l - 2.0 * n.dot(l) * n;

@@ -26,7 +26,8 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-/// A sigmoid of a power through (20/33, `middle`), scaled so that it reaches a corner.
+/// A sigmoid u/(1 + u^p)^(1/p), with the slope at (20/33, `middle`). Each side is scaled so that
+/// the curve goes through (0, 0) and (1, 1).
 fn sigmoid(x: f64, middle: f64, slope: f64, powers: [f64; 2]) -> f64 {
     let pivot = 20.0 / 33.0;
     let d = x.clamp(0.0, 1.0) - pivot;
@@ -48,7 +49,7 @@ fn agx_curve_blender(x: f64) -> f64 {
     sigmoid(x, 0.18f64.powf(1.0 / 2.4), 2.4, [1.5, 1.5])
 }
 
-/// From a colour space's primaries and white to XYZ.
+/// The matrix from linear RGB to XYZ, for primaries and the white point D65.
 fn to_xyz(primaries: [DVec2; 3]) -> DMat3 {
     let xyz = |c: DVec2| DVec3::new(c.x / c.y, 1.0, (1.0 - c.x - c.y) / c.y);
     let columns = DMat3::from_cols(xyz(primaries[0]), xyz(primaries[1]), xyz(primaries[2]));
@@ -56,14 +57,15 @@ fn to_xyz(primaries: [DVec2; 3]) -> DMat3 {
     columns * DMat3::from_diagonal(white)
 }
 
-/// Linear Rec. 709 as linear Rec. 2020, from the primaries of both.
+/// The matrix from linear Rec. 709 to linear Rec. 2020, from the primaries of both.
 fn rec2020() -> DMat3 {
     let from = [DVec2::new(0.64, 0.33), DVec2::new(0.3, 0.6), DVec2::new(0.15, 0.06)];
     let to = [DVec2::new(0.708, 0.292), DVec2::new(0.17, 0.797), DVec2::new(0.131, 0.046)];
     to_xyz(to).inverse() * to_xyz(from)
 }
 
-/// The matrices by which AgX draws colours together, and by which it drew those that it shows.
+/// AgX's inset matrix, which draws colours towards grey, and the matrix whose inverse is its
+/// outset.
 fn agx_matrices() -> [DMat3; 2] {
     let inset = [
         0.856627153315983,
@@ -90,14 +92,14 @@ fn agx_matrices() -> [DMat3; 2] {
     [DMat3::from_cols_array(&inset), DMat3::from_cols_array(&outset)]
 }
 
-/// Colours drawn together, and a curve over the logarithms of their channels.
+/// The colour in Rec. 2020 after the inset matrix, and `curve` over the logarithms of its channels.
 fn agx_toned(c: DVec3, curve: fn(f64) -> f64) -> (DVec3, DVec3) {
     let light = agx_matrices()[0] * (rec2020() * c.clamp(DVec3::ZERO, DVec3::splat(1e20)));
     let (low, high) = ((0.18f64).log2() - 10.0, (0.18f64).log2() + 6.5);
     (light, light.map(|x| curve((x.max(1e-10).log2() - low) / (high - low))))
 }
 
-/// Drawn apart again, and then shown.
+/// The toned colour after the outset, made linear by the power 2.2, in Rec. 709.
 fn agx(c: DVec3) -> DVec3 {
     let (_, toned) = agx_toned(c, agx_curve);
     let shown = (agx_matrices()[1].inverse() * toned).map(|x| x.max(0.0).powf(2.2));
@@ -119,7 +121,8 @@ fn hue_of(c: DVec3) -> f64 {
     (sixth / 6.0).rem_euclid(1.0)
 }
 
-/// The colour between two bounds that has a hue: each channel is a trapezoid over it.
+/// The colour of a hue, in turns, whose smallest and largest channels are `least` and `most`. Each
+/// channel is a trapezoid over the hue.
 fn with_hue(least: f64, most: f64, hue: f64) -> DVec3 {
     let channel = |start: f64| {
         let from_centre = ((hue - start + 0.5).rem_euclid(1.0) - 0.5).abs();
@@ -128,7 +131,8 @@ fn with_hue(least: f64, most: f64, hue: f64) -> DVec3 {
     DVec3::new(channel(0.0), channel(1.0 / 3.0), channel(2.0 / 3.0))
 }
 
-/// Shown, 60 % of the way back to the hue before the curve, on the shorter way, and drawn apart.
+/// The toned colour, made linear by the power 2.4, with its hue moved 60 % of the shorter way back
+/// to that before the curve; then the outset, in Rec. 709.
 fn agx_blender(c: DVec3) -> DVec3 {
     let (light, toned) = agx_toned(c, agx_curve_blender);
     let shown = toned.map(|x| x.max(0.0).powf(2.4));
@@ -157,7 +161,7 @@ fn neutral(c: DVec3) -> DVec3 {
     (c * bent / peak).lerp(DVec3::splat(bent), white)
 }
 
-/// Solved backwards, step by step.
+/// The steps of `neutral`, inverted in reverse order.
 fn neutral_inverse(c: DVec3) -> DVec3 {
     let mut c = c.clamp(DVec3::ZERO, DVec3::splat(f64::from(0.9999f32)));
     let bent = c.max_element();
@@ -172,7 +176,7 @@ fn neutral_inverse(c: DVec3) -> DVec3 {
     c + if least < 0.04 { (least / 6.25).sqrt() - least } else { 0.04 }
 }
 
-/// The matrices row by row, the rational curve between them.
+/// The input matrix, the rational curve and the output matrix. The matrices are written row by row.
 fn aces_hill(c: DVec3) -> DVec3 {
     let enter = DMat3::from_cols_array(&[
         0.59719, 0.35458, 0.04823, 0.07600, 0.90834, 0.01566, 0.02840, 0.13383, 0.83777,
@@ -202,7 +206,7 @@ fn reinhard_extended(a: &mut Arguments<'_>) -> Expected {
     .into()
 }
 
-/// The published form, with its weights of the toe, the line and the shoulder.
+/// The published form: a weighted sum of the toe, the line and the shoulder.
 fn uchimura(x: f64) -> f64 {
     let (p, a, m, l, c) = (1.0, 1.0, 0.22, 0.4, 1.33);
     let x = x.max(0.0);
@@ -239,7 +243,8 @@ fn gt7_curve(x: f64) -> f64 {
     (1.0 - linear) * middle * (x / middle).powf(toe) + linear * x
 }
 
-/// Curved by channel, and by intensity with the chroma of before, as far as it is not too bright.
+/// A mix of 40 % of the colour curved by channel, and 60 % of its intensity with the chroma before
+/// the curve, in ICtCp. The chroma fades as the intensity before the curve nears that of white.
 fn gt7(c: DVec3) -> DVec3 {
     let light = rec2020() * c.clamp(DVec3::ZERO, DVec3::splat(1e6));
     let curved = light.map(gt7_curve);

@@ -40,7 +40,7 @@ fn decode(x: f64) -> Expected {
     value.into()
 }
 
-/// The fit, whose inputs end where it has reached 1.
+/// The fit. Inputs are clamped to 65504, where its value has long reached 1.
 fn aces(x: f64) -> Expected {
     let x = x.clamp(0.0, 65504.0);
     ((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14)).clamp(0.0, 1.0).into()
@@ -63,21 +63,21 @@ const PQ: [f64; 5] = [
     2392.0 / 4096.0 * 32.0,
 ];
 
-/// ((c1 + c2*Y^m1)/(1 + c3*Y^m1))^m2.
+/// Encodes: ((c1 + c2*Y^m1)/(1 + c3*Y^m1))^m2 with Y = nits/10000.
 fn pq(nits: f64) -> f64 {
     let [m1, m2, c1, c2, c3] = PQ;
     let y = (nits / 10000.0).clamp(0.0, 1.0).powf(m1);
     ((c1 + c2 * y) / (1.0 + c3 * y)).powf(m2)
 }
 
-/// (max(N^(1/m2) - c1, 0)/(c2 - c3*N^(1/m2)))^(1/m1).
+/// Decodes: (max(N^(1/m2) - c1, 0)/(c2 - c3*N^(1/m2)))^(1/m1), times 10000.
 fn nits(code: f64) -> f64 {
     let [m1, m2, c1, c2, c3] = PQ;
     let x = code.clamp(0.0, 1.0).powf(1.0 / m2);
     10000.0 * ((x - c1).max(0.0) / (c2 - c3 * x)).powf(1.0 / m1)
 }
 
-/// The constants a, b = 1 - 4*a and c = 1/2 - a*ln(4*a).
+/// The constants of the hybrid log-gamma curve: a, b = 1 - 4*a and c = 1/2 - a*ln(4*a).
 fn log_gamma() -> [f64; 3] {
     let a = 0.17883277;
     [a, 1.0 - 4.0 * a, 0.5 - a * (4.0 * a).ln()]
@@ -93,14 +93,14 @@ fn from_hlg(code: f64) -> f64 {
     if x <= 0.5 { x * x / 3.0 } else { (((x - c) / a).exp() + b) / 12.0 }
 }
 
-/// Noise of one step about the colour.
+/// The colour with noise of one quantisation step added, centred on 0.
 fn dither(c: DVec3, noise: f64, steps: f64) -> DVec3 {
     let step = 1.0 / steps.max(1.0);
     (c + DVec3::splat(step * noise - step / 2.0)).clamp(DVec3::ZERO, DVec3::ONE)
 }
 
-/// Rec. 2020 as the responses of the eye, and their codes as intensity and differences: rows, in
-/// 4096ths.
+/// The matrices from linear Rec. 2020 to LMS, and from LMS encoded with PQ to ICtCp. They are
+/// written row by row, in units of 1/4096.
 fn ictcp_matrices() -> [DMat3; 2] {
     let responses = [1688.0, 2146.0, 262.0, 683.0, 2951.0, 462.0, 99.0, 309.0, 3688.0];
     let parts = [2048.0, 2048.0, 0.0, 6610.0, -13613.0, 7003.0, 17933.0, -17390.0, -543.0];

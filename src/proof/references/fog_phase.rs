@@ -40,7 +40,8 @@ fn draine(c: f64, g: f64, alpha: f64) -> f64 {
     hg(c, g) * (1.0 + alpha * c * c) / (1.0 + alpha / 3.0 * (1.0 + 2.0 * g * g))
 }
 
-/// The fits over the diameter, and the blend.
+/// The parameters of both lobes, fitted over the diameter of the droplets, and the blend of the
+/// lobes.
 fn droplet(a: &mut Arguments<'_>) -> Expected {
     let (c, d) = (a.f64(), a.f64().clamp(5.0, 50.0));
     let g_hg = (-0.0990567 / (d - 1.67154)).exp();

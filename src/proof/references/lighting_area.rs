@@ -26,13 +26,15 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-/// The angle by its tangent, in the direction of the plane's normal.
+/// The vector irradiance of an edge: the angle between both directions over 2 pi, along the normal
+/// of their plane. `atan2` gives the angle from its tangent.
 fn edge(a: DVec3, b: DVec3) -> DVec3 {
     let normal = a.cross(b);
     normal.normalize_or_zero() * normal.length().atan2(a.dot(b)) / (2.0 * PI)
 }
 
-/// At right angles to x, or to y where that is too near.
+/// A unit vector perpendicular to `n`: its cross product with x, or with y where `n` is too near to
+/// x.
 fn any_tangent(n: DVec3) -> DVec3 {
     let axis = if n.x.abs() > f64::from(0.6f32) { DVec3::Y } else { DVec3::X };
     n.cross(axis).try_normalize().unwrap_or(DVec3::X)
@@ -60,7 +62,7 @@ fn ltc_rect(a: &mut Arguments<'_>) -> Expected {
     (-sum).clamp(0.0, 1.0).into()
 }
 
-/// Centres of the first and the last of 64 texels.
+/// Maps [0, 1] to the range between the centres of the first and the last of 64 texels.
 fn ltc_uv(nv: f64, roughness: f64) -> DVec2 {
     let texel = |x: f64| (0.5 + 63.0 * x) / 64.0;
     DVec2::new(texel(roughness.clamp(0.0, 1.0)), texel((1.0 - nv.clamp(0.0, 1.0)).sqrt()))
@@ -87,12 +89,14 @@ fn sphere(mu: f64, sin2: f64) -> f64 {
         };
         2.0 * (m * half + s * half.sin()) * t.sin()
     };
-    // Rings begin to cross the horizon at one angle: smooth on either side of it.
+    // At one angle the rings begin to cross the horizon. The integrand is smooth on either side of
+    // it.
     let border = (theta - PI / 2.0).abs().min(cap);
     smooth_integral(0.0, border, ring) + smooth_integral(border, cap, ring)
 }
 
-/// The midpoint rule after x = u - sin(2*pi*u)/(2*pi), which takes roots at the ends.
+/// The midpoint rule after the substitution x = u - sin(2*pi*u)/(2*pi), which converges fast for
+/// integrands with square roots at the ends.
 fn smooth_integral(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
     const STEPS: u32 = 128;
     let step = |index: u32| {
@@ -108,13 +112,15 @@ fn disk(a: &mut Arguments<'_>) -> Expected {
     (sphere(mu, sin2) * facing.clamp(0.0, 1.0)).into()
 }
 
-/// The ray's point that is nearest to the centre, or the sphere's point towards it.
+/// The point of the ray that is nearest to the centre `l`, or where that is outside the sphere, the
+/// sphere's point towards it.
 fn nearest_sphere(l: DVec3, r: DVec3, radius: f64) -> DVec3 {
     let to_ray = r * l.dot(r).max(0.0) - l;
     l + to_ray.clamp_length_max(radius.max(0.0))
 }
 
-/// t = ((r.l0)*(r.d) - l0.d)/(|d|^2 - (r.d)^2).
+/// The sphere around the point of the segment that is nearest to the ray, with the place t =
+/// ((r.l0)*(r.d) - l0.d)/(|d|^2 - (r.d)^2) along the segment.
 fn nearest_tube(a: &mut Arguments<'_>) -> Expected {
     let (l0, l1, r, radius) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
     let d = l1 - l0;
@@ -130,7 +136,7 @@ fn area_alpha(a: &mut Arguments<'_>) -> Expected {
     (alpha + added).clamp(0.0, 1.0).into()
 }
 
-/// The square of the quotient of both.
+/// (alpha/wide)^2, at most 1.
 fn area_energy(alpha: f64, wide: f64) -> f64 {
     if wide <= alpha {
         1.0
@@ -145,8 +151,8 @@ fn frame_of(n: DVec3, v: DVec3) -> DMat3 {
     DMat3::from_cols(t1, n.cross(t1), n).transpose()
 }
 
-/// The vector irradiance of the transformed ellipse as an integral over its outline, which
-/// converges fast; a sphere of its length and direction is cut at the horizon.
+/// The vector irradiance of the transformed ellipse, as an integral over its outline, which
+/// converges fast. The result is for a sphere with the same vector irradiance, cut at the horizon.
 fn ltc_disk(a: &mut Arguments<'_>) -> Expected {
     let (n, v, p, minv) = (a.vec3(), a.vec3(), a.vec3(), a.mat3());
     let inside = minv * frame_of(n, v);
@@ -164,7 +170,8 @@ fn ltc_disk(a: &mut Arguments<'_>) -> Expected {
     (sphere(light.normalize_or_zero().z, light.length()) / PI).into()
 }
 
-/// The lobe over all points of the line, each with the solid angle that its width of two radii has.
+/// The integral of the transformed lobe along the line. Each point has the solid angle of a strip
+/// as wide as the diameter.
 fn ltc_line(a: &mut Arguments<'_>) -> Expected {
     let (n, v, p, minv) = (a.vec3(), a.vec3(), a.vec3(), a.mat3());
     let frame = frame_of(n, v);

@@ -24,7 +24,7 @@ pub fn polynomial(d: f64, k: DVec3) -> f64 {
     if sum == 0.0 { 1.0 } else { 1.0 / sum }
 }
 
-/// 1 - clamp(d/r, 0, 1); a light without reach reaches nothing.
+/// 1 - clamp(d/r, 0, 1); 0 for a radius of 0 or less.
 fn linear_radius(d: f64, radius: f64) -> f64 {
     if radius <= 0.0 { 0.0 } else { 1.0 - (d / radius).clamp(0.0, 1.0) }
 }
@@ -34,12 +34,12 @@ fn window(x: f64) -> f64 {
     (1.0 - x).clamp(0.0, 1.0).powi(2)
 }
 
-/// The window before it is squared; no range means none.
+/// The window before it is squared; 1 without a range.
 fn range_gltf(d: f64, range: f64) -> f64 {
     if range <= 0.0 { 1.0 } else { (1.0 - (d / range).powi(4)).clamp(0.0, 1.0) }
 }
 
-/// A power of the distance, at least 0.01, windowed by the cutoff.
+/// 1/max(d^decay, 0.01), times the window of the cutoff, if there is one.
 fn decay_cutoff(d: f64, cutoff: f64, decay: f64) -> f64 {
     let falloff = 1.0 / safe_pow(d, decay).max(0.01);
     if cutoff <= 0.0 { falloff } else { falloff * window((d / cutoff).powi(4)) }

@@ -11,7 +11,7 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-/// Where a slice begins.
+/// The depth at which a slice begins.
 fn border(index: f64, near: f64, far: f64, count: f64) -> f64 {
     let first = near.max(f64::from(1e-6f32));
     if far <= first || count == 0.0 {
@@ -21,7 +21,8 @@ fn border(index: f64, near: f64, far: f64, count: f64) -> f64 {
     }
 }
 
-/// The slice found by search, and the one that is as right at a border.
+/// The slice of a depth, found by search, and the neighbouring slice if the depth is so near to
+/// their border that either is right.
 fn slices(z: f64, near: f64, far: f64, count: f64) -> (f64, f64) {
     let first = near.max(f64::from(1e-6f32));
     if far <= first || count == 0.0 {
@@ -31,7 +32,7 @@ fn slices(z: f64, near: f64, far: f64, count: f64) -> (f64, f64) {
         let begun = |index: &u32| border(f64::from(*index), near, far, count) <= z;
         f64::from((1..count as u32).take_while(begun).count() as u32)
     };
-    // A border in f32 is off by some units of the logarithms.
+    // A border that is computed in f32 is off by a few units in the last place of its logarithms.
     let slack = 1e-6 * (1.0 + (far / first).log2() * 0.25);
     let (found, above) = (search(z), search(z * (1.0 + slack)));
     (found, if above != found { above } else { search(z * (1.0 - slack)) })
@@ -42,7 +43,8 @@ fn cluster_slice(a: &mut Arguments<'_>) -> Expected {
     Expected::from(found).or(other)
 }
 
-/// Row by row, then layer by layer.
+/// Cells are numbered row by row, then layer by layer. Near a border of layers, either layer is
+/// right.
 fn cluster_index(a: &mut Arguments<'_>) -> Expected {
     let (uv, z, near, far, counts) = (a.vec2(), a.f64(), a.f64(), a.f64(), a.vec3());
     let cell = |u: f64, count: f64| (u.clamp(0.0, 1.0) * count).floor().min(count.max(1.0) - 1.0);

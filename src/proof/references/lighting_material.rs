@@ -10,13 +10,13 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-/// Two materials for each index, the front's first.
+/// Two materials for each index: the one for front faces, then the one for back faces.
 fn material_index(a: &mut Arguments<'_>) -> Expected {
     let (index, front) = (a.f64(), a.bool());
     Expected::from(2.0 * index + if front { 0.0 } else { 1.0 })
 }
 
-/// The next material behind, whatever the index.
+/// As printed: the index for front faces, and the index + 1 for back faces, without doubling.
 fn material_index_oglpg(a: &mut Arguments<'_>) -> Expected {
     let (index, front) = (a.f64(), a.bool());
     Expected::from(index + if front { 0.0 } else { 1.0 })

@@ -13,7 +13,7 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-/// The angles of spherical coordinates about the axis.
+/// The polar angle to the axis over pi, and the azimuth around it over 2 pi.
 fn ies_uv(a: &mut Arguments<'_>) -> Expected {
     let (away, axis, right) = (-a.vec3(), a.vec3(), a.vec3());
     let vertical = away.dot(axis).clamp(-1.0, 1.0).acos() / PI;
@@ -22,7 +22,8 @@ fn ies_uv(a: &mut Arguments<'_>) -> Expected {
         return Expected::words([vertical, 0.0]);
     }
     let turn = y.atan2(x) / (2.0 * PI);
-    // A full turn is no turn: where it begins, rounding decides.
+    // Azimuths of 0 and of a full turn are the same. Rounding decides which of them results, so
+    // either is accepted.
     let found = Expected::words([vertical, turn.rem_euclid(1.0)]);
     found.or(Expected::words([vertical, turn])).or(Expected::words([vertical, turn + 1.0]))
 }

@@ -31,7 +31,7 @@ fn ev100(a: &mut Arguments<'_>) -> Expected {
     (2.0 * n.log2() - t.log2() - (iso / 100.0).log2()).into()
 }
 
-/// 2^EV = L*S/K.
+/// EV from `x` = L*S/K, since 2^EV = L*S/K.
 fn metered(x: f64) -> f64 {
     x.max(f64::from(f32::MIN_POSITIVE)).log2()
 }

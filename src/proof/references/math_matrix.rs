@@ -1,5 +1,5 @@
-//! Source: the definition of the inverse; the normal matrix of every one of the books: inverse,
-//! transposed, of the upper 3x3 part.
+//! Sources: the definition of the inverse; the normal matrix as all the books have it: the inverse
+//! transpose of the upper 3x3 part.
 
 use super::{Arguments, Entry, Expected};
 use glam::DMat3;
@@ -9,12 +9,13 @@ pub const REFERENCES: Entry = Entry {
     functions: &[("inverse3", |a| inverse(a.mat3()).into()), ("normal_matrix", normal_matrix)],
 };
 
-/// Zero for a matrix that has none in f32.
+/// The inverse; zero for a matrix whose determinant is below the normal numbers of f32.
 fn inverse(m: DMat3) -> DMat3 {
     if is_singular(m) { DMat3::ZERO } else { m.inverse() }
 }
 
-/// For a flattened model the matrix of cofactors, whose directions are right.
+/// The inverse transpose of the upper 3x3 part. For a singular one, the matrix of cofactors, which
+/// still turns normals correctly.
 fn normal_matrix(a: &mut Arguments<'_>) -> Expected {
     let m = DMat3::from_mat4(a.mat4());
     if !is_singular(m) {

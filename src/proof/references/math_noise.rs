@@ -20,8 +20,8 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-/// fract(52.9829189*fract(dot(pixel, (0.06711056, 0.00583715)))), on the circle: near a whole
-/// number either end is right.
+/// fract(52.9829189*fract(dot(pixel, (0.06711056, 0.00583715)))). Rounding may move a value across
+/// a whole number, so the values at both ends are accepted there.
 fn gradient_noise(pixel: DVec2) -> Expected {
     let inner = pixel.dot(DVec2::new(0.06711056, 0.00583715));
     let noise = |inner: f64| (52.9829189 * inner).rem_euclid(1.0);
@@ -47,15 +47,15 @@ pub fn unit(bits: u32) -> f64 {
     f64::from(bits >> 8) / f64::from(1 << 24)
 }
 
-/// fract(sin(dot(seed, (12.9898, 78.233, 45.164, 94.673)))*43758.5453), with the constants as f32
-/// holds them: in the others' last digits lie whole turns.
+/// fract(sin(dot(seed, (12.9898, 78.233, 45.164, 94.673)))*43758.5453). The constants are first
+/// rounded to f32, since rounding them changes the result completely.
 pub fn random_hpg(seed: DVec4) -> f64 {
     let sine =
         seed.dot(DVec4::from_array([12.9898f32, 78.233, 45.164, 94.673].map(f64::from))).sin();
     (sine * f64::from(43758.547f32)).rem_euclid(1.0)
 }
 
-/// Radius sqrt((i + 1/2)/count), angle i times pi*(3 - sqrt 5), plus phi.
+/// A point at the radius sqrt((i + 1/2)/count) and the angle i*pi*(3 - sqrt(5)) + phi.
 pub fn vogel_disk(i: f64, count: f64, phi: f64) -> DVec2 {
     let angle = (i * PI * (3.0 - 5f64.sqrt()) + phi).rem_euclid(TAU);
     ((i + 0.5) / count.max(1.0)).sqrt() * DVec2::from_angle(angle)

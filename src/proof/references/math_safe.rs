@@ -24,7 +24,7 @@ fn safe_normalize(a: &mut Arguments<'_>) -> Expected {
     }
 }
 
-/// `max(x, 0)^e`, 0^0 = 1.
+/// `max(x, 0)^e`, with 0^0 = 1.
 pub fn safe_pow(x: f64, e: f64) -> f64 {
     if e == 0.0 { 1.0 } else { x.max(0.0).powf(e) }
 }

@@ -17,12 +17,12 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-/// min(b*tan(angle), limit); the limit from the horizon on.
+/// min(b*tan(angle), limit); `limit` where the light is at or below the horizon.
 fn slope(cosine: f64, b: f64, limit: f64) -> f64 {
     if cosine > 0.0 { (b * cosine.min(1.0).acos().tan()).min(limit) } else { limit }
 }
 
-/// Along the normal by the sine of the angle to the light.
+/// The point moved along the normal, by the sine of the angle to the light.
 fn normal_offset(a: &mut Arguments<'_>) -> Expected {
     let (p, n, l, texel, scale) = (a.vec3(), a.vec3(), a.vec3(), a.f64(), a.f64());
     (p + n * (scale * texel * n.cross(l).length())).into()
@@ -35,7 +35,7 @@ fn receiver_plane(a: &mut Arguments<'_>) -> Expected {
     if rows.determinant().abs() < 1e-30 { DVec2::ZERO.into() } else { (rows.inverse() * dz).into() }
 }
 
-/// A face at distance d is 2*d wide.
+/// The width of a texel: a face of the cube at distance d is 2*d wide.
 fn cube_texel(d: f64, size: f64) -> f64 {
     2.0 * d / size.max(1.0)
 }

@@ -14,7 +14,7 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-/// How many cascades end at or before the distance: the first that does not is the one.
+/// The first cascade that ends beyond the distance; 4 if none does.
 fn index(depth: f64, splits: DVec4) -> usize {
     splits.to_array().iter().position(|end| depth < *end).unwrap_or(4)
 }
@@ -28,7 +28,7 @@ fn blend(a: &mut Arguments<'_>) -> Expected {
     }
 }
 
-/// The logarithmic split and the even one, mixed.
+/// The logarithmic and the even split, mixed by `lambda`.
 fn split(a: &mut Arguments<'_>) -> Expected {
     let (index, count, near, far, lambda) = (a.f64(), a.f64(), a.f64(), a.f64(), a.f64());
     let near = near.max(f64::from(1e-6f32));
@@ -40,7 +40,7 @@ fn split(a: &mut Arguments<'_>) -> Expected {
         .into()
 }
 
-/// To the nearest whole texel; half way either is right.
+/// The offset to the nearest whole texel. Half way between two texels, either is right.
 fn snap(a: &mut Arguments<'_>) -> Expected {
     let (origin, size) = (a.vec2(), a.f64().max(1.0));
     let texel = origin * size / 2.0;
@@ -51,7 +51,8 @@ fn snap(a: &mut Arguments<'_>) -> Expected {
     a.or(b).or(c).or(d)
 }
 
-/// As far from the corners of the near end as from those of the far end, but not beyond it.
+/// The distance of the centre from the eye, and the radius. The centre is as far from the corners
+/// of the near end as from those of the far end, but not beyond the far end.
 fn bounding_sphere(near: f64, far: f64, tangents: DVec2) -> DVec2 {
     let to = |centre: f64, end: f64| (centre - end).hypot(tangents.length() * end);
     let (mut low, mut high) = (near, far);

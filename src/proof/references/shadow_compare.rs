@@ -32,7 +32,7 @@ pub const REFERENCES: Entry = Entry {
 /// Weight and offset in texels.
 type Taps = Vec<(f64, DVec2)>;
 
-/// A place in the map.
+/// The shadow coordinates of a point.
 #[derive(Clone, Copy)]
 struct At {
     uv: DVec2,
@@ -61,7 +61,7 @@ fn compare_tap(a: &mut Arguments<'_>) -> Expected {
     compare(map, sampler, a.vec2(), a.f64()).into()
 }
 
-/// The weighted mean of comparisons; outside the map is lit.
+/// The weighted mean of the comparisons at all taps; 1, lit, for a point outside the map.
 fn averaged(a: &mut Arguments<'_>, taps: fn(&mut Arguments<'_>, &At) -> Taps) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let at = At::read(a);
@@ -76,7 +76,8 @@ fn mean(map: &Texture, sampler: Sampler, at: At, taps: &Taps) -> f64 {
     taps.iter().map(tap).sum::<f64>() / taps.iter().map(|(weight, _)| weight).sum::<f64>()
 }
 
-/// Every pair of the weights, `step` texels apart.
+/// Taps in a square grid, `step` texels apart. The weight of each is the product of those of its
+/// column and its row.
 fn bell(weights: &[f64], step: f64) -> Taps {
     let place = |index: usize| (index as f64 - (weights.len() / 2) as f64) * step;
     let row = |y: usize| {
@@ -88,7 +89,8 @@ fn bell(weights: &[f64], step: f64) -> Taps {
     (0..weights.len()).flat_map(row).collect()
 }
 
-/// Sixteen places of the square of half side `radius`, by the chain of hashes from the pixel on.
+/// Sixteen random offsets in the square of half side `radius`, by a chain of hashes that starts
+/// with the seed of the pixel.
 fn random16(a: &mut Arguments<'_>, _: &At) -> Taps {
     let (radius, pixel) = (a.f64(), a.vec2());
     let mut state = pixel_seed(pixel);
@@ -99,8 +101,8 @@ fn random16(a: &mut Arguments<'_>, _: &At) -> Taps {
     (0..16).map(|_| (1.0, radius * DVec2::new(next(), next()))).collect()
 }
 
-/// Sixteen places to the right and below, up to a quarter of the map over `w`, by sines of the
-/// pixel.
+/// The mean of sixteen comparisons at random places to the right and below, up to a quarter of the
+/// map over `w` away. Sines of the pixel give the places.
 fn random16_hpg(a: &mut Arguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (sc, least, pixel) = (a.vec4(), a.f64(), a.vec2());
@@ -119,7 +121,7 @@ fn random16_hpg(a: &mut Arguments<'_>) -> Expected {
     if is_inside { mean().into() } else { 1.0.into() }
 }
 
-/// `count` places of the disk, at least one.
+/// `count` offsets in the disk, at least one.
 fn disk(count: f64, radius: f64, phi: f64) -> Taps {
     (0..count.max(1.0) as u32)
         .map(|i| (1.0, radius * vogel_disk(f64::from(i), count, phi)))
@@ -133,7 +135,7 @@ fn castano_row(a: &mut Arguments<'_>) -> Expected {
     (0..3).map(tap).sum::<f64>().into()
 }
 
-/// The different depths that a sample may read which is taken this many texels off its place.
+/// The distinct depths that a sample may read if its place is off by up to so many texels.
 fn depths_around(map: &Texture, sampler: Sampler, uv: DVec2, off: f64) -> Vec<f64> {
     let sides = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
     let mut depths: Vec<f64> = sides
@@ -146,8 +148,9 @@ fn depths_around(map: &Texture, sampler: Sampler, uv: DVec2, off: f64) -> Vec<f6
     depths
 }
 
-/// The mean of the samples that are nearer than the point, if any. Sine and cosine are good to
-/// 2^-11 and places to a ten-thousandth of a texel: where that chooses the texel, each is right.
+/// The means that are accepted, each of the samples that are nearer than the point; the point's own
+/// depth if none is. A device's sine and cosine may be off by 2^-11, and places by a ten-thousandth
+/// of a texel. Where such an error changes which texel is read, either texel is right.
 fn blockers(map: &Texture, sampler: Sampler, at: At, radius: f64, phi: f64) -> Vec<f64> {
     let off = radius * (-11f64).exp2() + 1e-4;
     let mut sums = vec![(0u32, 0.0)];
@@ -165,7 +168,7 @@ fn blockers(map: &Texture, sampler: Sampler, at: At, radius: f64, phi: f64) -> V
         .collect()
 }
 
-/// Any of the values.
+/// Accepts any of the values.
 fn one_of(values: impl IntoIterator<Item = f64>) -> Expected {
     let mut values = values.into_iter();
     let first = values.next().unwrap_or(f64::NAN);

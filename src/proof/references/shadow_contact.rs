@@ -23,7 +23,7 @@ fn march_point(a: &mut Arguments<'_>) -> Expected {
     (start + l * reach * (index + jitter) / count.max(1.0)).into()
 }
 
-/// The least distance to the four edges over the width of the fade.
+/// The least distance to the four edges over the width of the fade, from 0 to 1.
 fn edge_fade(a: &mut Arguments<'_>) -> Expected {
     let (uv, border) = (a.vec2(), a.f64());
     let nearest = [uv.x, 1.0 - uv.x, uv.y, 1.0 - uv.y].into_iter().fold(1.0, f64::min);
@@ -33,7 +33,7 @@ fn edge_fade(a: &mut Arguments<'_>) -> Expected {
     if nearest >= border { 1.0.into() } else { (nearest / border).into() }
 }
 
-/// The square of the cosine over that of the cone's edge.
+/// The square of n.l over the cosine of the cone's edge, at most 1.
 fn micro_shadow(visibility: f64, nl: f64) -> f64 {
     let edge = (1.0 - visibility.clamp(0.0, f64::from(0.9999f32))).sqrt();
     (nl.max(0.0) / edge).min(1.0).powi(2)

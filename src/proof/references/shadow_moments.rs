@@ -30,8 +30,8 @@ fn moments(d: f64) -> DVec2 {
     DVec2::new(d, d * d)
 }
 
-/// var/(var + (t - m1)^2) with var = max(m2 - m1^2, min), less the bleed, stretched back; 1 up to
-/// the mean.
+/// 1 up to the mean. Beyond it, var/(var + (t - m1)^2) with var = max(m2 - m1^2, min); then values
+/// below `bleed` become 0, and the rest is scaled to [0, 1].
 fn chebyshev(m: DVec2, t: f64, min_variance: f64, bleed: f64) -> f64 {
     if t <= m.x {
         return 1.0;
@@ -59,7 +59,8 @@ fn evsm_moments(a: &mut Arguments<'_>) -> Expected {
     DVec4::new(w.x, w.x * w.x, w.y, w.y * w.y).into()
 }
 
-/// The smaller bound; the least variance grows with the square of the warp's slope, 2*e*w.
+/// The smaller of the bounds of both warps. The least variance grows with the square of the slope
+/// of the warp, 2*e*w.
 fn evsm_visibility(a: &mut Arguments<'_>) -> Expected {
     let (m, t, exponents, min_variance, bleed) = (a.vec4(), a.f64(), a.vec2(), a.f64(), a.f64());
     let w = warp(t, exponents);
@@ -72,7 +73,7 @@ fn exponent(d: f64, c: f64) -> f64 {
     c.clamp(0.0, 80.0) * d.clamp(0.0, 1.0)
 }
 
-/// The filtered exponential over that of the point.
+/// The filtered exponential over the exponential of the point's depth.
 fn esm_visibility(a: &mut Arguments<'_>) -> Expected {
     let (m, t, c) = (a.f64(), a.f64(), a.f64());
     (m / exponent(t, c).exp()).clamp(0.0, 1.0).into()
@@ -91,18 +92,19 @@ const ROWS: [[f64; 4]; 4] = [
 ];
 const OFFSET: DVec4 = DVec4::new(0.035955884801, 0.0, 0.0, 0.0);
 
-/// A row vector times the matrix.
+/// A row vector times the matrix, and an offset.
 fn quantise(m: DVec4) -> DVec4 {
     DMat4::from_cols_array_2d(&ROWS) * m + OFFSET
 }
 
-/// The inverse by elimination, not that which is printed beside it.
+/// By the numerical inverse of the matrix, not by the one that is printed beside it.
 fn dequantise(q: DVec4) -> DVec4 {
     DMat4::from_cols_array_2d(&ROWS).inverse() * (q - OFFSET)
 }
 
-/// The three depths of the moments of which one is the point's: by Cramer's rule the polynomial
-/// whose roots are the others, then their weights from the first moments.
+/// Finds three depths with weights that have these moments, where one of the depths is that of the
+/// point. The two others are the roots of a polynomial, by Cramer's rule, and the weights follow
+/// from the first moments. Depths nearer than the point shade it by their weights.
 fn msm_visibility(m: DVec4, t: f64, bias: f64) -> f64 {
     let b = m.lerp(DVec4::splat(0.5), bias);
     if b.y - b.x * b.x <= f64::from(1e-12f32) {
@@ -115,7 +117,7 @@ fn msm_visibility(m: DVec4, t: f64, bias: f64) -> f64 {
         columns[column] = side;
         DMat3::from_cols_array_2d(&columns.map(|column| column.to_array())).determinant()
     };
-    // The determinant of the matrix itself is a common factor.
+    // The determinant of the matrix itself is a common factor of all three, so it is left out.
     let [k0, k1, k2] = [cramer(0), cramer(1), cramer(2)];
     let root = (k1 * k1 - 4.0 * k2 * k0).max(0.0).sqrt();
     let far = -0.5 * (k1 + root.copysign(k1));

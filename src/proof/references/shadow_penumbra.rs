@@ -7,7 +7,7 @@ pub const REFERENCES: Entry = Entry {
     functions: &[("pcss_width", near), ("pcss_width_directional", distant)],
 };
 
-/// The light's size seen through the blocker's edge: size*(receiver/blocker - 1).
+/// The penumbra by similar triangles: size*(receiver/blocker - 1).
 fn near(a: &mut Arguments<'_>) -> Expected {
     let (receiver, blocker, size) = (a.f64(), a.f64(), a.f64().max(0.0));
     if blocker <= 0.0 || receiver <= blocker {

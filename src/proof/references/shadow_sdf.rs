@@ -24,7 +24,7 @@ fn soft_step(a: &mut Arguments<'_>) -> Expected {
     DVec2::new(res.min(slope).max(0.0), h).into()
 }
 
-/// The integral of 3/4*(1 - x^2) from -1 on.
+/// The integral of 3/4*(1 - x^2) from -1 to `share`.
 fn smooth(share: f64) -> f64 {
     let x = share.clamp(-1.0, 1.0);
     0.5 + 0.75 * x - 0.25 * x.powi(3)

@@ -25,7 +25,8 @@ fn area(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
     (b - a).cross(c - a)
 }
 
-/// The texel as a vector over tangent, bitangent and normal; the tangent made square to the normal.
+/// The texel as a vector over tangent, bitangent and normal. The tangent is first made
+/// perpendicular to the normal.
 fn perturb(a: &mut Arguments<'_>) -> Expected {
     let (n, tangent, sign, texel) = (a.vec3(), a.vec3(), a.f64(), a.vec3());
     let Some(t) = (tangent - n * n.dot(tangent)).try_normalize() else { return n.into() };
@@ -44,14 +45,14 @@ fn blend_rnm(a: &mut Arguments<'_>) -> Expected {
     turned.try_normalize().unwrap_or(base).into()
 }
 
-/// The sum of both in x and y; in z the base, times what is made of the detail.
+/// x and y are the sums of both; z is that of the base times a `height` of the detail.
 fn slopes(a: &mut Arguments<'_>, height: fn(DVec3) -> f64) -> Expected {
     let (base, detail) = (a.vec3(), a.vec3());
     let sum = DVec3::new(base.x + detail.x, base.y + detail.y, base.z * height(detail));
     sum.try_normalize().unwrap_or(base).into()
 }
 
-/// Equal areas: the radius is the sine of half the angle to z, over 2.
+/// An equal-area map: the radius is half the sine of half the angle to z.
 fn spheremap(n: DVec3) -> DVec2 {
     let half_angle = n.truncate().length().atan2(n.z) / 2.0;
     n.truncate().normalize_or_zero() * half_angle.sin() / 2.0 + 0.5

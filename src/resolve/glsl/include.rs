@@ -5,7 +5,7 @@ use crate::diagnostic::{Diagnostic, codes};
 use crate::resolve::Packages;
 use crate::source::Package;
 
-/// Number of the root package; dependency `i` is `i + 1`.
+/// Number of the root package; dependency `i` has the number `i + 1`.
 pub const ROOT: usize = 0;
 
 /// Extensions of the files that are worth suggesting.
@@ -50,7 +50,7 @@ pub fn searched_packages(packages: &Packages, includer: usize, angled: bool) -> 
     if angled { (0..=packages.dependencies.len()).collect() } else { vec![includer] }
 }
 
-/// How the includer would write a file.
+/// The path by which an `#include` of the includer would name a file.
 pub fn include_spelling(
     packages: &Packages,
     includer: &Place,

@@ -27,7 +27,7 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// Whether a text mentions the macro of a setting.
+    /// Whether any file of the graph mentions the macro of a setting.
     pub fn may_ask(&self, name: &str) -> bool {
         self.symbols.find(&name.to_uppercase()).is_some()
     }
@@ -130,7 +130,7 @@ pub fn load_all(
 ) -> Result<Graph, Diagnostics> {
     let mut loader = Loader::new(sources, packages);
     for path in paths {
-        // What is wrong with a file is told where it is looked at alone.
+        // The errors of a file are reported when that file is checked on its own.
         let _ = loader.module(&(include::ROOT, path.clone()));
     }
     loader.finish("")
@@ -164,7 +164,7 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// Reads what the files lead to that were read so far.
+    /// Reads all that the files read so far include, directly or through others.
     fn finish(mut self, root: &str) -> Result<Graph, Diagnostics> {
         let mut targets = Vec::new();
         while targets.len() < self.modules.len() {

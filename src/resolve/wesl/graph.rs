@@ -9,7 +9,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::parse::wesl::{ConditionId, Expression, Name, Names, Placed};
 use crate::source::{SourceId, Span};
 
-/// Imports that a diagnostic lists, of those that led to its file.
+/// The most imports that a diagnostic lists of the chain that led to its file.
 const TRACED: usize = 16;
 
 /// Every module that a root module may reach, ready to be composed any number of times.
@@ -56,7 +56,7 @@ impl Graph {
             || self.constants.iter().any(|constant| constant.name == name)
     }
 
-    /// Whether the author of the root package wrote the file.
+    /// Whether the file is in the root package.
     pub fn is_own(&self, source: SourceId) -> bool {
         self.by_source.get(&source).is_some_and(|node| self.nodes[*node as usize].package == 0)
     }
@@ -105,7 +105,7 @@ pub struct Node {
     /// and the conditions hold.
     pub broken_imports: Vec<(Vec<ConditionId>, u32)>,
     /// Declarations of a name that is declared twice under the same condition. These failures are
-    /// reported if the module is reached as a whole.
+    /// reported if the module is reached, unless items were asked for by name.
     pub duplicates: Vec<(Option<ConditionId>, u32)>,
     /// Warnings, only for modules of the root package.
     pub lints: Vec<Diagnostic>,

@@ -14,7 +14,8 @@ use crate::source::SourceId;
 /// A text that was not read again in so many readings is forgotten.
 const READINGS: u64 = 64;
 
-/// Identifiers that are kept at most. More than a package has come together as its author types.
+/// The most identifiers that are kept. Each state of a text that is being typed may add some, so
+/// there can be many more than the package has.
 const NAMES: usize = 1 << 20;
 
 /// A parsed text, with what it declares.
@@ -42,14 +43,15 @@ impl Parsed {
     }
 }
 
-/// A module: the root that is read, its package, and its path there.
+/// Identifies a module: the root file of the reading, the number of the module's package, and its
+/// path in that package.
 pub type Key = (String, usize, Vec<String>);
 
-/// Parsed texts by their content, with the identifiers that all of them share, and what was found
-/// of them.
+/// Parsed texts by their content, the identifiers that all of them share, and the resolutions of
+/// modules.
 #[derive(Debug, Default)]
 pub struct Kept {
-    /// Absent while a reading has them, and where one ended early.
+    /// `None` during a reading, which has taken them, and after a reading that ended early.
     names: Option<Arc<Names>>,
     modules: FxHashMap<Arc<str>, (Parsed, u64)>,
     resolutions: FxHashMap<Key, (Arc<Resolution>, u64)>,
@@ -73,7 +75,7 @@ impl Kept {
         }
         match self.names.take().filter(|names| names.len() <= NAMES) {
             Some(names) => Arc::unwrap_or_clone(names),
-            // The parsed texts have numbers of identifiers that are lost.
+            // The parsed texts refer to identifiers by numbers that are no longer valid.
             None => {
                 self.modules.clear();
                 self.resolutions.clear();
@@ -87,7 +89,8 @@ impl Kept {
         self.names = Some(names);
     }
 
-    /// The parsed text, which need not be that of this file alone.
+    /// The parsed text. It may have been parsed before, for this file or for another one with the
+    /// same text.
     pub(super) fn parse(&mut self, source: SourceId, text: Arc<str>, names: &mut Names) -> Parsed {
         let reading = self.reading;
         if let Some((parsed, last)) = self.modules.get_mut(&text) {
@@ -100,14 +103,15 @@ impl Kept {
         parsed
     }
 
-    /// What was found of a module last.
+    /// The resolution of a module that was kept last.
     pub(super) fn resolution(&mut self, key: &Key) -> Option<Arc<Resolution>> {
         let (resolution, last) = self.resolutions.get_mut(key)?;
         *last = self.reading;
         Some(Arc::clone(resolution))
     }
 
-    /// Keeps what was found of a module; `None` if that holds only for this reading.
+    /// Keeps the resolution of a module. With `None`, which means that it holds only for this
+    /// reading, an earlier one is dropped.
     pub(super) fn keep_resolution(&mut self, key: Key, resolution: Option<Resolution>) {
         match resolution {
             Some(resolution) => {

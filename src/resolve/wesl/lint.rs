@@ -11,8 +11,8 @@ use crate::parse::wesl::{ConditionId, Expression, Name, Origin, Path, Reference}
 use crate::permute::Settings;
 use crate::source::Span;
 
-/// Warnings about a module's imports. Modules of dependencies have none, since their users cannot
-/// change them.
+/// Warnings about a module: those of the parser, and those about its imports. Modules of
+/// dependencies have none, since their users cannot change them.
 pub fn import_lints(loader: &Loader<'_>, node: &Node) -> Vec<Diagnostic> {
     if node.package != 0 {
         return Vec::new();
@@ -136,7 +136,7 @@ pub fn report_clashes(
     }
 }
 
-/// Whether candidates lead to different things, without those that lead nowhere.
+/// Whether candidates lead to different things. Those that lead nowhere do not count.
 fn candidates_differ(candidates: &[Candidate]) -> bool {
     let mut targets = candidates
         .iter()

@@ -23,7 +23,7 @@ pub struct Loader<'a> {
     pub(super) names: Names,
     pub(super) nodes: Vec<Node>,
     pub(super) constants: Vec<Constant>,
-    /// Where each of them is.
+    /// By name: the index in `constants`.
     pub(super) constant_places: FxHashMap<Name, u32>,
     pub(super) failures: Vec<Diagnostic>,
     /// Parsed texts of earlier readings, for editors.
@@ -33,17 +33,17 @@ pub struct Loader<'a> {
     known: HashMap<(usize, String), Result<Option<u32>, Diagnostic>>,
     /// The files of a package, once a module of it is missing.
     listings: FxHashMap<usize, Vec<String>>,
-    /// Steps of looking names up.
+    /// The steps that looking names up may still take.
     steps: Cell<Steps>,
-    /// How many of them were taken.
+    /// The steps that looking names up has taken.
     pub(super) spent: Cell<u64>,
     /// What the resolving of the present module asked.
     pub(super) notes: Notes,
     /// The root module, by which earlier results are kept.
     pub(super) root: String,
-    /// By file: the last byte whose line and column were asked for, and those.
+    /// By file: the byte whose line and column were asked for last, then that line and column.
     positions: FxHashMap<SourceId, (usize, usize, usize)>,
-    /// The names that the last module that was asked about uses.
+    /// For `is_used`: the module that was asked about last, and the names that it uses.
     used: Option<(u32, FxHashSet<Name>)>,
 }
 
@@ -95,7 +95,7 @@ impl<'a> Loader<'a> {
         Ok(true)
     }
 
-    /// Resolves every module and everything they lead to.
+    /// Resolves every module that was read and all that they lead to.
     pub fn finish(mut self) -> Result<Graph, Diagnostics> {
         let mut at = 0;
         while at < self.nodes.len() {
@@ -111,8 +111,9 @@ impl<'a> Loader<'a> {
         if errors.is_empty() { Ok(graph) } else { Err(errors) }
     }
 
-    /// Everything that the modules at some paths of the root package lead to, errors and all;
-    /// those that cannot be read are left out.
+    /// The graph of the modules at some paths of the root package, and of all that they lead to.
+    /// Errors stay in the graph. Modules that cannot be read are left out. `None` if none can be
+    /// read, or if looking names up takes too many steps.
     pub fn every(mut self, paths: &[String]) -> Option<Graph> {
         for path in paths {
             let stem = path.rsplit_once('.').map_or(path.as_str(), |(stem, _)| stem);
@@ -307,7 +308,7 @@ impl<'a> Loader<'a> {
         names.contains(&name)
     }
 
-    /// Takes steps of looking names up; false once there are no more of them.
+    /// Spends steps of looking names up; false if fewer than these are left.
     pub(super) fn step(&self, steps: usize) -> bool {
         let mut left = self.steps.get();
         let outcome = left.spend(steps as u64);
@@ -380,7 +381,7 @@ impl<'a> Loader<'a> {
     }
 }
 
-/// What many names may mean is more than can be looked at.
+/// The error for a graph in which looking names up takes more than `most` steps.
 pub fn too_entangled(module: &Placed, most: u64) -> Diagnostic {
     let message = format!("what names mean here takes more than {most} steps to find");
     Diagnostic::error(codes::LIMIT_EXCEEDED, message)

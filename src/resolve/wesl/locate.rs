@@ -26,7 +26,7 @@ const SUGGESTED: usize = 100;
 struct Places {
     whole: Span,
     first: Span,
-    /// The whole path, where its parents are not written in one piece.
+    /// All names but the last; the whole path if these are not written in one piece.
     parents: Span,
     last: Span,
 }
@@ -273,7 +273,8 @@ impl Loader<'_> {
         }
     }
 
-    /// Whether there is a module or a folder at a path. Only imports need to know this of files.
+    /// Whether there is a module or a folder at a path. For an import the module is read. If that
+    /// finds none, or for other paths, the listing of the package's files decides.
     fn is_module(
         &mut self,
         package: usize,
@@ -286,7 +287,8 @@ impl Loader<'_> {
             return Ok(true);
         }
         self.notes.is_open = true;
-        // The listing is sorted: what begins so stands together.
+        // The listing is sorted, so if any file begins with `start`, the first one not before it
+        // does.
         let listing = self.listing(package);
         let begins = |start: String| {
             let at = listing.partition_point(|file| *file < start);

@@ -47,7 +47,8 @@ pub struct Notes {
     asks: Vec<Ask>,
     /// The items that were not found in a module.
     pub lacks: Vec<(u32, Name)>,
-    /// Whether a module could not be read, or the files of a folder were asked for.
+    /// Whether a module could not be read, or the files of a folder were asked for. Then the result
+    /// is not kept.
     pub is_open: bool,
     failures: usize,
     steps: u64,
@@ -149,7 +150,8 @@ impl Loader<'_> {
         if !known.items.iter().all(has) || known.lacks.iter().any(has) {
             return false;
         }
-        // A reading without earlier ones takes the same steps.
+        // The steps count as if the module were resolved anew, so what is kept does not affect
+        // limits.
         self.step(known.steps as usize);
         let here = &mut self.nodes[node as usize];
         here.imports = Arc::clone(&known.imports);

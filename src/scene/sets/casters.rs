@@ -7,7 +7,7 @@ use super::palette::{self, AMBER, CHALK, CORAL, TEAL};
 use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "casters",
     about: "a sphere, a box and a torus over a floor that their shadows fall on",

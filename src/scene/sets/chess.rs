@@ -12,7 +12,8 @@ use crate::scene::maps::{grid_noise, random_at};
 use crate::scene::shape::Shape;
 use crate::scene::turned::{Turn, framed_shape};
 
-/// Who stands where, in squares from the middle.
+/// The chessmen that stand: kind, whether white, and the place in squares from the middle of the
+/// board.
 const GAME: &[(Man, bool, f64, f64)] = &[
     (Man::King, true, -1.5, 1.5),
     (Man::Queen, true, -2.5, -0.5),
@@ -46,25 +47,25 @@ const EBONY: DVec3 = DVec3::new(0.028, 0.022, 0.021);
 const MAPLE: DVec3 = DVec3::new(0.52, 0.34, 0.18);
 const WALNUT: DVec3 = DVec3::new(0.115, 0.048, 0.024);
 
-/// The part of the textures that has the board, and half of the side that it shows. Right of it,
-/// all is blank.
+/// The share of the textures' width that shows the board, and half the side of the square that it
+/// shows, scene units. The rest of the width is blank.
 const BOARD: (f64, f64) = (0.9, 4.9);
-/// A place that is blank.
+/// Texture coordinates of a blank place.
 const BLANK: DVec2 = DVec2::new(0.95, 0.5);
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "chess",
     about: "the end of a game of chess on a polished board, in the light of one lamp",
     make: scene,
 };
 
-/// The place of the board in the textures.
+/// The texture coordinates of a place on the board.
 fn board_uv(place: DVec3) -> DVec2 {
     (DVec2::new(place.x, place.z) / BOARD.1 * 0.5 + 0.5) * DVec2::new(BOARD.0, 1.0)
 }
 
-/// The squares, with coordinates of the whole board.
+/// The squares, with texture coordinates over the whole board.
 fn squares() -> Shape {
     let places = (0..8).flat_map(|z| (0..8).map(move |x| (x, z)));
     let board = places.fold(Shape::default(), |shape, (x, z)| {
@@ -194,12 +195,12 @@ pub fn scene() -> Scene {
     }
 }
 
-/// Wood, and what the men hide of the sky. The other maps are those of bricks.
+/// Textures of wood, and the occlusion by the men. The other maps are those of bricks.
 fn chess_maps() -> Maps {
     Maps { base: wood_map(), occlusion: open_map(), ..maps::bricks() }
 }
 
-/// A square map of the board with a number for each texel.
+/// A square map of the board. `number` gives the value of a texel from its place on the board.
 fn board_map(side: usize, number: impl Fn(DVec2) -> f64 + Sync) -> Map {
     let texel = |index: usize| {
         let at = (DVec2::new((index % side) as f64, (index / side) as f64) + 0.5) / side as f64;

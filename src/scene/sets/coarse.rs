@@ -1,4 +1,5 @@
-//! Coarse shapes close to the viewer: where light is computed can be seen.
+//! Shapes of few triangles close to the viewer, which show whether light is computed by face,
+//! vertex or fragment.
 
 use glam::{DMat4, DVec3};
 
@@ -6,7 +7,7 @@ use super::palette::{self, AMBER, TEAL};
 use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "coarse",
     about: "a ball and a ring of few triangles, close to the viewer and to a lamp",

@@ -18,7 +18,7 @@ const LENGTH: f64 = STEP * COLUMNS as f64;
 /// Slabs of the floor along its width.
 const SLABS: u32 = 6;
 
-/// A column of Tuscany: a torus, a shaft that becomes thinner upwards, a ring and an echinus.
+/// A Tuscan column: a torus, a shaft that becomes thinner upwards, a ring and an echinus.
 const COLUMN: &[Turn] = &[
     (0.5, 0.16, 0.0),
     (0.5, 0.34, 0.9),
@@ -34,7 +34,7 @@ const COLUMN: &[Turn] = &[
     (0.46, 3.46, 0.0),
 ];
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set =
     Set { name: "corridor", about: "a long colonnade beside a wall, in the sun", make: scene };
 
@@ -52,7 +52,7 @@ fn column_shape() -> Shape {
     turned_shape(COLUMN, 28).with(slab(0.56, 0.0, 0.16)).with(slab(0.52, 3.46, 3.6))
 }
 
-/// The same shape beside every column.
+/// Copies of a shape, one at every column.
 fn along_row(shape: &Shape, x: f64) -> Shape {
     (0..COLUMNS).fold(Shape::default(), |row, index| {
         let place = DVec3::new(x, 0.0, 2.0 - STEP * index as f64);
@@ -98,7 +98,8 @@ fn beam_shape() -> Shape {
     band(0.42, 3.6, 4.1).with(band(0.6, 4.1, 4.3))
 }
 
-/// The garden beside the colonnade. It casts no shadow, so that the map is that of the building.
+/// The garden beside the colonnade. It casts no shadow, so that the shadow map holds only the
+/// building.
 fn garden() -> [Object; 2] {
     let grass =
         Shape::patch(DVec3::new(-90.0, -0.06, 30.0), DVec3::X * 180.0, DVec3::Z * -180.0, (1, 1));

@@ -9,7 +9,7 @@ use super::palette::{AMBER, CHALK, CORAL, SLATE, TEAL};
 use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "fair",
     about: "a floor with balls under sixty small lamps, each of which lights what is near it",
@@ -48,7 +48,8 @@ pub fn scene() -> Scene {
         near: 0.5,
         far: 40.0,
     };
-    // Neighbours are far from each other in the order, so that any number of lamps is spread.
+    // Lamps that follow each other in this order are far apart, so that the first lamps, however
+    // many, are spread evenly.
     let lamp = |order: usize| {
         let index = (order * 23 + 34) % (COLUMNS * ROWS);
         let turn = TAU * 0.618 * index as f64;

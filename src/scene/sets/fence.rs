@@ -8,7 +8,7 @@ use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, place
 use crate::scene::shape::Shape;
 use crate::scene::turned::{Turn, turned_shape};
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "fence",
     about: "a fence and a plant in a pot, whose shadows have thin bars, gaps and points",
@@ -80,7 +80,7 @@ fn plant_shape() -> Shape {
         line.iter().zip(radii).map(|((x, y), radius)| (DVec2::new(*x, *y), radius)).collect();
     let leaf = |index: i32| {
         let share = f64::from(index) / f64::from(LEAVES - 1);
-        // By the golden angle, as on many plants.
+        // Turned by the golden angle, as on many plants.
         let turn = DMat4::from_rotation_y(2.4 * f64::from(index) + 0.9);
         let place = DMat4::from_translation(DVec3::Y * (0.3 + 0.8 * share));
         leaf_shape(0.8 - 0.3 * share).transformed(place * turn)

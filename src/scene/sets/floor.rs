@@ -25,7 +25,7 @@ pub fn tiles(count: i32, side: f64, colors: [DVec3; 2], quads: u32) -> Shape {
     })
 }
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set =
     Set { name: "floor", about: "a tessellated floor with a light above it", make: scene };
 

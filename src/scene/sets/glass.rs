@@ -11,7 +11,7 @@ const COLUMNS: usize = 4;
 /// The distances of the middles of balls.
 const STEP: (f64, f64) = (1.5, 1.56);
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "glass",
     about: "two rows of glass balls before squares, clear and rough, with more of each property to the right",

@@ -10,7 +10,7 @@ use crate::scene::shape::Shape;
 const COLUMNS: usize = 5;
 const BALLS: usize = 14;
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "grid",
     about: "fourteen balls, one for each material of the array; by themselves from dull to sharp",

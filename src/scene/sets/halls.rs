@@ -12,7 +12,7 @@ const HALF: DVec3 = DVec3::new(3.0, 1.4, 2.2);
 /// Half of the thickness of the wall between, and where it ends at the back.
 const BETWEEN: (f64, f64) = (0.06, -0.9);
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "halls",
     about: "two rooms beside each other, one lit by the light on its coloured wall",
@@ -42,7 +42,8 @@ pub fn scene() -> Scene {
     let between = Shape::cuboid(DVec3::new(thickness, HALF.y, length), 6);
     objects
         .push(Object::new(between, placed_at(0.0, 0.0, back + length, 0.0), CHALK).of(plaster, 7));
-    // The end of the wall is cut open towards the viewer, where no probe is before it.
+    // A black front on the end of the wall, which is cut open towards the viewer: there is no probe
+    // before it to light it.
     let cut = Shape::cuboid(DVec3::new(thickness + 0.005, HALF.y, 0.01), 1);
     let cut = Object::new(cut, placed_at(0.0, 0.0, HALF.z + 0.01, 0.0), DVec3::ZERO);
     objects.push(Object { casts: false, ..cut.of(plaster, 7) });

@@ -13,7 +13,7 @@ const SIDE: f64 = 15.0;
 /// How often the texture is repeated along each side.
 const TIMES: f64 = 3.0;
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "hills",
     about: "low hills of triangles under a lamp that is seen, so that faces and corners can be told apart",

@@ -13,7 +13,7 @@ use crate::scene::shape::Shape;
 /// The colours of the balls, then of the posts.
 const COLORS: [DVec3; 8] = [CORAL, LEAF, INDIGO, AMBER, LEAF, INDIGO, AMBER, CORAL];
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "lantern",
     about: "balls close to a lamp that is seen, and posts farther away, on a floor",
@@ -22,7 +22,7 @@ pub const SET: Set = Set {
 
 /// Balls near the lamp, their distance from its post, and their radius.
 const BALLS: (usize, f64, f64) = (4, 2.4, 0.7);
-/// Posts behind them, their distance from that of the lamp, and half their height.
+/// Posts behind the balls, their distance from the post of the lamp, and half their height.
 const POSTS: (usize, f64, f64) = (4, 5.7, 0.55);
 /// The height of the lamp.
 const HEIGHT: f64 = 3.4;

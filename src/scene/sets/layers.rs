@@ -14,7 +14,7 @@ const ROWS: [(DVec3, f64); 2] = [(AMBER, 0.18), (TEAL, 0.5)];
 /// How rough the sheen of each row is.
 const SHEEN_ROUGHNESS: [f64; 2] = [0.28, 0.6];
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "layers",
     about: "two rows of balls, smooth and rough, with more of each layer of glTF to the right",
@@ -26,7 +26,7 @@ pub fn scene() -> Scene {
     let ball = Shape::sphere(0.66, (96, 48));
     let object = |(row, column): (usize, usize)| {
         let x = 1.42 * (column as f64 - 0.5 * (COLUMNS - 1) as f64);
-        // Tilted, so that the pole above, where tangents meet, is on the far side.
+        // Tilted, so that the upper pole, where tangents converge, is on the far side.
         let tilt = DMat4::from_rotation_x(-0.3);
         let place = placed_at(x, 0.74 - 1.48 * row as f64, 0.0, 0.0) * tilt;
         let (color, roughness) = ROWS[row];
@@ -47,7 +47,7 @@ pub fn scene() -> Scene {
     base_scene(all.map(object).collect(), eye, palette::over_the_shoulder())
 }
 
-/// A share of every layer. The film becomes thicker, since its colours tell more than its strength.
+/// A share of every layer. The film also becomes thicker, since that shows more than its strength.
 fn all_layers(share: f64) -> Layers {
     Layers {
         clearcoat: share,

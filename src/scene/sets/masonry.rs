@@ -1,4 +1,4 @@
-//! Stones on and beside each other: gaps, corners and small things for light that is hidden.
+//! Stones on and beside each other, with gaps, corners and small parts for ambient occlusion.
 
 use glam::{DMat4, DVec2, DVec3};
 
@@ -7,7 +7,7 @@ use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, place
 use crate::scene::maps::random_at;
 use crate::scene::shape::Shape;
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "masonry",
     about: "a wall of loose stones, steps, a column and pebbles under a low lamp",
@@ -17,12 +17,12 @@ pub const SET: Set = Set {
 /// Stones in a row of the wall, and rows.
 const STONES: u32 = 6;
 const ROWS: u32 = 4;
-/// Half of a stone.
+/// Half of the sides of a stone.
 const HALF: DVec3 = DVec3::new(0.4, 0.22, 0.3);
-/// Pebbles on the ground, less those that would lie within another one.
+/// Pebbles on the ground. Those that would overlap an earlier one are left out.
 const PEBBLES: u32 = 90;
 
-/// A number of a thing, from -1 to 1.
+/// A random number in [-1, 1), by the index of a thing and by what varies.
 fn varied(index: u32, what: u32) -> f64 {
     2.0 * random_at(index, what, 7) - 1.0
 }
@@ -45,7 +45,7 @@ fn pebble(index: u32) -> (DVec2, f64) {
     (place, 0.1 + 0.06 * varied(index, 7))
 }
 
-/// Whether an earlier pebble lies there.
+/// Whether the pebble would overlap an earlier one.
 fn is_taken(index: u32) -> bool {
     let (place, radius) = pebble(index);
     (0..index).map(pebble).any(|(other, size)| place.distance(other) < 1.4 * (radius + size))

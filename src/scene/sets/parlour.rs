@@ -8,14 +8,14 @@ use super::{Eye, Lamp, LampKind, Layers, Material, Object, Scene, Set, base_scen
 use crate::scene::interior::{self, Panel, Side};
 use crate::scene::shape::Shape;
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "parlour",
     about: "a ball, a ring and a block on the polished floor of a room with windows",
     make: scene,
 };
 
-/// Metal of a roughness.
+/// Metal with this roughness.
 fn metal(roughness: f64) -> Material {
     let layers = Some(Layers { metallic: 1.0, ..Layers::default() });
     Material { roughness, layers, ..Material::default() }
@@ -29,7 +29,7 @@ fn polished(roughness: f64) -> Material {
 
 /// A panel of a wall as it is drawn: only its own light is seen.
 fn wall_panel((index, panel): (usize, &Panel)) -> Object {
-    // Later panels are before earlier ones.
+    // Later panels are in front of earlier ones.
     let depth = 1e-3 * index as f64;
     let (mut along, up) = (
         panel.side.place(glam::DVec2::X * (panel.high.x - panel.low.x), 0.0)
@@ -49,7 +49,7 @@ fn wall_panel((index, panel): (usize, &Panel)) -> Object {
 
 /// The scene itself.
 pub fn scene() -> Scene {
-    let floor = tiles(10, 1.0, [CHALK * 0.4, CHALK * 0.12], 2);
+    let floor = tiles(interior::TILES_ALONG, 1.0, [CHALK * 0.4, CHALK * 0.12], 2);
     let floor = floor.map(|vertex| vertex.position.x *= 0.8);
     let ring = placed_at(0.95, 0.98, 1.1, -0.5) * DMat4::from_rotation_x(1.4);
     let gold = DVec3::new(1.0, 0.71, 0.29);

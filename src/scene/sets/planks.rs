@@ -6,7 +6,7 @@ use super::palette::CHALK;
 use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene};
 use crate::scene::shape::Shape;
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "planks",
     about: "four planks, rougher to the right, each before a lamp that is seen",
@@ -53,7 +53,8 @@ pub fn scene() -> Scene {
         Lamp {
             color: COLORS[index] * 0.075,
             position,
-            // At the near ends of the planks, so that the range of the lamps is beyond them.
+            // The target is at the near end of the plank, so that the range of the lamp goes beyond
+            // it.
             target: DVec3::new(position.x, 0.1, REACH),
             half_angle: 1.2,
             kind: LampKind::Point,

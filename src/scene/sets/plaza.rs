@@ -9,7 +9,7 @@ use super::palette::{CHALK, SLATE};
 use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "plaza",
     about: "a round place at night: columns and a ball under forty coloured lamps",
@@ -62,7 +62,7 @@ fn column(index: usize) -> Object {
         .of(stone(), 7)
 }
 
-/// The colour of a lamp by its place in the order of hues.
+/// The colour of a lamp from its hue, as a share of the colour circle.
 fn hue(share: f64) -> DVec3 {
     let turn = TAU * share;
     let hue = DVec3::new(turn.cos(), (turn - TAU / 3.0).cos(), (turn + TAU / 3.0).cos());

@@ -8,7 +8,7 @@ use crate::scene::shape::Shape;
 
 const WHITE: DVec3 = DVec3::splat(0.85);
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "probes",
     about: "a white ball, a white box and a white ring: what colour they have is that of the light",

@@ -57,7 +57,8 @@ fn crate_place() -> DMat4 {
     placed_at(middle.x, middle.y, middle.z, turn)
 }
 
-/// Charts of the lightmap, in rows: the walls, the ball, the crate's sides, the lamp.
+/// Columns and rows of charts in the lightmap. The charts are, in order: the walls, the ball, the
+/// sides of the crate, the lamp.
 const CHARTS: (usize, usize) = (4, 4);
 const BALL_CHART: usize = 5;
 const CRATE_CHART: usize = 6;
@@ -65,7 +66,7 @@ const PANEL_CHART: usize = 12;
 /// Texels along the side of a chart.
 const CHART: usize = 48;
 
-/// A place of a chart in the whole map.
+/// The place in the lightmap of a place in a chart.
 fn place_in_map(index: usize, uv: DVec2) -> DVec2 {
     // A margin of a texel and a half, so that filtering stays inside.
     let margin = 1.5 / CHART as f64;
@@ -74,7 +75,7 @@ fn place_in_map(index: usize, uv: DVec2) -> DVec2 {
     (place + inside) / DVec2::new(CHARTS.0 as f64, CHARTS.1 as f64)
 }
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "room",
     about: "a box seen from inside, with textures and a baked lightmap",
@@ -138,8 +139,8 @@ fn panel_object(lamp: &Lamp) -> Object {
     Object { casts: false, ..panel }
 }
 
-/// The shape with a part of one brick as its texture, of that size in bricks. The brick is given by
-/// its column and row.
+/// The shape with a part of one brick as its texture. The brick is given by its column and row, and
+/// `part` is the side of the part, in bricks.
 fn on_brick(shape: Shape, brick: (f64, f64), part: f64) -> Shape {
     let middle = DVec2::new(brick.0 + 0.5, brick.1 + 0.5);
     let bricks = DVec2::new(3.0, 6.0);

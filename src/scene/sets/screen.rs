@@ -1,10 +1,11 @@
-//! The casters as a near light sees them: what a picture of the depth map shows.
+//! The objects of the scene `casters` without the floor, as a near light sees them: what a picture
+//! of the depth map shows.
 
 use glam::DVec3;
 
 use super::{Lamp, Scene, Set, casters};
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "screen",
     about: "one triangle that covers the picture, before it the casters without their floor as the light sees them",

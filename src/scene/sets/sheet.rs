@@ -6,7 +6,7 @@ use super::palette::{self, CHALK};
 use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "sheet",
     about: "an open, curled sheet: both of its sides are visible",

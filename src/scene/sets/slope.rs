@@ -9,7 +9,7 @@ use crate::scene::shape::Shape;
 /// The slope falls towards +x by this angle, radians.
 const ANGLE: f64 = 0.45;
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "slope",
     about: "a ball and a post on a slope under a low lamp, which grazes it",

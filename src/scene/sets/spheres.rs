@@ -1,4 +1,5 @@
-//! A row of spheres of rising shininess. As surfaces of glTF, they are more and more metal.
+//! A row of spheres of rising shininess. As glTF surfaces, they are more metallic from ball to
+//! ball.
 
 use glam::DVec3;
 
@@ -8,7 +9,7 @@ use crate::scene::shape::Shape;
 
 const COLORS: [DVec3; 5] = [CORAL, AMBER, LEAF, TEAL, INDIGO];
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "spheres",
     about: "a row of spheres of rising shininess before the viewer",

@@ -7,7 +7,7 @@ use super::palette::{self, CHALK, CORAL, SLATE, TEAL};
 use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set =
     Set { name: "stage", about: "a floor with two balls under lamps that are seen", make: scene };
 

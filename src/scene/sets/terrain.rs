@@ -1,4 +1,4 @@
-//! A field of heights.
+//! A height field: hills around a valley.
 
 use glam::{DMat4, DVec3};
 
@@ -6,14 +6,14 @@ use super::palette;
 use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, maps};
 use crate::scene::shape::Shape;
 
-/// Along each side, scene units.
+/// Length of each side, scene units.
 const SIDE: f64 = 34.0;
 /// Quads along each side.
 const CELLS: u32 = 190;
 
 /// Hills of several sizes around a valley, in scene units.
 pub fn height(x: f64, z: f64) -> f64 {
-    // Rounded, or the ridges would be knives.
+    // Rounded, since the ridges would otherwise be sharp edges.
     let ridge = 1.0 - ((0.8 * (0.45 * x + 0.9 * (0.3 * z).sin()).sin()).powi(2) + 0.01).sqrt();
     let valley = 1.0 - (-(x - 0.6 * (0.5 * z).sin()).powi(2) / 3.0).exp();
     let bumps = 0.16 * (1.9 * x + 0.7).sin() * (1.7 * z).cos()
@@ -21,7 +21,7 @@ pub fn height(x: f64, z: f64) -> f64 {
     valley * (1.5 * ridge * ridge + 0.4) + bumps
 }
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set =
     Set { name: "terrain", about: "a field of heights under a low sun", make: scene };
 

@@ -1,4 +1,4 @@
-//! Lamps close to a wall, which shows what each of them sends where.
+//! Lamps close to a wall, on which the distribution of their light is seen.
 
 use glam::{DMat4, DVec3};
 
@@ -6,7 +6,7 @@ use super::palette::{CHALK, CORAL, SLATE, TEAL};
 use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
 use crate::scene::shape::Shape;
 
-/// The scene, for the table of all.
+/// The entry in the list of all scenes.
 pub const SET: Set = Set {
     name: "wall",
     about: "a wall behind a floor with two balls, and three lamps close to it",

@@ -73,7 +73,7 @@ fn variable_words(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -
         .map_or("a variable without a name".to_owned(), |name| format!("`{name}`"))
 }
 
-/// Both variables, and the place that they share.
+/// The message for two variables with the same group and binding.
 fn collision_words(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> Said {
     let binding = module.global_variables[handle].binding;
     let other = module.global_variables.iter().find(|(other, found)| {

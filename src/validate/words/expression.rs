@@ -124,7 +124,7 @@ pub fn expression_words(module: &Module, error: &ExpressionError) -> Said {
     Said::plain(text)
 }
 
-/// Lookups of textures, each by what does not fit the texture.
+/// The message for a wrong lookup of a texture, by what does not fit the texture.
 fn texture_words(error: &ExpressionError) -> Said {
     use ExpressionError as E;
     let text = match error {

@@ -44,7 +44,7 @@ impl Said {
     }
 }
 
-/// What is wrong with a module.
+/// The message for an error of naga's validator.
 pub fn validation_words(module: &Module, error: &ValidationError) -> Said {
     match error {
         ValidationError::InvalidHandle(_) | ValidationError::Corrupted => {
@@ -94,7 +94,7 @@ fn inner_type_text(module: &Module, inner: &TypeInner) -> String {
     }
 }
 
-/// What needs a capability that not every target has.
+/// The message for something that needs capabilities which not every target has.
 fn lacking_words(capabilities: Capabilities) -> Said {
     let names: Vec<String> =
         capabilities.iter_names().map(|(name, _)| name.to_lowercase().replace('_', " ")).collect();
@@ -118,7 +118,7 @@ fn stage_name(stage: naga::ShaderStage) -> &'static str {
     }
 }
 
-/// Something that belongs to stages or devices which no target has.
+/// The message for something that belongs to stages or devices which no target has.
 fn foreign_words(what: &str) -> Said {
     Said::coded(codes::NOT_PORTABLE, format!("no target has {what}"))
 }

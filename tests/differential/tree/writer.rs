@@ -310,7 +310,8 @@ impl Writer<'_> {
         }
     }
 
-    /// An expression with the item that is a number, if the item allows one.
+    /// An expression of type `f32` that uses the item. `None` for structures, and for functions
+    /// that take one.
     fn value(&mut self, item: &Item, depth: usize) -> Option<String> {
         let arguments = |writer: &mut Self, count: usize| {
             (0..count).map(|_| writer.expression(depth)).collect::<Vec<_>>().join(", ")

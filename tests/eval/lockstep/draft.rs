@@ -37,7 +37,8 @@ struct Draft {
     loops: u32,
     /// Functions that may be called.
     callees: u32,
-    /// How many loops are around, and whether a `continue` would skip nothing that ends them.
+    /// How many loops enclose the statement. Outside of all loops, there is no `break` and
+    /// `continue`.
     inside: u32,
 }
 
@@ -96,7 +97,7 @@ impl Draft {
         }
     }
 
-    /// What depends on the neighbours, or on a texture.
+    /// A derivative, which depends on the other lanes of the quad, or a texture lookup.
     fn met(&mut self) -> String {
         let (a, b) = (self.number(), self.number());
         match self.dice.roll(9) {
@@ -193,7 +194,7 @@ impl Draft {
         self.inside += 1;
         let (condition, block) = (self.condition(), self.block());
         self.inside -= 1;
-        // A count ends the loop, whatever its lanes do.
+        // A counter ends the loop, whatever its lanes do.
         let most = 1 + self.dice.roll(4);
         match self.dice.roll(2) {
             0 => {

@@ -1,7 +1,7 @@
 //! What a vertex stage is drawn with, and what its frames should hold.
 //!
 //! The stage places its three vertices at the corners of one triangle over the whole frame, and
-//! computes the rest at random. So each pixel has a known share of each vertex.
+//! computes the rest at random. So the barycentric coordinates of each pixel are known.
 
 use std::fmt::Write as _;
 
@@ -102,8 +102,9 @@ impl Corners {
         Ok(Self { vertices, places: components(&function.outputs), is_integer, doubt })
     }
 
-    /// Fails if the inputs of the fragments are not the interpolated results. All integers are those
-    /// of one vertex: of the first in WebGPU and Vulkan, of the last in OpenGL.
+    /// Fails if the inputs of the fragments are not the interpolated results. Integers are not
+    /// interpolated: they come from the provoking vertex, which is the first in WebGPU and Vulkan,
+    /// and the last in OpenGL. Either is accepted.
     pub fn frame(&self, drawn: &Drawn, tally: &mut Ran) -> Result<(), String> {
         let mut first = tally.clone();
         let Err(error) = self.provoked(0, drawn, &mut first) else {
@@ -116,7 +117,7 @@ impl Corners {
         tried.map_err(|other| format!("{error}; or {other}"))
     }
 
-    /// The same, with integers of one of the vertices.
+    /// The same, with `flat` as the index of the provoking vertex.
     fn provoked(&self, flat: usize, drawn: &Drawn, tally: &mut Ran) -> Result<(), String> {
         let Some(first) = drawn.inputs.first() else { return Ok(()) };
         for pixel in 0..first.len() / 4 {
@@ -170,7 +171,7 @@ impl Corners {
     }
 }
 
-/// The share of each vertex in a pixel.
+/// The barycentric coordinates of a pixel: the weight of each vertex.
 fn shares(pixel: usize) -> [f64; 3] {
     let [width, height] = SIZE.map(f64::from);
     let (x, y) = (pixel as u32 % SIZE[0], pixel as u32 / SIZE[0]);

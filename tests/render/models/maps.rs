@@ -201,8 +201,8 @@ fn tilted(image_bytes: &[Vec<u8>], material: Value) -> Vec<u8> {
     glb(&document, &buffer)
 }
 
-/// The quarters at the upper left and at the lower right, and the same places of the squares by
-/// factors.
+/// The left and the right half of the square, which have different pixels, look like the same
+/// places of squares without a texture, whose factors are those of the pixel.
 fn agrees(row: &Row) -> Result<(), Failed> {
     let arguments = [BEFORE.as_slice(), &["--set", "ambient=ibl"]].concat();
     let [one, other] = row.pixels;

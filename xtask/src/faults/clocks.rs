@@ -1,9 +1,9 @@
 //! The system's clock is set while commands run. `gen`, its cache, its lock and `watch` must go on
 //! as if nothing had happened.
 //!
-//! A small library, loaded by `LD_PRELOAD`, answers every question for the time. Lamplight decides
-//! nothing by the date, and its cache drops nothing by age. The libraries below it may do both, so
-//! this is tried.
+//! A small library, loaded by `LD_PRELOAD`, answers every call that asks for the time. Lamplight
+//! decides nothing by the date, and its cache drops nothing by age. Libraries that it depends on
+//! may do both, so this is tried.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use crate::Failure;
 const SHIM: &str = include_str!("clock.c");
 const FAULT: &str = "system clock that is set";
 
-/// How far the clock jumps, in days, at every second question. The furthest is before 1970.
+/// How far the clock jumps, in days, at every second call. The furthest is before 1970.
 const JUMPS: [i64; 8] = [-25_000, -366, -31, -1, 1, 31, 366, 25_000];
 /// How long `watch` may take to bundle a change.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -73,7 +73,8 @@ impl Clock {
         }
     }
 
-    /// The year that another program is told.
+    /// The year that `date` prints under the clock. It shows whether clocks can be set on this
+    /// machine.
     fn year(&self, days: i64) -> Result<Vec<u8>, Failure> {
         let mut date = Command::new("date");
         let output = self.set(date.arg("+%Y"), days).output().map_err(environment)?;
@@ -93,7 +94,8 @@ impl Package {
         command
     }
 
-    /// What is wrong after a run that should have written this number into each of the three shaders.
+    /// What is wrong after a run that should have written this number into each of the three
+    /// shaders.
     fn current(&self, output: &Output, number: usize) -> Result<Option<String>, Failure> {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         Ok(match output.status.success() {

@@ -1,5 +1,5 @@
-//! Caches that answer wrongly, and times of files that jump. The bundle must have the same bytes as without
-//! a cache, whatever a record contains and whatever time files have.
+//! Caches that answer wrongly, and times of files that jump. The bundle must have the same bytes as
+//! without a cache, whatever a record contains and whatever time files have.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, FileTimes};
@@ -23,10 +23,11 @@ const WRONG: &[(&str, Wrong)] = &[
     ("record of noise", |record, _, number| noise(record.len(), number)),
 ];
 
-/// How far the times of files jump, in days, into the past and the future, for every file of the package.
+/// How far the times of files jump, in days, into the past and the future, for every file of the
+/// package.
 const JUMPS: [i64; 6] = [-20_000, -366, -1, 1, 366, 20_000];
 
-/// Runs all of them; returns what went wrong.
+/// Tries every kind of wrong record and every jump; returns the findings.
 pub fn run(
     package: &Package,
     seed: u64,
@@ -59,7 +60,8 @@ pub fn run(
 }
 
 impl Package {
-    /// The files of the bundle that a run makes in an empty folder.
+    /// The files of the bundle that a run makes in an empty folder. With `alone`, the run has no
+    /// cache.
     fn made(&self, alone: bool) -> Result<BTreeMap<PathBuf, Vec<u8>>, Failure> {
         let out = self.folder.join("fresh");
         let _ = fs::remove_dir_all(&out);

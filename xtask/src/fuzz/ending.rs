@@ -1,4 +1,4 @@
-//! What the end of a worker says.
+//! Reads from the exit status of a worker what it found.
 
 use std::process::ExitStatus;
 

@@ -1,4 +1,4 @@
-//! Judges one input in a separate process, or many in one process until something is wrong.
+//! Judges the answer to one input: a panic, too much time or memory, or two different answers.
 
 use std::panic;
 use std::sync::Mutex;

@@ -23,7 +23,8 @@ impl Random {
     }
 }
 
-/// The files of folders with an ending, sorted by path; a single empty one where there are none.
+/// The files of folders with an ending, sorted by path, and the test cases of several files as one
+/// input each. A single empty input if there are none.
 pub fn corpus_of(root: &Path, folders: &[(&str, &str)]) -> Vec<Vec<u8>> {
     let mut files = Vec::new();
     for (folder, ending) in folders {
@@ -144,7 +145,7 @@ fn spliced(random: &mut Random, into: &[Piece], corpus: &[Vec<u8>]) -> Vec<u8> {
     [&into[..at], &other[part], &into[at..]].concat().concat()
 }
 
-/// Replaces a word of the input by another of its words.
+/// Replaces a word of the input by another word from the same input.
 fn borrowed(random: &mut Random, pieces: &[Piece]) -> Vec<u8> {
     let is_word = |piece: &&Piece| piece.first().is_some_and(|byte| byte.is_ascii_alphanumeric());
     let words: Vec<&Piece> = pieces.iter().filter(is_word).collect();

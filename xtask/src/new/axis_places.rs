@@ -39,7 +39,7 @@ pub fn program_files(
 }
 
 /// The lines that test an axis: conditions of WESL, and directives of GLSL, which write it in
-/// capitals. Each is told with its place.
+/// capitals. Each line comes with its place.
 pub fn testing_lines(path: &str, text: &str, axis: &str) -> Vec<String> {
     let tests = |line: &str| match path.ends_with(".glsl") {
         true => line.starts_with('#') && has_word(line, &axis.to_uppercase()),
@@ -55,8 +55,8 @@ fn has_word(line: &str, word: &str) -> bool {
 }
 
 /// A text of GLSL in which a new value of an axis is an error in each chain of conditions that ends
-/// in `#else` and asks for values of the axis. Without this, the value takes the last branch, which
-/// nobody may have decided.
+/// in `#else` and asks for values of the axis. Without this, the new value would silently take the
+/// `#else` branch.
 pub fn with_errors(text: &str, axis: &str, value: &str) -> String {
     let name = axis.to_uppercase();
     let constant = format!("{axis}_{value}").to_uppercase();
@@ -81,7 +81,8 @@ pub fn with_errors(text: &str, axis: &str, value: &str) -> String {
     made
 }
 
-/// Whether some branch is for values of the axis, and none is for all but some.
+/// Whether some branch tests only that the axis equals certain values (`==`, joined by `||`), and
+/// no branch tests that it differs from a value (`!=`).
 fn asks_for_values(chain: &[&str], name: &str) -> bool {
     let is_test = |part: &str, sign: &str| {
         part.split_once(sign).is_some_and(|(left, _)| {

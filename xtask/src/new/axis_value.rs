@@ -189,7 +189,8 @@ fn shipping(
         );
         return Ok((text, said));
     }
-    // The setting alone, or else beside those that another value of the axis needs.
+    // The setting alone, or else with the other settings of a shipped key that chooses another
+    // value of the axis.
     let alike = shipped.iter().filter(|key| key::parts(key).any(|part| part.axis.text == axis));
     let with_value = |key: &String| {
         let others = key::parts(key).filter(|part| part.axis.text != axis);
@@ -208,7 +209,7 @@ fn shipping(
     Ok((text, format!("no permutation with `{setting}` ships yet: add it to a slice")))
 }
 
-/// How many keys are tried.
+/// The most keys that are tried.
 const TRIED: usize = 20;
 
 fn read_manifest(text: &str) -> Result<Manifest, String> {
@@ -251,7 +252,7 @@ fn in_lock(text: &str, line: &str, value: &str) -> Result<String, String> {
     }
 }
 
-/// A row at the end of a table, which says of the value what the last row says of its own.
+/// Adds a row for the value at the end of a table, with the same right side as the last row.
 fn with_row(text: &str, table: &str, value: &str) -> String {
     let start = text.find(table).map_or(text.len(), |at| at + table.len());
     let rows = text[start..].find("\n[").map_or(text.len(), |at| start + at);

@@ -34,8 +34,8 @@ impl Files for Overlay {
     }
 }
 
-/// Why a call of a function of the library does not compile, as the first error says, where a file of
-/// the repository has this text.
+/// The first error of compiling a call of a function of the library, if the file of the repository
+/// had this text; `None` if it compiles.
 pub fn first_problem(
     root: &Path,
     (file, text): (&str, &str),

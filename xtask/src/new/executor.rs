@@ -1,4 +1,5 @@
-//! A place where functions and frames run: a device of wgpu, or like one that exists.
+//! An executor, which runs functions and draws frames: a device of wgpu, or a copy of an executor
+//! that exists.
 
 use super::{Kind, Made, Repository, check_name};
 
@@ -8,8 +9,8 @@ pub const KIND: Kind =
 const FOLDER: &str = "src/execute/executors";
 const CARGO: &str = "Cargo.toml";
 
-/// Interfaces that wgpu has on some systems only: the name, which is also that of a feature of wgpu,
-/// and the system.
+/// Graphics APIs that wgpu has on some systems only: the name, which is also that of a feature of
+/// wgpu, and the systems.
 const INTERFACES: [(&str, &str); 2] = [("dx12", "windows"), ("metal", "macos, ios")];
 
 fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, String> {
@@ -39,8 +40,8 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
     Ok(Made { files, next })
 }
 
-/// What remains to be done. `is_vulkan` is for the file that no argument chose, and `is_own` for one
-/// without wgpu.
+/// What remains to be done. `is_vulkan` means that no argument chose another form than a Vulkan
+/// device of wgpu, and `is_own` that the file does without wgpu.
 fn steps(file: &str, name: &str, is_vulkan: bool, is_own: bool) -> Vec<String> {
     let mut next = vec![
         format!(
@@ -102,7 +103,8 @@ fn with_feature(text: &str, feature: &str) -> Result<String, String> {
     Ok(format!("{}, {feature:?}{}", &text[..end], &text[end..]))
 }
 
-/// What the fields of an entry say. A copy of another executor has them without comments.
+/// The template of an executor on wgpu. Its comments explain the fields; a copy of another executor
+/// has no such comments.
 const TEXT: &str = r#"//! wgpu on NAME.
 //!
 //! Runs on: SYSTEMS

@@ -90,7 +90,7 @@ impl Formula {
     }
 }
 
-/// The types that a literal such as `2` may have, in the order in which WGSL prefers them.
+/// The types that a literal such as `2` may have, in the order in which they are tried.
 const BY_LITERAL: [&str; 2] = ["i32", "f32"];
 
 impl Statement {

@@ -58,8 +58,8 @@ fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, 
     Ok(Made { files, next: steps(&stem, &reference, &new, is_new) })
 }
 
-/// Compiles the formula in its module, in WESL and then in GLSL. If it cannot be translated for GLSL,
-/// the new function is told why.
+/// Compiles the formula in its module, in WESL and then in GLSL. If it cannot be translated for
+/// GLSL, `new.untranslated` says why.
 fn complete_formula(
     repository: &Repository<'_>,
     new: &mut Signature<'_>,
@@ -162,12 +162,12 @@ impl Signature<'_> {
         }
     }
 
-    /// Something of each parameter, with commas between.
+    /// `of` each parameter, joined by commas.
     fn list(&self, of: impl Fn(&Parameter<'_>) -> String) -> String {
         self.parameters.iter().map(of).collect::<Vec<_>>().join(", ")
     }
 
-    /// What stands above the function. Each line wants its words.
+    /// The documentation comment above the function. The author completes each line.
     fn comment(&self) -> String {
         let names = self.list(|one| format!("`{}`", one.name));
         format!(
@@ -200,7 +200,8 @@ fn plain(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
     Ok(format!("{old}fn {name}({parameters}) -> {result} {{\n{body}}}\n"))
 }
 
-/// Gives names their prefix. It stands before the declarations and after them.
+/// The include that gives names their prefix. Before the declarations it defines macros, after them
+/// it undefines these.
 const PREFIX: &str = "#ifdef LAMPLIGHT_PREFIX\n#include \"../prefix.glsl\"\n#endif\n";
 
 fn glsl(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {

@@ -7,9 +7,9 @@ pub struct Type {
     pub wesl: &'static str,
     /// In GLSL.
     pub glsl: &'static str,
-    /// What reads an argument of the reference.
+    /// The method that reads an argument of this type in the reference, which is in Rust.
     pub read: &'static str,
-    /// A value of the reference that equals nothing.
+    /// The reference's placeholder for a result: a value that equals no other, such as NaN.
     pub nothing: &'static str,
     /// A number made of the value, for a plot. `$` stands for the value.
     pub number: &'static str,
@@ -23,7 +23,7 @@ pub struct Type {
 enum Domain {
     /// Numbers of a range.
     Range,
-    /// Always the same.
+    /// The same text for every parameter.
     Fixed(&'static str),
 }
 
@@ -47,7 +47,7 @@ const fn vector(
     Type { wesl, glsl, read, nothing, number: "$.x", plotted, domain: Domain::Fixed(domain) }
 }
 
-/// Every such type.
+/// Every type that a new function may take or return.
 pub const TYPES: [Type; 9] = [
     Type { number: "$", ..number("f32", "float", "0.5", Domain::Range) },
     number("i32", "int", "1", Domain::Fixed("[-2, -1, 0, 1, 2]")),

@@ -1,4 +1,4 @@
-//! Rewrites a file that names one thing into a file that names another, such as another version.
+//! Rewrites a file about one target into a file about another, such as another version.
 
 /// Words to replace, in order.
 pub struct Renaming {
@@ -7,8 +7,8 @@ pub struct Renaming {
 
 impl Renaming {
     /// From one target to another, as a string, in documentation and as a constant. The name of a
-    /// module of naga stays. If both names end with a number of three digits, the number is replaced
-    /// too, as `450`, `4.50` and `4.5`.
+    /// module of naga stays. If both names end with a number of three digits, the number is
+    /// replaced too, as `450`, `4.50` and `4.5`.
     pub fn new(from: &str, to: &str) -> Self {
         let around = [("\"", "\""), ("`", "`"), ("\"", ".")];
         let in_each = |name: &str| around.map(|(left, right)| format!("{left}{name}{right}"));

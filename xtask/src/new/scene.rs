@@ -37,7 +37,8 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
     Ok(Made { files, next })
 }
 
-/// What lines declare between a start and an end.
+/// Of each line that begins with `start`, the text up to `end`, joined by commas. Functions that
+/// take `self` are left out.
 fn declared(text: &str, start: &str, end: &str) -> String {
     let lines = text.lines().filter_map(|line| line.strip_prefix(start)?.split_once(end));
     let made = lines.map(|(what, _)| what).filter(|what| !what.contains("self"));

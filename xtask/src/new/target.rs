@@ -83,7 +83,8 @@ fn own_ending(text: &str, name: &str) -> String {
     }
 }
 
-/// The target without rules of a later version, if its own version is not below that.
+/// The target's text without the judge's rules that name a version, such as `310 es`, if the
+/// target's own version is at least that one.
 fn without_older_rules(text: String, name: &str) -> String {
     let number = |text: &str| -> Option<u32> {
         text.trim_matches(|letter: char| !letter.is_ascii_digit()).parse().ok()
@@ -103,8 +104,8 @@ fn glsl_version(name: &str) -> Option<(u32, bool)> {
     number("glsl").map(|number| (number, false)).or(number("essl").map(|number| (number, true)))
 }
 
-/// The target whose bindings have numbers in its text, from the versions on that can say them. Earlier
-/// ones have names only.
+/// The target's text with numbered bindings if its version of GLSL can state them, or else with
+/// bindings that have names only.
 fn with_numbers(text: String, name: &str) -> String {
     let has_numbers = glsl_version(name)
         .is_some_and(|(number, is_embedded)| number >= if is_embedded { 310 } else { 420 });
@@ -139,7 +140,8 @@ fn lacking_of(table: &str, name: &str) -> String {
 /// The section about what a version lacks. A new version may lack less.
 const LACKING: &str = "## What GLSL does not have";
 
-/// The text with the new name after the other, in each cell of a table that has it.
+/// Adds the new name after each `like` in backticks, in all Markdown tables but the one below
+/// [`LACKING`].
 fn in_tables(text: &str, like: &str, name: &str) -> String {
     let quoted = format!("`{like}`");
     let both = format!("{quoted}, `{name}`");

@@ -16,13 +16,13 @@ pub fn cell(at: Cell) -> Vec<f64> {
     albedo(at.nv(), at.alpha(), STEPS).to_vec()
 }
 
-/// The same by a rule of a number of steps.
+/// The scale and the offset, by a quadrature with `steps` polar angles.
 pub fn albedo(nv: f64, alpha: f64, steps: usize) -> [f64; 2] {
     let (v, azimuths) = (viewer(nv), 2 * steps);
     let mut sum = [0.0; 2];
     for (x, weight) in gauss_legendre(steps, 0.0, 1.0) {
-        // Half a turn is enough, since the integrand is symmetric. The square moves nodes to the
-        // tail.
+        // Half a turn is enough, since the integrand is symmetric. The quadratic substitution moves
+        // nodes to the tail.
         let u = x * (2.0 - x);
         let weight = weight * 2.0 * (1.0 - x) / azimuths as f64;
         for step in 0..azimuths {
@@ -34,7 +34,7 @@ pub fn albedo(nv: f64, alpha: f64, steps: usize) -> [f64; 2] {
     sum
 }
 
-/// What a facet from GGX's distribution adds.
+/// What a facet that is sampled from GGX's distribution adds to the scale and the offset.
 fn reflected(v: Direction, h: Direction, alpha: f64) -> [f64; 2] {
     let vh = dot(v, h);
     let l = mirrored(v, h);

@@ -9,21 +9,23 @@
 
 use crate::dfg;
 
-/// Perceptual roughness and root of the cosine: the first one of the grid, and how many there are.
+/// The grid over the perceptual roughness and the square root of the cosine: its first values, and
+/// how many there are.
 const FIRST: [f64; 2] = [0.05, 0.1];
 const COUNT: [usize; 2] = [58, 55];
 /// Steps of the quadrature.
 const STEPS: usize = 160;
-/// Fits, one after the other.
+/// How many fits are made, each from the one before.
 const ROUNDS: usize = 1000;
-/// Fits before weights change: denominators come to rest first.
+/// Fits before weights change: the denominators must converge first.
 const FIRST_ROUNDS: usize = 5;
 
 /// Powers of the root of the cosine and of the roughness.
 type Term = (i32, i32);
 
-/// What is lost: `LOST` over `OVER`, whose first term has the coefficient 1. Where the cosine and
-/// alpha are small, only their quotient matters, so both have a total degree of at least 4.
+/// The light that is lost, `1 - albedo`, as the quotient `LOST` over `OVER`, whose first term has
+/// the coefficient 1. Where the cosine and alpha are small, only their quotient matters, so both
+/// have a total degree of at least 4.
 const LOST: &[Term] = &[(2, 2), (1, 3), (0, 4), (1, 7), (0, 8)];
 const OVER: &[Term] = &[(4, 0), (0, 4), (0, 6), (0, 8), (2, 2), (2, 4), (4, 2), (1, 3), (5, 3)];
 /// How much more of the albedo is at grazing incidence than the mirror's `(1 - nv)^5`, relative:
@@ -35,7 +37,7 @@ const BELOW: &[Term] = &[(2, 0), (1, 1), (0, 2), (0, 4)];
 struct Place {
     nv: f64,
     roughness: f64,
-    /// By quadrature.
+    /// The scale and the offset, by quadrature.
     scale: f64,
     offset: f64,
 }
@@ -49,7 +51,7 @@ impl Place {
         self.scale + self.offset
     }
 
-    /// What a mirror reflects at grazing incidence.
+    /// Schlick's Fresnel weight of a mirror.
     fn rim(&self) -> f64 {
         (1.0 - self.nv).powi(5)
     }
@@ -101,7 +103,7 @@ struct Goal {
     weight: f64,
 }
 
-/// The fit whose largest weighted error is the smallest.
+/// Of all rounds, the fit whose largest weighted error is the smallest.
 fn fitted(
     places: &[Place],
     above: &'static [Term],

@@ -2,8 +2,8 @@
 
 use crate::{Errors, SIDE, Table};
 
-/// How much larger an error may be than what is published: functions of other machines round
-/// otherwise.
+/// The factor by which an error may exceed the published one: mathematical functions round
+/// differently on other machines.
 const SLACK: f64 = 1.001;
 
 /// The text of a description. `bytes` are those of the `.bin`.

@@ -12,7 +12,7 @@ use crate::quadrature::{
 };
 use crate::{Cell, SIDE, dfg};
 
-/// Samples along each side, of the lobe and of the fit.
+/// Samples along each side of the grids that sample the lobe and the fit.
 const SAMPLES: usize = 32;
 /// Edge of the first simplex.
 const STEP: f64 = 0.05;
@@ -87,8 +87,9 @@ impl Lobe {
     }
 }
 
-/// The table, row by row of the viewer's cosine. The fit of each column of roughness starts from
-/// that of the column before, from rough to smooth.
+/// The table, row by row of the viewer's cosine. Columns go from rough to smooth. The fit of the
+/// first row, at normal incidence, starts from that of the column before. Each other row starts
+/// from the row before.
 pub fn rows() -> Vec<Vec<f64>> {
     let mut cells = vec![Vec::new(); SIDE * SIDE];
     let mut first: Option<Lobe> = None;
@@ -115,7 +116,7 @@ fn fitted(at: Cell, before: Option<Lobe>, is_isotropic: bool) -> Lobe {
     let start = before.map_or([1.0, 1.0, 0.0], |lobe| lobe.shape);
     let lobe = |shape: [f64; 3]| {
         let [m11, m22, m13] = shape;
-        // Seen from above, a lobe is round.
+        // At normal incidence, the lobe is rotationally symmetric.
         let shape = match is_isotropic {
             true => [m11.max(LEAST_SCALE), m11.max(LEAST_SCALE), 0.0],
             false => [m11.max(LEAST_SCALE), m22.max(LEAST_SCALE), m13],
@@ -221,12 +222,12 @@ fn least(start: [f64; 3], value: impl Fn([f64; 3]) -> f64) -> [f64; 3] {
 }
 
 /// The share of a lobe's light that is elsewhere in its fit: half of the integral of the absolute
-/// difference, divided by the albedo. It uses a rule of its own.
+/// difference, divided by the albedo. Its quadrature is independent of the samples of the fit.
 pub fn misplaced(numbers: [f64; 4], albedo: f64, at: Cell) -> f64 {
     let (alpha, v) = (at.alpha(), viewer(at.nv()));
     let fit = Lobe::of_numbers(numbers, albedo);
-    // Facets of GGX with twice the width. The square moves nodes to the tail, which has light where a
-    // narrow lobe is seen at a grazing angle.
+    // Samples facets of a GGX of twice the width. The quadratic substitution `x (2 - x)` moves
+    // nodes to the tail, which has light where a narrow lobe is seen at a grazing angle.
     let wide = (2.0 * alpha).min(1.0);
     let steps = 192;
     let mut sum = 0.0;

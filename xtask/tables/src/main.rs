@@ -4,8 +4,8 @@
 //! as a texture) and `NAME.toml` (what it is, and how far off it is at most). Columns are of
 //! perceptual roughness, rows of the viewer's cosine, as `lighting::area::ltc_uv` reads them.
 //!
-//! `cargo xtask tables --check` computes every cell of the files again by a finer rule, and fails if
-//! one is further off than its description says. `cargo xtask fit` prints the coefficients of a
+//! `cargo xtask tables --check` computes every cell of the files again by a finer rule, and fails
+//! if one is further off than its description says. `cargo xtask fit` prints the coefficients of a
 //! function that is fitted to one of them.
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
@@ -43,8 +43,8 @@ pub struct Table {
 /// How far a table is off.
 pub struct Errors {
     pub text: String,
-    /// The worst of each column, rounded up. A table whose errors do not depend on the column has one
-    /// number, an exact one has none.
+    /// The worst of each column, rounded up. A table whose errors do not depend on the column has
+    /// one number, an exact one has none.
     pub worst: Vec<f64>,
     /// For a table whose last row, of a viewer on the horizon, is worse: that row by itself.
     pub horizon: Vec<f64>,

@@ -9,7 +9,7 @@ use crate::SIDE;
 const SIGMA: f64 = 1.9;
 /// Cells that are filled at first.
 const FIRST: usize = SIDE * SIDE / 10;
-/// Where the sequence of the first cells begins.
+/// The seed of the random generator that places the first cells.
 const SEED: u64 = 0x1a3b_5c7d_9e2f_4061;
 
 const CELLS: usize = SIDE * SIDE;
@@ -66,7 +66,7 @@ impl Field {
     }
 }
 
-/// The rank of every cell, divided by the number of cells. Each is at the middle of its step.
+/// For every cell, `(rank + 0.5) / CELLS`.
 pub fn rows() -> Vec<Vec<f64>> {
     let mut field = first();
     let mut ranks = vec![0; CELLS];

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 /// A direction with z along the normal.
 pub type Direction = [f64; 3];
 
-/// Nodes and weights of Gauss and Legendre on [low, high].
+/// Nodes and weights of the Gauss-Legendre rule on [low, high].
 pub fn gauss_legendre(count: usize, low: f64, high: f64) -> Vec<(f64, f64)> {
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     let rule = lamplight::quadrature::gauss_legendre(count);
@@ -45,7 +45,7 @@ pub fn d_ggx(nh: f64, alpha: f64) -> f64 {
     a2 / (PI * below * below)
 }
 
-/// Visibility of Smith, heights correlated, over 4 nl nv. Heitz, "Understanding the
+/// Smith's height-correlated masking and shadowing, divided by 4 nl nv. Heitz, "Understanding the
 /// Masking-Shadowing Function in Microfacet-Based BRDFs", 2014, equation 99.
 pub fn v_smith(nl: f64, nv: f64, alpha: f64) -> f64 {
     let a2 = alpha * alpha;
@@ -62,7 +62,7 @@ pub fn ggx_lobe(v: Direction, l: Direction, alpha: f64) -> f64 {
     d_ggx(h[2].min(1.0), alpha) * v_smith(l[2], v[2], alpha) * l[2]
 }
 
-/// The normal that GGX distributes at a share `u` of its cumulated polar distribution.
+/// The normal at the value `u` of the cumulative distribution of GGX's polar angle.
 pub fn ggx_normal(u: f64, azimuth: f64, alpha: f64) -> Direction {
     let tan2 = alpha * alpha * u / (1.0 - u);
     let c = 1.0 / (1.0 + tan2).sqrt();

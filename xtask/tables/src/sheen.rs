@@ -20,11 +20,11 @@ pub fn cell(at: Cell) -> Vec<f64> {
     albedo(at.nv(), at.alpha(), STEPS).to_vec()
 }
 
-/// The same by a rule of a number of steps.
+/// The same, by a quadrature with `steps` polar angles.
 pub fn albedo(nv: f64, alpha: f64, steps: usize) -> [f64; 2] {
     let alpha = alpha.max(LEAST_SHEEN);
     let (v, azimuths, power) = (viewer(nv), 2 * steps, 1.0 / alpha);
-    // Facets that are steeper than this are fewer than one in 10^13.
+    // Facets whose cosine to the surface's normal is larger are fewer than one in 10^13.
     let most = (8.0 / power.sqrt()).min(1.0);
     let mut sum = [0.0; 2];
     for (x, weight) in gauss_legendre(steps, 0.0, 1.0) {

@@ -1,4 +1,5 @@
-//! Shadow maps of earlier pictures. While somebody changes a material, the next picture has the same.
+//! Caches the shadow maps of earlier pictures: while somebody changes a material, the next picture
+//! needs the same ones.
 
 use std::cell::RefCell;
 use std::collections::VecDeque;
@@ -7,7 +8,7 @@ use std::sync::Arc;
 use lamplight::bundle::Target;
 use lamplight::execute::frame::{Buffers, Drawing, Frame};
 
-/// How many are kept: those of a picture, and of the one before it.
+/// How many drawings are kept: those of a picture, and of the one before it.
 const KEPT: usize = 4;
 
 /// Everything that the frames of a drawing depend on.
@@ -18,7 +19,7 @@ thread_local! {
     static SEEN: RefCell<VecDeque<(Known, Arc<Vec<Frame>>)>> = const { RefCell::new(VecDeque::new()) };
 }
 
-/// What a drawing of depths is known by. Others are seldom the same again.
+/// The cache key of a drawing of depths. `None` for other drawings, which seldom repeat.
 pub fn known(drawing: &Drawing<'_>, target: Target) -> Option<Known> {
     if drawing.fragment.is_some() || !drawing.fixtures.is_empty() {
         return None;
@@ -37,7 +38,7 @@ pub fn known(drawing: &Drawing<'_>, target: Target) -> Option<Known> {
     Some(Known(found))
 }
 
-/// Lengths come first, so that different parts never read the same.
+/// Writes the length first, so that different sequences of parts never give the same bytes.
 fn put(to: &mut Vec<u8>, bytes: &[u8]) {
     to.extend((bytes.len() as u64).to_le_bytes());
     to.extend(bytes);
@@ -56,7 +57,7 @@ fn put_buffers(to: &mut Vec<u8>, buffers: &Buffers) {
     }
 }
 
-/// The frames of a drawing, if there was the same one.
+/// The frames of an earlier drawing with the same key.
 pub fn find(known: &Known) -> Option<Arc<Vec<Frame>>> {
     SEEN.with_borrow(|seen| {
         seen.iter().find(|(one, _)| one == known).map(|(_, found)| found.clone())

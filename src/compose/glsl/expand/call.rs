@@ -53,7 +53,8 @@ impl<'g> Expander<'g, '_> {
         );
     }
 
-    /// The arguments between the parentheses, and the closing one; `None` where that is missing.
+    /// Reads the arguments of a call. Returns them with the closing parenthesis, or `None` if that
+    /// is missing.
     fn arguments(
         &mut self,
         name: Tok,

@@ -12,7 +12,7 @@ use crate::execute::Pair;
 use crate::execute::frame::{Drawing, Frame, Place};
 use crate::execute::shipped::{Format, Shipped};
 
-/// A stage that the device has.
+/// A stage as a shader module of the device.
 struct Loaded {
     module: wgpu::ShaderModule,
     entry: String,
@@ -135,7 +135,7 @@ impl Gpu {
     }
 }
 
-/// What cannot be done with a stage on this way to the device.
+/// Why the stage cannot be drawn here, if something in it is not supported.
 fn stage_lacks(stage: &Shipped) -> Option<&'static str> {
     match stage.target {
         Target::WGSL if stage.reflection.stage == Stage::Fragment => stage.lacks_of_webgpu(),
@@ -144,7 +144,7 @@ fn stage_lacks(stage: &Shipped) -> Option<&'static str> {
     }
 }
 
-/// All bindings that one of the stages reads.
+/// The bindings of both stages.
 fn read_places(pair: Pair<'_>) -> BTreeSet<Place> {
     let stages = [pair.vertex, pair.fragment].into_iter();
     stages

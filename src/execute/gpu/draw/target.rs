@@ -83,7 +83,7 @@ impl Targets {
         draws(&mut encoder.begin_render_pass(&descriptor));
     }
 
-    /// Copies everything to where it can be read.
+    /// Copies the targets, and the depth if it is kept, into buffers that can be mapped.
     pub fn download(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Pending {
         let color = self
             .color
@@ -111,8 +111,8 @@ impl Pending {
         Ok(Frame { targets, depth: depth.transpose()?.unwrap_or_default(), detour })
     }
 
-    /// What is in the rows of a buffer, without their padding. Large maps are read once, into
-    /// memory that has their size.
+    /// The numbers in the rows of a mapped buffer, without the padding of the rows. All memory is
+    /// allocated at the start, since shadow maps are large.
     fn texels<T>(&self, bytes: &[u8], texel: u32, number: impl Fn([u8; 4]) -> T) -> Vec<T> {
         let [width, height] = self.size;
         let row = (width * texel) as usize;

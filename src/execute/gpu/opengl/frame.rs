@@ -176,8 +176,8 @@ unsafe fn clear_targets(gl: &glow::Context, formats: &[Format]) {
     }
 }
 
-/// The words of the bound target, row by row in the order of memory. The top row is first, since
-/// outputs turn their positions over.
+/// The words of the bound target, row by row. OpenGL reads the bottom row first. This is the top
+/// row of the frame, since the emitted vertex stages flip y.
 unsafe fn read_target(gl: &glow::Context, [width, height]: [i32; 2], format: Format) -> Vec<u32> {
     let mut bytes = vec![0u8; width as usize * height as usize * 16];
     let (format, ty) = match format {

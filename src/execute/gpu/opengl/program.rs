@@ -4,7 +4,7 @@ use glow::HasContext as _;
 
 use super::context::Api;
 
-/// The full-screen triangle, without its first line.
+/// The full-screen triangle, without the `#version` line.
 const TRIANGLE: &str = "
 void main() {
     vec2 corner = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2);
@@ -82,7 +82,7 @@ pub fn set_block(gl: &glow::Context, program: glow::Program, name: &str, binding
     }
 }
 
-/// The first error since the last call, as a message.
+/// Returns the first OpenGL error since the last check, as a message.
 pub fn check_error(gl: &glow::Context) -> Result<(), String> {
     // SAFETY: the context is current.
     match unsafe { gl.get_error() } {
