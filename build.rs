@@ -219,7 +219,8 @@ fn embedded(folder: &Path) -> std::io::Result<String> {
     Ok(table)
 }
 
-/// The name that is looked up: sorted as text, since paths sort by component (`a/b` before `a.b`).
+/// The path below a folder, with `/`, as text. Text is what lookups compare, and it sorts otherwise
+/// than a `Path`, which sorts by component (`a/b` before `a.b`).
 fn relative(folder: &Path, path: &Path) -> String {
     path.strip_prefix(folder).unwrap_or(path).to_string_lossy().replace('\\', "/")
 }

@@ -1,5 +1,5 @@
-//! Loads one permutation from a bundle and draws a triangle with it. The example opens no window. It
-//! prints the colour of one pixel.
+//! Loads one permutation from a bundle and draws a triangle with it. The example opens no window.
+//! It prints the colour of one pixel.
 //!
 //! ```text
 //! cargo run -- gen --manifest shaderlib/lamplight.toml --program forward --out shaders.lamplight
@@ -21,7 +21,8 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 /// The permutation that draws a surface in its own colour, without light.
 const KEY: &str = "ambient=none,lights=none";
 
-/// The attributes of a vertex at the locations where `forward` reads them: position, normal, colour.
+/// The attributes of a vertex at the locations where `forward` reads them: position, normal,
+/// colour.
 const CORNER: [wgpu::VertexAttribute; 3] =
     wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x4];
 
