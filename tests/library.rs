@@ -4,7 +4,7 @@
 mod recorded;
 
 use std::process::Command;
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use lamplight::bundle::key::{has_value, without_axis, write as write_key};
 use lamplight::bundle::{Contents, EntryContents, Language, Target, blob_files, write_directory};
@@ -48,16 +48,19 @@ const REVIEWED: &[(&str, &str)] = &[
     ),
 ];
 
+/// The trials that ask for [`contents`], each once.
+const OF_CONTENTS: [(&str, fn() -> Result<(), Failed>); 4] = [
+    ("library::hashes", hashes),
+    ("library::difference_is_shown", difference_is_shown),
+    ("library::values_have_effect", values_have_effect),
+    ("library::judges", judges),
+];
+
 pub fn trials() -> Vec<Trial> {
     let reviewed = REVIEWED
         .iter()
         .map(|(name, key)| Trial::test(format!("library::reviewed::{name}"), || review(name, key)));
-    let whole = [
-        ("library::hashes", hashes as fn() -> _),
-        ("library::difference_is_shown", difference_is_shown),
-        ("library::values_have_effect", values_have_effect),
-        ("library::judges", judges),
-    ];
+    let whole = OF_CONTENTS.iter().copied();
     reviewed.chain(whole.map(|(name, run)| Trial::test(name, run))).collect()
 }
 
@@ -154,10 +157,17 @@ fn readable(target: Target, bytes: &[u8]) -> Result<String, Failed> {
     }
 }
 
-/// The bundle of the library's whole manifest. It is made once for all trials.
-fn contents() -> Result<&'static Contents, Failed> {
-    static CONTENTS: OnceLock<Result<Contents, String>> = OnceLock::new();
-    CONTENTS.get_or_init(|| on_large_stack(library)).as_ref().map_err(|error| error.clone().into())
+/// The bundle of the library's whole manifest. It is made once for all trials, and dropped with the
+/// last of them, since it takes several gigabytes.
+fn contents() -> Result<Arc<Contents>, Failed> {
+    static MADE: Mutex<(usize, Option<Result<Arc<Contents>, String>>)> = Mutex::new((0, None));
+    let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+    made.0 += 1;
+    let contents = made.1.get_or_insert_with(|| on_large_stack(library).map(Arc::new)).clone();
+    if made.0 == OF_CONTENTS.len() {
+        made.1 = None;
+    }
+    Ok(contents?)
 }
 
 fn library() -> Result<Contents, String> {
@@ -177,7 +187,7 @@ fn library() -> Result<Contents, String> {
 
 /// Every output of every permutation has the bytes that were recorded.
 fn hashes() -> Result<(), Failed> {
-    recorded::check(contents()?)
+    recorded::check(&*contents()?)
 }
 
 /// Each value of each static axis changes some output, in both languages. A value without effect in
@@ -211,7 +221,7 @@ fn differs_by(entry: &EntryContents, axis: &str, value: &str) -> bool {
 /// no differences.
 fn difference_is_shown() -> Result<(), Failed> {
     let old = contents()?;
-    let mut new = old.clone();
+    let mut new = Contents::clone(&old);
     let blur =
         new.programs.get_mut("blur").and_then(|blur| blur.languages.get_mut(&Language::Wesl));
     let entry = blur.and_then(|entries| entries.get_mut("fs_main")).ok_or("no `blur`")?;
@@ -221,8 +231,8 @@ fn difference_is_shown() -> Result<(), Failed> {
         .replace("version 330", "version 440")
         .into_bytes()
         .into();
-    let same = recorded::difference(old, old)?;
-    let said = recorded::difference(old, &new)?;
+    let same = recorded::difference(&old, &old)?;
+    let said = recorded::difference(&old, &new)?;
     let parts = [
         "blur wesl fs_main: 1 of 2 keys",
         "blur [direction=across] wesl fs_main: glsl330 differ",
@@ -245,7 +255,7 @@ const JUDGED: usize = 7;
 /// from npm; `cargo xtask gen` asks it.
 fn judges() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
-    write_directory(contents()?, folder.path())?;
+    write_directory(&*contents()?, folder.path())?;
     let outputs = judge::outputs(blob_files(folder.path())?)?;
     let mut some: Vec<judge::Output> = Vec::new();
     for target in Target::ALL {

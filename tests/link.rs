@@ -2,6 +2,7 @@
 //! were translated for it or taken from other texts. A text that cannot be divided into functions is
 //! compiled as a whole, with a reason.
 
+mod alone;
 mod glsl;
 mod parts;
 mod texts;
@@ -10,7 +11,7 @@ mod writers;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use lamplight::bundle::{Unit, write_directory};
+use lamplight::bundle::{Hash, Language, Unit, write_directory};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{Generated, Request, in_memory};
 use lamplight::judge;
@@ -23,6 +24,7 @@ use libtest_mimic::{Failed, Trial};
 
 use crate::link_compare as compare;
 
+use alone::{agree, forward};
 use glsl::{constants_like_members, unused_functions};
 use texts::{NAMES, NAMES_MANIFEST, ROWS, ROWS_MANIFEST, TRAPS, TRAPS_MANIFEST};
 use writers::{
@@ -34,7 +36,7 @@ use writers::{
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
-/// Every 23rd permutation of `forward` is also compiled alone.
+/// Every 23rd permutation of `forward` is also compiled alone, or as a whole.
 const STEP: usize = 23;
 
 pub fn trials() -> Vec<Trial> {
@@ -76,69 +78,44 @@ fn made(
     manifest: &Manifest,
     key: Option<&str>,
 ) -> Result<Generated, Failed> {
-    let only = key.map(|key| {
-        let id = sources.add("key", key);
-        Quoted::whole(sources, id)
-    });
-    let request = Request { only, ..Request::default() };
+    let request = request(sources, key);
     let made = in_memory(sources, packages, manifest, &request, &|_| ());
     Ok(made.map_err(|problems| render(sources, &problems, Form::Human))?)
 }
 
-/// Units by entry point and key.
-fn units(generated: &Generated) -> BTreeMap<(String, String), &Unit> {
-    let entries = generated
-        .contents
-        .programs
-        .values()
-        .flat_map(|program| program.languages.values().flatten());
-    let units = entries.flat_map(|(name, entry)| {
-        entry.keys.iter().map(move |(key, unit)| ((name.clone(), key.clone()), &entry.units[unit]))
+/// Asks for all permutations, or for that of a key.
+fn request(sources: &mut SourceSet, key: Option<&str>) -> Request {
+    let only = key.map(|key| {
+        let id = sources.add("key", key);
+        Quoted::whole(sources, id)
     });
-    units.collect()
+    Request { only, ..Request::default() }
 }
 
-/// Each text, compiled alone, has the same bytes, names and reflection as among all others.
-fn agree(
-    sources: &mut SourceSet,
-    packages: &Packages,
-    manifest: &Manifest,
-    step: usize,
-) -> Result<Generated, Failed> {
-    let together = made(sources, packages, manifest, None)?;
-    let all = units(&together);
-    let mut keys: Vec<&String> = all.keys().map(|(_, key)| key).collect();
-    keys.sort();
-    keys.dedup();
-    for key in keys.into_iter().step_by(step) {
-        let alone = made(sources, packages, manifest, Some(key))?;
-        for ((entry, key), unit) in units(&alone) {
-            differ(unit, all[&(entry.clone(), key.clone())])
-                .map_or(Ok(()), |what| Err(format!("[{key}] {entry}: {what}")))?;
-        }
-    }
-    Ok(together)
+/// Of a unit: language, entry point and key.
+type Name<'g> = (Language, &'g String, &'g String);
+
+/// The hash of each unit.
+fn hashes(generated: &Generated) -> BTreeMap<Name<'_>, Hash> {
+    let languages = generated.contents.programs.values().flat_map(|program| &program.languages);
+    let entries = languages.flat_map(|(language, entries)| {
+        entries.iter().map(move |(name, entry)| (*language, name, entry))
+    });
+    let keys = entries.flat_map(|(language, name, entry)| {
+        entry.keys.iter().map(move |(key, hash)| ((language, name, key), *hash))
+    });
+    keys.collect()
 }
 
-fn differ(alone: &Unit, together: &Unit) -> Option<String> {
-    if alone.reflection != together.reflection {
-        let (alone, together) = (&alone.reflection, &together.reflection);
-        return Some(format!("reflection, alone:\n{alone:?}\ntogether:\n{together:?}"));
-    }
-    let differ = |target: &&String| alone.targets[*target] != together.targets[*target];
-    alone.targets.keys().find(differ).map(|target| {
-        let text = |unit: &Unit| String::from_utf8_lossy(&unit.targets[target].bytes).into_owned();
-        format!("{target} differs, alone:\n{}\ntogether:\n{}", text(alone), text(together))
-    })
-}
-
-/// Permutations of `forward` have the same bytes alone and together, and all of them are linked.
-fn forward() -> Outcome {
-    let (mut sources, mut manifest) = project::library_manifest()
-        .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
-    manifest.programs.retain(|program| program.name == "forward");
-    let together = agree(&mut sources, &project::library_packages(), &manifest, STEP)?;
-    all_linked(&together)
+/// Each unit.
+fn units(generated: &Generated) -> BTreeMap<Name<'_>, &Unit> {
+    let programs = &generated.contents.programs;
+    let unit = |(language, name, key), hash| {
+        let entries = programs.values().filter_map(|program| program.languages.get(&language));
+        let mut found = entries.filter_map(|entries| entries.get(name)?.units.get(&hash));
+        found.next().map(|unit| ((language, name, key), unit))
+    };
+    hashes(generated).into_iter().filter_map(|(name, hash)| unit(name, hash)).collect()
 }
 
 fn all_linked(generated: &Generated) -> Outcome {
@@ -300,8 +277,10 @@ fn reasons() -> Outcome {
             return Err(format!("`{more} {body}` should be linked, found {reasons:?}").into());
         }
     }
-    let many: String = (0..2050).map(|index| format!("const C{index} = 1;\n")).collect();
-    let many = (many.as_str(), "let d = C0;", Reason::Large);
+    let each = |text: fn(i32) -> String| (0..2050).map(text).collect::<String>();
+    let constants = each(|index| format!("const C{index} = {index};\n"));
+    let sum = format!("var sum = 0;{}", each(|index| format!(" sum += C{index};")));
+    let many = (constants.as_str(), sum.as_str(), Reason::Large);
     for (more, body, reason) in WHOLE.iter().chain([&many]) {
         // Only these targets are asked for, since not every target has storage buffers.
         let targets = "targets = [\"spirv\", \"wgsl\"]";

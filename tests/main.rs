@@ -9,6 +9,11 @@
     clippy::wrong_self_convention
 )]
 
+/// The allocator of the command. It gives memory back that is no longer used, where the C library
+/// would keep gigabytes until the last trial.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 mod bounds;
 mod browser;
 mod bundle;

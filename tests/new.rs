@@ -22,7 +22,7 @@ type Outcome = Result<(), Failed>;
 type Run = fn() -> Outcome;
 
 pub fn trials() -> Vec<Trial> {
-    let all: [(&str, Run); 18] = [
+    let all: [(&str, Run); 19] = [
         ("function", functions::in_modules),
         ("function_types", functions::of_types),
         ("function_formula", functions::with_formula),
@@ -37,6 +37,7 @@ pub fn trials() -> Vec<Trial> {
         ("target", target),
         ("target_version", target_version),
         ("scene", scene),
+        ("change", change),
         ("examples", examples),
         ("mistakes", mistakes),
         ("interface", interface),
@@ -139,11 +140,43 @@ fn target_version() -> Outcome {
         if !text.contains(&format!("Numbering::{numbering})")) {
             return Err(format!("{path} should have `Numbering::{numbering}`:\n{text}").into());
         }
+        // The head comment and the guide's first table are about the same bindings.
+        let (says, column) = match numbering {
+            "Explicit" => ("`layout(binding", "`glsl450`"),
+            _ => ("no explicit bindings", "`glsl330`, `essl300`"),
+        };
+        let guide = self::text(&files, "docs/guide/targets.md")?;
+        let header = guide.lines().find(|line| line.starts_with("| |")).unwrap_or_default();
+        let is_beside = header.split('|').any(|cell| {
+            cell.contains(&format!("`{name}`")) && column.split(", ").all(|one| cell.contains(one))
+        });
+        if !text.contains(says) || text.contains("WebGL") || !is_beside {
+            return Err(format!("{name}: {says}, beside {column}:\n{header}\n{text}").into());
+        }
         if !steps.contains(lacks) || steps.contains(lacks_not) {
             return Err(format!("{name} lacks {lacks}, and not {lacks_not}:\n{steps}").into());
         }
     }
     Ok(())
+}
+
+/// A line is added at the end of its section of the changelog, and nothing else changes.
+fn change() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let old = "# Changelog\n\n## Unreleased\n\n### One\n\n- First.\n\n### Two\n\n- Second.\n\n\
+        ## 0.1.0\n\n### Two\n\n- Old.\n";
+    std::fs::write(folder.path().join("CHANGELOG.md"), old)?;
+    for (section, after) in [("One", "- First.\n"), ("Two", "- Second.\n")] {
+        let made = made::make(folder.path(), "change", section, &["New."])?;
+        let new = old.replace(after, &format!("{after}- New.\n"));
+        if made.files != [("CHANGELOG.md".to_owned(), new)] {
+            return Err(format!("{section}: found {:?}", made.files).into());
+        }
+    }
+    match made::make(folder.path(), "change", "Three", &["New."]) {
+        Err(said) if said.contains("One, Two") => Ok(()),
+        found => Err(format!("expected the known sections, found {found:?}").into()),
+    }
 }
 
 /// The file of an executor without wgpu has a session with all of its functions. The file of an

@@ -111,8 +111,9 @@ fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
         .map(|program| lock.and_then(|lock| key_ordinals(program, lock, u64::MAX)))
         .collect();
     let has_big = found.iter().flatten().any(|ordinals| ordinals.range > EXACT);
+    let has_small = found.iter().flatten().any(|ordinals| ordinals.range <= EXACT);
     let helpers: [(bool, &[&str], &str); 2] = [
-        (lock.is_some(), &["Field", "Digit", "keyNumber", "numberKey"], NUMBERS),
+        (has_small, &["Field", "Digit", "keyNumber", "numberKey"], NUMBERS),
         (has_big, &["BigField", "BigDigit", "keyBigNumber", "bigNumberKey"], BIG_NUMBERS),
     ];
     for (_, names, helper) in helpers.iter().filter(|(is_used, ..)| *is_used) {

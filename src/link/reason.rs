@@ -11,8 +11,9 @@ pub enum Reason {
     /// There is not exactly one entry point, or it is a compute shader.
     EntryPoint,
     Override,
-    /// A storage buffer: writers pass the lengths of its arrays to the functions that need them.
-    /// This breaks the first assumption that the documentation of `src/link/mod.rs` lists.
+    /// A storage buffer: writers pass the lengths of its arrays to the functions that need them. So
+    /// the text of a function would depend on what its callees do, and not only on their names,
+    /// parameters and results (the first assumption in `src/link/mod.rs`).
     /// `refuse_part` in `outline.rs` finds declarations; `uses.rs` finds pointers in an address
     /// space that no stub has.
     StorageBuffer,

@@ -1,8 +1,7 @@
 //! Tokens as lists: declarations, statements, members, parameters, cases of a `switch`.
 //!
-//! A condition of WESL stands around whole units of such lists. Where one of `naga_oil` cuts
-//! through a unit, that unit is written once for each way that the condition can go. Such a variant
-//! goes on with further units until all variants continue at the same place.
+//! A condition of WESL stands around whole units of such lists. A unit that one of `naga_oil` cuts
+//! is written once for each way that the condition can go, with the units up to where all meet.
 
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -327,8 +326,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether an `else` follows. A choice with a branch that starts with `else` cuts through the
-    /// `if`.
+    /// Whether an `else` follows. A choice with a branch that starts with `else` cuts the `if`.
     fn goes_on(&self, row: &Row<'a>, at: usize, facts: &Facts) -> Read<bool> {
         match row.get(at) {
             Some(Node::Choice(choice)) => {

@@ -60,7 +60,7 @@ void main() { color = shadow.tint * shaded(bias) * strength * counted(SIZE); }
     std::fs::write(folder.path().join("one.frag.glsl"), TEXT)?;
     let (mut sources, packages, manifest) = package(folder.path(), "one", MANIFEST, "")?;
     let together = agree(&mut sources, &packages, &manifest, 1)?;
-    for ((_, key), unit) in units(&together) {
+    for ((_, _, key), unit) in units(&together) {
         let text = String::from_utf8_lossy(&unit.targets["wgsl"].bytes);
         let is_read = |member: &&&str| text.contains(&format!("shadow.{member}"));
         if let Some(member) = ["bias", "strength", "rows"].iter().find(is_read) {

@@ -31,7 +31,7 @@ fn read() -> vec4f { return metal_2; }
 @vertex fn main_1() -> @builtin(position) vec4f { return vec4f(); }
 ";
     let made = judged(text, "")?;
-    for ((entry, _), unit) in units(&made) {
+    for ((_, entry, _), unit) in units(&made) {
         let wgsl = &unit.targets["wgsl"];
         let (text, name) = (String::from_utf8_lossy(&wgsl.bytes), &wgsl.native.entry_name);
         let declared = format!("fn {name}(");

@@ -42,8 +42,7 @@ pub fn scene() -> Scene {
     let between = Shape::cuboid(DVec3::new(thickness, HALF.y, length), 6);
     objects
         .push(Object::new(between, placed_at(0.0, 0.0, back + length, 0.0), CHALK).of(plaster, 7));
-    // A black front on the end of the wall, which is cut open towards the viewer: there is no probe
-    // before it to light it.
+    // The end of the wall, cut open towards the viewer, is black, since no probe lights it.
     let cut = Shape::cuboid(DVec3::new(thickness + 0.005, HALF.y, 0.01), 1);
     let cut = Object::new(cut, placed_at(0.0, 0.0, HALF.z + 0.01, 0.0), DVec3::ZERO);
     objects.push(Object { casts: false, ..cut.of(plaster, 7) });

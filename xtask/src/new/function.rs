@@ -115,7 +115,7 @@ fn steps(stem: &str, reference: &str, new: &Signature<'_>, is_new: bool) -> Vec<
     };
     let mut steps = vec![
         format!(
-            "{stem}.wesl: the formula, and each line of its comment (trial shaderlib::); `Edges:` says, by the name of each parameter, what it returns for zero vectors and outside the domain, `Error model:` the bound that `tolerance` states; for guards, `max(x, 1e-4)`, or `safe_pow` and `safe_normalize` of `super::super::math::safe`"
+            "{stem}.wesl: the formula, and each line of its comment (trial shaderlib::); `Edges:` says, by the name of each parameter, what it returns for zero vectors and outside the domain, `Error model:` the bound that `tolerance` states; for guards, `max(x, 1e-4)`, or from `super::super::math::safe` `safe_pow(x, e)` (1 for `e` = 0, else 0 for `x` at or below 0) and `safe_normalize(v, fallback)`; the module's first lines, if they list its functions"
         ),
         format!("{stem}.glsl: {in_glsl} (trial shaderlib::)"),
         format!("{reference}: the formula in f64, from the source and not from the shader (check)"),

@@ -5,6 +5,7 @@
 
 mod axis_places;
 mod axis_value;
+mod change;
 mod compiled;
 mod diagnostic;
 mod executor;
@@ -42,6 +43,7 @@ pub const KINDS: &[Kind] = &[
     executor::KIND,
     scene::KIND,
     diagnostic::KIND,
+    change::KIND,
 ];
 
 /// What to write, and what to do afterwards.

@@ -15,17 +15,17 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
     if presets.contains(&format!("[tech_{name}]\n")) {
         return Err(format!("`{PRESETS}` has `[tech_{name}]` already"));
     }
-    let [shapes, colors] = [
-        declared(&repository.read("src/scene/shape.rs")?, "    pub fn ", " -> Self"),
-        declared(&repository.read("src/scene/palette.rs")?, "pub const ", ": DVec3"),
-    ];
+    let palette = repository.read("src/scene/palette.rs")?;
+    let shapes = declared(&repository.read("src/scene/shape.rs")?, "    pub fn ", " -> Self");
+    let colors = declared(&palette, "pub const ", ": DVec3");
     let picture = format!("target/tech_{name}.png");
     let next = vec![
         format!(
             "{file}: `about`, objects, the viewer and the lamp (trials house::described, scene)"
         ),
-        format!("  shapes: {}", shapes),
-        format!("  colours: {}", colors),
+        format!("  shapes (a `cuboid`, a `sphere` and a `torus` lie around the origin): {shapes}"),
+        format!("  colours: {colors}"),
+        format!("  materials of `material=array`: {}", materials(&palette)?),
         format!("{PRESETS}: `doc`, `look` and `source` of `tech_{name}` (trial catalogue)"),
         format!("cargo run --release -- render tech_{name} -o {picture}; look at it"),
         "cargo xtask record render/; cargo run --release -- render --all --force -o docs/gallery"
@@ -43,6 +43,17 @@ fn declared(text: &str, start: &str, end: &str) -> String {
     let lines = text.lines().filter_map(|line| line.strip_prefix(start)?.split_once(end));
     let made = lines.map(|(what, _)| what).filter(|what| !what.contains("self"));
     made.collect::<Vec<_>>().join(", ")
+}
+
+/// The colours of the array of materials, each with its index.
+fn materials(palette: &str) -> Result<String, String> {
+    let fronts = palette.split_once("const FRONTS").and_then(|(_, rest)| rest.split_once("];"));
+    let (fronts, _) = fronts.ok_or("`src/scene/palette.rs` has no `FRONTS`")?;
+    let colors = fronts.lines().filter_map(|line| {
+        Some(line.trim().strip_prefix("(DVec3::new(")?.split_once(')')?.0.to_owned())
+    });
+    let listed = colors.enumerate().map(|(index, color)| format!("{index} ({color})"));
+    Ok(listed.collect::<Vec<_>>().join(", "))
 }
 
 const TEXT: &str = r#"//! NAME.
@@ -68,7 +79,7 @@ pub fn scene() -> Scene {
         (24, 24),
     );
     // A place is x, y, z and the turn about y. The last number is the object's index into the array of
-    // materials, for `material=array`: see `materials` in `src/scene/palette.rs`.
+    // materials, for `material=array`.
     let objects = vec![
         Object::new(ground, DMat4::IDENTITY, CHALK).of(Material::default(), 7),
         Object::new(

@@ -31,7 +31,8 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
     let (executor, text) = executor_of(repository, like)?;
     let text =
         renaming.apply(&text.replace(&format!("name: {executor:?}"), &format!("name: {name:?}")));
-    let guide = in_tables(&repository.read(GUIDE)?, like, name);
+    let numbered_alike = numbered_alike(repository, &known, like, name)?;
+    let guide = in_tables(&repository.read(GUIDE)?, like, &numbered_alike, name);
     let lacking = lacking_of(&repository.read(LACKS)?, name);
     let next = vec![
         format!(
@@ -39,15 +40,19 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
         ),
         format!("{own_executor}: likewise (trials harness::executor::{name}, frames/shipped)"),
         format!(
-            "{GUIDE}: what `{name}` does unlike `{like}`, in a column of its own (trials conventions::guide, guide lists are whole)"
+            "{GUIDE}: what `{name}` does unlike `{like}`, in each row; the first table has it beside `{numbered_alike}`, whose bindings are like its own (trials conventions::guide, guide lists are whole)"
         ),
         format!(
             "{GUIDE}, \"{}\": rows that hold for `{name}`: {lacking}",
             LACKING.trim_start_matches("## ")
         ),
-        "cargo xtask record; read the difference".to_owned(),
+        "cargo xtask record; read the difference; cargo xtask docs".to_owned(),
     ];
-    let target = with_numbers(without_older_rules(own_ending(&target, name), name), name);
+    let target = without_older_rules(own_ending(&target, name), name);
+    let like_numbers = repository.read(&format!("{TARGETS}/{numbered_alike}.rs"))?;
+    let target = with_numbers(&target, &like_numbers, name);
+    // Only GLSL ES 3.00 is a language of WebGL.
+    let target = target.replace(" and WebGL 2", "");
     Ok(Made { files: vec![(file, target), (own_executor, text), (GUIDE.to_owned(), guide)], next })
 }
 
@@ -104,16 +109,45 @@ fn glsl_version(name: &str) -> Option<(u32, bool)> {
     number("glsl").map(|number| (number, false)).or(number("essl").map(|number| (number, true)))
 }
 
-/// The target's text with numbered bindings if its version of GLSL can state them, or else with
-/// bindings that have names only.
-fn with_numbers(text: String, name: &str) -> String {
+/// How a version of GLSL binds resources: by numbers if the language can state them, or else by
+/// names only.
+fn numbering_of(name: &str) -> &'static str {
     let has_numbers = glsl_version(name)
         .is_some_and(|(number, is_embedded)| number >= if is_embedded { 310 } else { 420 });
-    let (other, own) = match has_numbers {
-        true => ("Numbering::Named", "Numbering::Explicit"),
-        false => ("Numbering::Explicit", "Numbering::Named"),
+    if has_numbers { "Numbering::Explicit" } else { "Numbering::Named" }
+}
+
+/// The target that the new one is like, or another version of GLSL if that one has other bindings.
+fn numbered_alike(
+    repository: &Repository<'_>,
+    known: &[String],
+    like: &str,
+    name: &str,
+) -> Result<String, String> {
+    let first = [like.to_owned()];
+    for other in first.iter().chain(known) {
+        let text = repository.read(&format!("{TARGETS}/{other}.rs"))?;
+        if !text.contains("Numbering::") || text.contains(numbering_of(name)) {
+            return Ok(other.clone());
+        }
+    }
+    Ok(like.to_owned())
+}
+
+/// The target's text with the bindings of its version of GLSL, and with what the head comment of
+/// another target says about them.
+fn with_numbers(text: &str, like: &str, name: &str) -> String {
+    let own = numbering_of(name);
+    let text = ["Numbering::Named", "Numbering::Explicit"]
+        .iter()
+        .fold(text.to_owned(), |text, other| text.replace(other, own));
+    let bindings = |text: &str| -> Option<String> {
+        Some(text.split_once("//!\n")?.1.split_once("\n\n")?.0.to_owned())
     };
-    text.replace(other, own)
+    match (bindings(&text), bindings(like)) {
+        (Some(old), Some(new)) if text.contains(own) => text.replace(&old, &new),
+        _ => text,
+    }
 }
 
 /// What a version lacks, by the table of the first versions that have it.
@@ -141,19 +175,20 @@ fn lacking_of(table: &str, name: &str) -> String {
 const LACKING: &str = "## What GLSL does not have";
 
 /// Adds the new name after each `like` in backticks, in all Markdown tables but the one below
-/// [`LACKING`].
-fn in_tables(text: &str, like: &str, name: &str) -> String {
-    let quoted = format!("`{like}`");
-    let both = format!("{quoted}, `{name}`");
+/// [`LACKING`]. In headers, it is added after `column`.
+fn in_tables(text: &str, like: &str, column: &str, name: &str) -> String {
+    let lines: Vec<&str> = text.split_inclusive('\n').collect();
     let mut section = "";
-    let line = |line| {
-        if str::starts_with(line, "## ") {
-            section = line.trim_end();
+    let line = |(index, line): (usize, &&str)| {
+        if line.starts_with("## ") {
+            section = lines[index].trim_end();
         }
+        let is_header = lines.get(index + 1).is_some_and(|next| next.starts_with("|---"));
+        let after = format!("`{}`", if is_header { column } else { like });
         match line.starts_with('|') && section != LACKING {
-            true => line.replace(&quoted, &both),
-            false => line.to_owned(),
+            true => line.replace(&after, &format!("{after}, `{name}`")),
+            false => (*line).to_owned(),
         }
     };
-    text.split_inclusive('\n').map(line).collect()
+    lines.iter().enumerate().map(line).collect()
 }
