@@ -25,7 +25,7 @@ fn make(repository: &Repository<'_>, section: &str, rest: &[&str]) -> Result<Mad
     let next = text[lines..end].find("\n### ").map_or(end, |at| lines + at);
     let list = text[lines..next].trim_end();
     let (before, after) = (&text[..lines], &text[next..]);
-    let gap = if after.starts_with("\n### ") { "\n" } else { "" };
+    let gap = if after.trim().is_empty() { "" } else { "\n" };
     let changed = format!("{before}{list}\n- {}\n{gap}{}", words.trim(), after.trim_start());
     Ok(Made {
         files: vec![(CHANGELOG.to_owned(), changed)],
