@@ -131,15 +131,21 @@ fn replay(kind: &Kind, file: &Path) -> Result<(), Failed> {
     judge(kind, &std::fs::read(file)?)
 }
 
-/// Fails unless an input gives the same answer twice, and soon.
+/// Fails unless an input gives the same answer twice, and soon. The shorter time counts, since a busy
+/// machine may stop for a while.
 fn judge(kind: &Kind, input: &[u8]) -> Result<(), Failed> {
-    let started = Instant::now();
-    let answer = (kind.run)(input);
-    if started.elapsed() > LONGEST {
-        let took = started.elapsed();
+    let timed = || {
+        let started = Instant::now();
+        let answer = (kind.run)(input);
+        (answer, started.elapsed())
+    };
+    let (answer, first) = timed();
+    let (again, second) = timed();
+    let took = first.min(second);
+    if took > LONGEST {
         return Err(format!("took {took:?}, expected at most {LONGEST:?}").into());
     }
-    match (kind.run)(input) == answer {
+    match again == answer {
         true => Ok(()),
         false => Err("the same input gave two different answers".into()),
     }

@@ -25,7 +25,7 @@ const short = (list: number[]) => list.map((one) => Number(one.toPrecision(5)));
 function begun(query: URLSearchParams, path: string, published?: { program: string; key: string; scene: string }) {
     return {
         program: path || published?.program || "forward", key: query.get("key") ?? published?.key ?? "",
-        scene: query.get("scene") ?? published?.scene ?? "", environment: query.get("environment") ?? "studio",
+        scene: query.get("scene") ?? published?.scene ?? "", environment: query.get("environment") ?? "",
         target: query.get("target") ?? "wgsl", preset: query.get("preset") ?? "",
         lamps: read(query.get("lamps")), set: read(query.get("set")),
         /** The permutation that this one is compared with. */
@@ -56,7 +56,7 @@ export async function page(into: HTMLElement) {
         set({ lamps: { ...state.lamps, [index]: short(place) } }, false, isDone));
     const forget = { lamps: {}, set: {} };
     const scene = choose("scene", ["", ...studio.scenes.map((one) => one.name)], state.scene, (value) => set({ scene: value, lamps: {} }, false));
-    const around = choose("environment", studio.environments, state.environment, (value) => set({ environment: value }, false));
+    const around = choose("environment", ["", ...studio.environments], state.environment, (value) => set({ environment: value }, false));
     const programChoice = choose("program", programs.map((one) => one.name), state.program,
         (value) => set({ program: value, key: "", scene: "", preset: "", against: undefined, ...forget }));
     const targets = choose("output", ["composed", ...known], state.target, (value) => set({ target: value }));
@@ -71,8 +71,8 @@ export async function page(into: HTMLElement) {
     let wanted = { texts: true, controls: true };
 
     const request = (): Omit<PictureRequest, "target"> => ({
-        program: found.name, key: point!.key, width: 384, height: 384, samples: 1, environment: state.environment,
-        ...(state.preset && { preset: state.preset }), ...(state.scene && { scene: state.scene }),
+        program: found.name, key: point!.key, width: 384, height: 384, samples: 1,
+        ...(state.environment && { environment: state.environment }), ...(state.preset && { preset: state.preset }), ...(state.scene && { scene: state.scene }),
         uniforms: state.set, lamps: state.lamps,
     });
     // They are recorded, and do not change.

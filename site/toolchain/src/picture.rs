@@ -288,9 +288,11 @@ fn number_of(components: &[f64]) -> Number {
 
 fn shot(request: &PictureRequest) -> Result<Shot, Diagnostics> {
     const LARGEST: u32 = 2048;
-    let name = request.environment.as_deref().unwrap_or("studio");
-    let surroundings = Surroundings::named(name)
-        .ok_or_else(|| vec![refused(&format!("there is no environment `{name}`"))])?;
+    let surroundings = match request.environment.as_deref() {
+        None => Surroundings::Usual,
+        Some(name) => Surroundings::named(name)
+            .ok_or_else(|| vec![refused(&format!("there is no environment `{name}`"))])?,
+    };
     Ok(Shot {
         size: [request.width, request.height].map(|side| side.clamp(1, LARGEST)),
         samples: request.samples.clamp(1, 64),

@@ -28,7 +28,7 @@ pub struct PictureRequest {
     #[serde(default)]
     #[tsify(optional)]
     pub scene: Option<String>,
-    /// One of `environments`.
+    /// One of `environments`. Without it, the scene chooses.
     #[serde(default)]
     #[tsify(optional)]
     pub environment: Option<String>,
