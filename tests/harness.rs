@@ -49,8 +49,8 @@ pub fn trials() -> Vec<Trial> {
 /// only a part of the cases here, and all of them with `lamplight check --executor webgpu --executor
 /// webgl2`.
 const BROWSERS: [&str; 2] = ["webgl2", "webgpu"];
-/// They run the cases of every eighth file.
-const PART: usize = 8;
+/// They run the cases of every fourth file.
+const PART: usize = 4;
 
 /// Runs a function with every executor open, on a thread that ends before the trial does.
 fn opened<T: Send>(
