@@ -16,6 +16,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use kinds::{KINDS, Kind};
+use lamplight::validate::on_large_stack;
 use libtest_mimic::{Failed, Trial};
 
 /// The longest time for one input. It is large, since the build is not optimised and the machine may
@@ -131,16 +132,26 @@ fn replay(kind: &Kind, file: &Path) -> Result<(), Failed> {
     judge(kind, &std::fs::read(file)?)
 }
 
-/// Fails unless an input gives the same answer twice, and soon.
+/// Fails unless an input gives the same answer twice, and soon. The shorter of the two times counts,
+/// since other trials can take the machine for seconds.
 fn judge(kind: &Kind, input: &[u8]) -> Result<(), Failed> {
-    let started = Instant::now();
-    let answer = (kind.run)(input);
-    if started.elapsed() > LONGEST {
-        let took = started.elapsed();
+    let (answer, first) = timed(kind, input);
+    let (again, second) = timed(kind, input);
+    let took = first.min(second);
+    if took > LONGEST {
         return Err(format!("took {took:?}, expected at most {LONGEST:?}").into());
     }
-    match (kind.run)(input) == answer {
+    match again == answer {
         true => Ok(()),
         false => Err("the same input gave two different answers".into()),
     }
+}
+
+/// The answer to an input, and how long it took. The clock starts on a thread that may call naga,
+/// since all trials share these threads and wait for one.
+fn timed(kind: &Kind, input: &[u8]) -> (String, Duration) {
+    on_large_stack(|| {
+        let started = Instant::now();
+        ((kind.run)(input), started.elapsed())
+    })
 }

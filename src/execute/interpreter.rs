@@ -60,6 +60,11 @@ impl Interpreter {
         })
     }
 
+    /// The same, with that many times the steps for all calls together.
+    pub fn with_steps_times(self, times: u64) -> Self {
+        Self { most: self.most.saturating_mul(times), ..self }
+    }
+
     /// The lowered module.
     pub fn program(&self) -> &Program {
         &self.program

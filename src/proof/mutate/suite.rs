@@ -266,14 +266,18 @@ impl Suite<'_> {
     /// Checks that every case passes without a mistake put in. The error is about the first one
     /// that does not.
     pub fn check(&self) -> Result<(), Diagnostic> {
-        let failing = self.cases.iter().find(|case| self.run(case, None) != Some(Fate::Survived));
-        failing.map_or(Ok(()), |case| {
-            let name = &case.job.case.function;
-            Err(Diagnostic::error(
-                codes::CASE_INVALID,
-                format!("`{name}` fails this case as it is"),
-            )
-            .at(case.job.case.span, "in this case"))
+        self.cases.iter().try_for_each(|case| {
+            let named = case.job.case;
+            let notices =
+                case.interpreter(&case.job.kernel().module).and_then(|it| case.notices(&it));
+            match notices.map_err(|error| error.at(named.span, "in this case"))? {
+                false => Ok(()),
+                true => {
+                    let message = format!("`{}` fails this case as it is", named.function);
+                    Err(Diagnostic::error(codes::CASE_INVALID, message)
+                        .at(named.span, "in this case"))
+                }
+            }
         })
     }
 
@@ -289,7 +293,7 @@ impl Suite<'_> {
         let mut fate =
             if own.is_empty() && others.is_empty() { Some(Fate::Unreached) } else { None };
         for case in own.into_iter().chain(others) {
-            fate = self.run(case, Some((subject, site)));
+            fate = self.run(case, subject, site);
             if fate != Some(Fate::Survived) {
                 break;
             }
@@ -297,17 +301,15 @@ impl Suite<'_> {
         fate
     }
 
-    fn run(&self, case: &Ready<'_>, mistake: Option<(&Subject, &Site)>) -> Option<Fate> {
-        let kernel = case.job.kernel();
-        let mut module = kernel.module.clone();
-        if let Some((subject, site)) = mistake {
-            let ty = |handle: Handle<Expression>| {
-                Some(self.info[subject.function][handle].ty.inner_with(&self.whole.types).clone())
-            };
-            let function = find_function(&module, &subject.name)?;
-            apply_mutation(module.functions.get_mut(function), site, ty).then_some(())?;
-        }
-        let interpreter = Interpreter::of(kernel, &module).ok()?;
+    fn run(&self, case: &Ready<'_>, subject: &Subject, site: &Site) -> Option<Fate> {
+        let mut module = case.job.kernel().module.clone();
+        let ty = |handle: Handle<Expression>| {
+            Some(self.info[subject.function][handle].ty.inner_with(&self.whole.types).clone())
+        };
+        let function = find_function(&module, &subject.name)?;
+        apply_mutation(module.functions.get_mut(function), site, ty).then_some(())?;
+        let interpreter = case.interpreter(&module).ok()?;
+        // A mutant that takes too many steps is an error, and is noticed too.
         Some(if case.notices(&interpreter).unwrap_or(true) { Fate::Killed } else { Fate::Survived })
     }
 }
@@ -321,6 +323,14 @@ fn find_function(module: &Module, name: &str) -> Option<Handle<Function>> {
 }
 
 impl Ready<'_> {
+    /// An interpreter for a changed copy of the kernel's module. All rows run twice, in f64 and in
+    /// f32, and once more for each law with rows of its own. Each time may take the steps of a case.
+    fn interpreter(&self, module: &Module) -> Result<Interpreter, Diagnostic> {
+        let with_rows = self.job.laws.iter().filter(|law| law.rows.is_some()).count();
+        let times = 2 + with_rows as u64;
+        Ok(Interpreter::of(self.job.kernel(), module)?.with_steps_times(times))
+    }
+
     /// Whether the case fails for the mutant: a value is wrong, a law is broken, or too many rows
     /// are ambiguous.
     fn notices(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
