@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use glam::{DMat4, DVec3};
 use image::ImageEncoder as _;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use rayon::prelude::*;
 
 use super::Surroundings;
 use super::needs::BackgroundKind;
@@ -137,29 +138,32 @@ impl Linear {
         Self { size, sums: vec![DVec3::ZERO; pixels], first: vec![None; pixels], samples: 0 }
     }
 
-    /// Adds one sample of every pixel, from a picture that was moved by `shift` pixels.
+    /// Adds one sample of every pixel, from a picture that was moved by `shift` pixels. `color` gives
+    /// what was drawn at a pixel, counted row by row; `None` for the background.
     pub fn add(
         &mut self,
-        colors: impl Iterator<Item = Option<[f32; 4]>>,
+        color: impl Fn(usize) -> Option<[f32; 4]> + Sync,
         shift: [f64; 2],
         background: &Background,
         exposure: f64,
     ) {
-        let [width, height] = self.size.map(f64::from);
-        let factor = exposure.exp2();
-        for (index, color) in colors.enumerate().take(self.sums.len()) {
-            let (x, y) =
-                ((index as u32 % self.size[0]) as f64, (index as u32 / self.size[0]) as f64);
+        let ([width, height], columns) = (self.size.map(f64::from), self.size[0] as usize);
+        let (factor, is_first) = (exposure.exp2(), self.samples == 0);
+        let rows = self.sums.par_chunks_mut(columns).zip(self.first.par_chunks_mut(columns));
+        rows.enumerate().for_each(|(y, (sums, first))| {
             // The projection was moved by `shift` (x to the right, y upwards), in pixels. So each
             // pixel shows the background that lies `shift` to the left of it and below it.
-            let behind =
-                || background.color((x + 0.5 - shift[0]) / width, (y + 0.5 + shift[1]) / height);
-            let drawn = color.map(|[r, g, b, _]| DVec3::new(r.into(), g.into(), b.into()));
-            self.sums[index] += visible_part(drawn.unwrap_or_else(behind) * factor);
-            if self.samples == 0 {
-                self.first[index] = drawn;
+            let v = (y as f64 + 0.5 + shift[1]) / height;
+            for (x, (sum, first)) in sums.iter_mut().zip(first).enumerate() {
+                let behind = || background.color((x as f64 + 0.5 - shift[0]) / width, v);
+                let drawn = color(y * columns + x)
+                    .map(|[r, g, b, _]| DVec3::new(r.into(), g.into(), b.into()));
+                *sum += visible_part(drawn.unwrap_or_else(behind) * factor);
+                if is_first {
+                    *first = drawn;
+                }
             }
-        }
+        });
         self.samples += 1;
     }
 

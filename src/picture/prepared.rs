@@ -146,40 +146,25 @@ impl Prepared {
         let bytes = 16 * shot.size[0] as usize * shot.size[1] as usize;
         let at_once = (AT_ONCE / bytes.max(1)).max(1);
         for (views, shifts) in views.chunks(at_once).zip(shifts.chunks(at_once)) {
-            let nearest = self.colors(painter, views, shot.size)?;
-            let mut farther = Vec::new();
+            let mut slices = vec![(self, self.draw_colors(painter, views, shot.size, 0)?)];
             for slice in &self.farther {
                 let views = slice.eye_views(shifts, shot.size)?;
-                farther.push(slice.colors(painter, &views, shot.size)?);
+                slices.push((slice, slice.draw_colors(painter, &views, shot.size, 0)?));
             }
-            for (index, (colors, shift)) in nearest.iter().zip(shifts).enumerate() {
-                let behind = |pixel: usize| farther.iter().find_map(|slice| slice[index][pixel]);
-                let seen =
-                    colors.iter().enumerate().map(|(pixel, color)| color.or_else(|| behind(pixel)));
+            for (index, shift) in shifts.iter().enumerate().take(views.len()) {
+                let seen = |pixel: usize| {
+                    slices.iter().find_map(|(slice, frames)| slice.color(&frames[index], pixel))
+                };
                 picture.add(seen, *shift, &self.background, shot.exposure);
             }
         }
         Ok(picture)
     }
 
-    /// The colours of each view; `None` where nothing was drawn.
-    fn colors(
-        &self,
-        painter: &dyn Session,
-        views: &[Buffers],
-        size: [u32; 2],
-    ) -> Result<Vec<Vec<Option<[f32; 4]>>>, Diagnostics> {
-        let colors = |frame: Frame| {
-            frame
-                .targets
-                .first()
-                .map_or(&[][..], Vec::as_slice)
-                .chunks(4)
-                .map(pixel_color)
-                .map(|color| if self.encoded { color.map(decoded_color) } else { color })
-                .collect()
-        };
-        Ok(self.draw_colors(painter, views, size, 0)?.into_iter().map(colors).collect())
+    /// The colour of a pixel of a frame; `None` where nothing was drawn.
+    fn color(&self, frame: &Frame, pixel: usize) -> Option<[f32; 4]> {
+        let color = pixel_color(frame.targets.first()?.get(4 * pixel..4 * pixel + 4)?)?;
+        Some(if self.encoded { decoded_color(color) } else { color })
     }
 }
 

@@ -4,21 +4,23 @@ use std::io::Write;
 use std::time::Instant;
 
 use super::super::terminal::stdout;
+use super::several::draw_all;
 use super::{Failure, input_failure, library_comparisons, library_examples};
 use crate::catalogue::preset::Preset;
 use crate::execute::Session;
+use crate::execute::executors::Entry;
 use crate::output::Folder;
 use crate::picture::frame::Programs;
 use crate::picture::gallery::{self, Card, Exhibit, StripCard};
 use crate::picture::strip::{self, Comparison};
-use crate::picture::{Plan, Shot};
+use crate::picture::{Picture, Plan, Shot};
 
 /// Files of the gallery that are not named after a preset.
 const PAGES: [&str; 3] = ["README.md", "index.html", "adapters.txt"];
 
 /// Draws all presets into a folder, with a page in Markdown and one in HTML.
 pub fn draw_gallery(
-    painter: &mut dyn Session,
+    entry: &Entry,
     programs: &Programs,
     shot: &Shot,
     mut folder: Folder,
@@ -27,21 +29,30 @@ pub fn draw_gallery(
     let (presets, probes) = library_examples(programs)?;
     let compared = library_comparisons(programs)?;
     check_folder(&folder, &presets, &compared)?;
-    let mut exhibits = Vec::new();
-    for preset in &presets {
-        let plan = Plan::of_preset(programs, preset, &probes)
-            .map_err(|problems| input_failure(programs, problems))?;
-        let exhibit = Exhibit::new(&*painter, programs, preset, &plan, shot)
+    let plans = presets
+        .iter()
+        .map(|preset| Ok((preset, Plan::of_preset(programs, preset, &probes)?)))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(|problems| input_failure(programs, problems))?;
+    let exhibit = |painter: &mut dyn Session, (preset, plan): &(&Preset, Plan)| {
+        let exhibit = Exhibit::new(painter, programs, preset, plan, shot)
             .map_err(|problems| input_failure(programs, problems))?;
         let [picture, thumb] = gallery::picture_files(&preset.name);
         let small = exhibit.picture.shrunk(gallery::THUMB);
-        folder.write(&picture, &exhibit.picture.png().map_err(Failure::environment)?)?;
-        folder.write(&thumb, &small.png().map_err(Failure::environment)?)?;
-        exhibits.push(exhibit);
-    }
-    let mut lines = gallery::adapter_lines(&exhibits, shot);
-    let (strips, drawn) = draw_strips(painter, programs, shot, &mut folder, compared)?;
-    lines += &drawn;
+        Ok((vec![(picture, png_of(&exhibit.picture)?), (thumb, png_of(&small)?)], exhibit))
+    };
+    let exhibits = draw_all(entry, &plans, exhibit, &mut folder)?;
+    let strip = |painter: &mut dyn Session, comparison: &Comparison| {
+        let picture = strip::draw_strip(painter, programs, comparison, shot)
+            .map_err(|problems| input_failure(programs, problems))?;
+        let card = StripCard::new(programs, comparison.clone(), shot.language)
+            .map_err(|problems| input_failure(programs, problems))?;
+        let line = format!("{}, {}\n", card.current(shot), painter.adapter());
+        Ok((vec![(gallery::strip_file(&comparison.name), png_of(&picture)?)], (card, line)))
+    };
+    let (strips, drawn): (Vec<_>, Vec<_>) =
+        draw_all(entry, &compared, strip, &mut folder)?.into_iter().unzip();
+    let lines = gallery::adapter_lines(&exhibits, shot) + &drawn.concat();
     let cards: Vec<&Card> = exhibits.iter().map(|exhibit| &exhibit.card).collect();
     folder.write("README.md", gallery::markdown_page(&cards, &strips).as_bytes())?;
     for (path, text) in gallery::composed(&cards) {
@@ -52,12 +63,9 @@ pub fn draw_gallery(
     let shown = folder.path().display().to_string();
     folder.finish()?;
     let seconds = start.elapsed().as_secs_f64();
-    Ok(writeln!(
-        stdout(),
-        "{shown}: {} pictures in {seconds:.1} s, {}",
-        exhibits.len() + strips.len(),
-        painter.adapter()
-    )?)
+    let adapter = exhibits.first().map_or("", |exhibit| exhibit.adapter.as_str());
+    let count = exhibits.len() + strips.len();
+    Ok(writeln!(stdout(), "{shown}: {count} pictures in {seconds:.1} s, {adapter}")?)
 }
 
 /// Fails if a file that would be replaced is not ours. This is checked first, since drawing takes
@@ -76,25 +84,6 @@ fn check_folder(
     Ok(())
 }
 
-/// Draws all comparisons into the folder. Returns a card for each, and the lines of `adapters.txt`
-/// that name the adapter of each.
-fn draw_strips(
-    painter: &mut dyn Session,
-    programs: &Programs,
-    shot: &Shot,
-    folder: &mut Folder,
-    compared: Vec<Comparison>,
-) -> Result<(Vec<StripCard>, String), Failure> {
-    let (mut strips, mut lines) = (Vec::new(), String::new());
-    for comparison in compared {
-        let picture = strip::draw_strip(painter, programs, &comparison, shot)
-            .map_err(|problems| input_failure(programs, problems))?;
-        let file = gallery::strip_file(&comparison.name);
-        folder.write(&file, &picture.png().map_err(Failure::environment)?)?;
-        let card = StripCard::new(programs, comparison, shot.language)
-            .map_err(|problems| input_failure(programs, problems))?;
-        lines += &format!("{}, {}\n", card.current(shot), painter.adapter());
-        strips.push(card);
-    }
-    Ok((strips, lines))
+fn png_of(picture: &Picture) -> Result<Vec<u8>, Failure> {
+    picture.png().map_err(Failure::environment)
 }

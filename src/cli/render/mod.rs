@@ -2,6 +2,7 @@
 
 mod gallery;
 mod model;
+mod several;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -120,12 +121,7 @@ fn draw_picture(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.all {
         let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from("gallery"));
         let folder = output::Folder::open(&folder, arguments.overwrite.replace())?;
-        return gallery::draw_gallery(
-            executor::open_executor(entry)?.as_mut(),
-            &programs,
-            &shot,
-            folder,
-        );
+        return gallery::draw_gallery(entry, &programs, &shot, folder);
     }
     if let Some(comparison) = named_comparison(&programs, arguments)? {
         return draw_comparison(&programs, arguments, &comparison, &shot, entry);
