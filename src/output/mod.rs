@@ -5,9 +5,11 @@
 //! | one file that the user names | [`write_file`], which asks whether a file there is ours | `file.rs` |
 //! | one file whose older content the caller has read | [`write()`] | `file.rs` |
 //! | a folder of files, each known by its hash | [`write_folder`], or [`Folder`] for one after the other | `folder.rs` |
-//! | many files that point to each other | [`Scratch`]: stage all, sync once, rename in the order of use | `scratch.rs`; `bundle` does so |
+//! | many files that point to each other | [`Scratch`]: stage all, sync once, rename in the order of use | `scratch.rs`; `publish` in `src/bundle/directory_writer.rs` and `src/cache/folder.rs` do so |
 //!
-//! A write takes these steps, in this order, so that a crash between two of them loses nothing:
+//! Where a file has the new bytes already, [`write_file`] and [`Folder`] write nothing: `has_bytes` in
+//! `file.rs` tells. The record of a folder, and the cache, are written in any case. Otherwise a write
+//! takes these steps, in this order, so that a crash between two of them loses nothing:
 //!
 //! 1. `Scratch::new` makes a folder beside the place. The run keeps a file in it locked, which
 //!    tells a later run whether this one is still alive.

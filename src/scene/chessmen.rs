@@ -185,16 +185,29 @@ fn cross_shape() -> Shape {
         .fold(Shape::default(), |shape, (length, turn)| shape.with(arm(length, TAU * turn)))
 }
 
+/// A man who stands upright on the ground.
+pub struct Standing {
+    place: DVec2,
+    /// The middle and the end of each line or arc of the profile: radius and height.
+    rings: Vec<DVec2>,
+}
+
+impl Standing {
+    pub fn new(man: Man, place: DVec2) -> Self {
+        let ends = profile_arcs(man.profile()).flat_map(|arc| [arc.point(0.5), arc.point(1.0)]);
+        Self { place, rings: ends.collect() }
+    }
+}
+
 /// The share of the sky, weighted by the cosine to the ground's normal, that is seen from the
 /// ground between upright men.
-pub fn open_share(at: DVec2, men: &[(Man, DVec2)]) -> f64 {
+pub fn open_share(at: DVec2, men: &[Standing]) -> f64 {
     const DIRECTIONS: u32 = 24;
     const FARTHEST: f64 = 2.5;
-    let near: Vec<_> = men.iter().filter(|(_, place)| place.distance(at) < FARTHEST).collect();
+    let near: Vec<_> = men.iter().filter(|man| man.place.distance(at) < FARTHEST).collect();
     let open = |direction: u32| {
         let ahead = DVec2::from_angle(TAU * (f64::from(direction) + 0.5) / f64::from(DIRECTIONS));
-        let slopes =
-            near.iter().map(|(man, place)| steepest_slope(man.profile(), at - *place, ahead));
+        let slopes = near.iter().map(|man| steepest_slope(&man.rings, at - man.place, ahead));
         let slope = slopes.fold(0.0, f64::max);
         // The cosine-weighted share of the sky above an elevation is the square of the cosine of
         // the elevation.
@@ -205,17 +218,15 @@ pub fn open_share(at: DVec2, men: &[(Man, DVec2)]) -> f64 {
 
 /// The slope of the steepest ray in a direction that a man stops. The man is taken as solid below
 /// each of its rings.
-fn steepest_slope(profile: &[Turn], from: DVec2, ahead: DVec2) -> f64 {
+fn steepest_slope(rings: &[DVec2], from: DVec2, ahead: DVec2) -> f64 {
     let along = -from.dot(ahead);
     let aside = from.perp_dot(ahead);
-    let slope = |point: DVec2| {
+    let slope = |point: &DVec2| {
         let depth = point.x * point.x - aside * aside;
         if along <= 0.0 || depth <= 0.0 {
             return 0.0;
         }
         point.y / (along - depth.sqrt()).max(0.01)
     };
-    profile_arcs(profile)
-        .map(|arc| slope(arc.point(0.5)).max(slope(arc.point(1.0))))
-        .fold(0.0, f64::max)
+    rings.iter().map(slope).fold(0.0, f64::max)
 }

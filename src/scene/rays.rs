@@ -52,6 +52,10 @@ enum Content {
 const LEAF: usize = 4;
 /// Nearer hits are ignored: they are on the surface that the ray starts from.
 const NEAREST: f64 = 1e-6;
+/// The relative and the absolute error that is allowed for in distances of boxes.
+const MARGIN: f64 = 1e-12;
+/// More levels than the hierarchy of any scene has.
+const DEPTH: usize = 64;
 
 impl Surfaces {
     /// The triangles of everything that casts a shadow.
@@ -75,27 +79,17 @@ impl Surfaces {
     /// The first triangle that a ray meets, from either side. The direction need not be of unit
     /// length.
     pub fn hit(&self, from: DVec3, towards: DVec3) -> Option<Hit> {
+        let ray = Ray::new(from, towards);
         let mut best = f64::INFINITY;
-        let mut found = None;
-        let mut waiting = Vec::from_iter((!self.nodes.is_empty()).then_some(0));
-        while let Some(index) = waiting.pop() {
-            let node = &self.nodes[index];
-            if !node.is_met(from, towards, best) {
-                continue;
+        let mut found = usize::MAX;
+        self.walk(&ray, f64::INFINITY, |index, distance| {
+            // Of triangles at the same distance, the first counts, in whatever order they are met.
+            if distance < best || (distance == best && index < found) {
+                (best, found) = (distance, index);
             }
-            match &node.content {
-                Content::Second(second) => waiting.extend([*second, index + 1]),
-                Content::Leaf(range) => {
-                    for triangle in &self.triangles[range.clone()] {
-                        if let Some(distance) = triangle.met(from, towards).filter(|at| *at < best)
-                        {
-                            (best, found) = (distance, Some(triangle));
-                        }
-                    }
-                }
-            }
-        }
-        found.map(|triangle| Hit {
+            best
+        });
+        self.triangles.get(found).map(|triangle| Hit {
             distance: best,
             normal: triangle.across().normalize_or_zero(),
             albedo: triangle.albedo,
@@ -105,7 +99,59 @@ impl Surfaces {
 
     /// Whether nothing is between two points.
     pub fn is_clear(&self, from: DVec3, to: DVec3) -> bool {
-        self.hit(from, to - from).is_none_or(|hit| hit.distance >= 1.0 - NEAREST)
+        let before = 1.0 - NEAREST;
+        let mut is_clear = true;
+        self.walk(&Ray::new(from, to - from), before, |_, distance| {
+            is_clear &= distance >= before;
+            // After a hit, no box is near enough.
+            if is_clear { before } else { f64::NEG_INFINITY }
+        });
+        is_clear
+    }
+
+    /// Calls `meet` with the index and the distance of each triangle that the ray meets, in boxes
+    /// that it enters before a distance. `meet` returns that distance anew. Of two boxes, the nearer
+    /// one comes first.
+    fn walk(&self, ray: &Ray, before: f64, mut meet: impl FnMut(usize, f64) -> f64) {
+        let mut before = before;
+        let mut waiting = Vec::with_capacity(DEPTH);
+        let enter = |index: usize| Some((self.nodes.get(index)?.enter(ray)?, index));
+        waiting.extend(enter(0));
+        while let Some((distance, index)) = waiting.pop() {
+            // The margin is for boxes without a thickness.
+            if distance > before * (1.0 + MARGIN) + MARGIN {
+                continue;
+            }
+            match &self.nodes[index].content {
+                Content::Second(second) => match (enter(index + 1), enter(*second)) {
+                    (Some(first), Some(second)) if first.0 <= second.0 => {
+                        waiting.extend([second, first]);
+                    }
+                    (first, second) => waiting.extend(first.into_iter().chain(second)),
+                },
+                Content::Leaf(range) => {
+                    for at in range.clone() {
+                        if let Some(distance) = self.triangles[at].met(ray) {
+                            before = meet(at, distance);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A ray, with what the test of a box needs.
+struct Ray {
+    from: DVec3,
+    towards: DVec3,
+    /// The reciprocal of each component of `towards`.
+    inverse: DVec3,
+}
+
+impl Ray {
+    fn new(from: DVec3, towards: DVec3) -> Self {
+        Self { from, towards, inverse: towards.recip() }
     }
 }
 
@@ -165,22 +211,22 @@ fn build_node(all: &mut [Triangle], range: std::ops::Range<usize>, nodes: &mut V
 }
 
 impl Node {
-    /// Whether a ray meets the box before a distance.
-    fn is_met(&self, from: DVec3, towards: DVec3, before: f64) -> bool {
-        let (mut enter, mut leave) = (0.0_f64, before);
+    /// The distance at which a ray enters the box, at least 0; `None` if it misses the box.
+    fn enter(&self, ray: &Ray) -> Option<f64> {
+        let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
         for axis in 0..3 {
-            let (start, step) = (from[axis], towards[axis]);
-            if step == 0.0 {
+            let start = ray.from[axis];
+            if ray.towards[axis] == 0.0 {
                 if start < self.low[axis] || start > self.high[axis] {
-                    return false;
+                    return None;
                 }
                 continue;
             }
-            let (a, b) = ((self.low[axis] - start) / step, (self.high[axis] - start) / step);
+            let a = (self.low[axis] - start) * ray.inverse[axis];
+            let b = (self.high[axis] - start) * ray.inverse[axis];
             (enter, leave) = (enter.max(a.min(b)), leave.min(a.max(b)));
         }
-        // The margin is for boxes without a thickness.
-        enter <= leave * (1.0 + 1e-12) + 1e-12
+        (enter <= leave * (1.0 + MARGIN) + MARGIN).then_some(enter)
     }
 }
 
@@ -197,7 +243,8 @@ impl Triangle {
 
     /// Where a ray meets it: Möller and Trumbore, "Fast, Minimum Storage Ray/Triangle
     /// Intersection", 1997.
-    fn met(&self, from: DVec3, towards: DVec3) -> Option<f64> {
+    fn met(&self, ray: &Ray) -> Option<f64> {
+        let (from, towards) = (ray.from, ray.towards);
         let [a, b, c] = self.corners;
         let (along, up) = (b - a, c - a);
         let p = towards.cross(up);

@@ -69,13 +69,15 @@ impl Gpu {
         let bindings = Bindings::new(self, drawing, used)?;
         let meshes = Meshes::new(self, drawing);
         let layout = |index| Some(pipeline.get_bind_group_layout(index));
+        // All views are drawn into the same targets, one after another, and copied from there.
+        let targets = Targets::new(&self.device, drawing, &formats);
         let mut frames = Vec::new();
         for view in drawing.views {
             let items = drawing.items.iter();
             let groups: Vec<_> = items
                 .map(|item| bindings.groups(self, drawing, view, item, &layout))
                 .collect::<Result<_, _>>()?;
-            frames.push(meshes.pass(self, drawing, &pipeline, &groups, &formats));
+            frames.push(meshes.pass(self, &targets, &pipeline, &groups));
         }
         Ok(frames)
     }
@@ -178,17 +180,15 @@ impl Meshes {
         Self(drawing.items.iter().map(|item| Uploaded::new(gpu, item.mesh)).collect())
     }
 
-    /// Draws one frame, each item with its bind groups, and copies it into buffers that can be
-    /// mapped.
+    /// Draws one frame into the targets, each item with its bind groups, and copies it into buffers
+    /// that can be mapped.
     fn pass(
         &self,
         gpu: &Gpu,
-        drawing: &Drawing<'_>,
+        targets: &Targets,
         pipeline: &wgpu::RenderPipeline,
         groups: &[Groups],
-        formats: &[Format],
     ) -> target::Pending {
-        let targets = Targets::new(&gpu.device, drawing, formats);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         targets.pass(&mut encoder, |pass| {
             pass.set_pipeline(pipeline);

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::{
     Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base_scene, maps, placed_at,
 };
-use crate::scene::chessmen::{Man, open_share};
+use crate::scene::chessmen::{Man, Standing, open_share};
 use crate::scene::layers::Layers;
 use crate::scene::maps::{grid_noise, random_at};
 use crate::scene::shape::Shape;
@@ -215,7 +215,8 @@ fn board_map(side: usize, number: impl Fn(DVec2) -> f64 + Sync) -> Map {
 }
 
 fn open_map() -> Map {
-    let men: Vec<_> = GAME.iter().map(|(man, _, x, z)| (*man, DVec2::new(*x, *z))).collect();
+    let men: Vec<_> =
+        GAME.iter().map(|(man, _, x, z)| Standing::new(*man, DVec2::new(*x, *z))).collect();
     board_map(256, |at| open_share(at, &men))
 }
 

@@ -56,15 +56,18 @@ fn make(repository: &Repository<'_>, text: &str, rest: &[&str]) -> Result<Made, 
     let mut files = vec![(MANIFEST.to_owned(), text), (LOCK.to_owned(), lock)];
     let pictures = repository.read(PICTURES)?;
     let has_pictures = pictures.contains(&table);
+    let with_row = if has_pictures { with_row(&pictures, &table, value) } else { String::new() };
+    let row = with_row.lines().find(|line| !pictures.lines().any(|old| old == *line));
+    let row = row.unwrap_or_default().to_owned();
     if has_pictures {
-        files.push((PICTURES.to_owned(), with_row(&pictures, &table, value)));
+        files.push((PICTURES.to_owned(), with_row));
     }
     let places = Places::find(repository, &read_manifest(&old)?, &named)?;
     let mut next = places.steps(&named);
     files.extend(places.changed);
     if has_pictures {
         next.push(format!(
-            "{PICTURES}: what a picture takes from `{value}`; its row is a copy of the last one"
+            "{PICTURES}: what a picture takes from `{value}`; its row is a copy of the last one: `{row}`"
         ));
     }
     next.push(match said {
@@ -122,7 +125,7 @@ impl Places {
     fn steps(&self, Named { axis, value, .. }: &Named<'_>) -> Vec<String> {
         let (name, constant) = (axis.to_uppercase(), format!("{axis}_{value}").to_uppercase());
         let mut steps = vec![format!(
-            "the effect, `@if({axis} == {value})` in WESL and `#if {name} == {constant}` in GLSL, with an import in WESL and an `#include` in GLSL of what it calls (trial library::values_have_effect); these lines test the axis:"
+            "the effect, `@if({axis} == {value})` in WESL and `#if {name} == {constant}` in GLSL, with an import in WESL and an `#include` in GLSL of what it calls (trial library::values_have_effect); what a branch uses may have a condition of its own, and a function of WESL must return for `{value}` too; these lines test the axis:"
         )];
         steps.extend(self.lines.iter().map(|line| format!("  {line}")));
         if !self.changed.is_empty() {
@@ -130,6 +133,7 @@ impl Places {
                 "replace each `#error` for `{axis}={value}`, or delete it with its `#elif` where `#else` is right (trial library::)"
             ));
         }
+        steps.push("comments of uniform fields that list values, in both languages".to_owned());
         steps.extend(self.sharing.iter().map(|other| {
             format!("`{other}` has the axis too, and shares files: cargo xtask new axis-value {other}::{axis}={value}, if it has not the value yet")
         }));

@@ -48,7 +48,7 @@ fn steps(file: &str, name: &str, is_vulkan: bool, is_own: bool) -> Vec<String> {
             "{file}: `about`, and what opens it, as its comments say (trials house::described, harness::executor::{name})"
         ),
         format!(
-            "{file}: `needs`, each package listed in xtask/src/machine.rs too (trial house::needs_of_executors)"
+            "{file}: `needs`, each package listed in xtask/src/machine.rs too, as `Need {{ package: \"libegl1\", what: \"EGL\", found: || library(\"libEGL.so.1\") }}`, or with `installed` or `program` (trial house::needs_of_executors)"
         ),
         format!(
             "{file}: `samples: None` where it draws no frames, and `shipping` where it takes a target's files as they are (trials harness::executor::{name}, frames/shipped)"
@@ -64,7 +64,7 @@ fn steps(file: &str, name: &str, is_vulkan: bool, is_own: bool) -> Vec<String> {
             "{file}: `open_device` and `draw_pixels`, which say what they get and give; then `draw_frames`, if it draws frames"
         ));
         next.push(
-            "Cargo.toml, if it needs a crate: then cargo build, with a network, for Cargo.lock"
+            "Cargo.toml, if it needs a crate: optional, in `harness`, below `[target.'cfg(not(target_family = \"wasm\"))'.dependencies]`, with a row in ARCHITECTURE.md; then cargo build, with a network, for Cargo.lock"
                 .to_owned(),
         );
     }
@@ -197,12 +197,15 @@ impl Session for Own {
 
 /// Draws a triangle over a whole target, and gives the words of its pixels, row by row.
 ///
-/// - `text` is a fragment shader, whose entry point is called `kernel_entry`.
+/// - `text` is a fragment shader in the language of the target that `run` names. Its entry point is
+///   called [`ENTRY`].
 /// - The target has the format `Rgba32Uint`, `TARGET_WIDTH` pixels a row, and `rows` rows.
 /// - Binding 0 of group 0 is a texture of `Rgba32Uint`, `INPUT_WIDTH` texels a row, that has the words
 ///   of `texels`, four a texel.
 /// - `kernel.resources()` are further textures and samplers of group 0: each has its `binding` and, in
-///   `fixture`, what it holds.
+///   `fixture`, what it holds: a texture with `kind`, `width`, `height` and `texels` (f32, row by row,
+///   four for a colour and one for a depth, six layers for a cube), or a sampler. Refuse what the
+///   device lacks with `EXECUTOR_FAILED`.
 fn draw_pixels(
     kernel: &Kernel,
     text: &[u8],

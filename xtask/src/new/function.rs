@@ -10,7 +10,7 @@ use super::{Kind, Made, Repository, check_name};
 pub const KIND: Kind = Kind {
     name: "function",
     example: &["brdf::diffuse::minnaert", "nl: f32, nv: f32, k: f32 0..2", "f32"],
-    rest: "['let a = nl * nv; return pow(a, k)']",
+    rest: "['let a = nl * nv; return pow(a, k - 1.0)']",
     make,
 };
 
@@ -115,12 +115,14 @@ fn steps(stem: &str, reference: &str, new: &Signature<'_>, is_new: bool) -> Vec<
     };
     let mut steps = vec![
         format!(
-            "{stem}.wesl: the formula, and each line of its comment (trial shaderlib::); `Edges:` says, by the name of each parameter, what it returns for zero vectors and outside the domain, `Error model:` the bound that `tolerance` states; for guards, `max(x, 1e-4)`, or from `super::super::math::safe` `safe_pow(x, e)` (1 for `e` = 0, else 0 for `x` at or below 0) and `safe_normalize(v, fallback)`; the module's first lines, if they list its functions"
+            "{stem}.wesl: the formula, and each line of its comment (trial shaderlib::); `Edges:` says, by the name of each parameter, what it returns for zero vectors and outside the domain, `Error model:` the bound that `tolerance` states; for guards, `max(x, 1e-4)`, or from `super::super::math::safe` `safe_pow(x, e)` (1 for `e` = 0, else 0 for `x` at or below 0) and `safe_normalize(v, fallback)`, in GLSL with `#include \"../math/safe.glsl\"`; the module's first lines, if they list its functions"
         ),
         format!("{stem}.glsl: {in_glsl} (trial shaderlib::)"),
-        format!("{reference}: the formula in f64, from the source and not from the shader (check)"),
         format!(
-            "{stem}.toml: `tolerance` and `laws`, in one of the forms above them (trial new::forms); `cargo run -- check {folder}/{module}` measures the tolerance"
+            "{reference}: the formula in f64, from the source and not from the shader, with the limits of guards as the shader has them (`f64::from(1e-4f32)`), and its first lines, which list the sources (check)"
+        ),
+        format!(
+            "{stem}.toml: `tolerance` and `laws`, in one of the forms above them (trial new::forms), and inputs outside the domain, for which `Edges:` says the result; `cargo run -- check {folder}/{module}` measures the tolerance; `shaderlib/tolerances.toml` needs no line"
         ),
         format!("tests/plain/{folder}/{module}.wesl: {plain} (trial plain::)"),
         format!("{stem}.plot.toml is complete, unless another parameter should be drawn"),
@@ -228,7 +230,7 @@ pub const TOLERANCES: &str = "\
 # { abs = 1e-6 }: an error that does not grow with y
 # { rel = 1e-5 }: a share of y
 # { scaled = { by = \"dot_abs(n, l)\", ulp = 1.5 } }: units of a formula's value; for a sum, of its terms' magnitudes
-# { pow = { base = \"nl * nv\", exponent = \"k\", ulp = 2 } }: what WGSL allows for a power whose base has this error
+# { pow = { base = \"max(x, 1e-4)\", exponent = \"e - 1\", ulp = 2 } }: what WGSL allows for a power whose base has this error; both are expressions over the parameters
 ";
 
 /// The laws, each with a line of its own.
@@ -246,7 +248,7 @@ pub const LAWS: &str = "\
 # { inverse = \"g\", within = 1e-6 }: another function turns the value back into the first parameter
 # { equal = \"g\", within = 1e-6 }: the value is that of another function, or of a product of functions
 # { area = \"g\", along = \"r\", from = 0, to = \"r\", within = 1e-6 }: the value is an integral of another function
-# { finite = 1e9 }: no value is NaN or infinite for arguments up to that magnitude; the library's functions have it
+# { finite = 1e9 }: no value is NaN or infinite for arguments up to that magnitude; the library's functions are checked so without it: clamp exponents
 ";
 
 fn cases(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {

@@ -23,7 +23,9 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
         format!(
             "{file}: `about`, objects, the viewer and the lamp (trials house::described, scene)"
         ),
-        format!("  shapes (a `cuboid`, a `sphere` and a `torus` lie around the origin): {shapes}"),
+        format!(
+            "  shapes (a `cuboid`, a `sphere` and a `torus` lie around the origin; `placed_at(x, y, z, turn)` puts one elsewhere): {shapes}"
+        ),
         format!("  colours: {colors}"),
         format!("  materials of `material=array`: {}", materials(&palette)?),
         format!("{PRESETS}: `doc`, `look` and `source` of `tech_{name}` (trial catalogue)"),

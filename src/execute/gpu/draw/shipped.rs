@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::super::passthrough::Binary;
 use super::super::{Gpu, Shaders, executor_failed, heaps, hlsl, lock_mutex};
 use super::bindings::Bindings;
+use super::target::Targets;
 use super::{LAVAPIPE_BLOCKS, Meshes, Stages};
 use crate::bundle::{SamplerHeap, Stage, Target};
 use crate::diagnostic::{Diagnostic, codes};
@@ -85,6 +86,7 @@ impl Gpu {
         };
         let pipeline = self.mesh_pipeline(drawing, stages, Some(&layout), formats);
         let meshes = Meshes::new(self, drawing);
+        let targets = Targets::new(&self.device, drawing, formats);
         let mut frames = Vec::new();
         for view in drawing.views {
             let groups: Vec<_> = drawing
@@ -97,7 +99,7 @@ impl Gpu {
                     Ok(groups)
                 })
                 .collect::<Result<_, Diagnostic>>()?;
-            frames.push(meshes.pass(self, drawing, &pipeline, &groups, formats));
+            frames.push(meshes.pass(self, &targets, &pipeline, &groups));
         }
         Ok(frames)
     }
