@@ -22,7 +22,7 @@ const CLIPS: [Clip; 3] = [Clip::Wgpu, Clip::Vulkan, Clip::OpenGl];
 const DEPTHS: [Depth; 2] = [Depth::Normal, Depth::Reversed];
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 22] = [
+    let cases: [Case; 23] = [
         ("views", views),
         ("views_by_angles", angles),
         ("perspective", perspective),
@@ -33,6 +33,7 @@ pub fn trials() -> Vec<Trial> {
         ("cascades", parts::cascades),
         ("spheres_of_cascades", parts::spheres),
         ("rays", probes::rays),
+        ("rays_of_scenes", probes::rays_of_scenes),
         ("fields_of_probes", probes::fields),
         ("clusters", clusters),
         ("normals", normals),

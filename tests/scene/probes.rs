@@ -1,10 +1,11 @@
 //! Fields of light probes and the rays that fill them, against closed forms.
 
-use glam::{DMat4, DVec3};
-use lamplight::scene::sets::{Eye, Material, Object, Scene};
+use glam::{DMat3, DMat4, DVec3};
+use lamplight::scene::sets::{self, Eye, Material, Object, Scene};
 use lamplight::scene::{ProbeField, ProbeGrid, Shape, Surfaces};
 
 use super::{Outcome, close, near};
+use crate::random::Random;
 
 /// A box seen from inside, with walls that are diffuse and emissive.
 fn closed_box(albedo: f64, emission: f64) -> Scene {
@@ -44,6 +45,70 @@ pub fn rays() -> Outcome {
     } else {
         Err(format!("blocked {is_blocked}, misses {misses}, expected both").into())
     }
+}
+
+/// In every scene, rays from anywhere meet what the nearest of all triangles is, each of them tried;
+/// and two points see each other exactly if none is between them.
+pub fn rays_of_scenes() -> Outcome {
+    const RAYS: usize = 40;
+    const FAR: f64 = 20.0;
+    let mut random = Random(7);
+    let mut met = 0;
+    for set in sets::ALL {
+        let scene = (set.make)();
+        let (surfaces, triangles) = (Surfaces::of(&scene), corners_of(&scene));
+        let corners = || triangles.iter().flatten();
+        let low = corners().fold(DVec3::INFINITY, |low, corner| low.min(*corner));
+        let high = corners().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner));
+        let (low, high) = (low.max(DVec3::splat(-FAR)), high.min(DVec3::splat(FAR)));
+        let place = |random: &mut Random| {
+            DVec3::from_array([0, 1, 2].map(|axis| random.between(low[axis], high[axis])))
+        };
+        for _ in 0..RAYS {
+            let (from, to) = (place(&mut random), place(&mut random));
+            let towards = to - from;
+            let nearest = triangles
+                .iter()
+                .filter_map(|corners| distance_to(corners, from, towards))
+                .fold(f64::INFINITY, f64::min);
+            let found = surfaces.hit(from, towards).map_or(f64::INFINITY, |hit| hit.distance);
+            if found != nearest {
+                near(&format!("{}: {from} towards {towards}", set.name), found, nearest, 1e-9)?;
+            }
+            let is_clear = surfaces.is_clear(from, to);
+            let is_in_doubt = (nearest - (1.0 - 1e-6)).abs() < 1e-9;
+            if is_clear != (nearest >= 1.0 - 1e-6) && !is_in_doubt {
+                return Err(format!("{}: {from} to {to}: clear {is_clear}", set.name).into());
+            }
+            met += u32::from(nearest < f64::INFINITY);
+        }
+    }
+    if met > 200 { Ok(()) } else { Err(format!("only {met} rays met a triangle").into()) }
+}
+
+/// The triangles of everything that casts a shadow, in world space.
+fn corners_of(scene: &Scene) -> Vec<[DVec3; 3]> {
+    let casting = scene.objects.iter().filter(|object| object.casts);
+    let of_object = |object: &Object| -> Vec<[DVec3; 3]> {
+        let place = |index: &u32| {
+            object
+                .world_from_object
+                .transform_point3(object.shape.vertices[*index as usize].position)
+        };
+        let three = object.shape.indices.as_chunks::<3>().0.iter();
+        three.map(|[a, b, c]| [place(a), place(b), place(c)]).collect()
+    };
+    casting.flat_map(of_object).collect()
+}
+
+/// Where a ray meets a triangle, by the inverse of the matrix of its sides and of the ray.
+fn distance_to([a, b, c]: &[DVec3; 3], from: DVec3, towards: DVec3) -> Option<f64> {
+    let matrix = DMat3::from_cols(-towards, b - a, c - a);
+    if matrix.determinant() == 0.0 {
+        return None;
+    }
+    let DVec3 { x: distance, y: u, z: v } = matrix.inverse() * (from - a);
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && distance > 1e-6).then_some(distance)
 }
 
 /// In a closed box, emissive walls give the same light everywhere: the sum of a geometric series
