@@ -9,7 +9,11 @@ pub fn gauss_legendre(count: usize) -> Vec<(f64, f64)> {
         let mut x = (PI * (index as f64 + 0.75) / (count as f64 + 0.5)).cos();
         for _ in 0..64 {
             let (value, slope) = legendre(count, x);
-            x -= value / slope;
+            let next = x - value / slope;
+            if next == x {
+                break;
+            }
+            x = next;
         }
         let (_, slope) = legendre(count, x);
         (x, 2.0 / ((1.0 - x * x) * slope * slope))

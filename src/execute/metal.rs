@@ -10,7 +10,7 @@ use super::compiled::request::{Bound, Format, Fragment, Image, ImageLevel};
 use super::fixture::Fixture;
 use super::frame::{Drawing, EntryPoint, Frame};
 use super::gpu::{emitted, run_batches};
-use super::kernel::{INPUT_WIDTH, Kernel, TARGET_WIDTH};
+use super::kernel::{INPUT_WIDTH, Kernel, TARGET_WIDTH, first_of_code};
 use super::raster::Compiled;
 use super::shipped::Shipped;
 use super::{Pair, Session, executor_failed};
@@ -48,8 +48,8 @@ impl Metal {
 
     /// Compiles the kernels that are new, all of them at once.
     fn compile(&mut self, kernels: &[&Kernel]) {
-        let new: Vec<&Kernel> =
-            kernels.iter().copied().filter(|kernel| !self.kept.contains_key(&kernel.id)).collect();
+        let mut new = first_of_code(kernels);
+        new.retain(|kernel| !self.kept.contains_key(&kernel.code));
         if new.is_empty() {
             return;
         }
@@ -68,14 +68,14 @@ impl Metal {
                 }
                 (Err(error), _) | (_, Err(error)) => Err(error.clone()),
             };
-            self.kept.insert(kernel.id, kept);
+            self.kept.insert(kernel.code, kept);
         }
         self.programs.extend(program);
     }
 
     /// One draw: the words of the target.
     fn draw(&mut self, kernel: &Kernel, texels: &[u32], rows: u32) -> Result<Vec<u32>, Diagnostic> {
-        let kept = match self.kept.get(&kernel.id) {
+        let kept = match self.kept.get(&kernel.code) {
             Some(Ok(kept)) => kept,
             Some(Err(error)) => return Err(error.clone()),
             None => return Err(executor_failed("the kernel was not prepared")),

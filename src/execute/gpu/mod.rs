@@ -105,7 +105,7 @@ pub fn run_batches(
 
 impl Gpu {
     fn prepare(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
-        if !self.prepared.contains_key(&kernel.id) {
+        if !self.prepared.contains_key(&kernel.code) {
             let emitted = match self.shaders {
                 Shaders::Translated => None,
                 Shaders::Emitted(target) => {
@@ -118,7 +118,7 @@ impl Gpu {
             let prepared = self.guarded(|gpu| {
                 Prepared::new(&gpu.device, &gpu.queue, &gpu.vertex, kernel, emitted.as_ref())
             })?;
-            self.prepared.insert(kernel.id, prepared.map_err(executor_failed)?);
+            self.prepared.insert(kernel.code, prepared.map_err(executor_failed)?);
         }
         Ok(())
     }
@@ -131,7 +131,7 @@ impl Gpu {
     ) -> Result<wgpu::Buffer, Diagnostic> {
         let prepared = self
             .prepared
-            .get(&kernel.id)
+            .get(&kernel.code)
             .ok_or_else(|| executor_failed("the kernel was not prepared"))?;
         let inputs = self.inputs(texels);
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;

@@ -24,7 +24,7 @@ pub use body::{Body, Value};
 pub use shape::Shape;
 pub use varying::varying_modules;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -83,8 +83,11 @@ pub enum ResourceClass {
 /// A function with an entry point around it, ready for any [`super::Session`].
 #[derive(Debug)]
 pub struct Kernel {
-    /// Distinguishes the kernels of a process, since sessions keep pipelines for them.
+    /// Distinguishes the kernels of a process.
     pub id: u64,
+    /// The id of the first kernel with the same code and the same fixtures. Sessions keep under it
+    /// what they have compiled.
+    pub code: u64,
     /// Name of the function under test.
     pub name: String,
     /// The module with [`ENTRY`] as its only entry point.
@@ -159,6 +162,12 @@ impl Kernel {
     }
 }
 
+/// The kernels that are compiled: the first one of each code.
+pub fn first_of_code<'k>(kernels: &[&'k Kernel]) -> Vec<&'k Kernel> {
+    let mut seen = BTreeSet::new();
+    kernels.iter().copied().filter(|kernel| seen.insert(kernel.code)).collect()
+}
+
 /// Wraps `function` of a module; textures and samplers among its parameters are bound to the
 /// fixtures of their names.
 ///
@@ -172,8 +181,10 @@ pub fn build_kernel(
     let handle = find_function(module, function)?;
     let parameters = kernel_parameters(module, handle, fixtures)?;
     let results = kernel_results(module, handle)?;
+    let id = next_id();
     let kernel = Kernel {
-        id: next_id(),
+        id,
+        code: id,
         name: function.to_owned(),
         module: Module::default(),
         function: handle,

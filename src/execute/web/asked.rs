@@ -48,7 +48,7 @@ pub fn kernel_json(kernel: &Kernel, emitted: &Emitted) -> Result<Value, Diagnost
         fixtures.iter().map(|(place, fixture)| layout_entry(*place, Some(fixture), filters));
     let units: Vec<Value> = emitted.native.combined.iter().map(unit_json).collect();
     Ok(json!({
-        "id": kernel.id,
+        "id": kernel.code,
         "code": code,
         "entry": emitted.native.entry_name,
         "layout": std::iter::once(inputs).chain(layout).collect::<Vec<_>>(),

@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 use super::emitted;
 use super::frame::{Drawing, Frame};
 use super::gpu::run_batches;
-use super::kernel::Kernel;
+use super::kernel::{Kernel, first_of_code};
 use super::{Pair, Session, executor_failed};
 use crate::browser::serve::{Files, Server};
 use crate::browser::{Browser, PATIENCE, Page, Problem};
@@ -184,8 +184,8 @@ impl Web {
 
     /// Gives the page the kernels that are new to it, some at a time.
     fn compile(&self, state: &mut State, kernels: &[&Kernel]) -> Result<(), Failure> {
-        let new: Vec<&Kernel> =
-            kernels.iter().copied().filter(|kernel| !state.kept.contains_key(&kernel.id)).collect();
+        let mut new = first_of_code(kernels);
+        new.retain(|kernel| !state.kept.contains_key(&kernel.code));
         let target = self.api.target();
         for some in new.chunks(AT_ONCE) {
             let emit = |kernel: &&Kernel| {
@@ -211,7 +211,7 @@ impl Web {
             for (kernel, made) in some.iter().zip(&made) {
                 let result =
                     made.as_ref().map_err(Clone::clone).and_then(|_| check_kept(said.next()));
-                state.kept.insert(kernel.id, result);
+                state.kept.insert(kernel.code, result);
             }
         }
         Ok(())
@@ -220,11 +220,11 @@ impl Web {
     /// One draw: the words of the target.
     fn draw(&self, kernel: &Kernel, texels: &[u32], rows: u32) -> Result<Vec<u32>, Diagnostic> {
         let texels = asked::base64_of_words(texels);
-        let question = json!({ "id": kernel.id, "rows": rows, "texels": texels });
+        let question = json!({ "id": kernel.code, "rows": rows, "texels": texels });
         let call = format!("lamplight.run({question})");
         let said = self.twice(|web, state| {
             web.compile(state, &[kernel])?;
-            match state.kept.get(&kernel.id) {
+            match state.kept.get(&kernel.code) {
                 Some(Err(error)) => Err(Failure::Of(error.clone())),
                 _ => web.ask(state, &call),
             }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::code::share_code;
 use super::partner::{self, Partner};
 use super::share::{Parts, Total, steps_of_case};
 use super::{Options, Subjects};
@@ -140,6 +141,7 @@ pub fn prepare_jobs<'a>(
             Err(error) => errors.push(error),
         }
     }
+    share_code(&mut done);
     if errors.is_empty() { Ok(done) } else { Err(errors) }
 }
 

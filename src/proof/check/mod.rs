@@ -1,5 +1,6 @@
 //! Runs cases of modules in each language on each executor. Prints nothing: results are data.
 
+mod code;
 pub(super) mod job;
 pub(super) mod judge;
 pub mod law;

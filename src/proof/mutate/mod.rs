@@ -14,6 +14,7 @@ mod apply;
 mod coverage;
 mod listed;
 mod operators;
+mod order;
 mod report;
 mod runner;
 mod site;

@@ -68,12 +68,12 @@ impl OpenGl {
     }
 
     fn prepare(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
-        if !self.kept.contains_key(&kernel.id) {
+        if !self.kept.contains_key(&kernel.code) {
             let emitted = emitted::emit_kernel(kernel, self.target)?;
             self.has_extensions(&emitted.bytes)?;
             let vertex = program::triangle_stage(self.context.api());
             let kept = self.context.with(|gl| keep_kernel(gl, kernel, &vertex, &emitted));
-            self.kept.insert(kernel.id, kept.map_err(executor_failed)?);
+            self.kept.insert(kernel.code, kept.map_err(executor_failed)?);
         }
         Ok(())
     }
@@ -82,7 +82,7 @@ impl OpenGl {
         self.prepare(kernel)?;
         let kept = self
             .kept
-            .get(&kernel.id)
+            .get(&kernel.code)
             .ok_or_else(|| executor_failed("the kernel was not prepared"))?;
         let api = self.context.api();
         self.context.with(|gl| draw_kernel(gl, api, kept, texels, rows)).map_err(executor_failed)
