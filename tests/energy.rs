@@ -15,7 +15,7 @@ use std::collections::btree_map::Entry;
 use std::f64::consts::PI;
 
 use glam::{DQuat, DVec2, DVec3};
-use lamplight::bundle::{Kind, Language};
+use lamplight::bundle::{BindingKind, Language};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::eval::{FunctionId, Machine, Program, Resources};
 use lamplight::permute::{Quoted, key};
@@ -342,7 +342,7 @@ impl Furnace {
     fn run(&self, number: &dyn Fn(&str) -> Vec<f64>) -> Result<Run<'_>, String> {
         let mut resources = Resources::default();
         for binding in &self.stage.reflection.bindings {
-            if binding.kind == Kind::Uniform {
+            if binding.kind == BindingKind::Uniform {
                 let bytes = pack_buffer(binding, &|path| Some(number(path)));
                 let place = (binding.group, binding.binding);
                 resources.buffers.insert(place, bytes.map_err(|problem| problem.message)?);

@@ -10,9 +10,7 @@ mod whole;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use lamplight::bundle::{
-    Bundle, Kind as BindingKind, Language, Reflection, Target, pack as pack_bundle,
-};
+use lamplight::bundle::{BindingKind, Bundle, Language, Reflection, Target, pack as pack_bundle};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::fixture::Fixture;
 use lamplight::execute::frame::{
@@ -21,7 +19,7 @@ use lamplight::execute::frame::{
 use lamplight::execute::{Session, executors, on_thread};
 use lamplight::generate::{Request, in_memory};
 use lamplight::permute::axis::ValueSet;
-use lamplight::permute::space::{Lists, Slice};
+use lamplight::permute::space::{Slice, SliceLists};
 use lamplight::permute::{Assignment, Space, cover};
 use lamplight::picture::frame::{Composed, Programs, Stages, pack_buffer, probe};
 use lamplight::project;
@@ -237,7 +235,7 @@ pub fn bundle(
     );
     let all = sources.space.axes().iter().map(|axis| ValueSet::full(axis.values.len())).collect();
     let exclude = vec![Slice { values: all, span: program.span }];
-    let lists = Lists { only: Vec::new(), exclude, include };
+    let lists = SliceLists { only: Vec::new(), exclude, include };
     program.space =
         Space::new(sources.space.axes().to_vec(), sources.space.constraints().to_vec(), lists)
             .map_err(|_| "no space")?;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use lamplight::bundle::{Bounds, Conventions, Language, Target};
+use lamplight::bundle::{BoundsChecks, Conventions, Language, Target};
 use lamplight::compose::{Composed, Keep, Options, PartKind, compose, lean};
 use lamplight::emit::emit_for;
 use lamplight::link::{Linker, Text, compile};
@@ -20,7 +20,7 @@ pub fn all(
     manifest: &Manifest,
     step: usize,
 ) -> Result<(), Failed> {
-    for bounds in [Bounds::Unchecked, Bounds::Restrict] {
+    for bounds in [BoundsChecks::Unchecked, BoundsChecks::Restrict] {
         let conventions = Conventions { bounds, ..Conventions::default() };
         all_with(conventions, sources, packages, manifest, step)
             .map_err(|error| format!("{bounds:?}: {}", error.message().unwrap_or_default()))?;

@@ -18,7 +18,7 @@ use std::time::Duration;
 
 use serde_json::json;
 
-pub use page::{Page, Screenshot};
+pub use page::{BrowserPage, Screenshot};
 use process::Process;
 use wire::Wire;
 
@@ -125,8 +125,8 @@ impl Browser {
     ///
     /// # Errors
     /// The browser's.
-    pub fn open(self: &Arc<Self>, address: &str) -> Result<Page, Problem> {
-        Page::open(Arc::clone(self), address)
+    pub fn open(self: &Arc<Self>, address: &str) -> Result<BrowserPage, Problem> {
+        BrowserPage::open(Arc::clone(self), address)
     }
 
     /// The result of any command of the protocol to the browser.

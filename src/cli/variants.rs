@@ -21,7 +21,7 @@ use crate::diagnostic::{Diagnostics, nearest_name};
 use crate::generate::{self, Discard, Request, Tools};
 use crate::output;
 use crate::permute::axis::Mode;
-use crate::permute::report::{Report, StageCount, report};
+use crate::permute::report::{PermutationReport, StageCount, report};
 use crate::permute::{Manifest, Program};
 use crate::project;
 use crate::resolve::Packages;
@@ -111,7 +111,7 @@ pub fn run_variants(
 }
 
 /// What the axes of a program multiply to.
-fn counted_report(program: &Program) -> Report {
+fn counted_report(program: &Program) -> PermutationReport {
     let mut report = report(&program.name, &program.space);
     if program.glsl.is_some() {
         let spec = program.space.axes().iter().filter(|axis| axis.mode == Mode::Spec);
@@ -174,7 +174,7 @@ fn write_record(
 #[derive(Serialize)]
 struct Told {
     #[serde(flatten)]
-    report: Report,
+    report: PermutationReport,
     /// What values of axes change on GPUs, where that was asked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     changes: Vec<Change>,
@@ -215,7 +215,7 @@ fn compose(
     packages: &Packages,
     manifest: &Manifest,
     program: &Program,
-    report: &mut Report,
+    report: &mut PermutationReport,
     bar: &Bar,
 ) -> Result<(), Diagnostics> {
     let progress = |progress| bar.show(progress);

@@ -3,7 +3,7 @@
 use ash::vk;
 
 use super::pipeline::{Attribute, Pipeline, Slot, Words};
-use crate::bundle::{Kind, Stage};
+use crate::bundle::{BindingKind, Stage};
 
 /// The objects of one pipeline, which are destroyed with it.
 pub(super) struct Made<'d> {
@@ -202,13 +202,13 @@ fn stage_flags(stage: Stage) -> vk::ShaderStageFlags {
     }
 }
 
-fn descriptor_type(kind: Kind) -> vk::DescriptorType {
+fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
     match kind {
-        Kind::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
-        Kind::Storage => vk::DescriptorType::STORAGE_BUFFER,
-        Kind::Texture => vk::DescriptorType::SAMPLED_IMAGE,
-        Kind::StorageTexture => vk::DescriptorType::STORAGE_IMAGE,
-        Kind::Sampler | Kind::ComparisonSampler => vk::DescriptorType::SAMPLER,
+        BindingKind::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
+        BindingKind::Storage => vk::DescriptorType::STORAGE_BUFFER,
+        BindingKind::Texture => vk::DescriptorType::SAMPLED_IMAGE,
+        BindingKind::StorageTexture => vk::DescriptorType::STORAGE_IMAGE,
+        BindingKind::Sampler | BindingKind::ComparisonSampler => vk::DescriptorType::SAMPLER,
     }
 }
 

@@ -7,9 +7,10 @@ use serde::Serialize;
 use super::pipeline::Known;
 use super::statistics::{FIGURES, Figure};
 use super::{Cost, Subject, stages_subject};
-use crate::bundle::key::{self, Part};
+use crate::bundle::key::{self, KeyPart};
 use crate::bundle::{
-    self, Axis, Choice, Constant, EntryContents, Hash, Language, ProgramContents, Stage, Target,
+    self, Axis, Constant, EntryContents, Hash, Language, OverrideChoice, ProgramContents, Stage,
+    Target,
 };
 
 /// A subject for every permutation of a program for which there is SPIR-V. Its name is the key.
@@ -39,7 +40,7 @@ pub fn permutation_subjects(
 /// A stage in SPIR-V, and the numbers of its overrides.
 struct Unit {
     known: Known,
-    choices: Vec<Choice>,
+    choices: Vec<OverrideChoice>,
 }
 
 /// The units of an entry point, by hash.
@@ -142,7 +143,7 @@ fn cost_pairs<'c>(
     costs: &BTreeMap<&str, &'c Cost>,
 ) -> Vec<(&'c Cost, &'c Cost)> {
     let pair = |(key, with): (&&str, &&'c Cost)| {
-        let (this, rest): (Vec<Part<'_>>, Vec<Part<'_>>) =
+        let (this, rest): (Vec<KeyPart<'_>>, Vec<KeyPart<'_>>) =
             key::parts(key).partition(|part| part.axis.text == axis);
         let has_value = this.iter().any(|part| part.chosen() == value);
         let without = key::write(rest.iter().map(|part| (part.axis.text, part.chosen())));

@@ -5,7 +5,9 @@ use std::ffi::CString;
 
 use naga::ScalarKind;
 
-use crate::bundle::{Binding, Conventions, Kind, Language, Reflection, Stage, Target, Varying};
+use crate::bundle::{
+    Binding, BindingKind, Conventions, Language, Reflection, Stage, Target, Varying,
+};
 use crate::diagnostic::Diagnostic;
 use crate::emit;
 use crate::emit::spirv;
@@ -27,7 +29,7 @@ pub struct Words {
 pub struct Slot {
     pub group: u32,
     pub binding: u32,
-    pub kind: Kind,
+    pub kind: BindingKind,
 }
 
 /// A value at a location: a vertex attribute or a colour.

@@ -10,7 +10,7 @@ use super::rename;
 use super::slots::{EXPLICIT_LIMIT, Numbering, assign_slots, native_reflection};
 use super::text::Text;
 use super::{Emitted, Source};
-use crate::bundle::{Clip, Combined, Kind, Native};
+use crate::bundle::{BindingKind, ClipConvention, Combined, Native};
 
 /// The uniform that naga adds for WebGPU's first instance, which OpenGL does not count from.
 const FIRST_INSTANCE: &str = "naga_vs_first_instance";
@@ -112,8 +112,8 @@ fn writer_options(
     let mut options = Options {
         version,
         writer_flags: match source.conventions.clip {
-            Clip::Wgpu => WriterFlags::ADJUST_COORDINATE_SPACE,
-            Clip::Native => WriterFlags::empty(),
+            ClipConvention::Wgpu => WriterFlags::ADJUST_COORDINATE_SPACE,
+            ClipConvention::Native => WriterFlags::empty(),
         },
         ..Options::default()
     };
@@ -173,7 +173,9 @@ fn glsl_reflection(source: &Source<'_>, info: &ReflectionInfo, numbering: Number
     let mut native = native_reflection(source, "main", numbering);
     let samplers: Vec<_> = assign_slots(source, numbering)
         .into_iter()
-        .filter(|(_, kind, _)| matches!(kind, Kind::Sampler | Kind::ComparisonSampler))
+        .filter(|(_, kind, _)| {
+            matches!(kind, BindingKind::Sampler | BindingKind::ComparisonSampler)
+        })
         .map(|(binding, ..)| [binding.group, binding.binding])
         .collect();
     native.slots.retain(|slot| !samplers.contains(&[slot.group, slot.binding]));

@@ -38,7 +38,7 @@ use naga::ShaderStage;
 use naga::back::glsl::Version;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 
-use crate::bundle::{self, Bounds, Conventions, Native, Target};
+use crate::bundle::{self, BoundsChecks, Conventions, Native, Target};
 use crate::compose::{Composed, Part, PartKind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::validate::{Validated, guard, on_large_stack};
@@ -121,14 +121,14 @@ pub struct Source<'a> {
 impl Source<'_> {
     /// Whether the output checks indices and loops.
     pub fn is_restricted(&self) -> bool {
-        self.conventions.bounds == Bounds::Restrict
+        self.conventions.bounds == BoundsChecks::Restrict
     }
 
     /// The checks, as naga names them.
     pub fn bounds_policies(&self) -> BoundsCheckPolicies {
         let policy = match self.conventions.bounds {
-            Bounds::Unchecked => BoundsCheckPolicy::Unchecked,
-            Bounds::Restrict => BoundsCheckPolicy::Restrict,
+            BoundsChecks::Unchecked => BoundsCheckPolicy::Unchecked,
+            BoundsChecks::Restrict => BoundsCheckPolicy::Restrict,
         };
         let (index, buffer, image_load) = (policy, policy, policy);
         // Arrays of bindings have no length that an output could ask for.

@@ -2,7 +2,7 @@
 
 use super::emitted;
 use super::frame::EntryPoint;
-use crate::bundle::{Kind, Native, Reflection, Stage, Target, Varying};
+use crate::bundle::{BindingKind, Native, Reflection, Stage, Target, Varying};
 use crate::diagnostic::Diagnostic;
 use crate::emit::{self, Emitted};
 use crate::link::Linker;
@@ -90,7 +90,7 @@ impl Shipped {
 
     /// Groups and bindings of its uniform buffers.
     pub(super) fn blocks(&self) -> impl Iterator<Item = (u32, u32)> {
-        let blocks = self.reflection.bindings.iter().filter(|one| one.kind == Kind::Uniform);
+        let blocks = self.reflection.bindings.iter().filter(|one| one.kind == BindingKind::Uniform);
         blocks.map(|one| (one.group, one.binding))
     }
 }

@@ -6,7 +6,7 @@ use super::shader;
 use crate::bundle::Language;
 use crate::compose::{self, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::permute::manifest::File;
+use crate::permute::manifest::ManifestFile;
 use crate::permute::{Assignment, Program};
 use crate::resolve::{self, Graph, Packages};
 use crate::source::SourceSet;
@@ -50,7 +50,7 @@ fn of_file(
     packages: &Packages,
     program: &Program,
     point: &Assignment,
-    (file, language): (&File, Language),
+    (file, language): (&ManifestFile, Language),
     entries: &mut Vec<Entry>,
 ) -> Result<(), Diagnostics> {
     let graph = resolve::load(sources, packages, &file.path, language)
@@ -85,7 +85,7 @@ impl Entry {
 
 /// Adds the manifest's place to the error about a root that cannot be found, since the manifest
 /// names it.
-fn named_by(errors: Diagnostics, file: &File) -> Diagnostics {
+fn named_by(errors: Diagnostics, file: &ManifestFile) -> Diagnostics {
     let one = |error: Diagnostic| {
         if error.labels.is_empty() { error.at(file.span, "named here") } else { error }
     };
@@ -112,7 +112,7 @@ fn entry_label(
     }
 }
 
-fn root_files(program: &Program) -> Vec<(&File, Language)> {
+fn root_files(program: &Program) -> Vec<(&ManifestFile, Language)> {
     let glsl = program.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
     let wesl = program.wesl.iter().map(|file| (file, Language::Wesl));
     wesl.chain(glsl.map(|file| (file, Language::Glsl))).collect()

@@ -6,7 +6,7 @@ use super::names::{Taken, comment_lines, value_name};
 use super::ordinal::{Ordinals, Says, key_ordinals};
 use super::{Language, default_setting, key_axes, key_part};
 use crate::bundle::key::{DEFAULT, SEPARATOR};
-use crate::permute::{Axis, Kind, Lock, Manifest, Program, Setting};
+use crate::permute::{Axis, AxisKind, Lock, Manifest, Program, Setting};
 
 pub const LANGUAGE: Language = Language { name: "c", about: "a header for C99 and C++", write };
 
@@ -118,8 +118,8 @@ struct Named<'a> {
 impl Named<'_> {
     fn default(&self) -> &str {
         match (self.axis.kind, self.axis.default) {
-            (Kind::Bool, _) if *default_setting(self.axis) == Setting::Bool(true) => "true",
-            (Kind::Bool, _) => "false",
+            (AxisKind::Bool, _) if *default_setting(self.axis) == Setting::Bool(true) => "true",
+            (AxisKind::Bool, _) => "false",
             (_, ordinal) => &self.constants[ordinal],
         }
     }
@@ -127,8 +127,8 @@ impl Named<'_> {
     /// The value of that index, as an expression.
     fn value(&self, index: usize) -> String {
         match self.axis.kind {
-            Kind::Bool => self.axis.values[index].to_string(),
-            Kind::Enum | Kind::Int => self.constants[index].clone(),
+            AxisKind::Bool => self.axis.values[index].to_string(),
+            AxisKind::Enum | AxisKind::Int => self.constants[index].clone(),
         }
     }
 }
@@ -146,7 +146,7 @@ fn program_keys(program: &Program, ordinals: Option<&Ordinals>, taken: &mut Take
         key_axes(program).map(|axis| named_axis(axis, &name, taken, &mut fields)).collect();
     let mut text = String::from("\n");
     axes.iter()
-        .filter(|axis| axis.axis.kind != Kind::Bool)
+        .filter(|axis| axis.axis.kind != AxisKind::Bool)
         .for_each(|axis| text.push_str(&write_enumeration(axis)));
     text.push_str(&write_structure(program, &name, &axes));
     let _ = writeln!(
@@ -176,13 +176,13 @@ fn named_axis<'a>(
     fields: &mut Taken,
 ) -> Named<'a> {
     let ty = match axis.kind {
-        Kind::Bool => "bool".to_owned(),
-        Kind::Enum | Kind::Int => taken.give(format!("{program}_{}", axis.name)),
+        AxisKind::Bool => "bool".to_owned(),
+        AxisKind::Enum | AxisKind::Int => taken.give(format!("{program}_{}", axis.name)),
     };
     let prefix = format!("{program}_{}", axis.name).to_uppercase();
     let constants = match axis.kind {
-        Kind::Bool => Vec::new(),
-        Kind::Enum | Kind::Int => axis
+        AxisKind::Bool => Vec::new(),
+        AxisKind::Enum | AxisKind::Int => axis
             .values
             .iter()
             .map(|known| taken.give(format!("{prefix}_{}", value_name(known).to_uppercase())))
@@ -251,7 +251,7 @@ fn to_text(name: &str, to_key: &str, bytes: &str, axes: &[Named<'_>]) -> String 
 
 fn append_part(named: &Named<'_>) -> String {
     let Named { axis, field, .. } = named;
-    if axis.kind == Kind::Bool {
+    if axis.kind == AxisKind::Bool {
         let other = axis.values.iter().find(|value| *value != default_setting(axis));
         let append = |value| {
             format!(
@@ -307,11 +307,11 @@ fn added_numbers(named: &Named<'_>, adds: &[u64]) -> (Vec<u64>, String) {
     let field = &named.field;
     match named.axis.kind {
         // The manifest may list its values in either order.
-        Kind::Bool => {
+        AxisKind::Bool => {
             let of = |value| named.axis.ordinal(&Setting::Bool(value)).map_or(0, |at| adds[at]);
             (vec![of(false), of(true)], format!("key->{field} ? 1 : 0"))
         }
-        Kind::Enum | Kind::Int => {
+        AxisKind::Enum | AxisKind::Int => {
             let place = format!(
                 "(size_t)key->{field} < sizeof adds / sizeof *adds ? (size_t)key->{field} : (size_t){}",
                 named.default()

@@ -6,7 +6,7 @@ use super::names::{Taken, camel_case, comment_lines, value_name};
 use super::ordinal::{Ordinals, Says, key_ordinals};
 use super::{Language, default_setting, key_axes, key_part};
 use crate::bundle::key::{DEFAULT, SEPARATOR};
-use crate::permute::{Axis, Kind, Lock, Manifest, Program};
+use crate::permute::{Axis, AxisKind, Lock, Manifest, Program};
 
 pub const LANGUAGE: Language =
     Language { name: "rust", about: "a module a program, for any edition", write };
@@ -44,8 +44,8 @@ impl Named<'_> {
     /// The value of that index, as an expression and as a pattern.
     fn value(&self, index: usize) -> String {
         match self.axis.kind {
-            Kind::Bool => self.axis.values[index].to_string(),
-            Kind::Enum | Kind::Int => format!("{}::{}", self.ty, self.variants[index]),
+            AxisKind::Bool => self.axis.values[index].to_string(),
+            AxisKind::Enum | AxisKind::Int => format!("{}::{}", self.ty, self.variants[index]),
         }
     }
 }
@@ -55,8 +55,8 @@ fn named_axes(program: &Program) -> Vec<Named<'_>> {
     let named = key_axes(program).map(|axis| {
         let mut variants = Taken::new(KEYWORDS);
         let ty = match axis.kind {
-            Kind::Bool => "bool".to_owned(),
-            Kind::Enum | Kind::Int => types.give(camel_case(&axis.name)),
+            AxisKind::Bool => "bool".to_owned(),
+            AxisKind::Enum | AxisKind::Int => types.give(camel_case(&axis.name)),
         };
         let variants =
             axis.values.iter().map(|known| variants.give(camel_case(&value_name(known)))).collect();
@@ -77,7 +77,7 @@ fn program_module(program: &Program, lock: Option<&Lock>, name: &str) -> String 
     let _ =
         writeln!(text, "#[allow(dead_code, non_camel_case_types, clippy::all)]\npub mod {name} {{");
     axes.iter()
-        .filter(|axis| axis.axis.kind != Kind::Bool)
+        .filter(|axis| axis.axis.kind != AxisKind::Bool)
         .for_each(|axis| text.push_str(&write_enumeration(axis)));
     text.push_str(&write_structure(&axes));
     text.push_str(&display_impl(&axes));
@@ -115,7 +115,7 @@ fn write_structure(axes: &[Named<'_>]) -> String {
         String::from("    /// One permutation: `Key { axis: value, ..Key::default() }`.\n");
     text.push_str("    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]\n    pub struct Key {\n");
     for Named { axis, field, ty, .. } in axes {
-        let doc = axis.doc.as_deref().filter(|_| axis.kind == Kind::Bool);
+        let doc = axis.doc.as_deref().filter(|_| axis.kind == AxisKind::Bool);
         text.push_str(&doc.map_or(String::new(), |doc| comment_lines("        ///", doc)));
         let _ = writeln!(text, "        pub {field}: {ty},");
     }
@@ -201,13 +201,13 @@ fn display_impl(axes: &[Named<'_>]) -> String {
 /// The statement that writes an axis which is not at its default.
 fn write_part(Named { axis, field, .. }: &Named<'_>) -> String {
     match axis.kind {
-        Kind::Bool => match axis.values.iter().find(|value| *value != default_setting(axis)) {
+        AxisKind::Bool => match axis.values.iter().find(|value| *value != default_setting(axis)) {
             Some(value) => {
                 format!("::core::write!(f, \"{{separator}}{}\")?;", key_part(axis, value))
             }
             None => String::new(),
         },
-        Kind::Enum | Kind::Int => {
+        AxisKind::Enum | AxisKind::Int => {
             format!("::core::write!(f, \"{{separator}}{}={{}}\", self.{field}.name())?;", axis.name)
         }
     }

@@ -6,7 +6,7 @@ use super::names::{Taken, camel_case, comment_lines, lower_camel};
 use super::ordinal::{Ordinals, Says, key_ordinals};
 use super::{Language, default_setting, key_axes};
 use crate::bundle::key::{ASSIGNS, DEFAULT, SEPARATOR};
-use crate::permute::{Axis, Kind, Lock, Manifest, Program, Setting};
+use crate::permute::{Axis, AxisKind, Lock, Manifest, Program, Setting};
 
 pub const LANGUAGE: Language =
     Language { name: "ts", about: "a TypeScript module of erasable types", write };
@@ -229,8 +229,8 @@ fn renamed_fields(program: &Program, fields: &[String]) -> String {
 
 fn value_union(axis: &Axis) -> String {
     match axis.kind {
-        Kind::Bool => "boolean".to_owned(),
-        Kind::Enum | Kind::Int => {
+        AxisKind::Bool => "boolean".to_owned(),
+        AxisKind::Enum | AxisKind::Int => {
             axis.values.iter().map(value_literal).collect::<Vec<_>>().join(" | ")
         }
     }

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{Linker, Reason};
-use crate::bundle::{Artifact, Bounds, Clip, Convention, Conventions, Target, Unit};
+use crate::bundle::{
+    Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Target, Unit,
+};
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::{self, targets};
@@ -105,8 +107,8 @@ pub fn perform_job(job: &validate::Job) {
         outputs.targets.iter().filter_map(|name| Target::find(name)).collect();
     let text = Text { composed: &composed, lean: &composed };
     let conventions = Conventions {
-        clip: Clip::find(&outputs.clip).unwrap_or_default(),
-        bounds: Bounds::find(&outputs.bounds).unwrap_or_default(),
+        clip: ClipConvention::find(&outputs.clip).unwrap_or_default(),
+        bounds: BoundsChecks::find(&outputs.bounds).unwrap_or_default(),
     };
     let linker = Linker::with(&targets, conventions);
     let _ = on_large_stack(|| compile_whole(&text, &outputs.entry, &targets, &linker));

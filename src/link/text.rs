@@ -1,7 +1,7 @@
 //! Divides a text that naga wrote into declarations.
 
 use crate::emit::is_header_line;
-use crate::parse::words::{PieceKind, piece_at, word_end, words};
+use crate::parse::words::{LexemeKind, piece_at, word_end, words};
 
 /// What a declaration of an output is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -132,8 +132,8 @@ fn declaration_head(text: &str) -> Head<'_> {
                 is_attribute = true;
                 continue;
             }
-            _ if piece.kind == PieceKind::Word => words.push(piece.text),
-            _ if piece.kind == PieceKind::Blank => continue,
+            _ if piece.kind == LexemeKind::Word => words.push(piece.text),
+            _ if piece.kind == LexemeKind::Blank => continue,
             _ => {}
         }
         is_attribute = words.last() == Some(&"layout");

@@ -44,7 +44,7 @@ pub fn choose_permutation(server: &mut Server, parameters: &Value) -> Result<Val
 
 /// What a key chooses. Besides axes, it may name features and constants.
 fn read_choice(text: &str) -> Result<look::Choice, String> {
-    let one = |part: key::Part<'_>| {
+    let one = |part: key::KeyPart<'_>| {
         let (name, value) = (part.axis.text, part.chosen());
         if name.is_empty() || value.is_empty() {
             return Err(format!("expected `axis=value`, or the name of a boolean axis: `{text}`"));

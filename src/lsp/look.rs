@@ -11,7 +11,7 @@ use crate::diagnostic::Diagnostics;
 use crate::lint;
 use crate::parse::wesl::Event;
 use crate::permute::{Program, Setting, Settings};
-use crate::resolve::wesl::{self, Kept};
+use crate::resolve::wesl::{self, KeptModules};
 use crate::resolve::{self, Graph};
 
 /// What was chosen for a package, by axis or feature.
@@ -49,7 +49,7 @@ pub fn module_settings(opened: &Opened, path: &str, choice: &Choice) -> (Setting
 pub fn module_graph(
     opened: &mut Opened,
     path: &str,
-    kept: &mut Kept,
+    kept: &mut KeptModules,
 ) -> Result<Graph, Diagnostics> {
     let (sources, packages) = (&mut opened.sources, &opened.packages);
     match lint::language(path) {

@@ -8,13 +8,13 @@ use super::package::Modules;
 use super::place::word_at_byte;
 use crate::parse::wesl::blank::without_comments;
 use crate::parse::wesl::{Item, ItemKind};
-use crate::parse::words::{PieceKind, pieces};
-use crate::resolve::wesl::Node;
+use crate::parse::words::{LexemeKind, pieces};
+use crate::resolve::wesl::ModuleNode;
 use crate::source::Span;
 
 /// A member with its struct.
 pub struct Member<'m> {
-    pub node: &'m Node,
+    pub node: &'m ModuleNode,
     pub item: &'m Item,
     /// The place of its name.
     pub place: Span,
@@ -49,7 +49,7 @@ fn is_swizzle(name: &str) -> bool {
     name.len() <= 4 && (of("xyzw") || of("rgba"))
 }
 
-fn named_members<'m>(node: &'m Node, item: &'m Item, name: &str) -> Vec<Member<'m>> {
+fn named_members<'m>(node: &'m ModuleNode, item: &'m Item, name: &str) -> Vec<Member<'m>> {
     if item.kind != ItemKind::Struct {
         return Vec::new();
     }
@@ -63,7 +63,7 @@ fn named_members<'m>(node: &'m Node, item: &'m Item, name: &str) -> Vec<Member<'
     declared.into_iter().filter(|(range, _)| node_text(node, range) == name).map(member).collect()
 }
 
-fn node_text<'m>(node: &'m Node, range: &Range<u32>) -> &'m str {
+fn node_text<'m>(node: &'m ModuleNode, range: &Range<u32>) -> &'m str {
     &node.module.text[range.start as usize..range.end as usize]
 }
 
@@ -73,7 +73,7 @@ fn declared_members(text: &str, item: &Item) -> Vec<(Range<u32>, Range<u32>)> {
     let body = without_comments(&text[start..item.range.end as usize]);
     let mut found: Vec<(Range<u32>, Range<u32>)> = Vec::new();
     let (mut nested, mut last, mut is_type) = (0_i32, None, false);
-    for piece in pieces(&body).filter(|piece| piece.kind != PieceKind::Blank) {
+    for piece in pieces(&body).filter(|piece| piece.kind != LexemeKind::Blank) {
         let at = |byte: usize| (start + byte) as u32;
         match piece.text {
             "(" | "<" | "[" => nested += 1,
@@ -90,7 +90,7 @@ fn declared_members(text: &str, item: &Item) -> Vec<(Range<u32>, Range<u32>)> {
         if is_type && let Some((_, whole)) = found.last_mut() {
             whole.end = at(piece.end());
         }
-        last = (piece.kind == PieceKind::Word).then(|| at(piece.at)..at(piece.end()));
+        last = (piece.kind == LexemeKind::Word).then(|| at(piece.at)..at(piece.end()));
     }
     found
 }

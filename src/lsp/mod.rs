@@ -34,7 +34,7 @@ use crate::diagnostic::Diagnostics;
 use crate::limits::{EDIT_STEPS, Steps};
 use crate::project;
 use crate::resolve::Graph;
-use crate::resolve::wesl::Kept;
+use crate::resolve::wesl::KeptModules;
 use crate::source::SourceSet;
 use look::Choice;
 use package::{Modules, Opened, Texts};
@@ -60,7 +60,7 @@ pub struct Server {
     /// The permutation that the editor chose, by root folder of a package.
     choices: BTreeMap<PathBuf, Choice>,
     /// By root folder of a package: what was parsed, which a keystroke in one file does not change.
-    kept: RefCell<BTreeMap<PathBuf, Kept>>,
+    kept: RefCell<BTreeMap<PathBuf, KeptModules>>,
     unchanged: Arc<unchanged::Unchanged>,
     /// The modules of the package that was asked about last, kept until a document changes.
     modules: Option<(PathBuf, Arc<Modules>)>,
@@ -322,7 +322,7 @@ impl Server {
         self.with_kept(&root, |kept| look::module_graph(opened, path, kept))
     }
 
-    fn with_kept<T>(&self, root: &Path, work: impl FnOnce(&mut Kept) -> T) -> T {
+    fn with_kept<T>(&self, root: &Path, work: impl FnOnce(&mut KeptModules) -> T) -> T {
         let mut all = self.kept.borrow_mut();
         work(all.entry(root.to_owned()).or_default())
     }

@@ -165,7 +165,7 @@ fn name_taken_in(modules: &Modules, symbol: Symbol, new: &str) -> Option<String>
     let places = modules.references(symbol);
     let nodes = modules.graph.nodes.iter();
     let mut used = nodes.filter(|node| places.iter().any(|span| span.source == node.module.source));
-    let has = |node: &&crate::resolve::wesl::Node| {
+    let has = |node: &&crate::resolve::wesl::ModuleNode| {
         node.sets.contains_key(&name)
             || node.aliases.contains_key(&name)
             || node.module.items.iter().any(|item| item.locals.contains(&name))

@@ -7,12 +7,12 @@ use std::sync::Arc;
 
 use super::unchanged::Unchanged;
 use crate::diagnostic::Diagnostics;
-use crate::parse::wesl::{Event, Expression, Item, Name, Operand};
+use crate::parse::wesl::{ComparisonOperand, Event, Expression, Item, Name};
 use crate::permute::Manifest;
 use crate::permute::manifest::Features;
 use crate::project;
 use crate::resolve::Packages;
-use crate::resolve::wesl::{Graph, Kept, Node, Target, load_all};
+use crate::resolve::wesl::{Graph, KeptModules, ModuleNode, PathTarget, load_all};
 use crate::source::{Files, Package, ReadError, SourceSet, Span};
 
 /// Texts of open documents by their path below a package's root.
@@ -141,7 +141,7 @@ pub struct Modules {
 }
 
 /// Reads all modules of the opened package.
-pub fn read_modules(opened: &mut Opened, kept: &mut Kept) -> Option<Modules> {
+pub fn read_modules(opened: &mut Opened, kept: &mut KeptModules) -> Option<Modules> {
     let paths = opened.packages.root.files.list(&["wesl", "wgsl"]);
     let graph = load_all(&mut opened.sources, &opened.packages, &paths, kept)?;
     Some(Modules { graph, sources: opened.sources.clone() })
@@ -151,7 +151,7 @@ impl Modules {
     /// The module of a file of the package itself.
     pub fn node(&self, path: &str) -> Option<u32> {
         let stem = path.rsplit_once('.').map_or(path, |(stem, _)| stem);
-        let is_it = |node: &Node| node.package == 0 && node.path.join("/") == stem;
+        let is_it = |node: &ModuleNode| node.package == 0 && node.path.join("/") == stem;
         self.graph.nodes.iter().position(is_it).map(|index| index as u32)
     }
 
@@ -234,7 +234,7 @@ impl Modules {
     }
 
     /// The item of a symbol that is declared first.
-    pub fn item(&self, symbol: Symbol) -> Option<(&Node, &Item)> {
+    pub fn item(&self, symbol: Symbol) -> Option<(&ModuleNode, &Item)> {
         let Symbol::Items { node, name } = symbol else { return None };
         let here = &self.graph.nodes[node as usize];
         let index = here.sets.get(&name)?.first()?;
@@ -244,9 +244,9 @@ impl Modules {
 
 /// Names of a condition with their places.
 fn condition_flags(expression: &Expression) -> Vec<(Name, Range<u32>)> {
-    let named = |operand: &Operand| match operand {
-        Operand::Name(name, range) => Some((*name, range.clone())),
-        Operand::Integer(..) => None,
+    let named = |operand: &ComparisonOperand| match operand {
+        ComparisonOperand::Name(name, range) => Some((*name, range.clone())),
+        ComparisonOperand::Integer(..) => None,
     };
     match expression {
         Expression::Flag(name, range) => vec![(*name, range.clone())],
@@ -257,17 +257,17 @@ fn condition_flags(expression: &Expression) -> Vec<(Name, Range<u32>)> {
     }
 }
 
-fn symbol_of(target: Target) -> Option<Symbol> {
+fn symbol_of(target: PathTarget) -> Option<Symbol> {
     match target {
-        Target::Items { node, name } => Some(Symbol::Items { node, name }),
-        Target::Constant(index) => Some(Symbol::Constant(index)),
-        Target::Module | Target::Failed(_) => None,
+        PathTarget::Items { node, name } => Some(Symbol::Items { node, name }),
+        PathTarget::Constant(index) => Some(Symbol::Constant(index)),
+        PathTarget::Module | PathTarget::Failed(_) => None,
     }
 }
 
 /// What an item declares and uses.
 fn uses_of_item<'n>(
-    here: &'n Node,
+    here: &'n ModuleNode,
     node: u32,
     item: &'n Item,
 ) -> impl Iterator<Item = (Symbol, Range<u32>)> + 'n {

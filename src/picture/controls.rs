@@ -11,7 +11,7 @@ use super::mesh::vertex_attributes;
 use super::passes::{Lit, stage_bindings};
 use super::plan::{Pass, Plan, known_program};
 use super::values::{Camera, Values, eye_projection, follows};
-use crate::bundle::Kind;
+use crate::bundle::BindingKind;
 use crate::diagnostic::Diagnostics;
 use crate::picture::frame::{Leaf, Programs, buffer_leaves};
 use crate::scene::sets::LampKind;
@@ -106,7 +106,7 @@ fn pass_uniforms(
         None => values.number(path),
     };
     let bindings = stage_bindings(&stages);
-    let blocks = bindings.iter().filter(|binding| binding.kind == Kind::Uniform);
+    let blocks = bindings.iter().filter(|binding| binding.kind == BindingKind::Uniform);
     let leaves = blocks.flat_map(buffer_leaves);
     let leaves = leaves.filter(|leaf| !leaf.ty.starts_with("mat") && !follows(&leaf.path));
     let uniform = |leaf: Leaf<'_>| {

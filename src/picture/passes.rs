@@ -15,7 +15,7 @@ use super::plan::{Pass, Plan};
 use super::prepared::{Prepared, no_frame, pixel_color};
 use super::textures::{Left, Library, binding_sampler};
 use super::values::{Camera, Values, eye_projection};
-use crate::bundle::{Binding, Kind};
+use crate::bundle::{Binding, BindingKind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::Session;
 use crate::execute::fixture::{Fixture, Texture, TextureKind};
@@ -291,11 +291,11 @@ impl Studio<'_> {
         for binding in bindings {
             let place = (binding.group, binding.binding);
             match binding.kind {
-                Kind::Uniform => {
+                BindingKind::Uniform => {
                     let bytes = pack_buffer(binding, &|path| self.values.number(path));
                     bound.buffers.insert(place, bytes.map_err(|problem| vec![problem])?);
                 }
-                Kind::Sampler | Kind::ComparisonSampler => {
+                BindingKind::Sampler | BindingKind::ComparisonSampler => {
                     bound.fixtures.insert(place, Arc::new(binding_sampler(binding)));
                 }
                 _ => {

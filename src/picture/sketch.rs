@@ -19,7 +19,7 @@ use super::pixels::Background;
 use super::prepared::Prepared;
 use super::textures::{binding_sampler, plain_texture};
 use super::values::Camera;
-use crate::bundle::{Binding, Kind, Language, Reflection, Varying};
+use crate::bundle::{Binding, BindingKind, Language, Reflection, Varying};
 use crate::compose::{self, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::reflect;
@@ -123,7 +123,7 @@ impl Sketch {
         let reflection = reflect(&validated, ENTRY)?;
         bound_loops(&mut validated.module, TRIPS);
         let is_large = |one: &Binding| {
-            one.kind == Kind::Uniform && one.size.is_none_or(|size| size > UNIFORM_BYTES)
+            one.kind == BindingKind::Uniform && one.size.is_none_or(|size| size > UNIFORM_BYTES)
         };
         if let Some(large) = reflection.bindings.iter().find(|one| is_large(one)) {
             let reason = format!("`{}` has more than {UNIFORM_BYTES} bytes", large.name);
@@ -148,7 +148,8 @@ impl Sketch {
 
     /// The uniforms with their numbers, as many as a page has room for. Matrices are left out.
     pub fn uniforms(&self, setting: &Setting) -> Vec<Uniform> {
-        let blocks = self.stage.reflection.bindings.iter().filter(|one| one.kind == Kind::Uniform);
+        let blocks =
+            self.stage.reflection.bindings.iter().filter(|one| one.kind == BindingKind::Uniform);
         let uniform = |leaf: Leaf<'_>| Uniform {
             program: String::new(),
             numbers: uniform_numbers(setting, &leaf.path, leaf.ty),
@@ -268,18 +269,20 @@ enum Bound {
 
 fn bound_input(binding: &Binding, setting: &Setting, shot: &Shot) -> Result<Bound, Diagnostic> {
     match binding.kind {
-        Kind::Uniform => {
+        BindingKind::Uniform => {
             let leaves: BTreeMap<String, Vec<f64>> = buffer_leaves(binding)
                 .into_iter()
                 .map(|leaf| (leaf.path.clone(), uniform_numbers(setting, &leaf.path, leaf.ty)))
                 .collect();
             Ok(Bound::Buffer(pack_buffer(binding, &|path| leaves.get(path).cloned())?))
         }
-        Kind::Sampler | Kind::ComparisonSampler => Ok(Bound::Fixture(binding_sampler(binding))),
-        Kind::Texture => plain_texture(&binding.name, &binding.ty, &shot.surroundings)
+        BindingKind::Sampler | BindingKind::ComparisonSampler => {
+            Ok(Bound::Fixture(binding_sampler(binding)))
+        }
+        BindingKind::Texture => plain_texture(&binding.name, &binding.ty, &shot.surroundings)
             .map(|texture| Bound::Fixture(Fixture::Texture(texture)))
             .ok_or_else(|| unbound(binding)),
-        Kind::Storage | Kind::StorageTexture => Err(unbound(binding)),
+        BindingKind::Storage | BindingKind::StorageTexture => Err(unbound(binding)),
     }
 }
 

@@ -9,7 +9,7 @@ use glam::DVec4;
 use super::Surroundings;
 use super::samples::{columns, fence};
 use super::values::Values;
-use crate::bundle::{Binding, Kind};
+use crate::bundle::{Binding, BindingKind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::eval::{half_from, half_to};
 use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
@@ -36,7 +36,7 @@ const NEAREST: [&str; 4] = ["depth_sampler", "depths_smp", "surface_sampler", "o
 
 /// The sampler of a binding.
 pub fn binding_sampler(binding: &Binding) -> Fixture {
-    let compare = (binding.kind == Kind::ComparisonSampler).then_some(Compare::LessEqual);
+    let compare = (binding.kind == BindingKind::ComparisonSampler).then_some(Compare::LessEqual);
     let address = if binding.name == "map_sampler" { Address::Repeat } else { Address::Clamp };
     let linear = !NEAREST.contains(&binding.name.as_str());
     Fixture::Sampler(Sampler { compare, linear, address })

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::cases::File;
-use crate::parse::glsl::{self, Part, Symbol, Symbols, Token, TokenKind, known};
-use crate::parse::wesl::{self, Event, Item, ItemKind, Module, Name, Names, Reference};
+use crate::parse::glsl::{self, FilePart, Symbol, Symbols, Token, TokenKind, known};
+use crate::parse::wesl::{self, Event, Item, ItemKind, Module, Name, Names, UsedName};
 use crate::source::{SourceId, SourceSet};
 
 /// Paths of the functions of a WESL module that no case names and that no named function calls.
@@ -61,8 +61,8 @@ fn function_paths<'a>(module: &str, names: impl Iterator<Item = &'a str>) -> Vec
 /// Every function that a GLSL file defines, with the identifiers of its body.
 fn function_definitions(module: &glsl::Module) -> BTreeMap<Symbol, Vec<Symbol>> {
     let texts = module.parts.iter().filter_map(|part| match part {
-        Part::Text(text) => Some(text.tokens.start as usize..text.tokens.end as usize),
-        Part::Directive(..) => None,
+        FilePart::Text(text) => Some(text.tokens.start as usize..text.tokens.end as usize),
+        FilePart::Directive(..) => None,
     });
     let tokens: Vec<&Token> = texts.flat_map(|range| &module.tokens[range]).collect();
     let mut found: BTreeMap<Symbol, Vec<Symbol>> = BTreeMap::new();
@@ -109,8 +109,8 @@ fn closing_token(tokens: &[&Token], at: usize, open: Symbol, close: Symbol) -> u
 fn used_names<'a>(module: &'a Module, item: &'a Item) -> impl Iterator<Item = Name> + 'a {
     item.events.iter().filter_map(|event| match event {
         Event::Use { reference, .. } => match &module.references[*reference as usize] {
-            Reference::Name(name) => Some(*name),
-            Reference::Path(_) => None,
+            UsedName::Name(name) => Some(*name),
+            UsedName::Path(_) => None,
         },
         _ => None,
     })

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use super::limits::Excess;
 use crate::bundle::Language;
 use crate::limits::{CONSTANT_PARTS, CONSTANT_USES};
-use crate::parse::words::{Piece, PieceKind, Word, pieces, words};
+use crate::parse::words::{Lexeme, LexemeKind, Word, pieces, words};
 
 /// A constant: its name, the names that it uses, and how many words it has itself.
 struct Constant<'a> {
@@ -118,7 +118,7 @@ fn find_constants(text: &str, language: Language) -> Vec<Constant<'_>> {
     let mut found: Vec<Constant<'_>> = Vec::new();
     let (mut depth, mut open, mut start) = (0usize, None::<Constant<'_>>, 0usize);
     let mut in_value = false;
-    for Piece { kind, text: word, at: offset } in pieces(text) {
+    for Lexeme { kind, text: word, at: offset } in pieces(text) {
         let here = depth.saturating_sub(start);
         match (word, &mut open) {
             ("const", None) => {
@@ -142,7 +142,7 @@ fn find_constants(text: &str, language: Language) -> Vec<Constant<'_>> {
             // In GLSL a parameter can be `const` too. It ends with the list of parameters.
             (")" | "}", Some(_)) if here == 0 => open = None,
             ("," | "{", Some(_)) if here == 0 && !in_value => open = None,
-            (word, Some(constant)) if matches!(kind, PieceKind::Word | PieceKind::Number) => {
+            (word, Some(constant)) if matches!(kind, LexemeKind::Word | LexemeKind::Number) => {
                 if in_value {
                     constant.own += 1;
                     constant.uses.push(word);

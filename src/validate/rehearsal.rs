@@ -59,7 +59,7 @@ pub fn rehearse(
     rehearse::rehearse(STAGE, &job).map_err(|how| exhausted_process(placed, &how))
 }
 
-fn exhausted_process(composed: &Composed, how: &rehearse::Exhausted) -> Diagnostic {
+fn exhausted_process(composed: &Composed, how: &rehearse::RehearsalFailure) -> Diagnostic {
     let error = Diagnostic::error(codes::NAGA_EXHAUSTED, format!("naga {how} over this shader"));
     let error = match limits::check_limits(composed) {
         Ok(Some(large)) => {

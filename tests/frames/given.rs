@@ -1,7 +1,7 @@
 //! What the uniforms, textures and samplers of a frame hold.
 
 use glam::DMat4;
-use lamplight::bundle::Kind as BindingKind;
+use lamplight::bundle::BindingKind;
 use lamplight::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
 use lamplight::scene::{Clip, Depth, perspective};
 

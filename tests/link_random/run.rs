@@ -16,7 +16,7 @@ mod vertex;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use lamplight::bundle::{Kind, Language, Stage, Target, Unit, Varying};
+use lamplight::bundle::{BindingKind, Language, Stage, Target, Unit, Varying};
 use lamplight::compose::{Composed, lean};
 use lamplight::diagnostic::{Diagnostic, codes};
 use lamplight::emit::reflect;
@@ -240,7 +240,7 @@ impl<'r> Ready<'r> {
         let (mut buffers, mut fixtures) = (Buffers::new(), BTreeMap::new());
         for binding in &unit.reflection.bindings {
             let place = (binding.group, binding.binding);
-            if binding.kind == Kind::Uniform {
+            if binding.kind == BindingKind::Uniform {
                 let start = random.next();
                 let numbers = |path: &str| Some(numbers(start, path));
                 let bytes = pack_buffer(binding, &numbers).map_err(|problem| problem.message)?;

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use lamplight::bundle::{Kind, Language, Native, Reflection, Target};
+use lamplight::bundle::{BindingKind, Language, Native, Reflection, Target};
 use lamplight::compose::Composed;
 use lamplight::emit;
 use lamplight::eval::{
@@ -119,15 +119,15 @@ fn resources(reflection: &Reflection, variant: u32) -> Resources {
     for (index, binding) in reflection.bindings.iter().enumerate() {
         let (place, seed) = ((binding.group, binding.binding), 1000 * variant + 50 * index as u32);
         match binding.kind {
-            Kind::Uniform => {
+            BindingKind::Uniform => {
                 let number = |i| (f64::from(scrambled(seed + i)) / f64::from(u32::MAX)) as f32;
                 let bytes = (0..4).flat_map(|i| number(i).to_le_bytes()).collect();
                 drop(resources.buffers.insert(place, bytes));
             }
-            Kind::Sampler => {
+            BindingKind::Sampler => {
                 let _ = resources.samplers.insert(place, sampler(variant, false));
             }
-            Kind::ComparisonSampler => {
+            BindingKind::ComparisonSampler => {
                 let _ = resources.samplers.insert(place, sampler(variant, true));
             }
             _ => drop(resources.textures.insert(place, texture(&binding.ty, seed, variant))),

@@ -2,7 +2,7 @@
 //! and a uniform without a number are errors that name it. Otherwise a picture would silently be
 //! drawn with zeros.
 
-use lamplight::bundle::{Binding, Kind, Member};
+use lamplight::bundle::{Binding, BindingKind, Member};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::picture::frame::pack_buffer;
 use lamplight::picture::needs::Table;
@@ -62,7 +62,7 @@ fn numbers_are_demanded() -> Result<(), Failed> {
         group: 0,
         binding: 0,
         name: "haze".to_owned(),
-        kind: Kind::Uniform,
+        kind: BindingKind::Uniform,
         ty: "Haze".to_owned(),
         size: Some(32),
         writable: false,

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use lamplight::browser::Page;
+use lamplight::browser::BrowserPage;
 use lamplight::bundle::Language;
 use lamplight::catalogue;
 use lamplight::compose::{self, Options};
@@ -101,7 +101,7 @@ const FUNCTION: &str = "brdf::diffuse::oren_nayar";
 
 /// The preview of a function in the catalogue is the picture of its stage, which the link to the
 /// playground has.
-fn preview(page: &Page, device: &str) -> Outcome {
+fn preview(page: &BrowserPage, device: &str) -> Outcome {
     page.evaluate(&format!("location.hash = '#/catalogue/{FUNCTION}'"), PATIENCE)?;
     let canvas = "document.querySelector('.sketch canvas')";
     wait(page, &format!("{canvas} !== null"))?;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use lamplight::bundle::{
-    AskedConventions, Bounds, Convention, Conventions, Language, Native, Reflection, Target,
+    AskedConventions, BoundsChecks, Convention, Conventions, Language, Native, Reflection, Target,
 };
 use lamplight::compose::{self, Composed, Keep, Mangle, Options};
 use lamplight::diagnostic::{self, Diagnostics, Severity, codes};
@@ -315,7 +315,8 @@ fn wanted(names: &[String]) -> Result<Vec<Target>, diagnostic::Diagnostic> {
 
 fn asked(request: &ShaderRequest) -> Result<AskedConventions, Diagnostics> {
     let clip = named(&request.clip, codes::UNKNOWN_CLIP, "there is no clip space");
-    let bounds = named::<Bounds>(&request.bounds, codes::UNKNOWN_BOUNDS, "there are no checks");
+    let bounds =
+        named::<BoundsChecks>(&request.bounds, codes::UNKNOWN_BOUNDS, "there are no checks");
     Ok(AskedConventions { clip: clip?, bounds: bounds? })
 }
 

@@ -9,7 +9,7 @@ use super::{Failure, input_failure, library_comparisons, library_examples};
 use crate::catalogue::preset::Preset;
 use crate::execute::Session;
 use crate::execute::executors::Entry;
-use crate::output::Folder;
+use crate::output::OutputFolder;
 use crate::picture::frame::Programs;
 use crate::picture::gallery::{self, Card, Exhibit, StripCard};
 use crate::picture::strip::{self, Comparison};
@@ -23,7 +23,7 @@ pub fn draw_gallery(
     entry: &Entry,
     programs: &Programs,
     shot: &Shot,
-    mut folder: Folder,
+    mut folder: OutputFolder,
 ) -> Result<(), Failure> {
     let start = Instant::now();
     let (presets, probes) = library_examples(programs)?;
@@ -71,7 +71,7 @@ pub fn draw_gallery(
 /// Fails if a file that would be replaced is not ours. This is checked first, since drawing takes
 /// minutes.
 fn check_folder(
-    folder: &Folder,
+    folder: &OutputFolder,
     presets: &[Preset],
     compared: &[Comparison],
 ) -> Result<(), Failure> {

@@ -120,7 +120,7 @@ fn draw_picture(arguments: &Arguments) -> Result<(), Failure> {
     let shot = make_shot(arguments, entry)?;
     if arguments.all {
         let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from("gallery"));
-        let folder = output::Folder::open(&folder, arguments.overwrite.replace())?;
+        let folder = output::OutputFolder::open(&folder, arguments.overwrite.replace())?;
         return gallery::draw_gallery(entry, &programs, &shot, folder);
     }
     if let Some(comparison) = named_comparison(&programs, arguments)? {

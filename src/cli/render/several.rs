@@ -8,7 +8,7 @@ use super::Failure;
 use crate::diagnostic::stopped_message;
 use crate::execute::executors::Entry;
 use crate::execute::{STACK, Session};
-use crate::output::Folder;
+use crate::output::OutputFolder;
 
 /// How many pictures are drawn at once. While one is prepared or encoded, which is work for one
 /// thread, the device draws the other.
@@ -29,7 +29,7 @@ pub fn draw_all<S: Sync, T: Send>(
     entry: &Entry,
     subjects: &[S],
     draw: impl Fn(&mut dyn Session, &S) -> Result<Drawn<T>, Failure> + Sync,
-    folder: &mut Folder,
+    folder: &mut OutputFolder,
 ) -> Result<Vec<T>, Failure> {
     let (next, is_stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
     let (sender, drawn) = channel();
@@ -67,7 +67,7 @@ pub fn draw_all<S: Sync, T: Send>(
 fn collect<T>(
     drawn: Receiver<Numbered<T>>,
     count: usize,
-    folder: &mut Folder,
+    folder: &mut OutputFolder,
 ) -> Result<Vec<T>, Failure> {
     let mut kept: Vec<Option<T>> = (0..count).map(|_| None).collect();
     let mut failed: Option<(usize, Failure)> = None;

@@ -12,7 +12,7 @@ use naga::back::wgsl::{WriterFlags, write_string};
 use naga::{Expression, Handle, Literal, Module, Override, Scalar, ScalarKind, TypeInner};
 
 use super::{Emitted, Entry, Overrides, Source};
-use crate::bundle::Choice;
+use crate::bundle::OverrideChoice;
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::validate::{Validated, info_unchecked};
@@ -127,8 +127,8 @@ fn finish_open(mut emitted: Emitted, opens: &[Open], writer: &Entry) -> Result<E
     Ok(emitted)
 }
 
-fn choice_of(open: &Open, id: bool) -> Choice {
-    Choice {
+fn choice_of(open: &Open, id: bool) -> OverrideChoice {
+    OverrideChoice {
         name: open.name.clone(),
         id: id.then_some(open.id),
         symbol: (!id).then(|| open.symbol()),

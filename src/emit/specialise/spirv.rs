@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use naga::ScalarKind;
 
 use super::{Open, choice_of};
-use crate::bundle::Choice;
+use crate::bundle::OverrideChoice;
 use crate::emit::spirv::{self, HEADER_WORDS, Instruction, first_word, instructions, op, string};
 
 /// Opcodes of types. The first type follows all decorations.
@@ -16,7 +16,7 @@ const TYPES: std::ops::RangeInclusive<u16> = 19..=39;
 const SPEC_ID: u32 = 1;
 
 /// Opens the variables of overrides; returns how each is chosen.
-pub fn open_words(bytes: &mut Vec<u8>, opens: &[Open]) -> Result<Vec<Choice>, String> {
+pub fn open_words(bytes: &mut Vec<u8>, opens: &[Open]) -> Result<Vec<OverrideChoice>, String> {
     let words = spirv::words(bytes);
     let variables = open_variables(&words, opens)?;
     let mut out = words.get(..HEADER_WORDS).ok_or("the module is too short")?.to_vec();

@@ -3,7 +3,7 @@
 use naga::ScalarKind;
 
 use super::{Open, choice_of};
-use crate::bundle::Choice;
+use crate::bundle::OverrideChoice;
 use crate::emit::{Entry, Overrides, is_header_line};
 
 /// Opens the variables of overrides that the text declares; returns how each is chosen.
@@ -11,7 +11,7 @@ pub fn open_text(
     bytes: &mut Vec<u8>,
     opens: &[Open],
     writer: &Entry,
-) -> Result<Vec<Choice>, String> {
+) -> Result<Vec<OverrideChoice>, String> {
     let is_constant = writer.overrides == Overrides::FunctionConstants;
     let text = std::str::from_utf8(bytes).map_err(|error| error.to_string())?;
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();

@@ -12,7 +12,7 @@ use naga::back::hlsl::{
     ShaderModel, Writer,
 };
 
-use crate::bundle::{HeapSampler, Kind, Native, Place, SamplerHeap, Semantic, Target};
+use crate::bundle::{BindingKind, HeapSampler, Native, Place, SamplerHeap, Semantic, Target};
 use crate::emit::names::first_entry_name;
 use crate::emit::reflect::{binding_kind, entry_inputs};
 use crate::emit::slots::{Numbering, assign_slots, native_reflection};
@@ -40,8 +40,10 @@ const HEAP_SIZE: u32 = 2048;
 const INDEX_SPACE: u8 = u8::MAX;
 
 /// The heaps: name in the output, and the kind of sampler.
-const HEAPS: [(&str, Kind); 2] =
-    [("nagaSamplerHeap", Kind::Sampler), ("nagaComparisonSamplerHeap", Kind::ComparisonSampler)];
+const HEAPS: [(&str, BindingKind); 2] = [
+    ("nagaSamplerHeap", BindingKind::Sampler),
+    ("nagaComparisonSamplerHeap", BindingKind::ComparisonSampler),
+];
 
 /// Reserved words of HLSL that naga does not avoid.
 const WORDS: &[&str] = &[
@@ -147,13 +149,13 @@ fn register_class(source: &Source<'_>, place: Place) -> Option<&'static str> {
     let (_, variable) = variables
         .find(|(_, one)| one.binding.is_some_and(|one| [one.group, one.binding] == place))?;
     Some(match (binding_kind(source.module, variable)?, variable.space) {
-        (Kind::Uniform, _) => "b",
-        (Kind::Storage, naga::AddressSpace::Storage { access })
+        (BindingKind::Uniform, _) => "b",
+        (BindingKind::Storage, naga::AddressSpace::Storage { access })
             if access.contains(naga::StorageAccess::STORE) =>
         {
             "u"
         }
-        (Kind::StorageTexture, _) => "u",
+        (BindingKind::StorageTexture, _) => "u",
         _ => "t",
     })
 }
@@ -161,7 +163,7 @@ fn register_class(source: &Source<'_>, place: Place) -> Option<&'static str> {
 /// The heaps that the entry point takes samplers from.
 fn sampler_heaps(source: &Source<'_>, targets: &SamplerHeapBindTargets) -> Vec<SamplerHeap> {
     let used = assign_slots(source, Numbering::Author);
-    let heap = |(name, wanted): (&str, Kind)| {
+    let heap = |(name, wanted): (&str, BindingKind)| {
         let samplers: Vec<HeapSampler> = used
             .iter()
             .filter(|(_, kind, _)| *kind == wanted)
@@ -173,7 +175,7 @@ fn sampler_heaps(source: &Source<'_>, targets: &SamplerHeapBindTargets) -> Vec<S
                 element: place.binding,
             })
             .collect();
-        let comparison = wanted == Kind::ComparisonSampler;
+        let comparison = wanted == BindingKind::ComparisonSampler;
         let target =
             if comparison { targets.comparison_samplers } else { targets.standard_samplers };
         (!samplers.is_empty()).then(|| SamplerHeap {

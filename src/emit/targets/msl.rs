@@ -9,7 +9,7 @@ use naga::back::msl::{
     BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, Writer,
 };
 
-use crate::bundle::{BufferSizes, Kind, Target};
+use crate::bundle::{BindingKind, BufferSizes, Target};
 use crate::emit::names::first_entry_name;
 use crate::emit::slots::{Numbering, assign_slots, native_reflection};
 use crate::emit::text::Text;
@@ -88,15 +88,17 @@ fn entry_resources(source: &Source<'_>) -> Result<EntryPointResources, String> {
     Ok(resources)
 }
 
-fn bind_target(kind: Kind, slot: u8) -> BindTarget {
+fn bind_target(kind: BindingKind, slot: u8) -> BindTarget {
     match kind {
-        Kind::Uniform => BindTarget { buffer: Some(slot), ..BindTarget::default() },
-        Kind::Storage => BindTarget { buffer: Some(slot), mutable: true, ..BindTarget::default() },
-        Kind::Texture => BindTarget { texture: Some(slot), ..BindTarget::default() },
-        Kind::StorageTexture => {
+        BindingKind::Uniform => BindTarget { buffer: Some(slot), ..BindTarget::default() },
+        BindingKind::Storage => {
+            BindTarget { buffer: Some(slot), mutable: true, ..BindTarget::default() }
+        }
+        BindingKind::Texture => BindTarget { texture: Some(slot), ..BindTarget::default() },
+        BindingKind::StorageTexture => {
             BindTarget { texture: Some(slot), mutable: true, ..BindTarget::default() }
         }
-        Kind::Sampler | Kind::ComparisonSampler => {
+        BindingKind::Sampler | BindingKind::ComparisonSampler => {
             BindTarget { sampler: Some(BindSamplerTarget::Resource(slot)), ..BindTarget::default() }
         }
     }

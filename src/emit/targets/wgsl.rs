@@ -4,7 +4,7 @@
 
 use naga::back::wgsl::{Writer, WriterFlags};
 
-use crate::bundle::{Choice, Target};
+use crate::bundle::{OverrideChoice, Target};
 use crate::emit::slots::{Numbering, native_reflection};
 use crate::emit::text::Text;
 use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip};
@@ -41,10 +41,10 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     Ok(Emitted { bytes: text.into_bytes(), native })
 }
 
-fn override_choice((constant, written): (&naga::Override, &str)) -> Option<Choice> {
+fn override_choice((constant, written): (&naga::Override, &str)) -> Option<OverrideChoice> {
     let name = constant.name.clone()?;
     let symbol = (name != written).then(|| written.to_owned());
-    Some(Choice { name, id: constant.id.map(u32::from), symbol })
+    Some(OverrideChoice { name, id: constant.id.map(u32::from), symbol })
 }
 
 /// The names of declarations that begin with `word`, in the order of the text. With `after`, only

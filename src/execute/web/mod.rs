@@ -20,8 +20,8 @@ use super::frame::{Drawing, Frame};
 use super::gpu::run_batches;
 use super::kernel::Kernel;
 use super::{Pair, Session, executor_failed};
-use crate::browser::serve::{Files, Server};
-use crate::browser::{Browser, PATIENCE, Page, Problem};
+use crate::browser::serve::{HttpServer, ServedFiles};
+use crate::browser::{Browser, BrowserPage, PATIENCE, Problem};
 use crate::bundle::Target;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::validate::on_large_stack;
@@ -70,7 +70,7 @@ pub type Start = Box<dyn Fn() -> Result<Arc<Browser>, Problem> + Send>;
 pub struct Web {
     api: Api,
     start: Start,
-    server: Server,
+    server: HttpServer,
     patience: Duration,
     adapter: String,
     state: Mutex<State>,
@@ -78,7 +78,7 @@ pub struct Web {
 
 #[derive(Default)]
 struct State {
-    page: Option<Page>,
+    page: Option<BrowserPage>,
     /// The kernels that the page has compiled, or why it could not.
     kept: HashMap<u64, Result<(), Diagnostic>>,
 }
@@ -114,7 +114,7 @@ impl Web {
             <script src=common.js></script><script src=script.js></script>";
         let files = [("index.html", page), ("common.js", COMMON), ("script.js", api.script())];
         let files = files.map(|(path, text)| (path.to_owned(), text.as_bytes().to_vec()));
-        let server = Server::start(Files::Memory(BTreeMap::from(files)));
+        let server = HttpServer::start(ServedFiles::Memory(BTreeMap::from(files)));
         let server = server.map_err(|error| format!("nothing can be served: {error}"))?;
         let state = Mutex::default();
         let mut web = Self { api, start, server, patience, adapter: String::new(), state };
@@ -125,7 +125,7 @@ impl Web {
     }
 
     /// Opens a page and its device; also returns the device's name.
-    fn opened(&self) -> Result<(Page, String), Problem> {
+    fn opened(&self) -> Result<(BrowserPage, String), Problem> {
         let browser = (self.start)()?;
         let page = browser.open(&self.server.address(""))?;
         page.loaded(PATIENCE)?;

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use super::outline::{Declaration, Kind, Local, Outline, outline_of};
 use crate::catalogue::prefix;
-use crate::parse::glsl::{Directive, Part, Symbol, TokenKind, known};
-use crate::resolve::glsl::{Graph, Target};
+use crate::parse::glsl::{Directive, FilePart, Symbol, TokenKind, known};
+use crate::resolve::glsl::{Graph, IncludeTarget};
 
 /// A file, all that it may include, and what each of these declares.
 pub struct Names {
@@ -39,7 +39,7 @@ impl Names {
         let has = |range: &Range<u32>| range.start <= byte && byte <= range.end;
         for (include, target) in module.includes.iter().zip(self.graph.targets.first()?) {
             let place = include.span.start..include.span.end;
-            if let (true, Target::Module(file)) = (has(&place), target) {
+            if let (true, IncludeTarget::Module(file)) = (has(&place), target) {
                 return Some((Meaning::File(*file), place));
             }
         }
@@ -117,8 +117,8 @@ impl Names {
     fn is_in_directive(&self, byte: u32) -> bool {
         let parts = self.graph.modules.first().into_iter().flat_map(|module| &module.parts);
         parts.into_iter().any(|part| match part {
-            Part::Directive(Directive::Include(_), _) | Part::Text(_) => false,
-            Part::Directive(_, span) => span.start <= byte && byte < span.end,
+            FilePart::Directive(Directive::Include(_), _) | FilePart::Text(_) => false,
+            FilePart::Directive(_, span) => span.start <= byte && byte < span.end,
         })
     }
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::tokens::{Placed, ends_of_blocks, matching_parentheses, text_tokens};
 use super::words::{QUALIFIERS, STATEMENTS};
-use crate::parse::glsl::{Directive, Module, Part, Symbol, Symbols, TokenKind, known};
+use crate::parse::glsl::{Directive, FilePart, Module, Symbol, Symbols, TokenKind, known};
 
 /// What a declaration is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,7 +69,7 @@ pub fn outline_of(module: &Module, symbols: &Symbols) -> Outline {
     let ends = ends_of_blocks(&tokens);
     let mut reader = Reader { tokens: &tokens, closes, ends, symbols, found: Outline::default() };
     for part in &module.parts {
-        if let Part::Directive(Directive::Define(found), span) = part {
+        if let FilePart::Directive(Directive::Define(found), span) = part {
             let place = found.name_span.start..found.name_span.end;
             let range = span.start..span.end;
             reader.declare(Kind::Macro, found.name, place, range.clone(), range);

@@ -10,9 +10,9 @@ use super::units::{Meant, Place, Units, Use};
 use super::words::is_reserved;
 use crate::lsp::place::Lines;
 use crate::lsp::{Server, told};
-use crate::parse::glsl::{Directive, Part, Symbol};
+use crate::parse::glsl::{Directive, FilePart, Symbol};
 use crate::parse::words::has_word;
-use crate::resolve::glsl::Target;
+use crate::resolve::glsl::IncludeTarget;
 
 /// The letters of swizzles.
 const SWIZZLES: [&str; 3] = ["xyzw", "rgba", "stpq"];
@@ -95,7 +95,7 @@ fn check_readable(units: &Units, files: &BTreeSet<usize>) -> Result<(), String> 
             ));
         }
         for (include, target) in module.includes.iter().zip(&units.names.graph.targets[file]) {
-            if let Target::Missing(_) = target {
+            if let IncludeTarget::Missing(_) = target {
                 let place = shown_place(units, file, include.span.start);
                 return Err(format!("the `#include` in {place} leads to no file that can be read"));
             }
@@ -145,7 +145,7 @@ fn named_by_macro(units: &Units, files: &BTreeSet<usize>, symbol: Symbol) -> Opt
             }
         }
         for part in &units.module(*file).parts {
-            if let Part::Directive(Directive::Define(found), span) = part
+            if let FilePart::Directive(Directive::Define(found), span) = part
                 && found.body.iter().any(|token| token.pasted)
             {
                 let place = shown_place(units, *file, span.start);

@@ -1,6 +1,6 @@
 //! Tokens of a GLSL file with their depth in braces.
 
-use crate::parse::glsl::{Directive, Module, Part, Token, known};
+use crate::parse::glsl::{Directive, FilePart, Module, Token, known};
 
 /// A token and the number of braces around it. A brace itself is outside of what it encloses.
 #[derive(Clone, Copy)]
@@ -15,7 +15,7 @@ pub fn text_tokens(module: &Module) -> Vec<Placed> {
     let (mut depth, mut open) = (0_u32, Vec::new());
     for part in &module.parts {
         match part {
-            Part::Text(text) => {
+            FilePart::Text(text) => {
                 let range = text.tokens.start as usize..text.tokens.end as usize;
                 for token in module.tokens.get(range).unwrap_or_default() {
                     if token.symbol == known::CLOSE_BRACE {
@@ -25,12 +25,14 @@ pub fn text_tokens(module: &Module) -> Vec<Placed> {
                     depth += u32::from(token.symbol == known::OPEN_BRACE);
                 }
             }
-            Part::Directive(Directive::If { .. } | Directive::Ifdef { .. }, _) => open.push(depth),
-            Part::Directive(Directive::Elif { .. } | Directive::Else { .. }, _) => {
+            FilePart::Directive(Directive::If { .. } | Directive::Ifdef { .. }, _) => {
+                open.push(depth)
+            }
+            FilePart::Directive(Directive::Elif { .. } | Directive::Else { .. }, _) => {
                 depth = open.last().copied().unwrap_or(depth);
             }
-            Part::Directive(Directive::Endif, _) => drop(open.pop()),
-            Part::Directive(..) => {}
+            FilePart::Directive(Directive::Endif, _) => drop(open.pop()),
+            FilePart::Directive(..) => {}
         }
     }
     found

@@ -7,8 +7,8 @@ use std::ops::Range;
 use super::names::Names;
 use super::outline::{Declaration, Kind};
 use crate::catalogue::prefix;
-use crate::parse::glsl::{Directive, Module, Part, Symbol, TokenKind, known};
-use crate::resolve::glsl::{Graph, Target};
+use crate::parse::glsl::{Directive, FilePart, Module, Symbol, TokenKind, known};
+use crate::resolve::glsl::{Graph, IncludeTarget};
 
 /// The most tokens of a `layout` that are searched.
 const LAYOUT: usize = 256;
@@ -282,7 +282,7 @@ impl Units {
         let targets = &self.names.graph.targets[file];
         let mut includes = self.module(file).includes.iter().zip(targets);
         includes.find_map(|(include, target)| match target {
-            Target::Module(to) if include.span.start <= byte && byte <= include.span.end => {
+            IncludeTarget::Module(to) if include.span.start <= byte && byte <= include.span.end => {
                 Some(*to)
             }
             _ => None,
@@ -294,8 +294,8 @@ impl Units {
         let all = self.names.graph.modules.iter().zip(&self.names.graph.targets).enumerate();
         let found = all.flat_map(|(includer, (module, targets))| {
             let pairs = module.includes.iter().zip(targets);
-            let here =
-                pairs.filter(|(_, target)| matches!(target, Target::Module(to) if *to == file));
+            let here = pairs
+                .filter(|(_, target)| matches!(target, IncludeTarget::Module(to) if *to == file));
             here.map(move |(include, _)| Place {
                 file: includer,
                 start: include.span.start,
@@ -310,7 +310,7 @@ fn reached_files(graph: &Graph, from: usize) -> BTreeSet<usize> {
     let (mut found, mut open) = (BTreeSet::from([from]), vec![from]);
     while let Some(file) = open.pop() {
         for target in &graph.targets[file] {
-            if let Target::Module(next) = target
+            if let IncludeTarget::Module(next) = target
                 && found.insert(*next)
             {
                 open.push(*next);
@@ -324,7 +324,7 @@ fn reached_files(graph: &Graph, from: usize) -> BTreeSet<usize> {
 fn branches_at(module: &Module, byte: u32) -> Vec<usize> {
     let mut open = Vec::new();
     for (index, part) in module.parts.iter().enumerate() {
-        let Part::Directive(directive, span) = part else { continue };
+        let FilePart::Directive(directive, span) = part else { continue };
         if span.start > byte {
             break;
         }
@@ -345,11 +345,11 @@ fn branches_at(module: &Module, byte: u32) -> Vec<usize> {
 fn is_parameter(module: &Module, token: usize) -> bool {
     let found = module.tokens[token];
     let after = module.parts.partition_point(|part| match part {
-        Part::Text(text) => text.bytes.start <= found.start,
-        Part::Directive(_, span) => span.start <= found.start,
+        FilePart::Text(text) => text.bytes.start <= found.start,
+        FilePart::Directive(_, span) => span.start <= found.start,
     });
     let part = after.checked_sub(1).and_then(|index| module.parts.get(index));
-    let Some(Part::Directive(Directive::Define(defined), _)) = part else { return false };
+    let Some(FilePart::Directive(Directive::Define(defined), _)) = part else { return false };
     if defined.parameters.is_none() || found.start < defined.name_span.end {
         return false;
     }

@@ -7,7 +7,7 @@ use crate::bundle::{Language, Reflection};
 use crate::compose::{self, Options, PartKind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::reflect;
-use crate::permute::manifest::{File, Program};
+use crate::permute::manifest::{ManifestFile, Program};
 use crate::permute::{Manifest, Settings};
 use crate::picture::needs::Table;
 use crate::project;
@@ -138,7 +138,7 @@ impl Programs {
             (Language::Glsl, _, Some(glsl)) => {
                 let vertex =
                     glsl.vertex.as_ref().ok_or_else(|| absent_language(program, language))?;
-                let stage = |file: &File| {
+                let stage = |file: &ManifestFile| {
                     self.composed(file, settings, language)
                         .and_then(|text| ready_text(&text, "main"))
                 };
@@ -151,7 +151,7 @@ impl Programs {
         }
     }
 
-    fn of_wesl(&self, file: &File, settings: &Settings) -> Result<Stages, Diagnostics> {
+    fn of_wesl(&self, file: &ManifestFile, settings: &Settings) -> Result<Stages, Diagnostics> {
         let text = self.composed(file, settings, Language::Wesl)?;
         let mut points = text.validated.module.entry_points.iter();
         let has_fragment = points.any(|point| point.name == "fs_main");
@@ -161,7 +161,7 @@ impl Programs {
 
     fn composed(
         &self,
-        file: &File,
+        file: &ManifestFile,
         settings: &Settings,
         language: Language,
     ) -> Result<Text, Diagnostics> {
@@ -172,7 +172,7 @@ impl Programs {
         Ok(Text { text: composed.text.into(), functions, validated })
     }
 
-    fn graph(&self, file: &File, language: Language) -> Result<Arc<Graph>, Diagnostics> {
+    fn graph(&self, file: &ManifestFile, language: Language) -> Result<Arc<Graph>, Diagnostics> {
         let mut kept = self.kept();
         if let Some(graph) = kept.graphs.get(&file.path) {
             return Ok(graph.clone());

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glow::HasContext as _;
 
 use super::{Unit, plain_state, program, texture};
-use crate::bundle::{Combined, FrontFace, Slot};
+use crate::bundle::{BindingSlot, Combined, FrontFace};
 use crate::execute::Pair;
 use crate::execute::fixture::Fixture;
 use crate::execute::frame::{Buffers, Drawing, Frame, Item, Mesh, Place, State, VertexFormat};
@@ -79,7 +79,7 @@ fn prepare_frame(
     Ok(Ready { program, units, blocks })
 }
 
-fn find_slot(stage: &Shipped, (group, binding): Place) -> Result<&Slot, String> {
+fn find_slot(stage: &Shipped, (group, binding): Place) -> Result<&BindingSlot, String> {
     let mut slots = stage.native.slots.iter();
     slots
         .find(|slot| (slot.group, slot.binding) == (group, binding))
