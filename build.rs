@@ -13,9 +13,9 @@ fn main() -> std::io::Result<()> {
     fs::write(out.join("codes.rs"), codes(&root.join("src/diagnostic/codes"))?)?;
     fs::write(out.join("target_names.rs"), target_names(&root.join("src/emit/targets"))?)?;
     for (folder, constant, ty) in [
-        ("emit/targets", "TARGET", "Entry"),
+        ("emit/targets", "TARGET", "TargetEntry"),
         ("execute/executors", "EXECUTOR", "Entry"),
-        ("judge/judges", "JUDGE", "Entry"),
+        ("judge/judges", "JUDGE", "JudgeEntry"),
         ("proof/references", "REFERENCES", "Entry"),
         ("scene/sets", "SET", "Set"),
     ] {

@@ -10,7 +10,7 @@ use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
 use lamplight::eval::{
-    self, Bounded, Filter, Function, FunctionId, Kind, Machine, Number, Program, Resources,
+    self, Bounded, Filter, Function, FunctionId, Machine, Number, Program, Resources, SlotKind,
 };
 use lamplight::execute::fixture::{Fixture, Texture};
 use lamplight::execute::frame::Buffers;
@@ -250,8 +250,8 @@ fn judge_color(
 
 /// The inputs of a fragment, as the evaluator takes them.
 fn slots(signature: &Function, watched: &Watched<'_>, pixel: usize) -> Vec<Bounded> {
-    let slot = |(kind, word): (&Kind, u32)| match kind {
-        Kind::Float => Bounded::from_f64(f64::from(f32::from_bits(word))),
+    let slot = |(kind, word): (&SlotKind, u32)| match kind {
+        SlotKind::Float => Bounded::from_f64(f64::from(f32::from_bits(word))),
         _ => Bounded::from_word(word),
     };
     signature.arguments.iter().zip(watched.inputs(pixel)).map(slot).collect()

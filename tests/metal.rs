@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 use lamplight::execute::compiled::Program;
 use lamplight::execute::compiled::request::{Bound, Fragment};
-use lamplight::metal::{Clang, Missing, Refusal, judge_batch};
+use lamplight::metal::{Clang, ClangMissing, MslRefusal, judge_batch};
 use libtest_mimic::{Failed, Trial};
 use rayon::prelude::*;
 use references::{REFERENCES, Reference};
@@ -51,8 +51,8 @@ fn told(wrong: &[String]) -> Outcome {
 }
 
 /// What the judge refuses. Each refusal has the index of its text.
-fn judge_texts(texts: &[String]) -> Result<Vec<Refusal>, String> {
-    let reason = |missing: Missing| missing.reason;
+fn judge_texts(texts: &[String]) -> Result<Vec<MslRefusal>, String> {
+    let reason = |missing: ClangMissing| missing.reason;
     let clang = Clang::open().map_err(reason)?;
     let views: Vec<(usize, &str)> = texts.iter().map(String::as_str).enumerate().collect();
     let judged = views.par_chunks(64).map(|batch| judge_batch(&clang, batch));

@@ -16,7 +16,8 @@ use super::terminal::stderr;
 use crate::bundle::{self, Bundle, Contents, DirectoryWriter};
 use crate::cache::Cache;
 use crate::generate::{
-    Generated, Judged, Memory, Observer, Request, Run, Sink, Summary, Told, Tools, Trace, generate,
+    Generated, JudgedCount, MemorySink, Observer, Request, RunWarnings, Sink, Summary, Tools,
+    Trace, TracedRun, generate,
 };
 use crate::output::Replace;
 use crate::permute::Manifest;
@@ -101,7 +102,7 @@ impl Work {
     }
 
     /// Lets the judges, if there are any, check the bundle on disk.
-    pub fn judge_bundle(&mut self) -> Result<Option<Judged>, Failure> {
+    pub fn judge_bundle(&mut self) -> Result<Option<JudgedCount>, Failure> {
         let (out, bar) = (self.out.clone(), Bar::new());
         let (judges, inputs) = self.judges();
         judges.map(|judges| judges.bundle(&out, inputs, &bar)).transpose()
@@ -151,15 +152,15 @@ impl Work {
         print_warnings(&self.sources, &warnings, form);
         if let Some(cache) = &self.cache {
             told_failures(cache);
-            let told = Told::new(&self.path, &self.sources, &warnings);
+            let told = RunWarnings::new(&self.path, &self.sources, &warnings);
             let trace = Trace::new(&self.observer, &self.out, summary.clone(), told);
             trace.into_iter().for_each(|trace| trace.keep(cache, self.as_run(request)));
         }
         Ok(summary)
     }
 
-    fn as_run<'a>(&'a self, request: &'a Request) -> Run<'a> {
-        Run {
+    fn as_run<'a>(&'a self, request: &'a Request) -> TracedRun<'a> {
+        TracedRun {
             manifest: &self.path,
             declared: &self.declared,
             request,
@@ -170,7 +171,7 @@ impl Work {
 
     /// Writes one permutation into the present bundle directory, before all others.
     pub fn patch(&mut self, request: &Request) -> Result<(), Failure> {
-        let memory = Memory::default();
+        let memory = MemorySink::default();
         let mut generated = self.generate(request, &memory, &Bar::new())?;
         memory.fill(&mut generated.contents);
         bundle::patch_directory(&generated.contents, &self.out)
@@ -203,7 +204,7 @@ impl Work {
         check: bool,
         bar: &Bar,
     ) -> Result<Generated, Failure> {
-        let memory = Memory::default();
+        let memory = MemorySink::default();
         let mut generated = self.generate(request, &memory, bar)?;
         memory.fill(&mut generated.contents);
         let (judges, inputs) = self.judges();

@@ -45,7 +45,7 @@ use crate::validate::{Validated, guard, on_large_stack};
 
 /// An output language.
 #[derive(Debug)]
-pub struct Entry {
+pub struct TargetEntry {
     /// Its name.
     pub target: Target,
     /// The extension of its files, without the dot.
@@ -61,11 +61,11 @@ pub struct Entry {
     /// What the language has for overrides.
     pub overrides: Overrides,
     /// What judges whether its outputs are well formed.
-    pub judged: Judged,
+    pub judged: JudgeRules,
     /// The clip spaces of its vertex stages.
     pub clip: &'static clip::Spaces,
     /// Writes the entry point of a module without overrides; only [`emit`] calls it.
-    pub write: fn(&Source<'_>) -> Result<Emitted, String>,
+    pub write: fn(&EmitSource<'_>) -> Result<Emitted, String>,
 }
 
 /// How the host chooses the value of an override.
@@ -84,7 +84,7 @@ pub enum Overrides {
 /// What judges the outputs of a target, from their bytes. Every target has a judge, and the module
 /// `judge` runs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Judged {
+pub struct JudgeRules {
     /// The name of a file of `src/judge/judges/`.
     pub judge: &'static str,
     /// The rules that outputs must keep. They are those of the judge, whose file explains them.
@@ -93,17 +93,17 @@ pub struct Judged {
 
 /// One file for each output language.
 pub mod targets {
-    use super::Entry;
+    use super::TargetEntry;
     include!(concat!(env!("OUT_DIR"), "/targets.rs"));
 
     /// The entry of a target.
-    pub fn find(target: crate::bundle::Target) -> Option<&'static Entry> {
+    pub fn find(target: crate::bundle::Target) -> Option<&'static TargetEntry> {
         ALL.iter().copied().find(|entry| entry.target == target)
     }
 }
 
 /// What an output is written from.
-pub struct Source<'a> {
+pub struct EmitSource<'a> {
     /// A valid module without overrides.
     pub module: &'a naga::Module,
     /// What naga's validator found out about the module.
@@ -118,7 +118,7 @@ pub struct Source<'a> {
     pub conventions: Conventions,
 }
 
-impl Source<'_> {
+impl EmitSource<'_> {
     /// Whether the output checks indices and loops.
     pub fn is_restricted(&self) -> bool {
         self.conventions.bounds == BoundsChecks::Restrict
@@ -195,7 +195,7 @@ pub fn emit_for(
 fn write_entry(
     validated: &Validated,
     index: usize,
-    writer: &Entry,
+    writer: &TargetEntry,
     conventions: Conventions,
 ) -> Result<Emitted, Diagnostic> {
     let mut emitted = written_plainly(validated, index, writer, conventions)?;
@@ -207,7 +207,7 @@ fn write_entry(
 fn written_plainly(
     validated: &Validated,
     index: usize,
-    writer: &Entry,
+    writer: &TargetEntry,
     conventions: Conventions,
 ) -> Result<Emitted, Diagnostic> {
     let failed = |reason: String| {
@@ -215,7 +215,7 @@ fn written_plainly(
     };
     let point = &validated.module.entry_points[index];
     specialise::refuse_overrides(&validated.module)?;
-    let source = Source {
+    let source = EmitSource {
         module: &validated.module,
         info: &validated.info,
         stage: point.stage,
@@ -237,7 +237,7 @@ fn written_plainly(
         &Default::default(),
     )
     .map_err(|error| failed(error.to_string()))?;
-    (writer.write)(&Source { module: &module, info: &info, index: 0, ..source }).map_err(failed)
+    (writer.write)(&EmitSource { module: &module, info: &info, index: 0, ..source }).map_err(failed)
 }
 
 /// Gives an error of a writer, which has no place of its own, that of the entry point.

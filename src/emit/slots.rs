@@ -2,7 +2,7 @@
 
 use naga::ResourceBinding;
 
-use super::Source;
+use super::EmitSource;
 use super::reflect::{binding_kind, used_globals};
 use crate::bundle::{BindingKind, BindingSlot, Native};
 
@@ -24,7 +24,7 @@ pub const EXPLICIT_LIMIT: u32 = 16;
 
 /// Every used binding, sorted, with its kind and its number in the target.
 pub fn assign_slots(
-    source: &Source<'_>,
+    source: &EmitSource<'_>,
     numbering: Numbering,
 ) -> Vec<(ResourceBinding, BindingKind, Option<u32>)> {
     let globals = used_globals(source.module, source.info.get_entry_point(source.index));
@@ -44,7 +44,7 @@ pub fn assign_slots(
 }
 
 /// The reflection of a target without combined samplers.
-pub fn native_reflection(source: &Source<'_>, entry: &str, numbering: Numbering) -> Native {
+pub fn native_reflection(source: &EmitSource<'_>, entry: &str, numbering: Numbering) -> Native {
     let slots = assign_slots(source, numbering)
         .into_iter()
         .map(|(binding, _, index)| BindingSlot {

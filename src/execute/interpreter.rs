@@ -159,8 +159,8 @@ pub fn kernel_resources(kernel: &Kernel) -> Resources {
 impl From<&Texture> for eval::Texture {
     fn from(fixture: &Texture) -> Self {
         let shape = match fixture.kind {
-            TextureKind::Depth2d | TextureKind::Color2d => eval::Shape::D2,
-            TextureKind::DepthCube | TextureKind::ColorCube => eval::Shape::Cube,
+            TextureKind::Depth2d | TextureKind::Color2d => eval::TextureDimension::D2,
+            TextureKind::DepthCube | TextureKind::ColorCube => eval::TextureDimension::Cube,
         };
         let texels =
             Texels::Channels { count: fixture.kind.channels(), values: fixture.texels.clone() };

@@ -17,8 +17,8 @@ use super::{Pair, Session, executor_failed};
 use crate::bundle::{Native, Target};
 use crate::diagnostic::Diagnostic;
 use crate::emit::Emitted;
-use crate::eval::{Sampler, Shape, Texture};
-use crate::metal::{Missing, clang_version};
+use crate::eval::{Sampler, Texture, TextureDimension};
+use crate::metal::{ClangMissing, clang_version};
 use crate::validate::on_large_stack;
 
 /// A session. It holds programs, each of which has many kernels.
@@ -41,7 +41,7 @@ impl Metal {
     ///
     /// # Errors
     /// It is missing.
-    pub fn open() -> Result<Self, Missing> {
+    pub fn open() -> Result<Self, ClangMissing> {
         let compiler = clang_version()?;
         Ok(Self { compiler, programs: Vec::new(), kept: HashMap::new() })
     }
@@ -175,5 +175,5 @@ fn bind_kernel(kernel: &Kernel, native: &Native, texels: &[u32]) -> Bound {
 fn input_image(texels: &[u32]) -> Image {
     let height = texels.len() as u32 / 4 / INPUT_WIDTH;
     let level = ImageLevel { width: INPUT_WIDTH, height, layers: 1, words: texels.to_vec() };
-    Image { shape: Shape::D2, format: Format::Unsigned, levels: vec![level] }
+    Image { shape: TextureDimension::D2, format: Format::Unsigned, levels: vec![level] }
 }

@@ -12,7 +12,7 @@ use crate::resolve::{self, Graph, Packages};
 use crate::source::SourceSet;
 
 /// One entry point of one language.
-pub struct Entry {
+pub struct ShaderEntry {
     pub program: String,
     pub language: Language,
     /// Name in the source: `main` in GLSL.
@@ -34,7 +34,7 @@ pub fn entries(
     packages: &Packages,
     program: &Program,
     point: Option<&Assignment>,
-) -> Result<Vec<Entry>, Diagnostics> {
+) -> Result<Vec<ShaderEntry>, Diagnostics> {
     let Some(point) = point else { return Ok(Vec::new()) };
     let (mut entries, mut errors) = (Vec::new(), Diagnostics::new());
     for (file, language) in root_files(program) {
@@ -51,7 +51,7 @@ fn of_file(
     program: &Program,
     point: &Assignment,
     (file, language): (&ManifestFile, Language),
-    entries: &mut Vec<Entry>,
+    entries: &mut Vec<ShaderEntry>,
 ) -> Result<(), Diagnostics> {
     let graph = resolve::load(sources, packages, &file.path, language)
         .map_err(|errors| named_by(errors, file))?;
@@ -71,12 +71,12 @@ fn of_file(
         let options = Options { keep, ..Options::default() };
         let label = entry_label(entries, language, &name, stage);
         let (program, graph) = (program.name.clone(), graph.clone());
-        entries.push(Entry { program, language, name, label, stage, graph, options });
+        entries.push(ShaderEntry { program, language, name, label, stage, graph, options });
     }
     Ok(())
 }
 
-impl Entry {
+impl ShaderEntry {
     /// For people: `forward fs_main (glsl)`.
     pub fn title(&self) -> String {
         format!("{} {} ({})", self.program, self.label, self.language.name())
@@ -99,7 +99,7 @@ fn of_permutation(errors: Diagnostics, program: &Program, point: &Assignment) ->
 }
 
 fn entry_label(
-    before: &[Entry],
+    before: &[ShaderEntry],
     language: Language,
     name: &str,
     stage: naga::ShaderStage,

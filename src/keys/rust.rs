@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use super::names::{Taken, camel_case, comment_lines, value_name};
 use super::ordinal::{Ordinals, Says, key_ordinals};
-use super::{Language, default_setting, key_axes, key_part};
+use super::{KeyLanguage, default_setting, key_axes, key_part};
 use crate::bundle::key::{DEFAULT, SEPARATOR};
 use crate::permute::{Axis, AxisKind, Lock, Manifest, Program};
 
-pub const LANGUAGE: Language =
-    Language { name: "rust", about: "a module a program, for any edition", write };
+pub const LANGUAGE: KeyLanguage =
+    KeyLanguage { name: "rust", about: "a module a program, for any edition", write };
 
 /// Keywords that are valid names of axes. `r#` would not work for all of them.
 const KEYWORDS: &[&str] = &[
@@ -29,14 +29,14 @@ fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
 }
 
 /// An axis with its identifiers.
-struct Named<'a> {
+struct RustAxis<'a> {
     axis: &'a Axis,
     field: String,
     ty: String,
     variants: Vec<String>,
 }
 
-impl Named<'_> {
+impl RustAxis<'_> {
     fn default(&self) -> String {
         self.value(self.axis.default)
     }
@@ -50,7 +50,7 @@ impl Named<'_> {
     }
 }
 
-fn named_axes(program: &Program) -> Vec<Named<'_>> {
+fn named_axes(program: &Program) -> Vec<RustAxis<'_>> {
     let (mut fields, mut types) = (Taken::new(KEYWORDS), Taken::new(&["Key", "Self"]));
     let named = key_axes(program).map(|axis| {
         let mut variants = Taken::new(KEYWORDS);
@@ -60,7 +60,7 @@ fn named_axes(program: &Program) -> Vec<Named<'_>> {
         };
         let variants =
             axis.values.iter().map(|known| variants.give(camel_case(&value_name(known)))).collect();
-        Named { axis, field: fields.give(axis.name.clone()), ty, variants }
+        RustAxis { axis, field: fields.give(axis.name.clone()), ty, variants }
     });
     named.collect()
 }
@@ -87,7 +87,7 @@ fn program_module(program: &Program, lock: Option<&Lock>, name: &str) -> String 
     text
 }
 
-fn write_enumeration(Named { axis, ty, variants, .. }: &Named<'_>) -> String {
+fn write_enumeration(RustAxis { axis, ty, variants, .. }: &RustAxis<'_>) -> String {
     let mut text = axis.doc.as_deref().map_or(String::new(), |doc| comment_lines("    ///", doc));
     let _ = writeln!(
         text,
@@ -110,11 +110,11 @@ fn write_enumeration(Named { axis, ty, variants, .. }: &Named<'_>) -> String {
     text
 }
 
-fn write_structure(axes: &[Named<'_>]) -> String {
+fn write_structure(axes: &[RustAxis<'_>]) -> String {
     let mut text =
         String::from("    /// One permutation: `Key { axis: value, ..Key::default() }`.\n");
     text.push_str("    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]\n    pub struct Key {\n");
-    for Named { axis, field, ty, .. } in axes {
+    for RustAxis { axis, field, ty, .. } in axes {
         let doc = axis.doc.as_deref().filter(|_| axis.kind == AxisKind::Bool);
         text.push_str(&doc.map_or(String::new(), |doc| comment_lines("        ///", doc)));
         let _ = writeln!(text, "        pub {field}: {ty},");
@@ -128,7 +128,7 @@ fn write_structure(axes: &[Named<'_>]) -> String {
 }
 
 /// The functions from a key to its number, and back.
-fn number_functions(axes: &[Named<'_>], ordinals: &Ordinals) -> String {
+fn number_functions(axes: &[RustAxis<'_>], ordinals: &Ordinals) -> String {
     let mut text = String::from(
         "\n    impl Key {\n        /// The number in the lock file: it stays what it is when axes and values are added.\n",
     );
@@ -169,7 +169,7 @@ fn number_functions(axes: &[Named<'_>], ordinals: &Ordinals) -> String {
     text + "        }\n    }\n"
 }
 
-fn display_impl(axes: &[Named<'_>]) -> String {
+fn display_impl(axes: &[RustAxis<'_>]) -> String {
     let mut text = String::from(
         "    impl Key {\n        /// The canonical key, as a bundle's loader takes it.\n",
     );
@@ -199,7 +199,7 @@ fn display_impl(axes: &[Named<'_>]) -> String {
 }
 
 /// The statement that writes an axis which is not at its default.
-fn write_part(Named { axis, field, .. }: &Named<'_>) -> String {
+fn write_part(RustAxis { axis, field, .. }: &RustAxis<'_>) -> String {
     match axis.kind {
         AxisKind::Bool => match axis.values.iter().find(|value| *value != default_setting(axis)) {
             Some(value) => {

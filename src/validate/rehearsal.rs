@@ -14,7 +14,7 @@ pub const STAGE: &str = "naga";
 
 /// What the other process does: it validates a text and, if asked to, writes it.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Job {
+pub struct RehearsalJob {
     /// Language of the text.
     pub language: Language,
     /// Stage of a text in GLSL.
@@ -22,12 +22,12 @@ pub struct Job {
     /// The text, without comments and layout.
     pub text: String,
     /// What is written from it.
-    pub outputs: Option<Outputs>,
+    pub outputs: Option<RehearsalOutputs>,
 }
 
 /// An entry point, the targets to write it for, and conventions, by their names.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Outputs {
+pub struct RehearsalOutputs {
     /// Name of the entry point.
     pub entry: String,
     /// Names of the targets.
@@ -46,7 +46,7 @@ pub struct Outputs {
 pub fn rehearse(
     composed: &Composed,
     placed: &Composed,
-    outputs: impl FnOnce() -> Option<Outputs>,
+    outputs: impl FnOnce() -> Option<RehearsalOutputs>,
 ) -> Result<(), Diagnostic> {
     if limits::check_limits(composed)?.is_none() {
         return Ok(());
@@ -54,7 +54,7 @@ pub fn rehearse(
     // A text and its lean form share one rehearsal.
     let text = lean(composed).text;
     let (language, stage) = (composed.language, composed.stage);
-    let job = Job { language, stage, text, outputs: outputs() };
+    let job = RehearsalJob { language, stage, text, outputs: outputs() };
     let Ok(job) = serde_json::to_vec(&job) else { return Ok(()) };
     rehearse::rehearse(STAGE, &job).map_err(|how| exhausted_process(placed, &how))
 }

@@ -8,8 +8,8 @@ use lamplight::bundle::{BindingKind, Language, Native, Reflection, Target};
 use lamplight::compose::Composed;
 use lamplight::emit;
 use lamplight::eval::{
-    self, Address, Compare, Filter, Level, Machine, Number, Resources, Sampler, Shape, Texels,
-    Texture,
+    self, Address, Compare, Filter, Machine, MipLevel, Number, Resources, Sampler, Texels, Texture,
+    TextureDimension,
 };
 use lamplight::execute::compiled::Program;
 use lamplight::execute::compiled::request::{Bound, Fragment};
@@ -160,37 +160,37 @@ fn sampler(variant: u32, compares: bool) -> Sampler {
 
 fn texture(ty: &str, seed: u32, variant: u32) -> Texture {
     let shape = match ty {
-        _ if ty.contains("_1d") => Shape::D1,
-        _ if ty.contains("_3d") => Shape::D3,
-        _ if ty.contains("cube") => Shape::Cube,
-        _ => Shape::D2,
+        _ if ty.contains("_1d") => TextureDimension::D1,
+        _ if ty.contains("_3d") => TextureDimension::D3,
+        _ if ty.contains("cube") => TextureDimension::Cube,
+        _ => TextureDimension::D2,
     };
     let (width, height) = match shape {
-        Shape::D1 => (7, 1),
-        Shape::Cube => (8, 8),
+        TextureDimension::D1 => (7, 1),
+        TextureDimension::Cube => (8, 8),
         _ => (9, 6),
     };
     let layers = match (shape, ty.contains("array")) {
-        (Shape::D3, _) => 5,
-        (Shape::Cube, true) => 12,
-        (Shape::Cube, false) => 6,
+        (TextureDimension::D3, _) => 5,
+        (TextureDimension::Cube, true) => 12,
+        (TextureDimension::Cube, false) => 6,
         (_, true) => 3,
         (_, false) => 1,
     };
     // naga writes a comparison in level 0 without the level, so Metal derives the level from
     // neighbouring fragments. The results agree only if there is one level and one filter.
-    let is_single = shape == Shape::D1 || ty.contains("depth") || variant % 4 == 3;
+    let is_single = shape == TextureDimension::D1 || ty.contains("depth") || variant % 4 == 3;
     let count = if is_single { 1 } else { 3 };
     let level = |level: u32| {
         let half = |size: u32| (size >> level).max(1);
-        let depth = if shape == Shape::D3 { half(layers) } else { layers };
+        let depth = if shape == TextureDimension::D3 { half(layers) } else { layers };
         let (width, height) = (half(width), half(height));
         let texels = (0..width * height * depth).map(|texel| {
             std::array::from_fn(|i| {
                 value(ty, scrambled(seed + 7919 * (4 * texel + i as u32) + level))
             })
         });
-        Level {
+        MipLevel {
             width,
             height,
             layers: depth,

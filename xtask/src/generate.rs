@@ -7,13 +7,13 @@ use std::io::{IsTerminal, Write, stderr};
 use std::path::{Path, PathBuf};
 
 use lamplight::bundle::{self, BlobFile, Bundle, Contents, DirectoryWriter, blob_files};
-use lamplight::cache::{Cache, Folder};
+use lamplight::cache::{Cache, CacheFolder};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{
-    Generated, Observer, Progress, Request, Run, Summary, Told, Tools, Trace, generate,
+    Generated, Observer, Progress, Request, RunWarnings, Summary, Tools, Trace, TracedRun, generate,
 };
-use lamplight::judge::{Made, blame};
+use lamplight::judge::{OutputOrigin, blame};
 use lamplight::permute::Manifest;
 use lamplight::project;
 use lamplight::resolve::Packages;
@@ -46,10 +46,10 @@ pub fn run(arguments: &[String]) -> Outcome {
         .map_err(|diagnostics| input(&sources, diagnostics))?;
     let (declared, observer) = (sources.clone(), Observer::default());
     let (packages, out, request) = (observer.observe(packages), bundle(), Request::default());
-    let folder = Folder::new(root().join("target/lamplight-cache"))
+    let folder = CacheFolder::new(root().join("target/lamplight-cache"))
         .map_err(|foreign| Failure::input(foreign.to_string()))?;
     let cache = Cache::new(vec![Box::new(folder)]);
-    let as_run = || Run {
+    let as_run = || TracedRun {
         manifest: &path,
         declared: &declared,
         request: &request,
@@ -74,7 +74,8 @@ pub fn run(arguments: &[String]) -> Outcome {
     refuse(&mut sources, &packages, &manifest, &judged, &|| Ok(contents.clone()))?;
     writer.finish(&contents).map_err(environment)?;
     eprint!("{}", render(&sources, &warnings, Form::Human));
-    let trace = Trace::new(&observer, &out, summary.clone(), Told::new(&path, &sources, &warnings));
+    let trace =
+        Trace::new(&observer, &out, summary.clone(), RunWarnings::new(&path, &sources, &warnings));
     trace.into_iter().for_each(|trace| trace.keep(&cache, as_run()));
     finish(&summary, &judged)
 }
@@ -114,7 +115,7 @@ fn refuse(
     if judged.refusals.is_empty() {
         return Ok(());
     }
-    let made = Made { packages, manifest, contents: &contents().map_err(environment)? };
+    let made = OutputOrigin { packages, manifest, contents: &contents().map_err(environment)? };
     let refused = blame(sources, &made, &judged.refusals);
     Err(Failure::input(render(sources, &refused, Form::Human)))
 }

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use lamplight::bundle::{BlobFile, Target, blob_files};
 use lamplight::cache::Cache;
-use lamplight::judge::{Missing, Output, Refusal, Tint, missing, outputs, verdict};
+use lamplight::judge::{MissingTool, Output, Refusal, Tint, missing, outputs, verdict};
 
 use crate::{Failure, Outcome, generate, machine};
 
@@ -34,7 +34,7 @@ pub fn run(arguments: &[String]) -> Outcome {
 /// What the installed judges say, and which judges are missing.
 pub struct Judged {
     pub refusals: Vec<Refusal>,
-    missing: Vec<Missing>,
+    missing: Vec<MissingTool>,
 }
 
 impl Judged {
@@ -48,7 +48,7 @@ impl Judged {
         if self.missing.is_empty() {
             return Ok(());
         }
-        let lines: Vec<String> = self.missing.iter().map(Missing::to_string).collect();
+        let lines: Vec<String> = self.missing.iter().map(MissingTool::to_string).collect();
         Err(Failure::environment(format!("not all outputs are judged:\n{}", lines.join("\n"))))
     }
 }
@@ -61,7 +61,7 @@ pub fn judge(
 ) -> Result<Judged, Failure> {
     let tint = tint();
     let mut outputs = outputs(files).map_err(|error| Failure::input(error.to_string()))?;
-    let mut lacking: Vec<Missing> = Vec::new();
+    let mut lacking: Vec<MissingTool> = Vec::new();
     let mut targets: Vec<Target> = outputs.iter().map(|output| output.target).collect();
     targets.sort();
     targets.dedup();

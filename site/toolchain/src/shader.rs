@@ -8,7 +8,7 @@ use lamplight::bundle::{
 use lamplight::compose::{self, Composed, Keep, Mangle, Options};
 use lamplight::diagnostic::{self, Diagnostics, Severity, codes};
 use lamplight::emit::targets;
-use lamplight::generate::{Root, Shader, entry_points};
+use lamplight::generate::{CompiledShader, Root, entry_points};
 use lamplight::lint;
 use lamplight::permute::{Manifest, Program, Settings};
 use lamplight::resolve::Graph;
@@ -226,7 +226,7 @@ fn shaders(
     conventions: Conventions,
     composed: &Composed,
     wanted: &[Target],
-) -> Result<Vec<Shader>, Diagnostics> {
+) -> Result<Vec<CompiledShader>, Diagnostics> {
     let root = Root { graph, settings, options, conventions };
     let mut entries = entry_points(composed)?;
     if let Some(wanted) = &request.entry {
@@ -333,7 +333,7 @@ fn named<C: Convention>(
     found.map(Some)
 }
 
-fn entry(shader: &Shader, wanted: &[Target]) -> EntryPoint {
+fn entry(shader: &CompiledShader, wanted: &[Target]) -> EntryPoint {
     let unit = &shader.made.unit;
     let output = |target: &Target| {
         let (known, artifact) = (targets::find(*target)?, unit.targets.get(target.name())?);

@@ -9,8 +9,8 @@ use crate::bundle::Target;
 use crate::cli::failure::Failure;
 use crate::cli::stream;
 use crate::cli::terminal::{is_terminal, stdout, write_data};
-use crate::emit::{Entry, targets};
-use crate::generate::Shader;
+use crate::emit::{TargetEntry, targets};
+use crate::generate::CompiledShader;
 use crate::output::{self, Replace};
 
 /// An output.
@@ -37,7 +37,12 @@ pub fn module_stem(file: &Path) -> String {
 }
 
 /// A file for each target of a shader, and one for its reflection.
-pub fn files_of(stem: &str, shader: &Shader, wanted: &[Target], reflection: bool) -> Vec<File> {
+pub fn files_of(
+    stem: &str,
+    shader: &CompiledShader,
+    wanted: &[Target],
+    reflection: bool,
+) -> Vec<File> {
     let named = |ending: &str| format!("{stem}.{}.{ending}", shader.entry);
     let stage = shader.made.unit.reflection.stage.suffix();
     let mut files = Vec::new();
@@ -68,7 +73,7 @@ pub fn files_of(stem: &str, shader: &Shader, wanted: &[Target], reflection: bool
 
 /// The ending of a file. Files of several targets must not share a name, and GLSL files end as
 /// glslang expects.
-pub fn file_ending(entry: &Entry, stage: &str) -> String {
+pub fn file_ending(entry: &TargetEntry, stage: &str) -> String {
     match entry.glsl {
         Some(_) => format!("{}.{stage}", entry.target),
         None => format!("{stage}.{}", entry.extension),

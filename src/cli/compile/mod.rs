@@ -18,7 +18,7 @@ use super::input::{Context, Input, Ready};
 use super::overwrite::Overwrite;
 use crate::bundle::Target;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::generate::{Root, Shader, entry_points};
+use crate::generate::{CompiledShader, Root, entry_points};
 use crate::source::SourceSet;
 use files::File;
 
@@ -111,8 +111,9 @@ fn compile_file(
         Ok(shaders) => {
             print_warnings(&sources, &shared_warnings(&context, &shaders), form);
             let stem = files::module_stem(file);
-            let of =
-                |shader: &Shader| files::files_of(&stem, shader, targets, arguments.reflection);
+            let of = |shader: &CompiledShader| {
+                files::files_of(&stem, shader, targets, arguments.reflection)
+            };
             Ok((sources, shaders.iter().flat_map(of).collect()))
         }
         Err(errors) => Err(Failure::Input(sources, context.explain(errors))),
@@ -120,7 +121,7 @@ fn compile_file(
 }
 
 /// A warning about something that two entry points share is printed once.
-fn shared_warnings(context: &Context, shaders: &[Shader]) -> Diagnostics {
+fn shared_warnings(context: &Context, shaders: &[CompiledShader]) -> Diagnostics {
     let mut found = Diagnostics::new();
     for warning in shaders.iter().flat_map(|shader| &shader.made.warnings) {
         if !found.contains(warning) {

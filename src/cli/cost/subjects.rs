@@ -16,7 +16,7 @@ use crate::compose::{Composed, PartKind};
 use crate::cost::pipeline::Known;
 use crate::cost::{self, Subject, permutations};
 use crate::diagnostic::{Diagnostics, nearest_name};
-use crate::generate::{Memory, Request, Root, Tools, entry_points, generate};
+use crate::generate::{MemorySink, Request, Root, Tools, entry_points, generate};
 use crate::lint;
 use crate::permute::{Manifest, Quoted, cover};
 use crate::project;
@@ -266,7 +266,7 @@ pub fn permutations_of(
     language: Language,
     cache: Option<&Cache>,
 ) -> Result<(Vec<Axis>, Vec<Subject>), Failure> {
-    let (memory, bar) = (Memory::default(), Bar::new());
+    let (memory, bar) = (MemorySink::default(), Bar::new());
     let progress = |progress| bar.show(progress);
     let tools = Tools { sink: &memory, cache, progress: &progress };
     let generated = generate(sources, packages, manifest, request, &tools);

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::interface::{Interface, Part, Role};
 use crate::metal::adapt::adapt_text;
-use crate::metal::{Clang, Missing};
+use crate::metal::{Clang, ClangMissing};
 
 /// Bytes of texts in a unit. It is large enough that the headers cost little, and small enough that
 /// all cores have work.
@@ -43,7 +43,7 @@ impl Built {
 }
 
 /// Compiles and links.
-pub fn build_program(texts: &[&str]) -> Result<Built, Missing> {
+pub fn build_program(texts: &[&str]) -> Result<Built, ClangMissing> {
     let clang = Clang::open()?;
     let mut entries: Vec<_> = texts.iter().map(|text| Interface::read(text)).collect();
     let units = text_units(texts, &entries);
@@ -54,7 +54,7 @@ pub fn build_program(texts: &[&str]) -> Result<Built, Missing> {
         None => compile_runtime(&clang),
         Some(unit) => compile_unit(&clang, texts, unit),
     });
-    let objects = compiled.collect::<Result<Vec<_>, Missing>>()?;
+    let objects = compiled.collect::<Result<Vec<_>, ClangMissing>>()?;
     let mut names = Vec::new();
     for object in objects.into_iter().flatten() {
         match object {
@@ -74,7 +74,7 @@ enum Object {
     Refused(usize, String),
 }
 
-type Objects = Result<Vec<Object>, Missing>;
+type Objects = Result<Vec<Object>, ClangMissing>;
 
 /// A text that is compiled: its index, and its interface.
 type Text<'t> = (usize, &'t Interface);
@@ -124,8 +124,12 @@ fn compile_runtime(clang: &Clang) -> Objects {
     Ok(vec![Object::Compiled(name.to_owned())])
 }
 
-fn check_output(output: Output) -> Result<(), Missing> {
-    if output.status.success() { Ok(()) } else { Err(Missing { reason: output_text(&output) }) }
+fn check_output(output: Output) -> Result<(), ClangMissing> {
+    if output.status.success() {
+        Ok(())
+    } else {
+        Err(ClangMissing { reason: output_text(&output) })
+    }
 }
 
 /// Links all, with the table of entry points.
@@ -133,7 +137,7 @@ fn link_objects(
     clang: &Clang,
     entries: &[Result<Interface, String>],
     objects: &[String],
-) -> Result<(), Missing> {
+) -> Result<(), ClangMissing> {
     let mut table = "#include \"runtime.h\"\nusing namespace __lamplight;\n".to_owned();
     for (index, _) in entries.iter().enumerate().filter(|(_, entry)| entry.is_ok()) {
         let _ = writeln!(table, "void run{index}(const bindings&, const given&, result&);");

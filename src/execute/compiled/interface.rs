@@ -1,7 +1,7 @@
 //! Reads from a text what its entry point takes and returns.
 
 use crate::bundle::Stage;
-use crate::metal::attributes::{Attribute, attribute_list};
+use crate::metal::attributes::{MslAttribute, attribute_list};
 use crate::metal::token::{Token, msl_tokens};
 
 /// What a parameter or a member stands for.
@@ -140,7 +140,7 @@ fn read_part(tokens: &[Token<'_>]) -> Result<Part, String> {
     Ok(Part { name, role, is_flat })
 }
 
-fn attribute_role(attribute: &Attribute<'_>) -> Option<Role> {
+fn attribute_role(attribute: &MslAttribute<'_>) -> Option<Role> {
     let user = || attribute.given?.strip_prefix("loc")?.parse().ok();
     match attribute.name {
         "stage_in" => Some(Role::StageIn),

@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use super::build::{self, Built};
 use super::interface::{Interface, Role};
 use super::request::{Bound, Fragment, Shaded, Transformed, Vertex, Words, words};
-use crate::metal::Missing;
+use crate::metal::ClangMissing;
 
 /// Entry points, ready to run.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ impl Program {
     ///
     /// # Errors
     /// clang is missing or cannot be run.
-    pub fn build(texts: &[&str]) -> Result<Self, Missing> {
+    pub fn build(texts: &[&str]) -> Result<Self, ClangMissing> {
         Ok(Self { built: build::build_program(texts)?, child: None })
     }
 

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::bundle::{Binding, Native, Reflection};
-use crate::eval::{Address, Compare, Filter, Level, Resources, Sampler, Shape, Texture};
+use crate::eval::{
+    Address, Compare, Filter, MipLevel, Resources, Sampler, Texture, TextureDimension,
+};
 
 pub type Words = Vec<u32>;
 
@@ -18,7 +20,7 @@ pub struct Bound {
 /// A texture as words: four for each texel, row by row, layer by layer.
 #[derive(Debug, Clone)]
 pub struct Image {
-    pub shape: Shape,
+    pub shape: TextureDimension,
     pub format: Format,
     /// The largest level first.
     pub levels: Vec<ImageLevel>,
@@ -118,7 +120,7 @@ impl Format {
 impl Image {
     /// A texture of the evaluator, as words.
     pub fn new(texture: &Texture, format: Format) -> Self {
-        let level = |level: &Level| ImageLevel {
+        let level = |level: &MipLevel| ImageLevel {
             width: level.width,
             height: level.height,
             layers: level.layers,
@@ -151,7 +153,7 @@ impl Shaded {
 
 /// Writes parts of requests.
 pub mod words {
-    use super::{Address, Bound, Compare, Filter, Format, Image, Sampler, Shape, Words};
+    use super::{Address, Bound, Compare, Filter, Format, Image, Sampler, TextureDimension, Words};
 
     /// Writes `count` locations. Those that are not given are 0.
     pub fn locations(to: &mut Words, locations: &[[u32; 4]], count: u32) {
@@ -180,10 +182,10 @@ pub mod words {
 
     fn texture(to: &mut Words, slot: u32, image: &Image) {
         let shape = match image.shape {
-            Shape::D1 => 1,
-            Shape::D2 => 2,
-            Shape::D3 => 3,
-            Shape::Cube => 6,
+            TextureDimension::D1 => 1,
+            TextureDimension::D2 => 2,
+            TextureDimension::D3 => 3,
+            TextureDimension::Cube => 6,
         };
         let format = match image.format {
             Format::Float => 0,

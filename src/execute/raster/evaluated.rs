@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::corners::{Corner, Source, scalar_sources, vertex_attribute};
 use super::{Quad, Shaded, Shading};
 use crate::diagnostic::Diagnostic;
-use crate::eval::{Batch, Function, FunctionId, Kind, Machine, Number, Program, Resources};
+use crate::eval::{Batch, Function, FunctionId, Machine, Number, Program, Resources, SlotKind};
 use crate::execute::frame::{Buffers, Drawing, EntryPoint, Mesh};
 use crate::execute::interpreter::eval_failed;
 use crate::execute::{executor_failed, module_info};
@@ -73,7 +73,7 @@ impl Shading for Evaluated {
         let inputs = scalar_sources(&signature.inputs);
         let outputs = scalar_sources(&signature.outputs);
         let arguments = |index: u32| -> Vec<f32> {
-            let argument = |(source, kind): (&Source, &Kind)| match source {
+            let argument = |(source, kind): (&Source, &SlotKind)| match source {
                 Source::Location(location, component) => {
                     slot_of_word(*kind, vertex_attribute(mesh, index, *location, *component))
                 }
@@ -109,7 +109,7 @@ impl Shading for Evaluated {
                 &outputs[slot],
                 Some(Binding::Location { interpolation, .. }) if *interpolation == flat
             );
-            says_so || result.get(slot) != Some(&Kind::Float)
+            says_so || result.get(slot) != Some(&SlotKind::Float)
         };
         let sources = scalar_sources(outputs).into_iter().enumerate();
         sources.map(|(slot, source)| (source, is_flat(slot))).collect()
@@ -155,8 +155,8 @@ impl Shading for Evaluated {
 }
 
 /// A word as a scalar of the machine.
-fn slot_of_word(kind: Kind, word: u32) -> f32 {
-    if kind == Kind::Float { f32::from_bits(word) } else { f32::from_word(word) }
+fn slot_of_word(kind: SlotKind, word: u32) -> f32 {
+    if kind == SlotKind::Float { f32::from_bits(word) } else { f32::from_word(word) }
 }
 
 fn clip_position(outputs: &[Source], slots: &[f32]) -> [f64; 4] {
@@ -172,7 +172,7 @@ fn clip_position(outputs: &[Source], slots: &[f32]) -> [f64; 4] {
 }
 
 /// What is returned at each location, as words.
-fn target_words(outputs: &[Source], kinds: &[Kind], slots: &[f32]) -> Vec<[u32; 4]> {
+fn target_words(outputs: &[Source], kinds: &[SlotKind], slots: &[f32]) -> Vec<[u32; 4]> {
     let mut targets: Vec<[u32; 4]> = Vec::new();
     for ((source, kind), slot) in outputs.iter().zip(kinds).zip(slots) {
         let Source::Location(location, component) = *source else { continue };
@@ -180,7 +180,7 @@ fn target_words(outputs: &[Source], kinds: &[Kind], slots: &[f32]) -> Vec<[u32; 
             targets.resize(location as usize + 1, [0; 4]);
         }
         targets[location as usize][component & 3] =
-            if *kind == Kind::Float { slot.bits() } else { slot.word() };
+            if *kind == SlotKind::Float { slot.bits() } else { slot.word() };
     }
     targets
 }

@@ -14,7 +14,7 @@ use crate::execute::compiled::request::{Bound, Fragment, Transformed, Vertex};
 use crate::execute::executor_failed;
 use crate::execute::frame::{Buffers, Drawing, Frame, Mesh};
 use crate::execute::shipped::Shipped;
-use crate::metal::Missing;
+use crate::metal::ClangMissing;
 
 /// Stages of any number of programs, compiled together.
 pub struct Compiled {
@@ -27,7 +27,7 @@ impl Compiled {
     ///
     /// # Errors
     /// clang is missing or cannot be run.
-    pub fn new(stages: Vec<Shipped>) -> Result<Self, Missing> {
+    pub fn new(stages: Vec<Shipped>) -> Result<Self, ClangMissing> {
         let texts: Vec<_> = stages.iter().map(Shipped::text).collect();
         let texts: Vec<&str> = texts.iter().map(AsRef::as_ref).collect();
         let program = Mutex::new(Program::build(&texts)?);

@@ -16,7 +16,7 @@ mod triangles;
 use std::collections::BTreeMap;
 
 use crate::diagnostic::Diagnostic;
-use crate::eval::{self, Filter, Level, Resources};
+use crate::eval::{self, Filter, MipLevel, Resources};
 use crate::execute::fixture::{Fixture, Texture};
 use crate::execute::frame::{Buffers, Drawing, Frame, Item, Mesh};
 use crate::execute::kernel::SENTINEL;
@@ -129,7 +129,7 @@ fn bound_textures(drawing: &Drawing<'_>) -> Resources {
     resources
 }
 
-fn texture_levels(texture: &Texture) -> Vec<Level> {
+fn texture_levels(texture: &Texture) -> Vec<MipLevel> {
     eval::Texture::from(texture).levels
 }
 

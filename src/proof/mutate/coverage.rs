@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use super::suite::{self, Subject, Suite};
 use super::words::author_span;
 use crate::diagnostic::Diagnostics;
-use crate::eval::{Branch, FunctionId, Machine, Point, Program};
+use crate::eval::{Branch, CoveragePoint, FunctionId, Machine, Program};
 use crate::execute::interpreter::Interpreter;
 use crate::proof::library::Library;
 use crate::source::SourceSet;
@@ -59,7 +59,7 @@ fn suite_coverage(suite: &Suite<'_>, sources: &SourceSet) -> Coverage {
         return Coverage { module: suite.module.clone(), blocks, uncovered };
     };
     for subject in &suite.subjects {
-        let own = |point: &&Point| point.function == FunctionId::from(subject.function);
+        let own = |point: &&CoveragePoint| point.function == FunctionId::from(subject.function);
         for point in program.points().iter().filter(own) {
             blocks += 1;
             if !reached.contains_key(&coverage_key(&subject.name, point)) {
@@ -70,7 +70,7 @@ fn suite_coverage(suite: &Suite<'_>, sources: &SourceSet) -> Coverage {
     Coverage { module: suite.module.clone(), blocks, uncovered }
 }
 
-fn coverage_key(function: &str, point: &Point) -> Key {
+fn coverage_key(function: &str, point: &CoveragePoint) -> Key {
     let range = point.span.to_range().unwrap_or_default();
     (function.to_owned(), range.start as u32, range.end as u32, point.branch as u8)
 }
@@ -81,7 +81,7 @@ fn reached_blocks(suite: &Suite<'_>) -> BTreeMap<Key, u64> {
     for case in &suite.cases {
         let Ok(interpreter) = Interpreter::new(case.job.kernel()) else { continue };
         let program = interpreter.program();
-        let name = |point: &Point| {
+        let name = |point: &CoveragePoint| {
             program.signature(point.function).map_or("", |function| function.name.as_str())
         };
         if program
@@ -106,7 +106,12 @@ fn reached_blocks(suite: &Suite<'_>) -> BTreeMap<Key, u64> {
     reached
 }
 
-fn block_place(suite: &Suite<'_>, sources: &SourceSet, subject: &Subject, point: &Point) -> Place {
+fn block_place(
+    suite: &Suite<'_>,
+    sources: &SourceSet,
+    subject: &Subject,
+    point: &CoveragePoint,
+) -> Place {
     let span = author_span(&suite.map, point.span);
     let place = span.map_or("?".to_owned(), |span| {
         format!(

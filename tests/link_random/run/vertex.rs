@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use lamplight::bundle::{Language, Reflection};
 use lamplight::compose::Composed;
 use lamplight::diagnostic::Diagnostics;
-use lamplight::eval::{Bounded, Kind as Slot, Machine, Number as _};
+use lamplight::eval::{Bounded, Machine, Number as _, SlotKind as Slot};
 use lamplight::execute::frame::{Attribute, Mesh, VertexFormat};
 use lamplight::picture::frame::probe;
 use lamplight::validate::validate;
