@@ -14,7 +14,7 @@ fn main() -> std::io::Result<()> {
     fs::write(out.join("target_names.rs"), target_names(&root.join("src/emit/targets"))?)?;
     for (folder, constant, ty) in [
         ("emit/targets", "TARGET", "TargetEntry"),
-        ("execute/executors", "EXECUTOR", "Entry"),
+        ("execute/executors", "EXECUTOR", "ExecutorEntry"),
         ("judge/judges", "JUDGE", "JudgeEntry"),
         ("proof/references", "REFERENCES", "Entry"),
         ("scene/sets", "SET", "Set"),

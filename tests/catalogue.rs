@@ -6,7 +6,7 @@ mod plots;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use lamplight::catalogue::{self, Kind, preset, probe};
+use lamplight::catalogue::{self, CatalogueItemKind, preset, probe};
 use lamplight::diagnostic::Diagnostic;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::project;
@@ -107,7 +107,7 @@ fn every_item_has_a_twin() -> Result<(), Failed> {
 /// line `Parameters:` is missing from them.
 fn every_member_is_described() -> Result<(), Failed> {
     let items = catalogue::library_modules().into_iter().flat_map(|module| module.items);
-    let silent = |item: &catalogue::Item| -> Vec<String> {
+    let silent = |item: &catalogue::CatalogueItem| -> Vec<String> {
         let members = item.members.iter().filter(|member| member.doc.is_empty());
         let silent = members.map(|member| format!("{}: `{}`", item.path(), member.name));
         let section = item.section("Parameters").unwrap_or_default();
@@ -133,7 +133,7 @@ fn every_plain_function_is_plotted() -> Result<(), Failed> {
     let items = catalogue::library_modules()
         .into_iter()
         .flat_map(|module| module.items)
-        .filter(|item| item.kind == Kind::Function);
+        .filter(|item| item.kind == CatalogueItemKind::Function);
     let plain = items.filter(|item| {
         item.result.as_deref() == Some("f32")
             && item.members.iter().all(|member| member.ty == "f32")
@@ -231,7 +231,7 @@ fn preset_numbers_name_fields() -> Result<(), Failed> {
     let structs: BTreeMap<String, Vec<String>> = catalogue::library_modules()
         .into_iter()
         .flat_map(|module| module.items)
-        .filter(|item| item.kind == Kind::Struct)
+        .filter(|item| item.kind == CatalogueItemKind::Struct)
         .map(|item| {
             (item.name.to_lowercase(), item.members.into_iter().map(|member| member.name).collect())
         })

@@ -19,7 +19,7 @@ use lamplight::bundle::{BindingKind, Language};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::eval::{FunctionId, Machine, Program, Resources};
 use lamplight::permute::{Quoted, key};
-use lamplight::picture::frame::{Composed, Programs, pack_buffer};
+use lamplight::picture::frame::{Programs, ReadyStage, pack_buffer};
 use lamplight::scene::Layers;
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
@@ -179,7 +179,7 @@ fn computed_cells(places: impl Iterator<Item = Place>) -> Result<BTreeMap<Place,
 }
 
 /// The fragment stage with one directional lamp, and with or without ambient light.
-fn fragment_stage(programs: &Programs, axes: &str, ambient: bool) -> Result<Composed, String> {
+fn fragment_stage(programs: &Programs, axes: &str, ambient: bool) -> Result<ReadyStage, String> {
     let ambient = if ambient { "constant" } else { "none" };
     let base = "lights=directional,max_lights=1,metallic_roughness,specular=ggx";
     let text = format!("ambient={ambient},{base},{axes}");
@@ -324,14 +324,14 @@ impl Way {
 
 /// A fragment stage for the evaluator.
 struct Furnace {
-    stage: Composed,
+    stage: ReadyStage,
     program: Program,
     /// The index of an input's component, by its location.
     inputs: BTreeMap<(u32, usize), usize>,
 }
 
 impl Furnace {
-    fn new(stage: Composed) -> Result<Self, String> {
+    fn new(stage: ReadyStage) -> Result<Self, String> {
         let program = Program::new(&stage.validated.module, &stage.validated.info)
             .map_err(|error| error.to_string())?;
         let inputs = fragments::places(&stage)?;

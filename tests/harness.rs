@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
 use lamplight::bundle::Language;
-use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, Mesh, State};
+use lamplight::execute::frame::{Buffers, DrawItem, Drawing, EntryPoint, Mesh, PipelineState};
 use lamplight::execute::{self, Session, executors, kernel};
 use lamplight::proof::library::Library;
 use lamplight::proof::{check, expression};
@@ -293,7 +293,7 @@ fn shapes(a: f32, o: Outer, u: vec3u) -> Outer {
 
 /// An executor runs a kernel with structs, matrices, booleans and integers, with more rows than one
 /// dispatch has, and gives the exact words.
-fn runs(executor: &'static executors::Entry) -> Result<(), Failed> {
+fn runs(executor: &'static executors::ExecutorEntry) -> Result<(), Failed> {
     let module = naga::front::wgsl::parse_str(SHAPES)?;
     let kernel = kernel::build_kernel(&module, "shapes", &BTreeMap::new())
         .map_err(|error| format!("{error:?}"))?;
@@ -310,24 +310,27 @@ fn runs(executor: &'static executors::Entry) -> Result<(), Failed> {
 }
 
 /// An executor draws frames exactly if its entry says so.
-fn draws_as_listed(executor: &executors::Entry, session: &dyn Session) -> Result<(), Failed> {
+fn draws_as_listed(
+    executor: &executors::ExecutorEntry,
+    session: &dyn Session,
+) -> Result<(), Failed> {
     let text = "@vertex fn corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
         return vec4f(f32(index & 1u), f32(index >> 1u), 0.5, 1.0);
     }";
     let module = naga::front::wgsl::parse_str(text)?;
-    let (mesh, none, state) = (Mesh::default(), Buffers::new(), State::default());
+    let (mesh, none, state) = (Mesh::default(), Buffers::new(), PipelineState::default());
     let drawing = Drawing {
         vertex: EntryPoint { module: &module, entry: "corner" },
         fragment: None,
         targets: 0,
-        items: &[Item { mesh: &mesh, buffers: &none }],
+        items: &[DrawItem { mesh: &mesh, buffers: &none }],
         views: &[Buffers::new()],
         buffers: &none,
         plain: &[],
         fixtures: &BTreeMap::new(),
         levels: &BTreeMap::new(),
         size: [8, 8],
-        state: State { depth_test: true, keep_depth: true, ..state },
+        state: PipelineState { depth_test: true, keep_depth: true, ..state },
     };
     match (session.draw_frames(&drawing), executor.samples) {
         (Ok(frames), Some(_)) => {

@@ -9,7 +9,7 @@ use super::compile;
 use super::failure::Failure;
 use super::own::Own;
 use super::text;
-use crate::catalogue::{self, Kind, probe};
+use crate::catalogue::{self, CatalogueItemKind, probe};
 use crate::cli::terminal::stdout;
 use crate::emit::targets;
 use crate::execute::executors;
@@ -54,15 +54,19 @@ struct Table {
 pub fn run_list(arguments: Arguments) -> Result<(), Failure> {
     let table = match arguments.what {
         What::Modules => module_table(known_modules(&arguments.own)?),
-        What::Functions => {
-            item_table(known_modules(&arguments.own)?, Kind::Function, &["function", "summary"])
-        }
-        What::Structs => {
-            item_table(known_modules(&arguments.own)?, Kind::Struct, &["struct", "summary"])
-        }
+        What::Functions => item_table(
+            known_modules(&arguments.own)?,
+            CatalogueItemKind::Function,
+            &["function", "summary"],
+        ),
+        What::Structs => item_table(
+            known_modules(&arguments.own)?,
+            CatalogueItemKind::Struct,
+            &["struct", "summary"],
+        ),
         What::Constants => item_table(
             known_modules(&arguments.own)?,
-            Kind::Constant,
+            CatalogueItemKind::Constant,
             &["constant", "wesl", "summary"],
         ),
         What::Programs => program_table(all_programs(&arguments.own)?),
@@ -81,7 +85,7 @@ pub fn run_list(arguments: Arguments) -> Result<(), Failure> {
 }
 
 /// The modules of the user's own package, then those of the library.
-pub fn known_modules(own: &Own) -> Result<Vec<catalogue::Module>, Failure> {
+pub fn known_modules(own: &Own) -> Result<Vec<catalogue::CatalogueModule>, Failure> {
     let own = own.packages()?.map(|packages| catalogue::own_modules(&*packages.root.files));
     Ok(own.into_iter().flatten().chain(catalogue::library_modules()).collect())
 }
@@ -92,13 +96,13 @@ fn all_programs(own: &Own) -> Result<Vec<Program>, Failure> {
     Ok(own.into_iter().chain(own_manifest()?.1.programs).collect())
 }
 
-fn module_table(known: Vec<catalogue::Module>) -> Table {
-    let thing = |module: catalogue::Module| {
+fn module_table(known: Vec<catalogue::CatalogueModule>) -> Table {
+    let thing = |module: catalogue::CatalogueModule| {
         json!({
             "module": module.path,
-            "functions": module.count(Kind::Function),
-            "structs": module.count(Kind::Struct),
-            "constants": module.count(Kind::Constant),
+            "functions": module.count(CatalogueItemKind::Function),
+            "structs": module.count(CatalogueItemKind::Struct),
+            "constants": module.count(CatalogueItemKind::Constant),
             "summary": module.summary(),
         })
     };
@@ -108,9 +112,13 @@ fn module_table(known: Vec<catalogue::Module>) -> Table {
     }
 }
 
-fn item_table(known: Vec<catalogue::Module>, kind: Kind, shown: &'static [&'static str]) -> Table {
+fn item_table(
+    known: Vec<catalogue::CatalogueModule>,
+    kind: CatalogueItemKind,
+    shown: &'static [&'static str],
+) -> Table {
     let items = known.into_iter().flat_map(|module| module.items).filter(|item| item.kind == kind);
-    let thing = |item: catalogue::Item| {
+    let thing = |item: catalogue::CatalogueItem| {
         json!({
             kind.name(): item.path(),
             "summary": item.summary(),

@@ -99,7 +99,7 @@ enum Command {
 
 impl Command {
     /// The executors that the command names.
-    fn executors(&self) -> Vec<&'static executors::Entry> {
+    fn executors(&self) -> Vec<&'static executors::ExecutorEntry> {
         let names = match self {
             Self::Check(arguments) => arguments.executor.as_slice(),
             Self::Eval(arguments) => std::slice::from_ref(&arguments.executor),

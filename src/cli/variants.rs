@@ -16,7 +16,7 @@ use super::terminal::stdout;
 use crate::catalogue::cost::{PATH, SHOWN, is_record, package_costs};
 use crate::cost::Meter;
 use crate::cost::device::Device;
-use crate::cost::permutations::Change;
+use crate::cost::permutations::CostChange;
 use crate::diagnostic::{Diagnostics, nearest_name};
 use crate::generate::{self, Discard, Request, Tools};
 use crate::output;
@@ -177,7 +177,7 @@ struct Told {
     report: PermutationReport,
     /// What values of axes change on GPUs, where that was asked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    changes: Vec<Change>,
+    changes: Vec<CostChange>,
 }
 
 impl Told {

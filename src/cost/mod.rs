@@ -33,7 +33,7 @@ use crate::execute::kernel::{ENTRY, varying_modules};
 use crate::validate::{Validated, info_of, on_large_stack};
 use device::Device;
 use gpu::Gpu;
-use pipeline::{Known, Pipeline};
+use pipeline::{Pipeline, ReflectedStage};
 use statistics::Statistics;
 
 /// Something whose cost is asked for.
@@ -90,7 +90,7 @@ pub fn function_subject(
 fn stage_alone(module: naga::Module, conventions: Conventions) -> Result<Pipeline, String> {
     let info = info_of(&module).map_err(|error| error.to_string())?;
     let validated = Validated { language: Language::Wesl, module, info };
-    Pipeline::new(Known::of_module(&validated, ENTRY, conventions)?, None)
+    Pipeline::new(ReflectedStage::of_module(&validated, ENTRY, conventions)?, None)
 }
 
 fn cannot_measure(name: &str, reason: &str) -> Diagnostic {
@@ -105,7 +105,7 @@ fn cannot_measure(name: &str, reason: &str) -> Diagnostic {
 /// # Errors
 /// No pipeline can be made of them: there is none of them, or a stage to go with it cannot be
 /// written.
-pub fn stages_subject(name: &str, mut known: Vec<Known>) -> Result<Subject, String> {
+pub fn stages_subject(name: &str, mut known: Vec<ReflectedStage>) -> Result<Subject, String> {
     let stages = known.iter().map(|known| known.words.stage).collect();
     let first = known.pop().ok_or("there is no stage")?;
     let pipeline = Pipeline::new(first, known.pop())?;
@@ -142,7 +142,7 @@ pub fn measure_subjects(
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
         figures.map_err(|reason| format!("`{name}` on {}: {reason}", device.gpu.name))
     };
-    let figures: Vec<Figures> =
+    let figures: Vec<StageFigures> =
         on_large_stack(|| jobs.par_iter().map(one).collect::<Result<_, String>>())?;
     let mut costs = Vec::new();
     for subject in subjects {
@@ -162,7 +162,7 @@ pub fn measure_subjects(
 }
 
 /// The figures of a pipeline's stages on one GPU.
-type Figures = Vec<(Stage, Statistics)>;
+type StageFigures = Vec<(Stage, Statistics)>;
 
 /// The pipelines of subjects, each once.
 struct Distinct<'s> {
@@ -190,7 +190,7 @@ impl<'s> Distinct<'s> {
     /// The figures of a pipeline's stage, from those of all pipelines on one GPU.
     fn figures(
         &self,
-        figures: &[Figures],
+        figures: &[StageFigures],
         pipeline: &Pipeline,
         stage: Stage,
     ) -> Result<Statistics, String> {

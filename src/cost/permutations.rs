@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use super::pipeline::Known;
-use super::statistics::{FIGURES, Figure};
+use super::pipeline::ReflectedStage;
+use super::statistics::{CostFigure, FIGURES};
 use super::{Cost, Subject, stages_subject};
 use crate::bundle::key::{self, KeyPart};
 use crate::bundle::{
@@ -38,25 +38,32 @@ pub fn permutation_subjects(
 }
 
 /// A stage in SPIR-V, and the numbers of its overrides.
-struct Unit {
-    known: Known,
+struct SpecialisedStage {
+    known: ReflectedStage,
     choices: Vec<OverrideChoice>,
 }
 
 /// The units of an entry point, by hash.
-fn known_units(name: &str, entry: &EntryContents) -> Result<BTreeMap<Hash, Unit>, String> {
+fn known_units(
+    name: &str,
+    entry: &EntryContents,
+) -> Result<BTreeMap<Hash, SpecialisedStage>, String> {
     let unit = |(hash, unit): (&Hash, &bundle::Unit)| {
         let artifact = unit.targets.get(Target::SPIRV.name()).ok_or("there is no SPIR-V")?;
         let reflection = unit.reflection.as_ref().clone();
-        let known = Known::new(&artifact.native.entry_name, &artifact.bytes, reflection)?;
-        Ok((*hash, Unit { known, choices: artifact.native.choices.clone() }))
+        let known = ReflectedStage::new(&artifact.native.entry_name, &artifact.bytes, reflection)?;
+        Ok((*hash, SpecialisedStage { known, choices: artifact.native.choices.clone() }))
     };
     let units = entry.units.iter().map(unit).collect::<Result<_, String>>();
     units.map_err(|reason| format!("entry point `{name}`: {reason}"))
 }
 
 /// The stage of a key, with the values that the key gives its overrides.
-fn chosen_stage(axes: &[Axis], key: &str, unit: &Unit) -> Result<Known, String> {
+fn chosen_stage(
+    axes: &[Axis],
+    key: &str,
+    unit: &SpecialisedStage,
+) -> Result<ReflectedStage, String> {
     let mut known = unit.known.clone();
     let constants =
         bundle::constants(axes, key, &known.reflection).map_err(|error| error.to_string())?;
@@ -83,7 +90,7 @@ fn constant_bits(constant: &Constant) -> Result<u32, String> {
 
 /// What one value of an axis changes in a stage on a GPU, compared with the axis's default.
 #[derive(Debug, Clone, Serialize)]
-pub struct Change {
+pub struct CostChange {
     pub axis: String,
     pub value: String,
     pub gpu: &'static str,
@@ -106,7 +113,7 @@ pub struct Spread {
 }
 
 /// The changes of every value for which some pair of permutations exists.
-pub fn value_changes(axes: &[Axis], costs: &[Cost]) -> Vec<Change> {
+pub fn value_changes(axes: &[Axis], costs: &[Cost]) -> Vec<CostChange> {
     let mut by_place: BTreeMap<(&str, Stage), BTreeMap<&str, &Cost>> = BTreeMap::new();
     for cost in costs {
         let place = by_place.entry((cost.gpu.name, cost.stage)).or_default();
@@ -120,8 +127,8 @@ pub fn value_changes(axes: &[Axis], costs: &[Cost]) -> Vec<Change> {
                 if pairs.is_empty() {
                     continue;
                 }
-                let spread = |figure: &Figure| (figure.key, Spread::over(figure, &pairs));
-                changes.push(Change {
+                let spread = |figure: &CostFigure| (figure.key, Spread::over(figure, &pairs));
+                changes.push(CostChange {
                     axis: axis.name.clone(),
                     value: value.clone(),
                     gpu,
@@ -153,7 +160,7 @@ fn cost_pairs<'c>(
 }
 
 impl Spread {
-    fn over(figure: &Figure, pairs: &[(&Cost, &Cost)]) -> Self {
+    fn over(figure: &CostFigure, pairs: &[(&Cost, &Cost)]) -> Self {
         let mut values: Vec<(i64, i64, i64)> = pairs
             .iter()
             .map(|(without, with)| {

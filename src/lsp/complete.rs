@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::package::{Modules, Opened};
 use super::place::{self, Lines};
 use super::{Server, act, glsl};
-use crate::catalogue::Kind;
+use crate::catalogue::CatalogueItemKind;
 use crate::parse::wesl::{ItemKind, Name, keywords};
 use crate::permute::Setting;
 use crate::source::Files;
@@ -315,10 +315,10 @@ fn completion_kind(kind: ItemKind) -> u32 {
     }
 }
 
-pub fn of_library(kind: Kind) -> u32 {
+pub fn of_library(kind: CatalogueItemKind) -> u32 {
     match kind {
-        Kind::Function => FUNCTION,
-        Kind::Struct => STRUCT,
-        Kind::Constant => CONSTANT,
+        CatalogueItemKind::Function => FUNCTION,
+        CatalogueItemKind::Struct => STRUCT,
+        CatalogueItemKind::Constant => CONSTANT,
     }
 }

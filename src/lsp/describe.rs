@@ -9,7 +9,7 @@ use super::package::{Modules, Opened, Symbol};
 use super::place;
 use super::told::hover_json;
 use super::{Server, glsl, look};
-use crate::catalogue::{self, Item, cost, pages};
+use crate::catalogue::{self, CatalogueItem, cost, pages};
 use crate::parse::wesl::ItemKind;
 use crate::project::LIBRARY;
 use crate::source::SourceSet;
@@ -69,7 +69,11 @@ fn hover_member(server: &mut Server, parameters: &Value) -> Result<Value, String
 }
 
 /// An item of the library as `show` tells it; any other by its comment and declaration.
-fn describe_item(modules: &Modules, symbol: Symbol, known: &[catalogue::Module]) -> Option<String> {
+fn describe_item(
+    modules: &Modules,
+    symbol: Symbol,
+    known: &[catalogue::CatalogueModule],
+) -> Option<String> {
     let (node, found) = modules.item(symbol)?;
     let name = modules.graph.names.text(found.name);
     if let Some(path) = node.label.strip_prefix(&format!("{LIBRARY}::")) {
@@ -93,7 +97,7 @@ fn describe_item(modules: &Modules, symbol: Symbol, known: &[catalogue::Module])
 }
 
 /// Signature, documentation, formula and error model.
-pub fn of_library(item: &Item, language: &str, code: &str, usage: &str) -> String {
+pub fn of_library(item: &CatalogueItem, language: &str, code: &str, usage: &str) -> String {
     let mut text = format!("```{language}\n{}\n```\n", code.trim_end_matches(['{', ' ', '\n']));
     for paragraph in item.paragraphs() {
         text += &format!("\n{paragraph}\n");
@@ -151,7 +155,7 @@ pub fn signature_help(server: &mut Server, parameters: &Value) -> Result<Value, 
     let (root, path) = (document.root.clone(), document.path.clone());
     let word = document.text[name.clone()].to_owned();
     let Some(modules) = server.modules(&root) else { return Ok(Value::Null) };
-    let known: Arc<Vec<catalogue::Module>> = server.items();
+    let known: Arc<Vec<catalogue::CatalogueModule>> = server.items();
     let symbol = modules.node(&path).and_then(|node| {
         let (symbol, _) = modules.symbol(node, name.end as u32)?;
         Some(symbol)

@@ -68,7 +68,7 @@ pub struct Server {
     whole: Option<(PathBuf, Arc<glsl::Whole>)>,
     /// Documents to analyse, the one that was edited last first.
     changed: VecDeque<PathBuf>,
-    items: Option<Arc<Vec<catalogue::Module>>>,
+    items: Option<Arc<Vec<catalogue::CatalogueModule>>>,
     library: Library,
     is_shut_down: bool,
     /// The exit code, once the editor sent `exit`.
@@ -350,7 +350,7 @@ impl Server {
     }
 
     /// The library's items, as `show` tells them.
-    fn items(&mut self) -> Arc<Vec<catalogue::Module>> {
+    fn items(&mut self) -> Arc<Vec<catalogue::CatalogueModule>> {
         Arc::clone(self.items.get_or_insert_with(|| Arc::new(catalogue::library_modules())))
     }
 

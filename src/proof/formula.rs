@@ -11,7 +11,7 @@ mod functions;
 use std::ops::Range;
 
 use crate::diagnostic::{Diagnostic, codes, nearest_name};
-use crate::execute::kernel::Shape;
+use crate::execute::kernel::TypeShape;
 use crate::limits::{FORMULA_NESTING, FORMULA_PARTS};
 use crate::parse::words::{begins_word, continues_word, number_end};
 
@@ -120,11 +120,11 @@ impl Formula {
 }
 
 /// Names and shapes of the parameters, in the order of their words in a row.
-pub struct Scope<'a>(pub Vec<(&'a str, &'a Shape)>);
+pub struct Scope<'a>(pub Vec<(&'a str, &'a TypeShape)>);
 
 impl Scope<'_> {
     /// First word and shape of a path.
-    pub fn find(&self, path: &[String]) -> Option<(usize, &Shape)> {
+    pub fn find(&self, path: &[String]) -> Option<(usize, &TypeShape)> {
         let (name, rest) = path.split_first()?;
         let index = self.0.iter().position(|(known, _)| known == name)?;
         let first: u32 = self.0[..index].iter().map(|(_, shape)| shape.words()).sum();
@@ -143,7 +143,7 @@ impl Scope<'_> {
             .or_else(|| "rgba".find(last.as_str()))
             .filter(|_| last.len() == 1)?;
         match self.find(rest)? {
-            (first, Shape::Vector { size, .. }) if index < *size as usize => {
+            (first, TypeShape::Vector { size, .. }) if index < *size as usize => {
                 Some((first + index, 1))
             }
             _ => None,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
-use crate::execute::fixture::{Fixture, Sampler, Texture};
+use crate::execute::fixture::{Fixture, FixtureSampler, FixtureTexture};
 
 /// The references of one module.
 pub struct Entry {
@@ -65,7 +65,7 @@ impl<'a> Arguments<'a> {
     }
 
     /// The next texture.
-    pub fn texture(&mut self) -> Option<&'a Texture> {
+    pub fn texture(&mut self) -> Option<&'a FixtureTexture> {
         self.fixture(|fixture| match fixture {
             Fixture::Texture(texture) => Some(texture),
             Fixture::Sampler(_) => None,
@@ -73,7 +73,7 @@ impl<'a> Arguments<'a> {
     }
 
     /// The next sampler.
-    pub fn sampler(&mut self) -> Option<Sampler> {
+    pub fn sampler(&mut self) -> Option<FixtureSampler> {
         self.fixture(|fixture| match fixture {
             Fixture::Sampler(sampler) => Some(*sampler),
             Fixture::Texture(_) => None,

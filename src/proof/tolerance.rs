@@ -15,7 +15,7 @@
 
 use super::formula::{Formula, Scope};
 use crate::diagnostic::Diagnostic;
-use crate::execute::kernel::Shape;
+use crate::execute::kernel::TypeShape;
 
 const U: f64 = 1.0 / 8_388_608.0;
 
@@ -83,9 +83,9 @@ impl Bound {
 pub fn bind_terms(
     terms: &[Term<super::cases::Text>],
     scope: &Scope<'_>,
-    result: &[Shape],
+    result: &[TypeShape],
 ) -> Result<Vec<Bound>, Diagnostic> {
-    let all: u32 = result.iter().map(Shape::words).sum();
+    let all: u32 = result.iter().map(TypeShape::words).sum();
     let bound = terms.iter().map(|term| {
         let words = match &term.only {
             Some(path) => result_part(path, result).ok_or_else(|| {
@@ -109,7 +109,7 @@ pub fn bind_terms(
     bound.collect()
 }
 
-fn result_part(path: &str, result: &[Shape]) -> Option<std::ops::Range<usize>> {
+fn result_part(path: &str, result: &[TypeShape]) -> Option<std::ops::Range<usize>> {
     let parts: Vec<String> = path.split('.').map(str::to_owned).collect();
     let (first, shape) = result.first()?.part(&parts)?;
     Some(first as usize..(first + shape.words()) as usize)

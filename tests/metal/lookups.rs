@@ -11,8 +11,8 @@ use lamplight::eval::{
     self, Address, Compare, Filter, Machine, MipLevel, Number, Resources, Sampler, Texels, Texture,
     TextureDimension,
 };
-use lamplight::execute::compiled::Program;
-use lamplight::execute::compiled::request::{Bound, Fragment};
+use lamplight::execute::compiled::CompiledProgram;
+use lamplight::execute::compiled::request::{FragmentInput, MetalResources};
 use lamplight::validate::{Validated, validate};
 
 use super::{Outcome, scrambled, told};
@@ -33,7 +33,7 @@ struct Text {
 pub fn compare(files: &[PathBuf]) -> Outcome {
     let texts = files.iter().map(|file| read(file)).collect::<Result<Vec<_>, _>>()?;
     let emitted: Vec<&str> = texts.iter().map(|text| text.emitted.as_str()).collect();
-    let mut program = Program::build(&emitted).map_err(|missing| missing.reason)?;
+    let mut program = CompiledProgram::build(&emitted).map_err(|missing| missing.reason)?;
     let mut wrong = Vec::new();
     for (index, text) in texts.iter().enumerate() {
         for variant in 0..12 {
@@ -60,10 +60,15 @@ fn read(file: &Path) -> Result<Text, String> {
     })
 }
 
-fn agrees(program: &mut Program, index: usize, text: &Text, variant: u32) -> Result<(), String> {
+fn agrees(
+    program: &mut CompiledProgram,
+    index: usize,
+    text: &Text,
+    variant: u32,
+) -> Result<(), String> {
     let resources = resources(&text.reflection, variant);
-    let bound = Bound::new(&resources, &text.native, &text.reflection);
-    let quads: Vec<[Fragment; 4]> = (0..QUADS).map(|quad| quad_of(quad, variant)).collect();
+    let bound = MetalResources::new(&resources, &text.native, &text.reflection);
+    let quads: Vec<[FragmentInput; 4]> = (0..QUADS).map(|quad| quad_of(quad, variant)).collect();
     let found = program.quads(index, &bound, &quads)?;
     let evaluated = eval::Program::new(&text.validated.module, &text.validated.info)
         .map_err(|error| error.to_string())?;
@@ -98,7 +103,7 @@ fn agrees(program: &mut Program, index: usize, text: &Text, variant: u32) -> Res
 }
 
 /// Four fragments whose inputs differ by a random step, so that derivatives select different levels.
-fn quad_of(quad: u32, variant: u32) -> [Fragment; 4] {
+fn quad_of(quad: u32, variant: u32) -> [FragmentInput; 4] {
     let random = |place: u32| {
         f64::from(scrambled(place + 100 * quad + 100_000 * variant)) / f64::from(u32::MAX)
     };
@@ -109,7 +114,7 @@ fn quad_of(quad: u32, variant: u32) -> [Fragment; 4] {
             ((random(place) * 2.0 - 0.5 + moved) as f32).to_bits()
         };
         let location = |first: u32| std::array::from_fn(|i| value(first + i as u32));
-        Fragment { locations: vec![location(0), location(4)], ..Fragment::default() }
+        FragmentInput { locations: vec![location(0), location(4)], ..FragmentInput::default() }
     })
 }
 

@@ -11,9 +11,9 @@ use super::Arguments;
 use crate::bundle::key::DEFAULT;
 use crate::bundle::{Axis, Conventions, Language, Stage, Target};
 use crate::cache::Cache;
-use crate::catalogue::{self, Item, Kind};
+use crate::catalogue::{self, CatalogueItem, CatalogueItemKind};
 use crate::compose::{Composed, PartKind};
-use crate::cost::pipeline::Known;
+use crate::cost::pipeline::ReflectedStage;
 use crate::cost::{self, Subject, permutations};
 use crate::diagnostic::{Diagnostics, nearest_name};
 use crate::generate::{MemorySink, Request, Root, Tools, entry_points, generate};
@@ -37,7 +37,7 @@ pub fn asked_subjects(
     let (files, named): (Vec<&String>, Vec<&String>) =
         arguments.subjects.iter().partition(|name| is_file(name));
     let modules = catalogue::library_modules();
-    let items: Vec<&Item> = modules.iter().flat_map(|module| &module.items).collect();
+    let items: Vec<&CatalogueItem> = modules.iter().flat_map(|module| &module.items).collect();
     let (paths, keys) = separate_paths(arguments, &items, named)?;
     if arguments.subjects.is_empty() || !paths.is_empty() {
         let conventions = arguments.conventions.chosen().or(Conventions::default());
@@ -57,7 +57,7 @@ pub fn asked_subjects(
 /// it is `default` or names an axis of the program and is no path of the library.
 fn separate_paths<'a>(
     arguments: &Arguments,
-    items: &[&Item],
+    items: &[&CatalogueItem],
     named: Vec<&'a String>,
 ) -> Result<(Vec<&'a String>, Vec<&'a String>), Failure> {
     let is_path = |name: &str| items.iter().any(|item| is_below(&item.path(), name));
@@ -120,12 +120,12 @@ fn file_subjects(
         let artifact = shader.made.unit.targets.get(Target::SPIRV.name());
         let artifact = artifact.ok_or("there is no SPIR-V")?;
         let reflection = shader.made.unit.reflection.as_ref().clone();
-        let known = Known::new(&artifact.native.entry_name, &artifact.bytes, reflection)?;
+        let known = ReflectedStage::new(&artifact.native.entry_name, &artifact.bytes, reflection)?;
         Ok((shader.entry.as_str(), known))
     });
     let name = file.display();
     let told = |reason: String| Failure::input(format!("{name}: {reason}"));
-    let known = known.collect::<Result<Vec<(&str, Known)>, String>>().map_err(told)?;
+    let known = known.collect::<Result<Vec<(&str, ReflectedStage)>, String>>().map_err(told)?;
     let of = |stage| known.iter().filter(move |(_, known)| known.words.stage == stage).count();
     let is_pair = (of(Stage::Vertex), of(Stage::Fragment), known.len()) == (1, 1, 2);
     if is_pair {
@@ -158,14 +158,14 @@ fn module_subjects(
 
 /// The subjects of functions, modules and folders; of all functions where none is named.
 pub fn function_subjects(
-    items: &[&Item],
+    items: &[&CatalogueItem],
     paths: &[&String],
     language: Language,
     conventions: Conventions,
 ) -> Result<Vec<Subject>, Failure> {
     let library = Library::embedded();
-    let functions: Vec<&Item> =
-        items.iter().copied().filter(|item| item.kind == Kind::Function).collect();
+    let functions: Vec<&CatalogueItem> =
+        items.iter().copied().filter(|item| item.kind == CatalogueItemKind::Function).collect();
     for named in paths {
         if !functions.iter().any(|item| is_below(&item.path(), named)) {
             let known: Vec<String> = functions.iter().map(|item| item.path()).collect();

@@ -8,7 +8,7 @@ use super::several::draw_all;
 use super::{Failure, input_failure, library_comparisons, library_examples};
 use crate::catalogue::preset::Preset;
 use crate::execute::Session;
-use crate::execute::executors::Entry;
+use crate::execute::executors::ExecutorEntry;
 use crate::output::OutputFolder;
 use crate::picture::frame::Programs;
 use crate::picture::gallery::{self, Card, Exhibit, StripCard};
@@ -20,7 +20,7 @@ const PAGES: [&str; 3] = ["README.md", "index.html", "adapters.txt"];
 
 /// Draws all presets into a folder, with a page in Markdown and one in HTML.
 pub fn draw_gallery(
-    entry: &Entry,
+    entry: &ExecutorEntry,
     programs: &Programs,
     shot: &Shot,
     mut folder: OutputFolder,

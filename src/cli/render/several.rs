@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use super::super::executor;
 use super::Failure;
 use crate::diagnostic::stopped_message;
-use crate::execute::executors::Entry;
+use crate::execute::executors::ExecutorEntry;
 use crate::execute::{STACK, Session};
 use crate::output::OutputFolder;
 
@@ -26,7 +26,7 @@ type Numbered<T> = (usize, Result<Drawn<T>, Failure>);
 /// After a failure no further subject is begun. Subjects are begun in their order, so the failure
 /// that is returned, that of the lowest number, is always the same.
 pub fn draw_all<S: Sync, T: Send>(
-    entry: &Entry,
+    entry: &ExecutorEntry,
     subjects: &[S],
     draw: impl Fn(&mut dyn Session, &S) -> Result<Drawn<T>, Failure> + Sync,
     folder: &mut OutputFolder,

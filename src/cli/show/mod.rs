@@ -18,7 +18,7 @@ use super::list::known_modules;
 use super::own::Own;
 use crate::catalogue::preset::Preset;
 use crate::catalogue::probe::Probe;
-use crate::catalogue::{self, Item, Module};
+use crate::catalogue::{self, CatalogueItem, CatalogueModule};
 use crate::cli::terminal::stdout;
 use crate::diagnostic::nearest_name;
 use crate::permute::Manifest;
@@ -46,7 +46,7 @@ struct Shown {
 
 /// What there is to show.
 struct Library {
-    modules: Vec<Module>,
+    modules: Vec<CatalogueModule>,
     /// The user's own, if there is one, then the library's.
     manifests: Vec<Manifest>,
     presets: Vec<Preset>,
@@ -123,8 +123,11 @@ fn find_axis(library: &Library, path: &str) -> Option<Shown> {
 }
 
 fn missing_path(path: &str, library: &Library) -> Failure {
-    let items: Vec<String> =
-        library.modules.iter().flat_map(|module| module.items.iter().map(Item::path)).collect();
+    let items: Vec<String> = library
+        .modules
+        .iter()
+        .flat_map(|module| module.items.iter().map(CatalogueItem::path))
+        .collect();
     let axes: Vec<String> = library
         .manifests
         .iter()

@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::Shown;
-use crate::catalogue::preset::{Pass, Preset};
+use crate::catalogue::preset::{Preset, PresetPass};
 use crate::catalogue::probe::{ORDER, Probe};
 use crate::cli::text::{rows_text, wrap_words};
 
@@ -59,7 +59,7 @@ pub fn preset_json(preset: &Preset) -> Value {
     })
 }
 
-fn permutation_text(pass: &Pass) -> String {
+fn permutation_text(pass: &PresetPass) -> String {
     if pass.key == "default" {
         pass.program.clone()
     } else {

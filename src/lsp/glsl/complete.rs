@@ -154,10 +154,10 @@ fn complete_names(
 }
 
 /// The library's items, each with the edit that includes its file.
-fn includable_items(known: &[catalogue::Module], text: &str) -> Vec<(String, Value)> {
+fn includable_items(known: &[catalogue::CatalogueModule], text: &str) -> Vec<(String, Value)> {
     let (lines, at) = (Lines::new(text), include_place(text));
     let items = known.iter().flat_map(|module| &module.items).filter(|item| item.glsl.is_some());
-    let entry = |item: &catalogue::Item| {
+    let entry = |item: &catalogue::CatalogueItem| {
         let edit = json!({
             "range": lines.range(at..at),
             "newText": format!("{}\n", item.include()),

@@ -156,7 +156,7 @@ pub fn signature_help(server: &mut Server, parameters: &Value) -> Result<Value, 
         _ => Vec::new(),
     };
     if labels.is_empty() {
-        let known: Arc<Vec<catalogue::Module>> = server.items();
+        let known: Arc<Vec<catalogue::CatalogueModule>> = server.items();
         let mut items = known.iter().flat_map(|module| &module.items);
         labels.extend(items.find(|item| item.name == word).and_then(|item| item.glsl.clone()));
     }

@@ -7,7 +7,7 @@ use super::values::{
     value_grid,
 };
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::execute::kernel::Shape;
+use crate::execute::kernel::TypeShape;
 use crate::limits::CASE_ROWS;
 use naga::ScalarKind;
 
@@ -250,8 +250,8 @@ impl Domain {
     /// `other` gives the shape of a needed parameter.
     pub fn count(
         &self,
-        shape: &Shape,
-        other: &dyn Fn(&str) -> Option<Shape>,
+        shape: &TypeShape,
+        other: &dyn Fn(&str) -> Option<TypeShape>,
     ) -> Result<usize, String> {
         let size = shape.words() as usize;
         let fits = |given: usize| match given == 1 || given == size {
@@ -296,7 +296,7 @@ impl Domain {
     /// makes random values of different rows differ.
     pub fn words(
         &self,
-        shape: &Shape,
+        shape: &TypeShape,
         other: &dyn Fn(&str) -> Vec<f64>,
         salt: u64,
     ) -> Vec<Vec<u32>> {

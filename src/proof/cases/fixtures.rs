@@ -2,7 +2,9 @@
 
 use super::reader::Node;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use crate::execute::fixture::{
+    Address, Compare, Fixture, FixtureSampler, FixtureTexture, TextureKind,
+};
 
 const TEXTURE_KEYS: &[&str] =
     &["kind", "size", "pattern", "low", "high", "cells", "edge", "texels"];
@@ -50,17 +52,17 @@ fn one_error(error: Diagnostic) -> Diagnostics {
     vec![error]
 }
 
-fn read_sampler(node: &Node) -> Result<Sampler, Diagnostic> {
+fn read_sampler(node: &Node) -> Result<FixtureSampler, Diagnostic> {
     let compare = node.get("compare").map(|node| node.choice(Compare::NAMES)).transpose()?;
     let linear = node
         .get("filter")
         .map_or(Ok(false), |node| node.choice(&[("linear", true), ("nearest", false)]))?;
     let address =
         node.get("address").map_or(Ok(Address::Clamp), |node| node.choice(Address::NAMES))?;
-    Ok(Sampler { compare, linear, address })
+    Ok(FixtureSampler { compare, linear, address })
 }
 
-fn read_texture(node: &Node, kind: TextureKind) -> Result<Texture, Diagnostic> {
+fn read_texture(node: &Node, kind: TextureKind) -> Result<FixtureTexture, Diagnostic> {
     let size = node.required("size")?;
     let (width, height) = match size.elements()? {
         [width, height] => (width.count(1, 1024)?, height.count(1, 1024)?),
@@ -77,7 +79,7 @@ fn read_texture(node: &Node, kind: TextureKind) -> Result<Texture, Diagnostic> {
     if kind.is_depth() && texels.iter().any(|depth| !(0.0..=1.0).contains(depth)) {
         return Err(node.error("depths lie in [0, 1]"));
     }
-    Ok(Texture { kind, width, height, texels })
+    Ok(FixtureTexture { kind, width, height, texels })
 }
 
 fn explicit_texels(node: &Node, wanted: usize) -> Result<Vec<f32>, Diagnostic> {

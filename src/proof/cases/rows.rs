@@ -3,7 +3,7 @@
 use super::domain::{self, Domain};
 use super::{Case, Oracle, TableRow};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::execute::kernel::Shape;
+use crate::execute::kernel::TypeShape;
 use crate::execute::kernel::word_value;
 use crate::limits::{CASE_ROWS, CASE_WORDS, Steps};
 use crate::proof::formula::Scope;
@@ -27,7 +27,7 @@ pub struct Rows {
 struct Column<'a> {
     /// Index of its first word in a row.
     first: usize,
-    shape: Shape,
+    shape: TypeShape,
     domain: &'a Domain,
     /// How many values the domain has: the same for every row.
     count: usize,

@@ -12,8 +12,8 @@ use crate::bundle::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::eval::{Bounded, FindingKind, Number};
 use crate::execute::fixture::Fixture;
-use crate::execute::interpreter::{Calls, Interpreter, slot_value};
-use crate::execute::kernel::{self, Kernel, Shape};
+use crate::execute::interpreter::{Interpreter, KernelCalls, slot_value};
+use crate::execute::kernel::{self, Kernel, TypeShape};
 use crate::proof::cases::{self, Case, File, Oracle, Rows};
 use crate::proof::formula::{Formula, Scope};
 use crate::proof::laws::{self, Law};
@@ -312,7 +312,7 @@ fn expected_goals(job: &Job<'_>) -> Result<Vec<Goal>, Diagnostic> {
         }
         _ => job.goals(&job.rows).map_err(|error| placed_at(error, job.case))?.unwrap_or_default(),
     };
-    let words = job.kernel().results.iter().map(Shape::words).sum::<u32>() as usize;
+    let words = job.kernel().results.iter().map(TypeShape::words).sum::<u32>() as usize;
     match expected.iter().find(|goal| goal.expected.value.len() != words) {
         Some(wrong) => {
             let message = format!(
@@ -351,7 +351,7 @@ pub fn bounded_goals(
 }
 
 fn bounded_row(
-    calls: &mut Calls<'_, Bounded>,
+    calls: &mut KernelCalls<'_, Bounded>,
     row: &[u32],
     kinds: &[ScalarKind],
 ) -> Result<Goal, Diagnostic> {

@@ -2,7 +2,7 @@
 
 use super::job::{Goal, Job};
 use super::judge::{self, Worst};
-use crate::execute::kernel::Shape;
+use crate::execute::kernel::TypeShape;
 
 /// How many bins an axis is divided into.
 pub const BINS: usize = 48;
@@ -199,22 +199,22 @@ fn column_names(job: &Job<'_>) -> Vec<String> {
     job.kernel().words().flat_map(|(name, shape)| part_names(name, shape)).collect()
 }
 
-fn part_names(name: &str, shape: &Shape) -> Vec<String> {
+fn part_names(name: &str, shape: &TypeShape) -> Vec<String> {
     let letters = |size: u32| "xyzw".chars().take(size as usize);
     match shape {
-        Shape::Scalar(_) => vec![name.to_owned()],
-        Shape::Vector { size, .. } => {
+        TypeShape::Scalar(_) => vec![name.to_owned()],
+        TypeShape::Vector { size, .. } => {
             letters(*size).map(|letter| format!("{name}.{letter}")).collect()
         }
-        Shape::Matrix { columns, rows } => (0..*columns)
+        TypeShape::Matrix { columns, rows } => (0..*columns)
             .flat_map(|column| {
                 letters(*rows).map(move |letter| format!("{name}[{column}].{letter}"))
             })
             .collect(),
-        Shape::Array { base, count } => {
+        TypeShape::Array { base, count } => {
             (0..*count).flat_map(|index| part_names(&format!("{name}[{index}]"), base)).collect()
         }
-        Shape::Struct { members } => members
+        TypeShape::Struct { members } => members
             .iter()
             .flat_map(|(member, shape)| part_names(&format!("{name}.{member}"), shape))
             .collect(),

@@ -5,7 +5,7 @@ use super::Wanted;
 use super::factor::{Factor, Formulas};
 use super::integral::MOST_CALLS;
 use crate::diagnostic::Diagnostic;
-use crate::execute::kernel::Shape;
+use crate::execute::kernel::TypeShape;
 use crate::proof::cases::{Rows, Text};
 use crate::proof::formula::{Formula, Scope};
 use crate::quadrature::gauss_legendre;
@@ -64,7 +64,7 @@ pub struct Area {
     pub wanted: Wanted,
 }
 
-static NUMBER: Shape = Shape::Scalar(ScalarKind::Float);
+static NUMBER: TypeShape = TypeShape::Scalar(ScalarKind::Float);
 
 /// The formulas of an area for the parameters of a case.
 struct Bound {

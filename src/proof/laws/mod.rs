@@ -35,7 +35,7 @@ use std::ops::Range;
 use super::cases::{Rows, Text};
 use super::formula::Scope;
 use crate::diagnostic::{Diagnostic, codes};
-use crate::execute::kernel::Shape;
+use crate::execute::kernel::TypeShape;
 use crate::source::Span;
 use naga::ScalarKind;
 
@@ -291,7 +291,7 @@ fn argument_place<'a>(
     law: &Law,
     name: &str,
     scope: &'a Scope<'_>,
-) -> Result<(usize, &'a Shape), Diagnostic> {
+) -> Result<(usize, &'a TypeShape), Diagnostic> {
     let parts: Vec<String> = name.split('.').map(str::to_owned).collect();
     scope.find(&parts).ok_or_else(|| scope.unknown(name).at(law.span, "in this law"))
 }
@@ -309,7 +309,7 @@ fn direction_words(law: &Law, name: &str, scope: &Scope<'_>) -> Result<Range<usi
     .at(law.span, "in this law"))
 }
 
-fn words_of<'a>(places: &'a [(usize, &Shape)]) -> impl Iterator<Item = usize> + 'a {
+fn words_of<'a>(places: &'a [(usize, &TypeShape)]) -> impl Iterator<Item = usize> + 'a {
     places.iter().flat_map(|(first, shape)| *first..first + shape.words() as usize)
 }
 
@@ -332,7 +332,7 @@ fn raise_word(word: &mut u32, kind: ScalarKind) {
     };
 }
 
-fn swap_arguments(row: &mut [u32], places: &[(usize, &Shape)]) {
+fn swap_arguments(row: &mut [u32], places: &[(usize, &TypeShape)]) {
     let (pairs, _) = places.as_chunks::<2>();
     for [(first, shape), (second, other)] in pairs {
         for word in 0..shape.words().min(other.words()) as usize {

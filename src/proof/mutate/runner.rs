@@ -3,12 +3,12 @@
 use naga::ScalarKind;
 
 use crate::diagnostic::Diagnostic;
-use crate::execute::interpreter::{Calls, Interpreter, word_of};
+use crate::execute::interpreter::{Interpreter, KernelCalls, word_of};
 use crate::execute::kernel::Kernel;
 
 /// Runs rows of a kernel in f32.
 pub struct Runner<'p> {
-    pub calls: Calls<'p, f32>,
+    pub calls: KernelCalls<'p, f32>,
     kinds: Vec<ScalarKind>,
     stride: usize,
 }

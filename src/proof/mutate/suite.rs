@@ -15,7 +15,7 @@ use crate::bundle::Language;
 use crate::compose::SourceMap;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::eval::Machine;
-use crate::execute::interpreter::{Calls, Interpreter, slot_value};
+use crate::execute::interpreter::{Interpreter, KernelCalls, slot_value};
 use crate::execute::module_info;
 use crate::proof::cases::{File, Rows};
 use crate::proof::check::Options;
@@ -187,7 +187,7 @@ fn row_slack(
     job: &Job<'_>,
     rows: &Rows,
     expected: &[Goal],
-    calls: &mut Calls<'_, f64>,
+    calls: &mut KernelCalls<'_, f64>,
 ) -> Result<Vec<f64>, Diagnostic> {
     let kinds = job.kernel().result_kinds();
     let mut slack = Vec::new();
@@ -209,7 +209,7 @@ fn row_slack(
 
 /// The result of one row in f64.
 fn exact_result(
-    calls: &mut Calls<'_, f64>,
+    calls: &mut KernelCalls<'_, f64>,
     row: &[u32],
     kinds: &[ScalarKind],
 ) -> Result<Vec<f64>, Diagnostic> {

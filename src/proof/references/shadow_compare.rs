@@ -5,7 +5,7 @@
 
 use super::math_noise::{hash, pixel_seed, random_hpg, unit, vogel_disk};
 use super::{Arguments, Entry, Expected};
-use crate::execute::fixture::{Sampler, Texture};
+use crate::execute::fixture::{FixtureSampler, FixtureTexture};
 use crate::execute::sampling;
 use glam::{DVec2, DVec4};
 
@@ -46,12 +46,12 @@ impl At {
     }
 }
 
-fn size(map: &Texture) -> DVec2 {
+fn size(map: &FixtureTexture) -> DVec2 {
     DVec2::new(f64::from(map.width), f64::from(map.height))
 }
 
 /// The share of the texels around a place that pass; places off the map are lit.
-fn compare(map: &Texture, sampler: Sampler, uv: DVec2, depth: f64) -> f64 {
+fn compare(map: &FixtureTexture, sampler: FixtureSampler, uv: DVec2, depth: f64) -> f64 {
     let is_on_map = uv.min_element() >= 0.0 && uv.max_element() <= 1.0;
     if is_on_map { sampling::compare_depth(map, sampler, uv, depth) } else { 1.0 }
 }
@@ -69,7 +69,7 @@ fn averaged(a: &mut Arguments<'_>, taps: fn(&mut Arguments<'_>, &At) -> Taps) ->
     if at.inside { mean(map, sampler, at, &taps).into() } else { 1.0.into() }
 }
 
-fn mean(map: &Texture, sampler: Sampler, at: At, taps: &Taps) -> f64 {
+fn mean(map: &FixtureTexture, sampler: FixtureSampler, at: At, taps: &Taps) -> f64 {
     let tap = |(weight, offset): &(f64, DVec2)| {
         weight * compare(map, sampler, at.uv + *offset / size(map), at.depth)
     };
@@ -136,7 +136,7 @@ fn castano_row(a: &mut Arguments<'_>) -> Expected {
 }
 
 /// The distinct depths that a sample may read if its place is off by up to so many texels.
-fn depths_around(map: &Texture, sampler: Sampler, uv: DVec2, off: f64) -> Vec<f64> {
+fn depths_around(map: &FixtureTexture, sampler: FixtureSampler, uv: DVec2, off: f64) -> Vec<f64> {
     let sides = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
     let mut depths: Vec<f64> = sides
         .map(|(x, y)| {
@@ -151,7 +151,13 @@ fn depths_around(map: &Texture, sampler: Sampler, uv: DVec2, off: f64) -> Vec<f6
 /// The means that are accepted, each of the samples that are nearer than the point; the point's own
 /// depth if none is. A device's sine and cosine may be off by 2^-11, and places by a ten-thousandth
 /// of a texel. Where such an error changes which texel is read, either texel is right.
-fn blockers(map: &Texture, sampler: Sampler, at: At, radius: f64, phi: f64) -> Vec<f64> {
+fn blockers(
+    map: &FixtureTexture,
+    sampler: FixtureSampler,
+    at: At,
+    radius: f64,
+    phi: f64,
+) -> Vec<f64> {
     let off = radius * (-11f64).exp2() + 1e-4;
     let mut sums = vec![(0u32, 0.0)];
     for (_, offset) in disk(16.0, radius, phi) {

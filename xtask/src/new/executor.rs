@@ -109,10 +109,10 @@ const TEXT: &str = r#"//! wgpu on NAME.
 //!
 //! Runs on: SYSTEMS
 
-use super::{DEVICE_SAMPLES, Entry};
-use crate::execute::gpu::{Named, Shaders, Wanted};
+use super::{DEVICE_SAMPLES, ExecutorEntry};
+use crate::execute::gpu::{AdapterName, DeviceRequest, Shaders};
 
-pub const EXECUTOR: Entry = Entry {
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "NAME",
     // One line for listings.
     about: "",
@@ -124,12 +124,12 @@ pub const EXECUTOR: Entry = Entry {
     samples: Some(DEVICE_SAMPLES),
     // The first adapter that fits, a software adapter before others. Without one, the error says so.
     open: || {
-        super::open_gpu(Wanted {
+        super::open_gpu(DeviceRequest {
             // One interface of wgpu: `VULKAN`, `GL`, `DX12` or `METAL`.
             backend: wgpu::Backends::BACKEND,
-            // A part of the adapter's name. An empty part allows every adapter. `Named::Without` is
-            // for adapters whose names do not have the part.
-            named: Named::With("PART"),
+            // A part of the adapter's name. An empty part allows every adapter.
+            // `AdapterName::Without` is for adapters whose names do not have the part.
+            named: AdapterName::With("PART"),
             // wgpu translates the shaders. `Shaders::Emitted(Target::SPIRV)` gives the driver the
             // texts of a target unchanged, which the adapter must allow (`PASSTHROUGH_SHADERS`).
             shaders: Shaders::Translated,
@@ -144,7 +144,7 @@ const OWN: &str = r#"//! NAME.
 //!
 //! Runs on: every system but WebAssembly
 
-use super::{Entry, Unavailable};
+use super::{ExecutorEntry, Unavailable};
 use crate::bundle::Target;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::Session;
@@ -153,7 +153,7 @@ use crate::execute::gpu::run_batches;
 use crate::execute::kernel::{ENTRY, INPUT_WIDTH, Kernel, TARGET_WIDTH};
 
 /// The executor, for the table of all.
-pub const EXECUTOR: Entry = Entry {
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "NAME",
     // One line for listings.
     about: "",
