@@ -16,7 +16,7 @@ fn main() -> std::io::Result<()> {
         ("emit/targets", "TARGET", "TargetEntry"),
         ("execute/executors", "EXECUTOR", "ExecutorEntry"),
         ("judge/judges", "JUDGE", "JudgeEntry"),
-        ("proof/references", "REFERENCES", "Entry"),
+        ("proof/references", "REFERENCES", "ReferenceEntry"),
         ("scene/sets", "SET", "Set"),
     ] {
         let name = folder.rsplit('/').next().unwrap_or(folder);

@@ -10,7 +10,7 @@ use lamplight::catalogue::{self, CatalogueItemKind, preset, probe};
 use lamplight::diagnostic::Diagnostic;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::project;
-use lamplight::proof::catalogue::{Files, catalogue_files, made_modules};
+use lamplight::proof::catalogue::{CatalogueFiles, catalogue_files, made_modules};
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 
@@ -54,7 +54,7 @@ fn modules_are_up_to_date() -> Result<(), Failed> {
     same_on_disk("shaderlib", &made(made_modules())?)
 }
 
-fn same_on_disk(folder: &str, files: &Files) -> Result<(), Failed> {
+fn same_on_disk(folder: &str, files: &CatalogueFiles) -> Result<(), Failed> {
     let differs = |(path, text): &(&String, &String)| {
         std::fs::read_to_string(root().join(folder).join(path)).ok().as_ref() != Some(*text)
     };
@@ -92,7 +92,9 @@ fn same_bytes_twice() -> Result<(), Failed> {
     }
 }
 
-fn made(files: Result<Files, (SourceSet, Vec<Diagnostic>)>) -> Result<Files, Failed> {
+fn made(
+    files: Result<CatalogueFiles, (SourceSet, Vec<Diagnostic>)>,
+) -> Result<CatalogueFiles, Failed> {
     files.map_err(|(sources, problems)| render(&sources, &problems, Form::Human).into())
 }
 

@@ -54,7 +54,7 @@ const PART: usize = 4;
 
 /// Runs a function with every executor open, on a thread that ends before the trial does.
 fn opened<T: Send>(
-    run: impl FnOnce(&mut [check::Open]) -> Result<T, Failed> + Send,
+    run: impl FnOnce(&mut [check::OpenExecutor]) -> Result<T, Failed> + Send,
 ) -> Result<T, Failed> {
     opened_of(|_| true, run)
 }
@@ -62,12 +62,12 @@ fn opened<T: Send>(
 /// Runs a function with some executors open.
 fn opened_of<T: Send>(
     wanted: fn(&str) -> bool,
-    run: impl FnOnce(&mut [check::Open]) -> Result<T, Failed> + Send,
+    run: impl FnOnce(&mut [check::OpenExecutor]) -> Result<T, Failed> + Send,
 ) -> Result<T, Failed> {
     let outcome = execute::on_thread(|| {
         let mut open = Vec::new();
         for entry in executors::ALL.iter().filter(|entry| wanted(entry.name)) {
-            open.push(check::Open { executor: entry.name, session: entry.start()? });
+            open.push(check::OpenExecutor { executor: entry.name, session: entry.start()? });
         }
         run(&mut open).map_err(|failed| failed.message().unwrap_or_default().to_owned())
     });
@@ -271,7 +271,7 @@ fn expressions() -> Result<(), Failed> {
 }
 
 /// The failures of a report, as text.
-fn failed(report: &check::Report) -> String {
+fn failed(report: &check::CheckReport) -> String {
     check::failures_as_text(&check::report_failures(report))
 }
 

@@ -1,6 +1,6 @@
 //! A headless Chromium, driven by its DevTools protocol.
 //!
-//! `Browser::start -> Browser::open -> Page::evaluate, until, errors, screenshot`
+//! `Browser::start -> Browser::open -> BrowserPage::evaluate, until, errors, screenshot`
 //!
 //! Messages go through a pair of pipes (`--remote-debugging-pipe`) and not through a socket. So no
 //! port is open to others, no second protocol is needed, and the browser ends when the pipes close.

@@ -64,7 +64,7 @@ pub struct Arguments {
 
 pub fn run_variants(
     arguments: Arguments,
-    opened: cost::Opened,
+    opened: cost::OpenedGpus,
     form: DiagnosticForm,
 ) -> Result<(), Failure> {
     if arguments.gpus.are_named() && !arguments.cost {
@@ -97,16 +97,17 @@ pub fn run_variants(
         }
         let meter = Meter { devices: &devices, cache: cache.as_ref() };
         let changes = cost::axis_changes(&mut sources, &packages, &manifest, &program.name, meter)?;
-        Ok(Told { report, changes })
+        Ok(ProgramReport { report, changes })
     };
-    let reports = manifest.programs.iter().map(tell).collect::<Result<Vec<Told>, Failure>>()?;
+    let reports =
+        manifest.programs.iter().map(tell).collect::<Result<Vec<ProgramReport>, Failure>>()?;
     if let Some(path) = &record {
         write_record(&arguments, path, &devices, &reports)?;
     }
     if arguments.json {
         return Ok(writeln!(stdout(), "{:#}", serde_json::json!(reports))?);
     }
-    let texts: Vec<String> = reports.iter().map(Told::text).collect();
+    let texts: Vec<String> = reports.iter().map(ProgramReport::text).collect();
     Ok(stdout().write_all(texts.join("\n").as_bytes())?)
 }
 
@@ -162,7 +163,7 @@ fn write_record(
     arguments: &Arguments,
     path: &Path,
     devices: &[Device],
-    reports: &[Told],
+    reports: &[ProgramReport],
 ) -> Result<(), Failure> {
     let changes = reports.iter().map(|told| (told.report.program.as_str(), &*told.changes));
     let Some(costs) = cost::axis_record(devices, changes) else { return Ok(()) };
@@ -172,7 +173,7 @@ fn write_record(
 
 /// The report of one program.
 #[derive(Serialize)]
-struct Told {
+struct ProgramReport {
     #[serde(flatten)]
     report: PermutationReport,
     /// What values of axes change on GPUs, where that was asked for.
@@ -180,7 +181,7 @@ struct Told {
     changes: Vec<CostChange>,
 }
 
-impl Told {
+impl ProgramReport {
     fn text(&self) -> String {
         match self.changes.as_slice() {
             [] => self.report.to_string(),

@@ -28,7 +28,7 @@ use crate::store;
 
 /// Where things are.
 #[derive(Args)]
-pub struct Places {
+pub struct PathArguments {
     /// The manifest [default: `lamplight.toml` here or in the nearest folder above].
     #[arg(long, value_name = "FILE")]
     manifest: Option<PathBuf>,
@@ -43,7 +43,7 @@ pub struct Places {
     overwrite: Overwrite,
 }
 
-impl Places {
+impl PathArguments {
     /// The manifest that was named, or else the nearest.
     pub fn manifest(&self) -> PathBuf {
         let named = self.manifest.clone().or_else(|| project::manifest_above(Path::new("")));
@@ -71,7 +71,7 @@ pub struct Work {
 }
 
 impl Work {
-    pub fn open(places: &Places) -> Result<Self, Failure> {
+    pub fn open(places: &PathArguments) -> Result<Self, Failure> {
         let mut sources = SourceSet::default();
         let path = places.manifest();
         let opened = project::declared(&path, &mut sources);
@@ -236,7 +236,7 @@ impl Work {
     }
 }
 
-fn open_cache(places: &Places, manifest: &Path) -> Result<Option<Cache>, Failure> {
+fn open_cache(places: &PathArguments, manifest: &Path) -> Result<Option<Cache>, Failure> {
     let mut storages = places.cached.storages(Some(manifest))?;
     if let Some(address) = &places.store {
         storages.push(store::open(address).map_err(Failure::environment)?);

@@ -37,7 +37,7 @@ use pipeline::{Pipeline, ReflectedStage};
 use statistics::Statistics;
 
 /// Something whose cost is asked for.
-pub struct Subject {
+pub struct CostSubject {
     /// A function's path, a permutation's key or a file.
     pub name: String,
     /// The stages whose figures are reported.
@@ -75,11 +75,11 @@ pub fn function_subject(
     module: &naga::Module,
     function: &str,
     conventions: Conventions,
-) -> Result<Subject, Diagnostic> {
+) -> Result<CostSubject, Diagnostic> {
     let [called, empty] = varying_modules(module, function)?;
     let pipeline =
         |module| stage_alone(module, conventions).map_err(|reason| cannot_measure(name, &reason));
-    Ok(Subject {
+    Ok(CostSubject {
         name: name.to_owned(),
         stages: vec![Stage::Fragment],
         pipeline: pipeline(called)?,
@@ -105,11 +105,11 @@ fn cannot_measure(name: &str, reason: &str) -> Diagnostic {
 /// # Errors
 /// No pipeline can be made of them: there is none of them, or a stage to go with it cannot be
 /// written.
-pub fn stages_subject(name: &str, mut known: Vec<ReflectedStage>) -> Result<Subject, String> {
+pub fn stages_subject(name: &str, mut known: Vec<ReflectedStage>) -> Result<CostSubject, String> {
     let stages = known.iter().map(|known| known.words.stage).collect();
     let first = known.pop().ok_or("there is no stage")?;
     let pipeline = Pipeline::new(first, known.pop())?;
-    Ok(Subject { name: name.to_owned(), stages, pipeline, empty: None })
+    Ok(CostSubject { name: name.to_owned(), stages, pipeline, empty: None })
 }
 
 /// What subjects are measured with.
@@ -127,7 +127,7 @@ pub struct Meter<'a> {
 /// The driver's message where it refuses a pipeline, with the subject's name.
 pub fn measure_subjects(
     meter: Meter<'_>,
-    subjects: &[Subject],
+    subjects: &[CostSubject],
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Vec<Cost>, String> {
     let Meter { devices, cache } = meter;
@@ -173,7 +173,7 @@ struct Distinct<'s> {
 }
 
 impl<'s> Distinct<'s> {
-    fn of(subjects: &'s [Subject]) -> Self {
+    fn of(subjects: &'s [CostSubject]) -> Self {
         let mut distinct = Self { pipelines: Vec::new(), places: HashMap::new() };
         for subject in subjects {
             for pipeline in [Some(&subject.pipeline), subject.empty.as_ref()].into_iter().flatten()

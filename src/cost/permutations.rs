@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::pipeline::ReflectedStage;
 use super::statistics::{CostFigure, FIGURES};
-use super::{Cost, Subject, stages_subject};
+use super::{Cost, CostSubject, stages_subject};
 use crate::bundle::key::{self, KeyPart};
 use crate::bundle::{
     self, Axis, Constant, EntryContents, Hash, Language, OverrideChoice, ProgramContents, Stage,
@@ -20,7 +20,7 @@ use crate::bundle::{
 pub fn permutation_subjects(
     program: &ProgramContents,
     language: Language,
-) -> Result<Vec<Subject>, String> {
+) -> Result<Vec<CostSubject>, String> {
     let Some(entries) = program.languages.get(&language) else { return Ok(Vec::new()) };
     let known = entries.iter().map(|(name, entry)| known_units(name, entry));
     let known = known.collect::<Result<Vec<_>, String>>()?;

@@ -4,14 +4,14 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use super::Subject;
+use super::CostSubject;
 use super::pipeline::{Pipeline, SpirvStage};
 use crate::bundle::Stage;
 use crate::emit::spirv::{self, op};
 
 /// What a compiler says of one stage.
 pub struct StageReport<'s, T> {
-    pub subject: &'s Subject,
+    pub subject: &'s CostSubject,
     pub stage: Stage,
     pub whole: T,
     /// For a function, the same of the stage without it.
@@ -23,7 +23,7 @@ pub struct StageReport<'s, T> {
 /// # Errors
 /// The compiler's message where it refuses a stage, with the subject's name.
 pub fn ask_stages<'s, T: Clone + Send>(
-    subjects: &'s [Subject],
+    subjects: &'s [CostSubject],
     ask: impl Fn(&SpirvStage) -> Result<T, String> + Sync,
 ) -> Result<Vec<StageReport<'s, T>>, String> {
     let mut places: HashMap<&SpirvStage, usize> = HashMap::new();
@@ -52,13 +52,13 @@ pub fn ask_stages<'s, T: Clone + Send>(
 }
 
 /// The SPIR-V of a subject's stage, and then that of the stage without the function.
-fn words_of(subject: &Subject, stage: Stage) -> impl Iterator<Item = &SpirvStage> {
+fn words_of(subject: &CostSubject, stage: Stage) -> impl Iterator<Item = &SpirvStage> {
     let pipelines = std::iter::once(&subject.pipeline).chain(subject.empty.as_ref());
     let of = move |pipeline: &'_ Pipeline| pipeline.stages.iter().position(|it| it.stage == stage);
     pipelines.filter_map(move |pipeline| pipeline.stages.get(of(pipeline)?))
 }
 
-fn no_stage(subject: &Subject, stage: Stage) -> String {
+fn no_stage(subject: &CostSubject, stage: Stage) -> String {
     format!("`{}` has no {} stage", subject.name, stage.name())
 }
 

@@ -1,8 +1,8 @@
 //! Writes a valid module in each output language, one file a language.
 //!
-//! Unless [`Clip::Native`](crate::bundle::Clip) is asked for, all targets keep WebGPU's
-//! conventions, so that one host-side path serves them: NDC depth is [0, 1], NDC y points up,
-//! texture and framebuffer rows start at the top.
+//! Unless [`ClipConvention::Native`](crate::bundle::ClipConvention) is asked for, all targets keep
+//! WebGPU's conventions, so that one host-side path serves them: NDC depth is [0, 1], NDC y points
+//! up, texture and framebuffer rows start at the top.
 //! - `spirv`: as written; the host gives a viewport of negative height, as wgpu does.
 //! - GLSL in every version: a vertex stage ends with `y = -y, z = 2z - w`, so that under
 //!   GL's own clip space (leave `glClipControl` alone) depth values, shadow lookups, derivatives

@@ -10,7 +10,7 @@ use crate::cache::{Cache, CachedUnit, CompileJob};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::link::{self, Linker, Reason};
 
-/// What remains of [`CompiledUnit`] once the unit has gone to the sink.
+/// What remains of [`link::CompiledUnit`] once the unit has gone to the sink.
 #[derive(Debug)]
 pub struct Compiled {
     pub digest: Digest,

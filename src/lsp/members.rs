@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::package::Modules;
+use super::package::PackageModules;
 use super::place::word_at_byte;
 use crate::parse::wesl::blank::without_comments;
 use crate::parse::wesl::{Item, ItemKind};
@@ -13,7 +13,7 @@ use crate::resolve::wesl::ModuleNode;
 use crate::source::Span;
 
 /// A member with its struct.
-pub struct Member<'m> {
+pub struct StructMember<'m> {
     pub node: &'m ModuleNode,
     pub item: &'m Item,
     /// The place of its name.
@@ -23,7 +23,11 @@ pub struct Member<'m> {
 }
 
 /// The members that a name after a dot may mean, with the place of the name.
-pub fn members_at(modules: &Modules, node: u32, byte: usize) -> Option<(Span, Vec<Member<'_>>)> {
+pub fn members_at(
+    modules: &PackageModules,
+    node: u32,
+    byte: usize,
+) -> Option<(Span, Vec<StructMember<'_>>)> {
     let module = &modules.graph.nodes[node as usize].module;
     let word = word_at_byte(&module.text, byte);
     let name = module.text.get(word.clone()).filter(|name| !name.is_empty())?;
@@ -31,7 +35,7 @@ pub fn members_at(modules: &Modules, node: u32, byte: usize) -> Option<(Span, Ve
         return None;
     }
     let symbols = modules.places_in(node).filter_map(|(symbol, _)| modules.item(symbol));
-    let mut found: Vec<Member<'_>> =
+    let mut found: Vec<StructMember<'_>> =
         symbols.flat_map(|(node, item)| named_members(node, item, name)).collect();
     if found.is_empty() {
         let nodes = modules.graph.nodes.iter();
@@ -49,11 +53,11 @@ fn is_swizzle(name: &str) -> bool {
     name.len() <= 4 && (of("xyzw") || of("rgba"))
 }
 
-fn named_members<'m>(node: &'m ModuleNode, item: &'m Item, name: &str) -> Vec<Member<'m>> {
+fn named_members<'m>(node: &'m ModuleNode, item: &'m Item, name: &str) -> Vec<StructMember<'m>> {
     if item.kind != ItemKind::Struct {
         return Vec::new();
     }
-    let member = |(range, whole): (Range<u32>, Range<u32>)| Member {
+    let member = |(range, whole): (Range<u32>, Range<u32>)| StructMember {
         node,
         item,
         place: node.module.span(range),

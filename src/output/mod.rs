@@ -14,7 +14,8 @@
 //! 2. `Scratch::write` writes the bytes to a new file in this folder, and waits until they are on
 //!    the disk.
 //! 3. `put_file` in `file.rs` gives the file the permissions of the one that it replaces, and
-//!    renames it into its place. In an output folder, `OutputFolder::put` in `folder.rs` only renames it.
+//!    renames it into its place. In an output folder, `OutputFolder::put` in `folder.rs` only
+//!    renames it.
 //! 4. `sync_folder` in `scratch.rs` syncs the folder, so that the new name survives a loss of power.
 //! 5. The scratch folder is removed: when it is dropped, or by the next run if this one was killed.
 //!

@@ -15,11 +15,11 @@ use crate::project;
 use crate::source::{Embedded, SourceSet};
 
 /// The texts of files, by their paths below a folder.
-pub type Files = BTreeMap<String, String>;
+pub type CatalogueFiles = BTreeMap<String, String>;
 
 /// Makes the files of the catalogue. Errors come with the sources of the library, which they point
 /// into.
-pub fn catalogue_files() -> Result<Files, (SourceSet, Diagnostics)> {
+pub fn catalogue_files() -> Result<CatalogueFiles, (SourceSet, Diagnostics)> {
     let (sources, manifest) = project::library_manifest()?;
     let sources = Mutex::new(sources);
     let made = on_thread(|| read_contents(&sources, &manifest))
@@ -29,7 +29,7 @@ pub fn catalogue_files() -> Result<Files, (SourceSet, Diagnostics)> {
 
 /// The files of the library that are generated, by path below the library: the module of the
 /// ambient probes with its cases, and the file of prefixed names.
-pub fn made_modules() -> Result<Files, (SourceSet, Diagnostics)> {
+pub fn made_modules() -> Result<CatalogueFiles, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
     let probes = match probe::library_probes(&mut sources) {
         Ok(probes) => probes,
@@ -44,7 +44,10 @@ pub fn made_modules() -> Result<Files, (SourceSet, Diagnostics)> {
     Ok(made.into_iter().map(|(path, text)| (path.to_owned(), text)).collect())
 }
 
-fn read_contents(sources: &Mutex<SourceSet>, manifest: &Manifest) -> Result<Files, Diagnostics> {
+fn read_contents(
+    sources: &Mutex<SourceSet>,
+    manifest: &Manifest,
+) -> Result<CatalogueFiles, Diagnostics> {
     let modules = catalogue::library_modules();
     let plots = draw_plots(sources, &modules)?;
     let probes = probe::library_probes(&mut lock_sources(sources))?;

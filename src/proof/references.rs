@@ -8,7 +8,7 @@ use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use crate::execute::fixture::{Fixture, FixtureSampler, FixtureTexture};
 
 /// The references of one module.
-pub struct Entry {
+pub struct ReferenceEntry {
     /// Module path below the package, `lighting::spot`.
     pub module: &'static str,
     /// Function name and its reference.
@@ -16,15 +16,15 @@ pub struct Entry {
 }
 
 /// A reference reads its arguments in the order of the parameters.
-pub type Reference = fn(&mut Arguments<'_>) -> Expected;
+pub type Reference = fn(&mut CallArguments<'_>) -> Expected;
 
 /// The arguments of one call, taken from the front.
-pub struct Arguments<'a> {
+pub struct CallArguments<'a> {
     words: &'a [f64],
     fixtures: &'a [Arc<Fixture>],
 }
 
-impl<'a> Arguments<'a> {
+impl<'a> CallArguments<'a> {
     /// The words of the plain parameters, and the fixtures of the others in order.
     pub fn new(words: &'a [f64], fixtures: &'a [Arc<Fixture>]) -> Self {
         Self { words, fixtures }

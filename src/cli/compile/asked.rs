@@ -3,7 +3,7 @@
 use crate::bundle::{AskedConventions, BoundsChecks, ClipConvention, Convention};
 
 #[derive(Debug, Clone, Copy, clap::Args)]
-pub struct Asked {
+pub struct ConventionArguments {
     /// Clip space: `wgpu`, the same for all targets, or `native`, as each API has it [default: that
     /// of the program in the manifest, or else `wgpu`].
     #[arg(long, value_name = "SPACE", value_parser = parse_convention::<ClipConvention>)]
@@ -14,7 +14,7 @@ pub struct Asked {
     bounds: Option<BoundsChecks>,
 }
 
-impl Asked {
+impl ConventionArguments {
     pub fn chosen(self) -> AskedConventions {
         AskedConventions { clip: self.clip, bounds: self.bounds }
     }

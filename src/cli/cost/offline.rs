@@ -10,7 +10,7 @@ use super::super::failure::{DiagnosticForm, Failure};
 use super::super::terminal::stdout;
 use super::super::text;
 use super::{Arguments, subjects};
-use crate::cost::Subject;
+use crate::cost::CostSubject;
 use crate::cost::counts::{Counts, KINDS, count_optimised};
 use crate::cost::mali::{self, MALIOC, MaliVariant};
 use crate::cost::pipeline::SpirvStage;
@@ -77,7 +77,7 @@ fn print_counts(arguments: &Arguments, found: &[StageReport<'_, Counts>]) -> Res
 /// Compiles every stage for every core.
 fn ask_mali<'s>(
     cores: &[String],
-    subjects: &'s [Subject],
+    subjects: &'s [CostSubject],
 ) -> Result<Vec<StageReport<'s, Vec<MaliVariant>>>, Failure> {
     let scratch = Scratch::new(&std::env::temp_dir()).map_err(|error| {
         Failure::environment(format!("there is no room for temporary files: {error}"))

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use super::super::failure::Failure;
-use super::{Opened, axis_changes, measure_costs, subjects};
+use super::{OpenedGpus, axis_changes, measure_costs, subjects};
 use crate::bundle::{Conventions, Language};
 use crate::catalogue::cost::{AxisCost, Chip, Costs, FIGURES, SHOWN};
 use crate::catalogue::{self, CatalogueItem, quality};
@@ -18,7 +18,7 @@ use crate::proof::quality::{FUNCTION, quality_module};
 use crate::source::SourceSet;
 
 /// Measures every cost that the catalogue shows of the library.
-pub fn record_costs(opened: Opened) -> Result<Costs, Failure> {
+pub fn record_costs(opened: OpenedGpus) -> Result<Costs, Failure> {
     let devices = opened.map_err(Failure::environment)?;
     let modules = catalogue::library_modules();
     let items: Vec<&CatalogueItem> = modules.iter().flat_map(|module| &module.items).collect();

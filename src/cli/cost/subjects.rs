@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Mutex;
 
 use super::super::failure::{DiagnosticForm, Failure};
-use super::super::input::{Context, Ready};
+use super::super::input::{ComposedInput, ErrorContext};
 use super::super::progress::Bar;
 use super::super::variants;
 use super::Arguments;
@@ -14,7 +14,7 @@ use crate::cache::Cache;
 use crate::catalogue::{self, CatalogueItem, CatalogueItemKind};
 use crate::compose::{Composed, PartKind};
 use crate::cost::pipeline::ReflectedStage;
-use crate::cost::{self, Subject, permutations};
+use crate::cost::{self, CostSubject, permutations};
 use crate::diagnostic::{Diagnostics, nearest_name};
 use crate::generate::{MemorySink, Request, Root, Tools, entry_points, generate};
 use crate::lint;
@@ -29,7 +29,7 @@ use crate::validate::validate_every;
 pub fn asked_subjects(
     arguments: &Arguments,
     form: DiagnosticForm,
-) -> Result<Vec<Subject>, Failure> {
+) -> Result<Vec<CostSubject>, Failure> {
     if arguments.cover {
         return covering_subjects(arguments);
     }
@@ -104,10 +104,10 @@ fn file_subjects(
     arguments: &Arguments,
     file: &Path,
     form: DiagnosticForm,
-) -> Result<Vec<Subject>, Failure> {
-    let Ready { sources, composed, context } =
+) -> Result<Vec<CostSubject>, Failure> {
+    let ComposedInput { sources, composed, context } =
         arguments.input.compose(file, SourceSet::default(), form)?;
-    let Context { graph, settings, options, .. } = &context;
+    let ErrorContext { graph, settings, options, .. } = &context;
     let conventions = arguments.conventions.chosen().or(context.conventions);
     let root = Root { graph, settings, options, conventions };
     let of_sources = |errors| Failure::Input(sources.clone(), context.explain(errors));
@@ -144,7 +144,7 @@ fn module_subjects(
     graph: &Graph,
     composed: &Composed,
     conventions: Conventions,
-) -> Result<Vec<Subject>, Diagnostics> {
+) -> Result<Vec<CostSubject>, Diagnostics> {
     let module = validate_every(composed)?.module;
     let own = graph.root_items();
     let functions = composed.parts.iter().filter(|part| part.kind == PartKind::Function);
@@ -162,7 +162,7 @@ pub fn function_subjects(
     paths: &[&String],
     language: Language,
     conventions: Conventions,
-) -> Result<Vec<Subject>, Failure> {
+) -> Result<Vec<CostSubject>, Failure> {
     let library = Library::embedded();
     let functions: Vec<&CatalogueItem> =
         items.iter().copied().filter(|item| item.kind == CatalogueItemKind::Function).collect();
@@ -208,7 +208,7 @@ fn chosen_manifest(
 }
 
 /// The subjects of covering sets. Their names begin with the program.
-fn covering_subjects(arguments: &Arguments) -> Result<Vec<Subject>, Failure> {
+fn covering_subjects(arguments: &Arguments) -> Result<Vec<CostSubject>, Failure> {
     let mut sources = SourceSet::default();
     let (mut manifest, packages) = chosen_manifest(arguments, &mut sources)?;
     for program in &mut manifest.programs {
@@ -238,7 +238,7 @@ fn covering_subjects(arguments: &Arguments) -> Result<Vec<Subject>, Failure> {
 }
 
 /// The subject of one permutation: its stages in SPIR-V, as a bundle has them.
-fn permutation_subject(arguments: &Arguments, key: &str) -> Result<Subject, Failure> {
+fn permutation_subject(arguments: &Arguments, key: &str) -> Result<CostSubject, Failure> {
     let mut sources = SourceSet::default();
     let (manifest, packages) = chosen_manifest(arguments, &mut sources)?;
     let program = program_of_key(arguments, &manifest)?;
@@ -265,7 +265,7 @@ pub fn permutations_of(
     request: &Request,
     language: Language,
     cache: Option<&Cache>,
-) -> Result<(Vec<Axis>, Vec<Subject>), Failure> {
+) -> Result<(Vec<Axis>, Vec<CostSubject>), Failure> {
     let (memory, bar) = (MemorySink::default(), Bar::new());
     let progress = |progress| bar.show(progress);
     let tools = Tools { sink: &memory, cache, progress: &progress };

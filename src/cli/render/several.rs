@@ -15,10 +15,10 @@ use crate::output::OutputFolder;
 const AT_ONCE: usize = 2;
 
 /// Files with their names, and what else is kept of a subject.
-pub type Drawn<T> = (Vec<(String, Vec<u8>)>, T);
+pub type DrawnFiles<T> = (Vec<(String, Vec<u8>)>, T);
 
 /// The number of a subject, and what was drawn of it.
-type Numbered<T> = (usize, Result<Drawn<T>, Failure>);
+type NumberedFiles<T> = (usize, Result<DrawnFiles<T>, Failure>);
 
 /// Draws all subjects, on executors of their own, and writes the files as they are ready. Returns
 /// the rest in the order of the subjects.
@@ -28,12 +28,12 @@ type Numbered<T> = (usize, Result<Drawn<T>, Failure>);
 pub fn draw_all<S: Sync, T: Send>(
     entry: &ExecutorEntry,
     subjects: &[S],
-    draw: impl Fn(&mut dyn Session, &S) -> Result<Drawn<T>, Failure> + Sync,
+    draw: impl Fn(&mut dyn Session, &S) -> Result<DrawnFiles<T>, Failure> + Sync,
     folder: &mut OutputFolder,
 ) -> Result<Vec<T>, Failure> {
     let (next, is_stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
     let (sender, drawn) = channel();
-    let work = |sender: Sender<Numbered<T>>| {
+    let work = |sender: Sender<NumberedFiles<T>>| {
         let mut painter = match executor::open_executor(entry) {
             Ok(painter) => painter,
             Err(failure) => return drop(sender.send((0, Err(failure)))),
@@ -65,7 +65,7 @@ pub fn draw_all<S: Sync, T: Send>(
 
 /// Writes the files of all subjects until none is left, or one has failed.
 fn collect<T>(
-    drawn: Receiver<Numbered<T>>,
+    drawn: Receiver<NumberedFiles<T>>,
     count: usize,
     folder: &mut OutputFolder,
 ) -> Result<Vec<T>, Failure> {

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::Shown;
+use super::ShownItem;
 use crate::catalogue::{
     CatalogueItem, CatalogueItemKind, CatalogueMember, CatalogueModule, SECTIONS,
 };
@@ -10,15 +10,15 @@ use crate::cli::text::{indent_lines, rows_text, wrap_words};
 use crate::project::LIBRARY;
 
 /// A function, a struct or a constant.
-pub fn show_item(item: &CatalogueItem) -> Shown {
-    Shown { text: item_text(item), json: item_json(item) }
+pub fn show_item(item: &CatalogueItem) -> ShownItem {
+    ShownItem { text: item_text(item), json: item_json(item) }
 }
 
 /// A module with its items.
-pub fn show_module(module: &CatalogueModule) -> Shown {
+pub fn show_module(module: &CatalogueModule) -> ShownItem {
     let items = module.items.iter().map(item_json).collect::<Vec<_>>();
     let json = json!({ "module": module.path, "doc": module.doc, "items": items });
-    Shown { text: module_text(module), json }
+    ShownItem { text: module_text(module), json }
 }
 
 fn item_text(item: &CatalogueItem) -> String {

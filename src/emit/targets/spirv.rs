@@ -2,7 +2,7 @@
 //!
 //! Descriptor set and binding are the author's group and binding. Names are kept for debuggers;
 //! no source text and no path is. Loops and indices are as written, unless
-//! [`Bounds::Restrict`](crate::bundle::Bounds) is asked for.
+//! [`BoundsChecks::Restrict`](crate::bundle::BoundsChecks) is asked for.
 
 use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 

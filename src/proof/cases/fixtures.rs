@@ -1,6 +1,6 @@
 //! Reads `[fixture.NAME]` tables: samplers, and textures made from a pattern.
 
-use super::reader::Node;
+use super::reader::CaseNode;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::execute::fixture::{
     Address, Compare, Fixture, FixtureSampler, FixtureTexture, TextureKind,
@@ -11,7 +11,7 @@ const TEXTURE_KEYS: &[&str] =
 const SAMPLER_KEYS: &[&str] = &["kind", "compare", "filter", "address"];
 
 /// A pattern: gives the weight of `high`, from the settings, the place in [0, 1)^2 and the layer.
-type Pattern = fn(&Settings, f64, f64, u32) -> f64;
+type Pattern = fn(&FixtureSettings, f64, f64, u32) -> f64;
 
 const PATTERNS: &[(&str, Pattern)] = &[
     ("constant", |_, _, _, _| 0.0),
@@ -28,7 +28,7 @@ const PATTERNS: &[(&str, Pattern)] = &[
     ),
 ];
 
-struct Settings {
+struct FixtureSettings {
     low: Vec<f64>,
     high: Vec<f64>,
     cells: f64,
@@ -36,7 +36,7 @@ struct Settings {
 }
 
 /// The fixture of a table.
-pub fn read_fixture(node: &Node) -> Result<Fixture, Diagnostics> {
+pub fn read_fixture(node: &CaseNode) -> Result<Fixture, Diagnostics> {
     let kind = node.required("kind").map_err(one_error)?;
     if kind.text().map_err(one_error)? == "sampler" {
         node.only(SAMPLER_KEYS)?;
@@ -52,7 +52,7 @@ fn one_error(error: Diagnostic) -> Diagnostics {
     vec![error]
 }
 
-fn read_sampler(node: &Node) -> Result<FixtureSampler, Diagnostic> {
+fn read_sampler(node: &CaseNode) -> Result<FixtureSampler, Diagnostic> {
     let compare = node.get("compare").map(|node| node.choice(Compare::NAMES)).transpose()?;
     let linear = node
         .get("filter")
@@ -62,7 +62,7 @@ fn read_sampler(node: &Node) -> Result<FixtureSampler, Diagnostic> {
     Ok(FixtureSampler { compare, linear, address })
 }
 
-fn read_texture(node: &Node, kind: TextureKind) -> Result<FixtureTexture, Diagnostic> {
+fn read_texture(node: &CaseNode, kind: TextureKind) -> Result<FixtureTexture, Diagnostic> {
     let size = node.required("size")?;
     let (width, height) = match size.elements()? {
         [width, height] => (width.count(1, 1024)?, height.count(1, 1024)?),
@@ -82,7 +82,7 @@ fn read_texture(node: &Node, kind: TextureKind) -> Result<FixtureTexture, Diagno
     Ok(FixtureTexture { kind, width, height, texels })
 }
 
-fn explicit_texels(node: &Node, wanted: usize) -> Result<Vec<f32>, Diagnostic> {
+fn explicit_texels(node: &CaseNode, wanted: usize) -> Result<Vec<f32>, Diagnostic> {
     let texels: Vec<f32> = node.numbers()?.into_iter().map(|value| value as f32).collect();
     if texels.len() != wanted {
         return Err(node.error(format!("expected {wanted} values, found {}", texels.len())));
@@ -91,16 +91,16 @@ fn explicit_texels(node: &Node, wanted: usize) -> Result<Vec<f32>, Diagnostic> {
 }
 
 fn patterned_texels(
-    node: &Node,
+    node: &CaseNode,
     kind: TextureKind,
     width: u32,
     height: u32,
 ) -> Result<Vec<f32>, Diagnostic> {
     let pattern = node.required("pattern")?.choice(PATTERNS)?;
     let numbers =
-        |name: &str, default: f64| node.get(name).map_or(Ok(vec![default]), Node::numbers);
-    let number = |name: &str, default: f64| node.get(name).map_or(Ok(default), Node::number);
-    let settings = Settings {
+        |name: &str, default: f64| node.get(name).map_or(Ok(vec![default]), CaseNode::numbers);
+    let number = |name: &str, default: f64| node.get(name).map_or(Ok(default), CaseNode::number);
+    let settings = FixtureSettings {
         low: numbers("low", 0.0)?,
         high: numbers("high", 1.0)?,
         cells: number("cells", 4.0)?,

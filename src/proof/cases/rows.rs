@@ -93,14 +93,14 @@ pub fn case_rows(case: &Case, scope: &Scope<'_>, steps: &mut Steps) -> Result<Ro
     Ok(rows.with_words(kept))
 }
 
-type Generated = (Vec<u32>, Vec<std::ops::Range<usize>>);
+type GeneratedRows = (Vec<u32>, Vec<std::ops::Range<usize>>);
 
 fn generate_rows(
     case: &Case,
     scope: &Scope<'_>,
     kinds: &[ScalarKind],
     steps: &mut Steps,
-) -> Result<Generated, Diagnostic> {
+) -> Result<GeneratedRows, Diagnostic> {
     let columns = ordered_columns(case, scope)?;
     let stride = kinds.len().max(1);
     let count = bounded_count(case, &columns, stride)?;

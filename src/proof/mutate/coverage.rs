@@ -19,12 +19,12 @@ pub struct Coverage {
     /// How many blocks of statements there are: bodies, branches (written or not), and what follows
     /// a branch.
     pub blocks: usize,
-    pub uncovered: Vec<Place>,
+    pub uncovered: Vec<UncoveredBlock>,
 }
 
 /// A block that no case reaches.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct UncoveredBlock {
     pub function: String,
     /// The author's `file:line`.
     pub place: String,
@@ -32,7 +32,7 @@ pub struct Place {
 }
 
 /// A block by its function, its place in the composed text, and how it is reached.
-type Key = (String, u32, u32, u8);
+type BlockKey = (String, u32, u32, u8);
 
 /// Runs every row of the cases of the modules, and finds the blocks that none reaches.
 ///
@@ -70,13 +70,13 @@ fn suite_coverage(suite: &Suite<'_>, sources: &SourceSet) -> Coverage {
     Coverage { module: suite.module.clone(), blocks, uncovered }
 }
 
-fn coverage_key(function: &str, point: &CoveragePoint) -> Key {
+fn coverage_key(function: &str, point: &CoveragePoint) -> BlockKey {
     let range = point.span.to_range().unwrap_or_default();
     (function.to_owned(), range.start as u32, range.end as u32, point.branch as u8)
 }
 
 /// How often each block was reached.
-fn reached_blocks(suite: &Suite<'_>) -> BTreeMap<Key, u64> {
+fn reached_blocks(suite: &Suite<'_>) -> BTreeMap<BlockKey, u64> {
     let mut reached = BTreeMap::new();
     for case in &suite.cases {
         let Ok(interpreter) = Interpreter::new(case.job.kernel()) else { continue };
@@ -111,7 +111,7 @@ fn block_place(
     sources: &SourceSet,
     subject: &Subject,
     point: &CoveragePoint,
-) -> Place {
+) -> UncoveredBlock {
     let span = author_span(&suite.map, point.span);
     let place = span.map_or("?".to_owned(), |span| {
         format!(
@@ -120,7 +120,7 @@ fn block_place(
             sources.position(span.source, span.start as usize).0
         )
     });
-    Place { function: subject.name.clone(), place, branch: point.branch }
+    UncoveredBlock { function: subject.name.clone(), place, branch: point.branch }
 }
 
 impl std::fmt::Display for Coverage {

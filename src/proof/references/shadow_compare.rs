@@ -4,12 +4,12 @@
 //! and penumbra); Gerasimov, GPU Gems, chapter 12 (the cube).
 
 use super::math_noise::{hash, pixel_seed, random_hpg, unit, vogel_disk};
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use crate::execute::fixture::{FixtureSampler, FixtureTexture};
 use crate::execute::sampling;
 use glam::{DVec2, DVec4};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::compare",
     functions: &[
         ("compare_tap", compare_tap),
@@ -41,7 +41,7 @@ struct At {
 }
 
 impl At {
-    fn read(a: &mut Arguments<'_>) -> Self {
+    fn read(a: &mut CallArguments<'_>) -> Self {
         Self { uv: a.vec2(), depth: a.f64(), inside: a.bool() }
     }
 }
@@ -56,13 +56,13 @@ fn compare(map: &FixtureTexture, sampler: FixtureSampler, uv: DVec2, depth: f64)
     if is_on_map { sampling::compare_depth(map, sampler, uv, depth) } else { 1.0 }
 }
 
-fn compare_tap(a: &mut Arguments<'_>) -> Expected {
+fn compare_tap(a: &mut CallArguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     compare(map, sampler, a.vec2(), a.f64()).into()
 }
 
 /// The weighted mean of the comparisons at all taps; 1, lit, for a point outside the map.
-fn averaged(a: &mut Arguments<'_>, taps: fn(&mut Arguments<'_>, &At) -> Taps) -> Expected {
+fn averaged(a: &mut CallArguments<'_>, taps: fn(&mut CallArguments<'_>, &At) -> Taps) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let at = At::read(a);
     let taps = taps(a, &at);
@@ -91,7 +91,7 @@ fn bell(weights: &[f64], step: f64) -> Taps {
 
 /// Sixteen random offsets in the square of half side `radius`, by a chain of hashes that starts
 /// with the seed of the pixel.
-fn random16(a: &mut Arguments<'_>, _: &At) -> Taps {
+fn random16(a: &mut CallArguments<'_>, _: &At) -> Taps {
     let (radius, pixel) = (a.f64(), a.vec2());
     let mut state = pixel_seed(pixel);
     let mut next = || {
@@ -103,7 +103,7 @@ fn random16(a: &mut Arguments<'_>, _: &At) -> Taps {
 
 /// The mean of sixteen comparisons at random places to the right and below, up to a quarter of the
 /// map over `w` away. Sines of the pixel give the places.
-fn random16_hpg(a: &mut Arguments<'_>) -> Expected {
+fn random16_hpg(a: &mut CallArguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (sc, least, pixel) = (a.vec4(), a.f64(), a.vec2());
     let ndc = sc.truncate() / sc.w;
@@ -128,7 +128,7 @@ fn disk(count: f64, radius: f64, phi: f64) -> Taps {
         .collect()
 }
 
-fn castano_row(a: &mut Arguments<'_>) -> Expected {
+fn castano_row(a: &mut CallArguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (columns, v, weights, depth) = (a.vec3(), a.f64(), a.vec3(), a.f64());
     let tap = |i: usize| weights[i] * compare(map, sampler, DVec2::new(columns[i], v), depth);
@@ -181,14 +181,14 @@ fn one_of(values: impl IntoIterator<Item = f64>) -> Expected {
     values.fold(first.into(), Expected::or)
 }
 
-fn mean_blocker(a: &mut Arguments<'_>) -> Expected {
+fn mean_blocker(a: &mut CallArguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (at, radius, phi) = (At::read(a), a.f64(), a.f64());
     one_of(blockers(map, sampler, at, radius, phi))
 }
 
 /// penumbra = (receiver - blocker)*light/blocker, between one texel and the light's size.
-fn pcss(a: &mut Arguments<'_>) -> Expected {
+fn pcss(a: &mut CallArguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (Some(depths), Some(plain)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (at, light, phi) = (At::read(a), a.f64().max(1.0), a.f64());
@@ -205,7 +205,7 @@ fn pcss(a: &mut Arguments<'_>) -> Expected {
     one_of(blockers(depths, plain, at, light, phi).into_iter().map(visible))
 }
 
-fn cube_compare(a: &mut Arguments<'_>) -> Expected {
+fn cube_compare(a: &mut CallArguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (offset, depth) = (a.vec3(), a.f64());
     if !(0.0..=1.0).contains(&depth) {

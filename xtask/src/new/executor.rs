@@ -1,10 +1,14 @@
 //! An executor, which runs functions and draws frames: a device of wgpu, or a copy of an executor
 //! that exists.
 
-use super::{Kind, Made, Repository, check_name};
+use super::{NewFiles, Repository, TaskKind, check_name};
 
-pub const KIND: Kind =
-    Kind { name: "executor", example: &["dx12"], rest: "[EXECUTOR THAT IT IS LIKE, or own]", make };
+pub const KIND: TaskKind = TaskKind {
+    name: "executor",
+    example: &["dx12"],
+    rest: "[EXECUTOR THAT IT IS LIKE, or own]",
+    make,
+};
 
 const FOLDER: &str = "src/execute/executors";
 const CARGO: &str = "Cargo.toml";
@@ -13,7 +17,7 @@ const CARGO: &str = "Cargo.toml";
 /// wgpu, and the systems.
 const INTERFACES: [(&str, &str); 2] = [("dx12", "windows"), ("metal", "macos, ios")];
 
-fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFiles, String> {
     check_name(name, '_')?;
     let file = format!("{FOLDER}/{name}.rs");
     repository.refuse_existing(&file)?;
@@ -37,7 +41,7 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
             "cargo build, with a network: Cargo.lock gets what the interface needs".to_owned(),
         );
     }
-    Ok(Made { files, next })
+    Ok(NewFiles { files, next })
 }
 
 /// What remains to be done. `is_vulkan` means that no argument chose another form than a Vulkan
