@@ -65,7 +65,7 @@ pub struct Varying {
 
 /// What a binding holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "snake_case", rename = "Kind")]
 pub enum BindingKind {
     /// A buffer of constants.
     Uniform,
@@ -231,7 +231,7 @@ pub enum Viewport {
 
 /// Order of rows in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "snake_case", rename = "Rows")]
 pub enum RowOrder {
     /// The top row.
     TopFirst,
@@ -257,6 +257,7 @@ pub enum FrontFace {
 /// - MSL: as the function constant `id`.
 /// - Others: as the macro `symbol`, defined before the text (in GLSL after `#version`).
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename = "Choice")]
 pub struct OverrideChoice {
     /// As in the reflection.
     pub name: String,
@@ -270,6 +271,7 @@ pub struct OverrideChoice {
 
 /// The place of one binding in a target.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename = "Slot")]
 pub struct BindingSlot {
     /// Group in WGSL, descriptor set in Vulkan.
     pub group: u32,

@@ -44,7 +44,7 @@ pub struct Figure {
 
 /// What a function is drawn on.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, rename = "Kind")]
 pub struct FigureKind {
     /// What is seen, as the start of a sentence.
     pub about: String,

@@ -93,7 +93,7 @@ pub struct PresetPass {
 
 /// A number or a vector.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, rename = "Number")]
 pub enum PresetNumber {
     Scalar(f64),
     Vector(Vec<f64>),
@@ -125,7 +125,7 @@ type PresetEntries = BTreeMap<Spanned<String>, PresetEntry>;
 
 /// A preset in the form of the file.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, rename = "Entry")]
 struct PresetEntry {
     doc: String,
     look: String,

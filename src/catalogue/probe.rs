@@ -30,6 +30,7 @@ pub struct Probe {
 }
 
 #[derive(Deserialize)]
+#[serde(rename = "Entry")]
 struct ProbeEntry {
     title: String,
     source: String,

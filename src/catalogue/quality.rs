@@ -12,14 +12,14 @@ use crate::source::SourceSet;
 pub const PATH: &str = "quality.toml";
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, rename = "File")]
 struct QualityFile {
     group: Vec<QualityGroup>,
 }
 
 /// Functions that are compared with each other.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, rename = "Group")]
 pub struct QualityGroup {
     pub name: String,
     pub title: String,
@@ -44,7 +44,7 @@ pub struct QualityGroup {
 
 /// One way to compute it.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, rename = "Entry")]
 pub struct QualityEntry {
     pub name: String,
     /// The path of the function in question.
@@ -57,7 +57,7 @@ pub struct QualityEntry {
 
 /// What is computed in f64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "snake_case", rename = "Reference")]
 pub enum QualityReference {
     /// The mean of 1,024 comparisons over a disk of 4 texels.
     #[serde(rename = "disk_1024")]

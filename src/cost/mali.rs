@@ -58,11 +58,13 @@ impl Cycles {
 }
 
 #[derive(Deserialize)]
+#[serde(rename = "Report")]
 struct MaliReport {
     shaders: Vec<MaliShader>,
 }
 
 #[derive(Deserialize)]
+#[serde(rename = "Shader")]
 struct MaliShader {
     hardware: Option<Hardware>,
     #[serde(default)]

@@ -21,6 +21,7 @@ pub struct Tint {
 
 /// A mistake that Tint finds.
 #[derive(Debug, Deserialize)]
+#[serde(rename = "Said")]
 pub struct TintMistake {
     /// Index of the text, in the order given.
     pub index: usize,

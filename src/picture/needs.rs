@@ -134,7 +134,7 @@ pub enum Cleared {
 
 /// A row as the file has it; [`Needs`] explains its fields.
 #[derive(Debug, Clone, Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(deny_unknown_fields, default, rename = "Row")]
 struct NeedsRow {
     before: Vec<String>,
     /// By program.

@@ -14,6 +14,7 @@ pub const STAGE: &str = "naga";
 
 /// What the other process does: it validates a text and, if asked to, writes it.
 #[derive(Debug, Serialize, Deserialize)]
+#[serde(rename = "Job")]
 pub struct RehearsalJob {
     /// Language of the text.
     pub language: Language,
@@ -27,6 +28,7 @@ pub struct RehearsalJob {
 
 /// An entry point, the targets to write it for, and conventions, by their names.
 #[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(rename = "Outputs")]
 pub struct RehearsalOutputs {
     /// Name of the entry point.
     pub entry: String,

@@ -36,7 +36,7 @@ pub const SAMPLES: usize = 321;
 
 /// The unit of the numbers on an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "lowercase", rename = "Unit")]
 pub enum AxisUnit {
     #[default]
     Numbers,
@@ -71,7 +71,7 @@ pub struct Plot {
 
 /// The horizontal axis.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, rename = "Axis")]
 pub struct PlotAxis {
     /// The text beside the axis, with the unit unless `unit` gives it.
     pub label: String,

@@ -55,7 +55,7 @@ fn default_one() -> u32 {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, rename = "Entry")]
 struct ComparisonEntry {
     doc: String,
     look: String,
