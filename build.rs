@@ -13,10 +13,10 @@ fn main() -> std::io::Result<()> {
     fs::write(out.join("codes.rs"), codes(&root.join("src/diagnostic/codes"))?)?;
     fs::write(out.join("target_names.rs"), target_names(&root.join("src/emit/targets"))?)?;
     for (folder, constant, ty) in [
-        ("emit/targets", "TARGET", "Entry"),
-        ("execute/executors", "EXECUTOR", "Entry"),
-        ("judge/judges", "JUDGE", "Entry"),
-        ("proof/references", "REFERENCES", "Entry"),
+        ("emit/targets", "TARGET", "TargetEntry"),
+        ("execute/executors", "EXECUTOR", "ExecutorEntry"),
+        ("judge/judges", "JUDGE", "JudgeEntry"),
+        ("proof/references", "REFERENCES", "ReferenceEntry"),
         ("scene/sets", "SET", "Set"),
     ] {
         let name = folder.rsplit('/').next().unwrap_or(folder);

@@ -17,7 +17,7 @@ use crate::limits::REHEARSAL_SECONDS;
 
 /// Why a rehearsal failed.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Exhausted {
+pub enum RehearsalFailure {
     /// More memory than a rehearsal may have.
     Memory,
     /// The stack.
@@ -28,7 +28,7 @@ pub enum Exhausted {
     Stopped(String),
 }
 
-impl fmt::Display for Exhausted {
+impl fmt::Display for RehearsalFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Memory => f.write_str("takes more memory than it may have"),
@@ -40,20 +40,20 @@ impl fmt::Display for Exhausted {
 }
 
 /// Does a stage's job in a separate process.
-pub type Runner = fn(stage: &str, job: &[u8]) -> Result<(), Exhausted>;
+pub type RehearsalRunner = fn(stage: &str, job: &[u8]) -> Result<(), RehearsalFailure>;
 
 /// The result of each job, by the hash of its stage and bytes.
-type Known = BTreeMap<[u8; 32], Result<(), Exhausted>>;
+type KnownResults = BTreeMap<[u8; 32], Result<(), RehearsalFailure>>;
 
 /// How many results are remembered. One job may be rehearsed several times before its error is
 /// reported.
 const REMEMBERED: usize = 1024;
 
-static RUNNER: OnceLock<Runner> = OnceLock::new();
-static KNOWN: Mutex<Known> = Mutex::new(BTreeMap::new());
+static RUNNER: OnceLock<RehearsalRunner> = OnceLock::new();
+static KNOWN: Mutex<KnownResults> = Mutex::new(BTreeMap::new());
 
 /// From now on, `runner` does the rehearsals of this process.
-pub fn run_by(runner: Runner) {
+pub fn run_by(runner: RehearsalRunner) {
     // If one was set before, that one stays.
     let _ = RUNNER.set(runner);
 }
@@ -63,7 +63,7 @@ pub fn run_by(runner: Runner) {
 ///
 /// # Errors
 /// What the job exhausted: it must not be done in this process.
-pub fn rehearse(stage: &str, job: &[u8]) -> Result<(), Exhausted> {
+pub fn rehearse(stage: &str, job: &[u8]) -> Result<(), RehearsalFailure> {
     let Some(runner) = RUNNER.get() else { return Ok(()) };
     let mut hasher = blake3::Hasher::new();
     hasher.update(stage.as_bytes()).update(&[0]).update(job);

@@ -3,7 +3,7 @@
 use std::fs;
 
 use lamplight::bundle::{Bundle, Target, blob_files};
-use lamplight::emit::spirv::{Instruction, instructions, words};
+use lamplight::emit::spirv::{SpirvInstruction, instructions, words};
 use lamplight::judge;
 use libtest_mimic::{Failed, Trial};
 
@@ -113,7 +113,7 @@ fn minima(bytes: &[u8]) -> usize {
     const EXTENDED: u16 = 12;
     const UNSIGNED_MINIMUM: u32 = 38;
     let words = words(bytes);
-    let is_minimum = |found: &Instruction<'_>| {
+    let is_minimum = |found: &SpirvInstruction<'_>| {
         found.op == EXTENDED && found.words.get(4) == Some(&UNSIGNED_MINIMUM)
     };
     instructions(&words).filter(is_minimum).count()

@@ -6,7 +6,7 @@ mod executors;
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-use lamplight::browser::serve::{Files, Server};
+use lamplight::browser::serve::{HttpServer, ServedFiles};
 use lamplight::browser::{Browser, PATIENCE, Problem, Screenshot};
 use libtest_mimic::{Failed, Trial};
 
@@ -30,9 +30,9 @@ pub fn trials() -> Vec<Trial> {
 /// Long enough for a page to answer, and short enough to wait for an answer that never comes.
 const SHORT: Duration = Duration::from_millis(500);
 
-fn served(files: &[(&str, &str)]) -> std::io::Result<Server> {
+fn served(files: &[(&str, &str)]) -> std::io::Result<HttpServer> {
     let own = |(path, text): &(&str, &str)| ((*path).to_owned(), text.as_bytes().to_vec());
-    Server::start(Files::Memory(files.iter().map(own).collect::<BTreeMap<_, _>>()))
+    HttpServer::start(ServedFiles::Memory(files.iter().map(own).collect::<BTreeMap<_, _>>()))
 }
 
 /// A page evaluates scripts, has WebGPU and WebGL2, and its picture has the width that was asked
@@ -106,7 +106,7 @@ fn folders_are_served() -> Outcome {
     let site = folder.path().join("site");
     std::fs::create_dir_all(site.join("a b"))?;
     std::fs::write(site.join("a b/index.html"), "<!doctype html><title>found</title>")?;
-    let server = Server::start(Files::Folder(site))?;
+    let server = HttpServer::start(ServedFiles::Folder(site))?;
     let page = Browser::shared()?.open(&server.address("a%20b/"))?;
     page.until("document.title === 'found'", PATIENCE)?;
     for path in ["nothing.html", "..%2fsecret.txt", "a%20b/..%2f..%2fsecret.txt"] {

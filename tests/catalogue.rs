@@ -6,11 +6,11 @@ mod plots;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use lamplight::catalogue::{self, Kind, preset, probe};
+use lamplight::catalogue::{self, CatalogueItemKind, preset, probe};
 use lamplight::diagnostic::Diagnostic;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::project;
-use lamplight::proof::catalogue::{Files, catalogue_files, made_modules};
+use lamplight::proof::catalogue::{CatalogueFiles, catalogue_files, made_modules};
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 
@@ -54,7 +54,7 @@ fn modules_are_up_to_date() -> Result<(), Failed> {
     same_on_disk("shaderlib", &made(made_modules())?)
 }
 
-fn same_on_disk(folder: &str, files: &Files) -> Result<(), Failed> {
+fn same_on_disk(folder: &str, files: &CatalogueFiles) -> Result<(), Failed> {
     let differs = |(path, text): &(&String, &String)| {
         std::fs::read_to_string(root().join(folder).join(path)).ok().as_ref() != Some(*text)
     };
@@ -92,7 +92,9 @@ fn same_bytes_twice() -> Result<(), Failed> {
     }
 }
 
-fn made(files: Result<Files, (SourceSet, Vec<Diagnostic>)>) -> Result<Files, Failed> {
+fn made(
+    files: Result<CatalogueFiles, (SourceSet, Vec<Diagnostic>)>,
+) -> Result<CatalogueFiles, Failed> {
     files.map_err(|(sources, problems)| render(&sources, &problems, Form::Human).into())
 }
 
@@ -107,7 +109,7 @@ fn every_item_has_a_twin() -> Result<(), Failed> {
 /// line `Parameters:` is missing from them.
 fn every_member_is_described() -> Result<(), Failed> {
     let items = catalogue::library_modules().into_iter().flat_map(|module| module.items);
-    let silent = |item: &catalogue::Item| -> Vec<String> {
+    let silent = |item: &catalogue::CatalogueItem| -> Vec<String> {
         let members = item.members.iter().filter(|member| member.doc.is_empty());
         let silent = members.map(|member| format!("{}: `{}`", item.path(), member.name));
         let section = item.section("Parameters").unwrap_or_default();
@@ -133,7 +135,7 @@ fn every_plain_function_is_plotted() -> Result<(), Failed> {
     let items = catalogue::library_modules()
         .into_iter()
         .flat_map(|module| module.items)
-        .filter(|item| item.kind == Kind::Function);
+        .filter(|item| item.kind == CatalogueItemKind::Function);
     let plain = items.filter(|item| {
         item.result.as_deref() == Some("f32")
             && item.members.iter().all(|member| member.ty == "f32")
@@ -231,7 +233,7 @@ fn preset_numbers_name_fields() -> Result<(), Failed> {
     let structs: BTreeMap<String, Vec<String>> = catalogue::library_modules()
         .into_iter()
         .flat_map(|module| module.items)
-        .filter(|item| item.kind == Kind::Struct)
+        .filter(|item| item.kind == CatalogueItemKind::Struct)
         .map(|item| {
             (item.name.to_lowercase(), item.members.into_iter().map(|member| member.name).collect())
         })

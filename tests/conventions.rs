@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 
 use lamplight::bundle::{
-    Binding, Bundle, Clip, ClipSpace, Found, FrontFace, Kind, Rows, Target, Viewport, YAxis,
-    blob_files, pack,
+    Binding, BindingKind, Bundle, ClipConvention, ClipSpace, Found, FrontFace, RowOrder, Target,
+    Viewport, YAxis, blob_files, pack,
 };
 use lamplight::emit::targets;
 use lamplight::judge;
@@ -92,7 +92,7 @@ fn clip_spaces() -> Outcome {
         }
         let spaces = targets::find(*target).ok_or("no such target")?.clip;
         if [wgpu.native.clip, native.native.clip]
-            != [Clip::Wgpu, Clip::Native].map(|clip| Some(spaces.of(clip)))
+            != [ClipConvention::Wgpu, ClipConvention::Native].map(|clip| Some(spaces.of(clip)))
         {
             let clips = [wgpu.native.clip, native.native.clip];
             return Err(format!("{target}: the reflection has the clip spaces {clips:?}").into());
@@ -271,9 +271,9 @@ fn slots() -> Outcome {
                 let is_it = |one: &&Binding| (one.group, one.binding) == (slot.group, slot.binding);
                 let binding = found.reflection.bindings.iter().find(is_it).ok_or("no binding")?;
                 let kind = match binding.kind {
-                    Kind::Uniform | Kind::Storage => "buffer(",
-                    Kind::Texture | Kind::StorageTexture => "texture(",
-                    Kind::Sampler | Kind::ComparisonSampler => "sampler(",
+                    BindingKind::Uniform | BindingKind::Storage => "buffer(",
+                    BindingKind::Texture | BindingKind::StorageTexture => "texture(",
+                    BindingKind::Sampler | BindingKind::ComparisonSampler => "sampler(",
                 };
                 let number = slot.index.map_or("none".to_owned(), |index| index.to_string());
                 match target.name() {
@@ -384,8 +384,8 @@ fn in_words(clip: &ClipSpace) -> [String; 6] {
         },
         if clip.is_converted { "yes" } else { "no" },
         match clip.rows {
-            Rows::TopFirst => "top",
-            Rows::BottomFirst => "bottom",
+            RowOrder::TopFirst => "top",
+            RowOrder::BottomFirst => "bottom",
         },
         match clip.front_face {
             FrontFace::Same => "counter-clockwise",

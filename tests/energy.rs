@@ -15,11 +15,11 @@ use std::collections::btree_map::Entry;
 use std::f64::consts::PI;
 
 use glam::{DQuat, DVec2, DVec3};
-use lamplight::bundle::{Kind, Language};
+use lamplight::bundle::{BindingKind, Language};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::eval::{FunctionId, Machine, Program, Resources};
 use lamplight::permute::{Quoted, key};
-use lamplight::picture::frame::{Composed, Programs, pack_buffer};
+use lamplight::picture::frame::{Programs, ReadyStage, pack_buffer};
 use lamplight::scene::Layers;
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
@@ -179,7 +179,7 @@ fn computed_cells(places: impl Iterator<Item = Place>) -> Result<BTreeMap<Place,
 }
 
 /// The fragment stage with one directional lamp, and with or without ambient light.
-fn fragment_stage(programs: &Programs, axes: &str, ambient: bool) -> Result<Composed, String> {
+fn fragment_stage(programs: &Programs, axes: &str, ambient: bool) -> Result<ReadyStage, String> {
     let ambient = if ambient { "constant" } else { "none" };
     let base = "lights=directional,max_lights=1,metallic_roughness,specular=ggx";
     let text = format!("ambient={ambient},{base},{axes}");
@@ -324,14 +324,14 @@ impl Way {
 
 /// A fragment stage for the evaluator.
 struct Furnace {
-    stage: Composed,
+    stage: ReadyStage,
     program: Program,
     /// The index of an input's component, by its location.
     inputs: BTreeMap<(u32, usize), usize>,
 }
 
 impl Furnace {
-    fn new(stage: Composed) -> Result<Self, String> {
+    fn new(stage: ReadyStage) -> Result<Self, String> {
         let program = Program::new(&stage.validated.module, &stage.validated.info)
             .map_err(|error| error.to_string())?;
         let inputs = fragments::places(&stage)?;
@@ -342,7 +342,7 @@ impl Furnace {
     fn run(&self, number: &dyn Fn(&str) -> Vec<f64>) -> Result<Run<'_>, String> {
         let mut resources = Resources::default();
         for binding in &self.stage.reflection.bindings {
-            if binding.kind == Kind::Uniform {
+            if binding.kind == BindingKind::Uniform {
                 let bytes = pack_buffer(binding, &|path| Some(number(path)));
                 let place = (binding.group, binding.binding);
                 resources.buffers.insert(place, bytes.map_err(|problem| problem.message)?);

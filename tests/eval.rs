@@ -16,7 +16,7 @@ mod speed;
 mod sweeps;
 mod textures;
 
-use lamplight::eval::{Bounded, Function, FunctionId, Kind, Machine, Number, Program};
+use lamplight::eval::{Bounded, Function, FunctionId, Machine, Number, Program, SlotKind};
 use libtest_mimic::{Failed, Trial};
 
 pub fn trials() -> Vec<Trial> {
@@ -100,7 +100,7 @@ fn call<'c>(program: &Program, case: &'c str) -> Result<Call<'c>, Failed> {
 }
 
 /// Parses scalars as numbers of the kinds that a function takes or returns.
-pub fn slots<N: Number>(text: &str, kinds: &[Kind]) -> Result<Vec<N>, Failed> {
+pub fn slots<N: Number>(text: &str, kinds: &[SlotKind]) -> Result<Vec<N>, Failed> {
     let scalars = text.split([',', ' ']).filter(|scalar| !scalar.is_empty());
     scalars
         .enumerate()
@@ -108,9 +108,9 @@ pub fn slots<N: Number>(text: &str, kinds: &[Kind]) -> Result<Vec<N>, Failed> {
         .collect()
 }
 
-fn slot<N: Number>(text: &str, kind: Kind) -> Result<N, Failed> {
+fn slot<N: Number>(text: &str, kind: SlotKind) -> Result<N, Failed> {
     Ok(match (kind, text) {
-        (Kind::Float, _) => N::from_f64(text.parse::<f64>()?),
+        (SlotKind::Float, _) => N::from_f64(text.parse::<f64>()?),
         (_, "true") => N::from_word(1),
         (_, "false") => N::from_word(0),
         _ if text.starts_with("0x") => N::from_word(u32::from_str_radix(&text[2..], 16)?),
@@ -131,8 +131,8 @@ fn expect(program: &Program, case: &str) -> Result<(), Failed> {
     within(function, &run::<Bounded>(program, &call)?, &double, &single)
 }
 
-fn widen(slot: f32, kind: Kind) -> f64 {
-    if kind == Kind::Float { f64::from(slot) } else { f64::from_word(slot.word()) }
+fn widen(slot: f32, kind: SlotKind) -> f64 {
+    if kind == SlotKind::Float { f64::from(slot) } else { f64::from_word(slot.word()) }
 }
 
 fn run<N: Number>(program: &Program, call: &Call) -> Result<Vec<N>, Failed> {
@@ -160,8 +160,8 @@ pub fn near(
     wanted: &[f64],
     tolerance: f64,
 ) -> Result<(), Failed> {
-    let close = |kind: Kind, found: f64, wanted: f64| match kind {
-        Kind::Float => {
+    let close = |kind: SlotKind, found: f64, wanted: f64| match kind {
+        SlotKind::Float => {
             found == wanted
                 || found.is_nan() && wanted.is_nan()
                 || (found - wanted).abs() <= tolerance * wanted.abs().max(1.0)
@@ -179,8 +179,8 @@ pub fn near(
 
 fn show(function: &Function, slots: &[f64]) -> String {
     let scalars = slots.iter().zip(&function.result).map(|(slot, kind)| match kind {
-        Kind::Float => slot.to_string(),
-        Kind::Sint => (slot.word() as i32).to_string(),
+        SlotKind::Float => slot.to_string(),
+        SlotKind::Sint => (slot.word() as i32).to_string(),
         _ => slot.word().to_string(),
     });
     scalars.collect::<Vec<_>>().join(" ")
@@ -195,7 +195,7 @@ fn within(
     single: &[f32],
 ) -> Result<(), Failed> {
     for (i, kind) in function.result.iter().enumerate() {
-        if *kind != Kind::Float {
+        if *kind != SlotKind::Float {
             let same =
                 bounded[i].word() == double[i].word() && single[i].word() == double[i].word();
             same.then_some(()).ok_or_else(|| {

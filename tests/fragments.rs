@@ -10,12 +10,12 @@ use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
 use lamplight::eval::{
-    self, Bounded, Filter, Function, FunctionId, Kind, Machine, Number, Program, Resources,
+    self, Bounded, Filter, Function, FunctionId, Machine, Number, Program, Resources, SlotKind,
 };
-use lamplight::execute::fixture::{Fixture, Texture};
+use lamplight::execute::fixture::{Fixture, FixtureTexture};
 use lamplight::execute::frame::Buffers;
 use lamplight::execute::kernel::SENTINEL;
-use lamplight::picture::frame::Composed;
+use lamplight::picture::frame::ReadyStage;
 
 type Place = (u32, u32);
 
@@ -120,7 +120,7 @@ fn four(target: &[u32], pixel: usize) -> [u32; 4] {
 
 /// Computes every `step`-th whole quad of a frame again, and compares.
 pub fn recompute(
-    stage: &Composed,
+    stage: &ReadyStage,
     resources: Resources,
     watched: &Watched<'_>,
     step: usize,
@@ -145,7 +145,7 @@ pub fn entry_function<'a>(
 
 /// [`recompute`] for frames of several drivers. Quads with the same inputs are computed once.
 pub fn recompute_each(
-    stage: &Composed,
+    stage: &ReadyStage,
     resources: Resources,
     frames: &[Watched<'_>],
     step: usize,
@@ -250,8 +250,8 @@ fn judge_color(
 
 /// The inputs of a fragment, as the evaluator takes them.
 fn slots(signature: &Function, watched: &Watched<'_>, pixel: usize) -> Vec<Bounded> {
-    let slot = |(kind, word): (&Kind, u32)| match kind {
-        Kind::Float => Bounded::from_f64(f64::from(f32::from_bits(word))),
+    let slot = |(kind, word): (&SlotKind, u32)| match kind {
+        SlotKind::Float => Bounded::from_f64(f64::from(f32::from_bits(word))),
         _ => Bounded::from_word(word),
     };
     signature.arguments.iter().zip(watched.inputs(pixel)).map(slot).collect()
@@ -261,7 +261,7 @@ fn slots(signature: &Function, watched: &Watched<'_>, pixel: usize) -> Vec<Bound
 pub fn resources(
     buffers: Buffers,
     fixtures: &BTreeMap<Place, Arc<Fixture>>,
-    levels: &BTreeMap<Place, Vec<Texture>>,
+    levels: &BTreeMap<Place, Vec<FixtureTexture>>,
 ) -> Resources {
     let mut resources = Resources { buffers, ..Resources::default() };
     for (place, fixture) in fixtures {
@@ -287,7 +287,7 @@ pub fn resources(
 }
 
 /// The index of a fragment's input word, for each location and component.
-pub fn places(stage: &Composed) -> Result<BTreeMap<(u32, usize), usize>, String> {
+pub fn places(stage: &ReadyStage) -> Result<BTreeMap<(u32, usize), usize>, String> {
     let program = Program::new(&stage.validated.module, &stage.validated.info)
         .map_err(|error| error.to_string())?;
     let (_, function) = program

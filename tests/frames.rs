@@ -10,20 +10,18 @@ mod whole;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use lamplight::bundle::{
-    Bundle, Kind as BindingKind, Language, Reflection, Target, pack as pack_bundle,
-};
+use lamplight::bundle::{BindingKind, Bundle, Language, Reflection, Target, pack as pack_bundle};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::fixture::Fixture;
 use lamplight::execute::frame::{
-    Attribute, Buffers, Drawing, EntryPoint, Item, Mesh, VertexFormat,
+    Buffers, DrawItem, Drawing, EntryPoint, Mesh, VertexAttribute, VertexFormat,
 };
 use lamplight::execute::{Session, executors, on_thread};
 use lamplight::generate::{Request, in_memory};
 use lamplight::permute::axis::ValueSet;
-use lamplight::permute::space::{Lists, Slice};
+use lamplight::permute::space::{Slice, SliceLists};
 use lamplight::permute::{Assignment, Space, cover};
-use lamplight::picture::frame::{Composed, Programs, Stages, pack_buffer, probe};
+use lamplight::picture::frame::{Programs, ReadyStage, Stages, pack_buffer, probe};
 use lamplight::project;
 use lamplight::validate::{Validated, validate};
 use libtest_mimic::{Failed, Trial};
@@ -165,8 +163,8 @@ pub struct Sources {
 
 /// A permutation, with everything that is needed to draw it.
 pub struct Scene {
-    pub vertex: Composed,
-    pub fragment: Composed,
+    pub vertex: ReadyStage,
+    pub fragment: ReadyStage,
     /// The modules that are drawn, of both stages.
     drawn: [Arc<Validated>; 2],
     pub mesh: Mesh,
@@ -237,7 +235,7 @@ pub fn bundle(
     );
     let all = sources.space.axes().iter().map(|axis| ValueSet::full(axis.values.len())).collect();
     let exclude = vec![Slice { values: all, span: program.span }];
-    let lists = Lists { only: Vec::new(), exclude, include };
+    let lists = SliceLists { only: Vec::new(), exclude, include };
     program.space =
         Space::new(sources.space.axes().to_vec(), sources.space.constraints().to_vec(), lists)
             .map_err(|_| "no space")?;
@@ -278,13 +276,13 @@ fn mesh(vertex: &Reflection) -> Mesh {
             ty if ty.starts_with("vec3") => VertexFormat::Float32x3,
             _ => VertexFormat::Float32x4,
         };
-        attributes.push(Attribute { location, format });
+        attributes.push(VertexAttribute { location, format });
     }
     let corner = |x: u32, y: u32| {
         let (u, v) = (f64::from(x) / 8.0, f64::from(y) / 8.0);
         let (px, py) = (2.0 * u - 1.0, 2.0 * v - 1.0);
         let bump = 0.3 * (3.0 * px).sin() * (2.0 * py).cos();
-        let attribute = |attribute: &Attribute| -> Vec<u32> {
+        let attribute = |attribute: &VertexAttribute| -> Vec<u32> {
             let values = match attribute.location {
                 0 => vec![px, py, bump],
                 1 => vec![
@@ -315,7 +313,7 @@ fn agrees(renderer: &dyn Session, scene: &Scene, most: f64) -> Result<Tally, Str
     let watched = probe::watch_entry(&drawn_fragment.module, fragment.entry).ok_or("no colour")?;
     let vertex = EntryPoint { module: &drawn_vertex.module, entry: vertex.entry };
     let point = EntryPoint { module: &watched.module, entry: fragment.entry };
-    let items = [Item { mesh, buffers }];
+    let items = [DrawItem { mesh, buffers }];
     let drawing = Drawing {
         targets: watched.targets,
         ..Drawing::of_items([vertex, point], &items, &scene.fixtures, [WIDTH, HEIGHT])

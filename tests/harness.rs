@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
 use lamplight::bundle::Language;
-use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, Mesh, State};
+use lamplight::execute::frame::{Buffers, DrawItem, Drawing, EntryPoint, Mesh, PipelineState};
 use lamplight::execute::{self, Session, executors, kernel};
 use lamplight::proof::library::Library;
 use lamplight::proof::{check, expression};
@@ -54,7 +54,7 @@ const PART: usize = 4;
 
 /// Runs a function with every executor open, on a thread that ends before the trial does.
 fn opened<T: Send>(
-    run: impl FnOnce(&mut [check::Open]) -> Result<T, Failed> + Send,
+    run: impl FnOnce(&mut [check::OpenExecutor]) -> Result<T, Failed> + Send,
 ) -> Result<T, Failed> {
     opened_of(|_| true, run)
 }
@@ -62,12 +62,12 @@ fn opened<T: Send>(
 /// Runs a function with some executors open.
 fn opened_of<T: Send>(
     wanted: fn(&str) -> bool,
-    run: impl FnOnce(&mut [check::Open]) -> Result<T, Failed> + Send,
+    run: impl FnOnce(&mut [check::OpenExecutor]) -> Result<T, Failed> + Send,
 ) -> Result<T, Failed> {
     let outcome = execute::on_thread(|| {
         let mut open = Vec::new();
         for entry in executors::ALL.iter().filter(|entry| wanted(entry.name)) {
-            open.push(check::Open { executor: entry.name, session: entry.start()? });
+            open.push(check::OpenExecutor { executor: entry.name, session: entry.start()? });
         }
         run(&mut open).map_err(|failed| failed.message().unwrap_or_default().to_owned())
     });
@@ -271,7 +271,7 @@ fn expressions() -> Result<(), Failed> {
 }
 
 /// The failures of a report, as text.
-fn failed(report: &check::Report) -> String {
+fn failed(report: &check::CheckReport) -> String {
     check::failures_as_text(&check::report_failures(report))
 }
 
@@ -293,7 +293,7 @@ fn shapes(a: f32, o: Outer, u: vec3u) -> Outer {
 
 /// An executor runs a kernel with structs, matrices, booleans and integers, with more rows than one
 /// dispatch has, and gives the exact words.
-fn runs(executor: &'static executors::Entry) -> Result<(), Failed> {
+fn runs(executor: &'static executors::ExecutorEntry) -> Result<(), Failed> {
     let module = naga::front::wgsl::parse_str(SHAPES)?;
     let kernel = kernel::build_kernel(&module, "shapes", &BTreeMap::new())
         .map_err(|error| format!("{error:?}"))?;
@@ -310,24 +310,27 @@ fn runs(executor: &'static executors::Entry) -> Result<(), Failed> {
 }
 
 /// An executor draws frames exactly if its entry says so.
-fn draws_as_listed(executor: &executors::Entry, session: &dyn Session) -> Result<(), Failed> {
+fn draws_as_listed(
+    executor: &executors::ExecutorEntry,
+    session: &dyn Session,
+) -> Result<(), Failed> {
     let text = "@vertex fn corner(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
         return vec4f(f32(index & 1u), f32(index >> 1u), 0.5, 1.0);
     }";
     let module = naga::front::wgsl::parse_str(text)?;
-    let (mesh, none, state) = (Mesh::default(), Buffers::new(), State::default());
+    let (mesh, none, state) = (Mesh::default(), Buffers::new(), PipelineState::default());
     let drawing = Drawing {
         vertex: EntryPoint { module: &module, entry: "corner" },
         fragment: None,
         targets: 0,
-        items: &[Item { mesh: &mesh, buffers: &none }],
+        items: &[DrawItem { mesh: &mesh, buffers: &none }],
         views: &[Buffers::new()],
         buffers: &none,
         plain: &[],
         fixtures: &BTreeMap::new(),
         levels: &BTreeMap::new(),
         size: [8, 8],
-        state: State { depth_test: true, keep_depth: true, ..state },
+        state: PipelineState { depth_test: true, keep_depth: true, ..state },
     };
     match (session.draw_frames(&drawing), executor.samples) {
         (Ok(frames), Some(_)) => {

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use lamplight::bundle::{Bounds, Conventions, Language, Target};
+use lamplight::bundle::{BoundsChecks, Conventions, Language, Target};
 use lamplight::compose::{Composed, Keep, Options, PartKind, compose, lean};
 use lamplight::emit::emit_for;
-use lamplight::link::{Linker, Text, compile};
+use lamplight::link::{Linker, TextForms, compile};
 use lamplight::permute::Manifest;
 use lamplight::resolve::{self, Packages};
 use lamplight::source::SourceSet;
@@ -20,7 +20,7 @@ pub fn all(
     manifest: &Manifest,
     step: usize,
 ) -> Result<(), Failed> {
-    for bounds in [Bounds::Unchecked, Bounds::Restrict] {
+    for bounds in [BoundsChecks::Unchecked, BoundsChecks::Restrict] {
         let conventions = Conventions { bounds, ..Conventions::default() };
         all_with(conventions, sources, packages, manifest, step)
             .map_err(|error| format!("{bounds:?}: {}", error.message().unwrap_or_default()))?;
@@ -74,7 +74,7 @@ fn one(
     conventions: Conventions,
 ) -> Result<(), String> {
     let lean = lean(composed);
-    let text = Text { composed, lean: &lean };
+    let text = TextForms { composed, lean: &lean };
     let targets = linker.targets();
     let made = compile(&text, entry, targets, linker).map_err(|errors| format!("{errors:?}"))?;
     if let Some(whole) = made.whole.first() {

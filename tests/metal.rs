@@ -16,9 +16,9 @@ mod references;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use lamplight::execute::compiled::Program;
-use lamplight::execute::compiled::request::{Bound, Fragment};
-use lamplight::metal::{Clang, Missing, Refusal, judge_batch};
+use lamplight::execute::compiled::CompiledProgram;
+use lamplight::execute::compiled::request::{FragmentInput, MetalResources};
+use lamplight::metal::{Clang, ClangMissing, MslRefusal, judge_batch};
 use libtest_mimic::{Failed, Trial};
 use rayon::prelude::*;
 use references::{REFERENCES, Reference};
@@ -51,8 +51,8 @@ fn told(wrong: &[String]) -> Outcome {
 }
 
 /// What the judge refuses. Each refusal has the index of its text.
-fn judge_texts(texts: &[String]) -> Result<Vec<Refusal>, String> {
-    let reason = |missing: Missing| missing.reason;
+fn judge_texts(texts: &[String]) -> Result<Vec<MslRefusal>, String> {
+    let reason = |missing: ClangMissing| missing.reason;
     let clang = Clang::open().map_err(reason)?;
     let views: Vec<(usize, &str)> = texts.iter().map(String::as_str).enumerate().collect();
     let judged = views.par_chunks(64).map(|batch| judge_batch(&clang, batch));
@@ -86,7 +86,7 @@ fn functions() -> Outcome {
     let files = files("functions");
     let texts: Vec<String> = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
     let views: Vec<&str> = texts.iter().map(String::as_str).collect();
-    let mut program = Program::build(&views).map_err(|missing| missing.reason)?;
+    let mut program = CompiledProgram::build(&views).map_err(|missing| missing.reason)?;
     let mut wrong = Vec::new();
     for (index, file) in files.iter().enumerate() {
         let name = file.file_stem().unwrap().to_str().unwrap();
@@ -104,11 +104,11 @@ fn functions() -> Outcome {
     told(&wrong)
 }
 
-fn tried(program: &mut Program, text: usize, reference: &Reference) -> Result<(), String> {
-    let quads: Vec<[Fragment; 4]> = (0..QUADS)
+fn tried(program: &mut CompiledProgram, text: usize, reference: &Reference) -> Result<(), String> {
+    let quads: Vec<[FragmentInput; 4]> = (0..QUADS)
         .map(|quad| [0, 1, 2, 3].map(|lane| fragment(reference, 4 * quad + lane)))
         .collect();
-    let shaded = program.quads(text, &Bound::default(), &quads)?;
+    let shaded = program.quads(text, &MetalResources::default(), &quads)?;
     for (fragment, shaded) in quads.iter().flatten().zip(shaded.iter().flatten()) {
         let words: [u32; 12] = std::array::from_fn(|i| fragment.locations[i / 4][i % 4]);
         compare(reference, &words, &shaded.targets.concat())?;
@@ -116,7 +116,7 @@ fn tried(program: &mut Program, text: usize, reference: &Reference) -> Result<()
     Ok(())
 }
 
-fn fragment(reference: &Reference, row: u32) -> Fragment {
+fn fragment(reference: &Reference, row: u32) -> FragmentInput {
     let word = |place: u32| {
         let bits = scrambled(12 * row + place);
         match reference {
@@ -128,7 +128,10 @@ fn fragment(reference: &Reference, row: u32) -> Fragment {
         }
     };
     let location = |first: u32| std::array::from_fn(|i| word(first + i as u32));
-    Fragment { locations: vec![location(0), location(4), location(8)], ..Fragment::default() }
+    FragmentInput {
+        locations: vec![location(0), location(4), location(8)],
+        ..FragmentInput::default()
+    }
 }
 
 /// A pseudo-random word for an index.
@@ -181,15 +184,17 @@ fn crashes() -> Outcome {
         "int zero = static_cast<int>(at.x); metal::float4 list[4]; volatile int* p = nullptr; *p = zero; return Output { list[zero] };",
     );
     let sound = text("return Output { at };");
-    let mut program = Program::build(&[&crash, &sound]).map_err(|missing| missing.reason)?;
-    let quads = [std::array::from_fn(|_| Fragment { position: [1.0; 4], ..Fragment::default() })];
-    let Err(error) = program.quads(0, &Bound::default(), &quads) else {
+    let mut program =
+        CompiledProgram::build(&[&crash, &sound]).map_err(|missing| missing.reason)?;
+    let quads =
+        [std::array::from_fn(|_| FragmentInput { position: [1.0; 4], ..FragmentInput::default() })];
+    let Err(error) = program.quads(0, &MetalResources::default(), &quads) else {
         return Err("a shader that writes through a null pointer gave no error".into());
     };
     if !error.contains("the program ended") {
         return Err(format!("expected `the program ended`, found {error}").into());
     }
-    let shaded = program.quads(1, &Bound::default(), &quads)?;
+    let shaded = program.quads(1, &MetalResources::default(), &quads)?;
     if shaded[0][3].targets[0] != [1.0f32.to_bits(); 4] {
         return Err(format!("the shader after the crash should give 1, found {shaded:?}").into());
     }

@@ -185,7 +185,7 @@ fn own_executor() -> Outcome {
     let path = "src/execute/executors/fresh.rs";
     for (rest, parts) in [
         (&["own"][..], &["impl Session for ", "run_batches(", "draw_pixels(", "emit_kernel("][..]),
-        (&[], &["`Named::Without`", "`Shaders::Emitted(Target::SPIRV)`"]),
+        (&[], &["`AdapterName::Without`", "`Shaders::Emitted(Target::SPIRV)`"]),
     ] {
         let files = make("executor", "fresh", rest)?;
         let text = text(&files, path)?;

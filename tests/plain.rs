@@ -13,7 +13,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use lamplight::catalogue::{self, Item, Kind, Module};
+use lamplight::catalogue::{self, CatalogueItem, CatalogueItemKind, CatalogueModule};
 use lamplight::source::Disk;
 use libtest_mimic::{Failed, Trial};
 use serde_json::Value;
@@ -48,22 +48,22 @@ fn folder() -> PathBuf {
 }
 
 /// Functions by their path below the package.
-fn functions(modules: Vec<Module>) -> BTreeMap<String, Item> {
+fn functions(modules: Vec<CatalogueModule>) -> BTreeMap<String, CatalogueItem> {
     let items = modules.into_iter().flat_map(|module| module.items);
-    let functions = items.filter(|item| item.kind == Kind::Function);
+    let functions = items.filter(|item| item.kind == CatalogueItemKind::Function);
     functions.map(|item| (format!("{}::{}", item.module, item.name), item)).collect()
 }
 
-fn plain_functions() -> Result<BTreeMap<String, Item>, Failed> {
+fn plain_functions() -> Result<BTreeMap<String, CatalogueItem>, Failed> {
     Ok(functions(catalogue::own_modules(&Disk::new(folder())?)))
 }
 
-fn library_functions() -> BTreeMap<String, Item> {
+fn library_functions() -> BTreeMap<String, CatalogueItem> {
     functions(catalogue::library_modules())
 }
 
 /// What a line of a function's comment says after this word.
-fn told<'i>(item: &'i Item, word: &str) -> Option<&'i str> {
+fn told<'i>(item: &'i CatalogueItem, word: &str) -> Option<&'i str> {
     item.doc.iter().find_map(|line| line.trim().strip_prefix(word)).map(str::trim)
 }
 
@@ -156,7 +156,7 @@ const UNIT: [(&str, &str); 3] = [
 ];
 
 /// A call's arguments inside the domain.
-fn arguments_of(item: &Item) -> Result<String, Failed> {
+fn arguments_of(item: &CatalogueItem) -> Result<String, Failed> {
     if let Some(given) = told(item, "At:") {
         return Ok(given.to_owned());
     }
@@ -181,8 +181,10 @@ fn arguments_of(item: &Item) -> Result<String, Failed> {
 /// library's in the functions that they call, and in the tests of places off the map.
 fn agree() -> Outcome {
     let plain = plain_functions()?;
-    let samples = |item: &Item| item.members.iter().any(|member| member.ty.contains("texture"));
-    let compared: Vec<(&String, &Item)> = plain.iter().filter(|(_, item)| !samples(item)).collect();
+    let samples =
+        |item: &CatalogueItem| item.members.iter().any(|member| member.ty.contains("texture"));
+    let compared: Vec<(&String, &CatalogueItem)> =
+        plain.iter().filter(|(_, item)| !samples(item)).collect();
     let mut lines = String::new();
     for (path, item) in &compared {
         let arguments = arguments_of(item).map_err(|error| format!("`{path}`: {error:?}"))?;

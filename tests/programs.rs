@@ -11,7 +11,7 @@ use lamplight::compose::{self, Composed, Keep, Options};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::emit::{emit, isolate, reflect};
-use lamplight::permute::manifest::{self, File, Program};
+use lamplight::permute::manifest::{self, ManifestFile, Program};
 use lamplight::permute::{Assignment, ReadTree, Settings, cover};
 use lamplight::resolve::{self, Packages};
 use lamplight::source::{Embedded, Files as _, Package, SourceSet};
@@ -74,7 +74,7 @@ fn has(program: &Program, stage: &str) -> bool {
     glsl_file(program, stage).is_some()
 }
 
-fn glsl_file<'a>(program: &'a Program, stage: &str) -> Option<&'a File> {
+fn glsl_file<'a>(program: &'a Program, stage: &str) -> Option<&'a ManifestFile> {
     let glsl = program.glsl.as_ref()?;
     if stage == "vertex" { glsl.vertex.as_ref() } else { glsl.fragment.as_ref() }
 }

@@ -93,7 +93,7 @@ fn mutants(kind: &Kind) -> Result<(), Failed> {
         Err(_) => Ok(usual),
     };
     let count: u64 = number("LAMPLIGHT_FUZZ_INPUTS", MUTANTS)?;
-    let mut random = mutate::Random(number("LAMPLIGHT_FUZZ_SEED", 1)?);
+    let mut random = mutate::FuzzRandom(number("LAMPLIGHT_FUZZ_SEED", 1)?);
     let corpus = mutate::corpus_of(Path::new(env!("CARGO_MANIFEST_DIR")), kind.corpus);
     let words: Vec<&str> = kind.words.split_whitespace().collect();
     for index in 0..count {

@@ -31,7 +31,7 @@ use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::frame::{Buffers, EntryPoint};
 use lamplight::execute::{Session, executors, on_thread};
 use lamplight::picture::frame::{Programs, probe as watch};
-use lamplight::picture::{Linear, Picture, Plan, Prepared, Shot, Surroundings, prepare_passes};
+use lamplight::picture::{Linear, Picture, Plan, PreparedPass, Shot, Surroundings, prepare_passes};
 use libtest_mimic::{Failed, Trial};
 
 use crate::fragments::{self, Tally, Watched};
@@ -231,7 +231,7 @@ fn recomputed(painter: &dyn Session, plan: &Plan, language: Language) -> Result<
 /// Computes a sample of the fragments of a frame again. Its objects share the material's buffers.
 fn recomputed_of(
     painter: &dyn Session,
-    prepared: &Prepared,
+    prepared: &PreparedPass,
     material: &Buffers,
     tally: &mut Tally,
 ) -> Result<(), String> {
@@ -248,7 +248,7 @@ fn recomputed_of(
 }
 
 /// The buffers of each object that the fragment stage reads.
-fn fragment_buffers(prepared: &Prepared) -> Vec<Buffers> {
+fn fragment_buffers(prepared: &PreparedPass) -> Vec<Buffers> {
     let bindings = prepared.stages.fragment.iter().flat_map(|stage| &stage.reflection.bindings);
     let used: Vec<_> = bindings.map(|binding| (binding.group, binding.binding)).collect();
     let of = |buffers: &Buffers| {
@@ -264,7 +264,7 @@ fn fragment_buffers(prepared: &Prepared) -> Vec<Buffers> {
 /// The targets of one frame: the colours, then the inputs of each fragment.
 pub fn watched(
     painter: &dyn Session,
-    prepared: &Prepared,
+    prepared: &PreparedPass,
     size: [u32; 2],
 ) -> Result<Vec<Vec<u32>>, String> {
     let stage = prepared.stages.fragment.as_ref().ok_or("no fragment stage")?;

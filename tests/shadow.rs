@@ -12,7 +12,9 @@ use std::sync::{Arc, Mutex};
 use glam::{DMat4, DVec4};
 use lamplight::bundle::Language;
 use lamplight::diagnostic::Diagnostic;
-use lamplight::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use lamplight::execute::fixture::{
+    Address, Compare, Fixture, FixtureSampler, FixtureTexture, TextureKind,
+};
 use lamplight::execute::{Session, executors, kernel, on_thread};
 use lamplight::proof::library::Library;
 use lamplight::source::{Embedded, Memory, SourceSet};
@@ -210,7 +212,7 @@ impl Run<'_> {
     fn call(
         &mut self,
         function: &str,
-        map: Option<(Texture, Sampler)>,
+        map: Option<(FixtureTexture, FixtureSampler)>,
         rows: &[Vec<f32>],
     ) -> Result<Vec<f64>, String> {
         let words: Vec<u32> = rows.iter().flatten().map(|value| value.to_bits()).collect();
@@ -220,7 +222,7 @@ impl Run<'_> {
     fn call_words(
         &mut self,
         function: &str,
-        map: Option<(Texture, Sampler)>,
+        map: Option<(FixtureTexture, FixtureSampler)>,
         words: &[u32],
     ) -> Result<Vec<f64>, String> {
         let sources = Mutex::new(SourceSet::default());
@@ -245,21 +247,21 @@ fn said(errors: &[Diagnostic]) -> String {
 }
 
 /// A square depth map. The depth of a texel is a function of its centre.
-fn depths(side: u32, depth: impl Fn(f64, f64) -> f64) -> Texture {
+fn depths(side: u32, depth: impl Fn(f64, f64) -> f64) -> FixtureTexture {
     let centre = |index: u32| (f64::from(index) + 0.5) / f64::from(side);
     let texels = (0..side)
         .flat_map(|y| (0..side).map(move |x| (x, y)))
         .map(|(x, y)| depth(centre(x), centre(y)) as f32)
         .collect();
-    Texture { kind: TextureKind::Depth2d, width: side, height: side, texels }
+    FixtureTexture { kind: TextureKind::Depth2d, width: side, height: side, texels }
 }
 
-fn comparing(compare: Compare, linear: bool) -> Sampler {
-    Sampler { compare: Some(compare), linear, address: Address::Clamp }
+fn comparing(compare: Compare, linear: bool) -> FixtureSampler {
+    FixtureSampler { compare: Some(compare), linear, address: Address::Clamp }
 }
 
-fn plain(linear: bool) -> Sampler {
-    Sampler { compare: None, linear, address: Address::Clamp }
+fn plain(linear: bool) -> FixtureSampler {
+    FixtureSampler { compare: None, linear, address: Address::Clamp }
 }
 
 /// The matrix that turns depths that rise with the distance into depths that fall.

@@ -14,8 +14,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use lamplight::browser::serve::{Files, Server};
-use lamplight::browser::{Browser, Page};
+use lamplight::browser::serve::{HttpServer, ServedFiles};
+use lamplight::browser::{Browser, BrowserPage};
 use lamplight::catalogue;
 use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
@@ -50,18 +50,18 @@ fn site() -> Result<PathBuf, Failed> {
 
 /// The served site, and a browser.
 struct Opened {
-    server: Server,
+    server: HttpServer,
     browser: Arc<Browser>,
 }
 
 impl Opened {
     fn new() -> Result<Self, Failed> {
-        let server = Server::start(Files::Folder(site()?))?;
+        let server = HttpServer::start(ServedFiles::Folder(site()?))?;
         Ok(Self { server, browser: Browser::shared()? })
     }
 
     /// Opens a page, and waits until it is ready.
-    fn page(&self, address: &str) -> Result<Page, Failed> {
+    fn page(&self, address: &str) -> Result<BrowserPage, Failed> {
         let page = self.browser.open(&self.server.address(address))?;
         page.until("document.body?.dataset.ready !== undefined", PATIENCE)?;
         Ok(page)
@@ -69,7 +69,7 @@ impl Opened {
 }
 
 /// Waits for something. The error has the words that the page says meanwhile.
-fn wait(page: &Page, expression: &str) -> Outcome {
+fn wait(page: &BrowserPage, expression: &str) -> Outcome {
     let said = "[document.visibilityState, ...[...document.querySelectorAll('#notice, .status, .wrong, .problems, .eval output')]
         .map((it) => it.textContent)].join('; ')";
     page.until(expression, PATIENCE).map_err(|problem| match text(page, said) {
@@ -78,12 +78,12 @@ fn wait(page: &Page, expression: &str) -> Outcome {
     })
 }
 
-fn text(page: &Page, expression: &str) -> Result<String, Failed> {
+fn text(page: &BrowserPage, expression: &str) -> Result<String, Failed> {
     let found = page.evaluate(expression, PATIENCE)?;
     Ok(found.as_str().map_or_else(|| found.to_string(), str::to_owned))
 }
 
-fn without_errors(page: &mut Page) -> Outcome {
+fn without_errors(page: &mut BrowserPage) -> Outcome {
     match page.errors() {
         [] => Ok(()),
         errors => Err(format!("the page has errors:\n{}", errors.join("\n")).into()),
@@ -124,7 +124,7 @@ fn catalogue() -> Outcome {
 }
 
 /// A plot has the values of the GPU, and changes with its slider. The search finds an entry.
-fn plotted(page: &mut Page) -> Outcome {
+fn plotted(page: &mut BrowserPage) -> Outcome {
     page.evaluate("location.hash = '#/catalogue/brdf::specular::blinn_phong'", PATIENCE)?;
     page.until("document.querySelectorAll('.live .curve').length > 0", PATIENCE)?;
     page.until("document.querySelector('.live').dataset.device === 'WebGPU'", PATIENCE)?;
@@ -151,7 +151,7 @@ fn plotted(page: &mut Page) -> Outcome {
 }
 
 /// A function that reads a texture of depths is drawn partly lit and partly in shadow.
-fn textured(page: &mut Page) -> Outcome {
+fn textured(page: &mut BrowserPage) -> Outcome {
     page.evaluate("location.hash = '#/catalogue/shadow::compare::hard'", PATIENCE)?;
     page.until("document.querySelector('article h1')?.textContent === 'hard'", PATIENCE)?;
     let canvas = "document.querySelector('.sketch canvas')";

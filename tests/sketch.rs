@@ -8,7 +8,7 @@ use lamplight::compose::{self, Options};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::execute::{executors, on_thread};
 use lamplight::permute::Settings;
-use lamplight::picture::sketch::{MODELS, Setting, Sketch};
+use lamplight::picture::sketch::{MODELS, Sketch, SketchOptions};
 use lamplight::picture::{Picture, Shot, Surroundings};
 use lamplight::resolve::{self, Packages};
 use lamplight::scene::environment;
@@ -40,7 +40,7 @@ fn sketch(text: &str) -> Result<Sketch, Diagnostics> {
 }
 
 /// The picture of a stage.
-fn drawn(text: &str, setting: &Setting) -> Result<Picture, Failed> {
+fn drawn(text: &str, setting: &SketchOptions) -> Result<Picture, Failed> {
     let sky = environment("studio").ok_or("no environment")?;
     let shot = Shot {
         size: [SIZE; 2],
@@ -72,14 +72,14 @@ fn inputs() -> Outcome {
     const TEXT: &str = "@fragment fn fs_main(@location(0) world_normal: vec3f, @location(3) k: f32)
         -> @location(0) vec4f { return vec4f(normalize(world_normal), k); }";
     for (model, _) in MODELS.iter().filter(|(name, _)| !matches!(*name, "plane" | "torus")) {
-        let setting = Setting { model: (*model).to_owned(), ..Setting::default() };
+        let setting = SketchOptions { model: (*model).to_owned(), ..SketchOptions::default() };
         let [red, green, blue] = middle(&drawn(TEXT, &setting)?);
         assert!(blue > 200.max(red).max(green), "{model}: {red}, {green}, {blue}");
     }
     let inputs = BTreeMap::from([("world_normal".to_owned(), "zero".to_owned())]);
     let zero = "@fragment fn fs_main(@location(0) world_normal: vec3f) -> @location(0) vec4f {
         return vec4f(world_normal + vec3f(1.0, 0.0, 0.0), 1.0); }";
-    let setting = Setting { inputs, ..Setting::default() };
+    let setting = SketchOptions { inputs, ..SketchOptions::default() };
     assert_eq!(middle(&drawn(zero, &setting)?), [255, 0, 0]);
     Ok(())
 }
@@ -93,7 +93,7 @@ fn uniforms() -> Outcome {
             return vec4f(knobs.turn * knobs.tint, 1.0) * f32(knobs.steps) + 0.0 * knobs.all[1];
         }";
     let uniforms = BTreeMap::from([("knobs.tint".to_owned(), vec![1.0, 0.0, 1.0])]);
-    let setting = Setting { uniforms, ..Setting::default() };
+    let setting = SketchOptions { uniforms, ..SketchOptions::default() };
     assert_eq!(middle(&drawn(TEXT, &setting)?), [255, 0, 255]);
     let sketch = sketch(TEXT).map_err(|problems| format!("{problems:?}"))?;
     let listed = sketch.uniforms(&setting).into_iter();
@@ -132,11 +132,11 @@ fn loops_end() -> Outcome {
         )
     };
     // 2,047 trips are left: one was counted when the first loop found that it is done.
-    let [red, green, _] = middle(&drawn(&text(""), &Setting::default())?);
+    let [red, green, _] = middle(&drawn(&text(""), &SketchOptions::default())?);
     assert_eq!([red, green], [188, 187]);
     let derived =
         text("").replace("let first = spin(2048u);", "let first = spin(2048u) + 0.0 * dpdx(uv.x);");
-    let [red, green, _] = middle(&drawn(&derived, &Setting::default())?);
+    let [red, green, _] = middle(&drawn(&derived, &SketchOptions::default())?);
     assert_eq!([red, green], [188, 255]);
     Ok(())
 }
@@ -153,7 +153,7 @@ fn refused() -> Outcome {
         ),
     ];
     for (text, expected) in cases {
-        let said = match drawn(text, &Setting::default()) {
+        let said = match drawn(text, &SketchOptions::default()) {
             Ok(_) => "nothing".to_owned(),
             Err(error) => error.message().unwrap_or_default().to_owned(),
         };

@@ -1,7 +1,7 @@
 //! What texts are divided into, and GLSL without its comments and layout.
 
 use lamplight::compose::lean_glsl;
-use lamplight::parse::words::{PieceKind, has_word, is_word, pieces, word_around, words};
+use lamplight::parse::words::{LexemeKind, has_word, is_word, pieces, word_around, words};
 use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
@@ -19,7 +19,7 @@ fn pieces_are_all_of_the_text() -> Outcome {
     let found: Vec<&str> = pieces(text).map(|piece| piece.text).collect();
     assert_eq!(found.concat(), text);
     let solid: Vec<&str> = pieces(text)
-        .filter(|piece| piece.kind != PieceKind::Blank)
+        .filter(|piece| piece.kind != LexemeKind::Blank)
         .map(|piece| piece.text)
         .collect();
     assert_eq!(solid, ["vec3f", "(", ".5e-3", ",", "0x1p-2", "+", "größe", ")", "@", "x"]);

@@ -379,7 +379,7 @@ fn formulas(asked: &mut Asked) -> Result<(), Failed> {
     for (module, function, words) in calls {
         let missing = || format!("`{module}` has no reference for `{function}`");
         let formula = references::find_reference(module, function).ok_or_else(missing)?;
-        let value = formula(&mut references::Arguments::new(&words, &[])).value;
+        let value = formula(&mut references::CallArguments::new(&words, &[])).value;
         let path = format!("{module}::{function}");
         let mut call = vec![json!(path)];
         call.extend(words.iter().map(|word| json!(word)));

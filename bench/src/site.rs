@@ -5,8 +5,8 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use lamplight::browser::serve::{Files, Server};
-use lamplight::browser::{Browser, Page};
+use lamplight::browser::serve::{HttpServer, ServedFiles};
+use lamplight::browser::{Browser, BrowserPage};
 use lamplight::bundle::{Conventions, Language, Target};
 use lamplight::compose::{self, Options};
 use lamplight::diagnostic::{Diagnostic, Diagnostics};
@@ -19,7 +19,7 @@ use lamplight::picture::{self, Plan, Shot, Surroundings};
 use lamplight::project::{self, LIBRARY, MANIFEST};
 use lamplight::proof::expression::evaluate_expression;
 use lamplight::proof::library::Library as ProofLibrary;
-use lamplight::resolve::wesl::{self, Kept};
+use lamplight::resolve::wesl::{self, KeptModules};
 use lamplight::resolve::{self, Graph, Packages};
 use lamplight::scene::environment;
 use lamplight::source::{Embedded, Files as _, Memory, Package, SourceSet};
@@ -56,7 +56,7 @@ pub fn run() -> Outcome {
         .map(|time| time.map(|time| format!("{:.2}", 1000.0 * time.as_secs_f64())))
         .collect::<Result<_, _>>()
         .map_err(|problems| words(&problems))?;
-    let server = Server::start(Files::Folder(folder))?;
+    let server = HttpServer::start(ServedFiles::Folder(folder))?;
     let browser = Browser::start()?;
     let page = browser.open(&server.address(&format!("#/speed?native={}", times.join(","))))?;
     page.until("document.querySelector('main')?.dataset.done === '1'", PATIENCE)?;
@@ -66,7 +66,7 @@ pub fn run() -> Outcome {
     Ok(())
 }
 
-fn rows(page: &Page) -> Result<Vec<Vec<String>>, Box<dyn std::error::Error>> {
+fn rows(page: &BrowserPage) -> Result<Vec<Vec<String>>, Box<dyn std::error::Error>> {
     let cells = "[...document.querySelectorAll('tr')].map((row) => [...row.cells].map((it) => it.textContent))";
     let found: Value = page.evaluate(cells, PATIENCE)?;
     Ok(serde_json::from_value(found)?)
@@ -128,7 +128,7 @@ fn keystroke() -> Result<Duration, Diagnostics> {
     let mut read = SourceSet::default();
     let id = read.add(MANIFEST, manifest);
     let manifest = manifest::parse(&read, id)?;
-    let mut kept = Kept::default();
+    let mut kept = KeptModules::default();
     median(|index| {
         let edited = text.replace("fn fs_main", &format!("// {index}\nfn fs_main"));
         let files = BTreeMap::from([(FORWARD.to_owned(), edited)]);

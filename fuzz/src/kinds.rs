@@ -165,7 +165,7 @@ fn compile(bytes: &[u8]) -> String {
         let composed = compose::compose(&graph, &settings, &Options { keep, ..Options::default() });
         let made = composed.and_then(|composed| {
             let lean = compose::lean(&composed);
-            let text = link::Text { composed: &composed, lean: &lean };
+            let text = link::TextForms { composed: &composed, lean: &lean };
             link::compile(&text, &point.name, Target::ALL, &Linker::new(Target::ALL))
         });
         answer += &match made {

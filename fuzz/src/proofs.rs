@@ -8,10 +8,10 @@ use std::sync::{Arc, Mutex};
 use lamplight::bundle::Language;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::executors;
-use lamplight::lsp::Server;
+use lamplight::lsp::LanguageServer;
 use lamplight::model::View;
 use lamplight::picture::Picture;
-use lamplight::proof::check::{Open, failures_as_text, report_failures};
+use lamplight::proof::check::{OpenExecutor, failures_as_text, report_failures};
 use lamplight::proof::library::Library;
 use lamplight::scene::Equirect;
 use lamplight::source::{Memory, SourceSet};
@@ -68,8 +68,8 @@ fn cases(bytes: &[u8]) -> String {
     let library = Library::new("package", Arc::new(Memory(files)), Vec::new());
     let sources = Mutex::new(SourceSet::default());
     let opened = executors::find_executor("eval").and_then(|entry| entry.start().ok());
-    let mut open: Vec<Open> =
-        opened.map(|session| Open { executor: "eval", session }).into_iter().collect();
+    let mut open: Vec<OpenExecutor> =
+        opened.map(|session| OpenExecutor { executor: "eval", session }).into_iter().collect();
     match library.check(&sources, &["m.toml".to_owned()], &[Language::Wesl], &mut open) {
         Ok(report) => {
             format!("{} {}", report.outcomes.len(), failures_as_text(&report_failures(&report)))
@@ -151,7 +151,7 @@ const PLACES: usize = 4;
 /// editor. The lines between two such messages are a new text of one of the editor's two files: of
 /// the GLSL file if the text has a directive, which WESL does not know, and of the WESL file if not.
 fn lsp(bytes: &[u8]) -> String {
-    let mut server = Server::new(Box::new(|_| None));
+    let mut server = LanguageServer::new(Box::new(|_| None));
     let mut answers = String::new();
     let mut edited = String::new();
     let all = text(bytes);
@@ -174,7 +174,7 @@ fn lsp(bytes: &[u8]) -> String {
 }
 
 /// Sends a new text, waits for its diagnostics, and makes the requests about it.
-fn converse(server: &mut Server, new: &str, answers: &mut String) {
+fn converse(server: &mut LanguageServer, new: &str, answers: &mut String) {
     let is_glsl = new.lines().any(|line| line.trim_start().starts_with('#'));
     let uri = if is_glsl { GLSL } else { WESL };
     let document = json!({ "uri": uri, "version": 1, "text": new });
@@ -196,13 +196,13 @@ fn converse(server: &mut Server, new: &str, answers: &mut String) {
     ask(server, VIEWS, &json!({ "textDocument": document, "options": {} }), answers);
 }
 
-fn ask(server: &mut Server, methods: &[&str], parameters: &Value, answers: &mut String) {
+fn ask(server: &mut LanguageServer, methods: &[&str], parameters: &Value, answers: &mut String) {
     for method in methods {
         say(server, &json!({ "id": 1, "method": method, "params": parameters }), answers);
     }
 }
 
 /// Sends a message to the server and appends its answers.
-fn say(server: &mut Server, message: &Value, answers: &mut String) {
+fn say(server: &mut LanguageServer, message: &Value, answers: &mut String) {
     server.receive(message).iter().for_each(|answer| answers.push_str(&answer.to_string()));
 }

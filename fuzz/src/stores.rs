@@ -4,7 +4,7 @@
 use std::sync::{Arc, Mutex};
 
 use lamplight::bundle::{Bundle, Conventions, Language, Target, merge, pack};
-use lamplight::cache::{Cache, Job, Storage};
+use lamplight::cache::{Cache, CompileJob, Storage};
 use lamplight::compose::{Composed, Options};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::source::SourceSet;
@@ -60,7 +60,7 @@ pub fn record(bytes: &[u8]) -> String {
     let asked = Arc::<Mutex<Vec<String>>>::default();
     let cache = Cache::new(vec![Box::new(Fixed { packed: bytes.to_vec(), asked: asked.clone() })]);
     let composed = Composed::of_text(Language::Wesl, None, "fn f() {}".to_owned());
-    let found = cache.find(Job {
+    let found = cache.find(CompileJob {
         text: "fn f() {}",
         composed: &composed,
         entry: "f",

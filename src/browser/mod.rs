@@ -1,6 +1,6 @@
 //! A headless Chromium, driven by its DevTools protocol.
 //!
-//! `Browser::start -> Browser::open -> Page::evaluate, until, errors, screenshot`
+//! `Browser::start -> Browser::open -> BrowserPage::evaluate, until, errors, screenshot`
 //!
 //! Messages go through a pair of pipes (`--remote-debugging-pipe`) and not through a socket. So no
 //! port is open to others, no second protocol is needed, and the browser ends when the pipes close.
@@ -18,7 +18,7 @@ use std::time::Duration;
 
 use serde_json::json;
 
-pub use page::{Page, Screenshot};
+pub use page::{BrowserPage, Screenshot};
 use process::Process;
 use wire::Wire;
 
@@ -125,8 +125,8 @@ impl Browser {
     ///
     /// # Errors
     /// The browser's.
-    pub fn open(self: &Arc<Self>, address: &str) -> Result<Page, Problem> {
-        Page::open(Arc::clone(self), address)
+    pub fn open(self: &Arc<Self>, address: &str) -> Result<BrowserPage, Problem> {
+        BrowserPage::open(Arc::clone(self), address)
     }
 
     /// The result of any command of the protocol to the browser.

@@ -14,7 +14,7 @@ const LOOK: Duration = Duration::from_millis(10);
 
 /// A page of a browser; it closes when it is dropped.
 #[derive(Debug)]
-pub struct Page {
+pub struct BrowserPage {
     browser: Arc<Browser>,
     target: String,
     session: String,
@@ -32,7 +32,7 @@ pub struct Screenshot {
     pub whole: bool,
 }
 
-impl Page {
+impl BrowserPage {
     pub(super) fn open(browser: Arc<Browser>, address: &str) -> Result<Self, Problem> {
         let text = |value: &Value, name: &str| match value[name].as_str() {
             Some(text) => Ok(text.to_owned()),
@@ -155,7 +155,7 @@ impl Page {
     }
 }
 
-impl Drop for Page {
+impl Drop for BrowserPage {
     fn drop(&mut self) {
         // The answer is hardly waited for, since a page that hangs must be closed too.
         let parameters = json!({ "targetId": self.target });

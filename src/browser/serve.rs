@@ -15,7 +15,7 @@ const QUESTION: u64 = 64 << 10;
 
 /// What is served.
 #[derive(Debug, Clone)]
-pub enum Files {
+pub enum ServedFiles {
     /// Texts and other bytes, by their paths without a slash before them.
     Memory(BTreeMap<String, Vec<u8>>),
     /// Everything below a folder.
@@ -24,17 +24,17 @@ pub enum Files {
 
 /// A server; it ends when it is dropped.
 #[derive(Debug)]
-pub struct Server {
+pub struct HttpServer {
     address: SocketAddr,
     ends: Arc<AtomicBool>,
 }
 
-impl Server {
+impl HttpServer {
     /// Serves files on a free port.
     ///
     /// # Errors
     /// The system's.
-    pub fn start(files: Files) -> std::io::Result<Self> {
+    pub fn start(files: ServedFiles) -> std::io::Result<Self> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0))?;
         let address = listener.local_addr()?;
         let ends = Arc::new(AtomicBool::new(false));
@@ -60,7 +60,7 @@ impl Server {
     }
 }
 
-impl Drop for Server {
+impl Drop for HttpServer {
     fn drop(&mut self) {
         self.ends.store(true, Ordering::Relaxed);
         // Wakes the thread that waits for a connection.
@@ -68,7 +68,7 @@ impl Drop for Server {
     }
 }
 
-impl Files {
+impl ServedFiles {
     /// The bytes of a path. For a folder, those of its `index.html`.
     fn read(&self, path: &str) -> Option<(String, Vec<u8>)> {
         let path = match path.ends_with('/') || path.is_empty() {
@@ -88,7 +88,7 @@ impl Files {
 }
 
 /// Answers one request and closes the connection.
-fn answer_request(stream: TcpStream, files: &Files) -> std::io::Result<()> {
+fn answer_request(stream: TcpStream, files: &ServedFiles) -> std::io::Result<()> {
     stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(PATIENCE))?;
     let mut lines = BufReader::new((&stream).take(QUESTION));

@@ -18,12 +18,12 @@ const EVENTS: usize = 10_000;
 /// Both directions of a connection.
 #[derive(Debug)]
 pub struct Wire {
-    state: Arc<Mutex<State>>,
+    state: Arc<Mutex<WireState>>,
     next: AtomicU64,
 }
 
 #[derive(Debug, Default)]
-struct State {
+struct WireState {
     /// Takes messages to be written; `None` once the connection is closed.
     outgoing: Option<Sender<Vec<u8>>>,
     /// Who waits for an answer, and the session that it is about.
@@ -39,7 +39,8 @@ impl Wire {
     /// anyone who has a time limit.
     pub fn new(mut to: impl Write + Send + 'static, from: impl Read + Send + 'static) -> Arc<Self> {
         let (outgoing, queue): (Sender<Vec<u8>>, Receiver<Vec<u8>>) = mpsc::channel();
-        let state = Arc::new(Mutex::new(State { outgoing: Some(outgoing), ..State::default() }));
+        let state =
+            Arc::new(Mutex::new(WireState { outgoing: Some(outgoing), ..WireState::default() }));
         std::thread::spawn(move || {
             for message in queue {
                 if to.write_all(&message).and_then(|()| to.flush()).is_err() {
@@ -128,7 +129,7 @@ impl Wire {
 }
 
 /// Passes on messages until the connection ends.
-fn receive_messages(from: impl Read, state: &Mutex<State>) {
+fn receive_messages(from: impl Read, state: &Mutex<WireState>) {
     let mut from = BufReader::with_capacity(1 << 20, from);
     let mut bytes = Vec::new();
     while matches!(from.read_until(0, &mut bytes), Ok(1..)) {
@@ -145,7 +146,7 @@ fn receive_messages(from: impl Read, state: &Mutex<State>) {
     state.waiting.clear();
 }
 
-impl State {
+impl WireState {
     fn take(&mut self, message: Value) {
         if let Some(id) = message["id"].as_u64() {
             if let Some((_, sender)) = self.waiting.remove(&id) {
@@ -167,6 +168,6 @@ impl State {
     }
 }
 
-fn lock_state(state: &Mutex<State>) -> MutexGuard<'_, State> {
+fn lock_state(state: &Mutex<WireState>) -> MutexGuard<'_, WireState> {
     state.lock().unwrap_or_else(PoisonError::into_inner)
 }

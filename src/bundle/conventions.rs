@@ -23,7 +23,7 @@ pub trait Convention: Copy + PartialEq + 'static {
 
 /// Clip space as an author may ask for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
-pub enum Clip {
+pub enum ClipConvention {
     /// WebGPU's, in every target. Where an API has another one, the output converts positions.
     #[default]
     Wgpu,
@@ -31,14 +31,14 @@ pub enum Clip {
     Native,
 }
 
-impl Convention for Clip {
+impl Convention for ClipConvention {
     const ALL: &'static [(&'static str, Self)] = &[("wgpu", Self::Wgpu), ("native", Self::Native)];
 }
 
 /// What an output does about indices beyond the end of an array, coordinates of `textureLoad` that
 /// are outside the texture, and loops that do not end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
-pub enum Bounds {
+pub enum BoundsChecks {
     /// Nothing beyond what the author wrote.
     #[default]
     Unchecked,
@@ -47,7 +47,7 @@ pub enum Bounds {
     Restrict,
 }
 
-impl Convention for Bounds {
+impl Convention for BoundsChecks {
     const ALL: &'static [(&'static str, Self)] =
         &[("unchecked", Self::Unchecked), ("restrict", Self::Restrict)];
 }
@@ -56,18 +56,18 @@ impl Convention for Bounds {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct Conventions {
     /// The clip space of vertex stages.
-    pub clip: Clip,
+    pub clip: ClipConvention,
     /// Checks of indices and loops.
-    pub bounds: Bounds,
+    pub bounds: BoundsChecks,
 }
 
 /// Conventions that are asked for, such as on the command line. They override those of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub struct AskedConventions {
     /// The clip space of vertex stages.
-    pub clip: Option<Clip>,
+    pub clip: Option<ClipConvention>,
     /// Checks of indices and loops.
-    pub bounds: Option<Bounds>,
+    pub bounds: Option<BoundsChecks>,
 }
 
 impl AskedConventions {

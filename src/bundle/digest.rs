@@ -39,8 +39,8 @@ pub struct TargetDigest {
 /// remembered.
 #[derive(Debug, Default)]
 pub struct Digester {
-    reflections: Known<Reflection>,
-    natives: Known<Native>,
+    reflections: KnownHashes<Reflection>,
+    natives: KnownHashes<Native>,
 }
 
 impl Digester {
@@ -83,17 +83,17 @@ struct Hashed {
 /// The hashes of values, by the address of the value. The stored `Arc` keeps the address from being
 /// reused.
 #[derive(Debug)]
-struct Known<T>(Mutex<ByAddress<T>>);
+struct KnownHashes<T>(Mutex<ByAddress<T>>);
 
 type ByAddress<T> = BTreeMap<usize, (Arc<T>, Arc<Hashed>)>;
 
-impl<T> Default for Known<T> {
+impl<T> Default for KnownHashes<T> {
     fn default() -> Self {
         Self(Mutex::default())
     }
 }
 
-impl<T: Serialize> Known<T> {
+impl<T: Serialize> KnownHashes<T> {
     fn json(&self, value: &Arc<T>) -> Result<Arc<Hashed>, Error> {
         let address = Arc::as_ptr(value) as usize;
         let known = || self.0.lock().unwrap_or_else(PoisonError::into_inner);

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::contents::{checksum, from_hex, refuse_control_characters, to_hex};
 use super::layout::MOST_GROUP_BYTES;
 use super::manifest::{self, Manifest, ManifestArtifact, ManifestUnit};
-use super::store::{self, Program, Programs, Store, StoredArtifact};
+use super::store::{self, Store, StoredArtifact, StoredProgram, StoredPrograms};
 use super::{Axis, Error, Hash, Native, Reflection, Stage};
 use crate::input;
 
@@ -18,15 +18,15 @@ pub(super) const BLOBS: &str = "blobs";
 pub(super) const MOST_MANIFEST_BYTES: u64 = crate::limits::MANIFEST_BYTES;
 
 /// Artifacts by target, each with the index of its blob.
-type Numbered = BTreeMap<String, (ManifestArtifact, u32)>;
+type NumberedArtifacts = BTreeMap<String, (ManifestArtifact, u32)>;
 
 /// An open directory; blobs are read when asked for.
 pub struct Directory {
     blobs: PathBuf,
-    programs: Programs,
+    programs: StoredPrograms,
     /// For each entry point, the unit of each key.
     keys: Vec<BTreeMap<String, u32>>,
-    units: Vec<(Arc<Reflection>, Numbered)>,
+    units: Vec<(Arc<Reflection>, NumberedArtifacts)>,
     natives: BTreeMap<String, Arc<Native>>,
     /// The blobs, each distinct one once.
     artifacts: Vec<ManifestArtifact>,
@@ -47,7 +47,7 @@ pub fn open(path: &Path) -> Result<Directory, Error> {
     let manifest = read_manifest(path)?;
     let mut directory = Directory {
         blobs: path.join(BLOBS),
-        programs: Programs::new(),
+        programs: StoredPrograms::new(),
         keys: Vec::new(),
         units: Vec::new(),
         natives: manifest
@@ -72,7 +72,7 @@ pub fn open(path: &Path) -> Result<Directory, Error> {
         let entries = program.entries.values().flat_map(BTreeMap::keys);
         refuse_control_characters(MANIFEST, std::iter::once(&name).chain(entries))?;
         refuse_control_characters(MANIFEST, program.axes.iter().flat_map(Axis::names))?;
-        let mut index = Program { axes: program.axes, ..Program::default() };
+        let mut index = StoredProgram { axes: program.axes, ..StoredProgram::default() };
         for (language, entries) in program.entries {
             for (entry, contents) in entries {
                 index.entries.insert((language, entry), directory.keys.len());
@@ -167,7 +167,7 @@ impl Directory {
 }
 
 impl Store for Directory {
-    fn programs(&self) -> &Programs {
+    fn programs(&self) -> &StoredPrograms {
         &self.programs
     }
 

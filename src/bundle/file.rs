@@ -12,7 +12,7 @@ use serde::de::DeserializeOwned;
 
 use super::contents::{Hash, checksum, refuse_control_characters, to_hex};
 use super::layout::*;
-use super::store::{Program, Programs, Store, StoredArtifact, StoredUnit};
+use super::store::{Store, StoredArtifact, StoredProgram, StoredPrograms, StoredUnit};
 use super::{Axis, Error, Reflection, VERSION};
 use crate::input;
 use crate::packing;
@@ -24,22 +24,22 @@ const KEPT_BYTES: usize = 32 << 20;
 
 /// An open single-file bundle.
 pub struct Packed {
-    bytes: Bytes,
+    bytes: BundleBytes,
     sections: [(usize, usize, Hash); SECTIONS.len()],
     /// The result of each section's checksum, which is computed on first use.
     checked: [OnceLock<Result<(), Error>>; SECTIONS.len()],
     meta: Meta,
-    programs: Programs,
+    programs: StoredPrograms,
     entries: Vec<EntryMeta>,
     groups: Mutex<Vec<(u32, Arc<[u8]>)>>,
 }
 
-enum Bytes {
+enum BundleBytes {
     Mapped(Mmap),
     Owned(Vec<u8>),
 }
 
-impl std::ops::Deref for Bytes {
+impl std::ops::Deref for BundleBytes {
     type Target = [u8];
 
     fn deref(&self) -> &[u8] {
@@ -60,15 +60,15 @@ pub fn open(path: &Path) -> Result<Packed, Error> {
     // SAFETY: the map is read-only and private to this value. Another process could still change
     // the file under it, which the documentation of this function excludes.
     let map = unsafe { Mmap::map(&file)? };
-    parse_file(Bytes::Mapped(map))
+    parse_file(BundleBytes::Mapped(map))
 }
 
 /// As [`open`], for bytes in memory.
 pub fn from_bytes(bytes: Vec<u8>) -> Result<Packed, Error> {
-    parse_file(Bytes::Owned(bytes))
+    parse_file(BundleBytes::Owned(bytes))
 }
 
-fn parse_file(bytes: Bytes) -> Result<Packed, Error> {
+fn parse_file(bytes: BundleBytes) -> Result<Packed, Error> {
     let sections = read_header(&bytes)?;
     let (offset, length, expected) = sections[META];
     let text = slice_at(&bytes, offset, length, "meta")?;
@@ -80,7 +80,7 @@ fn parse_file(bytes: Bytes) -> Result<Packed, Error> {
     meta.targets.iter().try_for_each(|target| {
         refuse_control_characters("meta", [&target.name, &target.extension])
     })?;
-    let mut programs = Programs::new();
+    let mut programs = StoredPrograms::new();
     let mut entries = Vec::new();
     for (name, program) in &meta.programs {
         refuse_control_characters(
@@ -93,7 +93,8 @@ fn parse_file(bytes: Bytes) -> Result<Packed, Error> {
             numbers.insert((entry.language, entry.name.clone()), entries.len());
             entries.push(entry.clone());
         }
-        programs.insert(name.clone(), Program { axes: program.axes.clone(), entries: numbers });
+        programs
+            .insert(name.clone(), StoredProgram { axes: program.axes.clone(), entries: numbers });
     }
     Ok(Packed {
         bytes,
@@ -300,7 +301,7 @@ impl Packed {
 }
 
 impl Store for Packed {
-    fn programs(&self) -> &Programs {
+    fn programs(&self) -> &StoredPrograms {
         &self.programs
     }
 

@@ -24,7 +24,7 @@ const DYNAMIC: &str = "dynamic";
 
 /// A word of a key, without the blanks around it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Word<'k> {
+pub struct KeyWord<'k> {
     /// Its characters.
     pub text: &'k str,
     /// Bytes of the key before it.
@@ -33,14 +33,14 @@ pub struct Word<'k> {
 
 /// What stands between two commas of a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Part<'k> {
+pub struct KeyPart<'k> {
     /// The name of an axis; empty where it is missing, which is a mistake.
-    pub axis: Word<'k>,
+    pub axis: KeyWord<'k>,
     /// What follows the `=`; empty where nothing does, which is a mistake. `None` without `=`.
-    pub value: Option<Word<'k>>,
+    pub value: Option<KeyWord<'k>>,
 }
 
-impl<'k> Part<'k> {
+impl<'k> KeyPart<'k> {
     /// The value that it chooses, which is [`IMPLIED`] without a `=`.
     pub fn chosen(&self) -> &'k str {
         self.value.map_or(IMPLIED, |value| value.text)
@@ -48,28 +48,28 @@ impl<'k> Part<'k> {
 }
 
 /// Reads a key: its parts in order. The default permutation has none.
-pub fn parts(key: &str) -> impl Iterator<Item = Part<'_>> {
+pub fn parts(key: &str) -> impl Iterator<Item = KeyPart<'_>> {
     let is_default = matches!(key.trim(), "" | DEFAULT);
-    let mut rest = (!is_default).then_some(Word { text: key, start: 0 });
+    let mut rest = (!is_default).then_some(KeyWord { text: key, start: 0 });
     std::iter::from_fn(move || {
-        let Word { text, start } = rest?;
+        let KeyWord { text, start } = rest?;
         let (part, after) = match text.split_once(SEPARATOR) {
             Some((part, after)) => (part, Some(after)),
             None => (text, None),
         };
-        rest = after.map(|text| Word { text, start: start + part.len() + 1 });
+        rest = after.map(|text| KeyWord { text, start: start + part.len() + 1 });
         Some(match part.split_once(ASSIGNS) {
-            Some((axis, value)) => Part {
+            Some((axis, value)) => KeyPart {
                 axis: trimmed_word(axis, start),
                 value: Some(trimmed_word(value, start + axis.len() + 1)),
             },
-            None => Part { axis: trimmed_word(part, start), value: None },
+            None => KeyPart { axis: trimmed_word(part, start), value: None },
         })
     })
 }
 
-fn trimmed_word(text: &str, start: usize) -> Word<'_> {
-    Word { text: text.trim(), start: start + text.len() - text.trim_start().len() }
+fn trimmed_word(text: &str, start: usize) -> KeyWord<'_> {
+    KeyWord { text: text.trim(), start: start + text.len() - text.trim_start().len() }
 }
 
 /// Writes the key of axes that differ from their defaults, given in any order with their values.
@@ -109,7 +109,7 @@ pub fn canonical(axes: &[Axis], key: &str) -> Result<String, Error> {
 }
 
 /// The axis and the value that a part names.
-fn axis_and_value<'a>(axes: &'a [Axis], part: Part<'a>) -> Result<(&'a Axis, &'a str), String> {
+fn axis_and_value<'a>(axes: &'a [Axis], part: KeyPart<'a>) -> Result<(&'a Axis, &'a str), String> {
     let name = part.axis.text;
     if name.is_empty() {
         return Err("expected `axis=value`".to_owned());
@@ -177,7 +177,7 @@ pub fn distance(a: &str, b: &str) -> usize {
     }
 }
 
-fn words_of<'k>(part: &Part<'k>) -> (&'k str, &'k str) {
+fn words_of<'k>(part: &KeyPart<'k>) -> (&'k str, &'k str) {
     (part.axis.text, part.chosen())
 }
 

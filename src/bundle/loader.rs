@@ -42,7 +42,7 @@ pub struct Program<'a> {
     store: &'a dyn Store,
     recorder: Option<&'a Recorder>,
     name: &'a str,
-    program: &'a store::Program,
+    program: &'a store::StoredProgram,
 }
 
 /// One entry point of a program, in one source language.

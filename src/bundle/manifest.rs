@@ -167,7 +167,7 @@ pub enum Before {
 
 /// The parts of a manifest that every version has, and by which a file is recognised as one.
 #[derive(Deserialize)]
-struct Mark {
+struct ManifestMark {
     #[serde(rename = "version")]
     _version: u32,
     #[serde(rename = "programs")]
@@ -191,7 +191,7 @@ struct MarkArtifact {
 /// Whether the text of a file with the name of a manifest is one of ours.
 pub fn kind_of_manifest(text: &[u8]) -> Before {
     let Ok(text) = std::str::from_utf8(text) else { return Before::Foreign };
-    let Ok(mark) = serde_json::from_str::<Mark>(text) else {
+    let Ok(mark) = serde_json::from_str::<ManifestMark>(text) else {
         return if is_marked(text) { Before::Unreadable } else { Before::Foreign };
     };
     let is_hex = mark.checksum.len() == 32 && mark.checksum.bytes().all(|c| c.is_ascii_hexdigit());

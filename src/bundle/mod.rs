@@ -27,7 +27,7 @@ mod target;
 mod usage;
 
 pub use contents::{Artifact, Axis, Contents, EntryContents, Hash, ProgramContents, Unit};
-pub use conventions::{AskedConventions, Bounds, Clip, Convention, Conventions};
+pub use conventions::{AskedConventions, BoundsChecks, ClipConvention, Convention, Conventions};
 pub use diff::{Change, Difference, diff};
 pub use digest::{Digest, Digester};
 pub use directory::{BlobFile, blob_files};
@@ -40,9 +40,9 @@ pub use merge::{merge, merge_into, patch_directory};
 pub use names::{Language, Stage};
 pub use pack::{pack, replace_file, write_file};
 pub use reflection::{
-    Binding, BufferSizes, Choice, ClipSpace, Combined, FrontFace, HeapSampler, Kind, Member,
-    Native, Override, Pair, Place, Reflection, Rows, SamplerHeap, Semantic, Slot, Varying,
-    Viewport, YAxis,
+    Binding, BindingKind, BindingSlot, BufferSizes, ClipSpace, Combined, FrontFace, HeapSampler,
+    Member, Native, Override, OverrideChoice, Pair, Place, Reflection, RowOrder, SamplerHeap,
+    Semantic, Varying, Viewport, YAxis,
 };
 pub use target::Target;
 pub use usage::Usage;

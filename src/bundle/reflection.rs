@@ -65,8 +65,8 @@ pub struct Varying {
 
 /// What a binding holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Kind {
+#[serde(rename_all = "snake_case", rename = "Kind")]
+pub enum BindingKind {
     /// A buffer of constants.
     Uniform,
     /// A storage buffer.
@@ -91,7 +91,7 @@ pub struct Binding {
     /// As the author calls it.
     pub name: String,
     /// What is bound there.
-    pub kind: Kind,
+    pub kind: BindingKind,
     /// Type in WGSL.
     #[serde(rename = "type")]
     pub ty: String,
@@ -161,14 +161,14 @@ pub struct Native {
     /// Name of the entry point in the output.
     pub entry_name: String,
     /// Where each binding of the reflection ended up.
-    pub slots: Vec<Slot>,
+    pub slots: Vec<BindingSlot>,
     /// Combined samplers, in targets that do not have separate textures and samplers.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub combined: Vec<Combined>,
     /// How this target takes the values of overrides. An override that is not listed has its
     /// default.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub choices: Vec<Choice>,
+    pub choices: Vec<OverrideChoice>,
     /// Semantics of a vertex stage's inputs, in targets that match attributes by them (HLSL).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub semantics: Vec<Semantic>,
@@ -204,7 +204,7 @@ pub struct ClipSpace {
     /// The height that the host has to give its viewport.
     pub viewport: Viewport,
     /// Which row of a texture or framebuffer comes first in memory.
-    pub rows: Rows,
+    pub rows: RowOrder,
     /// How a triangle winds for the API if it winds counter-clockwise in the picture.
     pub front_face: FrontFace,
 }
@@ -231,8 +231,8 @@ pub enum Viewport {
 
 /// Order of rows in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Rows {
+#[serde(rename_all = "snake_case", rename = "Rows")]
+pub enum RowOrder {
     /// The top row.
     TopFirst,
     /// The bottom row.
@@ -257,7 +257,8 @@ pub enum FrontFace {
 /// - MSL: as the function constant `id`.
 /// - Others: as the macro `symbol`, defined before the text (in GLSL after `#version`).
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub struct Choice {
+#[serde(rename = "Choice")]
+pub struct OverrideChoice {
     /// As in the reflection.
     pub name: String,
     /// Number of the specialisation or function constant.
@@ -270,7 +271,8 @@ pub struct Choice {
 
 /// The place of one binding in a target.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub struct Slot {
+#[serde(rename = "Slot")]
+pub struct BindingSlot {
     /// Group in WGSL, descriptor set in Vulkan.
     pub group: u32,
     /// Number within the group.

@@ -38,7 +38,7 @@ impl Bundle {
 }
 
 /// An entry point of a program.
-type Place = (String, Language, String);
+type EntryPointName = (String, Language, String);
 
 fn compare_stores(old: &dyn Store, new: &dyn Store) -> Result<Difference, Error> {
     let mut difference = Difference::default();
@@ -52,7 +52,7 @@ fn compare_stores(old: &dyn Store, new: &dyn Store) -> Result<Difference, Error>
             [before, after].into_iter().flatten().flat_map(|program| program.entries.keys());
         for (language, entry) in places.collect::<BTreeSet<_>>() {
             let place = (name.clone(), *language, entry.clone());
-            let number = |program: Option<&super::store::Program>| {
+            let number = |program: Option<&super::store::StoredProgram>| {
                 program
                     .and_then(|program| program.entries.get(&(*language, entry.clone())).copied())
             };
@@ -77,7 +77,7 @@ fn keys_of_entry(store: &dyn Store, entry: Option<usize>) -> Result<BTreeMap<Str
 fn entry_changes(
     old: &dyn Store,
     new: &dyn Store,
-    (program, language, entry): &Place,
+    (program, language, entry): &EntryPointName,
     (before, after): &(BTreeMap<String, u32>, BTreeMap<String, u32>),
 ) -> Result<Vec<Change>, Error> {
     let mut known: BTreeMap<(u32, u32), Vec<String>> = BTreeMap::new();

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use super::{Axis, Error, Language, Native, Reflection};
 
 /// The part of a bundle that is in memory once it is open, which is small.
-pub type Programs = BTreeMap<String, Program>;
+pub type StoredPrograms = BTreeMap<String, StoredProgram>;
 
 /// One program of an open bundle.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Program {
+pub struct StoredProgram {
     pub axes: Vec<Axis>,
     /// Numbers of the entry points, by language and name.
     pub entries: BTreeMap<(Language, String), usize>,
@@ -33,7 +33,7 @@ pub struct StoredArtifact {
 /// An open bundle of one form. Entry points, units and blobs are named by their index, which is
 /// checked on each use.
 pub trait Store: Send + Sync {
-    fn programs(&self) -> &Programs;
+    fn programs(&self) -> &StoredPrograms;
 
     /// The unit of a key in canonical form.
     fn find(&self, entry: usize, key: &str) -> Result<Option<u32>, Error>;

@@ -17,13 +17,13 @@ const TAG: &[u8] = b"Signature: 8a477f597d28d172789f06886806bc55\n\
 
 /// A folder with a file for each name. May be deleted at any time; several processes may share it.
 #[derive(Debug, Clone)]
-pub struct Folder {
+pub struct CacheFolder {
     path: PathBuf,
     /// The scratch folder, made before the first write.
     scratch: Arc<OnceLock<Result<Scratch, String>>>,
 }
 
-impl Folder {
+impl CacheFolder {
     /// Opens the folder. It is made when something is first put into it.
     ///
     /// # Errors
@@ -105,7 +105,7 @@ impl Folder {
     }
 }
 
-impl Storage for Folder {
+impl Storage for CacheFolder {
     fn get(&self, name: &str) -> Result<Option<Vec<u8>>, String> {
         let path = self.path.join(name);
         match fs::symlink_metadata(&path) {

@@ -10,7 +10,7 @@
 mod folder;
 mod record;
 
-pub use folder::Folder;
+pub use folder::CacheFolder;
 pub use record::MOST_RECORD_BYTES;
 
 use std::collections::BTreeSet;
@@ -54,7 +54,7 @@ const MOST_FAILURES: usize = 8;
 
 /// Everything that the result of compiling a text depends on.
 #[derive(Debug, Clone, Copy)]
-pub struct Job<'a> {
+pub struct CompileJob<'a> {
     /// What is compiled.
     pub text: &'a str,
     /// The composition that the text stands for. Errors have its places.
@@ -71,7 +71,7 @@ pub struct Job<'a> {
 
 /// The result of compiling a text: a unit, and the warnings for its author.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Made {
+pub struct CachedUnit {
     /// The outputs.
     pub unit: Unit,
     /// What was warned of when they were made.
@@ -86,7 +86,7 @@ impl Cache {
     }
 
     /// The result of an equal job, if it is known.
-    pub fn find(&self, job: Job<'_>) -> Option<Result<Made, Diagnostics>> {
+    pub fn find(&self, job: CompileJob<'_>) -> Option<Result<CachedUnit, Diagnostics>> {
         let key = unit_key(job);
         let told = |kind| {
             let bytes = self.get(kind, told_key(key, job.composed))?;
@@ -96,8 +96,10 @@ impl Cache {
             record::decode_diagnostics(&bytes, |id| known.contains(&id))
         };
         let found = match self.get("units", key).and_then(|bytes| record::decode_unit(&bytes)) {
-            Some((unit, false)) => Some(Ok(Made { unit, warnings: Vec::new() })),
-            Some((unit, true)) => told("warnings").map(|warnings| Ok(Made { unit, warnings })),
+            Some((unit, false)) => Some(Ok(CachedUnit { unit, warnings: Vec::new() })),
+            Some((unit, true)) => {
+                told("warnings").map(|warnings| Ok(CachedUnit { unit, warnings }))
+            }
             None => told("errors").map(Err),
         };
         self.hits.fetch_add(usize::from(found.is_some()), Ordering::Relaxed);
@@ -105,13 +107,13 @@ impl Cache {
     }
 
     /// Keeps a result.
-    pub fn keep(&self, job: Job<'_>, result: &Result<Made, Diagnostics>) {
+    pub fn keep(&self, job: CompileJob<'_>, result: &Result<CachedUnit, Diagnostics>) {
         let key = unit_key(job);
         let tell = |kind, diagnostics| {
             self.put(kind, told_key(key, job.composed), record::encode_diagnostics(diagnostics))
         };
         match result {
-            Ok(Made { unit, warnings }) => {
+            Ok(CachedUnit { unit, warnings }) => {
                 self.put("units", key, record::encode_unit(unit, !warnings.is_empty()));
                 if !warnings.is_empty() {
                     tell("warnings", warnings);
@@ -177,8 +179,8 @@ fn record_name(kind: &str, key: Hash) -> String {
     format!("{kind}/{}/{}", &hex[..2], &hex[2..])
 }
 
-fn unit_key(job: Job<'_>) -> Hash {
-    let Job { text, composed, entry, options, targets, conventions } = job;
+fn unit_key(job: CompileJob<'_>) -> Hash {
+    let CompileJob { text, composed, entry, options, targets, conventions } = job;
     let names: Vec<&str> = targets.iter().map(|target| target.name()).collect();
     let rest = format!(
         "{:?} {:?} {options:?} {entry:?} {names:?} {conventions:?}",

@@ -56,16 +56,16 @@ fn record_checksum(name: &str, packed: &[u8]) -> Hash {
 
 /// What is written before the bytes of a unit's targets.
 #[derive(Serialize, Deserialize)]
-struct Head<'a> {
+struct RecordHead<'a> {
     /// Whether there are warnings. They have a record of their own, since they have places, which
     /// the unit's key does not cover.
     has_warnings: bool,
     reflection: Cow<'a, Reflection>,
-    targets: BTreeMap<Cow<'a, str>, Part<'a>>,
+    targets: BTreeMap<Cow<'a, str>, TargetRecord<'a>>,
 }
 
 #[derive(Serialize, Deserialize)]
-struct Part<'a> {
+struct TargetRecord<'a> {
     extension: Cow<'a, str>,
     native: Cow<'a, Native>,
     bytes: usize,
@@ -77,10 +77,10 @@ pub fn encode_unit(unit: &Unit, has_warnings: bool) -> Option<Vec<u8>> {
     for (target, artifact) in &unit.targets {
         let extension = Cow::Borrowed(artifact.extension.as_str());
         let native = Cow::Borrowed(&*artifact.native);
-        let part = Part { extension, native, bytes: artifact.bytes.len() };
+        let part = TargetRecord { extension, native, bytes: artifact.bytes.len() };
         targets.insert(Cow::Borrowed(target.as_str()), part);
     }
-    let head = Head { has_warnings, reflection: Cow::Borrowed(&*unit.reflection), targets };
+    let head = RecordHead { has_warnings, reflection: Cow::Borrowed(&*unit.reflection), targets };
     let head = serde_json::to_vec(&head).ok()?;
     let mut payload = u32::try_from(head.len()).ok()?.to_le_bytes().to_vec();
     payload.extend_from_slice(&head);
@@ -91,7 +91,7 @@ pub fn encode_unit(unit: &Unit, has_warnings: bool) -> Option<Vec<u8>> {
 pub fn decode_unit(payload: &[u8]) -> Option<(Unit, bool)> {
     let (length, rest) = payload.split_first_chunk::<4>()?;
     let (head, mut rest) = rest.split_at_checked(u32::from_le_bytes(*length) as usize)?;
-    let head: Head = serde_json::from_slice(head).ok()?;
+    let head: RecordHead = serde_json::from_slice(head).ok()?;
     let mut targets = BTreeMap::new();
     for (target, part) in head.targets {
         let (bytes, after) = rest.split_at_checked(part.bytes)?;
@@ -107,7 +107,7 @@ pub fn decode_unit(payload: &[u8]) -> Option<(Unit, bool)> {
 }
 
 #[derive(Serialize, Deserialize)]
-struct Told {
+struct WarningRecord {
     is_warning: bool,
     code: String,
     message: String,
@@ -116,7 +116,7 @@ struct Told {
 }
 
 pub fn encode_diagnostics(errors: &Diagnostics) -> Option<Vec<u8>> {
-    let errors = errors.iter().map(|error| Told {
+    let errors = errors.iter().map(|error| WarningRecord {
         is_warning: error.severity == Severity::Warning,
         code: error.code.name.to_owned(),
         message: error.message.clone(),
@@ -137,8 +137,8 @@ pub fn decode_diagnostics(
     payload: &[u8],
     is_known: impl Fn(SourceId) -> bool,
 ) -> Option<Diagnostics> {
-    let errors: Vec<Told> = serde_json::from_slice(payload).ok()?;
-    let is_placed = |told: &Told| {
+    let errors: Vec<WarningRecord> = serde_json::from_slice(payload).ok()?;
+    let is_placed = |told: &WarningRecord| {
         let mut labels = told.labels.iter();
         labels.all(|(source, start, end, _)| start <= end && is_known(SourceId(*source)))
     };
@@ -148,7 +148,7 @@ pub fn decode_diagnostics(
     errors.into_iter().map(decode_error).collect()
 }
 
-fn decode_error(error: Told) -> Option<Diagnostic> {
+fn decode_error(error: WarningRecord) -> Option<Diagnostic> {
     let labels = error.labels.into_iter().map(|(source, start, end, message)| Label {
         span: Span { source: SourceId(source), start, end },
         message,

@@ -44,8 +44,8 @@ pub struct Figure {
 
 /// What a function is drawn on.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Kind {
+#[serde(deny_unknown_fields, rename = "Kind")]
+pub struct FigureKind {
     /// What is seen, as the start of a sentence.
     pub about: String,
     /// WGSL with a function `shown`. In it, `VALUE` stands for the value of a figure.
@@ -69,7 +69,7 @@ pub enum Textures {
 }
 
 /// The kinds, by name.
-pub type Kinds = BTreeMap<String, Kind>;
+pub type Kinds = BTreeMap<String, FigureKind>;
 
 /// The figures of a module, by function.
 pub type Figures = BTreeMap<String, Figure>;
@@ -89,7 +89,7 @@ pub fn library_kinds(sources: &mut SourceSet) -> Result<Kinds, Diagnostics> {
 /// reason, or with both.
 pub fn library_figures(
     sources: &mut SourceSet,
-    modules: &[super::Module],
+    modules: &[super::CatalogueModule],
     kinds: &Kinds,
 ) -> Result<Figures, Diagnostics> {
     let mut all = Figures::new();
@@ -101,8 +101,9 @@ pub fn library_figures(
                 let message = format!("`{name}` in `{file}` {reason}");
                 Err(vec![Diagnostic::error(codes::DATA_SYNTAX, message)])
             };
-            let is_function =
-                |item: &super::Item| item.name == name && item.kind == super::Kind::Function;
+            let is_function = |item: &super::CatalogueItem| {
+                item.name == name && item.kind == super::CatalogueItemKind::Function
+            };
             if !module.items.iter().any(is_function) {
                 return refused("is not a function of the module".to_owned());
             }

@@ -28,13 +28,13 @@ const PROGRAMS: &str = "programs/";
 
 /// What an item is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum CatalogueItemKind {
     Function,
     Struct,
     Constant,
 }
 
-impl Kind {
+impl CatalogueItemKind {
     /// One word.
     pub fn name(self) -> &'static str {
         match self {
@@ -47,7 +47,7 @@ impl Kind {
 
 /// A parameter of a function or a field of a struct.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Member {
+pub struct CatalogueMember {
     pub name: String,
     /// Type in WESL.
     pub ty: String,
@@ -57,8 +57,8 @@ pub struct Member {
 
 /// A public function, struct or constant of a module.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Item {
-    pub kind: Kind,
+pub struct CatalogueItem {
+    pub kind: CatalogueItemKind,
     /// The package by the name that imports it.
     pub package: String,
     /// Module path below the package, `::` between its parts.
@@ -71,12 +71,12 @@ pub struct Item {
     /// Declaration in GLSL, without its body; `None` where the twin lacks it.
     pub glsl: Option<String>,
     /// Parameters or fields, in order.
-    pub members: Vec<Member>,
+    pub members: Vec<CatalogueMember>,
     /// Type of a function's result in WESL.
     pub result: Option<String>,
 }
 
-impl Item {
+impl CatalogueItem {
     /// The path below the library, such as `lighting::spot::cone_hard`. In any other package it
     /// begins with the package.
     pub fn path(&self) -> String {
@@ -111,7 +111,8 @@ impl Item {
         let first = self.doc[start][name.len() + 1..].trim();
         let lines: Vec<&str> = std::iter::once(first).chain(rest.map(|line| line.trim())).collect();
         let text = lines.join(" ").trim().to_owned();
-        let is_edges = name == EDGES && self.kind == Kind::Function && self.package == LIBRARY;
+        let is_edges =
+            name == EDGES && self.kind == CatalogueItemKind::Function && self.package == LIBRARY;
         Some(if is_edges && !text.contains("NaN") { format!("{text} {NAN}") } else { text })
     }
 
@@ -160,7 +161,7 @@ fn in_package(package: &str, path: &str) -> String {
 
 /// A module of the library or of the user's own package.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Module {
+pub struct CatalogueModule {
     /// The path below the library, with `::` between its parts. In any other package it begins with
     /// the package.
     pub path: String,
@@ -168,10 +169,10 @@ pub struct Module {
     pub package: String,
     /// Paragraphs of the module's own comment.
     pub doc: Vec<String>,
-    pub items: Vec<Item>,
+    pub items: Vec<CatalogueItem>,
 }
 
-impl Module {
+impl CatalogueModule {
     /// The first sentence of the module's comment.
     pub fn summary(&self) -> &str {
         let first = self.doc.first().map_or("", String::as_str);
@@ -179,13 +180,13 @@ impl Module {
     }
 
     /// How many items of a kind it has.
-    pub fn count(&self, kind: Kind) -> usize {
+    pub fn count(&self, kind: CatalogueItemKind) -> usize {
         self.items.iter().filter(|item| item.kind == kind).count()
     }
 }
 
 /// Every module of the embedded library, by path.
-pub fn library_modules() -> Vec<Module> {
+pub fn library_modules() -> Vec<CatalogueModule> {
     package_modules(&Embedded)
 }
 
@@ -199,7 +200,7 @@ pub fn library_examples(
 }
 
 /// Every module of a package that has the library's layout.
-pub fn package_modules(files: &dyn Files) -> Vec<Module> {
+pub fn package_modules(files: &dyn Files) -> Vec<CatalogueModule> {
     let paths = files.list(&["wesl"]).into_iter().filter(|path| !path.starts_with(PROGRAMS));
     paths
         .filter_map(|path| read_module(files, LIBRARY, path.strip_suffix(".wesl")?, ".wesl"))
@@ -207,7 +208,7 @@ pub fn package_modules(files: &dyn Files) -> Vec<Module> {
 }
 
 /// Every module of the user's own package, even if it is not documented.
-pub fn own_modules(files: &dyn Files) -> Vec<Module> {
+pub fn own_modules(files: &dyn Files) -> Vec<CatalogueModule> {
     let paths = files.list(&["wesl", "wgsl"]).into_iter();
     let of = |path: String| {
         let ending = if path.ends_with(".wesl") { ".wesl" } else { ".wgsl" };
@@ -219,7 +220,12 @@ pub fn own_modules(files: &dyn Files) -> Vec<Module> {
 /// The name of the user's own package in imports.
 const OWN: &str = "package";
 
-fn read_module(files: &dyn Files, package: &str, stem: &str, ending: &str) -> Option<Module> {
+fn read_module(
+    files: &dyn Files,
+    package: &str,
+    stem: &str,
+    ending: &str,
+) -> Option<CatalogueModule> {
     let text = files.read(&format!("{stem}{ending}")).ok()??;
     let twin = files.read(&format!("{stem}.glsl")).ok().flatten().unwrap_or_default();
     let path = stem.replace('/', "::");
@@ -229,17 +235,22 @@ fn read_module(files: &dyn Files, package: &str, stem: &str, ending: &str) -> Op
     let declared = declared.filter(|found| package != LIBRARY || !found.doc.is_empty());
     let items = declared.map(|found| make_item(package, &path, found, &glsl)).collect();
     let doc = joined_paragraphs(&outline::module_doc(&text));
-    Some(Module { doc, items, path: in_package(package, &path), package: package.to_owned() })
+    Some(CatalogueModule {
+        doc,
+        items,
+        path: in_package(package, &path),
+        package: package.to_owned(),
+    })
 }
 
 fn make_item(
     package: &str,
     module: &str,
-    found: outline::Declaration,
-    glsl: &[outline::Declaration],
-) -> Item {
+    found: outline::CatalogueDeclaration,
+    glsl: &[outline::CatalogueDeclaration],
+) -> CatalogueItem {
     let twin = glsl.iter().find(|twin| twin.name == found.name && twin.kind == found.kind);
-    let mut item = Item {
+    let mut item = CatalogueItem {
         kind: found.kind,
         package: package.to_owned(),
         module: module.to_owned(),
@@ -255,7 +266,7 @@ fn make_item(
 }
 
 /// Gives each parameter its text from the section `Parameters`.
-fn describe_parameters(item: &mut Item) {
+fn describe_parameters(item: &mut CatalogueItem) {
     let Some(section) = item.section(SECTIONS[0]) else { return };
     let mut entries: Vec<String> = Vec::new();
     for piece in section.trim_end_matches('.').split("; ") {

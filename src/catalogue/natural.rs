@@ -9,12 +9,12 @@ pub fn natural_order(a: &str, b: &str) -> Ordering {
 
 /// A part of a name: numbers come before words.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
-enum Part<'t> {
+enum NamePart<'t> {
     Number(u64),
     Word(&'t str),
 }
 
-fn name_parts(text: &str) -> Vec<Part<'_>> {
+fn name_parts(text: &str) -> Vec<NamePart<'_>> {
     let pieces = text.split(['_', '-', '.']).filter(|piece| !piece.is_empty());
-    pieces.map(|piece| piece.parse().map_or(Part::Word(piece), Part::Number)).collect()
+    pieces.map(|piece| piece.parse().map_or(NamePart::Word(piece), NamePart::Number)).collect()
 }

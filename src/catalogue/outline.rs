@@ -1,25 +1,25 @@
 //! Finds the declarations at the top level of a module's text, with their doc comments.
 
-use super::{Kind, Member};
+use super::{CatalogueItemKind, CatalogueMember};
 use crate::parse::words::{continues_word, leading_word};
 
 /// A declaration without its body.
-pub struct Declaration {
-    pub kind: Kind,
+pub struct CatalogueDeclaration {
+    pub kind: CatalogueItemKind,
     pub name: String,
     pub doc: Vec<String>,
     pub declaration: String,
-    pub members: Vec<Member>,
+    pub members: Vec<CatalogueMember>,
     pub result: Option<String>,
 }
 
 /// Functions, structs and constants of a WESL module.
-pub fn wesl_declarations(text: &str) -> Vec<Declaration> {
+pub fn wesl_declarations(text: &str) -> Vec<CatalogueDeclaration> {
     find_declarations(text, wesl_name)
 }
 
 /// Functions, structs and constants of a GLSL module.
-pub fn glsl_declarations(text: &str) -> Vec<Declaration> {
+pub fn glsl_declarations(text: &str) -> Vec<CatalogueDeclaration> {
     find_declarations(text, glsl_name)
 }
 
@@ -32,9 +32,9 @@ pub fn module_doc(text: &str) -> Vec<String> {
     lines.map(|line| line.strip_prefix(' ').unwrap_or(line).trim_end().to_owned()).collect()
 }
 
-type Naming = fn(&str) -> Option<(Kind, String)>;
+type Naming = fn(&str) -> Option<(CatalogueItemKind, String)>;
 
-fn find_declarations(text: &str, name: Naming) -> Vec<Declaration> {
+fn find_declarations(text: &str, name: Naming) -> Vec<CatalogueDeclaration> {
     let mut found = Vec::new();
     let mut doc = Vec::new();
     let mut depth = 0i32;
@@ -54,34 +54,39 @@ fn find_declarations(text: &str, name: Naming) -> Vec<Declaration> {
     found
 }
 
-fn make_declaration(kind: Kind, name: String, doc: Vec<String>, lines: &[&str]) -> Declaration {
+fn make_declaration(
+    kind: CatalogueItemKind,
+    name: String,
+    doc: Vec<String>,
+    lines: &[&str],
+) -> CatalogueDeclaration {
     let code = lines.iter().map(|line| without_comment(line)).collect::<Vec<_>>().join("\n");
     let (declaration, members) = match kind {
-        Kind::Function => {
+        CatalogueItemKind::Function => {
             let head = single_spaced(code.split('{').next().unwrap_or_default());
             let members = parse_parameters(&head);
             (head, members)
         }
-        Kind::Struct => {
+        CatalogueItemKind::Struct => {
             let body = code.split_inclusive('}').next().unwrap_or_default();
             (
                 body.lines().filter(|line| !line.trim().is_empty()).collect::<Vec<_>>().join("\n"),
                 struct_fields(lines),
             )
         }
-        Kind::Constant => {
+        CatalogueItemKind::Constant => {
             (single_spaced(code.split_inclusive(';').next().unwrap_or_default()), Vec::new())
         }
     };
     let result = declaration
         .rsplit_once("-> ")
-        .filter(|_| kind == Kind::Function)
+        .filter(|_| kind == CatalogueItemKind::Function)
         .map(|(_, ty)| ty.to_owned());
-    Declaration { kind, name, doc, members, result, declaration }
+    CatalogueDeclaration { kind, name, doc, members, result, declaration }
 }
 
 /// The `name: type` of each parameter. A comma within brackets belongs to a type.
-fn parse_parameters(head: &str) -> Vec<Member> {
+fn parse_parameters(head: &str) -> Vec<CatalogueMember> {
     let list = head
         .split_once('(')
         .and_then(|(_, rest)| rest.split_once(')'))
@@ -95,7 +100,7 @@ fn parse_parameters(head: &str) -> Vec<Member> {
 }
 
 /// The fields of a struct with their doc comments, up to its closing brace.
-fn struct_fields(lines: &[&str]) -> Vec<Member> {
+fn struct_fields(lines: &[&str]) -> Vec<CatalogueMember> {
     let mut found = Vec::new();
     let mut doc = Vec::new();
     for line in
@@ -112,9 +117,13 @@ fn struct_fields(lines: &[&str]) -> Vec<Member> {
     found
 }
 
-fn parse_member(text: &str, doc: Vec<String>) -> Option<Member> {
+fn parse_member(text: &str, doc: Vec<String>) -> Option<CatalogueMember> {
     let (name, ty) = text.split_once(':')?;
-    Some(Member { name: name.trim().to_owned(), ty: ty.trim().to_owned(), doc: doc.join(" ") })
+    Some(CatalogueMember {
+        name: name.trim().to_owned(),
+        ty: ty.trim().to_owned(),
+        doc: doc.join(" "),
+    })
 }
 
 fn single_spaced(text: &str) -> String {
@@ -133,19 +142,23 @@ fn bracket_depth(line: &str) -> i32 {
         .sum()
 }
 
-fn wesl_name(line: &str) -> Option<(Kind, String)> {
-    let words = [("fn ", Kind::Function), ("struct ", Kind::Struct), ("const ", Kind::Constant)];
+fn wesl_name(line: &str) -> Option<(CatalogueItemKind, String)> {
+    let words = [
+        ("fn ", CatalogueItemKind::Function),
+        ("struct ", CatalogueItemKind::Struct),
+        ("const ", CatalogueItemKind::Constant),
+    ];
     words
         .iter()
         .find_map(|(word, kind)| Some((*kind, leading_word(line.strip_prefix(word)?).to_owned())))
 }
 
-fn glsl_name(line: &str) -> Option<(Kind, String)> {
+fn glsl_name(line: &str) -> Option<(CatalogueItemKind, String)> {
     if let Some(rest) = line.strip_prefix("struct ") {
-        return Some((Kind::Struct, leading_word(rest).to_owned()));
+        return Some((CatalogueItemKind::Struct, leading_word(rest).to_owned()));
     }
     if let Some((_, name)) = line.strip_prefix("const ").and_then(|rest| rest.split_once(' ')) {
-        return Some((Kind::Constant, leading_word(name).to_owned()));
+        return Some((CatalogueItemKind::Constant, leading_word(name).to_owned()));
     }
     // An indented line continues the list of parameters.
     let (before, _) = line.split_once('(').filter(|_| !line.starts_with(' '))?;
@@ -154,5 +167,5 @@ fn glsl_name(line: &str) -> Option<(Kind, String)> {
         !word.is_empty()
             && word.chars().all(|letter| continues_word(letter) || "[] ".contains(letter))
     };
-    (plain(result) && plain(name)).then(|| (Kind::Function, name.to_owned()))
+    (plain(result) && plain(name)).then(|| (CatalogueItemKind::Function, name.to_owned()))
 }

@@ -8,7 +8,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Kind, outline};
+use super::{CatalogueItemKind, outline};
 use crate::source::Files;
 
 /// Path below the library.
@@ -30,11 +30,11 @@ const HEAD: &str = "\
 pub fn prefix_file(files: &dyn Files) -> String {
     let names = prefixed_names(files);
     let mut text = format!("{HEAD}\n#ifndef LAMPLIGHT_PREFIXED\n#define LAMPLIGHT_PREFIXED\n\n");
-    for Name { name, parameters } in &names {
+    for PrefixName { name, parameters } in &names {
         let _ = writeln!(text, "#define {name}{parameters} {PREFIX}{name}{parameters}");
     }
     text.push_str("\n#else\n#undef LAMPLIGHT_PREFIXED\n\n");
-    for Name { name, .. } in &names {
+    for PrefixName { name, .. } in &names {
         let _ = writeln!(text, "#undef {name}");
     }
     text.push_str("\n#endif\n");
@@ -42,34 +42,34 @@ pub fn prefix_file(files: &dyn Files) -> String {
 }
 
 /// A name that a module declares.
-struct Name {
+struct PrefixName {
     name: String,
     /// Of a function: `(a, b)`. A macro with parameters leaves fields of the same name alone.
     parameters: String,
 }
 
 /// All names, sorted.
-fn prefixed_names(files: &dyn Files) -> Vec<Name> {
+fn prefixed_names(files: &dyn Files) -> Vec<PrefixName> {
     let is_module = |path: &String| !path.starts_with(super::PROGRAMS) && path != PATH;
     let texts = files.list(&["glsl"]).into_iter().filter(is_module);
     let texts = texts.filter_map(|path| files.read(&path).ok().flatten());
-    let mut names: Vec<Name> =
+    let mut names: Vec<PrefixName> =
         texts.flat_map(|text| outline::glsl_declarations(&text)).map(name_of).collect();
     names.sort_by(|a, b| a.name.cmp(&b.name));
     names
 }
 
-fn name_of(found: outline::Declaration) -> Name {
+fn name_of(found: outline::CatalogueDeclaration) -> PrefixName {
     let parameters = match found.kind {
-        Kind::Function => {
+        CatalogueItemKind::Function => {
             let names: Vec<String> = (0..count_parameters(&found.declaration))
                 .map(|index| format!("p{index}"))
                 .collect();
             format!("({})", names.join(", "))
         }
-        Kind::Struct | Kind::Constant => String::new(),
+        CatalogueItemKind::Struct | CatalogueItemKind::Constant => String::new(),
     };
-    Name { name: found.name, parameters }
+    PrefixName { name: found.name, parameters }
 }
 
 /// How many arguments the preprocessor sees: a comma within a macro's own brackets separates none.

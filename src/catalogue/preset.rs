@@ -60,9 +60,9 @@ pub struct Preset {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub probe: Option<String>,
     /// The passes before it, in order.
-    pub passes: Vec<Pass>,
+    pub passes: Vec<PresetPass>,
     /// Published numbers by group, then by field.
-    pub numbers: BTreeMap<String, BTreeMap<String, Number>>,
+    pub numbers: BTreeMap<String, BTreeMap<String, PresetNumber>>,
     /// Numbers that the source leaves open, as `group.field`, sorted.
     pub open: BTreeSet<String>,
     /// How the picture differs from the example: one or more sentences for each difference.
@@ -86,20 +86,20 @@ impl Preset {
 
 /// An earlier pass.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Pass {
+pub struct PresetPass {
     pub program: String,
     pub key: String,
 }
 
 /// A number or a vector.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum Number {
+#[serde(untagged, rename = "Number")]
+pub enum PresetNumber {
     Scalar(f64),
     Vector(Vec<f64>),
 }
 
-impl Number {
+impl PresetNumber {
     /// Its components.
     pub fn to_vec(&self) -> Vec<f64> {
         match self {
@@ -109,7 +109,7 @@ impl Number {
     }
 }
 
-impl std::fmt::Display for Number {
+impl std::fmt::Display for PresetNumber {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Scalar(value) => write!(f, "{value}"),
@@ -120,13 +120,13 @@ impl std::fmt::Display for Number {
     }
 }
 
-type Group = BTreeMap<String, Number>;
-type Entries = BTreeMap<Spanned<String>, Entry>;
+type NumberGroup = BTreeMap<String, PresetNumber>;
+type PresetEntries = BTreeMap<Spanned<String>, PresetEntry>;
 
 /// A preset in the form of the file.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Entry {
+#[serde(deny_unknown_fields, rename = "Entry")]
+struct PresetEntry {
     doc: String,
     look: String,
     source: String,
@@ -137,33 +137,33 @@ struct Entry {
     #[serde(default)]
     passes: Vec<PassEntry>,
     #[serde(default)]
-    object: Group,
+    object: NumberGroup,
     #[serde(default)]
-    light: Group,
+    light: NumberGroup,
     #[serde(default)]
-    area: Group,
+    area: NumberGroup,
     #[serde(default)]
-    material: Group,
+    material: NumberGroup,
     #[serde(default)]
-    layers: Group,
+    layers: NumberGroup,
     #[serde(default)]
-    surroundings: Group,
+    surroundings: NumberGroup,
     #[serde(default)]
-    haze: Group,
+    haze: NumberGroup,
     #[serde(default)]
-    caster: Group,
+    caster: NumberGroup,
     #[serde(default)]
-    moments: Group,
+    moments: NumberGroup,
     #[serde(default)]
-    display: Group,
+    display: NumberGroup,
     #[serde(default)]
-    march: Group,
+    march: NumberGroup,
     #[serde(default)]
-    horizon: Group,
+    horizon: NumberGroup,
     #[serde(default)]
-    lobe: Group,
+    lobe: NumberGroup,
     #[serde(default)]
-    depth_pass: Group,
+    depth_pass: NumberGroup,
     #[serde(default)]
     open: Vec<Spanned<String>>,
     deviations: Vec<String>,
@@ -201,7 +201,7 @@ pub fn parse_presets(
     manifest: &Manifest,
     probes: &[Probe],
 ) -> Result<Vec<Preset>, Diagnostics> {
-    let entries: Entries = reader::read_data(sources, id)?;
+    let entries: PresetEntries = reader::read_data(sources, id)?;
     let mut checker = Checker { sources, id, manifest, probes, problems: Vec::new() };
     let mut presets: Vec<Preset> =
         entries.into_iter().map(|(name, entry)| checker.preset(name.into_inner(), entry)).collect();
@@ -218,7 +218,7 @@ struct Checker<'s> {
 }
 
 impl Checker<'_> {
-    fn preset(&mut self, name: String, entry: Entry) -> Preset {
+    fn preset(&mut self, name: String, entry: PresetEntry) -> Preset {
         self.known("scene", &entry.scene, sets::ALL.iter().map(|set| set.name));
         if let Some(probe) = &entry.probe {
             self.known("light probe", probe, self.probes.iter().map(|probe| probe.name.as_str()));
@@ -255,7 +255,7 @@ impl Checker<'_> {
             key: entry.key.into_inner(),
             scene: entry.scene.into_inner(),
             probe: entry.probe.map(Spanned::into_inner),
-            passes: entry.passes.into_iter().map(Pass::from).collect(),
+            passes: entry.passes.into_iter().map(PresetPass::from).collect(),
             numbers: groups
                 .into_iter()
                 .filter(|(_, group)| !group.is_empty())
@@ -267,7 +267,7 @@ impl Checker<'_> {
     }
 
     /// A number that is open must not be given, and must be in one of the groups.
-    fn open(&mut self, name: &Spanned<String>, groups: &[(&str, Group)]) {
+    fn open(&mut self, name: &Spanned<String>, groups: &[(&str, NumberGroup)]) {
         let text = name.get_ref();
         let (group, field) = text.split_once('.').unwrap_or((text, ""));
         let problem = match groups.iter().find(|(known, _)| *known == group) {
@@ -352,7 +352,7 @@ fn check_key(program: &Program, text: &Quoted) -> Diagnostics {
     problems
 }
 
-impl From<PassEntry> for Pass {
+impl From<PassEntry> for PresetPass {
     fn from(entry: PassEntry) -> Self {
         Self { program: entry.program.into_inner(), key: entry.key.into_inner() }
     }

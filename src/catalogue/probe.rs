@@ -30,7 +30,8 @@ pub struct Probe {
 }
 
 #[derive(Deserialize)]
-struct Entry {
+#[serde(rename = "Entry")]
+struct ProbeEntry {
     title: String,
     source: String,
     #[serde(flatten)]
@@ -40,7 +41,7 @@ struct Entry {
 /// The library's light probes, by name.
 pub fn library_probes(sources: &mut SourceSet) -> Result<Vec<Probe>, Diagnostics> {
     let id = reader::add_own(sources, PATH)?;
-    let entries: BTreeMap<toml::Spanned<String>, Entry> = reader::read_data(sources, id)?;
+    let entries: BTreeMap<toml::Spanned<String>, ProbeEntry> = reader::read_data(sources, id)?;
     let mut problems = Vec::new();
     let probes = entries.into_iter().filter_map(|(name, entry)| {
         let span = Span::new(id, name.span());
@@ -57,7 +58,7 @@ pub fn library_probes(sources: &mut SourceSet) -> Result<Vec<Probe>, Diagnostics
     if problems.is_empty() { Ok(probes) } else { Err(problems) }
 }
 
-fn make_probe(name: String, entry: &Entry) -> Option<Probe> {
+fn make_probe(name: String, entry: &ProbeEntry) -> Option<Probe> {
     let mut coefficients = [[0.0; 3]; 9];
     for (place, row) in coefficients.iter_mut().zip(ORDER) {
         *place = *entry.rows.get(row)?;

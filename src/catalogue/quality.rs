@@ -12,15 +12,15 @@ use crate::source::SourceSet;
 pub const PATH: &str = "quality.toml";
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    group: Vec<Group>,
+#[serde(deny_unknown_fields, rename = "File")]
+struct QualityFile {
+    group: Vec<QualityGroup>,
 }
 
 /// Functions that are compared with each other.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Group {
+#[serde(deny_unknown_fields, rename = "Group")]
+pub struct QualityGroup {
     pub name: String,
     pub title: String,
     pub doc: String,
@@ -33,32 +33,32 @@ pub struct Group {
     #[serde(default)]
     pub edge: bool,
     /// The reference for entries without one of their own.
-    pub reference: Option<Reference>,
+    pub reference: Option<QualityReference>,
     /// Paths below the library's root, with lists in braces.
     pub imports: Vec<String>,
     pub setup: String,
     pub x: Samples,
     pub y: Samples,
-    pub entries: Vec<Entry>,
+    pub entries: Vec<QualityEntry>,
 }
 
 /// One way to compute it.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Entry {
+#[serde(deny_unknown_fields, rename = "Entry")]
+pub struct QualityEntry {
     pub name: String,
     /// The path of the function in question.
     pub function: String,
     pub taps: Option<u32>,
     pub value: String,
     pub exact: Option<String>,
-    pub reference: Option<Reference>,
+    pub reference: Option<QualityReference>,
 }
 
 /// What is computed in f64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Reference {
+#[serde(rename_all = "snake_case", rename = "Reference")]
+pub enum QualityReference {
     /// The mean of 1,024 comparisons over a disk of 4 texels.
     #[serde(rename = "disk_1024")]
     Disk,
@@ -82,23 +82,23 @@ impl Samples {
     }
 }
 
-impl Group {
+impl QualityGroup {
     /// The key of an entry's figures among the recorded costs.
-    pub fn key(&self, entry: &Entry) -> String {
+    pub fn key(&self, entry: &QualityEntry) -> String {
         format!("{}: {}", self.name, entry.name)
     }
 }
 
 /// A group with the errors of its entries, in their order.
 pub struct Measured {
-    pub group: Group,
+    pub group: QualityGroup,
     pub errors: Vec<f64>,
 }
 
 /// An entry with its error and its figures.
-pub type Row<'m> = (&'m Entry, f64, &'m [i64; FIGURES.len()]);
+pub type QualityRow<'m> = (&'m QualityEntry, f64, &'m [i64; FIGURES.len()]);
 
 /// The groups of the library.
-pub fn library_groups(sources: &mut SourceSet) -> Result<Vec<Group>, Diagnostics> {
-    reader::read_own::<File>(sources, PATH).map(|file| file.group)
+pub fn library_groups(sources: &mut SourceSet) -> Result<Vec<QualityGroup>, Diagnostics> {
+    reader::read_own::<QualityFile>(sources, PATH).map(|file| file.group)
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::failure::Failure;
-use crate::cache::{Cache, Folder, Storage};
+use crate::cache::{Cache, CacheFolder, Storage};
 use crate::project;
 
 #[derive(Debug, Args)]
@@ -34,7 +34,7 @@ impl Cached {
         }
         let usual = || project::cache_folder(manifest.unwrap_or(Path::new(".")));
         let folder = self.cache.clone().or_else(usual);
-        let storage = |folder| Ok::<Box<dyn Storage>, Failure>(Box::new(Folder::new(folder)?));
+        let storage = |folder| Ok::<Box<dyn Storage>, Failure>(Box::new(CacheFolder::new(folder)?));
         folder.map(storage).transpose().map(|storage| storage.into_iter().collect())
     }
 }

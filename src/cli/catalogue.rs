@@ -13,7 +13,7 @@ use crate::catalogue::cost::is_record;
 use crate::catalogue::{self as library, figure};
 use crate::diagnostic::Diagnostics;
 use crate::picture::figure::{Pictures, draw_figures, stale_figures};
-use crate::proof::catalogue::{self, Files};
+use crate::proof::catalogue::{self, CatalogueFiles};
 use crate::source::SourceSet;
 use crate::{input, output};
 
@@ -50,7 +50,7 @@ pub struct Arguments {
     overwrite: Overwrite,
 }
 
-pub fn run_catalogue(arguments: Arguments, gpus: cost::Opened) -> Result<(), Failure> {
+pub fn run_catalogue(arguments: Arguments, gpus: cost::OpenedGpus) -> Result<(), Failure> {
     if let Some(path) = &arguments.costs {
         let text = cost::record_costs(gpus)?.text("cargo xtask docs --costs");
         let replace = arguments.overwrite.replace();
@@ -94,14 +94,14 @@ pub fn run_catalogue(arguments: Arguments, gpus: cost::Opened) -> Result<(), Fai
 
 /// A function over figures. Its arguments are the kinds of figures, all figures, and a function
 /// that reads a figure's picture from the folder.
-type Work<T> = fn(
+type FigureWork<T> = fn(
     &figure::Kinds,
     &figure::Figures,
     &(dyn Fn(&str) -> Option<Vec<u8>> + Sync),
 ) -> Result<T, Diagnostics>;
 
 /// Calls `work` with the library's figures and their pictures in the folder.
-fn with_figures<T>(folder: &Path, work: Work<T>) -> Result<T, Failure> {
+fn with_figures<T>(folder: &Path, work: FigureWork<T>) -> Result<T, Failure> {
     let mut sources = SourceSet::default();
     let read = |sources: &mut SourceSet| {
         let kinds = figure::library_kinds(sources)?;
@@ -114,7 +114,7 @@ fn with_figures<T>(folder: &Path, work: Work<T>) -> Result<T, Failure> {
     read(&mut sources).map_err(|problems| Failure::Input(sources, problems))
 }
 
-fn changed_files(folder: &Path, files: &Files) -> Vec<(PathBuf, String)> {
+fn changed_files(folder: &Path, files: &CatalogueFiles) -> Vec<(PathBuf, String)> {
     let differs = |(path, text): &(PathBuf, String)| {
         input::read_file(path, text.len() as u64).ok().as_deref() != Some(text.as_bytes())
     };

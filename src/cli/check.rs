@@ -18,7 +18,8 @@ use crate::output::{self, Replace};
 use crate::permute::{Setting, Settings};
 use crate::project::{self, LIBRARY};
 use crate::proof::check::{
-    Open, Options, Report, lacking_text, report_failures, report_table, stricter_cases,
+    CheckOptions, CheckReport, OpenExecutor, lacking_text, report_failures, report_table,
+    stricter_cases,
 };
 use crate::proof::library::Library;
 use crate::proof::ratchet::{FILE, Ratchet};
@@ -106,15 +107,15 @@ impl Arguments {
     }
 }
 
-fn open_executor(name: &str) -> Result<Open, Failure> {
+fn open_executor(name: &str) -> Result<OpenExecutor, Failure> {
     let entry = executor::find_executor(name)?;
-    Ok(Open { executor: entry.name, session: executor::open_executor(entry)? })
+    Ok(OpenExecutor { executor: entry.name, session: executor::open_executor(entry)? })
 }
 
 fn check_selections(selections: &[Selection], arguments: &Arguments) -> Result<(), Failure> {
     let mut sessions =
         arguments.executor.iter().map(|name| open_executor(name)).collect::<Result<Vec<_>, _>>()?;
-    let mut report = Report::default();
+    let mut report = CheckReport::default();
     let sources = Mutex::new(SourceSet::default());
     for selection in selections {
         match check_one(selection, &sources, arguments, &mut sessions) {
@@ -136,7 +137,7 @@ fn check_selections(selections: &[Selection], arguments: &Arguments) -> Result<(
         count => write!(stdout(), ", {count} cannot run on their executor:\n{lacking}")?,
     }
     if let Some(folder) = &arguments.report {
-        let origin = report::Origin { sources: &sources, command: command_line() };
+        let origin = report::ReportOrigin { sources: &sources, command: command_line() };
         let texts: Vec<(&str, String)> =
             report::ALL.iter().map(|form| (form.file, (form.text)(&report, &origin))).collect();
         let files = texts.iter().map(|(name, text)| (*name, text.as_bytes()));
@@ -157,7 +158,7 @@ fn command_line() -> String {
 }
 
 /// Functions that no case calls.
-fn print_untested(report: &Report) -> Result<(), Failure> {
+fn print_untested(report: &CheckReport) -> Result<(), Failure> {
     let (few, all) = (report.untested.iter().take(UNTESTED), report.untested.len());
     let names = few.map(String::as_str).collect::<Vec<_>>().join(", ");
     match all {
@@ -174,13 +175,13 @@ fn check_one(
     selection: &Selection,
     sources: &Mutex<SourceSet>,
     arguments: &Arguments,
-    sessions: &mut [Open],
-) -> Result<Result<Report, Failure>, Diagnostics> {
+    sessions: &mut [OpenExecutor],
+) -> Result<Result<CheckReport, Failure>, Diagnostics> {
     let library = &selection.library;
     let ratchet = library.ratchet(sources)?;
     let held =
         if arguments.bless { ratchet.as_ref().map(Ratchet::waivers_only) } else { ratchet.clone() };
-    let options = Options {
+    let options = CheckOptions {
         references: library.has_references(),
         profile: arguments.report.is_some(),
         prove: !arguments.bless,
@@ -206,7 +207,7 @@ fn check_one(
 
 /// Tolerances below WGSL's own bounds. This is not a failure, since a backend may well be more
 /// exact.
-fn print_spec(report: &Report, all: bool) -> Result<(), Failure> {
+fn print_spec(report: &CheckReport, all: bool) -> Result<(), Failure> {
     let lines = stricter_cases(report);
     match (all, lines.lines().count()) {
         (_, 0) => {}

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure};
-use super::input::Input;
+use super::input::InputArguments;
 use super::terminal::write_data;
 use crate::source::SourceSet;
 
@@ -15,7 +15,7 @@ pub struct Arguments {
     /// Path to the root module; `-` is standard input.
     file: PathBuf,
     #[command(flatten)]
-    input: Input,
+    input: InputArguments,
 }
 
 pub fn run_compose(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {

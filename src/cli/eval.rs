@@ -8,7 +8,7 @@ use clap::Args;
 use super::executor;
 use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::input::LanguageName;
-use super::own::Own;
+use super::own::OwnPackage;
 use crate::cli::terminal::stdout;
 use crate::diagnostic::stopped_message;
 use crate::execute::{Session, on_thread};
@@ -26,7 +26,7 @@ pub struct Arguments {
     #[arg(long, value_name = "E", default_value = "eval")]
     pub executor: String,
     #[command(flatten)]
-    own: Own,
+    own: OwnPackage,
     /// Expressions [default: one a line from standard input].
     #[arg(value_name = "EXPR", allow_hyphen_values = true)]
     expressions: Vec<String>,

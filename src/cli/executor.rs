@@ -2,10 +2,10 @@
 
 use super::failure::Failure;
 use crate::execute::Session;
-use crate::execute::executors::{self, Entry};
+use crate::execute::executors::{self, ExecutorEntry};
 
 /// The executor of that name.
-pub fn find_executor(name: &str) -> Result<&'static Entry, Failure> {
+pub fn find_executor(name: &str) -> Result<&'static ExecutorEntry, Failure> {
     executors::find_executor(name).ok_or_else(|| {
         Failure::usage(format!(
             "there is no executor `{name}` (executors: {})",
@@ -15,7 +15,7 @@ pub fn find_executor(name: &str) -> Result<&'static Entry, Failure> {
 }
 
 /// The executor of that name, which must draw frames.
-pub fn find_drawing(name: &str) -> Result<&'static Entry, Failure> {
+pub fn find_drawing(name: &str) -> Result<&'static ExecutorEntry, Failure> {
     let entry = find_executor(name)?;
     match entry.samples {
         Some(_) => Ok(entry),
@@ -27,11 +27,11 @@ pub fn find_drawing(name: &str) -> Result<&'static Entry, Failure> {
 }
 
 /// Opens an executor.
-pub fn open_executor(entry: &Entry) -> Result<Box<dyn Session>, Failure> {
+pub fn open_executor(entry: &ExecutorEntry) -> Result<Box<dyn Session>, Failure> {
     entry.start().map_err(Failure::environment)
 }
 
-fn executor_names(wanted: impl Fn(&Entry) -> bool) -> String {
+fn executor_names(wanted: impl Fn(&ExecutorEntry) -> bool) -> String {
     let names: Vec<&str> =
         executors::ALL.iter().filter(|entry| wanted(entry)).map(|entry| entry.name).collect();
     names.join(", ")

@@ -119,7 +119,7 @@ pub enum DiagnosticForm {
     /// With excerpts of the text.
     #[default]
     Human,
-    /// The same in colours: what [`Color`] makes of it.
+    /// The same in colours: what [`ColorChoice`] makes of it.
     #[value(skip)]
     Colored,
     /// One line each.
@@ -141,7 +141,7 @@ impl From<DiagnosticForm> for Form {
 
 /// When to write colours.
 #[derive(Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
-pub enum Color {
+pub enum ColorChoice {
     /// On a terminal, unless `NO_COLOR` is set.
     #[default]
     Auto,
@@ -149,7 +149,7 @@ pub enum Color {
     Never,
 }
 
-impl Color {
+impl ColorChoice {
     /// The form in colours, where they are wanted.
     pub fn of(self, form: DiagnosticForm) -> DiagnosticForm {
         match (form, self.is_wanted()) {

@@ -5,10 +5,10 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::compile::{Asked, Wanted, wanted_one, wanted_targets};
+use super::compile::{ConventionArguments, TargetChoice, wanted_one, wanted_targets};
 use super::failure::{DiagnosticForm, Failure};
 use super::terminal::stdout;
-use super::work::{Places, Work};
+use super::work::{PathArguments, Work};
 use crate::generate::{Request, Shard, Summary};
 use crate::permute::Quoted;
 use crate::source::SourceSet;
@@ -17,7 +17,7 @@ use crate::source::SourceSet;
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    places: Places,
+    places: PathArguments,
     /// Compile only this program.
     #[arg(long, value_name = "P")]
     program: Option<String>,
@@ -26,9 +26,9 @@ pub struct Arguments {
     only: Option<String>,
     /// Compile only for these targets.
     #[arg(long, value_name = "T,...|all", value_delimiter = ',', value_parser = wanted_one)]
-    target: Vec<Wanted>,
+    target: Vec<TargetChoice>,
     #[command(flatten)]
-    conventions: Asked,
+    conventions: ConventionArguments,
     /// Compile only the k-th of n parts, which `lamplight merge` puts together.
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,

@@ -10,7 +10,7 @@ use crate::diagnostic::{Diagnostic, Severity, guide};
 /// What is added to a command's help: the title of its page, and examples. They work in a package
 /// that `lamplight init` has written, once `lamplight gen` has run there. The example of `migrate`
 /// expects naga_oil shaders in `old/`.
-struct Entry {
+struct HelpEntry {
     command: &'static str,
     page: &'static str,
     examples: &'static [&'static str],
@@ -20,8 +20,8 @@ const fn guide_entry(
     command: &'static str,
     page: &'static str,
     examples: &'static [&'static str],
-) -> Entry {
-    Entry { command, page, examples }
+) -> HelpEntry {
+    HelpEntry { command, page, examples }
 }
 
 const FIRST: &str = "First shader in five minutes";
@@ -29,7 +29,7 @@ const PACKAGE: &str = "A package of your own";
 const MANIFEST: &str = "Axes, constraints and the manifest";
 const CASES: &str = "Numeric cases";
 
-const ENTRIES: &[Entry] = &[
+const ENTRIES: &[HelpEntry] = &[
     guide_entry("init", PACKAGE, &["lamplight init lamps"]),
     guide_entry("list", FIRST, &["lamplight list", "lamplight list axes --json"]),
     guide_entry(
@@ -121,7 +121,7 @@ pub fn in_help(command: Command) -> Command {
     })
 }
 
-fn with_guide(command: Command, entry: &Entry) -> Command {
+fn with_guide(command: Command, entry: &HelpEntry) -> Command {
     let examples: String = entry.examples.iter().map(|example| format!("  {example}\n")).collect();
     let page = format!("Guide: {}", entry.page);
     let after = |before: Option<&clap::builder::StyledStr>, examples: &str| {

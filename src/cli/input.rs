@@ -18,7 +18,7 @@ use crate::source::{SourceId, SourceSet, Span};
 
 /// How a root module is read and what is chosen of it.
 #[derive(Args)]
-pub struct Input {
+pub struct InputArguments {
     /// The package's root directory [default: from the nearest wesl.toml or lamplight.toml, else
     /// the file's folder].
     #[arg(long, value_name = "DIR")]
@@ -136,14 +136,14 @@ pub fn broken_constraint(
 }
 
 /// A composed root module with what diagnostics need.
-pub struct Ready {
+pub struct ComposedInput {
     pub sources: SourceSet,
     pub composed: Composed,
-    pub context: Context,
+    pub context: ErrorContext,
 }
 
 /// What a composed text was made from, for reporting its errors.
-pub struct Context {
+pub struct ErrorContext {
     pub graph: Graph,
     pub settings: Settings,
     pub options: Options,
@@ -152,7 +152,7 @@ pub struct Context {
     permutation: Option<String>,
 }
 
-impl Context {
+impl ErrorContext {
     /// Adds the permutation to warnings as a note, and drops those that only the author of a
     /// dependency can mend.
     pub fn own(&self, warnings: Diagnostics) -> Diagnostics {
@@ -171,7 +171,7 @@ fn of_permutation(diagnostics: Diagnostics, permutation: Option<&str>) -> Diagno
 }
 
 /// The settings of a composition, as chosen.
-struct Chosen {
+struct ChosenSettings {
     settings: Settings,
     conventions: Conventions,
     /// The text of a note that names the chosen settings.
@@ -183,14 +183,14 @@ struct Chosen {
     warnings: Diagnostics,
 }
 
-impl Input {
+impl InputArguments {
     /// Opens the package of a root module, chooses the settings and composes.
     pub fn compose(
         &self,
         file: &Path,
         sources: SourceSet,
         form: DiagnosticForm,
-    ) -> Result<Ready, Failure> {
+    ) -> Result<ComposedInput, Failure> {
         self.check_usage()?;
         let language = self.language(file)?;
         let root = self.root_of(file);
@@ -202,7 +202,7 @@ impl Input {
             let text = stream::read_stream(file)?;
             let below = project.packages.root.files;
             project.packages.root.files =
-                Box::new(stream::Overlay { below, name: name.clone(), text });
+                Box::new(stream::StreamOverlay { below, name: name.clone(), text });
             Ok(name)
         } else {
             project::relative(file, &root)
@@ -213,7 +213,7 @@ impl Input {
         match composed {
             Ok((composed, context)) => {
                 print_warnings(&project.sources, &composed.warnings, form);
-                Ok(Ready { sources: project.sources, composed, context })
+                Ok(ComposedInput { sources: project.sources, composed, context })
             }
             Err(diagnostics) => Err(Failure::Input(project.sources, diagnostics)),
         }
@@ -237,7 +237,7 @@ impl Input {
         root: &Path,
         path: &str,
         language: Language,
-    ) -> Result<(Composed, Context), Diagnostics> {
+    ) -> Result<(Composed, ErrorContext), Diagnostics> {
         let mut chosen = self.settings(project, root, path)?;
         let graph = resolve::load(&mut project.sources, &project.packages, path, language)?;
         let options = self.options();
@@ -249,8 +249,8 @@ impl Input {
         }
         chosen.warnings.append(&mut composed.warnings);
         composed.warnings = chosen.warnings;
-        let Chosen { settings, conventions, permutation, .. } = chosen;
-        Ok((composed, Context { graph, settings, options, conventions, permutation }))
+        let ChosenSettings { settings, conventions, permutation, .. } = chosen;
+        Ok((composed, ErrorContext { graph, settings, options, conventions, permutation }))
     }
 
     /// The language asked for.
@@ -315,7 +315,7 @@ impl Input {
         project: &mut Project,
         root: &Path,
         path: &str,
-    ) -> Result<Chosen, Diagnostics> {
+    ) -> Result<ChosenSettings, Diagnostics> {
         let manifest = project::manifest(root, &mut project.sources)?;
         let program = manifest.as_ref().and_then(|manifest| {
             manifest.programs.iter().find(|program| program.files().any(|file| file.path == path))
@@ -329,7 +329,7 @@ impl Input {
         }
     }
 
-    fn free(&self, root: &Path, sources: &mut SourceSet) -> Result<Chosen, Diagnostics> {
+    fn free(&self, root: &Path, sources: &mut SourceSet) -> Result<ChosenSettings, Diagnostics> {
         let mut settings = Settings {
             values: self.chosen().cloned().collect(),
             // A setting that `--set` gives a number is an integer.
@@ -348,7 +348,7 @@ impl Input {
         let warnings = declared.broken(&settings);
         let permutation =
             (!parts.is_empty()).then(|| format!("with the settings `{}`", parts.join(",")));
-        Ok(Chosen {
+        Ok(ChosenSettings {
             settings,
             conventions: Conventions::default(),
             permutation,
@@ -366,7 +366,7 @@ impl Input {
         program: &Program,
         features: Option<&Features>,
         sources: &mut SourceSet,
-    ) -> Result<Chosen, Diagnostics> {
+    ) -> Result<ChosenSettings, Diagnostics> {
         let is_axis = |name: &str| program.space.axis(name).is_some();
         let of_axes = self.feature.iter().filter(|(name, _)| is_axis(name));
         let parts: Vec<String> =
@@ -388,6 +388,6 @@ impl Input {
         ));
         let axes = program.space.axes().iter().map(|axis| axis.name.clone()).collect();
         let (conventions, warnings) = (program.conventions, broken.chain(both).collect());
-        Ok(Chosen { settings, conventions, permutation, declared: true, axes, warnings })
+        Ok(ChosenSettings { settings, conventions, permutation, declared: true, axes, warnings })
     }
 }

@@ -7,8 +7,8 @@ use super::failure::Failure;
 use super::progress::Bar;
 use crate::bundle::{BlobFile, Bundle, Contents, Error, Target, blob_files, write_directory};
 use crate::cache::Cache;
-use crate::generate::{Judged, Progress, Request};
-use crate::judge::{Made, Missing, Tint, blame, missing, outputs, verdict};
+use crate::generate::{JudgedCount, Progress, Request};
+use crate::judge::{MissingTool, OutputOrigin, Tint, blame, missing, outputs, verdict};
 use crate::output::Scratch;
 use crate::permute::Manifest;
 use crate::project;
@@ -45,7 +45,7 @@ impl Judges {
         };
         targets.sort();
         let lacking: Vec<String> =
-            missing(&targets, &tint).iter().map(Missing::to_string).collect();
+            missing(&targets, &tint).iter().map(MissingTool::to_string).collect();
         match lacking.is_empty() {
             true => Ok(Self { tint }),
             false => Err(Failure::environment(format!("cannot judge: {}", lacking.join("\n")))),
@@ -59,7 +59,7 @@ impl Judges {
         contents: &dyn Fn() -> Result<Contents, Error>,
         inputs: Inputs<'_>,
         bar: &Bar,
-    ) -> Result<Judged, Failure> {
+    ) -> Result<JudgedCount, Failure> {
         let broken = |error: Error| Failure::input(error.to_string());
         let progress = |done, total| {
             bar.show(Progress { stage: "judging".to_owned(), done, total });
@@ -69,10 +69,10 @@ impl Judges {
         let verdict = verdict(outputs, cache, &self.tint, &progress);
         let verdict = verdict.map_err(Failure::environment)?;
         if verdict.refusals.is_empty() {
-            return Ok(Judged { now: verdict.judged, before: verdict.known });
+            return Ok(JudgedCount { now: verdict.judged, before: verdict.known });
         }
         bar.clear();
-        let made = Made { packages, manifest, contents: &contents().map_err(broken)? };
+        let made = OutputOrigin { packages, manifest, contents: &contents().map_err(broken)? };
         let diagnostics = blame(sources, &made, &verdict.refusals);
         Err(Failure::Input(sources.clone(), diagnostics))
     }
@@ -83,7 +83,7 @@ impl Judges {
         contents: &Contents,
         inputs: Inputs<'_>,
         bar: &Bar,
-    ) -> Result<Judged, Failure> {
+    ) -> Result<JudgedCount, Failure> {
         let failed = |error: Error| Failure::environment(error.to_string());
         let scratch = Scratch::new(&std::env::temp_dir())?;
         let folder = scratch.path("bundle");
@@ -93,7 +93,12 @@ impl Judges {
     }
 
     /// Judges a bundle that is there.
-    pub fn bundle(&self, out: &Path, inputs: Inputs<'_>, bar: &Bar) -> Result<Judged, Failure> {
+    pub fn bundle(
+        &self,
+        out: &Path,
+        inputs: Inputs<'_>,
+        bar: &Bar,
+    ) -> Result<JudgedCount, Failure> {
         let broken = |error: Error| Failure::input(error.to_string());
         let contents = || Bundle::open(out)?.contents();
         match out.is_dir() {

@@ -9,7 +9,7 @@ use super::overwrite::Overwrite;
 use super::terminal::write_data;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::input;
-use crate::keys::{self, LANGUAGES, Language};
+use crate::keys::{self, KeyLanguage, LANGUAGES};
 use crate::output::{self, Replace};
 use crate::permute::{Lock, Manifest};
 use crate::project;
@@ -24,7 +24,7 @@ pub struct Arguments {
     manifest: Option<PathBuf>,
     /// The language of the keys.
     #[arg(long, value_name = "c|rust|ts", value_parser = find_language, required_unless_present = "lock")]
-    lang: Option<&'static Language>,
+    lang: Option<&'static KeyLanguage>,
     /// The file to write [default: standard output].
     #[arg(short, long, value_name = "FILE", requires = "lang")]
     out: Option<PathBuf>,
@@ -39,7 +39,7 @@ pub struct Arguments {
     overwrite: Overwrite,
 }
 
-fn find_language(name: &str) -> Result<&'static Language, String> {
+fn find_language(name: &str) -> Result<&'static KeyLanguage, String> {
     let names: Vec<&str> = LANGUAGES.iter().map(|language| language.name).collect();
     keys::find(name).ok_or_else(|| format!("there are: {}", names.join(", ")))
 }

@@ -7,9 +7,9 @@ use serde_json::{Value, json};
 
 use super::compile;
 use super::failure::Failure;
-use super::own::Own;
+use super::own::OwnPackage;
 use super::text;
-use crate::catalogue::{self, Kind, probe};
+use crate::catalogue::{self, CatalogueItemKind, probe};
 use crate::cli::terminal::stdout;
 use crate::emit::targets;
 use crate::execute::executors;
@@ -27,7 +27,7 @@ pub struct Arguments {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    own: Own,
+    own: OwnPackage,
 }
 
 #[derive(Clone, Copy, Default, ValueEnum)]
@@ -46,7 +46,7 @@ enum What {
 }
 
 /// Rows as JSON objects. The table shows the fields in `shown`, and wraps the last one.
-struct Table {
+struct ListTable {
     shown: &'static [&'static str],
     things: Vec<Value>,
 }
@@ -54,15 +54,19 @@ struct Table {
 pub fn run_list(arguments: Arguments) -> Result<(), Failure> {
     let table = match arguments.what {
         What::Modules => module_table(known_modules(&arguments.own)?),
-        What::Functions => {
-            item_table(known_modules(&arguments.own)?, Kind::Function, &["function", "summary"])
-        }
-        What::Structs => {
-            item_table(known_modules(&arguments.own)?, Kind::Struct, &["struct", "summary"])
-        }
+        What::Functions => item_table(
+            known_modules(&arguments.own)?,
+            CatalogueItemKind::Function,
+            &["function", "summary"],
+        ),
+        What::Structs => item_table(
+            known_modules(&arguments.own)?,
+            CatalogueItemKind::Struct,
+            &["struct", "summary"],
+        ),
         What::Constants => item_table(
             known_modules(&arguments.own)?,
-            Kind::Constant,
+            CatalogueItemKind::Constant,
             &["constant", "wesl", "summary"],
         ),
         What::Programs => program_table(all_programs(&arguments.own)?),
@@ -81,36 +85,40 @@ pub fn run_list(arguments: Arguments) -> Result<(), Failure> {
 }
 
 /// The modules of the user's own package, then those of the library.
-pub fn known_modules(own: &Own) -> Result<Vec<catalogue::Module>, Failure> {
+pub fn known_modules(own: &OwnPackage) -> Result<Vec<catalogue::CatalogueModule>, Failure> {
     let own = own.packages()?.map(|packages| catalogue::own_modules(&*packages.root.files));
     Ok(own.into_iter().flatten().chain(catalogue::library_modules()).collect())
 }
 
 /// The programs of the user's own manifest, then those of the library.
-fn all_programs(own: &Own) -> Result<Vec<Program>, Failure> {
+fn all_programs(own: &OwnPackage) -> Result<Vec<Program>, Failure> {
     let own = own.manifest()?.map_or(Vec::new(), |manifest| manifest.programs);
     Ok(own.into_iter().chain(own_manifest()?.1.programs).collect())
 }
 
-fn module_table(known: Vec<catalogue::Module>) -> Table {
-    let thing = |module: catalogue::Module| {
+fn module_table(known: Vec<catalogue::CatalogueModule>) -> ListTable {
+    let thing = |module: catalogue::CatalogueModule| {
         json!({
             "module": module.path,
-            "functions": module.count(Kind::Function),
-            "structs": module.count(Kind::Struct),
-            "constants": module.count(Kind::Constant),
+            "functions": module.count(CatalogueItemKind::Function),
+            "structs": module.count(CatalogueItemKind::Struct),
+            "constants": module.count(CatalogueItemKind::Constant),
             "summary": module.summary(),
         })
     };
-    Table {
+    ListTable {
         shown: &["module", "functions", "structs", "summary"],
         things: known.into_iter().map(thing).collect(),
     }
 }
 
-fn item_table(known: Vec<catalogue::Module>, kind: Kind, shown: &'static [&'static str]) -> Table {
+fn item_table(
+    known: Vec<catalogue::CatalogueModule>,
+    kind: CatalogueItemKind,
+    shown: &'static [&'static str],
+) -> ListTable {
     let items = known.into_iter().flat_map(|module| module.items).filter(|item| item.kind == kind);
-    let thing = |item: catalogue::Item| {
+    let thing = |item: catalogue::CatalogueItem| {
         json!({
             kind.name(): item.path(),
             "summary": item.summary(),
@@ -120,10 +128,10 @@ fn item_table(known: Vec<catalogue::Module>, kind: Kind, shown: &'static [&'stat
             "include": item.include(),
         })
     };
-    Table { shown, things: items.map(thing).collect() }
+    ListTable { shown, things: items.map(thing).collect() }
 }
 
-fn program_table(programs: Vec<Program>) -> Table {
+fn program_table(programs: Vec<Program>) -> ListTable {
     let things = programs.into_iter().map(|program| {
         json!({
             "program": program.name,
@@ -134,29 +142,29 @@ fn program_table(programs: Vec<Program>) -> Table {
             "summary": program.doc,
         })
     });
-    Table { shown: &["program", "axes", "permutations", "targets"], things: things.collect() }
+    ListTable { shown: &["program", "axes", "permutations", "targets"], things: things.collect() }
 }
 
-fn axis_table(programs: &[Program]) -> Table {
+fn axis_table(programs: &[Program]) -> ListTable {
     let things = programs.iter().flat_map(|program| {
         program.space.axes().iter().map(|axis| super::show::axis_json(&program.name, axis))
     });
-    Table { shown: &["program", "axis", "mode", "default", "values"], things: things.collect() }
+    ListTable { shown: &["program", "axis", "mode", "default", "values"], things: things.collect() }
 }
 
-fn preset_table() -> Result<Table, Failure> {
+fn preset_table() -> Result<ListTable, Failure> {
     let (mut sources, manifest) = own_manifest()?;
     let (presets, _) = catalogue::library_examples(&mut sources, &manifest)
         .map_err(|problems| Failure::Input(sources, problems))?;
     let things = presets.iter().map(super::show::preset_json).collect();
-    Ok(Table { shown: &["preset", "program", "scene", "key"], things })
+    Ok(ListTable { shown: &["preset", "program", "scene", "key"], things })
 }
 
-fn probe_table() -> Result<Table, Failure> {
+fn probe_table() -> Result<ListTable, Failure> {
     let mut sources = SourceSet::default();
     let probes = probe::library_probes(&mut sources)
         .map_err(|problems| Failure::Input(sources, problems))?;
-    Ok(Table {
+    Ok(ListTable {
         shown: &["probe", "title"],
         things: probes.iter().map(super::show::probe_json).collect(),
     })
@@ -167,7 +175,7 @@ fn own_manifest() -> Result<(SourceSet, Manifest), Failure> {
         .map_err(|(sources, diagnostics)| Failure::Input(sources, diagnostics))
 }
 
-fn target_table() -> Table {
+fn target_table() -> ListTable {
     let things = targets::ALL.iter().map(|entry| {
         json!({
             "target": entry.target.name(),
@@ -176,14 +184,14 @@ fn target_table() -> Table {
             "summary": entry.about,
         })
     });
-    Table { shown: &["target", "extension", "compiled", "summary"], things: things.collect() }
+    ListTable { shown: &["target", "extension", "compiled", "summary"], things: things.collect() }
 }
 
-fn executor_table() -> Table {
+fn executor_table() -> ListTable {
     let things = executors::ALL.iter().map(
         |entry| json!({ "executor": entry.name, "needs": entry.needs, "draws": entry.samples.is_some(), "summary": entry.about }),
     );
-    Table { shown: &["executor", "summary", "needs"], things: things.collect() }
+    ListTable { shown: &["executor", "summary", "needs"], things: things.collect() }
 }
 
 /// A count as a number, or as text if it does not fit into 64 bits.
@@ -200,7 +208,7 @@ pub fn setting_json(setting: &Setting) -> Value {
     }
 }
 
-fn as_text(table: &Table) -> String {
+fn as_text(table: &ListTable) -> String {
     let rows: Vec<Vec<String>> = table
         .things
         .iter()

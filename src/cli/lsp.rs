@@ -15,7 +15,7 @@ use super::failure::Failure;
 use super::terminal;
 use crate::input;
 use crate::lsp::wire::{self, Incoming};
-use crate::lsp::{Library, Server};
+use crate::lsp::{LanguageServer, LibraryPaths};
 use crate::output::{self, Replace};
 use crate::source::{Embedded, Files};
 use crate::validate::on_large_stack;
@@ -50,7 +50,7 @@ pub fn run_lsp(_: Arguments) -> Result<(), Failure> {
 
 /// Answers until the editor leaves; returns the exit code that the protocol demands.
 fn serve_editor(receiver: &Receiver<Incoming>) -> Result<u8, Failure> {
-    let mut server = Server::new(library_copy());
+    let mut server = LanguageServer::new(library_copy());
     let mut pause = PAUSE;
     loop {
         let next = match server.is_idle() {
@@ -66,7 +66,7 @@ fn serve_editor(receiver: &Receiver<Incoming>) -> Result<u8, Failure> {
             Ok(Incoming::End) | Err(RecvTimeoutError::Disconnected) => return Ok(0),
             Err(RecvTimeoutError::Timeout) => {
                 pause = Duration::ZERO;
-                guard_request(&mut server, &Value::Null, Server::look)
+                guard_request(&mut server, &Value::Null, LanguageServer::look)
             }
         };
         for message in sent {
@@ -83,9 +83,9 @@ fn serve_editor(receiver: &Receiver<Incoming>) -> Result<u8, Failure> {
 
 /// A request that panics is answered with an error, and the server continues.
 fn guard_request(
-    server: &mut Server,
+    server: &mut LanguageServer,
     message: &Value,
-    work: impl FnOnce(&mut Server) -> Vec<Value>,
+    work: impl FnOnce(&mut LanguageServer) -> Vec<Value>,
 ) -> Vec<Value> {
     catch_unwind(AssertUnwindSafe(|| work(server))).unwrap_or_else(|_| {
         let id = message.get("id");
@@ -95,7 +95,7 @@ fn guard_request(
 
 /// A copy of the library where editors can open its files, written when the first one is asked for.
 /// All files are written, since the definitions in one lead to others.
-fn library_copy() -> Library {
+fn library_copy() -> LibraryPaths {
     let copy = OnceCell::new();
     Box::new(move |name| {
         let folder: &Option<PathBuf> = copy.get_or_init(write_library);

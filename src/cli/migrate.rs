@@ -63,13 +63,13 @@ pub fn run_migrate(arguments: Arguments, form: DiagnosticForm) -> Result<(), Fai
 }
 
 /// Paths and texts of shaders.
-type Read = Vec<(String, source::SourceId)>;
+type ReadShaders = Vec<(String, source::SourceId)>;
 
 /// All shaders below a folder, and what could not be read.
 fn read_shaders(
     folder: &Path,
     sources: &mut SourceSet,
-) -> Result<(Read, Vec<Diagnostic>), Failure> {
+) -> Result<(ReadShaders, Vec<Diagnostic>), Failure> {
     let none = || Failure::input(format!("there is no folder `{}`", folder.display()));
     if !folder.is_dir() {
         return Err(none());

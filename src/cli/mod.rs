@@ -63,7 +63,7 @@ struct Cli {
     diagnostics: failure::DiagnosticForm,
     /// When to print colours.
     #[arg(long, global = true, value_enum, default_value_t)]
-    color: failure::Color,
+    color: failure::ColorChoice,
 }
 
 #[derive(Subcommand)]
@@ -99,7 +99,7 @@ enum Command {
 
 impl Command {
     /// The executors that the command names.
-    fn executors(&self) -> Vec<&'static executors::Entry> {
+    fn executors(&self) -> Vec<&'static executors::ExecutorEntry> {
         let names = match self {
             Self::Check(arguments) => arguments.executor.as_slice(),
             Self::Eval(arguments) => std::slice::from_ref(&arguments.executor),
@@ -110,7 +110,7 @@ impl Command {
     }
 
     /// The GPUs that the command names. They are opened here, while the process has one thread.
-    fn gpus(&self) -> cost::Opened {
+    fn gpus(&self) -> cost::OpenedGpus {
         match self {
             Self::Cost(arguments) => arguments.open_gpus(),
             Self::Variants(arguments) if arguments.cost => arguments.gpus.open(),
@@ -183,7 +183,7 @@ fn wrong_usage<T>(error: clap::Error) -> T {
 
 fn dispatch_command(
     command: Command,
-    gpus: cost::Opened,
+    gpus: cost::OpenedGpus,
     form: failure::DiagnosticForm,
 ) -> Result<(), Failure> {
     match command {

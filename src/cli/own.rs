@@ -14,13 +14,13 @@ use crate::source::SourceSet;
 
 /// Where it is.
 #[derive(Args)]
-pub struct Own {
+pub struct OwnPackage {
     /// The root directory of your own package [default: the package here, if there is one].
     #[arg(long, value_name = "DIR")]
     root: Option<PathBuf>,
 }
 
-impl Own {
+impl OwnPackage {
     /// Its root folder; `None` for the library's own sources, which are not a second package.
     pub fn root(&self) -> Option<PathBuf> {
         let found = || {

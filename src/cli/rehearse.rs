@@ -9,7 +9,7 @@ use clap::Args;
 
 use super::failure::Failure;
 use crate::limits::REHEARSAL_SECONDS;
-use crate::rehearse::{Exhausted, run_by};
+use crate::rehearse::{RehearsalFailure, run_by};
 use crate::scene::{self, Equirect};
 use crate::{link, validate};
 
@@ -76,7 +76,7 @@ fn limit_process() -> Result<(), Failure> {
 
 /// Runs a job in a child process. Where no process can be started, the job is done here without a
 /// rehearsal, as a library does.
-fn in_a_child(stage: &str, job: &[u8]) -> Result<(), Exhausted> {
+fn in_a_child(stage: &str, job: &[u8]) -> Result<(), RehearsalFailure> {
     let Ok(program) = std::env::current_exe() else { return Ok(()) };
     let child = Command::new(program)
         .args(["rehearse", stage])
@@ -122,16 +122,16 @@ fn exit_status(child: &mut Child) -> Option<ExitStatus> {
     None
 }
 
-fn judge_exit(status: Option<ExitStatus>, words: &str) -> Result<(), Exhausted> {
+fn judge_exit(status: Option<ExitStatus>, words: &str) -> Result<(), RehearsalFailure> {
     match status {
         Some(status) if status.success() => Ok(()),
-        None => Err(Exhausted::Time),
-        Some(status) if is_out_of_time(status) => Err(Exhausted::Time),
-        Some(_) if words.contains("overflowed its stack") => Err(Exhausted::Stack),
-        Some(_) if words.contains("memory allocation") => Err(Exhausted::Memory),
+        None => Err(RehearsalFailure::Time),
+        Some(status) if is_out_of_time(status) => Err(RehearsalFailure::Time),
+        Some(_) if words.contains("overflowed its stack") => Err(RehearsalFailure::Stack),
+        Some(_) if words.contains("memory allocation") => Err(RehearsalFailure::Memory),
         Some(status) => {
             let last = words.lines().next().unwrap_or_default();
-            Err(Exhausted::Stopped(format!("{status} {last}").trim().to_owned()))
+            Err(RehearsalFailure::Stopped(format!("{status} {last}").trim().to_owned()))
         }
     }
 }

@@ -55,13 +55,13 @@ pub fn stream_name(language: Language, stage: Option<Stage>) -> String {
 }
 
 /// The files of a package, with `text` in the place of the file `name`.
-pub struct Overlay {
+pub struct StreamOverlay {
     pub below: Box<dyn Files>,
     pub name: String,
     pub text: String,
 }
 
-impl Files for Overlay {
+impl Files for StreamOverlay {
     fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
         if path == self.name { Ok(Some(self.text.clone())) } else { self.below.read(path) }
     }

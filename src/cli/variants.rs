@@ -16,12 +16,12 @@ use super::terminal::stdout;
 use crate::catalogue::cost::{PATH, SHOWN, is_record, package_costs};
 use crate::cost::Meter;
 use crate::cost::device::Device;
-use crate::cost::permutations::Change;
+use crate::cost::permutations::CostChange;
 use crate::diagnostic::{Diagnostics, nearest_name};
 use crate::generate::{self, Discard, Request, Tools};
 use crate::output;
 use crate::permute::axis::Mode;
-use crate::permute::report::{Report, StageCount, report};
+use crate::permute::report::{PermutationReport, StageCount, report};
 use crate::permute::{Manifest, Program};
 use crate::project;
 use crate::resolve::Packages;
@@ -64,7 +64,7 @@ pub struct Arguments {
 
 pub fn run_variants(
     arguments: Arguments,
-    opened: cost::Opened,
+    opened: cost::OpenedGpus,
     form: DiagnosticForm,
 ) -> Result<(), Failure> {
     if arguments.gpus.are_named() && !arguments.cost {
@@ -97,21 +97,22 @@ pub fn run_variants(
         }
         let meter = Meter { devices: &devices, cache: cache.as_ref() };
         let changes = cost::axis_changes(&mut sources, &packages, &manifest, &program.name, meter)?;
-        Ok(Told { report, changes })
+        Ok(ProgramReport { report, changes })
     };
-    let reports = manifest.programs.iter().map(tell).collect::<Result<Vec<Told>, Failure>>()?;
+    let reports =
+        manifest.programs.iter().map(tell).collect::<Result<Vec<ProgramReport>, Failure>>()?;
     if let Some(path) = &record {
         write_record(&arguments, path, &devices, &reports)?;
     }
     if arguments.json {
         return Ok(writeln!(stdout(), "{:#}", serde_json::json!(reports))?);
     }
-    let texts: Vec<String> = reports.iter().map(Told::text).collect();
+    let texts: Vec<String> = reports.iter().map(ProgramReport::text).collect();
     Ok(stdout().write_all(texts.join("\n").as_bytes())?)
 }
 
 /// What the axes of a program multiply to.
-fn counted_report(program: &Program) -> Report {
+fn counted_report(program: &Program) -> PermutationReport {
     let mut report = report(&program.name, &program.space);
     if program.glsl.is_some() {
         let spec = program.space.axes().iter().filter(|axis| axis.mode == Mode::Spec);
@@ -162,7 +163,7 @@ fn write_record(
     arguments: &Arguments,
     path: &Path,
     devices: &[Device],
-    reports: &[Told],
+    reports: &[ProgramReport],
 ) -> Result<(), Failure> {
     let changes = reports.iter().map(|told| (told.report.program.as_str(), &*told.changes));
     let Some(costs) = cost::axis_record(devices, changes) else { return Ok(()) };
@@ -172,15 +173,15 @@ fn write_record(
 
 /// The report of one program.
 #[derive(Serialize)]
-struct Told {
+struct ProgramReport {
     #[serde(flatten)]
-    report: Report,
+    report: PermutationReport,
     /// What values of axes change on GPUs, where that was asked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    changes: Vec<Change>,
+    changes: Vec<CostChange>,
 }
 
-impl Told {
+impl ProgramReport {
     fn text(&self) -> String {
         match self.changes.as_slice() {
             [] => self.report.to_string(),
@@ -215,7 +216,7 @@ fn compose(
     packages: &Packages,
     manifest: &Manifest,
     program: &Program,
-    report: &mut Report,
+    report: &mut PermutationReport,
     bar: &Bar,
 ) -> Result<(), Diagnostics> {
     let progress = |progress| bar.show(progress);

@@ -9,7 +9,7 @@ use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure};
 use super::terminal::stdout;
-use super::work::{Places, Work};
+use super::work::{PathArguments, Work};
 use crate::generate::Request;
 use crate::generate::summary::counted_words;
 use crate::input;
@@ -24,7 +24,7 @@ const PAUSE: Duration = Duration::from_millis(100);
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
-    places: Places,
+    places: PathArguments,
     /// The permutation in use, which is compiled and written before the others.
     #[arg(long, value_name = "KEY", requires = "program")]
     key: Option<String>,

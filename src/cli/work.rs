@@ -16,7 +16,8 @@ use super::terminal::stderr;
 use crate::bundle::{self, Bundle, Contents, DirectoryWriter};
 use crate::cache::Cache;
 use crate::generate::{
-    Generated, Judged, Memory, Observer, Request, Run, Sink, Summary, Told, Tools, Trace, generate,
+    Generated, JudgedCount, MemorySink, Observer, Request, RunWarnings, Sink, Summary, Tools,
+    Trace, TracedRun, generate,
 };
 use crate::output::Replace;
 use crate::permute::Manifest;
@@ -27,7 +28,7 @@ use crate::store;
 
 /// Where things are.
 #[derive(Args)]
-pub struct Places {
+pub struct PathArguments {
     /// The manifest [default: `lamplight.toml` here or in the nearest folder above].
     #[arg(long, value_name = "FILE")]
     manifest: Option<PathBuf>,
@@ -42,7 +43,7 @@ pub struct Places {
     overwrite: Overwrite,
 }
 
-impl Places {
+impl PathArguments {
     /// The manifest that was named, or else the nearest.
     pub fn manifest(&self) -> PathBuf {
         let named = self.manifest.clone().or_else(|| project::manifest_above(Path::new("")));
@@ -70,7 +71,7 @@ pub struct Work {
 }
 
 impl Work {
-    pub fn open(places: &Places) -> Result<Self, Failure> {
+    pub fn open(places: &PathArguments) -> Result<Self, Failure> {
         let mut sources = SourceSet::default();
         let path = places.manifest();
         let opened = project::declared(&path, &mut sources);
@@ -101,7 +102,7 @@ impl Work {
     }
 
     /// Lets the judges, if there are any, check the bundle on disk.
-    pub fn judge_bundle(&mut self) -> Result<Option<Judged>, Failure> {
+    pub fn judge_bundle(&mut self) -> Result<Option<JudgedCount>, Failure> {
         let (out, bar) = (self.out.clone(), Bar::new());
         let (judges, inputs) = self.judges();
         judges.map(|judges| judges.bundle(&out, inputs, &bar)).transpose()
@@ -151,15 +152,15 @@ impl Work {
         print_warnings(&self.sources, &warnings, form);
         if let Some(cache) = &self.cache {
             told_failures(cache);
-            let told = Told::new(&self.path, &self.sources, &warnings);
+            let told = RunWarnings::new(&self.path, &self.sources, &warnings);
             let trace = Trace::new(&self.observer, &self.out, summary.clone(), told);
             trace.into_iter().for_each(|trace| trace.keep(cache, self.as_run(request)));
         }
         Ok(summary)
     }
 
-    fn as_run<'a>(&'a self, request: &'a Request) -> Run<'a> {
-        Run {
+    fn as_run<'a>(&'a self, request: &'a Request) -> TracedRun<'a> {
+        TracedRun {
             manifest: &self.path,
             declared: &self.declared,
             request,
@@ -170,7 +171,7 @@ impl Work {
 
     /// Writes one permutation into the present bundle directory, before all others.
     pub fn patch(&mut self, request: &Request) -> Result<(), Failure> {
-        let memory = Memory::default();
+        let memory = MemorySink::default();
         let mut generated = self.generate(request, &memory, &Bar::new())?;
         memory.fill(&mut generated.contents);
         bundle::patch_directory(&generated.contents, &self.out)
@@ -203,7 +204,7 @@ impl Work {
         check: bool,
         bar: &Bar,
     ) -> Result<Generated, Failure> {
-        let memory = Memory::default();
+        let memory = MemorySink::default();
         let mut generated = self.generate(request, &memory, bar)?;
         memory.fill(&mut generated.contents);
         let (judges, inputs) = self.judges();
@@ -235,7 +236,7 @@ impl Work {
     }
 }
 
-fn open_cache(places: &Places, manifest: &Path) -> Result<Option<Cache>, Failure> {
+fn open_cache(places: &PathArguments, manifest: &Path) -> Result<Option<Cache>, Failure> {
     let mut storages = places.cached.storages(Some(manifest))?;
     if let Some(address) = &places.store {
         storages.push(store::open(address).map_err(Failure::environment)?);

@@ -273,7 +273,7 @@ pub fn lean_glsl(text: &str) -> String {
 /// optimised.
 fn append_glsl(text: &str, lean: &mut String) {
     let bytes = text.as_bytes();
-    let (mut at, mut line) = (0, Line::Empty);
+    let (mut at, mut line) = (0, LineState::Empty);
     while at < bytes.len() {
         match bytes[at] {
             b'\n' => {
@@ -293,13 +293,13 @@ fn append_glsl(text: &str, lean: &mut String) {
 }
 
 /// What a line of lean GLSL has so far.
-enum Line {
+enum LineState {
     Empty,
     Code,
     Directive,
 }
 
-impl Line {
+impl LineState {
     fn add(&mut self, word: &str, lean: &mut String) {
         match self {
             // A blank before a bracket matters in a directive: `#define F(x)` has a parameter,

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Composed, Part, PartKind};
 use crate::bundle::Language;
-use crate::parse::words::{PieceKind, has_word, pieces, words};
+use crate::parse::words::{LexemeKind, has_word, pieces, words};
 
 /// The text with such variables and constants renamed in every place. Members keep their names,
 /// since engines see them.
@@ -64,7 +64,7 @@ fn members<'c>(composed: &'c Composed, block: &Part) -> impl Iterator<Item = &'c
     let mut brackets = Brackets::default();
     pieces(text.get(open..close).unwrap_or_default()).filter_map(move |piece| {
         let is_outside = brackets.is_outside(piece.text);
-        (is_outside && piece.kind == PieceKind::Word).then_some(piece.text)
+        (is_outside && piece.kind == LexemeKind::Word).then_some(piece.text)
     })
 }
 
@@ -131,9 +131,9 @@ fn append_renamed(
         let is_outside = brackets.is_outside(piece.text);
         let is_member =
             before == '.' || declares_members && is_outside || in_layout && before != '=';
-        let new = names.get(piece.text).filter(|_| piece.kind == PieceKind::Word && !is_member);
+        let new = names.get(piece.text).filter(|_| piece.kind == LexemeKind::Word && !is_member);
         out.push_str(new.map_or(piece.text, String::as_str));
-        if piece.kind != PieceKind::Blank {
+        if piece.kind != LexemeKind::Blank {
             before = piece.text.chars().next_back().unwrap_or(' ');
         }
     }

@@ -8,13 +8,13 @@ use std::ops::RangeInclusive;
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 
-use super::pipeline::Words;
+use super::pipeline::SpirvStage;
 use super::stages::settled_words;
 use crate::emit::spirv::{self, op};
 use crate::tools::SPIRV_OPT;
 
 /// A kind of instruction: its key in JSON, its heading in a table, its opcodes.
-pub struct Kind {
+pub struct InstructionKind {
     pub key: &'static str,
     pub heading: &'static str,
     opcodes: &'static [RangeInclusive<u16>],
@@ -24,13 +24,13 @@ const fn make_kind(
     key: &'static str,
     heading: &'static str,
     opcodes: &'static [RangeInclusive<u16>],
-) -> Kind {
-    Kind { key, heading, opcodes }
+) -> InstructionKind {
+    InstructionKind { key, heading, opcodes }
 }
 
 /// Every kind, in the order of tables. The numbers are those of the specification of SPIR-V,
 /// section 3.42. An instruction that no other kind has is in the last one.
-pub const KINDS: &[Kind] = &[
+pub const KINDS: &[InstructionKind] = &[
     // SNegate to SMulExtended: sums, products, quotients, also of vectors and matrices.
     make_kind("arithmetic", "arith", &[126..=152]),
     // ExtInst: functions of GLSL.std.450, such as `sqrt`, `pow`, `clamp`.
@@ -115,7 +115,7 @@ impl Serialize for Counts {
 ///
 /// # Errors
 /// What `spirv-opt` says where it refuses the stage, or that it is not installed.
-pub fn count_optimised(stage: &Words) -> Result<Counts, String> {
+pub fn count_optimised(stage: &SpirvStage) -> Result<Counts, String> {
     let arguments = ["--freeze-spec-const", "-O", "-", "-o", "-"];
     let optimised = SPIRV_OPT.pipe(&arguments, &spirv::bytes(&settled_words(stage)))?;
     Ok(Counts::of(&spirv::words(&optimised)))

@@ -10,7 +10,7 @@ use std::path::Path;
 use ash::{khr, vk};
 
 use super::gpu::Gpu;
-use super::made::Made;
+use super::made::PipelineObjects;
 use super::pipeline::Pipeline;
 use super::statistics::Statistics;
 use crate::bundle::Stage;
@@ -109,7 +109,7 @@ impl Device {
     /// # Errors
     /// What the driver says where it refuses the pipeline.
     pub fn measure(&self, pipeline: &Pipeline) -> Result<Vec<(Stage, Statistics)>, String> {
-        let mut made = Made::new(&self.device);
+        let mut made = PipelineObjects::new(&self.device);
         let compiled = made.pipeline(pipeline).map_err(refusal_text)?;
         self.figures(compiled)
     }

@@ -2,7 +2,7 @@
 
 use std::hash::{Hash as _, Hasher};
 
-use super::Figures;
+use super::StageFigures;
 use super::device::Device;
 use super::pipeline::Pipeline;
 use crate::bundle::Hash;
@@ -20,7 +20,7 @@ pub fn known_figures(
     device: &Device,
     pipeline: &Pipeline,
     cache: Option<&Cache>,
-) -> Result<Figures, String> {
+) -> Result<StageFigures, String> {
     let Some(cache) = cache else { return device.measure(pipeline) };
     let key = figures_key(device, pipeline);
     let known = cache.get(KIND, key).and_then(|bytes| serde_json::from_slice(&bytes).ok());
@@ -35,16 +35,16 @@ pub fn known_figures(
 /// A hash of all that figures depend on: the pipeline, the GPU, the driver, and how this crate
 /// asks.
 fn figures_key(device: &Device, pipeline: &Pipeline) -> Hash {
-    let mut hasher = Digest(blake3::Hasher::new());
+    let mut hasher = DigestHasher(blake3::Hasher::new());
     (BUILD, &device.driver, device.gpu.name, pipeline).hash(&mut hasher);
     shortened_hash(&hasher.0.finalize())
 }
 
 /// Hashes what implements [`std::hash::Hash`] with BLAKE3. Parts cannot run into each other: a list
 /// begins with its length, and a string ends with a byte that no string has.
-struct Digest(blake3::Hasher);
+struct DigestHasher(blake3::Hasher);
 
-impl Hasher for Digest {
+impl Hasher for DigestHasher {
     fn write(&mut self, bytes: &[u8]) {
         self.0.update(bytes);
     }

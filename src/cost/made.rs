@@ -2,11 +2,11 @@
 
 use ash::vk;
 
-use super::pipeline::{Attribute, Pipeline, Slot, Words};
-use crate::bundle::{Kind, Stage};
+use super::pipeline::{LocationAttribute, Pipeline, ResourceSlot, SpirvStage};
+use crate::bundle::{BindingKind, Stage};
 
 /// The objects of one pipeline, which are destroyed with it.
-pub(super) struct Made<'d> {
+pub(super) struct PipelineObjects<'d> {
     device: &'d ash::Device,
     modules: Vec<vk::ShaderModule>,
     sets: Vec<vk::DescriptorSetLayout>,
@@ -14,7 +14,7 @@ pub(super) struct Made<'d> {
     pipeline: vk::Pipeline,
 }
 
-impl<'d> Made<'d> {
+impl<'d> PipelineObjects<'d> {
     pub(super) fn new(device: &'d ash::Device) -> Self {
         let (modules, sets) = (Vec::new(), Vec::new());
         let (layout, pipeline) = (vk::PipelineLayout::null(), vk::Pipeline::null());
@@ -28,8 +28,9 @@ impl<'d> Made<'d> {
             self.modules.push(unsafe { self.device.create_shader_module(&info, None) }?);
         }
         self.layout(&wanted.slots)?;
-        let constants: Vec<Entries> = wanted.stages.iter().map(Entries::of).collect();
-        let infos: Vec<_> = constants.iter().map(Entries::info).collect();
+        let constants: Vec<SpecialisationEntries> =
+            wanted.stages.iter().map(SpecialisationEntries::of).collect();
+        let infos: Vec<_> = constants.iter().map(SpecialisationEntries::info).collect();
         let stages = self.stages(wanted, &infos);
         self.pipeline = match wanted.stages.iter().any(|stage| stage.stage == Stage::Compute) {
             true => self.compute(stages)?,
@@ -38,7 +39,7 @@ impl<'d> Made<'d> {
         Ok(self.pipeline)
     }
 
-    fn layout(&mut self, slots: &[Slot]) -> Result<(), vk::Result> {
+    fn layout(&mut self, slots: &[ResourceSlot]) -> Result<(), vk::Result> {
         let groups = slots.iter().map(|slot| slot.group + 1).max().unwrap_or(0);
         for group in 0..groups {
             let bindings: Vec<_> = slots
@@ -146,7 +147,7 @@ impl<'d> Made<'d> {
     }
 }
 
-impl Drop for Made<'_> {
+impl Drop for PipelineObjects<'_> {
     fn drop(&mut self) {
         // SAFETY: all were made by this device, and null handles may be destroyed.
         unsafe {
@@ -163,13 +164,13 @@ impl Drop for Made<'_> {
 }
 
 /// The specialisation constants of a stage, as the driver takes them.
-struct Entries {
+struct SpecialisationEntries {
     places: Vec<vk::SpecializationMapEntry>,
     bytes: Vec<u8>,
 }
 
-impl Entries {
-    fn of(stage: &Words) -> Self {
+impl SpecialisationEntries {
+    fn of(stage: &SpirvStage) -> Self {
         let place = |(index, (id, _)): (usize, &(u32, u32))| vk::SpecializationMapEntry {
             constant_id: *id,
             offset: index as u32 * 4,
@@ -202,17 +203,17 @@ fn stage_flags(stage: Stage) -> vk::ShaderStageFlags {
     }
 }
 
-fn descriptor_type(kind: Kind) -> vk::DescriptorType {
+fn descriptor_type(kind: BindingKind) -> vk::DescriptorType {
     match kind {
-        Kind::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
-        Kind::Storage => vk::DescriptorType::STORAGE_BUFFER,
-        Kind::Texture => vk::DescriptorType::SAMPLED_IMAGE,
-        Kind::StorageTexture => vk::DescriptorType::STORAGE_IMAGE,
-        Kind::Sampler | Kind::ComparisonSampler => vk::DescriptorType::SAMPLER,
+        BindingKind::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
+        BindingKind::Storage => vk::DescriptorType::STORAGE_BUFFER,
+        BindingKind::Texture => vk::DescriptorType::SAMPLED_IMAGE,
+        BindingKind::StorageTexture => vk::DescriptorType::STORAGE_IMAGE,
+        BindingKind::Sampler | BindingKind::ComparisonSampler => vk::DescriptorType::SAMPLER,
     }
 }
 
-fn attribute_description(attribute: &Attribute) -> vk::VertexInputAttributeDescription {
+fn attribute_description(attribute: &LocationAttribute) -> vk::VertexInputAttributeDescription {
     vk::VertexInputAttributeDescription::default()
         .location(attribute.location)
         .binding(attribute.location)
@@ -220,11 +221,11 @@ fn attribute_description(attribute: &Attribute) -> vk::VertexInputAttributeDescr
 }
 
 /// The layout of a vertex buffer. Each attribute has its own.
-fn binding_description(attribute: &Attribute) -> vk::VertexInputBindingDescription {
+fn binding_description(attribute: &LocationAttribute) -> vk::VertexInputBindingDescription {
     vk::VertexInputBindingDescription::default().binding(attribute.location).stride(16)
 }
 
-fn color_format(attribute: &Option<Attribute>) -> vk::Format {
+fn color_format(attribute: &Option<LocationAttribute>) -> vk::Format {
     attribute.as_ref().map_or(vk::Format::UNDEFINED, |attribute| vertex_format(attribute.scalar, 4))
 }
 

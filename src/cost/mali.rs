@@ -8,7 +8,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::pipeline::Words;
+use super::pipeline::SpirvStage;
 use super::stages::settled_words;
 use crate::emit::spirv;
 use crate::tools::{Tool, printed_words};
@@ -24,7 +24,7 @@ pub const MISSING: &str = "`malioc` is not installed\n\
 /// What the compiler says of one variant of a stage. A fragment stage has one variant; a vertex
 /// stage has one for the position and one for everything else.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Variant {
+pub struct MaliVariant {
     pub core: String,
     pub name: String,
     /// The names of the units of the core, in the order of the cycles.
@@ -58,12 +58,14 @@ impl Cycles {
 }
 
 #[derive(Deserialize)]
-struct Report {
-    shaders: Vec<Shader>,
+#[serde(rename = "Report")]
+struct MaliReport {
+    shaders: Vec<MaliShader>,
 }
 
 #[derive(Deserialize)]
-struct Shader {
+#[serde(rename = "Shader")]
+struct MaliShader {
     hardware: Option<Hardware>,
     #[serde(default)]
     errors: Vec<String>,
@@ -102,14 +104,14 @@ struct Property {
 ///
 /// # Errors
 /// The compiler's message where it refuses the stage, or what is wrong with its report.
-pub fn compile_stage(file: &Path, entry: &str, core: &str) -> Result<Vec<Variant>, String> {
+pub fn compile_stage(file: &Path, entry: &str, core: &str) -> Result<Vec<MaliVariant>, String> {
     let arguments = ["--vulkan", "--core", core, "--name", entry, "--format", "json"];
     let said = MALIOC.run(&arguments, [file]);
     let said = said.map_err(|error| format!("`malioc` could not be run: {error}"))?;
     let printed = printed_words(&said);
     parse_report(&String::from_utf8_lossy(&said.stdout)).map_err(|reason| match reason {
-        Refusal::Shader(errors) => format!("`malioc` refuses the shader for {core}: {errors}"),
-        Refusal::Report(why) => {
+        MaliRefusal::Shader(errors) => format!("`malioc` refuses the shader for {core}: {errors}"),
+        MaliRefusal::Report(why) => {
             let printed: String = printed.chars().take(400).collect();
             format!("the report of `malioc` for {core} could not be read: {why}\n{printed}")
         }
@@ -118,7 +120,7 @@ pub fn compile_stage(file: &Path, entry: &str, core: &str) -> Result<Vec<Variant
 
 /// Why there are no figures.
 #[derive(Debug, PartialEq)]
-pub enum Refusal {
+pub enum MaliRefusal {
     /// The compiler's errors about the shader.
     Shader(String),
     /// What is wrong with the report.
@@ -129,14 +131,15 @@ pub enum Refusal {
 ///
 /// # Errors
 /// What the compiler says of the shader, or what is wrong with the report.
-pub fn parse_report(text: &str) -> Result<Vec<Variant>, Refusal> {
-    let wrong = |why: String| Refusal::Report(why);
-    let report: Report = serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?;
+pub fn parse_report(text: &str) -> Result<Vec<MaliVariant>, MaliRefusal> {
+    let wrong = |why: String| MaliRefusal::Report(why);
+    let report: MaliReport =
+        serde_json::from_str(text).map_err(|error| wrong(error.to_string()))?;
     let [shader] = &report.shaders[..] else {
         return Err(wrong(format!("it has {} shaders instead of one", report.shaders.len())));
     };
     if !shader.errors.is_empty() {
-        return Err(Refusal::Shader(shader.errors.join("\n")));
+        return Err(MaliRefusal::Shader(shader.errors.join("\n")));
     }
     if shader.variants.is_empty() {
         return Err(wrong("the shader has no variants".to_owned()));
@@ -145,7 +148,7 @@ pub fn parse_report(text: &str) -> Result<Vec<Variant>, Refusal> {
     shader.variants.iter().map(|variant| variant_of(&core, variant).map_err(wrong)).collect()
 }
 
-fn variant_of(core: &str, reported: &Reported) -> Result<Variant, String> {
+fn variant_of(core: &str, reported: &Reported) -> Result<MaliVariant, String> {
     let Performance { pipelines, total_cycles, shortest_path_cycles, longest_path_cycles } =
         &reported.performance;
     for cycles in [total_cycles, shortest_path_cycles, longest_path_cycles] {
@@ -158,7 +161,7 @@ fn variant_of(core: &str, reported: &Reported) -> Result<Variant, String> {
         let found = reported.properties.iter().find(|property| property.name == name);
         found.and_then(|property| property.value.as_f64())
     };
-    Ok(Variant {
+    Ok(MaliVariant {
         core: core.to_owned(),
         name: reported.name.clone(),
         pipelines: pipelines.clone(),
@@ -173,6 +176,6 @@ fn variant_of(core: &str, reported: &Reported) -> Result<Variant, String> {
 }
 
 /// The bytes of a stage's file.
-pub fn file_bytes(stage: &Words) -> Vec<u8> {
+pub fn file_bytes(stage: &SpirvStage) -> Vec<u8> {
     spirv::bytes(&settled_words(stage))
 }

@@ -33,11 +33,11 @@ use crate::execute::kernel::{ENTRY, varying_modules};
 use crate::validate::{Validated, info_of, on_large_stack};
 use device::Device;
 use gpu::Gpu;
-use pipeline::{Known, Pipeline};
+use pipeline::{Pipeline, ReflectedStage};
 use statistics::Statistics;
 
 /// Something whose cost is asked for.
-pub struct Subject {
+pub struct CostSubject {
     /// A function's path, a permutation's key or a file.
     pub name: String,
     /// The stages whose figures are reported.
@@ -75,11 +75,11 @@ pub fn function_subject(
     module: &naga::Module,
     function: &str,
     conventions: Conventions,
-) -> Result<Subject, Diagnostic> {
+) -> Result<CostSubject, Diagnostic> {
     let [called, empty] = varying_modules(module, function)?;
     let pipeline =
         |module| stage_alone(module, conventions).map_err(|reason| cannot_measure(name, &reason));
-    Ok(Subject {
+    Ok(CostSubject {
         name: name.to_owned(),
         stages: vec![Stage::Fragment],
         pipeline: pipeline(called)?,
@@ -90,7 +90,7 @@ pub fn function_subject(
 fn stage_alone(module: naga::Module, conventions: Conventions) -> Result<Pipeline, String> {
     let info = info_of(&module).map_err(|error| error.to_string())?;
     let validated = Validated { language: Language::Wesl, module, info };
-    Pipeline::new(Known::of_module(&validated, ENTRY, conventions)?, None)
+    Pipeline::new(ReflectedStage::of_module(&validated, ENTRY, conventions)?, None)
 }
 
 fn cannot_measure(name: &str, reason: &str) -> Diagnostic {
@@ -105,11 +105,11 @@ fn cannot_measure(name: &str, reason: &str) -> Diagnostic {
 /// # Errors
 /// No pipeline can be made of them: there is none of them, or a stage to go with it cannot be
 /// written.
-pub fn stages_subject(name: &str, mut known: Vec<Known>) -> Result<Subject, String> {
+pub fn stages_subject(name: &str, mut known: Vec<ReflectedStage>) -> Result<CostSubject, String> {
     let stages = known.iter().map(|known| known.words.stage).collect();
     let first = known.pop().ok_or("there is no stage")?;
     let pipeline = Pipeline::new(first, known.pop())?;
-    Ok(Subject { name: name.to_owned(), stages, pipeline, empty: None })
+    Ok(CostSubject { name: name.to_owned(), stages, pipeline, empty: None })
 }
 
 /// What subjects are measured with.
@@ -127,7 +127,7 @@ pub struct Meter<'a> {
 /// The driver's message where it refuses a pipeline, with the subject's name.
 pub fn measure_subjects(
     meter: Meter<'_>,
-    subjects: &[Subject],
+    subjects: &[CostSubject],
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Vec<Cost>, String> {
     let Meter { devices, cache } = meter;
@@ -142,7 +142,7 @@ pub fn measure_subjects(
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
         figures.map_err(|reason| format!("`{name}` on {}: {reason}", device.gpu.name))
     };
-    let figures: Vec<Figures> =
+    let figures: Vec<StageFigures> =
         on_large_stack(|| jobs.par_iter().map(one).collect::<Result<_, String>>())?;
     let mut costs = Vec::new();
     for subject in subjects {
@@ -162,7 +162,7 @@ pub fn measure_subjects(
 }
 
 /// The figures of a pipeline's stages on one GPU.
-type Figures = Vec<(Stage, Statistics)>;
+type StageFigures = Vec<(Stage, Statistics)>;
 
 /// The pipelines of subjects, each once.
 struct Distinct<'s> {
@@ -173,7 +173,7 @@ struct Distinct<'s> {
 }
 
 impl<'s> Distinct<'s> {
-    fn of(subjects: &'s [Subject]) -> Self {
+    fn of(subjects: &'s [CostSubject]) -> Self {
         let mut distinct = Self { pipelines: Vec::new(), places: HashMap::new() };
         for subject in subjects {
             for pipeline in [Some(&subject.pipeline), subject.empty.as_ref()].into_iter().flatten()
@@ -190,7 +190,7 @@ impl<'s> Distinct<'s> {
     /// The figures of a pipeline's stage, from those of all pipelines on one GPU.
     fn figures(
         &self,
-        figures: &[Figures],
+        figures: &[StageFigures],
         pipeline: &Pipeline,
         stage: Stage,
     ) -> Result<Statistics, String> {

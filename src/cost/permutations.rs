@@ -4,12 +4,13 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use super::pipeline::Known;
-use super::statistics::{FIGURES, Figure};
-use super::{Cost, Subject, stages_subject};
-use crate::bundle::key::{self, Part};
+use super::pipeline::ReflectedStage;
+use super::statistics::{CostFigure, FIGURES};
+use super::{Cost, CostSubject, stages_subject};
+use crate::bundle::key::{self, KeyPart};
 use crate::bundle::{
-    self, Axis, Choice, Constant, EntryContents, Hash, Language, ProgramContents, Stage, Target,
+    self, Axis, Constant, EntryContents, Hash, Language, OverrideChoice, ProgramContents, Stage,
+    Target,
 };
 
 /// A subject for every permutation of a program for which there is SPIR-V. Its name is the key.
@@ -19,7 +20,7 @@ use crate::bundle::{
 pub fn permutation_subjects(
     program: &ProgramContents,
     language: Language,
-) -> Result<Vec<Subject>, String> {
+) -> Result<Vec<CostSubject>, String> {
     let Some(entries) = program.languages.get(&language) else { return Ok(Vec::new()) };
     let known = entries.iter().map(|(name, entry)| known_units(name, entry));
     let known = known.collect::<Result<Vec<_>, String>>()?;
@@ -37,25 +38,32 @@ pub fn permutation_subjects(
 }
 
 /// A stage in SPIR-V, and the numbers of its overrides.
-struct Unit {
-    known: Known,
-    choices: Vec<Choice>,
+struct SpecialisedStage {
+    known: ReflectedStage,
+    choices: Vec<OverrideChoice>,
 }
 
 /// The units of an entry point, by hash.
-fn known_units(name: &str, entry: &EntryContents) -> Result<BTreeMap<Hash, Unit>, String> {
+fn known_units(
+    name: &str,
+    entry: &EntryContents,
+) -> Result<BTreeMap<Hash, SpecialisedStage>, String> {
     let unit = |(hash, unit): (&Hash, &bundle::Unit)| {
         let artifact = unit.targets.get(Target::SPIRV.name()).ok_or("there is no SPIR-V")?;
         let reflection = unit.reflection.as_ref().clone();
-        let known = Known::new(&artifact.native.entry_name, &artifact.bytes, reflection)?;
-        Ok((*hash, Unit { known, choices: artifact.native.choices.clone() }))
+        let known = ReflectedStage::new(&artifact.native.entry_name, &artifact.bytes, reflection)?;
+        Ok((*hash, SpecialisedStage { known, choices: artifact.native.choices.clone() }))
     };
     let units = entry.units.iter().map(unit).collect::<Result<_, String>>();
     units.map_err(|reason| format!("entry point `{name}`: {reason}"))
 }
 
 /// The stage of a key, with the values that the key gives its overrides.
-fn chosen_stage(axes: &[Axis], key: &str, unit: &Unit) -> Result<Known, String> {
+fn chosen_stage(
+    axes: &[Axis],
+    key: &str,
+    unit: &SpecialisedStage,
+) -> Result<ReflectedStage, String> {
     let mut known = unit.known.clone();
     let constants =
         bundle::constants(axes, key, &known.reflection).map_err(|error| error.to_string())?;
@@ -82,7 +90,7 @@ fn constant_bits(constant: &Constant) -> Result<u32, String> {
 
 /// What one value of an axis changes in a stage on a GPU, compared with the axis's default.
 #[derive(Debug, Clone, Serialize)]
-pub struct Change {
+pub struct CostChange {
     pub axis: String,
     pub value: String,
     pub gpu: &'static str,
@@ -105,7 +113,7 @@ pub struct Spread {
 }
 
 /// The changes of every value for which some pair of permutations exists.
-pub fn value_changes(axes: &[Axis], costs: &[Cost]) -> Vec<Change> {
+pub fn value_changes(axes: &[Axis], costs: &[Cost]) -> Vec<CostChange> {
     let mut by_place: BTreeMap<(&str, Stage), BTreeMap<&str, &Cost>> = BTreeMap::new();
     for cost in costs {
         let place = by_place.entry((cost.gpu.name, cost.stage)).or_default();
@@ -119,8 +127,8 @@ pub fn value_changes(axes: &[Axis], costs: &[Cost]) -> Vec<Change> {
                 if pairs.is_empty() {
                     continue;
                 }
-                let spread = |figure: &Figure| (figure.key, Spread::over(figure, &pairs));
-                changes.push(Change {
+                let spread = |figure: &CostFigure| (figure.key, Spread::over(figure, &pairs));
+                changes.push(CostChange {
                     axis: axis.name.clone(),
                     value: value.clone(),
                     gpu,
@@ -142,7 +150,7 @@ fn cost_pairs<'c>(
     costs: &BTreeMap<&str, &'c Cost>,
 ) -> Vec<(&'c Cost, &'c Cost)> {
     let pair = |(key, with): (&&str, &&'c Cost)| {
-        let (this, rest): (Vec<Part<'_>>, Vec<Part<'_>>) =
+        let (this, rest): (Vec<KeyPart<'_>>, Vec<KeyPart<'_>>) =
             key::parts(key).partition(|part| part.axis.text == axis);
         let has_value = this.iter().any(|part| part.chosen() == value);
         let without = key::write(rest.iter().map(|part| (part.axis.text, part.chosen())));
@@ -152,7 +160,7 @@ fn cost_pairs<'c>(
 }
 
 impl Spread {
-    fn over(figure: &Figure, pairs: &[(&Cost, &Cost)]) -> Self {
+    fn over(figure: &CostFigure, pairs: &[(&Cost, &Cost)]) -> Self {
         let mut values: Vec<(i64, i64, i64)> = pairs
             .iter()
             .map(|(without, with)| {

@@ -5,7 +5,9 @@ use std::ffi::CString;
 
 use naga::ScalarKind;
 
-use crate::bundle::{Binding, Conventions, Kind, Language, Reflection, Stage, Target, Varying};
+use crate::bundle::{
+    Binding, BindingKind, Conventions, Language, Reflection, Stage, Target, Varying,
+};
 use crate::diagnostic::Diagnostic;
 use crate::emit;
 use crate::emit::spirv;
@@ -13,7 +15,7 @@ use crate::validate::{Validated, info_of};
 
 /// A stage in SPIR-V.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub struct Words {
+pub struct SpirvStage {
     pub stage: Stage,
     pub entry: CString,
     pub words: Vec<u32>,
@@ -24,15 +26,15 @@ pub struct Words {
 
 /// A resource by its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Slot {
+pub struct ResourceSlot {
     pub group: u32,
     pub binding: u32,
-    pub kind: Kind,
+    pub kind: BindingKind,
 }
 
 /// A value at a location: a vertex attribute or a colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Attribute {
+pub struct LocationAttribute {
     pub location: u32,
     pub scalar: ScalarKind,
     pub components: u8,
@@ -41,21 +43,21 @@ pub struct Attribute {
 /// A pipeline to compile. Equal pipelines have equal figures.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Pipeline {
-    pub stages: Vec<Words>,
-    pub slots: Vec<Slot>,
-    pub attributes: Vec<Attribute>,
+    pub stages: Vec<SpirvStage>,
+    pub slots: Vec<ResourceSlot>,
+    pub attributes: Vec<LocationAttribute>,
     /// By location; `None` where nothing is written.
-    pub colors: Vec<Option<Attribute>>,
+    pub colors: Vec<Option<LocationAttribute>>,
 }
 
 /// A stage, with its reflection.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub struct Known {
-    pub words: Words,
+pub struct ReflectedStage {
+    pub words: SpirvStage,
     pub reflection: Reflection,
 }
 
-impl Known {
+impl ReflectedStage {
     /// From the bytes of a SPIR-V module.
     ///
     /// # Errors
@@ -67,7 +69,7 @@ impl Known {
         let words = spirv::words(bytes);
         let entry = CString::new(entry).map_err(|error| error.to_string())?;
         let stage = reflection.stage;
-        Ok(Self { words: Words { stage, entry, words, constants: Vec::new() }, reflection })
+        Ok(Self { words: SpirvStage { stage, entry, words, constants: Vec::new() }, reflection })
     }
 
     /// From an entry point of a module, with these conventions.
@@ -92,14 +94,14 @@ impl Pipeline {
     ///
     /// # Errors
     /// No partner can be written for it, because of a type that passes between the two.
-    pub fn new(stage: Known, other: Option<Known>) -> Result<Self, String> {
+    pub fn new(stage: ReflectedStage, other: Option<ReflectedStage>) -> Result<Self, String> {
         let other = match (stage.reflection.stage, other) {
             (Stage::Compute, _) => None,
             (_, Some(other)) => Some(other),
             (Stage::Fragment, None) => Some(partner_stage(&vertex_text(&stage.reflection))?),
             (Stage::Vertex, None) => Some(partner_stage(&fragment_text(&stage.reflection)?)?),
         };
-        let mut stages: Vec<Known> = other.into_iter().chain([stage]).collect();
+        let mut stages: Vec<ReflectedStage> = other.into_iter().chain([stage]).collect();
         stages.sort_by_key(|known| known.reflection.stage);
         let of = |wanted: Stage| stages.iter().find(|known| known.reflection.stage == wanted);
         let inputs = of(Stage::Vertex).map_or(&[][..], |known| &known.reflection.inputs);
@@ -113,25 +115,28 @@ impl Pipeline {
 }
 
 /// The resources of all stages, each once.
-fn stage_slots(stages: &[Known]) -> Vec<Slot> {
+fn stage_slots(stages: &[ReflectedStage]) -> Vec<ResourceSlot> {
     let bindings = stages.iter().flat_map(|known| &known.reflection.bindings);
-    let slot =
-        |found: &Binding| Slot { group: found.group, binding: found.binding, kind: found.kind };
-    let slots: BTreeSet<Slot> = bindings.map(slot).collect();
+    let slot = |found: &Binding| ResourceSlot {
+        group: found.group,
+        binding: found.binding,
+        kind: found.kind,
+    };
+    let slots: BTreeSet<ResourceSlot> = bindings.map(slot).collect();
     slots.into_iter().collect()
 }
 
 /// The values that have a location. The others are built-ins.
-fn located_values(values: &[Varying]) -> Result<Vec<Attribute>, String> {
+fn located_values(values: &[Varying]) -> Result<Vec<LocationAttribute>, String> {
     let located = values.iter().filter_map(|value| Some((value.location?, &value.ty)));
     let attribute = |(location, ty): (u32, &String)| {
         let (scalar, components) = scalar_and_count(ty)?;
-        Ok(Attribute { location, scalar, components })
+        Ok(LocationAttribute { location, scalar, components })
     };
     located.map(attribute).collect()
 }
 
-fn color_targets(written: &[Attribute]) -> Vec<Option<Attribute>> {
+fn color_targets(written: &[LocationAttribute]) -> Vec<Option<LocationAttribute>> {
     let count = written.iter().map(|color| color.location + 1).max().unwrap_or(0);
     let color = |location| written.iter().find(|color| color.location == location).copied();
     (0..count).map(color).collect()
@@ -155,12 +160,12 @@ fn scalar_and_count(ty: &str) -> Result<(ScalarKind, u8), String> {
 }
 
 /// Compiles the WGSL text of a partner stage.
-fn partner_stage(text: &str) -> Result<Known, String> {
+fn partner_stage(text: &str) -> Result<ReflectedStage, String> {
     let told = |error: &dyn std::fmt::Display| format!("the stage added to it: {error}");
     let module = naga::front::wgsl::parse_str(text).map_err(|error| told(&error))?;
     let info = info_of(&module).map_err(|error| told(&error))?;
     let validated = Validated { language: Language::Wesl, module, info };
-    Known::of_module(&validated, PARTNER, Conventions::default())
+    ReflectedStage::of_module(&validated, PARTNER, Conventions::default())
 }
 
 const PARTNER: &str = "lamplight_partner";
@@ -193,7 +198,7 @@ fn vertex_text(fragment: &Reflection) -> String {
 /// The text of a fragment stage that uses every output of a vertex stage.
 fn fragment_text(vertex: &Reflection) -> Result<String, String> {
     let (mut parameters, mut sum) = (String::new(), String::new());
-    for Attribute { location, scalar, components } in located_values(&vertex.outputs)? {
+    for LocationAttribute { location, scalar, components } in located_values(&vertex.outputs)? {
         let ty = vertex.outputs.iter().find(|output| output.location == Some(location));
         let ty = ty.map_or("", |output| &output.ty);
         let flat = if scalar == ScalarKind::Float { "" } else { "@interpolate(flat) " };

@@ -4,14 +4,14 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use super::Subject;
-use super::pipeline::{Pipeline, Words};
+use super::CostSubject;
+use super::pipeline::{Pipeline, SpirvStage};
 use crate::bundle::Stage;
 use crate::emit::spirv::{self, op};
 
 /// What a compiler says of one stage.
-pub struct Found<'s, T> {
-    pub subject: &'s Subject,
+pub struct StageReport<'s, T> {
+    pub subject: &'s CostSubject,
     pub stage: Stage,
     pub whole: T,
     /// For a function, the same of the stage without it.
@@ -23,11 +23,11 @@ pub struct Found<'s, T> {
 /// # Errors
 /// The compiler's message where it refuses a stage, with the subject's name.
 pub fn ask_stages<'s, T: Clone + Send>(
-    subjects: &'s [Subject],
-    ask: impl Fn(&Words) -> Result<T, String> + Sync,
-) -> Result<Vec<Found<'s, T>>, String> {
-    let mut places: HashMap<&Words, usize> = HashMap::new();
-    let mut distinct: Vec<(&Words, &str)> = Vec::new();
+    subjects: &'s [CostSubject],
+    ask: impl Fn(&SpirvStage) -> Result<T, String> + Sync,
+) -> Result<Vec<StageReport<'s, T>>, String> {
+    let mut places: HashMap<&SpirvStage, usize> = HashMap::new();
+    let mut distinct: Vec<(&SpirvStage, &str)> = Vec::new();
     for subject in subjects {
         for words in subject.stages.iter().flat_map(|stage| words_of(subject, *stage)) {
             if *places.entry(words).or_insert(distinct.len()) == distinct.len() {
@@ -45,20 +45,20 @@ pub fn ask_stages<'s, T: Clone + Send>(
             let mut of = words_of(subject, stage)
                 .filter_map(|words| told.get(places.get(words).copied()?).cloned());
             let whole = of.next().ok_or_else(|| no_stage(subject, stage))?;
-            found.push(Found { subject, stage, whole, empty: of.next() });
+            found.push(StageReport { subject, stage, whole, empty: of.next() });
         }
     }
     Ok(found)
 }
 
 /// The SPIR-V of a subject's stage, and then that of the stage without the function.
-fn words_of(subject: &Subject, stage: Stage) -> impl Iterator<Item = &Words> {
+fn words_of(subject: &CostSubject, stage: Stage) -> impl Iterator<Item = &SpirvStage> {
     let pipelines = std::iter::once(&subject.pipeline).chain(subject.empty.as_ref());
     let of = move |pipeline: &'_ Pipeline| pipeline.stages.iter().position(|it| it.stage == stage);
     pipelines.filter_map(move |pipeline| pipeline.stages.get(of(pipeline)?))
 }
 
-fn no_stage(subject: &Subject, stage: Stage) -> String {
+fn no_stage(subject: &CostSubject, stage: Stage) -> String {
     format!("`{}` has no {} stage", subject.name, stage.name())
 }
 
@@ -66,7 +66,7 @@ fn no_stage(subject: &Subject, stage: Stage) -> String {
 const SPEC_ID: u32 = 1;
 
 /// The module with the chosen values of specialisation constants as their defaults.
-pub fn settled_words(stage: &Words) -> Vec<u32> {
+pub fn settled_words(stage: &SpirvStage) -> Vec<u32> {
     let mut values: HashMap<u32, u32> = HashMap::new();
     for instruction in spirv::instructions(&stage.words) {
         if let (op::DECORATE, [_, id, SPEC_ID, number]) = (instruction.op, instruction.words) {

@@ -29,7 +29,7 @@ pub struct Statistics {
 
 /// A figure: its key in JSON, its heading in a table, Mesa's name for it, and whether more is
 /// worse.
-pub struct Figure {
+pub struct CostFigure {
     pub key: &'static str,
     pub heading: &'static str,
     pub mesa: &'static str,
@@ -39,7 +39,7 @@ pub struct Figure {
 
 macro_rules! figure {
     ($key:ident, $heading:literal, $mesa:literal, $more_is_worse:literal) => {
-        Figure {
+        CostFigure {
             key: stringify!($key),
             heading: $heading,
             mesa: $mesa,
@@ -50,7 +50,7 @@ macro_rules! figure {
 }
 
 /// Every figure, in the order of tables.
-pub const FIGURES: &[Figure] = &[
+pub const FIGURES: &[CostFigure] = &[
     figure!(instructions, "instr", "Instructions", true),
     figure!(vgprs, "VGPRs", "VGPRs", true),
     figure!(sgprs, "SGPRs", "SGPRs", true),
@@ -64,7 +64,7 @@ pub const FIGURES: &[Figure] = &[
     figure!(inverse_throughput, "inv.thr.", "Inverse Throughput", true),
 ];
 
-impl Figure {
+impl CostFigure {
     /// The value of this figure.
     pub fn of(&self, statistics: &Statistics) -> i64 {
         *(self.field)(&mut statistics.clone())

@@ -42,19 +42,19 @@ fn tidy_line(line: &str) -> String {
 /// needed.
 pub struct Excerpts<'a> {
     sources: &'a SourceSet,
-    pages: Vec<Page>,
+    pages: Vec<ExcerptPage>,
 }
 
 /// Some lines in a row of one text.
-struct Page {
+struct ExcerptPage {
     source: SourceId,
     /// Number of the first line, from 0.
     first: usize,
-    lines: Vec<Line>,
+    lines: Vec<ExcerptLine>,
     text: String,
 }
 
-struct Line {
+struct ExcerptLine {
     /// Where the line starts in the page.
     start: usize,
     /// Where it starts in the author's text.
@@ -74,7 +74,7 @@ impl<'a> Excerpts<'a> {
         let page = |id: SourceId| {
             let ranges: Vec<Range<usize>> =
                 spans.iter().filter(|span| span.source == id).map(|span| span.range()).collect();
-            Page::new(id, &sources.get(id).text, &ranges)
+            ExcerptPage::new(id, &sources.get(id).text, &ranges)
         };
         Self { sources, pages: ids.into_iter().map(page).collect() }
     }
@@ -87,12 +87,12 @@ impl<'a> Excerpts<'a> {
         })
     }
 
-    fn page(&self, id: usize) -> Result<&Page, Error> {
+    fn page(&self, id: usize) -> Result<&ExcerptPage, Error> {
         self.pages.iter().find(|page| page.source.0 as usize == id).ok_or(Error::FileMissing)
     }
 }
 
-impl Page {
+impl ExcerptPage {
     fn new(source: SourceId, text: &str, ranges: &[Range<usize>]) -> Self {
         let line_of = |byte: usize| {
             text.as_bytes()[..byte.min(text.len())].iter().filter(|byte| **byte == b'\n').count()
@@ -125,7 +125,7 @@ impl Page {
         self.text.extend(line[window.clone()].chars().map(harmless_character));
         self.text.push_str(tail);
         self.text.push('\n');
-        self.lines.push(Line {
+        self.lines.push(ExcerptLine {
             start,
             origin,
             shown: origin + window.start..origin + window.end,
@@ -141,7 +141,7 @@ impl Page {
         })
     }
 
-    fn line(&self, index: usize) -> Result<&Line, Error> {
+    fn line(&self, index: usize) -> Result<&ExcerptLine, Error> {
         self.lines
             .get(index)
             .ok_or(Error::LineTooLarge { given: index, max: self.lines.len().saturating_sub(1) })

@@ -7,14 +7,14 @@ use super::{Code, codes};
 
 /// A page of the guide that explains diagnostics.
 #[derive(Debug)]
-pub struct Page {
+pub struct GuidePage {
     /// Its first heading.
     pub title: &'static str,
     /// Name of its file, without the folder.
     pub file: &'static str,
 }
 
-impl Page {
+impl GuidePage {
     /// The codes that it explains, by name: each says so in its own file.
     pub fn codes(&self) -> impl Iterator<Item = &'static Code> {
         let stem = self.file.trim_end_matches(".md");
@@ -23,21 +23,21 @@ impl Page {
 }
 
 /// The page that explains a code. Every code has one.
-pub fn page_of(code: &Code) -> Option<&'static Page> {
+pub fn page_of(code: &Code) -> Option<&'static GuidePage> {
     PAGES.iter().find(|page| page.file.trim_end_matches(".md") == code.page)
 }
 
 /// Pages with codes, in the order of the guide.
-pub const PAGES: &[Page] = &[
-    Page { title: "A package of your own", file: "package.md" },
-    Page { title: "Axes, constraints and the manifest", file: "manifest.md" },
-    Page { title: "Conditions and constants", file: "conditions.md" },
-    Page { title: "GLSL", file: "glsl.md" },
-    Page { title: "From naga_oil", file: "migrate.md" },
-    Page { title: "Numeric cases", file: "cases.md" },
-    Page { title: "The report of a check", file: "report.md" },
-    Page { title: "Bundles", file: "bundles.md" },
-    Page { title: "Conventions of each target", file: "targets.md" },
-    Page { title: "Limits and what each protects", file: "limits.md" },
-    Page { title: "Troubleshooting by diagnostic", file: "troubleshooting.md" },
+pub const PAGES: &[GuidePage] = &[
+    GuidePage { title: "A package of your own", file: "package.md" },
+    GuidePage { title: "Axes, constraints and the manifest", file: "manifest.md" },
+    GuidePage { title: "Conditions and constants", file: "conditions.md" },
+    GuidePage { title: "GLSL", file: "glsl.md" },
+    GuidePage { title: "From naga_oil", file: "migrate.md" },
+    GuidePage { title: "Numeric cases", file: "cases.md" },
+    GuidePage { title: "The report of a check", file: "report.md" },
+    GuidePage { title: "Bundles", file: "bundles.md" },
+    GuidePage { title: "Conventions of each target", file: "targets.md" },
+    GuidePage { title: "Limits and what each protects", file: "limits.md" },
+    GuidePage { title: "Troubleshooting by diagnostic", file: "troubleshooting.md" },
 ];

@@ -1,8 +1,8 @@
 //! The clip space of each target's outputs.
 
-use crate::bundle::{Clip, ClipSpace, FrontFace, Rows, Viewport, YAxis};
+use crate::bundle::{ClipConvention, ClipSpace, FrontFace, RowOrder, Viewport, YAxis};
 
-/// The clip space of a target for each choice of [`Clip`].
+/// The clip space of a target for each choice of [`ClipConvention`].
 #[derive(Debug)]
 pub struct Spaces {
     /// Where WebGPU's conventions are asked for.
@@ -13,10 +13,10 @@ pub struct Spaces {
 
 impl Spaces {
     /// The clip space for a choice.
-    pub fn of(&self, clip: Clip) -> ClipSpace {
+    pub fn of(&self, clip: ClipConvention) -> ClipSpace {
         match clip {
-            Clip::Wgpu => self.wgpu,
-            Clip::Native => self.native,
+            ClipConvention::Wgpu => self.wgpu,
+            ClipConvention::Native => self.native,
         }
     }
 }
@@ -27,7 +27,7 @@ const WEBGPU: ClipSpace = ClipSpace {
     far: 1,
     is_converted: false,
     viewport: Viewport::Positive,
-    rows: Rows::TopFirst,
+    rows: RowOrder::TopFirst,
     front_face: FrontFace::Same,
 };
 
@@ -44,5 +44,5 @@ pub const VULKAN: Spaces = Spaces {
 /// the output flips y. This reverses the winding of triangles too.
 pub const OPENGL: Spaces = Spaces {
     wgpu: ClipSpace { is_converted: true, front_face: FrontFace::Reversed, ..WEBGPU },
-    native: ClipSpace { near: -1, rows: Rows::BottomFirst, ..WEBGPU },
+    native: ClipSpace { near: -1, rows: RowOrder::BottomFirst, ..WEBGPU },
 };

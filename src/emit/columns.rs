@@ -21,7 +21,7 @@ pub const TAKEN: &str = "an array of matrices of two rows is taken from a struct
 
 /// What is cast: a matrix, or an array of them.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-struct Shape {
+struct CastShape {
     scalar: &'static str,
     bits: &'static str,
     columns: usize,
@@ -43,12 +43,13 @@ pub fn without_casts(text: &str) -> String {
 }
 
 /// Replaces casts such as `((float3x2[4])a)` by calls.
-fn rewrite_read(line: &str, shapes: &mut BTreeSet<Shape>) -> String {
+fn rewrite_read(line: &str, shapes: &mut BTreeSet<CastShape>) -> String {
     let mut changed = String::with_capacity(line.len());
     let mut parts = line.split("((");
     changed.push_str(parts.next().unwrap_or_default());
     for part in parts {
-        let shape = part.split_once(')').and_then(|(ty, rest)| Some((Shape::of_matrix(ty)?, rest)));
+        let shape =
+            part.split_once(')').and_then(|(ty, rest)| Some((CastShape::of_matrix(ty)?, rest)));
         match shape {
             Some((shape, rest)) => {
                 changed.push_str(&shape.function());
@@ -66,10 +67,10 @@ fn rewrite_read(line: &str, shapes: &mut BTreeSet<Shape>) -> String {
 }
 
 /// Replaces the cast in a line such as `a = (__mat3x2_f32[4])b;` by a call.
-fn rewrite_write(line: &str, shapes: &mut BTreeSet<Shape>) -> String {
+fn rewrite_write(line: &str, shapes: &mut BTreeSet<CastShape>) -> String {
     let changed = line.split_once(" = (").and_then(|(before, cast)| {
         let (ty, value) = cast.strip_suffix(";\n")?.split_once(')')?;
-        let shape = Shape::of_columns(ty)?;
+        let shape = CastShape::of_columns(ty)?;
         let changed = format!("{before} = {}({value});\n", shape.function());
         shapes.insert(shape);
         Some(changed)
@@ -77,7 +78,7 @@ fn rewrite_write(line: &str, shapes: &mut BTreeSet<Shape>) -> String {
     changed.unwrap_or_else(|| line.to_owned())
 }
 
-impl Shape {
+impl CastShape {
     /// Reads `float3x2[4]`.
     fn of_matrix(ty: &str) -> Option<Self> {
         let (scalar, bits) = SCALARS.iter().find(|(scalar, _)| ty.starts_with(scalar))?;

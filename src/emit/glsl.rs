@@ -8,9 +8,9 @@ use super::reflect::place_of;
 use super::remainder;
 use super::rename;
 use super::slots::{EXPLICIT_LIMIT, Numbering, assign_slots, native_reflection};
-use super::text::Text;
-use super::{Emitted, Source};
-use crate::bundle::{Clip, Combined, Kind, Native};
+use super::text::BoundedText;
+use super::{EmitSource, Emitted};
+use crate::bundle::{BindingKind, ClipConvention, Combined, Native};
 
 /// The uniform that naga adds for WebGPU's first instance, which OpenGL does not count from.
 const FIRST_INSTANCE: &str = "naga_vs_first_instance";
@@ -20,7 +20,7 @@ pub const HEADER: &[&str] = &["#", "precision "];
 
 /// Writes GLSL of one version.
 pub fn write_glsl(
-    source: &Source<'_>,
+    source: &EmitSource<'_>,
     version: Version,
     numbering: Numbering,
 ) -> Result<Emitted, String> {
@@ -28,18 +28,18 @@ pub fn write_glsl(
         return Err(reason);
     }
     let changed = rename::rename_taken(source.module, &is_taken);
-    let source = &Source { module: changed.as_ref().unwrap_or(source.module), ..*source };
+    let source = &EmitSource { module: changed.as_ref().unwrap_or(source.module), ..*source };
     let defined = remainder::with_defined_remainders(source.module, source.info)?;
     let (module, info) =
         defined.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
-    let source = &Source { module, info, ..*source };
+    let source = &EmitSource { module, info, ..*source };
     let options = writer_options(source, version, numbering)?;
     let pipeline = PipelineOptions {
         shader_stage: source.stage,
         entry_point: source.entry.to_owned(),
         multiview: None,
     };
-    let mut text = Text::default();
+    let mut text = BoundedText::default();
     let written = Writer::new(
         &mut text,
         source.module,
@@ -64,7 +64,7 @@ pub fn write_glsl(
 
 /// naga checks loads of textures, which needs the number of their levels. GLSL has a function for
 /// it from 4.30.
-fn bounds_policies(source: &Source<'_>, version: Version) -> BoundsCheckPolicies {
+fn bounds_policies(source: &EmitSource<'_>, version: Version) -> BoundsCheckPolicies {
     match version {
         Version::Desktop(430..) => source.bounds_policies(),
         _ => BoundsCheckPolicies::default(),
@@ -105,15 +105,15 @@ fn is_taken(name: &str) -> bool {
 }
 
 fn writer_options(
-    source: &Source<'_>,
+    source: &EmitSource<'_>,
     version: Version,
     numbering: Numbering,
 ) -> Result<Options, String> {
     let mut options = Options {
         version,
         writer_flags: match source.conventions.clip {
-            Clip::Wgpu => WriterFlags::ADJUST_COORDINATE_SPACE,
-            Clip::Native => WriterFlags::empty(),
+            ClipConvention::Wgpu => WriterFlags::ADJUST_COORDINATE_SPACE,
+            ClipConvention::Native => WriterFlags::empty(),
         },
         ..Options::default()
     };
@@ -145,7 +145,7 @@ pub fn before_block(ty: &str) -> &str {
 
 /// Names blocks after their group and binding. naga numbers them in the order of the text, so that
 /// a block's name would depend on what else the permutation has.
-fn name_blocks(source: &Source<'_>, text: &mut String, info: &mut ReflectionInfo) {
+fn name_blocks(source: &EmitSource<'_>, text: &mut String, info: &mut ReflectionInfo) {
     for (handle, name) in &mut info.uniforms {
         let numbered = name.rsplit_once(BLOCK).map(|(ty, number)| {
             (ty, number.trim_start_matches(|digit: char| digit.is_ascii_digit()))
@@ -169,11 +169,13 @@ fn name_blocks(source: &Source<'_>, text: &mut String, info: &mut ReflectionInfo
 
 /// The reflection. Samplers are combined with the textures that they are used with, and only the
 /// combined names have units.
-fn glsl_reflection(source: &Source<'_>, info: &ReflectionInfo, numbering: Numbering) -> Native {
+fn glsl_reflection(source: &EmitSource<'_>, info: &ReflectionInfo, numbering: Numbering) -> Native {
     let mut native = native_reflection(source, "main", numbering);
     let samplers: Vec<_> = assign_slots(source, numbering)
         .into_iter()
-        .filter(|(_, kind, _)| matches!(kind, Kind::Sampler | Kind::ComparisonSampler))
+        .filter(|(_, kind, _)| {
+            matches!(kind, BindingKind::Sampler | BindingKind::ComparisonSampler)
+        })
         .map(|(binding, ..)| [binding.group, binding.binding])
         .collect();
     native.slots.retain(|slot| !samplers.contains(&[slot.group, slot.binding]));
@@ -190,7 +192,7 @@ fn glsl_reflection(source: &Source<'_>, info: &ReflectionInfo, numbering: Number
     native
 }
 
-fn combined_samplers(source: &Source<'_>, info: &ReflectionInfo) -> Vec<Combined> {
+fn combined_samplers(source: &EmitSource<'_>, info: &ReflectionInfo) -> Vec<Combined> {
     let mut found: Vec<Combined> = info
         .texture_mapping
         .iter()

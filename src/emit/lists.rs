@@ -24,11 +24,11 @@ pub fn with_plain_constants(text: &str) -> String {
 }
 
 /// The members of each structure.
-type Structs<'t> = HashMap<&'t str, Vec<Member>>;
+type Structs<'t> = HashMap<&'t str, Vec<MemberContent>>;
 
 /// What a member holds.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Member {
+enum MemberContent {
     Value,
     /// Padding.
     Gap,
@@ -44,9 +44,9 @@ fn find_structs(text: &str) -> Structs<'_> {
             && let Some((members, _)) = rest.split_once("\n}")
         {
             let member = |line: &str| match line.trim_start() {
-                line if line.contains(" _pad") || line.contains(" _end_pad") => Member::Gap,
-                line if line.starts_with(columns::STRUCTURE) => Member::Columns,
-                _ => Member::Value,
+                line if line.contains(" _pad") || line.contains(" _end_pad") => MemberContent::Gap,
+                line if line.starts_with(columns::STRUCTURE) => MemberContent::Columns,
+                _ => MemberContent::Value,
             };
             // The columns of a matrix stand on one line.
             let members = members.split(';').filter(|member| !member.trim().is_empty());
@@ -71,16 +71,16 @@ fn as_list(value: &str, structs: &Structs<'_>) -> String {
 /// The values of all members, padding included. naga declares the columns of a matrix of two rows
 /// as members.
 fn filled_members(
-    members: &[Member],
+    members: &[MemberContent],
     arguments: &[&str],
     structs: &Structs<'_>,
 ) -> Option<Vec<String>> {
     let mut values = Vec::new();
-    let mut places = members.iter().filter(|member| **member != Member::Gap);
+    let mut places = members.iter().filter(|member| **member != MemberContent::Gap);
     for argument in arguments {
         let member = *places.next()?;
         match (member, columns_of(argument)) {
-            (Member::Columns, _) => values.push(listed_columns(argument)),
+            (MemberContent::Columns, _) => values.push(listed_columns(argument)),
             (_, Some(columns)) => {
                 places.nth(columns.len().checked_sub(2)?)?;
                 values.extend(columns.into_iter().map(str::to_owned));
@@ -89,8 +89,8 @@ fn filled_members(
         }
     }
     let mut values = values.into_iter();
-    let one = |member: &Member| match member {
-        Member::Gap => Some("0".to_owned()),
+    let one = |member: &MemberContent| match member {
+        MemberContent::Gap => Some("0".to_owned()),
         _ => values.next(),
     };
     let list = members.iter().map(one).collect::<Option<Vec<String>>>()?;

@@ -1,8 +1,8 @@
 //! Writes a valid module in each output language, one file a language.
 //!
-//! Unless [`Clip::Native`](crate::bundle::Clip) is asked for, all targets keep WebGPU's
-//! conventions, so that one host-side path serves them: NDC depth is [0, 1], NDC y points up,
-//! texture and framebuffer rows start at the top.
+//! Unless [`ClipConvention::Native`](crate::bundle::ClipConvention) is asked for, all targets keep
+//! WebGPU's conventions, so that one host-side path serves them: NDC depth is [0, 1], NDC y points
+//! up, texture and framebuffer rows start at the top.
 //! - `spirv`: as written; the host gives a viewport of negative height, as wgpu does.
 //! - GLSL in every version: a vertex stage ends with `y = -y, z = 2z - w`, so that under
 //!   GL's own clip space (leave `glClipControl` alone) depth values, shadow lookups, derivatives
@@ -38,14 +38,14 @@ use naga::ShaderStage;
 use naga::back::glsl::Version;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 
-use crate::bundle::{self, Bounds, Conventions, Native, Target};
+use crate::bundle::{self, BoundsChecks, Conventions, Native, Target};
 use crate::compose::{Composed, Part, PartKind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::validate::{Validated, guard, on_large_stack};
 
 /// An output language.
 #[derive(Debug)]
-pub struct Entry {
+pub struct TargetEntry {
     /// Its name.
     pub target: Target,
     /// The extension of its files, without the dot.
@@ -61,11 +61,11 @@ pub struct Entry {
     /// What the language has for overrides.
     pub overrides: Overrides,
     /// What judges whether its outputs are well formed.
-    pub judged: Judged,
+    pub judged: JudgeRules,
     /// The clip spaces of its vertex stages.
     pub clip: &'static clip::Spaces,
     /// Writes the entry point of a module without overrides; only [`emit`] calls it.
-    pub write: fn(&Source<'_>) -> Result<Emitted, String>,
+    pub write: fn(&EmitSource<'_>) -> Result<Emitted, String>,
 }
 
 /// How the host chooses the value of an override.
@@ -84,7 +84,7 @@ pub enum Overrides {
 /// What judges the outputs of a target, from their bytes. Every target has a judge, and the module
 /// `judge` runs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Judged {
+pub struct JudgeRules {
     /// The name of a file of `src/judge/judges/`.
     pub judge: &'static str,
     /// The rules that outputs must keep. They are those of the judge, whose file explains them.
@@ -93,17 +93,17 @@ pub struct Judged {
 
 /// One file for each output language.
 pub mod targets {
-    use super::Entry;
+    use super::TargetEntry;
     include!(concat!(env!("OUT_DIR"), "/targets.rs"));
 
     /// The entry of a target.
-    pub fn find(target: crate::bundle::Target) -> Option<&'static Entry> {
+    pub fn find(target: crate::bundle::Target) -> Option<&'static TargetEntry> {
         ALL.iter().copied().find(|entry| entry.target == target)
     }
 }
 
 /// What an output is written from.
-pub struct Source<'a> {
+pub struct EmitSource<'a> {
     /// A valid module without overrides.
     pub module: &'a naga::Module,
     /// What naga's validator found out about the module.
@@ -118,17 +118,17 @@ pub struct Source<'a> {
     pub conventions: Conventions,
 }
 
-impl Source<'_> {
+impl EmitSource<'_> {
     /// Whether the output checks indices and loops.
     pub fn is_restricted(&self) -> bool {
-        self.conventions.bounds == Bounds::Restrict
+        self.conventions.bounds == BoundsChecks::Restrict
     }
 
     /// The checks, as naga names them.
     pub fn bounds_policies(&self) -> BoundsCheckPolicies {
         let policy = match self.conventions.bounds {
-            Bounds::Unchecked => BoundsCheckPolicy::Unchecked,
-            Bounds::Restrict => BoundsCheckPolicy::Restrict,
+            BoundsChecks::Unchecked => BoundsCheckPolicy::Unchecked,
+            BoundsChecks::Restrict => BoundsCheckPolicy::Restrict,
         };
         let (index, buffer, image_load) = (policy, policy, policy);
         // Arrays of bindings have no length that an output could ask for.
@@ -195,7 +195,7 @@ pub fn emit_for(
 fn write_entry(
     validated: &Validated,
     index: usize,
-    writer: &Entry,
+    writer: &TargetEntry,
     conventions: Conventions,
 ) -> Result<Emitted, Diagnostic> {
     let mut emitted = written_plainly(validated, index, writer, conventions)?;
@@ -207,7 +207,7 @@ fn write_entry(
 fn written_plainly(
     validated: &Validated,
     index: usize,
-    writer: &Entry,
+    writer: &TargetEntry,
     conventions: Conventions,
 ) -> Result<Emitted, Diagnostic> {
     let failed = |reason: String| {
@@ -215,7 +215,7 @@ fn written_plainly(
     };
     let point = &validated.module.entry_points[index];
     specialise::refuse_overrides(&validated.module)?;
-    let source = Source {
+    let source = EmitSource {
         module: &validated.module,
         info: &validated.info,
         stage: point.stage,
@@ -237,7 +237,7 @@ fn written_plainly(
         &Default::default(),
     )
     .map_err(|error| failed(error.to_string()))?;
-    (writer.write)(&Source { module: &module, info: &info, index: 0, ..source }).map_err(failed)
+    (writer.write)(&EmitSource { module: &module, info: &info, index: 0, ..source }).map_err(failed)
 }
 
 /// Gives an error of a writer, which has no place of its own, that of the entry point.

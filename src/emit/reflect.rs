@@ -5,7 +5,7 @@ use naga::valid::{FunctionInfo, GlobalUse};
 use naga::{AddressSpace, Expression, GlobalVariable, Handle, ImageClass, Module, Type, TypeInner};
 
 use super::names::{builtin_name, interpolation_name, sampling_name, type_name};
-use crate::bundle::{Binding, Kind, Member, Override, Pair, Place, Reflection, Varying};
+use crate::bundle::{Binding, BindingKind, Member, Override, Pair, Place, Reflection, Varying};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::validate::{Validated, guard};
 
@@ -152,7 +152,7 @@ fn make_binding(
     let place = variable.binding?;
     let kind = binding_kind(module, variable)?;
     let ty = &module.types[variable.ty];
-    let is_buffer = matches!(kind, Kind::Uniform | Kind::Storage);
+    let is_buffer = matches!(kind, BindingKind::Uniform | BindingKind::Storage);
     Some(Binding {
         group: place.group,
         binding: place.binding,
@@ -166,16 +166,16 @@ fn make_binding(
     })
 }
 
-pub(super) fn binding_kind(module: &Module, variable: &GlobalVariable) -> Option<Kind> {
+pub(super) fn binding_kind(module: &Module, variable: &GlobalVariable) -> Option<BindingKind> {
     match (variable.space, &module.types[variable.ty].inner) {
-        (AddressSpace::Uniform, _) => Some(Kind::Uniform),
-        (AddressSpace::Storage { .. }, _) => Some(Kind::Storage),
-        (_, TypeInner::Sampler { comparison: true }) => Some(Kind::ComparisonSampler),
-        (_, TypeInner::Sampler { comparison: false }) => Some(Kind::Sampler),
+        (AddressSpace::Uniform, _) => Some(BindingKind::Uniform),
+        (AddressSpace::Storage { .. }, _) => Some(BindingKind::Storage),
+        (_, TypeInner::Sampler { comparison: true }) => Some(BindingKind::ComparisonSampler),
+        (_, TypeInner::Sampler { comparison: false }) => Some(BindingKind::Sampler),
         (_, TypeInner::Image { class: ImageClass::Storage { .. }, .. }) => {
-            Some(Kind::StorageTexture)
+            Some(BindingKind::StorageTexture)
         }
-        (_, TypeInner::Image { .. }) => Some(Kind::Texture),
+        (_, TypeInner::Image { .. }) => Some(BindingKind::Texture),
         _ => None,
     }
 }

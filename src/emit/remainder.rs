@@ -21,13 +21,13 @@ const NAME: &str = "naga_mod";
 
 /// The type of a remainder's operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Shape {
+struct OperandShape {
     /// `None` for a scalar.
     size: Option<VectorSize>,
     width: u8,
 }
 
-type Remainders = BTreeMap<Handle<Expression>, Shape>;
+type Remainders = BTreeMap<Handle<Expression>, OperandShape>;
 
 /// The module with calls in the place of signed remainders, and naga's analysis of it; `None` where
 /// there are none.
@@ -124,14 +124,14 @@ fn signed_remainders(module: &Module, function: &Function, info: &FunctionInfo) 
             TypeInner::Vector { size, scalar } => (Some(size), scalar),
             _ => return None,
         };
-        (scalar.kind == ScalarKind::Sint).then_some(Shape { size, width: scalar.width })
+        (scalar.kind == ScalarKind::Sint).then_some(OperandShape { size, width: scalar.width })
     };
     let all = function.expressions.iter();
     all.filter_map(|(handle, expression)| Some((handle, signed(expression)?))).collect()
 }
 
 /// `a - a / b * b`.
-fn remainder_function(module: &mut Module, Shape { size, width }: Shape) -> Function {
+fn remainder_function(module: &mut Module, OperandShape { size, width }: OperandShape) -> Function {
     let scalar = Scalar { kind: ScalarKind::Sint, width };
     let inner = match size {
         None => TypeInner::Scalar(scalar),
@@ -159,9 +159,9 @@ fn remainder_function(module: &mut Module, Shape { size, width }: Shape) -> Func
 }
 
 type Moved = BTreeMap<Handle<Function>, Handle<Function>>;
-type Helpers = BTreeMap<Shape, Handle<Function>>;
+type Helpers = BTreeMap<OperandShape, Handle<Function>>;
 /// The call that computes an expression.
-type Calls = BTreeMap<Handle<Expression>, Statement>;
+type HelperCalls = BTreeMap<Handle<Expression>, Statement>;
 
 /// Replaces remainders by calls of helpers, and gives all other calls the new handles of their
 /// functions.
@@ -171,7 +171,7 @@ fn call_helpers(
     helpers: &Helpers,
     remainders: &Remainders,
 ) {
-    let mut calls = Calls::new();
+    let mut calls = HelperCalls::new();
     for (handle, expression) in function.expressions.iter_mut() {
         match expression {
             Expression::CallResult(callee) => *callee = moved[callee],
@@ -190,7 +190,7 @@ fn call_helpers(
     call_in(&mut function.body, moved, &calls);
 }
 
-fn call_in(block: &mut Block, moved: &Moved, calls: &Calls) {
+fn call_in(block: &mut Block, moved: &Moved, calls: &HelperCalls) {
     for (mut statement, span) in std::mem::take(block).span_into_iter() {
         match &mut statement {
             Statement::Emit(range) => {

@@ -2,9 +2,9 @@
 
 use naga::ResourceBinding;
 
-use super::Source;
+use super::EmitSource;
 use super::reflect::{binding_kind, used_globals};
-use crate::bundle::{Kind, Native, Slot};
+use crate::bundle::{BindingKind, BindingSlot, Native};
 
 /// How a target numbers bindings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,11 +24,11 @@ pub const EXPLICIT_LIMIT: u32 = 16;
 
 /// Every used binding, sorted, with its kind and its number in the target.
 pub fn assign_slots(
-    source: &Source<'_>,
+    source: &EmitSource<'_>,
     numbering: Numbering,
-) -> Vec<(ResourceBinding, Kind, Option<u32>)> {
+) -> Vec<(ResourceBinding, BindingKind, Option<u32>)> {
     let globals = used_globals(source.module, source.info.get_entry_point(source.index));
-    let mut found: Vec<(ResourceBinding, Kind)> = globals
+    let mut found: Vec<(ResourceBinding, BindingKind)> = globals
         .filter_map(|(_, variable)| {
             Some((variable.binding?, binding_kind(source.module, variable)?))
         })
@@ -44,10 +44,10 @@ pub fn assign_slots(
 }
 
 /// The reflection of a target without combined samplers.
-pub fn native_reflection(source: &Source<'_>, entry: &str, numbering: Numbering) -> Native {
+pub fn native_reflection(source: &EmitSource<'_>, entry: &str, numbering: Numbering) -> Native {
     let slots = assign_slots(source, numbering)
         .into_iter()
-        .map(|(binding, _, index)| Slot {
+        .map(|(binding, _, index)| BindingSlot {
             group: binding.group,
             binding: binding.binding,
             space: (numbering == Numbering::Author).then_some(binding.group),
@@ -72,10 +72,10 @@ fn slot_number(numbering: Numbering, binding: ResourceBinding, next: &mut u32) -
     }
 }
 
-fn slot_table(kind: Kind) -> usize {
+fn slot_table(kind: BindingKind) -> usize {
     match kind {
-        Kind::Uniform | Kind::Storage => 0,
-        Kind::Texture | Kind::StorageTexture => 1,
-        Kind::Sampler | Kind::ComparisonSampler => 2,
+        BindingKind::Uniform | BindingKind::Storage => 0,
+        BindingKind::Texture | BindingKind::StorageTexture => 1,
+        BindingKind::Sampler | BindingKind::ComparisonSampler => 2,
     }
 }

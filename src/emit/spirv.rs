@@ -44,7 +44,7 @@ pub fn bytes(words: &[u32]) -> Vec<u8> {
 
 /// One instruction.
 #[derive(Debug, Clone, Copy)]
-pub struct Instruction<'a> {
+pub struct SpirvInstruction<'a> {
     /// Its opcode.
     pub op: u16,
     /// All its words, the first of which holds its length and its opcode.
@@ -56,17 +56,17 @@ pub struct Instruction<'a> {
 /// # Errors
 /// The words end within the instruction, or its length is zero.
 #[inline]
-pub fn split_first(words: &[u32]) -> Result<Option<(Instruction<'_>, &[u32])>, String> {
+pub fn split_first(words: &[u32]) -> Result<Option<(SpirvInstruction<'_>, &[u32])>, String> {
     let Some(&first) = words.first() else { return Ok(None) };
     match words.split_at_checked((first >> 16) as usize) {
         None => Err("an instruction is cut off".to_owned()),
         Some(([], _)) => Err("an instruction has no words".to_owned()),
-        Some((words, rest)) => Ok(Some((Instruction { op: first as u16, words }, rest))),
+        Some((words, rest)) => Ok(Some((SpirvInstruction { op: first as u16, words }, rest))),
     }
 }
 
 /// Every instruction of a module, up to one that is cut off.
-pub fn instructions(module: &[u32]) -> impl Iterator<Item = Instruction<'_>> {
+pub fn instructions(module: &[u32]) -> impl Iterator<Item = SpirvInstruction<'_>> {
     let mut rest = module.get(HEADER_WORDS..).unwrap_or_default();
     std::iter::from_fn(move || {
         let (instruction, after) = split_first(rest).ok()??;

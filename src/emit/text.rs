@@ -11,9 +11,9 @@ use crate::limits::GROUP_BYTES;
 /// A text that refuses further writes once it has [`GROUP_BYTES`]. The last write before that may
 /// go beyond.
 #[derive(Debug, Default)]
-pub struct Text(pub String);
+pub struct BoundedText(pub String);
 
-impl Text {
+impl BoundedText {
     /// The message for an error of a writer over this text.
     pub fn explain(&self, error: impl fmt::Display) -> String {
         match self.is_full() {
@@ -27,7 +27,7 @@ impl Text {
     }
 }
 
-impl fmt::Write for Text {
+impl fmt::Write for BoundedText {
     fn write_str(&mut self, text: &str) -> fmt::Result {
         if self.is_full() {
             return Err(fmt::Error);

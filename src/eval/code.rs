@@ -199,7 +199,7 @@ pub enum Instruction {
     },
     Kill,
     Derivative {
-        axis: Axis,
+        axis: DerivativeDirection,
         coarse: bool,
         n: u8,
         to: Slot,
@@ -238,7 +238,7 @@ impl Instruction {
 
 /// Direction of a derivative. `Width` is that of `fwidth`: the sum of both magnitudes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Axis {
+pub enum DerivativeDirection {
     X,
     Y,
     Width,
@@ -246,7 +246,7 @@ pub enum Axis {
 
 /// The jump targets of a `switch`: each case's value with its instruction.
 #[derive(Debug, Clone, Default)]
-pub struct Table {
+pub struct JumpTable {
     pub cases: Vec<(u32, u32)>,
     pub default: u32,
 }
@@ -263,7 +263,7 @@ pub enum Lod {
 
 /// What an access asks of a texture.
 #[derive(Debug, Clone, Copy)]
-pub enum Ask {
+pub enum TextureOp {
     Sample {
         sampler: Slot,
         gather: Option<u8>,
@@ -290,7 +290,7 @@ pub struct Access {
     pub coordinate: Slot,
     pub dimensions: u8,
     pub layer: Option<Slot>,
-    pub ask: Ask,
+    pub ask: TextureOp,
     pub to: Slot,
     /// Components of the result, which are words if `words` is set.
     pub n: u8,
@@ -301,6 +301,6 @@ pub struct Access {
 impl Access {
     /// Whether the level depends on how the coordinates differ between neighbouring fragments.
     pub fn implicit(&self) -> bool {
-        matches!(self.ask, Ask::Sample { level: Lod::Auto | Lod::Bias(_), gather: None, .. })
+        matches!(self.ask, TextureOp::Sample { level: Lod::Auto | Lod::Bias(_), gather: None, .. })
     }
 }

@@ -8,7 +8,7 @@ pub const MAX_SLOTS: u32 = crate::limits::EVAL_SLOTS;
 
 /// What one slot of an argument or result holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum SlotKind {
     /// A floating-point number.
     Float,
     /// A signed integer.
@@ -24,13 +24,13 @@ pub enum Kind {
 }
 
 /// The kind of a scalar. `None` if the evaluator does not support the scalar.
-pub fn kind_of(scalar: Scalar) -> Option<Kind> {
+pub fn kind_of(scalar: Scalar) -> Option<SlotKind> {
     match (scalar.kind, scalar.width) {
-        (ScalarKind::Bool, _) => Some(Kind::Bool),
-        (ScalarKind::Sint, 4) => Some(Kind::Sint),
-        (ScalarKind::Uint, 4) => Some(Kind::Uint),
-        (ScalarKind::Float, 4) | (ScalarKind::AbstractFloat, _) => Some(Kind::Float),
-        (ScalarKind::AbstractInt, _) => Some(Kind::Sint),
+        (ScalarKind::Bool, _) => Some(SlotKind::Bool),
+        (ScalarKind::Sint, 4) => Some(SlotKind::Sint),
+        (ScalarKind::Uint, 4) => Some(SlotKind::Uint),
+        (ScalarKind::Float, 4) | (ScalarKind::AbstractFloat, _) => Some(SlotKind::Float),
+        (ScalarKind::AbstractInt, _) => Some(SlotKind::Sint),
         _ => None,
     }
 }
@@ -69,7 +69,7 @@ impl<'m> Layout<'m> {
     }
 
     /// Appends the kind of each slot of a type, in order.
-    pub fn kinds(&self, ty: Handle<Type>, to: &mut Vec<Kind>) -> Result<(), Error> {
+    pub fn kinds(&self, ty: Handle<Type>, to: &mut Vec<SlotKind>) -> Result<(), Error> {
         let slots = self.size(ty)?;
         if slots > MAX_SLOTS {
             return Err(Error::too_large("a type takes too many scalars"));
@@ -170,7 +170,7 @@ pub fn decode_buffer(
     types: &UniqueArena<Type>,
     ty: Handle<Type>,
     bytes: &[u8],
-    write: &mut dyn FnMut(Kind, u32),
+    write: &mut dyn FnMut(SlotKind, u32),
 ) {
     let mut scalars = |scalar: Scalar, count: u32, from: usize| {
         for index in 0..count as usize {
@@ -179,7 +179,7 @@ pub fn decode_buffer(
                 .get(at..at + 4)
                 .and_then(|bytes| bytes.try_into().ok())
                 .map_or(0, u32::from_le_bytes);
-            write(kind_of(scalar).unwrap_or(Kind::Uint), word);
+            write(kind_of(scalar).unwrap_or(SlotKind::Uint), word);
         }
     };
     match types[ty].inner {
@@ -217,11 +217,11 @@ fn rest_from(bytes: &[u8], from: usize) -> &[u8] {
     bytes.get(from..).unwrap_or_default()
 }
 
-fn leaf_kind(inner: &TypeInner) -> Kind {
+fn leaf_kind(inner: &TypeInner) -> SlotKind {
     match *inner {
-        TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. } => Kind::Pointer,
-        TypeInner::Image { .. } | TypeInner::Sampler { .. } => Kind::Handle,
-        _ => inner.scalar().and_then(kind_of).unwrap_or(Kind::Uint),
+        TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. } => SlotKind::Pointer,
+        TypeInner::Image { .. } | TypeInner::Sampler { .. } => SlotKind::Handle,
+        _ => inner.scalar().and_then(kind_of).unwrap_or(SlotKind::Uint),
     }
 }
 

@@ -32,8 +32,10 @@ mod resources;
 pub use batch::Batch;
 pub use code::Compare;
 pub use error::{Error, Finding, FindingKind};
-pub use layout::{Kind, MAX_SLOTS};
+pub use layout::{MAX_SLOTS, SlotKind};
 pub use machine::{LOOP_LIMIT, Machine};
 pub use number::{Bounded, Number, half_from, half_to};
-pub use program::{Branch, Function, FunctionId, Point, Program};
-pub use resources::{Address, Filter, Level, Resources, Sampler, Shape, Texels, Texture};
+pub use program::{Branch, CoveragePoint, Function, FunctionId, Program};
+pub use resources::{
+    Address, Filter, MipLevel, Resources, Sampler, Texels, Texture, TextureDimension,
+};

@@ -1,8 +1,8 @@
 //! A lowered module.
 
-use super::code::{Access, Instruction, Slot, Table};
+use super::code::{Access, Instruction, JumpTable, Slot};
 use super::error::Error;
-use super::layout::Kind;
+use super::layout::SlotKind;
 use super::lower;
 use naga::{Handle, Span, Type, UniqueArena};
 
@@ -15,13 +15,13 @@ pub struct Program {
     pub(super) spans: Vec<Span>,
     /// How many slots the memory has before buffers of runtime size are added.
     pub(super) slots: u32,
-    pub(super) pool: Vec<(Slot, Constant)>,
+    pub(super) pool: Vec<(Slot, InitialValue)>,
     /// Where the instructions begin that compute constants and overrides, once per machine.
     pub(super) start: u32,
     pub(super) functions: Vec<Function>,
-    pub(super) tables: Vec<Table>,
+    pub(super) tables: Vec<JumpTable>,
     pub(super) images: Vec<Access>,
-    pub(super) points: Vec<Point>,
+    pub(super) points: Vec<CoveragePoint>,
     pub(super) globals: Vec<Global>,
     pub(super) types: UniqueArena<Type>,
 }
@@ -43,16 +43,16 @@ pub struct Function {
     /// As in the module.
     pub name: String,
     /// Kinds of the flattened arguments; for a pointer, those of the type it points to.
-    pub arguments: Vec<Kind>,
+    pub arguments: Vec<SlotKind>,
     /// Kinds of the flattened result, then of the values behind pointers after the call.
-    pub result: Vec<Kind>,
+    pub result: Vec<SlotKind>,
     /// For entry points, the built-in or location of each argument slot.
     pub inputs: Vec<Option<naga::Binding>>,
     /// The same for each slot of the result.
     pub outputs: Vec<Option<naga::Binding>>,
     /// Slots of the returned value alone.
     pub(super) returned: u32,
-    pub(super) parameters: Vec<Parameter>,
+    pub(super) parameters: Vec<ParameterSlots>,
     pub(super) result_slot: Slot,
     pub(super) entry: u32,
     /// Buffers the function or its callees read, by index.
@@ -64,7 +64,7 @@ pub struct Function {
 /// The slots of a parameter. For a pointer, `pointee` is the first slot of the value that it points
 /// to.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Parameter {
+pub(super) struct ParameterSlots {
     pub slot: Slot,
     /// How many slots the caller gives: those of the value, or of what the pointer points to.
     pub n: u32,
@@ -73,7 +73,7 @@ pub(super) struct Parameter {
 
 /// A block of statements that coverage counts.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct CoveragePoint {
     /// The function that it is in.
     pub function: FunctionId,
     /// Which block of the statement it is.
@@ -103,7 +103,7 @@ pub enum Branch {
 
 /// The value of a slot before anything runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Constant {
+pub(super) enum InitialValue {
     Word(u32),
     Float(f64),
 }
@@ -119,11 +119,11 @@ pub(super) struct Global {
     pub slots: u32,
     /// The least size of a buffer for it.
     pub bytes: u32,
-    pub role: Role,
+    pub role: GlobalRole,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Role {
+pub(super) enum GlobalRole {
     /// Initialised at each call, from the slot or with zero.
     Private(Option<Slot>),
     Buffer,
@@ -180,7 +180,7 @@ impl Program {
     ) -> impl Iterator<Item = (std::ops::Range<usize>, Option<std::ops::Range<usize>>)> {
         let range = |slot: u32, n: u32| slot as usize..(slot + n) as usize;
         self.globals.iter().filter_map(move |global| match global.role {
-            Role::Private(from) => {
+            GlobalRole::Private(from) => {
                 Some((range(global.slot, global.slots), from.map(|from| range(from, global.slots))))
             }
             _ => None,
@@ -202,7 +202,7 @@ impl Program {
     }
 
     /// The blocks that coverage counts, in the order of `Machine::hits`.
-    pub fn points(&self) -> &[Point] {
+    pub fn points(&self) -> &[CoveragePoint] {
         &self.points
     }
 }

@@ -17,12 +17,12 @@ pub struct Resources {
 
 /// Complete textures, and samplers, by the index of the variable that they are bound to.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Bound {
+pub(super) struct BoundTextures {
     pub textures: Vec<Option<Texture>>,
     pub samplers: Vec<Option<Sampler>>,
 }
 
-impl Bound {
+impl BoundTextures {
     /// What is bound to variables, from the group and binding of each.
     pub fn of(
         resources: &Resources,
@@ -41,7 +41,7 @@ impl Bound {
 
 /// The dimensions of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shape {
+pub enum TextureDimension {
     /// A row.
     D1,
     /// A rectangle.
@@ -56,14 +56,14 @@ pub enum Shape {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
     /// How its texels are arranged.
-    pub shape: Shape,
+    pub shape: TextureDimension,
     /// The largest level first.
-    pub levels: Vec<Level>,
+    pub levels: Vec<MipLevel>,
 }
 
 /// One level of a texture: texels row by row, layer by layer (or slice by slice).
 #[derive(Debug, Clone, PartialEq)]
-pub struct Level {
+pub struct MipLevel {
     /// Texels in a row.
     pub width: u32,
     /// Rows.
@@ -162,29 +162,41 @@ pub struct Sampler {
 
 impl Texture {
     /// A texture of one level, its texels row by row.
-    pub fn flat(shape: Shape, width: u32, height: u32, layers: u32, texels: Vec<[f64; 4]>) -> Self {
+    pub fn flat(
+        shape: TextureDimension,
+        width: u32,
+        height: u32,
+        layers: u32,
+        texels: Vec<[f64; 4]>,
+    ) -> Self {
         Self::of(shape, width, height, layers, Texels::Whole(texels))
     }
 
     /// As [`Self::flat`], with texels of fewer components.
-    pub fn of(shape: Shape, width: u32, height: u32, layers: u32, texels: Texels) -> Self {
+    pub fn of(
+        shape: TextureDimension,
+        width: u32,
+        height: u32,
+        layers: u32,
+        texels: Texels,
+    ) -> Self {
         let texels = Arc::new(texels);
-        Self { shape, levels: vec![Level { width, height, layers, texels }] }
+        Self { shape, levels: vec![MipLevel { width, height, layers, texels }] }
     }
 
     /// Whether every level has as many texels as its size says, and a cube has whole cubes.
     pub(super) fn is_complete(&self) -> bool {
-        let filled = |level: &Level| {
+        let filled = |level: &MipLevel| {
             let size = u64::from(level.width) * u64::from(level.height) * u64::from(level.layers);
             size > 0
                 && size == level.texels.count() as u64
-                && (self.shape != Shape::Cube || level.layers.is_multiple_of(6))
+                && (self.shape != TextureDimension::Cube || level.layers.is_multiple_of(6))
         };
         !self.levels.is_empty() && self.levels.iter().all(filled)
     }
 }
 
-impl Level {
+impl MipLevel {
     /// The texel at column, row and layer.
     pub(super) fn texel(&self, [x, y, z]: [i64; 3]) -> Option<[f64; 4]> {
         let within = |at: i64, size: u32| usize::try_from(at).ok().filter(|at| *at < size as usize);

@@ -5,7 +5,7 @@ use super::Session;
 use crate::bundle::Target;
 
 /// An executor that is not open yet.
-pub struct Entry {
+pub struct ExecutorEntry {
     /// Name on the command line.
     pub name: &'static str,
     /// One line.
@@ -18,19 +18,19 @@ pub struct Entry {
     /// frames.
     pub samples: Option<u32>,
     /// Opens a device.
-    pub open: Open,
+    pub open: OpenSession,
     /// What it can draw from the bytes of a bundle.
     pub shipping: Option<Shipping>,
 }
 
 /// Opens a session.
-pub type Open = fn() -> Result<Box<dyn Session>, Unavailable>;
+pub type OpenSession = fn() -> Result<Box<dyn Session>, Unavailable>;
 
 /// A target, and what opens a session that draws the files of this target as they are. Every target
 /// has an executor with one.
 pub struct Shipping {
     pub target: Target,
-    pub open: Open,
+    pub open: OpenSession,
 }
 
 /// Why an executor cannot be used on this machine.
@@ -45,7 +45,7 @@ impl From<String> for Unavailable {
     }
 }
 
-impl Entry {
+impl ExecutorEntry {
     /// Opens the executor. The error is a message that also says how to install it. Open, use and
     /// drop it inside of [`on_thread`](super::on_thread).
     pub fn start(&self) -> Result<Box<dyn Session>, String> {
@@ -69,17 +69,17 @@ const DEVICE_SAMPLES: u32 = 4;
 
 /// A session on a device of wgpu.
 #[cfg(not(target_family = "wasm"))]
-fn open_gpu(wanted: super::gpu::Wanted) -> Result<Box<dyn Session>, Unavailable> {
+fn open_gpu(wanted: super::gpu::DeviceRequest) -> Result<Box<dyn Session>, Unavailable> {
     Ok(Box::new(super::gpu::open_gpu(wanted)?))
 }
 
 /// A session on the Vulkan driver with that name.
 #[cfg(not(target_family = "wasm"))]
 fn open_vulkan(
-    named: super::gpu::Named,
+    named: super::gpu::AdapterName,
     shaders: super::gpu::Shaders,
 ) -> Result<Box<dyn Session>, Unavailable> {
-    open_gpu(super::gpu::Wanted { backend: wgpu::Backends::VULKAN, named, shaders })
+    open_gpu(super::gpu::DeviceRequest { backend: wgpu::Backends::VULKAN, named, shaders })
 }
 
 /// A session on a context of OpenGL, for the texts of a target. The target's version of GLSL says
@@ -88,20 +88,20 @@ fn open_vulkan(
 fn opened_opengl(target: Target) -> Result<Box<dyn Session>, Unavailable> {
     let version = crate::emit::targets::find(target).and_then(|entry| entry.glsl);
     let not_glsl = || format!("`{target}` is not GLSL: its file has no version");
-    let api = super::gpu::Api::of_glsl(version.ok_or_else(not_glsl)?);
+    let api = super::gpu::OpenGlApi::of_glsl(version.ok_or_else(not_glsl)?);
     Ok(Box::new(super::gpu::OpenGl::open(api, target)?))
 }
 
 /// A session in a page of a browser.
 #[cfg(not(target_family = "wasm"))]
-fn opened_page(api: super::web::Api) -> Result<Box<dyn Session>, Unavailable> {
+fn opened_page(api: super::web::WebApi) -> Result<Box<dyn Session>, Unavailable> {
     Ok(Box::new(super::web::Web::open(api)?))
 }
 
 include!(concat!(env!("OUT_DIR"), "/executors.rs"));
 
 /// Prepares the process for executors. Call this while it has only one thread.
-pub fn prepare_process(entries: &[&Entry]) {
+pub fn prepare_process(entries: &[&ExecutorEntry]) {
     if entries.iter().any(|entry| !entry.needs.is_empty()) {
         without_windows();
     }
@@ -109,7 +109,9 @@ pub fn prepare_process(entries: &[&Entry]) {
 }
 
 /// The executors that draw a target's files as they are.
-pub fn shipping(target: Target) -> impl Iterator<Item = (&'static Entry, &'static Shipping)> {
+pub fn shipping(
+    target: Target,
+) -> impl Iterator<Item = (&'static ExecutorEntry, &'static Shipping)> {
     let all = ALL.iter().filter_map(|entry| Some((*entry, entry.shipping.as_ref()?)));
     all.filter(move |(_, shipping)| shipping.target == target)
 }
@@ -127,6 +129,6 @@ fn without_windows() {
 }
 
 /// The executor of that name.
-pub fn find_executor(name: &str) -> Option<&'static Entry> {
+pub fn find_executor(name: &str) -> Option<&'static ExecutorEntry> {
     ALL.iter().copied().find(|entry| entry.name == name)
 }

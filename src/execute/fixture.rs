@@ -7,13 +7,13 @@ use naga::{ImageClass, ImageDimension, ScalarKind};
 /// A texture or a sampler.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fixture {
-    Texture(Texture),
-    Sampler(Sampler),
+    Texture(FixtureTexture),
+    Sampler(FixtureSampler),
 }
 
 /// The texels of one level, as f32.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Texture {
+pub struct FixtureTexture {
     pub kind: TextureKind,
     pub width: u32,
     pub height: u32,
@@ -58,13 +58,13 @@ impl TextureKind {
 
 /// How a texture is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sampler {
+pub struct FixtureSampler {
     pub compare: Option<Compare>,
     pub linear: bool,
     pub address: Address,
 }
 
-impl Sampler {
+impl FixtureSampler {
     /// WebGPU's names of the address mode and of the comparison.
     pub fn web_words(self) -> (&'static str, Option<String>) {
         let address = match self.address {
@@ -122,7 +122,7 @@ impl Address {
 
 impl Fixture {
     /// The sampler, if it is one.
-    pub fn sampler(&self) -> Option<Sampler> {
+    pub fn sampler(&self) -> Option<FixtureSampler> {
         match self {
             Self::Sampler(sampler) => Some(*sampler),
             Self::Texture(_) => None,
@@ -160,13 +160,15 @@ impl Fixture {
                     .map_or("texture", |(name, _)| name);
                 format!("a {name} of {} x {}", texture.width, texture.height)
             }
-            Self::Sampler(Sampler { compare: Some(_), .. }) => "a comparison sampler".to_owned(),
+            Self::Sampler(FixtureSampler { compare: Some(_), .. }) => {
+                "a comparison sampler".to_owned()
+            }
             Self::Sampler(_) => "a sampler without comparison".to_owned(),
         }
     }
 }
 
-impl Texture {
+impl FixtureTexture {
     /// One channel of a texel.
     pub fn texel(&self, x: u32, y: u32, layer: u32, channel: usize) -> f64 {
         let index =

@@ -6,14 +6,14 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::fixture::{Fixture, Sampler, Texture};
+use super::fixture::{Fixture, FixtureSampler, FixtureTexture};
 
 /// Triangles. The attributes of a vertex are interleaved.
 #[derive(Debug, Clone, Default)]
 pub struct Mesh {
     /// Without attributes the mesh is one triangle, which the vertex stage makes from the vertex
     /// index.
-    pub attributes: Vec<Attribute>,
+    pub attributes: Vec<VertexAttribute>,
     /// Words of every vertex, attribute after attribute.
     pub words: Vec<u32>,
     /// Three vertices for each triangle. If this is empty, each three vertices in order are a
@@ -23,7 +23,7 @@ pub struct Mesh {
 
 /// One attribute of a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Attribute {
+pub struct VertexAttribute {
     pub location: u32,
     pub format: VertexFormat,
 }
@@ -70,7 +70,7 @@ pub struct Drawing<'a> {
     pub fragment: Option<EntryPoint<'a>>,
     pub targets: u32,
     /// The meshes. All are drawn into each frame, in this order.
-    pub items: &'a [Item<'a>],
+    pub items: &'a [DrawItem<'a>],
     /// A frame is drawn for each view, which has buffers of its own.
     pub views: &'a [Buffers],
     /// Uniform buffers that all frames and items share.
@@ -81,25 +81,25 @@ pub struct Drawing<'a> {
     /// Textures and samplers.
     pub fixtures: &'a BTreeMap<(u32, u32), Arc<Fixture>>,
     /// The smaller levels of textures that have some, the larger ones first.
-    pub levels: &'a BTreeMap<(u32, u32), Vec<Texture>>,
+    pub levels: &'a BTreeMap<(u32, u32), Vec<FixtureTexture>>,
     /// Width and height in pixels.
     pub size: [u32; 2],
-    pub state: State,
+    pub state: PipelineState,
 }
 
 static NO_BUFFERS: [Buffers; 1] = [Buffers::new()];
-static NO_LEVELS: BTreeMap<(u32, u32), Vec<Texture>> = BTreeMap::new();
+static NO_LEVELS: BTreeMap<(u32, u32), Vec<FixtureTexture>> = BTreeMap::new();
 
 impl<'a> Drawing<'a> {
     /// The sampler at a group and binding.
-    pub fn sampler_at(&self, [group, binding]: [u32; 2]) -> Option<Sampler> {
+    pub fn sampler_at(&self, [group, binding]: [u32; 2]) -> Option<FixtureSampler> {
         self.fixtures.get(&(group, binding))?.sampler()
     }
 
     /// One frame with one target, no buffers but those of the items, and the state's defaults.
     pub fn of_items(
         [vertex, fragment]: [EntryPoint<'a>; 2],
-        items: &'a [Item<'a>],
+        items: &'a [DrawItem<'a>],
         fixtures: &'a BTreeMap<(u32, u32), Arc<Fixture>>,
         size: [u32; 2],
     ) -> Self {
@@ -114,26 +114,26 @@ impl<'a> Drawing<'a> {
             fixtures,
             levels: &NO_LEVELS,
             size,
-            state: State::default(),
+            state: PipelineState::default(),
         }
     }
 }
 
 /// A mesh with uniform buffers of its own.
 #[derive(Debug, Clone, Copy)]
-pub struct Item<'a> {
+pub struct DrawItem<'a> {
     pub mesh: &'a Mesh,
     pub buffers: &'a Buffers,
 }
 
 /// The state of the pipeline.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct State {
+pub struct PipelineState {
     /// Whether nearer fragments (of smaller depth) hide others.
     pub depth_test: bool,
     /// Whether [`Frame::depth`] is filled.
     pub keep_depth: bool,
-    pub cull: Option<Side>,
+    pub cull: Option<Face>,
     /// Whether front faces wind clockwise in the frame, because it is drawn mirrored.
     pub mirrored: bool,
     /// Polygon offset (depth bias): the factor of the slope, and a constant in smallest steps of
@@ -143,7 +143,7 @@ pub struct State {
 
 /// A side of a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
+pub enum Face {
     Front,
     Back,
 }
@@ -161,7 +161,7 @@ pub struct Frame {
 }
 
 /// Group and binding.
-pub(super) type Place = (u32, u32);
+pub(super) type BindingPlace = (u32, u32);
 
 impl Mesh {
     /// Bytes of a vertex.
@@ -179,7 +179,7 @@ impl Mesh {
     }
 
     /// Each attribute with its offset in a vertex, in bytes.
-    pub fn layout(&self) -> Vec<(Attribute, u64)> {
+    pub fn layout(&self) -> Vec<(VertexAttribute, u64)> {
         let offsets = self.attributes.iter().scan(0, |offset, attribute| {
             Some(std::mem::replace(offset, *offset + 4 * u64::from(attribute.format.words())))
         });
@@ -192,13 +192,13 @@ impl Drawing<'_> {
     pub fn buffer<'b>(
         &'b self,
         view: &'b Buffers,
-        item: &'b Item<'_>,
-        place: Place,
+        item: &'b DrawItem<'_>,
+        place: BindingPlace,
     ) -> Option<&'b Vec<u8>> {
         view.get(&place).or_else(|| item.buffers.get(&place)).or_else(|| self.buffers.get(&place))
     }
 
-    pub(super) fn is_buffer(&self, place: Place) -> bool {
+    pub(super) fn is_buffer(&self, place: BindingPlace) -> bool {
         let everywhere = self
             .views
             .iter()

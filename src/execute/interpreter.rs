@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::fixture::{Fixture, Sampler, Texture, TextureKind};
+use super::fixture::{Fixture, FixtureSampler, FixtureTexture, TextureKind};
 use super::kernel::{Kernel, ParameterKind};
 use super::module_info;
 use crate::diagnostic::{Diagnostic, codes};
@@ -14,7 +14,7 @@ pub struct Interpreter {
     program: Program,
     function: FunctionId,
     /// What each slot of the arguments is filled with.
-    slots: Vec<Slot>,
+    slots: Vec<ArgumentSlot>,
     resources: Resources,
     /// Steps of all calls so far, and how many there may be.
     steps: AtomicU64,
@@ -23,7 +23,7 @@ pub struct Interpreter {
 
 /// An argument slot of the function.
 #[derive(Clone, Copy)]
-enum Slot {
+enum ArgumentSlot {
     /// The next word of the row, of that kind.
     Word(ScalarKind),
     /// The handle of a texture or sampler.
@@ -31,7 +31,7 @@ enum Slot {
 }
 
 /// Calls of a kernel with one kind of number, and the memory for them.
-pub struct Calls<'p, N> {
+pub struct KernelCalls<'p, N> {
     interpreter: &'p Interpreter,
     /// The machine, for its findings and limits.
     pub machine: Machine<'p, N>,
@@ -71,21 +71,21 @@ impl Interpreter {
     }
 
     /// The memory for the calls of one thread.
-    pub fn calls<N: Number>(&self) -> Result<Calls<'_, N>, Diagnostic> {
+    pub fn calls<N: Number>(&self) -> Result<KernelCalls<'_, N>, Diagnostic> {
         let mut machine = Machine::new(&self.program).map_err(eval_failed)?;
         machine.bind(self.resources.clone()).map_err(eval_failed)?;
-        Ok(Calls { interpreter: self, machine, arguments: Vec::new() })
+        Ok(KernelCalls { interpreter: self, machine, arguments: Vec::new() })
     }
 }
 
-impl<N: Number> Calls<'_, N> {
+impl<N: Number> KernelCalls<'_, N> {
     /// Calls the function with one row of words, and returns its flattened result.
     pub fn call(&mut self, row: &[u32]) -> Result<&[N], Diagnostic> {
         let mut words = row.iter().copied();
         self.arguments.clear();
         self.arguments.extend(self.interpreter.slots.iter().map(|slot| match slot {
-            Slot::Handle(handle) => N::from_word(*handle),
-            Slot::Word(kind) => slot_from_word(words.next().unwrap_or(0), *kind),
+            ArgumentSlot::Handle(handle) => N::from_word(*handle),
+            ArgumentSlot::Word(kind) => slot_from_word(words.next().unwrap_or(0), *kind),
         }));
         let Interpreter { function, steps, most, .. } = self.interpreter;
         self.machine.call(*function, &self.arguments).map_err(eval_failed)?;
@@ -122,12 +122,12 @@ pub fn word_of<N: Number>(slot: N, kind: ScalarKind) -> u32 {
     }
 }
 
-fn argument_slots(kernel: &Kernel, program: &Program) -> Result<Vec<Slot>, Diagnostic> {
+fn argument_slots(kernel: &Kernel, program: &Program) -> Result<Vec<ArgumentSlot>, Diagnostic> {
     let mut slots = Vec::new();
     for parameter in &kernel.parameters {
         match &parameter.kind {
             ParameterKind::Words { shape, .. } => {
-                slots.extend(shape.kinds().into_iter().map(Slot::Word))
+                slots.extend(shape.kinds().into_iter().map(ArgumentSlot::Word))
             }
             ParameterKind::Resource(resource) => {
                 let unbound = || {
@@ -136,7 +136,9 @@ fn argument_slots(kernel: &Kernel, program: &Program) -> Result<Vec<Slot>, Diagn
                         format!("the kernel has no binding {}", resource.binding),
                     )
                 };
-                slots.push(Slot::Handle(program.handle(0, resource.binding).ok_or_else(unbound)?));
+                slots.push(ArgumentSlot::Handle(
+                    program.handle(0, resource.binding).ok_or_else(unbound)?,
+                ));
             }
         }
     }
@@ -156,11 +158,11 @@ pub fn kernel_resources(kernel: &Kernel) -> Resources {
     resources
 }
 
-impl From<&Texture> for eval::Texture {
-    fn from(fixture: &Texture) -> Self {
+impl From<&FixtureTexture> for eval::Texture {
+    fn from(fixture: &FixtureTexture) -> Self {
         let shape = match fixture.kind {
-            TextureKind::Depth2d | TextureKind::Color2d => eval::Shape::D2,
-            TextureKind::DepthCube | TextureKind::ColorCube => eval::Shape::Cube,
+            TextureKind::Depth2d | TextureKind::Color2d => eval::TextureDimension::D2,
+            TextureKind::DepthCube | TextureKind::ColorCube => eval::TextureDimension::Cube,
         };
         let texels =
             Texels::Channels { count: fixture.kind.channels(), values: fixture.texels.clone() };
@@ -168,9 +170,9 @@ impl From<&Texture> for eval::Texture {
     }
 }
 
-impl From<Sampler> for eval::Sampler {
-    fn from(fixture: Sampler) -> Self {
-        let Sampler { compare, address, .. } = fixture;
+impl From<FixtureSampler> for eval::Sampler {
+    fn from(fixture: FixtureSampler) -> Self {
+        let FixtureSampler { compare, address, .. } = fixture;
         let filter = if fixture.linear { eval::Filter::Linear } else { eval::Filter::Nearest };
         Self { address: [address; 3], mag: filter, min: filter, compare, ..Self::default() }
     }

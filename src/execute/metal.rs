@@ -5,32 +5,34 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 
-use super::compiled::Program;
-use super::compiled::request::{Bound, Format, Fragment, Image, ImageLevel};
+use super::compiled::CompiledProgram;
+use super::compiled::request::{
+    FragmentInput, ImageLevel, MetalImage, MetalResources, TexelFormat,
+};
 use super::fixture::Fixture;
 use super::frame::{Drawing, EntryPoint, Frame};
 use super::gpu::{emitted, run_batches};
 use super::kernel::{INPUT_WIDTH, Kernel, TARGET_WIDTH, first_of_code};
-use super::raster::Compiled;
+use super::raster::CompiledStages;
 use super::shipped::Shipped;
-use super::{Pair, Session, executor_failed};
+use super::{Session, ShippedPair, executor_failed};
 use crate::bundle::{Native, Target};
 use crate::diagnostic::Diagnostic;
 use crate::emit::Emitted;
-use crate::eval::{Sampler, Shape, Texture};
-use crate::metal::{Missing, clang_version};
+use crate::eval::{Sampler, Texture, TextureDimension};
+use crate::metal::{ClangMissing, clang_version};
 use crate::validate::on_large_stack;
 
 /// A session. It holds programs, each of which has many kernels.
 pub struct Metal {
     compiler: String,
-    programs: Vec<Program>,
+    programs: Vec<CompiledProgram>,
     /// For each kernel its program, its text and its bindings; or why it could not be compiled.
-    kept: HashMap<u64, Result<Kept, Diagnostic>>,
+    kept: HashMap<u64, Result<MetalKernel, Diagnostic>>,
 }
 
 /// A kernel within a program.
-struct Kept {
+struct MetalKernel {
     program: usize,
     text: usize,
     native: Native,
@@ -41,7 +43,7 @@ impl Metal {
     ///
     /// # Errors
     /// It is missing.
-    pub fn open() -> Result<Self, Missing> {
+    pub fn open() -> Result<Self, ClangMissing> {
         let compiler = clang_version()?;
         Ok(Self { compiler, programs: Vec::new(), kept: HashMap::new() })
     }
@@ -58,13 +60,14 @@ impl Metal {
         let outputs: Vec<Result<(String, Native), Diagnostic>> =
             on_large_stack(|| new.par_iter().map(emit).collect());
         let texts: Vec<&str> = outputs.iter().flatten().map(|(text, _)| text.as_str()).collect();
-        let program = Program::build(&texts).map_err(|missing| executor_failed(missing.reason));
+        let program =
+            CompiledProgram::build(&texts).map_err(|missing| executor_failed(missing.reason));
         let (index, mut next) = (self.programs.len(), 0);
         for (kernel, output) in new.iter().zip(&outputs) {
             let kept = match (output, &program) {
                 (Ok((_, native)), Ok(_)) => {
                     next += 1;
-                    Ok(Kept { program: index, text: next - 1, native: native.clone() })
+                    Ok(MetalKernel { program: index, text: next - 1, native: native.clone() })
                 }
                 (Err(error), _) | (_, Err(error)) => Err(error.clone()),
             };
@@ -84,7 +87,7 @@ impl Metal {
             return Err(executor_failed("the program was lost"));
         };
         let bound = bind_kernel(kernel, &kept.native, texels);
-        let quads: Vec<[Fragment; 4]> = (0..rows.div_ceil(2))
+        let quads: Vec<[FragmentInput; 4]> = (0..rows.div_ceil(2))
             .flat_map(|y| (0..TARGET_WIDTH / 2).map(move |x| quad_fragments(2 * x, 2 * y)))
             .collect();
         let shaded = program.quads(kept.text, &bound, &quads).map_err(executor_failed)?;
@@ -121,18 +124,20 @@ impl Session for Metal {
         let mut stages = vec![shipped(drawing.vertex)?];
         stages.extend(drawing.fragment.map(shipped).transpose()?);
         let fragment = stages.len().checked_sub(2).map(|_| 1);
-        let compiled = Compiled::new(stages).map_err(|missing| executor_failed(missing.reason))?;
+        let compiled =
+            CompiledStages::new(stages).map_err(|missing| executor_failed(missing.reason))?;
         compiled.draw(0, fragment, drawing)
     }
 
     fn draw_shipped(
         &self,
-        pair: Pair<'_>,
+        pair: ShippedPair<'_>,
         drawing: &Drawing<'_>,
     ) -> Result<Vec<Frame>, Diagnostic> {
         let targets = pair.fragment.targets().map_err(executor_failed)?.len() as u32;
         let stages = vec![pair.vertex.clone(), pair.fragment.clone()];
-        let compiled = Compiled::new(stages).map_err(|missing| executor_failed(missing.reason))?;
+        let compiled =
+            CompiledStages::new(stages).map_err(|missing| executor_failed(missing.reason))?;
         compiled.draw(0, Some(1), &Drawing { targets, ..*drawing })
     }
 }
@@ -144,8 +149,8 @@ fn emitted_text(emitted: Emitted) -> Result<(String, Native), Diagnostic> {
 }
 
 /// The fragments of the quad whose first pixel is (x, y).
-fn quad_fragments(x: u32, y: u32) -> [Fragment; 4] {
-    [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].map(|(x, y)| Fragment {
+fn quad_fragments(x: u32, y: u32) -> [FragmentInput; 4] {
+    [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].map(|(x, y)| FragmentInput {
         position: [x as f32 + 0.5, y as f32 + 0.5, 0.0, 1.0],
         front: true,
         locations: Vec::new(),
@@ -153,13 +158,13 @@ fn quad_fragments(x: u32, y: u32) -> [Fragment; 4] {
 }
 
 /// Binds the inputs and the fixtures of a kernel to the slots that its text declares.
-fn bind_kernel(kernel: &Kernel, native: &Native, texels: &[u32]) -> Bound {
-    let mut bound = Bound::default();
+fn bind_kernel(kernel: &Kernel, native: &Native, texels: &[u32]) -> MetalResources {
+    let mut bound = MetalResources::default();
     for slot in &native.slots {
         let Some(index) = slot.index else { continue };
         match kernel.fixture_at(slot.binding) {
             Some(Fixture::Texture(texture)) => {
-                let image = Image::new(&Texture::from(texture), Format::Float);
+                let image = MetalImage::new(&Texture::from(texture), TexelFormat::Float);
                 bound.textures.insert(index, image);
             }
             Some(Fixture::Sampler(sampler)) => {
@@ -172,8 +177,8 @@ fn bind_kernel(kernel: &Kernel, native: &Native, texels: &[u32]) -> Bound {
 }
 
 /// The input texture, binding 0.
-fn input_image(texels: &[u32]) -> Image {
+fn input_image(texels: &[u32]) -> MetalImage {
     let height = texels.len() as u32 / 4 / INPUT_WIDTH;
     let level = ImageLevel { width: INPUT_WIDTH, height, layers: 1, words: texels.to_vec() };
-    Image { shape: Shape::D2, format: Format::Unsigned, levels: vec![level] }
+    MetalImage { shape: TextureDimension::D2, format: TexelFormat::Unsigned, levels: vec![level] }
 }

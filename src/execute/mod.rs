@@ -77,14 +77,14 @@ pub trait Session: Send {
     /// # Errors
     /// Those of [`Self::draw_frames`]; `executor-lacks` for a stage that cannot be drawn on this
     /// executor.
-    fn draw_shipped(&self, _: Pair<'_>, _: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
+    fn draw_shipped(&self, _: ShippedPair<'_>, _: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
         Err(draws_none())
     }
 }
 
 /// A vertex and a fragment stage.
 #[derive(Debug, Clone, Copy)]
-pub struct Pair<'a> {
+pub struct ShippedPair<'a> {
     pub vertex: &'a Shipped,
     pub fragment: &'a Shipped,
 }

@@ -4,32 +4,42 @@
 
 use glam::{DVec2, DVec3};
 
-use super::fixture::{Sampler, Texture};
+use super::fixture::{FixtureSampler, FixtureTexture};
 
 /// The comparison's result, filtered as the sampler says: the weighted share of the texels that
 /// pass.
-pub fn compare_depth(map: &Texture, sampler: Sampler, uv: DVec2, depth: f64) -> f64 {
+pub fn compare_depth(map: &FixtureTexture, sampler: FixtureSampler, uv: DVec2, depth: f64) -> f64 {
     filter_texels(map, sampler, uv, 0, |stored| passes_comparison(sampler, depth, stored), 0)
 }
 
 /// The same for a direction into a cube map.
-pub fn compare_cube(map: &Texture, sampler: Sampler, direction: DVec3, depth: f64) -> f64 {
+pub fn compare_cube(
+    map: &FixtureTexture,
+    sampler: FixtureSampler,
+    direction: DVec3,
+    depth: f64,
+) -> f64 {
     let (face, uv) = cube_face(direction);
     filter_texels(map, sampler, uv, face, |stored| passes_comparison(sampler, depth, stored), 0)
 }
 
 /// One channel of a colour texture, filtered as the sampler says.
-pub fn read_channel(map: &Texture, sampler: Sampler, uv: DVec2, channel: usize) -> f64 {
+pub fn read_channel(
+    map: &FixtureTexture,
+    sampler: FixtureSampler,
+    uv: DVec2,
+    channel: usize,
+) -> f64 {
     filter_texels(map, sampler, uv, 0, |stored| stored, channel)
 }
 
-fn passes_comparison(sampler: Sampler, depth: f64, stored: f64) -> f64 {
+fn passes_comparison(sampler: FixtureSampler, depth: f64, stored: f64) -> f64 {
     f64::from(u8::from(sampler.compare.is_some_and(|compare| compare.passes(depth, stored))))
 }
 
 fn filter_texels(
-    map: &Texture,
-    sampler: Sampler,
+    map: &FixtureTexture,
+    sampler: FixtureSampler,
     uv: DVec2,
     layer: u32,
     value: impl Fn(f64) -> f64,

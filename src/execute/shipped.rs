@@ -2,7 +2,7 @@
 
 use super::emitted;
 use super::frame::EntryPoint;
-use crate::bundle::{Kind, Native, Reflection, Stage, Target, Varying};
+use crate::bundle::{BindingKind, Native, Reflection, Stage, Target, Varying};
 use crate::diagnostic::Diagnostic;
 use crate::emit::{self, Emitted};
 use crate::link::Linker;
@@ -18,7 +18,7 @@ pub struct Shipped {
 
 /// What the colour target of a shipped stage holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Format {
+pub(super) enum ColorFormat {
     /// Bits of floats.
     Float,
     Uint,
@@ -57,22 +57,24 @@ impl Shipped {
     ///
     /// # Errors
     /// A message about a type that no target exists for.
-    pub(super) fn targets(&self) -> Result<Vec<Format>, String> {
+    pub(super) fn targets(&self) -> Result<Vec<ColorFormat>, String> {
         if self.reflection.stage != Stage::Fragment {
             return Ok(Vec::new());
         }
         let located = self.reflection.outputs.iter().filter_map(|output| {
             let format = match output.ty.as_str() {
-                ty if ty.contains("f32") => Ok(Format::Float),
-                ty if ty.contains("u32") => Ok(Format::Uint),
+                ty if ty.contains("f32") => Ok(ColorFormat::Float),
+                ty if ty.contains("u32") => Ok(ColorFormat::Uint),
                 ty => Err(format!("no target is made for outputs of type {ty}")),
             };
             output.location.map(|location| format.map(|format| (location, format)))
         });
-        let located: Vec<(u32, Format)> = located.collect::<Result<_, _>>()?;
+        let located: Vec<(u32, ColorFormat)> = located.collect::<Result<_, _>>()?;
         let count = located.iter().map(|(location, _)| location + 1).max().unwrap_or(0);
         let format = |location: u32| located.iter().find(|(other, _)| *other == location);
-        Ok((0..count).map(|location| format(location).map_or(Format::Float, |one| one.1)).collect())
+        Ok((0..count)
+            .map(|location| format(location).map_or(ColorFormat::Float, |one| one.1))
+            .collect())
     }
 
     /// What of a fragment stage WebGPU does not support with the targets that are used here.
@@ -90,7 +92,7 @@ impl Shipped {
 
     /// Groups and bindings of its uniform buffers.
     pub(super) fn blocks(&self) -> impl Iterator<Item = (u32, u32)> {
-        let blocks = self.reflection.bindings.iter().filter(|one| one.kind == Kind::Uniform);
+        let blocks = self.reflection.bindings.iter().filter(|one| one.kind == BindingKind::Uniform);
         blocks.map(|one| (one.group, one.binding))
     }
 }

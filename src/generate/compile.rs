@@ -2,15 +2,15 @@
 
 use rayon::prelude::*;
 
-use super::compositions::Text;
-use super::entry::Entry;
+use super::compositions::ComposedForms;
+use super::entry::ShaderEntry;
 use super::sink::Sink;
 use crate::bundle::{Conventions, Digest, Target};
-use crate::cache::{Cache, Job, Made};
+use crate::cache::{Cache, CachedUnit, CompileJob};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::link::{self, Linker, Reason};
 
-/// What remains of [`Made`] once the unit has gone to the sink.
+/// What remains of [`link::CompiledUnit`] once the unit has gone to the sink.
 #[derive(Debug)]
 pub struct Compiled {
     pub digest: Digest,
@@ -30,14 +30,17 @@ pub struct Compiler<'a> {
 impl Compiler<'_> {
     /// Compiles every text of a batch that the cache does not know, and gives the units to the
     /// sink.
-    pub fn make(&self, batch: &[(&Text, &Entry)]) -> Vec<Result<Compiled, Diagnostics>> {
+    pub fn make(
+        &self,
+        batch: &[(&ComposedForms, &ShaderEntry)],
+    ) -> Vec<Result<Compiled, Diagnostics>> {
         let made = batch.par_iter().map(|(text, entry)| self.make_one(text, entry)).collect();
         self.linker.forget();
         made
     }
 
-    fn make_one(&self, text: &Text, entry: &Entry) -> Result<Compiled, Diagnostics> {
-        let job = Job {
+    fn make_one(&self, text: &ComposedForms, entry: &ShaderEntry) -> Result<Compiled, Diagnostics> {
+        let job = CompileJob {
             text: &text.lean.text,
             composed: &text.composed,
             entry: &entry.name,
@@ -48,10 +51,12 @@ impl Compiler<'_> {
         if let Some(found) = self.cache.and_then(|cache| cache.find(job)) {
             return self.pass_on(found?, Vec::new());
         }
-        let both = link::Text { composed: &text.composed, lean: &text.lean };
+        let both = link::TextForms { composed: &text.composed, lean: &text.lean };
         let made = link::compile(&both, &entry.name, self.targets, &self.linker);
         let (made, whole) = match made {
-            Ok(link::Made { unit, warnings, whole }) => (Ok(Made { unit, warnings }), whole),
+            Ok(link::CompiledUnit { unit, warnings, whole }) => {
+                (Ok(CachedUnit { unit, warnings }), whole)
+            }
             Err(errors) => (Err(errors), Vec::new()),
         };
         if !is_of_this_machine(&made) {
@@ -60,7 +65,11 @@ impl Compiler<'_> {
         self.pass_on(made?, whole)
     }
 
-    fn pass_on(&self, made: Made, whole: Vec<(Target, Reason)>) -> Result<Compiled, Diagnostics> {
+    fn pass_on(
+        &self,
+        made: CachedUnit,
+        whole: Vec<(Target, Reason)>,
+    ) -> Result<Compiled, Diagnostics> {
         let digest = self
             .sink
             .add(made.unit)
@@ -71,7 +80,7 @@ impl Compiler<'_> {
 
 /// Whether the failure is one of this machine, now: another machine, or this one later, might
 /// succeed.
-fn is_of_this_machine(made: &Result<Made, Diagnostics>) -> bool {
+fn is_of_this_machine(made: &Result<CachedUnit, Diagnostics>) -> bool {
     let is_exhausted = |error: &Diagnostic| error.code == codes::NAGA_EXHAUSTED;
     made.as_ref().is_err_and(|errors| errors.iter().any(is_exhausted))
 }

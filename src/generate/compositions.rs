@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use super::compile::Compiled;
-use super::entry::Entry;
+use super::entry::ShaderEntry;
 use super::lint::Decided;
 use super::{Progress, REPORTED};
 use crate::bundle::{Digest, Hash, Language, Target};
@@ -41,18 +41,19 @@ pub struct EntryResult {
 
 /// What is done with the new texts of a batch: they are compiled, or only counted. There is one
 /// result for each text.
-pub type Make<'a> = dyn Fn(&[(&Text, &Entry)]) -> Vec<Result<Compiled, Diagnostics>> + 'a;
+pub type Make<'a> =
+    dyn Fn(&[(&ComposedForms, &ShaderEntry)]) -> Vec<Result<Compiled, Diagnostics>> + 'a;
 
 /// Composes every entry point for every permutation, a batch of permutations at a time, and passes
 /// the new texts of each batch to `make`.
 pub fn compose_all(
-    entries: &[Entry],
+    entries: &[ShaderEntry],
     space: &Space,
     points: &[Assignment],
     make: &Make<'_>,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Vec<EntryResult>, Diagnostics> {
-    let mut known: Vec<Known<'_>> = entries.iter().map(Known::new).collect();
+    let mut known: Vec<EntryState<'_>> = entries.iter().map(EntryState::new).collect();
     let stage = entries.first().map_or(String::new(), |entry| entry.program.clone());
     let at = |done| progress(Progress { stage: stage.clone(), done, total: points.len() });
     at(0);
@@ -82,25 +83,25 @@ pub fn compose_all(
 }
 
 /// A text that no earlier permutation of its entry point had.
-struct Job {
+struct TextJob {
     entry: usize,
     /// Index of the permutation in the batch.
     point: usize,
-    text: Box<Text>,
+    text: Box<ComposedForms>,
 }
 
 /// A text in two forms: as its author reads it, and as it is compiled.
-pub struct Text {
+pub struct ComposedForms {
     pub composed: Composed,
     pub lean: Composed,
 }
 
-impl Job {
+impl TextJob {
     /// What was made of the text, with the permutation named in errors and warnings.
     fn named(
         &self,
         made: Result<Compiled, Diagnostics>,
-        entries: &[Entry],
+        entries: &[ShaderEntry],
         space: &Space,
         batch: &[Assignment],
     ) -> Result<(usize, Compiled), Diagnostics> {
@@ -115,11 +116,11 @@ impl Job {
 /// Composes in parallel whatever earlier batches did not answer. Several permutations of a batch
 /// may compose to one text: composing it again costs less than waiting for each other.
 fn compose_batch(
-    known: &mut [Known<'_>],
+    known: &mut [EntryState<'_>],
     space: &Space,
     batch: &[Assignment],
-) -> Result<Vec<Job>, Diagnostics> {
-    let answers = |known: &[Known<'_>], point: &Assignment| {
+) -> Result<Vec<TextJob>, Diagnostics> {
+    let answers = |known: &[EntryState<'_>], point: &Assignment| {
         let settings = space.settings(point);
         known.iter().map(|entry| entry.find(&settings, space, point)).collect::<Result<Vec<_>, _>>()
     };
@@ -127,7 +128,7 @@ fn compose_batch(
     let mut jobs = Vec::new();
     for (point, answers) in found.into_iter().enumerate() {
         for (entry, answer) in answers.into_iter().enumerate() {
-            jobs.extend(known[entry].place(answer).map(|text| Job { entry, point, text }));
+            jobs.extend(known[entry].place(answer).map(|text| TextJob { entry, point, text }));
         }
     }
     // Sorted by entry point, since neighbours are alike: that suits the processor's caches and the
@@ -137,8 +138,8 @@ fn compose_batch(
 }
 
 /// What is known of one entry point so far.
-struct Known<'a> {
-    entry: &'a Entry,
+struct EntryState<'a> {
+    entry: &'a ShaderEntry,
     result: EntryResult,
     tree: ReadTree<u32>,
     leaner: Leaner,
@@ -146,13 +147,13 @@ struct Known<'a> {
     texts: BTreeMap<Hash, u32>,
 }
 
-enum Found {
+enum FoundText {
     Known(u32),
-    Text { text: Box<Text>, hash: Hash },
+    Text { text: Box<ComposedForms>, hash: Hash },
 }
 
-impl<'a> Known<'a> {
-    fn new(entry: &'a Entry) -> Self {
+impl<'a> EntryState<'a> {
+    fn new(entry: &'a ShaderEntry) -> Self {
         let result = EntryResult {
             label: entry.label.clone(),
             language: entry.language,
@@ -173,9 +174,9 @@ impl<'a> Known<'a> {
         settings: &crate::permute::Settings,
         space: &Space,
         point: &Assignment,
-    ) -> Result<Found, Diagnostics> {
+    ) -> Result<FoundText, Diagnostics> {
         if let Some(text) = self.tree.get(settings) {
-            return Ok(Found::Known(*text));
+            return Ok(FoundText::Known(*text));
         }
         let composed = compose::compose(&self.entry.graph, settings, &self.entry.options);
         let composed =
@@ -183,17 +184,17 @@ impl<'a> Known<'a> {
         let lean = self.leaner.lean(&composed);
         let mut hash = [0; 16];
         hash.copy_from_slice(&blake3::hash(lean.text.as_bytes()).as_bytes()[..16]);
-        Ok(Found::Text { text: Box::new(Text { composed, lean }), hash })
+        Ok(FoundText::Text { text: Box::new(ComposedForms { composed, lean }), hash })
     }
 
     /// Records a permutation's text, and returns it if no earlier permutation had it.
-    fn place(&mut self, found: Found) -> Option<Box<Text>> {
+    fn place(&mut self, found: FoundText) -> Option<Box<ComposedForms>> {
         let (text, hash) = match found {
-            Found::Known(index) => {
+            FoundText::Known(index) => {
                 self.result.text_of.push(index);
                 return None;
             }
-            Found::Text { text, hash } => (text, hash),
+            FoundText::Text { text, hash } => (text, hash),
         };
         self.result.compositions += 1;
         self.result.decided.see(&text.composed.decisions);
@@ -242,7 +243,7 @@ fn keep_new(errors: &mut Diagnostics, error: Diagnostic) {
     }
 }
 
-fn of_permutation(errors: Diagnostics, entry: &Entry, key: &Key) -> Diagnostics {
+fn of_permutation(errors: Diagnostics, entry: &ShaderEntry, key: &Key) -> Diagnostics {
     errors
         .into_iter()
         .map(|error| error.note(format!("in permutation `{key}` of {}", entry.title())))

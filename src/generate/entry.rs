@@ -6,13 +6,13 @@ use super::shader;
 use crate::bundle::Language;
 use crate::compose::{self, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::permute::manifest::File;
+use crate::permute::manifest::ManifestFile;
 use crate::permute::{Assignment, Program};
 use crate::resolve::{self, Graph, Packages};
 use crate::source::SourceSet;
 
 /// One entry point of one language.
-pub struct Entry {
+pub struct ShaderEntry {
     pub program: String,
     pub language: Language,
     /// Name in the source: `main` in GLSL.
@@ -34,7 +34,7 @@ pub fn entries(
     packages: &Packages,
     program: &Program,
     point: Option<&Assignment>,
-) -> Result<Vec<Entry>, Diagnostics> {
+) -> Result<Vec<ShaderEntry>, Diagnostics> {
     let Some(point) = point else { return Ok(Vec::new()) };
     let (mut entries, mut errors) = (Vec::new(), Diagnostics::new());
     for (file, language) in root_files(program) {
@@ -50,8 +50,8 @@ fn of_file(
     packages: &Packages,
     program: &Program,
     point: &Assignment,
-    (file, language): (&File, Language),
-    entries: &mut Vec<Entry>,
+    (file, language): (&ManifestFile, Language),
+    entries: &mut Vec<ShaderEntry>,
 ) -> Result<(), Diagnostics> {
     let graph = resolve::load(sources, packages, &file.path, language)
         .map_err(|errors| named_by(errors, file))?;
@@ -71,12 +71,12 @@ fn of_file(
         let options = Options { keep, ..Options::default() };
         let label = entry_label(entries, language, &name, stage);
         let (program, graph) = (program.name.clone(), graph.clone());
-        entries.push(Entry { program, language, name, label, stage, graph, options });
+        entries.push(ShaderEntry { program, language, name, label, stage, graph, options });
     }
     Ok(())
 }
 
-impl Entry {
+impl ShaderEntry {
     /// For people: `forward fs_main (glsl)`.
     pub fn title(&self) -> String {
         format!("{} {} ({})", self.program, self.label, self.language.name())
@@ -85,7 +85,7 @@ impl Entry {
 
 /// Adds the manifest's place to the error about a root that cannot be found, since the manifest
 /// names it.
-fn named_by(errors: Diagnostics, file: &File) -> Diagnostics {
+fn named_by(errors: Diagnostics, file: &ManifestFile) -> Diagnostics {
     let one = |error: Diagnostic| {
         if error.labels.is_empty() { error.at(file.span, "named here") } else { error }
     };
@@ -99,7 +99,7 @@ fn of_permutation(errors: Diagnostics, program: &Program, point: &Assignment) ->
 }
 
 fn entry_label(
-    before: &[Entry],
+    before: &[ShaderEntry],
     language: Language,
     name: &str,
     stage: naga::ShaderStage,
@@ -112,7 +112,7 @@ fn entry_label(
     }
 }
 
-fn root_files(program: &Program) -> Vec<(&File, Language)> {
+fn root_files(program: &Program) -> Vec<(&ManifestFile, Language)> {
     let glsl = program.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
     let wesl = program.wesl.iter().map(|file| (file, Language::Wesl));
     wesl.chain(glsl.map(|file| (file, Language::Glsl))).collect()

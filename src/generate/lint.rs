@@ -7,7 +7,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::EntryResult;
-use super::entry::Entry;
+use super::entry::ShaderEntry;
 use crate::compose::Decision;
 use crate::compose::wesl::lint::{self, Outcomes};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -20,16 +20,16 @@ use crate::source::{SourceSet, Span};
 const FIRST_POINTS: usize = 64;
 
 /// A place, by the name of its file, since programs that share a file each read it.
-type Place = (String, u32, u32);
+type LintPlace = (String, u32, u32);
 
 /// What has been seen of the programs so far.
 #[derive(Default)]
 pub struct Lints {
     /// For each condition, how many programs have it.
-    conditions: BTreeMap<Place, usize>,
+    conditions: BTreeMap<LintPlace, usize>,
     /// For each condition and message, in how many programs the condition was found to decide
     /// nothing, with the warning.
-    constant: BTreeMap<(Place, String), (usize, Diagnostic)>,
+    constant: BTreeMap<(LintPlace, String), (usize, Diagnostic)>,
     found: Diagnostics,
 }
 
@@ -39,7 +39,7 @@ impl Lints {
         &mut self,
         sources: &SourceSet,
         program: &Program,
-        entries: &[Entry],
+        entries: &[ShaderEntry],
         points: &[Assignment],
     ) {
         let mut seen: Vec<*const Graph> = Vec::new();
@@ -81,7 +81,7 @@ impl Lints {
         &mut self,
         sources: &SourceSet,
         program: &Program,
-        entries: &[Entry],
+        entries: &[ShaderEntry],
         results: &[EntryResult],
     ) {
         for (entry, result) in entries.iter().zip(results) {
@@ -108,7 +108,7 @@ impl Lints {
         }
     }
 
-    fn see_reads(&mut self, program: &Program, entries: &[Entry], results: &[EntryResult]) {
+    fn see_reads(&mut self, program: &Program, entries: &[ShaderEntry], results: &[EntryResult]) {
         let read = |name: &String| results.iter().any(|result| result.reads.contains(name));
         // The pipeline may choose the value of a spec axis. Then no composition asks for it.
         let is_open = |axis: &Axis| {
@@ -215,6 +215,6 @@ pub fn distinct(sources: &SourceSet, warnings: Diagnostics) -> Diagnostics {
     kept
 }
 
-fn place_of(sources: &SourceSet, span: Span) -> Place {
+fn place_of(sources: &SourceSet, span: Span) -> LintPlace {
     (sources.get(span.source).path.clone(), span.start, span.end)
 }

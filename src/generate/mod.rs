@@ -18,12 +18,12 @@ mod sink;
 pub(crate) mod summary;
 mod trace;
 
-pub use permutation::{Named, Permutation, permutation};
-pub use shader::{Root, Shader, entry_points};
+pub use permutation::{Permutation, ShaderName, permutation};
+pub use shader::{CompiledShader, Root, entry_points};
 pub use shard::Shard;
-pub use sink::{Discard, Memory, Sink};
-pub use summary::{EntrySummary, Judged, ProgramSummary, Summary, WholeSummary};
-pub use trace::{Observer, Run, Told, Trace};
+pub use sink::{Discard, MemorySink, Sink};
+pub use summary::{EntrySummary, JudgedCount, ProgramSummary, Summary, WholeSummary};
+pub use trace::{Observer, RunWarnings, Trace, TracedRun};
 
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -39,10 +39,10 @@ use crate::resolve::Packages;
 use crate::source::SourceSet;
 use crate::validate::on_large_stack;
 use compile::{Compiled, Compiler};
-use compositions::{EntryResult, Text};
-use entry::Entry;
+use compositions::{ComposedForms, EntryResult};
+use entry::ShaderEntry;
 use lint::Lints;
-use summary::Outputs;
+use summary::DistinctOutputs;
 
 /// The most errors that are reported of the permutations of a program.
 const REPORTED: usize = 20;
@@ -124,7 +124,7 @@ pub fn generate(
         summary: Summary::default(),
         warnings: manifest.warnings.clone(),
     };
-    let mut outputs = Outputs::default();
+    let mut outputs = DistinctOutputs::default();
     let mut lints = Lints::default();
     for (program, points, entries) in prepare_programs(sources, packages, manifest, request)? {
         let points = request.shard.map_or(&*points, |shard| shard.of(&points));
@@ -137,7 +137,7 @@ pub fn generate(
             cache: tools.cache,
             linker: Linker::with(&targets, conventions),
         };
-        let make = |batch: &[(&Text, &Entry)]| compiler.make(batch);
+        let make = |batch: &[(&ComposedForms, &ShaderEntry)]| compiler.make(batch);
         let results = on_large_stack(|| {
             compositions::compose_all(&entries, &program.space, points, &make, tools.progress)
         })?;
@@ -159,7 +159,7 @@ pub fn generate(
 }
 
 /// A program with its permutations and its entry points.
-type Prepared<'a> = (&'a Program, Vec<Assignment>, Vec<Entry>);
+type PreparedProgram<'a> = (&'a Program, Vec<Assignment>, Vec<ShaderEntry>);
 
 /// Every program that is asked for. Errors in the sources of one do not hide those of another.
 fn prepare_programs<'a>(
@@ -167,7 +167,7 @@ fn prepare_programs<'a>(
     packages: &Packages,
     manifest: &'a Manifest,
     request: &Request,
-) -> Result<Vec<Prepared<'a>>, Diagnostics> {
+) -> Result<Vec<PreparedProgram<'a>>, Diagnostics> {
     let (mut programs, mut errors) = (Vec::new(), Diagnostics::new());
     for program in chosen_programs(manifest, request)? {
         let points = wanted_points(program, request).map_err(|errors| {
@@ -198,7 +198,7 @@ pub fn in_memory(
     request: &Request,
     progress: &(dyn Fn(Progress) + Sync),
 ) -> Result<Generated, Diagnostics> {
-    let sink = Memory::default();
+    let sink = MemorySink::default();
     let mut generated = generate(
         sources,
         packages,
@@ -225,7 +225,7 @@ pub fn survey(
     let entries = entry::entries(sources, packages, program, points.first())?;
     let one =
         || Ok(Compiled { digest: Digest::default(), warnings: Vec::new(), whole: Vec::new() });
-    let nothing = |batch: &[(&Text, &Entry)]| batch.iter().map(|_| one()).collect();
+    let nothing = |batch: &[(&ComposedForms, &ShaderEntry)]| batch.iter().map(|_| one()).collect();
     let results = on_large_stack(|| {
         compositions::compose_all(&entries, &program.space, &points, &nothing, progress)
     })?;

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::entry::{self, Entry};
+use super::entry::{self, ShaderEntry};
 use crate::bundle::Language;
 use crate::compose::{self, Composed};
 use crate::diagnostic::Diagnostics;
@@ -13,7 +13,7 @@ use crate::source::SourceSet;
 
 /// Which shader of a bundle.
 #[derive(Debug, Clone, Copy)]
-pub struct Named<'a> {
+pub struct ShaderName<'a> {
     /// Its program.
     pub program: &'a str,
     /// Its source language.
@@ -50,13 +50,14 @@ pub fn permutation(
     sources: &mut SourceSet,
     packages: &Packages,
     manifest: &Manifest,
-    named: Named<'_>,
+    named: ShaderName<'_>,
 ) -> Result<Option<Permutation>, Diagnostics> {
     let Some(program) = manifest.program(named.program) else { return Ok(None) };
     let id = sources.add("key", named.key);
     let point = key::parse(&program.space, &Quoted::whole(sources, id))?;
     let entries = entry::entries(sources, packages, program, Some(&point))?;
-    let is_it = |entry: &&Entry| entry.language == named.language && entry.label == named.label;
+    let is_it =
+        |entry: &&ShaderEntry| entry.language == named.language && entry.label == named.label;
     let Some(entry) = entries.iter().find(is_it) else { return Ok(None) };
     let settings = program.space.settings(&point);
     let composed = compose::compose(&entry.graph, &settings, &entry.options)?;

@@ -4,7 +4,7 @@
 use crate::bundle::{Conventions, Language, Target};
 use crate::compose::{self, Composed, Keep, Options, lean};
 use crate::diagnostic::Diagnostics;
-use crate::link::{self, Linker, Made};
+use crate::link::{self, CompiledUnit, Linker};
 use crate::permute::Settings;
 use crate::resolve::Graph;
 use crate::validate::{naga_stage, on_large_stack, validate, validate_every};
@@ -14,11 +14,11 @@ const GLSL_ENTRY: &str = "main";
 
 /// An entry point in every target asked for.
 #[derive(Debug)]
-pub struct Shader {
+pub struct CompiledShader {
     /// Its name in the source.
     pub entry: String,
     /// Its outputs.
-    pub made: Made,
+    pub made: CompiledUnit,
 }
 
 /// A root file with all that its entry points are composed from.
@@ -61,7 +61,7 @@ impl Root<'_> {
         &self,
         entries: &[(String, naga::ShaderStage)],
         targets: &[Target],
-    ) -> Result<Vec<Shader>, Diagnostics> {
+    ) -> Result<Vec<CompiledShader>, Diagnostics> {
         self.compile_with(entries, &Linker::with(targets, self.conventions))
     }
 
@@ -74,11 +74,11 @@ impl Root<'_> {
         &self,
         entries: &[(String, naga::ShaderStage)],
         linker: &Linker<'_>,
-    ) -> Result<Vec<Shader>, Diagnostics> {
+    ) -> Result<Vec<CompiledShader>, Diagnostics> {
         let (mut shaders, mut errors) = (Vec::new(), Diagnostics::new());
         for (entry, _) in entries {
             match on_large_stack(|| self.one(entry, linker)) {
-                Ok(made) => shaders.push(Shader { entry: entry.clone(), made }),
+                Ok(made) => shaders.push(CompiledShader { entry: entry.clone(), made }),
                 Err(found) => errors.extend(found),
             }
         }
@@ -89,7 +89,7 @@ impl Root<'_> {
         if errors.is_empty() { Ok(shaders) } else { Err(errors) }
     }
 
-    fn one(&self, entry: &str, linker: &Linker<'_>) -> Result<Made, Diagnostics> {
+    fn one(&self, entry: &str, linker: &Linker<'_>) -> Result<CompiledUnit, Diagnostics> {
         let options = Options {
             mangle: self.options.mangle,
             keep: kept_items(self.graph, self.options, entry),
@@ -97,7 +97,7 @@ impl Root<'_> {
         let composed = compose::compose(self.graph, self.settings, &options)?;
         let lean = lean(&composed);
         link::compile(
-            &link::Text { composed: &composed, lean: &lean },
+            &link::TextForms { composed: &composed, lean: &lean },
             entry,
             linker.targets(),
             linker,

@@ -20,12 +20,12 @@ impl Sink for DirectoryWriter {
 
 /// Keeps every unit in memory.
 #[derive(Debug, Default)]
-pub struct Memory {
+pub struct MemorySink {
     digester: Digester,
     units: Mutex<BTreeMap<Hash, Unit>>,
 }
 
-impl Sink for Memory {
+impl Sink for MemorySink {
     fn add(&self, unit: Unit) -> Result<Digest, Error> {
         let digest = self.digester.digest(&unit)?;
         self.units
@@ -37,7 +37,7 @@ impl Sink for Memory {
     }
 }
 
-impl Memory {
+impl MemorySink {
     /// Gives every entry point the units that its keys refer to.
     pub fn fill(self, contents: &mut Contents) {
         let units = self.units.into_inner().unwrap_or_else(PoisonError::into_inner);

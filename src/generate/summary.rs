@@ -24,7 +24,7 @@ pub struct Summary {
     pub whole: Vec<WholeSummary>,
     /// How many outputs were judged, if any were.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub judged: Option<Judged>,
+    pub judged: Option<JudgedCount>,
     /// Whether there was nothing to do, since neither the inputs nor the bundle changed since the
     /// last run.
     pub up_to_date: bool,
@@ -34,7 +34,7 @@ pub struct Summary {
 
 /// How many outputs the judges of their targets accepted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Judged {
+pub struct JudgedCount {
     /// In this run.
     pub now: usize,
     /// In an earlier one.
@@ -110,9 +110,9 @@ pub(super) fn program(name: &str, permutations: usize, results: &[EntryResult]) 
 /// The distinct outputs of each target: the length of each by its hash. [`Self::add`] takes the
 /// results of one program.
 #[derive(Debug, Default)]
-pub(super) struct Outputs(BTreeMap<Target, BTreeMap<Hash, u32>>);
+pub(super) struct DistinctOutputs(BTreeMap<Target, BTreeMap<Hash, u32>>);
 
-impl Outputs {
+impl DistinctOutputs {
     pub fn add(&mut self, targets: &[Target], results: &[EntryResult]) {
         for digest in results.iter().flat_map(|result| &result.made) {
             for (target, found) in targets.iter().zip(&digest.targets) {
@@ -169,7 +169,7 @@ impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.programs.iter().try_for_each(|program| write!(f, "{program}"))?;
         self.targets.iter().try_for_each(|target| write!(f, "{target}"))?;
-        if let Some(Judged { now, before }) = self.judged {
+        if let Some(JudgedCount { now, before }) = self.judged {
             writeln!(f, "{now} outputs judged, {before} known to pass")?;
         }
         if self.up_to_date {

@@ -17,11 +17,11 @@ use crate::resolve::Packages;
 use crate::source::{Files, Package, ReadError, SourceSet};
 
 /// A package, and what was asked of its files.
-type Question = (String, String);
+type FileQuestion = (String, String);
 
 /// Makes packages that record what is asked of them.
 #[derive(Debug, Clone, Default)]
-pub struct Observer(Arc<Mutex<BTreeMap<Question, String>>>);
+pub struct Observer(Arc<Mutex<BTreeMap<FileQuestion, String>>>);
 
 impl Observer {
     /// The same packages, with their questions recorded.
@@ -45,7 +45,7 @@ impl Observer {
         is_current(&self.answers(), packages)
     }
 
-    fn answers(&self) -> BTreeMap<Question, String> {
+    fn answers(&self) -> BTreeMap<FileQuestion, String> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
@@ -67,13 +67,13 @@ pub struct Trace {
     /// The summary of the run that made the bundle.
     pub summary: Summary,
     /// The warnings of that run.
-    pub told: Told,
+    pub told: RunWarnings,
 }
 
 /// The warnings of a run. They are kept as text, since the author's files are not read when there
 /// is nothing to do.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Told {
+pub struct RunWarnings {
     /// The manifest as it was named on the command line, since warnings name files in the same way.
     manifest: String,
     /// The warnings in each of [`FORMS`].
@@ -82,7 +82,7 @@ pub struct Told {
 
 const FORMS: [Form; 4] = [Form::Human, Form::Colored, Form::Short, Form::Json];
 
-impl Told {
+impl RunWarnings {
     /// The warnings of a run, as each form writes them.
     pub fn new(manifest: &Path, sources: &SourceSet, warnings: &[Diagnostic]) -> Self {
         let texts = FORMS.map(|form| {
@@ -108,7 +108,7 @@ impl Told {
 
 /// A run that may have been made before.
 #[derive(Clone, Copy)]
-pub struct Run<'a> {
+pub struct TracedRun<'a> {
     /// The manifest's file.
     pub manifest: &'a Path,
     /// What was read before the packages were: the manifest and what declares them.
@@ -123,7 +123,12 @@ pub struct Run<'a> {
 
 impl Trace {
     /// The trace of a run whose packages `observer` watched; `None` where there is no bundle.
-    pub fn new(observer: &Observer, out: &Path, summary: Summary, told: Told) -> Option<Self> {
+    pub fn new(
+        observer: &Observer,
+        out: &Path,
+        summary: Summary,
+        told: RunWarnings,
+    ) -> Option<Self> {
         let reads = observer
             .answers()
             .into_iter()
@@ -133,7 +138,7 @@ impl Trace {
 
     /// Finds the trace of an equal run, if everything that it read is the same and the bundle is
     /// the one that it wrote.
-    pub fn find(cache: &Cache, run: Run<'_>) -> Option<Self> {
+    pub fn find(cache: &Cache, run: TracedRun<'_>) -> Option<Self> {
         let trace: Self =
             serde_json::from_slice(&cache.get("runs", trace_key(run.declared, run.request))?)
                 .ok()?;
@@ -145,7 +150,7 @@ impl Trace {
     }
 
     /// Keeps the trace for [`Self::find`].
-    pub fn keep(&self, cache: &Cache, run: Run<'_>) {
+    pub fn keep(&self, cache: &Cache, run: TracedRun<'_>) {
         cache.put("runs", trace_key(run.declared, run.request), serde_json::to_vec(self).ok());
     }
 }
@@ -158,7 +163,7 @@ fn trace_key(sources: &SourceSet, request: &Request) -> crate::bundle::Hash {
     hash_parts(&["run", BUILD, &asked].into_iter().chain(texts).collect::<Vec<_>>())
 }
 
-fn is_current(reads: &BTreeMap<Question, String>, packages: &Packages) -> bool {
+fn is_current(reads: &BTreeMap<FileQuestion, String>, packages: &Packages) -> bool {
     let find = |name: &str| {
         packages.dependencies.iter().chain([&packages.root]).find(|package| package.name == name)
     };

@@ -7,7 +7,7 @@ use super::{Output, Refusal};
 use crate::bundle::{Contents, Target};
 use crate::compose::{Part, PartKind, code_lines};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::generate::{Named, Permutation, permutation};
+use crate::generate::{Permutation, ShaderName, permutation};
 use crate::parse::words::{begins_word, has_word, words};
 use crate::permute::Manifest;
 use crate::resolve::Packages;
@@ -20,7 +20,7 @@ const REPORTED: usize = 20;
 const LINES: usize = 6;
 
 /// What the outputs were made from.
-pub struct Made<'a> {
+pub struct OutputOrigin<'a> {
     /// Where the sources are.
     pub packages: &'a Packages,
     /// What declares the programs.
@@ -31,7 +31,11 @@ pub struct Made<'a> {
 
 /// Turns refusals into diagnostics about the author's text, each with the first permutation that
 /// shows it.
-pub fn blame(sources: &mut SourceSet, made: &Made<'_>, refusals: &[Refusal]) -> Diagnostics {
+pub fn blame(
+    sources: &mut SourceSet,
+    made: &OutputOrigin<'_>,
+    refusals: &[Refusal],
+) -> Diagnostics {
     let mut told: Diagnostics = Vec::new();
     for refusal in refusals {
         let found = blame_one(sources, made, refusal);
@@ -56,7 +60,7 @@ pub fn blame(sources: &mut SourceSet, made: &Made<'_>, refusals: &[Refusal]) -> 
     told
 }
 
-fn blame_one(sources: &mut SourceSet, made: &Made<'_>, refusal: &Refusal) -> Diagnostics {
+fn blame_one(sources: &mut SourceSet, made: &OutputOrigin<'_>, refusal: &Refusal) -> Diagnostics {
     let error = Diagnostic::error(
         codes::OUTPUT_REFUSED,
         format!("{} refuses the output for `{}`", refusal.judge, refusal.output.target),
@@ -78,7 +82,7 @@ fn blame_one(sources: &mut SourceSet, made: &Made<'_>, refusal: &Refusal) -> Dia
 }
 
 /// The first shader that has the output, in the order of names and keys.
-fn find_shader<'c>(contents: &'c Contents, output: &Output) -> Option<Named<'c>> {
+fn find_shader<'c>(contents: &'c Contents, output: &Output) -> Option<ShaderName<'c>> {
     let languages = contents.programs.iter().flat_map(|(program, contents)| {
         contents.languages.iter().map(move |(language, entries)| (program, language, entries))
     });
@@ -87,15 +91,15 @@ fn find_shader<'c>(contents: &'c Contents, output: &Output) -> Option<Named<'c>>
     });
     let mut found = entries.filter_map(|(program, language, label, entry)| {
         let (key, _) = entry.keys.iter().find(|(_, unit)| **unit == output.unit)?;
-        Some(Named { program, language: *language, label, key })
+        Some(ShaderName { program, language: *language, label, key })
     });
     found.next()
 }
 
 /// The name of the declaration that the line at fault is in, and the text of the line.
-type Line = (Option<String>, String);
+type RefusedLine = (Option<String>, String);
 
-fn refused_line(refusal: &Refusal) -> Option<Line> {
+fn refused_line(refusal: &Refusal) -> Option<RefusedLine> {
     let number = refusal.line?.checked_sub(1)? as usize;
     let text = refusal.output.text().ok()?;
     let lines: Vec<&str> = text.lines().collect();
@@ -122,7 +126,11 @@ fn declared_name(line: &str, target: Target) -> Option<String> {
 }
 
 /// Puts the error at the author's line, or at the entry point.
-fn place_error(error: Diagnostic, permutation: &Permutation, line: Option<Line>) -> Diagnostic {
+fn place_error(
+    error: Diagnostic,
+    permutation: &Permutation,
+    line: Option<RefusedLine>,
+) -> Diagnostic {
     let composed = &permutation.composed;
     let (name, text) = line.map_or((None, None), |(name, text)| (name, Some(text)));
     let named = name.and_then(|name| find_part(&composed.parts, &name));

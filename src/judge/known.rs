@@ -12,13 +12,13 @@ const KIND: &str = "judged";
 const MOST: usize = 200_000;
 
 /// The outputs of one target that passed, by their names, which are hashes of their content.
-pub struct Known {
+pub struct KnownOutputs {
     key: Hash,
     before: usize,
     pub names: BTreeSet<String>,
 }
 
-impl Known {
+impl KnownOutputs {
     /// The outputs that judges of these versions accepted.
     pub fn load(cache: Option<&Cache>, target: Target, versions: &str) -> Self {
         let key = hash_parts(&[KIND, target.name(), versions]);

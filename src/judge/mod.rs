@@ -18,35 +18,35 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-pub use blame::{Made, blame};
+pub use blame::{OutputOrigin, blame};
 pub use tint::Tint;
 
 use crate::bundle::{BlobFile, Error, Hash, Stage, Target};
 use crate::cache::Cache;
-use crate::emit::{Judged, targets};
+use crate::emit::{JudgeRules, targets};
 use crate::output::Scratch;
 use crate::tools::Tool;
 use crate::validate::on_large_stack;
 
 /// A judge, which a target names.
-pub struct Entry {
+pub struct JudgeEntry {
     /// The name of its file.
     pub name: &'static str,
     /// The programs that it runs.
     pub tools: &'static [Tool],
     /// What else it needs and this machine lacks.
-    pub lacks: fn(&Tint) -> Option<Missing>,
+    pub lacks: fn(&Tint) -> Option<MissingTool>,
     /// What, beyond the versions of the programs, changes its verdicts.
     pub version: fn(&Tint) -> String,
     /// The work for a group of outputs.
-    plan: Plan,
+    plan: JudgePlan,
 }
 
 /// Divides a group of outputs into works. The error is a message, if the judge cannot be run.
-type Plan = for<'w> fn(&Group<'w>) -> Result<Vec<Work<'w>>, String>;
+type JudgePlan = for<'w> fn(&OutputGroup<'w>) -> Result<Vec<JudgeWork<'w>>, String>;
 
 /// Outputs of one target, stage and name of the entry point, and what judges them.
-struct Group<'w> {
+struct OutputGroup<'w> {
     outputs: &'w [&'w Output],
     /// The rules that the target names. The judge's file explains them.
     rules: &'static [&'static str],
@@ -58,11 +58,11 @@ struct Group<'w> {
 
 /// One file for each judge.
 pub mod judges {
-    use super::Entry;
+    use super::JudgeEntry;
     include!(concat!(env!("OUT_DIR"), "/judges.rs"));
 
     /// The judge of that name.
-    pub fn find(name: &str) -> Option<&'static Entry> {
+    pub fn find(name: &str) -> Option<&'static JudgeEntry> {
         ALL.iter().copied().find(|entry| entry.name == name)
     }
 }
@@ -127,37 +127,37 @@ pub struct Refusal {
 
 /// Something that a judge needs and the machine lacks.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Missing {
+pub struct MissingTool {
     /// What it is.
     pub what: String,
     /// The command that installs it.
     pub install: String,
 }
 
-impl fmt::Display for Missing {
+impl fmt::Display for MissingTool {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} is not installed; install it with: {}", self.what, self.install)
     }
 }
 
 /// The judge of a target, and the rules that the target names for it.
-fn judge_of(target: Target) -> Option<(&'static Entry, Judged)> {
+fn judge_of(target: Target) -> Option<(&'static JudgeEntry, JudgeRules)> {
     let judged = targets::find(target)?.judged;
     judges::find(judged.judge).map(|judge| (judge, judged))
 }
 
 /// What the judges of some targets need and this machine lacks, each once.
-pub fn missing(targets: &[Target], tint: &Tint) -> Vec<Missing> {
+pub fn missing(targets: &[Target], tint: &Tint) -> Vec<MissingTool> {
     let one = |target: &Target| {
         let (judge, _) = judge_of(*target)?;
         let absent = judge.tools.iter().find(|tool| tool.path().is_none());
-        let absent = absent.map(|tool| Missing {
+        let absent = absent.map(|tool| MissingTool {
             what: format!("`{}`", tool.program),
             install: format!("apt-get install {}", tool.package),
         });
         absent.or_else(|| (judge.lacks)(tint))
     };
-    let mut found: Vec<Missing> = targets.iter().filter_map(one).collect();
+    let mut found: Vec<MissingTool> = targets.iter().filter_map(one).collect();
     found.sort();
     found.dedup();
     found
@@ -182,7 +182,7 @@ pub struct Verdict {
 }
 
 /// Called with the number of judgements that are done and the number of all.
-pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
+pub type JudgeProgress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// Judges the outputs that are not known to pass, on all cores. Those that pass are remembered in
 /// the cache by their content, and by the versions of their judges.
@@ -193,7 +193,7 @@ pub fn verdict(
     mut outputs: Vec<Output>,
     cache: Option<&Cache>,
     tint: &Tint,
-    progress: Progress<'_>,
+    progress: JudgeProgress<'_>,
 ) -> Result<Verdict, String> {
     outputs.sort();
     outputs.dedup_by(|one, other| (&one.file, &one.target) == (&other.file, &other.target));
@@ -202,7 +202,7 @@ pub fn verdict(
     let mut passed = Vec::new();
     for alike in outputs.chunk_by(|one, other| one.target == other.target) {
         let target = alike[0].target;
-        let mut known = known::Known::load(cache, target, &judge_versions(target, tint));
+        let mut known = known::KnownOutputs::load(cache, target, &judge_versions(target, tint));
         let (old, fresh): (Vec<&Output>, Vec<&Output>) =
             alike.iter().partition(|output| known.names.contains(&output.name()));
         verdict.known += old.len();
@@ -222,19 +222,19 @@ pub fn verdict(
 }
 
 /// A piece of work for a judgement, and the number of outputs that it covers.
-struct Work<'w> {
+struct JudgeWork<'w> {
     outputs: usize,
-    run: Box<dyn Fn() -> Found + Send + Sync + 'w>,
+    run: Box<dyn Fn() -> JudgeResult + Send + Sync + 'w>,
 }
 
 /// Refusals, or why a judge could not be run.
-type Found = Result<Vec<Refusal>, String>;
+type JudgeResult = Result<Vec<Refusal>, String>;
 
 /// Judges every output. Without Tint, WGSL is judged by naga alone.
 ///
 /// # Errors
 /// A message, if a judge cannot be run.
-pub fn judge(outputs: &[Output], tint: Option<&Tint>, progress: Progress<'_>) -> Found {
+pub fn judge(outputs: &[Output], tint: Option<&Tint>, progress: JudgeProgress<'_>) -> JudgeResult {
     let mut sorted: Vec<&Output> = outputs.iter().collect();
     sorted.sort();
     let scratch = Scratch::new(&std::env::temp_dir()).map_err(|error| error.to_string())?;
@@ -244,8 +244,8 @@ pub fn judge(outputs: &[Output], tint: Option<&Tint>, progress: Progress<'_>) ->
     let groups: Vec<&[&Output]> = sorted.chunk_by(alike).collect();
     on_large_stack(|| {
         let planned = groups.par_iter().map(|group| plan_group(group, tint, &scratch));
-        let works = planned.collect::<Result<Vec<Vec<Work<'_>>>, String>>()?;
-        let works: Vec<Work<'_>> = works.into_iter().flatten().collect();
+        let works = planned.collect::<Result<Vec<Vec<JudgeWork<'_>>>, String>>()?;
+        let works: Vec<JudgeWork<'_>> = works.into_iter().flatten().collect();
         let total = works.iter().map(|work| work.outputs).sum();
         let done = AtomicUsize::new(0);
         let found = works.par_iter().map(|work| {
@@ -266,22 +266,22 @@ fn plan_group<'w>(
     outputs: &'w [&'w Output],
     tint: Option<&'w Tint>,
     scratch: &'w Scratch,
-) -> Result<Vec<Work<'w>>, String> {
+) -> Result<Vec<JudgeWork<'w>>, String> {
     let Some(first) = outputs.first() else { return Ok(Vec::new()) };
     let found = judge_of(first.target);
     let (judge, judged) = found.ok_or_else(|| format!("no judge of `{}`", first.target))?;
-    (judge.plan)(&Group { outputs, rules: judged.rules, tint, scratch })
+    (judge.plan)(&OutputGroup { outputs, rules: judged.rules, tint, scratch })
 }
 
 /// Divides a group into works of at most `size` outputs each, which call `run`.
 fn divide_group<'w>(
     group: &'w [&'w Output],
     size: usize,
-    run: impl Fn(&[&Output]) -> Found + Clone + Send + Sync + 'w,
-) -> Vec<Work<'w>> {
+    run: impl Fn(&[&Output]) -> JudgeResult + Clone + Send + Sync + 'w,
+) -> Vec<JudgeWork<'w>> {
     let part = |part: &'w [&'w Output]| {
         let run = run.clone();
-        Work { outputs: part.len(), run: Box::new(move || run(part)) }
+        JudgeWork { outputs: part.len(), run: Box::new(move || run(part)) }
     };
     group.chunks(size).map(part).collect()
 }

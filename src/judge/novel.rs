@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::Output;
-use crate::parse::words::{PieceKind, pieces};
+use crate::parse::words::{LexemeKind, pieces};
 
 /// The outputs with two neighbouring tokens that no output before them had next to each other. If a
 /// compiler cannot handle some construct in texts of this kind, it fails on one of these outputs
@@ -42,6 +42,6 @@ fn add_pairs(line: &str, pairs: &mut HashSet<(String, String)>) -> bool {
 
 /// The tokens of a line: words, other characters, and a common token for all numbers.
 fn line_tokens(line: &str) -> Vec<&str> {
-    let solid = pieces(line).filter(|piece| piece.kind != PieceKind::Blank);
-    solid.map(|piece| if piece.kind == PieceKind::Number { "0" } else { piece.text }).collect()
+    let solid = pieces(line).filter(|piece| piece.kind != LexemeKind::Blank);
+    solid.map(|piece| if piece.kind == LexemeKind::Number { "0" } else { piece.text }).collect()
 }

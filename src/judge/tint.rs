@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::Missing;
+use super::MissingTool;
 use crate::tools::NODE;
 
 /// The npm package, in the only version that is used.
@@ -21,7 +21,8 @@ pub struct Tint {
 
 /// A mistake that Tint finds.
 #[derive(Debug, Deserialize)]
-pub struct Said {
+#[serde(rename = "Said")]
+pub struct TintMistake {
     /// Index of the text, in the order given.
     pub index: usize,
     pub line: u32,
@@ -36,7 +37,7 @@ struct Done {
 }
 
 #[derive(Deserialize)]
-struct Package {
+struct PackageJson {
     version: String,
 }
 
@@ -60,8 +61,8 @@ impl Tint {
     }
 
     /// What is missing, and how to install it, if it is not there.
-    pub(super) fn missing(&self) -> Option<Missing> {
-        (self.version() != VERSION).then(|| Missing {
+    pub(super) fn missing(&self) -> Option<MissingTool> {
+        (self.version() != VERSION).then(|| MissingTool {
             what: format!("Tint (npm package `{PACKAGE}` {VERSION})"),
             install: self.install().join(" "),
         })
@@ -71,14 +72,14 @@ impl Tint {
     pub(super) fn version(&self) -> String {
         let file = self.folder.join("node_modules").join(PACKAGE).join("package.json");
         let text = std::fs::read(file).unwrap_or_default();
-        serde_json::from_slice::<Package>(&text).map_or(String::new(), |found| found.version)
+        serde_json::from_slice::<PackageJson>(&text).map_or(String::new(), |found| found.version)
     }
 
     /// The first mistake of each text that has one.
     ///
     /// # Errors
     /// A message, if it cannot be run.
-    pub(super) fn judge(&self, files: &[&Path]) -> Result<Vec<Said>, String> {
+    pub(super) fn judge(&self, files: &[&Path]) -> Result<Vec<TintMistake>, String> {
         if let Some(missing) = self.missing() {
             return Err(missing.to_string());
         }

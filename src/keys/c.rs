@@ -4,11 +4,12 @@ use std::fmt::Write;
 
 use super::names::{Taken, comment_lines, value_name};
 use super::ordinal::{Ordinals, Says, key_ordinals};
-use super::{Language, default_setting, key_axes, key_part};
+use super::{KeyLanguage, default_setting, key_axes, key_part};
 use crate::bundle::key::{DEFAULT, SEPARATOR};
-use crate::permute::{Axis, Kind, Lock, Manifest, Program, Setting};
+use crate::permute::{Axis, AxisKind, Lock, Manifest, Program, Setting};
 
-pub const LANGUAGE: Language = Language { name: "c", about: "a header for C99 and C++", write };
+pub const LANGUAGE: KeyLanguage =
+    KeyLanguage { name: "c", about: "a header for C99 and C++", write };
 
 /// Keywords of both languages that are valid names of axes.
 const KEYWORDS: &[&str] = &[
@@ -108,18 +109,18 @@ fn include_guard(manifest: &Manifest) -> String {
 }
 
 /// An axis with its identifiers.
-struct Named<'a> {
+struct CAxis<'a> {
     axis: &'a Axis,
     field: String,
     ty: String,
     constants: Vec<String>,
 }
 
-impl Named<'_> {
+impl CAxis<'_> {
     fn default(&self) -> &str {
         match (self.axis.kind, self.axis.default) {
-            (Kind::Bool, _) if *default_setting(self.axis) == Setting::Bool(true) => "true",
-            (Kind::Bool, _) => "false",
+            (AxisKind::Bool, _) if *default_setting(self.axis) == Setting::Bool(true) => "true",
+            (AxisKind::Bool, _) => "false",
             (_, ordinal) => &self.constants[ordinal],
         }
     }
@@ -127,8 +128,8 @@ impl Named<'_> {
     /// The value of that index, as an expression.
     fn value(&self, index: usize) -> String {
         match self.axis.kind {
-            Kind::Bool => self.axis.values[index].to_string(),
-            Kind::Enum | Kind::Int => self.constants[index].clone(),
+            AxisKind::Bool => self.axis.values[index].to_string(),
+            AxisKind::Enum | AxisKind::Int => self.constants[index].clone(),
         }
     }
 }
@@ -142,11 +143,11 @@ fn program_keys(program: &Program, ordinals: Option<&Ordinals>, taken: &mut Take
     ]
     .map(|name| taken.give(name));
     let mut fields = Taken::new(KEYWORDS);
-    let axes: Vec<Named<'_>> =
+    let axes: Vec<CAxis<'_>> =
         key_axes(program).map(|axis| named_axis(axis, &name, taken, &mut fields)).collect();
     let mut text = String::from("\n");
     axes.iter()
-        .filter(|axis| axis.axis.kind != Kind::Bool)
+        .filter(|axis| axis.axis.kind != AxisKind::Bool)
         .for_each(|axis| text.push_str(&write_enumeration(axis)));
     text.push_str(&write_structure(program, &name, &axes));
     let _ = writeln!(
@@ -174,24 +175,24 @@ fn named_axis<'a>(
     program: &str,
     taken: &mut Taken,
     fields: &mut Taken,
-) -> Named<'a> {
+) -> CAxis<'a> {
     let ty = match axis.kind {
-        Kind::Bool => "bool".to_owned(),
-        Kind::Enum | Kind::Int => taken.give(format!("{program}_{}", axis.name)),
+        AxisKind::Bool => "bool".to_owned(),
+        AxisKind::Enum | AxisKind::Int => taken.give(format!("{program}_{}", axis.name)),
     };
     let prefix = format!("{program}_{}", axis.name).to_uppercase();
     let constants = match axis.kind {
-        Kind::Bool => Vec::new(),
-        Kind::Enum | Kind::Int => axis
+        AxisKind::Bool => Vec::new(),
+        AxisKind::Enum | AxisKind::Int => axis
             .values
             .iter()
             .map(|known| taken.give(format!("{prefix}_{}", value_name(known).to_uppercase())))
             .collect(),
     };
-    Named { axis, field: fields.give(axis.name.clone()), ty, constants }
+    CAxis { axis, field: fields.give(axis.name.clone()), ty, constants }
 }
 
-fn write_enumeration(Named { axis, ty, constants, .. }: &Named<'_>) -> String {
+fn write_enumeration(CAxis { axis, ty, constants, .. }: &CAxis<'_>) -> String {
     let mut text = axis
         .doc
         .as_deref()
@@ -202,7 +203,7 @@ fn write_enumeration(Named { axis, ty, constants, .. }: &Named<'_>) -> String {
     text.replace(",\n}", "\n}")
 }
 
-fn write_structure(program: &Program, name: &str, axes: &[Named<'_>]) -> String {
+fn write_structure(program: &Program, name: &str, axes: &[CAxis<'_>]) -> String {
     let mut text = format!(
         "/* One permutation of program `{}`: start from its default. */\ntypedef struct {name} {{\n",
         program.name
@@ -217,7 +218,7 @@ fn write_structure(program: &Program, name: &str, axes: &[Named<'_>]) -> String 
     text
 }
 
-fn longest_key(axes: &[Named<'_>]) -> usize {
+fn longest_key(axes: &[CAxis<'_>]) -> usize {
     let parts = axes.iter().map(|named| {
         named
             .axis
@@ -230,7 +231,7 @@ fn longest_key(axes: &[Named<'_>]) -> usize {
     parts.sum::<usize>().max(DEFAULT.len() + 1)
 }
 
-fn to_text(name: &str, to_key: &str, bytes: &str, axes: &[Named<'_>]) -> String {
+fn to_text(name: &str, to_key: &str, bytes: &str, axes: &[CAxis<'_>]) -> String {
     let mut text = format!(
         "\n/* Writes the canonical key into {bytes} bytes; its length. A value that the axis does not have counts as the default. */\n"
     );
@@ -249,9 +250,9 @@ fn to_text(name: &str, to_key: &str, bytes: &str, axes: &[Named<'_>]) -> String 
     text
 }
 
-fn append_part(named: &Named<'_>) -> String {
-    let Named { axis, field, .. } = named;
-    if axis.kind == Kind::Bool {
+fn append_part(named: &CAxis<'_>) -> String {
+    let CAxis { axis, field, .. } = named;
+    if axis.kind == AxisKind::Bool {
         let other = axis.values.iter().find(|value| *value != default_setting(axis));
         let append = |value| {
             format!(
@@ -279,7 +280,7 @@ fn append_part(named: &Named<'_>) -> String {
 }
 
 /// The function from a key to its number.
-fn to_ordinal(name: &str, function: &str, axes: &[Named<'_>], ordinals: &Ordinals) -> String {
+fn to_ordinal(name: &str, function: &str, axes: &[CAxis<'_>], ordinals: &Ordinals) -> String {
     let mut text = String::from(
         "\n/* The number in the lock file: it stays what it is when axes and values are added. A value that the axis does not have counts as the default. */\n",
     );
@@ -303,15 +304,15 @@ fn to_ordinal(name: &str, function: &str, axes: &[Named<'_>], ordinals: &Ordinal
 
 /// The numbers that the values of an axis add, and the expression for the index of the one that a
 /// key adds.
-fn added_numbers(named: &Named<'_>, adds: &[u64]) -> (Vec<u64>, String) {
+fn added_numbers(named: &CAxis<'_>, adds: &[u64]) -> (Vec<u64>, String) {
     let field = &named.field;
     match named.axis.kind {
         // The manifest may list its values in either order.
-        Kind::Bool => {
+        AxisKind::Bool => {
             let of = |value| named.axis.ordinal(&Setting::Bool(value)).map_or(0, |at| adds[at]);
             (vec![of(false), of(true)], format!("key->{field} ? 1 : 0"))
         }
-        Kind::Enum | Kind::Int => {
+        AxisKind::Enum | AxisKind::Int => {
             let place = format!(
                 "(size_t)key->{field} < sizeof adds / sizeof *adds ? (size_t)key->{field} : (size_t){}",
                 named.default()
@@ -325,7 +326,7 @@ fn added_numbers(named: &Named<'_>, adds: &[u64]) -> (Vec<u64>, String) {
 fn from_ordinal(
     name: &str,
     ([to_ordinal, function], default): (&[String; 2], &str),
-    axes: &[Named<'_>],
+    axes: &[CAxis<'_>],
     ordinals: &Ordinals,
 ) -> String {
     let mut text = String::from("\n/* Gives the key of a number; false if there is none. */\n");

@@ -18,7 +18,7 @@ use crate::permute::{Axis, Lock, Manifest, Mode, Program, Setting};
 
 /// A language that keys are written for.
 #[derive(Debug, Clone, Copy)]
-pub struct Language {
+pub struct KeyLanguage {
     /// Lower-case, as on the command line.
     pub name: &'static str,
     /// One line for listings.
@@ -27,10 +27,10 @@ pub struct Language {
 }
 
 /// Every language, by name.
-pub const LANGUAGES: &[Language] = &[c::LANGUAGE, rust::LANGUAGE, typescript::LANGUAGE];
+pub const LANGUAGES: &[KeyLanguage] = &[c::LANGUAGE, rust::LANGUAGE, typescript::LANGUAGE];
 
 /// The language of that name.
-pub fn find(name: &str) -> Option<&'static Language> {
+pub fn find(name: &str) -> Option<&'static KeyLanguage> {
     LANGUAGES.iter().find(|language| language.name == name)
 }
 
@@ -42,7 +42,7 @@ pub fn is_written(head: &[u8]) -> bool {
 
 /// One source file with the keys of every program. With a lock that has all of their values, it has
 /// their numbers too. The same manifest and lock give the same bytes.
-pub fn write(manifest: &Manifest, lock: Option<&Lock>, language: &Language) -> String {
+pub fn write(manifest: &Manifest, lock: Option<&Lock>, language: &KeyLanguage) -> String {
     (language.write)(manifest, lock)
 }
 

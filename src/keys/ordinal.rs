@@ -8,13 +8,13 @@ pub struct Ordinals {
     pub constant: u64,
     /// For each axis of keys, what each of its values adds.
     pub of_values: Vec<Vec<u64>>,
-    pub digits: Vec<Digit>,
+    pub digits: Vec<KeyDigit>,
     /// Every number is below this.
     pub range: u128,
 }
 
 /// One digit of a number: `number / weight % radix`.
-pub struct Digit {
+pub struct KeyDigit {
     pub weight: u64,
     pub radix: u64,
     /// Index of the axis among those of keys.
@@ -54,7 +54,7 @@ pub fn key_ordinals(program: &Program, lock: &Lock, most: u64) -> Option<Ordinal
                 of_values[axis][*value] += weight * digit as u64;
             }
         }
-        digits.push(Digit { weight, radix: line.radix() as u64, axis, says });
+        digits.push(KeyDigit { weight, radix: line.radix() as u64, axis, says });
     }
     if range > u128::from(most) || !has_all_values(&axes, &digits) {
         return None;
@@ -67,7 +67,7 @@ pub fn key_ordinals(program: &Program, lock: &Lock, most: u64) -> Option<Ordinal
 }
 
 /// Whether each value of each axis is in some digit.
-fn has_all_values(axes: &[&Axis], digits: &[Digit]) -> bool {
+fn has_all_values(axes: &[&Axis], digits: &[KeyDigit]) -> bool {
     axes.iter().enumerate().all(|(axis, of)| {
         let of_axis = || digits.iter().filter(|digit| digit.axis == axis);
         (0..of.values.len()).all(|value| of_axis().any(|d| d.says.contains(&Says::Value(value))))

@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use super::names::{Taken, camel_case, comment_lines, value_name};
 use super::ordinal::{Ordinals, Says, key_ordinals};
-use super::{Language, default_setting, key_axes, key_part};
+use super::{KeyLanguage, default_setting, key_axes, key_part};
 use crate::bundle::key::{DEFAULT, SEPARATOR};
-use crate::permute::{Axis, Kind, Lock, Manifest, Program};
+use crate::permute::{Axis, AxisKind, Lock, Manifest, Program};
 
-pub const LANGUAGE: Language =
-    Language { name: "rust", about: "a module a program, for any edition", write };
+pub const LANGUAGE: KeyLanguage =
+    KeyLanguage { name: "rust", about: "a module a program, for any edition", write };
 
 /// Keywords that are valid names of axes. `r#` would not work for all of them.
 const KEYWORDS: &[&str] = &[
@@ -29,14 +29,14 @@ fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
 }
 
 /// An axis with its identifiers.
-struct Named<'a> {
+struct RustAxis<'a> {
     axis: &'a Axis,
     field: String,
     ty: String,
     variants: Vec<String>,
 }
 
-impl Named<'_> {
+impl RustAxis<'_> {
     fn default(&self) -> String {
         self.value(self.axis.default)
     }
@@ -44,23 +44,23 @@ impl Named<'_> {
     /// The value of that index, as an expression and as a pattern.
     fn value(&self, index: usize) -> String {
         match self.axis.kind {
-            Kind::Bool => self.axis.values[index].to_string(),
-            Kind::Enum | Kind::Int => format!("{}::{}", self.ty, self.variants[index]),
+            AxisKind::Bool => self.axis.values[index].to_string(),
+            AxisKind::Enum | AxisKind::Int => format!("{}::{}", self.ty, self.variants[index]),
         }
     }
 }
 
-fn named_axes(program: &Program) -> Vec<Named<'_>> {
+fn named_axes(program: &Program) -> Vec<RustAxis<'_>> {
     let (mut fields, mut types) = (Taken::new(KEYWORDS), Taken::new(&["Key", "Self"]));
     let named = key_axes(program).map(|axis| {
         let mut variants = Taken::new(KEYWORDS);
         let ty = match axis.kind {
-            Kind::Bool => "bool".to_owned(),
-            Kind::Enum | Kind::Int => types.give(camel_case(&axis.name)),
+            AxisKind::Bool => "bool".to_owned(),
+            AxisKind::Enum | AxisKind::Int => types.give(camel_case(&axis.name)),
         };
         let variants =
             axis.values.iter().map(|known| variants.give(camel_case(&value_name(known)))).collect();
-        Named { axis, field: fields.give(axis.name.clone()), ty, variants }
+        RustAxis { axis, field: fields.give(axis.name.clone()), ty, variants }
     });
     named.collect()
 }
@@ -77,7 +77,7 @@ fn program_module(program: &Program, lock: Option<&Lock>, name: &str) -> String 
     let _ =
         writeln!(text, "#[allow(dead_code, non_camel_case_types, clippy::all)]\npub mod {name} {{");
     axes.iter()
-        .filter(|axis| axis.axis.kind != Kind::Bool)
+        .filter(|axis| axis.axis.kind != AxisKind::Bool)
         .for_each(|axis| text.push_str(&write_enumeration(axis)));
     text.push_str(&write_structure(&axes));
     text.push_str(&display_impl(&axes));
@@ -87,7 +87,7 @@ fn program_module(program: &Program, lock: Option<&Lock>, name: &str) -> String 
     text
 }
 
-fn write_enumeration(Named { axis, ty, variants, .. }: &Named<'_>) -> String {
+fn write_enumeration(RustAxis { axis, ty, variants, .. }: &RustAxis<'_>) -> String {
     let mut text = axis.doc.as_deref().map_or(String::new(), |doc| comment_lines("    ///", doc));
     let _ = writeln!(
         text,
@@ -110,12 +110,12 @@ fn write_enumeration(Named { axis, ty, variants, .. }: &Named<'_>) -> String {
     text
 }
 
-fn write_structure(axes: &[Named<'_>]) -> String {
+fn write_structure(axes: &[RustAxis<'_>]) -> String {
     let mut text =
         String::from("    /// One permutation: `Key { axis: value, ..Key::default() }`.\n");
     text.push_str("    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]\n    pub struct Key {\n");
-    for Named { axis, field, ty, .. } in axes {
-        let doc = axis.doc.as_deref().filter(|_| axis.kind == Kind::Bool);
+    for RustAxis { axis, field, ty, .. } in axes {
+        let doc = axis.doc.as_deref().filter(|_| axis.kind == AxisKind::Bool);
         text.push_str(&doc.map_or(String::new(), |doc| comment_lines("        ///", doc)));
         let _ = writeln!(text, "        pub {field}: {ty},");
     }
@@ -128,7 +128,7 @@ fn write_structure(axes: &[Named<'_>]) -> String {
 }
 
 /// The functions from a key to its number, and back.
-fn number_functions(axes: &[Named<'_>], ordinals: &Ordinals) -> String {
+fn number_functions(axes: &[RustAxis<'_>], ordinals: &Ordinals) -> String {
     let mut text = String::from(
         "\n    impl Key {\n        /// The number in the lock file: it stays what it is when axes and values are added.\n",
     );
@@ -169,7 +169,7 @@ fn number_functions(axes: &[Named<'_>], ordinals: &Ordinals) -> String {
     text + "        }\n    }\n"
 }
 
-fn display_impl(axes: &[Named<'_>]) -> String {
+fn display_impl(axes: &[RustAxis<'_>]) -> String {
     let mut text = String::from(
         "    impl Key {\n        /// The canonical key, as a bundle's loader takes it.\n",
     );
@@ -199,15 +199,15 @@ fn display_impl(axes: &[Named<'_>]) -> String {
 }
 
 /// The statement that writes an axis which is not at its default.
-fn write_part(Named { axis, field, .. }: &Named<'_>) -> String {
+fn write_part(RustAxis { axis, field, .. }: &RustAxis<'_>) -> String {
     match axis.kind {
-        Kind::Bool => match axis.values.iter().find(|value| *value != default_setting(axis)) {
+        AxisKind::Bool => match axis.values.iter().find(|value| *value != default_setting(axis)) {
             Some(value) => {
                 format!("::core::write!(f, \"{{separator}}{}\")?;", key_part(axis, value))
             }
             None => String::new(),
         },
-        Kind::Enum | Kind::Int => {
+        AxisKind::Enum | AxisKind::Int => {
             format!("::core::write!(f, \"{{separator}}{}={{}}\", self.{field}.name())?;", axis.name)
         }
     }

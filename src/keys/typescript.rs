@@ -4,12 +4,12 @@ use std::fmt::Write;
 
 use super::names::{Taken, camel_case, comment_lines, lower_camel};
 use super::ordinal::{Ordinals, Says, key_ordinals};
-use super::{Language, default_setting, key_axes};
+use super::{KeyLanguage, default_setting, key_axes};
 use crate::bundle::key::{ASSIGNS, DEFAULT, SEPARATOR};
-use crate::permute::{Axis, Kind, Lock, Manifest, Program, Setting};
+use crate::permute::{Axis, AxisKind, Lock, Manifest, Program, Setting};
 
-pub const LANGUAGE: Language =
-    Language { name: "ts", about: "a TypeScript module of erasable types", write };
+pub const LANGUAGE: KeyLanguage =
+    KeyLanguage { name: "ts", about: "a TypeScript module of erasable types", write };
 
 /// Members of every object. A field with such a name would not be undefined where it is left out.
 const INHERITED: &[&str] = &[
@@ -89,15 +89,16 @@ function bigNumberKey(number: bigint, digits: readonly BigDigit[]): Record<strin
 const EXACT: u128 = 1 << 53;
 
 /// How numbers of keys are written: their type, the end of their literals, and the functions.
-struct Form {
+struct NumberForm {
     ty: &'static str,
     end: &'static str,
     to: &'static str,
     from: &'static str,
 }
 
-const SMALL: Form = Form { ty: "number", end: "", to: "keyNumber", from: "numberKey" };
-const BIG: Form = Form { ty: "bigint", end: "n", to: "keyBigNumber", from: "bigNumberKey" };
+const SMALL: NumberForm = NumberForm { ty: "number", end: "", to: "keyNumber", from: "numberKey" };
+const BIG: NumberForm =
+    NumberForm { ty: "bigint", end: "n", to: "keyBigNumber", from: "bigNumberKey" };
 
 fn write(manifest: &Manifest, lock: Option<&Lock>) -> String {
     let mut taken = Taken::new(&["Value", "keyText", "Record", "Math"]);
@@ -178,7 +179,7 @@ fn number_functions(
     (fields, [to, from]): (&[String], &[String; 2]),
 ) -> String {
     let axes: Vec<&Axis> = key_axes(program).collect();
-    let Form { ty: number, end, to: to_number, from: to_key } =
+    let NumberForm { ty: number, end, to: to_number, from: to_key } =
         if ordinals.range > EXACT { BIG } else { SMALL };
     let field = |((axis, field), adds): ((&&Axis, &String), &Vec<u64>)| {
         let adds = axis.values.iter().zip(adds);
@@ -195,7 +196,7 @@ fn number_functions(
         "\n/** The number in the lock file: it stays what it is when axes and values are added. */\nexport function {to}(key: {ty} = {{}}): {number} {{\n  return {to_number}(key, {}{end}, [\n{listed}  ]);\n}}\n",
         ordinals.constant
     );
-    let digit = |digit: &super::ordinal::Digit| {
+    let digit = |digit: &super::ordinal::KeyDigit| {
         let says = digit.says.iter().map(|says| match says {
             Says::Value(value) => value_literal(&axes[digit.axis].values[*value]),
             Says::Nothing => "null".to_owned(),
@@ -229,8 +230,8 @@ fn renamed_fields(program: &Program, fields: &[String]) -> String {
 
 fn value_union(axis: &Axis) -> String {
     match axis.kind {
-        Kind::Bool => "boolean".to_owned(),
-        Kind::Enum | Kind::Int => {
+        AxisKind::Bool => "boolean".to_owned(),
+        AxisKind::Enum | AxisKind::Int => {
             axis.values.iter().map(value_literal).collect::<Vec<_>>().join(" | ")
         }
     }

@@ -2,16 +2,16 @@
 //! does not call have no influence on this text.
 //!
 //! A callee is a stub: its signature, and in place of its body only what its callers can notice
-//! ([`Summary`]). An entry point that does nothing is added, since naga's writers need one.
+//! ([`FunctionSummary`]). An entry point that does nothing is added, since naga's writers need one.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use naga::ShaderStage;
 
-use super::outline::{Key, Outline, hash_parts};
+use super::outline::{ContentKey, Outline, hash_parts};
 use super::reason::Reason;
-use super::summary::{Place, Shape, Summary};
+use super::summary::{FunctionSummary, ResourceOrigin, TextureShape};
 use crate::bundle::Language;
 use crate::compose::PartKind;
 use crate::parse::words::words;
@@ -45,7 +45,7 @@ pub struct Recipe<'s> {
     /// Variables, sorted by name, since Metal passes them as arguments in their order.
     variables: Vec<usize>,
     /// The callees, each with the summary that its stub must show.
-    pub stubs: Vec<(usize, &'s Summary)>,
+    pub stubs: Vec<(usize, &'s FunctionSummary)>,
     /// The structure that the entry point which does nothing returns. HLSL writes a structure in
     /// another way where an entry point returns it.
     interface: Option<usize>,
@@ -55,7 +55,7 @@ pub struct Recipe<'s> {
 pub fn make_recipe<'s>(
     outline: &Outline<'_>,
     unit: UnitId,
-    summaries: &dyn Fn(usize) -> Option<&'s Summary>,
+    summaries: &dyn Fn(usize) -> Option<&'s FunctionSummary>,
 ) -> Result<Recipe<'s>, Reason> {
     let entry = outline.entry();
     let (function, callees): (Option<usize>, Vec<usize>) = match (unit, outline.language) {
@@ -65,7 +65,8 @@ pub fn make_recipe<'s>(
     };
     let stubs =
         callees.into_iter().map(|callee| summaries(callee).map(|summary| (callee, summary)));
-    let stubs: Vec<(usize, &Summary)> = stubs.collect::<Option<_>>().ok_or(Reason::Recursion)?;
+    let stubs: Vec<(usize, &FunctionSummary)> =
+        stubs.collect::<Option<_>>().ok_or(Reason::Recursion)?;
     let mut open: Vec<usize> = Vec::new();
     open.extend(function.iter().flat_map(|function| &outline.declarations[*function].uses));
     for (callee, summary) in &stubs {
@@ -116,7 +117,7 @@ fn is_built_in(name: &str) -> bool {
 
 impl Recipe<'_> {
     /// A hash of every byte of the text, and of every fact that is added to its module.
-    pub fn key(&self, outline: &Outline<'_>) -> Key {
+    pub fn key(&self, outline: &Outline<'_>) -> ContentKey {
         let declared = |index: &usize| &outline.declarations[*index].hash[..];
         let unit = match self.unit {
             UnitId::Entry => "entry",
@@ -208,15 +209,19 @@ impl Recipe<'_> {
 }
 
 /// A function's signature, with a body that does what callers can notice of the function.
-fn write_stub(outline: &Outline<'_>, stub: usize, summary: &Summary) -> Result<String, Reason> {
+fn write_stub(
+    outline: &Outline<'_>,
+    stub: usize,
+    summary: &FunctionSummary,
+) -> Result<String, Reason> {
     let declaration = &outline.declarations[stub];
     let head = declaration.head;
     let mut body = String::new();
     let arguments = parameter_names(head, outline.language).ok_or(Reason::Stub)?;
     for pair in &summary.pairs {
-        let name = |place: &Place| match place {
-            Place::Global(name) => Some(name.clone()),
-            Place::Argument(number) => arguments.get(*number as usize).cloned(),
+        let name = |place: &ResourceOrigin| match place {
+            ResourceOrigin::Global(name) => Some(name.clone()),
+            ResourceOrigin::Argument(number) => arguments.get(*number as usize).cloned(),
         };
         let texture = name(&pair.texture).ok_or(Reason::Stub)?;
         let sampler = name(&pair.sampler).ok_or(Reason::Stub)?;
@@ -280,11 +285,11 @@ fn parameter_names(head: &str, language: Language) -> Option<Vec<String>> {
 /// A statement that samples a texture.
 fn sample_statement(
     language: Language,
-    shape: Shape,
+    shape: TextureShape,
     texture: &str,
     sampler: &str,
 ) -> Option<String> {
-    let Shape { coordinates, cube, arrayed, depth, compares } = shape;
+    let TextureShape { coordinates, cube, arrayed, depth, compares } = shape;
     let size = if coordinates > 1 { coordinates.to_string() } else { return None };
     Some(match language {
         Language::Wesl => {

@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::{Linker, Reason};
-use crate::bundle::{Artifact, Bounds, Clip, Convention, Conventions, Target, Unit};
+use crate::bundle::{
+    Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Target, Unit,
+};
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::{self, targets};
@@ -14,14 +16,14 @@ use crate::validate::{self, Validated, on_large_stack, validate, validate_rehear
 /// One text in two forms: as its author reads it, for errors; and without comments and layout,
 /// which is what is compiled.
 #[derive(Debug, Clone, Copy)]
-pub struct Text<'a> {
+pub struct TextForms<'a> {
     pub composed: &'a Composed,
     pub lean: &'a Composed,
 }
 
 /// What compiling a text gives: a unit, and the warnings for its author.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Made {
+pub struct CompiledUnit {
     pub unit: Unit,
     pub warnings: Diagnostics,
     /// Targets that were compiled as a whole instead of from separate functions, with the reason.
@@ -33,18 +35,18 @@ pub struct Made {
 /// # Errors
 /// What naga finds wrong with the text, at the places in its author's files.
 pub fn compile(
-    text: &Text<'_>,
+    text: &TextForms<'_>,
     entry: &str,
     targets: &[Target],
     linker: &Linker<'_>,
-) -> Result<Made, Diagnostics> {
+) -> Result<CompiledUnit, Diagnostics> {
     let linked = match linker.link(text.lean, entry) {
         Ok(linked) => linked,
         Err(reason) => {
             let (unit, warnings) = compile_whole(text, entry, targets, linker)?;
             check_size(&unit).map_err(|error| vec![error])?;
             let whole = targets.iter().map(|target| (*target, reason)).collect();
-            return Ok(Made { unit, warnings, whole });
+            return Ok(CompiledUnit { unit, warnings, whole });
         }
     };
     let mut unit = Unit { reflection: linked.reflection, targets: BTreeMap::new() };
@@ -63,13 +65,13 @@ pub fn compile(
     }
     let warnings = if linked.suspect { lint_text(text)? } else { Vec::new() };
     check_size(&unit).map_err(|error| vec![error])?;
-    Ok(Made { unit, warnings, whole })
+    Ok(CompiledUnit { unit, warnings, whole })
 }
 
 /// Validates a text after a rehearsal: a large text first goes through everything that is asked for
 /// in another process, which shows that naga survives it.
 fn rehearse_and_validate(
-    text: &Text<'_>,
+    text: &TextForms<'_>,
     entry: &str,
     targets: &[Target],
     linker: &Linker<'_>,
@@ -78,7 +80,7 @@ fn rehearse_and_validate(
         let targets = targets.iter().map(|target| target.name().to_owned()).collect();
         let Conventions { clip, bounds } = linker.conventions;
         let [clip, bounds] = [clip.name(), bounds.name()].map(str::to_owned);
-        Some(validate::Outputs { entry: entry.to_owned(), targets, clip, bounds })
+        Some(validate::RehearsalOutputs { entry: entry.to_owned(), targets, clip, bounds })
     };
     match validate::rehearse(text.lean, text.composed, outputs) {
         // The lean text is validated faster. Only the author's text has places for errors.
@@ -95,7 +97,7 @@ fn rehearse_and_validate(
 
 /// Does what [`compile`] and [`validate()`] would do with a large text. It is called in a process
 /// of its own, and its result does not matter: only that the process survives.
-pub fn perform_job(job: &validate::Job) {
+pub fn perform_job(job: &validate::RehearsalJob) {
     let composed = Composed::of_text(job.language, job.stage, job.text.clone());
     let Some(outputs) = &job.outputs else {
         let _ = validate(&composed);
@@ -103,10 +105,10 @@ pub fn perform_job(job: &validate::Job) {
     };
     let targets: Vec<Target> =
         outputs.targets.iter().filter_map(|name| Target::find(name)).collect();
-    let text = Text { composed: &composed, lean: &composed };
+    let text = TextForms { composed: &composed, lean: &composed };
     let conventions = Conventions {
-        clip: Clip::find(&outputs.clip).unwrap_or_default(),
-        bounds: Bounds::find(&outputs.bounds).unwrap_or_default(),
+        clip: ClipConvention::find(&outputs.clip).unwrap_or_default(),
+        bounds: BoundsChecks::find(&outputs.bounds).unwrap_or_default(),
     };
     let linker = Linker::with(&targets, conventions);
     let _ = on_large_stack(|| compile_whole(&text, &outputs.entry, &targets, &linker));
@@ -127,7 +129,7 @@ fn check_size(unit: &Unit) -> Result<(), Diagnostic> {
     }
 }
 
-fn lint_text(text: &Text<'_>) -> Result<Diagnostics, Diagnostics> {
+fn lint_text(text: &TextForms<'_>) -> Result<Diagnostics, Diagnostics> {
     // naga refuses some texts for their aliases, which the lean one does not have.
     let (composed, validated) = match validate(text.composed) {
         Ok(validated) => (text.composed, validated),
@@ -138,7 +140,7 @@ fn lint_text(text: &Text<'_>) -> Result<Diagnostics, Diagnostics> {
 
 /// Validates a text, reflects its entry point and writes it for some targets.
 fn compile_whole(
-    text: &Text<'_>,
+    text: &TextForms<'_>,
     entry: &str,
     targets: &[Target],
     linker: &Linker<'_>,
@@ -155,7 +157,7 @@ fn compile_whole(
 }
 
 fn compile_unit(
-    text: &Text<'_>,
+    text: &TextForms<'_>,
     validated: &Validated,
     entry: &str,
     targets: &[Target],
@@ -175,7 +177,7 @@ fn compile_unit(
 /// entry point.
 fn place_error(
     error: Diagnostic,
-    text: &Text<'_>,
+    text: &TextForms<'_>,
     entry: &str,
     target: Target,
     linker: &Linker<'_>,

@@ -8,11 +8,11 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::mark::{self, Mark, SCRATCH};
 use super::reason::Reason;
-use super::text::{self, Declared};
+use super::text::{self, OutputDeclaration};
 use crate::parse::words::words;
 
 /// What to keep of an output.
-pub struct Wanted<'a> {
+pub struct WantedParts<'a> {
     /// The author's name of the function; `None` for the entry point.
     pub function: Option<&'a str>,
     /// The name of the entry point in the output.
@@ -30,17 +30,17 @@ pub struct Cut {
     pub shared: Vec<Shared>,
     /// Bound variables, and those that enter and leave the stage. Only the entry point's cut has
     /// them, since its output declares all of them.
-    pub globals: Vec<Fragment>,
-    pub body: Fragment,
+    pub globals: Vec<TextFragment>,
+    pub body: TextFragment,
 }
 
 /// A declaration that functions may share.
 #[derive(Debug)]
 pub struct Shared {
-    pub fragment: Fragment,
-    pub kind: text::Kind,
+    pub fragment: TextFragment,
+    pub kind: text::OutputKind,
     /// Its name. Two declarations of one name and head cannot stand in one text.
-    pub declares: Fragment,
+    pub declares: TextFragment,
     /// Indices into [`Cut::shared`] of the declarations that it names.
     pub uses: Vec<usize>,
 }
@@ -48,17 +48,17 @@ pub struct Shared {
 /// A part of an output, with the references to the author's declarations kept apart from all other
 /// text.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Fragment {
+pub struct TextFragment {
     /// The text without the references.
     pub text: String,
     /// The references, in the order of their places.
-    pub references: Vec<Reference>,
+    pub references: Vec<DeclarationReference>,
     /// Identifiers that the function declares itself; references are not among them.
     pub locals: Vec<String>,
 }
 
 /// The text alone is hashed: nearly all fragments that differ do so in their text.
-impl Hash for Fragment {
+impl Hash for TextFragment {
     fn hash<H: Hasher>(&self, state: &mut H) {
         self.text.hash(state);
     }
@@ -66,7 +66,7 @@ impl Hash for Fragment {
 
 /// A reference to one of the author's declarations.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Reference {
+pub struct DeclarationReference {
     /// The byte offset in the text at which the name is inserted.
     pub at: usize,
     pub name: String,
@@ -78,7 +78,7 @@ pub struct Reference {
 ///
 /// # Errors
 /// [`Reason::Shape`] if the output has a form that naga 30 does not write.
-pub fn cut_output(text: &str, wanted: &Wanted<'_>) -> Result<Cut, Reason> {
+pub fn cut_output(text: &str, wanted: &WantedParts<'_>) -> Result<Cut, Reason> {
     let (header, declared) = text::split_declarations(text).map_err(|_| Reason::Shape)?;
     let mut cut = Cut { header: header.to_owned(), ..Cut::default() };
     let (mut bodies, mut roots) = (0, Vec::new());
@@ -86,20 +86,20 @@ pub fn cut_output(text: &str, wanted: &Wanted<'_>) -> Result<Cut, Reason> {
     let mut bound: BTreeSet<&str> = BTreeSet::new();
     for (index, declaration) in declared.iter().enumerate() {
         match declared_role(declaration, wanted)? {
-            Role::Body => {
+            CutRole::Body => {
                 roots.push(declaration.text);
-                cut.body = Fragment::read(declaration.text, wanted.names)?;
+                cut.body = TextFragment::read(declaration.text, wanted.names)?;
                 bodies += 1;
             }
-            Role::Global if wanted.function.is_none() => {
+            CutRole::Global if wanted.function.is_none() => {
                 roots.push(declaration.text);
-                cut.globals.push(Fragment::read(declaration.text, wanted.names)?);
+                cut.globals.push(TextFragment::read(declaration.text, wanted.names)?);
             }
-            Role::Global => {
+            CutRole::Global => {
                 bound.insert(declaration.name);
             }
-            Role::Shared => shared.push(index),
-            Role::Dropped => {}
+            CutRole::Shared => shared.push(index),
+            CutRole::Dropped => {}
         }
     }
     cut.shared = shared_by_roots(&declared, &shared, &roots, &bound, wanted.names)?;
@@ -109,7 +109,7 @@ pub fn cut_output(text: &str, wanted: &Wanted<'_>) -> Result<Cut, Reason> {
 /// The shared declarations that the roots name, themselves or through others. Each comes after
 /// those that it names.
 fn shared_by_roots(
-    declared: &[Declared<'_>],
+    declared: &[OutputDeclaration<'_>],
     shared: &[usize],
     roots: &[&str],
     bound: &BTreeSet<&str>,
@@ -134,7 +134,7 @@ fn shared_by_roots(
     let places: HashMap<usize, usize> =
         reached.keys().enumerate().map(|(place, index)| (*index, place)).collect();
     let one = |(index, named): (&usize, &BTreeSet<usize>)| {
-        let Declared { kind, name, text } = declared[*index];
+        let OutputDeclaration { kind, name, text } = declared[*index];
         // Only an entry point's output declares the bound variables. A shared declaration that uses
         // one could not stand anywhere else.
         if !bound.is_empty() && words(text).any(|word| bound.contains(word.text)) {
@@ -145,46 +145,49 @@ fn shared_by_roots(
         let uses = named.iter().filter(|used| *used < index);
         let uses = uses.filter(|used| declared[**used].name != name).map(|used| places[used]);
         Ok(Shared {
-            fragment: Fragment::read(text, names)?,
+            fragment: TextFragment::read(text, names)?,
             kind,
-            declares: Fragment::read(name, names)?,
+            declares: TextFragment::read(name, names)?,
             uses: uses.collect(),
         })
     };
     reached.iter().map(one).collect()
 }
 
-enum Role {
+enum CutRole {
     Body,
     Global,
     Shared,
     Dropped,
 }
 
-fn declared_role(declaration: &Declared<'_>, wanted: &Wanted<'_>) -> Result<Role, Reason> {
+fn declared_role(
+    declaration: &OutputDeclaration<'_>,
+    wanted: &WantedParts<'_>,
+) -> Result<CutRole, Reason> {
     let name = declaration.name;
     let found = mark::find_mark(name, 0);
     let is_whole = |mark: &Mark| mark.start == 0 && mark.end == name.len();
-    let is_function = declaration.kind == text::Kind::Function;
+    let is_function = declaration.kind == text::OutputKind::Function;
     Ok(match found {
-        Some(mark) if mark.number == SCRATCH => Role::Dropped,
+        Some(mark) if mark.number == SCRATCH => CutRole::Dropped,
         Some(mark) if is_function && is_whole(&mark) => {
             let author = wanted.names.get(mark.number as usize).ok_or(Reason::Shape)?;
-            if wanted.function == Some(author) { Role::Body } else { Role::Dropped }
+            if wanted.function == Some(author) { CutRole::Body } else { CutRole::Dropped }
         }
         _ if is_function && name == wanted.entry => {
             if wanted.function.is_none() {
-                Role::Body
+                CutRole::Body
             } else {
-                Role::Dropped
+                CutRole::Dropped
             }
         }
-        _ if declaration.kind == text::Kind::Global => Role::Global,
-        _ => Role::Shared,
+        _ if declaration.kind == text::OutputKind::Global => CutRole::Global,
+        _ => CutRole::Shared,
     })
 }
 
-impl Fragment {
+impl TextFragment {
     /// Replaces the marks of a text by references.
     pub fn read(text: &str, names: &[String]) -> Result<Self, Reason> {
         let mut fragment = Self { text: String::with_capacity(text.len()), ..Self::default() };
@@ -194,7 +197,7 @@ impl Fragment {
             let name = name.ok_or(Reason::Shape)?.clone();
             fragment.text.push_str(&text[at..mark.start]);
             let at_text = fragment.text.len();
-            fragment.references.push(Reference { at: at_text, name, small: mark.small });
+            fragment.references.push(DeclarationReference { at: at_text, name, small: mark.small });
             at = mark.end;
         }
         fragment.text.push_str(&text[at..]);
@@ -220,7 +223,7 @@ impl Fragment {
     }
 }
 
-impl Fragment {
+impl TextFragment {
     /// Replaces all lower-case references to a declaration by a name.
     pub fn settle(&mut self, declaration: &str, name: &str) {
         let (mut text, mut at) = (String::with_capacity(self.text.len() + name.len()), 0);
@@ -231,7 +234,7 @@ impl Fragment {
             if reference.small && reference.name == declaration {
                 text.push_str(name);
             } else {
-                kept.push(Reference { at: text.len(), ..reference });
+                kept.push(DeclarationReference { at: text.len(), ..reference });
             }
         }
         text.push_str(&self.text[at..]);

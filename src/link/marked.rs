@@ -17,7 +17,7 @@ pub fn mark_module(
     module: &Module,
 ) -> Result<(Module, Vec<String>), Reason> {
     let mut marked = module.clone();
-    let mut names = Names(vec![String::new()]);
+    let mut names = MarkedNames(vec![String::new()]);
     let is_function = matches!(recipe.unit, UnitId::Function(_));
     mark_types(&mut marked, module, &mut names, is_function)?;
     mark_values(&mut marked, &mut names);
@@ -29,9 +29,9 @@ pub fn mark_module(
 }
 
 /// The author's names by the number of their mark.
-struct Names(Vec<String>);
+struct MarkedNames(Vec<String>);
 
-impl Names {
+impl MarkedNames {
     /// The mark of the next name.
     fn mark(&mut self, name: &str) -> String {
         self.0.push(name.to_owned());
@@ -42,7 +42,7 @@ impl Names {
 fn mark_types(
     marked: &mut Module,
     module: &Module,
-    names: &mut Names,
+    names: &mut MarkedNames,
     is_function: bool,
 ) -> Result<(), Reason> {
     let predeclared: BTreeSet<_> =
@@ -70,7 +70,7 @@ fn mark_types(
 }
 
 /// Marks variables and constants.
-fn mark_values(marked: &mut Module, names: &mut Names) {
+fn mark_values(marked: &mut Module, names: &mut MarkedNames) {
     for (_, variable) in marked.global_variables.iter_mut() {
         match &variable.name {
             Some(name) if name == IDLE => variable.name = Some(mark::write_mark(SCRATCH)),
@@ -91,7 +91,7 @@ fn mark_functions(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,
     marked: &mut Module,
-    names: &mut Names,
+    names: &mut MarkedNames,
 ) {
     let stubs: BTreeSet<&str> =
         recipe.stubs.iter().map(|(stub, _)| outline.declarations[*stub].name()).collect();

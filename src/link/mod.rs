@@ -61,7 +61,7 @@ mod texts;
 mod translate;
 mod uses;
 
-pub use compile::{Made, Text, compile, perform_job};
+pub use compile::{CompiledUnit, TextForms, compile, perform_job};
 pub use module::module_linked;
 pub use reason::Reason;
 
@@ -75,8 +75,8 @@ use crate::compose::Composed;
 use crate::limits::LINKED_BYTES;
 use canonical::{Recipe, make_recipe};
 use outline::Outline;
-use pool::{Parts, Pool, Unit};
-use summary::Summary;
+use pool::{LinkParts, Pool, Unit};
+use summary::FunctionSummary;
 use translate::translate_unit;
 
 /// Bytes of units after which the pool is emptied. A unit that is needed again is translated again,
@@ -148,7 +148,7 @@ impl<'a> Linker<'a> {
         let named = functions.iter().filter_map(|function| {
             Some((outline.declarations[*function].name(), units[*function].clone()?))
         });
-        let parts = Parts { functions: named.collect(), entry };
+        let parts = LinkParts { functions: named.collect(), entry };
         let (targets, mut text) = (self.targets.iter().enumerate(), String::new());
         let link =
             |(index, target): (usize, &Target)| self.pool.link(&parts, index, *target, &mut text);
@@ -189,7 +189,7 @@ impl<'a> Linker<'a> {
         units: &[Option<Arc<Unit>>],
         left: &mut usize,
     ) -> Result<Arc<Unit>, Reason> {
-        let summary = |function: usize| -> Option<&Summary> {
+        let summary = |function: usize| -> Option<&FunctionSummary> {
             units.get(function)?.as_ref().map(|unit| &unit.summary)
         };
         let recipe: Recipe<'_> = make_recipe(outline, unit, &summary)?;

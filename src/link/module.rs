@@ -1,7 +1,7 @@
 //! Compiles modules that were built in memory, such as a kernel around a function. The module is
 //! written as a text, which is then compiled as every other text is.
 
-use super::{Linker, Text, compile};
+use super::{Linker, TextForms, compile};
 use crate::bundle::{Artifact, Language, Target};
 use crate::compose::{Keep, Options, compose, lean};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -31,7 +31,7 @@ pub fn module_linked(
     let keep = Keep::Items(vec![entry.to_owned()]);
     let options = Options { keep, ..Options::default() };
     let composed = compose(&graph, &Settings::default(), &options)?;
-    let text = Text { composed: &composed, lean: &lean(&composed) };
+    let text = TextForms { composed: &composed, lean: &lean(&composed) };
     let made = compile(&text, entry, &[target], linker)?;
     let missing = || vec![Diagnostic::error(codes::EMIT_FAILED, format!("no output for {target}"))];
     made.unit.targets.into_values().next().ok_or_else(missing)

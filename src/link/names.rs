@@ -9,8 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use naga::{Constant, Expression, Literal, Module, Scalar, Span, Type, TypeInner};
 use rustc_hash::FxHashMap;
 
-use super::cut::Reference;
-use super::ready::{Bits, Identifier, Ready};
+use super::cut::DeclarationReference;
+use super::ready::{Bits, Identifier, ReadyTemplate};
 use super::reason::Reason;
 use super::text;
 use crate::bundle::Target;
@@ -21,7 +21,7 @@ use crate::validate::{Validated, info_unchecked};
 
 /// The names and identifiers of a target, each with a number.
 #[derive(Default)]
-pub struct Names {
+pub struct OutputNames {
     target: Option<Target>,
     numbers: FxHashMap<String, u32>,
     /// For each name: the author's form, its usual form, and the number of the usual form as a
@@ -31,7 +31,7 @@ pub struct Names {
 }
 
 /// The forms that the names of one text get.
-pub struct Chosen {
+pub struct ChosenNames {
     pub renames: Renames,
     /// The names that do not have their usual form.
     pub renamed: Bits,
@@ -42,7 +42,7 @@ pub struct Chosen {
 /// The names that a text cannot have in their usual form, with what they are called instead.
 pub type Renames = BTreeMap<u32, String>;
 
-impl Names {
+impl OutputNames {
     pub fn new(target: Target) -> Self {
         Self { target: Some(target), ..Self::default() }
     }
@@ -81,14 +81,14 @@ impl Names {
     }
 
     /// The usual form of a reference.
-    pub fn usual_of(&self, reference: &Reference) -> &str {
+    pub fn usual_of(&self, reference: &DeclarationReference) -> &str {
         let small = reference.small.then(|| reference.name.to_lowercase());
         let name = small.as_ref().unwrap_or(&reference.name);
         self.numbers.get(name).map_or("", |number| self.usual(*number))
     }
 
     /// Finds the names that cannot have their usual form in a text, and numbers those.
-    pub fn choose(&self, fragments: &[&Ready]) -> Result<Chosen, Reason> {
+    pub fn choose(&self, fragments: &[&ReadyTemplate]) -> Result<ChosenNames, Reason> {
         let mut words = Bits::new(self.words.len());
         let mut names = Bits::new(self.usual.len());
         let mut captured = Bits::new(self.usual.len());
@@ -120,14 +120,14 @@ impl Names {
         let renames = self.numbered(&open, fragments, |word| words.has(word) || taken.has(word))?;
         let mut renamed = Bits::new(self.usual.len());
         open.iter().for_each(|name| _ = renamed.insert(*name));
-        Ok(Chosen { renames, renamed, taken })
+        Ok(ChosenNames { renames, renamed, taken })
     }
 
     /// Appends a number to each of some names, so that each is new in the text.
     fn numbered(
         &self,
         open: &[usize],
-        fragments: &[&Ready],
+        fragments: &[&ReadyTemplate],
         is_used: impl Fn(usize) -> bool,
     ) -> Result<Renames, Reason> {
         let mut renames = Renames::new();
@@ -150,7 +150,7 @@ impl Names {
     }
 
     /// Whether an identifier is the form that some name of the author's has in the text.
-    pub fn is_name(&self, identifier: &Identifier, chosen: &Chosen) -> bool {
+    pub fn is_name(&self, identifier: &Identifier, chosen: &ChosenNames) -> bool {
         let (text, word) = match identifier {
             Identifier::Usual(word) => (None, Some(*word)),
             Identifier::Text(text) => (Some(text), self.words.get(text).copied()),
@@ -167,7 +167,8 @@ impl Names {
 fn plain_name(name: &str, target: Target) -> Option<String> {
     let text = usual_name(&trivial_module(name)?, target)?;
     let (_, declared) = text::split_declarations(&text).ok()?;
-    let mut constants = declared.iter().filter(|declared| declared.kind == text::Kind::Constant);
+    let mut constants =
+        declared.iter().filter(|declared| declared.kind == text::OutputKind::Constant);
     let found = constants.next()?.name.to_owned();
     constants.next().is_none().then_some(found)
 }

@@ -13,7 +13,7 @@ use crate::compose::{Composed, Part, PartKind};
 use crate::parse::words::words;
 
 /// 128 bits of a hash, which identify content.
-pub type Key = [u8; 16];
+pub type ContentKey = [u8; 16];
 
 /// A text with more declarations is compiled as a whole.
 const DECLARATIONS: usize = 2048;
@@ -33,7 +33,7 @@ pub struct Declaration<'a> {
     pub uses: Vec<usize>,
     /// Those that a function's head names.
     pub head_uses: Vec<usize>,
-    pub hash: Key,
+    pub hash: ContentKey,
 }
 
 impl Declaration<'_> {
@@ -299,45 +299,49 @@ fn call_order(declared: &[Declaration<'_>], entry: &str) -> Result<Vec<usize>, R
     let mut functions = (0..declared.len()).filter(|index| is_function(*index));
     let root = functions.rfind(|index| declared[*index].name() == entry);
     let root = root.ok_or(Reason::EntryPoint)?;
-    let mut walk = Walk { declared, state: vec![State::New; declared.len()], order: Vec::new() };
+    let mut walk = DeclarationWalk {
+        declared,
+        state: vec![VisitState::New; declared.len()],
+        order: Vec::new(),
+    };
     walk.visit(root, 0)?;
     Ok(walk.order)
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum State {
+enum VisitState {
     New,
     Open,
     Done,
 }
 
-struct Walk<'w, 'a> {
+struct DeclarationWalk<'w, 'a> {
     declared: &'w [Declaration<'a>],
-    state: Vec<State>,
+    state: Vec<VisitState>,
     order: Vec<usize>,
 }
 
-impl Walk<'_, '_> {
+impl DeclarationWalk<'_, '_> {
     fn visit(&mut self, function: usize, depth: usize) -> Result<(), Reason> {
         match self.state[function] {
-            State::Done => return Ok(()),
-            State::Open => return Err(Reason::Recursion),
-            State::New if depth == DEPTH => return Err(Reason::Recursion),
-            State::New => self.state[function] = State::Open,
+            VisitState::Done => return Ok(()),
+            VisitState::Open => return Err(Reason::Recursion),
+            VisitState::New if depth == DEPTH => return Err(Reason::Recursion),
+            VisitState::New => self.state[function] = VisitState::Open,
         }
         for used in &self.declared[function].uses {
             if *used != function && self.declared[*used].kind == PartKind::Function {
                 self.visit(*used, depth + 1)?;
             }
         }
-        self.state[function] = State::Done;
+        self.state[function] = VisitState::Done;
         self.order.push(function);
         Ok(())
     }
 }
 
 /// 128 bits of a hash. Each part is hashed with its length, so parts cannot run into each other.
-pub fn hash_parts<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> Key {
+pub fn hash_parts<'a>(parts: impl IntoIterator<Item = &'a [u8]>) -> ContentKey {
     let mut bytes = Vec::with_capacity(512);
     for part in parts {
         bytes.extend_from_slice(&(part.len() as u64).to_le_bytes());

@@ -6,19 +6,19 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
 use super::cut::Cut;
-use super::outline::Key;
+use super::outline::ContentKey;
 use super::reason::Reason;
 use super::spirv;
-use super::summary::Summary;
+use super::summary::FunctionSummary;
 use super::texts::{TextPiece, Texts};
-use super::translate::{Translated, Written};
+use super::translate::{Translated, WrittenUnit};
 use crate::bundle::{Artifact, Native, Reflection, Target};
 use crate::emit::targets;
 
 /// The units that are kept. Each target has a lock of its own, so that a thread which keeps a unit
 /// seldom waits for one that links a text.
 pub struct Pool {
-    units: RwLock<FxHashMap<Key, Result<Arc<Unit>, Reason>>>,
+    units: RwLock<FxHashMap<ContentKey, Result<Arc<Unit>, Reason>>>,
     /// What the functions of each target share, in the order of the targets.
     texts: Vec<RwLock<Texts>>,
     words: RwLock<spirv::DeclarationPool>,
@@ -28,20 +28,20 @@ pub struct Pool {
 
 /// A translated unit.
 pub struct Unit {
-    pub summary: Summary,
+    pub summary: FunctionSummary,
     pub reflection: Option<Arc<Reflection>>,
-    targets: Vec<Result<Piece, Reason>>,
+    targets: Vec<Result<TargetPiece, Reason>>,
 }
 
 /// A unit in one target.
-enum Piece {
+enum TargetPiece {
     Text(TextPiece),
     Words { piece: spirv::Piece, native: Arc<Native> },
 }
 
 /// What one text is linked from: the units of its functions, callees first, and that of its entry
 /// point.
-pub struct Parts<'p> {
+pub struct LinkParts<'p> {
     /// The author's names of the functions.
     pub functions: Vec<(&'p str, Arc<Unit>)>,
     pub entry: Arc<Unit>,
@@ -57,7 +57,7 @@ impl Pool {
         }
     }
 
-    pub fn find(&self, key: &Key) -> Option<Result<Arc<Unit>, Reason>> {
+    pub fn find(&self, key: &ContentKey) -> Option<Result<Arc<Unit>, Reason>> {
         read(&self.units).get(key).cloned()
     }
 
@@ -81,7 +81,7 @@ impl Pool {
     /// unit, one result is kept.
     pub fn keep(
         &self,
-        key: Key,
+        key: ContentKey,
         translated: Result<Translated, Reason>,
         function: Option<&str>,
         callees: &BTreeSet<&str>,
@@ -92,11 +92,11 @@ impl Pool {
         let unit = translated.map(|translated| {
             let pieces = translated.targets.into_iter().zip(&self.texts);
             let pieces = pieces.map(|(written, texts)| match written? {
-                Written::Text { cut, native } => {
+                WrittenUnit::Text { cut, native } => {
                     self.size.fetch_add(2 * cut.size(), Ordering::Relaxed);
-                    Ok(Piece::Text(write(texts).keep(cut, native)?))
+                    Ok(TargetPiece::Text(write(texts).keep(cut, native)?))
                 }
-                Written::Words { words, native } => {
+                WrittenUnit::Words { words, native } => {
                     self.size.fetch_add(size_of_val(words.as_slice()) / 2, Ordering::Relaxed);
                     words_piece(&mut write(&self.words), &words, native, function, callees)
                 }
@@ -114,18 +114,18 @@ impl Pool {
     /// The reason why this target of the text is compiled as a whole.
     pub fn link(
         &self,
-        parts: &Parts<'_>,
+        parts: &LinkParts<'_>,
         index: usize,
         target: Target,
         text: &mut String,
     ) -> Result<Artifact, Reason> {
         let texts = self.texts.get(index).ok_or(Reason::Shape)?;
         let (bytes, native) = match spirv_piece(&parts.entry, index)? {
-            Piece::Text(_) => {
+            TargetPiece::Text(_) => {
                 let native = read(texts).link(&text_pieces(parts, index)?, text)?;
                 (text.as_bytes().into(), native)
             }
-            Piece::Words { piece, native } => {
+            TargetPiece::Words { piece, native } => {
                 (self.link_words(parts, piece, index)?.into(), native.clone())
             }
         };
@@ -135,13 +135,13 @@ impl Pool {
 
     fn link_words(
         &self,
-        parts: &Parts<'_>,
+        parts: &LinkParts<'_>,
         entry: &spirv::Piece,
         index: usize,
     ) -> Result<Vec<u8>, Reason> {
         let mut named: FxHashMap<&str, &spirv::Piece> = FxHashMap::default();
         for (name, unit) in &parts.functions {
-            if let Piece::Words { piece, .. } = spirv_piece(unit, index)? {
+            if let TargetPiece::Words { piece, .. } = spirv_piece(unit, index)? {
                 named.insert(name, piece);
             }
         }
@@ -169,7 +169,7 @@ fn write<T>(lock: &RwLock<T>) -> RwLockWriteGuard<'_, T> {
     lock.write().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn spirv_piece(unit: &Unit, index: usize) -> Result<&Piece, Reason> {
+fn spirv_piece(unit: &Unit, index: usize) -> Result<&TargetPiece, Reason> {
     match unit.targets.get(index) {
         Some(piece) => piece.as_ref().map_err(|reason| *reason),
         None => Err(Reason::Shape),
@@ -177,11 +177,11 @@ fn spirv_piece(unit: &Unit, index: usize) -> Result<&Piece, Reason> {
 }
 
 /// The pieces of a text: callees first, the entry point last.
-fn text_pieces<'p>(parts: &'p Parts<'_>, index: usize) -> Result<Vec<&'p TextPiece>, Reason> {
+fn text_pieces<'p>(parts: &'p LinkParts<'_>, index: usize) -> Result<Vec<&'p TextPiece>, Reason> {
     let units = parts.functions.iter().map(|(_, unit)| unit).chain([&parts.entry]);
     let text = |unit: &'p Arc<Unit>| match spirv_piece(unit, index)? {
-        Piece::Text(piece) => Ok(piece),
-        Piece::Words { .. } => Err(Reason::Shape),
+        TargetPiece::Text(piece) => Ok(piece),
+        TargetPiece::Words { .. } => Err(Reason::Shape),
     };
     units.map(text).collect()
 }
@@ -192,7 +192,7 @@ fn words_piece(
     native: Native,
     function: Option<&str>,
     callees: &BTreeSet<&str>,
-) -> Result<Piece, Reason> {
+) -> Result<TargetPiece, Reason> {
     let is_author = |name: &str| function == Some(name) || callees.contains(name);
     let is_wanted = |name: &str| function.unwrap_or(&native.entry_name) == name;
     let parts =
@@ -202,7 +202,7 @@ fn words_piece(
         Some(name) => functions.find(|(found, _)| found == name).map(|(_, piece)| piece),
         None => parts.entry,
     };
-    Ok(Piece::Words { piece: piece.ok_or(Reason::Spirv)?, native: Arc::new(native) })
+    Ok(TargetPiece::Words { piece: piece.ok_or(Reason::Spirv)?, native: Arc::new(native) })
 }
 
 impl Cut {

@@ -4,8 +4,8 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::cut::{Fragment, Reference};
-use super::names::{Chosen, Names, Renames};
+use super::cut::{DeclarationReference, TextFragment};
+use super::names::{ChosenNames, OutputNames, Renames};
 use super::reason::Reason;
 use crate::emit::glsl;
 use crate::parse::words::{word_around, words};
@@ -26,7 +26,7 @@ struct Spot {
 
 impl Template {
     /// Makes a template. A reference in lower case always keeps its usual name.
-    pub fn new(fragment: &Fragment, names: &mut Names) -> Result<Self, Reason> {
+    pub fn new(fragment: &TextFragment, names: &mut OutputNames) -> Result<Self, Reason> {
         for reference in &fragment.references {
             names.number(&reference.name)?;
         }
@@ -77,23 +77,23 @@ impl Template {
 }
 
 /// A template, with its names and identifiers as numbers.
-pub struct Ready {
+pub struct ReadyTemplate {
     pub template: Template,
     /// The author's names that it refers to.
-    pub names: Numbers,
+    pub names: NumberSet,
     /// Names that it cannot refer to by their usual form, since it declares that identifier itself.
     pub captured: Vec<u32>,
     /// Identifiers that are neither references nor declared by the fragment itself.
-    pub words: Numbers,
+    pub words: NumberSet,
     /// Identifiers that the fragment declares itself.
     pub locals: Vec<u32>,
     derived: Vec<Derived>,
 }
 
 /// A set of numbers as blocks of bits. Sets are united often, and their numbers lie close together.
-pub struct Numbers(Vec<(u32, u64)>);
+pub struct NumberSet(Vec<(u32, u64)>);
 
-impl Numbers {
+impl NumberSet {
     pub fn new(sorted: &[u32]) -> Self {
         let mut blocks: Vec<(u32, u64)> = Vec::new();
         for number in sorted {
@@ -160,8 +160,8 @@ struct Derived {
     spots: Range<usize>,
 }
 
-impl Ready {
-    pub fn new(fragment: Fragment, names: &mut Names) -> Result<Self, Reason> {
+impl ReadyTemplate {
+    pub fn new(fragment: TextFragment, names: &mut OutputNames) -> Result<Self, Reason> {
         let fragment = name_small(fragment, names)?;
         let template = Template::new(&fragment, names)?;
         let numbers = template.spots.iter().map(|spot| spot.name).collect();
@@ -180,12 +180,12 @@ impl Ready {
         known.retain(|word| !is_local(word) && usual.binary_search(word).is_err());
         let plain = fragment.words().map(|word| names.word(word));
         known.extend(plain.filter(|word| !is_local(word)));
-        let (names, words) = (Numbers::new(&named), Numbers::new(&sorted_numbers(known)));
+        let (names, words) = (NumberSet::new(&named), NumberSet::new(&sorted_numbers(known)));
         Ok(Self { template, names, captured, words, locals, derived })
     }
 
     /// Appends the text, with the names that were chosen for it.
-    pub fn write(&self, chosen: &Chosen, out: &mut String) {
+    pub fn write(&self, chosen: &ChosenNames, out: &mut String) {
         if self.names.meets(&chosen.renamed) {
             self.template.write(&chosen.renames, out);
         } else {
@@ -223,7 +223,7 @@ fn sorted_numbers(mut numbers: Vec<u32>) -> Vec<u32> {
 }
 
 /// Finds the identifiers that are longer than the references in them.
-fn find_derived(template: &Template, names: &mut Names) -> Vec<Derived> {
+fn find_derived(template: &Template, names: &mut OutputNames) -> Vec<Derived> {
     let mut derived: Vec<Derived> = Vec::new();
     for (index, spot) in template.spots.iter().enumerate() {
         if let Some(last) = derived.last_mut()
@@ -243,7 +243,7 @@ fn find_derived(template: &Template, names: &mut Names) -> Vec<Derived> {
 
 /// Gives their final names to the variables that the writer named after a declaration: they are
 /// locals of the function.
-fn name_small(mut fragment: Fragment, names: &mut Names) -> Result<Fragment, Reason> {
+fn name_small(mut fragment: TextFragment, names: &mut OutputNames) -> Result<TextFragment, Reason> {
     let small = fragment.references.iter().filter(|reference| reference.small);
     let small: BTreeSet<String> = small.map(|reference| reference.name.clone()).collect();
     for name in small {
@@ -271,9 +271,9 @@ fn name_small(mut fragment: Fragment, names: &mut Names) -> Result<Fragment, Rea
 
 /// For each identifier with a reference in lower case to `name`: its parts before and after the
 /// reference.
-fn around_small(fragment: &Fragment, name: &str) -> BTreeSet<(String, String)> {
-    let is_it = |reference: &&Reference| reference.small && reference.name == name;
-    let around = |reference: &Reference| {
+fn around_small(fragment: &TextFragment, name: &str) -> BTreeSet<(String, String)> {
+    let is_it = |reference: &&DeclarationReference| reference.small && reference.name == name;
+    let around = |reference: &DeclarationReference| {
         let place = word_around(&fragment.text, reference.at..reference.at);
         let start = fragment.text[place.start..reference.at].to_owned();
         (start, fragment.text[reference.at..place.end].to_owned())

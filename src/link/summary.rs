@@ -8,16 +8,16 @@ use naga::{
     SampleLevel, ShaderStage, Statement, TypeInner,
 };
 
-use super::outline::{Key, hash_parts};
+use super::outline::{ContentKey, hash_parts};
 
 /// Facts about a callee that writers, the reflection and the lints use.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Summary {
+pub struct FunctionSummary {
     /// Names of the module's variables that it uses, itself or through its callees. Metal passes
     /// them as arguments.
     pub globals: BTreeSet<String>,
     /// Textures and samplers that it uses together. GLSL combines them.
-    pub pairs: BTreeSet<Pair>,
+    pub pairs: BTreeSet<SampledPair>,
     /// It takes derivatives, or samples with a level that derivatives choose.
     pub derives: bool,
     /// It does so in non-uniform control flow.
@@ -25,20 +25,20 @@ pub struct Summary {
     /// It cannot be called in a vertex stage.
     pub only_fragments: bool,
     /// A hash of all of the above.
-    pub key: Key,
+    pub key: ContentKey,
 }
 
 /// A texture and a sampler that are used together.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Pair {
-    pub texture: Place,
-    pub sampler: Place,
-    pub shape: Shape,
+pub struct SampledPair {
+    pub texture: ResourceOrigin,
+    pub sampler: ResourceOrigin,
+    pub shape: TextureShape,
 }
 
 /// Where a texture or a sampler comes from.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Place {
+pub enum ResourceOrigin {
     Global(String),
     /// The argument at that index.
     Argument(u32),
@@ -46,7 +46,7 @@ pub enum Place {
 
 /// What kind of texture it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Shape {
+pub struct TextureShape {
     /// Components of a coordinate.
     pub coordinates: u8,
     pub cube: bool,
@@ -78,9 +78,10 @@ pub fn summarise_function<'s>(
     module: &Module,
     info: &FunctionInfo,
     function: &Function,
-    callee: &dyn Fn(Handle<Function>) -> Option<&'s Summary>,
-) -> Option<Summary> {
-    let mut summary = Summary { globals: used_globals(module, info)?, ..Summary::default() };
+    callee: &dyn Fn(Handle<Function>) -> Option<&'s FunctionSummary>,
+) -> Option<FunctionSummary> {
+    let mut summary =
+        FunctionSummary { globals: used_globals(module, info)?, ..FunctionSummary::default() };
     for (_, expression) in function.expressions.iter() {
         summary.derives |= is_derivative(expression);
         summary.only_fragments |= is_derivative(expression);
@@ -90,10 +91,10 @@ pub fn summarise_function<'s>(
                 resource_place(module, function, *image)?,
                 resource_place(module, function, *sampler)?,
             );
-            summary.pairs.insert(Pair { texture, sampler, shape });
+            summary.pairs.insert(SampledPair { texture, sampler, shape });
         }
     }
-    let mut walk = Walk { module, function, callee, summary, has_diverged: false };
+    let mut walk = SummaryWalk { module, function, callee, summary, has_diverged: false };
     walk.block(&function.body, false)?;
     let mut summary = walk.summary;
     summary.key = hash_parts([format!("{summary:?}").as_bytes()]);
@@ -112,12 +113,12 @@ fn resource_place(
     module: &Module,
     function: &Function,
     handle: Handle<Expression>,
-) -> Option<Place> {
+) -> Option<ResourceOrigin> {
     match function.expressions[handle] {
         Expression::GlobalVariable(variable) => {
-            name_of(module, &module.global_variables[variable]).map(Place::Global)
+            name_of(module, &module.global_variables[variable]).map(ResourceOrigin::Global)
         }
-        Expression::FunctionArgument(number) => Some(Place::Argument(number)),
+        Expression::FunctionArgument(number) => Some(ResourceOrigin::Argument(number)),
         _ => None,
     }
 }
@@ -127,7 +128,7 @@ fn sample_shape(
     info: &FunctionInfo,
     image: Handle<Expression>,
     sampler: Handle<Expression>,
-) -> Option<Shape> {
+) -> Option<TextureShape> {
     let TypeInner::Image { dim, arrayed, class } = *info[image].ty.inner_with(&module.types) else {
         return None;
     };
@@ -145,20 +146,20 @@ fn sample_shape(
         ImageDimension::D2 => 2,
         ImageDimension::D3 | ImageDimension::Cube => 3,
     };
-    Some(Shape { coordinates, cube: dim == ImageDimension::Cube, arrayed, depth, compares })
+    Some(TextureShape { coordinates, cube: dim == ImageDimension::Cube, arrayed, depth, compares })
 }
 
 /// Walks over a function's statements.
-struct Walk<'w, 's> {
+struct SummaryWalk<'w, 's> {
     module: &'w Module,
     function: &'w Function,
-    callee: &'w dyn Fn(Handle<Function>) -> Option<&'s Summary>,
-    summary: Summary,
+    callee: &'w dyn Fn(Handle<Function>) -> Option<&'s FunctionSummary>,
+    summary: FunctionSummary,
     /// Some fragments may have left the function or a loop, so control flow is no longer uniform.
     has_diverged: bool,
 }
 
-impl Walk<'_, '_> {
+impl SummaryWalk<'_, '_> {
     fn block(&mut self, block: &Block, inside: bool) -> Option<()> {
         block.iter().try_for_each(|statement| self.statement(statement, inside))
     }
@@ -210,21 +211,21 @@ impl Walk<'_, '_> {
             callee.derives_non_uniformly || is_non_uniform && callee.derives;
         self.summary.only_fragments |= callee.only_fragments;
         for pair in &callee.pairs {
-            let at_call = |place: &Place| match place {
-                Place::Global(_) => Some(place.clone()),
-                Place::Argument(number) => {
+            let at_call = |place: &ResourceOrigin| match place {
+                ResourceOrigin::Global(_) => Some(place.clone()),
+                ResourceOrigin::Argument(number) => {
                     let argument = *arguments.get(*number as usize)?;
                     self::resource_place(self.module, self.function, argument)
                 }
             };
             let (texture, sampler) = (at_call(&pair.texture)?, at_call(&pair.sampler)?);
-            self.summary.pairs.insert(Pair { texture, sampler, shape: pair.shape });
+            self.summary.pairs.insert(SampledPair { texture, sampler, shape: pair.shape });
         }
         Some(())
     }
 }
 
-impl Summary {
+impl FunctionSummary {
     /// Whether an entry point of the stage may reach the function.
     pub fn is_for(&self, stage: ShaderStage) -> bool {
         stage == ShaderStage::Fragment || !self.only_fragments

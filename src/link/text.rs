@@ -1,11 +1,11 @@
 //! Divides a text that naga wrote into declarations.
 
 use crate::emit::is_header_line;
-use crate::parse::words::{PieceKind, piece_at, word_end, words};
+use crate::parse::words::{LexemeKind, piece_at, word_end, words};
 
 /// What a declaration of an output is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum OutputKind {
     Type,
     Constant,
     Function,
@@ -15,8 +15,8 @@ pub enum Kind {
 
 /// One declaration, as written.
 #[derive(Debug)]
-pub struct Declared<'a> {
-    pub kind: Kind,
+pub struct OutputDeclaration<'a> {
+    pub kind: OutputKind,
     pub name: &'a str,
     pub text: &'a str,
 }
@@ -25,7 +25,7 @@ pub struct Declared<'a> {
 ///
 /// # Errors
 /// Where the text has a form that this crate does not know.
-pub fn split_declarations(text: &str) -> Result<(&str, Vec<Declared<'_>>), String> {
+pub fn split_declarations(text: &str) -> Result<(&str, Vec<OutputDeclaration<'_>>), String> {
     let header = header_length(text);
     let (mut rest, mut declared) = (text[header..].trim_start(), Vec::new());
     while !rest.is_empty() {
@@ -67,7 +67,7 @@ fn declaration_length(text: &str) -> Option<usize> {
     None
 }
 
-fn read_declaration(text: &str) -> Result<Declared<'_>, String> {
+fn read_declaration(text: &str) -> Result<OutputDeclaration<'_>, String> {
     let head = declaration_head(text);
     // Where the name comes last, it may be any word, a keyword of another language too.
     let (last, before) =
@@ -75,31 +75,31 @@ fn read_declaration(text: &str) -> Result<Declared<'_>, String> {
     let has = |word: &str| before.contains(&word);
     let (kind, name) = match head.stop {
         _ if has("struct") || has("cbuffer") => {
-            let kind = if has("struct") { Kind::Type } else { Kind::Global };
+            let kind = if has("struct") { OutputKind::Type } else { OutputKind::Global };
             (kind, last)
         }
-        b'{' if has("typedef") => (Kind::Type, words(text).last().map(|word| word.text)),
-        _ if has("typedef") || has("alias") => (Kind::Type, last),
-        b'(' => (Kind::Function, last),
+        b'{' if has("typedef") => (OutputKind::Type, words(text).last().map(|word| word.text)),
+        _ if has("typedef") || has("alias") => (OutputKind::Type, last),
+        b'(' => (OutputKind::Function, last),
         // A uniform block is known by the name of its instance.
         b'{' if has("uniform") || has("buffer") => {
-            (Kind::Global, words(text).last().map(|word| word.text))
+            (OutputKind::Global, words(text).last().map(|word| word.text))
         }
-        b'{' | b' ' => (Kind::Global, None),
+        b'{' | b' ' => (OutputKind::Global, None),
         _ if has("const") && !before.iter().any(|word| word.starts_with("Sampler")) => {
-            (Kind::Constant, last)
+            (OutputKind::Constant, last)
         }
-        _ if has("constant") => (Kind::Constant, last),
-        _ => (Kind::Global, last),
+        _ if has("constant") => (OutputKind::Constant, last),
+        _ => (OutputKind::Global, last),
     };
     let name = name.ok_or_else(|| {
         format!("a declaration without a name: {}", text.chars().take(60).collect::<String>())
     })?;
-    Ok(Declared { kind, name, text })
+    Ok(OutputDeclaration { kind, name, text })
 }
 
 /// The words before a declaration's value, arguments or content.
-struct Head<'a> {
+struct DeclarationHead<'a> {
     words: Vec<&'a str>,
     /// The character that ended them.
     stop: u8,
@@ -112,7 +112,7 @@ fn array_of_result(text: &str) -> Option<usize> {
     (next == b'[' || next == b'_' || next.is_ascii_alphabetic()).then_some(end)
 }
 
-fn declaration_head(text: &str) -> Head<'_> {
+fn declaration_head(text: &str) -> DeclarationHead<'_> {
     let bytes = text.as_bytes();
     let (mut at, mut words, mut is_attribute) = (0, Vec::new(), false);
     while let Some(piece) = piece_at(text, at) {
@@ -124,7 +124,9 @@ fn declaration_head(text: &str) -> Head<'_> {
             b':' if bytes.get(at) == Some(&b':') => at += 1,
             // If a function of GLSL returns an array, its length comes before the function's name.
             b'[' if let Some(length) = array_of_result(&text[at..]) => at += length,
-            b'(' | b'{' | b'=' | b'[' | b';' | b':' => return Head { words, stop: byte },
+            b'(' | b'{' | b'=' | b'[' | b';' | b':' => {
+                return DeclarationHead { words, stop: byte };
+            }
             // Attributes of WGSL and layouts of GLSL have arguments of their own, which are
             // skipped.
             b'@' => {
@@ -132,11 +134,11 @@ fn declaration_head(text: &str) -> Head<'_> {
                 is_attribute = true;
                 continue;
             }
-            _ if piece.kind == PieceKind::Word => words.push(piece.text),
-            _ if piece.kind == PieceKind::Blank => continue,
+            _ if piece.kind == LexemeKind::Word => words.push(piece.text),
+            _ if piece.kind == LexemeKind::Blank => continue,
             _ => {}
         }
         is_attribute = words.last() == Some(&"layout");
     }
-    Head { words, stop: b' ' }
+    DeclarationHead { words, stop: b' ' }
 }

@@ -5,20 +5,20 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
-use super::cut::{Cut, Fragment, Shared};
-use super::names::{Chosen, Names, Renames};
-use super::ready::{Ready, Template};
+use super::cut::{Cut, Shared, TextFragment};
+use super::names::{ChosenNames, OutputNames, Renames};
+use super::ready::{ReadyTemplate, Template};
 use super::reason::Reason;
-use super::text::Kind;
+use super::text::OutputKind;
 use crate::bundle::{Native, Target};
 
 /// Everything that is kept for one target.
 #[derive(Default)]
 pub struct Texts {
-    names: Names,
+    names: OutputNames,
     headers: Vec<String>,
-    declarations: Vec<Declared>,
-    places: FxHashMap<(Fragment, Vec<u32>), u32>,
+    declarations: Vec<PooledDeclaration>,
+    places: FxHashMap<(TextFragment, Vec<u32>), u32>,
     /// The declarations, in the order in which a text writes them.
     order: Vec<u32>,
     /// For each declaration its rank in that order. Declarations that are written alike have the
@@ -34,28 +34,28 @@ pub struct TextPiece {
     header: u32,
     /// Numbers of the shared declarations that it needs, sorted.
     shared: Vec<u32>,
-    globals: Vec<Ready>,
-    body: Ready,
+    globals: Vec<ReadyTemplate>,
+    body: ReadyTemplate,
     native: Arc<Native>,
     /// The native names as a template, where names of the author's are among them.
     template: Option<Template>,
 }
 
 /// A declaration that functions share.
-struct Declared {
-    ready: Ready,
+struct PooledDeclaration {
+    ready: ReadyTemplate,
     declares: Template,
     twin: u32,
     /// Texts sort declarations by kind, and those of one kind by height. The kind is never lower
     /// than that of a declaration that this one uses.
-    kind: Kind,
+    kind: OutputKind,
     /// Higher than that of each declaration that this one uses. So each comes after those that it
     /// uses.
     height: u32,
 }
 
-impl Declared {
-    fn order(&self) -> (Kind, u32, &str) {
+impl PooledDeclaration {
+    fn order(&self) -> (OutputKind, u32, &str) {
         (self.kind, self.height, &self.ready.template.text)
     }
 
@@ -66,19 +66,19 @@ impl Declared {
     }
 }
 
-fn section_heading(kind: Kind, ready: &Ready) -> &str {
+fn section_heading(kind: OutputKind, ready: &ReadyTemplate) -> &str {
     match kind {
-        Kind::Function => ready.template.text.split('{').next().unwrap_or_default(),
+        OutputKind::Function => ready.template.text.split('{').next().unwrap_or_default(),
         _ => "",
     }
 }
 
 impl Texts {
     pub fn new(target: Target) -> Self {
-        Self { names: Names::new(target), ..Self::default() }
+        Self { names: OutputNames::new(target), ..Self::default() }
     }
 
-    pub fn keep(&mut self, cut: Cut, native: Option<Fragment>) -> Result<TextPiece, Reason> {
+    pub fn keep(&mut self, cut: Cut, native: Option<TextFragment>) -> Result<TextPiece, Reason> {
         let Cut { header, shared, globals, body } = cut;
         let mut numbers: Vec<u32> = Vec::with_capacity(shared.len());
         for shared in shared {
@@ -87,9 +87,9 @@ impl Texts {
         }
         numbers.sort_unstable();
         numbers.dedup();
-        let globals = globals.into_iter().map(|global| Ready::new(global, &mut self.names));
-        let globals = globals.collect::<Result<Vec<Ready>, Reason>>()?;
-        let body = Ready::new(body, &mut self.names)?;
+        let globals = globals.into_iter().map(|global| ReadyTemplate::new(global, &mut self.names));
+        let globals = globals.collect::<Result<Vec<ReadyTemplate>, Reason>>()?;
+        let body = ReadyTemplate::new(body, &mut self.names)?;
         let (native, template) =
             native.map_or(Ok(Default::default()), |native| self.native(native))?;
         let header = self.header(header);
@@ -115,13 +115,13 @@ impl Texts {
         let kind =
             below().map(|below| below.kind).max().map_or(shared.kind, |most| most.max(shared.kind));
         let height = below().map(|below| below.height + 1).max().unwrap_or(0);
-        let ready = Ready::new(key.0.clone(), &mut self.names)?;
+        let ready = ReadyTemplate::new(key.0.clone(), &mut self.names)?;
         let declares = Template::new(&shared.declares, &mut self.names)?;
         let twin = (declares.text.clone(), section_heading(kind, &ready).to_owned());
         let next = self.twins.len() as u32;
         let twin = *self.twins.entry(twin).or_insert(next);
         let number = self.declarations.len() as u32;
-        self.declarations.push(Declared { ready, declares, twin, kind, height });
+        self.declarations.push(PooledDeclaration { ready, declares, twin, kind, height });
         self.rank(number);
         self.places.insert(key, number);
         Ok(number)
@@ -146,7 +146,7 @@ impl Texts {
 
     /// The native names of an entry point, with their template where names of the author's are
     /// among them.
-    fn native(&mut self, native: Fragment) -> Result<(Arc<Native>, Option<Template>), Reason> {
+    fn native(&mut self, native: TextFragment) -> Result<(Arc<Native>, Option<Template>), Reason> {
         let template = Template::new(&native, &mut self.names)?;
         let native = serde_json::from_str(&template.text).map_err(|_| Reason::Shape)?;
         Ok((Arc::new(native), (!template.is_plain()).then_some(template)))
@@ -160,7 +160,7 @@ impl Texts {
         let declared = shared.iter().map(|declared| &declared.ready);
         let globals = entry.globals.iter();
         let bodies = pieces.iter().map(|piece| &piece.body);
-        let all: Vec<&Ready> = declared.chain(globals).chain(bodies).collect();
+        let all: Vec<&ReadyTemplate> = declared.chain(globals).chain(bodies).collect();
         let chosen = self.names.choose(&all)?;
         let renames = &chosen.renames;
         self.refuse_twins(&shared, renames)?;
@@ -181,9 +181,9 @@ impl Texts {
     }
 
     /// The shared declarations that the pieces need, in the order in which a text writes them.
-    fn shared(&self, pieces: &[&TextPiece]) -> Vec<&Declared> {
+    fn shared(&self, pieces: &[&TextPiece]) -> Vec<&PooledDeclaration> {
         let mut seen = vec![false; self.declarations.len()];
-        let mut found: Vec<(u32, &Declared)> = Vec::new();
+        let mut found: Vec<(u32, &PooledDeclaration)> = Vec::new();
         for number in pieces.iter().flat_map(|piece| &piece.shared) {
             let number = *number as usize;
             if !std::mem::replace(&mut seen[number], true) {
@@ -195,7 +195,7 @@ impl Texts {
     }
 
     /// Refuses two declarations of one name, unless their heads distinguish them.
-    fn refuse_twins(&self, shared: &[&Declared], renames: &Renames) -> Result<(), Reason> {
+    fn refuse_twins(&self, shared: &[&PooledDeclaration], renames: &Renames) -> Result<(), Reason> {
         let mut seen = vec![false; self.twins.len()];
         let mut others = BTreeSet::new();
         for declared in shared {
@@ -220,7 +220,7 @@ impl Texts {
 
     /// Refuses a text where a numbered name, within a longer identifier, gives the name of another
     /// declaration.
-    fn refuse_derived(&self, all: &[&Ready], chosen: &Chosen) -> Result<(), Reason> {
+    fn refuse_derived(&self, all: &[&ReadyTemplate], chosen: &ChosenNames) -> Result<(), Reason> {
         if chosen.renames.is_empty() {
             return Ok(());
         }

@@ -10,11 +10,11 @@ use naga::{Function, Module};
 use rustc_hash::FxHashSet;
 
 use super::canonical::{IDLE, Recipe, UnitId};
-use super::cut::{self, Cut, Fragment};
+use super::cut::{self, Cut, TextFragment};
 use super::marked::mark_module;
 use super::outline::Outline;
 use super::reason::Reason;
-use super::summary::{Summary, summarise_function, used_globals};
+use super::summary::{FunctionSummary, summarise_function, used_globals};
 use super::uses::{call_function, show_stubs};
 use crate::bundle::Language;
 use crate::bundle::{Conventions, Native, Reflection, Target};
@@ -25,24 +25,24 @@ use crate::validate::{Validated, guard, info_of, is_bounded, is_calm, on_large_s
 
 /// A unit in every target.
 pub struct Translated {
-    pub summary: Summary,
+    pub summary: FunctionSummary,
     /// One result for each target, in their order. Where one output cannot be cut, only that target
     /// is compiled as a whole.
-    pub targets: Vec<Result<Written, Reason>>,
+    pub targets: Vec<Result<WrittenUnit, Reason>>,
     /// The reflection, for an entry point.
     pub reflection: Option<Arc<Reflection>>,
 }
 
 /// A unit in one target.
-pub enum Written {
+pub enum WrittenUnit {
     /// Text, with references for the author's names; `native` is the native names as JSON.
-    Text { cut: Cut, native: Option<Fragment> },
+    Text { cut: Cut, native: Option<TextFragment> },
     /// A SPIR-V module, in which names stay as they are.
     Words { words: Vec<u32>, native: Native },
 }
 
 /// The module of a canonical text.
-struct Parsed {
+struct ParsedRecipe {
     validated: Validated,
     entry: String,
     /// The author's names, indexed by the number of their mark.
@@ -100,7 +100,7 @@ fn translate_inner(
     let validated = Validated { language: outline.language, module, info };
     let reflection = is_entry.then(|| emit::reflect(&validated, &entry).map(Arc::new));
     let reflection = reflection.transpose().map_err(|_| Reason::Refused)?;
-    let parsed = Parsed { validated, entry, names, marked };
+    let parsed = ParsedRecipe { validated, entry, names, marked };
     let targets =
         targets.iter().map(|target| write_target(outline, recipe, &parsed, *target, conventions));
     Ok(Translated { summary, targets: targets.collect(), reflection })
@@ -121,12 +121,13 @@ fn checked_summary(
     recipe: &Recipe<'_>,
     module: &Module,
     info: &ModuleInfo,
-) -> Result<Summary, Reason> {
+) -> Result<FunctionSummary, Reason> {
     let mut stubs = BTreeMap::new();
     for (handle, function) in module.functions.iter() {
         let name = function.name.as_deref();
-        let is_it =
-            |(stub, _): &&(usize, &Summary)| name == Some(outline.declarations[*stub].name());
+        let is_it = |(stub, _): &&(usize, &FunctionSummary)| {
+            name == Some(outline.declarations[*stub].name())
+        };
         if let Some((_, summary)) = recipe.stubs.iter().find(is_it) {
             if used_globals(module, &info[handle]).as_ref() != Some(&summary.globals) {
                 return Err(Reason::Stub);
@@ -154,15 +155,15 @@ fn checked_summary(
 fn write_target(
     outline: &Outline<'_>,
     recipe: &Recipe<'_>,
-    parsed: &Parsed,
+    parsed: &ParsedRecipe,
     target: Target,
     conventions: Conventions,
-) -> Result<Written, Reason> {
+) -> Result<WrittenUnit, Reason> {
     if target == Target::SPIRV {
         let emitted = emit::emit_for(&parsed.validated, &parsed.entry, target, conventions);
         let emitted = emitted.map_err(|_| Reason::Refused)?;
         let words = words(&emitted.bytes);
-        return Ok(Written::Words { words, native: emitted.native });
+        return Ok(WrittenUnit::Words { words, native: emitted.native });
     }
     let entry = parsed.marked.module.entry_points.first().map_or(IDLE, |point| &point.name);
     let emitted = emit::emit_for(&parsed.marked, entry, target, conventions);
@@ -172,17 +173,18 @@ fn write_target(
         UnitId::Function(index) => Some(outline.declarations[index].name()),
         UnitId::Entry => None,
     };
-    let wanted = cut::Wanted { function, entry: &emitted.native.entry_name, names: &parsed.names };
+    let wanted =
+        cut::WantedParts { function, entry: &emitted.native.entry_name, names: &parsed.names };
     let mut cut = cut::cut_output(&text, &wanted)?;
     cut.add_locals(&local_names(recipe, &parsed.validated.module, function), wanted.entry);
     let native = match recipe.unit {
         UnitId::Function(_) => None,
         UnitId::Entry => {
             let native = serde_json::to_string(&emitted.native).map_err(|_| Reason::Shape)?;
-            Some(Fragment::read(&native, &parsed.names)?)
+            Some(TextFragment::read(&native, &parsed.names)?)
         }
     };
-    Ok(Written::Text { cut, native })
+    Ok(WrittenUnit::Text { cut, native })
 }
 
 /// Names that the author gave within the unit's function, to which naga may append numbers.

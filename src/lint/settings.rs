@@ -2,7 +2,7 @@
 
 use super::Request;
 use crate::permute::axis::Mode;
-use crate::permute::space::{Lists, Space};
+use crate::permute::space::{SliceLists, Space};
 use crate::permute::{Program, Settings, cover};
 use crate::resolve::Graph;
 
@@ -48,7 +48,7 @@ fn narrowed_space(graph: &Graph, space: &Space) -> Space {
         // A dynamic axis is always at its default.
         axis.mode = Mode::Dynamic;
     }
-    Space::new(axes, space.constraints().to_vec(), Lists::default())
+    Space::new(axes, space.constraints().to_vec(), SliceLists::default())
         .ok()
         .filter(|space| space.count() > 0)
         .unwrap_or_else(|| space.clone())

@@ -6,14 +6,14 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::place::{self, Lines};
-use super::{Server, complete, format};
+use super::{LanguageServer, complete, format};
 use crate::project::MANIFEST;
 
 /// The most imports that are offered for one name.
 const OFFERED: usize = 8;
 
 /// `textDocument/codeAction`.
-pub fn code_actions(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn code_actions(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let document = server.document(parameters)?;
     let (root, path, text) = (document.root.clone(), document.path.clone(), document.text.clone());
     let uri = parameters.pointer("/textDocument/uri").cloned().unwrap_or_default();
@@ -133,7 +133,7 @@ fn read_text(file: &Path) -> Option<String> {
 }
 
 /// `textDocument/formatting`.
-pub fn format_document(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn format_document(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let document = server.document(parameters)?;
     let text = &document.text;
     match format::format_text(text).filter(|new| new != text) {

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value, json};
 
 use super::place::Lines;
-use super::{Server, look};
+use super::{LanguageServer, look};
 use crate::bundle::key;
 use crate::permute::{Setting, constant};
 
@@ -14,7 +14,10 @@ pub const COMMANDS: &[&str] = &[CHOOSE, COMPOSED];
 
 /// `lamplight/permutation`: with `set`, such as `shadow=hard,fog`, chooses it for the package of
 /// `uri`; always answers with the axes, features and what is chosen.
-pub fn choose_permutation(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn choose_permutation(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, String> {
     let document = server.document(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
     if let Some(text) = parameters.get("set").and_then(Value::as_str) {
@@ -43,8 +46,8 @@ pub fn choose_permutation(server: &mut Server, parameters: &Value) -> Result<Val
 }
 
 /// What a key chooses. Besides axes, it may name features and constants.
-fn read_choice(text: &str) -> Result<look::Choice, String> {
-    let one = |part: key::Part<'_>| {
+fn read_choice(text: &str) -> Result<look::ChosenValues, String> {
+    let one = |part: key::KeyPart<'_>| {
         let (name, value) = (part.axis.text, part.chosen());
         if name.is_empty() || value.is_empty() {
             return Err(format!("expected `axis=value`, or the name of a boolean axis: `{text}`"));
@@ -58,7 +61,7 @@ fn read_choice(text: &str) -> Result<look::Choice, String> {
 }
 
 /// `workspace/executeCommand`: chooses a permutation, or returns the composed text.
-pub fn execute_command(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn execute_command(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let name = parameters.get("command").and_then(Value::as_str).ok_or_else(String::new)?;
     let argument = |index: usize| parameters.pointer(&format!("/arguments/{index}")).cloned();
     let uri = argument(0).ok_or_else(String::new)?;
@@ -82,7 +85,7 @@ pub fn execute_command(server: &mut Server, parameters: &Value) -> Result<Value,
 }
 
 /// `textDocument/codeLens`: above each entry point its program's permutations.
-pub fn code_lenses(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn code_lenses(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let document = server.document(parameters)?;
     let uri = parameters.pointer("/textDocument/uri").cloned().unwrap_or_default();
     let (root, path) = (document.root.clone(), document.path.clone());

@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 
-use super::package::{Modules, Opened};
+use super::package::{OpenedPackage, PackageModules};
 use super::place::{self, Lines};
-use super::{Server, act, glsl};
-use crate::catalogue::Kind;
+use super::{LanguageServer, act, glsl};
+use crate::catalogue::CatalogueItemKind;
 use crate::parse::wesl::{ItemKind, Name, keywords};
 use crate::permute::Setting;
 use crate::source::Files;
@@ -23,7 +23,7 @@ pub const CONSTANT: u32 = 21;
 pub const STRUCT: u32 = 22;
 
 /// `textDocument/completion`.
-pub fn complete_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn complete_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     if glsl::is_asked(server, parameters) {
         return glsl::complete_at(server, parameters);
     }
@@ -58,7 +58,7 @@ fn statement_before(text: &str, byte: usize) -> &str {
 }
 
 /// Axes and features, or the values of the axis that is compared.
-fn complete_flags(server: &Server, parameters: &Value, before: &str) -> Value {
+fn complete_flags(server: &LanguageServer, parameters: &Value, before: &str) -> Value {
     let Some(opened) =
         server.document(parameters).ok().and_then(|document| server.opened(&document.root))
     else {
@@ -87,7 +87,12 @@ fn complete_flags(server: &Server, parameters: &Value, before: &str) -> Value {
 }
 
 /// Modules and items below the path that is written before the place.
-fn path_members(server: &mut Server, modules: &Modules, here: &str, before: &str) -> Value {
+fn path_members(
+    server: &mut LanguageServer,
+    modules: &PackageModules,
+    here: &str,
+    before: &str,
+) -> Value {
     let path = written_path(before);
     let parts: Vec<&str> = path.iter().map(String::as_str).collect();
     let Some((first, rest)) = parts.split_first() else { return json!([]) };
@@ -130,7 +135,7 @@ fn path_members(server: &mut Server, modules: &Modules, here: &str, before: &str
 }
 
 /// The axes that `constants` has: those whose values are numbers or booleans.
-fn complete_constants(opened: &Opened) -> Value {
+fn complete_constants(opened: &OpenedPackage) -> Value {
     let programs = opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     let axes = programs.flat_map(|program| program.space.axes());
     let is_number = |axis: &&crate::permute::Axis| {
@@ -143,7 +148,7 @@ fn complete_constants(opened: &Opened) -> Value {
 /// The package that a path leads into: its files, its name, and the names of the path from its
 /// root. `None` if there is no such package.
 fn path_target<'p>(
-    opened: &'p Opened,
+    opened: &'p OpenedPackage,
     here: &'p str,
     first: &'p str,
     rest: &[&'p str],
@@ -198,7 +203,7 @@ fn written_path(before: &str) -> Vec<String> {
 }
 
 /// Members of the structs of a module and of what it reaches by name.
-fn complete_fields(modules: &Modules, here: &str) -> Value {
+fn complete_fields(modules: &PackageModules, here: &str) -> Value {
     let Some(node) = modules.node(here) else { return json!([]) };
     let mut found = BTreeSet::new();
     let symbols = modules.places_in(node).map(|(symbol, _)| symbol);
@@ -221,8 +226,8 @@ fn complete_fields(modules: &Modules, here: &str) -> Value {
 
 /// Names in scope, those that can be imported, built-ins and keywords.
 fn complete_names(
-    server: &mut Server,
-    modules: &Modules,
+    server: &mut LanguageServer,
+    modules: &PackageModules,
     here: &str,
     text: &str,
     written: std::ops::Range<usize>,
@@ -264,7 +269,7 @@ fn complete_names(
 }
 
 /// Locals, items and imports that a byte of a module can name, the nearest first.
-fn in_scope<'m>(modules: &'m Modules, here: &str, at: u32) -> Vec<(&'m str, Value)> {
+fn in_scope<'m>(modules: &'m PackageModules, here: &str, at: u32) -> Vec<(&'m str, Value)> {
     let Some(node) = modules.node(here).map(|node| &modules.graph.nodes[node as usize]) else {
         return Vec::new();
     };
@@ -283,8 +288,8 @@ fn in_scope<'m>(modules: &'m Modules, here: &str, at: u32) -> Vec<(&'m str, Valu
 
 /// Items of other modules and of the library: path, name, kind.
 pub fn importable_items(
-    server: &mut Server,
-    modules: &Modules,
+    server: &mut LanguageServer,
+    modules: &PackageModules,
     here: &str,
 ) -> Vec<(String, String, u32)> {
     let own = modules.node(here);
@@ -315,10 +320,10 @@ fn completion_kind(kind: ItemKind) -> u32 {
     }
 }
 
-pub fn of_library(kind: Kind) -> u32 {
+pub fn of_library(kind: CatalogueItemKind) -> u32 {
     match kind {
-        Kind::Function => FUNCTION,
-        Kind::Struct => STRUCT,
-        Kind::Constant => CONSTANT,
+        CatalogueItemKind::Function => FUNCTION,
+        CatalogueItemKind::Struct => STRUCT,
+        CatalogueItemKind::Constant => CONSTANT,
     }
 }

@@ -5,17 +5,17 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::members::members_at;
-use super::package::{Modules, Opened, Symbol};
+use super::package::{OpenedPackage, PackageModules, WeslSymbol};
 use super::place;
 use super::told::hover_json;
-use super::{Server, glsl, look};
-use crate::catalogue::{self, Item, cost, pages};
+use super::{LanguageServer, glsl, look};
+use crate::catalogue::{self, CatalogueItem, cost, pages};
 use crate::parse::wesl::ItemKind;
 use crate::project::LIBRARY;
 use crate::source::SourceSet;
 
 /// `textDocument/hover`.
-pub fn hover_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn hover_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     if glsl::is_asked(server, parameters) {
         return glsl::hover_at(server, parameters);
     }
@@ -25,22 +25,22 @@ pub fn hover_at(server: &mut Server, parameters: &Value) -> Result<Value, String
     let document = server.document(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
     let text = match symbol {
-        Symbol::Items { .. } => {
+        WeslSymbol::Items { .. } => {
             let known = server.items();
             describe_item(&modules, symbol, &known)
         }
-        Symbol::Local { node, declared } => {
+        WeslSymbol::Local { node, declared } => {
             let text = &modules.graph.nodes[node as usize].module.text;
             let start = text[..declared as usize].rfind('\n').map_or(0, |end| end + 1);
             let line = text[start..].lines().next().unwrap_or_default().trim();
             Some(format!("```wgsl\n{line}\n```"))
         }
-        Symbol::Flag(name) => {
+        WeslSymbol::Flag(name) => {
             let opened = server.opened(&root);
             let name = modules.graph.names.text(name).to_owned();
             opened.map(|opened| describe_flag(server, &opened, &path, &name))
         }
-        Symbol::Constant(index) => {
+        WeslSymbol::Constant(index) => {
             let name = modules.graph.constants.get(index as usize);
             let name = name.map(|found| modules.graph.names.text(found.name).to_owned());
             let opened = server.opened(&root).zip(name);
@@ -52,7 +52,7 @@ pub fn hover_at(server: &mut Server, parameters: &Value) -> Result<Value, String
 }
 
 /// Hover for a name after a dot: the members that it may mean, each with its struct.
-fn hover_member(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+fn hover_member(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let Some((modules, node, byte)) = server.asked_module(parameters)? else {
         return Ok(Value::Null);
     };
@@ -69,7 +69,11 @@ fn hover_member(server: &mut Server, parameters: &Value) -> Result<Value, String
 }
 
 /// An item of the library as `show` tells it; any other by its comment and declaration.
-fn describe_item(modules: &Modules, symbol: Symbol, known: &[catalogue::Module]) -> Option<String> {
+fn describe_item(
+    modules: &PackageModules,
+    symbol: WeslSymbol,
+    known: &[catalogue::CatalogueModule],
+) -> Option<String> {
     let (node, found) = modules.item(symbol)?;
     let name = modules.graph.names.text(found.name);
     if let Some(path) = node.label.strip_prefix(&format!("{LIBRARY}::")) {
@@ -93,7 +97,7 @@ fn describe_item(modules: &Modules, symbol: Symbol, known: &[catalogue::Module])
 }
 
 /// Signature, documentation, formula and error model.
-pub fn of_library(item: &Item, language: &str, code: &str, usage: &str) -> String {
+pub fn of_library(item: &CatalogueItem, language: &str, code: &str, usage: &str) -> String {
     let mut text = format!("```{language}\n{}\n```\n", code.trim_end_matches(['{', ' ', '\n']));
     for paragraph in item.paragraphs() {
         text += &format!("\n{paragraph}\n");
@@ -107,7 +111,12 @@ pub fn of_library(item: &Item, language: &str, code: &str, usage: &str) -> Strin
 }
 
 /// An axis with its values, what it multiplies and what it costs, or a feature.
-pub fn describe_flag(server: &Server, opened: &Opened, path: &str, name: &str) -> String {
+pub fn describe_flag(
+    server: &LanguageServer,
+    opened: &OpenedPackage,
+    path: &str,
+    name: &str,
+) -> String {
     let (settings, _) = look::module_settings(opened, path, &server.choice(&opened.root));
     let value = settings.values.get(name).map(ToString::to_string);
     let value = value.or_else(|| settings.constants.get(name).cloned());
@@ -142,7 +151,7 @@ pub fn describe_flag(server: &Server, opened: &Opened, path: &str, name: &str) -
 }
 
 /// `textDocument/signatureHelp`: of the call that the position is in.
-pub fn signature_help(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn signature_help(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     if glsl::is_asked(server, parameters) {
         return glsl::signature_help(server, parameters);
     }
@@ -151,7 +160,7 @@ pub fn signature_help(server: &mut Server, parameters: &Value) -> Result<Value, 
     let (root, path) = (document.root.clone(), document.path.clone());
     let word = document.text[name.clone()].to_owned();
     let Some(modules) = server.modules(&root) else { return Ok(Value::Null) };
-    let known: Arc<Vec<catalogue::Module>> = server.items();
+    let known: Arc<Vec<catalogue::CatalogueModule>> = server.items();
     let symbol = modules.node(&path).and_then(|node| {
         let (symbol, _) = modules.symbol(node, name.end as u32)?;
         Some(symbol)

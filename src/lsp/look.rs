@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use super::package::Opened;
+use super::package::OpenedPackage;
 
 use crate::bundle::Language;
 use crate::compose::{self, Options};
@@ -11,15 +11,19 @@ use crate::diagnostic::Diagnostics;
 use crate::lint;
 use crate::parse::wesl::Event;
 use crate::permute::{Program, Setting, Settings};
-use crate::resolve::wesl::{self, Kept};
+use crate::resolve::wesl::{self, KeptModules};
 use crate::resolve::{self, Graph};
 
 /// What was chosen for a package, by axis or feature.
-pub type Choice = BTreeMap<String, Setting>;
+pub type ChosenValues = BTreeMap<String, Setting>;
 
 /// The settings of a module, and a note that names the permutation. They are those of the program
 /// that has the module as a root, or else of the manifest's first program.
-pub fn module_settings(opened: &Opened, path: &str, choice: &Choice) -> (Settings, String) {
+pub fn module_settings(
+    opened: &OpenedPackage,
+    path: &str,
+    choice: &ChosenValues,
+) -> (Settings, String) {
     let programs = || opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     let is_root = |program: &&Program| program.files().any(|file| file.path == path);
     let program = programs().find(is_root).or_else(|| programs().next());
@@ -47,9 +51,9 @@ pub fn module_settings(opened: &Opened, path: &str, choice: &Choice) -> (Setting
 
 /// A graph with the module as its root, or the diagnostics of loading it.
 pub fn module_graph(
-    opened: &mut Opened,
+    opened: &mut OpenedPackage,
     path: &str,
-    kept: &mut Kept,
+    kept: &mut KeptModules,
 ) -> Result<Graph, Diagnostics> {
     let (sources, packages) = (&mut opened.sources, &opened.packages);
     match lint::language(path) {

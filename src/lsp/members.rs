@@ -4,17 +4,17 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::package::Modules;
+use super::package::PackageModules;
 use super::place::word_at_byte;
 use crate::parse::wesl::blank::without_comments;
 use crate::parse::wesl::{Item, ItemKind};
-use crate::parse::words::{PieceKind, pieces};
-use crate::resolve::wesl::Node;
+use crate::parse::words::{LexemeKind, pieces};
+use crate::resolve::wesl::ModuleNode;
 use crate::source::Span;
 
 /// A member with its struct.
-pub struct Member<'m> {
-    pub node: &'m Node,
+pub struct StructMember<'m> {
+    pub node: &'m ModuleNode,
     pub item: &'m Item,
     /// The place of its name.
     pub place: Span,
@@ -23,7 +23,11 @@ pub struct Member<'m> {
 }
 
 /// The members that a name after a dot may mean, with the place of the name.
-pub fn members_at(modules: &Modules, node: u32, byte: usize) -> Option<(Span, Vec<Member<'_>>)> {
+pub fn members_at(
+    modules: &PackageModules,
+    node: u32,
+    byte: usize,
+) -> Option<(Span, Vec<StructMember<'_>>)> {
     let module = &modules.graph.nodes[node as usize].module;
     let word = word_at_byte(&module.text, byte);
     let name = module.text.get(word.clone()).filter(|name| !name.is_empty())?;
@@ -31,7 +35,7 @@ pub fn members_at(modules: &Modules, node: u32, byte: usize) -> Option<(Span, Ve
         return None;
     }
     let symbols = modules.places_in(node).filter_map(|(symbol, _)| modules.item(symbol));
-    let mut found: Vec<Member<'_>> =
+    let mut found: Vec<StructMember<'_>> =
         symbols.flat_map(|(node, item)| named_members(node, item, name)).collect();
     if found.is_empty() {
         let nodes = modules.graph.nodes.iter();
@@ -49,11 +53,11 @@ fn is_swizzle(name: &str) -> bool {
     name.len() <= 4 && (of("xyzw") || of("rgba"))
 }
 
-fn named_members<'m>(node: &'m Node, item: &'m Item, name: &str) -> Vec<Member<'m>> {
+fn named_members<'m>(node: &'m ModuleNode, item: &'m Item, name: &str) -> Vec<StructMember<'m>> {
     if item.kind != ItemKind::Struct {
         return Vec::new();
     }
-    let member = |(range, whole): (Range<u32>, Range<u32>)| Member {
+    let member = |(range, whole): (Range<u32>, Range<u32>)| StructMember {
         node,
         item,
         place: node.module.span(range),
@@ -63,7 +67,7 @@ fn named_members<'m>(node: &'m Node, item: &'m Item, name: &str) -> Vec<Member<'
     declared.into_iter().filter(|(range, _)| node_text(node, range) == name).map(member).collect()
 }
 
-fn node_text<'m>(node: &'m Node, range: &Range<u32>) -> &'m str {
+fn node_text<'m>(node: &'m ModuleNode, range: &Range<u32>) -> &'m str {
     &node.module.text[range.start as usize..range.end as usize]
 }
 
@@ -73,7 +77,7 @@ fn declared_members(text: &str, item: &Item) -> Vec<(Range<u32>, Range<u32>)> {
     let body = without_comments(&text[start..item.range.end as usize]);
     let mut found: Vec<(Range<u32>, Range<u32>)> = Vec::new();
     let (mut nested, mut last, mut is_type) = (0_i32, None, false);
-    for piece in pieces(&body).filter(|piece| piece.kind != PieceKind::Blank) {
+    for piece in pieces(&body).filter(|piece| piece.kind != LexemeKind::Blank) {
         let at = |byte: usize| (start + byte) as u32;
         match piece.text {
             "(" | "<" | "[" => nested += 1,
@@ -90,7 +94,7 @@ fn declared_members(text: &str, item: &Item) -> Vec<(Range<u32>, Range<u32>)> {
         if is_type && let Some((_, whole)) = found.last_mut() {
             whole.end = at(piece.end());
         }
-        last = (piece.kind == PieceKind::Word).then(|| at(piece.at)..at(piece.end()));
+        last = (piece.kind == LexemeKind::Word).then(|| at(piece.at)..at(piece.end()));
     }
     found
 }

@@ -1,9 +1,9 @@
 //! A language server over WESL, WGSL and GLSL: what editors ask, answered from the same stages
 //! that composing goes through.
 //!
-//! [`Server::receive`] takes one message and returns the messages to send; [`Server::look`] returns
-//! the diagnostics of documents that changed. Nothing here reads or writes a stream, and a message
-//! that is not valid has an answer too.
+//! [`LanguageServer::receive`] takes one message and returns the messages to send;
+//! [`LanguageServer::look`] returns the diagnostics of documents that changed. Nothing here reads
+//! or writes a stream, and a message that is not valid has an answer too.
 
 mod act;
 mod choose;
@@ -34,16 +34,16 @@ use crate::diagnostic::Diagnostics;
 use crate::limits::{EDIT_STEPS, Steps};
 use crate::project;
 use crate::resolve::Graph;
-use crate::resolve::wesl::Kept;
+use crate::resolve::wesl::KeptModules;
 use crate::source::SourceSet;
-use look::Choice;
-use package::{Modules, Opened, Texts};
+use look::ChosenValues;
+use package::{OpenTexts, OpenedPackage, PackageModules};
 use wire::{
     FAILED, NO_METHOD, WRONG_PARAMETERS, answer_message, error_message, notification_message,
 };
 
 /// Where a file of the embedded library lies on the disk, for editors to show.
-pub type Library = Box<dyn Fn(&str) -> Option<PathBuf>>;
+pub type LibraryPaths = Box<dyn Fn(&str) -> Option<PathBuf>>;
 
 /// A text that an editor has open.
 struct Document {
@@ -55,27 +55,27 @@ struct Document {
 }
 
 /// The state of one session.
-pub struct Server {
+pub struct LanguageServer {
     documents: BTreeMap<PathBuf, Document>,
     /// The permutation that the editor chose, by root folder of a package.
-    choices: BTreeMap<PathBuf, Choice>,
+    choices: BTreeMap<PathBuf, ChosenValues>,
     /// By root folder of a package: what was parsed, which a keystroke in one file does not change.
-    kept: RefCell<BTreeMap<PathBuf, Kept>>,
+    kept: RefCell<BTreeMap<PathBuf, KeptModules>>,
     unchanged: Arc<unchanged::Unchanged>,
     /// The modules of the package that was asked about last, kept until a document changes.
-    modules: Option<(PathBuf, Arc<Modules>)>,
+    modules: Option<(PathBuf, Arc<PackageModules>)>,
     /// The same for the GLSL files of a package.
     whole: Option<(PathBuf, Arc<glsl::Whole>)>,
     /// Documents to analyse, the one that was edited last first.
     changed: VecDeque<PathBuf>,
-    items: Option<Arc<Vec<catalogue::Module>>>,
-    library: Library,
+    items: Option<Arc<Vec<catalogue::CatalogueModule>>>,
+    library: LibraryPaths,
     is_shut_down: bool,
     /// The exit code, once the editor sent `exit`.
     pub exit: Option<u8>,
 }
 
-type Handler = fn(&mut Server, &Value) -> Result<Value, String>;
+type Handler = fn(&mut LanguageServer, &Value) -> Result<Value, String>;
 
 /// What editors ask for.
 const REQUESTS: &[(&str, Handler)] = &[
@@ -97,9 +97,9 @@ const REQUESTS: &[(&str, Handler)] = &[
     ("lamplight/permutation", choose::choose_permutation),
 ];
 
-impl Server {
+impl LanguageServer {
     /// A session before `initialize`.
-    pub fn new(library: Library) -> Self {
+    pub fn new(library: LibraryPaths) -> Self {
         Self {
             documents: BTreeMap::new(),
             choices: BTreeMap::new(),
@@ -299,36 +299,36 @@ impl Server {
     }
 
     /// The open texts of a package.
-    fn texts(&self, root: &Path) -> Texts {
+    fn texts(&self, root: &Path) -> OpenTexts {
         let own = self.documents.values().filter(|document| document.root == root);
         Arc::new(own.map(|document| (document.path.clone(), document.text.clone())).collect())
     }
 
-    fn choice(&self, root: &Path) -> Choice {
+    fn choice(&self, root: &Path) -> ChosenValues {
         self.choices.get(root).cloned().unwrap_or_default()
     }
 
-    fn opened(&self, root: &Path) -> Option<Opened> {
+    fn opened(&self, root: &Path) -> Option<OpenedPackage> {
         self.open_package(root).ok()
     }
 
-    fn open_package(&self, root: &Path) -> Result<Opened, (SourceSet, Diagnostics)> {
+    fn open_package(&self, root: &Path) -> Result<OpenedPackage, (SourceSet, Diagnostics)> {
         package::open_package(root, &self.texts(root), &self.unchanged)
     }
 
     /// A graph with a module as its root.
-    fn graph(&self, opened: &mut Opened, path: &str) -> Result<Graph, Diagnostics> {
+    fn graph(&self, opened: &mut OpenedPackage, path: &str) -> Result<Graph, Diagnostics> {
         let root = opened.root.clone();
         self.with_kept(&root, |kept| look::module_graph(opened, path, kept))
     }
 
-    fn with_kept<T>(&self, root: &Path, work: impl FnOnce(&mut Kept) -> T) -> T {
+    fn with_kept<T>(&self, root: &Path, work: impl FnOnce(&mut KeptModules) -> T) -> T {
         let mut all = self.kept.borrow_mut();
         work(all.entry(root.to_owned()).or_default())
     }
 
     /// All modules of a package, read again once a document changed.
-    fn modules(&mut self, root: &Path) -> Option<Arc<Modules>> {
+    fn modules(&mut self, root: &Path) -> Option<Arc<PackageModules>> {
         if let Some((_, known)) = self.modules.as_ref().filter(|(known, _)| known == root) {
             return Some(Arc::clone(known));
         }
@@ -350,7 +350,7 @@ impl Server {
     }
 
     /// The library's items, as `show` tells them.
-    fn items(&mut self) -> Arc<Vec<catalogue::Module>> {
+    fn items(&mut self) -> Arc<Vec<catalogue::CatalogueModule>> {
         Arc::clone(self.items.get_or_insert_with(|| Arc::new(catalogue::library_modules())))
     }
 

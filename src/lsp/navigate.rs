@@ -6,9 +6,9 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 
 use super::members::members_at;
-use super::package::{Modules, Symbol};
+use super::package::{PackageModules, WeslSymbol};
 use super::place::Lines;
-use super::{Server, glsl, told};
+use super::{LanguageServer, glsl, told};
 use crate::parse::wesl::{ItemKind, Name, is_keyword};
 use crate::parse::words::is_word;
 use crate::project;
@@ -17,12 +17,12 @@ use crate::source::Span;
 /// The most symbols in an answer to `workspace/symbol`.
 const SYMBOLS: usize = 500;
 
-impl Server {
+impl LanguageServer {
     /// What parameters ask about: the modules of its package, the symbol, and its place.
     pub(super) fn symbol(
         &mut self,
         parameters: &Value,
-    ) -> Result<Option<(Arc<Modules>, Symbol, Span)>, String> {
+    ) -> Result<Option<(Arc<PackageModules>, WeslSymbol, Span)>, String> {
         let Some((modules, node, byte)) = self.asked_module(parameters)? else { return Ok(None) };
         let found = modules
             .symbol(node, byte as u32)
@@ -34,7 +34,7 @@ impl Server {
     pub(super) fn asked_module(
         &mut self,
         parameters: &Value,
-    ) -> Result<Option<(Arc<Modules>, u32, usize)>, String> {
+    ) -> Result<Option<(Arc<PackageModules>, u32, usize)>, String> {
         let (document, byte) = self.asked(parameters)?;
         let (root, path) = (document.root.clone(), document.path.clone());
         let Some(modules) = self.modules(&root) else { return Ok(None) };
@@ -42,7 +42,7 @@ impl Server {
         Ok(node.map(|node| (modules, node, byte)))
     }
 
-    fn location(&self, modules: &Modules, span: Span) -> Option<Value> {
+    fn location(&self, modules: &PackageModules, span: Span) -> Option<Value> {
         let uri = told::address_of(&modules.sources, span.source, &*self.library)?;
         let lines = Lines::new(&modules.sources.get(span.source).text);
         Some(json!({ "uri": uri, "range": lines.range(span.range()) }))
@@ -50,7 +50,7 @@ impl Server {
 }
 
 /// `textDocument/definition`.
-pub fn definition_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn definition_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     if glsl::is_asked(server, parameters) {
         return glsl::definition_at(server, parameters);
     }
@@ -67,7 +67,7 @@ pub fn definition_at(server: &mut Server, parameters: &Value) -> Result<Value, S
 }
 
 /// `textDocument/references`.
-pub fn references_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn references_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     if glsl::is_asked(server, parameters) {
         return glsl::references_at(server, parameters);
     }
@@ -80,20 +80,20 @@ pub fn references_at(server: &mut Server, parameters: &Value) -> Result<Value, S
 }
 
 /// Why a symbol cannot be renamed; `None` if it can.
-fn why_fixed(modules: &Modules, symbol: Symbol) -> Option<&'static str> {
+fn why_fixed(modules: &PackageModules, symbol: WeslSymbol) -> Option<&'static str> {
     match symbol {
-        Symbol::Items { node, .. } if modules.graph.nodes[node as usize].package != 0 => {
+        WeslSymbol::Items { node, .. } if modules.graph.nodes[node as usize].package != 0 => {
             Some("it is declared in another package")
         }
-        Symbol::Items { .. } | Symbol::Local { .. } => None,
-        Symbol::Flag(_) => Some("axes and features are named in more than these files"),
-        Symbol::Constant(_) => Some("constants come from outside"),
+        WeslSymbol::Items { .. } | WeslSymbol::Local { .. } => None,
+        WeslSymbol::Flag(_) => Some("axes and features are named in more than these files"),
+        WeslSymbol::Constant(_) => Some("constants come from outside"),
     }
 }
 
 /// Fails for the copy of the library that editors show: edits there would be lost when it is
 /// written again.
-fn refuse_copy(server: &Server, parameters: &Value) -> Result<(), String> {
+fn refuse_copy(server: &LanguageServer, parameters: &Value) -> Result<(), String> {
     let root = &server.document(parameters)?.root;
     let copy = (server.library)(project::MANIFEST);
     let is_copy = copy.and_then(|file| file.parent()?.canonicalize().ok()).as_ref() == Some(root);
@@ -101,7 +101,7 @@ fn refuse_copy(server: &Server, parameters: &Value) -> Result<(), String> {
 }
 
 /// `textDocument/prepareRename`.
-pub fn prepare_rename(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn prepare_rename(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     refuse_copy(server, parameters)?;
     if glsl::is_asked(server, parameters) {
         return glsl::prepare_rename(server, parameters);
@@ -125,7 +125,7 @@ fn last_name(text: &str, span: Span) -> Span {
 }
 
 /// `textDocument/rename`: each place that writes the name; those that write an alias stay.
-pub fn rename_symbol(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn rename_symbol(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     refuse_copy(server, parameters)?;
     if glsl::is_asked(server, parameters) {
         return glsl::rename_symbol(server, parameters);
@@ -160,12 +160,12 @@ pub fn rename_symbol(server: &mut Server, parameters: &Value) -> Result<Value, S
 }
 
 /// A module that declares or uses the symbol and already has the new name.
-fn name_taken_in(modules: &Modules, symbol: Symbol, new: &str) -> Option<String> {
+fn name_taken_in(modules: &PackageModules, symbol: WeslSymbol, new: &str) -> Option<String> {
     let name: Name = modules.graph.names.find(new)?;
     let places = modules.references(symbol);
     let nodes = modules.graph.nodes.iter();
     let mut used = nodes.filter(|node| places.iter().any(|span| span.source == node.module.source));
-    let has = |node: &&crate::resolve::wesl::Node| {
+    let has = |node: &&crate::resolve::wesl::ModuleNode| {
         node.sets.contains_key(&name)
             || node.aliases.contains_key(&name)
             || node.module.items.iter().any(|item| item.locals.contains(&name))
@@ -186,7 +186,7 @@ pub(super) fn symbol_kind(kind: ItemKind) -> u32 {
 }
 
 /// `textDocument/documentSymbol`.
-pub fn document_symbols(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn document_symbols(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     if glsl::is_asked(server, parameters) {
         return glsl::document_symbols(server, parameters);
     }
@@ -214,7 +214,7 @@ pub fn document_symbols(server: &mut Server, parameters: &Value) -> Result<Value
 }
 
 /// `workspace/symbol`: of the packages of all open documents, and of the library.
-pub fn workspace_symbols(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn workspace_symbols(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let query = parameters.get("query").and_then(Value::as_str).unwrap_or_default().to_lowercase();
     let roots: BTreeSet<_> = server.documents.values().map(|found| found.root.clone()).collect();
     let mut found = Vec::new();

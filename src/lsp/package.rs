@@ -7,26 +7,26 @@ use std::sync::Arc;
 
 use super::unchanged::Unchanged;
 use crate::diagnostic::Diagnostics;
-use crate::parse::wesl::{Event, Expression, Item, Name, Operand};
+use crate::parse::wesl::{ComparisonOperand, Event, Expression, Item, Name};
 use crate::permute::Manifest;
 use crate::permute::manifest::Features;
 use crate::project;
 use crate::resolve::Packages;
-use crate::resolve::wesl::{Graph, Kept, Node, Target, load_all};
+use crate::resolve::wesl::{Graph, KeptModules, ModuleNode, PathTarget, load_all};
 use crate::source::{Files, Package, ReadError, SourceSet, Span};
 
 /// Texts of open documents by their path below a package's root.
-pub type Texts = Arc<BTreeMap<String, String>>;
+pub type OpenTexts = Arc<BTreeMap<String, String>>;
 
 /// The files of a package, with the texts of open documents in place of the files on disk.
-struct Overlay {
+struct EditorFiles {
     root: PathBuf,
     below: Box<dyn Files>,
-    open: Texts,
+    open: OpenTexts,
     unchanged: Arc<Unchanged>,
 }
 
-impl Files for Overlay {
+impl Files for EditorFiles {
     fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
         match self.open.get(path) {
             Some(text) => Ok(Some(text.clone())),
@@ -64,7 +64,7 @@ impl Files for Overlay {
 }
 
 /// A package as an editor has it: its manifest, and its files with the open ones in their place.
-pub struct Opened {
+pub struct OpenedPackage {
     pub root: PathBuf,
     pub sources: SourceSet,
     pub packages: Packages,
@@ -78,9 +78,9 @@ pub struct Opened {
 /// are among the problems.
 pub fn open_package(
     root: &Path,
-    texts: &Texts,
+    texts: &OpenTexts,
     unchanged: &Arc<Unchanged>,
-) -> Result<Opened, (SourceSet, Diagnostics)> {
+) -> Result<OpenedPackage, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
     let packages = match root.exists() {
         true => project::packages(root, &mut sources),
@@ -93,7 +93,7 @@ pub fn open_package(
     };
     cover_files(&mut packages.root, root, texts, unchanged);
     for dependency in &mut packages.dependencies {
-        cover_files(dependency, root, &Texts::default(), unchanged);
+        cover_files(dependency, root, &OpenTexts::default(), unchanged);
     }
     let (manifest, mut problems) = match project::manifest(root, &mut sources) {
         Ok(manifest) => (manifest, Vec::new()),
@@ -106,14 +106,14 @@ pub fn open_package(
             Features::default()
         }),
     };
-    Ok(Opened { root: root.to_owned(), sources, packages, manifest, features, problems })
+    Ok(OpenedPackage { root: root.to_owned(), sources, packages, manifest, features, problems })
 }
 
 /// Makes a package read open texts in place of files, and cached texts of files that have not
 /// changed.
-fn cover_files(package: &mut Package, root: &Path, texts: &Texts, unchanged: &Arc<Unchanged>) {
+fn cover_files(package: &mut Package, root: &Path, texts: &OpenTexts, unchanged: &Arc<Unchanged>) {
     let below = std::mem::replace(&mut package.files, Box::new(crate::source::Embedded));
-    package.files = Box::new(Overlay {
+    package.files = Box::new(EditorFiles {
         root: root.to_owned(),
         below,
         open: Arc::clone(texts),
@@ -123,7 +123,7 @@ fn cover_files(package: &mut Package, root: &Path, texts: &Texts, unchanged: &Ar
 
 /// What a name stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Symbol {
+pub enum WeslSymbol {
     /// The declarations of a name in a module.
     Items { node: u32, name: Name },
     /// A parameter or a local of a module, by the first byte of its declaration.
@@ -135,45 +135,45 @@ pub enum Symbol {
 }
 
 /// Every module of the package, and those of others that they reach.
-pub struct Modules {
+pub struct PackageModules {
     pub graph: Graph,
     pub sources: SourceSet,
 }
 
 /// Reads all modules of the opened package.
-pub fn read_modules(opened: &mut Opened, kept: &mut Kept) -> Option<Modules> {
+pub fn read_modules(opened: &mut OpenedPackage, kept: &mut KeptModules) -> Option<PackageModules> {
     let paths = opened.packages.root.files.list(&["wesl", "wgsl"]);
     let graph = load_all(&mut opened.sources, &opened.packages, &paths, kept)?;
-    Some(Modules { graph, sources: opened.sources.clone() })
+    Some(PackageModules { graph, sources: opened.sources.clone() })
 }
 
-impl Modules {
+impl PackageModules {
     /// The module of a file of the package itself.
     pub fn node(&self, path: &str) -> Option<u32> {
         let stem = path.rsplit_once('.').map_or(path, |(stem, _)| stem);
-        let is_it = |node: &Node| node.package == 0 && node.path.join("/") == stem;
+        let is_it = |node: &ModuleNode| node.package == 0 && node.path.join("/") == stem;
         self.graph.nodes.iter().position(is_it).map(|index| index as u32)
     }
 
     /// The symbol at a byte of a module, with the range of its name there.
-    pub fn symbol(&self, node: u32, byte: u32) -> Option<(Symbol, Range<u32>)> {
+    pub fn symbol(&self, node: u32, byte: u32) -> Option<(WeslSymbol, Range<u32>)> {
         let module = &self.graph.nodes[node as usize].module;
         let has = |range: &Range<u32>| range.start <= byte && byte <= range.end;
         let flag =
             module.expressions.iter().flat_map(condition_flags).find(|(_, range)| has(range));
         if let Some((name, range)) = flag {
-            return Some((Symbol::Flag(name), range));
+            return Some((WeslSymbol::Flag(name), range));
         }
         let local = module.local_uses.iter().find(|found| has(&(found.start..found.end)));
         if let Some(found) = local {
-            let symbol = Symbol::Local { node, declared: found.declared };
+            let symbol = WeslSymbol::Local { node, declared: found.declared };
             return Some((symbol, found.start..found.end));
         }
         self.places_in(node).find(|(_, range)| has(range))
     }
 
     /// Items, constants and what imports bring, at each place of a module that names them.
-    pub fn places_in(&self, node: u32) -> impl Iterator<Item = (Symbol, Range<u32>)> {
+    pub fn places_in(&self, node: u32) -> impl Iterator<Item = (WeslSymbol, Range<u32>)> {
         let here = &self.graph.nodes[node as usize];
         let uses = here.module.items.iter().flat_map(move |item| uses_of_item(here, node, item));
         let imports = here.module.imports.iter().zip(here.imports.iter());
@@ -189,35 +189,35 @@ impl Modules {
     }
 
     /// Where a symbol is declared.
-    pub fn declarations(&self, symbol: Symbol) -> Vec<Span> {
+    pub fn declarations(&self, symbol: WeslSymbol) -> Vec<Span> {
         match symbol {
-            Symbol::Items { node, name } => {
+            WeslSymbol::Items { node, name } => {
                 let here = &self.graph.nodes[node as usize];
                 let items = here.sets.get(&name).into_iter().flatten();
                 let range = |index: &u32| here.module.items[*index as usize].name_range.clone();
                 items.map(|index| here.module.span(range(index))).collect()
             }
-            Symbol::Local { node, declared } => {
+            WeslSymbol::Local { node, declared } => {
                 let module = &self.graph.nodes[node as usize].module;
                 let place = module.local_uses.iter().find(|found| found.start == declared);
                 place.map(|found| module.span(found.start..found.end)).into_iter().collect()
             }
-            Symbol::Flag(_) | Symbol::Constant(_) => Vec::new(),
+            WeslSymbol::Flag(_) | WeslSymbol::Constant(_) => Vec::new(),
         }
     }
 
     /// Every place that names a symbol, its declarations included, by file and place.
-    pub fn references(&self, symbol: Symbol) -> Vec<Span> {
+    pub fn references(&self, symbol: WeslSymbol) -> Vec<Span> {
         let mut found = Vec::new();
         for (index, node) in self.graph.nodes.iter().enumerate() {
             let module = &node.module;
             match symbol {
-                Symbol::Local { node, declared } if node as usize == index => {
+                WeslSymbol::Local { node, declared } if node as usize == index => {
                     let uses = module.local_uses.iter().filter(|found| found.declared == declared);
                     found.extend(uses.map(|found| module.span(found.start..found.end)));
                 }
-                Symbol::Local { .. } => {}
-                Symbol::Flag(name) => {
+                WeslSymbol::Local { .. } => {}
+                WeslSymbol::Flag(name) => {
                     let flags = module.expressions.iter().flat_map(condition_flags);
                     let flags = flags.filter(|(flag, _)| *flag == name);
                     found.extend(flags.map(|(_, range)| module.span(range)));
@@ -234,8 +234,8 @@ impl Modules {
     }
 
     /// The item of a symbol that is declared first.
-    pub fn item(&self, symbol: Symbol) -> Option<(&Node, &Item)> {
-        let Symbol::Items { node, name } = symbol else { return None };
+    pub fn item(&self, symbol: WeslSymbol) -> Option<(&ModuleNode, &Item)> {
+        let WeslSymbol::Items { node, name } = symbol else { return None };
         let here = &self.graph.nodes[node as usize];
         let index = here.sets.get(&name)?.first()?;
         Some((here, &here.module.items[*index as usize]))
@@ -244,9 +244,9 @@ impl Modules {
 
 /// Names of a condition with their places.
 fn condition_flags(expression: &Expression) -> Vec<(Name, Range<u32>)> {
-    let named = |operand: &Operand| match operand {
-        Operand::Name(name, range) => Some((*name, range.clone())),
-        Operand::Integer(..) => None,
+    let named = |operand: &ComparisonOperand| match operand {
+        ComparisonOperand::Name(name, range) => Some((*name, range.clone())),
+        ComparisonOperand::Integer(..) => None,
     };
     match expression {
         Expression::Flag(name, range) => vec![(*name, range.clone())],
@@ -257,23 +257,23 @@ fn condition_flags(expression: &Expression) -> Vec<(Name, Range<u32>)> {
     }
 }
 
-fn symbol_of(target: Target) -> Option<Symbol> {
+fn symbol_of(target: PathTarget) -> Option<WeslSymbol> {
     match target {
-        Target::Items { node, name } => Some(Symbol::Items { node, name }),
-        Target::Constant(index) => Some(Symbol::Constant(index)),
-        Target::Module | Target::Failed(_) => None,
+        PathTarget::Items { node, name } => Some(WeslSymbol::Items { node, name }),
+        PathTarget::Constant(index) => Some(WeslSymbol::Constant(index)),
+        PathTarget::Module | PathTarget::Failed(_) => None,
     }
 }
 
 /// What an item declares and uses.
 fn uses_of_item<'n>(
-    here: &'n Node,
+    here: &'n ModuleNode,
     node: u32,
     item: &'n Item,
-) -> impl Iterator<Item = (Symbol, Range<u32>)> + 'n {
+) -> impl Iterator<Item = (WeslSymbol, Range<u32>)> + 'n {
     item.events.iter().filter_map(move |event| match *event {
         Event::Definition { start, end } => {
-            Some((Symbol::Items { node, name: item.name }, start..end))
+            Some((WeslSymbol::Items { node, name: item.name }, start..end))
         }
         Event::Use { reference, start, end, .. } => {
             let candidates = here.bindings.get(reference as usize)?;

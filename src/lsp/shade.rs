@@ -5,11 +5,11 @@ use std::ops::Range;
 use serde_json::{Value, json};
 
 use super::place::Lines;
-use super::{Server, look};
+use super::{LanguageServer, look};
 use crate::permute::Settings;
 use crate::resolve::Graph;
 
-impl Server {
+impl LanguageServer {
     /// The text that parameters name, and its inactive parts.
     fn shaded(&self, parameters: &Value) -> Result<(&str, Vec<Range<u32>>), String> {
         let document = self.document(parameters)?;
@@ -48,7 +48,7 @@ fn trimmed_range(text: &str, range: &Range<u32>) -> Range<usize> {
 }
 
 /// `textDocument/semanticTokens/full`: inactive code as comments, line by line.
-pub fn semantic_tokens(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn semantic_tokens(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let (text, inactive) = server.shaded(parameters)?;
     let lines = Lines::new(text);
     let (mut data, mut last) = (Vec::new(), (0, 0));
@@ -75,7 +75,7 @@ pub fn semantic_tokens(server: &mut Server, parameters: &Value) -> Result<Value,
 }
 
 /// `textDocument/inlayHint`: a hint at the end of the first line of each inactive part.
-pub fn inlay_hints(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn inlay_hints(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let (text, inactive) = server.shaded(parameters)?;
     let lines = Lines::new(text);
     let hint = |range: Range<u32>| {

@@ -33,7 +33,7 @@ pub fn adapt_text(text: &str) -> Cow<'_, str> {
 }
 
 /// The first byte, the byte after the last one, and what replaces them.
-type Edit = (usize, usize, &'static str);
+type TextEdit = (usize, usize, &'static str);
 
 fn token_texts<'t, const N: usize>(tokens: &[Token<'t>], at: usize) -> Option<[&'t str; N]> {
     let found = tokens.get(at..at + N)?;
@@ -41,7 +41,7 @@ fn token_texts<'t, const N: usize>(tokens: &[Token<'t>], at: usize) -> Option<[&
 }
 
 /// `[[function_constant(0)]];` -> `= {};`
-fn function_constant(tokens: &[Token<'_>], at: usize) -> Option<Edit> {
+fn function_constant(tokens: &[Token<'_>], at: usize) -> Option<TextEdit> {
     let ["[", "[", "function_constant", "(", _, ")", "]", "]", ";"] = token_texts::<9>(tokens, at)?
     else {
         return None;
@@ -50,14 +50,14 @@ fn function_constant(tokens: &[Token<'_>], at: usize) -> Option<Edit> {
 }
 
 /// `template <typename A> R naga_...(threadgroup A *atomic_ptr` gets a name of its own.
-fn second_helper(tokens: &[Token<'_>], at: usize) -> Option<Edit> {
+fn second_helper(tokens: &[Token<'_>], at: usize) -> Option<TextEdit> {
     const HELPER: &str = "naga_atomic_compare_exchange_weak_explicit";
     let [HELPER, "(", "threadgroup", "A", "*"] = token_texts::<5>(tokens, at)? else { return None };
     Some((tokens[at].at, tokens[at].end(), "naga_atomic_of_threadgroup"))
 }
 
 /// `(a < b).x` -> `__lamplight::truth(a < b).x`, unless the bracket belongs to a call.
-fn component_of_group(tokens: &[Token<'_>], at: usize) -> Option<Edit> {
+fn component_of_group(tokens: &[Token<'_>], at: usize) -> Option<TextEdit> {
     let (before, open) = (tokens.get(at.checked_sub(1)?)?, tokens[at]);
     let is_call =
         before.text.ends_with(|last: char| last.is_alphanumeric() || "_>)]".contains(last));

@@ -5,7 +5,7 @@ use crate::source::line_and_column;
 
 /// What an attribute may have in its brackets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Given {
+enum AttributeValue {
     Nothing,
     /// A number up to this one.
     Number(u32),
@@ -26,8 +26,8 @@ enum Behind {
     Item,
 }
 
+use AttributeValue::{Name, Nothing, Number, Word};
 use Behind::{Either, Item, Member, Parameter};
-use Given::{Name, Nothing, Number, Word};
 
 /// Slots of Metal's argument tables, and its limits for the rest, on macOS.
 const BUFFERS: u32 = 30;
@@ -37,7 +37,7 @@ const COLORS: u32 = 7;
 const ATTRIBUTES: u32 = 30;
 
 /// The attributes of the Metal Shading Language Specification that naga's writer uses.
-const KNOWN: &[(&str, Given, Behind)] = &[
+const KNOWN: &[(&str, AttributeValue, Behind)] = &[
     ("amplification_id", Nothing, Parameter),
     ("attribute", Number(ATTRIBUTES), Member),
     ("barycentric_coord", Nothing, Either),
@@ -85,7 +85,7 @@ const KNOWN: &[(&str, Given, Behind)] = &[
 
 /// One attribute.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Attribute<'t> {
+pub struct MslAttribute<'t> {
     pub name: &'t str,
     /// What is in its brackets.
     pub given: Option<&'t str>,
@@ -93,7 +93,7 @@ pub struct Attribute<'t> {
     pub at: usize,
 }
 
-impl Attribute<'_> {
+impl MslAttribute<'_> {
     /// The number in its brackets.
     pub fn number(&self) -> Option<u32> {
         self.given?.parse().ok()
@@ -105,7 +105,7 @@ impl Attribute<'_> {
 pub fn attribute_list<'t>(
     tokens: &[Token<'t>],
     start: usize,
-) -> Option<(Vec<Attribute<'t>>, usize)> {
+) -> Option<(Vec<MslAttribute<'t>>, usize)> {
     if !opens_attributes(tokens, start) {
         return None;
     }
@@ -122,7 +122,7 @@ pub fn attribute_list<'t>(
             }
             at += 1;
         }
-        found.push(Attribute { name: token.text, given, at: token.at });
+        found.push(MslAttribute { name: token.text, given, at: token.at });
         match tokens.get(at)?.text {
             "," => at += 1,
             "]" => {}
@@ -185,7 +185,7 @@ fn mistake_text(text: &str, at: usize, message: &str) -> String {
     format!("{line}:{column}: error: {message}")
 }
 
-fn wrong_attribute(attribute: &Attribute<'_>, behind: Behind) -> Option<String> {
+fn wrong_attribute(attribute: &MslAttribute<'_>, behind: Behind) -> Option<String> {
     let name = attribute.name;
     let Some((_, given, place)) = KNOWN.iter().find(|(known, ..)| *known == name) else {
         return Some(format!("there is no attribute `{name}`"));

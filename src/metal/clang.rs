@@ -42,7 +42,7 @@ const FLAGS: &[&str] = &[
 
 /// Why clang cannot be used, or failed.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Missing {
+pub struct ClangMissing {
     pub reason: String,
 }
 
@@ -67,24 +67,24 @@ pub fn shim_hash() -> String {
 ///
 /// # Errors
 /// No clang can be run, or it does not tell its version.
-pub fn clang_version() -> Result<String, Missing> {
+pub fn clang_version() -> Result<String, ClangMissing> {
     let output = Command::new(CLANG.program).arg("--version").output().map_err(missing_reason)?;
     let text = String::from_utf8_lossy(&output.stdout);
     let version = text.lines().next().unwrap_or_default().trim().to_owned();
     if output.status.success() && version.contains("clang") {
         Ok(version)
     } else {
-        Err(Missing { reason: format!("{} does not tell its version", CLANG.program) })
+        Err(ClangMissing { reason: format!("{} does not tell its version", CLANG.program) })
     }
 }
 
-fn missing_reason(error: io::Error) -> Missing {
-    Missing { reason: format!("{}: {error}", CLANG.program) }
+fn missing_reason(error: io::Error) -> ClangMissing {
+    ClangMissing { reason: format!("{}: {error}", CLANG.program) }
 }
 
 impl Clang {
     /// Looks for clang, and writes the headers.
-    pub fn open() -> Result<Self, Missing> {
+    pub fn open() -> Result<Self, ClangMissing> {
         clang_version()?;
         let clang = Self { folder: own_folder().map_err(missing_reason)? };
         for (name, text) in SHIM {
@@ -106,20 +106,20 @@ impl Clang {
     }
 
     /// Compiles a source with the flags for shaders and more arguments.
-    pub fn compile(&self, source: &str, arguments: &[&str]) -> Result<Output, Missing> {
+    pub fn compile(&self, source: &str, arguments: &[&str]) -> Result<Output, ClangMissing> {
         let mut command = Command::new(CLANG.program);
         command.args(FLAGS).arg("-isystem").arg(&self.folder).args(arguments).arg("-");
         self.run(command, source.as_bytes())
     }
 
     /// Calls clang with any arguments, in the folder.
-    pub fn call(&self, arguments: &[&str]) -> Result<Output, Missing> {
+    pub fn call(&self, arguments: &[&str]) -> Result<Output, ClangMissing> {
         let mut command = Command::new(CLANG.program);
         command.args(arguments);
         self.run(command, &[])
     }
 
-    fn run(&self, mut command: Command, input: &[u8]) -> Result<Output, Missing> {
+    fn run(&self, mut command: Command, input: &[u8]) -> Result<Output, ClangMissing> {
         command.current_dir(&self.folder).stdin(Stdio::piped());
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().map_err(missing_reason)?;

@@ -4,29 +4,29 @@ use std::fmt::Write as _;
 
 use super::adapt::adapt_text;
 use super::attributes;
-use super::clang::{Clang, Missing};
+use super::clang::{Clang, ClangMissing};
 use super::token::msl_tokens;
 
 /// A text that is not well formed.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Refusal {
+pub struct MslRefusal {
     /// Index of the text.
     pub index: usize,
     /// What is wrong with it, as `line:column: error: ...`, a line for each.
     pub errors: String,
 }
 
-type Refusals = Result<Vec<Refusal>, Missing>;
+type Refusals = Result<Vec<MslRefusal>, ClangMissing>;
 
 /// Judges some texts. Each has a number, by which refusals name it.
 ///
 /// # Errors
 /// clang cannot be run.
-pub fn judge_batch(clang: &Clang, batch: &[Text<'_>]) -> Refusals {
+pub fn judge_batch(clang: &Clang, batch: &[IndexedText<'_>]) -> Refusals {
     let (mut refusals, mut sound) = (Vec::new(), Vec::new());
     for (index, text) in batch {
         match before_clang(text) {
-            Some(errors) => refusals.push(Refusal { index: *index, errors }),
+            Some(errors) => refusals.push(MslRefusal { index: *index, errors }),
             None => sound.push((*index, *text)),
         }
     }
@@ -47,11 +47,15 @@ fn before_clang(text: &str) -> Option<String> {
     attributes::first_mistake(text)
 }
 
-type Text<'t> = (usize, &'t str);
+type IndexedText<'t> = (usize, &'t str);
 
 /// Judges a batch. If it is refused, it is divided in halves until the texts at fault are found,
 /// since a mistake in one text may make others look wrong.
-fn judge_sound(clang: &Clang, batch: &[Text<'_>], to: &mut Vec<Refusal>) -> Result<(), Missing> {
+fn judge_sound(
+    clang: &Clang,
+    batch: &[IndexedText<'_>],
+    to: &mut Vec<MslRefusal>,
+) -> Result<(), ClangMissing> {
     if batch.is_empty() {
         return Ok(());
     }
@@ -60,7 +64,7 @@ fn judge_sound(clang: &Clang, batch: &[Text<'_>], to: &mut Vec<Refusal>) -> Resu
         return Ok(());
     }
     if let [(index, _)] = batch {
-        to.push(Refusal { index: *index, errors: clang_errors(&output.stderr) });
+        to.push(MslRefusal { index: *index, errors: clang_errors(&output.stderr) });
         return Ok(());
     }
     let (first, second) = batch.split_at(batch.len() / 2);
@@ -69,7 +73,7 @@ fn judge_sound(clang: &Clang, batch: &[Text<'_>], to: &mut Vec<Refusal>) -> Resu
 }
 
 /// Texts side by side, each in a namespace of its own.
-fn unit_text(texts: &[Text<'_>]) -> String {
+fn unit_text(texts: &[IndexedText<'_>]) -> String {
     let mut unit = "#include <metal_stdlib>\n".to_owned();
     for (number, (_, text)) in texts.iter().enumerate() {
         let _ =

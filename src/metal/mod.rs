@@ -12,5 +12,5 @@ mod clang;
 pub mod judge;
 pub mod token;
 
-pub use clang::{Clang, Missing, clang_version, shim_hash};
-pub use judge::{Refusal, judge_batch};
+pub use clang::{Clang, ClangMissing, clang_version, shim_hash};
+pub use judge::{MslRefusal, judge_batch};

@@ -3,28 +3,28 @@
 use std::collections::BTreeMap;
 
 use super::Migrated;
-use super::tree::{Bytes, Scanned};
+use super::tree::{ByteRange, Scanned};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::source::{SourceId, Span};
 
 /// A test of a shader def: whether it is defined, or how its number compares.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Condition {
-    pub asked: Question,
+pub struct ShaderDefTest {
+    pub asked: DefQuestion,
     pub negated: bool,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Question {
+pub struct DefQuestion {
     pub name: String,
     /// Operator and number.
     pub compared: Option<(String, String)>,
 }
 
-impl Condition {
+impl ShaderDefTest {
     /// `#ifdef NAME`.
     pub fn defined(name: &str) -> Self {
-        let asked = Question { name: name.to_owned(), compared: None };
+        let asked = DefQuestion { name: name.to_owned(), compared: None };
         Self { asked, negated: false }
     }
 
@@ -41,7 +41,7 @@ impl Condition {
             ("==", "false") | ("!=", "true") => Some(defined.not()),
             ("==" | "!=" | "<" | "<=" | ">" | ">=", _) if value.parse::<i64>().is_ok() => {
                 let compared = Some((operator.to_owned(), value.to_owned()));
-                let asked = Question { name: name.to_owned(), compared };
+                let asked = DefQuestion { name: name.to_owned(), compared };
                 Some(Self { asked, negated: false })
             }
             _ => None,
@@ -79,9 +79,9 @@ fn opposite_operator(operator: &str) -> &str {
 }
 
 /// All conditions joined with `&&`, each once, as in `@if(...)`.
-pub fn joined_conditions(conditions: &[Condition]) -> String {
+pub fn joined_conditions(conditions: &[ShaderDefTest]) -> String {
     let mut texts: Vec<String> = Vec::new();
-    for text in conditions.iter().map(Condition::text) {
+    for text in conditions.iter().map(ShaderDefTest::text) {
         if !texts.contains(&text) {
             texts.push(text);
         }
@@ -91,14 +91,14 @@ pub fn joined_conditions(conditions: &[Condition]) -> String {
 
 /// What is known of shader defs at a place.
 #[derive(Debug, Clone, Default)]
-pub struct Facts(BTreeMap<Question, bool>);
+pub struct Facts(BTreeMap<DefQuestion, bool>);
 
 impl Facts {
-    pub fn holds(&self, condition: &Condition) -> Option<bool> {
+    pub fn holds(&self, condition: &ShaderDefTest) -> Option<bool> {
         self.0.get(&condition.asked).map(|known| *known != condition.negated)
     }
 
-    pub fn with(&self, conditions: &[Condition]) -> Self {
+    pub fn with(&self, conditions: &[ShaderDefTest]) -> Self {
         let mut facts = self.clone();
         for condition in conditions {
             facts.0.insert(condition.asked.clone(), !condition.negated);
@@ -109,14 +109,14 @@ impl Facts {
 
 /// Shader defs of a file, each with its first place.
 #[derive(Debug, Default)]
-pub struct Asked {
+pub struct ShaderDefs {
     pub features: BTreeMap<String, Span>,
     pub numbers: BTreeMap<String, Span>,
     pub constants: BTreeMap<String, Span>,
 }
 
-impl Asked {
-    pub fn note(&mut self, condition: &Condition, source: SourceId, place: &Bytes) {
+impl ShaderDefs {
+    pub fn note(&mut self, condition: &ShaderDefTest, source: SourceId, place: &ByteRange) {
         let found = match condition.asked.compared {
             Some(_) => &mut self.numbers,
             None => &mut self.features,

@@ -1,20 +1,21 @@
 //! `#import`: its paths, and where it may stand.
 
-use super::condition::Condition;
-use super::names::{Modules, Place};
-use super::tree::{Bytes, Choice, Import, Leaf, Node, Path};
+use super::condition::ShaderDefTest;
+use super::names::{FolderModules, PathDestination};
+use super::tree::{ByteRange, Conditional, ImportDirective, ImportLeaf, ImportedPath, Node};
 use crate::parse::wesl::blank::without_comments;
 use crate::parse::words::leading_word;
 
 /// Why an import cannot be read, and where.
-type Wrong = (&'static str, Bytes);
+type ImportError = (&'static str, ByteRange);
 
 /// Reads the directive in `place`.
-pub fn parse_import(text: &str, place: Bytes) -> Result<Leaf, Wrong> {
+pub fn parse_import(text: &str, place: ByteRange) -> Result<ImportLeaf, ImportError> {
     let bare = without_comments(&text[place.clone()]);
     let start = bare.find("import").unwrap_or(0) + "import".len();
     let end = bare.trim_end().trim_end_matches(';').trim_end().len();
-    let mut reader = Reader { bare: &bare[..end.max(start)], at: start, offset: place.start };
+    let mut reader =
+        ImportLineReader { bare: &bare[..end.max(start)], at: start, offset: place.start };
     let mut tree = reader.leaf(0)?;
     if !reader.is_at_end() {
         // `#import path item, item`, the form before braces.
@@ -27,13 +28,13 @@ pub fn parse_import(text: &str, place: Bytes) -> Result<Leaf, Wrong> {
 }
 
 /// The names that an import brings into scope, with their whole paths.
-pub fn import_paths(tree: &Leaf) -> Vec<Path> {
+pub fn import_paths(tree: &ImportLeaf) -> Vec<ImportedPath> {
     let mut found = Vec::new();
     collect_paths(tree, &[], &mut found);
     found
 }
 
-fn collect_paths(leaf: &Leaf, before: &[String], found: &mut Vec<Path>) {
+fn collect_paths(leaf: &ImportLeaf, before: &[String], found: &mut Vec<ImportedPath>) {
     let path: Vec<String> =
         before.iter().chain(leaf.file.as_ref()).chain(&leaf.path).cloned().collect();
     match (&leaf.alias, path.last(), &leaf.braces) {
@@ -42,13 +43,13 @@ fn collect_paths(leaf: &Leaf, before: &[String], found: &mut Vec<Path>) {
         }
         (alias, Some(last), None) => {
             let alias = alias.as_ref().unwrap_or(last).clone();
-            found.push(Path { alias, at: leaf.at.clone(), path });
+            found.push(ImportedPath { alias, at: leaf.at.clone(), path });
         }
         (_, None, None) => {}
     }
 }
 
-struct Reader<'a> {
+struct ImportLineReader<'a> {
     bare: &'a str,
     at: usize,
     offset: usize,
@@ -57,7 +58,7 @@ struct Reader<'a> {
 /// How deeply braces may nest.
 const DEEPEST: usize = 32;
 
-impl Reader<'_> {
+impl ImportLineReader<'_> {
     fn skip(&mut self) {
         self.at += self.bare[self.at..].len() - self.bare[self.at..].trim_start().len();
     }
@@ -81,16 +82,16 @@ impl Reader<'_> {
         (!found.is_empty()).then(|| found.to_owned())
     }
 
-    fn wrong(&self, message: &'static str) -> Wrong {
+    fn wrong(&self, message: &'static str) -> ImportError {
         let length = self.bare[self.at..].chars().next().map_or(0, char::len_utf8);
         (message, self.offset + self.at..self.offset + self.at + length)
     }
 
-    fn leaf(&mut self, depth: usize) -> Result<Leaf, Wrong> {
+    fn leaf(&mut self, depth: usize) -> Result<ImportLeaf, ImportError> {
         let lead = self.offset + self.at;
         self.skip();
         let start = self.offset + self.at;
-        let mut leaf = Leaf {
+        let mut leaf = ImportLeaf {
             path: Vec::new(),
             file: None,
             alias: None,
@@ -131,7 +132,7 @@ impl Reader<'_> {
     }
 
     /// Reads a list in braces, from behind the opening brace.
-    fn braces(&mut self, leaf: &mut Leaf, depth: usize) -> Result<(), Wrong> {
+    fn braces(&mut self, leaf: &mut ImportLeaf, depth: usize) -> Result<(), ImportError> {
         let start = self.offset + self.at - 1;
         if depth == DEEPEST {
             return Err(self.wrong("braces nest too deep"));
@@ -146,7 +147,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn listed(&mut self, mut tree: Leaf) -> Result<Leaf, Wrong> {
+    fn listed(&mut self, mut tree: ImportLeaf) -> Result<ImportLeaf, ImportError> {
         loop {
             tree.children.push(self.leaf(1)?);
             if !self.take(",") {
@@ -160,7 +161,7 @@ impl Reader<'_> {
 /// The nodes without imports that would stand in a block: those go to `late`.
 pub fn without_late_imports(
     nodes: Vec<Node>,
-    late: &mut Vec<(Vec<Condition>, Import)>,
+    late: &mut Vec<(Vec<ShaderDefTest>, ImportDirective)>,
 ) -> Vec<Node> {
     let taken = std::mem::take(late);
     let one = |node| match node {
@@ -175,15 +176,15 @@ pub fn without_late_imports(
 }
 
 fn without_imports(
-    mut choice: Choice,
-    around: &[Condition],
-    late: &mut Vec<(Vec<Condition>, Import)>,
-) -> Choice {
+    mut choice: Conditional,
+    around: &[ShaderDefTest],
+    late: &mut Vec<(Vec<ShaderDefTest>, ImportDirective)>,
+) -> Conditional {
     let mut before = around.to_vec();
     for branch in &mut choice.branches {
         let mut here = before.clone();
         here.extend(branch.condition.clone());
-        before.extend(branch.condition.clone().map(Condition::not));
+        before.extend(branch.condition.clone().map(ShaderDefTest::not));
         let mut nodes = Vec::new();
         for node in std::mem::take(&mut branch.nodes) {
             match node {
@@ -203,8 +204,8 @@ fn without_imports(
 /// need no import, or that their module lacks, are left out.
 pub fn import_statements(
     text: &str,
-    tree: &Leaf,
-    modules: &Modules,
+    tree: &ImportLeaf,
+    modules: &FolderModules,
 ) -> Result<Vec<String>, String> {
     let mut found = Vec::new();
     write_import(text, tree, &[], modules, &mut found)?;
@@ -213,9 +214,9 @@ pub fn import_statements(
 
 fn write_import(
     text: &str,
-    leaf: &Leaf,
+    leaf: &ImportLeaf,
     before: &[String],
-    modules: &Modules,
+    modules: &FolderModules,
     found: &mut Vec<String>,
 ) -> Result<(), String> {
     let path: Vec<String> =
@@ -256,8 +257,8 @@ fn write_import(
 /// are.
 fn listed_in(
     text: &str,
-    leaf: &Leaf,
-    braces: &Bytes,
+    leaf: &ImportLeaf,
+    braces: &ByteRange,
     is_absent: impl Fn(&str) -> bool,
 ) -> Option<String> {
     let (mut listed, mut at, mut count) = (String::new(), braces.start, 0);
@@ -286,15 +287,19 @@ fn bare_of_blanks(lead: &str) -> String {
 }
 
 /// The path of the WESL import of one name; `None` if there is none.
-fn import_one(path: &[String], leaf: &Leaf, modules: &Modules) -> Result<Option<String>, String> {
+fn import_one(
+    path: &[String],
+    leaf: &ImportLeaf,
+    modules: &FolderModules,
+) -> Result<Option<String>, String> {
     let Some(last) = path.last() else { return Ok(None) };
     if modules.lacks(&path[..path.len() - 1], last) {
         return Ok(None);
     }
     let place = match modules.place(path)? {
-        Place::Known(place) => place,
-        Place::Foreign => path.join("::"),
-        Place::Prefix => return Ok(None),
+        PathDestination::Known(place) => place,
+        PathDestination::Foreign => path.join("::"),
+        PathDestination::Prefix => return Ok(None),
     };
     let alias = leaf.alias.as_ref().unwrap_or(last);
     let own = place.rsplit("::").next().unwrap_or_default();

@@ -1,11 +1,11 @@
 //! The kinds of lists, and the state of a unit of a list while it is read.
 
-use super::unit::Part;
+use super::unit::UnitPart;
 use crate::parse::words::begins_word;
 
 /// The kind of the units in a list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Level {
+pub enum UnitKind {
     Declarations,
     Statements,
     Cases,
@@ -13,7 +13,7 @@ pub enum Level {
     Parameters,
 }
 
-impl Level {
+impl UnitKind {
     /// Whether commas separate its units.
     pub fn has_commas(self) -> bool {
         matches!(self, Self::Members | Self::Parameters)
@@ -26,9 +26,9 @@ impl Level {
 }
 
 /// A unit that is being read.
-pub struct Unit<'a> {
-    level: Level,
-    pub parts: Vec<Part<'a>>,
+pub struct OpenUnit<'a> {
+    level: UnitKind,
+    pub parts: Vec<UnitPart<'a>>,
     /// Its first word that is not of an attribute.
     pub first: String,
     before: String,
@@ -37,8 +37,8 @@ pub struct Unit<'a> {
     has_parameters: bool,
 }
 
-impl Unit<'_> {
-    pub fn new(level: Level) -> Self {
+impl OpenUnit<'_> {
+    pub fn new(level: UnitKind) -> Self {
         let (first, before) = (String::new(), String::new());
         Self { level, parts: Vec::new(), first, before, angles: 0, has_parameters: false }
     }
@@ -58,19 +58,20 @@ impl Unit<'_> {
 
     /// Whether the parenthesis is that of a function's parameters.
     pub fn parameters_follow(&mut self) -> bool {
-        let found = self.level == Level::Declarations && self.first == "fn" && !self.has_parameters;
+        let found =
+            self.level == UnitKind::Declarations && self.first == "fn" && !self.has_parameters;
         self.has_parameters |= found;
         found
     }
 
     /// The kind of the units in braces at this place; `None` if braces cannot be here.
-    pub fn inner(&self) -> Option<Level> {
+    pub fn inner(&self) -> Option<UnitKind> {
         match self.level {
-            Level::Declarations if self.first == "struct" => Some(Level::Members),
-            Level::Declarations => Some(Level::Statements),
-            Level::Statements if self.first == "switch" => Some(Level::Cases),
-            Level::Statements | Level::Cases => Some(Level::Statements),
-            Level::Members | Level::Parameters => None,
+            UnitKind::Declarations if self.first == "struct" => Some(UnitKind::Members),
+            UnitKind::Declarations => Some(UnitKind::Statements),
+            UnitKind::Statements if self.first == "switch" => Some(UnitKind::Cases),
+            UnitKind::Statements | UnitKind::Cases => Some(UnitKind::Statements),
+            UnitKind::Members | UnitKind::Parameters => None,
         }
     }
 }

@@ -48,7 +48,7 @@ pub fn naga_oil(sources: &SourceSet, files: &[(String, SourceId)]) -> Migrated {
     }
     let text = |id: &SourceId| &*sources.get(*id).text;
     let own = scanned.iter().map(|(path, id, found)| (path.as_str(), text(id), *id, found));
-    let modules = names::Modules::new(own, &mut migrated.diagnostics);
+    let modules = names::FolderModules::new(own, &mut migrated.diagnostics);
     for (path, id, found) in &scanned {
         match write::write_file(text(id), *id, found, &modules)
             .and_then(|text| parse_result(*id, text))
@@ -69,7 +69,7 @@ pub fn naga_oil(sources: &SourceSet, files: &[(String, SourceId)]) -> Migrated {
 /// The text, if it is WESL as far as the parser can tell.
 fn parse_result(id: SourceId, text: String) -> Result<String, Diagnostic> {
     let module = wesl::parse(id, text.as_str().into(), &mut wesl::Names::default());
-    let module = wesl::Placed::new(Arc::new(module), id);
+    let module = wesl::PlacedModule::new(Arc::new(module), id);
     match module.errors.first() {
         None => Ok(text),
         Some(error) => {

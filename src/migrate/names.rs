@@ -3,14 +3,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::tree::{Leaf, Node, Scanned};
+use super::tree::{ImportLeaf, Node, Scanned};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::parse::wesl;
 use crate::parse::words::is_word;
 use crate::source::{SourceId, Span};
 
 /// Every module of the folder.
-pub struct Modules {
+pub struct FolderModules {
     /// The path in WESL of each module, by its path in `naga_oil`.
     paths: BTreeMap<Vec<String>, Result<String, String>>,
     /// The path in WESL of each file.
@@ -22,7 +22,7 @@ pub struct Modules {
 }
 
 /// Where a path of `naga_oil` leads.
-pub enum Place {
+pub enum PathDestination {
     /// A module, or what is in one.
     Known(String),
     /// No file defines it: it may be a package.
@@ -31,7 +31,7 @@ pub enum Place {
     Prefix,
 }
 
-impl Modules {
+impl FolderModules {
     pub fn new<'a>(
         files: impl Iterator<Item = (&'a str, &'a str, SourceId, &'a Scanned)>,
         told: &mut Diagnostics,
@@ -76,7 +76,7 @@ impl Modules {
 
     /// Notes what an import names that is not there.
     fn look_up(&mut self, span: Span, path: &[String], told: &mut Diagnostics) {
-        if let Ok(Place::Foreign) = self.place(path) {
+        if let Ok(PathDestination::Foreign) = self.place(path) {
             self.foreign.entry(path[0].clone()).or_insert(span);
         }
         if let Some((last, module)) = path.split_last()
@@ -99,25 +99,28 @@ impl Modules {
     }
 
     /// Where a path leads; the error says why its file has no path in WESL.
-    pub fn place(&self, path: &[String]) -> Result<Place, String> {
+    pub fn place(&self, path: &[String]) -> Result<PathDestination, String> {
         if let Some(file) = path.first().and_then(|first| first.strip_prefix('"')) {
             let file = file.trim_end_matches('"');
             let fits = |known: &&String| *known == file || known.ends_with(&format!("/{file}"));
             let Some(known) = self.files.keys().find(fits) else {
                 return Err(format!("there is no file `{file}`"));
             };
-            return Ok(Place::Known(joined_path(&self.files[known].clone()?, &path[1..])));
+            return Ok(PathDestination::Known(joined_path(
+                &self.files[known].clone()?,
+                &path[1..],
+            )));
         }
         for length in (1..=path.len()).rev() {
             if let Some(found) = self.paths.get(&path[..length]) {
-                return Ok(Place::Known(joined_path(&found.clone()?, &path[length..])));
+                return Ok(PathDestination::Known(joined_path(&found.clone()?, &path[length..])));
             }
         }
         let is_prefix = |known: &&Vec<String>| known.starts_with(path);
         Ok(if self.paths.keys().any(|known| is_prefix(&known)) {
-            Place::Prefix
+            PathDestination::Prefix
         } else {
-            Place::Foreign
+            PathDestination::Foreign
         })
     }
 
@@ -126,7 +129,7 @@ impl Modules {
         match (self.paths.get(path), path) {
             (Some(found), _) => found.clone().map(Some),
             (None, [file]) if file.starts_with('"') => match self.place(path)? {
-                Place::Known(found) => Ok(Some(found)),
+                PathDestination::Known(found) => Ok(Some(found)),
                 _ => Ok(None),
             },
             _ => Ok(None),
@@ -134,7 +137,7 @@ impl Modules {
     }
 
     /// Whether braces of an import hold modules.
-    pub fn has_modules(&self, path: &[String], leaf: &Leaf) -> bool {
+    pub fn has_modules(&self, path: &[String], leaf: &ImportLeaf) -> bool {
         leaf.children.iter().any(|child| {
             let whole: Vec<String> = path.iter().chain(&child.path).cloned().collect();
             !child.children.is_empty() || self.paths.keys().any(|known| known.starts_with(&whole))

@@ -1,9 +1,12 @@
 //! Splits a text into tokens and directives. As in `naga_oil`, a line that starts with `#` and the
 //! name of a directive is a directive, unless it is in a comment.
 
-use super::condition::Condition;
+use super::condition::ShaderDefTest;
 use super::import;
-use super::tree::{Branch, Bytes, Choice, Import, Line, Node, Scanned, Token, TokenKind};
+use super::tree::{
+    ByteRange, Conditional, ConditionalBranch, DirectiveLine, ImportDirective, Node, Scanned,
+    Token, TokenKind,
+};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::parse::wesl::blank::{block_comment, comment_length, without_comments};
 use crate::parse::words::{begins_word, continues_word, leading_word, number_end};
@@ -11,7 +14,7 @@ use crate::source::{LIMITS, SourceId, Span};
 
 /// Cuts up a file. The error is the first thing that cannot be understood.
 pub fn scan_file(text: &str, source: SourceId) -> Result<Scanned, Diagnostic> {
-    let mut scanner = Scanner {
+    let mut scanner = MigrateScanner {
         text,
         source,
         at: 0,
@@ -38,15 +41,15 @@ pub fn scan_file(text: &str, source: SourceId) -> Result<Scanned, Diagnostic> {
 }
 
 /// A condition that is not ended yet.
-struct Open {
-    branches: Vec<Branch>,
-    line: Line,
-    condition: Option<Condition>,
+struct OpenCondition {
+    branches: Vec<ConditionalBranch>,
+    line: DirectiveLine,
+    condition: Option<ShaderDefTest>,
     /// The nodes before it.
     before: Vec<Node>,
 }
 
-struct Scanner<'a> {
+struct MigrateScanner<'a> {
     text: &'a str,
     source: SourceId,
     at: usize,
@@ -55,7 +58,7 @@ struct Scanner<'a> {
     tokens: usize,
     found: Scanned,
     nodes: Vec<Node>,
-    open: Vec<Open>,
+    open: Vec<OpenCondition>,
     declared: bool,
 }
 
@@ -71,8 +74,8 @@ const DIRECTIVES: &[&str] = &[
     "version",
 ];
 
-impl Scanner<'_> {
-    fn wrong(&self, message: &str, place: Bytes) -> Diagnostic {
+impl MigrateScanner<'_> {
+    fn wrong(&self, message: &str, place: ByteRange) -> Diagnostic {
         Diagnostic::error(codes::NOT_MIGRATED, message.to_owned())
             .at(Span::new(self.source, place), "this file stays as it is")
     }
@@ -115,14 +118,14 @@ impl Scanner<'_> {
     }
 
     /// Takes the whole line, and finds where its directive ends.
-    fn line(&mut self) -> Line {
+    fn line(&mut self) -> DirectiveLine {
         let start = self.line_start();
         let end = self.at + self.rest().find('\n').unwrap_or(self.rest().len());
         let whole = &self.text[self.at..end];
         let comment = whole.find("//").or(whole.find("/*")).unwrap_or(whole.len());
         let words = self.at..self.at + whole[..comment].trim_end().len();
         let end = (end + 1).min(self.text.len());
-        let line = Line { lead: self.lead.min(start)..start, range: start..end, words };
+        let line = DirectiveLine { lead: self.lead.min(start)..start, range: start..end, words };
         (self.at, self.lead) = (end, end);
         line
     }
@@ -136,7 +139,7 @@ impl Scanner<'_> {
         match word {
             "ifdef" | "ifndef" | "if" => {
                 let condition = self.condition(text, &line)?;
-                self.open.push(Open {
+                self.open.push(OpenCondition {
                     branches: Vec::new(),
                     line,
                     condition: Some(condition),
@@ -169,7 +172,7 @@ impl Scanner<'_> {
 
     /// Notes that a definition must be given from outside in WESL: `#define NAME` holds for all
     /// that the file imports, which no file of WESL can say.
-    fn defined(&mut self, text: &str, line: &Line) {
+    fn defined(&mut self, text: &str, line: &DirectiveLine) {
         let mut words = text.split_whitespace().skip(1);
         let name = words.next().unwrap_or_default();
         let how = match words.next() {
@@ -183,18 +186,18 @@ impl Scanner<'_> {
         self.found.notes.push(note);
     }
 
-    fn condition(&mut self, text: &str, line: &Line) -> Result<Condition, Diagnostic> {
+    fn condition(&mut self, text: &str, line: &DirectiveLine) -> Result<ShaderDefTest, Diagnostic> {
         let mut words = text.split_whitespace();
         let kind = words.next().unwrap_or_default();
         let name = words.next().unwrap_or_default();
         let found = match kind {
             _ if leading_word(name) != name || name.is_empty() => None,
-            "ifdef" => Some(Condition::defined(name)),
-            "ifndef" => Some(Condition::defined(name).not()),
+            "ifdef" => Some(ShaderDefTest::defined(name)),
+            "ifndef" => Some(ShaderDefTest::defined(name).not()),
             _ => {
                 let rest: String = words.collect();
                 let value = rest.trim_start_matches(['=', '!', '<', '>']);
-                Condition::compared(name, &rest[..rest.len() - value.len()], value)
+                ShaderDefTest::compared(name, &rest[..rest.len() - value.len()], value)
             }
         };
         let condition = found.ok_or_else(|| {
@@ -208,7 +211,7 @@ impl Scanner<'_> {
         Ok(condition)
     }
 
-    fn otherwise(&mut self, text: &str, line: Line) -> Result<(), Diagnostic> {
+    fn otherwise(&mut self, text: &str, line: DirectiveLine) -> Result<(), Diagnostic> {
         let chained = text["else".len()..].trim();
         let condition = match chained.starts_with("if") {
             true => Some(self.condition(chained, &line)?),
@@ -223,17 +226,17 @@ impl Scanner<'_> {
             return Err(self.wrong("an `#else` after another", line.words));
         }
         let line = std::mem::replace(&mut open.line, line);
-        open.branches.push(Branch { line, condition: before, nodes });
+        open.branches.push(ConditionalBranch { line, condition: before, nodes });
         Ok(())
     }
 
-    fn end(&mut self, line: Line) -> Result<(), Diagnostic> {
+    fn end(&mut self, line: DirectiveLine) -> Result<(), Diagnostic> {
         let Some(mut open) = self.open.pop() else {
             return Err(self.wrong("an `#endif` without an `#ifdef` before it", line.words));
         };
         let nodes = std::mem::replace(&mut self.nodes, open.before);
-        open.branches.push(Branch { line: open.line, condition: open.condition, nodes });
-        self.nodes.push(Node::Choice(Choice { branches: open.branches, end: line }));
+        open.branches.push(ConditionalBranch { line: open.line, condition: open.condition, nodes });
+        self.nodes.push(Node::Choice(Conditional { branches: open.branches, end: line }));
         Ok(())
     }
 
@@ -253,7 +256,7 @@ impl Scanner<'_> {
         let tree = import::parse_import(self.text, line.words.clone())
             .map_err(|(message, place)| self.wrong(message, place))?;
         self.found.imports.extend(import::import_paths(&tree));
-        let import = Import { line, tree };
+        let import = ImportDirective { line, tree };
         match self.declared {
             false => self.nodes.push(Node::Import(import)),
             true => {
@@ -265,11 +268,11 @@ impl Scanner<'_> {
     }
 
     /// The conditions around this place.
-    fn around(&self) -> Vec<Condition> {
+    fn around(&self) -> Vec<ShaderDefTest> {
         let mut all = Vec::new();
         for open in &self.open {
             all.extend(
-                open.branches.iter().flat_map(|one| one.condition.clone()).map(Condition::not),
+                open.branches.iter().flat_map(|one| one.condition.clone()).map(ShaderDefTest::not),
             );
             all.extend(open.condition.clone());
         }

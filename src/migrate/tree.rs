@@ -2,45 +2,45 @@
 
 use std::ops::Range;
 
-use super::condition::{Asked, Condition};
+use super::condition::{ShaderDefTest, ShaderDefs};
 use crate::diagnostic::Diagnostic;
 
 /// Bytes of the author's text.
-pub type Bytes = Range<usize>;
+pub type ByteRange = Range<usize>;
 
 /// A file that was cut up.
 #[derive(Debug, Default)]
 pub struct Scanned {
     pub nodes: Vec<Node>,
     /// What follows the last node.
-    pub tail: Bytes,
+    pub tail: ByteRange,
     /// Imports that stand behind or between declarations, with the conditions around them.
-    pub late: Vec<(Vec<Condition>, Import)>,
+    pub late: Vec<(Vec<ShaderDefTest>, ImportDirective)>,
     /// Every import, wherever it stands.
-    pub imports: Vec<Path>,
+    pub imports: Vec<ImportedPath>,
     /// What `#define_import_path` says, and where.
-    pub name: Option<(String, Bytes)>,
+    pub name: Option<(String, ByteRange)>,
     /// Shader defs that the file asks for.
-    pub asked: Asked,
+    pub asked: ShaderDefs,
     pub notes: Vec<Diagnostic>,
 }
 
 #[derive(Debug)]
 pub enum Node {
     Token(Token),
-    Import(Import),
-    Choice(Choice),
+    Import(ImportDirective),
+    Choice(Conditional),
     /// A directive that becomes a comment.
-    Comment(Line),
+    Comment(DirectiveLine),
     /// A directive of which nothing remains.
-    Gone(Line),
+    Gone(DirectiveLine),
 }
 
 /// A token and the blanks and comments before it.
 #[derive(Debug, Clone)]
 pub struct Token {
-    pub lead: Bytes,
-    pub range: Bytes,
+    pub lead: ByteRange,
+    pub range: ByteRange,
     pub kind: TokenKind,
 }
 
@@ -57,59 +57,59 @@ pub enum TokenKind {
 
 /// A directive: whole lines, with what stands before them.
 #[derive(Debug, Clone)]
-pub struct Line {
-    pub lead: Bytes,
+pub struct DirectiveLine {
+    pub lead: ByteRange,
     /// From the line's first byte past its line break.
-    pub range: Bytes,
+    pub range: ByteRange,
     /// The directive itself, without blanks and comments around it.
-    pub words: Bytes,
+    pub words: ByteRange,
 }
 
 #[derive(Debug)]
-pub struct Import {
-    pub line: Line,
-    pub tree: Leaf,
+pub struct ImportDirective {
+    pub line: DirectiveLine,
+    pub tree: ImportLeaf,
 }
 
 /// A part of an import: a path, and what is imported from there.
 #[derive(Debug, Clone)]
-pub struct Leaf {
+pub struct ImportLeaf {
     pub path: Vec<String>,
     /// A file in quotes before the path.
     pub file: Option<String>,
     pub alias: Option<String>,
-    pub children: Vec<Leaf>,
+    pub children: Vec<ImportLeaf>,
     /// What stands in braces, as it was written, braces included.
-    pub braces: Option<Bytes>,
+    pub braces: Option<ByteRange>,
     /// Comments and blanks before it in its braces.
-    pub lead: Bytes,
-    pub at: Bytes,
+    pub lead: ByteRange,
+    pub at: ByteRange,
 }
 
 /// An imported name with its whole path.
 #[derive(Debug, Clone)]
-pub struct Path {
+pub struct ImportedPath {
     pub alias: String,
     pub path: Vec<String>,
-    pub at: Bytes,
+    pub at: ByteRange,
 }
 
 /// `#ifdef` to `#endif`.
 #[derive(Debug)]
-pub struct Choice {
-    pub branches: Vec<Branch>,
-    pub end: Line,
+pub struct Conditional {
+    pub branches: Vec<ConditionalBranch>,
+    pub end: DirectiveLine,
 }
 
 #[derive(Debug)]
-pub struct Branch {
-    pub line: Line,
+pub struct ConditionalBranch {
+    pub line: DirectiveLine,
     /// `None` for `#else`.
-    pub condition: Option<Condition>,
+    pub condition: Option<ShaderDefTest>,
     pub nodes: Vec<Node>,
 }
 
-impl Choice {
+impl Conditional {
     /// Whether there are imports in it, and nothing that is compiled.
     pub fn is_of_imports(&self) -> bool {
         self.branches.iter().flat_map(|branch| &branch.nodes).all(|node| match node {

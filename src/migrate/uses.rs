@@ -2,18 +2,18 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::names::{Modules, Place};
-use super::tree::{Bytes, Node, Scanned, Token, TokenKind};
+use super::names::{FolderModules, PathDestination};
+use super::tree::{ByteRange, Node, Scanned, Token, TokenKind};
 
 /// Why a use has no form in WESL, and where.
-type Wrong = (String, Bytes);
+type UseError = (String, ByteRange);
 
 /// New texts of tokens, by their first byte.
 pub fn replaced_tokens(
     text: &str,
     found: &Scanned,
-    modules: &Modules,
-) -> Result<BTreeMap<usize, String>, Wrong> {
+    modules: &FolderModules,
+) -> Result<BTreeMap<usize, String>, UseError> {
     let mut aliases: BTreeMap<&str, BTreeSet<&[String]>> = BTreeMap::new();
     for import in &found.imports {
         aliases.entry(&import.alias).or_default().insert(&import.path);
@@ -25,13 +25,13 @@ pub fn replaced_tokens(
 
 struct Uses<'a> {
     text: &'a str,
-    modules: &'a Modules,
+    modules: &'a FolderModules,
     aliases: BTreeMap<&'a str, BTreeSet<&'a [String]>>,
     replaced: BTreeMap<usize, String>,
 }
 
 impl Uses<'_> {
-    fn nodes(&mut self, nodes: &[Node]) -> Result<(), Wrong> {
+    fn nodes(&mut self, nodes: &[Node]) -> Result<(), UseError> {
         let mut at = 0;
         while at < nodes.len() {
             match &nodes[at] {
@@ -55,7 +55,7 @@ impl Uses<'_> {
     }
 
     /// A path, or a word of the language; returns the index behind.
-    fn word(&mut self, nodes: &[Node], at: usize) -> Result<usize, Wrong> {
+    fn word(&mut self, nodes: &[Node], at: usize) -> Result<usize, UseError> {
         let mut tokens: Vec<&Token> = Vec::new();
         let mut end = at;
         while let Some(token) = token_at(nodes, end) {
@@ -84,7 +84,7 @@ impl Uses<'_> {
         Ok(end)
     }
 
-    fn check_word(&self, word: &Token, next: Option<&Token>) -> Result<(), Wrong> {
+    fn check_word(&self, word: &Token, next: Option<&Token>) -> Result<(), UseError> {
         let followed = next.is_some_and(|next| self.text_of(next) == "fn");
         let text = self.text_of(word);
         match followed && (text == "virtual" || text == "override") {
@@ -95,9 +95,9 @@ impl Uses<'_> {
 
     /// The path as WESL has it, where that is another.
     fn path(&self, path: &[String]) -> Result<Option<String>, String> {
-        let known = |place: Place| match place {
-            Place::Known(path) => Some(path),
-            Place::Foreign | Place::Prefix => None,
+        let known = |place: PathDestination| match place {
+            PathDestination::Known(path) => Some(path),
+            PathDestination::Foreign | PathDestination::Prefix => None,
         };
         let Some(targets) = self.aliases.get(path[0].as_str()) else {
             return Ok(known(self.modules.place(path)?));
@@ -106,16 +106,16 @@ impl Uses<'_> {
         let (Some(target), None) = (targets.next(), targets.next()) else { return Ok(None) };
         match self.modules.place(target)? {
             // WESL has no such import, so the whole path is written here.
-            Place::Prefix => {
+            PathDestination::Prefix => {
                 let whole: Vec<String> = target.iter().chain(&path[1..]).cloned().collect();
                 Ok(known(self.modules.place(&whole)?))
             }
-            Place::Known(_) | Place::Foreign => Ok(None),
+            PathDestination::Known(_) | PathDestination::Foreign => Ok(None),
         }
     }
 
     /// Replaces `#{NAME}`, and a suffix that directly follows it.
-    fn value(&mut self, def: &Token, next: Option<&Token>) -> Result<(), Wrong> {
+    fn value(&mut self, def: &Token, next: Option<&Token>) -> Result<(), UseError> {
         let name = self.text_of(def).trim_matches(|mark| "#{} \t".contains(mark)).to_owned();
         let value = format!("constants::{name}");
         let pasted = next.filter(|next| next.lead.is_empty());

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use super::condition::{self, Condition};
+use super::condition::{self, ShaderDefTest};
 use super::import::import_statements;
-use super::level::Level;
-use super::names::Modules;
+use super::level::UnitKind;
+use super::names::FolderModules;
 use super::scan::trivia_length;
-use super::tree::{Bytes, Choice, Import, Line, Scanned};
-use super::unit::{self, Chosen, Element, Part, explicit_conditions};
+use super::tree::{ByteRange, Conditional, DirectiveLine, ImportDirective, Scanned};
+use super::unit::{self, Choice, Element, UnitPart, explicit_conditions};
 use super::uses;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::limits;
@@ -19,9 +19,9 @@ pub fn write_file(
     text: &str,
     source: SourceId,
     found: &Scanned,
-    modules: &Modules,
+    modules: &FolderModules,
 ) -> Result<String, Diagnostic> {
-    let wrong = |message: &str, place: Bytes| {
+    let wrong = |message: &str, place: ByteRange| {
         Diagnostic::error(codes::NOT_MIGRATED, message.to_owned())
             .at(Span::new(source, place), "this file stays as it is")
     };
@@ -45,7 +45,7 @@ pub fn write_file(
         declared: false,
         wrong: None,
     };
-    writer.list(Level::Declarations, &elements, &[]);
+    writer.list(UnitKind::Declarations, &elements, &[]);
     writer.out.push_str(&text[found.tail.clone()]);
     writer.late(found);
     match writer.wrong {
@@ -62,7 +62,7 @@ pub fn write_file(
 
 struct Writer<'a> {
     text: &'a str,
-    modules: &'a Modules,
+    modules: &'a FolderModules,
     out: String,
     /// What stands instead of tokens, by their first byte.
     replaced: BTreeMap<usize, String>,
@@ -74,11 +74,11 @@ struct Writer<'a> {
     imports_at: Option<usize>,
     /// A declaration was written.
     declared: bool,
-    wrong: Option<(String, Bytes)>,
+    wrong: Option<(String, ByteRange)>,
 }
 
 impl Writer<'_> {
-    fn list(&mut self, level: Level, elements: &[Element<'_>], around: &[Condition]) {
+    fn list(&mut self, level: UnitKind, elements: &[Element<'_>], around: &[ShaderDefTest]) {
         for element in elements {
             match element {
                 Element::Unit(parts) => {
@@ -100,7 +100,7 @@ impl Writer<'_> {
     }
 
     /// Writes blanks and comments.
-    fn lead(&mut self, lead: &Bytes) {
+    fn lead(&mut self, lead: &ByteRange) {
         let lead = &self.text[lead.clone()];
         let fresh = self.out.is_empty() || self.out.ends_with('\n');
         if std::mem::take(&mut self.line_due) && !lead.contains('\n') && !fresh {
@@ -109,12 +109,12 @@ impl Writer<'_> {
         self.out.push_str(lead);
     }
 
-    fn indent(&self, line: &Line) -> String {
+    fn indent(&self, line: &DirectiveLine) -> String {
         self.text[line.range.start..line.words.start].to_owned()
     }
 
     /// Writes the comment behind a directive, and the line break.
-    fn rest_of(&mut self, line: &Line) {
+    fn rest_of(&mut self, line: &DirectiveLine) {
         let rest = &self.text[line.words.end..line.range.end];
         if !rest.trim().is_empty() {
             self.out.push(' ');
@@ -124,7 +124,7 @@ impl Writer<'_> {
     }
 
     /// Leaves out a directive, but writes its comment.
-    fn gone(&mut self, line: &Line) {
+    fn gone(&mut self, line: &DirectiveLine) {
         self.lead(&line.lead);
         if !self.text[line.words.end..line.range.end].trim().is_empty() {
             self.out.push_str(self.indent(line).trim_start_matches('\n'));
@@ -134,12 +134,12 @@ impl Writer<'_> {
         }
     }
 
-    fn unit(&mut self, level: Level, parts: &[Part<'_>], before: &str) {
+    fn unit(&mut self, level: UnitKind, parts: &[UnitPart<'_>], before: &str) {
         self.starts_declaration(level, parts);
         let mut behind = None;
         for (index, part) in parts.iter().enumerate() {
             match part {
-                Part::Token(token) => {
+                UnitPart::Token(token) => {
                     if let Some(end) = behind.replace(token.range.end) {
                         self.gap(end, token.lead.start);
                     }
@@ -153,7 +153,7 @@ impl Writer<'_> {
                         None => self.out.push_str(&self.text[token.range.clone()]),
                     }
                 }
-                Part::List(level, elements) => {
+                UnitPart::List(level, elements) => {
                     self.comma = None;
                     self.list(*level, elements, &[]);
                     (self.comma, behind) = (None, None);
@@ -161,8 +161,8 @@ impl Writer<'_> {
             }
         }
         let last = parts.iter().rev().find_map(|part| match part {
-            Part::Token(token) => Some(&self.text[token.range.clone()]),
-            Part::List(..) => None,
+            UnitPart::Token(token) => Some(&self.text[token.range.clone()]),
+            UnitPart::List(..) => None,
         });
         self.comma = (level.has_commas() && last != Some(",")).then_some(self.out.len());
     }
@@ -179,17 +179,17 @@ impl Writer<'_> {
         self.out.push_str(&rest[..lines]);
     }
 
-    fn starts_declaration(&mut self, level: Level, parts: &[Part<'_>]) {
-        let Some(Part::Token(first)) = parts.first() else { return };
+    fn starts_declaration(&mut self, level: UnitKind, parts: &[UnitPart<'_>]) {
+        let Some(UnitPart::Token(first)) = parts.first() else { return };
         let word = &self.text[first.range.clone()];
         let directive = ["enable", "requires", "diagnostic", ";"].contains(&word);
-        if level == Level::Declarations && !self.declared && !directive {
+        if level == UnitKind::Declarations && !self.declared && !directive {
             self.declared = true;
             self.imports_at.get_or_insert(self.out.len());
         }
     }
 
-    fn import(&mut self, import: &Import, around: &[Condition]) {
+    fn import(&mut self, import: &ImportDirective, around: &[ShaderDefTest]) {
         let line = &import.line;
         let found = self.statements(import, around);
         self.lead(&line.lead);
@@ -207,7 +207,7 @@ impl Writer<'_> {
         }
     }
 
-    fn statements(&mut self, import: &Import, around: &[Condition]) -> Vec<String> {
+    fn statements(&mut self, import: &ImportDirective, around: &[ShaderDefTest]) -> Vec<String> {
         let before = match around {
             [] => String::new(),
             _ => format!("@if({}) ", condition::joined_conditions(around)),
@@ -240,8 +240,8 @@ impl Writer<'_> {
         self.out.insert_str(at, &format!("{before}{}{behind}", lines.join("\n")));
     }
 
-    fn choice(&mut self, level: Level, chosen: &Chosen<'_>, around: &[Condition]) {
-        let of_imports = chosen.written.is_some_and(Choice::is_of_imports);
+    fn choice(&mut self, level: UnitKind, chosen: &Choice<'_>, around: &[ShaderDefTest]) {
+        let of_imports = chosen.written.is_some_and(Conditional::is_of_imports);
         match chosen.written {
             Some(choice) if level.has_blocks() && !of_imports => self.blocks(level, chosen, choice),
             Some(choice) => self.one_by_one(level, chosen, Some(choice), around),
@@ -251,8 +251,8 @@ impl Writer<'_> {
     }
 
     /// `@if(...) {` in place of `#ifdef`.
-    fn blocks(&mut self, level: Level, chosen: &Chosen<'_>, choice: &Choice) {
-        if level == Level::Declarations && !self.declared {
+    fn blocks(&mut self, level: UnitKind, chosen: &Choice<'_>, choice: &Conditional) {
+        if level == UnitKind::Declarations && !self.declared {
             self.declared = true;
             self.imports_at.get_or_insert(self.out.len());
         }
@@ -275,10 +275,10 @@ impl Writer<'_> {
     /// A condition before each of the elements.
     fn one_by_one(
         &mut self,
-        level: Level,
-        chosen: &Chosen<'_>,
-        choice: Option<&Choice>,
-        around: &[Condition],
+        level: UnitKind,
+        chosen: &Choice<'_>,
+        choice: Option<&Conditional>,
+        around: &[ShaderDefTest],
     ) {
         let conditions: Vec<_> = chosen.branches.iter().map(|(one, _)| one.clone()).collect();
         let is_single = |elements: &Vec<Element<'_>>| matches!(elements[..], [Element::Unit(_)]);
@@ -303,7 +303,7 @@ impl Writer<'_> {
     }
 
     /// Writes the variants of units that a condition cuts through.
-    fn variants(&mut self, level: Level, chosen: &Chosen<'_>) {
+    fn variants(&mut self, level: UnitKind, chosen: &Choice<'_>) {
         let lead = common_lead(chosen).unwrap_or(0..0);
         let lead_text = &self.text[lead.clone()];
         self.lead(&lead);
@@ -311,7 +311,7 @@ impl Writer<'_> {
         let mut indent = if indent.trim().is_empty() { indent } else { "" }.to_owned();
         let is_single = |elements: &[Element<'_>]| match elements {
             [Element::Unit(parts)] => !matches!(parts.first(),
-                Some(Part::Token(first)) if self.text[first.range.clone()] == *"{"),
+                Some(UnitPart::Token(first)) if self.text[first.range.clone()] == *"{"),
             _ => false,
         };
         let (last, others) = match chosen.branches.split_last() {
@@ -344,13 +344,13 @@ impl Writer<'_> {
     }
 
     /// A variant by itself, without the blanks and comments that all of them start with.
-    fn rendered(&mut self, level: Level, elements: &[Element<'_>], lead: &str) -> String {
+    fn rendered(&mut self, level: UnitKind, elements: &[Element<'_>], lead: &str) -> String {
         let before = std::mem::take(&mut self.out);
         let declared = std::mem::replace(&mut self.declared, true);
         self.imports_at.get_or_insert(before.len());
         (self.line_due, self.comma) = (false, None);
         self.list(level, elements, &[]);
-        self.declared = declared || level == Level::Declarations;
+        self.declared = declared || level == UnitKind::Declarations;
         let text = std::mem::replace(&mut self.out, before);
         let text = text.strip_prefix(lead).unwrap_or(&text);
         text.trim_start_matches(['\n', '\r']).trim_end().to_owned()
@@ -358,7 +358,7 @@ impl Writer<'_> {
 }
 
 /// `@if(...) `, `@elif(...) ` or `@else `.
-fn condition_head(index: usize, condition: Option<&Condition>) -> String {
+fn condition_head(index: usize, condition: Option<&ShaderDefTest>) -> String {
     match condition {
         Some(condition) if index == 0 => format!("@if({}) ", condition.text()),
         Some(condition) => format!("@elif({}) ", condition.text()),
@@ -367,11 +367,11 @@ fn condition_head(index: usize, condition: Option<&Condition>) -> String {
 }
 
 /// What stands before the first token, if that is the same in all variants.
-fn common_lead(chosen: &Chosen<'_>) -> Option<Bytes> {
+fn common_lead(chosen: &Choice<'_>) -> Option<ByteRange> {
     let first = |elements: &Vec<Element<'_>>| match elements.first()? {
         Element::Unit(parts) => match parts.first()? {
-            Part::Token(token) => Some(token.lead.clone()),
-            Part::List(..) => None,
+            UnitPart::Token(token) => Some(token.lead.clone()),
+            UnitPart::List(..) => None,
         },
         Element::Choice(chosen) => common_lead(chosen),
         _ => None,

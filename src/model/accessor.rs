@@ -4,10 +4,10 @@ use gltf::Accessor;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::Source;
 
-use super::Reader;
+use super::GltfReader;
 use crate::limits::MODEL_CORNERS;
 
-impl<'b> Reader<'b> {
+impl<'b> GltfReader<'b> {
     /// The bytes of a view of the file's own buffer.
     pub fn view(&self, view: &gltf::buffer::View<'_>, place: &str) -> Result<&'b [u8], String> {
         let buffer = view.buffer();

@@ -3,15 +3,15 @@
 use glam::{DVec2, DVec3};
 use serde_json::{Map, Value};
 
-use super::Reader;
+use super::GltfReader;
 use super::part::is_drawn;
 use crate::scene::Layers;
 use crate::scene::sets::Object;
 
 /// Axes of `forward`, and whether a material needs them.
-type Needs = (&'static str, fn(&Layers) -> bool);
+type AxisNeed = (&'static str, fn(&Layers) -> bool);
 
-const AXES: [Needs; 8] = [
+const AXES: [AxisNeed; 8] = [
     ("clearcoat", |layers| layers.clearcoat > 0.0),
     ("sheen", |layers| layers.sheen_color != DVec3::ZERO),
     ("iridescence", |layers| layers.iridescence > 0.0),
@@ -55,7 +55,7 @@ pub fn layer_axes(objects: &[Object]) -> Vec<String> {
 /// # Errors
 /// A value that is not valid, with its place.
 pub fn read_layers(
-    reader: &mut Reader<'_>,
+    reader: &mut GltfReader<'_>,
     material: &gltf::Material<'_>,
 ) -> Result<Layers, String> {
     let place = match material.index() {
@@ -67,7 +67,8 @@ pub fn read_layers(
         reader.notes.insert(format!("left out, since the programs do not have it: {name}"));
     }
     let mut layers = parsed_layers(material, &place)?;
-    let mut values = |name: &str| Values::of(reader, material.extension_value(name), &place, name);
+    let mut values =
+        |name: &str| ExtensionValues::of(reader, material.extension_value(name), &place, name);
     if let Some(own) = values("KHR_materials_clearcoat")? {
         layers.clearcoat = own.share("clearcoatFactor", 0.0)?;
         layers.clearcoat_roughness = own.share("clearcoatRoughnessFactor", 0.0)?;
@@ -170,15 +171,15 @@ fn bounded_color(color: [f32; 3], place: &str) -> Result<DVec3, String> {
 }
 
 /// The values of an extension that the parser does not know.
-struct Values<'v> {
+struct ExtensionValues<'v> {
     fields: &'v Map<String, Value>,
     place: String,
 }
 
-impl<'v> Values<'v> {
+impl<'v> ExtensionValues<'v> {
     /// `None` if the material does not have the extension.
     fn of(
-        reader: &mut Reader<'_>,
+        reader: &mut GltfReader<'_>,
         value: Option<&'v Value>,
         place: &str,
         name: &str,

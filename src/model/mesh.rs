@@ -3,7 +3,7 @@
 use glam::{DMat4, DVec2, DVec3, DVec4};
 use gltf::mesh::Mode;
 
-use super::Reader;
+use super::GltfReader;
 use super::coordinates::Coordinates;
 use super::nodes::PlacedMesh;
 use super::surface::{Means, read_surface};
@@ -14,7 +14,7 @@ use crate::scene::{Shape, Vertex, smooth_normals};
 
 /// The objects of a mesh in its place: one for each primitive of triangles.
 pub fn mesh_objects(
-    reader: &mut Reader<'_>,
+    reader: &mut GltfReader<'_>,
     part: &PlacedMesh,
     sheet: &Sheet,
     corners: &mut usize,
@@ -69,7 +69,7 @@ fn mirror_winding(mut shape: Shape) -> Shape {
 
 /// The indices of triangles, three for each; `None` for points and lines.
 fn triangle_indices(
-    reader: &mut Reader<'_>,
+    reader: &mut GltfReader<'_>,
     primitive: &gltf::Primitive<'_>,
     place: &str,
 ) -> Result<Option<Vec<u32>>, String> {
@@ -111,7 +111,7 @@ fn triangle_indices(
 /// The texture coordinates of a primitive's vertices, with the textures' transform applied. Empty
 /// if it has none.
 pub fn mesh_coordinates(
-    reader: &Reader<'_>,
+    reader: &GltfReader<'_>,
     primitive: &gltf::Primitive<'_>,
     own: Coordinates,
     place: &str,
@@ -127,7 +127,7 @@ pub fn mesh_coordinates(
 }
 
 fn mesh_vertices(
-    reader: &Reader<'_>,
+    reader: &GltfReader<'_>,
     primitive: &gltf::Primitive<'_>,
     (indices, own): (&[u32], Coordinates),
     place: &str,

@@ -75,7 +75,7 @@ pub enum View {
 }
 
 /// A document that is being read, and what is gathered from it.
-struct Reader<'b> {
+struct GltfReader<'b> {
     document: &'b gltf::Document,
     blob: &'b [u8],
     notes: BTreeSet<String>,
@@ -100,7 +100,7 @@ pub fn read_model(bytes: &[u8], view: View) -> Result<Model, String> {
         let document =
             gltf::Gltf::from_slice(json).map_err(|error| document_error(&error))?.document;
         let (notes, means) = (BTreeSet::new(), BTreeMap::new());
-        let mut reader = Reader { document: &document, blob, notes, means, all_unlit: false };
+        let mut reader = GltfReader { document: &document, blob, notes, means, all_unlit: false };
         model_scene(&mut reader, view)
     };
     catch_panics(read).unwrap_or_else(|reason| Err(format!("the document is broken: {reason}")))
@@ -157,7 +157,7 @@ fn document_error(error: &gltf::Error) -> String {
     shown.join("; ")
 }
 
-fn model_scene(reader: &mut Reader<'_>, view: View) -> Result<Model, String> {
+fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String> {
     let placed = nodes::walk_scene(reader)?;
     reader.all_unlit = drawn_materials(reader.document, &placed).all(|one| one.unlit());
     let sheet = texture::texture_sheet(reader, &placed)?;
@@ -191,7 +191,7 @@ fn model_scene(reader: &mut Reader<'_>, view: View) -> Result<Model, String> {
 /// The materials of everything that is drawn.
 fn drawn_materials<'d>(
     document: &'d gltf::Document,
-    placed: &nodes::Placed,
+    placed: &nodes::PlacedNodes,
 ) -> impl Iterator<Item = gltf::Material<'d>> {
     let meshes = placed.parts.iter().filter_map(|part| document.meshes().nth(part.mesh));
     meshes.flat_map(|mesh| mesh.primitives().map(|part| part.material()).collect::<Vec<_>>())
@@ -200,8 +200,8 @@ fn drawn_materials<'d>(
 /// The values of axes for the model: microfacets as in glTF, as many lamps as there are, and
 /// textures where there are any.
 fn model_axes(
-    reader: &Reader<'_>,
-    placed: &nodes::Placed,
+    reader: &GltfReader<'_>,
+    placed: &nodes::PlacedNodes,
     sheet: &Sheet,
     (lamps, layers): (&[Lamp], &[String]),
 ) -> Vec<String> {
@@ -231,7 +231,7 @@ fn model_axes(
     chosen.split(',').map(str::to_owned).collect()
 }
 
-fn model_eye(placed: &nodes::Placed, bounds: &nodes::Ball, view: View) -> Result<Eye, String> {
+fn model_eye(placed: &nodes::PlacedNodes, bounds: &nodes::Ball, view: View) -> Result<Eye, String> {
     let (near, far) = (0.005 * bounds.radius, 40.0 * bounds.radius);
     let looking = |position: DVec3, target: DVec3, fov_y: f64| Eye {
         position,

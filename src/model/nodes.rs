@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3};
 use gltf::camera::Projection;
 use gltf::khr_lights_punctual::Kind;
 
-use super::Reader;
+use super::GltfReader;
 use crate::limits::{MODEL_NESTING, MODEL_NODES};
 use crate::scene::sets::{Eye, Lamp, LampKind, Object};
 
@@ -15,7 +15,7 @@ pub struct PlacedMesh {
 }
 
 /// A camera and its transform to world space.
-pub struct Camera {
+pub struct GltfCamera {
     world_from_camera: DMat4,
     fov_y: f64,
     planes: (f64, Option<f64>),
@@ -23,9 +23,9 @@ pub struct Camera {
 
 /// All meshes, cameras and lights of a scene.
 #[derive(Default)]
-pub struct Placed {
+pub struct PlacedNodes {
     pub parts: Vec<PlacedMesh>,
-    pub cameras: Vec<Camera>,
+    pub cameras: Vec<GltfCamera>,
     /// Of each light: its colour times its intensity (in lux if it is directional, else in
     /// candela), its kind, its transform to world space, and half the angle of its cone.
     lights: Vec<(DVec3, LampKind, DMat4, f64)>,
@@ -38,11 +38,11 @@ pub struct Ball {
 }
 
 /// Walks the scene that the document shows.
-pub fn walk_scene(reader: &mut Reader<'_>) -> Result<Placed, String> {
+pub fn walk_scene(reader: &mut GltfReader<'_>) -> Result<PlacedNodes, String> {
     let document = reader.document;
     let scene = document.default_scene().or_else(|| document.scenes().next());
     let scene = scene.ok_or("the model has no scene")?;
-    let mut placed = Placed::default();
+    let mut placed = PlacedNodes::default();
     let mut open: Vec<_> = scene.nodes().map(|node| (node, DMat4::IDENTITY, 0)).collect();
     open.reverse();
     let mut seen = 0;
@@ -66,7 +66,12 @@ pub fn walk_scene(reader: &mut Reader<'_>) -> Result<Placed, String> {
     Ok(placed)
 }
 
-fn take_node(reader: &mut Reader<'_>, node: &gltf::Node<'_>, world: DMat4, placed: &mut Placed) {
+fn take_node(
+    reader: &mut GltfReader<'_>,
+    node: &gltf::Node<'_>,
+    world: DMat4,
+    placed: &mut PlacedNodes,
+) {
     if node.skin().is_some() {
         reader.notes.insert("skins are left out: the model is drawn in its rest pose".to_owned());
     }
@@ -75,7 +80,7 @@ fn take_node(reader: &mut Reader<'_>, node: &gltf::Node<'_>, world: DMat4, place
         .extend(node.mesh().map(|mesh| PlacedMesh { mesh: mesh.index(), world_from_mesh: world }));
     let camera = node.camera();
     match camera.as_ref().map(gltf::Camera::projection) {
-        Some(Projection::Perspective(view)) => placed.cameras.push(Camera {
+        Some(Projection::Perspective(view)) => placed.cameras.push(GltfCamera {
             world_from_camera: world,
             fov_y: f64::from(view.yfov()),
             planes: (f64::from(view.znear()), view.zfar().map(f64::from)),
@@ -124,7 +129,7 @@ fn key_lamp(bounds: &Ball, eye: &Eye) -> Lamp {
 }
 
 /// The model's lamps, at most ten; without any, one of our own.
-pub fn model_lamps(placed: &Placed, bounds: &Ball, eye: &Eye) -> Vec<Lamp> {
+pub fn model_lamps(placed: &PlacedNodes, bounds: &Ball, eye: &Eye) -> Vec<Lamp> {
     const MOST: usize = 10;
     if placed.lights.is_empty() {
         return vec![key_lamp(bounds, eye)];
@@ -147,7 +152,7 @@ pub fn model_lamps(placed: &Placed, bounds: &Ball, eye: &Eye) -> Vec<Lamp> {
     placed.lights.iter().take(MOST).map(lamp).collect()
 }
 
-impl Camera {
+impl GltfCamera {
     /// The camera as the viewer of the scene.
     pub fn eye(&self, bounds: &Ball) -> Eye {
         let position = self.world_from_camera.transform_point3(DVec3::ZERO);

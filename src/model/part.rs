@@ -3,12 +3,12 @@
 use glam::DVec4;
 use serde_json::Value;
 
-use super::Reader;
+use super::GltfReader;
 use super::coordinates::{Coordinates, TRANSFORM, set_of};
 
 /// Channels of an image that go to the same channels of a texture of `forward`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Part {
+pub struct ImageChannels {
     /// The name of the texture's binding.
     pub map: &'static str,
     /// The number of the image in the document.
@@ -17,7 +17,7 @@ pub struct Part {
     /// Whether the image is coded as sRGB.
     pub is_color: bool,
     pub coordinates: Coordinates,
-    /// The bits of the strength of the image, an `f32`; see [`Part::weakened`].
+    /// The bits of the strength of the image, an `f32`; see [`ImageChannels::weakened`].
     strength: u32,
 }
 
@@ -25,9 +25,9 @@ const RGB: &[usize] = &[0, 1, 2];
 
 /// A texture of an extension that the parser does not know: the extension, its field, the name of
 /// the binding, the channels, and whether it is a colour.
-type Field = (&'static str, &'static str, &'static str, &'static [usize], bool);
+type TextureField = (&'static str, &'static str, &'static str, &'static [usize], bool);
 
-const FIELDS: [Field; 9] = [
+const FIELDS: [TextureField; 9] = [
     ("KHR_materials_anisotropy", "anisotropyTexture", "anisotropy_map", RGB, false),
     ("KHR_materials_clearcoat", "clearcoatTexture", "clearcoat_map", &[0], false),
     ("KHR_materials_clearcoat", "clearcoatRoughnessTexture", "clearcoat_map", &[1], false),
@@ -56,7 +56,7 @@ pub fn is_drawn(extension: &str, field: &str) -> bool {
     FIELDS.iter().any(|known| (known.0, known.1) == (extension, field))
 }
 
-impl Part {
+impl ImageChannels {
     fn new(map: &'static str, image: usize, channels: &'static [usize], is_color: bool) -> Self {
         let coordinates = Coordinates::default();
         Self { map, image, channels, is_color, coordinates, strength: 1_f32.to_bits() }
@@ -77,13 +77,13 @@ impl Part {
 /// # Errors
 /// A texture that is not there, with the place that names it.
 pub fn material_parts(
-    reader: &Reader<'_>,
+    reader: &GltfReader<'_>,
     material: &gltf::Material<'_>,
-) -> Result<Vec<Part>, String> {
+) -> Result<Vec<ImageChannels>, String> {
     let mut parts = Vec::new();
     let own = material.pbr_metallic_roughness();
     let known = |info: &gltf::texture::Info<'_>, map, channels, is_color| {
-        let part = Part::new(map, info.texture().source().index(), channels, is_color);
+        let part = ImageChannels::new(map, info.texture().source().index(), channels, is_color);
         part.at(Coordinates::of_texture(info))
     };
     let place = |field: &str| match material.index() {
@@ -101,7 +101,7 @@ pub fn material_parts(
         let own = info.extension_value(TRANSFORM);
         let at = Coordinates::read(info.tex_coord(), own, &place("normalTexture"))?;
         let image = info.texture().source().index();
-        parts.push(Part::new("normal_map", image, RGB, false).at(at));
+        parts.push(ImageChannels::new("normal_map", image, RGB, false).at(at));
     }
     for (info, map, channels, is_color) in factor_textures(material) {
         parts.push(known(&info, map, channels, is_color));
@@ -109,8 +109,10 @@ pub fn material_parts(
     if let Some(info) = material.occlusion_texture() {
         let own = info.extension_value(TRANSFORM);
         let at = Coordinates::read(info.tex_coord(), own, &place("occlusionTexture"))?;
-        let part = Part::new("occlusion_map", info.texture().source().index(), &[0], false).at(at);
-        parts.push(Part { strength: info.strength().to_bits(), ..part });
+        let part =
+            ImageChannels::new("occlusion_map", info.texture().source().index(), &[0], false)
+                .at(at);
+        parts.push(ImageChannels { strength: info.strength().to_bits(), ..part });
     }
     for field in &FIELDS {
         parts.extend(extension_part(reader, material, field)?);
@@ -143,10 +145,10 @@ fn factor_textures<'d>(material: &gltf::Material<'d>) -> Vec<FactorTexture<'d>> 
 
 /// The texture of an extension that the parser does not know, if the material has it.
 fn extension_part(
-    reader: &Reader<'_>,
+    reader: &GltfReader<'_>,
     material: &gltf::Material<'_>,
-    (extension, field, map, channels, is_color): &Field,
-) -> Result<Option<Part>, String> {
+    (extension, field, map, channels, is_color): &TextureField,
+) -> Result<Option<ImageChannels>, String> {
     let value = material.extension_value(extension).and_then(|own| own.get(*field));
     let (Some(value), Some(index)) = (value, material.index()) else { return Ok(None) };
     let place = format!("materials[{index}].extensions.{extension}.{field}");
@@ -157,5 +159,5 @@ fn extension_part(
     let set = set_of(value, &place)?.unwrap_or(0);
     let own = value.get("extensions").and_then(|all| all.get(TRANSFORM));
     let at = Coordinates::read(set, own, &place)?;
-    Ok(Some(Part::new(map, texture.source().index(), channels, *is_color).at(at)))
+    Ok(Some(ImageChannels::new(map, texture.source().index(), channels, *is_color).at(at)))
 }

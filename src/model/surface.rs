@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::Reader;
+use super::GltfReader;
 use super::layers::read_layers;
 use crate::scene::Layers;
 use crate::scene::sets::Material;
@@ -13,7 +13,7 @@ use crate::scene::sets::Material;
 /// # Errors
 /// A value of an extension that is not valid.
 pub fn read_surface(
-    reader: &mut Reader<'_>,
+    reader: &mut GltfReader<'_>,
     material: &gltf::Material<'_>,
 ) -> Result<(DVec3, Material, Means), String> {
     let own = material.pbr_metallic_roughness();
@@ -112,7 +112,10 @@ impl Default for Means {
 
 /// The means of a material's textures. Without them, a metallic factor of 1 that a texture lowers
 /// everywhere would make the whole surface metal.
-fn texture_means(reader: &mut Reader<'_>, material: &gltf::Material<'_>) -> Result<Means, String> {
+fn texture_means(
+    reader: &mut GltfReader<'_>,
+    material: &gltf::Material<'_>,
+) -> Result<Means, String> {
     let mut means = Means::default();
     if let Some(info) = material.pbr_metallic_roughness().metallic_roughness_texture() {
         let mean = reader.texture_mean(&info.texture(), false)?;
@@ -131,7 +134,7 @@ fn texture_means(reader: &mut Reader<'_>, material: &gltf::Material<'_>) -> Resu
 }
 
 /// Notes on what the programs do not have.
-fn left_out(reader: &mut Reader<'_>, material: &gltf::Material<'_>) {
+fn left_out(reader: &mut GltfReader<'_>, material: &gltf::Material<'_>) {
     if material.alpha_mode() != gltf::material::AlphaMode::Opaque {
         let note = "left out, since the programs do not have it: transparency";
         reader.notes.insert(note.to_owned());

@@ -8,13 +8,13 @@ use glam::{DVec2, DVec3, DVec4};
 use gltf::image::Source;
 use image::{DynamicImage, ImageDecoder as _, ImageError};
 
-use super::Reader;
+use super::GltfReader;
 use super::coordinates::{Coordinates, Window};
 use super::mesh::{has_triangles, mesh_coordinates};
-use super::nodes::Placed;
-use super::part::{Part, material_parts};
+use super::nodes::PlacedNodes;
+use super::part::{ImageChannels, material_parts};
 use crate::limits::{MODEL_CORNERS, MODEL_PIXELS, MODEL_TEXTURES};
-use crate::scene::sets::{Map, Maps};
+use crate::scene::sets::{Maps, TextureMap};
 use crate::scene::{Shape, blank_texel};
 
 /// All textures of a model: each set of them, as a material has it, is in a cell.
@@ -23,7 +23,7 @@ pub struct Sheet {
     pub maps: Option<Maps>,
     /// The textures that at least one material has, by the names of their bindings.
     pub names: BTreeSet<&'static str>,
-    cells: BTreeMap<Vec<Part>, Cell>,
+    cells: BTreeMap<Vec<ImageChannels>, Cell>,
 }
 
 /// The place of a set of textures on the sheet.
@@ -41,7 +41,7 @@ impl Cell {
     /// The cell for the textures of a material. If their transforms differ, these are applied to
     /// the images as they are drawn into the cell. A texture with another set of coordinates than
     /// the first cannot be drawn into the cell.
-    fn new(index: usize, parts: &[Part]) -> Self {
+    fn new(index: usize, parts: &[ImageChannels]) -> Self {
         let first = parts.first().map_or_else(Coordinates::default, |part| part.coordinates);
         let is_shared = parts.iter().all(|part| part.coordinates == first);
         let own = if is_shared { first } else { Coordinates::of_set(first.set) };
@@ -49,7 +49,7 @@ impl Cell {
     }
 
     /// The coordinates in a texture, in [0, 1), of a position in the cell, in [0, 1].
-    fn in_texture(&self, part: &Part, share: DVec2) -> DVec2 {
+    fn in_texture(&self, part: &ImageChannels, share: DVec2) -> DVec2 {
         let at = self.window.at(share);
         let at = if self.is_shared {
             at
@@ -61,7 +61,7 @@ impl Cell {
 }
 
 /// Puts the textures of all materials that are drawn on a sheet.
-pub fn texture_sheet(reader: &mut Reader<'_>, placed: &Placed) -> Result<Sheet, String> {
+pub fn texture_sheet(reader: &mut GltfReader<'_>, placed: &PlacedNodes) -> Result<Sheet, String> {
     let cells = texture_cells(reader, placed)?;
     let names: BTreeSet<&str> = cells.keys().flatten().map(|part| part.map).collect();
     if names.is_empty() {
@@ -100,9 +100,9 @@ pub fn texture_sheet(reader: &mut Reader<'_>, placed: &Placed) -> Result<Sheet, 
 /// A cell for each set of textures. A single set is repeated by the sampler. With several, the
 /// repetitions are drawn into the cells.
 fn texture_cells(
-    reader: &Reader<'_>,
-    placed: &Placed,
-) -> Result<BTreeMap<Vec<Part>, Cell>, String> {
+    reader: &GltfReader<'_>,
+    placed: &PlacedNodes,
+) -> Result<BTreeMap<Vec<ImageChannels>, Cell>, String> {
     let document = reader.document;
     let mut cells = BTreeMap::new();
     let mut bounds: BTreeMap<usize, (DVec2, DVec2)> = BTreeMap::new();
@@ -151,7 +151,7 @@ impl Sheet {
     /// The coordinates that the corners of a material's surfaces have.
     pub fn coordinates(
         &self,
-        reader: &Reader<'_>,
+        reader: &GltfReader<'_>,
         material: &gltf::Material<'_>,
     ) -> Result<Coordinates, String> {
         let cell = self.cells.get(&material_parts(reader, material)?);
@@ -161,7 +161,7 @@ impl Sheet {
     /// A shape whose coordinates are those of its material's cell.
     pub fn placed(
         &self,
-        reader: &Reader<'_>,
+        reader: &GltfReader<'_>,
         shape: Shape,
         material: &gltf::Material<'_>,
     ) -> Result<Shape, String> {
@@ -180,7 +180,7 @@ impl Sheet {
     }
 }
 
-impl Reader<'_> {
+impl GltfReader<'_> {
     /// The mean of a texture, for permutations that do not have it. Each image is decoded once.
     pub fn texture_mean(
         &mut self,
@@ -201,7 +201,7 @@ impl Reader<'_> {
     }
 
     /// An image of the document, linear. One that cannot be decoded is left out with a note.
-    fn image(&mut self, index: usize, is_color: bool) -> Result<Option<Map>, String> {
+    fn image(&mut self, index: usize, is_color: bool) -> Result<Option<TextureMap>, String> {
         match decode_image(self, index, is_color)? {
             Ok(map) => Ok(Some(map)),
             Err(reason) => {
@@ -218,15 +218,15 @@ fn cells_across(cells: usize) -> usize {
     (1..).find(|side| side * side >= cells).unwrap_or(1)
 }
 
-fn blank_map(side: usize, texel: DVec4) -> Map {
-    Map { width: side, height: side, texels: vec![texel; side * side] }
+fn blank_map(side: usize, texel: DVec4) -> TextureMap {
+    TextureMap { width: side, height: side, texels: vec![texel; side * side] }
 }
 
 /// Writes the channels of an image that count into a cell, the nearest pixel for each texel.
 fn place_image(
-    map: &mut Map,
-    part: &Part,
-    image: &Map,
+    map: &mut TextureMap,
+    part: &ImageChannels,
+    image: &TextureMap,
     ([left, top], side): ([usize; 2], usize),
     in_texture: impl Fn(DVec2) -> DVec2,
 ) {
@@ -243,7 +243,7 @@ fn place_image(
 }
 
 /// The bytes of an image as they are in the file.
-fn image_bytes<'b>(reader: &Reader<'b>, index: usize, place: &str) -> Result<&'b [u8], String> {
+fn image_bytes<'b>(reader: &GltfReader<'b>, index: usize, place: &str) -> Result<&'b [u8], String> {
     let image = reader.document.images().nth(index).ok_or(format!("{place}: is not there"))?;
     match image.source() {
         Source::View { view, .. } => reader.view(&view, place),
@@ -256,10 +256,10 @@ fn image_bytes<'b>(reader: &Reader<'b>, index: usize, place: &str) -> Result<&'b
 /// # Errors
 /// Bytes that are not in the file, and an image that is too large.
 fn decode_image(
-    reader: &Reader<'_>,
+    reader: &GltfReader<'_>,
     index: usize,
     is_color: bool,
-) -> Result<Result<Map, String>, String> {
+) -> Result<Result<TextureMap, String>, String> {
     let place = format!("images[{index}]");
     let bytes = image_bytes(reader, index, &place)?;
     let mut limits = image::Limits::default();
@@ -295,7 +295,7 @@ fn decode_image(
         let [red, green, blue, alpha] = pixel.0;
         DVec3::from_array([red, green, blue].map(linear)).extend(f64::from(alpha) / 255.0)
     };
-    Ok(Ok(Map {
+    Ok(Ok(TextureMap {
         width: small.width() as usize,
         height: small.height() as usize,
         texels: small.pixels().map(texel).collect(),

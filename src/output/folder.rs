@@ -27,7 +27,7 @@ pub fn write_folder<'a>(
     replace: Replace,
 ) -> Result<(), Error> {
     let files: Vec<(&str, &[u8])> = files.into_iter().collect();
-    let mut folder = Folder::open(folder, replace)?;
+    let mut folder = OutputFolder::open(folder, replace)?;
     for (name, bytes) in &files {
         folder.check(name, Some(bytes))?;
     }
@@ -39,7 +39,7 @@ pub fn write_folder<'a>(
 }
 
 /// An output folder that is written file by file.
-pub struct Folder {
+pub struct OutputFolder {
     path: PathBuf,
     replace: Replace,
     /// The hash and path of each file that was written here. While a file is being replaced, its
@@ -51,7 +51,7 @@ pub struct Folder {
     _turn: Option<File>,
 }
 
-impl Folder {
+impl OutputFolder {
     /// Makes the folder, or opens the one that is there.
     pub fn open(path: &Path, replace: Replace) -> Result<Self, Error> {
         make_folder(path)?;

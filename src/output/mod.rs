@@ -4,10 +4,10 @@
 //! |---|---|---|
 //! | one file that the user names | [`write_file`], which asks whether a file there is ours | `file.rs` |
 //! | one file whose older content the caller has read | [`write()`] | `file.rs` |
-//! | a folder of files, each known by its hash | [`write_folder`], or [`Folder`] for one after the other | `folder.rs` |
+//! | a folder of files, each known by its hash | [`write_folder`], or [`OutputFolder`] for one after the other | `folder.rs` |
 //! | many files that point to each other | [`Scratch`]: stage all, sync once, rename in the order of use | `scratch.rs`; `publish` in `src/bundle/directory_writer.rs` and `src/cache/folder.rs` do so |
 //!
-//! Where a file has the new bytes already, [`write_file`] and [`Folder`] write nothing: `has_bytes` in
+//! Where a file has the new bytes already, [`write_file`] and [`OutputFolder`] write nothing: `has_bytes` in
 //! `file.rs` tells. The record of a folder, and the cache, are written in any case. Otherwise a write
 //! takes these steps, in this order, so that a crash between two of them loses nothing:
 //!
@@ -16,7 +16,8 @@
 //! 2. `Scratch::write` writes the bytes to a new file in this folder, and waits until they are on
 //!    the disk.
 //! 3. `put_file` in `file.rs` gives the file the permissions of the one that it replaces, and
-//!    renames it into its place. In an output folder, `Folder::put` in `folder.rs` only renames it.
+//!    renames it into its place. In an output folder, `OutputFolder::put` in `folder.rs` only
+//!    renames it.
 //! 4. `sync_folder` in `scratch.rs` syncs the folder, so that the new name survives a loss of power.
 //! 5. The scratch folder is removed: when it is dropped, or by the next run if this one was killed.
 //!
@@ -51,7 +52,7 @@ mod scratch;
 
 pub use error::{Error, Foreign};
 pub use file::{HEAD_BYTES, write, write_file};
-pub use folder::{Folder, write_folder};
+pub use folder::{OutputFolder, write_folder};
 pub use scratch::{Scratch, sync_folder};
 
 use std::fs::{self, File, TryLockError};

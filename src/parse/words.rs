@@ -96,7 +96,7 @@ pub fn number_end(text: &str, start: usize) -> usize {
 
 /// What a piece of a text is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PieceKind {
+pub enum LexemeKind {
     Word,
     Number,
     /// A run of white space.
@@ -107,14 +107,14 @@ pub enum PieceKind {
 
 /// A piece of a text. All pieces of a text, joined, are the text again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Piece<'a> {
-    pub kind: PieceKind,
+pub struct Lexeme<'a> {
+    pub kind: LexemeKind,
     pub text: &'a str,
     /// Where it starts.
     pub at: usize,
 }
 
-impl Piece<'_> {
+impl Lexeme<'_> {
     /// The first byte behind it.
     pub fn end(&self) -> usize {
         self.at + self.text.len()
@@ -122,7 +122,7 @@ impl Piece<'_> {
 }
 
 /// The pieces of a text in order. Comments are no pieces of their own.
-pub fn pieces(text: &str) -> impl Iterator<Item = Piece<'_>> {
+pub fn pieces(text: &str) -> impl Iterator<Item = Lexeme<'_>> {
     let mut at = 0;
     std::iter::from_fn(move || {
         let found = piece_at(text, at)?;
@@ -133,25 +133,25 @@ pub fn pieces(text: &str) -> impl Iterator<Item = Piece<'_>> {
 
 /// The piece that starts at a byte.
 #[inline]
-pub fn piece_at(text: &str, at: usize) -> Option<Piece<'_>> {
+pub fn piece_at(text: &str, at: usize) -> Option<Lexeme<'_>> {
     let bytes = text.as_bytes();
     let is_digit = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
     let (kind, end) = match *bytes.get(at)? {
-        b'a'..=b'z' | b'A'..=b'Z' | b'_' => (PieceKind::Word, word_end(text, at)),
-        b'0'..=b'9' => (PieceKind::Number, number_end(text, at)),
-        b'.' if is_digit(at + 1) => (PieceKind::Number, number_end(text, at)),
-        b'!'..=b'~' => (PieceKind::Sign, at + 1),
-        b' ' if matches!(bytes.get(at + 1), Some(b'!'..=b'~')) => (PieceKind::Blank, at + 1),
-        byte if byte.is_ascii() && !byte.is_ascii_whitespace() => (PieceKind::Sign, at + 1),
+        b'a'..=b'z' | b'A'..=b'Z' | b'_' => (LexemeKind::Word, word_end(text, at)),
+        b'0'..=b'9' => (LexemeKind::Number, number_end(text, at)),
+        b'.' if is_digit(at + 1) => (LexemeKind::Number, number_end(text, at)),
+        b'!'..=b'~' => (LexemeKind::Sign, at + 1),
+        b' ' if matches!(bytes.get(at + 1), Some(b'!'..=b'~')) => (LexemeKind::Blank, at + 1),
+        byte if byte.is_ascii() && !byte.is_ascii_whitespace() => (LexemeKind::Sign, at + 1),
         _ => match text[at..].chars().next()? {
-            letter if begins_word(letter) => (PieceKind::Word, word_end(text, at)),
+            letter if begins_word(letter) => (LexemeKind::Word, word_end(text, at)),
             letter if letter.is_whitespace() => {
-                (PieceKind::Blank, text.len() - text[at..].trim_start().len())
+                (LexemeKind::Blank, text.len() - text[at..].trim_start().len())
             }
-            letter => (PieceKind::Sign, at + letter.len_utf8()),
+            letter => (LexemeKind::Sign, at + letter.len_utf8()),
         },
     };
-    Some(Piece { kind, text: &text[at..end], at })
+    Some(Lexeme { kind, text: &text[at..end], at })
 }
 
 /// An identifier or a keyword.
@@ -171,10 +171,10 @@ pub fn words(text: &str) -> impl Iterator<Item = Word<'_>> {
         while let Some(piece) = piece_at(text, at) {
             let last = before;
             at = piece.end();
-            if piece.kind != PieceKind::Blank {
+            if piece.kind != LexemeKind::Blank {
                 before = text.as_bytes()[at - 1];
             }
-            if piece.kind == PieceKind::Word {
+            if piece.kind == LexemeKind::Word {
                 return Some(Word { text: piece.text, at: piece.at, before: last });
             }
         }

@@ -9,7 +9,7 @@ pub const MAX: usize = crate::limits::AXES;
 
 /// What the values of an axis are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Kind {
+pub enum AxisKind {
     /// False or true.
     Bool,
     /// Integers.
@@ -18,7 +18,7 @@ pub enum Kind {
     Enum,
 }
 
-impl Kind {
+impl AxisKind {
     /// The name in messages and reports.
     pub fn name(self) -> &'static str {
         match self {
@@ -68,7 +68,7 @@ pub struct Axis {
     /// As keys name it.
     pub name: String,
     /// What its values are.
-    pub kind: Kind,
+    pub kind: AxisKind,
     /// All of one kind, distinct, in the order declared, at least one, at most [`MAX`].
     pub values: Vec<Setting>,
     /// The ordinal of the default, which keys leave out.
@@ -104,12 +104,12 @@ impl Axis {
     pub fn macros(&self) -> Vec<String> {
         let own = self.name.to_ascii_uppercase();
         let values = match self.kind {
-            Kind::Enum => self
+            AxisKind::Enum => self
                 .values
                 .iter()
                 .map(|value| format!("{own}_{}", value.to_string().to_ascii_uppercase()))
                 .collect(),
-            Kind::Bool | Kind::Int => Vec::new(),
+            AxisKind::Bool | AxisKind::Int => Vec::new(),
         };
         std::iter::once(own).chain(values).collect()
     }

@@ -7,11 +7,11 @@ use std::collections::BTreeSet;
 use super::axis::ValueSet;
 use super::key::Assignment;
 use super::manifest::Program;
-use super::space::{Lists, Slice, Space};
+use super::space::{Slice, SliceLists, Space};
 
 /// Two axes, the first before the second, with the ordinal of a value of each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Pair {
+pub struct ValuePair {
     /// An axis and the ordinal of its value.
     pub first: (usize, usize),
     /// Another axis and the ordinal of its value.
@@ -24,7 +24,7 @@ pub struct Cover {
     /// In the order found: each covers a pair that those before it do not.
     pub points: Vec<Assignment>,
     /// Pairs that no valid point has.
-    pub infeasible: Vec<Pair>,
+    pub infeasible: Vec<ValuePair>,
 }
 
 /// Covers every pair of values that the constraints allow; the lists of the space are ignored.
@@ -58,7 +58,7 @@ pub fn covering_space(program: &Program) -> Space {
     let values = space.axes().iter().map(|axis| ValueSet::full(axis.values.len())).collect();
     let everything = Slice { values, span: program.span };
     let include = pairwise(space).points;
-    let lists = Lists { only: Vec::new(), exclude: vec![everything], include };
+    let lists = SliceLists { only: Vec::new(), exclude: vec![everything], include };
     let covering = Space::new(space.axes().to_vec(), space.constraints().to_vec(), lists);
     // The axes and constraints were read without errors. If the list of points is too complex to
     // count, all permutations ship.
@@ -80,7 +80,7 @@ fn cover_without_pairs(space: &Space) -> Vec<Assignment> {
     }
 }
 
-fn allowed_pairs(space: &Space) -> BTreeSet<Pair> {
+fn allowed_pairs(space: &Space) -> BTreeSet<ValuePair> {
     let values = space.axes().iter().enumerate().flat_map(|(index, axis)| {
         axis.domain().iter().map(move |ordinal| (index, ordinal)).collect::<Vec<_>>()
     });
@@ -89,12 +89,16 @@ fn allowed_pairs(space: &Space) -> BTreeSet<Pair> {
         values
             .iter()
             .filter(move |second| second.0 > first.0)
-            .map(move |second| Pair { first, second: *second })
+            .map(move |second| ValuePair { first, second: *second })
     };
     values.iter().flat_map(|first| second(*first)).collect()
 }
 
-fn covering_point(space: &Space, pair: Pair, left: &BTreeSet<Pair>) -> Option<Assignment> {
+fn covering_point(
+    space: &Space,
+    pair: ValuePair,
+    left: &BTreeSet<ValuePair>,
+) -> Option<Assignment> {
     let pins = [pair.first, pair.second];
     let mut chosen = pins.to_vec();
     space.pick_valid(&pins, |axis, open| {
@@ -115,12 +119,12 @@ fn covering_point(space: &Space, pair: Pair, left: &BTreeSet<Pair>) -> Option<As
     })
 }
 
-fn has_pair(point: &Assignment, pair: Pair) -> bool {
+fn has_pair(point: &Assignment, pair: ValuePair) -> bool {
     [pair.first, pair.second].iter().all(|(axis, ordinal)| point.ordinal(*axis) == *ordinal)
 }
 
-fn ordered_pair(one: (usize, usize), other: (usize, usize)) -> Pair {
-    Pair { first: one.min(other), second: one.max(other) }
+fn ordered_pair(one: (usize, usize), other: (usize, usize)) -> ValuePair {
+    ValuePair { first: one.min(other), second: one.max(other) }
 }
 
 fn first_value(open: ValueSet) -> usize {

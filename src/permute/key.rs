@@ -3,10 +3,10 @@
 use std::fmt;
 
 use super::Setting;
-use super::axis::{Axis, Kind, Mode, ValueSet};
+use super::axis::{Axis, AxisKind, Mode, ValueSet};
 use super::quoted::Quoted;
-use super::space::{Formula, Space};
-use crate::bundle::key::{self, Part, Word};
+use super::space::{ConstraintFormula, Space};
+use crate::bundle::key::{self, KeyPart, KeyWord};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::source::Span;
 
@@ -26,10 +26,11 @@ impl Assignment {
         &self.0
     }
 
-    pub(super) fn formula(&self) -> Formula {
-        let atom =
-            |(axis, ordinal): (usize, &u8)| Formula::Is(axis, ValueSet::single((*ordinal).into()));
-        Formula::All(self.0.iter().enumerate().map(atom).collect())
+    pub(super) fn formula(&self) -> ConstraintFormula {
+        let atom = |(axis, ordinal): (usize, &u8)| {
+            ConstraintFormula::Is(axis, ValueSet::single((*ordinal).into()))
+        };
+        ConstraintFormula::All(self.0.iter().enumerate().map(atom).collect())
     }
 }
 
@@ -92,9 +93,9 @@ pub fn parse_over(
 fn named_choice(
     space: &Space,
     key: &Quoted,
-    part: Part<'_>,
+    part: KeyPart<'_>,
 ) -> Result<(usize, usize, Span), Diagnostic> {
-    let place = |word: Word<'_>| key.span(word.start..word.start + word.text.len());
+    let place = |word: KeyWord<'_>| key.span(word.start..word.start + word.text.len());
     let last = part.value.unwrap_or(part.axis);
     let span = key.span(part.axis.start..last.start + last.text.len());
     if part.axis.text.is_empty() {
@@ -107,7 +108,7 @@ fn named_choice(
     let axis = find_axis(space.axes(), part.axis.text, place(part.axis))?;
     let found = &space.axes()[axis];
     let ordinal = match part.value {
-        None if found.kind == Kind::Bool => find_value(found, &Setting::Bool(true), span)?,
+        None if found.kind == AxisKind::Bool => find_value(found, &Setting::Bool(true), span)?,
         Some(value) if !value.text.is_empty() => {
             find_value(found, &Setting::parse(value.text), place(value))?
         }
@@ -145,8 +146,8 @@ pub(super) fn find_value(axis: &Axis, value: &Setting, span: Span) -> Result<usi
                 "help: the axis is {}; write the value without quotes",
                 axis.kind.name()
             )),
-            Kind::Enum => unknown.suggest(&text, names.iter().map(String::as_str)),
-            Kind::Bool | Kind::Int => unknown,
+            AxisKind::Enum => unknown.suggest(&text, names.iter().map(String::as_str)),
+            AxisKind::Bool | AxisKind::Int => unknown,
         };
         unknown.note(format!("values of `{}`: {}", axis.name, names.join(", ")))
     })

@@ -31,12 +31,12 @@ const HEADER: &str =
 /// The digits of every program.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Lock {
-    lines: Vec<Digit>,
+    lines: Vec<LockDigit>,
 }
 
 /// One line of the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Digit {
+pub(crate) struct LockDigit {
     program: String,
     pub axis: String,
     /// Whether the digit 0 means none of these values, rather than the first.
@@ -44,7 +44,7 @@ pub(crate) struct Digit {
     values: Vec<Setting>,
 }
 
-impl Digit {
+impl LockDigit {
     pub fn radix(&self) -> u128 {
         self.values.len() as u128 + u128::from(self.added)
     }
@@ -84,7 +84,7 @@ pub fn parse(sources: &SourceSet, id: SourceId) -> Result<Lock, Diagnostics> {
     if problems.is_empty() { Ok(lock) } else { Err(problems) }
 }
 
-fn read_digit(before: &Lock, line: &str) -> Result<Digit, String> {
+fn read_digit(before: &Lock, line: &str) -> Result<LockDigit, String> {
     let mut words = line.split_whitespace();
     let (Some(program), Some(axis)) = (words.next(), words.next()) else {
         return Err("expected `PROGRAM AXIS VALUES`".to_owned());
@@ -111,7 +111,7 @@ fn read_digit(before: &Lock, line: &str) -> Result<Digit, String> {
     match twice {
         Some(value) => Err(format!("axis `{axis}` has the value `{value}` twice")),
         None if values.is_empty() => Err(format!("axis `{axis}` has no values here")),
-        None => Ok(Digit { program: program.to_owned(), axis: axis.to_owned(), added, values }),
+        None => Ok(LockDigit { program: program.to_owned(), axis: axis.to_owned(), added, values }),
     }
 }
 
@@ -128,7 +128,7 @@ impl Lock {
             let values: Vec<Setting> =
                 in_order(axis).filter(|value| !known.contains(value)).cloned().collect();
             if !values.is_empty() {
-                lock.lines.push(Digit {
+                lock.lines.push(LockDigit {
                     program: program.to_owned(),
                     axis: axis.name.clone(),
                     added: !known.is_empty(),
@@ -185,7 +185,7 @@ impl Lock {
     pub(crate) fn digits<'a>(
         &'a self,
         program: &'a str,
-    ) -> impl Iterator<Item = (Option<u128>, &'a Digit)> {
+    ) -> impl Iterator<Item = (Option<u128>, &'a LockDigit)> {
         self.lines.iter().filter(move |digit| digit.program == program).scan(
             Some(1u128),
             |weight, digit| {
@@ -207,7 +207,7 @@ impl fmt::Display for Lock {
     /// The text of the file.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{HEADER}")?;
-        for Digit { program, axis, added, values } in &self.lines {
+        for LockDigit { program, axis, added, values } in &self.lines {
             let values: Vec<String> = values.iter().map(ToString::to_string).collect();
             writeln!(f, "{program} {axis}{} {}", if *added { " +" } else { "" }, values.join(" "))?;
         }

@@ -19,12 +19,12 @@ pub mod space;
 pub mod tree;
 pub mod usage;
 
-pub use axis::{Axis, Kind, Mode};
+pub use axis::{Axis, AxisKind, Mode};
 pub use key::{Assignment, Key};
 pub use lock::Lock;
 pub use manifest::{Manifest, Program};
 pub use quoted::Quoted;
-pub use report::Report;
+pub use report::PermutationReport;
 pub use setting::{Setting, Settings};
 pub use space::Space;
 pub use tree::ReadTree;

@@ -10,7 +10,7 @@ use super::space::Space;
 
 /// The report of one program. Displays as text; serialises as data.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Report {
+pub struct PermutationReport {
     /// Name of the program.
     pub program: String,
     /// Points of the full product.
@@ -29,7 +29,7 @@ pub struct Report {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unique_outputs: Option<u64>,
     /// By name.
-    pub axes: Vec<AxisCost>,
+    pub axes: Vec<AxisReport>,
     /// Spec axes of a program that has a GLSL source: GLSL is composed for each of their values.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub static_in_glsl: Vec<String>,
@@ -48,7 +48,7 @@ pub struct StageCount {
 
 /// What one axis does to the number of permutations.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct AxisCost {
+pub struct AxisReport {
     /// Name of the axis.
     pub name: String,
     /// What its values are.
@@ -70,11 +70,11 @@ pub struct AxisCost {
 pub struct Count(pub u128);
 
 /// Counts a program's space.
-pub fn report(program: &str, space: &Space) -> Report {
+pub fn report(program: &str, space: &Space) -> PermutationReport {
     let wanted = space.count();
     let valid = space.valid_values();
     let axes = space.axes().iter().enumerate();
-    Report {
+    PermutationReport {
         program: program.to_owned(),
         full: Count(space.full_count()),
         valid: Count(space.valid_count()),
@@ -91,8 +91,8 @@ pub fn report(program: &str, space: &Space) -> Report {
     }
 }
 
-fn axis_cost(axis: &Axis, valid_values: usize, wanted: u128, without: Option<u128>) -> AxisCost {
-    AxisCost {
+fn axis_cost(axis: &Axis, valid_values: usize, wanted: u128, without: Option<u128>) -> AxisReport {
+    AxisReport {
         name: axis.name.clone(),
         kind: axis.kind.name(),
         mode: axis.mode.name(),
@@ -104,7 +104,7 @@ fn axis_cost(axis: &Axis, valid_values: usize, wanted: u128, without: Option<u12
     }
 }
 
-impl Report {
+impl PermutationReport {
     /// The counts that are known, largest first.
     fn funnel(&self) -> Vec<(String, Count)> {
         let row = |name: &str, count: Count| (name.to_owned(), count);
@@ -124,7 +124,7 @@ impl Report {
     }
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for PermutationReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "program {}", self.program)?;
         let funnel =
@@ -139,7 +139,7 @@ impl fmt::Display for Report {
         writeln!(f)?;
         let heading =
             ["axis", "kind", "mode", "values", "without it", "costs"].map(str::to_owned).to_vec();
-        let rows = std::iter::once(heading).chain(self.axes.iter().map(AxisCost::row)).collect();
+        let rows = std::iter::once(heading).chain(self.axes.iter().map(AxisReport::row)).collect();
         write_table(
             f,
             &[Align::Left, Align::Left, Align::Left, Align::Right, Align::Right, Align::Right],
@@ -156,7 +156,7 @@ impl fmt::Display for Report {
     }
 }
 
-impl AxisCost {
+impl AxisReport {
     fn row(&self) -> Vec<String> {
         let values = if self.valid_values == self.values || self.mode == Mode::Dynamic.name() {
             self.values.to_string()

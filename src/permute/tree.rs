@@ -13,11 +13,11 @@ use super::{Setting, Settings};
 #[derive(Debug, Clone)]
 pub struct ReadTree<T> {
     /// The first node is the root, once there is one.
-    nodes: Vec<Node<T>>,
+    nodes: Vec<TreeNode<T>>,
 }
 
 #[derive(Debug, Clone)]
-enum Node<T> {
+enum TreeNode<T> {
     Leaf(T),
     Question { name: String, answers: BTreeMap<Setting, usize> },
 }
@@ -41,7 +41,7 @@ impl<T> ReadTree<T> {
         for (depth, (name, answer)) in reads.iter().enumerate() {
             match self.nodes.get(node) {
                 None => return self.grow(&reads[depth..], value),
-                Some(Node::Question { name: asked, answers }) if asked == name => match answers
+                Some(TreeNode::Question { name: asked, answers }) if asked == name => match answers
                     .get(answer)
                 {
                     Some(next) => node = *next,
@@ -52,8 +52,8 @@ impl<T> ReadTree<T> {
         }
         match self.nodes.get(node) {
             None => self.grow(&[], value),
-            Some(Node::Leaf(_)) => Ok(()),
-            Some(Node::Question { .. }) => Err(Contradiction),
+            Some(TreeNode::Leaf(_)) => Ok(()),
+            Some(TreeNode::Question { .. }) => Err(Contradiction),
         }
     }
 
@@ -63,8 +63,10 @@ impl<T> ReadTree<T> {
         let mut node = 0;
         loop {
             match self.nodes.get(node)? {
-                Node::Leaf(value) => return Some(value),
-                Node::Question { name, answers } => node = *answers.get(settings.value(name)?)?,
+                TreeNode::Leaf(value) => return Some(value),
+                TreeNode::Question { name, answers } => {
+                    node = *answers.get(settings.value(name)?)?
+                }
             }
         }
     }
@@ -72,8 +74,8 @@ impl<T> ReadTree<T> {
     /// Every leaf, in the order added.
     pub fn leaves(&self) -> impl Iterator<Item = &T> {
         self.nodes.iter().filter_map(|node| match node {
-            Node::Leaf(value) => Some(value),
-            Node::Question { .. } => None,
+            TreeNode::Leaf(value) => Some(value),
+            TreeNode::Question { .. } => None,
         })
     }
 
@@ -85,7 +87,7 @@ impl<T> ReadTree<T> {
         value: T,
     ) -> Result<(), Contradiction> {
         let next = self.nodes.len();
-        if let Some(Node::Question { answers, .. }) = self.nodes.get_mut(node) {
+        if let Some(TreeNode::Question { answers, .. }) = self.nodes.get_mut(node) {
             answers.insert(answer, next);
         }
         self.grow(rest, value)
@@ -95,12 +97,12 @@ impl<T> ReadTree<T> {
     fn grow(&mut self, reads: &[(String, Setting)], value: T) -> Result<(), Contradiction> {
         for (name, answer) in reads {
             let next = self.nodes.len() + 1;
-            self.nodes.push(Node::Question {
+            self.nodes.push(TreeNode::Question {
                 name: name.clone(),
                 answers: BTreeMap::from([(answer.clone(), next)]),
             });
         }
-        self.nodes.push(Node::Leaf(value));
+        self.nodes.push(TreeNode::Leaf(value));
         Ok(())
     }
 }

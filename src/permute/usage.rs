@@ -7,7 +7,7 @@ use super::key::parse;
 use super::lint;
 use super::manifest::Program;
 use super::quoted::Quoted;
-use super::space::{Lists, Slice, Space};
+use super::space::{Slice, SliceLists, Space};
 use crate::bundle::usage_lines;
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use crate::source::{SourceId, SourceSet, Span};
@@ -47,7 +47,7 @@ pub fn narrow_to_list(
         values: axes.iter().map(|axis| ValueSet::full(axis.values.len())).collect(),
         span: program.span,
     };
-    let lists = Lists { only: Vec::new(), exclude: vec![everything], include };
+    let lists = SliceLists { only: Vec::new(), exclude: vec![everything], include };
     let undeclared = program.space.undeclared;
     let features = program.space.features.clone();
     program.space = Space::new(axes.to_vec(), program.space.constraints().to_vec(), lists)

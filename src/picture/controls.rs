@@ -10,10 +10,10 @@ use super::light::LightView;
 use super::mesh::vertex_attributes;
 use super::passes::{Lit, stage_bindings};
 use super::plan::{Pass, Plan, known_program};
-use super::values::{Camera, Values, eye_projection, follows};
-use crate::bundle::Kind;
+use super::values::{PassCamera, UniformValues, eye_projection, follows};
+use crate::bundle::BindingKind;
 use crate::diagnostic::Diagnostics;
-use crate::picture::frame::{Leaf, Programs, buffer_leaves};
+use crate::picture::frame::{BufferLeaf, Programs, buffer_leaves};
 use crate::scene::sets::LampKind;
 
 /// Everything that can be changed, as [`Changes`](super::Changes) take it.
@@ -64,7 +64,7 @@ pub fn picture_controls(
     let Lit { scene, key, lit, size, .. } = Lit::of(plan, shot)?;
     let eye = eye_projection(&scene.eye, shot);
     let light = LightView::new(&scene, &key, plan, lit, size, eye);
-    let values = Values {
+    let values = UniformValues {
         plan,
         scene: &scene,
         lit,
@@ -79,7 +79,7 @@ pub fn picture_controls(
         kind: values.kind(index, lamp),
         position: lamp.position,
     });
-    let clip_from_world = Camera::of_viewer(&scene.eye, shot).clip_from_world;
+    let clip_from_world = PassCamera::of_viewer(&scene.eye, shot).clip_from_world;
     let mut uniforms = Vec::new();
     let mut known = BTreeSet::new();
     for pass in plan.passes.iter().rev() {
@@ -95,7 +95,7 @@ pub fn picture_controls(
 fn pass_uniforms(
     programs: &Programs,
     pass: &Pass,
-    values: &Values<'_>,
+    values: &UniformValues<'_>,
 ) -> Result<Vec<Uniform>, Diagnostics> {
     let program = known_program(programs, &pass.program)?;
     let stages = programs.stages(program, &pass.settings, values.shot.language)?;
@@ -106,10 +106,10 @@ fn pass_uniforms(
         None => values.number(path),
     };
     let bindings = stage_bindings(&stages);
-    let blocks = bindings.iter().filter(|binding| binding.kind == Kind::Uniform);
+    let blocks = bindings.iter().filter(|binding| binding.kind == BindingKind::Uniform);
     let leaves = blocks.flat_map(buffer_leaves);
     let leaves = leaves.filter(|leaf| !leaf.ty.starts_with("mat") && !follows(&leaf.path));
-    let uniform = |leaf: Leaf<'_>| {
+    let uniform = |leaf: BufferLeaf<'_>| {
         // Arrays end with zeros that no lamp or object reads.
         let numbers = numbers(&leaf.path).filter(|numbers| !numbers.is_empty())?;
         let (program, ty) = (pass.program.clone(), leaf.ty.to_owned());

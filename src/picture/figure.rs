@@ -11,10 +11,10 @@ use super::prepared::sample_shift;
 use super::samples::{columns, fence, image};
 use super::strip::painted::place_words;
 use crate::bundle::Language;
-use crate::catalogue::figure::{Figure, Figures, Kind, Kinds, Textures};
+use crate::catalogue::figure::{Figure, FigureKind, Figures, Kinds, Textures};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::executors::eval::EXECUTOR;
-use crate::execute::fixture::{Address, Compare, Fixture, Sampler, TextureKind};
+use crate::execute::fixture::{Address, Compare, Fixture, FixtureSampler, TextureKind};
 use crate::execute::kernel::{self, Kernel};
 use crate::execute::{Session, on_thread};
 use crate::project::LIBRARY;
@@ -216,7 +216,7 @@ fn evaluator() -> Result<Box<dyn Session>, Diagnostics> {
 
 /// A module whose function takes a place in a panel and the value of the panel, and returns a
 /// colour.
-fn figure_text(kind: &Kind, path: &str, figure: &Figure) -> String {
+fn figure_text(kind: &FigureKind, path: &str, figure: &Figure) -> String {
     let name = figure.panels.as_ref().map_or("unused", |panels| &panels.name);
     let code = kind.code.replace("VALUE", &figure.value);
     let (taken, given) = match kind.textures {
@@ -236,11 +236,13 @@ fn figure_text(kind: &Kind, path: &str, figure: &Figure) -> String {
 }
 
 fn fixtures(textures: Textures) -> BTreeMap<String, Arc<Fixture>> {
-    let sampler =
-        |compare| Fixture::Sampler(Sampler { compare, linear: true, address: Address::Clamp });
+    let sampler = |compare| {
+        Fixture::Sampler(FixtureSampler { compare, linear: true, address: Address::Clamp })
+    };
     let lit = || sampler(Some(Compare::LessEqual));
-    let nearest =
-        || Fixture::Sampler(Sampler { compare: None, linear: false, address: Address::Clamp });
+    let nearest = || {
+        Fixture::Sampler(FixtureSampler { compare: None, linear: false, address: Address::Clamp })
+    };
     let texture = Fixture::Texture;
     let named = |all: Vec<(&str, Fixture)>| {
         all.into_iter().map(|(name, one)| (name.to_owned(), Arc::new(one))).collect()

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::needs::Falloff;
 use super::plan::{LAMPS, with_numbers};
-use super::values::{Values, eye_projection, matrix_columns, vector_of, vector_values};
+use super::values::{UniformValues, eye_projection, matrix_columns, vector_of, vector_values};
 use crate::diagnostic::Diagnostics;
 use crate::scene::sets::{Lamp, LampKind, Scene};
 use crate::scene::{Cells, Clusters, Reach, between_middles};
@@ -69,7 +69,7 @@ impl Shining {
     }
 }
 
-impl Values<'_> {
+impl UniformValues<'_> {
     /// How many lamps shine: those of the scene, as far as the array has room. `None` if the
     /// program has no lamps.
     pub fn lamps(&self) -> Option<usize> {

@@ -34,14 +34,14 @@ const UNIT: Bounds =
 const NEAREST: f64 = 0.02;
 
 /// What a source publishes about the frustum of a spot light's map.
-struct Frustum {
+struct LightFrustum {
     /// The whole angle, radians.
     angle: Option<f64>,
     near: Option<f64>,
     far: Option<f64>,
 }
 
-impl Frustum {
+impl LightFrustum {
     fn of(plan: &Plan, last: &Pass) -> Self {
         let number = |field| plan.number("depth_pass", field)?.first().copied();
         Self {
@@ -80,13 +80,13 @@ impl LightView {
             LampKind::Directional if last.needs.cascades => {
                 Self::parted(scene, lamp, size, lookup_rim(plan, last), eye)
             }
-            LampKind::Spot => Self::spot(lamp, &points, size, &Frustum::of(plan, last)),
+            LampKind::Spot => Self::spot(lamp, &points, size, &LightFrustum::of(plan, last)),
             LampKind::Directional => Self::directional(lamp, &points, size),
             LampKind::Point => Self::point(lamp, &points, size / 2),
         }
     }
 
-    fn spot(lamp: &Lamp, points: &[DVec3], size: u32, frustum: &Frustum) -> Self {
+    fn spot(lamp: &Lamp, points: &[DVec3], size: u32, frustum: &LightFrustum) -> Self {
         let view = look_along(lamp.position, lamp.axis(), DVec3::Y);
         let (nearest, farthest) = depth_range(view, points).unwrap_or((0.1, 10.0));
         let far = frustum.far.unwrap_or(farthest.max(0.1) * 1.01);

@@ -1,7 +1,7 @@
 //! Makes meshes from shapes, with the attributes that a vertex stage reads.
 
 use crate::bundle::{Reflection, Varying};
-use crate::execute::frame::{Attribute, Mesh, VertexFormat};
+use crate::execute::frame::{Mesh, VertexAttribute, VertexFormat};
 use crate::scene::sets::Object;
 use crate::scene::{Shape, Vertex};
 
@@ -12,7 +12,7 @@ pub fn object_mesh(object: &Object, vertex: &Reflection, faceted: bool) -> Mesh 
     let own = faceted.then(|| object.shape.faceted());
     let shape: &Shape = own.as_ref().unwrap_or(&object.shape);
     let words = |corner: &Vertex| {
-        let one = |attribute: &Attribute| {
+        let one = |attribute: &VertexAttribute| {
             corner_numbers(
                 corner,
                 attribute.location,
@@ -27,9 +27,9 @@ pub fn object_mesh(object: &Object, vertex: &Reflection, faceted: bool) -> Mesh 
 }
 
 /// The attributes that the stage reads, in its order.
-pub fn vertex_attributes(vertex: &Reflection) -> Vec<Attribute> {
+pub fn vertex_attributes(vertex: &Reflection) -> Vec<VertexAttribute> {
     let attribute = |input: &Varying| {
-        Some(Attribute { location: input.location?, format: vertex_format(&input.ty) })
+        Some(VertexAttribute { location: input.location?, format: vertex_format(&input.ty) })
     };
     vertex.inputs.iter().filter_map(attribute).collect()
 }
@@ -44,7 +44,7 @@ fn vertex_format(ty: &str) -> VertexFormat {
     }
 }
 
-fn component_count(attribute: Attribute) -> usize {
+fn component_count(attribute: VertexAttribute) -> usize {
     attribute.format.words() as usize
 }
 

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::catalogue::preset::Number;
+use crate::catalogue::preset::PresetNumber;
 use crate::catalogue::reader;
 use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::permute::{Axis, Manifest, Program, Settings};
@@ -20,11 +20,11 @@ use crate::source::{SourceId, SourceSet, Span};
 const PATH: &str = "pictures.toml";
 
 /// Numbers of uniforms, by block and field.
-type Uniforms = BTreeMap<String, BTreeMap<String, Number>>;
+type Uniforms = BTreeMap<String, BTreeMap<String, PresetNumber>>;
 
 /// The table of the library.
 #[derive(Debug)]
-pub struct Table {
+pub struct NeedsTable {
     uniforms: Uniforms,
     programs: BTreeMap<String, ProgramNeeds>,
 }
@@ -36,7 +36,7 @@ struct ProgramNeeds {
     screen: bool,
     before: Vec<String>,
     /// By axis and value.
-    axes: BTreeMap<String, BTreeMap<String, Row>>,
+    axes: BTreeMap<String, BTreeMap<String, NeedsRow>>,
 }
 
 /// What a picture needs from a permutation: the rows of the values of all its axes combined.
@@ -134,8 +134,8 @@ pub enum Cleared {
 
 /// A row as the file has it; [`Needs`] explains its fields.
 #[derive(Debug, Clone, Default, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-struct Row {
+#[serde(deny_unknown_fields, default, rename = "Row")]
+struct NeedsRow {
     before: Vec<String>,
     /// By program.
     with: BTreeMap<String, String>,
@@ -177,10 +177,10 @@ struct ProgramEntry {
     #[serde(default)]
     before: Vec<String>,
     #[serde(default)]
-    axis: BTreeMap<Spanned<String>, BTreeMap<Spanned<String>, Row>>,
+    axis: BTreeMap<Spanned<String>, BTreeMap<Spanned<String>, NeedsRow>>,
 }
 
-impl Table {
+impl NeedsTable {
     /// The library's table. Each value of an axis that is listed has a row.
     ///
     /// # Errors
@@ -193,7 +193,7 @@ impl Table {
     /// The table that a file holds.
     ///
     /// # Errors
-    /// As of [`Table::load`].
+    /// As of [`NeedsTable::load`].
     pub fn parse(
         sources: &SourceSet,
         id: SourceId,
@@ -235,7 +235,7 @@ impl Table {
         needs.screen = found.screen;
         let value = |axis: &String| settings.values.get(axis).map(ToString::to_string);
         let chosen = found.axes.iter().filter_map(|(axis, rows)| rows.get(&value(axis)?));
-        let rows: Vec<&Row> = chosen.collect();
+        let rows: Vec<&NeedsRow> = chosen.collect();
         rows.iter().for_each(|row| needs.add(row));
         // The pass may be that of a later row.
         rows.iter().flat_map(|row| &row.with).for_each(|more| needs.add_settings(more));
@@ -246,7 +246,7 @@ impl Table {
 impl Needs {
     /// The numbers of a uniform's field that has them in this table.
     pub fn uniform(&self, block: &str, field: &str) -> Option<Vec<f64>> {
-        self.uniforms.get(block)?.get(field).map(Number::to_vec)
+        self.uniforms.get(block)?.get(field).map(PresetNumber::to_vec)
     }
 
     /// How many passes right before it show what the viewer sees.
@@ -267,7 +267,7 @@ impl Needs {
             && self.caster == Some(LampKind::Directional)
     }
 
-    fn add(&mut self, row: &Row) {
+    fn add(&mut self, row: &NeedsRow) {
         self.before.extend(split_passes(&row.before));
         // Two axes may read one pass.
         let seen = split_passes(&row.seen).filter(|pass| !self.seen.contains(pass));
@@ -314,7 +314,7 @@ fn split_passes(passes: &[String]) -> impl Iterator<Item = (String, String)> {
 
 impl From<ProgramEntry> for ProgramNeeds {
     fn from(entry: ProgramEntry) -> Self {
-        let rows = |rows: BTreeMap<Spanned<String>, Row>| {
+        let rows = |rows: BTreeMap<Spanned<String>, NeedsRow>| {
             rows.into_iter().map(|(value, row)| (value.into_inner(), row)).collect()
         };
         let axes = entry.axis.into_iter().map(|(axis, table)| (axis.into_inner(), rows(table)));
@@ -345,7 +345,7 @@ fn check_axis(
     id: SourceId,
     program: &Program,
     name: &Spanned<String>,
-    rows: &BTreeMap<Spanned<String>, Row>,
+    rows: &BTreeMap<Spanned<String>, NeedsRow>,
 ) -> Diagnostics {
     let span = Span::new(id, name.span());
     let Some(axis) = program.space.axis(name.get_ref()) else {

@@ -12,31 +12,31 @@ use super::light::LightView;
 use super::mesh::{self, vertex_attributes};
 use super::pixels::Background;
 use super::plan::{Pass, Plan};
-use super::prepared::{Prepared, no_frame, pixel_color};
-use super::textures::{Left, Library, binding_sampler};
-use super::values::{Camera, Values, eye_projection};
-use crate::bundle::{Binding, Kind};
+use super::prepared::{PreparedPass, no_frame, pixel_color};
+use super::textures::{Left, TextureLibrary, binding_sampler};
+use super::values::{PassCamera, UniformValues, eye_projection};
+use crate::bundle::{Binding, BindingKind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::Session;
-use crate::execute::fixture::{Fixture, Texture, TextureKind};
-use crate::execute::frame::{Buffers, Frame, Mesh, Side, State};
-use crate::picture::frame::{Composed, Programs, Stages, pack_buffer};
+use crate::execute::fixture::{Fixture, FixtureTexture, TextureKind};
+use crate::execute::frame::{Buffers, Face, Frame, Mesh, PipelineState};
+use crate::picture::frame::{Programs, ReadyStage, Stages, pack_buffer};
 use crate::scene::sets::{Eye, Lamp, Scene};
 
 /// What all objects and views of a pass share, by group and binding.
 #[derive(Default)]
-struct Bound {
+struct PassBindings {
     buffers: Buffers,
     fixtures: BTreeMap<(u32, u32), Arc<Fixture>>,
     /// Levels of textures after the first.
-    levels: BTreeMap<(u32, u32), Vec<Texture>>,
+    levels: BTreeMap<(u32, u32), Vec<FixtureTexture>>,
 }
 
 /// What the passes share.
 struct Studio<'a> {
     painter: &'a dyn Session,
     programs: &'a Programs,
-    values: Values<'a>,
+    values: UniformValues<'a>,
 }
 
 /// The smallest and the largest shadow map, in texels along an edge. In between, a map has twice
@@ -83,12 +83,12 @@ pub fn prepare_passes(
     programs: &Programs,
     plan: &Plan,
     shot: &Shot,
-) -> Result<Prepared, Diagnostics> {
+) -> Result<PreparedPass, Diagnostics> {
     let Lit { mut scene, key, last, lit, size } = Lit::of(plan, shot)?;
     let fine = fineness(last, shot);
     let shot = &finer_shot(shot, &scene, fine);
     let slice = |scene: &Scene, light: LightView| {
-        let values = Values {
+        let values = UniformValues {
             plan,
             scene,
             lit,
@@ -98,13 +98,13 @@ pub fn prepare_passes(
             probes: OnceCell::new(),
         };
         let with_lamps = values.with_bulbs()?;
-        let values = Values { scene: with_lamps.as_ref().unwrap_or(scene), ..values };
+        let values = UniformValues { scene: with_lamps.as_ref().unwrap_or(scene), ..values };
         let studio = Studio { painter, programs, values };
         let mut left = Left::default();
         for pass in &plan.passes[..plan.passes.len() - 1] {
             studio.draw(pass, &mut left)?;
         }
-        Ok(Prepared { fine, ..studio.ready(last, &left)? })
+        Ok(PreparedPass { fine, ..studio.ready(last, &left)? })
     };
     if shot.cascades <= 1 {
         let eye = eye_projection(&scene.eye, shot);
@@ -119,13 +119,13 @@ pub fn prepare_passes(
     let mut slices = Vec::new();
     for (near, far) in slices_of(&scene, shot.cascades) {
         scene.eye = Eye { near, far, ..whole };
-        let clip_from_world = Camera::of_viewer(&scene.eye, shot).clip_from_world;
+        let clip_from_world = PassCamera::of_viewer(&scene.eye, shot).clip_from_world;
         let light = LightView::cascade(&scene, &key, clip_from_world, size);
         slices.push(slice(&scene, light)?);
     }
     let mut slices = slices.into_iter();
     let nearest = slices.next().ok_or_else(|| vec![no_frame()])?;
-    Ok(Prepared { farther: slices.collect(), ..nearest })
+    Ok(PreparedPass { farther: slices.collect(), ..nearest })
 }
 
 /// The shot with `fine` times the pixels along each side, and with the surroundings of the scene.
@@ -201,7 +201,7 @@ impl Studio<'_> {
     fn draw_over(
         &self,
         pass: &Pass,
-        prepared: &Prepared,
+        prepared: &PreparedPass,
         left: &mut Left,
     ) -> Result<(), Diagnostics> {
         let mut drawn = Left::default();
@@ -212,7 +212,7 @@ impl Studio<'_> {
 
     /// Draws what the viewer sees: depths, colours, or several targets. Where nothing is drawn, a
     /// single target has the background, and several targets have zeros.
-    fn draw_seen(&self, prepared: &Prepared, left: &mut Left) -> Result<(), Diagnostics> {
+    fn draw_seen(&self, prepared: &PreparedPass, left: &mut Left) -> Result<(), Diagnostics> {
         let size = self.values.shot.size;
         let views = [prepared.eye_view([0.0; 2], size).map_err(|problem| vec![problem])?];
         let targets = prepared.targets();
@@ -236,12 +236,12 @@ impl Studio<'_> {
         Ok(())
     }
 
-    fn light_camera(&self, clip_from_world: DMat4) -> Camera {
-        Camera { clip_from_world, world_from_view: DMat4::IDENTITY }
+    fn light_camera(&self, clip_from_world: DMat4) -> PassCamera {
+        PassCamera { clip_from_world, world_from_view: DMat4::IDENTITY }
     }
 
     /// A pass with its uniforms, textures and meshes.
-    fn ready(&self, pass: &Pass, left: &Left) -> Result<Prepared, Diagnostics> {
+    fn ready(&self, pass: &Pass, left: &Left) -> Result<PreparedPass, Diagnostics> {
         let unknown = || {
             vec![Diagnostic::error(
                 codes::UNKNOWN_PROGRAM,
@@ -254,16 +254,16 @@ impl Studio<'_> {
         let camera = bindings.iter().find(|binding| binding.name == "camera").cloned();
         let has_objects = !vertex_attributes(&stages.vertex.reflection).is_empty();
         let shared = bindings.iter().filter(|binding| !is_own(&binding.name, has_objects));
-        let Bound { buffers, fixtures, levels } = self.bound(shared, left)?;
+        let PassBindings { buffers, fixtures, levels } = self.bound(shared, left)?;
         let plain =
             PLAIN.iter().filter_map(|name| bindings.iter().find(|binding| binding.name == *name));
         let plain = plain.map(|binding| (binding.group, binding.binding)).collect();
         let items = self.items(pass, &stages, &bindings).map_err(|problem| vec![problem])?;
-        let eye = Camera::of_viewer(&self.values.scene.eye, self.values.shot);
+        let eye = PassCamera::of_viewer(&self.values.scene.eye, self.values.shot);
         let background = Background::new(&self.values, eye);
         let state = self.state(pass, camera.is_some());
         let encoded = pass.needs.encoded;
-        Ok(Prepared {
+        Ok(PreparedPass {
             stages,
             items,
             buffers,
@@ -285,17 +285,17 @@ impl Studio<'_> {
         &self,
         bindings: impl Iterator<Item = &'b Binding>,
         left: &Left,
-    ) -> Result<Bound, Diagnostics> {
-        let mut bound = Bound::default();
-        let mut library = Library::new(&self.values, left);
+    ) -> Result<PassBindings, Diagnostics> {
+        let mut bound = PassBindings::default();
+        let mut library = TextureLibrary::new(&self.values, left);
         for binding in bindings {
             let place = (binding.group, binding.binding);
             match binding.kind {
-                Kind::Uniform => {
+                BindingKind::Uniform => {
                     let bytes = pack_buffer(binding, &|path| self.values.number(path));
                     bound.buffers.insert(place, bytes.map_err(|problem| vec![problem])?);
                 }
-                Kind::Sampler | Kind::ComparisonSampler => {
+                BindingKind::Sampler | BindingKind::ComparisonSampler => {
                     bound.fixtures.insert(place, Arc::new(binding_sampler(binding)));
                 }
                 _ => {
@@ -310,18 +310,22 @@ impl Studio<'_> {
         Ok(bound)
     }
 
-    fn state(&self, pass: &Pass, has_camera: bool) -> State {
+    fn state(&self, pass: &Pass, has_camera: bool) -> PipelineState {
         let of_viewer = self.values.plan.is_of_viewer(pass);
         if of_viewer || !has_camera {
             // A pass over the screen may read the depths of the pass before it.
             let is_read = of_viewer && !self.values.plan.is_last(pass);
-            return State { depth_test: has_camera, keep_depth: is_read, ..State::default() };
+            return PipelineState {
+                depth_test: has_camera,
+                keep_depth: is_read,
+                ..PipelineState::default()
+            };
         }
         let is_map = pass.program == "depth";
-        State {
+        PipelineState {
             depth_test: true,
             keep_depth: is_map,
-            cull: self.values.culls_front().then_some(Side::Front),
+            cull: self.values.culls_front().then_some(Face::Front),
             mirrored: self.values.light.is_cube(),
             offset: if is_map { self.values.offset() } else { [0.0; 2] },
         }
@@ -373,20 +377,20 @@ fn color_texture(
     frames: &[Frame],
     [width, height]: [u32; 2],
     cleared: impl Fn(usize) -> [f32; 4],
-) -> Result<Texture, Diagnostics> {
+) -> Result<FixtureTexture, Diagnostics> {
     let words = frames.first().and_then(|frame| frame.targets.first());
     let words = words.ok_or_else(|| vec![no_frame()])?;
     let texels = words.chunks(4).enumerate();
     let texels = texels
         .flat_map(|(index, pixel)| pixel_color(pixel).unwrap_or_else(|| cleared(index)))
         .collect();
-    Ok(Texture { kind: TextureKind::Color2d, width, height, texels })
+    Ok(FixtureTexture { kind: TextureKind::Color2d, width, height, texels })
 }
 
 /// The bindings of both stages, each once. If both stages have a binding, it is that of the
 /// fragment stage.
 pub(super) fn stage_bindings(stages: &Stages) -> Vec<Binding> {
-    let of = |stage: &Composed| stage.reflection.bindings.clone();
+    let of = |stage: &ReadyStage| stage.reflection.bindings.clone();
     let all = of(&stages.vertex).into_iter().chain(stages.fragment.iter().flat_map(of));
     let by_place: BTreeMap<_, _> =
         all.map(|binding| ((binding.group, binding.binding), binding)).collect();

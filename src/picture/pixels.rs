@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::Surroundings;
 use super::needs::BackgroundKind;
-use super::values::{Camera, Values};
+use super::values::{PassCamera, UniformValues};
 use crate::scene::{irradiance_sh9, linear_from_srgb};
 
 /// Sums of linear colours. Each sample is clamped to [0, 1], so that the edges of bright things are
@@ -36,11 +36,11 @@ pub struct Picture {
 #[derive(Clone)]
 pub struct Background {
     world_from_clip: DMat4,
-    kind: Seen,
+    kind: PixelSource,
 }
 
 #[derive(Clone)]
-enum Seen {
+enum PixelSource {
     /// A dark background, darker towards the edges.
     Backdrop,
     Around(Surroundings),
@@ -64,7 +64,7 @@ struct Sun {
 }
 
 impl Sun {
-    fn of(values: &Values<'_>) -> Option<Self> {
+    fn of(values: &UniformValues<'_>) -> Option<Self> {
         let vector = |path| values.number(path)?.try_into().ok().map(DVec3::from_array);
         Some(Self {
             light: vector("haze.sun")?,
@@ -84,27 +84,29 @@ impl Sun {
 
 impl Background {
     /// The background that fits the pass that lights the scene.
-    pub fn new(values: &Values<'_>, eye: Camera) -> Self {
+    pub fn new(values: &UniformValues<'_>, eye: PassCamera) -> Self {
         let needs = &values.lit.needs;
         let kind = match needs.background {
             BackgroundKind::Haze => {
                 let color = values.number("haze.color").and_then(|color| color.try_into().ok());
                 let sun = if needs.sun { Sun::of(values) } else { None };
-                Seen::Haze(color.map_or(values.scene.haze, DVec3::from_array), sun)
+                PixelSource::Haze(color.map_or(values.scene.haze, DVec3::from_array), sun)
             }
-            BackgroundKind::Surroundings => Seen::Around(values.shot.surroundings.clone()),
+            BackgroundKind::Surroundings => PixelSource::Around(values.shot.surroundings.clone()),
             BackgroundKind::Probe if needs.unlit => {
-                Seen::Probe(Box::new(values.probe().map(DVec3::from_array)), 0.5 / PI)
+                PixelSource::Probe(Box::new(values.probe().map(DVec3::from_array)), 0.5 / PI)
             }
-            BackgroundKind::Hemisphere => Seen::Hemisphere(values.scene.ground, values.scene.sky),
-            BackgroundKind::Probe | BackgroundKind::Backdrop => Seen::Backdrop,
+            BackgroundKind::Hemisphere => {
+                PixelSource::Hemisphere(values.scene.ground, values.scene.sky)
+            }
+            BackgroundKind::Probe | BackgroundKind::Backdrop => PixelSource::Backdrop,
         };
         Self { world_from_clip: eye.clip_from_world.inverse(), kind }
     }
 
     /// The dark backdrop.
-    pub fn backdrop(eye: Camera) -> Self {
-        Self { world_from_clip: eye.clip_from_world.inverse(), kind: Seen::Backdrop }
+    pub fn backdrop(eye: PassCamera) -> Self {
+        Self { world_from_clip: eye.clip_from_world.inverse(), kind: PixelSource::Backdrop }
     }
 
     /// The background at a place of the picture. Both coordinates are in [0, 1], from the upper
@@ -115,19 +117,19 @@ impl Background {
         };
         let direction = || (at(1.0) - at(0.0)).normalize_or(DVec3::NEG_Z);
         match &self.kind {
-            Seen::Backdrop => {
+            PixelSource::Backdrop => {
                 let edge = ((u - 0.5).powi(2) + (v - 0.5).powi(2)) * 1.6;
                 DVec3::new(0.05, 0.056, 0.068).lerp(DVec3::new(0.012, 0.014, 0.018), edge.min(1.0))
             }
-            Seen::Around(surroundings) => surroundings.radiance(direction()),
-            Seen::Probe(probe, scale) => {
+            PixelSource::Around(surroundings) => surroundings.radiance(direction()),
+            PixelSource::Probe(probe, scale) => {
                 (irradiance_sh9(direction(), probe) * *scale).max(DVec3::ZERO)
             }
-            Seen::Hemisphere(ground, sky) => {
+            PixelSource::Hemisphere(ground, sky) => {
                 ground.lerp(*sky, (0.5 + 0.5 * direction().y * 1.6).clamp(0.0, 1.0))
             }
-            Seen::Haze(haze, None) => *haze,
-            Seen::Haze(haze, Some(sun)) => *haze + sun.scattered(direction()),
+            PixelSource::Haze(haze, None) => *haze,
+            PixelSource::Haze(haze, Some(sun)) => *haze + sun.scattered(direction()),
         }
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::needs::Needs;
-use crate::catalogue::preset::{Number, Preset};
+use crate::catalogue::preset::{Preset, PresetNumber};
 use crate::catalogue::probe::Probe;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::manifest::Program;
@@ -28,7 +28,7 @@ pub struct Plan {
     /// The passes in order. The last one draws the picture.
     pub passes: Vec<Pass>,
     /// Published numbers by group and field, as in [`Preset`].
-    pub numbers: BTreeMap<String, BTreeMap<String, Number>>,
+    pub numbers: BTreeMap<String, BTreeMap<String, PresetNumber>>,
     /// The nine coefficients of the ambient light, if a probe is given.
     pub probe: Option<[[f64; 3]; 9]>,
     /// What somebody changed in the picture.
@@ -197,7 +197,7 @@ impl Plan {
 
     /// A published number.
     pub fn number(&self, group: &str, field: &str) -> Option<Vec<f64>> {
-        self.numbers.get(group)?.get(field).map(Number::to_vec)
+        self.numbers.get(group)?.get(field).map(PresetNumber::to_vec)
     }
 }
 

@@ -7,28 +7,28 @@ use glam::{DMat4, DVec3};
 
 use super::Shot;
 use super::pixels::{Background, Linear};
-use super::values::Camera;
+use super::values::PassCamera;
 use crate::bundle::Binding;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::Session;
-use crate::execute::fixture::{Fixture, Texture};
-use crate::execute::frame::{Buffers, Drawing, EntryPoint, Frame, Item, Mesh, State};
+use crate::execute::fixture::{Fixture, FixtureTexture};
+use crate::execute::frame::{Buffers, DrawItem, Drawing, EntryPoint, Frame, Mesh, PipelineState};
 use crate::execute::kernel::SENTINEL;
 use crate::picture::frame::{Stages, pack_buffer, probe};
 use crate::scene::linear_from_srgb;
 
 /// A pass with everything that it is drawn with.
-pub struct Prepared {
+pub struct PreparedPass {
     pub stages: Stages,
     pub items: Vec<(Mesh, Buffers)>,
     pub buffers: Buffers,
     pub fixtures: BTreeMap<(u32, u32), Arc<Fixture>>,
-    pub levels: BTreeMap<(u32, u32), Vec<Texture>>,
-    pub state: State,
+    pub levels: BTreeMap<(u32, u32), Vec<FixtureTexture>>,
+    pub state: PipelineState,
     pub(super) plain: Vec<(u32, u32)>,
     /// The binding of the camera, which each view fills. A full-screen pass has none.
     pub(super) camera: Option<Binding>,
-    pub(super) eye: Camera,
+    pub(super) eye: PassCamera,
     pub(super) background: Background,
     /// Whether the colours are already encoded for a display.
     pub(super) encoded: bool,
@@ -39,9 +39,9 @@ pub struct Prepared {
     pub farther: Vec<Self>,
 }
 
-impl Prepared {
+impl PreparedPass {
     /// The buffers of a view.
-    pub(super) fn view(&self, camera: &Camera) -> Result<Buffers, Diagnostic> {
+    pub(super) fn view(&self, camera: &PassCamera) -> Result<Buffers, Diagnostic> {
         let buffer = |binding: &Binding| {
             let bytes = pack_buffer(binding, &|path| camera.number(path))?;
             Ok(((binding.group, binding.binding), bytes))
@@ -56,7 +56,7 @@ impl Prepared {
     pub fn eye_view(&self, shift: [f64; 2], size: [u32; 2]) -> Result<Buffers, Diagnostic> {
         let [x, y] = [0, 1].map(|axis| 2.0 * shift[axis] / f64::from(size[axis].max(1)));
         let moved = DMat4::from_translation(DVec3::new(x, y, 0.0)) * self.eye.clip_from_world;
-        self.view(&Camera { clip_from_world: moved, ..self.eye })
+        self.view(&PassCamera { clip_from_world: moved, ..self.eye })
     }
 
     fn eye_views(&self, shifts: &[[f64; 2]], size: [u32; 2]) -> Result<Vec<Buffers>, Diagnostics> {
@@ -76,8 +76,8 @@ impl Prepared {
         size: [u32; 2],
         fragment: Option<(EntryPoint<'_>, u32)>,
     ) -> Result<Vec<Frame>, Diagnostics> {
-        let items: Vec<Item<'_>> =
-            self.items.iter().map(|(mesh, buffers)| Item { mesh, buffers }).collect();
+        let items: Vec<DrawItem<'_>> =
+            self.items.iter().map(|(mesh, buffers)| DrawItem { mesh, buffers }).collect();
         let vertex = EntryPoint {
             module: &self.stages.vertex.validated.module,
             entry: self.stages.vertex.entry,

@@ -3,11 +3,11 @@
 use glam::DVec3;
 
 use super::lamps::Shining;
-use super::values::{Values, vector_of, vector_values};
-use crate::scene::sets::{Map, Object};
+use super::values::{UniformValues, vector_of, vector_values};
+use crate::scene::sets::{Object, TextureMap};
 use crate::scene::{Look, PROBE_SIDES, ProbeField, ProbeGrid, Surfaces};
 
-impl Values<'_> {
+impl UniformValues<'_> {
     /// The light and the depths of all probes, computed on first use.
     fn probe_field(&self) -> &ProbeField {
         self.probes.get_or_init(|| {
@@ -59,7 +59,7 @@ impl Values<'_> {
     }
 
     /// A texture of the probes, by the name of its binding.
-    pub(super) fn probe_map(&self, name: &str) -> Option<Map> {
+    pub(super) fn probe_map(&self, name: &str) -> Option<TextureMap> {
         match name {
             "probe_light" => Some(self.probe_field().light_map()),
             "probe_depths" => Some(self.probe_field().depth_map()),

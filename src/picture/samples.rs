@@ -1,24 +1,24 @@
 //! Textures with something to see in them, for functions that are drawn by themselves.
 
-use crate::execute::fixture::{Texture, TextureKind};
+use crate::execute::fixture::{FixtureTexture, TextureKind};
 
 /// Texels in each direction.
 const TEXELS: u32 = 64;
 
 /// The depths of a fence of leaning posts, on a ground at depth 0.6. The lower a part of a post is
 /// in the texture, the closer it is to the ground.
-pub fn fence(kind: TextureKind) -> Texture {
+pub fn fence(kind: TextureKind) -> FixtureTexture {
     let depth = |index: u32| {
         let [x, y] = [index % TEXELS, index / TEXELS].map(|at| f64::from(at) / f64::from(TEXELS));
         let post = (x * 4.0 + y * 0.5 + 0.2).fract();
         if post < 0.4 && (0.12..0.9).contains(&y) { (0.2 + 0.35 * y) as f32 } else { 0.6 }
     };
     let texels = (0..TEXELS * TEXELS).flat_map(|index| vec![depth(index); kind.channels()]);
-    Texture { kind, width: TEXELS, height: TEXELS, texels: texels.collect() }
+    FixtureTexture { kind, width: TEXELS, height: TEXELS, texels: texels.collect() }
 }
 
 /// Four columns around a lamp, at a quarter of the depth, on the four faces at its sides.
-pub fn columns() -> Texture {
+pub fn columns() -> FixtureTexture {
     let faces = TextureKind::DepthCube.layers();
     let depth = |index: u32| {
         let (face, x) = (index / (TEXELS * TEXELS), index % TEXELS);
@@ -27,11 +27,11 @@ pub fn columns() -> Texture {
     };
     let texels = (0..faces * TEXELS * TEXELS).map(depth).collect();
     let kind = TextureKind::DepthCube;
-    Texture { kind, width: TEXELS, height: TEXELS, texels }
+    FixtureTexture { kind, width: TEXELS, height: TEXELS, texels }
 }
 
 /// Squares of four colours on black.
-pub fn image() -> Texture {
+pub fn image() -> FixtureTexture {
     let color = |index: u32| {
         let [x, y] = [index % TEXELS, index / TEXELS];
         let [column, row] = [x / (TEXELS / 2), y / (TEXELS / 2)];
@@ -42,5 +42,5 @@ pub fn image() -> Texture {
     };
     let texels = (0..TEXELS * TEXELS).flat_map(color).collect();
     let kind = TextureKind::Color2d;
-    Texture { kind, width: TEXELS, height: TEXELS, texels }
+    FixtureTexture { kind, width: TEXELS, height: TEXELS, texels }
 }

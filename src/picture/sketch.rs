@@ -13,18 +13,18 @@ use glam::{DMat4, DQuat, DVec2, DVec3};
 
 use super::Shot;
 use super::controls::Uniform;
-use super::frame::{Composed, Leaf, Stages, bound_loops, buffer_leaves, pack_buffer};
+use super::frame::{BufferLeaf, ReadyStage, Stages, bound_loops, buffer_leaves, pack_buffer};
 use super::mesh::object_mesh;
 use super::pixels::Background;
-use super::prepared::Prepared;
+use super::prepared::PreparedPass;
 use super::textures::{binding_sampler, plain_texture};
-use super::values::Camera;
-use crate::bundle::{Binding, Kind, Language, Reflection, Varying};
+use super::values::PassCamera;
+use crate::bundle::{Binding, BindingKind, Language, Reflection, Varying};
 use crate::compose::{self, Options};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::reflect;
 use crate::execute::fixture::Fixture;
-use crate::execute::frame::{Buffers, State};
+use crate::execute::frame::{Buffers, PipelineState};
 use crate::permute::Settings;
 use crate::resolve::{self, Packages};
 use crate::scene::Shape;
@@ -48,10 +48,10 @@ pub const SOURCES: &[(&str, &[&str])] = &[
 ];
 
 /// A model, by its name.
-pub type Model = (&'static str, fn() -> Shape);
+pub type SketchModel = (&'static str, fn() -> Shape);
 
 /// What there is to draw on. Each fits in a ball of radius 1.2 around the origin.
-pub const MODELS: &[Model] = &[
+pub const MODELS: &[SketchModel] = &[
     ("sphere", || Shape::sphere(1.0, (96, 48))),
     ("torus", || Shape::torus(0.68, 0.32, (96, 48))),
     ("cube", || Shape::cuboid(DVec3::splat(0.6), 1)),
@@ -68,12 +68,12 @@ fn vase() -> Shape {
 
 /// A fragment stage, ready to be drawn.
 pub struct Sketch {
-    stage: Composed,
+    stage: ReadyStage,
 }
 
 /// How it is drawn.
 #[derive(Debug, Clone, Default)]
-pub struct Setting {
+pub struct SketchOptions {
     /// One of [`MODELS`]; otherwise the first.
     pub model: String,
     /// How far the viewer has walked around the model, and how high, in radians.
@@ -123,7 +123,7 @@ impl Sketch {
         let reflection = reflect(&validated, ENTRY)?;
         bound_loops(&mut validated.module, TRIPS);
         let is_large = |one: &Binding| {
-            one.kind == Kind::Uniform && one.size.is_none_or(|size| size > UNIFORM_BYTES)
+            one.kind == BindingKind::Uniform && one.size.is_none_or(|size| size > UNIFORM_BYTES)
         };
         if let Some(large) = reflection.bindings.iter().find(|one| is_large(one)) {
             let reason = format!("`{}` has more than {UNIFORM_BYTES} bytes", large.name);
@@ -136,20 +136,21 @@ impl Sketch {
         let validated = Arc::new(validated);
         let functions = Arc::from(Vec::new());
         Ok(Self {
-            stage: Composed { validated, entry: ENTRY, reflection, text: "".into(), functions },
+            stage: ReadyStage { validated, entry: ENTRY, reflection, text: "".into(), functions },
         })
     }
 
     /// The inputs with the names of their sources.
-    pub fn inputs(&self, setting: &Setting) -> Vec<(String, String, &'static str)> {
+    pub fn inputs(&self, setting: &SketchOptions) -> Vec<(String, String, &'static str)> {
         let located = self.stage.reflection.inputs.iter().filter(|one| one.location.is_some());
         located.map(|one| (input_label(one), one.ty.clone(), source_of(one, setting))).collect()
     }
 
     /// The uniforms with their numbers, as many as a page has room for. Matrices are left out.
-    pub fn uniforms(&self, setting: &Setting) -> Vec<Uniform> {
-        let blocks = self.stage.reflection.bindings.iter().filter(|one| one.kind == Kind::Uniform);
-        let uniform = |leaf: Leaf<'_>| Uniform {
+    pub fn uniforms(&self, setting: &SketchOptions) -> Vec<Uniform> {
+        let blocks =
+            self.stage.reflection.bindings.iter().filter(|one| one.kind == BindingKind::Uniform);
+        let uniform = |leaf: BufferLeaf<'_>| Uniform {
             program: String::new(),
             numbers: uniform_numbers(setting, &leaf.path, leaf.ty),
             ty: leaf.ty.to_owned(),
@@ -163,15 +164,19 @@ impl Sketch {
     ///
     /// # Errors
     /// A binding that nothing can be bound to, and an input that no vertex stage can give.
-    pub fn prepare(&self, setting: &Setting, shot: &Shot) -> Result<Prepared, Diagnostics> {
+    pub fn prepare(
+        &self,
+        setting: &SketchOptions,
+        shot: &Shot,
+    ) -> Result<PreparedPass, Diagnostics> {
         let vertex = vertex_stage(&self.stage.reflection, setting)?;
-        let eye = Camera::of_viewer(&turned_eye(setting.turn), shot);
+        let eye = PassCamera::of_viewer(&turned_eye(setting.turn), shot);
         let (mut buffers, mut fixtures) = (Buffers::new(), BTreeMap::new());
         for binding in &self.stage.reflection.bindings {
             let place = (binding.group, binding.binding);
             match bound_input(binding, setting, shot).map_err(|problem| vec![problem])? {
-                Bound::Buffer(bytes) => drop(buffers.insert(place, bytes)),
-                Bound::Fixture(fixture) => drop(fixtures.insert(place, Arc::new(fixture))),
+                SketchBinding::Buffer(bytes) => drop(buffers.insert(place, bytes)),
+                SketchBinding::Fixture(fixture) => drop(fixtures.insert(place, Arc::new(fixture))),
             }
         }
         let own = |name: &str| {
@@ -185,13 +190,13 @@ impl Sketch {
         }
         let camera = own("camera");
         let mesh = object_mesh(&model(&setting.model), &vertex.reflection, false);
-        Ok(Prepared {
+        Ok(PreparedPass {
             stages: Stages { vertex, fragment: Some(self.stage.clone()) },
             items: vec![(mesh, Buffers::new())],
             buffers,
             fixtures,
             levels: BTreeMap::new(),
-            state: State { depth_test: true, ..State::default() },
+            state: PipelineState { depth_test: true, ..PipelineState::default() },
             plain: Vec::new(),
             camera,
             eye,
@@ -224,7 +229,7 @@ fn input_label(input: &Varying) -> String {
 }
 
 /// The source of an input: the one that was chosen, or that its name suggests.
-fn source_of(input: &Varying, setting: &Setting) -> &'static str {
+fn source_of(input: &Varying, setting: &SketchOptions) -> &'static str {
     let name = input_label(input);
     let chosen = setting.inputs.get(&name);
     if let Some((source, _)) =
@@ -241,7 +246,7 @@ fn source_of(input: &Varying, setting: &Setting) -> &'static str {
     }
 }
 
-fn uniform_numbers(setting: &Setting, path: &str, ty: &str) -> Vec<f64> {
+fn uniform_numbers(setting: &SketchOptions, path: &str, ty: &str) -> Vec<f64> {
     let digit =
         |at: usize| ty.as_bytes().get(at).map_or(1, |one| usize::from(one.wrapping_sub(48)));
     if ty.starts_with("mat") {
@@ -261,25 +266,31 @@ fn is_integer(ty: &str) -> bool {
     ty.contains("i32") || ty.contains("u32")
 }
 
-enum Bound {
+enum SketchBinding {
     Buffer(Vec<u8>),
     Fixture(Fixture),
 }
 
-fn bound_input(binding: &Binding, setting: &Setting, shot: &Shot) -> Result<Bound, Diagnostic> {
+fn bound_input(
+    binding: &Binding,
+    setting: &SketchOptions,
+    shot: &Shot,
+) -> Result<SketchBinding, Diagnostic> {
     match binding.kind {
-        Kind::Uniform => {
+        BindingKind::Uniform => {
             let leaves: BTreeMap<String, Vec<f64>> = buffer_leaves(binding)
                 .into_iter()
                 .map(|leaf| (leaf.path.clone(), uniform_numbers(setting, &leaf.path, leaf.ty)))
                 .collect();
-            Ok(Bound::Buffer(pack_buffer(binding, &|path| leaves.get(path).cloned())?))
+            Ok(SketchBinding::Buffer(pack_buffer(binding, &|path| leaves.get(path).cloned())?))
         }
-        Kind::Sampler | Kind::ComparisonSampler => Ok(Bound::Fixture(binding_sampler(binding))),
-        Kind::Texture => plain_texture(&binding.name, &binding.ty, &shot.surroundings)
-            .map(|texture| Bound::Fixture(Fixture::Texture(texture)))
+        BindingKind::Sampler | BindingKind::ComparisonSampler => {
+            Ok(SketchBinding::Fixture(binding_sampler(binding)))
+        }
+        BindingKind::Texture => plain_texture(&binding.name, &binding.ty, &shot.surroundings)
+            .map(|texture| SketchBinding::Fixture(Fixture::Texture(texture)))
             .ok_or_else(|| unbound(binding)),
-        Kind::Storage | Kind::StorageTexture => Err(unbound(binding)),
+        BindingKind::Storage | BindingKind::StorageTexture => Err(unbound(binding)),
     }
 }
 
@@ -291,7 +302,7 @@ fn unbound(binding: &Binding) -> Diagnostic {
 }
 
 /// The vertex stage that gives a fragment stage what it asks for.
-fn vertex_stage(fragment: &Reflection, setting: &Setting) -> Result<Composed, Diagnostics> {
+fn vertex_stage(fragment: &Reflection, setting: &SketchOptions) -> Result<ReadyStage, Diagnostics> {
     const PATH: &str = "sketch.wesl";
     let text = vertex_text(fragment, setting);
     let packages = Packages::of_text(PATH, text);
@@ -300,10 +311,16 @@ fn vertex_stage(fragment: &Reflection, setting: &Setting) -> Result<Composed, Di
     let validated = Arc::new(validate(&composed)?);
     let reflection = reflect(&validated, "vs_main").map_err(|problem| vec![problem])?;
     let functions = Arc::from(Vec::new());
-    Ok(Composed { validated, entry: "vs_main", reflection, text: composed.text.into(), functions })
+    Ok(ReadyStage {
+        validated,
+        entry: "vs_main",
+        reflection,
+        text: composed.text.into(),
+        functions,
+    })
 }
 
-fn vertex_text(fragment: &Reflection, setting: &Setting) -> String {
+fn vertex_text(fragment: &Reflection, setting: &SketchOptions) -> String {
     let is_taken =
         |place: &u32| fragment.bindings.iter().any(|one| one.group == 0 && one.binding == *place);
     let mut free = (0..).filter(|place| !is_taken(place));
@@ -346,7 +363,7 @@ fn vs_main(
 }
 
 /// The outputs of the vertex stage, and the statements that write them.
-fn given_inputs(fragment: &Reflection, setting: &Setting) -> (String, String) {
+fn given_inputs(fragment: &Reflection, setting: &SketchOptions) -> (String, String) {
     let (mut outputs, mut lines) = (String::new(), String::new());
     for input in &fragment.inputs {
         let Some(location) = input.location else { continue };

@@ -8,12 +8,14 @@ use glam::DVec4;
 
 use super::Surroundings;
 use super::samples::{columns, fence};
-use super::values::Values;
-use crate::bundle::{Binding, Kind};
+use super::values::UniformValues;
+use crate::bundle::{Binding, BindingKind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::eval::{half_from, half_to};
-use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
-use crate::scene::sets::{Map, Maps};
+use crate::execute::fixture::{
+    Address, Compare, Fixture, FixtureSampler, FixtureTexture, TextureKind,
+};
+use crate::scene::sets::{Maps, TextureMap};
 use crate::scene::{CubeMap, FACES, Sky, blank_texel, brick_materials, bricks, prefilter};
 
 /// What earlier passes have drawn.
@@ -22,13 +24,13 @@ pub struct Left {
     /// The depths that the light sees: of six faces, or of one. And the texels along an edge.
     pub map: Option<(Vec<Vec<f32>>, u32)>,
     /// Moments of the depths that the light sees.
-    pub moments: Option<Texture>,
+    pub moments: Option<FixtureTexture>,
     /// The depths that the viewer sees, and the size.
     pub seen: Option<(Vec<f32>, [u32; 2])>,
     /// The colour targets of the last pass that shows things to the viewer.
-    pub colors: Vec<Texture>,
+    pub colors: Vec<FixtureTexture>,
     /// The colours of passes over the screen, by program.
-    pub over: BTreeMap<String, Texture>,
+    pub over: BTreeMap<String, FixtureTexture>,
 }
 
 /// The names of the samplers that do not filter.
@@ -36,15 +38,15 @@ const NEAREST: [&str; 4] = ["depth_sampler", "depths_smp", "surface_sampler", "o
 
 /// The sampler of a binding.
 pub fn binding_sampler(binding: &Binding) -> Fixture {
-    let compare = (binding.kind == Kind::ComparisonSampler).then_some(Compare::LessEqual);
+    let compare = (binding.kind == BindingKind::ComparisonSampler).then_some(Compare::LessEqual);
     let address = if binding.name == "map_sampler" { Address::Repeat } else { Address::Clamp };
     let linear = !NEAREST.contains(&binding.name.as_str());
-    Fixture::Sampler(Sampler { compare, linear, address })
+    Fixture::Sampler(FixtureSampler { compare, linear, address })
 }
 
 /// A texture by its name and its type in WGSL, for a shader that says nothing about its content:
 /// bricks, the surroundings, or depths that cast a shadow. `None` for types that no fixture has.
-pub fn plain_texture(name: &str, ty: &str, surroundings: &Surroundings) -> Option<Texture> {
+pub fn plain_texture(name: &str, ty: &str, surroundings: &Surroundings) -> Option<FixtureTexture> {
     match ty {
         "texture_2d<f32>" if name.contains("depth") => Some(fence(TextureKind::Color2d)),
         "texture_2d<f32>" => color_textures(vec![bricks().base]).pop(),
@@ -58,8 +60,8 @@ pub fn plain_texture(name: &str, ty: &str, surroundings: &Surroundings) -> Optio
 }
 
 /// Textures by the name of their binding.
-pub struct Library<'a> {
-    values: &'a Values<'a>,
+pub struct TextureLibrary<'a> {
+    values: &'a UniformValues<'a>,
     left: &'a Left,
     maps: Option<Arc<Maps>>,
 }
@@ -78,13 +80,13 @@ pub const LEVELS: usize = 5;
 /// The rows of the quadratures for the other levels.
 const LEVEL_ROWS: [usize; LEVELS - 1] = [40, 24, 24, 24];
 
-impl<'a> Library<'a> {
-    pub fn new(values: &'a Values<'a>, left: &'a Left) -> Self {
+impl<'a> TextureLibrary<'a> {
+    pub fn new(values: &'a UniformValues<'a>, left: &'a Left) -> Self {
         Self { values, left, maps: None }
     }
 
     /// The levels of a texture, the largest first; at least one.
-    pub fn texture(&mut self, name: &str) -> Result<Vec<Texture>, Diagnostics> {
+    pub fn texture(&mut self, name: &str) -> Result<Vec<FixtureTexture>, Diagnostics> {
         let surroundings = &self.values.shot.surroundings;
         let sky = |exponent, (size, rows)| {
             surroundings.with_sky(|sky| cube_texture(&prefilter(sky, exponent, size, rows)))
@@ -118,7 +120,7 @@ impl<'a> Library<'a> {
     }
 
     /// The surroundings, blurred for each roughness.
-    fn rough_levels(&self) -> Vec<Texture> {
+    fn rough_levels(&self) -> Vec<FixtureTexture> {
         let level = |sky: &Sky<'_>, index: usize| {
             let size = ENVIRONMENT >> index;
             let Some(rows) = index.checked_sub(1).and_then(|rough| LEVEL_ROWS.get(rough)) else {
@@ -135,12 +137,12 @@ impl<'a> Library<'a> {
     }
 
     /// A texture of a material. If there is none, it has the single texel `blank`.
-    fn material_map(&mut self, name: &str, blank: DVec4) -> Vec<Texture> {
+    fn material_map(&mut self, name: &str, blank: DVec4) -> Vec<FixtureTexture> {
         let found = match &self.values.scene.own_maps {
             Some(maps) => maps.material.get(name).cloned(),
             None => brick_materials().remove(name),
         };
-        let map = found.unwrap_or_else(|| Map { width: 1, height: 1, texels: vec![blank] });
+        let map = found.unwrap_or_else(|| TextureMap { width: 1, height: 1, texels: vec![blank] });
         color_textures(map.levels())
     }
 
@@ -153,10 +155,10 @@ impl<'a> Library<'a> {
 
 impl Left {
     /// The levels of a texture that an earlier pass has drawn.
-    fn texture(&self, name: &str) -> Option<Vec<Texture>> {
+    fn texture(&self, name: &str) -> Option<Vec<FixtureTexture>> {
         let map = |kind| self.map.as_ref().map(|(faces, size)| flat_texture(kind, faces, *size));
         let color = |index: usize| self.colors.get(index).cloned();
-        let one = |texture: Option<Texture>| texture.map(|texture| vec![texture]);
+        let one = |texture: Option<FixtureTexture>| texture.map(|texture| vec![texture]);
         match name {
             "shadow_map" => one(map(TextureKind::Depth2d)),
             "shadow_cube" => one(map(TextureKind::DepthCube)),
@@ -180,8 +182,8 @@ impl Left {
     }
 }
 
-fn flat_texture(kind: TextureKind, faces: &[Vec<f32>], size: u32) -> Texture {
-    Texture {
+fn flat_texture(kind: TextureKind, faces: &[Vec<f32>], size: u32) -> FixtureTexture {
+    FixtureTexture {
         kind,
         width: size,
         height: size,
@@ -190,19 +192,19 @@ fn flat_texture(kind: TextureKind, faces: &[Vec<f32>], size: u32) -> Texture {
 }
 
 /// Depths in the form of a colour texture, for passes that read them so.
-fn as_color(depths: &[f32], [width, height]: [u32; 2]) -> Texture {
+fn as_color(depths: &[f32], [width, height]: [u32; 2]) -> FixtureTexture {
     let texels = depths.iter().flat_map(|depth| [*depth, 0.0, 0.0, 1.0]).collect();
-    Texture { kind: TextureKind::Color2d, width, height, texels }
+    FixtureTexture { kind: TextureKind::Color2d, width, height, texels }
 }
 
-fn cube_texture(map: &CubeMap) -> Texture {
+fn cube_texture(map: &CubeMap) -> FixtureTexture {
     let texels = map
         .texels
         .iter()
         .take(FACES.len() * map.size * map.size)
         .flat_map(|texel| texel.extend(1.0).as_vec4().to_array())
         .collect();
-    Texture {
+    FixtureTexture {
         kind: TextureKind::ColorCube,
         width: map.size as u32,
         height: map.size as u32,
@@ -214,16 +216,16 @@ fn cube_texture(map: &CubeMap) -> Texture {
 const LTC: &[u8] = include_bytes!("../../shaderlib/tables/ltc.bin");
 
 /// A square table of four channels, rounded to half floats, which every device can filter.
-fn table_texture(bytes: &[u8]) -> Texture {
+fn table_texture(bytes: &[u8]) -> FixtureTexture {
     let (words, _) = bytes.as_chunks::<4>();
     let number = |word: &[u8; 4]| half_to(half_from(f64::from(f32::from_le_bytes(*word)))) as f32;
     let side = (words.len() / 4).isqrt() as u32;
     let texels = words.iter().map(number).collect();
-    Texture { kind: TextureKind::Color2d, width: side, height: side, texels }
+    FixtureTexture { kind: TextureKind::Color2d, width: side, height: side, texels }
 }
 
-fn color_textures(levels: Vec<Map>) -> Vec<Texture> {
-    let color = |map: Map| Texture {
+fn color_textures(levels: Vec<TextureMap>) -> Vec<FixtureTexture> {
+    let color = |map: TextureMap| FixtureTexture {
         kind: TextureKind::Color2d,
         width: map.width as u32,
         height: map.height as u32,
@@ -234,11 +236,12 @@ fn color_textures(levels: Vec<Map>) -> Vec<Texture> {
 
 /// A texture with all its smaller levels. They are made after the blur, so that they are blurred
 /// too.
-fn with_levels(texture: Texture) -> Vec<Texture> {
+fn with_levels(texture: FixtureTexture) -> Vec<FixtureTexture> {
     let (pixels, _) = texture.texels.as_chunks::<4>();
     let texels = pixels.iter().map(|pixel| glam::Vec4::from_array(*pixel).as_dvec4()).collect();
     let mut levels = color_textures(
-        Map { width: texture.width as usize, height: texture.height as usize, texels }.levels(),
+        TextureMap { width: texture.width as usize, height: texture.height as usize, texels }
+            .levels(),
     );
     levels[0] = texture;
     levels

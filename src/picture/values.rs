@@ -16,7 +16,7 @@ use crate::scene::{
 };
 
 /// What the uniforms of one pass are filled from.
-pub struct Values<'a> {
+pub struct UniformValues<'a> {
     pub plan: &'a Plan,
     pub scene: &'a Scene,
     /// The pass that lights the scene, whichever pass these values are for.
@@ -31,7 +31,7 @@ pub struct Values<'a> {
 
 /// The camera of a pass.
 #[derive(Debug, Clone, Copy)]
-pub struct Camera {
+pub struct PassCamera {
     pub clip_from_world: DMat4,
     pub world_from_view: DMat4,
 }
@@ -56,13 +56,13 @@ const GROUPS: &[(&str, &str)] = &[
 
 /// The path of a uniform: `lamps.lights[2].color` is the field `color` of the third light in the
 /// block `lamps`.
-struct Path<'p> {
+struct UniformPath<'p> {
     block: &'p str,
     index: usize,
     field: &'p str,
 }
 
-impl<'p> Path<'p> {
+impl<'p> UniformPath<'p> {
     fn new(path: &'p str) -> Self {
         let (block, rest) = path.split_once('.').unwrap_or((path, ""));
         let last = rest.rsplit('.').next().unwrap_or(rest);
@@ -76,10 +76,10 @@ const FOLLOWING: [&str; 3] = ["cascades", "clusters", "probes"];
 
 /// Whether a uniform follows from the scene, so that nobody can change it.
 pub(super) fn follows(path: &str) -> bool {
-    FOLLOWING.contains(&Path::new(path).block)
+    FOLLOWING.contains(&UniformPath::new(path).block)
 }
 
-impl Camera {
+impl PassCamera {
     /// The camera of the viewer.
     pub fn of_viewer(eye: &Eye, shot: &Shot) -> Self {
         let view = eye.view();
@@ -88,7 +88,7 @@ impl Camera {
 
     /// The numbers of a field of the block `camera`.
     pub fn number(&self, path: &str) -> Option<Vec<f64>> {
-        match Path::new(path).field {
+        match UniformPath::new(path).field {
             "clip_from_world" => Some(matrix_columns(self.clip_from_world)),
             "world_from_view" => Some(matrix_columns(self.world_from_view)),
             _ => None,
@@ -96,14 +96,14 @@ impl Camera {
     }
 }
 
-impl Values<'_> {
+impl UniformValues<'_> {
     /// The numbers of a uniform in any block but those of the camera and of an object: what the
     /// source published, what the scene has, or what the axes choose. `None` if nothing knows it.
     pub fn number(&self, path: &str) -> Option<Vec<f64>> {
         if let Some(changed) = self.changed(path) {
             return Some(changed);
         }
-        let path = Path::new(path);
+        let path = UniformPath::new(path);
         let of_scene = || match path.block {
             "lamps" if path.field == "count" => self.lamps().map(|count| vec![count as f64]),
             "lamps" => self.lamp(path.index, path.field),
@@ -136,7 +136,7 @@ impl Values<'_> {
         if let Some(changed) = self.changed(path) {
             return Some(changed);
         }
-        let parsed = Path::new(path);
+        let parsed = UniformPath::new(path);
         match (parsed.block, parsed.field) {
             ("object", "world_from_object") => Some(matrix_columns(object.world_from_object)),
             ("object", "normal_from_object") => {
@@ -181,7 +181,7 @@ impl Values<'_> {
         if self.lit.needs.levels { LEVELS } else { 1 }
     }
 
-    fn published(&self, path: &Path<'_>) -> Option<Vec<f64>> {
+    fn published(&self, path: &UniformPath<'_>) -> Option<Vec<f64>> {
         let (_, group) = GROUPS.iter().find(|(block, _)| *block == path.block)?;
         let is_placed = matches!(path.field, "position" | "axis");
         if path.block == "lamps" && is_placed && self.plan.changes.lamps.contains_key(&path.index) {
@@ -199,7 +199,7 @@ impl Values<'_> {
         material_value(&sides[side], field)
     }
 
-    fn surroundings(&self, path: &Path<'_>) -> Option<Vec<f64>> {
+    fn surroundings(&self, path: &UniformPath<'_>) -> Option<Vec<f64>> {
         let lit = !self.lit.needs.unlit;
         let dimmed = if lit { 0.35 } else { 1.0 };
         Some(match path.field {

@@ -241,7 +241,7 @@ fn parse_manifest(
     Ok(manifest)
 }
 
-fn no_list(file: &manifest::File) -> Diagnostic {
+fn no_list(file: &manifest::ManifestFile) -> Diagnostic {
     Diagnostic::error(codes::UNREADABLE, format!("there is no usage list `{}`", file.path))
         .at(file.span, "named here")
 }

@@ -5,7 +5,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::{MANIFEST, relative, unreadable_file, wesl_toml, with_slashes};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::permute::manifest::{File, Program};
+use crate::permute::manifest::{ManifestFile, Program};
 
 /// The root folder of the package that a file belongs to, where none is given: what the nearest
 /// `wesl.toml` above the file declares, or the folder of the nearest manifest, whichever is
@@ -96,7 +96,7 @@ pub fn below_root(programs: &mut [Program], folder: &Path) -> Result<(), Diagnos
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
-fn outside_package(file: &File, root: &Path) -> Diagnostic {
+fn outside_package(file: &ManifestFile, root: &Path) -> Diagnostic {
     let root = root.display();
     let message = format!("`{}` is not below the package root `{root}`", file.path);
     Diagnostic::error(codes::OUTSIDE_ROOT, message).at(file.span, "named here").note(format!(

@@ -80,11 +80,11 @@ pub fn features(root: &Path, sources: &mut SourceSet) -> Result<Features, Diagno
     Ok(features)
 }
 
-fn find_tables(root: &Path, sources: &mut SourceSet) -> Result<Found, Diagnostics> {
+fn find_tables(root: &Path, sources: &mut SourceSet) -> Result<FoundPackages, Diagnostics> {
     refuse_broken(root, sources)?;
-    let Some(folder) = home(root) else { return Ok(Found::default()) };
+    let Some(folder) = home(root) else { return Ok(FoundPackages::default()) };
     let shown = shown_home(root, &folder);
-    let mut found = Found { visited: vec![folder], ..Found::default() };
+    let mut found = FoundPackages { visited: vec![folder], ..FoundPackages::default() };
     found.collect(&shown, sources);
     if found.diagnostics.is_empty() { Ok(found) } else { Err(found.diagnostics) }
 }
@@ -134,8 +134,10 @@ fn parse_tables(
     let disk = Disk::new(folder).map_err(|error| {
         Diagnostic::error(codes::UNREADABLE, format!("cannot read `{}`: {error}", shown.display()))
     })?;
-    let package =
-        Package { name: String::new(), files: Box::new(Shown { disk, folder: shown.to_owned() }) };
+    let package = Package {
+        name: String::new(),
+        files: Box::new(NamedFolder { disk, folder: shown.to_owned() }),
+    };
     let missing = || {
         Diagnostic::error(
             codes::UNREADABLE,
@@ -211,12 +213,12 @@ fn manager_of(table: &Table) -> Option<&str> {
 }
 
 /// A folder under the name that the user gave it.
-struct Shown {
+struct NamedFolder {
     disk: Disk,
     folder: PathBuf,
 }
 
-impl Files for Shown {
+impl Files for NamedFolder {
     fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
         self.disk.read(path)
     }
@@ -245,7 +247,7 @@ fn declared_in(table: &Table) -> &str {
 }
 
 #[derive(Default)]
-struct Found {
+struct FoundPackages {
     packages: Vec<Package>,
     /// Those with a `wesl.toml`, as they are shown; the root's first.
     folders: Vec<PathBuf>,
@@ -253,7 +255,7 @@ struct Found {
     diagnostics: Diagnostics,
 }
 
-impl Found {
+impl FoundPackages {
     /// Adds what the `wesl.toml` of a folder lists.
     fn collect(&mut self, folder: &Path, sources: &mut SourceSet) {
         if !folder.join(NAME).is_file() {

@@ -5,9 +5,9 @@ use std::sync::Mutex;
 
 use super::library::{Library, lock_sources};
 use super::{plots, quality};
-use crate::catalogue::pages::{Contents, Drawn, catalogue_pages};
+use crate::catalogue::pages::{CatalogueContents, DrawnPlot, catalogue_pages};
 use crate::catalogue::quality::{self as groups, Measured};
-use crate::catalogue::{self, Module, cost, figure, plot, prefix, preset, probe, reader};
+use crate::catalogue::{self, CatalogueModule, cost, figure, plot, prefix, preset, probe, reader};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, stopped_message};
 use crate::execute::{Session, executors, on_thread};
 use crate::permute::Manifest;
@@ -15,11 +15,11 @@ use crate::project;
 use crate::source::{Embedded, SourceSet};
 
 /// The texts of files, by their paths below a folder.
-pub type Files = BTreeMap<String, String>;
+pub type CatalogueFiles = BTreeMap<String, String>;
 
 /// Makes the files of the catalogue. Errors come with the sources of the library, which they point
 /// into.
-pub fn catalogue_files() -> Result<Files, (SourceSet, Diagnostics)> {
+pub fn catalogue_files() -> Result<CatalogueFiles, (SourceSet, Diagnostics)> {
     let (sources, manifest) = project::library_manifest()?;
     let sources = Mutex::new(sources);
     let made = on_thread(|| read_contents(&sources, &manifest))
@@ -29,7 +29,7 @@ pub fn catalogue_files() -> Result<Files, (SourceSet, Diagnostics)> {
 
 /// The files of the library that are generated, by path below the library: the module of the
 /// ambient probes with its cases, and the file of prefixed names.
-pub fn made_modules() -> Result<Files, (SourceSet, Diagnostics)> {
+pub fn made_modules() -> Result<CatalogueFiles, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
     let probes = match probe::library_probes(&mut sources) {
         Ok(probes) => probes,
@@ -44,7 +44,10 @@ pub fn made_modules() -> Result<Files, (SourceSet, Diagnostics)> {
     Ok(made.into_iter().map(|(path, text)| (path.to_owned(), text)).collect())
 }
 
-fn read_contents(sources: &Mutex<SourceSet>, manifest: &Manifest) -> Result<Files, Diagnostics> {
+fn read_contents(
+    sources: &Mutex<SourceSet>,
+    manifest: &Manifest,
+) -> Result<CatalogueFiles, Diagnostics> {
     let modules = catalogue::library_modules();
     let plots = draw_plots(sources, &modules)?;
     let probes = probe::library_probes(&mut lock_sources(sources))?;
@@ -53,7 +56,7 @@ fn read_contents(sources: &Mutex<SourceSet>, manifest: &Manifest) -> Result<File
     let quality = measure_quality(sources)?;
     let kinds = figure::library_kinds(&mut lock_sources(sources))?;
     let figures = figure::library_figures(&mut lock_sources(sources), &modules, &kinds)?;
-    Ok(catalogue_pages(&Contents {
+    Ok(catalogue_pages(&CatalogueContents {
         modules: &modules,
         plots: &plots,
         kinds: &kinds,
@@ -78,8 +81,8 @@ fn measure_quality(sources: &Mutex<SourceSet>) -> Result<Vec<Measured>, Diagnost
 /// Draws every plot, by the path of its function.
 fn draw_plots(
     sources: &Mutex<SourceSet>,
-    modules: &[Module],
-) -> Result<BTreeMap<String, Drawn>, Diagnostics> {
+    modules: &[CatalogueModule],
+) -> Result<BTreeMap<String, DrawnPlot>, Diagnostics> {
     let (executor, library) = (executors::eval::EXECUTOR, Library::embedded());
     let mut session = executor.start().map_err(|_| vec![drawing_stopped()])?;
     let mut found = BTreeMap::new();
@@ -109,10 +112,10 @@ fn draw_plot(
     path: &str,
     plot: &plot::Plot,
     session: &mut dyn Session,
-) -> Result<Drawn, Diagnostics> {
+) -> Result<DrawnPlot, Diagnostics> {
     let curves = plots::plot_curves(library, sources, path, plot, session)?;
     let svg = plot::draw_plot(path.rsplit("::").next().unwrap_or(path), plot, &curves);
-    Ok(Drawn { svg, caption: plot.caption() })
+    Ok(DrawnPlot { svg, caption: plot.caption() })
 }
 
 fn drawing_stopped() -> Diagnostic {

@@ -11,7 +11,7 @@ mod functions;
 use std::ops::Range;
 
 use crate::diagnostic::{Diagnostic, codes, nearest_name};
-use crate::execute::kernel::Shape;
+use crate::execute::kernel::TypeShape;
 use crate::limits::{FORMULA_NESTING, FORMULA_PARTS};
 use crate::parse::words::{begins_word, continues_word, number_end};
 
@@ -23,7 +23,7 @@ pub enum Formula {
     Words(usize, usize),
     Negated(Box<Formula>),
     Binary(&'static Operator, Box<Formula>, Box<Formula>),
-    Call(&'static Function, Vec<Formula>),
+    Call(&'static FormulaFunction, Vec<Formula>),
 }
 
 /// A binary operator: spelling, precedence, meaning.
@@ -47,7 +47,7 @@ const OPERATORS: &[Operator] = &[
 
 /// A function that formulas may call.
 #[derive(Debug)]
-pub struct Function {
+pub struct FormulaFunction {
     pub name: &'static str,
     /// Number of arguments; `None` for any, at least one.
     arity: Option<usize>,
@@ -55,7 +55,7 @@ pub struct Function {
 }
 
 /// Every function, by name.
-pub const FUNCTIONS: &[Function] = functions::ALL;
+pub const FUNCTIONS: &[FormulaFunction] = functions::ALL;
 
 /// Why a text is not a formula, and where.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -76,7 +76,7 @@ impl From<(Range<usize>, String)> for Mistake {
 impl Formula {
     /// Parses a text over named parameters.
     pub fn parse(text: &str, scope: &Scope<'_>) -> Result<Self, Mistake> {
-        let mut parser = Parser { text, at: 0, depth: 0, parts: 0, scope };
+        let mut parser = FormulaParser { text, at: 0, depth: 0, parts: 0, scope };
         let formula = parser.binary(0)?;
         parser.skip();
         if parser.at < text.len() {
@@ -120,11 +120,11 @@ impl Formula {
 }
 
 /// Names and shapes of the parameters, in the order of their words in a row.
-pub struct Scope<'a>(pub Vec<(&'a str, &'a Shape)>);
+pub struct Scope<'a>(pub Vec<(&'a str, &'a TypeShape)>);
 
 impl Scope<'_> {
     /// First word and shape of a path.
-    pub fn find(&self, path: &[String]) -> Option<(usize, &Shape)> {
+    pub fn find(&self, path: &[String]) -> Option<(usize, &TypeShape)> {
         let (name, rest) = path.split_first()?;
         let index = self.0.iter().position(|(known, _)| known == name)?;
         let first: u32 = self.0[..index].iter().map(|(_, shape)| shape.words()).sum();
@@ -143,7 +143,7 @@ impl Scope<'_> {
             .or_else(|| "rgba".find(last.as_str()))
             .filter(|_| last.len() == 1)?;
         match self.find(rest)? {
-            (first, Shape::Vector { size, .. }) if index < *size as usize => {
+            (first, TypeShape::Vector { size, .. }) if index < *size as usize => {
                 Some((first + index, 1))
             }
             _ => None,
@@ -159,7 +159,7 @@ impl Scope<'_> {
     }
 }
 
-struct Parser<'a> {
+struct FormulaParser<'a> {
     text: &'a str,
     at: usize,
     /// How deeply parentheses and operands nest here.
@@ -170,10 +170,10 @@ struct Parser<'a> {
     scope: &'a Scope<'a>,
 }
 
-type Parsed = Result<Formula, Mistake>;
+type ParsedFormula = Result<Formula, Mistake>;
 
-impl Parser<'_> {
-    fn binary(&mut self, weakest: u8) -> Parsed {
+impl FormulaParser<'_> {
+    fn binary(&mut self, weakest: u8) -> ParsedFormula {
         self.depth += 1;
         if self.depth > FORMULA_NESTING {
             return Err((self.at..self.at, "the formula is nested too deeply".to_owned()).into());
@@ -197,7 +197,7 @@ impl Parser<'_> {
             .filter(|operator| operator.1 >= weakest)
     }
 
-    fn unary(&mut self) -> Parsed {
+    fn unary(&mut self) -> ParsedFormula {
         self.skip();
         self.parts += 1;
         if self.parts > FORMULA_PARTS {
@@ -224,7 +224,7 @@ impl Parser<'_> {
         }
     }
 
-    fn number(&mut self) -> Parsed {
+    fn number(&mut self) -> ParsedFormula {
         let range = self.at..number_end(self.text, self.at);
         self.at = range.end;
         let text = &self.text[range.clone()];
@@ -232,7 +232,7 @@ impl Parser<'_> {
         number.map_err(|_| (range, format!("`{text}` is not a number")).into())
     }
 
-    fn name(&mut self) -> Parsed {
+    fn name(&mut self) -> ParsedFormula {
         let rest = &self.text[self.at..];
         let end = rest.find(|c: char| !(continues_word(c) || c == '.')).unwrap_or(rest.len());
         let (name, range) = (&rest[..end], self.at..self.at + end);
@@ -257,7 +257,7 @@ impl Parser<'_> {
         )
     }
 
-    fn call(&mut self, name: &str, range: Range<usize>) -> Parsed {
+    fn call(&mut self, name: &str, range: Range<usize>) -> ParsedFormula {
         let Some(function) = FUNCTIONS.iter().find(|function| function.name == name) else {
             let known = nearest_name(name, FUNCTIONS.iter().map(|function| function.name));
             let known = known.map_or(String::new(), |known| format!("; did you mean `{known}`?"));

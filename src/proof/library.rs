@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use super::cases::{self, File};
-use super::check::{self, Open, Report};
+use super::cases::{self, CaseFile};
+use super::check::{self, CheckReport, OpenExecutor};
 use super::ratchet::{self, Ratchet};
 use super::untested;
 use crate::bundle::Language;
@@ -94,13 +94,13 @@ impl Library {
         sources: &Mutex<SourceSet>,
         paths: &[String],
         languages: &[Language],
-        open: &mut [Open],
-    ) -> Result<Report, Diagnostics> {
+        open: &mut [OpenExecutor],
+    ) -> Result<CheckReport, Diagnostics> {
         let ratchet = self.ratchet(sources)?;
-        let options = check::Options {
+        let options = check::CheckOptions {
             references: self.has_references(),
             ratchet: ratchet.as_ref(),
-            ..check::Options::default()
+            ..check::CheckOptions::default()
         };
         self.check_with(sources, paths, languages, open, &options)
     }
@@ -126,9 +126,9 @@ impl Library {
         sources: &Mutex<SourceSet>,
         paths: &[String],
         languages: &[Language],
-        open: &mut [Open],
-        options: &check::Options<'_>,
-    ) -> Result<Report, Diagnostics> {
+        open: &mut [OpenExecutor],
+        options: &check::CheckOptions<'_>,
+    ) -> Result<CheckReport, Diagnostics> {
         let files = self.read(sources, paths)?;
         let subjects = |module: &str, language: Language, functions: &[String]| {
             self.module(sources, module, language, functions)
@@ -150,7 +150,7 @@ impl Library {
         &self,
         sources: &Mutex<SourceSet>,
         paths: &[String],
-    ) -> Result<Vec<(String, File)>, Diagnostics> {
+    ) -> Result<Vec<(String, CaseFile)>, Diagnostics> {
         let mut sources = lock_sources(sources);
         let package = self.package();
         let mut files = Vec::new();
@@ -206,7 +206,7 @@ impl Library {
                 ("lamplight_check.frag.glsl".to_owned(), Some(text))
             }
         };
-        let files = Overlay {
+        let files = LibraryOverlay {
             base: self.files.clone(),
             extra: extra.map(|text| (root.clone(), text)).into_iter().collect(),
         };
@@ -261,7 +261,7 @@ impl Library {
 fn shared_package(name: &str, files: &Arc<dyn Files>) -> Package {
     Package {
         name: name.to_owned(),
-        files: Box::new(Overlay { base: files.clone(), extra: BTreeMap::new() }),
+        files: Box::new(LibraryOverlay { base: files.clone(), extra: BTreeMap::new() }),
     }
 }
 
@@ -305,12 +305,12 @@ fn asked_settings(graph: &resolve::glsl::Graph, settings: &Settings) -> Settings
 }
 
 /// The files of a package, and texts that are added to them here.
-struct Overlay {
+struct LibraryOverlay {
     base: Arc<dyn Files>,
     extra: BTreeMap<String, String>,
 }
 
-impl Files for Overlay {
+impl Files for LibraryOverlay {
     fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
         match self.extra.get(path) {
             Some(text) => Ok(Some(text.clone())),

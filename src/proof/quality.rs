@@ -7,9 +7,11 @@ use std::sync::{Arc, Mutex};
 
 use super::library::Library;
 use crate::bundle::Language;
-use crate::catalogue::quality::{Entry, Group, Measured, Reference};
+use crate::catalogue::quality::{Measured, QualityEntry, QualityGroup, QualityReference};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use crate::execute::fixture::{
+    Address, Compare, Fixture, FixtureSampler, FixtureTexture, TextureKind,
+};
 use crate::execute::{Session, kernel};
 use crate::source::SourceSet;
 
@@ -27,7 +29,7 @@ const TAPS: u32 = 1024;
 pub fn quality_module(
     library: &Library,
     sources: &Mutex<SourceSet>,
-    group: &Group,
+    group: &QualityGroup,
     value: &str,
 ) -> Result<naga::Module, Diagnostics> {
     let imports = group.imports.iter().map(|path| format!("import {}::{path};\n", library.name()));
@@ -45,7 +47,7 @@ pub fn quality_module(
 pub fn measure_group(
     library: &Library,
     sources: &Mutex<SourceSet>,
-    group: Group,
+    group: QualityGroup,
     session: &mut dyn Session,
 ) -> Result<Measured, Diagnostics> {
     let map = edge_map();
@@ -65,7 +67,7 @@ pub fn measure_group(
     Ok(Measured { group, errors })
 }
 
-fn nothing_exact(group: &Group, entry: &Entry) -> Diagnostic {
+fn nothing_exact(group: &QualityGroup, entry: &QualityEntry) -> Diagnostic {
     Diagnostic::error(
         codes::DATA_SYNTAX,
         format!("`{}` has neither `exact` nor `reference`", group.key(entry)),
@@ -78,7 +80,7 @@ fn root_mean_square(values: &[f64]) -> f64 {
 }
 
 /// The inputs `x` and `y` of a group. `x` changes fastest.
-fn grid_places(group: &Group) -> impl Iterator<Item = (f64, f64)> {
+fn grid_places(group: &QualityGroup) -> impl Iterator<Item = (f64, f64)> {
     let x = group.x;
     group.y.values().flat_map(move |y| x.values().map(move |x| (x, y)))
 }
@@ -86,14 +88,14 @@ fn grid_places(group: &Group) -> impl Iterator<Item = (f64, f64)> {
 fn run_expression(
     library: &Library,
     sources: &Mutex<SourceSet>,
-    group: &Group,
+    group: &QualityGroup,
     value: &str,
-    map: &Texture,
+    map: &FixtureTexture,
     session: &mut dyn Session,
 ) -> Result<Vec<f64>, Diagnostics> {
     let module = quality_module(library, sources, group, value)?;
     let sampler =
-        Sampler { compare: Some(Compare::LessEqual), linear: true, address: Address::Clamp };
+        FixtureSampler { compare: Some(Compare::LessEqual), linear: true, address: Address::Clamp };
     let fixtures = BTreeMap::from([
         ("map".to_owned(), Arc::new(Fixture::Texture(map.clone()))),
         ("smp".to_owned(), Arc::new(Fixture::Sampler(sampler))),
@@ -107,7 +109,7 @@ fn run_expression(
 }
 
 /// A depth map whose near part ends at a slanted edge through the middle.
-fn edge_map() -> Texture {
+fn edge_map() -> FixtureTexture {
     let is_near = |x: u32, y: u32| {
         let [across, down] = [x, y].map(|at| f64::from(at) - f64::from(SIZE) / 2.0);
         across + 0.4 * down < 0.0
@@ -117,20 +119,24 @@ fn edge_map() -> Texture {
         if is_near(index % SIZE, index / SIZE) { near } else { far }
     });
     let texels = texels.collect();
-    Texture { kind: TextureKind::Depth2d, width: SIZE, height: SIZE, texels }
+    FixtureTexture { kind: TextureKind::Depth2d, width: SIZE, height: SIZE, texels }
 }
 
-fn reference_values(group: &Group, reference: Reference, map: &Texture) -> Vec<f64> {
+fn reference_values(
+    group: &QualityGroup,
+    reference: QualityReference,
+    map: &FixtureTexture,
+) -> Vec<f64> {
     // The shader has its coordinates in f32.
     let places = grid_places(group).map(|(x, y)| (f64::from(x as f32), f64::from(y as f32)));
     match reference {
-        Reference::Disk => places.map(|(x, y)| disk_visibility(map, x, y)).collect(),
-        Reference::GgxAlbedo => places.map(|(x, y)| ggx_albedo(x, y)).collect(),
+        QualityReference::Disk => places.map(|(x, y)| disk_visibility(map, x, y)).collect(),
+        QualityReference::GgxAlbedo => places.map(|(x, y)| ggx_albedo(x, y)).collect(),
     }
 }
 
 /// The mean over a disk of comparisons at depth 0.5, on Vogel's spiral.
-fn disk_visibility(map: &Texture, x: f64, y: f64) -> f64 {
+fn disk_visibility(map: &FixtureTexture, x: f64, y: f64) -> f64 {
     let golden = TAU * 0.381_966_011_250_105;
     let tap = |index: u32| {
         let radius = RADIUS * ((f64::from(index) + 0.5) / f64::from(TAPS)).sqrt();
@@ -142,7 +148,7 @@ fn disk_visibility(map: &Texture, x: f64, y: f64) -> f64 {
 }
 
 /// A comparison at depth 0.5, filtered linearly over four texels. The place is in texels.
-fn filtered_comparison(map: &Texture, x: f64, y: f64) -> f64 {
+fn filtered_comparison(map: &FixtureTexture, x: f64, y: f64) -> f64 {
     let (left, top) = ((x - 0.5).floor(), (y - 0.5).floor());
     let (across, down) = (x - 0.5 - left, y - 0.5 - top);
     let lit = |dx: i64, dy: i64| {

@@ -24,7 +24,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::check::Report;
+use super::check::CheckReport;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::source::{SourceId, Span};
 use toml::{Table, Value};
@@ -139,7 +139,7 @@ impl Ratchet {
 
     /// Lowers the shares to what a report measured. They are raised only by force. Shares from
     /// another adapter are measured again. What fails is not recorded.
-    pub fn bless(&mut self, report: &Report, force: bool) {
+    pub fn bless(&mut self, report: &CheckReport, force: bool) {
         for (executor, adapter) in report
             .outcomes
             .iter()
@@ -161,7 +161,7 @@ impl Ratchet {
 }
 
 /// The worst share of each case and executor that passes, rounded up.
-fn measured_shares(report: &Report) -> BTreeMap<(String, &'static str), f64> {
+fn measured_shares(report: &CheckReport) -> BTreeMap<(String, &'static str), f64> {
     let mut found = BTreeMap::new();
     for outcome in report.outcomes.iter().filter(|outcome| outcome.is_within()) {
         let Ok(verdict) = &outcome.verdict else { continue };

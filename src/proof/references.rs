@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
-use crate::execute::fixture::{Fixture, Sampler, Texture};
+use crate::execute::fixture::{Fixture, FixtureSampler, FixtureTexture};
 
 /// The references of one module.
-pub struct Entry {
+pub struct ReferenceEntry {
     /// Module path below the package, `lighting::spot`.
     pub module: &'static str,
     /// Function name and its reference.
@@ -16,15 +16,15 @@ pub struct Entry {
 }
 
 /// A reference reads its arguments in the order of the parameters.
-pub type Reference = fn(&mut Arguments<'_>) -> Expected;
+pub type Reference = fn(&mut CallArguments<'_>) -> Expected;
 
 /// The arguments of one call, taken from the front.
-pub struct Arguments<'a> {
+pub struct CallArguments<'a> {
     words: &'a [f64],
     fixtures: &'a [Arc<Fixture>],
 }
 
-impl<'a> Arguments<'a> {
+impl<'a> CallArguments<'a> {
     /// The words of the plain parameters, and the fixtures of the others in order.
     pub fn new(words: &'a [f64], fixtures: &'a [Arc<Fixture>]) -> Self {
         Self { words, fixtures }
@@ -65,7 +65,7 @@ impl<'a> Arguments<'a> {
     }
 
     /// The next texture.
-    pub fn texture(&mut self) -> Option<&'a Texture> {
+    pub fn texture(&mut self) -> Option<&'a FixtureTexture> {
         self.fixture(|fixture| match fixture {
             Fixture::Texture(texture) => Some(texture),
             Fixture::Sampler(_) => None,
@@ -73,7 +73,7 @@ impl<'a> Arguments<'a> {
     }
 
     /// The next sampler.
-    pub fn sampler(&mut self) -> Option<Sampler> {
+    pub fn sampler(&mut self) -> Option<FixtureSampler> {
         self.fixture(|fixture| match fixture {
             Fixture::Sampler(sampler) => Some(*sampler),
             Fixture::Texture(_) => None,

@@ -15,12 +15,12 @@
 
 use super::formula::{Formula, Scope};
 use crate::diagnostic::Diagnostic;
-use crate::execute::kernel::Shape;
+use crate::execute::kernel::TypeShape;
 
 const U: f64 = 1.0 / 8_388_608.0;
 
 /// A kind of term.
-pub struct Kind {
+pub struct TermKind {
     pub name: &'static str,
     /// Keys whose values are formulas.
     pub formulas: &'static [&'static str],
@@ -31,12 +31,12 @@ pub struct Kind {
 }
 
 /// Every kind, by name.
-pub const TERMS: &[Kind] = &[
-    Kind { name: "ulp", formulas: &[], default: 1.0, allowed: |k, _, y| k * ulp_of(y) },
-    Kind { name: "abs", formulas: &[], default: 0.0, allowed: |a, _, _| a },
-    Kind { name: "rel", formulas: &[], default: 0.0, allowed: |r, _, y| r * y.abs() },
-    Kind { name: "pow", formulas: &["base", "exponent"], default: 2.0, allowed: pow_error },
-    Kind {
+pub const TERMS: &[TermKind] = &[
+    TermKind { name: "ulp", formulas: &[], default: 1.0, allowed: |k, _, y| k * ulp_of(y) },
+    TermKind { name: "abs", formulas: &[], default: 0.0, allowed: |a, _, _| a },
+    TermKind { name: "rel", formulas: &[], default: 0.0, allowed: |r, _, y| r * y.abs() },
+    TermKind { name: "pow", formulas: &["base", "exponent"], default: 2.0, allowed: pow_error },
+    TermKind {
         name: "scaled",
         formulas: &["by"],
         default: 1.0,
@@ -47,32 +47,32 @@ pub const TERMS: &[Kind] = &[
 /// One term of a case. `F` is a text first, and a formula once it is bound.
 #[derive(Debug, Clone)]
 pub struct Term<F> {
-    pub kind: &'static Kind,
+    pub kind: &'static TermKind,
     pub coefficient: f64,
     pub formulas: Vec<F>,
     /// The path of the part of the result that it applies to.
     pub only: Option<String>,
 }
 
-impl std::fmt::Debug for Kind {
+impl std::fmt::Debug for TermKind {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.name)
     }
 }
 
 /// The kind of that name.
-pub fn find_kind(name: &str) -> Option<&'static Kind> {
+pub fn find_kind(name: &str) -> Option<&'static TermKind> {
     TERMS.iter().find(|kind| kind.name == name)
 }
 
 /// A term over a function's parameters, with the result words that it applies to.
 #[derive(Debug)]
-pub struct Bound {
+pub struct BoundTerm {
     term: Term<Formula>,
     words: std::ops::Range<usize>,
 }
 
-impl Bound {
+impl BoundTerm {
     /// Steps that it takes for a row.
     pub fn parts(&self) -> usize {
         1 + self.term.formulas.iter().map(Formula::parts).sum::<usize>()
@@ -81,11 +81,11 @@ impl Bound {
 
 /// Binds the formulas of a case's terms.
 pub fn bind_terms(
-    terms: &[Term<super::cases::Text>],
+    terms: &[Term<super::cases::FormulaText>],
     scope: &Scope<'_>,
-    result: &[Shape],
-) -> Result<Vec<Bound>, Diagnostic> {
-    let all: u32 = result.iter().map(Shape::words).sum();
+    result: &[TypeShape],
+) -> Result<Vec<BoundTerm>, Diagnostic> {
+    let all: u32 = result.iter().map(TypeShape::words).sum();
     let bound = terms.iter().map(|term| {
         let words = match &term.only {
             Some(path) => result_part(path, result).ok_or_else(|| {
@@ -96,7 +96,7 @@ pub fn bind_terms(
         };
         let formulas =
             term.formulas.iter().map(|text| text.bind(scope)).collect::<Result<_, _>>()?;
-        Ok(Bound {
+        Ok(BoundTerm {
             term: Term {
                 kind: term.kind,
                 coefficient: term.coefficient,
@@ -109,7 +109,7 @@ pub fn bind_terms(
     bound.collect()
 }
 
-fn result_part(path: &str, result: &[Shape]) -> Option<std::ops::Range<usize>> {
+fn result_part(path: &str, result: &[TypeShape]) -> Option<std::ops::Range<usize>> {
     let parts: Vec<String> = path.split('.').map(str::to_owned).collect();
     let (first, shape) = result.first()?.part(&parts)?;
     Some(first as usize..(first + shape.words()) as usize)
@@ -117,14 +117,14 @@ fn result_part(path: &str, result: &[Shape]) -> Option<std::ops::Range<usize>> {
 
 /// The value of each formula in the terms of a tolerance, for one row of inputs. All components of
 /// the result share these values, so they are computed once.
-pub fn formula_values(terms: &[Bound], row: &[f64]) -> Vec<f64> {
+pub fn formula_values(terms: &[BoundTerm], row: &[f64]) -> Vec<f64> {
     terms.iter().flat_map(|bound| &bound.term.formulas).map(|formula| formula.scalar(row)).collect()
 }
 
 /// What the terms allow for one component of a row's result, given the row's [`formula_values`].
-pub fn allowed_error(terms: &[Bound], values: &[f64], word: usize, expected: f64) -> f64 {
+pub fn allowed_error(terms: &[BoundTerm], values: &[f64], word: usize, expected: f64) -> f64 {
     let (mut sum, mut rest) = (0.0, values);
-    for Bound { term, words } in terms {
+    for BoundTerm { term, words } in terms {
         let (own, others) = rest.split_at(term.formulas.len().min(rest.len()));
         rest = others;
         let allowed = (term.kind.allowed)(term.coefficient, own, expected);

@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::cases::File;
-use crate::parse::glsl::{self, Part, Symbol, Symbols, Token, TokenKind, known};
-use crate::parse::wesl::{self, Event, Item, ItemKind, Module, Name, Names, Reference};
+use super::cases::CaseFile;
+use crate::parse::glsl::{self, FilePart, Symbol, Symbols, Token, TokenKind, known};
+use crate::parse::wesl::{self, Event, Item, ItemKind, Module, Name, Names, UsedName};
 use crate::source::{SourceId, SourceSet};
 
 /// Paths of the functions of a WESL module that no case names and that no named function calls.
 /// Entry points need no cases.
-pub fn untested_functions(module: &str, text: &str, file: &File) -> Vec<String> {
+pub fn untested_functions(module: &str, text: &str, file: &CaseFile) -> Vec<String> {
     let mut names = Names::default();
     let parsed = wesl::parse(SourceId(0), text.into(), &mut names);
     let tried = named_functions(file).filter_map(|name| names.find(name)).collect();
@@ -24,7 +24,7 @@ pub fn untested_functions(module: &str, text: &str, file: &File) -> Vec<String> 
 
 /// As [`untested_functions`], for a GLSL module. Functions in all branches of its preprocessor
 /// conditions count.
-pub fn of_glsl(module: &str, text: &str, file: &File) -> Vec<String> {
+pub fn of_glsl(module: &str, text: &str, file: &CaseFile) -> Vec<String> {
     let (mut sources, mut symbols) = (SourceSet::default(), Symbols::default());
     let id = sources.add(format!("{module}.glsl"), text);
     let functions = function_definitions(&glsl::parse(&sources, id, &mut symbols));
@@ -35,7 +35,7 @@ pub fn of_glsl(module: &str, text: &str, file: &File) -> Vec<String> {
 }
 
 /// The functions that cases name, partners of laws among them.
-fn named_functions(file: &File) -> impl Iterator<Item = &str> {
+fn named_functions(file: &CaseFile) -> impl Iterator<Item = &str> {
     file.cases.iter().flat_map(|case| {
         let partners = case.laws.iter().flat_map(|law| &law.partners);
         std::iter::once(case.function.as_str()).chain(partners.map(|partner| partner.as_str()))
@@ -61,8 +61,8 @@ fn function_paths<'a>(module: &str, names: impl Iterator<Item = &'a str>) -> Vec
 /// Every function that a GLSL file defines, with the identifiers of its body.
 fn function_definitions(module: &glsl::Module) -> BTreeMap<Symbol, Vec<Symbol>> {
     let texts = module.parts.iter().filter_map(|part| match part {
-        Part::Text(text) => Some(text.tokens.start as usize..text.tokens.end as usize),
-        Part::Directive(..) => None,
+        FilePart::Text(text) => Some(text.tokens.start as usize..text.tokens.end as usize),
+        FilePart::Directive(..) => None,
     });
     let tokens: Vec<&Token> = texts.flat_map(|range| &module.tokens[range]).collect();
     let mut found: BTreeMap<Symbol, Vec<Symbol>> = BTreeMap::new();
@@ -109,8 +109,8 @@ fn closing_token(tokens: &[&Token], at: usize, open: Symbol, close: Symbol) -> u
 fn used_names<'a>(module: &'a Module, item: &'a Item) -> impl Iterator<Item = Name> + 'a {
     item.events.iter().filter_map(|event| match event {
         Event::Use { reference, .. } => match &module.references[*reference as usize] {
-            Reference::Name(name) => Some(*name),
-            Reference::Path(_) => None,
+            UsedName::Name(name) => Some(*name),
+            UsedName::Path(_) => None,
         },
         _ => None,
     })

@@ -5,20 +5,20 @@ mod columns;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::Origin;
+use super::ReportOrigin;
 use super::plot::{Series, error_plot, heat_map};
 use crate::bundle::Language;
 use crate::diagnostic::escape_markup;
 use crate::proof::check::{
-    Input, Outcome, Proof, Report, Verdict, failures_as_text, headroom_text, of_outcome,
-    short_number,
+    CaseVerdict, CheckReport, Outcome, ProfiledInput, Proof, failures_as_text, headroom_text,
+    of_outcome, short_number,
 };
 
 const STYLE: &str = include_str!("style.css");
 
 /// The report as a page.
-pub fn html_report(report: &Report, origin: &Origin<'_>) -> String {
-    let page = Page::new(report, origin);
+pub fn html_report(report: &CheckReport, origin: &ReportOrigin<'_>) -> String {
+    let page = ReportPage::new(report, origin);
     let mut html = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\n\
          <title>Lamplight: numbers</title>\n<style>\n{STYLE}</style></head>\n<body>\n<header><h1>Lamplight: numbers</h1>\n"
@@ -35,16 +35,16 @@ pub fn html_report(report: &Report, origin: &Origin<'_>) -> String {
 }
 
 /// A report, sorted for reading.
-struct Page<'a> {
-    report: &'a Report,
-    origin: &'a Origin<'a>,
+struct ReportPage<'a> {
+    report: &'a CheckReport,
+    origin: &'a ReportOrigin<'a>,
     /// In the order in which they first ran.
     executors: Vec<&'static str>,
     functions: BTreeMap<String, Vec<&'a Outcome>>,
 }
 
-impl<'a> Page<'a> {
-    fn new(report: &'a Report, origin: &'a Origin<'a>) -> Self {
+impl<'a> ReportPage<'a> {
+    fn new(report: &'a CheckReport, origin: &'a ReportOrigin<'a>) -> Self {
         let (mut executors, mut functions) = (Vec::new(), BTreeMap::<String, Vec<&Outcome>>::new());
         for outcome in &report.outcomes {
             if !executors.contains(&outcome.executor) {
@@ -265,7 +265,7 @@ fn write_row(html: &mut String, outcome: &Outcome) {
     html.push_str("</tr>\n");
 }
 
-fn write_numbers(html: &mut String, outcome: &Outcome, verdict: &Verdict) {
+fn write_numbers(html: &mut String, outcome: &Outcome, verdict: &CaseVerdict) {
     let (ulps, allowed) =
         verdict.worst.map_or((0.0, 0.0), |worst| (worst.ulps(), worst.allowed_ulps()));
     let percent =
@@ -363,7 +363,7 @@ fn write_inputs(html: &mut String, outcomes: &[&Outcome]) {
         outcome.executor,
         outcome.language.name()
     );
-    for Input { words, worst } in worst {
+    for ProfiledInput { words, worst } in worst {
         let words: Vec<String> = words
             .iter()
             .map(|(name, value, bits)| {

@@ -2,12 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::Origin;
+use super::ReportOrigin;
 use crate::diagnostic::escape_obeyed;
-use crate::proof::check::{Input, Outcome, Proof, Report, Verdict, Worst};
+use crate::proof::check::{CaseVerdict, CheckReport, Outcome, ProfiledInput, Proof, Worst};
 
 /// The report as indented JSON.
-pub fn json_report(report: &Report, origin: &Origin<'_>) -> String {
+pub fn json_report(report: &CheckReport, origin: &ReportOrigin<'_>) -> String {
     let value = json!({
         "format": 1,
         "version": env!("CARGO_PKG_VERSION"),
@@ -21,7 +21,7 @@ pub fn json_report(report: &Report, origin: &Origin<'_>) -> String {
     escape_obeyed(&format!("{value:#}\n"))
 }
 
-fn outcome_json(outcome: &Outcome, origin: &Origin<'_>) -> Value {
+fn outcome_json(outcome: &Outcome, origin: &ReportOrigin<'_>) -> Value {
     let (file, line) = origin.place(outcome.span);
     let (verdict, error) = match &outcome.verdict {
         Ok(found) => (verdict_json(found), Value::Null),
@@ -46,7 +46,7 @@ fn outcome_json(outcome: &Outcome, origin: &Origin<'_>) -> Value {
     })
 }
 
-fn verdict_json(verdict: &Verdict) -> Value {
+fn verdict_json(verdict: &CaseVerdict) -> Value {
     let laws = verdict
         .laws
         .iter()
@@ -80,12 +80,12 @@ fn worst_json(worst: &Worst) -> Value {
     })
 }
 
-fn input_json(input: &Input) -> Value {
+fn input_json(input: &ProfiledInput) -> Value {
     let words = input.words.iter().map(|(name, value, bits)| json!({ "name": name, "value": value, "bits": format!("0x{bits:08x}") }));
     json!({ "words": words.collect::<Vec<_>>(), "outcome": worst_json(&input.worst) })
 }
 
-fn proof_json(proof: &Proof, origin: &Origin<'_>) -> Value {
+fn proof_json(proof: &Proof, origin: &ReportOrigin<'_>) -> Value {
     let (file, line) = origin.place(proof.span);
     let spec = match &proof.spec {
         Ok(spec) => json!({

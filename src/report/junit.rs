@@ -3,9 +3,9 @@
 
 use std::fmt::Write as _;
 
-use super::Origin;
+use super::ReportOrigin;
 use crate::diagnostic::{Diagnostic, escape_markup};
-use crate::proof::check::{Report, failures_as_text, of_outcome, of_proof};
+use crate::proof::check::{CheckReport, failures_as_text, of_outcome, of_proof};
 
 /// A test case: the module it belongs to, its name, how it failed, and why it cannot run.
 struct Test<'a> {
@@ -18,7 +18,7 @@ struct Test<'a> {
 }
 
 /// The report as JUnit understands it.
-pub fn junit_report(report: &Report, origin: &Origin<'_>) -> String {
+pub fn junit_report(report: &CheckReport, origin: &ReportOrigin<'_>) -> String {
     let tests = junit_tests(report, origin);
     let mut modules: Vec<&str> = tests.iter().map(|test| test.module).collect();
     modules.sort_unstable();
@@ -37,7 +37,7 @@ pub fn junit_report(report: &Report, origin: &Origin<'_>) -> String {
     text + "</testsuites>\n"
 }
 
-fn junit_tests<'a>(report: &'a Report, origin: &'a Origin<'_>) -> Vec<Test<'a>> {
+fn junit_tests<'a>(report: &'a CheckReport, origin: &'a ReportOrigin<'_>) -> Vec<Test<'a>> {
     let outcomes = report.outcomes.iter().map(|outcome| Test {
         module: &outcome.module,
         name: format!(

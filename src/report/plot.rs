@@ -3,7 +3,9 @@
 use std::fmt::Write as _;
 
 use crate::diagnostic::escape_markup;
-use crate::proof::check::{Axis, BINS, CELLS, Map, Profile, Scale, short_number};
+use crate::proof::check::{
+    BINS, CELLS, ErrorMap, Profile, ProfileAxis, ProfileScale, short_number,
+};
 
 const WIDTH: f64 = 250.0;
 const HEIGHT: f64 = 116.0;
@@ -25,7 +27,7 @@ pub struct Series<'a> {
 
 /// Plots the error and the tolerance over one parameter, on a logarithmic scale.
 pub fn error_plot(index: usize, series: &[Series<'_>]) -> Option<String> {
-    let axes: Vec<(&Series<'_>, &Axis)> =
+    let axes: Vec<(&Series<'_>, &ProfileAxis)> =
         series.iter().filter_map(|one| Some((one, one.profile.axes.get(index)?))).collect();
     let (_, first) = axes.first()?;
     let values =
@@ -36,7 +38,7 @@ pub fn error_plot(index: usize, series: &[Series<'_>]) -> Option<String> {
     }
     let floor = most * 10f64.powf(-DECADES);
     let least = values().filter(|value| *value > floor).fold(most, f64::min) / 2.0;
-    let frame = Frame { low: least.log10(), high: most.log10().max(least.log10() + 0.5) };
+    let frame = Decades { low: least.log10(), high: most.log10().max(least.log10() + 0.5) };
     let mut svg = format!(
         "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" class=\"plot\"><text x=\"{LEFT}\" y=\"10\" class=\"name\">{}</text>",
         escape_markup(&first.name)
@@ -57,12 +59,12 @@ pub fn error_plot(index: usize, series: &[Series<'_>]) -> Option<String> {
 }
 
 /// The decades that are shown.
-struct Frame {
+struct Decades {
     low: f64,
     high: f64,
 }
 
-impl Frame {
+impl Decades {
     fn y(&self, value: f64) -> f64 {
         let place = if value > 0.0 {
             ((value.log10() - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
@@ -73,7 +75,7 @@ impl Frame {
     }
 
     /// The area below the tolerance.
-    fn area(&self, axes: &[(&Series<'_>, &Axis)]) -> String {
+    fn area(&self, axes: &[(&Series<'_>, &ProfileAxis)]) -> String {
         let allowed = |index: usize| {
             axes.iter()
                 .flat_map(|(_, axis)| &axis.bins)
@@ -97,7 +99,7 @@ fn x_of_index(index: usize) -> f64 {
     LEFT + (index as f64 + 0.5) / BINS as f64 * (WIDTH - LEFT - RIGHT)
 }
 
-fn write_labels(svg: &mut String, frame: &Frame, scale: Scale) {
+fn write_labels(svg: &mut String, frame: &Decades, scale: ProfileScale) {
     let (floor, right) = (HEIGHT - BOTTOM, WIDTH - RIGHT);
     let _ = write!(svg, "<path class=\"frame\" d=\"M{LEFT} {TOP}V{floor}H{right}\"/>");
     for (value, y) in [(frame.high, TOP + 4.0), (frame.low, floor)] {
@@ -120,7 +122,7 @@ fn write_labels(svg: &mut String, frame: &Frame, scale: Scale) {
 }
 
 /// A heat map over two parameters: the error as a share of the tolerance, from light to dark.
-pub fn heat_map(map: &Map, profile: &Profile) -> Option<String> {
+pub fn heat_map(map: &ErrorMap, profile: &Profile) -> Option<String> {
     let (x, y) = (profile.axes.get(map.across)?, profile.axes.get(map.up)?);
     let side = HEIGHT - TOP - BOTTOM;
     let cell = side / CELLS as f64;

@@ -92,7 +92,7 @@ impl Clusters {
         let total = total.filter(|total| (1..=MOST_CELLS).contains(total));
         let total = total.ok_or(ClusterError::Cells)?;
         let is_range = 0.0 < cells.near && cells.near < cells.far && cells.far.is_finite();
-        let frustum = Frustum { cells, clip_from_view };
+        let frustum = ClusterFrustum { cells, clip_from_view };
         if !is_range || !frustum.has_sides() {
             return Err(ClusterError::Camera);
         }
@@ -106,7 +106,7 @@ impl Clusters {
                 range: lamp.range * (1.0 + MARGIN) + MARGIN,
             })
             .collect();
-        let mut lists = Lists::default();
+        let mut lists = LampLists::default();
         let placed: Result<Vec<u32>, _> =
             (0..total).map(|cell| lists.place(frustum.reached(cell, &balls))).collect();
         let (words, rest) = lists.indices.as_chunks::<4>();
@@ -130,13 +130,13 @@ impl Clusters {
 
 /// The lists so far.
 #[derive(Default)]
-struct Lists {
+struct LampLists {
     indices: Vec<u8>,
     /// The word of `cells` for each list that is stored.
     known: BTreeMap<Vec<u8>, u32>,
 }
 
-impl Lists {
+impl LampLists {
     fn place(&mut self, list: Vec<u8>) -> Result<u32, ClusterError> {
         if let Some(word) = self.known.get(&list) {
             return Ok(*word);
@@ -152,12 +152,12 @@ impl Lists {
 }
 
 /// The view frustum of the camera, divided into cells.
-struct Frustum<'a> {
+struct ClusterFrustum<'a> {
     cells: &'a Cells,
     clip_from_view: DMat4,
 }
 
-impl Frustum<'_> {
+impl ClusterFrustum<'_> {
     /// Whether the projection scales both x and y, so that cells have sides in view space.
     fn has_sides(&self) -> bool {
         let [x, y] = [self.clip_from_view.x_axis.x, self.clip_from_view.y_axis.y];

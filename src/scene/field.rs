@@ -4,7 +4,7 @@
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-use super::maps::Map;
+use super::maps::TextureMap;
 use super::probe::directions;
 use super::rays::Surfaces;
 
@@ -43,7 +43,7 @@ const SHARPNESS: i32 = 50;
 const LEAST: f64 = 1e-6;
 
 /// What a probe sees in a direction.
-struct Seen {
+struct ProbeHit {
     distance: f64,
     /// The emission of what is seen, and the light of lamps that it scatters. The light of the
     /// field is not included.
@@ -88,25 +88,25 @@ impl ProbeField {
     ) -> Self {
         let farthest = 1.5 * grid.spacing.length();
         let directions = directions(ROWS);
-        let look = |index: usize| -> Vec<Seen> {
+        let look = |index: usize| -> Vec<ProbeHit> {
             let from = grid.place(index);
             let see = |(towards, _): &(DVec3, f64)| {
                 let towards = *towards;
-                let seen = Seen { distance: farthest, light: beyond, surface: None };
+                let seen = ProbeHit { distance: farthest, light: beyond, surface: None };
                 let Some(hit) = surfaces.hit(from, towards) else { return seen };
                 let distance = hit.distance.min(farthest);
                 // A probe that sees the back of a surface is inside an object. It gets no light
                 // from there, and a shorter distance, so that few points see it.
                 if hit.normal.dot(towards) >= 0.0 {
-                    return Seen { distance: 0.2 * distance, light: DVec3::ZERO, ..seen };
+                    return ProbeHit { distance: 0.2 * distance, light: DVec3::ZERO, ..seen };
                 }
                 let at = from + towards * hit.distance + hit.normal * 1e-4;
                 let light = hit.emission + hit.albedo * direct(at, hit.normal);
-                Seen { distance, light, surface: Some([at, hit.normal, hit.albedo]) }
+                ProbeHit { distance, light, surface: Some([at, hit.normal, hit.albedo]) }
             };
             directions.iter().map(see).collect()
         };
-        let seen: Vec<Vec<Seen>> = (0..grid.total()).into_par_iter().map(look).collect();
+        let seen: Vec<Vec<ProbeHit>> = (0..grid.total()).into_par_iter().map(look).collect();
         let lobes = Weights::new(&directions, PROBE_SIDES.1, SHARPNESS);
         let moments = |distance: f64| DVec2::new(distance, distance * distance);
         let depths = seen
@@ -114,7 +114,7 @@ impl ProbeField {
             .map(|seen| lobes.means(|index| moments(seen[index].distance)))
             .collect();
         let cosines = Weights::new(&directions, PROBE_SIDES.0, 1);
-        let first = |seen: &Vec<Seen>| cosines.means(|index| seen[index].light);
+        let first = |seen: &Vec<ProbeHit>| cosines.means(|index| seen[index].light);
         let mut field = Self { grid, light: seen.par_iter().map(first).collect(), depths };
         for _ in 1..BOUNCES {
             let light = seen.par_iter().map(|seen| light_texels(seen, &field, &cosines)).collect();
@@ -158,19 +158,19 @@ impl ProbeField {
 
     /// The light of all probes as a texture. Each y of the grid is a row of tiles, which hold one
     /// probe each and have a border.
-    pub fn light_map(&self) -> Map {
+    pub fn light_map(&self) -> TextureMap {
         self.map(PROBE_SIDES.0, |probe, texel| self.light[probe][texel].extend(1.0))
     }
 
     /// The mean distances and their mean squares, as a texture of the same layout.
-    pub fn depth_map(&self) -> Map {
+    pub fn depth_map(&self) -> TextureMap {
         self.map(PROBE_SIDES.1, |probe, texel| {
             let moments = self.depths[probe][texel];
             DVec3::new(moments.x, moments.y, 0.0).extend(1.0)
         })
     }
 
-    fn map(&self, side: usize, texel: impl Fn(usize, usize) -> glam::DVec4) -> Map {
+    fn map(&self, side: usize, texel: impl Fn(usize, usize) -> glam::DVec4) -> TextureMap {
         let [across, up, deep] = self.grid.counts.map(|count| count as usize);
         let square = side + 2;
         let (width, height) = (across * deep * square, up * square);
@@ -181,7 +181,7 @@ impl ProbeField {
             let inner = |place: usize| place as i64 - 1;
             texel(probe, wrapped_texel(inner(x % square), inner(y % square), side))
         };
-        Map { width, height, texels: (0..width * height).map(at).collect() }
+        TextureMap { width, height, texels: (0..width * height).map(at).collect() }
     }
 }
 
@@ -271,8 +271,8 @@ impl Weights {
 
 /// The texels of a probe's light: what it sees, and what the surfaces scatter of the light that the
 /// field has so far.
-fn light_texels(seen: &[Seen], field: &ProbeField, weights: &Weights) -> Vec<DVec3> {
-    let scattered = |one: &Seen| {
+fn light_texels(seen: &[ProbeHit], field: &ProbeField, weights: &Weights) -> Vec<DVec3> {
+    let scattered = |one: &ProbeHit| {
         let [at, normal, albedo] = one.surface?;
         Some(albedo * field.light_at(at, normal))
     };

@@ -13,7 +13,7 @@ pub const CENTRE: DVec3 = DVec3::new(0.0, 1.8, 0.0);
 
 /// Sides of the room.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
+pub enum RoomSide {
     Floor,
     Ceiling,
     Left,
@@ -26,8 +26,8 @@ pub enum Side {
 #[derive(Debug, Clone, Copy)]
 pub struct Panel {
     /// The side that it is on.
-    pub side: Side,
-    /// Its lower corner along [`Side::axes`], scene units.
+    pub side: RoomSide,
+    /// Its lower corner along [`RoomSide::axes`], scene units.
     pub low: DVec2,
     /// Its upper corner.
     pub high: DVec2,
@@ -35,7 +35,7 @@ pub struct Panel {
     pub color: DVec3,
 }
 
-impl Side {
+impl RoomSide {
     /// All sides.
     pub const ALL: [Self; 6] =
         [Self::Floor, Self::Ceiling, Self::Left, Self::Right, Self::Back, Self::Front];
@@ -94,39 +94,44 @@ pub const TILES_ALONG: i32 = 10;
 
 /// The panels of the room; later ones hide earlier ones.
 pub fn panels() -> Vec<Panel> {
-    let mut all: Vec<Panel> = Side::ALL.into_iter().map(whole_side).collect();
+    let mut all: Vec<Panel> = RoomSide::ALL.into_iter().map(whole_side).collect();
     all.extend(light_tiles());
-    for side in [Side::Left, Side::Right, Side::Back, Side::Front] {
+    for side in [RoomSide::Left, RoomSide::Right, RoomSide::Back, RoomSide::Front] {
         let (low, high) = side.extent();
         all.push(panel(side, low, DVec2::new(high.x, 0.9), WOOD));
     }
     for middle in [-2.5, 0.0, 2.5] {
-        all.extend(window_panels(Side::Back, middle));
-        all.extend(window_panels(Side::Front, middle));
+        all.extend(window_panels(RoomSide::Back, middle));
+        all.extend(window_panels(RoomSide::Front, middle));
     }
-    all.extend(painting_panels(Side::Left, -2.6));
-    all.extend(painting_panels(Side::Left, 1.4));
-    all.extend(painting_panels(Side::Right, 2.2));
+    all.extend(painting_panels(RoomSide::Left, -2.6));
+    all.extend(painting_panels(RoomSide::Left, 1.4));
+    all.extend(painting_panels(RoomSide::Right, 2.2));
     // A door to a corridor with a warm light.
-    all.push(panel(Side::Right, DVec2::new(-3.5, 0.0), DVec2::new(-1.3, 3.0), FRAME));
+    all.push(panel(RoomSide::Right, DVec2::new(-3.5, 0.0), DVec2::new(-1.3, 3.0), FRAME));
     let corridor = DVec3::new(1.9, 0.95, 0.36);
-    all.push(panel(Side::Right, DVec2::new(-3.35, 0.0), DVec2::new(-1.45, 2.85), corridor));
+    all.push(panel(RoomSide::Right, DVec2::new(-3.35, 0.0), DVec2::new(-1.45, 2.85), corridor));
     for x in [-2.0, 2.0] {
-        all.push(panel(Side::Ceiling, DVec2::new(x - 0.2, -5.0), DVec2::new(x + 0.2, 5.0), WOOD));
+        all.push(panel(
+            RoomSide::Ceiling,
+            DVec2::new(x - 0.2, -5.0),
+            DVec2::new(x + 0.2, 5.0),
+            WOOD,
+        ));
     }
-    all.push(panel(Side::Ceiling, DVec2::new(-0.9, -1.6), DVec2::new(0.9, -0.4), LAMP));
+    all.push(panel(RoomSide::Ceiling, DVec2::new(-0.9, -1.6), DVec2::new(0.9, -0.4), LAMP));
     all
 }
 
-fn panel(side: Side, low: DVec2, high: DVec2, color: DVec3) -> Panel {
+fn panel(side: RoomSide, low: DVec2, high: DVec2, color: DVec3) -> Panel {
     Panel { side, low, high, color }
 }
 
-fn whole_side(side: Side) -> Panel {
+fn whole_side(side: RoomSide) -> Panel {
     let (low, high) = side.extent();
     let color = match side {
-        Side::Floor => TILES[1],
-        Side::Ceiling => DVec3::new(0.42, 0.4, 0.37),
+        RoomSide::Floor => TILES[1],
+        RoomSide::Ceiling => DVec3::new(0.42, 0.4, 0.37),
         _ => PLASTER,
     };
     panel(side, low, high, color)
@@ -134,17 +139,17 @@ fn whole_side(side: Side) -> Panel {
 
 /// The light tiles of a checkerboard, whose dark tiles are the floor itself.
 fn light_tiles() -> impl Iterator<Item = Panel> {
-    let (low, high) = Side::Floor.extent();
+    let (low, high) = RoomSide::Floor.extent();
     let step = (high - low) / f64::from(TILES_ALONG);
     let places = (0..TILES_ALONG).flat_map(|z| (0..TILES_ALONG).map(move |x| (x, z)));
     places.filter(|(x, z)| (x + z) % 2 == 0).map(move |(x, z)| {
         let corner = low + step * DVec2::new(f64::from(x), f64::from(z));
-        panel(Side::Floor, corner, corner + step, TILES[0])
+        panel(RoomSide::Floor, corner, corner + step, TILES[0])
     })
 }
 
 /// A window of two by three panes: the sky above a garden.
-fn window_panels(side: Side, middle: f64) -> Vec<Panel> {
+fn window_panels(side: RoomSide, middle: f64) -> Vec<Panel> {
     let (half, low, high) = (0.75, 1.2, 3.7);
     let frame = DVec2::splat(0.09);
     let (from, to) = (DVec2::new(middle - half, low), DVec2::new(middle + half, high));
@@ -159,7 +164,7 @@ fn window_panels(side: Side, middle: f64) -> Vec<Panel> {
 }
 
 /// A painting of stripes and a square.
-fn painting_panels(side: Side, middle: f64) -> Vec<Panel> {
+fn painting_panels(side: RoomSide, middle: f64) -> Vec<Panel> {
     const STRIPES: [DVec3; 4] = [
         DVec3::new(0.62, 0.08, 0.05),
         DVec3::new(0.75, 0.42, 0.06),
@@ -180,10 +185,10 @@ fn painting_panels(side: Side, middle: f64) -> Vec<Panel> {
     all
 }
 
-/// The panels of each side, in the order of [`Side::ALL`]. Earlier ones hide later ones.
+/// The panels of each side, in the order of [`RoomSide::ALL`]. Earlier ones hide later ones.
 fn panels_by_side() -> [Vec<Panel>; 6] {
     let all = panels();
-    Side::ALL.map(|side| all.iter().rev().filter(|panel| panel.side == side).copied().collect())
+    RoomSide::ALL.map(|side| all.iter().rev().filter(|panel| panel.side == side).copied().collect())
 }
 
 /// The light that arrives at the middle of the room from a direction.
@@ -200,7 +205,7 @@ pub fn interior_light(direction: DVec3) -> DVec3 {
     let point = CENTRE + direction * distances[nearest];
     let across = (nearest, direction[nearest] > 0.0);
     PANELS.with(|panels| {
-        let hit = Side::ALL.iter().position(|side| side.across() == across);
+        let hit = RoomSide::ALL.iter().position(|side| side.across() == across);
         let found = hit.and_then(|side| {
             panels[side].iter().find(|panel| {
                 let [first, second] = panel.side.axes();

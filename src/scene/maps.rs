@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3, DVec4};
 
 /// Texels, row by row, linear.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Map {
+pub struct TextureMap {
     /// Texels in a row.
     pub width: usize,
     /// Rows.
@@ -21,16 +21,16 @@ pub struct Map {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Maps {
     /// Colours.
-    pub base: Map,
+    pub base: TextureMap,
     /// Normals in tangent space, from -1 to 1 written as 0 to 1.
-    pub normal: Map,
+    pub normal: TextureMap,
     /// Ambient occlusion, in red: 1 where nothing occludes.
-    pub occlusion: Map,
+    pub occlusion: TextureMap,
     /// Light that was computed beforehand.
-    pub light: Map,
+    pub light: TextureMap,
     /// The textures of `material_maps`, by the names of their bindings. Those that are missing are
     /// blank.
-    pub material: BTreeMap<&'static str, Map>,
+    pub material: BTreeMap<&'static str, TextureMap>,
 }
 
 /// The textures of `material_maps`, and the texel of each that changes nothing.
@@ -51,7 +51,7 @@ pub fn blank_texel(name: &str) -> Option<DVec4> {
     BLANK.iter().find(|(known, _)| *known == name).map(|(_, texel)| *texel)
 }
 
-impl Map {
+impl TextureMap {
     /// A map of `side` by `side` texels. `at` gives the value at the middle of a texel, in [0,
     /// 1]^2.
     pub fn of(side: usize, at: impl Fn(DVec2) -> DVec4) -> Self {
@@ -100,14 +100,14 @@ pub fn linear_from_srgb(encoded: f64) -> f64 {
 /// A wall of bricks in running bond. Its baked light is a soft spot.
 pub fn bricks() -> Maps {
     Maps {
-        base: Map::of(256, |at| {
+        base: TextureMap::of(256, |at| {
             let brick = Brick::at(at);
             let clay = DVec3::new(0.86, 0.8, 0.76)
                 * (0.8 + 0.35 * brick.tone)
                 * (0.95 + 0.12 * rough_noise(at, 16));
             DVec3::new(0.55, 0.54, 0.52).lerp(clay, brick.height).extend(1.0)
         }),
-        normal: Map::of(256, |at| {
+        normal: TextureMap::of(256, |at| {
             let step = 1.0 / 512.0;
             let slope = |axis: DVec2| {
                 (Brick::at(at + axis * step).height - Brick::at(at - axis * step).height)
@@ -117,8 +117,8 @@ pub fn bricks() -> Maps {
                 DVec3::new(-0.02 * slope(DVec2::X), -0.02 * slope(DVec2::Y), 1.0).normalize();
             (normal * 0.5 + 0.5).extend(1.0)
         }),
-        occlusion: Map::of(128, |at| DVec3::splat(open_above(at)).extend(1.0)),
-        light: Map::of(32, |at| {
+        occlusion: TextureMap::of(128, |at| DVec3::splat(open_above(at)).extend(1.0)),
+        light: TextureMap::of(32, |at| {
             let glow = (-(at - 0.5).length_squared() * 6.0).exp();
             (DVec3::new(1.0, 0.92, 0.8) * (0.1 + 0.9 * glow)).extend(1.0)
         }),
@@ -128,8 +128,9 @@ pub fn bricks() -> Maps {
 
 /// The textures of `material_maps` for [`bricks`]: some bricks are polished metal, some glow, all
 /// have a coat, and the joints are rough.
-pub fn brick_materials() -> BTreeMap<&'static str, Map> {
-    let own = |texel: fn(Brick) -> DVec3| Map::of(256, move |at| texel(Brick::at(at)).extend(1.0));
+pub fn brick_materials() -> BTreeMap<&'static str, TextureMap> {
+    let own =
+        |texel: fn(Brick) -> DVec3| TextureMap::of(256, move |at| texel(Brick::at(at)).extend(1.0));
     BTreeMap::from([
         (
             "metallic_roughness_map",
@@ -173,7 +174,7 @@ fn open_above(at: DVec2) -> f64 {
 
 /// Bright grass of many tones. The other maps are those of [`bricks`].
 pub fn meadow() -> Maps {
-    let base = Map::of(256, |at| {
+    let base = TextureMap::of(256, |at| {
         let tone = 0.85 + 0.3 * rough_noise(at, 12);
         let dry = 0.5 + 0.5 * value_noise(at + 0.37, 8);
         (DVec3::new(1.0 + 0.12 * dry, 1.0, 1.0 - 0.18 * dry) * tone).extend(1.0)

@@ -4,14 +4,14 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DVec2, DVec3, DVec4};
 
-use super::maps::Map;
+use super::maps::TextureMap;
 
 /// The intensity of a luminaire over that of its strongest direction: angles to the axis in
 /// columns, from 0 to pi, and angles around it in rows, from 0 to 2 pi. Both ends of a range are
 /// middles of texels.
-pub fn luminaire() -> Map {
+pub fn luminaire() -> TextureMap {
     const SIDE: usize = 64;
-    Map::of(SIDE, |at| {
+    TextureMap::of(SIDE, |at| {
         let angle = (at * SIDE as f64 - 0.5) / (SIDE - 1) as f64;
         let (vertical, horizontal) = (angle.x * PI, angle.y * TAU);
         let lobe = |middle: f64, width: f64| (-((vertical - middle) / width).powi(2)).exp();
@@ -23,9 +23,9 @@ pub fn luminaire() -> Map {
 }
 
 /// A window of twelve coloured panes with dark bars between them.
-pub fn window() -> Map {
+pub fn window() -> TextureMap {
     const PANES: DVec2 = DVec2::new(3.0, 4.0);
-    Map::of(256, |at| {
+    TextureMap::of(256, |at| {
         let place = at * PANES;
         let pane = place.floor();
         // Distance from the next bar, in heights of a pane.
@@ -39,7 +39,7 @@ pub fn window() -> Map {
 
 /// The scale (xy) and the offset (zw) from coordinates in [0, 1] to those of a texture, so that
 /// both ends are middles of texels.
-pub fn between_middles(map: &Map) -> DVec4 {
+pub fn between_middles(map: &TextureMap) -> DVec4 {
     let size = DVec2::new(map.width as f64, map.height as f64);
     let (scale, offset) = ((size - 1.0) / size, 0.5 / size);
     DVec4::new(scale.x, scale.y, offset.x, offset.y)

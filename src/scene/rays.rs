@@ -7,9 +7,9 @@ use super::sets::{Object, Scene};
 /// Triangles that rays are cast against.
 #[derive(Debug, Clone, Default)]
 pub struct Surfaces {
-    triangles: Vec<Triangle>,
+    triangles: Vec<RayTriangle>,
     /// The root is the first one.
-    nodes: Vec<Node>,
+    nodes: Vec<BvhNode>,
 }
 
 /// What a ray meets first.
@@ -26,7 +26,7 @@ pub struct Hit {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Triangle {
+struct RayTriangle {
     corners: [DVec3; 3],
     albedo: DVec3,
     emission: DVec3,
@@ -34,7 +34,7 @@ struct Triangle {
 
 /// A box around triangles.
 #[derive(Debug, Clone)]
-struct Node {
+struct BvhNode {
     low: DVec3,
     high: DVec3,
     /// A leaf has a range of triangles. An inner node has the index of its second child; its first
@@ -66,7 +66,7 @@ impl Surfaces {
     /// The same, with the colours that `look` gives.
     pub fn with_looks(scene: &Scene, look: impl Fn(&Object) -> Look) -> Self {
         let casting = scene.objects.iter().filter(|object| object.casts);
-        let mut triangles: Vec<Triangle> =
+        let mut triangles: Vec<RayTriangle> =
             casting.flat_map(|object| object_triangles(object, &look(object))).collect();
         let mut nodes = Vec::new();
         let count = triangles.len();
@@ -174,13 +174,13 @@ impl Look {
     }
 }
 
-fn object_triangles(object: &Object, look: &Look) -> Vec<Triangle> {
+fn object_triangles(object: &Object, look: &Look) -> Vec<RayTriangle> {
     let vertex = |index: &u32| object.shape.vertices.get(*index as usize);
     let triangle = |three: &[u32]| {
         let [a, b, c] = [vertex(three.first()?)?, vertex(three.get(1)?)?, vertex(three.get(2)?)?];
         let place = |at: DVec3| object.world_from_object.transform_point3(at);
         let color = (a.color + b.color + c.color) / 3.0 * look.color;
-        Some(Triangle {
+        Some(RayTriangle {
             corners: [place(a.position), place(b.position), place(c.position)],
             albedo: (color * look.diffuse).clamp(DVec3::ZERO, DVec3::ONE),
             emission: look.emission,
@@ -190,13 +190,13 @@ fn object_triangles(object: &Object, look: &Look) -> Vec<Triangle> {
 }
 
 /// Adds the tree of a range of triangles, which it reorders.
-fn build_node(all: &mut [Triangle], range: std::ops::Range<usize>, nodes: &mut Vec<Node>) {
+fn build_node(all: &mut [RayTriangle], range: std::ops::Range<usize>, nodes: &mut Vec<BvhNode>) {
     let triangles = &mut all[range.clone()];
     let corners = || triangles.iter().flat_map(|triangle| triangle.corners);
     let low = corners().fold(DVec3::INFINITY, DVec3::min);
     let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
     let index = nodes.len();
-    nodes.push(Node { low, high, content: Content::Leaf(range.clone()) });
+    nodes.push(BvhNode { low, high, content: Content::Leaf(range.clone()) });
     if triangles.len() <= LEAF {
         return;
     }
@@ -210,7 +210,7 @@ fn build_node(all: &mut [Triangle], range: std::ops::Range<usize>, nodes: &mut V
     build_node(all, middle..range.end, nodes);
 }
 
-impl Node {
+impl BvhNode {
     /// The distance at which a ray enters the box, at least 0; `None` if it misses the box.
     fn enter(&self, ray: &Ray) -> Option<f64> {
         let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
@@ -230,7 +230,7 @@ impl Node {
     }
 }
 
-impl Triangle {
+impl RayTriangle {
     fn across(&self) -> DVec3 {
         let [a, b, c] = self.corners;
         (b - a).cross(c - a)

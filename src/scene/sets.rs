@@ -1,6 +1,6 @@
 //! The scenes of the pictures: shapes, lamps, materials and a viewer, all made by formulas.
 
-pub use super::maps::{Map, Maps};
+pub use super::maps::{Maps, TextureMap};
 pub use super::probing::Probes;
 
 use std::sync::Arc;
@@ -150,7 +150,7 @@ pub enum LampProfile {
 
 impl LampProfile {
     /// The texture of it.
-    pub fn map(self) -> Map {
+    pub fn map(self) -> TextureMap {
         match self {
             Self::Ies => luminaire(),
             Self::Cookie => window(),

@@ -11,7 +11,7 @@ use opendal::{ErrorKind, Operator};
 use tokio::runtime::{Builder, Runtime};
 use tokio::time::timeout;
 
-use crate::cache::{Folder, MOST_RECORD_BYTES, Storage};
+use crate::cache::{CacheFolder, MOST_RECORD_BYTES, Storage};
 
 /// The help on addresses.
 pub const HELP: &str =
@@ -30,7 +30,7 @@ const ROOT: &str = "/lamplight";
 /// Opens the store at `fs:/path` or `redis://host:port`, if it answers.
 pub fn open(address: &str) -> Result<Box<dyn Storage>, String> {
     match address.split_once(':') {
-        Some(("fs", path)) => Folder::open_store(path),
+        Some(("fs", path)) => CacheFolder::open_store(path),
         Some(("redis", _)) => open_server(address),
         _ => Err(format!("`{address}` is not a store: write `fs:/path` or `redis://host:port`")),
     }
@@ -53,17 +53,17 @@ fn open_server(address: &str) -> Result<Box<dyn Storage>, String> {
             let patience = PATIENCE.as_secs();
             Err(format!("the store `{address}` does not answer within {patience} s"))
         }
-        Ok(_) => Ok(Box::new(Server { operator, runtime })),
+        Ok(_) => Ok(Box::new(StoreServer { operator, runtime })),
     }
 }
 
-struct Server {
+struct StoreServer {
     operator: Operator,
     /// Runs the operator's work, and ends with it.
     runtime: Runtime,
 }
 
-impl Server {
+impl StoreServer {
     /// Waits for an answer, or fails once it takes too long.
     fn asked<T>(
         &self,
@@ -85,7 +85,7 @@ impl Server {
     }
 }
 
-impl Storage for Server {
+impl Storage for StoreServer {
     fn get(&self, name: &str) -> Result<Option<Vec<u8>>, String> {
         match self.asked(self.bounded(name))? {
             Ok(bytes) => Ok(Some(bytes)),

@@ -9,10 +9,10 @@ use std::collections::HashMap;
 use super::limits::Excess;
 use crate::bundle::Language;
 use crate::limits::{CONSTANT_PARTS, CONSTANT_USES};
-use crate::parse::words::{Piece, PieceKind, Word, pieces, words};
+use crate::parse::words::{Lexeme, LexemeKind, Word, pieces, words};
 
 /// A constant: its name, the names that it uses, and how many words it has itself.
-struct Constant<'a> {
+struct SizedConstant<'a> {
     name: &'a str,
     uses: Vec<&'a str>,
     own: u64,
@@ -50,7 +50,7 @@ pub fn scan_constants(text: &str, language: Language, part: u64) -> Option<Exces
 
 /// The size of every constant, by name; or the place of one that is too large.
 fn constant_costs<'a>(
-    constants: &[Constant<'a>],
+    constants: &[SizedConstant<'a>],
     most: u64,
 ) -> Result<HashMap<&'a str, u64>, usize> {
     let mut costs: HashMap<&str, u64> = HashMap::new();
@@ -70,7 +70,7 @@ fn constant_costs<'a>(
 /// Adds a size. Local constants of several functions may share a name, for which the largest
 /// counts.
 fn add_cost<'a>(
-    constant: &Constant<'a>,
+    constant: &SizedConstant<'a>,
     costs: &mut HashMap<&'a str, u64>,
     most: u64,
 ) -> Result<(), usize> {
@@ -85,7 +85,7 @@ fn add_cost<'a>(
 }
 
 /// The global constants, each after those that it names. naga itself refuses cycles.
-fn use_order(constants: &[Constant<'_>], globals: &HashMap<&str, usize>) -> Vec<usize> {
+fn use_order(constants: &[SizedConstant<'_>], globals: &HashMap<&str, usize>) -> Vec<usize> {
     let mut state = vec![0usize; constants.len()];
     let mut order = Vec::new();
     for root in (0..constants.len()).filter(|index| constants[*index].is_global) {
@@ -114,15 +114,15 @@ fn use_order(constants: &[Constant<'_>], globals: &HashMap<&str, usize>) -> Vec<
 
 /// Every constant of a text. Its name is the last word before the `=` that is outside of brackets,
 /// in both languages. Comments are not skipped, which can only make the count larger.
-fn find_constants(text: &str, language: Language) -> Vec<Constant<'_>> {
-    let mut found: Vec<Constant<'_>> = Vec::new();
-    let (mut depth, mut open, mut start) = (0usize, None::<Constant<'_>>, 0usize);
+fn find_constants(text: &str, language: Language) -> Vec<SizedConstant<'_>> {
+    let mut found: Vec<SizedConstant<'_>> = Vec::new();
+    let (mut depth, mut open, mut start) = (0usize, None::<SizedConstant<'_>>, 0usize);
     let mut in_value = false;
-    for Piece { kind, text: word, at: offset } in pieces(text) {
+    for Lexeme { kind, text: word, at: offset } in pieces(text) {
         let here = depth.saturating_sub(start);
         match (word, &mut open) {
             ("const", None) => {
-                open = Some(Constant {
+                open = Some(SizedConstant {
                     name: "",
                     uses: Vec::new(),
                     own: 1,
@@ -135,14 +135,14 @@ fn find_constants(text: &str, language: Language) -> Vec<Constant<'_>> {
             (";", Some(_)) if here == 0 => found.extend(open.take()),
             (",", Some(constant)) if here == 0 && language == Language::Glsl && in_value => {
                 let (offset, is_global) = (constant.offset, constant.is_global);
-                let next = Constant { name: "", uses: Vec::new(), own: 1, offset, is_global };
+                let next = SizedConstant { name: "", uses: Vec::new(), own: 1, offset, is_global };
                 found.extend(open.replace(next));
                 in_value = false;
             }
             // In GLSL a parameter can be `const` too. It ends with the list of parameters.
             (")" | "}", Some(_)) if here == 0 => open = None,
             ("," | "{", Some(_)) if here == 0 && !in_value => open = None,
-            (word, Some(constant)) if matches!(kind, PieceKind::Word | PieceKind::Number) => {
+            (word, Some(constant)) if matches!(kind, LexemeKind::Word | LexemeKind::Number) => {
                 if in_value {
                     constant.own += 1;
                     constant.uses.push(word);

@@ -36,7 +36,8 @@ pub fn validate_every(composed: &Composed) -> Result<Validated, Diagnostics> {
     if !is_calm || composed.parts.len() > PARTS || first.iter().any(stops) {
         return Err(first);
     }
-    let mut search = Search { composed, wrong: vec![false; composed.parts.len()], found: first };
+    let mut search =
+        MistakeSearch { composed, wrong: vec![false; composed.parts.len()], found: first };
     if !search.without_wrong() {
         search.one_by_one();
     }
@@ -45,13 +46,13 @@ pub fn validate_every(composed: &Composed) -> Result<Validated, Diagnostics> {
 }
 
 /// The mistakes that were found so far, and the parts that have them.
-struct Search<'c> {
+struct MistakeSearch<'c> {
     composed: &'c Composed,
     wrong: Vec<bool>,
     found: Diagnostics,
 }
 
-impl Search<'_> {
+impl MistakeSearch<'_> {
     /// Reads the text again and again, each time without the parts whose mistakes are known and
     /// those that need them, until nothing is wrong. Returns false if it cannot go on: a mistake is
     /// not in a single part, or no new mistake is found.

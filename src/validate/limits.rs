@@ -13,7 +13,7 @@ use crate::parse::words::is_word_byte;
 
 /// Bounds on what naga is given.
 #[derive(Debug, Clone, Copy)]
-pub struct Limits {
+pub struct NagaLimits {
     /// Bytes of the text.
     pub bytes: usize,
     /// How deeply brackets of any kind nest.
@@ -27,7 +27,7 @@ pub struct Limits {
 /// The limits that [`super::validate`] uses. naga's stack overflowed at some 20,000 operators on a
 /// thread of 2 MiB; no expression of the shader library has 40. naga takes a quarter of a second
 /// for 5,000 functions that call each other, and a minute for 40,000.
-pub const LIMITS: Limits = Limits {
+pub const LIMITS: NagaLimits = NagaLimits {
     bytes: limits::COMPILED_BYTES,
     nesting: limits::COMPILED_NESTING,
     operators: limits::OPERATORS,
@@ -90,7 +90,7 @@ pub(super) fn place_excess(
 
 /// A bracket that is open at the byte being read; the first level is the file.
 #[derive(Default)]
-struct Level {
+struct BracketLevel {
     /// Operators since the last `,` or `;` of this level.
     operators: usize,
     /// The most operators between two `,` of this level.
@@ -100,7 +100,7 @@ struct Level {
 struct Scan<'a> {
     bytes: &'a [u8],
     at: usize,
-    levels: Vec<Level>,
+    levels: Vec<BracketLevel>,
     /// The operators of all open levels together: an upper estimate of the tree's depth here.
     open: usize,
     /// Whether a `}` was just read: unless `else` follows, the statement is over.
@@ -122,7 +122,7 @@ fn scan_text(bytes: &[u8], part: usize) -> Option<Excess> {
     let mut scan = Scan {
         bytes,
         at: 0,
-        levels: vec![Level::default()],
+        levels: vec![BracketLevel::default()],
         open: 0,
         after_block: false,
         bodies: 0,
@@ -176,7 +176,7 @@ impl Scan<'_> {
                     self.bodies += 1;
                     self.statements = 0;
                 }
-                self.levels.push(Level::default());
+                self.levels.push(BracketLevel::default());
             }
             b')' | b']' => self.close(),
             b'}' => {
@@ -258,7 +258,7 @@ impl Scan<'_> {
     fn reset(&mut self) {
         if let Some(level) = self.levels.last_mut() {
             self.open -= level.operators;
-            *level = Level::default();
+            *level = BracketLevel::default();
         }
     }
 

@@ -18,9 +18,9 @@ mod words;
 pub use every::validate_every;
 pub use guard::{catch_panics, guard, on_large_stack};
 pub use hints::glsl_words;
-pub use limits::{LIMITS, Limits};
+pub use limits::{LIMITS, NagaLimits};
 #[doc(hidden)]
-pub use rehearsal::{Job, Outputs, STAGE, rehearse};
+pub use rehearsal::{RehearsalJob, RehearsalOutputs, STAGE, rehearse};
 pub use uniformity::{has_lints, lint};
 
 use naga::front::{glsl, wgsl};

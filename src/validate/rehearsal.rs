@@ -14,7 +14,8 @@ pub const STAGE: &str = "naga";
 
 /// What the other process does: it validates a text and, if asked to, writes it.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Job {
+#[serde(rename = "Job")]
+pub struct RehearsalJob {
     /// Language of the text.
     pub language: Language,
     /// Stage of a text in GLSL.
@@ -22,12 +23,13 @@ pub struct Job {
     /// The text, without comments and layout.
     pub text: String,
     /// What is written from it.
-    pub outputs: Option<Outputs>,
+    pub outputs: Option<RehearsalOutputs>,
 }
 
 /// An entry point, the targets to write it for, and conventions, by their names.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Outputs {
+#[serde(rename = "Outputs")]
+pub struct RehearsalOutputs {
     /// Name of the entry point.
     pub entry: String,
     /// Names of the targets.
@@ -46,7 +48,7 @@ pub struct Outputs {
 pub fn rehearse(
     composed: &Composed,
     placed: &Composed,
-    outputs: impl FnOnce() -> Option<Outputs>,
+    outputs: impl FnOnce() -> Option<RehearsalOutputs>,
 ) -> Result<(), Diagnostic> {
     if limits::check_limits(composed)?.is_none() {
         return Ok(());
@@ -54,12 +56,12 @@ pub fn rehearse(
     // A text and its lean form share one rehearsal.
     let text = lean(composed).text;
     let (language, stage) = (composed.language, composed.stage);
-    let job = Job { language, stage, text, outputs: outputs() };
+    let job = RehearsalJob { language, stage, text, outputs: outputs() };
     let Ok(job) = serde_json::to_vec(&job) else { return Ok(()) };
     rehearse::rehearse(STAGE, &job).map_err(|how| exhausted_process(placed, &how))
 }
 
-fn exhausted_process(composed: &Composed, how: &rehearse::Exhausted) -> Diagnostic {
+fn exhausted_process(composed: &Composed, how: &rehearse::RehearsalFailure) -> Diagnostic {
     let error = Diagnostic::error(codes::NAGA_EXHAUSTED, format!("naga {how} over this shader"));
     let error = match limits::check_limits(composed) {
         Ok(Some(large)) => {

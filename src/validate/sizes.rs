@@ -18,7 +18,7 @@ pub struct Large {
 }
 
 /// Something whose scalars an output may write one by one.
-struct Value<'m> {
+struct SizedValue<'m> {
     ty: Handle<Type>,
     what: &'static str,
     name: Option<&'m str>,
@@ -115,20 +115,20 @@ impl Sizes<'_> {
     }
 
     /// Variables and constants whose zeros or parts are written one by one.
-    fn of_module(&self) -> impl Iterator<Item = Value<'_>> {
+    fn of_module(&self) -> impl Iterator<Item = SizedValue<'_>> {
         let (variables, constants) = (&self.module.global_variables, &self.module.constants);
         let is_written = |variable: &GlobalVariable| {
             use AddressSpace::{Function, Private, WorkGroup};
             matches!(variable.space, Private | WorkGroup | Function)
         };
         let written = variables.iter().filter(move |(_, variable)| is_written(variable));
-        let written = written.map(|(handle, variable)| Value {
+        let written = written.map(|(handle, variable)| SizedValue {
             ty: variable.ty,
             what: "variable",
             name: variable.name.as_deref(),
             span: variables.get_span(handle),
         });
-        written.chain(constants.iter().map(|(handle, constant)| Value {
+        written.chain(constants.iter().map(|(handle, constant)| SizedValue {
             ty: constant.ty,
             what: "constant",
             name: constant.name.as_deref(),
@@ -137,9 +137,9 @@ impl Sizes<'_> {
     }
 
     /// The variables of a function, and values that are written out in it.
-    fn of_function<'f>(&self, function: &'f Function) -> impl Iterator<Item = Value<'f>> {
+    fn of_function<'f>(&self, function: &'f Function) -> impl Iterator<Item = SizedValue<'f>> {
         let (variables, expressions) = (&function.local_variables, &function.expressions);
-        let locals = variables.iter().map(|(handle, local)| Value {
+        let locals = variables.iter().map(|(handle, local)| SizedValue {
             ty: local.ty,
             what: "variable",
             name: local.name.as_deref(),
@@ -149,14 +149,19 @@ impl Sizes<'_> {
             Expression::ZeroValue(ty) | Expression::Compose { ty, .. }
                 if self.scalars_of(ty) > 4 =>
             {
-                Some(Value { ty, what: "value", name: None, span: expressions.get_span(handle) })
+                Some(SizedValue {
+                    ty,
+                    what: "value",
+                    name: None,
+                    span: expressions.get_span(handle),
+                })
             }
             _ => None,
         }))
     }
 }
 
-impl Value<'_> {
+impl SizedValue<'_> {
     /// The error about a value that is too large.
     fn large(&self, scalars: u64) -> Large {
         let (what, name) = (self.what, self.name.unwrap_or("_"));

@@ -31,7 +31,7 @@ pub fn has_lints(validated: &Validated) -> bool {
     !find_derivatives(validated).is_empty()
 }
 
-fn find_derivatives(validated: &Validated) -> BTreeMap<(usize, usize), Finding> {
+fn find_derivatives(validated: &Validated) -> BTreeMap<(usize, usize), DerivativeFinding> {
     let mut flow = Flow::new(&validated.module);
     if flow.functions.iter().any(|function| function.is_entry) {
         let _ = (0..ROUNDS).find(|_| !flow.round());
@@ -42,7 +42,7 @@ fn find_derivatives(validated: &Validated) -> BTreeMap<(usize, usize), Finding> 
 fn derivative_warning(
     composed: &Composed,
     range: std::ops::Range<usize>,
-    finding: &Finding,
+    finding: &DerivativeFinding,
 ) -> Option<Diagnostic> {
     let (what, help) = match finding.sample {
         true => (
@@ -71,14 +71,14 @@ fn derivative_warning(
 }
 
 /// A derivative in non-uniform control flow.
-struct Finding {
+struct DerivativeFinding {
     sample: bool,
     /// The condition that made control flow non-uniform.
     cause: Span,
 }
 
 /// What is known of one function.
-struct Known {
+struct FunctionFacts {
     is_entry: bool,
     arguments: Vec<bool>,
     locals: Vec<bool>,
@@ -94,15 +94,15 @@ struct Flow<'a> {
     module: &'a naga::Module,
     /// The functions of the module, then all its entry points. Of those, only the fragment entry
     /// points are walked.
-    functions: Vec<Known>,
+    functions: Vec<FunctionFacts>,
     globals: Vec<bool>,
-    found: BTreeMap<(usize, usize), Finding>,
+    found: BTreeMap<(usize, usize), DerivativeFinding>,
     changed: bool,
 }
 
 impl<'a> Flow<'a> {
     fn new(module: &'a naga::Module) -> Self {
-        let known = |function: &Function, is_entry| Known {
+        let known = |function: &Function, is_entry| FunctionFacts {
             is_entry,
             arguments: vec![is_entry; function.arguments.len()],
             locals: vec![false; function.local_variables.len()],
@@ -144,7 +144,7 @@ impl<'a> Flow<'a> {
     }
 
     fn walk(&mut self, index: usize, function: &'a Function) {
-        let mut walk = Walk {
+        let mut walk = UniformityWalk {
             varying: self.varying(index, function),
             flow: self,
             index,
@@ -198,7 +198,7 @@ impl<'a> Flow<'a> {
 }
 
 /// The walk over one function.
-struct Walk<'w, 'a> {
+struct UniformityWalk<'w, 'a> {
     varying: Vec<bool>,
     flow: &'w mut Flow<'a>,
     index: usize,
@@ -211,7 +211,7 @@ struct Walk<'w, 'a> {
     loops: usize,
 }
 
-impl<'a> Walk<'_, 'a> {
+impl<'a> UniformityWalk<'_, 'a> {
     fn block(&mut self, block: &'a Block, non_uniform: Option<Span>) {
         for statement in block.iter() {
             let non_uniform = non_uniform.or(self.returned).or(self.left);
@@ -295,7 +295,10 @@ impl<'a> Walk<'_, 'a> {
             _ => return,
         };
         if let Some(range) = self.function.expressions.get_span(handle).to_range() {
-            self.flow.found.entry((range.start, range.end)).or_insert(Finding { sample, cause });
+            self.flow
+                .found
+                .entry((range.start, range.end))
+                .or_insert(DerivativeFinding { sample, cause });
         }
     }
 

@@ -8,13 +8,13 @@ use std::sync::{Arc, Mutex, Weak};
 use std::time::{Duration, Instant};
 
 use lamplight::browser::Browser;
-use lamplight::execute::web::{Api, Web};
+use lamplight::execute::web::{Web, WebApi};
 use lamplight::execute::{Session as _, kernel, on_thread};
 use libtest_mimic::{Failed, Trial};
 
 use super::Outcome;
 
-const APIS: [Api; 2] = [Api::WebGpu, Api::WebGl2];
+const APIS: [WebApi; 2] = [WebApi::WebGpu, WebApi::WebGl2];
 
 /// Long enough for a draw, and short enough to wait for a draw that never ends.
 const SHORT: Duration = Duration::from_secs(4);
@@ -59,12 +59,12 @@ fn a_shader_is_refused() -> Outcome {
     // than a stage may have.
     let texts = [
         (
-            Api::WebGpu,
+            WebApi::WebGpu,
             "fn f(x: f32) -> f32 { if x > 1.0 { return dpdx(x); } return 0.0; }",
             "uniform",
         ),
         (
-            Api::WebGl2,
+            WebApi::WebGl2,
             "@group(0) @binding(9) var<uniform> all: array<vec4f, 100000>;
              fn f(x: f32) -> f32 { return all[u32(x)].x; }",
             "the emitted text",

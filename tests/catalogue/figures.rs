@@ -2,7 +2,7 @@
 
 use lamplight::catalogue::figure::{Figures, Kinds, library_figures, library_kinds, picture_path};
 use lamplight::catalogue::plot::{parse_plots, plot_path};
-use lamplight::catalogue::{self, Kind};
+use lamplight::catalogue::{self, CatalogueItemKind};
 use lamplight::picture::figure::stale_figures;
 use lamplight::source::{Embedded, Files as _, SourceSet};
 use libtest_mimic::{Failed, Trial};
@@ -43,7 +43,7 @@ fn every_function_is_drawn() -> Result<(), Failed> {
         let text = Embedded.read(&path).ok().flatten().unwrap_or_default();
         let id = sources.add(path, text);
         let plots = parse_plots(&sources, id).map_err(|problems| format!("{problems:?}"))?;
-        let functions = module.items.iter().filter(|item| item.kind == Kind::Function);
+        let functions = module.items.iter().filter(|item| item.kind == CatalogueItemKind::Function);
         let bare = functions
             .filter(|item| !plots.contains_key(&item.name) && !figures.contains_key(&item.path()));
         missing.extend(bare.map(|item| item.path()));

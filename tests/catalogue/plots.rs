@@ -73,11 +73,11 @@ fn angles_are_in_degrees() -> Result<(), Failed> {
     for (path, plot) in all_plots()? {
         let (x, label) = (&plot.x, plot.x.label.as_str());
         let named = |words: &[&str]| words.iter().any(|word| label.contains(word));
-        if named(&["angle"]) && x.unit != plot::Unit::Degrees || named(&["cosine", "radians"]) {
+        if named(&["angle"]) && x.unit != plot::AxisUnit::Degrees || named(&["cosine", "radians"]) {
             wrong.push(format!("{path}: `{label}` is an angle and not in degrees"));
         }
         let is_whole = plot.value.contains("u32(x)") || plot.value.contains("i32(x)");
-        if is_whole && x.unit != plot::Unit::Integers && x.to - x.from < MOST_STEMS {
+        if is_whole && x.unit != plot::AxisUnit::Integers && x.to - x.from < MOST_STEMS {
             wrong.push(format!("{path}: `{label}` is an integer and has no stems"));
         }
     }

@@ -178,7 +178,7 @@ fn every_built_in() -> Result<(), Failed> {
 }
 
 /// Runs all sweeps on an executor. Its session is opened, used and dropped on a thread of its own.
-fn run(executor: &'static executors::Entry) -> Result<(), Failed> {
+fn run(executor: &'static executors::ExecutorEntry) -> Result<(), Failed> {
     let outcome = on_thread(|| {
         let mut session = executor.start()?;
         let cases: Vec<(&One, Kernel)> = ONE

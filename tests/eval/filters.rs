@@ -6,7 +6,8 @@ use std::sync::Arc;
 use super::lockstep::Dice;
 use super::program;
 use lamplight::eval::{
-    Address, Bounded, Compare, Filter, Machine, Number, Resources, Sampler, Shape, Texels, Texture,
+    Address, Bounded, Compare, Filter, Machine, Number, Resources, Sampler, Texels, Texture,
+    TextureDimension,
 };
 use libtest_mimic::{Failed, Trial};
 
@@ -112,12 +113,12 @@ fn random_resources(dice: &mut Dice) -> Resources {
     let (width, height) = (1 + dice.roll(7), 1 + dice.roll(7));
     let edge = 1 + dice.roll(5);
     let textures = [
-        (0, chain(dice, Shape::D2, [width, height, 1])),
-        (2, chain(dice, Shape::D2, [width, height, 3])),
-        (3, chain(dice, Shape::Cube, [edge, edge, 6])),
-        (4, random_texture(dice, Shape::D2, [width, height, 1], 1)),
-        (5, random_texture(dice, Shape::Cube, [edge, edge, 6], 1)),
-        (7, random_texture(dice, Shape::D3, [width, height, 2], 4)),
+        (0, chain(dice, TextureDimension::D2, [width, height, 1])),
+        (2, chain(dice, TextureDimension::D2, [width, height, 3])),
+        (3, chain(dice, TextureDimension::Cube, [edge, edge, 6])),
+        (4, random_texture(dice, TextureDimension::D2, [width, height, 1], 1)),
+        (5, random_texture(dice, TextureDimension::Cube, [edge, edge, 6], 1)),
+        (7, random_texture(dice, TextureDimension::D3, [width, height, 2], 4)),
     ];
     Resources {
         buffers: [].into(),
@@ -127,7 +128,7 @@ fn random_resources(dice: &mut Dice) -> Resources {
 }
 
 /// A texture of two levels.
-fn chain(dice: &mut Dice, shape: Shape, [width, height, layers]: [u32; 3]) -> Texture {
+fn chain(dice: &mut Dice, shape: TextureDimension, [width, height, layers]: [u32; 3]) -> Texture {
     let count = 1 + dice.roll(4) as usize;
     let mut texture = random_texture(dice, shape, [width, height, layers], count);
     let half = [width.div_ceil(2), height.div_ceil(2), layers];
@@ -138,7 +139,7 @@ fn chain(dice: &mut Dice, shape: Shape, [width, height, layers]: [u32; 3]) -> Te
 /// Texels of `count` components, in one of the two forms of [`Texels`]. Some are negative zeros.
 fn random_texture(
     dice: &mut Dice,
-    shape: Shape,
+    shape: TextureDimension,
     [width, height, layers]: [u32; 3],
     count: usize,
 ) -> Texture {

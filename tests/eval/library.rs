@@ -3,7 +3,7 @@
 
 use super::program;
 use lamplight::compose::{Keep, Options, wesl::compose};
-use lamplight::eval::{Bounded, FindingKind, FunctionId, Kind, Machine, Number, Program};
+use lamplight::eval::{Bounded, FindingKind, FunctionId, Machine, Number, Program, SlotKind};
 use lamplight::permute::Settings;
 use lamplight::resolve::{Packages, wesl::load};
 use lamplight::source::{Embedded, Files as _, Package, SourceSet};
@@ -40,7 +40,7 @@ fn check(path: &str) -> Result<(), Failed> {
     for (id, function) in program.functions() {
         let outcome = match &function.error {
             Some(error) => Err(error.to_string().into()),
-            None if function.arguments.contains(&Kind::Handle) => Ok(()),
+            None if function.arguments.contains(&SlotKind::Handle) => Ok(()),
             None => bounded(&program, id),
         };
         if let Err(failure) = outcome {
@@ -70,7 +70,7 @@ fn bounded(program: &Program, id: FunctionId) -> Result<(), Failed> {
         }
         for ((kind, found), wanted) in function.result.iter().zip(&result).zip(&wanted) {
             let inside = match kind {
-                Kind::Float => {
+                SlotKind::Float => {
                     let found = f64::from(f32::from_bits(*found));
                     wanted.error().is_infinite() || (found - wanted.value()).abs() <= wanted.error()
                 }
@@ -90,18 +90,18 @@ fn bounded(program: &Program, id: FunctionId) -> Result<(), Failed> {
 }
 
 /// A number from -1 to 1, or a small integer.
-pub fn random_word(kind: Kind, seed: &mut u32) -> u32 {
+pub fn random_word(kind: SlotKind, seed: &mut u32) -> u32 {
     *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     match kind {
-        Kind::Float => ((*seed >> 8) as f32 / 8_388_608.0 - 1.0).to_bits(),
-        Kind::Bool => *seed >> 31,
+        SlotKind::Float => ((*seed >> 8) as f32 / 8_388_608.0 - 1.0).to_bits(),
+        SlotKind::Bool => *seed >> 31,
         _ => *seed >> 30,
     }
 }
 
-fn slot(kind: Kind, word: u32) -> Bounded {
+fn slot(kind: SlotKind, word: u32) -> Bounded {
     match kind {
-        Kind::Float => Bounded::from_f64(f64::from(f32::from_bits(word))),
+        SlotKind::Float => Bounded::from_f64(f64::from(f32::from_bits(word))),
         _ => Bounded::from_word(word),
     }
 }

@@ -8,8 +8,8 @@ use super::program;
 pub use draft::Dice;
 use draft::draft_program;
 use lamplight::eval::{
-    Address, Batch, Error, Filter, FunctionId, Kind, LOOP_LIMIT, Machine, Program, Resources,
-    Sampler, Shape, Texture,
+    Address, Batch, Error, Filter, FunctionId, LOOP_LIMIT, Machine, Program, Resources, Sampler,
+    SlotKind, Texture, TextureDimension,
 };
 use lamplight::source::{Embedded, Files as _};
 use libtest_mimic::{Failed, Trial};
@@ -32,8 +32,8 @@ fn resources() -> Resources {
     let mut texels = |count: usize| -> Vec<[f64; 4]> {
         (0..count).map(|_| std::array::from_fn(|_| f64::from(dice.roll(99)) / 99.0)).collect()
     };
-    let mut image = Texture::flat(Shape::D2, 8, 4, 1, texels(32));
-    image.levels.extend(Texture::flat(Shape::D2, 4, 2, 1, texels(8)).levels);
+    let mut image = Texture::flat(TextureDimension::D2, 8, 4, 1, texels(32));
+    image.levels.extend(Texture::flat(TextureDimension::D2, 4, 2, 1, texels(8)).levels);
     let sampler = Sampler {
         address: [Address::Repeat, Address::Mirror, Address::Clamp],
         mag: Filter::Linear,
@@ -46,7 +46,11 @@ fn resources() -> Resources {
     let given = (0..12u16).flat_map(|word| (f32::from(word) / 4.0).to_le_bytes()).collect();
     Resources {
         buffers: [((0, 4), given)].into(),
-        textures: [((0, 0), image), ((0, 2), Texture::flat(Shape::D2, 4, 4, 1, texels(16)))].into(),
+        textures: [
+            ((0, 0), image),
+            ((0, 2), Texture::flat(TextureDimension::D2, 4, 4, 1, texels(16))),
+        ]
+        .into(),
         samplers: [((0, 1), sampler), ((0, 3), comparison)].into(),
     }
 }
@@ -154,7 +158,7 @@ fn library_functions() -> Result<(), Failed> {
     for path in modules.iter().filter(is_module) {
         let program = library_program(path)?;
         for (id, function) in program.functions() {
-            if function.error.is_some() || function.arguments.contains(&Kind::Handle) {
+            if function.error.is_some() || function.arguments.contains(&SlotKind::Handle) {
                 continue;
             }
             compare_calls(&program, id)
@@ -173,7 +177,7 @@ fn compare_calls(program: &Program, id: FunctionId) -> Result<(), String> {
     let mut seed = 5;
     let lanes: Vec<Vec<f32>> = (0..3 * Batch::LANES + 5)
         .map(|_| {
-            let word = |kind: &Kind| f32::from_bits(random_word(*kind, &mut seed));
+            let word = |kind: &SlotKind| f32::from_bits(random_word(*kind, &mut seed));
             function.arguments.iter().map(word).collect()
         })
         .collect();

@@ -2,7 +2,7 @@
 
 use super::program;
 use lamplight::eval::{
-    Address, Compare, Filter, FindingKind, Machine, Resources, Sampler, Shape, Texture,
+    Address, Compare, Filter, FindingKind, Machine, Resources, Sampler, Texture, TextureDimension,
 };
 use libtest_mimic::{Failed, Trial};
 
@@ -123,9 +123,9 @@ fn resources(linear: bool, repeat: bool) -> Resources {
         levels: (0.0, 32.0),
         compare: None,
     };
-    let mut chain = Texture::flat(Shape::D2, 4, 4, 1, gray(&[10.0; 16]));
-    chain.levels.extend(Texture::flat(Shape::D2, 2, 2, 1, gray(&[20.0; 4])).levels);
-    chain.levels.extend(Texture::flat(Shape::D2, 1, 1, 1, gray(&[30.0])).levels);
+    let mut chain = Texture::flat(TextureDimension::D2, 4, 4, 1, gray(&[10.0; 16]));
+    chain.levels.extend(Texture::flat(TextureDimension::D2, 2, 2, 1, gray(&[20.0; 4])).levels);
+    chain.levels.extend(Texture::flat(TextureDimension::D2, 1, 1, 1, gray(&[30.0])).levels);
     let faces: Vec<f64> = (0..6).flat_map(|face| [f64::from(face); 16]).collect();
     let bytes =
         |count: u16| (0..count).flat_map(|word| f32::from(word).to_le_bytes()).collect::<Vec<u8>>();
@@ -134,11 +134,11 @@ fn resources(linear: bool, repeat: bool) -> Resources {
     Resources {
         buffers: [((0, 7), counted), ((0, 8), bytes(12))].into(),
         textures: [
-            ((0, 0), Texture::flat(Shape::D2, 2, 2, 1, gray(&[1.0, 2.0, 3.0, 4.0]))),
-            ((0, 2), Texture::flat(Shape::D2, 2, 2, 1, gray(&[0.2, 0.8, 0.3, 0.9]))),
-            ((0, 4), Texture::flat(Shape::D2, 1, 1, 3, gray(&[5.0, 6.0, 7.0]))),
-            ((0, 5), Texture::flat(Shape::Cube, 4, 4, 6, gray(&faces))),
-            ((0, 6), Texture::flat(Shape::D2, 2, 1, 1, gray(&[4294967295.0, 7.0]))),
+            ((0, 0), Texture::flat(TextureDimension::D2, 2, 2, 1, gray(&[1.0, 2.0, 3.0, 4.0]))),
+            ((0, 2), Texture::flat(TextureDimension::D2, 2, 2, 1, gray(&[0.2, 0.8, 0.3, 0.9]))),
+            ((0, 4), Texture::flat(TextureDimension::D2, 1, 1, 3, gray(&[5.0, 6.0, 7.0]))),
+            ((0, 5), Texture::flat(TextureDimension::Cube, 4, 4, 6, gray(&faces))),
+            ((0, 6), Texture::flat(TextureDimension::D2, 2, 1, 1, gray(&[4294967295.0, 7.0]))),
             ((0, 9), chain),
         ]
         .into(),

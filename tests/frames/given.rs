@@ -1,8 +1,10 @@
 //! What the uniforms, textures and samplers of a frame hold.
 
 use glam::DMat4;
-use lamplight::bundle::Kind as BindingKind;
-use lamplight::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use lamplight::bundle::BindingKind;
+use lamplight::execute::fixture::{
+    Address, Compare, Fixture, FixtureSampler, FixtureTexture, TextureKind,
+};
 use lamplight::scene::{Clip, Depth, perspective};
 
 /// Values for any uniform. Some are chosen, so that the picture shows something; the others vary
@@ -173,8 +175,9 @@ const NEAREST: [&str; 2] = ["depth_sampler", "open_sampler"];
 /// A texture or a sampler for a binding of a permutation. Colours vary smoothly, and depths have an
 /// edge.
 pub fn fixture(kind: BindingKind, name: &str, ty: &str, key: &str) -> Fixture {
-    let sampler =
-        |linear, compare| Fixture::Sampler(Sampler { compare, linear, address: Address::Clamp });
+    let sampler = |linear, compare| {
+        Fixture::Sampler(FixtureSampler { compare, linear, address: Address::Clamp })
+    };
     match kind {
         BindingKind::ComparisonSampler => sampler(true, Some(Compare::LessEqual)),
         BindingKind::Sampler => sampler(!NEAREST.contains(&name), None),
@@ -202,7 +205,7 @@ pub fn fixture(kind: BindingKind, name: &str, ty: &str, key: &str) -> Fixture {
             let own = move |index: usize, channel: usize| given.color(value, index, channel);
             let channel =
                 |index: usize| (0..kind.channels()).map(move |channel| own(index, channel));
-            Fixture::Texture(Texture {
+            Fixture::Texture(FixtureTexture {
                 kind,
                 width,
                 height,

@@ -11,10 +11,10 @@ use std::time::{Duration, Instant};
 
 use lamplight::bundle::{Bundle, Language, Target};
 use lamplight::diagnostic::Diagnostic;
-use lamplight::execute::executors::{self, Entry, Shipping};
-use lamplight::execute::frame::{Drawing, EntryPoint, Item};
+use lamplight::execute::executors::{self, ExecutorEntry, Shipping};
+use lamplight::execute::frame::{DrawItem, Drawing, EntryPoint};
 use lamplight::execute::shipped::Shipped;
-use lamplight::execute::{Pair, Session, on_thread};
+use lamplight::execute::{Session, ShippedPair, on_thread};
 use lamplight::permute::axis::ValueSet;
 use lamplight::picture::frame::probe;
 use libtest_mimic::{Failed, Trial};
@@ -154,7 +154,7 @@ pub struct Driver {
 }
 
 impl Driver {
-    fn open(entry: &'static Entry, shipping: &'static Shipping) -> Result<Self, String> {
+    fn open(entry: &'static ExecutorEntry, shipping: &'static Shipping) -> Result<Self, String> {
         let session = (shipping.open)().map_err(|missing| entry.missing(&missing))?;
         let (name, target) = (entry.name, shipping.target);
         let (tally, failures, lacks, telling, time) = Default::default();
@@ -214,13 +214,13 @@ impl Driver {
         fragment: &Shipped,
         scene: &Scene,
     ) -> Result<Vec<Vec<u32>>, Diagnostic> {
-        let stage = |of: &'_ super::Composed| of.validated.clone();
+        let stage = |of: &'_ super::ReadyStage| of.validated.clone();
         let modules = [stage(&scene.vertex), stage(&scene.fragment)];
         let vertex_point = EntryPoint { module: &modules[0].module, entry: scene.vertex.entry };
         let point = EntryPoint { module: &modules[1].module, entry: scene.fragment.entry };
-        let items = [Item { mesh: &scene.mesh, buffers: &scene.buffers }];
+        let items = [DrawItem { mesh: &scene.mesh, buffers: &scene.buffers }];
         let drawing = Drawing::of_items([vertex_point, point], &items, &scene.fixtures, SIZE);
-        Ok(self.session.draw_shipped(Pair { vertex, fragment }, &drawing)?.remove(0).targets)
+        Ok(self.session.draw_shipped(ShippedPair { vertex, fragment }, &drawing)?.remove(0).targets)
     }
 
     fn count(&mut self, program: &str, key: &str, found: Result<Tally, String>) {

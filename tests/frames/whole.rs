@@ -6,7 +6,7 @@
 //! cosines.
 
 use lamplight::bundle::{Bundle, Language};
-use lamplight::execute::frame::{Drawing, EntryPoint, Item};
+use lamplight::execute::frame::{DrawItem, Drawing, EntryPoint};
 use lamplight::execute::kernel::SENTINEL;
 use lamplight::execute::{Session, executors, on_thread};
 use lamplight::picture::frame::probe;
@@ -72,7 +72,7 @@ fn evaluated(evaluator: &dyn Session, scene: &Scene) -> Result<Vec<Option<f32>>,
     let watched = watched.ok_or("no colour")?;
     let vertex = EntryPoint { module: &scene.vertex.validated.module, entry: scene.vertex.entry };
     let fragment = EntryPoint { module: &watched.module, entry: scene.fragment.entry };
-    let items = [Item { mesh: &scene.mesh, buffers: &scene.buffers }];
+    let items = [DrawItem { mesh: &scene.mesh, buffers: &scene.buffers }];
     let drawing = Drawing {
         targets: watched.targets,
         ..Drawing::of_items([vertex, fragment], &items, &scene.fixtures, SIZE)

@@ -46,7 +46,7 @@ fn text() -> String {
 }
 
 /// The heading above a page's codes. Codes that belong to no other page belong to this one.
-fn heading(page: &guide::Page) -> String {
+fn heading(page: &guide::GuidePage) -> String {
     match page.file.strip_suffix(".md") {
         Some(PAGE) => "Data of the library".to_owned(),
         _ => format!("[{}]({})", page.title, page.file),

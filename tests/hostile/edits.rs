@@ -1,6 +1,6 @@
 //! Messages to the language server that ask for much work.
 
-use lamplight::lsp::Server;
+use lamplight::lsp::LanguageServer;
 use libtest_mimic::Trial;
 use serde_json::{Value, json};
 
@@ -23,7 +23,7 @@ fn edit() -> Value {
 /// A message with too many edits is not applied, and the user is told. The server then gives no
 /// answers about the document, since its text differs from the editor's.
 fn many() -> Outcome {
-    let mut server = Server::new(Box::new(|_| None));
+    let mut server = LanguageServer::new(Box::new(|_| None));
     let document = json!({ "uri": URI, "version": 1, "text": "x".repeat(BYTES) });
     let opened = json!({ "textDocument": document });
     server.receive(&json!({ "method": "textDocument/didOpen", "params": opened }));
@@ -46,7 +46,7 @@ fn many() -> Outcome {
     }
 }
 
-fn changed(server: &mut Server, edits: usize) -> Vec<Value> {
+fn changed(server: &mut LanguageServer, edits: usize) -> Vec<Value> {
     let changes: Vec<Value> = (0..edits).map(|_| edit()).collect();
     let parameters =
         json!({ "textDocument": { "uri": URI, "version": 2 }, "contentChanges": changes });

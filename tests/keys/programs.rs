@@ -2,7 +2,7 @@
 //! ordinals that they read, they print the key, its number, and whether the number gives the key
 //! back.
 
-use lamplight::permute::{Kind, Manifest, Mode, Setting};
+use lamplight::permute::{AxisKind, Manifest, Mode, Setting};
 
 fn camel(name: &str) -> String {
     name.split('_').map(|word| word[..1].to_uppercase() + &word[1..]).collect()
@@ -13,7 +13,7 @@ pub fn rust_main(manifest: &Manifest) -> String {
     for (index, program) in manifest.programs.iter().enumerate() {
         let field = |(at, axis): (usize, &lamplight::permute::Axis)| match axis.kind {
             _ if axis.mode == Mode::Dynamic => String::new(),
-            Kind::Bool => {
+            AxisKind::Bool => {
                 let truth = usize::from(axis.values[1] == Setting::Bool(true));
                 format!("{}: o[{at}] == {truth}, ", axis.name)
             }
@@ -38,7 +38,7 @@ pub fn c_main(manifest: &Manifest) -> String {
         let name = format!("lamplight_{}", program.name);
         let field = |axis: &lamplight::permute::Axis| match axis.kind {
             _ if axis.mode == Mode::Dynamic => "            (void)next();\n".to_owned(),
-            Kind::Bool => {
+            AxisKind::Bool => {
                 let truth = u8::from(axis.values[1] == Setting::Bool(true));
                 format!("            key.{} = next() == {truth};\n", axis.name)
             }

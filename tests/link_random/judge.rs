@@ -8,7 +8,7 @@ use lamplight::compose::{Composed, Keep, Options, compose, lean};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{Generated, Request, Shard, in_memory};
-use lamplight::link::{Linker, Reason, Text, compile};
+use lamplight::link::{Linker, Reason, TextForms, compile};
 use lamplight::permute::{Manifest, Quoted, manifest};
 use lamplight::resolve::{self, Packages};
 use lamplight::source::{Memory, Package, SourceSet};
@@ -183,7 +183,7 @@ impl Case {
             let composed =
                 composed.map_err(|problems| Finding::new("compose", self.told(&problems)))?;
             let lean = lean(&composed);
-            let text = Text { composed: &composed, lean: &lean };
+            let text = TextForms { composed: &composed, lean: &lean };
             let made = compile(&text, name, &source.targets, &linker)
                 .map_err(|problems| Finding::new("order: refused", self.told(&problems)))?;
             let known = &all[&(entry.clone(), program.space.key(point).to_string())];

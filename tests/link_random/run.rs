@@ -16,15 +16,15 @@ mod vertex;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use lamplight::bundle::{Kind, Language, Stage, Target, Unit, Varying};
+use lamplight::bundle::{BindingKind, Language, Stage, Target, Unit, Varying};
 use lamplight::compose::{Composed, lean};
 use lamplight::diagnostic::{Diagnostic, codes};
 use lamplight::emit::reflect;
 use lamplight::execute::executors;
 use lamplight::execute::fixture::Fixture;
-use lamplight::execute::frame::{Buffers, Drawing, EntryPoint, Item, Mesh};
+use lamplight::execute::frame::{Buffers, DrawItem, Drawing, EntryPoint, Mesh};
 use lamplight::execute::shipped::Shipped;
-use lamplight::execute::{Pair, Session};
+use lamplight::execute::{Session, ShippedPair};
 use lamplight::picture::frame::{pack_buffer, probe};
 use lamplight::validate::{Validated, validate};
 
@@ -155,7 +155,7 @@ impl Runner {
     pub fn open() -> Result<Self, String> {
         let session = |(target, (entry, shipping)): (
             Target,
-            (&'static executors::Entry, &executors::Shipping),
+            (&'static executors::ExecutorEntry, &executors::Shipping),
         )| {
             let session = (shipping.open)().map_err(|missing| entry.missing(&missing))?;
             Ok((target, entry.name, session))
@@ -240,7 +240,7 @@ impl<'r> Ready<'r> {
         let (mut buffers, mut fixtures) = (Buffers::new(), BTreeMap::new());
         for binding in &unit.reflection.bindings {
             let place = (binding.group, binding.binding);
-            if binding.kind == Kind::Uniform {
+            if binding.kind == BindingKind::Uniform {
                 let start = random.next();
                 let numbers = |path: &str| Some(numbers(start, path));
                 let bytes = pack_buffer(binding, &numbers).map_err(|problem| problem.message)?;
@@ -288,7 +288,7 @@ impl<'r> Ready<'r> {
     ) -> Result<(Targets, Targets), Diagnostic> {
         self.drawing(|drawing| {
             let draw = |fragment| {
-                let pair = Pair { vertex: &stages.vertex, fragment };
+                let pair = ShippedPair { vertex: &stages.vertex, fragment };
                 let frames = session.draw_shipped(pair, drawing);
                 frames.map(|mut frames| frames.remove(0).targets)
             };
@@ -306,7 +306,7 @@ impl<'r> Ready<'r> {
             true => [partner, own],
             false => [own, partner],
         };
-        let items = [Item { mesh: &self.mesh, buffers: &self.buffers }];
+        let items = [DrawItem { mesh: &self.mesh, buffers: &self.buffers }];
         draw(&Drawing::of_items(pair, &items, &self.fixtures, SIZE))
     }
 

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::PathBuf;
 
-use lamplight::lsp::Server;
+use lamplight::lsp::LanguageServer;
 use libtest_mimic::Failed;
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -46,13 +46,13 @@ impl Random {
 
 /// A server in this process, with what it told last of each file.
 struct Editor {
-    server: Server,
+    server: LanguageServer,
     told: BTreeMap<String, Value>,
 }
 
 impl Editor {
     fn new() -> Self {
-        Self { server: Server::new(Box::new(|_| None)), told: BTreeMap::new() }
+        Self { server: LanguageServer::new(Box::new(|_| None)), told: BTreeMap::new() }
     }
 
     fn tell(&mut self, method: &str, parameters: Value) {

@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 
 use lamplight::bundle::{Bundle, Language, Target};
 use lamplight::eval::Program;
-use lamplight::execute::frame::{Drawing, EntryPoint, Item};
-use lamplight::execute::raster::Compiled;
+use lamplight::execute::frame::{DrawItem, Drawing, EntryPoint};
+use lamplight::execute::raster::CompiledStages;
 use lamplight::execute::shipped::Shipped;
-use lamplight::picture::frame::Composed;
+use lamplight::picture::frame::ReadyStage;
 use libtest_mimic::{Failed, Trial};
 use naga::{Binding, BuiltIn};
 
@@ -55,7 +55,7 @@ fn drawn(program: &'static str, language: Language) -> Result<(), String> {
             .zip(&keys)
             .map(|(scene, key)| stages.pair(&bundle, (program, language), scene, key))
             .collect::<Result<Vec<_>, _>>()?;
-        let compiled = Compiled::new(stages.shipped).map_err(|missing| missing.reason)?;
+        let compiled = CompiledStages::new(stages.shipped).map_err(|missing| missing.reason)?;
         for ((scene, key), pair) in scenes.iter().zip(&keys).zip(pairs) {
             match agrees(&compiled, pair, scene, most_open(program)) {
                 Ok(tally) => total.add(&tally),
@@ -104,13 +104,13 @@ impl Stages {
 }
 
 fn agrees(
-    compiled: &Compiled,
+    compiled: &CompiledStages,
     pair: [usize; 2],
     scene: &Scene,
     most: f64,
 ) -> Result<Tally, String> {
     let Scene { vertex, fragment, mesh, buffers, fixtures, .. } = scene;
-    let items = [Item { mesh, buffers }];
+    let items = [DrawItem { mesh, buffers }];
     let drawing = Drawing::of_items([stage(vertex), stage(fragment)], &items, fixtures, SIZE);
     let [first, second] = pair;
     let frames = compiled.draw_watched(first, second, &drawing);
@@ -123,12 +123,12 @@ fn agrees(
     tally.judged(LEAST, most)
 }
 
-fn stage(composed: &Composed) -> EntryPoint<'_> {
+fn stage(composed: &ReadyStage) -> EntryPoint<'_> {
     EntryPoint { module: &composed.validated.module, entry: composed.entry }
 }
 
 /// The colour, and then the inputs in the order of the evaluator's function, four words a target.
-fn in_order(stage: &Composed, targets: &[Vec<u32>]) -> Result<Vec<Vec<u32>>, String> {
+fn in_order(stage: &ReadyStage, targets: &[Vec<u32>]) -> Result<Vec<Vec<u32>>, String> {
     let (Some(color), Some((front, rest))) = (targets.first(), targets.split_last()) else {
         return Err("there are no targets".to_owned());
     };

@@ -4,15 +4,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use lamplight::bundle::{Kind, Language, Native, Reflection, Target};
+use lamplight::bundle::{BindingKind, Language, Native, Reflection, Target};
 use lamplight::compose::Composed;
 use lamplight::emit;
 use lamplight::eval::{
-    self, Address, Compare, Filter, Level, Machine, Number, Resources, Sampler, Shape, Texels,
-    Texture,
+    self, Address, Compare, Filter, Machine, MipLevel, Number, Resources, Sampler, Texels, Texture,
+    TextureDimension,
 };
-use lamplight::execute::compiled::Program;
-use lamplight::execute::compiled::request::{Bound, Fragment};
+use lamplight::execute::compiled::CompiledProgram;
+use lamplight::execute::compiled::request::{FragmentInput, MetalResources};
 use lamplight::validate::{Validated, validate};
 
 use super::{Outcome, scrambled, told};
@@ -33,7 +33,7 @@ struct Text {
 pub fn compare(files: &[PathBuf]) -> Outcome {
     let texts = files.iter().map(|file| read(file)).collect::<Result<Vec<_>, _>>()?;
     let emitted: Vec<&str> = texts.iter().map(|text| text.emitted.as_str()).collect();
-    let mut program = Program::build(&emitted).map_err(|missing| missing.reason)?;
+    let mut program = CompiledProgram::build(&emitted).map_err(|missing| missing.reason)?;
     let mut wrong = Vec::new();
     for (index, text) in texts.iter().enumerate() {
         for variant in 0..12 {
@@ -60,10 +60,15 @@ fn read(file: &Path) -> Result<Text, String> {
     })
 }
 
-fn agrees(program: &mut Program, index: usize, text: &Text, variant: u32) -> Result<(), String> {
+fn agrees(
+    program: &mut CompiledProgram,
+    index: usize,
+    text: &Text,
+    variant: u32,
+) -> Result<(), String> {
     let resources = resources(&text.reflection, variant);
-    let bound = Bound::new(&resources, &text.native, &text.reflection);
-    let quads: Vec<[Fragment; 4]> = (0..QUADS).map(|quad| quad_of(quad, variant)).collect();
+    let bound = MetalResources::new(&resources, &text.native, &text.reflection);
+    let quads: Vec<[FragmentInput; 4]> = (0..QUADS).map(|quad| quad_of(quad, variant)).collect();
     let found = program.quads(index, &bound, &quads)?;
     let evaluated = eval::Program::new(&text.validated.module, &text.validated.info)
         .map_err(|error| error.to_string())?;
@@ -98,7 +103,7 @@ fn agrees(program: &mut Program, index: usize, text: &Text, variant: u32) -> Res
 }
 
 /// Four fragments whose inputs differ by a random step, so that derivatives select different levels.
-fn quad_of(quad: u32, variant: u32) -> [Fragment; 4] {
+fn quad_of(quad: u32, variant: u32) -> [FragmentInput; 4] {
     let random = |place: u32| {
         f64::from(scrambled(place + 100 * quad + 100_000 * variant)) / f64::from(u32::MAX)
     };
@@ -109,7 +114,7 @@ fn quad_of(quad: u32, variant: u32) -> [Fragment; 4] {
             ((random(place) * 2.0 - 0.5 + moved) as f32).to_bits()
         };
         let location = |first: u32| std::array::from_fn(|i| value(first + i as u32));
-        Fragment { locations: vec![location(0), location(4)], ..Fragment::default() }
+        FragmentInput { locations: vec![location(0), location(4)], ..FragmentInput::default() }
     })
 }
 
@@ -119,15 +124,15 @@ fn resources(reflection: &Reflection, variant: u32) -> Resources {
     for (index, binding) in reflection.bindings.iter().enumerate() {
         let (place, seed) = ((binding.group, binding.binding), 1000 * variant + 50 * index as u32);
         match binding.kind {
-            Kind::Uniform => {
+            BindingKind::Uniform => {
                 let number = |i| (f64::from(scrambled(seed + i)) / f64::from(u32::MAX)) as f32;
                 let bytes = (0..4).flat_map(|i| number(i).to_le_bytes()).collect();
                 drop(resources.buffers.insert(place, bytes));
             }
-            Kind::Sampler => {
+            BindingKind::Sampler => {
                 let _ = resources.samplers.insert(place, sampler(variant, false));
             }
-            Kind::ComparisonSampler => {
+            BindingKind::ComparisonSampler => {
                 let _ = resources.samplers.insert(place, sampler(variant, true));
             }
             _ => drop(resources.textures.insert(place, texture(&binding.ty, seed, variant))),
@@ -160,37 +165,37 @@ fn sampler(variant: u32, compares: bool) -> Sampler {
 
 fn texture(ty: &str, seed: u32, variant: u32) -> Texture {
     let shape = match ty {
-        _ if ty.contains("_1d") => Shape::D1,
-        _ if ty.contains("_3d") => Shape::D3,
-        _ if ty.contains("cube") => Shape::Cube,
-        _ => Shape::D2,
+        _ if ty.contains("_1d") => TextureDimension::D1,
+        _ if ty.contains("_3d") => TextureDimension::D3,
+        _ if ty.contains("cube") => TextureDimension::Cube,
+        _ => TextureDimension::D2,
     };
     let (width, height) = match shape {
-        Shape::D1 => (7, 1),
-        Shape::Cube => (8, 8),
+        TextureDimension::D1 => (7, 1),
+        TextureDimension::Cube => (8, 8),
         _ => (9, 6),
     };
     let layers = match (shape, ty.contains("array")) {
-        (Shape::D3, _) => 5,
-        (Shape::Cube, true) => 12,
-        (Shape::Cube, false) => 6,
+        (TextureDimension::D3, _) => 5,
+        (TextureDimension::Cube, true) => 12,
+        (TextureDimension::Cube, false) => 6,
         (_, true) => 3,
         (_, false) => 1,
     };
     // naga writes a comparison in level 0 without the level, so Metal derives the level from
     // neighbouring fragments. The results agree only if there is one level and one filter.
-    let is_single = shape == Shape::D1 || ty.contains("depth") || variant % 4 == 3;
+    let is_single = shape == TextureDimension::D1 || ty.contains("depth") || variant % 4 == 3;
     let count = if is_single { 1 } else { 3 };
     let level = |level: u32| {
         let half = |size: u32| (size >> level).max(1);
-        let depth = if shape == Shape::D3 { half(layers) } else { layers };
+        let depth = if shape == TextureDimension::D3 { half(layers) } else { layers };
         let (width, height) = (half(width), half(height));
         let texels = (0..width * height * depth).map(|texel| {
             std::array::from_fn(|i| {
                 value(ty, scrambled(seed + 7919 * (4 * texel + i as u32) + level))
             })
         });
-        Level {
+        MipLevel {
             width,
             height,
             layers: depth,

@@ -2,7 +2,7 @@
 
 use lamplight::bundle::key;
 use lamplight::permute::{lock, manifest};
-use lamplight::picture::needs::Table;
+use lamplight::picture::needs::NeedsTable;
 
 use super::{Outcome, made, make, parsed, text};
 use crate::snapshot::root;
@@ -66,9 +66,9 @@ pub fn is_listed() -> Outcome {
     ships("forward", "fog", "unheard_of")?;
     ships("tonemap", "exposure", "automatic")?;
     let pictures = text(&files, "shaderlib/pictures.toml")?;
-    parsed(pictures, |sources, id| Table::parse(sources, id, &manifest))?;
+    parsed(pictures, |sources, id| NeedsTable::parse(sources, id, &manifest))?;
     let without = pictures.replace("unheard_of = { background = \"haze\" }\n", "");
-    match parsed(&without, |sources, id| Table::parse(sources, id, &manifest)) {
+    match parsed(&without, |sources, id| NeedsTable::parse(sources, id, &manifest)) {
         Err(problem) if problem.message().unwrap_or_default().contains("`fog=unheard_of`") => {
             Ok(())
         }

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::permute::axis::ValueSet;
-use lamplight::permute::cover::{Pair, covering_space, pairwise};
-use lamplight::permute::space::{Formula, Lists, Slice};
+use lamplight::permute::cover::{ValuePair, covering_space, pairwise};
+use lamplight::permute::space::{ConstraintFormula, Slice, SliceLists};
 use lamplight::permute::{
     Lock, Quoted, ReadTree, Setting, Settings, Space, key, lock, manifest, report,
 };
@@ -124,7 +124,7 @@ fn pairwise_covers_what_is_feasible() -> Result<(), Failed> {
             format!("seed {seed}: the cover has an invalid point"),
         )?;
         ensure(pairs(&points) == pairs(&valid), format!("seed {seed}: the cover lacks a pair"))?;
-        let infeasible: BTreeSet<Pair> =
+        let infeasible: BTreeSet<ValuePair> =
             pairs(&product(&space)).difference(&pairs(&valid)).copied().collect();
         ensure(
             infeasible == cover.infeasible.iter().copied().collect(),
@@ -132,7 +132,8 @@ fn pairwise_covers_what_is_feasible() -> Result<(), Failed> {
         )?;
     }
     let small = |axes| {
-        Space::new(axes, Vec::new(), Lists::default()).map(|space| pairwise(&space).points.len())
+        Space::new(axes, Vec::new(), SliceLists::default())
+            .map(|space| pairwise(&space).points.len())
     };
     ensure(
         small(Vec::new()) == Ok(1) && small(vec![axis("a".to_owned(), 3)]) == Ok(3),
@@ -140,11 +141,11 @@ fn pairwise_covers_what_is_feasible() -> Result<(), Failed> {
     )
 }
 
-fn pairs(points: &[Vec<u8>]) -> BTreeSet<Pair> {
+fn pairs(points: &[Vec<u8>]) -> BTreeSet<ValuePair> {
     let mut pairs = BTreeSet::new();
     for point in points {
         for second in 0..point.len() {
-            pairs.extend((0..second).map(|first| Pair {
+            pairs.extend((0..second).map(|first| ValuePair {
                 first: (first, point[first].into()),
                 second: (second, point[second].into()),
             }));
@@ -158,24 +159,24 @@ fn pairs(points: &[Vec<u8>]) -> BTreeSet<Pair> {
 fn huge_space_answers_at_once() -> Result<(), Failed> {
     let started = Instant::now();
     let axes: Vec<_> = (0..12).map(|index| axis(format!("a{index:02}"), 10)).collect();
-    let is = |axis: usize, value: usize| Formula::Is(axis, ValueSet::single(value));
+    let is = |axis: usize, value: usize| ConstraintFormula::Is(axis, ValueSet::single(value));
     let mut constraints = Vec::new();
     for axis in 1..12 {
         for value in 0..10 {
-            let next = Formula::Is(
+            let next = ConstraintFormula::Is(
                 axis,
                 [value, (value + 1) % 10]
                     .into_iter()
                     .filter(|next| axis % 4 != 3 || *next == value)
                     .collect(),
             );
-            constraints.push(constraint(Formula::Any(vec![
-                Formula::Not(Box::new(is(axis - 1, value))),
+            constraints.push(constraint(ConstraintFormula::Any(vec![
+                ConstraintFormula::Not(Box::new(is(axis - 1, value))),
                 next,
             ])));
         }
     }
-    let space = Space::new(axes, constraints, Lists::default()).map_err(|_| "too complex")?;
+    let space = Space::new(axes, constraints, SliceLists::default()).map_err(|_| "too complex")?;
     ensure(space.full_count() == 1_000_000_000_000, "the product should have 10^12 points")?;
     ensure(space.count() == 10 << 8, format!("{} points, expected 2560", space.count()))?;
     ensure(space.enumerate().len() as u128 == space.count(), "not all points are listed")?;
@@ -188,13 +189,15 @@ fn huge_space_answers_at_once() -> Result<(), Failed> {
 fn entangled_space_is_refused() -> Result<(), Failed> {
     let mut random = Random(7);
     let axes: Vec<_> = (0..100).map(|index| axis(format!("a{index:03}"), 2)).collect();
-    let literal =
-        |random: &mut Random| Formula::Is(random.below(100), ValueSet::single(random.below(2)));
-    let clause =
-        |random: &mut Random| constraint(Formula::Any((0..3).map(|_| literal(random)).collect()));
+    let literal = |random: &mut Random| {
+        ConstraintFormula::Is(random.below(100), ValueSet::single(random.below(2)))
+    };
+    let clause = |random: &mut Random| {
+        constraint(ConstraintFormula::Any((0..3).map(|_| literal(random)).collect()))
+    };
     let constraints = (0..350).map(|_| clause(&mut random)).collect();
     let started = Instant::now();
-    let outcome = Space::new(axes, constraints, Lists::default());
+    let outcome = Space::new(axes, constraints, SliceLists::default());
     ensure(outcome.is_err(), "100 variables in 350 random clauses were counted")?;
     ensure(started.elapsed() < Duration::from_secs(20), format!("took {:?}", started.elapsed()))
 }
@@ -363,7 +366,7 @@ fn thousands_of_keys_are_quick() -> Result<(), Failed> {
     let started = Instant::now();
     let axes: Vec<_> = (0..20).map(|index| axis(format!("a{index:02}"), 4)).collect();
     let plain =
-        Space::new(axes.clone(), Vec::new(), Lists::default()).map_err(|_| "too complex")?;
+        Space::new(axes.clone(), Vec::new(), SliceLists::default()).map_err(|_| "too complex")?;
     let mut random = Random(5);
     let mut key = || {
         (0..20).map(|axis| format!("a{axis:02}=v{}", random.below(4))).collect::<Vec<_>>().join(",")
@@ -373,7 +376,8 @@ fn thousands_of_keys_are_quick() -> Result<(), Failed> {
         .collect::<Option<Vec<_>>>()
         .ok_or("a key of the space was refused")?;
     let nothing = Slice { values: vec![ValueSet::EMPTY; 20], span: NOWHERE };
-    let lists = Lists { only: vec![nothing], include: include.clone(), ..Lists::default() };
+    let lists =
+        SliceLists { only: vec![nothing], include: include.clone(), ..SliceLists::default() };
     let space = Space::new(axes, Vec::new(), lists).map_err(|_| "too complex")?;
     let distinct: BTreeSet<_> = include.into_iter().collect();
     ensure(space.enumerate().into_iter().eq(distinct), "the listed points are not the keys'")?;

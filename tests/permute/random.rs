@@ -1,7 +1,7 @@
 //! Small random spaces, which are the same in every run.
 
-use lamplight::permute::axis::{Axis, Kind, Mode, ValueSet};
-use lamplight::permute::space::{Constraint, Formula, Lists, Slice};
+use lamplight::permute::axis::{Axis, AxisKind, Mode, ValueSet};
+use lamplight::permute::space::{Constraint, ConstraintFormula, Slice, SliceLists};
 use lamplight::permute::{Assignment, Setting, Space};
 use lamplight::source::{SourceId, Span};
 
@@ -13,7 +13,7 @@ pub fn axis(name: String, count: usize) -> Axis {
     let values = (0..count).map(|value| Setting::Name(format!("v{value}"))).collect();
     Axis {
         name,
-        kind: Kind::Enum,
+        kind: AxisKind::Enum,
         values,
         default: 0,
         mode: Mode::Static,
@@ -22,7 +22,7 @@ pub fn axis(name: String, count: usize) -> Axis {
     }
 }
 
-pub fn constraint(formula: Formula) -> Constraint {
+pub fn constraint(formula: ConstraintFormula) -> Constraint {
     Constraint { text: String::new(), doc: None, formula, span: NOWHERE }
 }
 
@@ -32,8 +32,11 @@ pub fn space(random: &mut Random) -> Space {
         .map(|index| axis(format!("a{index}"), 1 + random.below(4)))
         .collect();
     let constraints = (0..random.below(6)).map(|_| constraint(formula(random, &axes, 3))).collect();
-    let lists =
-        Lists { only: slices(random, &axes), exclude: slices(random, &axes), include: Vec::new() };
+    let lists = SliceLists {
+        only: slices(random, &axes),
+        exclude: slices(random, &axes),
+        include: Vec::new(),
+    };
     Space::new(axes, constraints, lists).expect("small spaces are simple")
 }
 
@@ -49,18 +52,18 @@ fn values(random: &mut Random, axis: &Axis) -> ValueSet {
     (0..axis.values.len()).filter(|_| random.below(2) == 0).collect()
 }
 
-fn formula(random: &mut Random, axes: &[Axis], depth: usize) -> Formula {
+fn formula(random: &mut Random, axes: &[Axis], depth: usize) -> ConstraintFormula {
     let parts = |random: &mut Random| {
         (0..1 + random.below(3)).map(|_| formula(random, axes, depth - 1)).collect()
     };
     match if depth == 0 { 0 } else { random.below(5) } {
         0 | 1 => {
             let axis = random.below(axes.len());
-            Formula::Is(axis, values(random, &axes[axis]))
+            ConstraintFormula::Is(axis, values(random, &axes[axis]))
         }
-        2 => Formula::Not(Box::new(formula(random, axes, depth - 1))),
-        3 => Formula::All(parts(random)),
-        _ => Formula::Any(parts(random)),
+        2 => ConstraintFormula::Not(Box::new(formula(random, axes, depth - 1))),
+        3 => ConstraintFormula::All(parts(random)),
+        _ => ConstraintFormula::Any(parts(random)),
     }
 }
 

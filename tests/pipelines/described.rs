@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::num::NonZeroU64;
 
-use lamplight::bundle::{Binding, Kind, Reflection, Stage, Varying};
+use lamplight::bundle::{Binding, BindingKind, Reflection, Stage, Varying};
 
 /// Fills the gaps between the bindings of a group with bindings that no stage can see.
 pub fn fill(group: &mut BTreeMap<u32, wgpu::BindGroupLayoutEntry>) {
@@ -26,18 +26,20 @@ pub fn entry(
 ) -> Result<wgpu::BindGroupLayoutEntry, String> {
     let place = [binding.group, binding.binding];
     let ty = match binding.kind {
-        Kind::Uniform => wgpu::BindingType::Buffer {
+        BindingKind::Uniform => wgpu::BindingType::Buffer {
             ty: wgpu::BufferBindingType::Uniform,
             has_dynamic_offset: false,
             min_binding_size: binding.size.and_then(|size| NonZeroU64::new(size.into())),
         },
-        Kind::Sampler if filters_depth(place, reflection) => {
+        BindingKind::Sampler if filters_depth(place, reflection) => {
             wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering)
         }
-        Kind::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
-        Kind::ComparisonSampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
-        Kind::Texture => texture(binding)?,
-        Kind::Storage | Kind::StorageTexture => {
+        BindingKind::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+        BindingKind::ComparisonSampler => {
+            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)
+        }
+        BindingKind::Texture => texture(binding)?,
+        BindingKind::Storage | BindingKind::StorageTexture => {
             let what = "which this test does not expect in the library";
             return Err(format!("`{}` is a {:?}, {what}", binding.name, binding.kind));
         }

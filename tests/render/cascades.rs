@@ -1,7 +1,7 @@
 //! Compares shadows of cascades with rays from fragments to the light.
 
 use glam::DVec3;
-use lamplight::picture::Prepared;
+use lamplight::picture::PreparedPass;
 use lamplight::scene::Surfaces;
 use lamplight::scene::sets;
 
@@ -28,7 +28,7 @@ fn cascades(bench: &Bench<'_>) -> Result<(), String> {
     let plan = bench.plan(&format!("{DIRECTIONAL},shadow=hard"), "casters", numbers)?;
     let single = bench.prepared(&plan, SIZE)?;
     let nearest = bench.cascaded(&plan, SIZE, 3)?;
-    let slices: Vec<&Prepared> = std::iter::once(&nearest).chain(&nearest.farther).collect();
+    let slices: Vec<&PreparedPass> = std::iter::once(&nearest).chain(&nearest.farther).collect();
     let mut fragments = 0;
     for slice in &slices {
         let margin = 3.0 * texel(slice)?;
@@ -48,7 +48,7 @@ fn cascades(bench: &Bench<'_>) -> Result<(), String> {
     compare_pictures(bench, &nearest, &single)
 }
 
-fn texel(prepared: &Prepared) -> Result<f64, &'static str> {
+fn texel(prepared: &PreparedPass) -> Result<f64, &'static str> {
     uniform(prepared, "caster", "texel").ok_or("no texel")
 }
 
@@ -78,8 +78,8 @@ fn judge_slice(
 /// Fails unless the picture with cascades is that with one map, apart from the borders of shadows.
 fn compare_pictures(
     bench: &Bench<'_>,
-    nearest: &Prepared,
-    single: &Prepared,
+    nearest: &PreparedPass,
+    single: &PreparedPass,
 ) -> Result<(), String> {
     let (parts, one) = (bench.photograph(nearest, SIZE)?, bench.photograph(single, SIZE)?);
     let (mut drawn, mut apart) = (0, 0);
@@ -162,7 +162,7 @@ fn farthest_shadow(bench: &Bench<'_>) -> Result<(), String> {
 }
 
 /// The numbers of a vector in a uniform block.
-fn uniforms<const N: usize>(prepared: &Prepared, block: &str, field: &str) -> Option<[f64; N]> {
+fn uniforms<const N: usize>(prepared: &PreparedPass, block: &str, field: &str) -> Option<[f64; N]> {
     let stage = prepared.stages.fragment.as_ref()?;
     let binding = stage.reflection.bindings.iter().find(|binding| binding.name == block)?;
     let member = binding.members.iter().find(|member| member.name == field)?;

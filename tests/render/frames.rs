@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 use lamplight::bundle::Language;
-use lamplight::catalogue::preset::Number;
+use lamplight::catalogue::preset::PresetNumber;
 use lamplight::execute::Session;
 use lamplight::permute::{Quoted, key};
-use lamplight::picture::{Linear, Plan, Prepared, Shot, prepare_passes};
+use lamplight::picture::{Linear, Plan, PreparedPass, Shot, prepare_passes};
 use lamplight::source::SourceSet;
 
 use super::{library, said, shot, watched};
@@ -52,7 +52,7 @@ impl Bench<'_> {
         plan.scene = scene.to_owned();
         for (group, field, values) in numbers {
             let fields = plan.numbers.entry((*group).to_owned()).or_default();
-            fields.insert((*field).to_owned(), Number::Vector(values.to_vec()));
+            fields.insert((*field).to_owned(), PresetNumber::Vector(values.to_vec()));
         }
         Ok(plan)
     }
@@ -62,22 +62,26 @@ impl Bench<'_> {
         self.prepared(plan, size).and_then(|prepared| self.fragments_of(&prepared, size))
     }
 
-    pub fn prepared(&self, plan: &Plan, size: u32) -> Result<Prepared, String> {
+    pub fn prepared(&self, plan: &Plan, size: u32) -> Result<PreparedPass, String> {
         prepare_passes(self.painter, &library().programs, plan, &shot([size; 2], 1, self.language))
             .map_err(said)
     }
 
     /// Prepares a frame with several shadow cascades.
-    pub fn cascaded(&self, plan: &Plan, size: u32, cascades: u32) -> Result<Prepared, String> {
+    pub fn cascaded(&self, plan: &Plan, size: u32, cascades: u32) -> Result<PreparedPass, String> {
         let shot = Shot { cascades, ..shot([size; 2], 1, self.language) };
         prepare_passes(self.painter, &library().programs, plan, &shot).map_err(said)
     }
 
-    pub fn photograph(&self, prepared: &Prepared, size: u32) -> Result<Linear, String> {
+    pub fn photograph(&self, prepared: &PreparedPass, size: u32) -> Result<Linear, String> {
         prepared.photograph(self.painter, &shot([size; 2], 1, self.language)).map_err(said)
     }
 
-    pub fn fragments_of(&self, prepared: &Prepared, size: u32) -> Result<Vec<Fragment>, String> {
+    pub fn fragments_of(
+        &self,
+        prepared: &PreparedPass,
+        size: u32,
+    ) -> Result<Vec<Fragment>, String> {
         let targets = watched(self.painter, prepared, [size; 2])?;
         let watched = Watched { size: [size; 2], targets: &targets };
         let places = places(prepared.stages.fragment.as_ref().ok_or("no fragment stage")?)?;
@@ -105,7 +109,7 @@ impl Bench<'_> {
 }
 
 /// A number of a uniform block that the fragment stage reads.
-pub fn uniform(prepared: &Prepared, block: &str, field: &str) -> Option<f64> {
+pub fn uniform(prepared: &PreparedPass, block: &str, field: &str) -> Option<f64> {
     let stage = prepared.stages.fragment.as_ref()?;
     let binding = stage.reflection.bindings.iter().find(|binding| binding.name == block)?;
     let member = binding.members.iter().find(|member| member.name == field)?;

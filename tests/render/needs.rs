@@ -2,10 +2,10 @@
 //! and a uniform without a number are errors that name it. Otherwise a picture would silently be
 //! drawn with zeros.
 
-use lamplight::bundle::{Binding, Kind, Member};
+use lamplight::bundle::{Binding, BindingKind, Member};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::picture::frame::pack_buffer;
-use lamplight::picture::needs::Table;
+use lamplight::picture::needs::NeedsTable;
 use libtest_mimic::{Failed, Trial};
 
 use super::library;
@@ -34,7 +34,7 @@ fn rows_are_demanded() -> Result<(), Failed> {
         let wrong = right.replace(from, to);
         let mut texts = library().programs.texts();
         let id = texts.add("pictures.toml", wrong.as_str());
-        let problems = Table::parse(&texts, id, library().programs.manifest()).err();
+        let problems = NeedsTable::parse(&texts, id, library().programs.manifest()).err();
         let said = problems.map(|problems| render(&texts, &problems, Form::Short));
         match said {
             Some(said) if wrong != right && said.contains(expected) => {}
@@ -62,7 +62,7 @@ fn numbers_are_demanded() -> Result<(), Failed> {
         group: 0,
         binding: 0,
         name: "haze".to_owned(),
-        kind: Kind::Uniform,
+        kind: BindingKind::Uniform,
         ty: "Haze".to_owned(),
         size: Some(32),
         writable: false,

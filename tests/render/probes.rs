@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use lamplight::execute::fixture::{Fixture, Texture};
+use lamplight::execute::fixture::{Fixture, FixtureTexture};
 use lamplight::scene::sets::{self, Probes, Scene};
 use lamplight::scene::{ProbeField, ProbeGrid, Surfaces};
 
@@ -125,7 +125,7 @@ fn no_leaks(bench: &Bench<'_>) -> Result<(), String> {
         return Err("no texture of distances".to_owned());
     };
     let texels = [1e3, 1e6, 0.0, 1.0].repeat(seen.texels.len() / 4);
-    let endless = Fixture::Texture(Texture { texels, ..seen.clone() });
+    let endless = Fixture::Texture(FixtureTexture { texels, ..seen.clone() });
     prepared.fixtures.insert(place, Arc::new(endless));
     let [_, leaking] = beside_wall(&bench.fragments_of(&prepared, SIZE)?);
     let what = format!("lit {lit}, dark {dark}, without distances {leaking}");

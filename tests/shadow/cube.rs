@@ -1,7 +1,7 @@
 //! Shadows of point lights.
 
 use glam::DVec3;
-use lamplight::execute::fixture::{Texture, TextureKind};
+use lamplight::execute::fixture::{FixtureTexture, TextureKind};
 
 use super::{Run, comparing, reversal};
 
@@ -29,7 +29,8 @@ pub fn cube_octants(run: &mut Run<'_>) -> Result<(), String> {
             let texels = (0..6)
                 .flat_map(|face| (0..SIDE * SIDE).map(move |i| texel(face, i % SIDE, i / SIDE)))
                 .collect();
-            let map = Texture { kind: TextureKind::DepthCube, width: SIDE, height: SIDE, texels };
+            let map =
+                FixtureTexture { kind: TextureKind::DepthCube, width: SIDE, height: SIDE, texels };
             let (mut rows, mut expected) = (Vec::new(), Vec::new());
             for (index, distance) in
                 (0..8).flat_map(|index| [1.0, 1.99, 2.01, 4.0].map(|distance| (index, distance)))

@@ -1,6 +1,6 @@
 //! Filters at the edges of shadows.
 
-use lamplight::execute::fixture::{Compare, Texture, TextureKind};
+use lamplight::execute::fixture::{Compare, FixtureTexture, TextureKind};
 
 use super::{Run, comparing, depths, plain};
 
@@ -68,7 +68,7 @@ fn two_depths(
         })
     };
     let texels = (0..SIDE).flat_map(texel).collect();
-    let map = Texture { kind: TextureKind::Color2d, width: SIDE, height: 1, texels };
+    let map = FixtureTexture { kind: TextureKind::Color2d, width: SIDE, height: 1, texels };
     let depths = [0.2f32, 0.25, 0.3, 0.5, 0.75];
     let rows: Vec<_> = depths
         .iter()

@@ -1,7 +1,7 @@
 //! An occluder between a light and points that the light reaches, for lights from every side.
 
 use glam::{DMat4, DVec3, DVec4};
-use lamplight::execute::fixture::{Compare, Texture, TextureKind};
+use lamplight::execute::fixture::{Compare, FixtureTexture, TextureKind};
 
 use super::{Run, comparing, depths, flip, plain};
 
@@ -150,7 +150,7 @@ pub fn outside_is_lit(run: &mut Run<'_>) -> Result<(), String> {
         return Err(format!("found {found:?}, expected {expected:?}"));
     }
     // A map of moments, read as in `forward`. The least variance leaves a millionth of the light.
-    let map = Texture {
+    let map = FixtureTexture {
         kind: TextureKind::Color2d,
         width: 4,
         height: 4,

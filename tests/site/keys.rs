@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use lamplight::browser::Page;
+use lamplight::browser::BrowserPage;
 use serde_json::{Value, json};
 
 use super::{Opened, Outcome, PATIENCE, text, wait, without_errors};
@@ -30,7 +30,7 @@ pub fn keys() -> Outcome {
 }
 
 /// Presses a key, as a keyboard does.
-fn press(page: &Page, key: &str) -> Outcome {
+fn press(page: &BrowserPage, key: &str) -> Outcome {
     let found = KEYS.iter().find(|(name, ..)| *name == key);
     let (_, code, typed) = found.ok_or_else(|| format!("the table has no key {key}"))?;
     let mut event = json!({ "key": key, "code": key, "windowsVirtualKeyCode": code });
@@ -44,7 +44,7 @@ fn press(page: &Page, key: &str) -> Outcome {
     Ok(())
 }
 
-fn focus(page: &Page, selector: &str) -> Outcome {
+fn focus(page: &BrowserPage, selector: &str) -> Outcome {
     let there = format!("document.querySelector({})", Value::from(selector));
     wait(page, &format!("{there} !== null"))?;
     page.evaluate(&format!("{there}.focus()"), PATIENCE)?;
@@ -66,7 +66,7 @@ const SEEN: &str = "(() => {
 
 /// Visits every control of the page by Tab. In the editor, where Tab types, Escape is pressed
 /// first.
-fn reached(page: &Page, name: &str) -> Outcome {
+fn reached(page: &BrowserPage, name: &str) -> Outcome {
     page.evaluate(
         "(() => { document.activeElement?.blur(); getSelection().removeAllRanges(); window.reached = [];
             document.addEventListener('focusin', ({ target }) => window.reached.push(target)); })()",

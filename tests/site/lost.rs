@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use lamplight::browser::serve::{Files, Server};
+use lamplight::browser::serve::{HttpServer, ServedFiles};
 use lamplight::browser::{Browser, PATIENCE as SHORT};
 use serde_json::json;
 
@@ -20,7 +20,7 @@ pub fn lost() -> Outcome {
 
 /// After the process of the GPU has ended, the next picture is drawn on another device.
 fn lost_device() -> Outcome {
-    let server = Server::start(Files::Folder(site()?))?;
+    let server = HttpServer::start(ServedFiles::Folder(site()?))?;
     // In a browser of its own, since all pages lose their devices.
     let browser = Browser::start()?;
     for address in ["#/programs/forward", "?device=webgl2#/programs/forward"] {
@@ -67,7 +67,7 @@ fn unloaded() -> Outcome {
     for lacking in ["toolchain_bg", "worker"] {
         let folder = tempfile::tempdir()?;
         copy_without(&site()?, folder.path(), lacking)?;
-        let server = Server::start(Files::Folder(folder.path().to_owned()))?;
+        let server = HttpServer::start(ServedFiles::Folder(folder.path().to_owned()))?;
         let page = Browser::shared()?.open(&server.address("#/catalogue"))?;
         let said = "document.querySelector('main').textContent";
         wait(&page, &format!("{said}.includes('the toolchain could not be loaded')"))?;

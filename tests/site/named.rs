@@ -1,6 +1,6 @@
 //! What screen readers are told of a page.
 
-use lamplight::browser::Page;
+use lamplight::browser::BrowserPage;
 use serde_json::{Value, json};
 
 use super::{Outcome, PATIENCE};
@@ -27,7 +27,7 @@ const NAMED: [&str; 16] = [
 
 /// In Chromium's accessibility tree, everything that can be focused or that needs a name has one. There
 /// is one main heading, and a place where changes are announced.
-pub fn named(page: &Page, name: &str) -> Outcome {
+pub fn named(page: &BrowserPage, name: &str) -> Outcome {
     page.call("Accessibility.enable", json!({}))?;
     let tree = page.call("Accessibility.getFullAXTree", json!({}))?;
     page.call("Accessibility.disable", json!({}))?;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use lamplight::browser::Page;
+use lamplight::browser::BrowserPage;
 use lamplight::bundle::Language;
 use lamplight::catalogue;
 use lamplight::compose::{self, Options};
@@ -13,7 +13,7 @@ use lamplight::diagnostic::Diagnostics;
 use lamplight::execute::{executors, on_thread};
 use lamplight::permute::Settings;
 use lamplight::picture::frame::Programs;
-use lamplight::picture::sketch::{Setting, Sketch};
+use lamplight::picture::sketch::{Sketch, SketchOptions};
 use lamplight::picture::{self, Picture, Plan, Shot, Surroundings};
 use lamplight::project;
 use lamplight::resolve::{self, Packages};
@@ -101,7 +101,7 @@ const FUNCTION: &str = "brdf::diffuse::oren_nayar";
 
 /// The preview of a function in the catalogue is the picture of its stage, which the link to the
 /// playground has.
-fn preview(page: &Page, device: &str) -> Outcome {
+fn preview(page: &BrowserPage, device: &str) -> Outcome {
     page.evaluate(&format!("location.hash = '#/catalogue/{FUNCTION}'"), PATIENCE)?;
     let canvas = "document.querySelector('.sketch canvas')";
     wait(page, &format!("{canvas} !== null"))?;
@@ -131,7 +131,7 @@ fn sketched(stage: &str, uniforms: BTreeMap<String, Vec<f64>>) -> Result<Picture
         let composed = compose::compose(&graph, &Settings::default(), &Options::default())?;
         let sketch = Sketch::new(validate(&composed)?, None).map_err(|problem| vec![problem])?;
         let (turn, lamp) = ([0.0, 0.3], [1.6, 2.0, 2.4].into());
-        let setting = Setting { turn, lamp, uniforms, ..Setting::default() };
+        let setting = SketchOptions { turn, lamp, uniforms, ..SketchOptions::default() };
         let shot = shot(320).ok_or_else(Vec::new)?;
         let painter = executors::vulkan::EXECUTOR.start().map_err(|_| Vec::new())?;
         let picture = sketch.prepare(&setting, &shot)?.photograph(painter.as_ref(), &shot)?;

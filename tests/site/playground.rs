@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use lamplight::browser::Page;
+use lamplight::browser::BrowserPage;
 use libtest_mimic::Failed;
 use serde_json::{Value, json};
 
@@ -52,7 +52,7 @@ pub fn typed(line: &str, text: &str) -> String {
 }
 
 /// The files of the zip compile with the command line, to the bytes that the page shows.
-fn taken_by_the_command_line(page: &Page) -> Outcome {
+fn taken_by_the_command_line(page: &BrowserPage) -> Outcome {
     let save = "(async () => {
         const make = URL.createObjectURL;
         const blob = new Promise((found) => {
@@ -107,7 +107,7 @@ fn stored_files(zip: &[u8]) -> Result<BTreeMap<String, Vec<u8>>, Failed> {
 
 /// What was typed right before a reload is there afterwards. The link has it too, for a browser that
 /// never had it. A link does not destroy other files, and a second one does not either.
-fn kept(opened: &Opened, page: &Page) -> Outcome {
+fn kept(opened: &Opened, page: &BrowserPage) -> Outcome {
     let lines =
         "[...document.querySelectorAll('.cm-line')].map((it) => it.textContent).join('\\n')";
     let there = |words: &str| format!("{lines}.includes({})", Value::from(words));
@@ -141,7 +141,7 @@ fn kept(opened: &Opened, page: &Page) -> Outcome {
 }
 
 /// A huge text is not inserted, with a sentence that says so. The text before it stays.
-fn too_large(page: &Page) -> Outcome {
+fn too_large(page: &BrowserPage) -> Outcome {
     page.evaluate(
         "(() => { const data = new DataTransfer(); data.setData('text/plain', '// x '.repeat(2000000));
             const paste = new ClipboardEvent('paste', { clipboardData: data, bubbles: true, cancelable: true });
@@ -165,7 +165,7 @@ pub fn endless() -> String {
 
 /// A text that keeps the toolchain busy is given up: after ten seconds, or after one second if
 /// somebody types on. The page goes on with a new toolchain, and answers all the time.
-fn replaced(page: &Page) -> Outcome {
+fn replaced(page: &BrowserPage) -> Outcome {
     let expression = |text: &str| {
         format!(
             "(() => {{ const it = document.querySelector('.eval input'); it.value = '{text}';

@@ -1,6 +1,6 @@
 //! The page of programs.
 
-use lamplight::browser::Page;
+use lamplight::browser::BrowserPage;
 use serde_json::Value;
 
 use super::{Opened, Outcome, PATIENCE, text, wait, without_errors};
@@ -63,7 +63,7 @@ pub fn programs() -> Outcome {
 }
 
 /// After a comparison begins and an axis is switched, the lines that only one text has are marked.
-fn compared(page: &Page, switch: &str) -> Outcome {
+fn compared(page: &BrowserPage, switch: &str) -> Outcome {
     page.evaluate("document.querySelector('[aria-pressed]').click()", PATIENCE)?;
     wait(page, "document.querySelector('[aria-pressed=true]') !== null")?;
     page.evaluate(switch, PATIENCE)?;

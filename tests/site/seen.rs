@@ -4,7 +4,7 @@ use std::path::Path;
 
 use image::RgbImage;
 use image::imageops::{FilterType, resize};
-use lamplight::browser::{Page, Screenshot};
+use lamplight::browser::{BrowserPage, Screenshot};
 use libtest_mimic::Failed;
 use serde_json::{Value, json};
 
@@ -77,7 +77,7 @@ pub fn seen() -> Outcome {
 }
 
 /// A page loads only the site's own files, and few bytes before the toolchain.
-fn small_and_own(page: &Page, name: &str) -> Outcome {
+fn small_and_own(page: &BrowserPage, name: &str) -> Outcome {
     let loaded = page.evaluate(
         "performance.getEntriesByType('resource').map((it) => [it.name, it.encodedBodySize])",
         PATIENCE,
@@ -113,7 +113,7 @@ const CELL: u32 = 8;
 const TOLERANCE: (f64, u8) = (0.04, 24);
 
 /// Compares a page with its reference in `tests/site/reviewed/`, or writes the reference.
-fn as_reviewed(page: &Page, name: &str, width: u32) -> Result<Option<String>, Failed> {
+fn as_reviewed(page: &BrowserPage, name: &str, width: u32) -> Result<Option<String>, Failed> {
     page.evaluate(HIDE, PATIENCE)?;
     let shot = Screenshot { width, height: 900, whole: false };
     page.screenshot(shot)?;
@@ -165,7 +165,7 @@ fn different_cells(one: &RgbImage, other: &RgbImage, steps: u8) -> f64 {
 }
 
 /// Shows a page as somebody sees it who prefers light or dark.
-fn in_scheme(page: &Page, scheme: &str) -> Outcome {
+fn in_scheme(page: &BrowserPage, scheme: &str) -> Outcome {
     let features = json!([{ "name": "prefers-color-scheme", "value": scheme }]);
     page.call("Emulation.setEmulatedMedia", json!({ "features": features }))?;
     Ok(())

@@ -1,8 +1,8 @@
 //! Runs benchmarks, which are a separate binary built for release.
 
-use crate::{Outcome, test};
+use crate::{CommandResult, test};
 
 /// Runs the benchmark of that name.
-pub fn run(arguments: &[String]) -> Outcome {
+pub fn run(arguments: &[String]) -> CommandResult {
     test::cargo(&["run", "--quiet", "--release", "--package", "lamplight-bench"], arguments)
 }

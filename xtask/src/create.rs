@@ -2,17 +2,20 @@
 //! them.
 
 use crate::generate::root;
-use crate::{Failure, Outcome, new};
+use crate::{CommandFailure, CommandResult, new};
 
 /// Writes the files, and prints them with what remains to be done.
-pub fn run(arguments: &[String]) -> Outcome {
+pub fn run(arguments: &[String]) -> CommandResult {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let [kind, name, rest @ ..] = words.as_slice() else { return Err(Failure::usage(usage())) };
-    let made = new::make(&root(), kind, name, rest).map_err(Failure::usage)?;
+    let [kind, name, rest @ ..] = words.as_slice() else {
+        return Err(CommandFailure::usage(usage()));
+    };
+    let made = new::make(&root(), kind, name, rest).map_err(CommandFailure::usage)?;
     for (path, text) in &made.files {
         let file = root().join(path);
-        lamplight::output::write(&file, text.as_bytes())
-            .map_err(|error| Failure::environment(format!("cannot write `{path}`: {error}")))?;
+        lamplight::output::write(&file, text.as_bytes()).map_err(|error| {
+            CommandFailure::environment(format!("cannot write `{path}`: {error}"))
+        })?;
         println!("wrote {path}");
     }
     println!("\nnow:");
@@ -25,7 +28,7 @@ pub fn run(arguments: &[String]) -> Outcome {
 }
 
 fn usage() -> String {
-    let line = |kind: &new::Kind| {
+    let line = |kind: &new::TaskKind| {
         let example: Vec<String> = kind.example.iter().map(|word| quoted(word)).collect();
         format!("\n  {:12}{} {}", kind.name, example.join(" "), kind.rest).trim_end().to_owned()
     };

@@ -3,14 +3,14 @@
 
 use std::process::Command;
 
-use crate::{Failure, Outcome, test};
+use crate::{CommandFailure, CommandResult, test};
 
 /// Writes them. With `--check` it only fails if any is not up to date. With `--costs` it first
 /// measures what functions and axes cost.
 ///
 /// The modules are written first, since the second run uses a binary that contains them. The book
 /// is written and not compared, since the tests `guide::` check its pages.
-pub fn run(arguments: &[String]) -> Outcome {
+pub fn run(arguments: &[String]) -> CommandResult {
     let (costs, check): (Vec<&str>, Vec<&str>) =
         arguments.iter().map(String::as_str).partition(|argument| *argument == "--costs");
     let lamplight = ["run", "--quiet", "--package", "lamplight", "--", "catalogue", "--force"];
@@ -26,11 +26,11 @@ pub fn run(arguments: &[String]) -> Outcome {
 const INSTALL: &str = "cargo install mdbook --locked --no-default-features --features search";
 
 /// `docs/guide/` as HTML in `target/guide/`, where mdbook is installed.
-fn book() -> Outcome {
+fn book() -> CommandResult {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/guide");
     match Command::new("mdbook").args(["build", folder]).status() {
         Ok(status) if status.success() => Ok(()),
-        Ok(_) => Err(Failure::check("failed: mdbook build docs/guide")),
+        Ok(_) => Err(CommandFailure::check("failed: mdbook build docs/guide")),
         Err(_) => {
             eprintln!("the guide was not made into a book, which needs mdbook: {INSTALL}");
             Ok(())

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use crate::generate::root;
-use crate::{Failure, Outcome};
+use crate::{CommandFailure, CommandResult};
 
 /// System calls that name a file, or that write to one.
 const CALLS: &[&str] = &[
@@ -55,9 +55,9 @@ const MANIFEST: &str = "[program.small]\nwesl = \"small.wesl\"\ntargets = [\"wgs
     [program.small.axis]\ncount = { values = [1, 2, 3] }\n";
 
 /// Injects every fault. A bundle that is not complete afterwards gives exit code 3.
-pub fn run(arguments: &[String]) -> Outcome {
+pub fn run(arguments: &[String]) -> CommandResult {
     let seed = seed(arguments)?;
-    let package = Package::new()?;
+    let package = FaultPackage::new()?;
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     let mut findings = Vec::new();
     for call in CALLS {
@@ -84,16 +84,16 @@ pub fn run(arguments: &[String]) -> Outcome {
     println!("{:22} {:6}, {} findings", "all", counts.values().sum::<usize>(), findings.len());
     match findings.is_empty() {
         true => Ok(()),
-        false => Err(Failure::check(format!("{} findings", findings.len()))),
+        false => Err(CommandFailure::check(format!("{} findings", findings.len()))),
     }
 }
 
-fn seed(arguments: &[String]) -> Result<u64, Failure> {
+fn seed(arguments: &[String]) -> Result<u64, CommandFailure> {
     const USAGE: &str = "usage: cargo xtask faults [--seed N]";
     match arguments {
         [] => Ok(1),
-        [name, seed] if name == "--seed" => seed.parse().map_err(|_| Failure::usage(USAGE)),
-        _ => Err(Failure::usage(USAGE)),
+        [name, seed] if name == "--seed" => seed.parse().map_err(|_| CommandFailure::usage(USAGE)),
+        _ => Err(CommandFailure::usage(USAGE)),
     }
 }
 
@@ -106,13 +106,13 @@ enum Injected {
 }
 
 /// A package with a bundle.
-struct Package {
+struct FaultPackage {
     folder: PathBuf,
     program: PathBuf,
 }
 
-impl Package {
-    fn new() -> Result<Self, Failure> {
+impl FaultPackage {
+    fn new() -> Result<Self, CommandFailure> {
         let program = beside_this()?;
         let folder = root().join("target/faults");
         let _ = fs::remove_dir_all(&folder);
@@ -123,11 +123,13 @@ impl Package {
         let made = package.command().output().map_err(environment)?;
         match made.status.success() {
             true => Ok(package),
-            false => Err(Failure::environment(String::from_utf8_lossy(&made.stderr).into_owned())),
+            false => {
+                Err(CommandFailure::environment(String::from_utf8_lossy(&made.stderr).into_owned()))
+            }
         }
     }
 
-    fn change(&self, number: usize) -> Outcome {
+    fn change(&self, number: usize) -> CommandResult {
         let text = format!(
             "@fragment fn fs_main() -> @location(0) vec4f {{
                 return vec4f(f32(constants::count), {number}.0, 0.0, 1.0);
@@ -148,7 +150,12 @@ impl Package {
     }
 
     /// Runs with a fault, and checks the bundle.
-    fn injected(&self, call: &str, inject: &str, number: usize) -> Result<Injected, Failure> {
+    fn injected(
+        &self,
+        call: &str,
+        inject: &str,
+        number: usize,
+    ) -> Result<Injected, CommandFailure> {
         self.change(number + 1)?;
         let trace = self.folder.join("trace");
         let mut command = Command::new("strace");
@@ -178,11 +185,11 @@ impl Package {
 }
 
 /// The program that was built together with this one, in the same profile.
-pub fn beside_this() -> Result<PathBuf, Failure> {
+pub fn beside_this() -> Result<PathBuf, CommandFailure> {
     let program = std::env::current_exe().map_err(environment)?.with_file_name("lamplight");
     match program.is_file() {
         true => Ok(program),
-        false => Err(Failure::environment("build it first: cargo build")),
+        false => Err(CommandFailure::environment("build it first: cargo build")),
     }
 }
 
@@ -191,6 +198,6 @@ fn was_injected(trace: &Path) -> bool {
         .is_ok_and(|text| text.contains("(INJECTED)") || text.contains("(DELAYED)"))
 }
 
-fn environment(error: std::io::Error) -> Failure {
-    Failure::environment(error.to_string())
+fn environment(error: std::io::Error) -> CommandFailure {
+    CommandFailure::environment(error.to_string())
 }

@@ -3,11 +3,11 @@
 
 use lamplight::bundle::Target;
 
-use crate::{Failure, Outcome, test};
+use crate::{CommandFailure, CommandResult, test};
 
-fn usage() -> Failure {
+fn usage() -> CommandFailure {
     let targets: Vec<&str> = Target::ALL.iter().map(|target| target.name()).collect();
-    Failure::usage(format!(
+    CommandFailure::usage(format!(
         "usage: cargo xtask frames [--permutations N] [--target T[,T]]
 
   --permutations N  how many of each program and language (all: 200 or more, with all pairs of values)
@@ -17,7 +17,7 @@ fn usage() -> Failure {
 }
 
 /// Runs the trials. A wrong picture gives exit code 3.
-pub fn run(arguments: &[String]) -> Outcome {
+pub fn run(arguments: &[String]) -> CommandResult {
     let (mut permutations, mut targets) = ("100000".to_owned(), Vec::new());
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
@@ -42,7 +42,7 @@ pub fn run(arguments: &[String]) -> Outcome {
     if msl { trials("metal::frames", &variables) } else { Ok(()) }
 }
 
-fn trials(name: &str, variables: &[(String, String)]) -> Outcome {
+fn trials(name: &str, variables: &[(String, String)]) -> CommandResult {
     let command =
         ["test", "--quiet", "--package", "lamplight", "--features", "store", "--test", "all"];
     test::cargo_with(&command, &[name.to_owned(), "--nocapture".to_owned()], variables)

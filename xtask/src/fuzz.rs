@@ -19,9 +19,9 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 
 use crate::generate::root;
-use crate::{Failure, Outcome};
+use crate::{CommandFailure, CommandResult};
 use kinds::{KINDS, Kind};
-use mutate::Random;
+use mutate::FuzzRandom;
 
 const USAGE: &str = "usage: cargo xtask fuzz [--seconds N] [--seed N] [KIND]...\n       cargo xtask fuzz link [--programs N] [--seed N]";
 /// A worker that gives no sign of life for this long is in an endless loop.
@@ -30,7 +30,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 const SHRINKS: usize = 400;
 
 /// What was asked for.
-struct Request {
+struct FuzzRequest {
     seconds: u64,
     seed: u64,
     kinds: Vec<&'static Kind>,
@@ -38,7 +38,7 @@ struct Request {
 }
 
 /// Fuzzes every kind for its share of the time. A finding gives exit code 3.
-pub fn run(arguments: &[String]) -> Outcome {
+pub fn run(arguments: &[String]) -> CommandResult {
     match arguments {
         [kind, rest @ ..] if kind == "link" => link::run(rest),
         [mode, kind, file] if mode == "--judge" => judge_file(find(kind)?, Path::new(file)),
@@ -49,17 +49,20 @@ pub fn run(arguments: &[String]) -> Outcome {
     }
 }
 
-fn request(arguments: &[String]) -> Result<Request, Failure> {
+fn request(arguments: &[String]) -> Result<FuzzRequest, CommandFailure> {
     let now =
         SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    let mut request = Request { seconds: 60, seed: now, kinds: Vec::new(), surfaces: Vec::new() };
+    let mut request =
+        FuzzRequest { seconds: 60, seed: now, kinds: Vec::new(), surfaces: Vec::new() };
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         match argument.as_str() {
             "--seconds" => {
-                request.seconds = number(rest.next().ok_or_else(|| Failure::usage(USAGE))?)?
+                request.seconds = number(rest.next().ok_or_else(|| CommandFailure::usage(USAGE))?)?
             }
-            "--seed" => request.seed = number(rest.next().ok_or_else(|| Failure::usage(USAGE))?)?,
+            "--seed" => {
+                request.seed = number(rest.next().ok_or_else(|| CommandFailure::usage(USAGE))?)?
+            }
             name => match commands::SURFACES.iter().find(|surface| surface.name == name) {
                 Some(surface) => request.surfaces.push(surface),
                 None => request.kinds.push(find(name)?),
@@ -73,19 +76,19 @@ fn request(arguments: &[String]) -> Result<Request, Failure> {
     Ok(request)
 }
 
-fn number(text: &str) -> Result<u64, Failure> {
-    text.parse().map_err(|_| Failure::usage(USAGE))
+fn number(text: &str) -> Result<u64, CommandFailure> {
+    text.parse().map_err(|_| CommandFailure::usage(USAGE))
 }
 
-fn find(name: &str) -> Result<&'static Kind, Failure> {
+fn find(name: &str) -> Result<&'static Kind, CommandFailure> {
     let names = KINDS.iter().map(|kind| kind.name);
     let names: Vec<&str> =
         names.chain(commands::SURFACES.iter().map(|surface| surface.name)).collect();
     let found = KINDS.iter().find(|kind| kind.name == name);
-    found.ok_or_else(|| Failure::usage(format!("{USAGE}\nkinds: {}", names.join(", "))))
+    found.ok_or_else(|| CommandFailure::usage(format!("{USAGE}\nkinds: {}", names.join(", "))))
 }
 
-fn watch(request: &Request) -> Outcome {
+fn watch(request: &FuzzRequest) -> CommandResult {
     println!("seed {}", request.seed);
     let all = request.kinds.len() + request.surfaces.len();
     let share = (request.seconds / all as u64).max(1);
@@ -99,12 +102,12 @@ fn watch(request: &Request) -> Outcome {
     if findings == 0 {
         Ok(())
     } else {
-        Err(Failure::check(format!("{findings} findings in tests/regressions/")))
+        Err(CommandFailure::check(format!("{findings} findings in tests/regressions/")))
     }
 }
 
 /// Runs workers until the time is over. Each finding ends a worker.
-fn fuzz(kind: &Kind, seed: u64, seconds: u64) -> Result<usize, Failure> {
+fn fuzz(kind: &Kind, seed: u64, seconds: u64) -> Result<usize, CommandFailure> {
     let (started, mut told, mut round) = (Instant::now(), BTreeSet::new(), 0);
     while started.elapsed().as_secs() < seconds {
         let rest = seconds - started.elapsed().as_secs();
@@ -129,7 +132,7 @@ fn current(kind: &Kind) -> PathBuf {
     root().join("target/fuzz").join(kind.name)
 }
 
-fn spawn(arguments: &[&str]) -> Result<Child, Failure> {
+fn spawn(arguments: &[&str]) -> Result<Child, CommandFailure> {
     let program = std::env::current_exe().map_err(environment)?;
     Command::new(program)
         .arg("fuzz")
@@ -141,13 +144,13 @@ fn spawn(arguments: &[&str]) -> Result<Child, Failure> {
 
 /// Waits for a worker, and returns what it found wrong. `sign` is a file that a live worker keeps
 /// writing; a worker whose file is old is killed.
-fn outcome(mut worker: Child, sign: Option<&Path>) -> Result<Option<String>, Failure> {
+fn outcome(mut worker: Child, sign: Option<&Path>) -> Result<Option<String>, CommandFailure> {
     let started = Instant::now();
     loop {
         if let Ok(Some(status)) = worker.try_wait() {
             let said = worker.wait_with_output().map(|output| output.stderr).unwrap_or_default();
             let said = String::from_utf8_lossy(&said);
-            return ending::read_ending(status, said.trim()).map_err(Failure::environment);
+            return ending::read_ending(status, said.trim()).map_err(CommandFailure::environment);
         }
         let alive = sign.and_then(|sign| fs::metadata(sign).ok()?.modified().ok()?.elapsed().ok());
         if started.elapsed() > PATIENCE && alive.is_none_or(|since| since > PATIENCE) {
@@ -160,35 +163,35 @@ fn outcome(mut worker: Child, sign: Option<&Path>) -> Result<Option<String>, Fai
 }
 
 /// The worker: mutates inputs and judges the answers, until the time is over or something is wrong.
-fn work(kind: &Kind, seed: u64, seconds: u64) -> Outcome {
+fn work(kind: &Kind, seed: u64, seconds: u64) -> CommandResult {
     let place = current(kind);
     fs::create_dir_all(place.parent().unwrap_or(Path::new("."))).map_err(environment)?;
     let (corpus, words): (_, Vec<&str>) = (
         mutate::corpus_of(&root(), kind.corpus),
         kind.words.split(' ').filter(|word| !word.is_empty()).collect(),
     );
-    let (mut random, started, mut inputs) = (Random(seed), Instant::now(), 0u64);
+    let (mut random, started, mut inputs) = (FuzzRandom(seed), Instant::now(), 0u64);
     judge::quiet();
     while started.elapsed().as_secs() < seconds {
         let input = mutate::mutated(&mut random, &corpus, &words);
         fs::write(&place, &input).map_err(environment)?;
         inputs += 1;
         if let Some(reason) = judge::judge(kind, &input) {
-            return Err(Failure::check(reason));
+            return Err(CommandFailure::check(reason));
         }
     }
     println!("{}: {inputs} inputs, nothing found", kind.name);
     Ok(())
 }
 
-fn judge_file(kind: &Kind, file: &Path) -> Outcome {
+fn judge_file(kind: &Kind, file: &Path) -> CommandResult {
     let input = fs::read(file).map_err(environment)?;
     judge::quiet();
-    judge::judge(kind, &input).map_or(Ok(()), |reason| Err(Failure::check(reason)))
+    judge::judge(kind, &input).map_or(Ok(()), |reason| Err(CommandFailure::check(reason)))
 }
 
 /// Saves a finding, shrunk as far as it still fails for the same reason.
-fn keep(kind: &Kind, input: Vec<u8>, reason: &str) -> Outcome {
+fn keep(kind: &Kind, input: Vec<u8>, reason: &str) -> CommandResult {
     println!("{}: {reason} ({} bytes)", kind.name, input.len());
     let small = shrunk(kind, input, reason)?;
     let folder = root().join("tests/regressions").join(kind.name);
@@ -202,7 +205,7 @@ fn keep(kind: &Kind, input: Vec<u8>, reason: &str) -> Outcome {
 }
 
 /// Removes ever smaller parts of the input, as long as it still fails for the same reason.
-fn shrunk(kind: &Kind, mut input: Vec<u8>, reason: &str) -> Result<Vec<u8>, Failure> {
+fn shrunk(kind: &Kind, mut input: Vec<u8>, reason: &str) -> Result<Vec<u8>, CommandFailure> {
     let file = current(kind).with_extension("small");
     let (mut size, mut at, mut tries) = (input.len() / 2, 0, 0);
     while size > 0 && tries < SHRINKS {
@@ -223,6 +226,6 @@ fn shrunk(kind: &Kind, mut input: Vec<u8>, reason: &str) -> Result<Vec<u8>, Fail
     Ok(input)
 }
 
-fn environment(error: std::io::Error) -> Failure {
-    Failure::environment(error.to_string())
+fn environment(error: std::io::Error) -> CommandFailure {
+    CommandFailure::environment(error.to_string())
 }

@@ -7,20 +7,20 @@ use std::io::{IsTerminal, Write, stderr};
 use std::path::{Path, PathBuf};
 
 use lamplight::bundle::{self, BlobFile, Bundle, Contents, DirectoryWriter, blob_files};
-use lamplight::cache::{Cache, Folder};
+use lamplight::cache::{Cache, CacheFolder};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{
-    Generated, Observer, Progress, Request, Run, Summary, Told, Tools, Trace, generate,
+    Generated, Observer, Progress, Request, RunWarnings, Summary, Tools, Trace, TracedRun, generate,
 };
-use lamplight::judge::{Made, blame};
+use lamplight::judge::{OutputOrigin, blame};
 use lamplight::permute::Manifest;
 use lamplight::project;
 use lamplight::resolve::Packages;
 use lamplight::source::SourceSet;
 
-use crate::validate::{Judged, judge};
-use crate::{Failure, Outcome};
+use crate::validate::{JudgedOutputs, judge};
+use crate::{CommandFailure, CommandResult};
 
 /// Where the library's bundle goes.
 pub fn bundle() -> PathBuf {
@@ -34,22 +34,22 @@ pub fn root() -> PathBuf {
 
 /// Generates, judges what is new, writes the bundle and prints the summary. If an output is
 /// refused, the older bundle does not change.
-pub fn run(arguments: &[String]) -> Outcome {
+pub fn run(arguments: &[String]) -> CommandResult {
     let is_judged = is_judged(arguments)?;
     let start = std::time::Instant::now();
     let path = root().join("shaderlib").join(project::MANIFEST);
     let mut sources = SourceSet::default();
     let input = |sources: &SourceSet, diagnostics: Diagnostics| {
-        Failure::input(render(sources, &diagnostics, Form::Human))
+        CommandFailure::input(render(sources, &diagnostics, Form::Human))
     };
     let (manifest, packages) = project::declared(&path, &mut sources)
         .map_err(|diagnostics| input(&sources, diagnostics))?;
     let (declared, observer) = (sources.clone(), Observer::default());
     let (packages, out, request) = (observer.observe(packages), bundle(), Request::default());
-    let folder = Folder::new(root().join("target/lamplight-cache"))
-        .map_err(|foreign| Failure::input(foreign.to_string()))?;
+    let folder = CacheFolder::new(root().join("target/lamplight-cache"))
+        .map_err(|foreign| CommandFailure::input(foreign.to_string()))?;
     let cache = Cache::new(vec![Box::new(folder)]);
-    let as_run = || Run {
+    let as_run = || TracedRun {
         manifest: &path,
         declared: &declared,
         request: &request,
@@ -74,19 +74,20 @@ pub fn run(arguments: &[String]) -> Outcome {
     refuse(&mut sources, &packages, &manifest, &judged, &|| Ok(contents.clone()))?;
     writer.finish(&contents).map_err(environment)?;
     eprint!("{}", render(&sources, &warnings, Form::Human));
-    let trace = Trace::new(&observer, &out, summary.clone(), Told::new(&path, &sources, &warnings));
+    let trace =
+        Trace::new(&observer, &out, summary.clone(), RunWarnings::new(&path, &sources, &warnings));
     trace.into_iter().for_each(|trace| trace.keep(&cache, as_run()));
     finish(&summary, &judged)
 }
 
 /// Whether the judges are to be asked.
-fn is_judged(arguments: &[String]) -> Result<bool, Failure> {
+fn is_judged(arguments: &[String]) -> Result<bool, CommandFailure> {
     match arguments {
         [] => Ok(true),
         [option] if option == "--unjudged" => Ok(false),
         _ => {
             let usage = "usage: cargo xtask gen [--unjudged] (for other manifests: lamplight gen)";
-            Err(Failure::usage(usage))
+            Err(CommandFailure::usage(usage))
         }
     }
 }
@@ -96,10 +97,10 @@ fn judged(
     is_judged: bool,
     files: impl FnOnce() -> Result<BTreeSet<BlobFile>, bundle::Error>,
     cache: &Cache,
-) -> Result<Judged, Failure> {
+) -> Result<JudgedOutputs, CommandFailure> {
     match is_judged {
         true => judge(files().map_err(environment)?, Some(cache)),
-        false => Ok(Judged::nothing()),
+        false => Ok(JudgedOutputs::nothing()),
     }
 }
 
@@ -108,25 +109,25 @@ fn refuse(
     sources: &mut SourceSet,
     packages: &Packages,
     manifest: &Manifest,
-    judged: &Judged,
+    judged: &JudgedOutputs,
     contents: &dyn Fn() -> Result<Contents, bundle::Error>,
-) -> Outcome {
+) -> CommandResult {
     if judged.refusals.is_empty() {
         return Ok(());
     }
-    let made = Made { packages, manifest, contents: &contents().map_err(environment)? };
+    let made = OutputOrigin { packages, manifest, contents: &contents().map_err(environment)? };
     let refused = blame(sources, &made, &judged.refusals);
-    Err(Failure::input(render(sources, &refused, Form::Human)))
+    Err(CommandFailure::input(render(sources, &refused, Form::Human)))
 }
 
-fn finish(summary: &Summary, judged: &Judged) -> Outcome {
+fn finish(summary: &Summary, judged: &JudgedOutputs) -> CommandResult {
     print!("{summary}");
     println!("written to target/bundles/lamplight");
     judged.complete()
 }
 
-fn environment(error: bundle::Error) -> Failure {
-    Failure::environment(error.to_string())
+fn environment(error: bundle::Error) -> CommandFailure {
+    CommandFailure::environment(error.to_string())
 }
 
 fn show(progress: Progress) {

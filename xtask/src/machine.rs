@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use lamplight::judge::judges;
 use lamplight::tools::Tool;
 
-use crate::{Failure, Outcome};
+use crate::{CommandFailure, CommandResult};
 
 /// Something that the tests need: the Debian package that has it, and how to see whether it is
 /// there.
@@ -57,7 +57,7 @@ const NEEDS: &[Need] = &[
 ];
 
 /// Installs what is missing, if that is allowed. Otherwise prints exactly what to install.
-pub fn prepare() -> Outcome {
+pub fn prepare() -> CommandResult {
     let missing = missing();
     if missing.is_empty() {
         return Ok(());
@@ -69,7 +69,7 @@ pub fn prepare() -> Outcome {
     install(&packages)?;
     match self::missing().first() {
         None => Ok(()),
-        Some((_, what)) => Err(Failure::environment(format!(
+        Some((_, what)) => Err(CommandFailure::environment(format!(
             "installed {}, yet {what} is not found",
             packages.join(" "),
         ))),
@@ -92,13 +92,13 @@ fn missing() -> Vec<(&'static str, &'static str)> {
 }
 
 /// Installs packages of Debian.
-pub fn install(packages: &[&str]) -> Outcome {
+pub fn install(packages: &[&str]) -> CommandResult {
     let by_hand = format!(
         "sudo apt-get update && sudo apt-get install -y --no-install-recommends {}",
         packages.join(" ")
     );
     let Some(prefix) = privilege() else {
-        return Err(Failure::environment(format!(
+        return Err(CommandFailure::environment(format!(
             "these tests need more than is installed here; run\n\n    {by_hand}\n"
         )));
     };
@@ -119,7 +119,7 @@ pub fn install(packages: &[&str]) -> Outcome {
     if run(&["update", "-qq"]) && run(&arguments) {
         Ok(())
     } else {
-        Err(Failure::environment(format!(
+        Err(CommandFailure::environment(format!(
             "apt-get could not install what the tests need; run\n\n    {by_hand}\n"
         )))
     }

@@ -22,18 +22,18 @@ mod validate;
 use std::process::ExitCode;
 
 /// A command: its name, one line of help, and what it does with its arguments.
-type Command = (&'static str, &'static str, fn(&[String]) -> Outcome);
+type XtaskCommand = (&'static str, &'static str, fn(&[String]) -> CommandResult);
 
 /// Exit code 0, or another with its reason on standard error.
-type Outcome = Result<(), Failure>;
+type CommandResult = Result<(), CommandFailure>;
 
 /// Why a command failed, with the documented exit code.
-struct Failure {
+struct CommandFailure {
     code: u8,
     message: String,
 }
 
-impl Failure {
+impl CommandFailure {
     /// The input is wrong (1).
     fn input(message: impl Into<String>) -> Self {
         Self { code: 1, message: message.into() }
@@ -55,7 +55,7 @@ impl Failure {
     }
 }
 
-const COMMANDS: &[Command] = &[
+const COMMANDS: &[XtaskCommand] = &[
     (
         "gen",
         "write the library's bundle to target/bundles/, once all its outputs are judged",
@@ -119,7 +119,7 @@ fn main() -> ExitCode {
         arguments.first().and_then(|name| COMMANDS.iter().find(|(known, ..)| known == name));
     let outcome = match command {
         Some((.., run)) => run(&arguments[1..]),
-        None => Err(Failure::usage(usage())),
+        None => Err(CommandFailure::usage(usage())),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

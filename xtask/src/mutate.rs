@@ -1,10 +1,10 @@
 //! Puts mistakes into the library, to see whether its numeric cases notice them.
 
-use crate::{Outcome, test};
+use crate::{CommandResult, test};
 
 /// Runs `lamplight mutate` over the library's sources, in release: it makes thousands of mutants.
 /// Arguments (modules, `--coverage`) are passed on.
-pub fn run(arguments: &[String]) -> Outcome {
+pub fn run(arguments: &[String]) -> CommandResult {
     let command = ["run", "--quiet", "--release", "--package", "lamplight", "--", "mutate"];
     let all: Vec<&str> = command
         .into_iter()

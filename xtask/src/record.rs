@@ -1,7 +1,7 @@
 //! `cargo xtask record`: writes down anew what tests compare with, such as messages, listings and
 //! outputs. Read the difference before you commit it.
 
-use crate::{Failure, Outcome, test};
+use crate::{CommandFailure, CommandResult, test};
 
 /// The tests that compare with a record. Pictures are not among them: those are drawn on purpose.
 const RECORDED: [&str; 9] = [
@@ -20,7 +20,7 @@ const RECORDED: [&str; 9] = [
 const VARIABLES: [(&str, &str); 2] = [("INSTA_UPDATE", "always"), ("UPDATE_EXPECT", "1")];
 
 /// Runs all of these tests, or only those that the arguments name.
-pub fn run(arguments: &[String]) -> Outcome {
+pub fn run(arguments: &[String]) -> CommandResult {
     let all = RECORDED.map(str::to_owned);
     let chosen = if arguments.is_empty() { &all[..] } else { arguments };
     let variables = VARIABLES.map(|(name, value)| (name.to_owned(), value.to_owned()));
@@ -32,6 +32,6 @@ pub fn run(arguments: &[String]) -> Outcome {
     let failed: Vec<String> = chosen.iter().filter_map(record).collect();
     match failed.is_empty() {
         true => Ok(()),
-        false => Err(Failure::check("some tests fail for another reason, as printed above")),
+        false => Err(CommandFailure::check("some tests fail for another reason, as printed above")),
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use crate::{Failure, Outcome, machine};
+use crate::{CommandFailure, CommandResult, machine};
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 const TARGET: &str = "wasm32-unknown-unknown";
@@ -14,14 +14,14 @@ const STACK: &str = "-C link-arg=-zstack-size=8388608";
 
 /// How much work goes into the size and speed of the WebAssembly.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Build {
+pub enum SiteBuild {
     /// As it is published: small and fast.
     Small,
     /// As it is tested: the same code with less optimisation, built in half the time.
     Quick,
 }
 
-impl Build {
+impl SiteBuild {
     fn profile(self) -> &'static str {
         match self {
             Self::Small => "web",
@@ -38,13 +38,17 @@ impl Build {
 }
 
 /// Makes the npm package in `target/toolchain/`, then the site in `target/site/`.
-pub fn run(arguments: &[String]) -> Outcome {
-    let (mut build, mut only) = (Build::Small, false);
+pub fn run(arguments: &[String]) -> CommandResult {
+    let (mut build, mut only) = (SiteBuild::Small, false);
     for argument in arguments {
         match argument.as_str() {
-            "--quick" => build = Build::Quick,
+            "--quick" => build = SiteBuild::Quick,
             "--toolchain" => only = true,
-            _ => return Err(Failure::usage("usage: cargo xtask site [--toolchain] [--quick]")),
+            _ => {
+                return Err(CommandFailure::usage(
+                    "usage: cargo xtask site [--toolchain] [--quick]",
+                ));
+            }
         }
     }
     toolchain(build)?;
@@ -52,7 +56,7 @@ pub fn run(arguments: &[String]) -> Outcome {
 }
 
 /// Builds the site in `target/site/`, around the npm package that was built before.
-pub fn pages() -> Outcome {
+pub fn pages() -> CommandResult {
     let folder = Path::new(ROOT).join("site");
     if !machine::program("npm") {
         machine::install(&["npm"])?;
@@ -67,7 +71,7 @@ pub fn pages() -> Outcome {
 }
 
 /// Builds the npm package `@lamplight/toolchain` in `target/toolchain/`.
-pub fn toolchain(build: Build) -> Result<PathBuf, Failure> {
+pub fn toolchain(build: SiteBuild) -> Result<PathBuf, CommandFailure> {
     let below = Path::new(ROOT).join("target/wasm");
     webassembly(build, &below)?;
     let module = below.join(TARGET).join(build.folder()).join("lamplight_toolchain.wasm");
@@ -86,14 +90,14 @@ pub fn toolchain(build: Build) -> Result<PathBuf, Failure> {
 }
 
 /// Compiles to WebAssembly, with the target of rustup or with Debian's packages for it.
-fn webassembly(build: Build, below: &Path) -> Outcome {
+fn webassembly(build: SiteBuild, below: &Path) -> CommandResult {
     let mut command = match has_target() || added_target() {
         true => cargo(),
         false => debian()?,
     };
     command.args(["build", "--package", "lamplight-toolchain", "--profile", build.profile()]);
     command.args(["--target", TARGET, "--target-dir"]).arg(below);
-    if build == Build::Quick {
+    if build == SiteBuild::Quick {
         for setting in ["debug-assertions=false", "overflow-checks=false", "opt-level=1"] {
             command.args(["--config", &format!("profile.dev.package.lamplight.{setting}")]);
         }
@@ -122,7 +126,7 @@ fn added_target() -> bool {
 }
 
 /// Debian's own compiler, which builds the standard library from its sources.
-fn debian() -> Result<Command, Failure> {
+fn debian() -> Result<Command, CommandFailure> {
     const LINKER: &str = "/usr/bin/wasm-ld-22";
     if !Path::new(LINKER).exists() || !Path::new("/usr/lib/rustlib/src/rust/library").is_dir() {
         machine::install(&["rustc-web", "cargo-web", "rust-web-src", "lld-22"])?;
@@ -135,37 +139,37 @@ fn debian() -> Result<Command, Failure> {
     Ok(command)
 }
 
-fn finish(command: &mut Command, name: &str) -> Outcome {
+fn finish(command: &mut Command, name: &str) -> CommandResult {
     match command.status() {
         Ok(status) if status.success() => Ok(()),
-        Ok(_) => Err(Failure::check(format!("failed: {name}"))),
-        Err(error) => Err(Failure::environment(format!("{name} could not be run: {error}"))),
+        Ok(_) => Err(CommandFailure::check(format!("failed: {name}"))),
+        Err(error) => Err(CommandFailure::environment(format!("{name} could not be run: {error}"))),
     }
 }
 
-fn unwritten(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::environment(format!("cannot write `{}`: {error}", path.display()))
+fn unwritten(path: &Path, error: &std::io::Error) -> CommandFailure {
+    CommandFailure::environment(format!("cannot write `{}`: {error}", path.display()))
 }
 
 /// The largest size of the toolchain after compression, in bytes.
 const LARGEST: usize = 3 << 20;
 
 /// Prints how large the toolchain is, and how large as a server sends it.
-fn sizes(module: &Path, build: Build) -> Outcome {
+fn sizes(module: &Path, build: SiteBuild) -> CommandResult {
     let script = "const { gzipSync, brotliCompressSync } = require('zlib'); \
         const bytes = require('fs').readFileSync(process.argv[1]); \
         console.log(bytes.length, gzipSync(bytes, { level: 9 }).length, \
             brotliCompressSync(bytes, { params: { [require('zlib').constants.BROTLI_PARAM_QUALITY]: 9 } }).length)";
     let output = Command::new("node").args(["-e", script]).arg(module).output();
-    let output = output.map_err(|error| Failure::environment(format!("node: {error}")))?;
+    let output = output.map_err(|error| CommandFailure::environment(format!("node: {error}")))?;
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     let sizes: Vec<usize> = text.split_whitespace().filter_map(|size| size.parse().ok()).collect();
     let [raw, gzip, brotli] = sizes[..] else {
-        return Err(Failure::environment("node could not compress the toolchain"));
+        return Err(CommandFailure::environment("node could not compress the toolchain"));
     };
     println!("toolchain: {raw} bytes, {gzip} with gzip, {brotli} with brotli");
-    if build == Build::Small && gzip > LARGEST {
-        return Err(Failure::check(format!("more than {LARGEST} bytes, compressed")));
+    if build == SiteBuild::Small && gzip > LARGEST {
+        return Err(CommandFailure::check(format!("more than {LARGEST} bytes, compressed")));
     }
     Ok(())
 }

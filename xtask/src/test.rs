@@ -1,6 +1,6 @@
 //! The one test command.
 
-use crate::{Failure, Outcome, machine, site};
+use crate::{CommandFailure, CommandResult, machine, site};
 use std::process::Command;
 
 /// All tests together gain more by this setting than the build loses. Whoever runs `cargo test` for
@@ -8,10 +8,10 @@ use std::process::Command;
 const OPTIMISED: [&str; 2] = ["--config", "profile.test.package.lamplight.opt-level=2"];
 
 /// Prepares the machine, then runs every test. Arguments are passed to the test binary.
-pub fn run(arguments: &[String]) -> Outcome {
+pub fn run(arguments: &[String]) -> CommandResult {
     machine::prepare()?;
     // Trials `toolchain::` run the package in Node, and trials `site::` in a browser.
-    site::toolchain(site::Build::Quick)?;
+    site::toolchain(site::SiteBuild::Quick)?;
     site::pages()?;
     // With every feature, since shared stores are tested with a server.
     let test = |what: &[&str], rest| {
@@ -23,12 +23,16 @@ pub fn run(arguments: &[String]) -> Outcome {
 }
 
 /// Runs cargo in the workspace; a failure is exit code 3.
-pub fn cargo(arguments: &[&str], rest: &[String]) -> Outcome {
+pub fn cargo(arguments: &[&str], rest: &[String]) -> CommandResult {
     cargo_with(arguments, rest, &[])
 }
 
 /// [`cargo`] with variables in its environment.
-pub fn cargo_with(arguments: &[&str], rest: &[String], variables: &[(String, String)]) -> Outcome {
+pub fn cargo_with(
+    arguments: &[&str],
+    rest: &[String],
+    variables: &[(String, String)],
+) -> CommandResult {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.envs(variables.iter().cloned());
     command.args(arguments).current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
@@ -37,7 +41,7 @@ pub fn cargo_with(arguments: &[&str], rest: &[String], variables: &[(String, Str
     }
     match command.status() {
         Ok(status) if status.success() => Ok(()),
-        Ok(_) => Err(Failure::check(format!("failed: cargo {}", arguments.join(" ")))),
-        Err(error) => Err(Failure::environment(format!("cargo could not be run: {error}"))),
+        Ok(_) => Err(CommandFailure::check(format!("failed: cargo {}", arguments.join(" ")))),
+        Err(error) => Err(CommandFailure::environment(format!("cargo could not be run: {error}"))),
     }
 }

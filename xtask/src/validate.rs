@@ -5,18 +5,18 @@ use std::process::Command;
 
 use lamplight::bundle::{BlobFile, Target, blob_files};
 use lamplight::cache::Cache;
-use lamplight::judge::{Missing, Output, Refusal, Tint, missing, outputs, verdict};
+use lamplight::judge::{MissingTool, Output, Refusal, Tint, missing, outputs, verdict};
 
-use crate::{Failure, Outcome, generate, machine};
+use crate::{CommandFailure, CommandResult, generate, machine};
 
 /// How many refusals are printed.
 const TOLD: usize = 20;
 
 /// Judges all of a bundle directory, whatever passed before.
-pub fn run(arguments: &[String]) -> Outcome {
+pub fn run(arguments: &[String]) -> CommandResult {
     let bundle = arguments.first().map_or_else(generate::bundle, PathBuf::from);
     let files = blob_files(&bundle)
-        .map_err(|error| Failure::input(format!("`{}`: {error}", bundle.display())))?;
+        .map_err(|error| CommandFailure::input(format!("`{}`: {error}", bundle.display())))?;
     let judged = judge(files, None)?;
     let line = |refusal: &Refusal| {
         let Refusal { output: Output { target, file, .. }, judge, words, .. } = refusal;
@@ -26,30 +26,33 @@ pub fn run(arguments: &[String]) -> Outcome {
         [] => judged.complete(),
         refusals => {
             let lines: Vec<String> = refusals.iter().take(TOLD).map(line).collect();
-            Err(Failure::check(lines.join("\n")))
+            Err(CommandFailure::check(lines.join("\n")))
         }
     }
 }
 
 /// What the installed judges say, and which judges are missing.
-pub struct Judged {
+pub struct JudgedOutputs {
     pub refusals: Vec<Refusal>,
-    missing: Vec<Missing>,
+    missing: Vec<MissingTool>,
 }
 
-impl Judged {
+impl JudgedOutputs {
     /// For a run in which no judge was asked.
     pub fn nothing() -> Self {
         Self { refusals: Vec::new(), missing: Vec::new() }
     }
 
     /// Fails if a judge was missing.
-    pub fn complete(&self) -> Outcome {
+    pub fn complete(&self) -> CommandResult {
         if self.missing.is_empty() {
             return Ok(());
         }
-        let lines: Vec<String> = self.missing.iter().map(Missing::to_string).collect();
-        Err(Failure::environment(format!("not all outputs are judged:\n{}", lines.join("\n"))))
+        let lines: Vec<String> = self.missing.iter().map(MissingTool::to_string).collect();
+        Err(CommandFailure::environment(format!(
+            "not all outputs are judged:\n{}",
+            lines.join("\n")
+        )))
     }
 }
 
@@ -58,10 +61,10 @@ impl Judged {
 pub fn judge(
     files: impl IntoIterator<Item = BlobFile>,
     cache: Option<&Cache>,
-) -> Result<Judged, Failure> {
+) -> Result<JudgedOutputs, CommandFailure> {
     let tint = tint();
-    let mut outputs = outputs(files).map_err(|error| Failure::input(error.to_string()))?;
-    let mut lacking: Vec<Missing> = Vec::new();
+    let mut outputs = outputs(files).map_err(|error| CommandFailure::input(error.to_string()))?;
+    let mut lacking: Vec<MissingTool> = Vec::new();
     let mut targets: Vec<Target> = outputs.iter().map(|output| output.target).collect();
     targets.sort();
     targets.dedup();
@@ -75,7 +78,7 @@ pub fn judge(
     lacking.sort();
     lacking.dedup();
     let start = std::time::Instant::now();
-    let verdict = verdict(outputs, cache, &tint, &show).map_err(Failure::environment)?;
+    let verdict = verdict(outputs, cache, &tint, &show).map_err(CommandFailure::environment)?;
     println!(
         "judged {} outputs in {:.1} s ({} passed before), {} refused",
         verdict.judged,
@@ -83,7 +86,7 @@ pub fn judge(
         verdict.known,
         verdict.refusals.len()
     );
-    Ok(Judged { refusals: verdict.refusals, missing: lacking })
+    Ok(JudgedOutputs { refusals: verdict.refusals, missing: lacking })
 }
 
 /// Tint below `target/`. If it is missing and npm is there, it is installed now.

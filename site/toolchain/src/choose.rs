@@ -128,7 +128,9 @@ pub fn programs(request: Ts<ProgramsRequest>) -> Answer<Programs> {
 }
 
 fn info(program: &Program) -> ProgramInfo {
-    let path = |file: &Option<permute::manifest::File>| file.as_ref().map(|file| file.path.clone());
+    let path = |file: &Option<permute::manifest::ManifestFile>| {
+        file.as_ref().map(|file| file.path.clone())
+    };
     let glsl = program.glsl.as_ref();
     let constraint = |constraint: &permute::space::Constraint| ConstraintInfo {
         require: constraint.text.clone(),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use lamplight::catalogue::plot::{self, Plot};
-use lamplight::catalogue::{self, Item, Kind};
+use lamplight::catalogue::{self, CatalogueItem, CatalogueItemKind};
 use lamplight::parse::words::has_word;
 use lamplight::project::LIBRARY;
 use lamplight::proof::references;
@@ -107,8 +107,8 @@ fn plots(module: &str) -> plot::Plots {
     }
 }
 
-fn info(item: &Item, plot: Option<&Plot>) -> ItemInfo {
-    let member = |member: &catalogue::Member| MemberInfo {
+fn info(item: &CatalogueItem, plot: Option<&Plot>) -> ItemInfo {
+    let member = |member: &catalogue::CatalogueMember| MemberInfo {
         name: member.name.clone(),
         ty: member.ty.clone(),
         doc: member.doc.clone(),
@@ -129,7 +129,7 @@ fn info(item: &Item, plot: Option<&Plot>) -> ItemInfo {
         import: item.import(),
         include: item.include(),
         plot: plot.map(plotted),
-        has_reference: item.kind == Kind::Function
+        has_reference: item.kind == CatalogueItemKind::Function
             && references::find_reference(&item.module, &item.name).is_some(),
     }
 }

@@ -226,5 +226,5 @@ fn curve(kept: &Kept, inputs: &[f64], parameter: f64) -> Result<Curve, diagnosti
 pub fn reference(path: &str, arguments: Vec<f64>) -> Option<Vec<f64>> {
     let (module, function) = path.rsplit_once("::")?;
     let formula = references::find_reference(module, function)?;
-    Some(formula(&mut references::Arguments::new(&arguments, &[])).value)
+    Some(formula(&mut references::CallArguments::new(&arguments, &[])).value)
 }

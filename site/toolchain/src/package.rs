@@ -9,7 +9,7 @@ use lamplight::diagnostic::Diagnostics;
 use lamplight::permute::Setting;
 use lamplight::permute::manifest::{self, Manifest};
 use lamplight::project::{self, MANIFEST};
-use lamplight::resolve::wesl::{self, Kept as Parsed};
+use lamplight::resolve::wesl::{self, KeptModules as Parsed};
 use lamplight::resolve::{self, Graph, Packages};
 use lamplight::source::{Memory, Package, SourceSet};
 use serde::{Deserialize, Serialize};

@@ -20,14 +20,14 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
 use lamplight::bundle::{Language, Target};
-use lamplight::catalogue::preset::{self, Number, Preset};
+use lamplight::catalogue::preset::{self, Preset, PresetNumber};
 use lamplight::catalogue::probe::{self, Probe};
 use lamplight::diagnostic::{self, Diagnostics, codes};
 use lamplight::execute::Session;
 use lamplight::execute::frame::{self, Frame};
 use lamplight::execute::kernel::Kernel;
 use lamplight::picture::frame::Programs;
-use lamplight::picture::{self, Plan, Prepared, Shot, Surroundings};
+use lamplight::picture::{self, Plan, PreparedPass, Shot, Surroundings};
 use lamplight::scene::{ENVIRONMENTS, sets};
 use tsify::Ts;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -65,7 +65,7 @@ struct Asked {
 
 /// The last pass.
 struct Ready {
-    prepared: Box<Prepared>,
+    prepared: Box<PreparedPass>,
     shot: Shot,
     /// How many drawings come before it.
     before: usize,
@@ -279,10 +279,10 @@ fn plan(kept: &Kept, request: &PictureRequest) -> Result<Plan, Diagnostics> {
     Ok(plan)
 }
 
-fn number_of(components: &[f64]) -> Number {
+fn number_of(components: &[f64]) -> PresetNumber {
     match components {
-        [one] => Number::Scalar(*one),
-        more => Number::Vector(more.to_vec()),
+        [one] => PresetNumber::Scalar(*one),
+        more => PresetNumber::Vector(more.to_vec()),
     }
 }
 

@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use lamplight::bundle::{
-    AskedConventions, Bounds, Convention, Conventions, Language, Native, Reflection, Target,
+    AskedConventions, BoundsChecks, Convention, Conventions, Language, Native, Reflection, Target,
 };
 use lamplight::compose::{self, Composed, Keep, Mangle, Options};
 use lamplight::diagnostic::{self, Diagnostics, Severity, codes};
 use lamplight::emit::targets;
-use lamplight::generate::{Root, Shader, entry_points};
+use lamplight::generate::{CompiledShader, Root, entry_points};
 use lamplight::lint;
 use lamplight::permute::{Manifest, Program, Settings};
 use lamplight::resolve::Graph;
@@ -226,7 +226,7 @@ fn shaders(
     conventions: Conventions,
     composed: &Composed,
     wanted: &[Target],
-) -> Result<Vec<Shader>, Diagnostics> {
+) -> Result<Vec<CompiledShader>, Diagnostics> {
     let root = Root { graph, settings, options, conventions };
     let mut entries = entry_points(composed)?;
     if let Some(wanted) = &request.entry {
@@ -315,7 +315,8 @@ fn wanted(names: &[String]) -> Result<Vec<Target>, diagnostic::Diagnostic> {
 
 fn asked(request: &ShaderRequest) -> Result<AskedConventions, Diagnostics> {
     let clip = named(&request.clip, codes::UNKNOWN_CLIP, "there is no clip space");
-    let bounds = named::<Bounds>(&request.bounds, codes::UNKNOWN_BOUNDS, "there are no checks");
+    let bounds =
+        named::<BoundsChecks>(&request.bounds, codes::UNKNOWN_BOUNDS, "there are no checks");
     Ok(AskedConventions { clip: clip?, bounds: bounds? })
 }
 
@@ -332,7 +333,7 @@ fn named<C: Convention>(
     found.map(Some)
 }
 
-fn entry(shader: &Shader, wanted: &[Target]) -> EntryPoint {
+fn entry(shader: &CompiledShader, wanted: &[Target]) -> EntryPoint {
     let unit = &shader.made.unit;
     let output = |target: &Target| {
         let (known, artifact) = (targets::find(*target)?, unit.targets.get(target.name())?);

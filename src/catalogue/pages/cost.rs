@@ -6,8 +6,8 @@ use std::fmt::Write as _;
 
 use super::super::cost::{AxisCost, Costs, FIGURES, SHOWN, SORTED_BY};
 use super::super::plot::draw_scatter;
-use super::super::quality::{Entry, Measured, Row};
-use super::super::{Item, Module};
+use super::super::quality::{Measured, QualityEntry, QualityRow};
+use super::super::{CatalogueItem, CatalogueModule};
 use super::markdown::table_cell;
 use super::page_of;
 
@@ -22,7 +22,7 @@ also for your own shaders. The page *Cost on GPUs* of the guide explains the col
 ";
 
 /// The table of one function: a column for each GPU.
-pub fn of_function(text: &mut String, item: &Item, costs: &Costs) {
+pub fn of_function(text: &mut String, item: &CatalogueItem, costs: &Costs) {
     let Some(rows) = costs.functions.get(&item.path()) else { return };
     let headings: Vec<String> =
         costs.gpus.iter().map(|gpu| format!("{} ({})", gpu.name, gpu.generation)).collect();
@@ -40,7 +40,7 @@ pub fn of_function(text: &mut String, item: &Item, costs: &Costs) {
 }
 
 /// The page: the functions of each module, the most expensive first.
-pub fn cost_page(modules: &[Module], costs: &Costs, quality: &[Measured]) -> String {
+pub fn cost_page(modules: &[CatalogueModule], costs: &Costs, quality: &[Measured]) -> String {
     let mut text = HEAD.to_owned();
     let Some(shown) = costs.shown() else { return text };
     let generation = &costs.gpus[shown].generation;
@@ -53,7 +53,7 @@ pub fn cost_page(modules: &[Module], costs: &Costs, quality: &[Measured]) -> Str
         write_quality(&mut text, measured, costs);
     }
     for module in modules {
-        let mut rows: Vec<(&Item, &[i64; FIGURES.len()])> = module
+        let mut rows: Vec<(&CatalogueItem, &[i64; FIGURES.len()])> = module
             .items
             .iter()
             .filter_map(|item| Some((item, costs.functions.get(&item.path())?.get(shown)?)))
@@ -81,12 +81,12 @@ pub fn cost_page(modules: &[Module], costs: &Costs, quality: &[Measured]) -> Str
 }
 
 /// The entries whose cost is recorded, the cheapest first.
-fn quality_rows<'m>(measured: &'m Measured, costs: &'m Costs) -> Vec<Row<'m>> {
+fn quality_rows<'m>(measured: &'m Measured, costs: &'m Costs) -> Vec<QualityRow<'m>> {
     let group = &measured.group;
-    let row = |(entry, error): (&'m Entry, &f64)| {
+    let row = |(entry, error): (&'m QualityEntry, &f64)| {
         Some((entry, *error, costs.expressions.get(&group.key(entry))?))
     };
-    let mut rows: Vec<Row<'_>> =
+    let mut rows: Vec<QualityRow<'_>> =
         group.entries.iter().zip(&measured.errors).filter_map(row).collect();
     rows.sort_by_key(|(entry, _, figures)| (figures[SORTED_BY], &entry.name));
     rows
@@ -100,8 +100,9 @@ pub fn picture_path(measured: &Measured) -> String {
 /// The picture of a group: cost against error.
 pub fn quality_picture(measured: &Measured, costs: &Costs) -> Option<String> {
     let rows = quality_rows(measured, costs);
-    let point =
-        |(entry, error, figures): &Row<'_>| (entry.name.clone(), figures[SORTED_BY] as f64, *error);
+    let point = |(entry, error, figures): &QualityRow<'_>| {
+        (entry.name.clone(), figures[SORTED_BY] as f64, *error)
+    };
     let points: Vec<(String, f64, f64)> = rows.iter().map(point).collect();
     let cost = format!("inverse throughput on {SHOWN}, cycles of a wave");
     let group = &measured.group;

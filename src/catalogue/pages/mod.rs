@@ -15,22 +15,22 @@ use super::figure::{Figures, Kinds};
 use super::preset::Preset;
 use super::probe::Probe;
 use super::quality::Measured;
-use super::{Kind, Module};
+use super::{CatalogueItemKind, CatalogueModule};
 use crate::permute::Manifest;
 use markdown::{escaped_prose, table_cell};
 
 /// A plot of a function.
-pub struct Drawn {
+pub struct DrawnPlot {
     pub svg: String,
     /// What is drawn, as Markdown.
     pub caption: String,
 }
 
 /// What the catalogue shows.
-pub struct Contents<'c> {
-    pub modules: &'c [Module],
+pub struct CatalogueContents<'c> {
+    pub modules: &'c [CatalogueModule],
     /// By the path of the function: `lighting::spot::cone_hard`.
-    pub plots: &'c BTreeMap<String, Drawn>,
+    pub plots: &'c BTreeMap<String, DrawnPlot>,
     pub kinds: &'c Kinds,
     /// By the path of the function; the pictures are drawn apart.
     pub figures: &'c Figures,
@@ -42,7 +42,7 @@ pub struct Contents<'c> {
 }
 
 /// The files of the catalogue: path below its folder and text.
-pub fn catalogue_pages(contents: &Contents) -> BTreeMap<String, String> {
+pub fn catalogue_pages(contents: &CatalogueContents) -> BTreeMap<String, String> {
     let mut files = BTreeMap::from([
         ("README.md".to_owned(), index_page(contents)),
         ("programs.md".to_owned(), program::program_page(contents.manifest, contents.costs)),
@@ -97,7 +97,7 @@ cost against quality.
 `cargo xtask docs` generates this catalogue from the library.
 ";
 
-fn index_page(contents: &Contents) -> String {
+fn index_page(contents: &CatalogueContents) -> String {
     let mut text = INDEX.to_owned();
     let mut folder = "";
     for module in contents.modules {
@@ -107,7 +107,7 @@ fn index_page(contents: &Contents) -> String {
             folder = here;
         }
         let link = format!("[`{}`]({})", module.path, page_of(&module.path));
-        let functions = module.items.iter().filter(|item| item.kind == Kind::Function);
+        let functions = module.items.iter().filter(|item| item.kind == CatalogueItemKind::Function);
         let names: Vec<String> = functions
             .map(|item| {
                 format!("[{}]({}#{})", escaped_prose(&item.name), page_of(&module.path), item.name)

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::super::{Item, Kind, Module, SECTIONS};
-use super::Contents;
+use super::super::{CatalogueItem, CatalogueItemKind, CatalogueModule, SECTIONS};
+use super::CatalogueContents;
 use super::cost;
 use super::markdown::{code_block, escaped_prose, table_cell};
 
@@ -11,7 +11,7 @@ use super::markdown::{code_block, escaped_prose, table_cell};
 const PARAGRAPHS: std::ops::RangeFrom<usize> = 1..;
 
 /// The page: the module's comment, a table of contents, every item.
-pub fn module_page(module: &Module, contents: &Contents) -> String {
+pub fn module_page(module: &CatalogueModule, contents: &CatalogueContents) -> String {
     let mut text = format!("# {}\n", module.path);
     for paragraph in &module.doc {
         let _ = write!(text, "\n{}\n", escaped_prose(paragraph));
@@ -31,10 +31,10 @@ pub fn module_page(module: &Module, contents: &Contents) -> String {
     text
 }
 
-fn write_contents(text: &mut String, module: &Module) {
+fn write_contents(text: &mut String, module: &CatalogueModule) {
     text.push_str("\n| | |\n|---|---|\n");
     for item in &module.items {
-        let kind = if item.kind == Kind::Function {
+        let kind = if item.kind == CatalogueItemKind::Function {
             String::new()
         } else {
             format!("{} ", item.kind.name())
@@ -49,7 +49,7 @@ fn write_contents(text: &mut String, module: &Module) {
     }
 }
 
-fn write_item(text: &mut String, item: &Item, contents: &Contents) {
+fn write_item(text: &mut String, item: &CatalogueItem, contents: &CatalogueContents) {
     let _ = write!(text, "\n## {}\n", escaped_prose(&item.name));
     for paragraph in item.paragraphs() {
         let _ = write!(text, "\n{}\n", escaped_prose(&paragraph));
@@ -68,7 +68,7 @@ fn write_item(text: &mut String, item: &Item, contents: &Contents) {
 }
 
 /// The plot and the figure, each with what it shows.
-fn write_pictures(text: &mut String, item: &Item, contents: &Contents) {
+fn write_pictures(text: &mut String, item: &CatalogueItem, contents: &CatalogueContents) {
     let (name, path) = (&item.name, item.path());
     let (_, module) = item.module.rsplit_once("::").unwrap_or(("", &item.module));
     if let Some(plot) = contents.plots.get(&path) {
@@ -84,11 +84,11 @@ fn write_pictures(text: &mut String, item: &Item, contents: &Contents) {
     }
 }
 
-fn write_members(text: &mut String, item: &Item) {
+fn write_members(text: &mut String, item: &CatalogueItem) {
     if item.members.is_empty() {
         return;
     }
-    let heading = if item.kind == Kind::Struct { "field" } else { "parameter" };
+    let heading = if item.kind == CatalogueItemKind::Struct { "field" } else { "parameter" };
     let _ = write!(text, "\n| {heading} | type | |\n|---|---|---|\n");
     for member in &item.members {
         let _ =

@@ -36,8 +36,8 @@ pub const SAMPLES: usize = 321;
 
 /// The unit of the numbers on an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Unit {
+#[serde(rename_all = "lowercase", rename = "Unit")]
+pub enum AxisUnit {
     #[default]
     Numbers,
     Degrees,
@@ -45,7 +45,7 @@ pub enum Unit {
     Integers,
 }
 
-impl Unit {
+impl AxisUnit {
     /// One word.
     pub fn name(self) -> &'static str {
         match self {
@@ -62,7 +62,7 @@ impl Unit {
 pub struct Plot {
     /// A WGSL expression of type f32 over `x` and the curves' name.
     pub value: String,
-    pub x: Axis,
+    pub x: PlotAxis,
     pub y: Option<Range>,
     pub curves: Option<Curves>,
     /// What the expression keeps fixed.
@@ -71,14 +71,14 @@ pub struct Plot {
 
 /// The horizontal axis.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Axis {
+#[serde(deny_unknown_fields, rename = "Axis")]
+pub struct PlotAxis {
     /// The text beside the axis, with the unit unless `unit` gives it.
     pub label: String,
     pub from: f64,
     pub to: f64,
     #[serde(default)]
-    pub unit: Unit,
+    pub unit: AxisUnit,
 }
 
 /// The bounds of the vertical axis.
@@ -88,7 +88,7 @@ pub struct Range {
     pub from: f64,
     pub to: f64,
     #[serde(default)]
-    pub unit: Unit,
+    pub unit: AxisUnit,
 }
 
 /// A second parameter, with one curve for each of its values.
@@ -99,7 +99,7 @@ pub struct Curves {
     pub name: String,
     pub values: Vec<f64>,
     #[serde(default)]
-    pub unit: Unit,
+    pub unit: AxisUnit,
     /// Words for the values, in their order.
     #[serde(default)]
     pub labels: Vec<String>,
@@ -113,12 +113,12 @@ impl Curves {
     }
 }
 
-impl Axis {
+impl PlotAxis {
     /// How many values it has, including both ends.
     fn samples(&self) -> usize {
         match self.unit {
-            Unit::Integers => (self.to - self.from).max(1.0) as usize + 1,
-            Unit::Numbers | Unit::Degrees => SAMPLES,
+            AxisUnit::Integers => (self.to - self.from).max(1.0) as usize + 1,
+            AxisUnit::Numbers | AxisUnit::Degrees => SAMPLES,
         }
     }
 }

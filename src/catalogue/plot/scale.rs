@@ -1,23 +1,23 @@
 //! Maps values to places on the page, and chooses the numbers at the axes.
 
-use super::Unit;
+use super::AxisUnit;
 
 /// An interval of values, and the interval of the page on which it is drawn.
-pub struct Scale {
+pub struct PlotScale {
     pub from: f64,
     pub to: f64,
     pub start: f64,
     pub end: f64,
 }
 
-impl Scale {
+impl PlotScale {
     /// The place of a value.
     pub fn place(&self, value: f64) -> f64 {
         self.start + (value - self.from) / (self.to - self.from) * (self.end - self.start)
     }
 
     /// Round values within the interval, about `count` of them.
-    pub fn ticks(&self, count: f64, unit: Unit) -> Vec<f64> {
+    pub fn ticks(&self, count: f64, unit: AxisUnit) -> Vec<f64> {
         let step = tick_step((self.to - self.from) / count, unit);
         let (first, last) =
             ((self.from / step - 1e-9).ceil() as i64, (self.to / step + 1e-9).floor() as i64);
@@ -36,16 +36,16 @@ pub fn fitted_bounds(values: impl Iterator<Item = f64>) -> (f64, f64) {
     }
     // Most functions of light start at 0, so a scale that would start near 0 starts there.
     let low = if low > 0.0 && low < 0.4 * high { 0.0 } else { low };
-    let step = tick_step((high - low).max(high.abs().max(1e-6) * 0.01) / 4.0, Unit::Numbers);
+    let step = tick_step((high - low).max(high.abs().max(1e-6) * 0.01) / 4.0, AxisUnit::Numbers);
     let (from, to) = ((low / step + 1e-6).floor() * step, (high / step - 1e-6).ceil() * step);
     if to > from { (from, to) } else { (from - step, from + step) }
 }
 
 /// The smallest step for ticks above a size: 1, 2 or 5 times a power of ten, or a part of a turn.
-fn tick_step(size: f64, unit: Unit) -> f64 {
+fn tick_step(size: f64, unit: AxisUnit) -> f64 {
     const PARTS: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 60.0, 90.0];
     let is_enough = |step: &f64| *step >= size * 0.999;
-    if unit == Unit::Degrees
+    if unit == AxisUnit::Degrees
         && let Some(step) = PARTS.into_iter().find(is_enough)
     {
         return step;
@@ -53,13 +53,13 @@ fn tick_step(size: f64, unit: Unit) -> f64 {
     let power = 10f64.powf(size.log10().floor());
     let step = [1.0, 2.0, 5.0].into_iter().map(|factor| factor * power).find(is_enough);
     let step = step.unwrap_or(10.0 * power);
-    if unit == Unit::Integers { step.max(1.0) } else { step }
+    if unit == AxisUnit::Integers { step.max(1.0) } else { step }
 }
 
 /// A value, as short as possible.
-pub fn tick_label(value: f64, unit: Unit) -> String {
+pub fn tick_label(value: f64, unit: AxisUnit) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     let text = if rounded == 0.0 { "0".to_owned() } else { rounded.to_string() };
-    let sign = if unit == Unit::Degrees { "\u{b0}" } else { "" };
+    let sign = if unit == AxisUnit::Degrees { "\u{b0}" } else { "" };
     text.replace('-', "\u{2212}") + sign
 }

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::Unit;
-use super::scale::{Scale, fitted_bounds, tick_label};
+use super::AxisUnit;
+use super::scale::{PlotScale, fitted_bounds, tick_label};
 use super::svg::{BOTTOM, INK, LEFT, RIGHT, TOP, rounded_place, svg_head};
 use crate::diagnostic::escape_markup;
 
@@ -32,9 +32,10 @@ const PLACES: [(&str, f64, f64); 12] = [
 pub fn draw_scatter(title: &str, labels: [&str; 2], points: &[(String, f64, f64)]) -> String {
     let costs = || points.iter().map(|(_, cost, _)| cost.max(1.0).log2());
     let (from, to) = (costs().fold(f64::MAX, f64::min), costs().fold(0.0, f64::max));
-    let x = Scale { from: from.min(to).floor(), to: (to + 0.3).ceil(), start: LEFT, end: RIGHT };
+    let x =
+        PlotScale { from: from.min(to).floor(), to: (to + 0.3).ceil(), start: LEFT, end: RIGHT };
     let (_, most) = fitted_bounds(points.iter().map(|(.., error)| *error).chain([0.0]));
-    let y = Scale { from: 0.0, to: most, start: BOTTOM, end: TOP };
+    let y = PlotScale { from: 0.0, to: most, start: BOTTOM, end: TOP };
     let mut svg = svg_head(title);
     draw_grid(&mut svg, &x, &y);
     draw_points(&mut svg, &x, &y, points);
@@ -50,21 +51,21 @@ pub fn draw_scatter(title: &str, labels: [&str; 2], points: &[(String, f64, f64)
     svg
 }
 
-fn draw_grid(svg: &mut String, x: &Scale, y: &Scale) {
+fn draw_grid(svg: &mut String, x: &PlotScale, y: &PlotScale) {
     let mut lines = String::new();
     let mut numbers = String::new();
-    for value in y.ticks(5.0, Unit::Numbers) {
+    for value in y.ticks(5.0, AxisUnit::Numbers) {
         let at = y.place(value);
         let _ = write!(lines, "M{LEFT} {}H{RIGHT}", rounded_place(at));
         let place = (rounded_place(LEFT - 8.0), rounded_place(at + 4.0));
-        numbers += &number_text(place, "end", &tick_label(value, Unit::Numbers));
+        numbers += &number_text(place, "end", &tick_label(value, AxisUnit::Numbers));
     }
     for power in x.from as i32..=x.to as i32 {
         let at = rounded_place(x.place(f64::from(power)));
         let _ = write!(lines, "M{at} {BOTTOM}V{TOP}");
         let place = (at, rounded_place(BOTTOM + 18.0));
         numbers +=
-            &number_text(place, "middle", &tick_label(f64::from(power).exp2(), Unit::Numbers));
+            &number_text(place, "middle", &tick_label(f64::from(power).exp2(), AxisUnit::Numbers));
     }
     let _ = write!(
         svg,
@@ -79,7 +80,7 @@ fn number_text((x, y): (String, String), anchor: &str, text: &str) -> String {
 
 /// Each point with its name at the first place where it touches no other name and no point. The
 /// points on the right come first: they have the least room.
-fn draw_points(svg: &mut String, x: &Scale, y: &Scale, points: &[(String, f64, f64)]) {
+fn draw_points(svg: &mut String, x: &PlotScale, y: &PlotScale, points: &[(String, f64, f64)]) {
     let place = |cost: f64, error: f64| (x.place(cost.max(1.0).log2()), y.place(error));
     let dots = points.iter().map(|(_, cost, error)| {
         let (at, up) = place(*cost, *error);

@@ -5,8 +5,8 @@
 
 use std::fmt::Write as _;
 
-use super::scale::{Scale, fitted_bounds, tick_label};
-use super::{Curves, Plot, Unit};
+use super::scale::{PlotScale, fitted_bounds, tick_label};
+use super::{AxisUnit, Curves, Plot};
 use crate::diagnostic::escape_markup;
 
 const WIDTH: f64 = 560.0;
@@ -33,15 +33,19 @@ pub fn draw_plot(title: &str, plot: &Plot, curves: &[Vec<f64>]) -> String {
         |range| (range.from, range.to),
     );
     // The outermost stems stand within the frame.
-    let room = if plot.x.unit == Unit::Integers { 0.5 } else { 0.0 };
-    let x = Scale { from: plot.x.from - room, to: plot.x.to + room, start: LEFT, end: RIGHT };
-    let y = Scale { from, to, start: BOTTOM, end: TOP };
+    let room = if plot.x.unit == AxisUnit::Integers { 0.5 } else { 0.0 };
+    let x = PlotScale { from: plot.x.from - room, to: plot.x.to + room, start: LEFT, end: RIGHT };
+    let y = PlotScale { from, to, start: BOTTOM, end: TOP };
     let mut svg = svg_head(title);
-    draw_axes(&mut svg, (&x, plot.x.unit), (&y, plot.y.map_or(Unit::Numbers, |range| range.unit)));
+    draw_axes(
+        &mut svg,
+        (&x, plot.x.unit),
+        (&y, plot.y.map_or(AxisUnit::Numbers, |range| range.unit)),
+    );
     let looks = curve_looks(plot);
     for (index, values) in curves.iter().enumerate() {
         let points = curve_points(plot, values, &x, &y);
-        if plot.x.unit == Unit::Integers {
+        if plot.x.unit == AxisUnit::Integers {
             draw_stems(&mut svg, looks[index].0, &points, &y, (index, curves.len()));
         } else {
             draw_curve(&mut svg, looks[index], &curve_path(&points));
@@ -75,7 +79,11 @@ pub(super) fn svg_head(title: &str) -> String {
     )
 }
 
-fn draw_axes(svg: &mut String, (x, across): (&Scale, Unit), (y, up): (&Scale, Unit)) {
+fn draw_axes(
+    svg: &mut String,
+    (x, across): (&PlotScale, AxisUnit),
+    (y, up): (&PlotScale, AxisUnit),
+) {
     let _ = writeln!(svg, "<g stroke=\"{INK}\" stroke-opacity=\"0.25\">");
     for value in y.ticks(5.0, up) {
         let at = rounded_place(y.place(value));
@@ -121,7 +129,7 @@ fn draw_stems(
     svg: &mut String,
     color: &str,
     points: &[Option<(f64, f64)>],
-    y: &Scale,
+    y: &PlotScale,
     (index, count): (usize, usize),
 ) {
     let apart = (0.6 * (RIGHT - LEFT) / points.len().max(1) as f64 / count as f64).min(8.0);
@@ -151,7 +159,7 @@ fn draw_captions(svg: &mut String, title: &str, plot: &Plot) {
         "<text x=\"{LEFT}\" y=\"22\" fill=\"{INK}\" font-weight=\"600\">{}</text>",
         escape_markup(title)
     );
-    let stems = plot.x.unit == Unit::Integers;
+    let stems = plot.x.unit == AxisUnit::Integers;
     let mut right = RIGHT;
     for (text, (color, dashes)) in legend_entries(plot).iter().zip(curve_looks(plot)).rev() {
         let start = right - 7.0 * text.chars().count() as f64;
@@ -189,7 +197,12 @@ fn legend_entries(plot: &Plot) -> Vec<String> {
 }
 
 /// The places of a curve's values. There is none where a value is not finite.
-fn curve_points(plot: &Plot, values: &[f64], x: &Scale, y: &Scale) -> Vec<Option<(f64, f64)>> {
+fn curve_points(
+    plot: &Plot,
+    values: &[f64],
+    x: &PlotScale,
+    y: &PlotScale,
+) -> Vec<Option<(f64, f64)>> {
     let place = |(input, value): (f64, &f64)| {
         let up = y.place(*value).clamp(TOP - 4.0, BOTTOM + 4.0);
         value.is_finite().then(|| (x.place(input), up))

@@ -1,20 +1,20 @@
 //! The options for conventions of outputs.
 
-use crate::bundle::{AskedConventions, Bounds, Clip, Convention};
+use crate::bundle::{AskedConventions, BoundsChecks, ClipConvention, Convention};
 
 #[derive(Debug, Clone, Copy, clap::Args)]
-pub struct Asked {
+pub struct ConventionArguments {
     /// Clip space: `wgpu`, the same for all targets, or `native`, as each API has it [default: that
     /// of the program in the manifest, or else `wgpu`].
-    #[arg(long, value_name = "SPACE", value_parser = parse_convention::<Clip>)]
-    clip: Option<Clip>,
+    #[arg(long, value_name = "SPACE", value_parser = parse_convention::<ClipConvention>)]
+    clip: Option<ClipConvention>,
     /// Checks: `restrict` clamps indices and coordinates and ends endless loops, `unchecked` adds
     /// nothing [default: those of the program in the manifest, or else `unchecked`].
-    #[arg(long, value_name = "CHECKS", value_parser = parse_convention::<Bounds>)]
-    bounds: Option<Bounds>,
+    #[arg(long, value_name = "CHECKS", value_parser = parse_convention::<BoundsChecks>)]
+    bounds: Option<BoundsChecks>,
 }
 
-impl Asked {
+impl ConventionArguments {
     pub fn chosen(self) -> AskedConventions {
         AskedConventions { clip: self.clip, bounds: self.bounds }
     }

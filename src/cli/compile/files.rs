@@ -9,12 +9,12 @@ use crate::bundle::Target;
 use crate::cli::failure::Failure;
 use crate::cli::stream;
 use crate::cli::terminal::{is_terminal, stdout, write_data};
-use crate::emit::{Entry, targets};
-use crate::generate::Shader;
+use crate::emit::{TargetEntry, targets};
+use crate::generate::CompiledShader;
 use crate::output::{self, Replace};
 
 /// An output.
-pub struct File {
+pub struct OutputFile {
     pub name: String,
     binary: bool,
     bytes: Vec<u8>,
@@ -37,7 +37,12 @@ pub fn module_stem(file: &Path) -> String {
 }
 
 /// A file for each target of a shader, and one for its reflection.
-pub fn files_of(stem: &str, shader: &Shader, wanted: &[Target], reflection: bool) -> Vec<File> {
+pub fn files_of(
+    stem: &str,
+    shader: &CompiledShader,
+    wanted: &[Target],
+    reflection: bool,
+) -> Vec<OutputFile> {
     let named = |ending: &str| format!("{stem}.{}.{ending}", shader.entry);
     let stage = shader.made.unit.reflection.stage.suffix();
     let mut files = Vec::new();
@@ -48,7 +53,7 @@ pub fn files_of(stem: &str, shader: &Shader, wanted: &[Target], reflection: bool
             continue;
         };
         let name = named(&file_ending(entry, stage));
-        files.push(File { name, binary: entry.binary, bytes: artifact.bytes.to_vec() });
+        files.push(OutputFile { name, binary: entry.binary, bytes: artifact.bytes.to_vec() });
     }
     if reflection {
         let unit = &shader.made.unit;
@@ -61,14 +66,14 @@ pub fn files_of(stem: &str, shader: &Shader, wanted: &[Target], reflection: bool
             "entry": shader.entry, "reflection": &*unit.reflection, "targets": natives,
         });
         let name = named(&format!("{stage}.json"));
-        files.push(File { name, binary: false, bytes: format!("{json:#}\n").into_bytes() });
+        files.push(OutputFile { name, binary: false, bytes: format!("{json:#}\n").into_bytes() });
     }
     files
 }
 
 /// The ending of a file. Files of several targets must not share a name, and GLSL files end as
 /// glslang expects.
-pub fn file_ending(entry: &Entry, stage: &str) -> String {
+pub fn file_ending(entry: &TargetEntry, stage: &str) -> String {
     match entry.glsl {
         Some(_) => format!("{}.{stage}", entry.target),
         None => format!("{stage}.{}", entry.extension),
@@ -76,7 +81,7 @@ pub fn file_ending(entry: &Entry, stage: &str) -> String {
 }
 
 /// Fails if two shaders would have the same name. Root modules in different folders may share one.
-pub fn refuse_same_names(files: &[File]) -> Result<(), Failure> {
+pub fn refuse_same_names(files: &[OutputFile]) -> Result<(), Failure> {
     let mut names = BTreeSet::new();
     match files.iter().find(|file| !names.insert(&file.name)) {
         Some(file) => Err(Failure::usage(format!(
@@ -88,7 +93,7 @@ pub fn refuse_same_names(files: &[File]) -> Result<(), Failure> {
 }
 
 /// Writes files into a folder, and prints their paths.
-pub fn write_files(files: &[File], folder: &Path, replace: Replace) -> Result<(), Failure> {
+pub fn write_files(files: &[OutputFile], folder: &Path, replace: Replace) -> Result<(), Failure> {
     let named = files.iter().map(|file| (file.name.as_str(), &*file.bytes));
     output::write_folder(folder, named, replace)?;
     for file in files {
@@ -99,7 +104,7 @@ pub fn write_files(files: &[File], folder: &Path, replace: Replace) -> Result<()
 
 /// Writes text to standard output, with file names if there are several files. A single binary may
 /// go there too.
-pub fn print_files(files: &[File]) -> Result<(), Failure> {
+pub fn print_files(files: &[OutputFile]) -> Result<(), Failure> {
     if files.iter().any(|file| file.binary) && (files.len() > 1 || is_terminal()) {
         return Err(Failure::usage("a binary target needs `-o DIR`"));
     }

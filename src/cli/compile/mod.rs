@@ -5,22 +5,22 @@ mod depfile;
 mod files;
 mod target;
 
-pub use asked::Asked;
+pub use asked::ConventionArguments;
 pub use files::file_ending;
-pub use target::{Wanted, parse_target, wanted_one, wanted_targets};
+pub use target::{TargetChoice, parse_target, wanted_one, wanted_targets};
 
 use std::path::PathBuf;
 
 use clap::Args;
 
 use super::failure::{DiagnosticForm, Failure, print_warnings};
-use super::input::{Context, Input, Ready};
+use super::input::{ComposedInput, ErrorContext, InputArguments};
 use super::overwrite::Overwrite;
 use crate::bundle::Target;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::generate::{Root, Shader, entry_points};
+use crate::generate::{CompiledShader, Root, entry_points};
 use crate::source::SourceSet;
-use files::File;
+use files::OutputFile;
 
 /// Compile shaders, and write a file for each entry point and target.
 #[derive(Args)]
@@ -29,13 +29,13 @@ pub struct Arguments {
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     #[command(flatten)]
-    input: Input,
+    input: InputArguments,
     #[arg(help = target::wanted_help())]
     #[arg(long, value_name = "T,...|all", value_delimiter = ',', value_parser = wanted_one)]
     #[arg(required_unless_present = "reflection")]
-    target: Vec<Wanted>,
+    target: Vec<TargetChoice>,
     #[command(flatten)]
-    conventions: Asked,
+    conventions: ConventionArguments,
     /// Compile only this entry point; may be given several times.
     #[arg(long, value_name = "NAME")]
     entry: Vec<String>,
@@ -54,7 +54,7 @@ pub struct Arguments {
 
 pub fn run_compile(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let targets = wanted_targets(&arguments.target);
-    let mut made: Vec<File> = Vec::new();
+    let mut made: Vec<OutputFile> = Vec::new();
     let mut failed: Option<Failure> = None;
     let mut sources = SourceSet::default();
     for file in &arguments.files {
@@ -95,12 +95,12 @@ pub fn run_compile(arguments: Arguments, form: DiagnosticForm) -> Result<(), Fai
 fn compile_file(
     arguments: &Arguments,
     file: &std::path::Path,
-    ready: Ready,
+    ready: ComposedInput,
     targets: &[Target],
     form: DiagnosticForm,
-) -> Result<(SourceSet, Vec<File>), Failure> {
-    let Ready { sources, composed, context } = ready;
-    let Context { graph, settings, options, .. } = &context;
+) -> Result<(SourceSet, Vec<OutputFile>), Failure> {
+    let ComposedInput { sources, composed, context } = ready;
+    let ErrorContext { graph, settings, options, .. } = &context;
     let conventions = arguments.conventions.chosen().or(context.conventions);
     let root = Root { graph, settings, options, conventions };
     let shaders = entry_points(&composed).and_then(|entries| {
@@ -111,8 +111,9 @@ fn compile_file(
         Ok(shaders) => {
             print_warnings(&sources, &shared_warnings(&context, &shaders), form);
             let stem = files::module_stem(file);
-            let of =
-                |shader: &Shader| files::files_of(&stem, shader, targets, arguments.reflection);
+            let of = |shader: &CompiledShader| {
+                files::files_of(&stem, shader, targets, arguments.reflection)
+            };
             Ok((sources, shaders.iter().flat_map(of).collect()))
         }
         Err(errors) => Err(Failure::Input(sources, context.explain(errors))),
@@ -120,7 +121,7 @@ fn compile_file(
 }
 
 /// A warning about something that two entry points share is printed once.
-fn shared_warnings(context: &Context, shaders: &[Shader]) -> Diagnostics {
+fn shared_warnings(context: &ErrorContext, shaders: &[CompiledShader]) -> Diagnostics {
     let mut found = Diagnostics::new();
     for warning in shaders.iter().flat_map(|shader| &shader.made.warnings) {
         if !found.contains(warning) {
@@ -130,14 +131,14 @@ fn shared_warnings(context: &Context, shaders: &[Shader]) -> Diagnostics {
     context.own(found)
 }
 
-type Entries = Vec<(String, naga::ShaderStage)>;
+type EntryStages = Vec<(String, naga::ShaderStage)>;
 
 /// The entry points that `--entry` names, or all.
 fn chosen_entries(
     arguments: &Arguments,
     file: &std::path::Path,
-    entries: Entries,
-) -> Result<Entries, Diagnostics> {
+    entries: EntryStages,
+) -> Result<EntryStages, Diagnostics> {
     if entries.is_empty() {
         let message = format!("`{}` has no entry point", file.display());
         let error = Diagnostic::error(codes::NO_ENTRY_POINT, message);

@@ -5,7 +5,7 @@ use crate::diagnostic::nearest_name;
 
 /// What `--target` may name.
 #[derive(Debug, Clone, Copy)]
-pub enum Wanted {
+pub enum TargetChoice {
     All,
     One(Target),
 }
@@ -17,17 +17,17 @@ pub fn wanted_help() -> String {
 }
 
 /// `all`, or a target.
-pub fn wanted_one(name: &str) -> Result<Wanted, String> {
-    if name == "all" { Ok(Wanted::All) } else { parse_target(name).map(Wanted::One) }
+pub fn wanted_one(name: &str) -> Result<TargetChoice, String> {
+    if name == "all" { Ok(TargetChoice::All) } else { parse_target(name).map(TargetChoice::One) }
 }
 
 /// Every target that is wanted, once, in the order of naming.
-pub fn wanted_targets(chosen: &[Wanted]) -> Vec<Target> {
+pub fn wanted_targets(chosen: &[TargetChoice]) -> Vec<Target> {
     let mut targets: Vec<Target> = Vec::new();
     for one in chosen {
         let named = match one {
-            Wanted::All => Target::ALL,
-            Wanted::One(target) => std::slice::from_ref(target),
+            TargetChoice::All => Target::ALL,
+            TargetChoice::One(target) => std::slice::from_ref(target),
         };
         targets.extend(named.iter().filter(|target| !targets.contains(target)).collect::<Vec<_>>());
     }

@@ -6,7 +6,7 @@ use super::measure_costs;
 use super::subjects::permutations_of;
 use crate::bundle::{Language, Target};
 use crate::cost::Meter;
-use crate::cost::permutations::{self, Change, Spread};
+use crate::cost::permutations::{self, CostChange, Spread};
 use crate::generate::Request;
 use crate::permute::Manifest;
 use crate::resolve::Packages;
@@ -20,7 +20,7 @@ pub fn axis_changes(
     manifest: &Manifest,
     program: &str,
     meter: Meter<'_>,
-) -> Result<Vec<Change>, Failure> {
+) -> Result<Vec<CostChange>, Failure> {
     if meter.devices.is_empty() {
         return Ok(Vec::new());
     }
@@ -40,10 +40,10 @@ pub fn axis_changes(
 }
 
 /// The table of changes: medians, and the range of the instructions.
-pub fn changes_table(changes: &[Change]) -> String {
+pub fn changes_table(changes: &[CostChange]) -> String {
     let columns =
         ["gpu", "stage", "pairs", "instr", "range", "VGPRs", "waves", "inv.thr.", "axis and value"];
-    let row = |change: &Change| {
+    let row = |change: &CostChange| {
         let of = |key: &str| change.figures.get(key).copied().unwrap_or_default();
         let signed = |key: &str| format!("{:+}", of(key).median);
         let Spread { least, most, .. } = of("instructions");

@@ -16,9 +16,9 @@ use clap::Args;
 use serde_json::json;
 
 use super::cached::Cached;
-use super::compile::Asked;
+use super::compile::ConventionArguments;
 use super::failure::{DiagnosticForm, Failure};
-use super::input::Input;
+use super::input::InputArguments;
 use super::overwrite::Overwrite;
 use super::progress::Bar;
 use super::terminal::stdout;
@@ -28,7 +28,7 @@ use crate::cost::baseline::{Baseline, Rise};
 use crate::cost::device::Device;
 use crate::cost::gpu::{self, GPUS, Gpu};
 use crate::cost::statistics::FIGURES;
-use crate::cost::{self, Cost, Meter, Subject};
+use crate::cost::{self, Cost, CostSubject, Meter};
 use crate::diagnostic::nearest_name;
 use crate::generate::Progress;
 use crate::input::read_file;
@@ -60,9 +60,9 @@ pub struct Arguments {
     #[arg(long, value_name = "CORE,...", value_delimiter = ',', conflicts_with_all = ["gpu", "baseline", "whole"])]
     mali: Vec<String>,
     #[command(flatten)]
-    input: Input,
+    input: InputArguments,
     #[command(flatten)]
-    conventions: Asked,
+    conventions: ConventionArguments,
     /// Instead, a covering set of the permutations of each program, or of the one that `--program`
     /// names: few permutations in which every pair of values occurs.
     #[arg(long, conflicts_with = "subjects")]
@@ -120,7 +120,7 @@ pub struct Gpus {
 }
 
 /// GPUs to compile for, or why there are none.
-pub type Opened = Result<Vec<Device>, String>;
+pub type OpenedGpus = Result<Vec<Device>, String>;
 
 impl Gpus {
     /// Whether any is named.
@@ -129,12 +129,12 @@ impl Gpus {
     }
 
     /// One GPU of each generation.
-    pub fn of_each_generation() -> Opened {
+    pub fn of_each_generation() -> OpenedGpus {
         Self { gpu: Vec::new() }.open()
     }
 
     /// Opens the GPUs. Call this while the process has only one thread.
-    pub fn open(&self) -> Opened {
+    pub fn open(&self) -> OpenedGpus {
         let named: BTreeSet<&Gpu> = self.gpu.iter().copied().collect();
         let is_wanted = |gpu: &&Gpu| match named.is_empty() {
             true => gpu.is_default,
@@ -146,12 +146,16 @@ impl Gpus {
 
 impl Arguments {
     /// Opens the GPUs that are asked for. Call this while the process has only one thread.
-    pub fn open_gpus(&self) -> Opened {
+    pub fn open_gpus(&self) -> OpenedGpus {
         if self.spirv || !self.mali.is_empty() { Ok(Vec::new()) } else { self.gpus.open() }
     }
 }
 
-pub fn run_cost(arguments: Arguments, opened: Opened, form: DiagnosticForm) -> Result<(), Failure> {
+pub fn run_cost(
+    arguments: Arguments,
+    opened: OpenedGpus,
+    form: DiagnosticForm,
+) -> Result<(), Failure> {
     if arguments.spirv || !arguments.mali.is_empty() {
         return offline::run_offline(&arguments, form);
     }
@@ -176,7 +180,7 @@ pub fn run_cost(arguments: Arguments, opened: Opened, form: DiagnosticForm) -> R
     }
 }
 
-fn measure_costs(meter: Meter<'_>, subjects: &[Subject]) -> Result<Vec<Cost>, Failure> {
+fn measure_costs(meter: Meter<'_>, subjects: &[CostSubject]) -> Result<Vec<Cost>, Failure> {
     let bar = Bar::new();
     let progress = |done, total| bar.show(Progress { stage: "compiling".to_owned(), done, total });
     let costs = cost::measure_subjects(meter, subjects, &progress);

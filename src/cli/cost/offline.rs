@@ -10,11 +10,11 @@ use super::super::failure::{DiagnosticForm, Failure};
 use super::super::terminal::stdout;
 use super::super::text;
 use super::{Arguments, subjects};
-use crate::cost::Subject;
+use crate::cost::CostSubject;
 use crate::cost::counts::{Counts, KINDS, count_optimised};
-use crate::cost::mali::{self, MALIOC, Variant};
-use crate::cost::pipeline::Words;
-use crate::cost::stages::{Found, ask_stages};
+use crate::cost::mali::{self, MALIOC, MaliVariant};
+use crate::cost::pipeline::SpirvStage;
+use crate::cost::stages::{StageReport, ask_stages};
 use crate::output::Scratch;
 use crate::tools::{SPIRV_OPT, printed_words};
 
@@ -41,11 +41,12 @@ fn optimiser_version() -> String {
     said.map_or_else(|_| String::new(), |said| printed_words(&said))
 }
 
-fn print_counts(arguments: &Arguments, found: &[Found<'_, Counts>]) -> Result<(), Failure> {
+fn print_counts(arguments: &Arguments, found: &[StageReport<'_, Counts>]) -> Result<(), Failure> {
     let optimiser = optimiser_version();
-    let net = |found: &Found<'_, Counts>| found.empty.as_ref().map(|empty| found.whole.less(empty));
+    let net =
+        |found: &StageReport<'_, Counts>| found.empty.as_ref().map(|empty| found.whole.less(empty));
     if arguments.json {
-        let object = |found: &Found<'_, Counts>| {
+        let object = |found: &StageReport<'_, Counts>| {
             json!({
                 "name": found.subject.name,
                 "stage": found.stage,
@@ -60,7 +61,7 @@ fn print_counts(arguments: &Arguments, found: &[Found<'_, Counts>]) -> Result<()
     let mut columns = vec!["stage", "total"];
     columns.extend(KINDS.iter().map(|kind| kind.heading));
     columns.push("of");
-    let row = |found: &Found<'_, Counts>| {
+    let row = |found: &StageReport<'_, Counts>| {
         let counts = net(found).filter(|_| !arguments.whole).unwrap_or(found.whole);
         let numbers = std::iter::once(counts.total()).chain(counts.0);
         let mut row = vec![found.stage.name().to_owned()];
@@ -76,13 +77,13 @@ fn print_counts(arguments: &Arguments, found: &[Found<'_, Counts>]) -> Result<()
 /// Compiles every stage for every core.
 fn ask_mali<'s>(
     cores: &[String],
-    subjects: &'s [Subject],
-) -> Result<Vec<Found<'s, Vec<Variant>>>, Failure> {
+    subjects: &'s [CostSubject],
+) -> Result<Vec<StageReport<'s, Vec<MaliVariant>>>, Failure> {
     let scratch = Scratch::new(&std::env::temp_dir()).map_err(|error| {
         Failure::environment(format!("there is no room for temporary files: {error}"))
     })?;
     let next = AtomicUsize::new(0);
-    let ask = |words: &Words| {
+    let ask = |words: &SpirvStage| {
         let number = next.fetch_add(1, Ordering::Relaxed);
         let name = format!("{number}.{}.spv", words.stage.suffix());
         let file = scratch.stage(&name, &mali::file_bytes(words));
@@ -94,9 +95,12 @@ fn ask_mali<'s>(
     ask_stages(subjects, ask).map_err(Failure::input)
 }
 
-fn print_mali(arguments: &Arguments, found: &[Found<'_, Vec<Variant>>]) -> Result<(), Failure> {
+fn print_mali(
+    arguments: &Arguments,
+    found: &[StageReport<'_, Vec<MaliVariant>>],
+) -> Result<(), Failure> {
     if arguments.json {
-        let object = |found: &Found<'_, Vec<Variant>>| {
+        let object = |found: &StageReport<'_, Vec<MaliVariant>>| {
             json!({
                 "name": found.subject.name,
                 "stage": found.stage,
@@ -121,7 +125,7 @@ fn print_mali(arguments: &Arguments, found: &[Found<'_, Vec<Variant>>]) -> Resul
     Ok(stdout().write_all(table.as_bytes())?)
 }
 
-fn mali_row(variant: &Variant, stage: String, name: String) -> Vec<String> {
+fn mali_row(variant: &MaliVariant, stage: String, name: String) -> Vec<String> {
     let number = |value: Option<f64>| value.map_or("?".to_owned(), |value| value.to_string());
     let bound: Vec<&str> = variant.total.bound.iter().flatten().map(String::as_str).collect();
     let cycles = [&variant.total, &variant.shortest, &variant.longest];

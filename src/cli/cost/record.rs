@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use super::super::failure::Failure;
-use super::{Opened, axis_changes, measure_costs, subjects};
+use super::{OpenedGpus, axis_changes, measure_costs, subjects};
 use crate::bundle::{Conventions, Language};
 use crate::catalogue::cost::{AxisCost, Chip, Costs, FIGURES, SHOWN};
-use crate::catalogue::{self, Item, quality};
+use crate::catalogue::{self, CatalogueItem, quality};
 use crate::cost::device::Device;
-use crate::cost::permutations::Change;
+use crate::cost::permutations::CostChange;
 use crate::cost::{self, Cost, Meter};
 use crate::project;
 use crate::proof::library::{Library, lock_sources};
@@ -18,10 +18,10 @@ use crate::proof::quality::{FUNCTION, quality_module};
 use crate::source::SourceSet;
 
 /// Measures every cost that the catalogue shows of the library.
-pub fn record_costs(opened: Opened) -> Result<Costs, Failure> {
+pub fn record_costs(opened: OpenedGpus) -> Result<Costs, Failure> {
     let devices = opened.map_err(Failure::environment)?;
     let modules = catalogue::library_modules();
-    let items: Vec<&Item> = modules.iter().flat_map(|module| &module.items).collect();
+    let items: Vec<&CatalogueItem> = modules.iter().flat_map(|module| &module.items).collect();
     let plain = Conventions::default();
     let functions = subjects::function_subjects(&items, &[], Language::Wesl, plain)?;
     let measured = measure_costs(uncached(&devices), &functions)?;
@@ -47,10 +47,10 @@ fn chip_of(device: &Device) -> Chip {
 /// recorded is not one of those that were measured.
 pub fn axis_record<'c>(
     devices: &[Device],
-    changes: impl Iterator<Item = (&'c str, &'c [Change])>,
+    changes: impl Iterator<Item = (&'c str, &'c [CostChange])>,
 ) -> Option<Costs> {
     let shown = shown_device(devices).first()?;
-    let of_program = |(program, changes): (&'c str, &'c [Change])| {
+    let of_program = |(program, changes): (&'c str, &'c [CostChange])| {
         let recorded = changes.iter().filter(|change| change.gpu == SHOWN);
         recorded.map(|change| axis_cost(program, change.clone())).collect::<Vec<_>>()
     };
@@ -121,7 +121,7 @@ fn of_axes(devices: &[Device]) -> Result<Vec<AxisCost>, Failure> {
     Ok(axes)
 }
 
-fn axis_cost(program: &str, change: Change) -> AxisCost {
+fn axis_cost(program: &str, change: CostChange) -> AxisCost {
     let of = |key: &str| change.figures.get(key).copied().unwrap_or_default();
     let (instructions, waves) = (of("instructions"), of("subgroups_per_simd"));
     AxisCost {

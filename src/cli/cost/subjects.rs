@@ -4,19 +4,19 @@ use std::path::Path;
 use std::sync::Mutex;
 
 use super::super::failure::{DiagnosticForm, Failure};
-use super::super::input::{Context, Ready};
+use super::super::input::{ComposedInput, ErrorContext};
 use super::super::progress::Bar;
 use super::super::variants;
 use super::Arguments;
 use crate::bundle::key::DEFAULT;
 use crate::bundle::{Axis, Conventions, Language, Stage, Target};
 use crate::cache::Cache;
-use crate::catalogue::{self, Item, Kind};
+use crate::catalogue::{self, CatalogueItem, CatalogueItemKind};
 use crate::compose::{Composed, PartKind};
-use crate::cost::pipeline::Known;
-use crate::cost::{self, Subject, permutations};
+use crate::cost::pipeline::ReflectedStage;
+use crate::cost::{self, CostSubject, permutations};
 use crate::diagnostic::{Diagnostics, nearest_name};
-use crate::generate::{Memory, Request, Root, Tools, entry_points, generate};
+use crate::generate::{MemorySink, Request, Root, Tools, entry_points, generate};
 use crate::lint;
 use crate::permute::{Manifest, Quoted, cover};
 use crate::project;
@@ -29,7 +29,7 @@ use crate::validate::validate_every;
 pub fn asked_subjects(
     arguments: &Arguments,
     form: DiagnosticForm,
-) -> Result<Vec<Subject>, Failure> {
+) -> Result<Vec<CostSubject>, Failure> {
     if arguments.cover {
         return covering_subjects(arguments);
     }
@@ -37,7 +37,7 @@ pub fn asked_subjects(
     let (files, named): (Vec<&String>, Vec<&String>) =
         arguments.subjects.iter().partition(|name| is_file(name));
     let modules = catalogue::library_modules();
-    let items: Vec<&Item> = modules.iter().flat_map(|module| &module.items).collect();
+    let items: Vec<&CatalogueItem> = modules.iter().flat_map(|module| &module.items).collect();
     let (paths, keys) = separate_paths(arguments, &items, named)?;
     if arguments.subjects.is_empty() || !paths.is_empty() {
         let conventions = arguments.conventions.chosen().or(Conventions::default());
@@ -57,7 +57,7 @@ pub fn asked_subjects(
 /// it is `default` or names an axis of the program and is no path of the library.
 fn separate_paths<'a>(
     arguments: &Arguments,
-    items: &[&Item],
+    items: &[&CatalogueItem],
     named: Vec<&'a String>,
 ) -> Result<(Vec<&'a String>, Vec<&'a String>), Failure> {
     let is_path = |name: &str| items.iter().any(|item| is_below(&item.path(), name));
@@ -104,10 +104,10 @@ fn file_subjects(
     arguments: &Arguments,
     file: &Path,
     form: DiagnosticForm,
-) -> Result<Vec<Subject>, Failure> {
-    let Ready { sources, composed, context } =
+) -> Result<Vec<CostSubject>, Failure> {
+    let ComposedInput { sources, composed, context } =
         arguments.input.compose(file, SourceSet::default(), form)?;
-    let Context { graph, settings, options, .. } = &context;
+    let ErrorContext { graph, settings, options, .. } = &context;
     let conventions = arguments.conventions.chosen().or(context.conventions);
     let root = Root { graph, settings, options, conventions };
     let of_sources = |errors| Failure::Input(sources.clone(), context.explain(errors));
@@ -120,12 +120,12 @@ fn file_subjects(
         let artifact = shader.made.unit.targets.get(Target::SPIRV.name());
         let artifact = artifact.ok_or("there is no SPIR-V")?;
         let reflection = shader.made.unit.reflection.as_ref().clone();
-        let known = Known::new(&artifact.native.entry_name, &artifact.bytes, reflection)?;
+        let known = ReflectedStage::new(&artifact.native.entry_name, &artifact.bytes, reflection)?;
         Ok((shader.entry.as_str(), known))
     });
     let name = file.display();
     let told = |reason: String| Failure::input(format!("{name}: {reason}"));
-    let known = known.collect::<Result<Vec<(&str, Known)>, String>>().map_err(told)?;
+    let known = known.collect::<Result<Vec<(&str, ReflectedStage)>, String>>().map_err(told)?;
     let of = |stage| known.iter().filter(move |(_, known)| known.words.stage == stage).count();
     let is_pair = (of(Stage::Vertex), of(Stage::Fragment), known.len()) == (1, 1, 2);
     if is_pair {
@@ -144,7 +144,7 @@ fn module_subjects(
     graph: &Graph,
     composed: &Composed,
     conventions: Conventions,
-) -> Result<Vec<Subject>, Diagnostics> {
+) -> Result<Vec<CostSubject>, Diagnostics> {
     let module = validate_every(composed)?.module;
     let own = graph.root_items();
     let functions = composed.parts.iter().filter(|part| part.kind == PartKind::Function);
@@ -158,14 +158,14 @@ fn module_subjects(
 
 /// The subjects of functions, modules and folders; of all functions where none is named.
 pub fn function_subjects(
-    items: &[&Item],
+    items: &[&CatalogueItem],
     paths: &[&String],
     language: Language,
     conventions: Conventions,
-) -> Result<Vec<Subject>, Failure> {
+) -> Result<Vec<CostSubject>, Failure> {
     let library = Library::embedded();
-    let functions: Vec<&Item> =
-        items.iter().copied().filter(|item| item.kind == Kind::Function).collect();
+    let functions: Vec<&CatalogueItem> =
+        items.iter().copied().filter(|item| item.kind == CatalogueItemKind::Function).collect();
     for named in paths {
         if !functions.iter().any(|item| is_below(&item.path(), named)) {
             let known: Vec<String> = functions.iter().map(|item| item.path()).collect();
@@ -208,7 +208,7 @@ fn chosen_manifest(
 }
 
 /// The subjects of covering sets. Their names begin with the program.
-fn covering_subjects(arguments: &Arguments) -> Result<Vec<Subject>, Failure> {
+fn covering_subjects(arguments: &Arguments) -> Result<Vec<CostSubject>, Failure> {
     let mut sources = SourceSet::default();
     let (mut manifest, packages) = chosen_manifest(arguments, &mut sources)?;
     for program in &mut manifest.programs {
@@ -238,7 +238,7 @@ fn covering_subjects(arguments: &Arguments) -> Result<Vec<Subject>, Failure> {
 }
 
 /// The subject of one permutation: its stages in SPIR-V, as a bundle has them.
-fn permutation_subject(arguments: &Arguments, key: &str) -> Result<Subject, Failure> {
+fn permutation_subject(arguments: &Arguments, key: &str) -> Result<CostSubject, Failure> {
     let mut sources = SourceSet::default();
     let (manifest, packages) = chosen_manifest(arguments, &mut sources)?;
     let program = program_of_key(arguments, &manifest)?;
@@ -265,8 +265,8 @@ pub fn permutations_of(
     request: &Request,
     language: Language,
     cache: Option<&Cache>,
-) -> Result<(Vec<Axis>, Vec<Subject>), Failure> {
-    let (memory, bar) = (Memory::default(), Bar::new());
+) -> Result<(Vec<Axis>, Vec<CostSubject>), Failure> {
+    let (memory, bar) = (MemorySink::default(), Bar::new());
     let progress = |progress| bar.show(progress);
     let tools = Tools { sink: &memory, cache, progress: &progress };
     let generated = generate(sources, packages, manifest, request, &tools);

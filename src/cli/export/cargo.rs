@@ -1,6 +1,6 @@
 //! A crate that carries the library as a package for the `wesl` crate.
 
-use super::{Contents, DESCRIPTION, KEYWORDS, files_below, license_files, wesl_toml};
+use super::{DESCRIPTION, KEYWORDS, PackageContents, files_below, license_files, wesl_toml};
 
 /// The crate's name, with the suffix that shader packages have; imports begin with the package's,
 /// `lamplight`.
@@ -8,7 +8,7 @@ pub const NAME: &str = "lamplight_wgsl";
 
 const ROOT: &str = "src/shaders";
 
-pub fn crate_contents(modules: Contents) -> Contents {
+pub fn crate_contents(modules: PackageContents) -> PackageContents {
     let own = [
         ("Cargo.toml", cargo_manifest()),
         ("build.rs", BUILD.to_owned()),

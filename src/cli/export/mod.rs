@@ -23,13 +23,13 @@ pub struct Arguments {
     folder: PathBuf,
     /// What to write: the library's files, or a package that is ready to publish.
     #[arg(long, value_enum, default_value_t)]
-    form: Form,
+    form: ExportForm,
     #[command(flatten)]
     overwrite: Overwrite,
 }
 
 #[derive(Clone, Copy, Default, ValueEnum)]
-enum Form {
+enum ExportForm {
     /// `DIR/lamplight`: WESL and GLSL, for compilers with an include path.
     #[default]
     Files,
@@ -40,7 +40,7 @@ enum Form {
 }
 
 /// Path below the package's folder and text.
-type Contents = BTreeMap<String, String>;
+type PackageContents = BTreeMap<String, String>;
 
 const LICENSES: [(&str, &str); 2] = [
     ("LICENSE-MIT", include_str!("../../../LICENSE-MIT")),
@@ -54,11 +54,13 @@ const DESCRIPTION: &str = "Lighting and shadow functions for WGSL, tested functi
 
 pub fn run_export(arguments: Arguments) -> Result<(), Failure> {
     let (name, contents) = match arguments.form {
-        Form::Files => (LIBRARY, exported_files()?),
-        Form::Cargo => (cargo::NAME, cargo::crate_contents(library_modules()?)),
-        Form::Npm => (npm::NAME, npm::npm_contents(library_modules()?, library_texts(&["glsl"])?)),
+        ExportForm::Files => (LIBRARY, exported_files()?),
+        ExportForm::Cargo => (cargo::NAME, cargo::crate_contents(library_modules()?)),
+        ExportForm::Npm => {
+            (npm::NAME, npm::npm_contents(library_modules()?, library_texts(&["glsl"])?))
+        }
     };
-    let files: Contents =
+    let files: PackageContents =
         contents.into_iter().map(|(path, text)| (format!("{name}/{path}"), text)).collect();
     let files_as_bytes = files.iter().map(|(path, text)| (path.as_str(), text.as_bytes()));
     output::write_folder(&arguments.folder, files_as_bytes, arguments.overwrite.replace())?;
@@ -66,7 +68,7 @@ pub fn run_export(arguments: Arguments) -> Result<(), Failure> {
     Ok(writeln!(stdout(), "{}: {} files", folder.display(), files.len())?)
 }
 
-fn exported_files() -> Result<Contents, Failure> {
+fn exported_files() -> Result<PackageContents, Failure> {
     let mut contents = library_texts(&["wesl", "wgsl", "glsl"])?;
     contents.extend(library_texts(&["toml"])?.into_iter().filter(|(path, _)| path == "wesl.toml"));
     contents.extend(license_files());
@@ -88,14 +90,14 @@ fn readme_text() -> String {
 
 /// The modules that others can import. Programs are left out: they are entry points with conditions
 /// over axes of Lamplight.
-fn library_modules() -> Result<Contents, Failure> {
+fn library_modules() -> Result<PackageContents, Failure> {
     Ok(library_texts(&["wesl", "wgsl"])?
         .into_iter()
         .filter(|(path, _)| !path.starts_with("programs/"))
         .collect())
 }
 
-fn library_texts(extensions: &[&str]) -> Result<Contents, Failure> {
+fn library_texts(extensions: &[&str]) -> Result<PackageContents, Failure> {
     let text = |path: String| match Embedded.read(&path) {
         Ok(Some(text)) => Ok((path, text)),
         _ => Err(Failure::environment(format!("the binary carries no `{path}`"))),
@@ -104,7 +106,7 @@ fn library_texts(extensions: &[&str]) -> Result<Contents, Failure> {
 }
 
 /// The files below a folder of the package.
-fn files_below(folder: &str, files: Contents) -> impl Iterator<Item = (String, String)> {
+fn files_below(folder: &str, files: PackageContents) -> impl Iterator<Item = (String, String)> {
     files.into_iter().map(move |(path, text)| (format!("{folder}/{path}"), text))
 }
 

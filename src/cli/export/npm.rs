@@ -2,14 +2,16 @@
 
 use serde_json::{Value, json};
 
-use super::{Contents, DESCRIPTION, EDITION, KEYWORDS, files_below, license_files, wesl_toml};
+use super::{
+    DESCRIPTION, EDITION, KEYWORDS, PackageContents, files_below, license_files, wesl_toml,
+};
 use crate::project::LIBRARY;
 
 /// The package's name. wesl-js finds a package by the first name of an import path, so it is that
 /// of the library.
 pub const NAME: &str = LIBRARY;
 
-pub fn npm_contents(modules: Contents, glsl: Contents) -> Contents {
+pub fn npm_contents(modules: PackageContents, glsl: PackageContents) -> PackageContents {
     let own = [
         ("package.json", npm_manifest()),
         ("dist/weslBundle.js", bundled_module(&modules)),
@@ -53,7 +55,7 @@ fn npm_manifest() -> String {
 }
 
 /// The module: one object in JSON, which is JavaScript too, with its texts as strings.
-fn bundled_module(modules: &Contents) -> String {
+fn bundled_module(modules: &PackageContents) -> String {
     let bundle = json!({ "name": LIBRARY, "edition": EDITION, "modules": modules });
     format!(
         "export const weslBundle = {};\n\nexport default weslBundle;\n",

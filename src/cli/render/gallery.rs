@@ -8,8 +8,8 @@ use super::several::draw_all;
 use super::{Failure, input_failure, library_comparisons, library_examples};
 use crate::catalogue::preset::Preset;
 use crate::execute::Session;
-use crate::execute::executors::Entry;
-use crate::output::Folder;
+use crate::execute::executors::ExecutorEntry;
+use crate::output::OutputFolder;
 use crate::picture::frame::Programs;
 use crate::picture::gallery::{self, Card, Exhibit, StripCard};
 use crate::picture::strip::{self, Comparison};
@@ -20,10 +20,10 @@ const PAGES: [&str; 3] = ["README.md", "index.html", "adapters.txt"];
 
 /// Draws all presets into a folder, with a page in Markdown and one in HTML.
 pub fn draw_gallery(
-    entry: &Entry,
+    entry: &ExecutorEntry,
     programs: &Programs,
     shot: &Shot,
-    mut folder: Folder,
+    mut folder: OutputFolder,
 ) -> Result<(), Failure> {
     let start = Instant::now();
     let (presets, probes) = library_examples(programs)?;
@@ -71,7 +71,7 @@ pub fn draw_gallery(
 /// Fails if a file that would be replaced is not ours. This is checked first, since drawing takes
 /// minutes.
 fn check_folder(
-    folder: &Folder,
+    folder: &OutputFolder,
     presets: &[Preset],
     compared: &[Comparison],
 ) -> Result<(), Failure> {

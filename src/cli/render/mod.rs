@@ -20,7 +20,7 @@ use crate::bundle::Language;
 use crate::catalogue::preset::{self, Preset};
 use crate::catalogue::probe;
 use crate::diagnostic::{Diagnostics, nearest_name, stopped_message};
-use crate::execute::executors::Entry;
+use crate::execute::executors::ExecutorEntry;
 use crate::execute::on_thread;
 use crate::limits::ENVIRONMENT_BYTES;
 use crate::model::View;
@@ -120,7 +120,7 @@ fn draw_picture(arguments: &Arguments) -> Result<(), Failure> {
     let shot = make_shot(arguments, entry)?;
     if arguments.all {
         let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from("gallery"));
-        let folder = output::Folder::open(&folder, arguments.overwrite.replace())?;
+        let folder = output::OutputFolder::open(&folder, arguments.overwrite.replace())?;
         return gallery::draw_gallery(entry, &programs, &shot, folder);
     }
     if let Some(comparison) = named_comparison(&programs, arguments)? {
@@ -190,7 +190,7 @@ fn draw_comparison(
     arguments: &Arguments,
     comparison: &Comparison,
     shot: &Shot,
-    entry: &Entry,
+    entry: &ExecutorEntry,
 ) -> Result<(), Failure> {
     let mut painter = executor::open_executor(entry)?;
     let start = Instant::now();
@@ -330,7 +330,7 @@ fn chosen_point(
     checked.map_err(|problems| Failure::Input(texts, problems))
 }
 
-fn make_shot(arguments: &Arguments, executor: &Entry) -> Result<Shot, Failure> {
+fn make_shot(arguments: &Arguments, executor: &ExecutorEntry) -> Result<Shot, Failure> {
     let (size, samples) = if arguments.all {
         (picture::gallery::SIZE, executor.samples.map(|few| if few > 1 { SAMPLES } else { few }))
     } else {

@@ -6,19 +6,19 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use super::super::executor;
 use super::Failure;
 use crate::diagnostic::stopped_message;
-use crate::execute::executors::Entry;
+use crate::execute::executors::ExecutorEntry;
 use crate::execute::{STACK, Session};
-use crate::output::Folder;
+use crate::output::OutputFolder;
 
 /// How many pictures are drawn at once. While one is prepared or encoded, which is work for one
 /// thread, the device draws the other.
 const AT_ONCE: usize = 2;
 
 /// Files with their names, and what else is kept of a subject.
-pub type Drawn<T> = (Vec<(String, Vec<u8>)>, T);
+pub type DrawnFiles<T> = (Vec<(String, Vec<u8>)>, T);
 
 /// The number of a subject, and what was drawn of it.
-type Numbered<T> = (usize, Result<Drawn<T>, Failure>);
+type NumberedFiles<T> = (usize, Result<DrawnFiles<T>, Failure>);
 
 /// Draws all subjects, on executors of their own, and writes the files as they are ready. Returns
 /// the rest in the order of the subjects.
@@ -26,14 +26,14 @@ type Numbered<T> = (usize, Result<Drawn<T>, Failure>);
 /// After a failure no further subject is begun. Subjects are begun in their order, so the failure
 /// that is returned, that of the lowest number, is always the same.
 pub fn draw_all<S: Sync, T: Send>(
-    entry: &Entry,
+    entry: &ExecutorEntry,
     subjects: &[S],
-    draw: impl Fn(&mut dyn Session, &S) -> Result<Drawn<T>, Failure> + Sync,
-    folder: &mut Folder,
+    draw: impl Fn(&mut dyn Session, &S) -> Result<DrawnFiles<T>, Failure> + Sync,
+    folder: &mut OutputFolder,
 ) -> Result<Vec<T>, Failure> {
     let (next, is_stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
     let (sender, drawn) = channel();
-    let work = |sender: Sender<Numbered<T>>| {
+    let work = |sender: Sender<NumberedFiles<T>>| {
         let mut painter = match executor::open_executor(entry) {
             Ok(painter) => painter,
             Err(failure) => return drop(sender.send((0, Err(failure)))),
@@ -65,9 +65,9 @@ pub fn draw_all<S: Sync, T: Send>(
 
 /// Writes the files of all subjects until none is left, or one has failed.
 fn collect<T>(
-    drawn: Receiver<Numbered<T>>,
+    drawn: Receiver<NumberedFiles<T>>,
     count: usize,
-    folder: &mut Folder,
+    folder: &mut OutputFolder,
 ) -> Result<Vec<T>, Failure> {
     let mut kept: Vec<Option<T>> = (0..count).map(|_| None).collect();
     let mut failed: Option<(usize, Failure)> = None;

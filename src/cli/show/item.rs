@@ -2,30 +2,32 @@
 
 use serde_json::{Value, json};
 
-use super::Shown;
-use crate::catalogue::{Item, Kind, Member, Module, SECTIONS};
+use super::ShownItem;
+use crate::catalogue::{
+    CatalogueItem, CatalogueItemKind, CatalogueMember, CatalogueModule, SECTIONS,
+};
 use crate::cli::text::{indent_lines, rows_text, wrap_words};
 use crate::project::LIBRARY;
 
 /// A function, a struct or a constant.
-pub fn show_item(item: &Item) -> Shown {
-    Shown { text: item_text(item), json: item_json(item) }
+pub fn show_item(item: &CatalogueItem) -> ShownItem {
+    ShownItem { text: item_text(item), json: item_json(item) }
 }
 
 /// A module with its items.
-pub fn show_module(module: &Module) -> Shown {
+pub fn show_module(module: &CatalogueModule) -> ShownItem {
     let items = module.items.iter().map(item_json).collect::<Vec<_>>();
     let json = json!({ "module": module.path, "doc": module.doc, "items": items });
-    Shown { text: module_text(module), json }
+    ShownItem { text: module_text(module), json }
 }
 
-fn item_text(item: &Item) -> String {
+fn item_text(item: &CatalogueItem) -> String {
     let mut text = format!("{}\n", item.full_path());
     for paragraph in item.paragraphs() {
         text += &format!("\n{}", wrap_words(&paragraph, 2));
     }
     if item.members.iter().any(|member| !member.doc.is_empty()) {
-        let heading = if item.kind == Kind::Struct { "Fields" } else { "Parameters" };
+        let heading = if item.kind == CatalogueItemKind::Struct { "Fields" } else { "Parameters" };
         text += &format!(
             "\n{heading}\n{}",
             rows_text(&item.members.iter().map(member_row).collect::<Vec<_>>(), 2)
@@ -43,11 +45,11 @@ fn item_text(item: &Item) -> String {
     text
 }
 
-fn member_row(member: &Member) -> Vec<String> {
+fn member_row(member: &CatalogueMember) -> Vec<String> {
     vec![member.name.clone(), member.ty.clone(), member.doc.clone()]
 }
 
-fn item_json(item: &Item) -> Value {
+fn item_json(item: &CatalogueItem) -> Value {
     let members = item
         .members
         .iter()
@@ -56,7 +58,7 @@ fn item_json(item: &Item) -> Value {
     json!({
         item.kind.name(): item.path(),
         "doc": item.paragraphs(),
-        if item.kind == Kind::Struct { "fields" } else { "parameters" }: members,
+        if item.kind == CatalogueItemKind::Struct { "fields" } else { "parameters" }: members,
         "result": item.result,
         "returns": item.section("Returns"),
         "source": item.section("Source"),
@@ -69,7 +71,7 @@ fn item_json(item: &Item) -> Value {
     })
 }
 
-fn module_text(module: &Module) -> String {
+fn module_text(module: &CatalogueModule) -> String {
     let path = match module.package.as_str() {
         LIBRARY => format!("{LIBRARY}::{}", module.path),
         _ => module.path.clone(),

@@ -15,10 +15,10 @@ use serde_json::Value;
 
 use super::failure::Failure;
 use super::list::known_modules;
-use super::own::Own;
+use super::own::OwnPackage;
 use crate::catalogue::preset::Preset;
 use crate::catalogue::probe::Probe;
-use crate::catalogue::{self, Item, Module};
+use crate::catalogue::{self, CatalogueItem, CatalogueModule};
 use crate::cli::terminal::stdout;
 use crate::diagnostic::nearest_name;
 use crate::permute::Manifest;
@@ -35,18 +35,18 @@ pub struct Arguments {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    own: Own,
+    own: OwnPackage,
 }
 
 /// One thing, as text and as JSON.
-struct Shown {
+struct ShownItem {
     text: String,
     json: Value,
 }
 
 /// What there is to show.
-struct Library {
-    modules: Vec<Module>,
+struct ShowIndex {
+    modules: Vec<CatalogueModule>,
     /// The user's own, if there is one, then the library's.
     manifests: Vec<Manifest>,
     presets: Vec<Preset>,
@@ -67,19 +67,19 @@ pub fn run_show(arguments: Arguments) -> Result<(), Failure> {
     Ok(stdout().write_all(text.as_bytes())?)
 }
 
-fn open_library(own: &Own) -> Result<Library, Failure> {
+fn open_library(own: &OwnPackage) -> Result<ShowIndex, Failure> {
     let (mut sources, manifest) = project::library_manifest()
         .map_err(|(sources, problems)| Failure::Input(sources, problems))?;
     match catalogue::library_examples(&mut sources, &manifest) {
         Ok((presets, probes)) => {
             let manifests = own.manifest()?.into_iter().chain([manifest]).collect();
-            Ok(Library { modules: known_modules(own)?, manifests, presets, probes })
+            Ok(ShowIndex { modules: known_modules(own)?, manifests, presets, probes })
         }
         Err(problems) => Err(Failure::Input(sources, problems)),
     }
 }
 
-fn find_shown(library: &Library, path: &str) -> Option<Shown> {
+fn find_shown(library: &ShowIndex, path: &str) -> Option<ShownItem> {
     let item = || {
         library
             .modules
@@ -109,7 +109,7 @@ fn find_shown(library: &Library, path: &str) -> Option<Shown> {
 }
 
 /// `PROGRAM.AXIS`, or the axis alone where one program has it.
-fn find_axis(library: &Library, path: &str) -> Option<Shown> {
+fn find_axis(library: &ShowIndex, path: &str) -> Option<ShownItem> {
     let (wanted, name) =
         path.split_once('.').map_or((None, path), |(program, name)| (Some(program), name));
     let programs = library
@@ -122,9 +122,12 @@ fn find_axis(library: &Library, path: &str) -> Option<Shown> {
     found.next().is_none().then(|| program::show_axis(program, axis))
 }
 
-fn missing_path(path: &str, library: &Library) -> Failure {
-    let items: Vec<String> =
-        library.modules.iter().flat_map(|module| module.items.iter().map(Item::path)).collect();
+fn missing_path(path: &str, library: &ShowIndex) -> Failure {
+    let items: Vec<String> = library
+        .modules
+        .iter()
+        .flat_map(|module| module.items.iter().map(CatalogueItem::path))
+        .collect();
     let axes: Vec<String> = library
         .manifests
         .iter()

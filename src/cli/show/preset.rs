@@ -2,13 +2,13 @@
 
 use serde_json::{Value, json};
 
-use super::Shown;
-use crate::catalogue::preset::{Pass, Preset};
+use super::ShownItem;
+use crate::catalogue::preset::{Preset, PresetPass};
 use crate::catalogue::probe::{ORDER, Probe};
 use crate::cli::text::{rows_text, wrap_words};
 
 /// A preset with its numbers.
-pub fn show_preset(preset: &Preset) -> Shown {
+pub fn show_preset(preset: &Preset) -> ShownItem {
     let mut facts = vec![vec!["source".to_owned(), preset.source.clone()]];
     facts.extend(preset.passes.iter().map(|pass| vec!["first".to_owned(), permutation_text(pass)]));
     facts.push(vec!["program".to_owned(), preset.program.clone()]);
@@ -38,7 +38,7 @@ pub fn show_preset(preset: &Preset) -> Shown {
         let deviations = preset.deviations.iter().map(|deviation| wrap_words(deviation, 2));
         text += &format!("\nDifferences from the source\n{}", deviations.collect::<String>());
     }
-    Shown { text, json: preset_json(preset) }
+    ShownItem { text, json: preset_json(preset) }
 }
 
 /// A preset as an object.
@@ -59,7 +59,7 @@ pub fn preset_json(preset: &Preset) -> Value {
     })
 }
 
-fn permutation_text(pass: &Pass) -> String {
+fn permutation_text(pass: &PresetPass) -> String {
     if pass.key == "default" {
         pass.program.clone()
     } else {
@@ -68,7 +68,7 @@ fn permutation_text(pass: &Pass) -> String {
 }
 
 /// A light probe with its coefficients.
-pub fn show_probe(probe: &Probe) -> Shown {
+pub fn show_probe(probe: &Probe) -> ShownItem {
     let number = |value: f64| format!("{value:>9}");
     let table: Vec<Vec<String>> = ORDER
         .iter()
@@ -85,7 +85,7 @@ pub fn show_probe(probe: &Probe) -> Shown {
         wrap_words(&probe.source, 2),
         rows_text(&table, 2)
     );
-    Shown { text, json: probe_json(probe) }
+    ShownItem { text, json: probe_json(probe) }
 }
 
 /// A light probe as an object.

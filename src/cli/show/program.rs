@@ -2,19 +2,19 @@
 
 use serde_json::{Value, json};
 
-use super::Shown;
+use super::ShownItem;
 use crate::cli::list::{count_json, setting_json};
 use crate::cli::text::{rows_text, wrap_words};
 use crate::parse::words::has_word;
 use crate::permute::{Axis, Program};
 
 /// A program with its axes and constraints.
-pub fn show_program(program: &Program) -> Shown {
-    Shown { text: program_text(program), json: program_json(program) }
+pub fn show_program(program: &Program) -> ShownItem {
+    ShownItem { text: program_text(program), json: program_json(program) }
 }
 
 /// An axis of a program.
-pub fn show_axis(program: &Program, axis: &Axis) -> Shown {
+pub fn show_axis(program: &Program, axis: &Axis) -> ShownItem {
     let mut json = axis_json(&program.name, axis);
     json["constraints"] = json!(constraints_on(program, axis));
     let mut text = format!("{}.{}\n", program.name, axis.name);
@@ -28,7 +28,7 @@ pub fn show_axis(program: &Program, axis: &Axis) -> Shown {
     ];
     text += &format!("\n{}", rows_text(&facts.map(Vec::from), 2));
     text += &heading_text("Constraints", &constraints_on(program, axis));
-    Shown { text, json }
+    ShownItem { text, json }
 }
 
 /// An axis as an object: its values are booleans, numbers or strings.

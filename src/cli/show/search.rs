@@ -2,21 +2,21 @@
 
 use serde_json::json;
 
-use super::{Library, Shown};
+use super::{ShowIndex, ShownItem};
 use crate::cli::text;
 
 /// The items that contain every word of the search; `None` if there are none.
-pub fn search_library(library: &Library, asked: &str) -> Option<Shown> {
+pub fn search_library(library: &ShowIndex, asked: &str) -> Option<ShownItem> {
     let words: Vec<String> = asked.split_whitespace().map(str::to_lowercase).collect();
     let has = |text: &str| {
         let text = text.to_lowercase();
         words.iter().all(|word| text.contains(word.as_str()))
     };
     let things = searchable_things(library);
-    let (named, rest): (Vec<Thing>, Vec<Thing>) =
+    let (named, rest): (Vec<SearchEntry>, Vec<SearchEntry>) =
         things.into_iter().partition(|thing| has(&thing.path));
     let told = rest.into_iter().filter(|thing| has(&thing.summary) || has(&thing.doc));
-    let found: Vec<Thing> = named.into_iter().chain(told).collect();
+    let found: Vec<SearchEntry> = named.into_iter().chain(told).collect();
     if found.is_empty() || words.is_empty() {
         return None;
     }
@@ -27,27 +27,27 @@ pub fn search_library(library: &Library, asked: &str) -> Option<Shown> {
     let json = found
         .iter()
         .map(|thing| json!({ "path": thing.path, "kind": thing.what, "summary": thing.summary }));
-    Some(Shown {
+    Some(ShownItem {
         text: text::table_text(&["path", "kind", "summary"], &rows),
         json: json!({ "matches": json.collect::<Vec<_>>() }),
     })
 }
 
-struct Thing {
+struct SearchEntry {
     path: String,
     what: &'static str,
     summary: String,
     doc: String,
 }
 
-fn searchable_things(library: &Library) -> Vec<Thing> {
-    let modules = library.modules.iter().map(|module| Thing {
+fn searchable_things(library: &ShowIndex) -> Vec<SearchEntry> {
+    let modules = library.modules.iter().map(|module| SearchEntry {
         path: module.path.clone(),
         what: "module",
         summary: module.summary().to_owned(),
         doc: module.doc.join(" "),
     });
-    let items = library.modules.iter().flat_map(|module| &module.items).map(|item| Thing {
+    let items = library.modules.iter().flat_map(|module| &module.items).map(|item| SearchEntry {
         path: item.path(),
         what: item.kind.name(),
         summary: item.summary().to_owned(),
@@ -55,7 +55,7 @@ fn searchable_things(library: &Library) -> Vec<Thing> {
     });
     let programs = library.manifests.iter().flat_map(|manifest| &manifest.programs);
     let axes = programs.flat_map(|program| {
-        program.space.axes().iter().map(|axis| Thing {
+        program.space.axes().iter().map(|axis| SearchEntry {
             path: format!("{}.{}", program.name, axis.name),
             what: "axis",
             summary: axis.doc.clone().unwrap_or_default(),

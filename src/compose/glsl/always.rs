@@ -3,9 +3,9 @@
 //! if `#ifndef X` gives `X` a default.
 
 use super::expand::Expander;
-use super::table::Meaning;
+use super::table::MacroMeaning;
 use crate::diagnostic::{Diagnostic, codes};
-use crate::parse::glsl::{Directive, Module, Part, Symbol, known};
+use crate::parse::glsl::{Directive, FilePart, Module, Symbol, known};
 
 /// The warning about the branch at `index`, if it asks whether a setting is defined.
 pub fn always_warning(
@@ -13,15 +13,15 @@ pub fn always_warning(
     module: &Module,
     index: usize,
 ) -> Option<Diagnostic> {
-    let Part::Directive(directive, span) = module.parts.get(index)? else { return None };
+    let FilePart::Directive(directive, span) = module.parts.get(index)? else { return None };
     let (name, negated) = asked_macro(module, directive)?;
     // If the setting is on, `defined` gives the same answer as its value, so nothing is odd.
     match expander.table.get(name)? {
-        Meaning::Setting(setting) if !expander.reads.is_on(setting) => {}
+        MacroMeaning::Setting(setting) if !expander.reads.is_on(setting) => {}
         _ => return None,
     }
     // `#ifndef` around a `#define` gives a default, for compilers that know no settings.
-    let gives_default = |part: &Part| matches!(part, Part::Directive(Directive::Define(given), _) if given.name == name);
+    let gives_default = |part: &FilePart| matches!(part, FilePart::Directive(Directive::Define(given), _) if given.name == name);
     if negated && module.parts.get(index + 1).is_some_and(gives_default) {
         return None;
     }

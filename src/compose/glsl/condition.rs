@@ -13,7 +13,7 @@ pub fn evaluate_condition(
     tokens: &[Tok],
     directive: Span,
 ) -> Result<bool, Diagnostic> {
-    let mut parser = Parser { expander, tokens, at: 0, depth: 0, directive };
+    let mut parser = ConditionParser { expander, tokens, at: 0, depth: 0, directive };
     let value = parser.binary(0, true)?;
     match parser.peek() {
         None => Ok(value != 0),
@@ -27,7 +27,7 @@ pub fn evaluate_condition(
 /// the search through all names is slow.
 const SUGGESTED: usize = 100;
 
-struct Parser<'a, 'g, 's> {
+struct ConditionParser<'a, 'g, 's> {
     expander: &'a mut Expander<'g, 's>,
     tokens: &'a [Tok],
     at: usize,
@@ -57,7 +57,7 @@ const BINARY: &[(Symbol, u8)] = &[
     (known::PERCENT, 10),
 ];
 
-impl Parser<'_, '_, '_> {
+impl ConditionParser<'_, '_, '_> {
     fn peek(&self) -> Option<Tok> {
         self.tokens.get(self.at).copied()
     }

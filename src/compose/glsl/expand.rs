@@ -5,7 +5,7 @@
 mod call;
 
 use super::reads::Reads;
-use super::table::{Meaning, Table};
+use super::table::{MacroMeaning, MacroTable};
 use super::token::{NO_SETTING, NONE, Tok};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::limits::count_steps;
@@ -17,7 +17,7 @@ use crate::source::LIMITS;
 pub type Fatal = Box<Diagnostic>;
 
 /// Where tokens come from.
-pub enum Input<'t> {
+pub enum TokenInput<'t> {
     /// Tokens `at..end` of a module.
     Source { module: u32, at: u32, end: u32 },
     /// The tokens of a macro's argument, which were read before.
@@ -27,7 +27,7 @@ pub enum Input<'t> {
 /// The state of macro expansion.
 pub struct Expander<'g, 's> {
     pub graph: &'g Graph,
-    pub table: Table<'g>,
+    pub table: MacroTable<'g>,
     pub reads: Reads<'s>,
     pub errors: Vec<Diagnostic>,
     /// What `#line` directives added to line numbers so far.
@@ -38,7 +38,7 @@ pub struct Expander<'g, 's> {
     pub es: bool,
     /// Whether the input is a condition, in which the name after `defined` is not expanded.
     pub in_condition: bool,
-    frames: Vec<Frame>,
+    frames: Vec<MacroFrame>,
     work: usize,
     bytes: usize,
     depth: usize,
@@ -48,7 +48,7 @@ pub struct Expander<'g, 's> {
 type Call = (Vec<Vec<Tok>>, Tok);
 
 /// The expansion of a macro while it is scanned.
-struct Frame {
+struct MacroFrame {
     tokens: Vec<Tok>,
     at: usize,
     name: Symbol,
@@ -56,7 +56,7 @@ struct Frame {
 
 impl<'g, 's> Expander<'g, 's> {
     /// Nothing expanded yet.
-    pub fn new(graph: &'g Graph, table: Table<'g>, reads: Reads<'s>, es: bool) -> Self {
+    pub fn new(graph: &'g Graph, table: MacroTable<'g>, reads: Reads<'s>, es: bool) -> Self {
         Self {
             graph,
             table,
@@ -74,7 +74,7 @@ impl<'g, 's> Expander<'g, 's> {
     }
 
     /// Appends the expansion of the whole input.
-    pub fn run(&mut self, mut input: Input<'_>, out: &mut Vec<Tok>) -> Result<(), Fatal> {
+    pub fn run(&mut self, mut input: TokenInput<'_>, out: &mut Vec<Tok>) -> Result<(), Fatal> {
         let floor = self.frames.len();
         // Where a macro expanded to nothing, the white space before it precedes the next token.
         let mut gap = None;
@@ -123,13 +123,13 @@ impl<'g, 's> Expander<'g, 's> {
     }
 
     /// Copies tokens up to the next name of a macro.
-    fn copy_plain(&mut self, input: &mut Input<'_>, out: &mut Vec<Tok>) {
+    fn copy_plain(&mut self, input: &mut TokenInput<'_>, out: &mut Vec<Tok>) {
         let defined = if self.in_condition { known::DEFINED } else { known::HASH };
         let is_plain = |kind, symbol| {
             kind != TokenKind::Identifier || (symbol != defined && !self.table.has(symbol))
         };
         match input {
-            Input::Source { module, at, end } => {
+            TokenInput::Source { module, at, end } => {
                 let tokens =
                     &self.graph.modules[*module as usize].tokens[*at as usize..*end as usize];
                 let plain =
@@ -142,7 +142,7 @@ impl<'g, 's> Expander<'g, 's> {
                 );
                 *at += plain as u32;
             }
-            Input::Tokens { tokens, at } => {
+            TokenInput::Tokens { tokens, at } => {
                 let plain = tokens[*at..]
                     .iter()
                     .take_while(|token| is_plain(token.kind, token.symbol))
@@ -156,7 +156,7 @@ impl<'g, 's> Expander<'g, 's> {
     /// The next token: from the frames above index `floor`, which belong to this run, then from the
     /// input. The name of a macro inside its own expansion is marked, so that it is not expanded
     /// again.
-    fn next(&mut self, floor: usize, input: &mut Input<'_>) -> Option<Tok> {
+    fn next(&mut self, floor: usize, input: &mut TokenInput<'_>) -> Option<Tok> {
         let mut token = self.take(floor, input)?;
         if token.kind == TokenKind::Identifier && self.table.is_active(token.symbol) {
             token.painted = true;
@@ -164,7 +164,7 @@ impl<'g, 's> Expander<'g, 's> {
         Some(token)
     }
 
-    fn take(&mut self, floor: usize, input: &mut Input<'_>) -> Option<Tok> {
+    fn take(&mut self, floor: usize, input: &mut TokenInput<'_>) -> Option<Tok> {
         self.pop_finished(floor);
         if self.frames.len() > floor
             && let Some(frame) = self.frames.last_mut()
@@ -174,13 +174,13 @@ impl<'g, 's> Expander<'g, 's> {
         }
         let token = self.peek_input(input)?;
         match input {
-            Input::Source { at, .. } => *at += 1,
-            Input::Tokens { at, .. } => *at += 1,
+            TokenInput::Source { at, .. } => *at += 1,
+            TokenInput::Tokens { at, .. } => *at += 1,
         }
         Some(token)
     }
 
-    fn peek(&mut self, floor: usize, input: &Input<'_>) -> Option<Tok> {
+    fn peek(&mut self, floor: usize, input: &TokenInput<'_>) -> Option<Tok> {
         self.pop_finished(floor);
         match self.frames[floor..].last() {
             Some(frame) => frame.tokens.get(frame.at).copied(),
@@ -188,15 +188,15 @@ impl<'g, 's> Expander<'g, 's> {
         }
     }
 
-    fn peek_input(&self, input: &Input<'_>) -> Option<Tok> {
+    fn peek_input(&self, input: &TokenInput<'_>) -> Option<Tok> {
         match *input {
-            Input::Source { module, at, end } if at < end => Some(Tok::copy(
+            TokenInput::Source { module, at, end } if at < end => Some(Tok::copy(
                 module,
                 at,
                 &self.graph.modules[module as usize].tokens[at as usize],
             )),
-            Input::Source { .. } => None,
-            Input::Tokens { tokens, at } => tokens.get(at).copied(),
+            TokenInput::Source { .. } => None,
+            TokenInput::Tokens { tokens, at } => tokens.get(at).copied(),
         }
     }
 
@@ -214,7 +214,7 @@ impl<'g, 's> Expander<'g, 's> {
         &mut self,
         token: Tok,
         floor: usize,
-        input: &mut Input<'_>,
+        input: &mut TokenInput<'_>,
         out: &mut Vec<Tok>,
     ) -> Result<(), Fatal> {
         if token.kind != TokenKind::Identifier || token.painted {
@@ -227,7 +227,7 @@ impl<'g, 's> Expander<'g, 's> {
         }
         match self.table.get(token.symbol) {
             None => out.push(token),
-            Some(Meaning::User { definition, .. }) => {
+            Some(MacroMeaning::User { definition, .. }) => {
                 return self.user(definition, token, floor, input, out);
             }
             Some(meaning) => {
@@ -238,16 +238,16 @@ impl<'g, 's> Expander<'g, 's> {
         Ok(())
     }
 
-    fn number(&mut self, meaning: Meaning<'g>, token: &Tok) -> (Symbol, u16) {
+    fn number(&mut self, meaning: MacroMeaning<'g>, token: &Tok) -> (Symbol, u16) {
         match meaning {
-            Meaning::Setting(setting) => (self.reads.symbol(setting), setting),
-            Meaning::Number(symbol) => (symbol, NO_SETTING),
-            Meaning::Line => {
+            MacroMeaning::Setting(setting) => (self.reads.symbol(setting), setting),
+            MacroMeaning::Number(symbol) => (symbol, NO_SETTING),
+            MacroMeaning::Line => {
                 let line = self.modules()[token.module as usize].line(token.start) as i64
                     + self.line_shift;
                 (self.table.spellings.intern(&line.to_string()), NO_SETTING)
             }
-            Meaning::File | Meaning::User { .. } => {
+            MacroMeaning::File | MacroMeaning::User { .. } => {
                 (self.table.spellings.intern(&self.file_number.to_string()), NO_SETTING)
             }
         }
@@ -258,7 +258,7 @@ impl<'g, 's> Expander<'g, 's> {
         &mut self,
         token: Tok,
         floor: usize,
-        input: &mut Input<'_>,
+        input: &mut TokenInput<'_>,
         out: &mut Vec<Tok>,
     ) {
         out.push(token);

@@ -2,14 +2,14 @@
 
 /// A piece of a gap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Piece<'t> {
+pub enum GapPiece<'t> {
     /// White space and line continuations.
     Space(&'t str),
     /// One comment, `//` without its newline.
     Comment(&'t str),
 }
 
-impl Piece<'_> {
+impl GapPiece<'_> {
     /// How many lines a piece of white space ends.
     pub fn newlines(self) -> usize {
         match self {
@@ -20,28 +20,28 @@ impl Piece<'_> {
 }
 
 /// The pieces of a gap with their offsets, in order.
-pub fn gap_pieces(gap: &str) -> impl Iterator<Item = (usize, Piece<'_>)> {
+pub fn gap_pieces(gap: &str) -> impl Iterator<Item = (usize, GapPiece<'_>)> {
     let mut at = 0;
     std::iter::from_fn(move || {
         let rest = gap.get(at..).filter(|rest| !rest.is_empty())?;
         let start = at;
         let piece = first_piece(rest);
         at += match piece {
-            Piece::Space(text) | Piece::Comment(text) => text.len(),
+            GapPiece::Space(text) | GapPiece::Comment(text) => text.len(),
         };
         Some((start, piece))
     })
 }
 
-fn first_piece(rest: &str) -> Piece<'_> {
+fn first_piece(rest: &str) -> GapPiece<'_> {
     if rest.starts_with("//") {
-        return Piece::Comment(&rest[..line_comment(rest)]);
+        return GapPiece::Comment(&rest[..line_comment(rest)]);
     }
     if let Some(inner) = rest.strip_prefix("/*") {
-        return Piece::Comment(&rest[..inner.find("*/").map_or(rest.len(), |end| end + 4)]);
+        return GapPiece::Comment(&rest[..inner.find("*/").map_or(rest.len(), |end| end + 4)]);
     }
     let slash = rest.bytes().skip(1).position(|byte| byte == b'/');
-    Piece::Space(&rest[..slash.map_or(rest.len(), |end| end + 1)])
+    GapPiece::Space(&rest[..slash.map_or(rest.len(), |end| end + 1)])
 }
 
 /// Newlines without a `\` before them.
@@ -71,13 +71,13 @@ pub fn attached_part(gap: &str, after_item: bool) -> std::ops::Range<usize> {
     let mut own_line = !after_item;
     for (at, piece) in gap_pieces(gap) {
         match piece {
-            Piece::Space(_) if piece.newlines() > 1 => {
+            GapPiece::Space(_) if piece.newlines() > 1 => {
                 start = None;
                 own_line = true;
             }
-            Piece::Space(_) => own_line |= piece.newlines() > 0,
-            Piece::Comment(_) if own_line => start = start.or(Some(at)),
-            Piece::Comment(_) => {}
+            GapPiece::Space(_) => own_line |= piece.newlines() > 0,
+            GapPiece::Comment(_) if own_line => start = start.or(Some(at)),
+            GapPiece::Comment(_) => {}
         }
     }
     start.unwrap_or(gap.len())..gap.len()
@@ -88,9 +88,9 @@ pub fn trailing_comments(gap: &str) -> std::ops::Range<usize> {
     let mut end = 0;
     for (at, piece) in gap_pieces(gap) {
         match piece {
-            Piece::Space(_) if piece.newlines() > 0 => break,
-            Piece::Space(_) => {}
-            Piece::Comment(text) => end = at + text.len(),
+            GapPiece::Space(_) if piece.newlines() > 0 => break,
+            GapPiece::Space(_) => {}
+            GapPiece::Comment(text) => end = at + text.len(),
         }
     }
     0..end

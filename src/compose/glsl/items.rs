@@ -9,7 +9,7 @@ use crate::source::LIMITS;
 
 /// A top-level declaration.
 #[derive(Debug)]
-pub struct Item {
+pub struct GlslItem {
     /// Its tokens.
     pub tokens: Range<usize>,
     /// Whether it is a function or a prototype.
@@ -22,7 +22,7 @@ pub struct Item {
 /// Items in order, with `(name, item)` for every name they declare.
 #[derive(Debug, Default)]
 pub struct Items {
-    pub list: Vec<Item>,
+    pub list: Vec<GlslItem>,
     pub names: Vec<(Symbol, u32)>,
 }
 
@@ -37,7 +37,7 @@ pub fn split_items(tokens: &[Tok], modules: &[Module]) -> Result<Items, Diagnost
         if item[0].symbol != known::SEMICOLON {
             let (first, number) = (items.names.len(), items.list.len() as u32);
             let function = give_names(item, &mut |name| items.names.push((name, number)));
-            items.list.push(Item {
+            items.list.push(GlslItem {
                 tokens: start..end,
                 function,
                 always: items.names.len() == first,

@@ -121,7 +121,7 @@ fn write_kept<'a>(
     items: &Items,
     kept: &[bool],
     keep: &Keep,
-) -> (Writer<'a>, Written) {
+) -> (Writer<'a>, WrittenPieces) {
     let tokens: &[Tok] = &preprocessed.tokens;
     let mut writer = Writer::new(&graph.modules, &preprocessed.spellings, tokens.len() * 8);
     match preprocessed.version {
@@ -129,7 +129,7 @@ fn write_kept<'a>(
         None => writer.made("#version 450\n"),
     }
     preprocessed.header.iter().for_each(|line| writer.line(*line));
-    let mut written = Written { header: 0..writer.text.len(), items: Vec::new(), main: None };
+    let mut written = WrittenPieces { header: 0..writer.text.len(), items: Vec::new(), main: None };
     for (item, _) in items.list.iter().zip(kept).filter(|(_, kept)| **kept) {
         writer.made("\n");
         let start = writer.text.len();
@@ -148,7 +148,7 @@ fn write_kept<'a>(
 }
 
 /// Where each piece of the output was written.
-struct Written {
+struct WrittenPieces {
     /// The directives.
     header: Range<usize>,
     /// The kept items, in order.

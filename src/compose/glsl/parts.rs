@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::Written;
-use super::items::{Item, Items};
+use super::WrittenPieces;
+use super::items::{GlslItem, Items};
 use super::preprocess::Preprocessed;
 use super::token::Tok;
 use crate::compose::{Part, PartKind};
@@ -18,7 +18,7 @@ pub fn make_parts(
     preprocessed: &Preprocessed<'_, '_>,
     items: &Items,
     kept: &[bool],
-    written: Written,
+    written: WrittenPieces,
 ) -> Vec<Part> {
     let (tokens, spellings) = (&preprocessed.tokens, &preprocessed.spellings);
     let mut numbers = vec![u32::MAX; items.list.len()];
@@ -31,7 +31,7 @@ pub fn make_parts(
             range,
         ));
     }
-    let mut declared = Declared::new(spellings.count(), items.names.len());
+    let mut declared = DeclaringParts::new(spellings.count(), items.names.len());
     for (symbol, item) in &items.names {
         let number = numbers[*item as usize];
         if number != u32::MAX {
@@ -55,7 +55,7 @@ pub fn make_parts(
 }
 
 /// The parts that declare each name.
-struct Declared {
+struct DeclaringParts {
     /// For each symbol, one more than the index in `links` of the last part that declares it; 0 for
     /// none.
     heads: Vec<u32>,
@@ -63,7 +63,7 @@ struct Declared {
     links: Vec<(u32, u32)>,
 }
 
-impl Declared {
+impl DeclaringParts {
     fn new(symbols: usize, names: usize) -> Self {
         Self { heads: vec![0; symbols], links: Vec::with_capacity(names) }
     }
@@ -88,16 +88,16 @@ fn make_part(kind: PartKind, range: Range<usize>) -> Part {
     Part { kind, names: Vec::new(), range, uses: Vec::new(), aliases: Vec::new() }
 }
 
-fn part_kind(tokens: &[Tok], item: &Item) -> PartKind {
+fn part_kind(tokens: &[Tok], item: &GlslItem) -> PartKind {
     let has = |symbol: Symbol| tokens.iter().any(|token| token.symbol == symbol);
     let ends = |symbol: Symbol| tokens.last().is_some_and(|token| token.symbol == symbol);
     let first = tokens.first().map(|token| token.symbol);
     // A variable may be declared with the structure, behind its closing brace.
     let only_struct = tokens.len() > 2 && tokens[tokens.len() - 2].symbol == known::CLOSE_BRACE;
     match item {
-        Item { always: true, .. } => PartKind::Other,
-        Item { function: true, .. } if ends(known::SEMICOLON) => PartKind::Prototype,
-        Item { function: true, .. } => PartKind::Function,
+        GlslItem { always: true, .. } => PartKind::Other,
+        GlslItem { function: true, .. } if ends(known::SEMICOLON) => PartKind::Prototype,
+        GlslItem { function: true, .. } => PartKind::Function,
         _ if first == Some(known::STRUCT) && only_struct => PartKind::Struct,
         _ if has(known::STRUCT) => PartKind::Other,
         _ if first == Some(known::CONST) => PartKind::Constant,
@@ -107,7 +107,7 @@ fn part_kind(tokens: &[Tok], item: &Item) -> PartKind {
 }
 
 /// The parts that an item names, except itself.
-fn used_parts(item: &[Tok], own: u32, declared: &Declared, parts: &[Part]) -> Vec<u32> {
+fn used_parts(item: &[Tok], own: u32, declared: &DeclaringParts, parts: &[Part]) -> Vec<u32> {
     let mut uses = Vec::new();
     let mut previous = known::SEMICOLON;
     for (index, token) in item.iter().enumerate() {

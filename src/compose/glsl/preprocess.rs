@@ -5,16 +5,16 @@ mod branch;
 use std::collections::HashSet;
 use std::ops::Range;
 
-use super::expand::{Expander, Fatal, Input, same_definition};
+use super::expand::{Expander, Fatal, TokenInput, same_definition};
 use super::reads::Reads;
-use super::table::{Meaning, Spellings, Table};
+use super::table::{MacroMeaning, MacroTable, Spellings};
 use super::token::Tok;
 use crate::compose::Decision;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::limits::count_steps;
-use crate::parse::glsl::{Directive, Macro, Module, Part};
+use crate::parse::glsl::{Directive, FilePart, Macro, Module};
 use crate::permute::Settings;
-use crate::resolve::glsl::{Graph, Target};
+use crate::resolve::glsl::{Graph, IncludeTarget};
 use crate::source::{LIMITS, Span};
 
 /// The active text of a composition, macros expanded.
@@ -43,12 +43,12 @@ pub fn preprocess<'g, 's>(
     tokens.clear();
     let (number, es) = version_and_profile(&graph.modules[0]);
     let mut reads = Reads::new(settings);
-    let mut table = Table::new(&graph.symbols, number, es);
+    let mut table = MacroTable::new(&graph.symbols, number, es);
     reads.define(&mut table, settings);
-    let mut state = State {
+    let mut state = PreprocessorState {
         graph,
         expander: Expander::new(graph, table, reads, es),
-        open: vec![Open { module: 0, part: 0, line_shift: 0, file_number: 0, directive: None }],
+        open: vec![OpenFile { module: 0, part: 0, line_shift: 0, file_number: 0, directive: None }],
         once: vec![false; graph.modules.len()],
         tokens,
         version: None,
@@ -59,7 +59,7 @@ pub fn preprocess<'g, 's>(
     };
     state.check_module(0);
     state.run();
-    let State { expander, tokens, version, header, decisions, warnings, .. } = state;
+    let PreprocessorState { expander, tokens, version, header, decisions, warnings, .. } = state;
     let Expander { errors, reads, table, .. } = expander;
     if errors.is_empty() {
         let spellings = table.spellings;
@@ -72,16 +72,16 @@ pub fn preprocess<'g, 's>(
 /// Version and profile of the root file; 450 where it names none.
 fn version_and_profile(root: &Module) -> (u32, bool) {
     match root.parts.first() {
-        Some(Part::Directive(Directive::Version { number, es, .. }, _)) => (*number, *es),
+        Some(FilePart::Directive(Directive::Version { number, es, .. }, _)) => (*number, *es),
         _ => (450, false),
     }
 }
 
-struct State<'g, 's> {
+struct PreprocessorState<'g, 's> {
     graph: &'g Graph,
     expander: Expander<'g, 's>,
     /// The files that are being read, each included by the one before it.
-    open: Vec<Open>,
+    open: Vec<OpenFile>,
     once: Vec<bool>,
     tokens: Vec<Tok>,
     version: Option<Span>,
@@ -93,7 +93,7 @@ struct State<'g, 's> {
 }
 
 #[derive(Clone, Copy)]
-struct Open {
+struct OpenFile {
     module: usize,
     /// The next part to read.
     part: usize,
@@ -103,7 +103,7 @@ struct Open {
     directive: Option<Span>,
 }
 
-impl<'g> State<'g, '_> {
+impl<'g> PreprocessorState<'g, '_> {
     fn run(&mut self) {
         while let Some(open) = self.open.last_mut() {
             let Some(part) = self.graph.modules[open.module].parts.get(open.part) else {
@@ -142,22 +142,27 @@ impl<'g> State<'g, '_> {
         }
     }
 
-    fn part(&mut self, open: Open, part: &'g Part) -> Result<(), Fatal> {
+    fn part(&mut self, open: OpenFile, part: &'g FilePart) -> Result<(), Fatal> {
         count_steps(1);
         match part {
-            Part::Text(text) => {
-                let input = Input::Source {
+            FilePart::Text(text) => {
+                let input = TokenInput::Source {
                     module: open.module as u32,
                     at: text.tokens.start,
                     end: text.tokens.end,
                 };
                 self.expander.run(input, &mut self.tokens)
             }
-            Part::Directive(directive, span) => self.directive(open, directive, *span),
+            FilePart::Directive(directive, span) => self.directive(open, directive, *span),
         }
     }
 
-    fn directive(&mut self, open: Open, directive: &'g Directive, span: Span) -> Result<(), Fatal> {
+    fn directive(
+        &mut self,
+        open: OpenFile,
+        directive: &'g Directive,
+        span: Span,
+    ) -> Result<(), Fatal> {
         match directive {
             Directive::Include(index) => return self.include(open, *index, span),
             Directive::Define(definition) => self.define(definition),
@@ -197,12 +202,12 @@ impl<'g> State<'g, '_> {
         let name = self.graph.symbols.text(definition.name);
         let error = match self.expander.table.get(definition.name) {
             None => None,
-            Some(Meaning::User { definition: earlier, .. })
+            Some(MacroMeaning::User { definition: earlier, .. })
                 if same_definition(earlier, definition) =>
             {
                 return;
             }
-            Some(Meaning::User { definition: earlier, .. }) => {
+            Some(MacroMeaning::User { definition: earlier, .. }) => {
                 let error = Diagnostic::error(
                     codes::MACRO_REDEFINED,
                     format!("the macro `{name}` is defined twice, differently"),
@@ -221,7 +226,7 @@ impl<'g> State<'g, '_> {
             }
         };
         self.expander.errors.extend(error);
-        self.expander.table.set(definition.name, Meaning::User { definition, active: false });
+        self.expander.table.set(definition.name, MacroMeaning::User { definition, active: false });
     }
 
     fn author_error(&mut self, words: Span, directive: Span) {
@@ -237,7 +242,7 @@ impl<'g> State<'g, '_> {
             .push(Diagnostic::error(codes::ERROR_DIRECTIVE, text).at(directive, "refused here"));
     }
 
-    fn version(&mut self, open: Open, line: Span) {
+    fn version(&mut self, open: OpenFile, line: Span) {
         let error = Diagnostic::error(
             codes::MISPLACED_VERSION,
             "`#version` must be the first line of the root file",
@@ -255,17 +260,17 @@ impl<'g> State<'g, '_> {
         }
     }
 
-    fn add_header(&mut self, open: Open, line: Span) {
+    fn add_header(&mut self, open: OpenFile, line: Span) {
         if self.headers.insert(&self.graph.modules[open.module].text[line.range()]) {
             self.header.push(line);
         }
     }
 
     /// `#line N` or `#line N FILE`: sets `__LINE__` and `__FILE__` from the next line on.
-    fn line(&mut self, open: Open, tokens: Range<u32>, span: Span) -> Result<(), Fatal> {
+    fn line(&mut self, open: OpenFile, tokens: Range<u32>, span: Span) -> Result<(), Fatal> {
         let mut expanded = Vec::new();
         self.expander.run(
-            Input::Source { module: open.module as u32, at: tokens.start, end: tokens.end },
+            TokenInput::Source { module: open.module as u32, at: tokens.start, end: tokens.end },
             &mut expanded,
         )?;
         let numbers: Option<Vec<i64>> = expanded
@@ -287,10 +292,10 @@ impl<'g> State<'g, '_> {
         Ok(())
     }
 
-    fn include(&mut self, open: Open, index: usize, span: Span) -> Result<(), Fatal> {
+    fn include(&mut self, open: OpenFile, index: usize, span: Span) -> Result<(), Fatal> {
         let module = match &self.graph.targets[open.module][index] {
-            Target::Module(module) => *module,
-            Target::Missing(error) => {
+            IncludeTarget::Module(module) => *module,
+            IncludeTarget::Missing(error) => {
                 self.expander.errors.push((**error).clone());
                 return Ok(());
             }
@@ -303,7 +308,7 @@ impl<'g> State<'g, '_> {
             return Err(Box::new(self.too_deep(module, place)));
         }
         self.expander.spend(0, self.graph.modules[module].text.len() + 1, place)?;
-        self.open.push(Open {
+        self.open.push(OpenFile {
             module,
             part: 0,
             line_shift: 0,

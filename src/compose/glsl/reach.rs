@@ -18,7 +18,7 @@ pub fn reached_items(
     if *keep == Keep::All {
         return Ok(vec![true; items.list.len()]);
     }
-    let mut search = Search::new(items, spellings.count());
+    let mut search = ReachSearch::new(items, spellings.count());
     let always = items.list.iter().enumerate().filter(|(_, item)| item.always);
     always.for_each(|(index, _)| search.keep(index as u32));
     match keep {
@@ -34,7 +34,7 @@ pub fn reached_items(
 }
 
 fn start_at(
-    search: &mut Search,
+    search: &mut ReachSearch,
     items: &Items,
     spellings: &Spellings<'_>,
     names: &[String],
@@ -61,7 +61,7 @@ fn start_at(
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 
-struct Search {
+struct ReachSearch {
     kept: Vec<bool>,
     work: Vec<u32>,
     /// For each symbol, one more than the index in `links` of the last item that declares it; 0 if
@@ -71,7 +71,7 @@ struct Search {
     links: Vec<(u32, u32)>,
 }
 
-impl Search {
+impl ReachSearch {
     fn new(items: &Items, symbols: usize) -> Self {
         let mut heads = vec![0; symbols];
         let mut links = Vec::with_capacity(items.names.len());

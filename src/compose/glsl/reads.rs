@@ -1,12 +1,12 @@
 //! Settings as macros, and which of them a composition asked for.
 
-use super::table::{Meaning, Table};
+use super::table::{MacroMeaning, MacroTable};
 use crate::parse::glsl::Symbol;
 use crate::permute::{Setting, Settings};
 
 /// The settings by number, and which of them were read, in order.
 pub struct Reads<'s> {
-    entries: Vec<Entry<'s>>,
+    entries: Vec<SettingEntry<'s>>,
     order: Vec<u16>,
     /// How many reads there were.
     pub count: usize,
@@ -14,7 +14,7 @@ pub struct Reads<'s> {
     pub undeclared: Option<bool>,
 }
 
-struct Entry<'s> {
+struct SettingEntry<'s> {
     name: &'s str,
     setting: &'s Setting,
     /// `None` for a value that its axis does not declare.
@@ -26,7 +26,7 @@ struct Entry<'s> {
 impl<'s> Reads<'s> {
     /// No setting was read yet.
     pub fn new(settings: &'s Settings) -> Self {
-        let entries = settings.values.iter().map(|(name, setting)| Entry {
+        let entries = settings.values.iter().map(|(name, setting)| SettingEntry {
             name,
             setting,
             value: macro_value(settings, name, setting),
@@ -42,7 +42,7 @@ impl<'s> Reads<'s> {
     }
 
     /// Defines the macro of every setting, and those of the values of enum axes.
-    pub fn define(&mut self, table: &mut Table<'_>, settings: &Settings) {
+    pub fn define(&mut self, table: &mut MacroTable<'_>, settings: &Settings) {
         for (axis, values) in &*settings.enums {
             let axis = axis.to_uppercase();
             for (number, value) in values.iter().enumerate() {
@@ -52,7 +52,7 @@ impl<'s> Reads<'s> {
         for (index, entry) in self.entries.iter_mut().enumerate() {
             entry.symbol = table.spellings.intern(&entry.value.unwrap_or_default().to_string());
             let name = table.spellings.intern(&entry.name.to_uppercase());
-            table.set(name, Meaning::Setting(index as u16));
+            table.set(name, MacroMeaning::Setting(index as u16));
         }
     }
 

@@ -6,7 +6,7 @@ use crate::parse::glsl::{Macro, Symbol, Symbols, known};
 
 /// What a name expands to.
 #[derive(Debug, Clone, Copy)]
-pub enum Meaning<'g> {
+pub enum MacroMeaning<'g> {
     /// The author's macro, and whether it is being expanded now.
     User {
         definition: &'g Macro,
@@ -64,23 +64,23 @@ impl<'g> Spellings<'g> {
 }
 
 /// Definitions by name.
-pub struct Table<'g> {
+pub struct MacroTable<'g> {
     pub spellings: Spellings<'g>,
     by_symbol: Vec<u32>,
-    meanings: Vec<Meaning<'g>>,
+    meanings: Vec<MacroMeaning<'g>>,
 }
 
 /// In `by_symbol`: the name is not defined.
 const UNDEFINED: u32 = 0;
 
-impl<'g> Table<'g> {
+impl<'g> MacroTable<'g> {
     /// The predefined macros of a language version.
     pub fn new(symbols: &'g Symbols, version: u32, es: bool) -> Self {
         let spellings = Spellings::new(symbols);
         let mut table =
             Self { spellings, by_symbol: vec![UNDEFINED; symbols.count()], meanings: Vec::new() };
-        table.set(known::MACRO_LINE, Meaning::Line);
-        table.set(known::MACRO_FILE, Meaning::File);
+        table.set(known::MACRO_LINE, MacroMeaning::Line);
+        table.set(known::MACRO_FILE, MacroMeaning::File);
         table.number("__VERSION__", i64::from(version));
         table.number("GL_GOOGLE_include_directive", 1);
         if es {
@@ -100,11 +100,11 @@ impl<'g> Table<'g> {
     pub fn number(&mut self, name: &str, value: i64) {
         let name = self.spellings.intern(name);
         let value = self.spellings.intern(&value.to_string());
-        self.set(name, Meaning::Number(value));
+        self.set(name, MacroMeaning::Number(value));
     }
 
     /// What a name means now.
-    pub fn get(&self, name: Symbol) -> Option<Meaning<'g>> {
+    pub fn get(&self, name: Symbol) -> Option<MacroMeaning<'g>> {
         match self.by_symbol.get(name.index()) {
             None | Some(&UNDEFINED) => None,
             Some(index) => Some(self.meanings[*index as usize - 1]),
@@ -117,7 +117,7 @@ impl<'g> Table<'g> {
     }
 
     /// Defines a name, whatever it meant before.
-    pub fn set(&mut self, name: Symbol, meaning: Meaning<'g>) {
+    pub fn set(&mut self, name: Symbol, meaning: MacroMeaning<'g>) {
         if name.index() >= self.by_symbol.len() {
             self.by_symbol.resize(self.spellings.count(), UNDEFINED);
         }
@@ -134,13 +134,13 @@ impl<'g> Table<'g> {
 
     /// Whether a name is an author's macro inside its own expansion.
     pub fn is_active(&self, name: Symbol) -> bool {
-        matches!(self.get(name), Some(Meaning::User { active: true, .. }))
+        matches!(self.get(name), Some(MacroMeaning::User { active: true, .. }))
     }
 
     /// Enters or leaves the expansion of an author's macro.
     pub fn set_active(&mut self, name: Symbol, now: bool) {
         let index = self.by_symbol.get(name.index()).copied().unwrap_or(UNDEFINED);
-        if let Some(Meaning::User { active, .. }) =
+        if let Some(MacroMeaning::User { active, .. }) =
             (index as usize).checked_sub(1).and_then(|index| self.meanings.get_mut(index))
         {
             *active = now;

@@ -1,7 +1,7 @@
 //! Writes the kept items, with a source map.
 
-use super::gap::{self, Piece};
-use super::items::Item;
+use super::gap::{self, GapPiece};
+use super::items::GlslItem;
 use super::table::Spellings;
 use super::token::{NONE, Tok};
 use crate::compose::{Segment, SourceMap};
@@ -44,7 +44,7 @@ impl<'a> Writer<'a> {
     }
 
     /// Writes an item with its comments; it ends with a newline.
-    pub fn item(&mut self, tokens: &[Tok], item: &Item) {
+    pub fn item(&mut self, tokens: &[Tok], item: &GlslItem) {
         let tokens = &tokens[item.tokens.clone()];
         self.leading(&tokens[0]);
         let mut at = 0;
@@ -195,14 +195,14 @@ impl<'a> Writer<'a> {
         for (span, text) in gaps {
             for (at, piece) in gap::gap_pieces(text) {
                 match piece {
-                    Piece::Space(space) if piece.newlines() > 0 => {
+                    GapPiece::Space(space) if piece.newlines() > 0 => {
                         newlines += piece.newlines();
                         indent = last_indentation(space);
                     }
-                    Piece::Space(space) => {
+                    GapPiece::Space(space) => {
                         indent = if newlines > 0 { last_indentation(space) } else { " " }
                     }
-                    Piece::Comment(comment) => {
+                    GapPiece::Comment(comment) => {
                         self.space(newlines, indent);
                         let start = span.start + at as u32;
                         self.segment(

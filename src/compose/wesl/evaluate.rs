@@ -6,14 +6,16 @@ use rustc_hash::FxHashMap;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::limits::count_steps;
-use crate::parse::wesl::{Comparison, ConditionId, Event, Expression, ExpressionId, Name, Operand};
+use crate::parse::wesl::{
+    ComparisonOperand, ComparisonOperator, ConditionId, Event, Expression, ExpressionId, Name,
+};
 use crate::permute::{Setting, Settings};
 use crate::resolve::wesl::{Graph, flag_places, shown_at};
 use crate::source::Span;
 
 /// What is known of a condition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum State {
+enum ConditionState {
     Unknown,
     False,
     True,
@@ -25,7 +27,7 @@ enum State {
 pub struct Evaluator<'a> {
     graph: &'a Graph,
     settings: &'a Settings,
-    states: Vec<State>,
+    states: Vec<ConditionState>,
     /// The settings in the order in which they were asked for.
     pub reads: Vec<(String, Setting)>,
     pub errors: Diagnostics,
@@ -39,7 +41,7 @@ pub struct Evaluator<'a> {
 
 impl<'a> Evaluator<'a> {
     pub fn new(graph: &'a Graph, settings: &'a Settings) -> Self {
-        let states = vec![State::Unknown; graph.totals.conditions as usize];
+        let states = vec![ConditionState::Unknown; graph.totals.conditions as usize];
         Self {
             graph,
             settings,
@@ -58,7 +60,7 @@ impl<'a> Evaluator<'a> {
         let state = |this: &Self, id: u32| this.states[(here.bases.conditions + id) as usize];
         let mut chain = Vec::new();
         let mut next = Some(condition);
-        while let Some(id) = next.filter(|id| state(self, *id) == State::Unknown) {
+        while let Some(id) = next.filter(|id| state(self, *id) == ConditionState::Unknown) {
             chain.push(id);
             count_steps(1);
             next = here.module.conditions[id as usize].after;
@@ -67,14 +69,16 @@ impl<'a> Evaluator<'a> {
             let condition = &here.module.conditions[id as usize];
             let before = condition.after.map(|before| state(self, before));
             let answer = match (before, condition.expression) {
-                _ if condition.within.is_some_and(|block| !self.holds(node, block)) => State::False,
-                (Some(State::True | State::Passed), _) => State::Passed,
-                (_, Some(expression)) if !self.value(node, expression) => State::False,
-                _ => State::True,
+                _ if condition.within.is_some_and(|block| !self.holds(node, block)) => {
+                    ConditionState::False
+                }
+                (Some(ConditionState::True | ConditionState::Passed), _) => ConditionState::Passed,
+                (_, Some(expression)) if !self.value(node, expression) => ConditionState::False,
+                _ => ConditionState::True,
             };
             self.states[(here.bases.conditions + id) as usize] = answer;
         }
-        state(self, condition) == State::True
+        state(self, condition) == ConditionState::True
     }
 
     /// Whether all hold. Evaluation ends at the first that does not.
@@ -222,33 +226,31 @@ impl<'a> Evaluator<'a> {
     fn compare(
         &mut self,
         node: u32,
-        left: &Operand,
-        operator: Comparison,
-        right: &Operand,
+        left: &ComparisonOperand,
+        operator: ComparisonOperator,
+        right: &ComparisonOperand,
         range: &std::ops::Range<u32>,
     ) -> Result<bool, Diagnostic> {
         let is_enum = |name: &Name| self.settings.enums.contains_key(self.graph.names.text(*name));
         match (left, right) {
-            (Operand::Name(axis, at), Operand::Name(value, value_at)) if is_enum(axis) => {
+            (ComparisonOperand::Name(axis, at), ComparisonOperand::Name(value, value_at))
+                if is_enum(axis) =>
+            {
                 self.compare_enum(node, (*axis, at), operator, (*value, value_at))
             }
-            (Operand::Name(value, value_at), Operand::Name(axis, at)) if is_enum(axis) => {
+            (ComparisonOperand::Name(value, value_at), ComparisonOperand::Name(axis, at))
+                if is_enum(axis) =>
+            {
                 self.compare_enum(node, (*axis, at), operator, (*value, value_at))
             }
-            (Operand::Name(axis, at), Operand::Integer(value, _)) => {
-                self.compare_integer(node, *axis, at, |axis| {
-                    compare_ordered(axis, operator, *value)
-                })
-            }
-            (Operand::Integer(value, _), Operand::Name(axis, at)) => {
-                self.compare_integer(node, *axis, at, |axis| {
-                    compare_ordered(*value, operator, axis)
-                })
-            }
-            (Operand::Name(axis, at), Operand::Name(..)) => {
+            (ComparisonOperand::Name(axis, at), ComparisonOperand::Integer(value, _)) => self
+                .compare_integer(node, *axis, at, |axis| compare_ordered(axis, operator, *value)),
+            (ComparisonOperand::Integer(value, _), ComparisonOperand::Name(axis, at)) => self
+                .compare_integer(node, *axis, at, |axis| compare_ordered(*value, operator, axis)),
+            (ComparisonOperand::Name(axis, at), ComparisonOperand::Name(..)) => {
                 Err(self.undeclared(*axis, self.span(node, at), "enum"))
             }
-            (Operand::Integer(..), Operand::Integer(..)) => {
+            (ComparisonOperand::Integer(..), ComparisonOperand::Integer(..)) => {
                 Err(Diagnostic::error(codes::WRONG_KIND, "a comparison without an axis")
                     .at(self.span(node, range), "always the same"))
             }
@@ -259,7 +261,7 @@ impl<'a> Evaluator<'a> {
         &mut self,
         node: u32,
         (axis, axis_at): (Name, &std::ops::Range<u32>),
-        operator: Comparison,
+        operator: ComparisonOperator,
         (value, value_at): (Name, &std::ops::Range<u32>),
     ) -> Result<bool, Diagnostic> {
         let (axis_text, text) = (self.graph.names.text(axis), self.graph.names.text(value));
@@ -277,8 +279,8 @@ impl<'a> Evaluator<'a> {
         let Some(chosen) = self.setting(axis, span) else { return Ok(false) };
         let equal = chosen.to_string() == text;
         match operator {
-            Comparison::Equal => Ok(equal),
-            Comparison::NotEqual => Ok(!equal),
+            ComparisonOperator::Equal => Ok(equal),
+            ComparisonOperator::NotEqual => Ok(!equal),
             _ => Err(Diagnostic::error(
                 codes::WRONG_KIND,
                 format!("the values of `{axis_text}` have no order"),
@@ -326,13 +328,13 @@ fn quoted_values(values: &[String]) -> String {
     values.iter().map(|value| format!("`{value}`")).collect::<Vec<_>>().join(", ")
 }
 
-fn compare_ordered(left: i64, operator: Comparison, right: i64) -> bool {
+fn compare_ordered(left: i64, operator: ComparisonOperator, right: i64) -> bool {
     match operator {
-        Comparison::Equal => left == right,
-        Comparison::NotEqual => left != right,
-        Comparison::Less => left < right,
-        Comparison::LessEqual => left <= right,
-        Comparison::Greater => left > right,
-        Comparison::GreaterEqual => left >= right,
+        ComparisonOperator::Equal => left == right,
+        ComparisonOperator::NotEqual => left != right,
+        ComparisonOperator::Less => left < right,
+        ComparisonOperator::LessEqual => left <= right,
+        ComparisonOperator::Greater => left > right,
+        ComparisonOperator::GreaterEqual => left >= right,
     }
 }

@@ -2,7 +2,7 @@
 
 use super::evaluate::Evaluator;
 use crate::diagnostic::{Diagnostic, codes};
-use crate::parse::wesl::{ConditionId, Expression, ExpressionId, Placed};
+use crate::parse::wesl::{ConditionId, Expression, ExpressionId, PlacedModule};
 use crate::permute::Settings;
 use crate::resolve::wesl::Graph;
 use crate::source::Span;
@@ -12,11 +12,11 @@ use crate::source::Span;
 pub struct Outcomes<'g> {
     graph: &'g Graph,
     /// Those that had the same value each time.
-    open: Vec<Condition>,
+    open: Vec<LintCondition>,
 }
 
 #[derive(Clone)]
-struct Condition {
+struct LintCondition {
     node: u32,
     id: ConditionId,
     held: bool,
@@ -32,7 +32,7 @@ impl<'g> Outcomes<'g> {
         let conditions = own.flat_map(|(index, node)| {
             asked_conditions(&node.module).map(move |id| (index as u32, id))
         });
-        let open = conditions.map(|(node, id)| Condition {
+        let open = conditions.map(|(node, id)| LintCondition {
             node,
             id,
             held: false,
@@ -62,8 +62,8 @@ impl<'g> Outcomes<'g> {
 
     /// Adds what other permutations showed of the same graph.
     pub fn join(mut self, other: &Self) -> Self {
-        let place = |condition: &Condition| (condition.node, condition.id);
-        let find = |condition: &Condition| {
+        let place = |condition: &LintCondition| (condition.node, condition.id);
+        let find = |condition: &LintCondition| {
             let found = other.open.binary_search_by_key(&place(condition), place);
             found.ok().and_then(|index| other.open.get(index))
         };
@@ -121,12 +121,12 @@ pub fn constant_condition(span: Span, held: bool) -> Diagnostic {
 
 /// Whether it may be the last branch of a chain, which covers all that is left: such a branch only
 /// has to hold once.
-fn is_later(graph: &Graph, condition: &Condition) -> bool {
+fn is_later(graph: &Graph, condition: &LintCondition) -> bool {
     graph.nodes[condition.node as usize].module.conditions[condition.id as usize].after.is_some()
 }
 
 /// The conditions that ask for a setting; one like `@if(true)` is meant as it stands.
-fn asked_conditions(module: &Placed) -> impl Iterator<Item = ConditionId> {
+fn asked_conditions(module: &PlacedModule) -> impl Iterator<Item = ConditionId> {
     let asks = |(_, condition): &(usize, &crate::parse::wesl::Condition)| {
         condition.expression.is_some_and(|root| expression_span(module, root).is_some())
     };
@@ -134,7 +134,7 @@ fn asked_conditions(module: &Placed) -> impl Iterator<Item = ConditionId> {
 }
 
 /// From the first name of an expression to its last.
-fn expression_span(module: &Placed, root: ExpressionId) -> Option<Span> {
+fn expression_span(module: &PlacedModule, root: ExpressionId) -> Option<Span> {
     let mut range: Option<std::ops::Range<u32>> = None;
     let mut open = vec![root];
     while let Some(next) = open.pop() {

@@ -11,13 +11,13 @@ use crate::parse::words::continues_word;
 use crate::resolve::wesl::Graph;
 
 /// The new names of the things that do not keep theirs.
-pub struct Renames {
+pub struct ItemRenames {
     /// For each thing, one more than its index in `texts`; 0 where it keeps its name.
     indices: Vec<u32>,
     texts: Vec<String>,
 }
 
-impl Renames {
+impl ItemRenames {
     /// The name of a thing in the output.
     pub fn text<'a>(&'a self, graph: &'a Graph, reached: &Reached, thing: Thing) -> &'a str {
         match self.indices[reached.index(thing)] {
@@ -44,10 +44,10 @@ pub fn choose_names(
     reached: &Reached,
     options: &Options,
     errors: &mut Diagnostics,
-) -> Renames {
+) -> ItemRenames {
     let things = kept_things(graph, reached);
-    let mut table = Table::new(graph, reached, &things);
-    let mut renames = Renames { indices: vec![0; reached.len()], texts: Vec::new() };
+    let mut table = NameTable::new(graph, reached, &things);
+    let mut renames = ItemRenames { indices: vec![0; reached.len()], texts: Vec::new() };
     let mut made = HashSet::new();
     for thing in &things {
         let name = name_of(graph, *thing);
@@ -101,7 +101,7 @@ fn name_hold(graph: &Graph, thing: Thing) -> Hold {
 }
 
 /// Tables over all names of the graph: which kept things have each name.
-struct Table<'a> {
+struct NameTable<'a> {
     graph: &'a Graph,
     reached: &'a Reached,
     claims: Vec<u32>,
@@ -113,7 +113,7 @@ struct Table<'a> {
     loose: Vec<Option<Thing>>,
 }
 
-impl<'a> Table<'a> {
+impl<'a> NameTable<'a> {
     fn new(graph: &'a Graph, reached: &'a Reached, things: &[Thing]) -> Self {
         let count = graph.names.len();
         let mut table = Self {

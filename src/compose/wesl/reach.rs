@@ -1,13 +1,13 @@
 //! Finds what a permutation keeps: from its roots along every use whose condition holds.
 
 use super::evaluate::Evaluator;
-use super::reached::{Dependency, Meaning, Reached, Thing, name_of};
+use super::reached::{Dependency, Reached, ReferenceMeaning, Thing, name_of};
 use crate::compose::{Keep, Options};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::limits::count_steps;
-use crate::parse::wesl::{Event, ItemKind, Name, Reference};
+use crate::parse::wesl::{Event, ItemKind, Name, UsedName};
 use crate::permute::Setting;
-use crate::resolve::wesl::{Graph, PLACES, Target};
+use crate::resolve::wesl::{Graph, PLACES, PathTarget};
 use crate::source::Span;
 
 /// Finds what is kept. Errors are added to those of the evaluator.
@@ -17,7 +17,7 @@ pub fn find_reached(graph: &Graph, evaluator: &mut Evaluator<'_>, options: &Opti
         things: vec![false; things],
         hidden: vec![false; things],
         nodes: vec![false; graph.nodes.len()],
-        meanings: vec![Meaning::Unknown; graph.totals.bindings as usize],
+        meanings: vec![ReferenceMeaning::Unknown; graph.totals.bindings as usize],
         order: graph.order.clone(),
         items: graph.totals.items,
         bases: graph.nodes.iter().map(|node| node.bases.items).collect(),
@@ -26,7 +26,7 @@ pub fn find_reached(graph: &Graph, evaluator: &mut Evaluator<'_>, options: &Opti
         free: Vec::new(),
     };
     let (all, some) = (options.keep == Keep::All, matches!(options.keep, Keep::Items(_)));
-    let mut walk = Walk { graph, evaluator, all, some, reached, queue: Vec::new() };
+    let mut walk = ReachWalk { graph, evaluator, all, some, reached, queue: Vec::new() };
     walk.node(0);
     match &options.keep {
         Keep::EntryPoints => walk.entry_points(),
@@ -40,7 +40,7 @@ pub fn find_reached(graph: &Graph, evaluator: &mut Evaluator<'_>, options: &Opti
     walk.reached
 }
 
-struct Walk<'a, 'b, 'c> {
+struct ReachWalk<'a, 'b, 'c> {
     graph: &'a Graph,
     evaluator: &'c mut Evaluator<'b>,
     all: bool,
@@ -51,7 +51,7 @@ struct Walk<'a, 'b, 'c> {
     queue: Vec<(u32, u32)>,
 }
 
-impl Walk<'_, '_, '_> {
+impl ReachWalk<'_, '_, '_> {
     fn entry_points(&mut self) {
         let items = &self.graph.nodes[0].module.items;
         let mut any = false;
@@ -182,7 +182,8 @@ impl Walk<'_, '_, '_> {
             }
         });
         for (reference, range) in uses {
-            let Meaning::Thing(used) = self.meaning(node, reference, module.span(range.clone()))
+            let ReferenceMeaning::Thing(used) =
+                self.meaning(node, reference, module.span(range.clone()))
             else {
                 continue;
             };
@@ -203,15 +204,15 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    fn meaning(&mut self, node: u32, reference: u32, span: Span) -> Meaning {
+    fn meaning(&mut self, node: u32, reference: u32, span: Span) -> ReferenceMeaning {
         let index = (self.graph.nodes[node as usize].bases.bindings + reference) as usize;
-        if let Meaning::Unknown = self.reached.meanings[index] {
+        if let ReferenceMeaning::Unknown = self.reached.meanings[index] {
             self.reached.meanings[index] = self.find(node, reference, span);
         }
         self.reached.meanings[index]
     }
 
-    fn find(&mut self, node: u32, reference: u32, span: Span) -> Meaning {
+    fn find(&mut self, node: u32, reference: u32, span: Span) -> ReferenceMeaning {
         let graph = self.graph;
         let mut disabled = Vec::new();
         for candidate in &graph.nodes[node as usize].bindings[reference as usize] {
@@ -220,12 +221,14 @@ impl Walk<'_, '_, '_> {
                 continue;
             }
             match candidate.target {
-                Target::Constant(index) => return Meaning::Thing(Thing::Constant(index)),
-                Target::Failed(index) => {
-                    self.evaluator.errors.push(graph.failures[index as usize].clone());
-                    return Meaning::Free;
+                PathTarget::Constant(index) => {
+                    return ReferenceMeaning::Thing(Thing::Constant(index));
                 }
-                Target::Module => {
+                PathTarget::Failed(index) => {
+                    self.evaluator.errors.push(graph.failures[index as usize].clone());
+                    return ReferenceMeaning::Free;
+                }
+                PathTarget::Module => {
                     let error = Diagnostic::error(
                         codes::NOT_AN_ITEM,
                         "a module is not a value, a function or a type",
@@ -234,10 +237,12 @@ impl Walk<'_, '_, '_> {
                     self.evaluator
                         .errors
                         .push(error.note("help: name one of its items: `module::item`"));
-                    return Meaning::Free;
+                    return ReferenceMeaning::Free;
                 }
-                Target::Items { node: other, name } => match self.chosen(other, name) {
-                    Some(item) => return Meaning::Thing(Thing::Item { node: other, item }),
+                PathTarget::Items { node: other, name } => match self.chosen(other, name) {
+                    Some(item) => {
+                        return ReferenceMeaning::Thing(Thing::Item { node: other, item });
+                    }
                     None => disabled.push((other, name)),
                 },
             }
@@ -281,24 +286,22 @@ impl Walk<'_, '_, '_> {
         reference: u32,
         span: Span,
         disabled: &[(u32, Name)],
-    ) -> Meaning {
+    ) -> ReferenceMeaning {
         let graph = self.graph;
         let here = &graph.nodes[node as usize];
         let mut imports: &[usize] = &[];
         let text = match &here.module.references[reference as usize] {
-            Reference::Name(name)
+            UsedName::Name(name)
                 if naga::keywords::wgsl::BUILTIN_IDENTIFIERS.contains(&graph.names.text(*name)) =>
             {
                 self.reached.free.push(*name);
-                return Meaning::Free;
+                return ReferenceMeaning::Free;
             }
-            Reference::Name(name) => {
+            UsedName::Name(name) => {
                 imports = here.aliases.get(name).map_or(&[], Vec::as_slice);
                 graph.names.text(*name)
             }
-            Reference::Path(path) => {
-                path.segments.last().map_or("", |name| graph.names.text(*name))
-            }
+            UsedName::Path(path) => path.segments.last().map_or("", |name| graph.names.text(*name)),
         };
         let message = format!("`{text}` exists but is disabled by its condition");
         let mut error = Diagnostic::error(codes::DISABLED_ITEM, message).at(span, "used here");
@@ -322,6 +325,6 @@ impl Walk<'_, '_, '_> {
                 .at(here.module.span(import.alias_range.clone()), "imported under a condition");
         }
         self.evaluator.errors.push(error);
-        Meaning::Free
+        ReferenceMeaning::Free
     }
 }

@@ -13,7 +13,7 @@ pub enum Thing {
 
 /// What a reference means under the settings.
 #[derive(Debug, Clone, Copy)]
-pub enum Meaning {
+pub enum ReferenceMeaning {
     Unknown,
     /// Something predeclared, or an error that has been reported.
     Free,
@@ -36,7 +36,7 @@ pub struct Reached {
     pub(super) hidden: Vec<bool>,
     pub(super) nodes: Vec<bool>,
     /// For each binding of all nodes, its meaning.
-    pub(super) meanings: Vec<Meaning>,
+    pub(super) meanings: Vec<ReferenceMeaning>,
     pub(super) order: Vec<u32>,
     pub(super) items: u32,
     pub(super) bases: Vec<u32>,
@@ -79,7 +79,7 @@ impl Reached {
     }
 
     /// What a reference of a node means.
-    pub fn meaning(&self, graph: &Graph, node: u32, reference: u32) -> Meaning {
+    pub fn meaning(&self, graph: &Graph, node: u32, reference: u32) -> ReferenceMeaning {
         self.meanings[(graph.nodes[node as usize].bases.bindings + reference) as usize]
     }
 }

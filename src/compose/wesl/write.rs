@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use super::evaluate::Evaluator;
-use super::naming::Renames;
-use super::reached::{Meaning, Reached, Thing};
+use super::naming::ItemRenames;
+use super::reached::{Reached, ReferenceMeaning, Thing};
 use crate::compose::{Part, PartKind, Segment, SourceMap};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::parse::wesl::{Directive, Event, ItemKind, Name, Placed};
+use crate::parse::wesl::{Directive, Event, ItemKind, Name, PlacedModule};
 use crate::resolve::wesl::Graph;
 use crate::source::{LIMITS, Span};
 
@@ -15,7 +15,7 @@ use crate::source::{LIMITS, Span};
 pub fn write_reached(
     graph: &Graph,
     reached: &Reached,
-    names: &Renames,
+    names: &ItemRenames,
     evaluator: &mut Evaluator<'_>,
 ) -> (String, SourceMap, Vec<Part>) {
     let mut writer = Writer {
@@ -44,7 +44,7 @@ pub fn write_reached(
 struct Writer<'a> {
     graph: &'a Graph,
     reached: &'a Reached,
-    names: &'a Renames,
+    names: &'a ItemRenames,
     text: String,
     map: SourceMap,
     /// What was copied last, if nothing of the composer's own was written after it. After a rename
@@ -65,7 +65,7 @@ impl Writer<'_> {
         self.text.push_str(text);
     }
 
-    fn copy(&mut self, module: &Placed, range: Range<u32>) {
+    fn copy(&mut self, module: &PlacedModule, range: Range<u32>) {
         if range.start >= range.end || self.text.len() > LIMITS.expansion_bytes {
             return;
         }
@@ -176,7 +176,8 @@ impl Writer<'_> {
             }
             Event::Definition { start, end } => self.name(module, own, &mut at, start..end),
             Event::Use { reference, start, end, .. } => {
-                if let Meaning::Thing(thing) = self.reached.meaning(graph, node, reference) {
+                if let ReferenceMeaning::Thing(thing) = self.reached.meaning(graph, node, reference)
+                {
                     uses.push(self.reached.index(thing) as u32);
                     let before = self.text.len() + start.saturating_sub(at) as usize;
                     self.name(module, thing, &mut at, start..end);
@@ -223,7 +224,7 @@ impl Writer<'_> {
     }
 
     /// Writes a name. Where it does not change, it is copied together with the text around it.
-    fn name(&mut self, module: &Placed, thing: Thing, at: &mut u32, range: Range<u32>) {
+    fn name(&mut self, module: &PlacedModule, thing: Thing, at: &mut u32, range: Range<u32>) {
         let names = self.names;
         let name = names.text(self.graph, self.reached, thing);
         if &module.text[range.start as usize..range.end as usize] != name {
@@ -267,7 +268,7 @@ fn is_new(seen: &mut Vec<(Name, Vec<Name>)>, directive: &Directive) -> bool {
 
 /// Whether there is no blank line between two items in the author's text, or in what stands between
 /// them.
-fn are_adjacent(module: &Placed, last: u32, next: u32) -> bool {
+fn are_adjacent(module: &PlacedModule, last: u32, next: u32) -> bool {
     module.items[last as usize..=next as usize].windows(2).all(|pair| {
         let gap = &module.text[pair[0].range.end as usize..pair[1].range.start as usize];
         gap.matches('\n').count() <= 1

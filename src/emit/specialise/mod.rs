@@ -11,14 +11,14 @@ mod text;
 use naga::back::wgsl::{WriterFlags, write_string};
 use naga::{Expression, Handle, Literal, Module, Override, Scalar, ScalarKind, TypeInner};
 
-use super::{Emitted, Entry, Overrides, Source};
-use crate::bundle::Choice;
+use super::{EmitSource, Emitted, Overrides, TargetEntry};
+use crate::bundle::OverrideChoice;
 use crate::compose::Composed;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::validate::{Validated, info_unchecked};
 
 /// An override that stays open.
-struct Open {
+struct OpenOverride {
     /// As the author calls it.
     name: String,
     /// Name of the variable that stands for it.
@@ -31,7 +31,7 @@ struct Open {
     text: String,
 }
 
-impl Open {
+impl OpenOverride {
     /// The name of the macro, or of the function constant, that chooses the value.
     fn symbol(&self) -> String {
         format!("LAMPLIGHT_{}", self.name.to_uppercase())
@@ -101,11 +101,14 @@ fn literal_before(
 
 /// Writes an entry point with its overrides open; `None` where one of them is not a scalar with a
 /// default.
-pub fn write_open(source: &Source<'_>, writer: &Entry) -> Option<Result<Emitted, String>> {
+pub fn write_open(
+    source: &EmitSource<'_>,
+    writer: &TargetEntry,
+) -> Option<Result<Emitted, String>> {
     let opens = open_overrides(source.module)?;
     Some(opened_module(source, &opens).and_then(|(module, info)| {
         let point = module.entry_points.get(source.index).ok_or("the entry point was lost")?;
-        let source = Source {
+        let source = EmitSource {
             module: &module,
             info: &info,
             stage: source.stage,
@@ -117,7 +120,11 @@ pub fn write_open(source: &Source<'_>, writer: &Entry) -> Option<Result<Emitted,
     }))
 }
 
-fn finish_open(mut emitted: Emitted, opens: &[Open], writer: &Entry) -> Result<Emitted, String> {
+fn finish_open(
+    mut emitted: Emitted,
+    opens: &[OpenOverride],
+    writer: &TargetEntry,
+) -> Result<Emitted, String> {
     // Writers leave out a variable that the entry point does not use.
     let choices = match writer.overrides {
         Overrides::Specialised => spirv::open_words(&mut emitted.bytes, opens)?,
@@ -127,21 +134,21 @@ fn finish_open(mut emitted: Emitted, opens: &[Open], writer: &Entry) -> Result<E
     Ok(emitted)
 }
 
-fn choice_of(open: &Open, id: bool) -> Choice {
-    Choice {
+fn choice_of(open: &OpenOverride, id: bool) -> OverrideChoice {
+    OverrideChoice {
         name: open.name.clone(),
         id: id.then_some(open.id),
         symbol: (!id).then(|| open.symbol()),
     }
 }
 
-fn open_overrides(module: &Module) -> Option<Vec<Open>> {
+fn open_overrides(module: &Module) -> Option<Vec<OpenOverride>> {
     let mut taken: Vec<u32> =
         module.overrides.iter().filter_map(|(_, found)| found.id).map(u32::from).collect();
     module.overrides.iter().map(|(_, found)| open_override(module, found, &mut taken)).collect()
 }
 
-fn open_override(module: &Module, found: &Override, taken: &mut Vec<u32>) -> Option<Open> {
+fn open_override(module: &Module, found: &Override, taken: &mut Vec<u32>) -> Option<OpenOverride> {
     let name = found.name.clone()?;
     let TypeInner::Scalar(Scalar { kind, width: 1 | 4 }) = module.types[found.ty].inner else {
         return None;
@@ -161,7 +168,7 @@ fn open_override(module: &Module, found: &Override, taken: &mut Vec<u32>) -> Opt
         None => (0..).find(|id| !taken.contains(id))?,
     };
     taken.push(id);
-    Some(Open {
+    Some(OpenOverride {
         variable: format!("lamplight_{}_open", name.trim_matches('_')),
         name,
         kind,
@@ -174,8 +181,8 @@ fn open_override(module: &Module, found: &Override, taken: &mut Vec<u32>) -> Opt
 /// The module with private variables for its overrides. It is written as WGSL for this, where only
 /// one word of each declaration changes.
 fn opened_module(
-    source: &Source<'_>,
-    opens: &[Open],
+    source: &EmitSource<'_>,
+    opens: &[OpenOverride],
 ) -> Result<(Module, naga::valid::ModuleInfo), String> {
     let mut named = source.module.clone();
     for ((_, found), open) in named.overrides.iter_mut().zip(opens) {

@@ -7,22 +7,27 @@ use std::collections::BTreeMap;
 
 use naga::ScalarKind;
 
-use super::{Open, choice_of};
-use crate::bundle::Choice;
-use crate::emit::spirv::{self, HEADER_WORDS, Instruction, first_word, instructions, op, string};
+use super::{OpenOverride, choice_of};
+use crate::bundle::OverrideChoice;
+use crate::emit::spirv::{
+    self, HEADER_WORDS, SpirvInstruction, first_word, instructions, op, string,
+};
 
 /// Opcodes of types. The first type follows all decorations.
 const TYPES: std::ops::RangeInclusive<u16> = 19..=39;
 const SPEC_ID: u32 = 1;
 
 /// Opens the variables of overrides; returns how each is chosen.
-pub fn open_words(bytes: &mut Vec<u8>, opens: &[Open]) -> Result<Vec<Choice>, String> {
+pub fn open_words(
+    bytes: &mut Vec<u8>,
+    opens: &[OpenOverride],
+) -> Result<Vec<OverrideChoice>, String> {
     let words = spirv::words(bytes);
     let variables = open_variables(&words, opens)?;
     let mut out = words.get(..HEADER_WORDS).ok_or("the module is too short")?.to_vec();
     let mut pointees = BTreeMap::new();
     let mut decorated = false;
-    for Instruction { op, words } in instructions(&words) {
+    for SpirvInstruction { op, words } in instructions(&words) {
         if !decorated && TYPES.contains(&op) {
             variables.iter().for_each(|(id, open)| {
                 out.extend([first_word(op::DECORATE, 4), *id, SPEC_ID, open.id])
@@ -52,7 +57,7 @@ pub fn open_words(bytes: &mut Vec<u8>, opens: &[Open]) -> Result<Vec<Choice>, St
     Ok(written.map(|open| choice_of(open, true)).collect())
 }
 
-fn write_constant(out: &mut Vec<u32>, ty: u32, id: u32, open: &Open) {
+fn write_constant(out: &mut Vec<u32>, ty: u32, id: u32, open: &OpenOverride) {
     match (open.kind, open.bits) {
         (ScalarKind::Bool, 0) => out.extend([first_word(op::SPEC_CONSTANT_FALSE, 3), ty, id]),
         (ScalarKind::Bool, _) => out.extend([first_word(op::SPEC_CONSTANT_TRUE, 3), ty, id]),
@@ -61,9 +66,12 @@ fn write_constant(out: &mut Vec<u32>, ty: u32, id: u32, open: &Open) {
 }
 
 /// The overrides, by the id of their variable.
-fn open_variables<'a>(words: &[u32], opens: &'a [Open]) -> Result<BTreeMap<u32, &'a Open>, String> {
+fn open_variables<'a>(
+    words: &[u32],
+    opens: &'a [OpenOverride],
+) -> Result<BTreeMap<u32, &'a OpenOverride>, String> {
     let mut variables = BTreeMap::new();
-    for Instruction { op, words } in instructions(words) {
+    for SpirvInstruction { op, words } in instructions(words) {
         if let (op::NAME, [_, id, name @ ..]) = (op, words) {
             let name = string(name);
             let found = opens.iter().find(|open| open.variable == name);

@@ -2,16 +2,16 @@
 
 use naga::ScalarKind;
 
-use super::{Open, choice_of};
-use crate::bundle::Choice;
-use crate::emit::{Entry, Overrides, is_header_line};
+use super::{OpenOverride, choice_of};
+use crate::bundle::OverrideChoice;
+use crate::emit::{Overrides, TargetEntry, is_header_line};
 
 /// Opens the variables of overrides that the text declares; returns how each is chosen.
 pub fn open_text(
     bytes: &mut Vec<u8>,
-    opens: &[Open],
-    writer: &Entry,
-) -> Result<Vec<Choice>, String> {
+    opens: &[OpenOverride],
+    writer: &TargetEntry,
+) -> Result<Vec<OverrideChoice>, String> {
     let is_constant = writer.overrides == Overrides::FunctionConstants;
     let text = std::str::from_utf8(bytes).map_err(|error| error.to_string())?;
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
@@ -56,7 +56,7 @@ fn initialiser_index(line: &str, variable: &str) -> Option<usize> {
 
 /// The index of the first line after those that must come first: `#version`, extensions and
 /// precisions, or Metal's headers.
-fn first_line(lines: &[String], writer: &Entry) -> usize {
+fn first_line(lines: &[String], writer: &TargetEntry) -> usize {
     match writer.header {
         [] => 0,
         _ => lines.iter().take_while(|line| is_header_line(line)).count(),
@@ -64,7 +64,7 @@ fn first_line(lines: &[String], writer: &Entry) -> usize {
 }
 
 /// The lines that define the value: the host's macro if it is defined, the default otherwise.
-fn definition_lines(open: &Open) -> Vec<String> {
+fn definition_lines(open: &OpenOverride) -> Vec<String> {
     let symbol = open.symbol();
     vec![
         format!("#ifndef {symbol}"),
@@ -73,7 +73,7 @@ fn definition_lines(open: &Open) -> Vec<String> {
     ]
 }
 
-fn function_constant(open: &Open) -> Vec<String> {
+fn function_constant(open: &OpenOverride) -> Vec<String> {
     let (symbol, ty, value) = (open.symbol(), scalar_name(open.kind), value_name(open));
     vec![
         format!("constant {ty} {symbol} [[function_constant({})]];", open.id),
@@ -84,7 +84,7 @@ fn function_constant(open: &Open) -> Vec<String> {
     ]
 }
 
-fn value_name(open: &Open) -> String {
+fn value_name(open: &OpenOverride) -> String {
     format!("{}_VALUE", open.symbol())
 }
 

@@ -9,12 +9,12 @@ use naga::{Handle, ImageDimension, Type, TypeInner};
 use crate::bundle::Target;
 use crate::emit::glsl;
 use crate::emit::slots::Numbering;
-use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip};
+use crate::emit::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip};
 
 const VERSION: Version = Version::new_gles(300);
 
 /// The target, for the table of all.
-pub const TARGET: Entry = Entry {
+pub const TARGET: TargetEntry = TargetEntry {
     target: Target::ESSL300,
     extension: "essl300.glsl",
     binary: false,
@@ -22,12 +22,12 @@ pub const TARGET: Entry = Entry {
     glsl: Some(VERSION),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
-    judged: Judged { judge: "glslang", rules: &["own", "310 es"] },
+    judged: JudgeRules { judge: "glslang", rules: &["own", "310 es"] },
     clip: &clip::OPENGL,
     write,
 };
 
-fn write(source: &Source<'_>) -> Result<Emitted, String> {
+fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     // naga would write `sampler1D` here, which no driver of this version knows.
     let is_line = |ty: Handle<Type>| {
         matches!(source.module.types[ty].inner, TypeInner::Image { dim: ImageDimension::D1, .. })

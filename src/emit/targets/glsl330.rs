@@ -8,12 +8,12 @@ use naga::back::glsl::Version;
 use crate::bundle::Target;
 use crate::emit::glsl;
 use crate::emit::slots::Numbering;
-use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip};
+use crate::emit::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip};
 
 const VERSION: Version = Version::Desktop(330);
 
 /// The target, for the table of all.
-pub const TARGET: Entry = Entry {
+pub const TARGET: TargetEntry = TargetEntry {
     target: Target::GLSL330,
     extension: "glsl330.glsl",
     binary: false,
@@ -21,11 +21,11 @@ pub const TARGET: Entry = Entry {
     glsl: Some(VERSION),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
-    judged: Judged { judge: "glslang", rules: &["own"] },
+    judged: JudgeRules { judge: "glslang", rules: &["own"] },
     clip: &clip::OPENGL,
     write,
 };
 
-fn write(source: &Source<'_>) -> Result<Emitted, String> {
+fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     glsl::write_glsl(source, VERSION, Numbering::Named)
 }

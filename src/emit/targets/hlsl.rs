@@ -12,16 +12,16 @@ use naga::back::hlsl::{
     ShaderModel, Writer,
 };
 
-use crate::bundle::{HeapSampler, Kind, Native, Place, SamplerHeap, Semantic, Target};
+use crate::bundle::{BindingKind, HeapSampler, Native, Place, SamplerHeap, Semantic, Target};
 use crate::emit::names::first_entry_name;
 use crate::emit::reflect::{binding_kind, entry_inputs};
 use crate::emit::slots::{Numbering, assign_slots, native_reflection};
-use crate::emit::text::Text;
-use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip, setters, zeros};
+use crate::emit::text::BoundedText;
+use crate::emit::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip, setters, zeros};
 use crate::emit::{columns, lists, rename};
 
 /// The target, for the table of all.
-pub const TARGET: Entry = Entry {
+pub const TARGET: TargetEntry = TargetEntry {
     target: Target::HLSL,
     extension: "hlsl",
     binary: false,
@@ -29,7 +29,7 @@ pub const TARGET: Entry = Entry {
     glsl: None,
     header: &[],
     overrides: Overrides::Macros,
-    judged: Judged { judge: "glslang", rules: &["hlsl"] },
+    judged: JudgeRules { judge: "glslang", rules: &["hlsl"] },
     clip: &clip::SHARED,
     write,
 };
@@ -40,8 +40,10 @@ const HEAP_SIZE: u32 = 2048;
 const INDEX_SPACE: u8 = u8::MAX;
 
 /// The heaps: name in the output, and the kind of sampler.
-const HEAPS: [(&str, Kind); 2] =
-    [("nagaSamplerHeap", Kind::Sampler), ("nagaComparisonSamplerHeap", Kind::ComparisonSampler)];
+const HEAPS: [(&str, BindingKind); 2] = [
+    ("nagaSamplerHeap", BindingKind::Sampler),
+    ("nagaComparisonSamplerHeap", BindingKind::ComparisonSampler),
+];
 
 /// Reserved words of HLSL that naga does not avoid.
 const WORDS: &[&str] = &[
@@ -72,7 +74,7 @@ fn is_taken(name: &str) -> bool {
     WORDS.contains(&name) || PREFIXES.iter().any(|prefix| name.starts_with(prefix))
 }
 
-fn write(source: &Source<'_>) -> Result<Emitted, String> {
+fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     if columns::taken_from_values(source.module, source.info).next().is_some() {
         return Err(columns::TAKEN.to_owned());
     }
@@ -83,7 +85,7 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     let module = changed.as_ref().unwrap_or(module);
     let entry = module.entry_points.get(source.index).ok_or("there is no entry point")?;
     let pipeline = PipelineOptions { entry_point: Some((source.stage, entry.name.clone())) };
-    let mut text = Text::default();
+    let mut text = BoundedText::default();
     let written = Writer::new(&mut text, &options, &pipeline).write(module, source.info, None);
     let info = written.map_err(|error| text.explain(error))?;
     let name = first_entry_name(info.entry_point_names)?;
@@ -92,7 +94,7 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     Ok(Emitted { bytes: text.into_bytes(), native: hlsl_reflection(source, &name, &options) })
 }
 
-fn writer_options(source: &Source<'_>) -> Result<Options, String> {
+fn writer_options(source: &EmitSource<'_>) -> Result<Options, String> {
     let mut options = Options {
         shader_model: ShaderModel::V5_1,
         fake_missing_bindings: false,
@@ -123,7 +125,7 @@ fn writer_options(source: &Source<'_>) -> Result<Options, String> {
     Ok(options)
 }
 
-fn hlsl_reflection(source: &Source<'_>, entry: &str, options: &Options) -> Native {
+fn hlsl_reflection(source: &EmitSource<'_>, entry: &str, options: &Options) -> Native {
     let mut native = native_reflection(source, entry, Numbering::Author);
     native.sampler_heaps = sampler_heaps(source, &options.sampler_heap_target);
     let in_heap = |group: u32, binding: u32| {
@@ -142,26 +144,26 @@ fn hlsl_reflection(source: &Source<'_>, entry: &str, options: &Options) -> Nativ
 }
 
 /// The class of register that naga gives what is bound.
-fn register_class(source: &Source<'_>, place: Place) -> Option<&'static str> {
+fn register_class(source: &EmitSource<'_>, place: Place) -> Option<&'static str> {
     let mut variables = source.module.global_variables.iter();
     let (_, variable) = variables
         .find(|(_, one)| one.binding.is_some_and(|one| [one.group, one.binding] == place))?;
     Some(match (binding_kind(source.module, variable)?, variable.space) {
-        (Kind::Uniform, _) => "b",
-        (Kind::Storage, naga::AddressSpace::Storage { access })
+        (BindingKind::Uniform, _) => "b",
+        (BindingKind::Storage, naga::AddressSpace::Storage { access })
             if access.contains(naga::StorageAccess::STORE) =>
         {
             "u"
         }
-        (Kind::StorageTexture, _) => "u",
+        (BindingKind::StorageTexture, _) => "u",
         _ => "t",
     })
 }
 
 /// The heaps that the entry point takes samplers from.
-fn sampler_heaps(source: &Source<'_>, targets: &SamplerHeapBindTargets) -> Vec<SamplerHeap> {
+fn sampler_heaps(source: &EmitSource<'_>, targets: &SamplerHeapBindTargets) -> Vec<SamplerHeap> {
     let used = assign_slots(source, Numbering::Author);
-    let heap = |(name, wanted): (&str, Kind)| {
+    let heap = |(name, wanted): (&str, BindingKind)| {
         let samplers: Vec<HeapSampler> = used
             .iter()
             .filter(|(_, kind, _)| *kind == wanted)
@@ -173,7 +175,7 @@ fn sampler_heaps(source: &Source<'_>, targets: &SamplerHeapBindTargets) -> Vec<S
                 element: place.binding,
             })
             .collect();
-        let comparison = wanted == Kind::ComparisonSampler;
+        let comparison = wanted == BindingKind::ComparisonSampler;
         let target =
             if comparison { targets.comparison_samplers } else { targets.standard_samplers };
         (!samplers.is_empty()).then(|| SamplerHeap {
@@ -189,7 +191,7 @@ fn sampler_heaps(source: &Source<'_>, targets: &SamplerHeapBindTargets) -> Vec<S
 }
 
 /// What an input layout calls each attribute.
-fn vertex_semantics(source: &Source<'_>) -> Vec<Semantic> {
+fn vertex_semantics(source: &EmitSource<'_>) -> Vec<Semantic> {
     if source.stage != naga::ShaderStage::Vertex {
         return Vec::new();
     }

@@ -9,14 +9,14 @@ use naga::back::msl::{
     BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, Writer,
 };
 
-use crate::bundle::{BufferSizes, Kind, Target};
+use crate::bundle::{BindingKind, BufferSizes, Target};
 use crate::emit::names::first_entry_name;
 use crate::emit::slots::{Numbering, assign_slots, native_reflection};
-use crate::emit::text::Text;
-use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip, rename};
+use crate::emit::text::BoundedText;
+use crate::emit::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip, rename};
 
 /// The target, for the table of all.
-pub const TARGET: Entry = Entry {
+pub const TARGET: TargetEntry = TargetEntry {
     target: Target::MSL,
     extension: "metal",
     binary: false,
@@ -24,7 +24,7 @@ pub const TARGET: Entry = Entry {
     glsl: None,
     header: &["#", "using "],
     overrides: Overrides::FunctionConstants,
-    judged: Judged { judge: "clang", rules: &[] },
+    judged: JudgeRules { judge: "clang", rules: &[] },
     clip: &clip::SHARED,
     write,
 };
@@ -33,7 +33,7 @@ pub const TARGET: Entry = Entry {
 /// is the last of the 31.
 const SIZES_BUFFER: u8 = 30;
 
-fn write(source: &Source<'_>) -> Result<Emitted, String> {
+fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let options = Options {
         lang_version: (2, 0),
         per_entry_point_map: BTreeMap::from([(source.entry.to_owned(), entry_resources(source)?)]),
@@ -48,7 +48,7 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     };
     let unlike = rename::rename_types_like_members(source.module);
     let module = unlike.as_ref().unwrap_or(source.module);
-    let mut text = Text::default();
+    let mut text = BoundedText::default();
     let written = Writer::new(&mut text).write(module, source.info, &options, &pipeline);
     let info = written.map_err(|error| text.explain(error))?;
     let text = text.0;
@@ -60,7 +60,7 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
 
 /// The argument with sizes of buffers, if naga gave the entry point one. It has a member for each
 /// buffer of the module that needs one, named after the index of its variable in the module.
-fn buffer_sizes(source: &Source<'_>, text: &str) -> Option<BufferSizes> {
+fn buffer_sizes(source: &EmitSource<'_>, text: &str) -> Option<BufferSizes> {
     let argument = format!("[[buffer({SIZES_BUFFER})]]");
     text.lines().find(|line| line.contains("_mslBufferSizes&") && line.contains(&argument))?;
     let (_, members) = text.split_once("struct _mslBufferSizes {")?;
@@ -76,7 +76,7 @@ fn buffer_sizes(source: &Source<'_>, text: &str) -> Option<BufferSizes> {
     })
 }
 
-fn entry_resources(source: &Source<'_>) -> Result<EntryPointResources, String> {
+fn entry_resources(source: &EmitSource<'_>) -> Result<EntryPointResources, String> {
     let mut resources = EntryPointResources::default();
     for (binding, kind, index) in assign_slots(source, Numbering::PerKind) {
         let slot = index
@@ -88,15 +88,17 @@ fn entry_resources(source: &Source<'_>) -> Result<EntryPointResources, String> {
     Ok(resources)
 }
 
-fn bind_target(kind: Kind, slot: u8) -> BindTarget {
+fn bind_target(kind: BindingKind, slot: u8) -> BindTarget {
     match kind {
-        Kind::Uniform => BindTarget { buffer: Some(slot), ..BindTarget::default() },
-        Kind::Storage => BindTarget { buffer: Some(slot), mutable: true, ..BindTarget::default() },
-        Kind::Texture => BindTarget { texture: Some(slot), ..BindTarget::default() },
-        Kind::StorageTexture => {
+        BindingKind::Uniform => BindTarget { buffer: Some(slot), ..BindTarget::default() },
+        BindingKind::Storage => {
+            BindTarget { buffer: Some(slot), mutable: true, ..BindTarget::default() }
+        }
+        BindingKind::Texture => BindTarget { texture: Some(slot), ..BindTarget::default() },
+        BindingKind::StorageTexture => {
             BindTarget { texture: Some(slot), mutable: true, ..BindTarget::default() }
         }
-        Kind::Sampler | Kind::ComparisonSampler => {
+        BindingKind::Sampler | BindingKind::ComparisonSampler => {
             BindTarget { sampler: Some(BindSamplerTarget::Resource(slot)), ..BindTarget::default() }
         }
     }

@@ -2,17 +2,17 @@
 //!
 //! Descriptor set and binding are the author's group and binding. Names are kept for debuggers;
 //! no source text and no path is. Loops and indices are as written, unless
-//! [`Bounds::Restrict`](crate::bundle::Bounds) is asked for.
+//! [`BoundsChecks::Restrict`](crate::bundle::BoundsChecks) is asked for.
 
 use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 
 use crate::bundle::Target;
 use crate::emit::slots::{Numbering, native_reflection};
-use crate::emit::spirv::{HEADER_WORDS, Instruction, bytes, instructions, op};
-use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip};
+use crate::emit::spirv::{HEADER_WORDS, SpirvInstruction, bytes, instructions, op};
+use crate::emit::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip};
 
 /// The target, for the table of all.
-pub const TARGET: Entry = Entry {
+pub const TARGET: TargetEntry = TargetEntry {
     target: Target::SPIRV,
     extension: "spv",
     binary: true,
@@ -20,12 +20,12 @@ pub const TARGET: Entry = Entry {
     glsl: None,
     header: &[],
     overrides: Overrides::Specialised,
-    judged: Judged { judge: "spirv_val", rules: &["vulkan1.0", "vulkan1.1"] },
+    judged: JudgeRules { judge: "spirv_val", rules: &["vulkan1.0", "vulkan1.1"] },
     clip: &clip::VULKAN,
     write,
 };
 
-fn write(source: &Source<'_>) -> Result<Emitted, String> {
+fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let options = Options {
         lang_version: (1, 0),
         flags: WriterFlags::DEBUG | WriterFlags::LABEL_VARYINGS,
@@ -45,8 +45,9 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
 /// naga writes them in the order of a hash map, which differs between processors.
 fn order_variables(words: &[u32]) -> Vec<u32> {
     const FUNCTION: u32 = 7;
-    let is_local =
-        |found: &Instruction<'_>| found.op == op::VARIABLE && found.words.get(3) == Some(&FUNCTION);
+    let is_local = |found: &SpirvInstruction<'_>| {
+        found.op == op::VARIABLE && found.words.get(3) == Some(&FUNCTION)
+    };
     let mut made = words.get(..HEADER_WORDS).unwrap_or_default().to_vec();
     let mut run: Vec<&[u32]> = Vec::new();
     // The `None` stands for the end, so that the last run is written too.

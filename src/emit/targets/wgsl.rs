@@ -4,13 +4,13 @@
 
 use naga::back::wgsl::{Writer, WriterFlags};
 
-use crate::bundle::{Choice, Target};
+use crate::bundle::{OverrideChoice, Target};
 use crate::emit::slots::{Numbering, native_reflection};
-use crate::emit::text::Text;
-use crate::emit::{Emitted, Entry, Judged, Overrides, Source, clip};
+use crate::emit::text::BoundedText;
+use crate::emit::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip};
 
 /// The target, for the table of all.
-pub const TARGET: Entry = Entry {
+pub const TARGET: TargetEntry = TargetEntry {
     target: Target::WGSL,
     extension: "wgsl",
     binary: false,
@@ -18,13 +18,13 @@ pub const TARGET: Entry = Entry {
     glsl: None,
     header: &["enable ", "requires "],
     overrides: Overrides::Kept,
-    judged: Judged { judge: "naga_tint", rules: &[] },
+    judged: JudgeRules { judge: "naga_tint", rules: &[] },
     clip: &clip::SHARED,
     write,
 };
 
-fn write(source: &Source<'_>) -> Result<Emitted, String> {
-    let mut text = Text::default();
+fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
+    let mut text = BoundedText::default();
     let written = Writer::new(&mut text, WriterFlags::empty()).write(source.module, source.info);
     written.map_err(|error| text.explain(error))?;
     let text = text.0;
@@ -41,10 +41,10 @@ fn write(source: &Source<'_>) -> Result<Emitted, String> {
     Ok(Emitted { bytes: text.into_bytes(), native })
 }
 
-fn override_choice((constant, written): (&naga::Override, &str)) -> Option<Choice> {
+fn override_choice((constant, written): (&naga::Override, &str)) -> Option<OverrideChoice> {
     let name = constant.name.clone()?;
     let symbol = (name != written).then(|| written.to_owned());
-    Some(Choice { name, id: constant.id.map(u32::from), symbol })
+    Some(OverrideChoice { name, id: constant.id.map(u32::from), symbol })
 }
 
 /// The names of declarations that begin with `word`, in the order of the text. With `after`, only

@@ -6,11 +6,11 @@ use super::super::code::{Word1, Word2};
 use super::super::machine::{convert_slot, extract_bits, insert_bits, pack, word1, word2};
 use super::super::number::Number;
 use super::geometry::{geometry, matrix_product};
-use super::rows::{LANES, Row, Rows, each_lane, lanes_of};
+use super::rows::{LANES, LaneRows, Row, each_lane, lanes_of};
 
 /// Runs one instruction.
 #[inline(always)]
-pub fn compute(instruction: &Instruction, rows: &mut Rows<'_>) {
+pub fn compute(instruction: &Instruction, rows: &mut LaneRows<'_>) {
     match *instruction {
         Instruction::Copy { to, from, n } => rows.copy(to, from, n),
         Instruction::Fill { to, from, n } => {
@@ -62,9 +62,9 @@ pub fn compute(instruction: &Instruction, rows: &mut Rows<'_>) {
 /// calls `one` for each active lane with the lane's own word.
 #[inline(always)]
 fn moved(
-    rows: &mut Rows<'_>,
+    rows: &mut LaneRows<'_>,
     slot: u32,
-    all: impl FnOnce(&mut Rows<'_>, u32),
+    all: impl FnOnce(&mut LaneRows<'_>, u32),
     one: impl Fn(&mut super::rows::LaneView<'_>, u32),
 ) {
     if let Some(word) = rows.common(slot) {
@@ -77,7 +77,7 @@ fn moved(
 }
 
 /// Instructions that few programs run often.
-fn seldom(instruction: &Instruction, rows: &mut Rows<'_>) {
+fn seldom(instruction: &Instruction, rows: &mut LaneRows<'_>) {
     match *instruction {
         Instruction::ExtractBits { signed, n, to, from, offset, count } => {
             let (offset, count) = (rows.words(offset), rows.words(count));
@@ -125,7 +125,7 @@ fn seldom(instruction: &Instruction, rows: &mut Rows<'_>) {
 /// Calls a function once for each active lane. The function gets a copy of the lane's slots in one
 /// slice: the operands in order, then the result. Afterwards the result is copied back.
 pub fn on_each_lane(
-    rows: &mut Rows<'_>,
+    rows: &mut LaneRows<'_>,
     operands: &[(u32, u32)],
     (to, n): (u32, u32),
     run: impl Fn(&mut [f32]),
@@ -149,7 +149,7 @@ pub fn on_each_lane(
 }
 
 #[inline(always)]
-fn each1(rows: &mut Rows<'_>, n: u8, to: u32, a: Operand, f: impl Fn(f32) -> f32) {
+fn each1(rows: &mut LaneRows<'_>, n: u8, to: u32, a: Operand, f: impl Fn(f32) -> f32) {
     for part in 0..u32::from(n) {
         let x = rows.m[a.at(part)];
         rows.put(to + part, each_lane(|i| f(x[i])));
@@ -157,7 +157,13 @@ fn each1(rows: &mut Rows<'_>, n: u8, to: u32, a: Operand, f: impl Fn(f32) -> f32
 }
 
 #[inline(always)]
-fn each2(rows: &mut Rows<'_>, n: u8, to: u32, [a, b]: [Operand; 2], f: impl Fn(f32, f32) -> f32) {
+fn each2(
+    rows: &mut LaneRows<'_>,
+    n: u8,
+    to: u32,
+    [a, b]: [Operand; 2],
+    f: impl Fn(f32, f32) -> f32,
+) {
     for part in 0..u32::from(n) {
         let (x, y) = (rows.m[a.at(part)], rows.m[b.at(part)]);
         rows.put(to + part, each_lane(|i| f(x[i], y[i])));
@@ -166,7 +172,7 @@ fn each2(rows: &mut Rows<'_>, n: u8, to: u32, [a, b]: [Operand; 2], f: impl Fn(f
 
 #[inline(always)]
 fn each3(
-    rows: &mut Rows<'_>,
+    rows: &mut LaneRows<'_>,
     n: u8,
     to: u32,
     [a, b, c]: [Operand; 3],
@@ -180,7 +186,7 @@ fn each3(
 
 /// As [`each1`], for a function of the lane's index and its word.
 #[inline(always)]
-fn each_row(rows: &mut Rows<'_>, n: u8, to: u32, a: Operand, f: impl Fn(usize, u32) -> u32) {
+fn each_row(rows: &mut LaneRows<'_>, n: u8, to: u32, a: Operand, f: impl Fn(usize, u32) -> u32) {
     for part in 0..u32::from(n) {
         let x = rows.words(a.at(part) as u32);
         rows.put_words(to + part, each_lane(|i| f(i, x[i])));
@@ -191,7 +197,7 @@ fn each_row(rows: &mut Rows<'_>, n: u8, to: u32, a: Operand, f: impl Fn(usize, u
 /// for each active lane.
 #[inline(always)]
 fn costly<const K: usize>(
-    rows: &mut Rows<'_>,
+    rows: &mut LaneRows<'_>,
     n: u8,
     to: u32,
     operands: [Operand; K],
@@ -221,7 +227,7 @@ macro_rules! by_name {
     };
 }
 
-fn unary(rows: &mut Rows<'_>, op: Unary, n: u8, to: u32, a: Operand) {
+fn unary(rows: &mut LaneRows<'_>, op: Unary, n: u8, to: u32, a: Operand) {
     by_name!(
         Unary, op,
         [Negate Abs Saturate Radians Degrees Ceil Floor Round Fract Trunc Sign Sqrt InverseSqrt],
@@ -230,7 +236,7 @@ fn unary(rows: &mut Rows<'_>, op: Unary, n: u8, to: u32, a: Operand) {
     );
 }
 
-fn binary(rows: &mut Rows<'_>, op: Binary, n: u8, to: u32, [a, b]: [Operand; 2]) {
+fn binary(rows: &mut LaneRows<'_>, op: Binary, n: u8, to: u32, [a, b]: [Operand; 2]) {
     by_name!(
         Binary, op,
         [Add Subtract Multiply Divide Min Max Step],
@@ -239,7 +245,7 @@ fn binary(rows: &mut Rows<'_>, op: Binary, n: u8, to: u32, [a, b]: [Operand; 2])
     );
 }
 
-fn ternary(rows: &mut Rows<'_>, op: Ternary, n: u8, to: u32, operands: [Operand; 3]) {
+fn ternary(rows: &mut LaneRows<'_>, op: Ternary, n: u8, to: u32, operands: [Operand; 3]) {
     by_name!(
         Ternary, op,
         [Clamp Mix SmoothStep],
@@ -248,7 +254,7 @@ fn ternary(rows: &mut Rows<'_>, op: Ternary, n: u8, to: u32, operands: [Operand;
     );
 }
 
-fn compare(rows: &mut Rows<'_>, op: Compare, n: u8, to: u32, operands: [Operand; 2]) {
+fn compare(rows: &mut LaneRows<'_>, op: Compare, n: u8, to: u32, operands: [Operand; 2]) {
     by_name!(
         Compare, op,
         [Equal NotEqual Less LessEqual Greater],
@@ -262,7 +268,7 @@ fn compared(op: Compare, x: f32, y: f32) -> f32 {
     f32::from_bits(u32::from(f32::compare(op, x, y, &mut false)))
 }
 
-fn word_unary(rows: &mut Rows<'_>, op: Word1, n: u8, to: u32, a: Operand) {
+fn word_unary(rows: &mut LaneRows<'_>, op: Word1, n: u8, to: u32, a: Operand) {
     by_name!(
         Word1, op,
         [Negate Not LogicalNot Abs Truth],
@@ -271,7 +277,7 @@ fn word_unary(rows: &mut Rows<'_>, op: Word1, n: u8, to: u32, a: Operand) {
     );
 }
 
-fn word_binary(rows: &mut Rows<'_>, op: Word2, n: u8, to: u32, operands: [Operand; 2]) {
+fn word_binary(rows: &mut LaneRows<'_>, op: Word2, n: u8, to: u32, operands: [Operand; 2]) {
     by_name!(
         Word2, op,
         [Add Subtract Multiply And Or Xor ShiftLeft ShiftRightS ShiftRightU Equal NotEqual LessS
@@ -285,7 +291,7 @@ fn word_binary(rows: &mut Rows<'_>, op: Word2, n: u8, to: u32, operands: [Operan
     );
 }
 
-fn convert(rows: &mut Rows<'_>, op: Convert, n: u8, to: u32, a: Operand) {
+fn convert(rows: &mut LaneRows<'_>, op: Convert, n: u8, to: u32, a: Operand) {
     by_name!(
         Convert, op,
         [FloatFromS FloatFromU SFromFloat UFromFloat BoolFromFloat],

@@ -3,13 +3,13 @@
 use super::super::code::{Geometry, Product};
 use super::super::machine;
 use super::compute::on_each_lane;
-use super::rows::{LANES, Row, Rows, each_lane};
+use super::rows::{LANES, LaneRows, Row, each_lane};
 
 /// A vector of up to four numbers, of all lanes.
-type Vector = [Row; 4];
+type LaneVector = [Row; 4];
 
 /// Runs one function on the slots `[to, a, b, c]`.
-pub fn geometry(rows: &mut Rows<'_>, op: Geometry, n: u32, [to, a, b, c]: [u32; 4]) {
+pub fn geometry(rows: &mut LaneRows<'_>, op: Geometry, n: u32, [to, a, b, c]: [u32; 4]) {
     let size = n as usize;
     match op {
         Geometry::Dot => rows.put(to, dot(&load(rows, a, n), &load(rows, b, n), size)),
@@ -52,7 +52,7 @@ pub fn geometry(rows: &mut Rows<'_>, op: Geometry, n: u32, [to, a, b, c]: [u32; 
 }
 
 /// The functions that are seldom used, lane by lane.
-fn one_by_one(rows: &mut Rows<'_>, op: Geometry, n: u32, [to, a, b, c]: [u32; 4]) {
+fn one_by_one(rows: &mut LaneRows<'_>, op: Geometry, n: u32, [to, a, b, c]: [u32; 4]) {
     let (operands, results) = match op {
         Geometry::Determinant => (vec![(a, n * n)], 1),
         Geometry::Inverse => (vec![(a, n * n)], n * n),
@@ -70,7 +70,7 @@ fn one_by_one(rows: &mut Rows<'_>, op: Geometry, n: u32, [to, a, b, c]: [u32; 4]
 }
 
 #[inline(always)]
-fn load(rows: &Rows<'_>, from: u32, n: u32) -> Vector {
+fn load(rows: &LaneRows<'_>, from: u32, n: u32) -> LaneVector {
     std::array::from_fn(|i| if (i as u32) < n { rows.row(from + i as u32) } else { [0.0; LANES] })
 }
 
@@ -86,7 +86,7 @@ fn times(a: &Row, b: &Row) -> Row {
 
 /// The products are added in order, as for a single lane.
 #[inline(always)]
-fn dot(a: &Vector, b: &Vector, n: usize) -> Row {
+fn dot(a: &LaneVector, b: &LaneVector, n: usize) -> Row {
     let mut sum = times(&a[0], &b[0]);
     for i in 1..n {
         sum = zip(&sum, &times(&a[i], &b[i]), |x, y| x + y);
@@ -95,7 +95,7 @@ fn dot(a: &Vector, b: &Vector, n: usize) -> Row {
 }
 
 #[inline(always)]
-fn length(vector: &Vector, n: usize) -> Row {
+fn length(vector: &LaneVector, n: usize) -> Row {
     if n == 1 {
         return each_lane(|i| vector[0][i].abs());
     }
@@ -105,7 +105,7 @@ fn length(vector: &Vector, n: usize) -> Row {
 
 /// Products of matrices and vectors, computed by columns of `b`.
 pub fn matrix_product(
-    rows: &mut Rows<'_>,
+    rows: &mut LaneRows<'_>,
     op: Product,
     [inner, height, columns]: [u32; 3],
     [to, a, b]: [u32; 3],

@@ -1,14 +1,14 @@
 //! Accesses to textures, and derivatives, for the active lanes.
 
-use super::super::code::{Axis, Binary, Unary};
+use super::super::code::{Binary, DerivativeDirection, Unary};
 use super::super::machine::{
     Env, Watch, apply_access, coordinate_of, derivative_lanes, gradient_of,
 };
 use super::super::number::Number;
-use super::rows::{ALL, LANES, Mask, Row, Rows, kept_lanes, lanes_of};
+use super::rows::{ALL, LANES, LaneRows, Mask, Row, kept_lanes, lanes_of};
 
 /// Runs an access for each active lane, without the gradients of a quad. `None` if it fails.
-pub fn run_single(env: Env<'_>, index: u32, rows: &mut Rows<'_>, at: u32) -> Option<()> {
+pub fn run_single(env: Env<'_>, index: u32, rows: &mut LaneRows<'_>, at: u32) -> Option<()> {
     let access = env.program.access(index)?;
     let mut watch = Watch::default();
     for lane in lanes_of(rows.mask) {
@@ -23,7 +23,7 @@ pub fn run_quads(env: Env<'_>, index: u32, memory: &mut [Row], mask: Mask) -> Op
     let access = env.program.access(index)?;
     let mut watch = Watch::default();
     let keep = kept_lanes(ALL);
-    let mut rows = Rows::new(memory, ALL, false, &keep);
+    let mut rows = LaneRows::new(memory, ALL, false, &keep);
     for quad in 0..LANES / 4 {
         let coordinates = std::array::from_fn(|place| {
             let lane = 4 * quad + place;
@@ -43,7 +43,7 @@ pub fn run_quads(env: Env<'_>, index: u32, memory: &mut [Row], mask: Mask) -> Op
 pub fn derivative(
     memory: &mut [Row],
     mask: Mask,
-    axis: Axis,
+    axis: DerivativeDirection,
     coarse: bool,
     (to, from): (u32, u32),
 ) {
@@ -60,9 +60,9 @@ pub fn derivative(
             }
         };
         memory[to as usize][lane] = match axis {
-            Axis::Width => {
-                let [x, y] =
-                    [Axis::X, Axis::Y].map(|axis| f32::unary(Unary::Abs, along(axis), &mut false));
+            DerivativeDirection::Width => {
+                let [x, y] = [DerivativeDirection::X, DerivativeDirection::Y]
+                    .map(|axis| f32::unary(Unary::Abs, along(axis), &mut false));
                 f32::binary(Binary::Add, x, y, &mut false)
             }
             axis => along(axis),

@@ -35,7 +35,7 @@ pub fn lanes_of(mask: Mask) -> impl Iterator<Item = usize> {
 }
 
 /// The memory, and the lanes that an instruction writes.
-pub struct Rows<'m> {
+pub struct LaneRows<'m> {
     pub m: &'m mut [Row],
     /// The active lanes. Writes leave the other lanes as they are, unless `whole` is set.
     pub mask: Mask,
@@ -45,7 +45,7 @@ pub struct Rows<'m> {
     keep: &'m [u32; LANES],
 }
 
-impl<'m> Rows<'m> {
+impl<'m> LaneRows<'m> {
     #[inline(always)]
     pub fn new(m: &'m mut [Row], mask: Mask, whole: bool, keep: &'m [u32; LANES]) -> Self {
         Self { m, mask, whole, keep }
@@ -149,7 +149,7 @@ pub struct LaneView<'m> {
 }
 
 impl LaneView<'_> {
-    /// Copies slots of this lane, as [`Rows::copy`].
+    /// Copies slots of this lane, as [`LaneRows::copy`].
     pub fn copy(&mut self, to: u32, from: u32, n: u32) {
         let (to, from, n) = (to as usize, from as usize, n as usize);
         if from + n > self.m.len() || to + n > self.m.len() {

@@ -4,8 +4,8 @@ use super::super::code::Instruction;
 use super::super::machine::{Env, jump_target};
 use super::compute::compute;
 use super::image;
-use super::rows::{ALL, LANES, Mask, Row, Rows, kept_lanes, lanes_of};
-use super::schedule::{Group, Lanes};
+use super::rows::{ALL, LANES, LaneRows, Mask, Row, kept_lanes, lanes_of};
+use super::schedule::{LaneGroup, Lanes};
 
 /// The first slot of the function's result, and where the results of lanes are kept.
 type Results<'r> = (u32, &'r mut [Row]);
@@ -17,7 +17,7 @@ pub fn run_lanes(
     lanes: &mut Lanes,
     results: Results<'_>,
 ) -> Option<()> {
-    let mut run = Run { env, memory, lanes, keep: kept_lanes(ALL), results };
+    let mut run = BatchRun { env, memory, lanes, keep: kept_lanes(ALL), results };
     loop {
         if let Some(group) = run.lanes.next_group(env.loop_limit) {
             run.advance(group)?;
@@ -29,7 +29,7 @@ pub fn run_lanes(
     }
 }
 
-struct Run<'r> {
+struct BatchRun<'r> {
     env: Env<'r>,
     memory: &'r mut [Row],
     lanes: &'r mut Lanes,
@@ -53,9 +53,9 @@ enum After {
     Ended,
 }
 
-impl Run<'_> {
+impl BatchRun<'_> {
     /// Runs a group until it ends, waits or diverges, or until other lanes come first.
-    fn advance(&mut self, mut group: Group) -> Option<()> {
+    fn advance(&mut self, mut group: LaneGroup) -> Option<()> {
         let began = (group.steps_left, group.trips_left);
         self.keep = kept_lanes(group.mask);
         loop {
@@ -89,7 +89,7 @@ impl Run<'_> {
     }
 
     #[inline(always)]
-    fn step(&mut self, instruction: &Instruction, group: &mut Group, at: u32) -> Option<After> {
+    fn step(&mut self, instruction: &Instruction, group: &mut LaneGroup, at: u32) -> Option<After> {
         match *instruction {
             Instruction::Jump { to } => {
                 group.pc = to;
@@ -128,12 +128,12 @@ impl Run<'_> {
     }
 
     #[inline(always)]
-    fn rows(&mut self, group: &Group) -> Rows<'_> {
-        Rows::new(self.memory, group.mask, group.alone, &self.keep)
+    fn rows(&mut self, group: &LaneGroup) -> LaneRows<'_> {
+        LaneRows::new(self.memory, group.mask, group.alone, &self.keep)
     }
 
     #[inline(always)]
-    fn branch(&mut self, condition: u32, to: u32, group: &mut Group) -> After {
+    fn branch(&mut self, condition: u32, to: u32, group: &mut LaneGroup) -> After {
         let held = self.rows(group).truth(condition);
         if held == group.mask {
             return After::Next;
@@ -148,7 +148,7 @@ impl Run<'_> {
         After::Split
     }
 
-    fn switch(&mut self, selector: u32, table: u32, group: &mut Group) -> After {
+    fn switch(&mut self, selector: u32, table: u32, group: &mut LaneGroup) -> After {
         let rows = self.rows(group);
         if let Some(selector) = rows.common(selector) {
             group.pc = jump_target(self.env.program, table, selector);
@@ -162,7 +162,7 @@ impl Run<'_> {
     }
 
     /// Returns from a call, or ends the lanes and keeps their results.
-    fn give_back(&mut self, group: &mut Group) -> After {
+    fn give_back(&mut self, group: &mut LaneGroup) -> After {
         let Some(depth) = group.depth.checked_sub(1) else {
             let (first, results) = &mut self.results;
             let from = &self.memory[*first as usize..];
@@ -185,7 +185,7 @@ impl Run<'_> {
 
     /// Runs an instruction that needs values from all lanes of a quad. The group waits if it has
     /// only some lanes of a quad, or if other lanes have not ended.
-    fn meet(&mut self, instruction: &Instruction, group: &Group) -> Option<After> {
+    fn meet(&mut self, instruction: &Instruction, group: &LaneGroup) -> Option<After> {
         let are_whole = group.alone
             && (0..LANES / 4).all(|quad| matches!(group.mask >> (4 * quad) & 0xf, 0 | 0xf));
         if !are_whole {

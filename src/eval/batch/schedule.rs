@@ -22,7 +22,7 @@ pub struct Lanes {
 
 /// Lanes with the same program counter and call depth.
 #[derive(Debug, Clone, Copy)]
-pub struct Group {
+pub struct LaneGroup {
     pub mask: Mask,
     pub pc: u32,
     pub depth: u32,
@@ -44,7 +44,7 @@ impl Lanes {
     }
 
     /// The lanes that run next. `None` if no lane is runnable.
-    pub fn next_group(&self, loop_limit: u64) -> Option<Group> {
+    pub fn next_group(&self, loop_limit: u64) -> Option<LaneGroup> {
         let deepest = lanes_of(self.runnable).map(|lane| self.depth[lane]).max()?;
         let as_deep = || lanes_of(self.runnable).filter(|lane| self.depth[*lane] == deepest);
         let pc = as_deep().map(|lane| self.pc[lane]).min()?;
@@ -52,7 +52,7 @@ impl Lanes {
         let mask = as_deep().filter(here).fold(0, |mask, lane| mask | 1 << lane);
         let ahead = as_deep().filter(|lane| !here(lane)).map(|lane| self.pc[lane]).min();
         let most = |counts: &[u64; LANES]| lanes_of(mask).map(|lane| counts[lane]).max();
-        Some(Group {
+        Some(LaneGroup {
             mask,
             pc,
             depth: deepest,
@@ -65,7 +65,7 @@ impl Lanes {
 
     /// Writes the position of a group back to its lanes, and adds the steps and trips that it made.
     /// `began` is how many of both it had left when it was chosen.
-    pub fn leave(&mut self, group: &Group, began: (u64, u64)) {
+    pub fn leave(&mut self, group: &LaneGroup, began: (u64, u64)) {
         let (steps, trips) = (began.0 - group.steps_left, began.1 - group.trips_left);
         for lane in lanes_of(group.mask) {
             self.pc[lane] = group.pc;
@@ -76,7 +76,7 @@ impl Lanes {
     }
 
     /// Stores the return address of a call that a group makes.
-    pub fn enter(&mut self, group: &Group, to: u32) {
+    pub fn enter(&mut self, group: &LaneGroup, to: u32) {
         let depth = group.depth as usize;
         if self.returns.len() <= depth {
             self.returns.resize(depth + 1, [0; LANES]);

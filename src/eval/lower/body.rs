@@ -2,14 +2,14 @@
 
 use naga::{Arena, Expression, Handle, Span, TypeInner};
 
-use super::{Body, Build, Loc};
+use super::{Loc, LoweredBody, ProgramBuilder};
 use crate::eval::code::{Instruction, Operand, Slot, Word2};
 use crate::eval::error::Error;
-use crate::eval::layout::Kind;
+use crate::eval::layout::SlotKind;
 
-impl<'b, 'm> Body<'b, 'm> {
+impl<'b, 'm> LoweredBody<'b, 'm> {
     pub(super) fn new(
-        build: &'b mut Build<'m>,
+        build: &'b mut ProgramBuilder<'m>,
         expressions: &'m Arena<Expression>,
         types: Vec<&'m TypeInner>,
     ) -> Self {
@@ -50,7 +50,7 @@ impl<'b, 'm> Body<'b, 'm> {
     }
 
     /// Kind of the scalars of an expression.
-    pub(super) fn kind(&self, handle: Handle<Expression>) -> Result<Kind, Error> {
+    pub(super) fn kind(&self, handle: Handle<Expression>) -> Result<SlotKind, Error> {
         let scalar = self.inner(handle).scalar();
         scalar
             .and_then(crate::eval::layout::kind_of)

@@ -1,14 +1,14 @@
 //! Lowers expressions. Many of naga's expressions only select slots, and need no instruction.
 
-use super::{Body, Loc};
-use crate::eval::code::{Axis, Instruction, Operand, Slot};
+use super::{Loc, LoweredBody};
+use crate::eval::code::{DerivativeDirection, Instruction, Operand, Slot};
 use crate::eval::error::Error;
-use crate::eval::program::Constant;
+use crate::eval::program::InitialValue;
 use naga::{
     DerivativeAxis, DerivativeControl, Expression, Handle, Literal, SwizzleComponent, TypeInner,
 };
 
-impl Body<'_, '_> {
+impl LoweredBody<'_, '_> {
     /// Where an expression's value is. An expression that no statement emits is computed on first
     /// use.
     pub(super) fn loc(&mut self, handle: Handle<Expression>) -> Result<Loc, Error> {
@@ -98,12 +98,12 @@ impl Body<'_, '_> {
 
     fn literal(&mut self, literal: Literal) -> Result<Loc, Error> {
         let value = match literal {
-            Literal::F32(value) => Constant::Float(f64::from(value)),
-            Literal::AbstractFloat(value) => Constant::Float(value),
-            Literal::U32(value) => Constant::Word(value),
-            Literal::I32(value) => Constant::Word(value as u32),
-            Literal::AbstractInt(value) => Constant::Word(value as u32),
-            Literal::Bool(value) => Constant::Word(u32::from(value)),
+            Literal::F32(value) => InitialValue::Float(f64::from(value)),
+            Literal::AbstractFloat(value) => InitialValue::Float(value),
+            Literal::U32(value) => InitialValue::Word(value),
+            Literal::I32(value) => InitialValue::Word(value as u32),
+            Literal::AbstractInt(value) => InitialValue::Word(value as u32),
+            Literal::Bool(value) => InitialValue::Word(u32::from(value)),
             _ => return Err(Error::unsupported(format!("literals of {} bytes", literal.width()))),
         };
         Ok(Loc::dense(self.build.literal(value)?, true))
@@ -220,9 +220,9 @@ impl Body<'_, '_> {
         let (to, n) = self.fresh(handle)?;
         let a = self.operand(expr)?;
         let axis = match axis {
-            DerivativeAxis::X => Axis::X,
-            DerivativeAxis::Y => Axis::Y,
-            DerivativeAxis::Width => Axis::Width,
+            DerivativeAxis::X => DerivativeDirection::X,
+            DerivativeAxis::Y => DerivativeDirection::Y,
+            DerivativeAxis::Width => DerivativeDirection::Width,
         };
         self.emit(Instruction::Derivative {
             axis,

@@ -1,21 +1,21 @@
 //! Lowers accesses to textures.
 
-use super::{Body, Loc};
-use crate::eval::code::{Access, Ask, Instruction, Lod, Slot};
+use super::{Loc, LoweredBody};
+use crate::eval::code::{Access, Instruction, Lod, Slot, TextureOp};
 use crate::eval::error::Error;
-use crate::eval::layout::Kind;
+use crate::eval::layout::SlotKind;
 use naga::{Expression, Handle, ImageClass, ImageQuery, SampleLevel, TypeInner};
 
-impl Body<'_, '_> {
+impl LoweredBody<'_, '_> {
     pub(super) fn image(&mut self, handle: Handle<Expression>) -> Result<Loc, Error> {
         let (to, n) = self.fresh(handle)?;
-        let words = self.kind(handle)? != Kind::Float;
+        let words = self.kind(handle)? != SlotKind::Float;
         let mut access = Access {
             image: 0,
             coordinate: 0,
             dimensions: 0,
             layer: None,
-            ask: Ask::Levels,
+            ask: TextureOp::Levels,
             to,
             n: n as u8,
             words,
@@ -38,11 +38,11 @@ impl Body<'_, '_> {
                     (self.operand(sampler)?.slot, self.maybe(offset)?, self.maybe(depth_ref)?);
                 let (level, gather) = (self.level(level)?, gather.map(|component| component as u8));
                 access.ask =
-                    Ask::Sample { sampler, gather, level, offset, reference, clamp_to_edge };
+                    TextureOp::Sample { sampler, gather, level, offset, reference, clamp_to_edge };
             }
             Expression::ImageLoad { image, coordinate, array_index, level, .. } => {
                 self.coordinates(&mut access, image, Some(coordinate), array_index)?;
-                access.ask = Ask::Load { level: self.maybe(level)? };
+                access.ask = TextureOp::Load { level: self.maybe(level)? };
             }
             Expression::ImageQuery { image, query } => {
                 self.coordinates(&mut access, image, None, None)?;
@@ -88,7 +88,7 @@ impl Body<'_, '_> {
             SampleLevel::Auto => Lod::Auto,
             SampleLevel::Zero => Lod::Zero,
             // The level of a depth texture is an integer, which is converted to a float here.
-            SampleLevel::Exact(level) if self.kind(level)? != Kind::Float => {
+            SampleLevel::Exact(level) if self.kind(level)? != SlotKind::Float => {
                 Lod::Exact(self.float_of(level)?)
             }
             SampleLevel::Exact(level) => Lod::Exact(self.dense(level)?),
@@ -103,12 +103,12 @@ impl Body<'_, '_> {
         Ok(to)
     }
 
-    fn query(&mut self, query: ImageQuery) -> Result<Ask, Error> {
+    fn query(&mut self, query: ImageQuery) -> Result<TextureOp, Error> {
         Ok(match query {
-            ImageQuery::Size { level } => Ask::Size { level: self.maybe(level)? },
-            ImageQuery::NumLevels => Ask::Levels,
-            ImageQuery::NumLayers => Ask::Layers,
-            ImageQuery::NumSamples => Ask::Samples,
+            ImageQuery::Size { level } => TextureOp::Size { level: self.maybe(level)? },
+            ImageQuery::NumLevels => TextureOp::Levels,
+            ImageQuery::NumLayers => TextureOp::Layers,
+            ImageQuery::NumSamples => TextureOp::Samples,
         })
     }
 }

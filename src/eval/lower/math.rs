@@ -1,11 +1,11 @@
 //! Lowers built-in functions.
 
-use super::{Body, Loc};
+use super::{Loc, LoweredBody};
 use crate::eval::code::{
     Binary, Geometry, Instruction, Operand, Packing, Product, Ternary, Unary, Word1, Word2,
 };
 use crate::eval::error::Error;
-use crate::eval::layout::Kind;
+use crate::eval::layout::SlotKind;
 use naga::{Expression, Handle, MathFunction, TypeInner};
 
 /// A handle of an argument that may be missing.
@@ -19,7 +19,7 @@ enum OnFloats {
     Whole(Geometry),
 }
 
-impl Body<'_, '_> {
+impl LoweredBody<'_, '_> {
     pub(super) fn math(
         &mut self,
         handle: Handle<Expression>,
@@ -34,12 +34,12 @@ impl Body<'_, '_> {
             return Ok(Loc::dense(to, false));
         }
         match (self.kind(arg)?, fun) {
-            (Kind::Float, MathFunction::Outer) => {
+            (SlotKind::Float, MathFunction::Outer) => {
                 self.outer(handle, arg, required_argument(rest[0])?)
             }
-            (Kind::Float, MathFunction::Transpose) => self.transpose(handle, arg),
-            (Kind::Float, _) => self.on_floats(handle, fun, arg, rest),
-            (kind, _) => self.on_words(handle, fun, kind == Kind::Sint, arg, rest),
+            (SlotKind::Float, MathFunction::Transpose) => self.transpose(handle, arg),
+            (SlotKind::Float, _) => self.on_floats(handle, fun, arg, rest),
+            (kind, _) => self.on_words(handle, fun, kind == SlotKind::Sint, arg, rest),
         }
     }
 

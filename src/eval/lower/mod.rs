@@ -10,8 +10,8 @@ mod statement;
 
 use super::code::{Instruction, Operand, Slot};
 use super::error::Error;
-use super::layout::{Kind, Layout, MAX_SLOTS};
-use super::program::{Constant, Function, Global, Parameter, Program, Role};
+use super::layout::{Layout, MAX_SLOTS, SlotKind};
+use super::program::{Function, Global, GlobalRole, InitialValue, ParameterSlots, Program};
 use naga::valid::{FunctionInfo, ModuleInfo};
 use naga::{AddressSpace, Arena, ArraySize, Expression, Handle, Module, Span, Type, TypeInner};
 use std::collections::BTreeMap;
@@ -28,7 +28,7 @@ enum Loc {
 }
 
 /// The program that is being built.
-struct Build<'m> {
+struct ProgramBuilder<'m> {
     module: &'m Module,
     layout: Layout<'m>,
     program: Program,
@@ -40,8 +40,8 @@ struct Build<'m> {
 }
 
 /// The function, or the module-scope constants, that are being lowered.
-struct Body<'b, 'm> {
-    build: &'b mut Build<'m>,
+struct LoweredBody<'b, 'm> {
+    build: &'b mut ProgramBuilder<'m>,
     expressions: &'m Arena<Expression>,
     types: Vec<&'m TypeInner>,
     locs: Vec<Option<Loc>>,
@@ -60,7 +60,7 @@ struct Body<'b, 'm> {
 
 /// Lowers every function of the module.
 pub(super) fn lower(module: &Module, info: &ModuleInfo) -> Result<Program, Error> {
-    let mut build = Build::new(module);
+    let mut build = ProgramBuilder::new(module);
     build.constants(info)?;
     build.globals();
     for (handle, function) in module.functions.iter() {
@@ -72,7 +72,7 @@ pub(super) fn lower(module: &Module, info: &ModuleInfo) -> Result<Program, Error
     build.finish()
 }
 
-impl<'m> Build<'m> {
+impl<'m> ProgramBuilder<'m> {
     fn new(module: &'m Module) -> Self {
         let program = Program {
             code: Vec::new(),
@@ -114,10 +114,10 @@ impl<'m> Build<'m> {
     }
 
     /// The slot of a constant. Constants with the same bits share one.
-    fn literal(&mut self, value: Constant) -> Result<Slot, Error> {
+    fn literal(&mut self, value: InitialValue) -> Result<Slot, Error> {
         let key = match value {
-            Constant::Word(word) => (0, u64::from(word)),
-            Constant::Float(float) => (1, float.to_bits()),
+            InitialValue::Word(word) => (0, u64::from(word)),
+            InitialValue::Float(float) => (1, float.to_bits()),
         };
         if let Some(slot) = self.literals.get(&key) {
             return Ok(*slot);
@@ -129,7 +129,7 @@ impl<'m> Build<'m> {
     }
 
     fn word(&mut self, word: u32) -> Result<Slot, Error> {
-        self.literal(Constant::Word(word))
+        self.literal(InitialValue::Word(word))
     }
 
     /// Lowers module-scope constants and overrides to instructions that run once per machine. One
@@ -140,7 +140,7 @@ impl<'m> Build<'m> {
             .iter()
             .map(|(handle, _)| info[handle].inner_with(&self.module.types))
             .collect();
-        let mut body = Body::new(self, expressions, types);
+        let mut body = LoweredBody::new(self, expressions, types);
         body.constant = true;
         for (handle, _) in expressions.iter() {
             match body.evaluate(handle) {
@@ -168,9 +168,9 @@ impl<'m> Build<'m> {
         let (role, loc) = match (variable.space, inner) {
             (AddressSpace::Private, _) => self.private(variable, slots)?,
             (AddressSpace::Handle, TypeInner::Sampler { .. }) => {
-                (Role::Sampler, Loc::dense(self.word(index)?, true))
+                (GlobalRole::Sampler, Loc::dense(self.word(index)?, true))
             }
-            (AddressSpace::Handle, _) => (Role::Image, Loc::dense(self.word(index)?, true)),
+            (AddressSpace::Handle, _) => (GlobalRole::Image, Loc::dense(self.word(index)?, true)),
             (AddressSpace::Uniform | AddressSpace::Storage { .. } | AddressSpace::Immediate, _) => {
                 self.buffer(inner, slots)?
             }
@@ -199,7 +199,7 @@ impl<'m> Build<'m> {
         &mut self,
         variable: &naga::GlobalVariable,
         slots: u32,
-    ) -> Result<(Role, Loc), Error> {
+    ) -> Result<(GlobalRole, Loc), Error> {
         let init =
             match variable.init.map(|init| self.constants.get(init.index()).copied().flatten()) {
                 Some(Some(Loc::Value { operand, .. })) if operand.stride == 1 || slots == 1 => {
@@ -208,10 +208,10 @@ impl<'m> Build<'m> {
                 Some(_) => return Err(Error::unsupported("this initial value of a variable")),
                 None => None,
             };
-        Ok((Role::Private(init), Loc::Place(self.alloc(slots)?)))
+        Ok((GlobalRole::Private(init), Loc::Place(self.alloc(slots)?)))
     }
 
-    fn buffer(&mut self, inner: &TypeInner, slots: u32) -> Result<(Role, Loc), Error> {
+    fn buffer(&mut self, inner: &TypeInner, slots: u32) -> Result<(GlobalRole, Loc), Error> {
         let last = match *inner {
             TypeInner::Struct { ref members, .. } => {
                 members.last().map_or(inner, |member| &self.module.types[member.ty].inner)
@@ -219,10 +219,13 @@ impl<'m> Build<'m> {
             _ => inner,
         };
         let TypeInner::Array { base, size: ArraySize::Dynamic, .. } = *last else {
-            return Ok((Role::Buffer, Loc::Place(self.alloc(slots)?)));
+            return Ok((GlobalRole::Buffer, Loc::Place(self.alloc(slots)?)));
         };
         let (address, count, element) = (self.alloc(1)?, self.alloc(1)?, self.layout.size(base)?);
-        Ok((Role::Runtime { address, count, element }, Loc::Through { slot: address, offset: 0 }))
+        Ok((
+            GlobalRole::Runtime { address, count, element },
+            Loc::Through { slot: address, offset: 0 },
+        ))
     }
 
     /// Lowers a function. An error is kept with the function.
@@ -297,7 +300,7 @@ impl<'m> Build<'m> {
             .iter()
             .map(|(handle, _)| info[handle].ty.inner_with(&self.module.types))
             .collect();
-        let mut body = Body::new(self, &function.expressions, types);
+        let mut body = LoweredBody::new(self, &function.expressions, types);
         (body.function, body.arguments) = (index as u32, slots);
         body.whole(function)
     }
@@ -309,14 +312,14 @@ impl<'m> Build<'m> {
         argument: &naga::FunctionArgument,
         results: usize,
         inputs: &mut Vec<Option<naga::Binding>>,
-    ) -> Result<(Parameter, Vec<Kind>), Error> {
+    ) -> Result<(ParameterSlots, Vec<SlotKind>), Error> {
         let pointee = pointed_type(&self.module.types[argument.ty].inner);
         let mut kinds = Vec::new();
         self.layout.kinds(pointee.unwrap_or(argument.ty), &mut kinds)?;
         let (slots, n) = (self.layout.size(argument.ty)?, kinds.len() as u32);
         self.layout.bindings(pointee.unwrap_or(argument.ty), &argument.binding, inputs)?;
         let pointee = pointee.map(|_| results as u32);
-        Ok((Parameter { slot: self.alloc(slots)?, n, pointee }, kinds))
+        Ok((ParameterSlots { slot: self.alloc(slots)?, n, pointee }, kinds))
     }
 
     /// The buffers that a function and its callees use, by index.
@@ -333,7 +336,9 @@ impl<'m> Build<'m> {
             global.binding.is_some_and(|binding| bindings.contains(&binding))
         });
         wanted
-            .filter(|(_, global)| matches!(global.role, Role::Buffer | Role::Runtime { .. }))
+            .filter(|(_, global)| {
+                matches!(global.role, GlobalRole::Buffer | GlobalRole::Runtime { .. })
+            })
             .map(|(index, _)| index as u32)
             .collect()
     }

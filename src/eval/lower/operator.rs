@@ -1,11 +1,11 @@
 //! Lowers operators and conversions.
 
-use super::{Body, Loc};
+use super::{Loc, LoweredBody};
 use crate::eval::code::{
     Binary, Compare, Convert, Instruction, Operand, Product, Slot, Unary, Word1, Word2,
 };
 use crate::eval::error::Error;
-use crate::eval::layout::Kind;
+use crate::eval::layout::SlotKind;
 use naga::{
     BinaryOperator, Expression, Handle, RelationalFunction, ScalarKind, TypeInner, UnaryOperator,
 };
@@ -13,9 +13,9 @@ use naga::{
 /// An operator with its operations on floats, on signed and on unsigned integers. `None` where
 /// there is none here: comparisons of floats are in [`comparison_of`]. `>` and `>=` have the
 /// operations of `<` and `<=`, with swapped operands.
-type Meaning = (BinaryOperator, Option<Binary>, Option<Word2>, Option<Word2>);
+type OperatorMeaning = (BinaryOperator, Option<Binary>, Option<Word2>, Option<Word2>);
 
-const MEANINGS: &[Meaning] = &[
+const MEANINGS: &[OperatorMeaning] = &[
     (BinaryOperator::Add, Some(Binary::Add), Some(Word2::Add), Some(Word2::Add)),
     (
         BinaryOperator::Subtract,
@@ -51,14 +51,14 @@ const MEANINGS: &[Meaning] = &[
     (BinaryOperator::GreaterEqual, None, Some(Word2::LessEqualS), Some(Word2::LessEqualU)),
 ];
 
-impl Body<'_, '_> {
+impl LoweredBody<'_, '_> {
     pub(super) fn unary(
         &mut self,
         handle: Handle<Expression>,
         op: UnaryOperator,
         expr: Handle<Expression>,
     ) -> Result<Loc, Error> {
-        let float = self.kind(expr)? == Kind::Float;
+        let float = self.kind(expr)? == SlotKind::Float;
         match op {
             UnaryOperator::Negate if float => self.float1(handle, Unary::Negate, expr),
             UnaryOperator::Negate => self.word1(handle, Word1::Negate, expr),
@@ -80,7 +80,7 @@ impl Body<'_, '_> {
         if let Some(loc) = product {
             return Ok(loc);
         }
-        if let (Kind::Float, Some(op)) = (kind, comparison_of(op)) {
+        if let (SlotKind::Float, Some(op)) = (kind, comparison_of(op)) {
             return self.each2(handle, [left, right], |n, to, a, b| Instruction::Compare {
                 op,
                 n,
@@ -92,8 +92,8 @@ impl Body<'_, '_> {
         let meaning = MEANINGS.iter().find(|meaning| meaning.0 == op);
         let swapped = matches!(op, BinaryOperator::Greater | BinaryOperator::GreaterEqual);
         match (kind, meaning) {
-            (Kind::Float, Some((_, Some(op), ..))) => self.float2(handle, *op, left, right),
-            (Kind::Sint, Some((_, _, Some(op), _))) => {
+            (SlotKind::Float, Some((_, Some(op), ..))) => self.float2(handle, *op, left, right),
+            (SlotKind::Sint, Some((_, _, Some(op), _))) => {
                 self.ordered(handle, *op, left, right, swapped)
             }
             (_, Some((_, _, _, Some(op)))) => self.ordered(handle, *op, left, right, swapped),
@@ -243,23 +243,23 @@ impl Body<'_, '_> {
             return Err(Error::unsupported("conversions to scalars that are not 32 bits wide"));
         }
         match (from, kind, convert.is_some()) {
-            (Kind::Float, ScalarKind::Float, _) => self.loc(expr),
-            (Kind::Float, ScalarKind::Sint, true) => {
+            (SlotKind::Float, ScalarKind::Float, _) => self.loc(expr),
+            (SlotKind::Float, ScalarKind::Sint, true) => {
                 self.convert(handle, Convert::SFromFloat, expr)
             }
-            (Kind::Float, ScalarKind::Uint, true) => {
+            (SlotKind::Float, ScalarKind::Uint, true) => {
                 self.convert(handle, Convert::UFromFloat, expr)
             }
-            (Kind::Float, ScalarKind::Bool, _) => {
+            (SlotKind::Float, ScalarKind::Bool, _) => {
                 self.convert(handle, Convert::BoolFromFloat, expr)
             }
-            (Kind::Float, _, false) => self.convert(handle, Convert::BitsFromFloat, expr),
-            (Kind::Sint, ScalarKind::Float, true) => {
+            (SlotKind::Float, _, false) => self.convert(handle, Convert::BitsFromFloat, expr),
+            (SlotKind::Sint, ScalarKind::Float, true) => {
                 self.convert(handle, Convert::FloatFromS, expr)
             }
             (_, ScalarKind::Float, true) => self.convert(handle, Convert::FloatFromU, expr),
             (_, ScalarKind::Float, false) => self.convert(handle, Convert::FloatFromBits, expr),
-            (Kind::Sint | Kind::Uint, ScalarKind::Bool, _) => {
+            (SlotKind::Sint | SlotKind::Uint, ScalarKind::Bool, _) => {
                 self.word1(handle, Word1::Truth, expr)
             }
             _ => self.loc(expr),

@@ -1,12 +1,12 @@
 //! Lowers pointers and accesses to parts of values.
 
-use super::{Body, Loc};
+use super::{Loc, LoweredBody};
 use crate::eval::code::{Instruction, Operand, Slot};
 use crate::eval::error::Error;
-use crate::eval::program::Role;
+use crate::eval::program::GlobalRole;
 use naga::{AddressSpace, Expression, Handle, TypeInner};
 
-impl Body<'_, '_> {
+impl LoweredBody<'_, '_> {
     pub(super) fn access_index(
         &mut self,
         base: Handle<Expression>,
@@ -120,7 +120,7 @@ impl Body<'_, '_> {
             .find(|global| global.binding == binding)
             .map(|global| global.role)
         {
-            Some(Role::Runtime { count, .. }) => Ok(count),
+            Some(GlobalRole::Runtime { count, .. }) => Ok(count),
             _ => Err(Error::unsupported("the length of this array")),
         }
     }

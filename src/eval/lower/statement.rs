@@ -1,15 +1,15 @@
 //! Lowers statements. Blocks become jumps.
 
-use super::{Body, Loc};
-use crate::eval::code::{Instruction, Table};
+use super::{Loc, LoweredBody};
+use crate::eval::code::{Instruction, JumpTable};
 use crate::eval::error::Error;
-use crate::eval::program::{Branch, FunctionId, Point};
+use crate::eval::program::{Branch, CoveragePoint, FunctionId};
 use naga::{Block, Expression, Function, Handle, Span, Statement, SwitchCase, SwitchValue};
 
 /// Deepest nesting of blocks.
 const MAX_DEPTH: u32 = 200;
 
-impl Body<'_, '_> {
+impl LoweredBody<'_, '_> {
     /// Lowers the body of a function.
     pub(super) fn whole(&mut self, function: &Function) -> Result<(), Error> {
         for (_, variable) in function.local_variables.iter() {
@@ -66,7 +66,11 @@ impl Body<'_, '_> {
     fn mark(&mut self, branch: Branch) {
         let points = &mut self.build.program.points;
         let point = points.len() as u32;
-        points.push(Point { function: FunctionId(self.function), branch, span: Span::UNDEFINED });
+        points.push(CoveragePoint {
+            function: FunctionId(self.function),
+            branch,
+            span: Span::UNDEFINED,
+        });
         self.point = Some(point);
         self.emit(Instruction::Mark { point });
     }
@@ -138,10 +142,10 @@ impl Body<'_, '_> {
     fn switch(&mut self, selector: Handle<Expression>, cases: &[SwitchCase]) -> Result<(), Error> {
         let selector = self.operand(selector)?.slot;
         let table = self.build.program.tables.len();
-        self.build.program.tables.push(Table::default());
+        self.build.program.tables.push(JumpTable::default());
         self.emit(Instruction::Switch { selector, table: table as u32 });
         self.breaks.push(Vec::new());
-        let mut entries = Table { default: u32::MAX, ..Table::default() };
+        let mut entries = JumpTable { default: u32::MAX, ..JumpTable::default() };
         for case in cases {
             let here = self.here() as u32;
             match case.value {

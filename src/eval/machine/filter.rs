@@ -1,7 +1,7 @@
 //! Filters the texels of one level of a texture.
 
 use super::super::number::Number;
-use super::super::resources::{Address, Filter, Level, Sampler, Shape, Texture};
+use super::super::resources::{Address, Filter, MipLevel, Sampler, Texture, TextureDimension};
 use super::quick::filter_image;
 
 /// The precision that hardware must have for the position between two texels, which gives the
@@ -15,8 +15,8 @@ const WIDEST: f64 = 2.0;
 
 /// A place in a texture: normalised coordinates on a layer, with a bound of their errors.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Point {
-    pub shape: Shape,
+pub(super) struct TexturePoint {
+    pub shape: TextureDimension,
     pub at: [f64; 3],
     error: [f64; 3],
     pub layer: u32,
@@ -29,7 +29,7 @@ pub(super) struct Footprint<'t, N> {
     pub sampler: &'t Sampler,
     pub level: usize,
     pub filter: Filter,
-    pub point: Point,
+    pub point: TexturePoint,
     pub shift: [i64; 3],
     /// The reference that is compared with each texel before filtering. It is the left operand.
     pub reference: Option<N>,
@@ -56,9 +56,14 @@ const FACES: [(usize, f64, Signed, Signed); 6] = [
 ];
 
 /// The place that a coordinate stands for. A direction becomes a face and a place on it.
-pub(super) fn project(shape: Shape, coordinate: [f64; 3], error: [f64; 3], layer: u32) -> Point {
-    if shape != Shape::Cube {
-        return Point { shape, at: coordinate, error, layer, face: 0 };
+pub(super) fn project(
+    shape: TextureDimension,
+    coordinate: [f64; 3],
+    error: [f64; 3],
+    layer: u32,
+) -> TexturePoint {
+    if shape != TextureDimension::Cube {
+        return TexturePoint { shape, at: coordinate, error, layer, face: 0 };
     }
     let size = coordinate.map(f64::abs);
     let major =
@@ -69,10 +74,10 @@ pub(super) fn project(shape: Shape, coordinate: [f64; 3], error: [f64; 3], layer
     let off = |(axis, _): Signed| {
         0.5 * (error[axis] + size[axis] / size[major] * error[major]) / size[major]
     };
-    Point { shape, at: [along(s), along(t), 0.0], error: [off(s), off(t), 0.0], layer, face }
+    TexturePoint { shape, at: [along(s), along(t), 0.0], error: [off(s), off(t), 0.0], layer, face }
 }
 
-impl Point {
+impl TexturePoint {
     /// How the place on the face changes, to first order, when the direction changes by `step`.
     pub fn slope(&self, direction: [f64; 3], step: [f64; 3]) -> [f64; 3] {
         let (major, sign, s, t) = FACES[self.face];
@@ -129,7 +134,7 @@ pub(super) fn combine<N: Number>(footprint: &Footprint<N>, doubt: &mut bool) -> 
 }
 
 /// How far from the place a device may sample along each axis, in texels.
-fn reach_of<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
+fn reach_of<N>(footprint: &Footprint<N>, level: &MipLevel) -> [f64; 3] {
     let (size, point) = (sizes_of(footprint, level), &footprint.point);
     std::array::from_fn(|i| if size[i] == 0.0 { 0.0 } else { point.error[i] * size[i] + SUBTEXEL })
 }
@@ -137,7 +142,7 @@ fn reach_of<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
 /// The largest difference of two texels within reach, for each component.
 fn spread_within<N: Number>(
     footprint: &Footprint<N>,
-    level: &Level,
+    level: &MipLevel,
     reach: [f64; 3],
     doubt: &mut bool,
 ) -> [f64; 4] {
@@ -181,21 +186,21 @@ pub(super) fn gathered_component<N: Number>(
 }
 
 /// The size of the level along each axis that is filtered; 0 for the other axes.
-fn sizes_of<N>(footprint: &Footprint<N>, level: &Level) -> [f64; 3] {
-    let depth = if footprint.point.shape == Shape::D3 { level.layers } else { 0 };
-    let height = if footprint.point.shape == Shape::D1 { 0 } else { level.height };
+fn sizes_of<N>(footprint: &Footprint<N>, level: &MipLevel) -> [f64; 3] {
+    let depth = if footprint.point.shape == TextureDimension::D3 { level.layers } else { 0 };
+    let height = if footprint.point.shape == TextureDimension::D1 { 0 } else { level.height };
     [level.width, height, depth].map(f64::from)
 }
 
 /// The texel of the footprint with the lowest coordinates.
-fn lowest_texel<N>(footprint: &Footprint<N>, level: &Level) -> [i64; 3] {
+fn lowest_texel<N>(footprint: &Footprint<N>, level: &MipLevel) -> [i64; 3] {
     let size = sizes_of(footprint, level);
     std::array::from_fn(|i| {
         if size[i] == 0.0 { 0 } else { (footprint.point.at[i] * size[i] - 0.5).floor() as i64 }
     })
 }
 
-fn add_linear<N>(footprint: &Footprint<N>, level: &Level, add: &mut impl FnMut(Tap)) {
+fn add_linear<N>(footprint: &Footprint<N>, level: &MipLevel, add: &mut impl FnMut(Tap)) {
     let (size, base) = (sizes_of(footprint, level), lowest_texel(footprint, level));
     let share: [f64; 3] = std::array::from_fn(|i| {
         if size[i] == 0.0 { 0.0 } else { footprint.point.at[i] * size[i] - 0.5 - base[i] as f64 }
@@ -216,7 +221,7 @@ fn add_linear<N>(footprint: &Footprint<N>, level: &Level, add: &mut impl FnMut(T
 }
 
 /// The nearest texel, and whether the error reaches a texel that differs from it.
-fn nearest_texel<N: Number>(footprint: &Footprint<N>, level: &Level) -> ([f64; 4], bool) {
+fn nearest_texel<N: Number>(footprint: &Footprint<N>, level: &MipLevel) -> ([f64; 4], bool) {
     let (size, point) = (sizes_of(footprint, level), &footprint.point);
     let at = |sides: [f64; 3]| {
         let coordinate = |i: usize| {
@@ -254,9 +259,9 @@ impl<N: Number> Footprint<'_, N> {
 impl<N> Footprint<'_, N> {
     /// Calls `add` with the texel at a column and a row, and its weight. Beyond the corner of a
     /// cube's face there is no texel: the weight is divided among the three texels that meet there.
-    fn taps(&self, level: &Level, at: [i64; 3], weight: f64, add: &mut impl FnMut(Tap)) {
+    fn taps(&self, level: &MipLevel, at: [i64; 3], weight: f64, add: &mut impl FnMut(Tap)) {
         let inside = |i: usize| at[i].clamp(0, i64::from(level.width) - 1);
-        if self.point.shape != Shape::Cube || inside(0) == at[0] || inside(1) == at[1] {
+        if self.point.shape != TextureDimension::Cube || inside(0) == at[0] || inside(1) == at[1] {
             return add(Tap { weight, texel: self.texel(level, at) });
         }
         for at in [[inside(0), inside(1), 0], [at[0], inside(1), 0], [inside(0), at[1], 0]] {
@@ -265,11 +270,11 @@ impl<N> Footprint<'_, N> {
     }
 
     /// The texel at column and row (and slice), addressed as the sampler says.
-    fn texel(&self, level: &Level, at: [i64; 3]) -> [f64; 4] {
+    fn texel(&self, level: &MipLevel, at: [i64; 3]) -> [f64; 4] {
         let moved: [i64; 3] = std::array::from_fn(|i| at[i].saturating_add(self.shift[i]));
         let place = match self.point.shape {
-            Shape::Cube => self.around(level, moved),
-            Shape::D3 => [0, 1, 2].map(|i| {
+            TextureDimension::Cube => self.around(level, moved),
+            TextureDimension::D3 => [0, 1, 2].map(|i| {
                 wrap_address(
                     self.sampler.address[i],
                     moved[i],
@@ -290,14 +295,14 @@ impl<N> Footprint<'_, N> {
 
     /// The position of a texel of a cube. Beyond the edge of its face it is on the neighbouring
     /// face.
-    fn around(&self, level: &Level, [x, y, _]: [i64; 3]) -> [i64; 3] {
+    fn around(&self, level: &MipLevel, [x, y, _]: [i64; 3]) -> [i64; 3] {
         let side = f64::from(level.width);
         let (major, sign, s, t) = FACES[self.point.face];
         let mut direction = [0.0; 3];
         direction[major] = sign;
         direction[s.0] = s.1 * (2.0 * (x as f64 + 0.5) / side - 1.0);
         direction[t.0] = t.1 * (2.0 * (y as f64 + 0.5) / side - 1.0);
-        let place = project(Shape::Cube, direction, [0.0; 3], 0);
+        let place = project(TextureDimension::Cube, direction, [0.0; 3], 0);
         let texel = |at: f64| ((at * side).floor() as i64).clamp(0, i64::from(level.width) - 1);
         let cube = self.point.layer.min(level.layers / 6 - 1);
         [texel(place.at[0]), texel(place.at[1]), i64::from(6 * cube) + place.face as i64]

@@ -4,7 +4,7 @@ use super::super::code::Instruction;
 use super::super::error::{Error, FindingKind};
 use super::super::number::Number;
 use super::super::program::Program;
-use super::super::resources::Bound;
+use super::super::resources::BoundTextures;
 use super::compute::compute;
 use super::texture;
 use super::watch::Watch;
@@ -28,7 +28,7 @@ pub(super) struct Lane<N> {
 #[derive(Clone, Copy)]
 pub struct Env<'e> {
     pub program: &'e Program,
-    pub bound: &'e Bound,
+    pub bound: &'e BoundTextures,
     pub loop_limit: u64,
     /// Whether the lane is part of a quad.
     pub quad: bool,
@@ -43,7 +43,7 @@ impl Env<'_> {
 
 /// Why a lane stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Stop {
+pub(super) enum LaneStop {
     /// The function has returned.
     Done,
     /// The instruction at `pc` needs the other lanes of the quad.
@@ -55,7 +55,7 @@ pub(super) fn run_lane<N: Number>(
     env: Env,
     lane: &mut Lane<N>,
     watch: &mut Watch,
-) -> Result<Stop, Error> {
+) -> Result<LaneStop, Error> {
     loop {
         let at = lane.pc;
         let instruction = lane.fetch(env)?;
@@ -79,18 +79,18 @@ pub(super) fn run_lane<N: Number>(
             }
             Instruction::Return => match lane.calls.pop() {
                 Some(to) => lane.pc = to,
-                None => return Ok(Stop::Done),
+                None => return Ok(LaneStop::Done),
             },
             Instruction::Kill => lane.killed = true,
             Instruction::Derivative { .. } => {
                 lane.pc = at;
-                return Ok(Stop::Quad);
+                return Ok(LaneStop::Quad);
             }
             Instruction::Image { access }
                 if env.quad && env.program.images[access as usize].implicit() =>
             {
                 lane.pc = at;
-                return Ok(Stop::Quad);
+                return Ok(LaneStop::Quad);
             }
             Instruction::Image { access } => {
                 let access = &env.program.images[access as usize];

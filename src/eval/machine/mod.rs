@@ -12,15 +12,15 @@ mod watch;
 mod word;
 
 use super::error::{Error, Finding};
-use super::layout::{Kind, decode_buffer};
+use super::layout::{SlotKind, decode_buffer};
 use super::number::Number;
-use super::program::{Constant, Function, FunctionId, Program, Role};
-use super::resources::{Bound, Resources};
+use super::program::{Function, FunctionId, GlobalRole, InitialValue, Program};
+use super::resources::{BoundTextures, Resources};
 use crate::diagnostic::codes;
 pub(in crate::eval) use compute::convert_slot;
 pub(in crate::eval) use geometry::geometry;
 pub(in crate::eval) use lane::{Env, jump_target};
-use lane::{Lane, Stop};
+use lane::{Lane, LaneStop};
 pub(in crate::eval) use packing::pack;
 pub(in crate::eval) use quad::derivative_lanes;
 pub(in crate::eval) use texture::{Slots, apply_access, coordinate_of, gradient_of};
@@ -36,7 +36,7 @@ pub struct Machine<'p, N> {
     program: &'p Program,
     resources: Resources,
     /// Textures and samplers by the index of their variable.
-    resolved: Bound,
+    resolved: BoundTextures,
     lane: Lane<N>,
     /// The lanes of a quad, once one has run, and which of them were discarded.
     quad: Vec<Lane<N>>,
@@ -60,15 +60,15 @@ impl<'p, N: Number> Machine<'p, N> {
             Lane { memory: vec![N::default(); program.slots as usize], ..Lane::default() };
         for &(slot, value) in &program.pool {
             lane.memory[slot as usize] = match value {
-                Constant::Word(word) => N::from_word(word),
-                Constant::Float(value) => N::from_f64(value),
+                InitialValue::Word(word) => N::from_word(word),
+                InitialValue::Float(value) => N::from_f64(value),
             };
         }
         let watch = Watch::new(program);
         let mut machine = Self {
             program,
             resources: Resources::default(),
-            resolved: Bound::default(),
+            resolved: BoundTextures::default(),
             lane,
             quad: Vec::new(),
             killed: [false; 4],
@@ -105,11 +105,11 @@ impl<'p, N: Number> Machine<'p, N> {
                 slots.push(slot_from_word::<N>(kind, word))
             });
             match global.role {
-                Role::Buffer => {
+                GlobalRole::Buffer => {
                     let first = global.slot as usize;
                     self.lane.memory[first..first + slots.len()].copy_from_slice(&slots);
                 }
-                Role::Runtime { address, count, element } => {
+                GlobalRole::Runtime { address, count, element } => {
                     self.append(slots, global.slots, address, count, element)?
                 }
                 _ => {}
@@ -117,7 +117,7 @@ impl<'p, N: Number> Machine<'p, N> {
         }
         self.quad.clear();
         let places = self.program.globals.iter().map(|global| global.binding);
-        self.resolved = Bound::of(&resources, places);
+        self.resolved = BoundTextures::of(&resources, places);
         self.resources = resources;
         Ok(())
     }
@@ -220,8 +220,8 @@ impl<'p, N: Number> Machine<'p, N> {
             quad: false,
         };
         match lane::run_lane(env, &mut self.lane, &mut self.watch)? {
-            Stop::Done => Ok(()),
-            Stop::Quad => Err(needs_quad(self.program, self.lane.pc)),
+            LaneStop::Done => Ok(()),
+            LaneStop::Quad => Err(needs_quad(self.program, self.lane.pc)),
         }
     }
 
@@ -337,16 +337,16 @@ fn needs_quad(program: &Program, pc: u32) -> Error {
 }
 
 /// A slot from the 32 bits of a scalar.
-pub(super) fn slot_from_word<N: Number>(kind: Kind, word: u32) -> N {
+pub(super) fn slot_from_word<N: Number>(kind: SlotKind, word: u32) -> N {
     match kind {
-        Kind::Float => N::from_f64(f64::from(f32::from_bits(word))),
+        SlotKind::Float => N::from_f64(f64::from(f32::from_bits(word))),
         _ => N::from_word(word),
     }
 }
 
-fn word_from_slot<N: Number>(kind: Kind, slot: N) -> u32 {
+fn word_from_slot<N: Number>(kind: SlotKind, slot: N) -> u32 {
     match kind {
-        Kind::Float => slot.bits(),
+        SlotKind::Float => slot.bits(),
         _ => slot.word(),
     }
 }

@@ -1,11 +1,11 @@
 //! Runs the four fragments of a quad. Each runs alone up to a derivative, where it waits for the
 //! others.
 
-use super::super::code::{Axis, Binary, Instruction, Unary};
+use super::super::code::{Binary, DerivativeDirection, Instruction, Unary};
 use super::super::error::{Error, FindingKind};
 use super::super::number::Number;
 use super::super::program::FunctionId;
-use super::lane::{self, Env, Lane, Stop};
+use super::lane::{self, Env, Lane, LaneStop};
 use super::{Machine, begin_lane, callable_function, place_arguments, result_slots, texture};
 
 impl<N: Number> Machine<'_, N> {
@@ -60,8 +60,8 @@ impl<N: Number> Machine<'_, N> {
             let mut waiting = Vec::new();
             for index in (0..4).filter(|index| running[*index]).collect::<Vec<_>>() {
                 match lane::run_lane(env, &mut lanes[index], &mut self.watch)? {
-                    Stop::Done => running[index] = false,
-                    Stop::Quad => waiting.push(index),
+                    LaneStop::Done => running[index] = false,
+                    LaneStop::Quad => waiting.push(index),
                 }
             }
             // The lanes that are furthest behind go first, since the others may wait at a place
@@ -104,10 +104,10 @@ fn waiting_position<N>(lane: &Lane<N>) -> impl Iterator<Item = u32> + '_ {
 }
 
 /// The two lanes whose difference is the derivative for a lane.
-pub fn derivative_lanes(lane: usize, axis: Axis, coarse: bool) -> (usize, usize) {
+pub fn derivative_lanes(lane: usize, axis: DerivativeDirection, coarse: bool) -> (usize, usize) {
     let lane = if coarse { 0 } else { lane };
     match axis {
-        Axis::Y => (lane & 1, lane | 2),
+        DerivativeDirection::Y => (lane & 1, lane | 2),
         _ => (lane & 2, lane | 1),
     }
 }
@@ -115,7 +115,7 @@ pub fn derivative_lanes(lane: usize, axis: Axis, coarse: bool) -> (usize, usize)
 fn derivative<N: Number>(
     lanes: &mut [Lane<N>],
     group: &[usize],
-    axis: Axis,
+    axis: DerivativeDirection,
     coarse: bool,
     to: usize,
     from: usize,
@@ -132,8 +132,8 @@ fn derivative<N: Number>(
             }
         };
         let result = match axis {
-            Axis::Width => {
-                let [x, y] = [along(Axis::X), along(Axis::Y)]
+            DerivativeDirection::Width => {
+                let [x, y] = [along(DerivativeDirection::X), along(DerivativeDirection::Y)]
                     .map(|slope| N::unary(Unary::Abs, slope, &mut false));
                 N::binary(Binary::Add, x, y, &mut false)
             }

@@ -2,11 +2,11 @@
 //! one image: a layer of a 2D texture, or the inside of a face of a cube.
 
 use super::super::number::Number;
-use super::super::resources::{Filter, Level, Shape, Texels};
+use super::super::resources::{Filter, MipLevel, Texels, TextureDimension};
 use super::filter::{Footprint, wrap_address};
 
 /// The layer or the cube's face that a place is on.
-struct Image<'l> {
+struct LayerImage<'l> {
     texels: &'l Texels,
     /// The index of its first texel.
     first: usize,
@@ -15,10 +15,10 @@ struct Image<'l> {
 
 /// The filtered value of each component. `None` if the texels are in several images, or the texture
 /// is 1D or 3D.
-pub fn filter_image<N: Number>(footprint: &Footprint<N>, level: &Level) -> Option<[f64; 4]> {
+pub fn filter_image<N: Number>(footprint: &Footprint<N>, level: &MipLevel) -> Option<[f64; 4]> {
     let layer = match footprint.point.shape {
-        Shape::D2 => footprint.point.layer.min(level.layers - 1) as usize,
-        Shape::Cube => {
+        TextureDimension::D2 => footprint.point.layer.min(level.layers - 1) as usize,
+        TextureDimension::Cube => {
             let cube = footprint.point.layer.min(level.layers / 6 - 1);
             6 * cube as usize + footprint.point.face
         }
@@ -26,14 +26,14 @@ pub fn filter_image<N: Number>(footprint: &Footprint<N>, level: &Level) -> Optio
     };
     let all = level.width as usize * level.height as usize;
     let image =
-        Image { texels: &level.texels, first: layer * all, size: [level.width, level.height] };
+        LayerImage { texels: &level.texels, first: layer * all, size: [level.width, level.height] };
     match footprint.filter {
         Filter::Linear => linear(footprint, &image),
         Filter::Nearest => nearest(footprint, &image),
     }
 }
 
-fn linear<N: Number>(footprint: &Footprint<N>, image: &Image<'_>) -> Option<[f64; 4]> {
+fn linear<N: Number>(footprint: &Footprint<N>, image: &LayerImage<'_>) -> Option<[f64; 4]> {
     let mut share = [0.0; 2];
     let mut places = [[0; 2]; 2];
     for axis in 0..2 {
@@ -57,7 +57,7 @@ fn linear<N: Number>(footprint: &Footprint<N>, image: &Image<'_>) -> Option<[f64
     Some(values)
 }
 
-fn nearest<N: Number>(footprint: &Footprint<N>, image: &Image<'_>) -> Option<[f64; 4]> {
+fn nearest<N: Number>(footprint: &Footprint<N>, image: &LayerImage<'_>) -> Option<[f64; 4]> {
     let along = |axis: usize| {
         let place = footprint.point.at[axis] * f64::from(image.size[axis]);
         // This makes an infinite place NaN, as `filter` does where it adds an error times 0.
@@ -72,20 +72,20 @@ fn nearest<N: Number>(footprint: &Footprint<N>, image: &Image<'_>) -> Option<[f6
 /// A column or a row of the image, as the sampler addresses it; `None` beyond a cube's face.
 fn place_along<N>(
     footprint: &Footprint<N>,
-    image: &Image<'_>,
+    image: &LayerImage<'_>,
     axis: usize,
     at: i64,
 ) -> Option<usize> {
     let moved = at.saturating_add(footprint.shift[axis]);
     let size = image.size[axis];
-    if footprint.point.shape == Shape::Cube {
+    if footprint.point.shape == TextureDimension::Cube {
         let is_inside = |at: i64| (0..i64::from(size)).contains(&at);
         return (is_inside(at) && is_inside(moved)).then_some(moved as usize);
     }
     usize::try_from(wrap_address(footprint.sampler.address[axis], moved, size)).ok()
 }
 
-impl Image<'_> {
+impl LayerImage<'_> {
     #[inline(always)]
     fn at(&self, x: usize, y: usize) -> Option<[f64; 4]> {
         self.texels.get(self.first + y * self.size[0] as usize + x)

@@ -1,10 +1,10 @@
 //! Runs accesses to textures: finds what is bound, chooses the level, and stores the result.
 
-use super::super::code::{Access, Ask, Axis, Lod};
+use super::super::code::{Access, DerivativeDirection, Lod, TextureOp};
 use super::super::error::{Error, FindingKind};
 use super::super::number::Number;
-use super::super::resources::{Filter, Sampler, Shape, Texture};
-use super::filter::{Footprint, Point, combine, gathered_component, project};
+use super::super::resources::{Filter, Sampler, Texture, TextureDimension};
+use super::filter::{Footprint, TexturePoint, combine, gathered_component, project};
 use super::lane::{Env, Lane};
 use super::quad::derivative_lanes;
 use super::watch::Watch;
@@ -17,7 +17,7 @@ const LEVEL_STEP: f64 = 1.0 / 64.0;
 type Gradient = [[f64; 3]; 2];
 
 /// The instruction, and where to report what happens there.
-type Notes<'w> = (u32, &'w mut Watch);
+type WatchNotes<'w> = (u32, &'w mut Watch);
 
 /// The memory of one lane. In a batch it is a part of the memory of many lanes.
 pub trait Slots<N> {
@@ -66,7 +66,7 @@ pub fn coordinate_of<N: Number>(access: &Access, m: &(impl Slots<N> + ?Sized)) -
 /// How the coordinate changes around a lane of a quad; 0 along an axis where a neighbour did not
 /// reach the access.
 pub fn gradient_of(coordinates: &[Option<[f64; 3]>; 4], lane: usize) -> Gradient {
-    [Axis::X, Axis::Y].map(|axis| {
+    [DerivativeDirection::X, DerivativeDirection::Y].map(|axis| {
         let (low, high) = derivative_lanes(lane, axis, false);
         coordinates[low]
             .zip(coordinates[high])
@@ -80,7 +80,7 @@ pub fn apply_access<N: Number>(
     access: &Access,
     m: &mut (impl Slots<N> + ?Sized),
     gradient: Option<Gradient>,
-    notes: Notes,
+    notes: WatchNotes,
 ) -> Result<(), Error> {
     let pc = notes.0;
     access_texture(env, access, m, gradient, notes).map_err(|error| error.or_at(env.span(pc)))
@@ -91,7 +91,7 @@ fn access_texture<N: Number>(
     access: &Access,
     m: &mut (impl Slots<N> + ?Sized),
     gradient: Option<Gradient>,
-    notes: Notes,
+    notes: WatchNotes,
 ) -> Result<(), Error> {
     let texture = bound_texture(env, m.get(access.image).word())?;
     let size = |level: Option<u32>| {
@@ -101,19 +101,26 @@ fn access_texture<N: Number>(
         [level.width, level.height, level.layers, 0]
     };
     match access.ask {
-        Ask::Sample { .. } => return sample_texture(env, access, texture, m, gradient, notes),
-        Ask::Load { level } => load_texel(access, texture, m, level, notes),
-        Ask::Size { level } => {
+        TextureOp::Sample { .. } => {
+            return sample_texture(env, access, texture, m, gradient, notes);
+        }
+        TextureOp::Load { level } => load_texel(access, texture, m, level, notes),
+        TextureOp::Size { level } => {
             let size = size(level);
             store_result(m, access, size.map(|size| (f64::from(size), 0.0)));
         }
-        Ask::Levels => store_result(m, access, [(texture.levels.len() as f64, 0.0); 4]),
-        Ask::Layers => store_result(
+        TextureOp::Levels => store_result(m, access, [(texture.levels.len() as f64, 0.0); 4]),
+        TextureOp::Layers => store_result(
             m,
             access,
-            [(f64::from(size(None)[2] / if texture.shape == Shape::Cube { 6 } else { 1 }), 0.0); 4],
+            [(
+                f64::from(
+                    size(None)[2] / if texture.shape == TextureDimension::Cube { 6 } else { 1 },
+                ),
+                0.0,
+            ); 4],
         ),
-        Ask::Samples => store_result(m, access, [(1.0, 0.0); 4]),
+        TextureOp::Samples => store_result(m, access, [(1.0, 0.0); 4]),
     }
     Ok(())
 }
@@ -140,7 +147,7 @@ fn load_texel<N: Number>(
     texture: &Texture,
     m: &mut (impl Slots<N> + ?Sized),
     level: Option<u32>,
-    (pc, watch): Notes,
+    (pc, watch): WatchNotes,
 ) {
     let word = |slot: u32| i64::from(m.get(slot).word() as i32);
     let mut at = [0i64; 3];
@@ -163,9 +170,10 @@ fn sample_texture<N: Number>(
     texture: &Texture,
     m: &mut (impl Slots<N> + ?Sized),
     gradient: Option<Gradient>,
-    notes: Notes,
+    notes: WatchNotes,
 ) -> Result<(), Error> {
-    let Ask::Sample { sampler: slot, gather, level, offset, reference, clamp_to_edge } = access.ask
+    let TextureOp::Sample { sampler: slot, gather, level, offset, reference, clamp_to_edge } =
+        access.ask
     else {
         return Ok(());
     };
@@ -212,7 +220,7 @@ fn sample_point<N: Number>(
     texture: &Texture,
     m: &(impl Slots<N> + ?Sized),
     coordinate: [f64; 3],
-) -> Point {
+) -> TexturePoint {
     let errors: [f64; 3] = std::array::from_fn(|i| {
         if i < usize::from(access.dimensions) {
             m.get(access.coordinate + i as u32).error()
@@ -242,12 +250,12 @@ fn texel_offset<N: Number>(
 fn detail_level(texture: &Texture, coordinate: [f64; 3], slopes: Option<Gradient>) -> f64 {
     let Some(slopes) = slopes else { return 0.0 };
     let first = &texture.levels[0];
-    let depth = if texture.shape == Shape::D3 { first.layers } else { 0 };
+    let depth = if texture.shape == TextureDimension::D3 { first.layers } else { 0 };
     let size = [first.width, first.height, depth].map(f64::from);
     let origin = project(texture.shape, coordinate, [0.0; 3], 0);
     let longest = slopes.map(|slope| {
         let moved: [f64; 3] = match texture.shape {
-            Shape::Cube => origin.slope(coordinate, slope),
+            TextureDimension::Cube => origin.slope(coordinate, slope),
             _ => slope,
         };
         (0..3).map(|i| (moved[i] * size[i]).powi(2)).sum::<f64>().sqrt()

@@ -7,9 +7,9 @@ use std::process::Output;
 
 use rayon::prelude::*;
 
-use super::interface::{Interface, Part, Role};
+use super::interface::{Interface, InterfaceMember, InterfaceRole};
 use crate::metal::adapt::adapt_text;
-use crate::metal::{Clang, Missing};
+use crate::metal::{Clang, ClangMissing};
 
 /// Bytes of texts in a unit. It is large enough that the headers cost little, and small enough that
 /// all cores have work.
@@ -43,23 +43,23 @@ impl Built {
 }
 
 /// Compiles and links.
-pub fn build_program(texts: &[&str]) -> Result<Built, Missing> {
+pub fn build_program(texts: &[&str]) -> Result<Built, ClangMissing> {
     let clang = Clang::open()?;
     let mut entries: Vec<_> = texts.iter().map(|text| Interface::read(text)).collect();
     let units = text_units(texts, &entries);
     // The first job is the runtime.
-    let jobs: Vec<Option<&Vec<Text<'_>>>> =
+    let jobs: Vec<Option<&Vec<TextInterface<'_>>>> =
         [None].into_iter().chain(units.iter().map(Some)).collect();
     let compiled = jobs.par_iter().map(|job| match job {
         None => compile_runtime(&clang),
         Some(unit) => compile_unit(&clang, texts, unit),
     });
-    let objects = compiled.collect::<Result<Vec<_>, Missing>>()?;
+    let objects = compiled.collect::<Result<Vec<_>, ClangMissing>>()?;
     let mut names = Vec::new();
     for object in objects.into_iter().flatten() {
         match object {
-            Object::Compiled(name) => names.push(name),
-            Object::Refused(text, errors) => entries[text] = Err(errors),
+            ObjectFile::Compiled(name) => names.push(name),
+            ObjectFile::Refused(text, errors) => entries[text] = Err(errors),
         }
     }
     names.sort();
@@ -68,18 +68,21 @@ pub fn build_program(texts: &[&str]) -> Result<Built, Missing> {
 }
 
 /// The result of compiling a unit: its object file, or the errors of one of its texts.
-enum Object {
+enum ObjectFile {
     /// The file's name.
     Compiled(String),
     Refused(usize, String),
 }
 
-type Objects = Result<Vec<Object>, Missing>;
+type Objects = Result<Vec<ObjectFile>, ClangMissing>;
 
 /// A text that is compiled: its index, and its interface.
-type Text<'t> = (usize, &'t Interface);
+type TextInterface<'t> = (usize, &'t Interface);
 
-fn text_units<'t>(texts: &[&str], entries: &'t [Result<Interface, String>]) -> Vec<Vec<Text<'t>>> {
+fn text_units<'t>(
+    texts: &[&str],
+    entries: &'t [Result<Interface, String>],
+) -> Vec<Vec<TextInterface<'t>>> {
     let (mut units, mut bytes) = (Vec::new(), UNIT);
     for (index, entry) in entries.iter().enumerate() {
         let Ok(interface) = entry else { continue };
@@ -96,16 +99,16 @@ fn text_units<'t>(texts: &[&str], entries: &'t [Result<Interface, String>]) -> V
 }
 
 /// Compiles a unit. If it is refused it is divided in halves, until the texts at fault are found.
-fn compile_unit(clang: &Clang, texts: &[&str], unit: &[Text<'_>]) -> Objects {
+fn compile_unit(clang: &Clang, texts: &[&str], unit: &[TextInterface<'_>]) -> Objects {
     let Some((first, _)) = unit.first() else { return Ok(Vec::new()) };
     let name = format!("unit{first}-{}.o", unit.len());
     let arguments: Vec<&str> = FLAGS.iter().copied().chain(["-o", &name]).collect();
     let output = clang.compile(&unit_source(texts, unit), &arguments)?;
     if output.status.success() {
-        return Ok(vec![Object::Compiled(name)]);
+        return Ok(vec![ObjectFile::Compiled(name)]);
     }
     if unit.len() == 1 {
-        return Ok(vec![Object::Refused(*first, output_text(&output))]);
+        return Ok(vec![ObjectFile::Refused(*first, output_text(&output))]);
     }
     let (first, second) = unit.split_at(unit.len() / 2);
     let mut objects = compile_unit(clang, texts, first)?;
@@ -121,11 +124,15 @@ fn output_text(output: &Output) -> String {
 fn compile_runtime(clang: &Clang) -> Objects {
     let name = "runtime.o";
     check_output(clang.call(&["-std=c++17", "-O1", "-c", "runtime.cpp", "-o", name])?)?;
-    Ok(vec![Object::Compiled(name.to_owned())])
+    Ok(vec![ObjectFile::Compiled(name.to_owned())])
 }
 
-fn check_output(output: Output) -> Result<(), Missing> {
-    if output.status.success() { Ok(()) } else { Err(Missing { reason: output_text(&output) }) }
+fn check_output(output: Output) -> Result<(), ClangMissing> {
+    if output.status.success() {
+        Ok(())
+    } else {
+        Err(ClangMissing { reason: output_text(&output) })
+    }
 }
 
 /// Links all, with the table of entry points.
@@ -133,7 +140,7 @@ fn link_objects(
     clang: &Clang,
     entries: &[Result<Interface, String>],
     objects: &[String],
-) -> Result<(), Missing> {
+) -> Result<(), ClangMissing> {
     let mut table = "#include \"runtime.h\"\nusing namespace __lamplight;\n".to_owned();
     for (index, _) in entries.iter().enumerate().filter(|(_, entry)| entry.is_ok()) {
         let _ = writeln!(table, "void run{index}(const bindings&, const given&, result&);");
@@ -154,7 +161,7 @@ fn link_objects(
 
 /// Texts one after another, each in a namespace of its own and followed by the function that runs
 /// it.
-fn unit_source(texts: &[&str], unit: &[Text<'_>]) -> String {
+fn unit_source(texts: &[&str], unit: &[TextInterface<'_>]) -> String {
     let mut source = "#include \"glue.h\"\n".to_owned();
     for (index, interface) in unit {
         let text = adapt_text(texts[*index]);
@@ -188,35 +195,37 @@ fn write_glue(to: &mut String, index: usize, interface: &Interface) {
     *to += "}\n";
 }
 
-fn argument_text(part: &Part) -> String {
+fn argument_text(part: &InterfaceMember) -> String {
     match part.role {
-        Role::StageIn => "input".to_owned(),
-        Role::Buffer(slot) => format!("__lamplight::buffer(bound, {slot})"),
-        Role::Texture(slot) => format!("__lamplight::texture_of(bound, {slot})"),
-        Role::Sampler(slot) => format!("__lamplight::sampler_of(bound, {slot})"),
-        Role::Position => "__lamplight::position(given)".to_owned(),
-        Role::FrontFacing => "given.front != 0".to_owned(),
-        Role::VertexIndex => "given.vertex_index".to_owned(),
-        Role::InstanceIndex => "given.instance_index".to_owned(),
-        Role::Location(_) | Role::Depth => "{}".to_owned(),
+        InterfaceRole::StageIn => "input".to_owned(),
+        InterfaceRole::Buffer(slot) => format!("__lamplight::buffer(bound, {slot})"),
+        InterfaceRole::Texture(slot) => format!("__lamplight::texture_of(bound, {slot})"),
+        InterfaceRole::Sampler(slot) => format!("__lamplight::sampler_of(bound, {slot})"),
+        InterfaceRole::Position => "__lamplight::position(given)".to_owned(),
+        InterfaceRole::FrontFacing => "given.front != 0".to_owned(),
+        InterfaceRole::VertexIndex => "given.vertex_index".to_owned(),
+        InterfaceRole::InstanceIndex => "given.instance_index".to_owned(),
+        InterfaceRole::Location(_) | InterfaceRole::Depth => "{}".to_owned(),
     }
 }
 
-fn write_taken(to: &mut String, member: &Part) {
-    if let Role::Location(location) = member.role {
+fn write_taken(to: &mut String, member: &InterfaceMember) {
+    if let InterfaceRole::Location(location) = member.role {
         let name = &member.name;
         let _ = writeln!(to, "  __lamplight::take(input.{name}, given.locations[{location}]);");
     }
 }
 
-fn write_given(to: &mut String, member: &Part) {
+fn write_given(to: &mut String, member: &InterfaceMember) {
     let name = &member.name;
     let _ = match member.role {
-        Role::Location(location) => {
+        InterfaceRole::Location(location) => {
             writeln!(to, "  __lamplight::give(output.{name}, result.locations[{location}]);")
         }
-        Role::Position => writeln!(to, "  __lamplight::give_position(output.{name}, result);"),
-        Role::Depth => writeln!(to, "  result.depth = output.{name};"),
+        InterfaceRole::Position => {
+            writeln!(to, "  __lamplight::give_position(output.{name}, result);")
+        }
+        InterfaceRole::Depth => writeln!(to, "  result.depth = output.{name};"),
         _ => Ok(()),
     };
 }

@@ -1,12 +1,12 @@
 //! Reads from a text what its entry point takes and returns.
 
 use crate::bundle::Stage;
-use crate::metal::attributes::{Attribute, attribute_list};
+use crate::metal::attributes::{MslAttribute, attribute_list};
 use crate::metal::token::{Token, msl_tokens};
 
 /// What a parameter or a member stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
+pub enum InterfaceRole {
     /// The struct of the stage's inputs: `[[stage_in]]`.
     StageIn,
     Buffer(u32),
@@ -23,9 +23,9 @@ pub enum Role {
 
 /// A parameter or a member with its attributes.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Part {
+pub struct InterfaceMember {
     pub name: String,
-    pub role: Role,
+    pub role: InterfaceRole,
     /// Whether it is not interpolated (`[[flat]]`).
     pub is_flat: bool,
 }
@@ -35,11 +35,11 @@ pub struct Part {
 pub struct Interface {
     pub stage: Stage,
     pub name: String,
-    pub parameters: Vec<Part>,
+    pub parameters: Vec<InterfaceMember>,
     /// The struct of its `[[stage_in]]` parameter: name and members.
-    pub input: Option<(String, Vec<Part>)>,
+    pub input: Option<(String, Vec<InterfaceMember>)>,
     /// The members of its result.
-    pub output: Vec<Part>,
+    pub output: Vec<InterfaceMember>,
 }
 
 impl Interface {
@@ -59,7 +59,7 @@ impl Interface {
         let mut input = None;
         for parameter in separated_parts(&tokens, at + 4, (",", ")"))? {
             let part = read_part(&parameter)?;
-            if part.role == Role::StageIn {
+            if part.role == InterfaceRole::StageIn {
                 let name = parameter.first().map_or("", |token| token.text);
                 input = Some((name.to_owned(), struct_members(&tokens, name)?));
             }
@@ -72,9 +72,9 @@ impl Interface {
 
     /// How many locations its inputs have, and its outputs.
     pub fn locations(&self) -> (u32, u32) {
-        let count = |parts: &[Part]| {
+        let count = |parts: &[InterfaceMember]| {
             let locations = parts.iter().filter_map(|part| match part.role {
-                Role::Location(location) => Some(location + 1),
+                InterfaceRole::Location(location) => Some(location + 1),
                 _ => None,
             });
             locations.max().unwrap_or(0)
@@ -92,7 +92,7 @@ fn token_texts<'t, const N: usize>(
 }
 
 /// The members of a struct.
-fn struct_members(tokens: &[Token<'_>], name: &str) -> Result<Vec<Part>, String> {
+fn struct_members(tokens: &[Token<'_>], name: &str) -> Result<Vec<InterfaceMember>, String> {
     let declared =
         |at: &usize| token_texts(tokens, *at).is_ok_and(|found| found == ["struct", name, "{"]);
     let at = (0..tokens.len()).find(declared).ok_or_else(|| format!("there is no `{name}`"))?;
@@ -124,7 +124,7 @@ fn separated_parts<'t>(
 }
 
 /// A parameter or a member. The last word before its attributes is its name.
-fn read_part(tokens: &[Token<'_>]) -> Result<Part, String> {
+fn read_part(tokens: &[Token<'_>]) -> Result<InterfaceMember, String> {
     let at = (0..tokens.len()).find(|at| attribute_list(tokens, *at).is_some());
     let Some((at, (attributes, _))) = at.and_then(|at| Some((at, attribute_list(tokens, at)?)))
     else {
@@ -137,23 +137,23 @@ fn read_part(tokens: &[Token<'_>]) -> Result<Part, String> {
         format!("`{name}` is `{}`, which nothing stands for on the CPU", names.join(", "))
     })?;
     let is_flat = attributes.iter().any(|attribute| attribute.name == "flat");
-    Ok(Part { name, role, is_flat })
+    Ok(InterfaceMember { name, role, is_flat })
 }
 
-fn attribute_role(attribute: &Attribute<'_>) -> Option<Role> {
+fn attribute_role(attribute: &MslAttribute<'_>) -> Option<InterfaceRole> {
     let user = || attribute.given?.strip_prefix("loc")?.parse().ok();
     match attribute.name {
-        "stage_in" => Some(Role::StageIn),
-        "buffer" => attribute.number().map(Role::Buffer),
-        "texture" => attribute.number().map(Role::Texture),
-        "sampler" => attribute.number().map(Role::Sampler),
-        "attribute" | "color" => attribute.number().map(Role::Location),
-        "user" => user().map(Role::Location),
-        "position" => Some(Role::Position),
-        "depth" => Some(Role::Depth),
-        "front_facing" => Some(Role::FrontFacing),
-        "vertex_id" => Some(Role::VertexIndex),
-        "instance_id" => Some(Role::InstanceIndex),
+        "stage_in" => Some(InterfaceRole::StageIn),
+        "buffer" => attribute.number().map(InterfaceRole::Buffer),
+        "texture" => attribute.number().map(InterfaceRole::Texture),
+        "sampler" => attribute.number().map(InterfaceRole::Sampler),
+        "attribute" | "color" => attribute.number().map(InterfaceRole::Location),
+        "user" => user().map(InterfaceRole::Location),
+        "position" => Some(InterfaceRole::Position),
+        "depth" => Some(InterfaceRole::Depth),
+        "front_facing" => Some(InterfaceRole::FrontFacing),
+        "vertex_id" => Some(InterfaceRole::VertexIndex),
+        "instance_id" => Some(InterfaceRole::InstanceIndex),
         _ => None,
     }
 }

@@ -7,4 +7,4 @@ pub mod interface;
 mod program;
 pub mod request;
 
-pub use program::Program;
+pub use program::CompiledProgram;

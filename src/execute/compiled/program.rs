@@ -4,25 +4,27 @@ use std::io::{Read as _, Write as _};
 use std::process::{Child, Command, Stdio};
 
 use super::build::{self, Built};
-use super::interface::{Interface, Role};
-use super::request::{Bound, Fragment, Shaded, Transformed, Vertex, Words, words};
-use crate::metal::Missing;
+use super::interface::{Interface, InterfaceRole};
+use super::request::{
+    FragmentInput, MetalResources, RequestWords, ShadedFragment, Transformed, VertexInput, words,
+};
+use crate::metal::ClangMissing;
 
 /// Entry points, ready to run.
 #[derive(Debug)]
-pub struct Program {
+pub struct CompiledProgram {
     built: Built,
     /// The process that runs them, once it was needed.
     child: Option<Child>,
 }
 
-impl Program {
+impl CompiledProgram {
     /// Compiles one entry point of each text. A text that clang refuses, or whose entry point needs
     /// something that the CPU lacks, fails when it is run.
     ///
     /// # Errors
     /// clang is missing or cannot be run.
-    pub fn build(texts: &[&str]) -> Result<Self, Missing> {
+    pub fn build(texts: &[&str]) -> Result<Self, ClangMissing> {
         Ok(Self { built: build::build_program(texts)?, child: None })
     }
 
@@ -44,8 +46,8 @@ impl Program {
     pub fn vertices(
         &mut self,
         text: usize,
-        bound: &Bound,
-        vertices: &[Vertex],
+        bound: &MetalResources,
+        vertices: &[VertexInput],
     ) -> Result<Vec<Transformed>, String> {
         let mut request = self.head(text, 0, bound)?;
         let (taken, given) = self.interface(text)?.locations();
@@ -65,9 +67,9 @@ impl Program {
     pub fn quads(
         &mut self,
         text: usize,
-        bound: &Bound,
-        quads: &[[Fragment; 4]],
-    ) -> Result<Vec<[Shaded; 4]>, String> {
+        bound: &MetalResources,
+        quads: &[[FragmentInput; 4]],
+    ) -> Result<Vec<[ShadedFragment; 4]>, String> {
         let mut request = self.head(text, 1, bound)?;
         let (taken, given) = self.interface(text)?.locations();
         request.push(quads.len() as u32);
@@ -77,18 +79,24 @@ impl Program {
             words::locations(&mut request, &fragment.locations, taken);
         }
         let answer = self.ask(&request, quads.len() * 4, given)?;
-        let shaded: Vec<Shaded> = answer.iter().map(|words| Shaded::from_words(words)).collect();
+        let shaded: Vec<ShadedFragment> =
+            answer.iter().map(|words| ShadedFragment::from_words(words)).collect();
         Ok(shaded.as_chunks::<4>().0.to_vec())
     }
 
     /// The start of every request.
-    fn head(&self, text: usize, stage: u32, bound: &Bound) -> Result<Words, String> {
+    fn head(
+        &self,
+        text: usize,
+        stage: u32,
+        bound: &MetalResources,
+    ) -> Result<RequestWords, String> {
         let interface = self.interface(text)?;
         for parameter in &interface.parameters {
             let is_bound = match parameter.role {
-                Role::Buffer(slot) => bound.buffers.contains_key(&slot),
-                Role::Texture(slot) => bound.textures.contains_key(&slot),
-                Role::Sampler(slot) => bound.samplers.contains_key(&slot),
+                InterfaceRole::Buffer(slot) => bound.buffers.contains_key(&slot),
+                InterfaceRole::Texture(slot) => bound.textures.contains_key(&slot),
+                InterfaceRole::Sampler(slot) => bound.samplers.contains_key(&slot),
                 _ => true,
             };
             if !is_bound {
@@ -103,7 +111,12 @@ impl Program {
 
     /// Sends a request, and waits for the words of each invocation: four words, then those of its
     /// locations.
-    fn ask(&mut self, request: &[u32], count: usize, given: u32) -> Result<Vec<Words>, String> {
+    fn ask(
+        &mut self,
+        request: &[u32],
+        count: usize,
+        given: u32,
+    ) -> Result<Vec<RequestWords>, String> {
         let size = 4 * (1 + given as usize);
         match self.exchange(request, count * size) {
             Ok(answer) => Ok(answer.chunks(size).map(<[u32]>::to_vec).collect()),
@@ -111,7 +124,7 @@ impl Program {
         }
     }
 
-    fn exchange(&mut self, request: &[u32], count: usize) -> std::io::Result<Words> {
+    fn exchange(&mut self, request: &[u32], count: usize) -> std::io::Result<RequestWords> {
         let child = match &mut self.child {
             Some(child) => child,
             none => none.insert(start_program(&self.built)?),
@@ -142,7 +155,7 @@ impl Program {
     }
 }
 
-impl Drop for Program {
+impl Drop for CompiledProgram {
     fn drop(&mut self) {
         if let Some(mut child) = self.child.take() {
             // The process ends when its input does, but a shader may still be running.

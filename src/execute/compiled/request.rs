@@ -3,30 +3,32 @@
 use std::collections::BTreeMap;
 
 use crate::bundle::{Binding, Native, Reflection};
-use crate::eval::{Address, Compare, Filter, Level, Resources, Sampler, Shape, Texture};
+use crate::eval::{
+    Address, Compare, Filter, MipLevel, Resources, Sampler, Texture, TextureDimension,
+};
 
-pub type Words = Vec<u32>;
+pub type RequestWords = Vec<u32>;
 
 /// The resources, by the slots of Metal's argument tables.
 #[derive(Debug, Clone, Default)]
-pub struct Bound {
+pub struct MetalResources {
     pub buffers: BTreeMap<u32, Vec<u8>>,
-    pub textures: BTreeMap<u32, Image>,
+    pub textures: BTreeMap<u32, MetalImage>,
     pub samplers: BTreeMap<u32, Sampler>,
 }
 
 /// A texture as words: four for each texel, row by row, layer by layer.
 #[derive(Debug, Clone)]
-pub struct Image {
-    pub shape: Shape,
-    pub format: Format,
+pub struct MetalImage {
+    pub shape: TextureDimension,
+    pub format: TexelFormat,
     /// The largest level first.
     pub levels: Vec<ImageLevel>,
 }
 
 /// What the words of a texture are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Format {
+pub enum TexelFormat {
     Float,
     Signed,
     Unsigned,
@@ -38,12 +40,12 @@ pub struct ImageLevel {
     pub width: u32,
     pub height: u32,
     pub layers: u32,
-    pub words: Words,
+    pub words: RequestWords,
 }
 
 /// The inputs of a vertex.
 #[derive(Debug, Clone, Default)]
-pub struct Vertex {
+pub struct VertexInput {
     pub index: u32,
     pub instance: u32,
     /// Four words for each attribute.
@@ -59,7 +61,7 @@ pub struct Transformed {
 
 /// The inputs of a fragment.
 #[derive(Debug, Clone, Default)]
-pub struct Fragment {
+pub struct FragmentInput {
     /// x, y, depth, 1/w.
     pub position: [f32; 4],
     pub front: bool,
@@ -68,14 +70,14 @@ pub struct Fragment {
 
 /// The results of the fragment stage.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Shaded {
+pub struct ShadedFragment {
     pub depth: f32,
     pub is_discarded: bool,
     /// Four words for each target.
     pub targets: Vec<[u32; 4]>,
 }
 
-impl Bound {
+impl MetalResources {
     /// Assigns the resources to Metal's slots, by the table of slots in `native`.
     pub fn new(resources: &Resources, native: &Native, reflection: &Reflection) -> Self {
         let mut bound = Self::default();
@@ -88,15 +90,16 @@ impl Bound {
             } else if let Some(texture) = resources.textures.get(&place) {
                 let is_it = |binding: &&Binding| (binding.group, binding.binding) == place;
                 let binding = reflection.bindings.iter().find(is_it);
-                let format = binding.map_or(Format::Float, |binding| Format::of(&binding.ty));
-                bound.textures.insert(index, Image::new(texture, format));
+                let format =
+                    binding.map_or(TexelFormat::Float, |binding| TexelFormat::of(&binding.ty));
+                bound.textures.insert(index, MetalImage::new(texture, format));
             }
         }
         bound
     }
 }
 
-impl Format {
+impl TexelFormat {
     /// The format of a texture, from its type in WGSL.
     fn of(ty: &str) -> Self {
         match ty {
@@ -115,10 +118,10 @@ impl Format {
     }
 }
 
-impl Image {
+impl MetalImage {
     /// A texture of the evaluator, as words.
-    pub fn new(texture: &Texture, format: Format) -> Self {
-        let level = |level: &Level| ImageLevel {
+    pub fn new(texture: &Texture, format: TexelFormat) -> Self {
+        let level = |level: &MipLevel| ImageLevel {
             width: level.width,
             height: level.height,
             layers: level.layers,
@@ -137,7 +140,7 @@ impl Transformed {
     }
 }
 
-impl Shaded {
+impl ShadedFragment {
     pub(super) fn from_words(words: &[u32]) -> Self {
         let (four, _) = words.as_chunks::<4>();
         let [depth, discarded, ..] = four.first().copied().unwrap_or_default();
@@ -151,16 +154,19 @@ impl Shaded {
 
 /// Writes parts of requests.
 pub mod words {
-    use super::{Address, Bound, Compare, Filter, Format, Image, Sampler, Shape, Words};
+    use super::{
+        Address, Compare, Filter, MetalImage, MetalResources, RequestWords, Sampler, TexelFormat,
+        TextureDimension,
+    };
 
     /// Writes `count` locations. Those that are not given are 0.
-    pub fn locations(to: &mut Words, locations: &[[u32; 4]], count: u32) {
+    pub fn locations(to: &mut RequestWords, locations: &[[u32; 4]], count: u32) {
         let given = locations.iter().copied().chain(std::iter::repeat([0; 4]));
         to.extend(given.take(count as usize).flatten());
     }
 
     /// Buffers, textures, samplers.
-    pub fn bound(to: &mut Words, bound: &Bound) {
+    pub fn bound(to: &mut RequestWords, bound: &MetalResources) {
         to.push(bound.buffers.len() as u32);
         for (slot, bytes) in &bound.buffers {
             to.extend([*slot, bytes.len() as u32]);
@@ -178,17 +184,17 @@ pub mod words {
         bound.samplers.iter().for_each(|(slot, settings)| sampler(to, *slot, settings));
     }
 
-    fn texture(to: &mut Words, slot: u32, image: &Image) {
+    fn texture(to: &mut RequestWords, slot: u32, image: &MetalImage) {
         let shape = match image.shape {
-            Shape::D1 => 1,
-            Shape::D2 => 2,
-            Shape::D3 => 3,
-            Shape::Cube => 6,
+            TextureDimension::D1 => 1,
+            TextureDimension::D2 => 2,
+            TextureDimension::D3 => 3,
+            TextureDimension::Cube => 6,
         };
         let format = match image.format {
-            Format::Float => 0,
-            Format::Signed => 1,
-            Format::Unsigned => 2,
+            TexelFormat::Float => 0,
+            TexelFormat::Signed => 1,
+            TexelFormat::Unsigned => 2,
         };
         to.extend([slot, shape, format, image.levels.len() as u32]);
         for level in &image.levels {
@@ -197,7 +203,7 @@ pub mod words {
         }
     }
 
-    fn sampler(to: &mut Words, slot: u32, sampler: &Sampler) {
+    fn sampler(to: &mut RequestWords, slot: u32, sampler: &Sampler) {
         to.push(slot);
         to.extend(sampler.address.map(|address| match address {
             Address::Clamp => 0,

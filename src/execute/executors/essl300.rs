@@ -2,11 +2,11 @@
 //!
 //! Runs on: every system but WebAssembly
 
-use super::{Entry, Shipping, Unavailable};
+use super::{ExecutorEntry, Shipping, Unavailable};
 use crate::bundle::Target;
 use crate::execute::Session;
 
-pub const EXECUTOR: Entry = Entry {
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "essl300",
     about: "the emitted GLSL ES 3.00 as it is, on OpenGL ES 3.0, Mesa's llvmpipe preferred",
     needs: &["libegl1", "libgles2", "libgl1-mesa-dri"],

@@ -3,14 +3,14 @@
 //!
 //! Runs on: every system
 
-use super::{Entry, Unavailable};
+use super::{ExecutorEntry, Unavailable};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::frame::{Drawing, Frame};
 use crate::execute::interpreter::{Interpreter, word_of};
 use crate::execute::kernel::Kernel;
 use crate::execute::{Session, raster};
 
-pub const EXECUTOR: Entry = Entry {
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "eval",
     about: "interpreter on the CPU, f32 rounded to nearest",
     needs: &[],

@@ -2,19 +2,19 @@
 //!
 //! Runs on: every system but WebAssembly
 
-use super::{DEVICE_SAMPLES, Entry, swiftshader};
-use crate::execute::gpu::{Named, Shaders, Wanted};
+use super::{DEVICE_SAMPLES, ExecutorEntry, swiftshader};
+use crate::execute::gpu::{AdapterName, DeviceRequest, Shaders};
 
-pub const EXECUTOR: Entry = Entry {
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "gl",
     about: "wgpu on OpenGL over EGL, Mesa's llvmpipe preferred",
     needs: &["libegl1", "libgles2", "libgl1-mesa-dri"],
     before_threads: None,
     samples: Some(DEVICE_SAMPLES),
     open: || {
-        super::open_gpu(Wanted {
+        super::open_gpu(DeviceRequest {
             backend: wgpu::Backends::GL,
-            named: Named::Without(swiftshader::NAME),
+            named: AdapterName::Without(swiftshader::NAME),
             shaders: Shaders::Translated,
         })
     },

@@ -2,11 +2,11 @@
 //!
 //! Runs on: every system but WebAssembly
 
-use super::{Entry, Shipping, Unavailable};
+use super::{ExecutorEntry, Shipping, Unavailable};
 use crate::bundle::Target;
 use crate::execute::Session;
 
-pub const EXECUTOR: Entry = Entry {
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "glsl330",
     about: "the emitted GLSL 3.30 as it is, on OpenGL 3.3 core, Mesa's llvmpipe preferred",
     needs: &["libegl1", "libgl1-mesa-dri"],

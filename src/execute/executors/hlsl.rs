@@ -3,13 +3,13 @@
 //!
 //! Runs on: every system but WebAssembly
 
-use super::{Entry, Shipping, Unavailable, swiftshader};
+use super::{ExecutorEntry, Shipping, Unavailable, swiftshader};
 use crate::bundle::Target;
 use crate::execute::Session;
-use crate::execute::gpu::{Named, Shaders};
+use crate::execute::gpu::{AdapterName, Shaders};
 use crate::tools::{GLSLANG, SPIRV_OPT};
 
-pub const EXECUTOR: Entry = Entry {
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "hlsl",
     about: "the emitted HLSL by way of glslangValidator's SPIR-V, on Chromium's SwiftShader",
     needs: &["glslang-tools", "spirv-tools", "chromium", "libvulkan1"],
@@ -24,5 +24,5 @@ fn open() -> Result<Box<dyn Session>, Unavailable> {
         return Err(format!("`{}` is not installed", tool.program).into());
     }
     swiftshader::installed()?;
-    super::open_vulkan(Named::With(swiftshader::NAME), Shaders::Emitted(Target::HLSL))
+    super::open_vulkan(AdapterName::With(swiftshader::NAME), Shaders::Emitted(Target::HLSL))
 }

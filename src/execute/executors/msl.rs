@@ -2,13 +2,13 @@
 //!
 //! Runs on: every system but WebAssembly
 
-use super::{Entry, Shipping, Unavailable};
+use super::{ExecutorEntry, Shipping, Unavailable};
 use crate::bundle::Target;
 use crate::execute::Session;
 use crate::execute::metal::Metal;
 use crate::tools::CLANG;
 
-pub const EXECUTOR: Entry = Entry {
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "msl",
     about: "the emitted MSL as it is, compiled for the CPU by clang",
     needs: &[CLANG.package],

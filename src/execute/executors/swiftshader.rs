@@ -6,12 +6,12 @@
 use std::path::Path;
 use std::sync::Once;
 
-use super::{DEVICE_SAMPLES, Entry, Shipping, Unavailable};
+use super::{DEVICE_SAMPLES, ExecutorEntry, Shipping, Unavailable};
 use crate::bundle::Target;
 use crate::execute::Session;
-use crate::execute::gpu::{Named, Shaders};
+use crate::execute::gpu::{AdapterName, Shaders};
 
-pub const EXECUTOR: Entry = Entry {
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "swiftshader",
     about: "wgpu on Vulkan, Chromium's SwiftShader",
     needs: &["chromium", "libvulkan1"],
@@ -24,7 +24,7 @@ pub const EXECUTOR: Entry = Entry {
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {
     installed()?;
-    super::open_vulkan(Named::With(NAME), Shaders::Translated)
+    super::open_vulkan(AdapterName::With(NAME), Shaders::Translated)
 }
 
 /// Whether the driver is installed. If so, it is announced to the loader.

@@ -2,15 +2,15 @@
 //!
 //! Runs on: every system but WebAssembly
 
-use super::{DEVICE_SAMPLES, Entry, swiftshader};
-use crate::execute::gpu::{Named, Shaders};
+use super::{DEVICE_SAMPLES, ExecutorEntry, swiftshader};
+use crate::execute::gpu::{AdapterName, Shaders};
 
-pub const EXECUTOR: Entry = Entry {
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "vulkan",
     about: "wgpu on Vulkan, Mesa's lavapipe preferred",
     needs: &["mesa-vulkan-drivers", "libvulkan1"],
     before_threads: None,
     samples: Some(DEVICE_SAMPLES),
-    open: || super::open_vulkan(Named::Without(swiftshader::NAME), Shaders::Translated),
+    open: || super::open_vulkan(AdapterName::Without(swiftshader::NAME), Shaders::Translated),
     shipping: None,
 };

@@ -3,13 +3,13 @@
 //!
 //! Runs on: every system but WebAssembly
 
-use super::{Entry, Shipping, Unavailable};
+use super::{ExecutorEntry, Shipping, Unavailable};
 use crate::browser::PACKAGE;
 use crate::bundle::Target;
 use crate::execute::Session;
-use crate::execute::web::Api;
+use crate::execute::web::WebApi;
 
-pub const EXECUTOR: Entry = Entry {
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "webgl2",
     about: "the emitted GLSL ES 3.00 as it is, on WebGL2 in Chromium",
     needs: &[PACKAGE],
@@ -20,5 +20,5 @@ pub const EXECUTOR: Entry = Entry {
 };
 
 fn open() -> Result<Box<dyn Session>, Unavailable> {
-    super::opened_page(Api::WebGl2)
+    super::opened_page(WebApi::WebGl2)
 }

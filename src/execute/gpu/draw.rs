@@ -10,13 +10,14 @@ use std::collections::BTreeSet;
 use naga::{AddressSpace, StorageAccess};
 use wgpu::util::DeviceExt;
 
-use super::{Gpu, executor_failed};
+use super::{WgpuDevice, executor_failed};
 use crate::diagnostic::Diagnostic;
 use crate::execute::frame::{
-    Attribute, Drawing, EntryPoint, Frame, Mesh, Place, Side, State, VertexFormat,
+    BindingPlace, Drawing, EntryPoint, Face, Frame, Mesh, PipelineState, VertexAttribute,
+    VertexFormat,
 };
 use crate::execute::module_info;
-use crate::execute::shipped::Format;
+use crate::execute::shipped::ColorFormat;
 use bindings::Bindings;
 use target::{DEPTH_FORMAT, Targets};
 
@@ -32,7 +33,7 @@ use target::{DEPTH_FORMAT, Targets};
 const LAVAPIPE_BLOCKS: usize = 3;
 const LAVAPIPE_DETOUR: &str = "uniform blocks were bound as storage blocks: lavapipe crashes where a branch reads the fourth of a stage";
 
-impl Gpu {
+impl WgpuDevice {
     /// Draws the frame of each view and reads it back.
     pub(super) fn frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
         let used: Vec<_> = std::iter::once(drawing.vertex)
@@ -41,7 +42,7 @@ impl Gpu {
             .collect::<Result<_, _>>()?;
         let as_storage =
             if self.is_lavapipe() { spared_blocks(drawing, &used) } else { BTreeSet::new() };
-        let all: BTreeSet<Place> = used.into_iter().flatten().collect();
+        let all: BTreeSet<BindingPlace> = used.into_iter().flatten().collect();
         let frames = self.guarded(|gpu| gpu.submit_frames(drawing, all, &as_storage))??;
         let detour = (!as_storage.is_empty()).then_some(LAVAPIPE_DETOUR);
         frames.into_iter().map(|frame| frame.read(self, detour)).collect()
@@ -55,16 +56,16 @@ impl Gpu {
     fn submit_frames(
         &self,
         drawing: &Drawing<'_>,
-        used: BTreeSet<Place>,
-        as_storage: &BTreeSet<Place>,
+        used: BTreeSet<BindingPlace>,
+        as_storage: &BTreeSet<BindingPlace>,
     ) -> Result<Vec<target::Pending>, Diagnostic> {
         let vertex = (self.shader(drawing.vertex, as_storage), drawing.vertex.entry);
         let fragment = drawing.fragment.map(|stage| (self.shader(stage, as_storage), stage.entry));
-        let stages = Stages {
+        let stages = StageModules {
             vertex: (&vertex.0, vertex.1),
             fragment: fragment.as_ref().map(|(module, entry)| (module, *entry)),
         };
-        let formats = vec![Format::Uint; drawing.targets as usize];
+        let formats = vec![ColorFormat::Uint; drawing.targets as usize];
         let pipeline = self.mesh_pipeline(drawing, stages, None, &formats);
         let bindings = Bindings::new(self, drawing, used)?;
         let meshes = Meshes::new(self, drawing);
@@ -82,7 +83,11 @@ impl Gpu {
         Ok(frames)
     }
 
-    fn shader(&self, stage: EntryPoint<'_>, as_storage: &BTreeSet<Place>) -> wgpu::ShaderModule {
+    fn shader(
+        &self,
+        stage: EntryPoint<'_>,
+        as_storage: &BTreeSet<BindingPlace>,
+    ) -> wgpu::ShaderModule {
         let source = wgpu::ShaderSource::Naga(Cow::Owned(storage_blocks(stage.module, as_storage)));
         self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source })
     }
@@ -91,9 +96,9 @@ impl Gpu {
     fn mesh_pipeline(
         &self,
         drawing: &Drawing<'_>,
-        stages: Stages<'_>,
+        stages: StageModules<'_>,
         layout: Option<&wgpu::PipelineLayout>,
-        formats: &[Format],
+        formats: &[ColorFormat],
     ) -> wgpu::RenderPipeline {
         let mesh = drawing.items.first().map(|item| item.mesh);
         let attributes = mesh.map(vertex_layout).unwrap_or_default();
@@ -140,18 +145,18 @@ impl Gpu {
     }
 }
 
-fn primitive_state(state: State) -> wgpu::PrimitiveState {
+fn primitive_state(state: PipelineState) -> wgpu::PrimitiveState {
     wgpu::PrimitiveState {
         front_face: if state.mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw },
         cull_mode: state.cull.map(|side| match side {
-            Side::Front => wgpu::Face::Front,
-            Side::Back => wgpu::Face::Back,
+            Face::Front => wgpu::Face::Front,
+            Face::Back => wgpu::Face::Back,
         }),
         ..Default::default()
     }
 }
 
-fn depth_state(state: State) -> wgpu::DepthStencilState {
+fn depth_state(state: PipelineState) -> wgpu::DepthStencilState {
     let [slope_scale, constant] = state.offset;
     wgpu::DepthStencilState {
         format: DEPTH_FORMAT,
@@ -164,7 +169,7 @@ fn depth_state(state: State) -> wgpu::DepthStencilState {
 
 /// The stages as shaders of the device, with their entry points.
 #[derive(Clone, Copy)]
-struct Stages<'a> {
+struct StageModules<'a> {
     vertex: (&'a wgpu::ShaderModule, &'a str),
     fragment: Option<(&'a wgpu::ShaderModule, &'a str)>,
 }
@@ -176,7 +181,7 @@ struct Meshes(Vec<Uploaded>);
 type Groups = Vec<(u32, wgpu::BindGroup)>;
 
 impl Meshes {
-    fn new(gpu: &Gpu, drawing: &Drawing<'_>) -> Self {
+    fn new(gpu: &WgpuDevice, drawing: &Drawing<'_>) -> Self {
         Self(drawing.items.iter().map(|item| Uploaded::new(gpu, item.mesh)).collect())
     }
 
@@ -184,7 +189,7 @@ impl Meshes {
     /// that can be mapped.
     fn pass(
         &self,
-        gpu: &Gpu,
+        gpu: &WgpuDevice,
         targets: &Targets,
         pipeline: &wgpu::RenderPipeline,
         groups: &[Groups],
@@ -211,7 +216,7 @@ struct Uploaded {
 }
 
 impl Uploaded {
-    fn new(gpu: &Gpu, mesh: &Mesh) -> Self {
+    fn new(gpu: &WgpuDevice, mesh: &Mesh) -> Self {
         let buffer = |numbers: &[u32], usage| {
             (!numbers.is_empty()).then(|| gpu.buffer(&bytes_of_words(numbers), usage))
         };
@@ -240,12 +245,15 @@ impl Uploaded {
 
 /// The uniform blocks to bind as storage blocks, so that no stage has too many: as few of the plain
 /// ones as are enough, or all blocks.
-fn spared_blocks(drawing: &Drawing<'_>, stages: &[BTreeSet<Place>]) -> BTreeSet<Place> {
-    let blocks: Vec<BTreeSet<Place>> = stages
+fn spared_blocks(
+    drawing: &Drawing<'_>,
+    stages: &[BTreeSet<BindingPlace>],
+) -> BTreeSet<BindingPlace> {
+    let blocks: Vec<BTreeSet<BindingPlace>> = stages
         .iter()
         .map(|used| used.iter().copied().filter(|place| drawing.is_buffer(*place)).collect())
         .collect();
-    let fits = |spared: &BTreeSet<Place>| {
+    let fits = |spared: &BTreeSet<BindingPlace>| {
         blocks.iter().all(|blocks| blocks.difference(spared).count() <= LAVAPIPE_BLOCKS)
     };
     let mut spared = BTreeSet::new();
@@ -259,7 +267,7 @@ fn spared_blocks(drawing: &Drawing<'_>, stages: &[BTreeSet<Place>]) -> BTreeSet<
 }
 
 /// The module with some uniform blocks declared as read-only storage blocks.
-fn storage_blocks(module: &naga::Module, places: &BTreeSet<Place>) -> naga::Module {
+fn storage_blocks(module: &naga::Module, places: &BTreeSet<BindingPlace>) -> naga::Module {
     let mut module = module.clone();
     for (_, variable) in module.global_variables.iter_mut() {
         let is_spared =
@@ -276,7 +284,7 @@ fn bytes_of_words(words: &[u32]) -> Vec<u8> {
 }
 
 /// The bindings that the entry point uses, which are those of the derived layout.
-fn used_bindings(stage: EntryPoint<'_>) -> Result<BTreeSet<Place>, Diagnostic> {
+fn used_bindings(stage: EntryPoint<'_>) -> Result<BTreeSet<BindingPlace>, Diagnostic> {
     let info = module_info("program", stage.module)?;
     let index = stage.module.entry_points.iter().position(|point| point.name == stage.entry);
     let index = index.ok_or_else(|| {
@@ -294,7 +302,7 @@ fn used_bindings(stage: EntryPoint<'_>) -> Result<BTreeSet<Place>, Diagnostic> {
 
 /// The attributes of a mesh as wgpu takes them.
 fn vertex_layout(mesh: &Mesh) -> Vec<wgpu::VertexAttribute> {
-    let attribute = |(attribute, offset): (Attribute, u64)| wgpu::VertexAttribute {
+    let attribute = |(attribute, offset): (VertexAttribute, u64)| wgpu::VertexAttribute {
         format: match attribute.format {
             VertexFormat::Uint32 => wgpu::VertexFormat::Uint32,
             VertexFormat::Float32 => wgpu::VertexFormat::Float32,

@@ -3,7 +3,7 @@
 use super::pipeline;
 use super::textures::{create_texture, write_level};
 use crate::eval::{half_from, half_to};
-use crate::execute::fixture::{Address, Compare, Sampler, Texture};
+use crate::execute::fixture::{Address, Compare, FixtureSampler, FixtureTexture};
 
 /// The shader that draws depth. Not every device can copy into a depth texture, but all can draw
 /// into it.
@@ -21,7 +21,7 @@ const DEPTH: &str = "
 pub fn upload_texture(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
-    texture: &Texture,
+    texture: &FixtureTexture,
 ) -> wgpu::TextureView {
     upload_levels(device, queue, texture, &[])
 }
@@ -30,8 +30,8 @@ pub fn upload_texture(
 pub fn upload_levels(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
-    texture: &Texture,
-    smaller: &[Texture],
+    texture: &FixtureTexture,
+    smaller: &[FixtureTexture],
 ) -> wgpu::TextureView {
     let cube = texture.kind.layers() == 6;
     let dimension =
@@ -48,7 +48,7 @@ pub fn upload_levels(
 }
 
 /// The sampler of a fixture.
-pub fn create_sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler {
+pub fn create_sampler(device: &wgpu::Device, sampler: FixtureSampler) -> wgpu::Sampler {
     let address = match sampler.address {
         Address::Clamp => wgpu::AddressMode::ClampToEdge,
         Address::Repeat => wgpu::AddressMode::Repeat,
@@ -85,8 +85,8 @@ pub fn create_sampler(device: &wgpu::Device, sampler: Sampler) -> wgpu::Sampler 
 fn color_texture(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
-    texture: &Texture,
-    smaller: &[Texture],
+    texture: &FixtureTexture,
+    smaller: &[FixtureTexture],
 ) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let levels = || std::iter::once(texture).chain(smaller);
@@ -111,7 +111,7 @@ fn color_texture(
 }
 
 /// Width, height and layers.
-fn level_size(level: &Texture) -> [u32; 3] {
+fn level_size(level: &FixtureTexture) -> [u32; 3] {
     [level.width, level.height, level.kind.layers()]
 }
 
@@ -119,7 +119,11 @@ fn is_half(texel: f32) -> bool {
     half_to(half_from(f64::from(texel))) == f64::from(texel)
 }
 
-fn depth_texture(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::Texture {
+fn depth_texture(
+    device: &wgpu::Device,
+    queue: &wgpu::Queue,
+    texture: &FixtureTexture,
+) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT;
     let format = wgpu::TextureFormat::Depth32Float;
     let created = create_texture(device, level_size(texture), 1, format, usage);
@@ -140,7 +144,7 @@ fn depth_texture(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) 
 fn staged_depths(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
-    texture: &Texture,
+    texture: &FixtureTexture,
     layer: u32,
 ) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
@@ -156,7 +160,7 @@ fn staged_depths(
 fn draw_layer(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
-    texture: &Texture,
+    texture: &FixtureTexture,
     layer: u32,
     target: &wgpu::Texture,
     layout: &wgpu::BindGroupLayout,

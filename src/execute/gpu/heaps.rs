@@ -16,7 +16,7 @@ use wgpu::util::DeviceExt as _;
 
 use super::fixtures;
 use crate::bundle::{HeapSampler, SamplerHeap};
-use crate::execute::fixture::{Address, Compare, Sampler};
+use crate::execute::fixture::{Address, Compare, FixtureSampler};
 
 /// Bindings before those of the index buffers.
 const HEAPS: u32 = 2;
@@ -38,7 +38,7 @@ pub fn heap_bindings(heaps: &[SamplerHeap]) -> impl Iterator<Item = (String, u32
 pub fn bind_heaps(
     device: &wgpu::Device,
     heaps: &[SamplerHeap],
-    sampler: &dyn Fn([u32; 2]) -> Option<Sampler>,
+    sampler: &dyn Fn([u32; 2]) -> Option<FixtureSampler>,
 ) -> Result<(wgpu::BindGroupLayout, wgpu::BindGroup), String> {
     let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: None,
@@ -93,7 +93,7 @@ fn heap_samplers(
     heaps: &[SamplerHeap],
     comparison: bool,
     places: &BTreeMap<[u32; 2], u32>,
-    sampler: &dyn Fn([u32; 2]) -> Option<Sampler>,
+    sampler: &dyn Fn([u32; 2]) -> Option<FixtureSampler>,
 ) -> Result<Vec<wgpu::Sampler>, String> {
     let mut array = vec![
         fixtures::create_sampler(device, decoy_sampler(comparison));
@@ -150,7 +150,7 @@ fn index_buffer(device: &wgpu::Device, numbers: &[u32]) -> wgpu::Buffer {
 }
 
 /// A sampler with settings that no case uses.
-fn decoy_sampler(comparison: bool) -> Sampler {
+fn decoy_sampler(comparison: bool) -> FixtureSampler {
     let compare = comparison.then_some(Compare::Greater);
-    Sampler { compare, linear: false, address: Address::Mirror }
+    FixtureSampler { compare, linear: false, address: Address::Mirror }
 }

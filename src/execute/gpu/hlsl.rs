@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use super::heaps;
 use crate::bundle::{Native, Stage};
-use crate::emit::spirv::{self, HEADER_WORDS, Instruction, instructions, op, string};
+use crate::emit::spirv::{self, HEADER_WORDS, SpirvInstruction, instructions, op, string};
 use crate::parse::words::words;
 use crate::tools::{GLSLANG, SPIRV_OPT};
 
@@ -90,7 +90,7 @@ fn bind_words(words: &[u32], native: &Native, group: u32) -> Result<Vec<u32>, St
     let locations = semantic_locations(words)?;
     let header = words.get(..HEADER_WORDS).ok_or("glslangValidator wrote no module")?;
     let mut out = header.to_vec();
-    for Instruction { op, words } in instructions(words) {
+    for SpirvInstruction { op, words } in instructions(words) {
         match (op, words) {
             (OP_DECORATE_STRING | OP_MEMBER_DECORATE_STRING, _) => {}
             (op::EXTENSION, [_, name @ ..]) if string(name).starts_with("SPV_GOOGLE") => {}
@@ -114,7 +114,7 @@ fn heap_places(words: &[u32], native: &Native) -> BTreeMap<u32, u32> {
     let by_name: BTreeMap<String, u32> = heaps::heap_bindings(&native.sampler_heaps).collect();
     let mut places = BTreeMap::new();
     let mut variables = Vec::new();
-    for Instruction { op, words } in instructions(words) {
+    for SpirvInstruction { op, words } in instructions(words) {
         match (op, words) {
             (op::NAME, [_, id, name @ ..]) => {
                 places.extend(by_name.get(&string(name)).map(|binding| (*id, *binding)));
@@ -131,7 +131,7 @@ fn heap_places(words: &[u32], native: &Native) -> BTreeMap<u32, u32> {
 /// The location of each variable, from the number in its semantic `LOCn`.
 fn semantic_locations(words: &[u32]) -> Result<BTreeMap<u32, u32>, String> {
     let mut locations = BTreeMap::new();
-    for Instruction { op, words } in instructions(words) {
+    for SpirvInstruction { op, words } in instructions(words) {
         if let (OP_DECORATE_STRING, [_, id, USER_SEMANTIC, name @ ..]) = (op, words)
             && let Some(number) = string(name).strip_prefix("LOC")
         {

@@ -11,8 +11,8 @@ mod pipeline;
 mod textures;
 
 pub use super::emitted;
-pub use open::{Named, Shaders, Wanted, open_gpu};
-pub use opengl::{Api, OpenGl};
+pub use open::{AdapterName, DeviceRequest, Shaders, open_gpu};
+pub use opengl::{OpenGl, OpenGlApi};
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -21,13 +21,13 @@ use std::time::Duration;
 
 use super::frame::{Drawing, Frame};
 use super::kernel::{ECHO, INPUT_WIDTH, Kernel, SENTINEL, TARGET_WIDTH};
-use super::shipped::Format;
-use super::{Pair, Session, draws_none, executor_failed};
+use super::shipped::ColorFormat;
+use super::{Session, ShippedPair, draws_none, executor_failed};
 use crate::bundle::Stage;
 use crate::diagnostic::Diagnostic;
 use crate::emit::Emitted;
-use passthrough::Binary;
-use pipeline::Prepared;
+use passthrough::SpirvBinary;
+use pipeline::PreparedKernel;
 use textures::{TEXEL, color_attachment, copy_to_buffer, create_texture, write_level};
 
 /// The longest wait for one draw: a hundred thousand times what one usually takes.
@@ -35,7 +35,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 const TARGET_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 
 /// An open device.
-pub struct Gpu {
+pub struct WgpuDevice {
     adapter: String,
     shaders: Shaders,
     device: wgpu::Device,
@@ -43,12 +43,12 @@ pub struct Gpu {
     /// Errors that no error scope caught, and the loss of the device.
     faults: Arc<Mutex<Vec<String>>>,
     vertex: wgpu::ShaderModule,
-    prepared: HashMap<u64, Prepared>,
+    prepared: HashMap<u64, PreparedKernel>,
     /// Shipped stages as SPIR-V, by their bytes and the bind group of their heaps.
-    binaries: Mutex<HashMap<(Vec<u8>, u32), Binary>>,
+    binaries: Mutex<HashMap<(Vec<u8>, u32), SpirvBinary>>,
 }
 
-impl Session for Gpu {
+impl Session for WgpuDevice {
     fn adapter(&self) -> String {
         self.adapter.clone()
     }
@@ -70,7 +70,7 @@ impl Session for Gpu {
 
     fn draw_shipped(
         &self,
-        pair: Pair<'_>,
+        pair: ShippedPair<'_>,
         drawing: &Drawing<'_>,
     ) -> Result<Vec<Frame>, Diagnostic> {
         self.shipped_frames(pair, drawing)
@@ -103,7 +103,7 @@ pub fn run_batches(
     Ok(results)
 }
 
-impl Gpu {
+impl WgpuDevice {
     fn prepare(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
         if !self.prepared.contains_key(&kernel.code) {
             let emitted = match self.shaders {
@@ -111,12 +111,12 @@ impl Gpu {
                 Shaders::Emitted(target) => {
                     let Emitted { bytes, native } = emitted::emit_kernel(kernel, target)?;
                     let heaps = pipeline::HEAPS;
-                    let binary = Binary::new(target, Stage::Fragment, &bytes, &native, heaps);
+                    let binary = SpirvBinary::new(target, Stage::Fragment, &bytes, &native, heaps);
                     Some(binary.map_err(executor_failed)?)
                 }
             };
             let prepared = self.guarded(|gpu| {
-                Prepared::new(&gpu.device, &gpu.queue, &gpu.vertex, kernel, emitted.as_ref())
+                PreparedKernel::new(&gpu.device, &gpu.queue, &gpu.vertex, kernel, emitted.as_ref())
             })?;
             self.prepared.insert(kernel.code, prepared.map_err(executor_failed)?);
         }
@@ -140,7 +140,7 @@ impl Gpu {
         let group = prepared.bind(&self.device, &inputs.create_view(&Default::default()));
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let view = target.create_view(&Default::default());
-        let attachment = color_attachment(&view, Format::Uint);
+        let attachment = color_attachment(&view, ColorFormat::Uint);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[Some(attachment)],
             ..Default::default()

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 use glow::HasContext as _;
 use wgpu::hal::Instance as _;
 
-use super::{Gpu, lock_mutex};
+use super::{WgpuDevice, lock_mutex};
 use crate::bundle::Target;
 
 /// The full-screen triangle.
@@ -19,16 +19,16 @@ const VERTEX: &str = "
 
 /// Which device to open, and what shaders it gets.
 #[derive(Debug, Clone, Copy)]
-pub struct Wanted {
+pub struct DeviceRequest {
     pub backend: wgpu::Backends,
     /// What the adapter's name must contain, or must not.
-    pub named: Named,
+    pub named: AdapterName,
     pub shaders: Shaders,
 }
 
 /// A condition on an adapter's name.
 #[derive(Debug, Clone, Copy)]
-pub enum Named {
+pub enum AdapterName {
     /// The name has this part. An empty part allows every name.
     With(&'static str),
     /// The name does not have this part.
@@ -58,7 +58,7 @@ impl Shaders {
     }
 }
 
-impl Named {
+impl AdapterName {
     fn allows(self, name: &str) -> bool {
         match self {
             Self::With(part) => name.contains(part),
@@ -67,7 +67,7 @@ impl Named {
     }
 }
 
-impl fmt::Display for Named {
+impl fmt::Display for AdapterName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::With(part) => write!(f, "whose name has `{part}`"),
@@ -78,7 +78,7 @@ impl fmt::Display for Named {
 
 /// Opens the preferred adapter of a backend. A software adapter is preferred, since its numbers are
 /// the same on every machine. The error is a message.
-pub fn open_gpu(wanted: Wanted) -> Result<Gpu, String> {
+pub fn open_gpu(wanted: DeviceRequest) -> Result<WgpuDevice, String> {
     let descriptor = wgpu::InstanceDescriptor {
         backends: wanted.backend,
         ..wgpu::InstanceDescriptor::new_without_display_handle()
@@ -107,7 +107,7 @@ pub fn open_gpu(wanted: Wanted) -> Result<Gpu, String> {
     let source = wgpu::ShaderSource::Wgsl(VERTEX.into());
     let vertex = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });
     let adapter = describe_adapter(&adapter.get_info());
-    Ok(Gpu {
+    Ok(WgpuDevice {
         adapter,
         shaders: wanted.shaders,
         device,

@@ -6,14 +6,14 @@ use crate::emit::spirv::words;
 
 /// One stage as SPIR-V.
 #[derive(Debug, Clone)]
-pub struct Binary {
+pub struct SpirvBinary {
     words: Vec<u32>,
     entry: String,
     /// The heaps that the stage takes its samplers from, if its target has heaps.
     pub heaps: Vec<SamplerHeap>,
 }
 
-impl Binary {
+impl SpirvBinary {
     /// The stage from the bytes of a target, if those can become SPIR-V. Sampler heaps go into the
     /// bind group `heaps`.
     ///

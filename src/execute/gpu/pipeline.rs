@@ -1,15 +1,15 @@
 //! A kernel's pipeline, and the bindings that are the same for all its draws.
 
-use super::passthrough::Binary;
+use super::passthrough::SpirvBinary;
 use super::{TARGET_FORMAT, fixtures, heaps};
-use crate::execute::fixture::{Fixture, Sampler};
+use crate::execute::fixture::{Fixture, FixtureSampler};
 use crate::execute::kernel::{ENTRY, Kernel, ResourceClass};
 
 /// What a device keeps for a kernel.
-pub struct Prepared {
+pub struct PreparedKernel {
     pub pipeline: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
-    resources: Vec<(u32, Bound)>,
+    resources: Vec<(u32, BoundResource)>,
     /// The bind group [`HEAPS`], if the shader takes its samplers from heaps.
     pub heaps: Option<wgpu::BindGroup>,
 }
@@ -17,12 +17,12 @@ pub struct Prepared {
 /// The index of the bind group with sampler heaps. The kernel's own group comes first.
 pub const HEAPS: u32 = 1;
 
-enum Bound {
+enum BoundResource {
     View(wgpu::TextureView),
     Sampler(wgpu::Sampler),
 }
 
-impl Prepared {
+impl PreparedKernel {
     /// Compiles the kernel and uploads its fixtures. If `emitted` is given, the driver gets it
     /// unchanged as the kernel's shader. Errors of the device go to its error scopes.
     pub fn new(
@@ -30,7 +30,7 @@ impl Prepared {
         queue: &wgpu::Queue,
         vertex: &wgpu::ShaderModule,
         kernel: &Kernel,
-        emitted: Option<&Binary>,
+        emitted: Option<&SpirvBinary>,
     ) -> Result<Self, String> {
         let layout = bind_layout(device, kernel);
         let fragment = match emitted {
@@ -53,7 +53,7 @@ impl Prepared {
         };
         let layouts: Vec<_> =
             std::iter::once(&layout).chain(heaps.as_ref().map(|(layout, _)| layout)).collect();
-        let entry = emitted.map_or(ENTRY, Binary::entry);
+        let entry = emitted.map_or(ENTRY, SpirvBinary::entry);
         let pipeline =
             draw_pipeline(device, &layouts, vertex, (&fragment, entry), Some(TARGET_FORMAT), None);
         let resources = kernel
@@ -72,8 +72,8 @@ impl Prepared {
         let rest = self.resources.iter().map(|(binding, bound)| wgpu::BindGroupEntry {
             binding: *binding,
             resource: match bound {
-                Bound::View(view) => wgpu::BindingResource::TextureView(view),
-                Bound::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
+                BoundResource::View(view) => wgpu::BindingResource::TextureView(view),
+                BoundResource::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
             },
         });
         let entries: Vec<_> = std::iter::once(first).chain(rest).collect();
@@ -194,7 +194,7 @@ fn binding_type(class: ResourceClass, fixture: &Fixture, filterable: bool) -> wg
             wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison)
         }
         ResourceClass::Sampler { comparison: false } => match fixture {
-            Fixture::Sampler(sampler) => sampler_type(Sampler { compare: None, ..*sampler }),
+            Fixture::Sampler(sampler) => sampler_type(FixtureSampler { compare: None, ..*sampler }),
             _ => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
         },
         ResourceClass::Texture { dim, class, .. } => {
@@ -212,10 +212,10 @@ fn binding_type(class: ResourceClass, fixture: &Fixture, filterable: bool) -> wg
 }
 
 /// The type of a sampler's binding.
-pub fn sampler_type(settings: Sampler) -> wgpu::BindingType {
+pub fn sampler_type(settings: FixtureSampler) -> wgpu::BindingType {
     wgpu::BindingType::Sampler(match settings {
-        Sampler { compare: Some(_), .. } => wgpu::SamplerBindingType::Comparison,
-        Sampler { linear: true, .. } => wgpu::SamplerBindingType::Filtering,
+        FixtureSampler { compare: Some(_), .. } => wgpu::SamplerBindingType::Comparison,
+        FixtureSampler { linear: true, .. } => wgpu::SamplerBindingType::Filtering,
         _ => wgpu::SamplerBindingType::NonFiltering,
     })
 }
@@ -228,9 +228,13 @@ pub fn texture_type(
     wgpu::BindingType::Texture { sample_type, view_dimension, multisampled: false }
 }
 
-fn bound_fixture(device: &wgpu::Device, queue: &wgpu::Queue, fixture: &Fixture) -> Bound {
+fn bound_fixture(device: &wgpu::Device, queue: &wgpu::Queue, fixture: &Fixture) -> BoundResource {
     match fixture {
-        Fixture::Texture(texture) => Bound::View(fixtures::upload_texture(device, queue, texture)),
-        Fixture::Sampler(sampler) => Bound::Sampler(fixtures::create_sampler(device, *sampler)),
+        Fixture::Texture(texture) => {
+            BoundResource::View(fixtures::upload_texture(device, queue, texture))
+        }
+        Fixture::Sampler(sampler) => {
+            BoundResource::Sampler(fixtures::create_sampler(device, *sampler))
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! Textures of a device, and what is copied to and from them.
 
 use crate::execute::kernel::SENTINEL;
-use crate::execute::shipped::Format;
+use crate::execute::shipped::ColorFormat;
 
 /// Bytes of a texel of a target.
 pub const TEXEL: u32 = 16;
@@ -48,11 +48,11 @@ pub fn write_level(
 /// A target of a pass, cleared to the bits of [`SENTINEL`].
 pub fn color_attachment(
     view: &wgpu::TextureView,
-    format: Format,
+    format: ColorFormat,
 ) -> wgpu::RenderPassColorAttachment<'_> {
     let cleared = match format {
-        Format::Float => f64::from(f32::from_bits(SENTINEL)),
-        Format::Uint => f64::from(SENTINEL),
+        ColorFormat::Float => f64::from(f32::from_bits(SENTINEL)),
+        ColorFormat::Uint => f64::from(SENTINEL),
     };
     let load = wgpu::LoadOp::Clear(wgpu::Color { r: cleared, g: cleared, b: cleared, a: cleared });
     wgpu::RenderPassColorAttachment {

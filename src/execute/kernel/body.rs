@@ -6,17 +6,17 @@ use naga::{
 };
 
 /// A value within the body.
-pub type Value = Handle<Expression>;
+pub type KernelValue = Handle<Expression>;
 
 /// The function that is being built, and the module that it is for.
-pub struct Body<'a> {
+pub struct FunctionBody<'a> {
     pub module: &'a mut Module,
     pub function: Function,
 }
 
-impl Body<'_> {
+impl FunctionBody<'_> {
     /// Adds an expression, and the statement that evaluates it if it needs one.
-    pub fn add(&mut self, expression: Expression) -> Value {
+    pub fn add(&mut self, expression: Expression) -> KernelValue {
         let emitted = !expression.needs_pre_emit();
         let value = self.function.expressions.append(expression, Span::UNDEFINED);
         if emitted {
@@ -42,26 +42,31 @@ impl Body<'_> {
     }
 
     /// A literal of `u32`.
-    pub fn literal(&mut self, value: u32) -> Value {
+    pub fn literal(&mut self, value: u32) -> KernelValue {
         self.add(Expression::Literal(Literal::U32(value)))
     }
 
     /// A component of a vector, a matrix, an array or a struct.
-    pub fn component(&mut self, base: Value, index: u32) -> Value {
+    pub fn component(&mut self, base: KernelValue, index: u32) -> KernelValue {
         self.add(Expression::AccessIndex { base, index })
     }
 
-    pub fn binary(&mut self, op: Op, left: Value, right: Value) -> Value {
+    pub fn binary(&mut self, op: Op, left: KernelValue, right: KernelValue) -> KernelValue {
         self.add(Expression::Binary { op, left, right })
     }
 
     /// A built-in function of two values.
-    pub fn math(&mut self, fun: MathFunction, left: Value, right: Value) -> Value {
+    pub fn math(
+        &mut self,
+        fun: MathFunction,
+        left: KernelValue,
+        right: KernelValue,
+    ) -> KernelValue {
         self.add(Expression::Math { fun, arg: left, arg1: Some(right), arg2: None, arg3: None })
     }
 
     /// A value converted to 32 bits of a kind.
-    pub fn convert(&mut self, expr: Value, kind: ScalarKind) -> Value {
+    pub fn convert(&mut self, expr: KernelValue, kind: ScalarKind) -> KernelValue {
         self.add(Expression::As { expr, kind, convert: Some(4) })
     }
 
@@ -69,8 +74,8 @@ impl Body<'_> {
     pub fn unflatten(
         &mut self,
         ty: Handle<Type>,
-        words: &mut dyn Iterator<Item = Value>,
-    ) -> Option<Value> {
+        words: &mut dyn Iterator<Item = KernelValue>,
+    ) -> Option<KernelValue> {
         if let TypeInner::Scalar(scalar) = self.module.types[ty].inner {
             return words.next().map(|word| self.word_as(word, scalar.kind));
         }
@@ -82,7 +87,7 @@ impl Body<'_> {
         Some(self.add(Expression::Compose { ty, components }))
     }
 
-    fn word_as(&mut self, word: Value, kind: ScalarKind) -> Value {
+    fn word_as(&mut self, word: KernelValue, kind: ScalarKind) -> KernelValue {
         match kind {
             ScalarKind::Uint => word,
             ScalarKind::Bool => {
@@ -94,7 +99,7 @@ impl Body<'_> {
     }
 
     /// Appends the words of a value.
-    pub fn flatten(&mut self, value: Value, ty: Handle<Type>, words: &mut Vec<Value>) {
+    pub fn flatten(&mut self, value: KernelValue, ty: Handle<Type>, words: &mut Vec<KernelValue>) {
         if let TypeInner::Scalar(scalar) = self.module.types[ty].inner {
             let word = self.as_word(value, scalar.kind);
             return words.push(word);
@@ -120,7 +125,7 @@ impl Body<'_> {
         })
     }
 
-    fn as_word(&mut self, value: Value, kind: ScalarKind) -> Value {
+    fn as_word(&mut self, value: KernelValue, kind: ScalarKind) -> KernelValue {
         match kind {
             ScalarKind::Uint => value,
             ScalarKind::Bool => {

@@ -20,8 +20,8 @@ mod shape;
 mod varying;
 mod wrap;
 
-pub use body::{Body, Value};
-pub use shape::Shape;
+pub use body::{FunctionBody, KernelValue};
+pub use shape::TypeShape;
 pub use varying::varying_modules;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -60,7 +60,7 @@ pub struct Parameter {
 #[derive(Debug, Clone)]
 pub enum ParameterKind {
     /// Words of the input, beginning with the one at `offset`.
-    Words { offset: u32, shape: Shape },
+    Words { offset: u32, shape: TypeShape },
     /// A global binding, filled from a fixture.
     Resource(Resource),
 }
@@ -96,7 +96,7 @@ pub struct Kernel {
     pub function: Handle<Function>,
     pub parameters: Vec<Parameter>,
     /// The function's result, then the values behind its pointer parameters after the call.
-    pub results: Vec<Shape>,
+    pub results: Vec<TypeShape>,
     /// Steps that all calls of it together may take on the evaluator.
     pub steps: u64,
 }
@@ -109,7 +109,7 @@ impl Kernel {
 
     /// Words of one invocation's results.
     pub fn result_words(&self) -> u32 {
-        self.results.iter().map(Shape::words).sum()
+        self.results.iter().map(TypeShape::words).sum()
     }
 
     /// Input texels of one invocation.
@@ -130,11 +130,11 @@ impl Kernel {
 
     /// Scalar kind of each result word.
     pub fn result_kinds(&self) -> Vec<ScalarKind> {
-        self.results.iter().flat_map(Shape::kinds).collect()
+        self.results.iter().flat_map(TypeShape::kinds).collect()
     }
 
     /// The parameters that are words: name and shape, in the order of their words.
-    pub fn words(&self) -> impl Iterator<Item = (&str, &Shape)> {
+    pub fn words(&self) -> impl Iterator<Item = (&str, &TypeShape)> {
         self.parameters.iter().filter_map(|parameter| match &parameter.kind {
             ParameterKind::Words { shape, .. } => Some((parameter.name.as_str(), shape)),
             ParameterKind::Resource(_) => None,
@@ -241,7 +241,7 @@ fn kernel_parameters(
                 })
             }
             None => {
-                let shape = Shape::of(module, pointed_type(module, argument.ty))
+                let shape = TypeShape::of(module, pointed_type(module, argument.ty))
                     .ok_or_else(|| untestable_function(&name))?;
                 let first = offset;
                 offset = shape.words().saturating_add(offset);
@@ -253,7 +253,10 @@ fn kernel_parameters(
     Ok(found)
 }
 
-fn kernel_results(module: &Module, function: Handle<Function>) -> Result<Vec<Shape>, Diagnostic> {
+fn kernel_results(
+    module: &Module,
+    function: Handle<Function>,
+) -> Result<Vec<TypeShape>, Diagnostic> {
     let function = &module.functions[function];
     let returned = function.result.as_ref().map(|result| result.ty);
     let written = function
@@ -262,7 +265,7 @@ fn kernel_results(module: &Module, function: Handle<Function>) -> Result<Vec<Sha
         .filter(|argument| pointed_type(module, argument.ty) != argument.ty);
     let types =
         returned.into_iter().chain(written.map(|argument| pointed_type(module, argument.ty)));
-    types.map(|ty| Shape::of(module, ty).ok_or_else(|| untestable_function("result"))).collect()
+    types.map(|ty| TypeShape::of(module, ty).ok_or_else(|| untestable_function("result"))).collect()
 }
 
 /// The type behind a pointer to a local variable, or the type itself.

@@ -5,7 +5,7 @@ use naga::{ArraySize, Handle, Module, ScalarKind, Type, TypeInner};
 /// A type without layout: its words follow each other in the order of declaration, matrices by
 /// columns, without padding.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Shape {
+pub enum TypeShape {
     /// One word: f32, i32, u32 or bool.
     Scalar(ScalarKind),
     /// Two to four words.
@@ -13,26 +13,26 @@ pub enum Shape {
     /// `columns * rows` words, column by column; always f32.
     Matrix { columns: u32, rows: u32 },
     /// The elements in order.
-    Array { base: Box<Shape>, count: u32 },
+    Array { base: Box<TypeShape>, count: u32 },
     /// The members in order, by name.
-    Struct { members: Vec<(String, Shape)> },
+    Struct { members: Vec<(String, TypeShape)> },
 }
 
 /// Columns of two to four rows.
-static COLUMNS: [Shape; 3] = [column_shape(2), column_shape(3), column_shape(4)];
-static SCALARS: [Shape; 4] = [
-    Shape::Scalar(ScalarKind::Float),
-    Shape::Scalar(ScalarKind::Sint),
-    Shape::Scalar(ScalarKind::Uint),
-    Shape::Scalar(ScalarKind::Bool),
+static COLUMNS: [TypeShape; 3] = [column_shape(2), column_shape(3), column_shape(4)];
+static SCALARS: [TypeShape; 4] = [
+    TypeShape::Scalar(ScalarKind::Float),
+    TypeShape::Scalar(ScalarKind::Sint),
+    TypeShape::Scalar(ScalarKind::Uint),
+    TypeShape::Scalar(ScalarKind::Bool),
 ];
 const COMPONENTS: [&str; 4] = ["x", "y", "z", "w"];
 
-const fn column_shape(size: u32) -> Shape {
-    Shape::Vector { size, kind: ScalarKind::Float }
+const fn column_shape(size: u32) -> TypeShape {
+    TypeShape::Vector { size, kind: ScalarKind::Float }
 }
 
-impl Shape {
+impl TypeShape {
     /// The shape of a naga type; `None` for a type whose values are not words.
     pub fn of(module: &Module, ty: Handle<Type>) -> Option<Self> {
         match module.types[ty].inner {

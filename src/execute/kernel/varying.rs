@@ -6,9 +6,9 @@ use naga::{
     Module, Sampling, ScalarKind, Span, Statement, VectorSize,
 };
 
-use super::body::{Body, Value};
-use super::wrap::{Source, with_entry};
-use super::{Shape, find_function, pointed_type, resource_class, untestable_function};
+use super::body::{FunctionBody, KernelValue};
+use super::wrap::{ArgumentSource, with_entry};
+use super::{TypeShape, find_function, pointed_type, resource_class, untestable_function};
 use crate::diagnostic::{Diagnostic, codes};
 
 /// The most vectors of four words that a stage can take: vertices have 32 attributes, and one of
@@ -31,14 +31,14 @@ pub fn varying_modules(module: &Module, function: &str) -> Result<[Module; 2], D
     for (index, argument) in module.functions[handle].arguments.iter().enumerate() {
         sources.push(if resource_class(module, argument.ty).is_some() {
             binding += 1;
-            Source::Binding(binding)
+            ArgumentSource::Binding(binding)
         } else {
             let named = || argument.name.clone().unwrap_or_else(|| format!("parameter {index}"));
-            let shape = Shape::of(module, pointed_type(module, argument.ty))
+            let shape = TypeShape::of(module, pointed_type(module, argument.ty))
                 .ok_or_else(|| untestable_function(&named()))?;
             let first = words;
             words = words.saturating_add(shape.words());
-            Source::Words(first)
+            ArgumentSource::Words(first)
         });
     }
     if words > 4 * VECTORS {
@@ -64,9 +64,9 @@ pub fn varying_modules(module: &Module, function: &str) -> Result<[Module; 2], D
     Ok([called, empty])
 }
 
-impl Body<'_> {
+impl FunctionBody<'_> {
     /// The stage's inputs, as words.
-    fn inputs_that_vary(&mut self, words: u32) -> Vec<Value> {
+    fn inputs_that_vary(&mut self, words: u32) -> Vec<KernelValue> {
         let ty = self.vector(VectorSize::Quad, ScalarKind::Float);
         let mut values = Vec::new();
         for location in 0..words.div_ceil(4) {
@@ -82,7 +82,7 @@ impl Body<'_> {
     }
 
     /// Returns four words that depend on all inputs and on all results.
-    fn mix(&mut self, inputs: &[Value], results: &[Value]) {
+    fn mix(&mut self, inputs: &[KernelValue], results: &[KernelValue]) {
         let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
         let zero = self.add(Expression::Literal(naga::Literal::U32(0)));
         let mixed =

@@ -8,7 +8,7 @@ use naga::{
     SwizzleComponent, Type, TypeInner, VectorSize,
 };
 
-use super::body::{Body, Value};
+use super::body::{FunctionBody, KernelValue};
 use super::{
     ECHO, ENTRY, INPUT_WIDTH, Kernel, Parameter, ParameterKind, TARGET_WIDTH, pointed_type,
 };
@@ -28,11 +28,11 @@ pub fn wrap_kernel(
 /// not reach.
 pub(super) fn with_entry(
     module: &Module,
-    write: impl FnOnce(&mut Body<'_>) -> Result<(), Diagnostic>,
+    write: impl FnOnce(&mut FunctionBody<'_>) -> Result<(), Diagnostic>,
 ) -> Result<Module, Diagnostic> {
     let mut module = module.clone();
     module.entry_points.clear();
-    let mut body = Body { module: &mut module, function: Function::default() };
+    let mut body = FunctionBody { module: &mut module, function: Function::default() };
     write(&mut body)?;
     let function = body.function;
     module.entry_points.push(EntryPoint {
@@ -63,14 +63,14 @@ fn lost_function(name: &str) -> Diagnostic {
 }
 
 /// Where an argument comes from.
-pub(super) enum Source {
+pub(super) enum ArgumentSource {
     /// A texture or a sampler, by its binding in group 0.
     Binding(u32),
     /// Words, of which this is the first.
     Words(u32),
 }
 
-impl Source {
+impl ArgumentSource {
     fn of(parameter: &Parameter) -> Self {
         match &parameter.kind {
             ParameterKind::Resource(resource) => Self::Binding(resource.binding),
@@ -80,17 +80,17 @@ impl Source {
 }
 
 /// What the fragment finds out from its position.
-struct Place {
+struct FragmentPlace {
     /// The pixel's index in the target.
-    index: Value,
-    header: Value,
+    index: KernelValue,
+    header: KernelValue,
     /// First input texel of the invocation.
-    first: Value,
+    first: KernelValue,
     /// Which four words of the result the pixel holds.
-    part: Value,
+    part: KernelValue,
 }
 
-impl Body<'_> {
+impl FunctionBody<'_> {
     fn main(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
         let position = self.vector(VectorSize::Quad, ScalarKind::Float);
         let target = self.vector(VectorSize::Quad, ScalarKind::Uint);
@@ -109,7 +109,8 @@ impl Body<'_> {
         let inputs = self.inputs();
         let place = self.place(inputs, kernel);
         let words = self.arguments(inputs, &place, kernel);
-        let sources: Vec<Source> = kernel.parameters.iter().map(Source::of).collect();
+        let sources: Vec<ArgumentSource> =
+            kernel.parameters.iter().map(ArgumentSource::of).collect();
         let results = self.call(&kernel.name, kernel.function, &sources, &words)?;
         let chosen = self.choose(&results, place.part);
         let value = self.echo(&place, chosen);
@@ -118,13 +119,13 @@ impl Body<'_> {
     }
 
     /// The input texture, binding 0.
-    fn inputs(&mut self) -> Value {
+    fn inputs(&mut self) -> KernelValue {
         let class = ImageClass::Sampled { kind: ScalarKind::Uint, multi: false };
         let ty = self.ty(TypeInner::Image { dim: ImageDimension::D2, arrayed: false, class });
         self.global("lamplight_inputs", ty, 0)
     }
 
-    fn global(&mut self, name: &str, ty: Handle<Type>, binding: u32) -> Value {
+    fn global(&mut self, name: &str, ty: Handle<Type>, binding: u32) -> KernelValue {
         let variable = GlobalVariable {
             name: Some(name.to_owned()),
             space: AddressSpace::Handle,
@@ -137,7 +138,7 @@ impl Body<'_> {
         self.add(Expression::GlobalVariable(variable))
     }
 
-    fn place(&mut self, inputs: Value, kernel: &Kernel) -> Place {
+    fn place(&mut self, inputs: KernelValue, kernel: &Kernel) -> FragmentPlace {
         let position = self.add(Expression::FunctionArgument(0));
         let x = self.component(position, 0);
         let y = self.component(position, 1);
@@ -161,11 +162,11 @@ impl Body<'_> {
         let texels = self.literal(kernel.input_texels());
         let skipped = self.binary(Op::Multiply, invocation, texels);
         let first = self.binary(Op::Add, skipped, one);
-        Place { index, header, first, part }
+        FragmentPlace { index, header, first, part }
     }
 
     /// One texel of the input texture.
-    fn load(&mut self, inputs: Value, index: Value) -> Value {
+    fn load(&mut self, inputs: KernelValue, index: KernelValue) -> KernelValue {
         let width = self.literal(INPUT_WIDTH);
         let x = self.binary(Op::Modulo, index, width);
         let y = self.binary(Op::Divide, index, width);
@@ -182,7 +183,12 @@ impl Body<'_> {
     }
 
     /// All words of the invocation's arguments, as u32.
-    fn arguments(&mut self, inputs: Value, place: &Place, kernel: &Kernel) -> Vec<Value> {
+    fn arguments(
+        &mut self,
+        inputs: KernelValue,
+        place: &FragmentPlace,
+        kernel: &Kernel,
+    ) -> Vec<KernelValue> {
         let mut words = Vec::new();
         for texel in 0..kernel.input_texels() {
             let skipped = self.literal(texel);
@@ -198,20 +204,20 @@ impl Body<'_> {
         &mut self,
         name: &str,
         function: Handle<Function>,
-        sources: &[Source],
-        words: &[Value],
-    ) -> Result<Vec<Value>, Diagnostic> {
+        sources: &[ArgumentSource],
+        words: &[KernelValue],
+    ) -> Result<Vec<KernelValue>, Diagnostic> {
         let declared = self.module.functions[function].arguments.clone();
         let returned = self.module.functions[function].result.as_ref().map(|result| result.ty);
         let mut arguments = Vec::new();
         let mut written = Vec::new();
         for (source, argument) in sources.iter().zip(&declared) {
             let value = match source {
-                Source::Binding(binding) => {
+                ArgumentSource::Binding(binding) => {
                     let name = argument.name.as_deref().unwrap_or("resource");
                     self.global(name, argument.ty, *binding)
                 }
-                Source::Words(offset) => {
+                ArgumentSource::Words(offset) => {
                     let base = pointed_type(self.module, argument.ty);
                     let value = self
                         .unflatten(base, &mut words[*offset as usize..].iter().copied())
@@ -244,9 +250,9 @@ impl Body<'_> {
     fn variable(
         &mut self,
         ty: Handle<Type>,
-        value: Value,
-        written: &mut Vec<(Value, Handle<Type>)>,
-    ) -> Value {
+        value: KernelValue,
+        written: &mut Vec<(KernelValue, Handle<Type>)>,
+    ) -> KernelValue {
         let local = self
             .function
             .local_variables
@@ -258,7 +264,7 @@ impl Body<'_> {
     }
 
     /// The echo in the first and the last pixel, and `value` in all others.
-    fn echo(&mut self, place: &Place, value: Value) -> Value {
+    fn echo(&mut self, place: &FragmentPlace, value: KernelValue) -> KernelValue {
         let magic = self.literal(ECHO);
         let mark = self.binary(Op::ExclusiveOr, place.index, magic);
         let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
@@ -277,7 +283,7 @@ impl Body<'_> {
     }
 
     /// The four words of this pixel: those of part 0, unless `part` is another.
-    fn choose(&mut self, words: &[Value], part: Value) -> Value {
+    fn choose(&mut self, words: &[KernelValue], part: KernelValue) -> KernelValue {
         let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
         let zero = self.literal(0);
         let mut chosen = self.add(Expression::Compose {
@@ -294,6 +300,6 @@ impl Body<'_> {
     }
 }
 
-fn padded_words(words: &[Value], zero: Value) -> Vec<Value> {
+fn padded_words(words: &[KernelValue], zero: KernelValue) -> Vec<KernelValue> {
     words.iter().copied().chain(std::iter::repeat(zero)).take(4).collect()
 }

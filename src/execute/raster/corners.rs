@@ -14,7 +14,7 @@ pub struct Corner {
 
 /// What the binding of a stage's input or output says about one of its scalars.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Source {
+pub enum ScalarSource {
     /// A component of what is at a location.
     Location(u32, usize),
     BuiltIn(BuiltIn, usize),
@@ -22,13 +22,15 @@ pub enum Source {
 }
 
 /// The source of each scalar, from the bindings of all scalars.
-pub fn scalar_sources(bindings: &[Option<Binding>]) -> Vec<Source> {
-    let mut sources: Vec<Source> = Vec::with_capacity(bindings.len());
+pub fn scalar_sources(bindings: &[Option<Binding>]) -> Vec<ScalarSource> {
+    let mut sources: Vec<ScalarSource> = Vec::with_capacity(bindings.len());
     for binding in bindings {
         let source = |component| match binding {
-            Some(Binding::Location { location, .. }) => Source::Location(*location, component),
-            Some(Binding::BuiltIn(built_in)) => Source::BuiltIn(*built_in, component),
-            None => Source::None,
+            Some(Binding::Location { location, .. }) => {
+                ScalarSource::Location(*location, component)
+            }
+            Some(Binding::BuiltIn(built_in)) => ScalarSource::BuiltIn(*built_in, component),
+            None => ScalarSource::None,
         };
         let first = source(0);
         // The scalars of one vector follow each other.
@@ -39,10 +41,10 @@ pub fn scalar_sources(bindings: &[Option<Binding>]) -> Vec<Source> {
     sources
 }
 
-fn same_source(a: Source, b: Source) -> bool {
+fn same_source(a: ScalarSource, b: ScalarSource) -> bool {
     match (a, b) {
-        (Source::Location(a, _), Source::Location(b, _)) => a == b,
-        (Source::BuiltIn(a, _), Source::BuiltIn(b, _)) => a == b,
+        (ScalarSource::Location(a, _), ScalarSource::Location(b, _)) => a == b,
+        (ScalarSource::BuiltIn(a, _), ScalarSource::BuiltIn(b, _)) => a == b,
         _ => false,
     }
 }

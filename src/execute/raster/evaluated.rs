@@ -3,10 +3,10 @@
 use naga::{Binding, BuiltIn};
 use rayon::prelude::*;
 
-use super::corners::{Corner, Source, scalar_sources, vertex_attribute};
-use super::{Quad, Shaded, Shading};
+use super::corners::{Corner, ScalarSource, scalar_sources, vertex_attribute};
+use super::{Quad, ShadedQuad, Shading};
 use crate::diagnostic::Diagnostic;
-use crate::eval::{Batch, Function, FunctionId, Kind, Machine, Number, Program, Resources};
+use crate::eval::{Batch, Function, FunctionId, Machine, Number, Program, Resources, SlotKind};
 use crate::execute::frame::{Buffers, Drawing, EntryPoint, Mesh};
 use crate::execute::interpreter::eval_failed;
 use crate::execute::{executor_failed, module_info};
@@ -73,11 +73,11 @@ impl Shading for Evaluated {
         let inputs = scalar_sources(&signature.inputs);
         let outputs = scalar_sources(&signature.outputs);
         let arguments = |index: u32| -> Vec<f32> {
-            let argument = |(source, kind): (&Source, &Kind)| match source {
-                Source::Location(location, component) => {
+            let argument = |(source, kind): (&ScalarSource, &SlotKind)| match source {
+                ScalarSource::Location(location, component) => {
                     slot_of_word(*kind, vertex_attribute(mesh, index, *location, *component))
                 }
-                Source::BuiltIn(BuiltIn::VertexIndex, _) => f32::from_word(index),
+                ScalarSource::BuiltIn(BuiltIn::VertexIndex, _) => f32::from_word(index),
                 _ => f32::from_word(0),
             };
             inputs.iter().zip(&signature.arguments).map(argument).collect()
@@ -101,7 +101,7 @@ impl Shading for Evaluated {
         Ok(corners.into_iter().flatten().collect())
     }
 
-    fn given(&self) -> Vec<(Source, bool)> {
+    fn given(&self) -> Vec<(ScalarSource, bool)> {
         let Function { outputs, result, .. } = &self.vertex.signature;
         let is_flat = |slot: usize| {
             let flat = Some(naga::Interpolation::Flat);
@@ -109,13 +109,13 @@ impl Shading for Evaluated {
                 &outputs[slot],
                 Some(Binding::Location { interpolation, .. }) if *interpolation == flat
             );
-            says_so || result.get(slot) != Some(&Kind::Float)
+            says_so || result.get(slot) != Some(&SlotKind::Float)
         };
         let sources = scalar_sources(outputs).into_iter().enumerate();
         sources.map(|(slot, source)| (source, is_flat(slot))).collect()
     }
 
-    fn taken(&self) -> Option<Vec<Source>> {
+    fn taken(&self) -> Option<Vec<ScalarSource>> {
         Some(scalar_sources(&self.fragment.as_ref()?.signature.inputs))
     }
 
@@ -124,12 +124,12 @@ impl Shading for Evaluated {
         buffers: Buffers,
         textures: &Resources,
         quads: &[Quad],
-    ) -> Result<Vec<Shaded>, Diagnostic> {
+    ) -> Result<Vec<ShadedQuad>, Diagnostic> {
         let Some(stage) = &self.fragment else { return Ok(Vec::new()) };
         let Lowered { function, signature, .. } = stage;
         let outputs = scalar_sources(&signature.outputs);
         let resources = Resources { buffers, ..textures.clone() };
-        let shaded: Vec<Vec<Shaded>> = quads
+        let shaded: Vec<Vec<ShadedQuad>> = quads
             .par_chunks(task_size(4 * quads.len()) / 4)
             .map_init(
                 || stage.batch(&resources),
@@ -139,7 +139,7 @@ impl Shading for Evaluated {
                         .iter()
                         .map(|quad| quad.arguments.each_ref().map(Vec::as_slice))
                         .collect();
-                    let mut shaded = vec![Shaded::default(); quads.len()];
+                    let mut shaded = vec![ShadedQuad::default(); quads.len()];
                     let called =
                         batch.quads(*function, &arguments, &mut |lane, slots, is_discarded| {
                             let targets = || target_words(&outputs, &signature.result, slots);
@@ -155,14 +155,14 @@ impl Shading for Evaluated {
 }
 
 /// A word as a scalar of the machine.
-fn slot_of_word(kind: Kind, word: u32) -> f32 {
-    if kind == Kind::Float { f32::from_bits(word) } else { f32::from_word(word) }
+fn slot_of_word(kind: SlotKind, word: u32) -> f32 {
+    if kind == SlotKind::Float { f32::from_bits(word) } else { f32::from_word(word) }
 }
 
-fn clip_position(outputs: &[Source], slots: &[f32]) -> [f64; 4] {
+fn clip_position(outputs: &[ScalarSource], slots: &[f32]) -> [f64; 4] {
     let mut clip = [0.0; 4];
     for (source, slot) in outputs.iter().zip(slots) {
-        if let Source::BuiltIn(BuiltIn::Position { .. }, component) = source
+        if let ScalarSource::BuiltIn(BuiltIn::Position { .. }, component) = source
             && let Some(place) = clip.get_mut(*component)
         {
             *place = f64::from(*slot);
@@ -172,15 +172,15 @@ fn clip_position(outputs: &[Source], slots: &[f32]) -> [f64; 4] {
 }
 
 /// What is returned at each location, as words.
-fn target_words(outputs: &[Source], kinds: &[Kind], slots: &[f32]) -> Vec<[u32; 4]> {
+fn target_words(outputs: &[ScalarSource], kinds: &[SlotKind], slots: &[f32]) -> Vec<[u32; 4]> {
     let mut targets: Vec<[u32; 4]> = Vec::new();
     for ((source, kind), slot) in outputs.iter().zip(kinds).zip(slots) {
-        let Source::Location(location, component) = *source else { continue };
+        let ScalarSource::Location(location, component) = *source else { continue };
         if targets.len() <= location as usize {
             targets.resize(location as usize + 1, [0; 4]);
         }
         targets[location as usize][component & 3] =
-            if *kind == Kind::Float { slot.bits() } else { slot.word() };
+            if *kind == SlotKind::Float { slot.bits() } else { slot.word() };
     }
     targets
 }

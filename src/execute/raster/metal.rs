@@ -4,33 +4,33 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use naga::BuiltIn;
 
-use super::corners::{Corner, Source, vertex_attribute};
-use super::{Quad, Shaded, Shading};
+use super::corners::{Corner, ScalarSource, vertex_attribute};
+use super::{Quad, ShadedQuad, Shading};
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Number, Resources};
-use crate::execute::compiled::Program;
-use crate::execute::compiled::interface::{Interface, Part, Role};
-use crate::execute::compiled::request::{Bound, Fragment, Transformed, Vertex};
+use crate::execute::compiled::CompiledProgram;
+use crate::execute::compiled::interface::{Interface, InterfaceMember, InterfaceRole};
+use crate::execute::compiled::request::{FragmentInput, MetalResources, Transformed, VertexInput};
 use crate::execute::executor_failed;
 use crate::execute::frame::{Buffers, Drawing, Frame, Mesh};
 use crate::execute::shipped::Shipped;
-use crate::metal::Missing;
+use crate::metal::ClangMissing;
 
 /// Stages of any number of programs, compiled together.
-pub struct Compiled {
+pub struct CompiledStages {
     stages: Vec<Shipped>,
-    program: Mutex<Program>,
+    program: Mutex<CompiledProgram>,
 }
 
-impl Compiled {
+impl CompiledStages {
     /// Compiles stages. One that clang refuses fails when it is drawn.
     ///
     /// # Errors
     /// clang is missing or cannot be run.
-    pub fn new(stages: Vec<Shipped>) -> Result<Self, Missing> {
+    pub fn new(stages: Vec<Shipped>) -> Result<Self, ClangMissing> {
         let texts: Vec<_> = stages.iter().map(Shipped::text).collect();
         let texts: Vec<&str> = texts.iter().map(AsRef::as_ref).collect();
-        let program = Mutex::new(Program::build(&texts)?);
+        let program = Mutex::new(CompiledProgram::build(&texts)?);
         Ok(Self { stages, program })
     }
 
@@ -71,7 +71,7 @@ impl Compiled {
     ) -> Result<Vec<Frame>, Diagnostic> {
         let stage = |index: usize| {
             let interface = self.program().interface(index).cloned().map_err(executor_failed)?;
-            Ok::<_, Diagnostic>(Stage { index, interface })
+            Ok::<_, Diagnostic>(MetalStage { index, interface })
         };
         let (vertex, fragment) = (stage(vertex)?, fragment.map(stage).transpose()?);
         let mut targets = drawing.targets;
@@ -79,50 +79,51 @@ impl Compiled {
             targets += fragment.interface.locations().0 + 2;
         }
         let drawn = drawing.targets as usize;
-        let pair = Pair { compiled: self, vertex, fragment, watched: is_watched.then_some(drawn) };
+        let pair =
+            StagePair { compiled: self, vertex, fragment, watched: is_watched.then_some(drawn) };
         super::draw_frames(&Drawing { targets, ..*drawing }, &pair)
     }
 
-    fn program(&self) -> MutexGuard<'_, Program> {
+    fn program(&self) -> MutexGuard<'_, CompiledProgram> {
         self.program.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn bound(&self, stage: &Stage, resources: &Resources) -> Bound {
+    fn bound(&self, stage: &MetalStage, resources: &Resources) -> MetalResources {
         let shipped = &self.stages[stage.index];
-        Bound::new(resources, &shipped.native, &shipped.reflection)
+        MetalResources::new(resources, &shipped.native, &shipped.reflection)
     }
 }
 
 /// A stage of a program, by its index.
-struct Stage {
+struct MetalStage {
     index: usize,
     interface: Interface,
 }
 
 /// Two stages that are drawn with.
-struct Pair<'c> {
-    compiled: &'c Compiled,
-    vertex: Stage,
-    fragment: Option<Stage>,
+struct StagePair<'c> {
+    compiled: &'c CompiledStages,
+    vertex: MetalStage,
+    fragment: Option<MetalStage>,
     /// How many targets the drawing itself has, if further targets hold what fragments were given.
     watched: Option<usize>,
 }
 
 /// The sources of the scalars of `locations` locations.
-fn located_sources(locations: u32) -> impl Iterator<Item = Source> {
-    (0..locations).flat_map(|location| (0..4).map(move |i| Source::Location(location, i)))
+fn located_sources(locations: u32) -> impl Iterator<Item = ScalarSource> {
+    (0..locations).flat_map(|location| (0..4).map(move |i| ScalarSource::Location(location, i)))
 }
 
-impl Shading for Pair<'_> {
+impl Shading for StagePair<'_> {
     fn corners(&self, mesh: &Mesh, resources: Resources) -> Result<Vec<Corner>, Diagnostic> {
         let taken = self.vertex.interface.locations().0;
         let vertex = |index: u32| {
             let location = |location: u32| {
                 std::array::from_fn(|component| vertex_attribute(mesh, index, location, component))
             };
-            Vertex { index, instance: 0, locations: (0..taken).map(location).collect() }
+            VertexInput { index, instance: 0, locations: (0..taken).map(location).collect() }
         };
-        let vertices: Vec<Vertex> = (0..mesh.vertices()).map(vertex).collect();
+        let vertices: Vec<VertexInput> = (0..mesh.vertices()).map(vertex).collect();
         let bound = self.compiled.bound(&self.vertex, &resources);
         let transformed = self.compiled.program().vertices(self.vertex.index, &bound, &vertices);
         let corner = |vertex: Transformed| Corner {
@@ -132,25 +133,25 @@ impl Shading for Pair<'_> {
         Ok(transformed.map_err(executor_failed)?.into_iter().map(corner).collect())
     }
 
-    fn given(&self) -> Vec<(Source, bool)> {
+    fn given(&self) -> Vec<(ScalarSource, bool)> {
         let Interface { output, .. } = &self.vertex.interface;
         let is_flat = |location: u32| {
-            let is_it = |part: &&Part| part.role == Role::Location(location);
+            let is_it = |part: &&InterfaceMember| part.role == InterfaceRole::Location(location);
             output.iter().find(is_it).is_some_and(|part| part.is_flat)
         };
         located_sources(self.vertex.interface.locations().1)
             .map(|source| match source {
-                Source::Location(location, _) => (source, is_flat(location)),
+                ScalarSource::Location(location, _) => (source, is_flat(location)),
                 other => (other, false),
             })
             .collect()
     }
 
-    fn taken(&self) -> Option<Vec<Source>> {
+    fn taken(&self) -> Option<Vec<ScalarSource>> {
         let locations = self.fragment.as_ref()?.interface.locations().0;
         let position = BuiltIn::Position { invariant: false };
-        let built_in = (0..4).map(|i| Source::BuiltIn(position, i));
-        let front = Source::BuiltIn(BuiltIn::FrontFacing, 0);
+        let built_in = (0..4).map(|i| ScalarSource::BuiltIn(position, i));
+        let front = ScalarSource::BuiltIn(BuiltIn::FrontFacing, 0);
         Some(located_sources(locations).chain(built_in).chain([front]).collect())
     }
 
@@ -159,16 +160,16 @@ impl Shading for Pair<'_> {
         buffers: Buffers,
         textures: &Resources,
         quads: &[Quad],
-    ) -> Result<Vec<Shaded>, Diagnostic> {
+    ) -> Result<Vec<ShadedQuad>, Diagnostic> {
         let Some(stage) = &self.fragment else { return Ok(Vec::new()) };
         let resources = Resources { buffers, ..textures.clone() };
         let bound = self.compiled.bound(stage, &resources);
-        let fragments: Vec<[Fragment; 4]> = quads
+        let fragments: Vec<[FragmentInput; 4]> = quads
             .iter()
             .map(|quad| quad.arguments.each_ref().map(|slots| make_fragment(slots)))
             .collect();
         let shaded = self.compiled.program().quads(stage.index, &bound, &fragments);
-        let mut results: Vec<Shaded> = Vec::new();
+        let mut results: Vec<ShadedQuad> = Vec::new();
         for (given, shaded) in fragments.iter().zip(shaded.map_err(executor_failed)?) {
             results.push(std::array::from_fn(|lane| {
                 let mut targets = shaded[lane].targets.clone();
@@ -185,11 +186,11 @@ impl Shading for Pair<'_> {
 
 /// A fragment from the scalars of [`Shading::taken`]: four for each location, four for the
 /// position, and one that says whether it belongs to a front face.
-fn make_fragment(slots: &[f32]) -> Fragment {
+fn make_fragment(slots: &[f32]) -> FragmentInput {
     let (four, rest) = slots.as_chunks::<4>();
     let (position, locations) =
         four.split_last().map_or(([0.0; 4], &[][..]), |(last, all)| (*last, all));
-    Fragment {
+    FragmentInput {
         position,
         front: rest.first().is_some_and(|front| front.word() != 0),
         locations: locations.iter().map(|slots| slots.map(f32::to_bits)).collect(),
@@ -197,7 +198,7 @@ fn make_fragment(slots: &[f32]) -> Fragment {
 }
 
 /// What a fragment was given, as words of targets.
-fn fragment_words(fragment: &Fragment) -> impl Iterator<Item = [u32; 4]> + '_ {
+fn fragment_words(fragment: &FragmentInput) -> impl Iterator<Item = [u32; 4]> + '_ {
     let position = fragment.position.map(f32::to_bits);
     let front = [u32::from(fragment.front), 0, 0, 0];
     fragment.locations.iter().copied().chain([position, front])

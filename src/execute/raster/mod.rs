@@ -16,14 +16,14 @@ mod triangles;
 use std::collections::BTreeMap;
 
 use crate::diagnostic::Diagnostic;
-use crate::eval::{self, Filter, Level, Resources};
-use crate::execute::fixture::{Fixture, Texture};
-use crate::execute::frame::{Buffers, Drawing, Frame, Item, Mesh};
+use crate::eval::{self, Filter, MipLevel, Resources};
+use crate::execute::fixture::{Fixture, FixtureTexture};
+use crate::execute::frame::{Buffers, DrawItem, Drawing, Frame, Mesh};
 use crate::execute::kernel::SENTINEL;
-use corners::{Corner, Source};
+use corners::{Corner, ScalarSource};
 pub use evaluated::Evaluated;
-pub use metal::Compiled;
-use triangles::{Seen, Triangle};
+pub use metal::CompiledStages;
+use triangles::{Triangle, VisibleTriangles};
 
 /// What runs the two stages of a program.
 pub trait Shading {
@@ -31,10 +31,10 @@ pub trait Shading {
     fn corners(&self, mesh: &Mesh, resources: Resources) -> Result<Vec<Corner>, Diagnostic>;
 
     /// What each scalar in [`Corner::slots`] is, and whether it is flat: not interpolated.
-    fn given(&self) -> Vec<(Source, bool)>;
+    fn given(&self) -> Vec<(ScalarSource, bool)>;
 
     /// What each scalar is that the fragment stage takes; `None` if there is no fragment stage.
-    fn taken(&self) -> Option<Vec<Source>>;
+    fn taken(&self) -> Option<Vec<ScalarSource>>;
 
     /// Runs the fragment stage. `textures` has the textures and the samplers.
     fn shade(
@@ -42,7 +42,7 @@ pub trait Shading {
         buffers: Buffers,
         textures: &Resources,
         quads: &[Quad],
-    ) -> Result<Vec<Shaded>, Diagnostic>;
+    ) -> Result<Vec<ShadedQuad>, Diagnostic>;
 }
 
 /// Four fragments of a triangle.
@@ -55,7 +55,7 @@ pub struct Quad {
 }
 
 /// Four words for each target; `None` where the fragment was discarded.
-pub type Shaded = [Option<Vec<[u32; 4]>>; 4];
+pub type ShadedQuad = [Option<Vec<[u32; 4]>>; 4];
 
 /// Draws a frame for each view.
 pub fn draw_frames(drawing: &Drawing<'_>, shading: &dyn Shading) -> Result<Vec<Frame>, Diagnostic> {
@@ -64,11 +64,11 @@ pub fn draw_frames(drawing: &Drawing<'_>, shading: &dyn Shading) -> Result<Vec<F
 }
 
 /// What was drawn of a view, before shading.
-struct Drawn {
+struct DrawnView {
     /// The vertices of each item.
     corners: Vec<Vec<Corner>>,
     triangles: Vec<Triangle>,
-    seen: Seen,
+    seen: VisibleTriangles,
 }
 
 fn draw_frame(
@@ -77,12 +77,15 @@ fn draw_frame(
     shading: &dyn Shading,
     textures: &Resources,
 ) -> Result<Frame, Diagnostic> {
-    let resources = |item: &Item<'_>| Resources {
+    let resources = |item: &DrawItem<'_>| Resources {
         buffers: item_buffers(drawing, view, item),
         ..textures.clone()
     };
-    let mut drawn =
-        Drawn { corners: Vec::new(), triangles: Vec::new(), seen: Seen::new(drawing.size) };
+    let mut drawn = DrawnView {
+        corners: Vec::new(),
+        triangles: Vec::new(),
+        seen: VisibleTriangles::new(drawing.size),
+    };
     for (index, item) in drawing.items.iter().enumerate() {
         let mut corners = shading.corners(item.mesh, resources(item))?;
         triangles::assemble_triangles(
@@ -105,7 +108,7 @@ fn draw_frame(
 fn item_buffers(
     drawing: &Drawing<'_>,
     view: &Buffers,
-    item: &Item<'_>,
+    item: &DrawItem<'_>,
 ) -> BTreeMap<(u32, u32), Vec<u8>> {
     let all = drawing.buffers.iter().chain(item.buffers).chain(view);
     all.map(|(place, bytes)| (*place, bytes.clone())).collect()
@@ -129,7 +132,7 @@ fn bound_textures(drawing: &Drawing<'_>) -> Resources {
     resources
 }
 
-fn texture_levels(texture: &Texture) -> Vec<Level> {
+fn texture_levels(texture: &FixtureTexture) -> Vec<MipLevel> {
     eval::Texture::from(texture).levels
 }
 

@@ -3,9 +3,9 @@
 use naga::BuiltIn;
 use rayon::prelude::*;
 
-use super::corners::Source;
+use super::corners::ScalarSource;
 use super::triangles::{NONE, Triangle};
-use super::{Drawn, Quad, Shaded, Shading, cleared_target, item_buffers};
+use super::{DrawnView, Quad, ShadedQuad, Shading, cleared_target, item_buffers};
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Number, Resources};
 use crate::execute::frame::{Buffers, Drawing};
@@ -18,7 +18,7 @@ pub fn shade_frame(
     drawing: &Drawing<'_>,
     view: &Buffers,
     shading: &dyn Shading,
-    drawn: &Drawn,
+    drawn: &DrawnView,
     textures: &Resources,
 ) -> Result<Vec<Vec<u32>>, Diagnostic> {
     let Some(taken) = shading.taken() else { return Ok(Vec::new()) };
@@ -39,7 +39,7 @@ pub fn shade_frame(
 
 /// The source of a scalar of the fragment stage.
 #[derive(Debug, Clone, Copy)]
-enum Wire {
+enum ScalarInput {
     /// A slot of the vertices, interpolated with correct perspective.
     Smooth(usize),
     /// A slot of the first vertex.
@@ -49,29 +49,31 @@ enum Wire {
     Nothing,
 }
 
-fn wire_stages(given: &[(Source, bool)], taken: &[Source]) -> Vec<Wire> {
-    let wire = |source: &Source| match source {
-        Source::Location(..) => match given.iter().position(|(other, _)| other == source) {
-            Some(slot) if given[slot].1 => Wire::Flat(slot),
-            Some(slot) => Wire::Smooth(slot),
-            None => Wire::Nothing,
+fn wire_stages(given: &[(ScalarSource, bool)], taken: &[ScalarSource]) -> Vec<ScalarInput> {
+    let wire = |source: &ScalarSource| match source {
+        ScalarSource::Location(..) => match given.iter().position(|(other, _)| other == source) {
+            Some(slot) if given[slot].1 => ScalarInput::Flat(slot),
+            Some(slot) => ScalarInput::Smooth(slot),
+            None => ScalarInput::Nothing,
         },
-        Source::BuiltIn(BuiltIn::Position { .. }, component) => Wire::Position(*component),
-        Source::BuiltIn(BuiltIn::FrontFacing, _) => Wire::Front,
-        _ => Wire::Nothing,
+        ScalarSource::BuiltIn(BuiltIn::Position { .. }, component) => {
+            ScalarInput::Position(*component)
+        }
+        ScalarSource::BuiltIn(BuiltIn::FrontFacing, _) => ScalarInput::Front,
+        _ => ScalarInput::Nothing,
     };
     taken.iter().map(wire).collect()
 }
 
 /// What is visible, and how to look it up.
 struct Screen<'a> {
-    drawn: &'a Drawn,
+    drawn: &'a DrawnView,
     size: [u32; 2],
-    wiring: Vec<Wire>,
+    wiring: Vec<ScalarInput>,
 }
 
 /// A quad in which at least one pixel shows the triangle.
-struct Place<'a> {
+struct CoveredQuad<'a> {
     triangle: &'a Triangle,
     pixels: [(u32, u32); 4],
     covered: [bool; 4],
@@ -80,8 +82,8 @@ struct Place<'a> {
 impl<'a> Screen<'a> {
     /// The quads of each item. Four pixels that show several triangles are one quad for each of
     /// these.
-    fn places(&self, items: usize) -> Vec<Vec<Place<'a>>> {
-        let mut places: Vec<Vec<Place<'a>>> = Vec::new();
+    fn places(&self, items: usize) -> Vec<Vec<CoveredQuad<'a>>> {
+        let mut places: Vec<Vec<CoveredQuad<'a>>> = Vec::new();
         places.resize_with(items, Vec::new);
         let [columns, rows] = self.size.map(|size| (0..size).step_by(2));
         for (x, y) in rows.flat_map(|y| columns.clone().map(move |x| (x, y))) {
@@ -94,13 +96,13 @@ impl<'a> Screen<'a> {
                     continue;
                 }
                 let covered = shown.map(|other| other == id);
-                places[triangle.item].push(Place { triangle, pixels, covered });
+                places[triangle.item].push(CoveredQuad { triangle, pixels, covered });
             }
         }
         places
     }
 
-    fn quad(&self, place: &Place<'_>) -> Quad {
+    fn quad(&self, place: &CoveredQuad<'_>) -> Quad {
         let middle = |x: u32| f64::from(x) + 0.5;
         let arguments =
             place.pixels.map(|(x, y)| self.arguments(place.triangle, middle(x), middle(y)));
@@ -116,21 +118,21 @@ impl<'a> Screen<'a> {
         let (shares, depth, inverse_w) = triangle.at(x, y);
         let corners = &self.drawn.corners[triangle.item];
         let slot = |corner: u32, slot: usize| corners[corner as usize].slots[slot];
-        let argument = |wire: &Wire| match wire {
-            Wire::Smooth(index) => (0..3)
+        let argument = |wire: &ScalarInput| match wire {
+            ScalarInput::Smooth(index) => (0..3)
                 .map(|corner| shares[corner] * f64::from(slot(triangle.corners[corner], *index)))
                 .sum::<f64>() as f32,
-            Wire::Flat(index) => slot(triangle.first, *index),
-            Wire::Position(component) => [x, y, depth, inverse_w][*component & 3] as f32,
-            Wire::Front => f32::from_word(u32::from(triangle.front)),
-            Wire::Nothing => f32::from_word(0),
+            ScalarInput::Flat(index) => slot(triangle.first, *index),
+            ScalarInput::Position(component) => [x, y, depth, inverse_w][*component & 3] as f32,
+            ScalarInput::Front => f32::from_word(u32::from(triangle.front)),
+            ScalarInput::Nothing => f32::from_word(0),
         };
         self.wiring.iter().map(argument).collect()
     }
 }
 
 /// Writes the results of fragments to their pixels.
-fn store_quad(targets: &mut [Vec<u32>], width: u32, quad: &Quad, shaded: &Shaded) {
+fn store_quad(targets: &mut [Vec<u32>], width: u32, quad: &Quad, shaded: &ShadedQuad) {
     for lane in (0..4).filter(|lane| quad.covered[*lane]) {
         let (x, y) = quad.pixels[lane];
         let pixel = (y * width + x) as usize;

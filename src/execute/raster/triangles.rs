@@ -1,7 +1,7 @@
 //! Clips triangles, places them on the frame, and finds which are visible.
 
 use super::corners::Corner;
-use crate::execute::frame::{Mesh, Side, State};
+use crate::execute::frame::{Face, Mesh, PipelineState};
 
 /// A triangle on the frame.
 #[derive(Debug, Clone)]
@@ -13,12 +13,12 @@ pub struct Triangle {
     pub first: u32,
     pub front: bool,
     /// Positions in pixels, y down; depth; 1/w.
-    points: [Point; 3],
+    points: [ScreenPoint; 3],
     area: f64,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Point {
+struct ScreenPoint {
     x: f64,
     y: f64,
     z: f64,
@@ -26,7 +26,7 @@ struct Point {
 }
 
 /// The visible triangle of each pixel.
-pub struct Seen {
+pub struct VisibleTriangles {
     size: [u32; 2],
     pub depth: Vec<f32>,
     /// Index of the triangle, or [`NONE`].
@@ -45,7 +45,7 @@ pub fn assemble_triangles(
     mesh: &Mesh,
     item: usize,
     corners: &mut Vec<Corner>,
-    state: State,
+    state: PipelineState,
     size: [u32; 2],
     to: &mut Vec<Triangle>,
 ) {
@@ -116,14 +116,14 @@ fn place_fan(
     first: u32,
     item: usize,
     corners: &[Corner],
-    state: State,
+    state: PipelineState,
     size: [u32; 2],
 ) -> Option<Triangle> {
     let [width, height] = size.map(f64::from);
     let points = fan.map(|index| {
         let [x, y, z, w] = corners[index as usize].clip;
         let snapped = |place: f64| (place * SUBPIXELS).round() / SUBPIXELS;
-        Point {
+        ScreenPoint {
             x: snapped((0.5 + 0.5 * x / w) * width),
             y: snapped((0.5 - 0.5 * y / w) * height),
             z: z / w,
@@ -137,7 +137,7 @@ fn place_fan(
     }
     // With y down, a triangle that winds counter-clockwise has a negative area.
     let front = (area < 0.0) != state.mirrored;
-    if state.cull == Some(if front { Side::Front } else { Side::Back }) {
+    if state.cull == Some(if front { Face::Front } else { Face::Back }) {
         return None;
     }
     let (corners, points) =
@@ -147,7 +147,7 @@ fn place_fan(
 
 /// Twice the signed area of the triangle of a, b and the point (x, y). It is positive if the point
 /// is to the right of the line from a to b, with y down.
-fn edge_area(a: Point, b: Point, x: f64, y: f64) -> f64 {
+fn edge_area(a: ScreenPoint, b: ScreenPoint, x: f64, y: f64) -> f64 {
     (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)
 }
 
@@ -194,21 +194,21 @@ impl Triangle {
     }
 }
 
-impl Seen {
+impl VisibleTriangles {
     pub fn new(size: [u32; 2]) -> Self {
         let pixels = size[0] as usize * size[1] as usize;
         Self { size, depth: vec![1.0; pixels], triangle: vec![NONE; pixels] }
     }
 
     /// Draws all triangles in order.
-    pub fn draw(&mut self, triangles: &[Triangle], state: State) {
+    pub fn draw(&mut self, triangles: &[Triangle], state: PipelineState) {
         for (index, triangle) in triangles.iter().enumerate() {
             self.draw_one(index as u32, triangle, state);
         }
     }
 
-    fn draw_one(&mut self, index: u32, triangle: &Triangle, state: State) {
-        let bounds = |axis: fn(&Point) -> f64, size: u32| {
+    fn draw_one(&mut self, index: u32, triangle: &Triangle, state: PipelineState) {
+        let bounds = |axis: fn(&ScreenPoint) -> f64, size: u32| {
             let places = triangle.points.iter().map(axis);
             let low =
                 places.clone().fold(f64::INFINITY, f64::min).floor().clamp(0.0, f64::from(size));

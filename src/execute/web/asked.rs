@@ -8,7 +8,7 @@ use super::executor_failed;
 use crate::bundle::Combined;
 use crate::diagnostic::Diagnostic;
 use crate::emit::Emitted;
-use crate::execute::fixture::{Fixture, Sampler, Texture};
+use crate::execute::fixture::{Fixture, FixtureSampler, FixtureTexture};
 use crate::execute::kernel::Kernel;
 
 /// The stages that may read a binding, as WebGPU's bits.
@@ -92,8 +92,8 @@ pub fn layout_entry((_, binding): (u32, u32), fixture: Option<&Fixture>, filters
         }
         Some(Fixture::Sampler(sampler)) => {
             let kind = match sampler {
-                Sampler { compare: Some(_), .. } => "comparison",
-                Sampler { linear: true, .. } => "filtering",
+                FixtureSampler { compare: Some(_), .. } => "comparison",
+                FixtureSampler { linear: true, .. } => "filtering",
                 _ => "non-filtering",
             };
             entry["sampler"] = json!({ "type": kind });
@@ -115,7 +115,7 @@ pub fn fixture_json(place: (u32, u32), fixture: &Fixture) -> Value {
     }
 }
 
-fn image_json(texture: &Texture) -> Value {
+fn image_json(texture: &FixtureTexture) -> Value {
     let texels: Vec<u32> = texture.texels.iter().map(|texel| texel.to_bits()).collect();
     json!({
         "width": texture.width,
@@ -127,7 +127,7 @@ fn image_json(texture: &Texture) -> Value {
 }
 
 /// The sampler in WebGPU's terms.
-fn sampler_json(sampler: Sampler) -> Value {
+fn sampler_json(sampler: FixtureSampler) -> Value {
     let (address, compare) = sampler.web_words();
     let filter = if sampler.linear { "linear" } else { "nearest" };
     json!({ "address": address, "filter": filter, "compare": compare })

@@ -4,21 +4,23 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::{Map, Value, json};
 
-use super::{Api, asked, executor_failed};
+use super::{WebApi, asked, executor_failed};
 use crate::bundle::{ClipSpace, FrontFace, Target};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::execute::Pair;
+use crate::execute::ShippedPair;
 use crate::execute::fixture::Fixture;
-use crate::execute::frame::{Attribute, Buffers, Drawing, Frame, Item, Mesh, Place, State};
-use crate::execute::shipped::{Format, Shipped};
+use crate::execute::frame::{
+    BindingPlace, Buffers, DrawItem, Drawing, Frame, Mesh, PipelineState, VertexAttribute,
+};
+use crate::execute::shipped::{ColorFormat, Shipped};
 
 /// The argument of the script's function `frames`.
 ///
 /// # Errors
 /// The drawing needs something that is not supported here.
 pub fn frames_question(
-    api: Api,
-    pair: Pair<'_>,
+    api: WebApi,
+    pair: ShippedPair<'_>,
     drawing: &Drawing<'_>,
 ) -> Result<Value, Diagnostic> {
     for stage in [pair.vertex, pair.fragment] {
@@ -30,13 +32,13 @@ pub fn frames_question(
     if let Some(reason) = lacks {
         return Err(Diagnostic::error(codes::EXECUTOR_LACKS, reason));
     }
-    if drawing.state != State::default() || !drawing.levels.is_empty() {
+    if drawing.state != PipelineState::default() || !drawing.levels.is_empty() {
         let message = "shipped texts are drawn without depth test, culling and smaller levels";
         return Err(executor_failed(message));
     }
     let formats = pair.fragment.targets().map_err(executor_failed)?;
     let places = read_places(pair);
-    let fixtures: Vec<(Place, &Fixture)> =
+    let fixtures: Vec<(BindingPlace, &Fixture)> =
         places.iter().filter_map(|place| Some((*place, &**drawing.fixtures.get(place)?))).collect();
     let views = drawing.views.iter().map(|view| {
         let items = drawing.items.iter();
@@ -46,7 +48,7 @@ pub fn frames_question(
     let reversed = |clip: &ClipSpace| clip.front_face == FrontFace::Reversed;
     Ok(json!({
         "size": drawing.size,
-        "formats": formats.iter().map(|one| *one == Format::Float).collect::<Vec<_>>(),
+        "formats": formats.iter().map(|one| *one == ColorFormat::Float).collect::<Vec<_>>(),
         "vertex": stage_json(pair.vertex),
         "fragment": stage_json(pair.fragment),
         "layout": layout_json(drawing, &places, &fixtures),
@@ -78,7 +80,7 @@ fn stage_json(shipped: &Shipped) -> Value {
 }
 
 /// The bindings of both stages.
-fn read_places(pair: Pair<'_>) -> BTreeSet<Place> {
+fn read_places(pair: ShippedPair<'_>) -> BTreeSet<BindingPlace> {
     let stages = [pair.vertex, pair.fragment].into_iter();
     let bindings = stages.flat_map(|stage| &stage.reflection.bindings);
     bindings.map(|binding| (binding.group, binding.binding)).collect()
@@ -87,12 +89,12 @@ fn read_places(pair: Pair<'_>) -> BTreeSet<Place> {
 /// The layout of each bind group, by the group's index.
 fn layout_json(
     drawing: &Drawing<'_>,
-    places: &BTreeSet<Place>,
-    fixtures: &[(Place, &Fixture)],
+    places: &BTreeSet<BindingPlace>,
+    fixtures: &[(BindingPlace, &Fixture)],
 ) -> Vec<Vec<Value>> {
     let filters = asked::are_filtered(fixtures.iter().map(|(_, fixture)| *fixture));
     let groups = places.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
-    let entry = |place: &Place| {
+    let entry = |place: &BindingPlace| {
         let fixture = drawing.fixtures.get(place).map(|fixture| &**fixture);
         asked::layout_entry(*place, fixture, filters)
     };
@@ -105,8 +107,8 @@ fn layout_json(
 fn buffers_json(
     drawing: &Drawing<'_>,
     view: &Buffers,
-    item: &Item<'_>,
-    places: &BTreeSet<Place>,
+    item: &DrawItem<'_>,
+    places: &BTreeSet<BindingPlace>,
 ) -> Result<Value, String> {
     let mut found = Map::new();
     for place in places.iter().filter(|place| !drawing.fixtures.contains_key(place)) {
@@ -118,14 +120,14 @@ fn buffers_json(
 }
 
 /// The combined samplers of both stages of GLSL.
-fn units_json(pair: Pair<'_>) -> Vec<Value> {
+fn units_json(pair: ShippedPair<'_>) -> Vec<Value> {
     let stages = [pair.vertex, pair.fragment].into_iter();
     stages.flat_map(|stage| &stage.native.combined).map(asked::unit_json).collect()
 }
 
 /// The uniform blocks of both stages of GLSL by name, with a number for each group and binding.
-fn blocks_json(pair: Pair<'_>) -> Result<Vec<Value>, String> {
-    let mut numbers: BTreeMap<Place, usize> = BTreeMap::new();
+fn blocks_json(pair: ShippedPair<'_>) -> Result<Vec<Value>, String> {
+    let mut numbers: BTreeMap<BindingPlace, usize> = BTreeMap::new();
     let mut found = Vec::new();
     for stage in [pair.vertex, pair.fragment] {
         for place in stage.blocks() {
@@ -143,7 +145,7 @@ fn blocks_json(pair: Pair<'_>) -> Result<Vec<Value>, String> {
 }
 
 fn mesh_json(mesh: &Mesh) -> Value {
-    let attribute = |(one, offset): (Attribute, u64)| {
+    let attribute = |(one, offset): (VertexAttribute, u64)| {
         json!({
             "shaderLocation": one.location,
             "offset": offset,

@@ -19,9 +19,9 @@ use super::emitted;
 use super::frame::{Drawing, Frame};
 use super::gpu::run_batches;
 use super::kernel::{Kernel, first_of_code};
-use super::{Pair, Session, executor_failed};
-use crate::browser::serve::{Files, Server};
-use crate::browser::{Browser, PATIENCE, Page, Problem};
+use super::{Session, ShippedPair, executor_failed};
+use crate::browser::serve::{HttpServer, ServedFiles};
+use crate::browser::{Browser, BrowserPage, PATIENCE, Problem};
 use crate::bundle::Target;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::validate::on_large_stack;
@@ -35,12 +35,12 @@ const COMMON: &str = include_str!("common.js");
 
 /// An interface that a page offers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Api {
+pub enum WebApi {
     WebGpu,
     WebGl2,
 }
 
-impl Api {
+impl WebApi {
     fn name(self) -> &'static str {
         match self {
             Self::WebGpu => "WebGPU",
@@ -68,17 +68,17 @@ pub type Start = Box<dyn Fn() -> Result<Arc<Browser>, Problem> + Send>;
 
 /// A session: a page, which is opened again if it is lost.
 pub struct Web {
-    api: Api,
+    api: WebApi,
     start: Start,
-    server: Server,
+    server: HttpServer,
     patience: Duration,
     adapter: String,
-    state: Mutex<State>,
+    state: Mutex<WebState>,
 }
 
 #[derive(Default)]
-struct State {
-    page: Option<Page>,
+struct WebState {
+    page: Option<BrowserPage>,
     /// The kernels that the page has compiled, or why it could not.
     kept: HashMap<u64, Result<(), Diagnostic>>,
 }
@@ -101,7 +101,7 @@ impl Web {
     ///
     /// # Errors
     /// A message: there is no browser, or it does not have the interface.
-    pub fn open(api: Api) -> Result<Self, String> {
+    pub fn open(api: WebApi) -> Result<Self, String> {
         Self::open_in(Box::new(Browser::shared), api, LONGEST)
     }
 
@@ -109,23 +109,23 @@ impl Web {
     ///
     /// # Errors
     /// Those of [`Self::open`].
-    pub fn open_in(start: Start, api: Api, patience: Duration) -> Result<Self, String> {
+    pub fn open_in(start: Start, api: WebApi, patience: Duration) -> Result<Self, String> {
         let page = "<!doctype html><title>kernels</title><link rel=icon href=data:,>
             <script src=common.js></script><script src=script.js></script>";
         let files = [("index.html", page), ("common.js", COMMON), ("script.js", api.script())];
         let files = files.map(|(path, text)| (path.to_owned(), text.as_bytes().to_vec()));
-        let server = Server::start(Files::Memory(BTreeMap::from(files)));
+        let server = HttpServer::start(ServedFiles::Memory(BTreeMap::from(files)));
         let server = server.map_err(|error| format!("nothing can be served: {error}"))?;
         let state = Mutex::default();
         let mut web = Self { api, start, server, patience, adapter: String::new(), state };
         let (page, adapter) = web.opened().map_err(|problem| problem.to_string())?;
         web.adapter = adapter;
-        web.state = Mutex::new(State { page: Some(page), ..State::default() });
+        web.state = Mutex::new(WebState { page: Some(page), ..WebState::default() });
         Ok(web)
     }
 
     /// Opens a page and its device; also returns the device's name.
-    fn opened(&self) -> Result<(Page, String), Problem> {
+    fn opened(&self) -> Result<(BrowserPage, String), Problem> {
         let browser = (self.start)()?;
         let page = browser.open(&self.server.address(""))?;
         page.loaded(PATIENCE)?;
@@ -136,11 +136,11 @@ impl Web {
     }
 
     /// Asks the script. If the page is lost, it is closed.
-    fn ask(&self, state: &mut State, call: &str) -> Result<Value, Failure> {
+    fn ask(&self, state: &mut WebState, call: &str) -> Result<Value, WebFailure> {
         let page = match &state.page {
             Some(page) => page,
             None => {
-                let (page, _) = self.opened().map_err(Failure::lost)?;
+                let (page, _) = self.opened().map_err(WebFailure::lost)?;
                 state.page.insert(page)
             }
         };
@@ -150,40 +150,40 @@ impl Web {
         let failure = match answer {
             Ok(Answer::Value(value)) => return Ok(value),
             Ok(Answer::Lacks(words)) => {
-                return Err(Failure::Of(Diagnostic::error(codes::EXECUTOR_LACKS, words)));
+                return Err(WebFailure::Of(Diagnostic::error(codes::EXECUTOR_LACKS, words)));
             }
-            Ok(Answer::Error(words)) => return Err(Failure::Of(executor_failed(words))),
-            Err(Problem::Threw(words)) => return Err(Failure::Of(executor_failed(words))),
-            Ok(Answer::Lost(words)) => Failure::Lost(executor_failed(words)),
+            Ok(Answer::Error(words)) => return Err(WebFailure::Of(executor_failed(words))),
+            Err(Problem::Threw(words)) => return Err(WebFailure::Of(executor_failed(words))),
+            Ok(Answer::Lost(words)) => WebFailure::Lost(executor_failed(words)),
             // A page that was slow once is slow again. Its work may continue in the process that
             // draws for all pages, where nothing stops it but the end of the browser.
             Err(problem @ Problem::Late { .. }) => {
                 page.end_browser();
-                Failure::Of(executor_failed(problem.to_string()))
+                WebFailure::Of(executor_failed(problem.to_string()))
             }
-            Err(problem) => Failure::lost(problem),
+            Err(problem) => WebFailure::lost(problem),
         };
-        *state = State::default();
+        *state = WebState::default();
         Err(failure)
     }
 
     /// Runs a job, and runs it once more if the page is lost: another page may have caused that.
     fn twice<T>(
         &self,
-        mut job: impl FnMut(&Self, &mut State) -> Result<T, Failure>,
+        mut job: impl FnMut(&Self, &mut WebState) -> Result<T, WebFailure>,
     ) -> Result<T, Diagnostic> {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         let result = match job(self, &mut state) {
-            Err(Failure::Lost(_)) => job(self, &mut state),
+            Err(WebFailure::Lost(_)) => job(self, &mut state),
             other => other,
         };
         result.map_err(|failure| match failure {
-            Failure::Of(error) | Failure::Lost(error) => error,
+            WebFailure::Of(error) | WebFailure::Lost(error) => error,
         })
     }
 
     /// Gives the page the kernels that are new to it, some at a time.
-    fn compile(&self, state: &mut State, kernels: &[&Kernel]) -> Result<(), Failure> {
+    fn compile(&self, state: &mut WebState, kernels: &[&Kernel]) -> Result<(), WebFailure> {
         let mut new = first_of_code(kernels);
         new.retain(|kernel| !state.kept.contains_key(&kernel.code));
         let target = self.api.target();
@@ -199,13 +199,13 @@ impl Web {
                 false => self.ask(state, &format!("lamplight.prepare({})", json!(texts)))?,
             };
             let said: Vec<Answer> = serde_json::from_value(said)
-                .map_err(|error| Failure::Of(executor_failed(error.to_string())))?;
+                .map_err(|error| WebFailure::Of(executor_failed(error.to_string())))?;
             if let Some(Answer::Lost(words)) =
                 said.iter().find(|one| matches!(one, Answer::Lost(_)))
             {
                 let lost = executor_failed(words.clone());
-                *state = State::default();
-                return Err(Failure::Lost(lost));
+                *state = WebState::default();
+                return Err(WebFailure::Lost(lost));
             }
             let mut said = said.into_iter();
             for (kernel, made) in some.iter().zip(&made) {
@@ -225,7 +225,7 @@ impl Web {
         let said = self.twice(|web, state| {
             web.compile(state, &[kernel])?;
             match state.kept.get(&kernel.code) {
-                Some(Err(error)) => Err(Failure::Of(error.clone())),
+                Some(Err(error)) => Err(WebFailure::Of(error.clone())),
                 _ => web.ask(state, &call),
             }
         })?;
@@ -250,7 +250,7 @@ impl Session for Web {
 
     fn draw_shipped(
         &self,
-        pair: Pair<'_>,
+        pair: ShippedPair<'_>,
         drawing: &Drawing<'_>,
     ) -> Result<Vec<Frame>, Diagnostic> {
         let question = frames::frames_question(self.api, pair, drawing)?;
@@ -271,14 +271,14 @@ fn check_kept(said: Option<Answer>) -> Result<(), Diagnostic> {
 }
 
 /// Why there is no answer.
-enum Failure {
+enum WebFailure {
     /// Because of what was asked.
     Of(Diagnostic),
     /// Because the page was lost, perhaps through another page.
     Lost(Diagnostic),
 }
 
-impl Failure {
+impl WebFailure {
     fn lost(problem: Problem) -> Self {
         Self::Lost(executor_failed(problem.to_string()))
     }

@@ -16,19 +16,26 @@ use std::path::Path;
 use std::process::Output as Said;
 
 use crate::judge::novel::novel_outputs;
-use crate::judge::{Entry, Found, Group, Output, Refusal, Work, divide_group};
+use crate::judge::{
+    JudgeEntry, JudgeResult, JudgeWork, Output, OutputGroup, Refusal, divide_group,
+};
 use crate::output::Scratch;
 use crate::tools::{GLSLANG, printed_words};
 
 /// The judge, for the table of all.
-pub const JUDGE: Entry =
-    Entry { name: "glslang", tools: &[GLSLANG], lacks: |_| None, version: |_| String::new(), plan };
+pub const JUDGE: JudgeEntry = JudgeEntry {
+    name: "glslang",
+    tools: &[GLSLANG],
+    lacks: |_| None,
+    version: |_| String::new(),
+    plan,
+};
 
 const BATCH: usize = 64;
 
 const NAME: &str = "glslangValidator";
 
-fn plan<'w>(group: &Group<'w>) -> Result<Vec<Work<'w>>, String> {
+fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<JudgeWork<'w>>, String> {
     let Some(first) = group.outputs.first() else { return Ok(Vec::new()) };
     let mut works = Vec::new();
     for rule in group.rules {
@@ -39,10 +46,10 @@ fn plan<'w>(group: &Group<'w>) -> Result<Vec<Work<'w>>, String> {
 
 /// The work for one rule. All outputs have the stage and the entry point of the first one.
 fn plan_rule<'w>(
-    group: &Group<'w>,
+    group: &OutputGroup<'w>,
     first: &'w Output,
     rule: &'static str,
-) -> Result<Vec<Work<'w>>, String> {
+) -> Result<Vec<JudgeWork<'w>>, String> {
     let (outputs, scratch) = (group.outputs, group.scratch);
     let own = vec!["-S", first.stage.suffix()];
     match rule {
@@ -70,31 +77,31 @@ fn plan_rule<'w>(
 fn plan_compiled<'w>(
     group: &'w [&'w Output],
     arguments: Vec<&'w str>,
-) -> Result<Vec<Work<'w>>, String> {
+) -> Result<Vec<JudgeWork<'w>>, String> {
     let alone = arguments.clone();
     let mut works = divide_group(group, BATCH, move |outputs| judge_parse(&arguments, outputs));
     let each = novel_outputs(group)?.into_iter().map(|output| {
         let arguments = alone.clone();
-        Work { outputs: 1, run: Box::new(move || judge_one(&arguments, output)) }
+        JudgeWork { outputs: 1, run: Box::new(move || judge_one(&arguments, output)) }
     });
     works.extend(each);
     Ok(works)
 }
 
 /// Judges texts in one run, or one by one if the run fails.
-fn judge_together(arguments: &[&str], outputs: &[&Output]) -> Found {
+fn judge_together(arguments: &[&str], outputs: &[&Output]) -> JudgeResult {
     if run_glslang(arguments, outputs.iter().map(|output| &*output.file))?.status.success() {
         return Ok(Vec::new());
     }
     judge_each(arguments, outputs)
 }
 
-fn judge_each(arguments: &[&str], outputs: &[&Output]) -> Found {
+fn judge_each(arguments: &[&str], outputs: &[&Output]) -> JudgeResult {
     let found = outputs.iter().map(|output| judge_one(arguments, output));
     Ok(found.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
-fn judge_one(arguments: &[&str], output: &Output) -> Found {
+fn judge_one(arguments: &[&str], output: &Output) -> JudgeResult {
     Ok(make_refusal(output, &output.file, &run_glslang(arguments, [&*output.file])?)
         .into_iter()
         .collect())
@@ -106,7 +113,7 @@ fn judge_later_version(
     outputs: &[&Output],
     version: &str,
     scratch: &Scratch,
-) -> Found {
+) -> JudgeResult {
     let mut files = Vec::new();
     for output in outputs {
         let text = output.text()?;
@@ -128,7 +135,7 @@ fn judge_later_version(
 
 /// Parses texts in one run, which also tries to link them. Linking always fails, and that is
 /// ignored.
-fn judge_parse(arguments: &[&str], outputs: &[&Output]) -> Found {
+fn judge_parse(arguments: &[&str], outputs: &[&Output]) -> JudgeResult {
     let said = run_glslang(arguments, outputs.iter().map(|output| &*output.file))?;
     let of_a_text = |line: &str| line.starts_with("ERROR: ") && !line.contains(" Linking ");
     if said.status.code().is_some() && !printed_words(&said).lines().any(of_a_text) {

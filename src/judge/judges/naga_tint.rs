@@ -3,13 +3,15 @@
 
 use naga::front::wgsl;
 
-use crate::judge::tint::Said;
-use crate::judge::{Entry, Found, Group, Output, Refusal, Tint, Work, divide_group};
+use crate::judge::tint::TintMistake;
+use crate::judge::{
+    JudgeEntry, JudgeResult, JudgeWork, Output, OutputGroup, Refusal, Tint, divide_group,
+};
 use crate::tools::NODE;
 use crate::validate::{guard, info_of};
 
 /// The judge, for the table of all.
-pub const JUDGE: Entry = Entry {
+pub const JUDGE: JudgeEntry = JudgeEntry {
     name: "naga_tint",
     tools: &[NODE],
     lacks: Tint::missing,
@@ -21,7 +23,7 @@ pub const JUDGE: Entry = Entry {
 const BATCH: usize = 64;
 const TINT_BATCH: usize = 512;
 
-fn plan<'w>(group: &Group<'w>) -> Result<Vec<Work<'w>>, String> {
+fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<JudgeWork<'w>>, String> {
     let mut works = divide_group(group.outputs, BATCH, |outputs: &[&Output]| {
         let found = outputs.iter().map(|output| by_naga(output));
         Ok(found.collect::<Result<Vec<_>, String>>()?.into_iter().flatten().collect())
@@ -52,10 +54,10 @@ fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {
     Ok(judged.err().map(refusal))
 }
 
-fn by_tint(outputs: &[&Output], tint: &Tint) -> Found {
+fn by_tint(outputs: &[&Output], tint: &Tint) -> JudgeResult {
     let files: Vec<_> = outputs.iter().map(|output| &*output.file).collect();
     let said = tint.judge(&files)?;
-    let one = |said: Said| {
+    let one = |said: TintMistake| {
         let output = outputs.get(said.index).ok_or("Tint judged a text that it was not given")?;
         let words = format!("{}:{}: error: {}", said.line, said.column, said.message);
         Ok(Refusal { output: (*output).clone(), judge: "Tint", line: Some(said.line), words })

@@ -1,11 +1,13 @@
 //! SPIR-V: spirv-val, which takes one file at a time. A rule is an environment, such as
 //! `vulkan1.0`.
 
-use crate::judge::{Entry, Found, Group, Output, Refusal, Work, divide_group};
+use crate::judge::{
+    JudgeEntry, JudgeResult, JudgeWork, Output, OutputGroup, Refusal, divide_group,
+};
 use crate::tools::{SPIRV_VAL, printed_words};
 
 /// The judge, for the table of all.
-pub const JUDGE: Entry = Entry {
+pub const JUDGE: JudgeEntry = JudgeEntry {
     name: "spirv_val",
     tools: &[SPIRV_VAL],
     lacks: |_| None,
@@ -15,7 +17,7 @@ pub const JUDGE: Entry = Entry {
 
 const BATCH: usize = 16;
 
-fn plan<'w>(group: &Group<'w>) -> Result<Vec<Work<'w>>, String> {
+fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<JudgeWork<'w>>, String> {
     let environments = group.rules;
     Ok(divide_group(group.outputs, BATCH, move |outputs| {
         let mut refusals = Vec::new();
@@ -27,7 +29,7 @@ fn plan<'w>(group: &Group<'w>) -> Result<Vec<Work<'w>>, String> {
 }
 
 /// The refusal of the first environment that does not accept it.
-fn first_refusal(output: &Output, environments: &[&str]) -> Found {
+fn first_refusal(output: &Output, environments: &[&str]) -> JudgeResult {
     for environment in environments {
         let said = SPIRV_VAL.run(&["--target-env", environment], [&output.file]);
         let said = said.map_err(|error| error.to_string())?;

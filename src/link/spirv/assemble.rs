@@ -5,11 +5,13 @@ use std::collections::BTreeSet;
 use rustc_hash::FxHashMap;
 
 use super::capabilities::{SHADER, required_extensions};
-use super::{DEPTH, DeclarationPool, HEADER, MEMORY_MODEL, Piece, Ref, SHELVES, Shelf, Text};
+use super::{
+    DEPTH, DeclarationPool, HEADER, Instructions, MEMORY_MODEL, Piece, Ref, SHELVES, Shelf,
+};
 use crate::emit::spirv::{first_word, op};
 
 /// A piece that the new module has.
-struct Node<'n> {
+struct PieceNode<'n> {
     piece: &'n Piece,
     shelf: Shelf,
     /// Where the piece's references start in the list of links.
@@ -22,10 +24,10 @@ struct Node<'n> {
 const OPEN: u32 = u32::MAX;
 
 /// Collects the pieces of a new module, each after what it needs.
-struct Linker<'n, 'a> {
+struct PieceLinker<'n, 'a> {
     pool: &'n DeclarationPool,
     function: &'n dyn Fn(&str) -> Option<&'a Piece>,
-    nodes: Vec<Node<'n>>,
+    nodes: Vec<PieceNode<'n>>,
     /// The references of all nodes: first as numbers of nodes, then as ids.
     links: Vec<u32>,
     /// For each declaration of the pool, one more than its node; 0 for none.
@@ -33,7 +35,7 @@ struct Linker<'n, 'a> {
     users: FxHashMap<&'n str, u32>,
 }
 
-impl<'n, 'a: 'n> Linker<'n, 'a> {
+impl<'n, 'a: 'n> PieceLinker<'n, 'a> {
     /// Adds a piece after everything that it needs. The order depends on the pieces alone.
     fn visit(&mut self, piece: &'n Piece, shelf: Shelf, depth: u32) -> Result<u32, String> {
         if depth == DEPTH {
@@ -50,7 +52,7 @@ impl<'n, 'a: 'n> Linker<'n, 'a> {
                 *link = node;
             }
         }
-        self.nodes.push(Node { piece, shelf, links, base: 0 });
+        self.nodes.push(PieceNode { piece, shelf, links, base: 0 });
         Ok(self.nodes.len() as u32 - 1)
     }
 
@@ -98,7 +100,7 @@ impl<'n, 'a: 'n> Linker<'n, 'a> {
     }
 
     /// Writes one section of all nodes on some shelves.
-    fn write(&self, shelves: &[Shelf], text: fn(&Piece) -> &Text, out: &mut Vec<u32>) {
+    fn write(&self, shelves: &[Shelf], text: fn(&Piece) -> &Instructions, out: &mut Vec<u32>) {
         for shelf in shelves {
             for node in self.nodes.iter().filter(|node| node.shelf == *shelf) {
                 let links = self.links.get(node.links..).unwrap_or_default();
@@ -143,7 +145,7 @@ pub fn assemble_module<'a>(
         return Err("the piece is not an entry point".into());
     }
     let declarations = vec![0; pool.declarations.len()];
-    let mut linker = Linker {
+    let mut linker = PieceLinker {
         pool,
         function,
         nodes: vec![],

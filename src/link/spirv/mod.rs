@@ -38,7 +38,7 @@ enum Ref {
 
 /// Instructions whose ids are not yet assigned.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-struct Text {
+struct Instructions {
     words: Vec<u32>,
     /// Where the words hold the piece's own ids, counted from zero.
     locals: Vec<u32>,
@@ -46,7 +46,7 @@ struct Text {
     links: Vec<(u32, u32)>,
 }
 
-impl Text {
+impl Instructions {
     /// Copies the words and fills in the ids.
     fn write(&self, base: u32, links: &[u32], out: &mut Vec<u32>) {
         let start = out.len();
@@ -70,11 +70,11 @@ impl Text {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Piece {
     /// The instruction `OpEntryPoint`; empty for all but entry points.
-    entry: Text,
-    modes: Text,
-    names: Text,
-    notes: Text,
-    body: Text,
+    entry: Instructions,
+    modes: Instructions,
+    names: Instructions,
+    notes: Instructions,
+    body: Instructions,
     /// What is needed from outside: each once, in order of appearance.
     refs: Vec<Ref>,
     /// The capabilities that its own instructions need, sorted.
@@ -94,7 +94,7 @@ const SHELVES: [Shelf; 3] = [Shelf::Import, Shelf::Global, Shelf::Function];
 
 /// Something that functions share.
 #[derive(Debug)]
-struct Declaration {
+struct SharedDeclaration {
     shelf: Shelf,
     piece: Piece,
 }
@@ -103,7 +103,7 @@ struct Declaration {
 /// content.
 #[derive(Debug, Default)]
 pub struct DeclarationPool {
-    declarations: Vec<Declaration>,
+    declarations: Vec<SharedDeclaration>,
     /// The number of each declaration, by its content as words.
     numbers: FxHashMap<Box<[u32]>, u32>,
 }
@@ -115,7 +115,7 @@ impl DeclarationPool {
     }
 
     /// The number of a declaration, new or known.
-    fn intern(&mut self, key: &[u32], declaration: Declaration) -> Result<u32, String> {
+    fn intern(&mut self, key: &[u32], declaration: SharedDeclaration) -> Result<u32, String> {
         if let Some(number) = self.number(key) {
             return Ok(number);
         }

@@ -15,7 +15,7 @@ const STAGES: [u32; 2] = [0, 4];
 
 /// What the module says of an id.
 #[derive(Clone, Copy, Default)]
-struct Id {
+struct IdInfo {
     /// The instruction that defines it.
     defined: Option<usize>,
     /// Its last name or decoration, as an index into [`Module::about`].
@@ -25,7 +25,7 @@ struct Id {
 /// A module as it is read. Instructions are referred to by their index.
 pub struct Module<'a> {
     pub insts: Vec<Inst<'a>>,
-    ids: Vec<Id>,
+    ids: Vec<IdInfo>,
     /// Names and decorations, each with the index of the one before it for the same id.
     about: Vec<(usize, Option<usize>)>,
 }
@@ -43,7 +43,7 @@ impl<'a> Module<'a> {
             .get(3)
             .map(|&bound| bound as usize)
             .filter(|&bound| bound <= words.len() * 4 + 1024);
-        let ids = vec![Id::default(); bound.ok_or("the bound is too high")?];
+        let ids = vec![IdInfo::default(); bound.ok_or("the bound is too high")?];
         let mut module = Self { insts: Vec::with_capacity(words.len() / 3), ids, about: vec![] };
         while let Some((instruction, after)) = split_first(rest)? {
             module.push(Inst::new(instruction)?)?;
@@ -68,7 +68,7 @@ impl<'a> Module<'a> {
         Ok(())
     }
 
-    fn id(&mut self, id: u32) -> Result<&mut Id, String> {
+    fn id(&mut self, id: u32) -> Result<&mut IdInfo, String> {
         self.ids.get_mut(id as usize).ok_or_else(|| format!("id {id} is out of bounds"))
     }
 
@@ -195,22 +195,22 @@ impl<'a> Module<'a> {
 }
 
 /// What a function is.
-pub enum Role {
+pub enum FunctionRole {
     Entry,
     User(String),
     Helper,
 }
 
-pub struct Function {
+pub struct SpirvFunction {
     pub span: Range<usize>,
-    pub role: Role,
+    pub role: FunctionRole,
 }
 
 /// The functions, in the order of the module. One of them is the entry point's.
 pub fn find_functions(
     module: &Module,
     is_user: &dyn Fn(&str) -> bool,
-) -> Result<Vec<Function>, String> {
+) -> Result<Vec<SpirvFunction>, String> {
     let entry = module.entry_point()?.word(2)?;
     let (mut functions, mut entries, mut taken) = (vec![], 0, HashSet::new());
     for span in module.spans()? {
@@ -218,16 +218,16 @@ pub fn find_functions(
             module.insts.get(span.start).and_then(Inst::result).ok_or("a function has no id")?;
         let role = if id == entry {
             entries += 1;
-            Role::Entry
+            FunctionRole::Entry
         } else if let Some(name) = module.name(id)?.filter(|name| is_user(name)) {
             if !taken.insert(name.clone()) {
                 return Err(format!("there are two functions {name}"));
             }
-            Role::User(name)
+            FunctionRole::User(name)
         } else {
-            Role::Helper
+            FunctionRole::Helper
         };
-        functions.push(Function { span, role });
+        functions.push(SpirvFunction { span, role });
     }
     if entries == 1 { Ok(functions) } else { Err("the entry point has no function".into()) }
 }

@@ -1,6 +1,6 @@
 //! The layout of each instruction's operands.
 
-use crate::emit::spirv::Instruction;
+use crate::emit::spirv::SpirvInstruction;
 
 /// Where an instruction may stand in a module.
 #[derive(Clone, Copy, PartialEq)]
@@ -108,8 +108,8 @@ pub struct Inst<'a> {
 impl<'a> Inst<'a> {
     /// Looks the opcode up in the table. An unknown instruction is refused, since ids in it would
     /// not be renumbered.
-    pub fn new(instruction: Instruction<'a>) -> Result<Self, String> {
-        let Instruction { op, words } = instruction;
+    pub fn new(instruction: SpirvInstruction<'a>) -> Result<Self, String> {
+        let SpirvInstruction { op, words } = instruction;
         let (section, layout) =
             operand_layout(op).ok_or_else(|| format!("opcode {op} is not known"))?;
         Ok(Self { op, section, words, layout })

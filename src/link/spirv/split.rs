@@ -3,9 +3,11 @@
 use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
-use super::module::{Function, Module, Role, find_functions};
+use super::module::{FunctionRole, Module, SpirvFunction, find_functions};
 use super::operands::Inst;
-use super::{DEPTH, Declaration, DeclarationPool, Piece, Ref, Shelf, SplitParts, Text};
+use super::{
+    DEPTH, DeclarationPool, Instructions, Piece, Ref, SharedDeclaration, Shelf, SplitParts,
+};
 use crate::emit::spirv::op;
 
 /// Takes a module apart into pieces.
@@ -23,15 +25,15 @@ pub fn split_module(
     let point = module.entry_point()?;
     let functions = find_functions(&module, is_user)?;
     module.check()?;
-    let mut splitter = Splitter::new(&module, pool, &functions);
+    let mut splitter = PieceSplitter::new(&module, pool, &functions);
     let mut parts = SplitParts { functions: vec![], entry: None };
     for function in &functions {
         match &function.role {
-            Role::User(name) if is_wanted(name) => {
+            FunctionRole::User(name) if is_wanted(name) => {
                 let draft = splitter.draft(function.span.clone(), 0)?;
                 parts.functions.push((name.clone(), draft.finish()));
             }
-            Role::Entry if is_wanted(&point.string(3)?) => {
+            FunctionRole::Entry if is_wanted(&point.string(3)?) => {
                 let mut draft = splitter.draft(function.span.clone(), 0)?;
                 splitter.enter(&mut draft, point)?;
                 parts.entry = Some(draft.finish());
@@ -44,7 +46,7 @@ pub fn split_module(
 
 /// What is known of an id.
 #[derive(Clone, Copy, Default)]
-struct Id {
+struct IdUses {
     /// How often the piece that owns the id names it.
     uses: u32,
     /// Its index among the ids of that piece.
@@ -57,7 +59,7 @@ struct Id {
 }
 
 /// What an id is for the piece that names it.
-enum Target {
+enum IdTarget {
     Local(u32),
     Link(u32),
 }
@@ -79,31 +81,31 @@ impl Draft {
 }
 
 /// Makes the pieces of one module.
-struct Splitter<'m, 'a> {
+struct PieceSplitter<'m, 'a> {
     module: &'m Module<'a>,
     pool: &'m mut DeclarationPool,
-    functions: &'m [Function],
-    ids: Vec<Id>,
+    functions: &'m [SpirvFunction],
+    ids: Vec<IdUses>,
     /// The numbers of the variables that are in the pool already.
     variables: HashSet<u32>,
 }
 
-impl<'m, 'a> Splitter<'m, 'a> {
+impl<'m, 'a> PieceSplitter<'m, 'a> {
     fn new(
         module: &'m Module<'a>,
         pool: &'m mut DeclarationPool,
-        functions: &'m [Function],
+        functions: &'m [SpirvFunction],
     ) -> Self {
         Self {
             module,
             pool,
             functions,
-            ids: vec![Id::default(); module.bound()],
+            ids: vec![IdUses::default(); module.bound()],
             variables: HashSet::new(),
         }
     }
 
-    fn id(&mut self, id: u32) -> Result<&mut Id, String> {
+    fn id(&mut self, id: u32) -> Result<&mut IdUses, String> {
         self.ids.get_mut(id as usize).ok_or_else(|| format!("id {id} is out of bounds"))
     }
 
@@ -156,7 +158,7 @@ impl<'m, 'a> Splitter<'m, 'a> {
     fn add(
         &mut self,
         draft: &mut Draft,
-        text: fn(&mut Piece) -> &mut Text,
+        text: fn(&mut Piece) -> &mut Instructions,
         inst: &Inst,
     ) -> Result<(), String> {
         self.module.require(inst, &mut draft.needs)?;
@@ -169,14 +171,14 @@ impl<'m, 'a> Splitter<'m, 'a> {
             // Every id is overwritten with a number that depends on the piece alone, even where
             // linking fills it in later: equal pieces must have equal words.
             let number = match target {
-                Target::Link(link) => {
+                IdTarget::Link(link) => {
                     text.links.push((place, link));
                     0
                 }
-                Target::Local(_) if inst.op == op::FUNCTION_CALL && at == 3 => {
+                IdTarget::Local(_) if inst.op == op::FUNCTION_CALL && at == 3 => {
                     return Err("a function calls itself".into());
                 }
-                Target::Local(number) => {
+                IdTarget::Local(number) => {
                     text.locals.push(place);
                     number
                 }
@@ -189,7 +191,7 @@ impl<'m, 'a> Splitter<'m, 'a> {
     }
 
     /// Finds out whether an id belongs to the piece, and numbers it when it first appears.
-    fn target(&mut self, draft: &mut Draft, id: u32) -> Result<Target, String> {
+    fn target(&mut self, draft: &mut Draft, id: u32) -> Result<IdTarget, String> {
         let known = *self.id(id)?;
         if self.module.defined(id).is_some_and(|at| draft.span.contains(&at)) {
             let number = known.own.unwrap_or(draft.own.len() as u32);
@@ -197,10 +199,10 @@ impl<'m, 'a> Splitter<'m, 'a> {
                 draft.own.push(id);
                 self.id(id)?.own = Some(number);
             }
-            return Ok(Target::Local(number));
+            return Ok(IdTarget::Local(number));
         }
         if let Some((_, link)) = known.link.filter(|link| link.0 == draft.span.start) {
-            return Ok(Target::Link(link));
+            return Ok(IdTarget::Link(link));
         }
         let outside = self.outside(id, draft.span.start, draft.depth + 1)?;
         let at = draft.piece.refs.iter().position(|known| *known == outside);
@@ -209,7 +211,7 @@ impl<'m, 'a> Splitter<'m, 'a> {
             draft.piece.refs.push(outside);
         }
         self.id(id)?.link = Some((draft.span.start, link as u32));
-        Ok(Target::Link(link as u32))
+        Ok(IdTarget::Link(link as u32))
     }
 
     /// What an id stands for outside its module. The instruction `user`, which refers to it, must
@@ -226,9 +228,9 @@ impl<'m, 'a> Splitter<'m, 'a> {
         let at = self.functions.partition_point(|function| function.span.end <= defined);
         let number = match self.functions.get(at) {
             Some(function) if function.span.start == defined => match &function.role {
-                Role::Entry => return Err("the entry point is called".into()),
-                Role::User(name) => return Ok(Ref::User(name.clone())),
-                Role::Helper => self.helper(function.span.clone(), depth)?,
+                FunctionRole::Entry => return Err("the entry point is called".into()),
+                FunctionRole::User(name) => return Ok(Ref::User(name.clone())),
+                FunctionRole::Helper => self.helper(function.span.clone(), depth)?,
             },
             Some(function) if at == 0 && defined < function.span.start => {
                 self.declaration(defined, depth)?
@@ -243,7 +245,7 @@ impl<'m, 'a> Splitter<'m, 'a> {
     fn helper(&mut self, span: Range<usize>, depth: u32) -> Result<u32, String> {
         let piece = self.draft(span, depth)?.finish();
         let key = key_of_helper(&piece).ok_or("a helper calls a function of the author's")?;
-        self.pool.intern(&key, Declaration { shelf: Shelf::Function, piece })
+        self.pool.intern(&key, SharedDeclaration { shelf: Shelf::Function, piece })
     }
 
     /// Adds a type, a constant, a variable or an import to the pool. A declaration that the pool
@@ -267,7 +269,7 @@ impl<'m, 'a> Splitter<'m, 'a> {
             }
             let shelf = if inst.op == op::IMPORT { Shelf::Import } else { Shelf::Global };
             let piece = self.draft(at..at + 1, depth)?.finish();
-            self.pool.intern(&key, Declaration { shelf, piece })?;
+            self.pool.intern(&key, SharedDeclaration { shelf, piece })?;
         }
     }
 

@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
 
-use super::names::Names;
-use super::outline::Kind;
-use super::{Asked, asked_spellings, read_names};
+use super::names::GlslNames;
+use super::outline::SymbolKind;
+use super::{OpenGlslFile, asked_spellings, read_names};
 use crate::catalogue;
-use crate::lsp::Server;
+use crate::lsp::LanguageServer;
 use crate::lsp::complete::{
     CONSTANT, FIELD, FUNCTION, KEYWORD, MODULE, STRUCT, VARIABLE, completion_entry, of_library,
 };
@@ -47,7 +47,7 @@ const WORDS: &[&str] = &[
 ];
 
 /// `textDocument/completion`.
-pub fn complete_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn complete_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let (document, byte) = server.asked(parameters)?;
     let text = document.text.clone();
     let word = place::word_at_byte(&text, byte).start.min(byte);
@@ -70,7 +70,7 @@ pub fn complete_at(server: &mut Server, parameters: &Value) -> Result<Value, Str
 }
 
 /// The files whose paths begin with what is written after `#include`.
-fn complete_paths(asked: &Asked, written: &str) -> Value {
+fn complete_paths(asked: &OpenGlslFile, written: &str) -> Value {
     let Some(first) = written.chars().next().filter(|first| ['<', '"'].contains(first)) else {
         return json!([]);
     };
@@ -85,7 +85,7 @@ fn complete_paths(asked: &Asked, written: &str) -> Value {
 }
 
 /// Macros that stand for axes and their values.
-fn complete_axes(asked: &Asked) -> Value {
+fn complete_axes(asked: &OpenGlslFile) -> Value {
     let programs = asked.opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     let mut found = BTreeSet::new();
     for axis in programs.flat_map(|program| program.space.axes()) {
@@ -100,17 +100,17 @@ fn complete_axes(asked: &Asked) -> Value {
     found.iter().map(|(name, what)| completion_entry(name, VARIABLE, what)).collect()
 }
 
-fn complete_members(names: &Names) -> Value {
+fn complete_members(names: &GlslNames) -> Value {
     let all = names.outlines.iter().flat_map(|outline| &outline.declarations);
-    let members = all.filter(|found| found.kind == Kind::Member);
+    let members = all.filter(|found| found.kind == SymbolKind::Member);
     let found: BTreeSet<&str> = members.map(|found| names.graph.symbols.text(found.name)).collect();
     found.into_iter().map(|name| completion_entry(name, FIELD, "member")).collect()
 }
 
 /// Names in scope, those of the library with their includes, built-ins and keywords.
 fn complete_names(
-    server: &mut Server,
-    asked: &Asked,
+    server: &mut LanguageServer,
+    asked: &OpenGlslFile,
     text: &str,
     written: std::ops::Range<usize>,
 ) -> Value {
@@ -132,7 +132,7 @@ fn complete_names(
         let is_library = asked.package_of(file) == Some(LIBRARY);
         let path = &names.graph.paths[file];
         let declared = outline.declarations.iter().filter(|found| {
-            found.kind != Kind::Member && !(is_library && found.kind == Kind::Macro)
+            found.kind != SymbolKind::Member && !(is_library && found.kind == SymbolKind::Macro)
         });
         for declaration in declared {
             let name = spelt(declaration.name);
@@ -154,10 +154,10 @@ fn complete_names(
 }
 
 /// The library's items, each with the edit that includes its file.
-fn includable_items(known: &[catalogue::Module], text: &str) -> Vec<(String, Value)> {
+fn includable_items(known: &[catalogue::CatalogueModule], text: &str) -> Vec<(String, Value)> {
     let (lines, at) = (Lines::new(text), include_place(text));
     let items = known.iter().flat_map(|module| &module.items).filter(|item| item.glsl.is_some());
-    let entry = |item: &catalogue::Item| {
+    let entry = |item: &catalogue::CatalogueItem| {
         let edit = json!({
             "range": lines.range(at..at),
             "newText": format!("{}\n", item.include()),
@@ -187,12 +187,12 @@ fn include_place(text: &str) -> usize {
     found
 }
 
-fn completion_kind(kind: Kind) -> u32 {
+fn completion_kind(kind: SymbolKind) -> u32 {
     match kind {
-        Kind::Function => FUNCTION,
-        Kind::Struct => STRUCT,
-        Kind::Constant | Kind::Macro => CONSTANT,
-        Kind::Variable => VARIABLE,
-        Kind::Member => FIELD,
+        SymbolKind::Function => FUNCTION,
+        SymbolKind::Struct => STRUCT,
+        SymbolKind::Constant | SymbolKind::Macro => CONSTANT,
+        SymbolKind::Variable => VARIABLE,
+        SymbolKind::Member => FIELD,
     }
 }

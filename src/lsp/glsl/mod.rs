@@ -14,14 +14,14 @@ use std::ops::Range;
 use serde_json::{Value, json};
 
 pub use complete::complete_at;
-use names::{Meaning, Names};
-use outline::{Declaration, Kind};
+use names::{GlslNames, NameMeaning};
+use outline::{GlslDeclaration, SymbolKind};
 pub use refer::{Whole, read_whole, references_at, signature_help, workspace_symbols};
 pub use rename::{prepare_rename, rename_symbol};
 
-use super::package::Opened;
+use super::package::OpenedPackage;
 use super::place::Lines;
-use super::{Server, describe, navigate, told};
+use super::{LanguageServer, describe, navigate, told};
 use crate::bundle::Language;
 use crate::lint;
 use crate::parse::wesl::ItemKind;
@@ -33,33 +33,33 @@ use crate::resolve::{Graph, glsl};
 const SHOWN: usize = 40;
 
 /// A file of GLSL with its names, in its package.
-struct Asked {
-    opened: Opened,
-    names: Names,
+struct OpenGlslFile {
+    opened: OpenedPackage,
+    names: GlslNames,
     path: String,
 }
 
 /// Whether parameters name a document of GLSL.
-pub fn is_asked(server: &Server, parameters: &Value) -> bool {
+pub fn is_asked(server: &LanguageServer, parameters: &Value) -> bool {
     let document = server.document(parameters);
     document.is_ok_and(|document| lint::language(&document.path) == Some(Language::Glsl))
 }
 
-fn read_names(server: &Server, parameters: &Value) -> Result<Option<Asked>, String> {
+fn read_names(server: &LanguageServer, parameters: &Value) -> Result<Option<OpenGlslFile>, String> {
     let document = server.document(parameters)?;
     let path = document.path.clone();
     let Some(mut opened) = server.opened(&document.root) else { return Ok(None) };
     let Ok(Graph::Glsl(graph)) = server.graph(&mut opened, &path) else { return Ok(None) };
-    Ok(Some(Asked { opened, names: Names::new(graph), path }))
+    Ok(Some(OpenGlslFile { opened, names: GlslNames::new(graph), path }))
 }
 
-impl Asked {
+impl OpenGlslFile {
     fn package_of(&self, file: usize) -> Option<&str> {
         let index = self.names.graph.packages[file].checked_sub(1)?;
         Some(&self.opened.packages.dependencies[index].name)
     }
 
-    fn location(&self, server: &Server, file: usize, range: &Range<u32>) -> Option<Value> {
+    fn location(&self, server: &LanguageServer, file: usize, range: &Range<u32>) -> Option<Value> {
         let module = &self.names.graph.modules[file];
         let uri = told::address_of(&self.opened.sources, module.source, &*server.library)?;
         let range = Lines::new(&module.text).range(range.start as usize..range.end as usize);
@@ -67,7 +67,7 @@ impl Asked {
     }
 
     /// The description of a declaration that is an item of the library.
-    fn library_item(&self, server: &mut Server, file: usize, name: &str) -> Option<String> {
+    fn library_item(&self, server: &mut LanguageServer, file: usize, name: &str) -> Option<String> {
         let path =
             self.names.graph.paths[file].strip_prefix("lamplight/")?.strip_suffix(".glsl")?;
         let path = path.replace('/', "::");
@@ -80,8 +80,8 @@ impl Asked {
 
     fn describe_declared(
         &self,
-        server: &mut Server,
-        found: &[(usize, &Declaration)],
+        server: &mut LanguageServer,
+        found: &[(usize, &GlslDeclaration)],
     ) -> Option<String> {
         let (file, first) = found.first()?;
         if self.package_of(*file) == Some(LIBRARY) {
@@ -119,23 +119,25 @@ fn comment_above(text: &str, byte: u32) -> String {
 }
 
 /// `textDocument/hover`.
-pub fn hover_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn hover_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let (_, byte) = server.asked(parameters)?;
     let Some(asked) = read_names(server, parameters)? else { return Ok(Value::Null) };
     let Some((meaning, place)) = asked.names.meaning(byte as u32) else { return Ok(Value::Null) };
     let module = &asked.names.graph.modules[0];
     let text = match meaning {
-        Meaning::Local(local) => Some(format!("```glsl\n{}\n```", text_of(module, &local.range))),
-        Meaning::Declared(found) => asked.describe_declared(server, &found),
-        Meaning::File(file) => Some(format!("`{}`", asked.names.graph.paths[file])),
-        Meaning::Macro(name) => describe_macro(server, &asked, name),
+        NameMeaning::Local(local) => {
+            Some(format!("```glsl\n{}\n```", text_of(module, &local.range)))
+        }
+        NameMeaning::Declared(found) => asked.describe_declared(server, &found),
+        NameMeaning::File(file) => Some(format!("`{}`", asked.names.graph.paths[file])),
+        NameMeaning::Macro(name) => describe_macro(server, &asked, name),
     };
     let Some(text) = text else { return Ok(Value::Null) };
     Ok(told::hover_json(&text, &module.text, place.start as usize..place.end as usize))
 }
 
 /// The axis that a macro is, or that it names a value of.
-fn describe_macro(server: &Server, asked: &Asked, name: &str) -> Option<String> {
+fn describe_macro(server: &LanguageServer, asked: &OpenGlslFile, name: &str) -> Option<String> {
     let programs = asked.opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     let mut axes = programs.flat_map(|program| program.space.axes());
     let axis = axes.find(|axis| is_macro_of(axis, name))?;
@@ -152,29 +154,29 @@ fn is_macro_of(axis: &Axis, name: &str) -> bool {
 }
 
 /// `textDocument/definition`.
-pub fn definition_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn definition_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let (_, byte) = server.asked(parameters)?;
     let Some(asked) = read_names(server, parameters)? else { return Ok(Value::Null) };
     let Some((meaning, _)) = asked.names.meaning(byte as u32) else { return Ok(Value::Null) };
     let places: Vec<(usize, Range<u32>)> = match meaning {
-        Meaning::Local(local) => vec![(0, local.place.clone())],
-        Meaning::Declared(found) => {
+        NameMeaning::Local(local) => vec![(0, local.place.clone())],
+        NameMeaning::Declared(found) => {
             found.iter().map(|(file, declaration)| (*file, declaration.place.clone())).collect()
         }
-        Meaning::File(file) => vec![(file, 0..0)],
-        Meaning::Macro(_) => Vec::new(),
+        NameMeaning::File(file) => vec![(file, 0..0)],
+        NameMeaning::Macro(_) => Vec::new(),
     };
     let found = places.iter().filter_map(|(file, place)| asked.location(server, *file, place));
     Ok(found.collect())
 }
 
 /// `textDocument/documentSymbol`.
-pub fn document_symbols(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn document_symbols(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let Some(asked) = read_names(server, parameters)? else { return Ok(json!([])) };
     let lines = Lines::new(&asked.names.graph.modules[0].text);
     let range = |range: &Range<u32>| lines.range(range.start as usize..range.end as usize);
     let own = asked.names.outlines[0].declarations.iter();
-    let symbols = own.filter(|found| found.kind != Kind::Member).map(|found| {
+    let symbols = own.filter(|found| found.kind != SymbolKind::Member).map(|found| {
         json!({
             "name": asked.names.graph.symbols.text(found.name),
             "kind": symbol_kind(found.kind),
@@ -187,16 +189,16 @@ pub fn document_symbols(server: &mut Server, parameters: &Value) -> Result<Value
 
 /// The protocol's `SymbolKind` of a declaration, as for the same kind of item in WESL. Members are
 /// not listed.
-fn symbol_kind(kind: Kind) -> u32 {
+fn symbol_kind(kind: SymbolKind) -> u32 {
     navigate::symbol_kind(match kind {
-        Kind::Function => ItemKind::Function,
-        Kind::Struct => ItemKind::Struct,
-        Kind::Constant | Kind::Macro => ItemKind::Const,
-        Kind::Variable | Kind::Member => ItemKind::Var,
+        SymbolKind::Function => ItemKind::Function,
+        SymbolKind::Struct => ItemKind::Struct,
+        SymbolKind::Constant | SymbolKind::Macro => ItemKind::Const,
+        SymbolKind::Variable | SymbolKind::Member => ItemKind::Var,
     })
 }
 
 /// How a file may be named in an `#include` of the root file.
-fn asked_spellings(asked: &Asked, angled: bool) -> Vec<String> {
+fn asked_spellings(asked: &OpenGlslFile, angled: bool) -> Vec<String> {
     glsl::include_spellings(&asked.opened.packages, &asked.path, angled)
 }

@@ -2,30 +2,30 @@
 
 use std::ops::Range;
 
-use super::outline::{Declaration, Kind, Local, Outline, outline_of};
+use super::outline::{GlslDeclaration, GlslOutline, Local, SymbolKind, outline_of};
 use crate::catalogue::prefix;
-use crate::parse::glsl::{Directive, Part, Symbol, TokenKind, known};
-use crate::resolve::glsl::{Graph, Target};
+use crate::parse::glsl::{Directive, FilePart, Symbol, TokenKind, known};
+use crate::resolve::glsl::{Graph, IncludeTarget};
 
 /// A file, all that it may include, and what each of these declares.
-pub struct Names {
+pub struct GlslNames {
     pub graph: Graph,
-    pub outlines: Vec<Outline>,
+    pub outlines: Vec<GlslOutline>,
 }
 
 /// What a name stands for.
-pub enum Meaning<'n> {
+pub enum NameMeaning<'n> {
     /// A parameter or a local variable of the file itself.
     Local(&'n Local),
     /// Declarations by the number of their file: several if a function has several forms.
-    Declared(Vec<(usize, &'n Declaration)>),
+    Declared(Vec<(usize, &'n GlslDeclaration)>),
     /// A file that is included, by its number.
     File(usize),
     /// The name of a macro that no file defines. It may be an axis.
     Macro(&'n str),
 }
 
-impl Names {
+impl GlslNames {
     pub fn new(graph: Graph) -> Self {
         let outline = |module| outline_of(module, &graph.symbols);
         let outlines = graph.modules.iter().map(outline).collect();
@@ -34,13 +34,13 @@ impl Names {
 
     /// What the identifier or the path of an `#include` at a byte of the root file stands for, with
     /// its place.
-    pub fn meaning(&self, byte: u32) -> Option<(Meaning<'_>, Range<u32>)> {
+    pub fn meaning(&self, byte: u32) -> Option<(NameMeaning<'_>, Range<u32>)> {
         let module = self.graph.modules.first()?;
         let has = |range: &Range<u32>| range.start <= byte && byte <= range.end;
         for (include, target) in module.includes.iter().zip(self.graph.targets.first()?) {
             let place = include.span.start..include.span.end;
-            if let (true, Target::Module(file)) = (has(&place), target) {
-                return Some((Meaning::File(*file), place));
+            if let (true, IncludeTarget::Module(file)) = (has(&place), target) {
+                return Some((NameMeaning::File(*file), place));
             }
         }
         let at = self.token_at(0, byte)?;
@@ -49,18 +49,18 @@ impl Names {
         let before = at.checked_sub(1).map(|index| module.tokens[index].symbol);
         if before == Some(known::DOT) {
             // A member, unless it is the swizzle of a vector.
-            let members = self.declared(token.symbol, |kind| kind == Kind::Member);
-            return (!members.is_empty()).then_some((Meaning::Declared(members), place));
+            let members = self.declared(token.symbol, |kind| kind == SymbolKind::Member);
+            return (!members.is_empty()).then_some((NameMeaning::Declared(members), place));
         }
         if let Some(local) = self.local(0, token.symbol, token.start) {
-            return Some((Meaning::Local(local), place));
+            return Some((NameMeaning::Local(local), place));
         }
         let found = self.global(token.symbol);
         if !found.is_empty() {
-            return Some((Meaning::Declared(found), place));
+            return Some((NameMeaning::Declared(found), place));
         }
         let text = self.graph.symbols.text(token.symbol);
-        self.is_in_directive(token.start).then_some((Meaning::Macro(text), place))
+        self.is_in_directive(token.start).then_some((NameMeaning::Macro(text), place))
     }
 
     /// The local of that name that is known at a byte of a file and was declared last before it.
@@ -87,17 +87,21 @@ impl Names {
 
     /// Declarations of a name in global scope: those of the file itself, or else those of its
     /// includes, or else those of the library's name without its prefix.
-    fn global(&self, name: Symbol) -> Vec<(usize, &Declaration)> {
-        let found = self.declared(name, |kind| kind != Kind::Member);
+    fn global(&self, name: Symbol) -> Vec<(usize, &GlslDeclaration)> {
+        let found = self.declared(name, |kind| kind != SymbolKind::Member);
         if !found.is_empty() {
             return found;
         }
         let bare = self.graph.symbols.text(name).strip_prefix(prefix::PREFIX);
         let bare = bare.and_then(|bare| self.graph.symbols.find(bare));
-        bare.map(|bare| self.declared(bare, |kind| kind != Kind::Member)).unwrap_or_default()
+        bare.map(|bare| self.declared(bare, |kind| kind != SymbolKind::Member)).unwrap_or_default()
     }
 
-    fn declared(&self, name: Symbol, fits: impl Fn(Kind) -> bool) -> Vec<(usize, &Declaration)> {
+    fn declared(
+        &self,
+        name: Symbol,
+        fits: impl Fn(SymbolKind) -> bool,
+    ) -> Vec<(usize, &GlslDeclaration)> {
         let all = self.outlines.iter().enumerate().flat_map(|(file, outline)| {
             outline.declarations.iter().map(move |declaration| (file, declaration))
         });
@@ -105,8 +109,8 @@ impl Names {
             .filter(|(_, declaration)| declaration.name == name && fits(declaration.kind))
             .collect();
         // The library's file of prefixes defines a macro for each of its names.
-        if found.iter().any(|(_, declaration)| declaration.kind != Kind::Macro) {
-            found.retain(|(_, declaration)| declaration.kind != Kind::Macro);
+        if found.iter().any(|(_, declaration)| declaration.kind != SymbolKind::Macro) {
+            found.retain(|(_, declaration)| declaration.kind != SymbolKind::Macro);
         }
         if found.iter().any(|(file, _)| *file == 0) {
             found.retain(|(file, _)| *file == 0);
@@ -117,8 +121,8 @@ impl Names {
     fn is_in_directive(&self, byte: u32) -> bool {
         let parts = self.graph.modules.first().into_iter().flat_map(|module| &module.parts);
         parts.into_iter().any(|part| match part {
-            Part::Directive(Directive::Include(_), _) | Part::Text(_) => false,
-            Part::Directive(_, span) => span.start <= byte && byte < span.end,
+            FilePart::Directive(Directive::Include(_), _) | FilePart::Text(_) => false,
+            FilePart::Directive(_, span) => span.start <= byte && byte < span.end,
         })
     }
 }

@@ -3,13 +3,13 @@
 
 use std::ops::Range;
 
-use super::tokens::{Placed, ends_of_blocks, matching_parentheses, text_tokens};
+use super::tokens::{NestedToken, ends_of_blocks, matching_parentheses, text_tokens};
 use super::words::{QUALIFIERS, STATEMENTS};
-use crate::parse::glsl::{Directive, Module, Part, Symbol, Symbols, TokenKind, known};
+use crate::parse::glsl::{Directive, FilePart, Module, Symbol, Symbols, TokenKind, known};
 
 /// What a declaration is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum SymbolKind {
     Function,
     Struct,
     Constant,
@@ -20,8 +20,8 @@ pub enum Kind {
 
 /// A name that a file declares in global scope, or a member of a struct or block.
 #[derive(Debug, Clone)]
-pub struct Declaration {
-    pub kind: Kind,
+pub struct GlslDeclaration {
+    pub kind: SymbolKind,
     pub name: Symbol,
     /// The name's place.
     pub place: Range<u32>,
@@ -53,8 +53,8 @@ impl Local {
 
 /// What a file declares, in its order.
 #[derive(Debug, Default)]
-pub struct Outline {
-    pub declarations: Vec<Declaration>,
+pub struct GlslOutline {
+    pub declarations: Vec<GlslDeclaration>,
     pub locals: Vec<Local>,
 }
 
@@ -63,16 +63,17 @@ pub struct Outline {
 const HEADERS: usize = 64;
 
 /// Reads the tokens of a file.
-pub fn outline_of(module: &Module, symbols: &Symbols) -> Outline {
+pub fn outline_of(module: &Module, symbols: &Symbols) -> GlslOutline {
     let tokens = text_tokens(module);
     let closes = matching_parentheses(&tokens);
     let ends = ends_of_blocks(&tokens);
-    let mut reader = Reader { tokens: &tokens, closes, ends, symbols, found: Outline::default() };
+    let mut reader =
+        OutlineReader { tokens: &tokens, closes, ends, symbols, found: GlslOutline::default() };
     for part in &module.parts {
-        if let Part::Directive(Directive::Define(found), span) = part {
+        if let FilePart::Directive(Directive::Define(found), span) = part {
             let place = found.name_span.start..found.name_span.end;
             let range = span.start..span.end;
-            reader.declare(Kind::Macro, found.name, place, range.clone(), range);
+            reader.declare(SymbolKind::Macro, found.name, place, range.clone(), range);
         }
     }
     let mut at = 0;
@@ -84,16 +85,16 @@ pub fn outline_of(module: &Module, symbols: &Symbols) -> Outline {
     found
 }
 
-struct Reader<'t> {
-    tokens: &'t [Placed],
+struct OutlineReader<'t> {
+    tokens: &'t [NestedToken],
     closes: Vec<Option<usize>>,
     /// For each opening brace the first token that is not within it.
     ends: Vec<usize>,
     symbols: &'t Symbols,
-    found: Outline,
+    found: GlslOutline,
 }
 
-impl Reader<'_> {
+impl OutlineReader<'_> {
     fn symbol(&self, at: usize) -> Option<Symbol> {
         self.tokens.get(at).map(|placed| placed.token.symbol)
     }
@@ -119,13 +120,13 @@ impl Reader<'_> {
 
     fn declare(
         &mut self,
-        kind: Kind,
+        kind: SymbolKind,
         name: Symbol,
         place: Range<u32>,
         range: Range<u32>,
         whole: Range<u32>,
     ) {
-        self.found.declarations.push(Declaration { kind, name, place, range, whole });
+        self.found.declarations.push(GlslDeclaration { kind, name, place, range, whole });
     }
 
     /// The brace that closes the one at a token, or the last token before the end of its branch.
@@ -169,7 +170,7 @@ impl Reader<'_> {
     /// The semicolon that ends the statement of a token, or the last token.
     fn statement_end(&self, from: usize) -> usize {
         let depth = self.tokens[from].depth;
-        let ends = |placed: &Placed| {
+        let ends = |placed: &NestedToken| {
             placed.depth < depth
                 || (placed.depth == depth && placed.token.symbol == known::SEMICOLON)
         };
@@ -184,12 +185,12 @@ impl Reader<'_> {
         if self.symbol(close + 1) != Some(known::OPEN_BRACE) {
             let end = self.statement_end(close);
             if self.symbol(close + 1) == Some(known::SEMICOLON) && open - first > 1 {
-                self.declare(Kind::Function, name, place, range.clone(), range);
+                self.declare(SymbolKind::Function, name, place, range.clone(), range);
             }
             return end + 1;
         }
         let last = self.close_of(close + 1);
-        self.declare(Kind::Function, name, place, range, self.bytes(first, last));
+        self.declare(SymbolKind::Function, name, place, range, self.bytes(first, last));
         self.read_locals(open + 1, last);
         last + 1
     }
@@ -199,7 +200,7 @@ impl Reader<'_> {
         let last = self.close_of(open);
         let end = self.statement_end(last);
         if open > first && self.is_name(open - 1) {
-            let kind = if is_struct { Kind::Struct } else { Kind::Variable };
+            let kind = if is_struct { SymbolKind::Struct } else { SymbolKind::Variable };
             let whole = self.bytes(first, last);
             let (name, place) = (self.tokens[open - 1].token.symbol, self.place(open - 1));
             self.declare(kind, name, place, whole.clone(), whole);
@@ -209,14 +210,14 @@ impl Reader<'_> {
         let mut start = open + 1;
         while start < last {
             let next = self.statement_end(start).min(last);
-            let kind = if is_nameless { Kind::Variable } else { Kind::Member };
+            let kind = if is_nameless { SymbolKind::Variable } else { SymbolKind::Member };
             self.declare_each(kind, start, next);
             start = next + 1;
         }
         if let Some(at) = instance {
             let range = self.bytes(first, end.saturating_sub(1));
             let name = self.tokens[at].token.symbol;
-            self.declare(Kind::Variable, name, self.place(at), range.clone(), range);
+            self.declare(SymbolKind::Variable, name, self.place(at), range.clone(), range);
         }
         end + 1
     }
@@ -224,13 +225,13 @@ impl Reader<'_> {
     fn declare_names(&mut self, first: usize, end: usize) {
         let words = self.tokens[first..end].iter().map(|placed| placed.token.symbol);
         let is_constant = words.clone().any(|symbol| symbol == known::CONST);
-        let kind = if is_constant { Kind::Constant } else { Kind::Variable };
+        let kind = if is_constant { SymbolKind::Constant } else { SymbolKind::Variable };
         if !words.clone().any(|symbol| symbol == known::PRECISION) {
             self.declare_each(kind, first, end);
         }
     }
 
-    fn declare_each(&mut self, kind: Kind, first: usize, end: usize) {
+    fn declare_each(&mut self, kind: SymbolKind, first: usize, end: usize) {
         let range = self.bytes(first, end.min(self.tokens.len() - 1));
         for at in self.names_declared(first, end) {
             let name = self.tokens[at].token.symbol;
@@ -281,7 +282,7 @@ impl Reader<'_> {
         let mut open: Vec<Option<usize>> = Vec::new();
         let mut waiting: Vec<(u32, usize)> = Vec::new();
         for at in first..=last {
-            let Placed { token, depth } = self.tokens[at];
+            let NestedToken { token, depth } = self.tokens[at];
             while let Some((_, local)) = waiting.pop_if(|(known, _)| *known > depth) {
                 self.found.locals[local].end = token.end;
             }

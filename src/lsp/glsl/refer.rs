@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::names::Meaning;
-use super::outline::{Declaration, Kind};
-use super::units::{Meant, Place, Units};
+use super::names::NameMeaning;
+use super::outline::{GlslDeclaration, SymbolKind};
+use super::units::{Meant, NamePlace, Units};
 use super::{read_names, symbol_kind, text_of};
 use crate::catalogue;
-use crate::lsp::package::Opened;
+use crate::lsp::package::OpenedPackage;
 use crate::lsp::place::Lines;
-use crate::lsp::{Server, describe, told};
+use crate::lsp::{LanguageServer, describe, told};
 use crate::project::LIBRARY;
 use crate::resolve::glsl;
 
@@ -24,19 +24,19 @@ pub const PLACES: usize = 10_000;
 
 /// A package with all of its GLSL files.
 pub struct Whole {
-    pub opened: Opened,
+    pub opened: OpenedPackage,
     pub units: Units,
 }
 
 /// Reads all GLSL files of an opened package.
-pub fn read_whole(mut opened: Opened) -> Option<Whole> {
+pub fn read_whole(mut opened: OpenedPackage) -> Option<Whole> {
     let paths = opened.packages.root.files.list(EXTENSIONS);
     let graph = glsl::load_all(&mut opened.sources, &opened.packages, &paths).ok()?;
     Some(Whole { opened, units: Units::new(graph) })
 }
 
 /// The symbol that a request is about, in its file.
-pub struct Asked {
+pub struct RequestedSymbol {
     pub whole: Arc<Whole>,
     pub file: usize,
     pub meant: Meant,
@@ -45,13 +45,16 @@ pub struct Asked {
 }
 
 /// The symbol at the position that the parameters name.
-pub fn asked_at(server: &mut Server, parameters: &Value) -> Result<Option<Asked>, String> {
+pub fn asked_at(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Option<RequestedSymbol>, String> {
     let (document, byte) = server.asked(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
     let Some(whole) = server.whole(&root) else { return Ok(None) };
     let Some(file) = whole.file(&path) else { return Ok(None) };
     let found = whole.units.meant(file, byte as u32);
-    Ok(found.map(|(meant, range)| Asked { whole, file, meant, range }))
+    Ok(found.map(|(meant, range)| RequestedSymbol { whole, file, meant, range }))
 }
 
 impl Whole {
@@ -62,7 +65,7 @@ impl Whole {
         (0..paths.len()).find(|file| self.units.is_own(*file) && paths[*file] == shown)
     }
 
-    pub fn location(&self, server: &Server, place: &Place) -> Option<Value> {
+    pub fn location(&self, server: &LanguageServer, place: &NamePlace) -> Option<Value> {
         let module = self.units.module(place.file);
         let uri = told::address_of(&self.opened.sources, module.source, &*server.library)?;
         let range = Lines::new(&module.text).range(place.start as usize..place.end as usize);
@@ -76,7 +79,7 @@ impl Whole {
 }
 
 /// `textDocument/references`.
-pub fn references_at(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn references_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let declared = parameters.pointer("/context/includeDeclaration").and_then(Value::as_bool);
     if let Some(found) = including_places(server, parameters)? {
         return Ok(found);
@@ -89,7 +92,10 @@ pub fn references_at(server: &mut Server, parameters: &Value) -> Result<Value, S
 }
 
 /// If an `#include` is at the position, all places that include the same file.
-fn including_places(server: &mut Server, parameters: &Value) -> Result<Option<Value>, String> {
+fn including_places(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Option<Value>, String> {
     let (document, byte) = server.asked(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
     let Some(whole) = server.whole(&root) else { return Ok(None) };
@@ -100,14 +106,19 @@ fn including_places(server: &mut Server, parameters: &Value) -> Result<Option<Va
 }
 
 /// At most `most` names of all files that contain the query, for `workspace/symbol`.
-pub fn workspace_symbols(server: &Server, whole: &Whole, query: &str, most: usize) -> Vec<Value> {
+pub fn workspace_symbols(
+    server: &LanguageServer,
+    whole: &Whole,
+    query: &str,
+    most: usize,
+) -> Vec<Value> {
     let mut found = Vec::new();
     let units = &whole.units;
     for (file, outline) in units.names.outlines.iter().enumerate() {
         // The library's macros guard its files and give its names their prefix.
         let is_library = whole.is_of_library(file);
         let shown = outline.declarations.iter().filter(|known| {
-            known.kind != Kind::Member && !(is_library && known.kind == Kind::Macro)
+            known.kind != SymbolKind::Member && !(is_library && known.kind == SymbolKind::Macro)
         });
         for declaration in shown {
             let name = units.spelt(declaration.name);
@@ -118,7 +129,7 @@ pub fn workspace_symbols(server: &Server, whole: &Whole, query: &str, most: usiz
                 continue;
             }
             let Range { start, end } = declaration.place;
-            let location = whole.location(server, &Place { file, start, end });
+            let location = whole.location(server, &NamePlace { file, start, end });
             found.extend(location.map(|location| {
                 json!({
                     "name": name,
@@ -133,13 +144,13 @@ pub fn workspace_symbols(server: &Server, whole: &Whole, query: &str, most: usiz
 }
 
 /// Whether a macro has an empty body: it is an include guard.
-fn is_guard(units: &Units, file: usize, declaration: &Declaration) -> bool {
+fn is_guard(units: &Units, file: usize, declaration: &GlslDeclaration) -> bool {
     let behind = declaration.place.end..declaration.range.end;
-    declaration.kind == Kind::Macro && text_of(units.module(file), &behind).trim().is_empty()
+    declaration.kind == SymbolKind::Macro && text_of(units.module(file), &behind).trim().is_empty()
 }
 
 /// `textDocument/signatureHelp`: every form of the function or macro that is called.
-pub fn signature_help(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn signature_help(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let (document, byte) = server.asked(parameters)?;
     let Some((name, argument)) = describe::call_around(&document.text, byte) else {
         return Ok(Value::Null);
@@ -147,8 +158,8 @@ pub fn signature_help(server: &mut Server, parameters: &Value) -> Result<Value, 
     let word = document.text[name.clone()].to_owned();
     let Some(asked) = read_names(server, parameters)? else { return Ok(Value::Null) };
     let mut labels = match asked.names.meaning(name.start as u32) {
-        Some((Meaning::Declared(found), _)) => {
-            let label = |(file, declaration): &(usize, &Declaration)| {
+        Some((NameMeaning::Declared(found), _)) => {
+            let label = |(file, declaration): &(usize, &GlslDeclaration)| {
                 called_as(&asked.names.graph.modules[*file], declaration, &word)
             };
             found.iter().filter_map(label).collect()
@@ -156,7 +167,7 @@ pub fn signature_help(server: &mut Server, parameters: &Value) -> Result<Value, 
         _ => Vec::new(),
     };
     if labels.is_empty() {
-        let known: Arc<Vec<catalogue::Module>> = server.items();
+        let known: Arc<Vec<catalogue::CatalogueModule>> = server.items();
         let mut items = known.iter().flat_map(|module| &module.items);
         labels.extend(items.find(|item| item.name == word).and_then(|item| item.glsl.clone()));
     }
@@ -169,23 +180,23 @@ pub fn signature_help(server: &mut Server, parameters: &Value) -> Result<Value, 
 /// How a function, a macro or a struct is called, on one line.
 fn called_as(
     module: &crate::parse::glsl::Module,
-    declaration: &Declaration,
+    declaration: &GlslDeclaration,
     name: &str,
 ) -> Option<String> {
     let text = match declaration.kind {
-        Kind::Function => text_of(module, &declaration.range),
-        Kind::Macro => {
+        SymbolKind::Function => text_of(module, &declaration.range),
+        SymbolKind::Macro => {
             let text = text_of(module, &(declaration.place.start..declaration.range.end));
             &text[..=text.find(')').filter(|_| text[name.len()..].starts_with('('))?]
         }
-        Kind::Struct => {
+        SymbolKind::Struct => {
             let text = text_of(module, &declaration.range);
             let members = text.split_once('{')?.1.trim_end().trim_end_matches('}');
             let members: Vec<&str> = members.split(';').map(str::trim).collect();
             let members = members.join(", ");
             return Some(on_one_line(&format!("{name}({})", members.trim_end_matches([',', ' ']))));
         }
-        Kind::Constant | Kind::Variable | Kind::Member => return None,
+        SymbolKind::Constant | SymbolKind::Variable | SymbolKind::Member => return None,
     };
     Some(on_one_line(text))
 }

@@ -4,21 +4,21 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use super::refer::{Asked, PLACES, asked_at};
+use super::refer::{PLACES, RequestedSymbol, asked_at};
 use super::text_of;
-use super::units::{Meant, Place, Units, Use};
+use super::units::{Meant, NamePlace, Units, Use};
 use super::words::is_reserved;
 use crate::lsp::place::Lines;
-use crate::lsp::{Server, told};
-use crate::parse::glsl::{Directive, Part, Symbol};
+use crate::lsp::{LanguageServer, told};
+use crate::parse::glsl::{Directive, FilePart, Symbol};
 use crate::parse::words::has_word;
-use crate::resolve::glsl::Target;
+use crate::resolve::glsl::IncludeTarget;
 
 /// The letters of swizzles.
 const SWIZZLES: [&str; 3] = ["xyzw", "rgba", "stpq"];
 
 /// `textDocument/prepareRename`.
-pub fn prepare_rename(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn prepare_rename(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let Some(asked) = asked_at(server, parameters)? else { return Ok(Value::Null) };
     renamed_places(&asked)?;
     let lines = Lines::new(&asked.whole.units.module(asked.file).text);
@@ -26,7 +26,7 @@ pub fn prepare_rename(server: &mut Server, parameters: &Value) -> Result<Value, 
 }
 
 /// `textDocument/rename`: in all files of the package.
-pub fn rename_symbol(server: &mut Server, parameters: &Value) -> Result<Value, String> {
+pub fn rename_symbol(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
     let new = parameters.get("newName").and_then(Value::as_str).ok_or_else(String::new)?.to_owned();
     let asked = asked_at(server, parameters)?.ok_or("there is no name here")?;
     let places = renamed_places(&asked)?;
@@ -43,7 +43,7 @@ pub fn rename_symbol(server: &mut Server, parameters: &Value) -> Result<Value, S
 ///
 /// # Errors
 /// Why the symbol cannot be renamed.
-fn renamed_places(asked: &Asked) -> Result<Vec<Place>, String> {
+fn renamed_places(asked: &RequestedSymbol) -> Result<Vec<NamePlace>, String> {
     let units = &asked.whole.units;
     let (all, declared) = units.places(&asked.meant, asked.file);
     if all.len() > PLACES {
@@ -70,7 +70,7 @@ fn renamed_places(asked: &Asked) -> Result<Vec<Place>, String> {
     Ok(all)
 }
 
-fn spelt_at(units: &Units, place: &Place) -> String {
+fn spelt_at(units: &Units, place: &NamePlace) -> String {
     text_of(units.module(place.file), &(place.start..place.end)).to_owned()
 }
 
@@ -95,7 +95,7 @@ fn check_readable(units: &Units, files: &BTreeSet<usize>) -> Result<(), String> 
             ));
         }
         for (include, target) in module.includes.iter().zip(&units.names.graph.targets[file]) {
-            if let Target::Missing(_) = target {
+            if let IncludeTarget::Missing(_) = target {
                 let place = shown_place(units, file, include.span.start);
                 return Err(format!("the `#include` in {place} leads to no file that can be read"));
             }
@@ -105,7 +105,12 @@ fn check_readable(units: &Units, files: &BTreeSet<usize>) -> Result<(), String> 
 }
 
 /// Why the symbol cannot be renamed; `None` if it can.
-fn why_fixed(asked: &Asked, name: &str, all: &[Place], declared: &[Place]) -> Option<String> {
+fn why_fixed(
+    asked: &RequestedSymbol,
+    name: &str,
+    all: &[NamePlace],
+    declared: &[NamePlace],
+) -> Option<String> {
     let units = &asked.whole.units;
     let symbol = units.names.graph.symbols.find(name)?;
     if name == "main" && matches!(asked.meant, Meant::Global(_)) {
@@ -145,7 +150,7 @@ fn named_by_macro(units: &Units, files: &BTreeSet<usize>, symbol: Symbol) -> Opt
             }
         }
         for part in &units.module(*file).parts {
-            if let Part::Directive(Directive::Define(found), span) = part
+            if let FilePart::Directive(Directive::Define(found), span) = part
                 && found.body.iter().any(|token| token.pasted)
             {
                 let place = shown_place(units, *file, span.start);
@@ -158,7 +163,7 @@ fn named_by_macro(units: &Units, files: &BTreeSet<usize>, symbol: Symbol) -> Opt
 
 /// Why a member cannot be renamed. Members of one name cannot be told apart, since the type of the
 /// expression before the dot is not known.
-fn why_member_fixed(units: &Units, name: &str, declared: &[Place]) -> Option<String> {
+fn why_member_fixed(units: &Units, name: &str, declared: &[NamePlace]) -> Option<String> {
     let is_swizzle = |letters: &&str| name.chars().all(|letter| letters.contains(letter));
     if name.len() <= 4 && SWIZZLES.iter().any(is_swizzle) {
         return Some("it may also be a part of a vector".to_owned());
@@ -197,7 +202,7 @@ fn why_interface_fixed(text: &str) -> Option<String> {
 
 /// Fails if conditions of the preprocessor decide whether a use refers to a local or to something
 /// else.
-fn check_locals(asked: &Asked, files: &BTreeSet<usize>) -> Result<(), String> {
+fn check_locals(asked: &RequestedSymbol, files: &BTreeSet<usize>) -> Result<(), String> {
     let units = &asked.whole.units;
     let told = |file: usize, byte: u32| {
         let place = shown_place(units, file, byte);
@@ -218,7 +223,8 @@ fn check_locals(asked: &Asked, files: &BTreeSet<usize>) -> Result<(), String> {
         Meant::Local(file, places, function) => {
             let conditional = places.iter().find(|place| units.is_conditional(*file, place));
             let Some(place) = conditional else { return Ok(()) };
-            let name = spelt_at(units, &Place { file: *file, start: place.start, end: place.end });
+            let name =
+                spelt_at(units, &NamePlace { file: *file, start: place.start, end: place.end });
             let Some(symbol) = units.names.graph.symbols.find(&name) else { return Ok(()) };
             // Without the condition it would be the global of that name, if there is one.
             let seen = units.seen_files(&BTreeSet::from([*file]));
@@ -239,7 +245,7 @@ fn check_locals(asked: &Asked, files: &BTreeSet<usize>) -> Result<(), String> {
 }
 
 /// Fails unless the new name is a valid name that means nothing yet where the old one is used.
-fn check_new(asked: &Asked, places: &[Place], new: &str) -> Result<(), String> {
+fn check_new(asked: &RequestedSymbol, places: &[NamePlace], new: &str) -> Result<(), String> {
     let units = &asked.whole.units;
     let is_name = new.starts_with(|letter: char| letter.is_ascii_alphabetic() || letter == '_')
         && new.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
@@ -277,7 +283,7 @@ fn check_new(asked: &Asked, places: &[Place], new: &str) -> Result<(), String> {
 }
 
 /// Whether a name is the macro of an axis or of one of its values.
-fn is_axis(asked: &Asked, name: &str) -> bool {
+fn is_axis(asked: &RequestedSymbol, name: &str) -> bool {
     let programs = asked.whole.opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     let mut axes = programs.flat_map(|program| program.space.axes());
     axes.any(|axis| super::is_macro_of(axis, name))

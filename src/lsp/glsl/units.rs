@@ -4,18 +4,18 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::names::Names;
-use super::outline::{Declaration, Kind};
+use super::names::GlslNames;
+use super::outline::{GlslDeclaration, SymbolKind};
 use crate::catalogue::prefix;
-use crate::parse::glsl::{Directive, Module, Part, Symbol, TokenKind, known};
-use crate::resolve::glsl::{Graph, Target};
+use crate::parse::glsl::{Directive, FilePart, Module, Symbol, TokenKind, known};
+use crate::resolve::glsl::{Graph, IncludeTarget};
 
 /// The most tokens of a `layout` that are searched.
 const LAYOUT: usize = 256;
 
 /// Every GLSL file of a package, and those of others that they include.
 pub struct Units {
-    pub names: Names,
+    pub names: GlslNames,
     /// For each file that no other includes, this file with all that it includes: what a compiler
     /// sees at once.
     units: Vec<BTreeSet<usize>>,
@@ -48,7 +48,7 @@ pub enum Meant {
 
 /// A place of a file that writes a name.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Place {
+pub struct NamePlace {
     pub file: usize,
     pub start: u32,
     pub end: u32,
@@ -67,7 +67,7 @@ impl Units {
         };
         let roots: Vec<usize> = (0..reach.len()).filter(|file| !is_within(file)).collect();
         let units = roots.into_iter().map(|file| reach[file].clone()).collect();
-        Self { names: Names::new(graph), units }
+        Self { names: GlslNames::new(graph), units }
     }
 
     pub fn module(&self, file: usize) -> &Module {
@@ -96,7 +96,7 @@ impl Units {
         let declared = declared.get(at).filter(|known| known.place == place);
         let is_behind_point = token > 0 && module.tokens[token - 1].symbol == known::DOT;
         match declared.map(|known| known.kind) {
-            Some(Kind::Member) => return Use::Member,
+            Some(SymbolKind::Member) => return Use::Member,
             Some(_) => return Use::Global,
             None if is_behind_point => return Use::Member,
             None => {}
@@ -146,7 +146,7 @@ impl Units {
     /// The function that a byte of a file is in.
     fn function_at(&self, file: usize, byte: u32) -> Option<Range<u32>> {
         let declared = self.names.outlines[file].declarations.iter();
-        let mut functions = declared.filter(|found| found.kind == Kind::Function);
+        let mut functions = declared.filter(|found| found.kind == SymbolKind::Function);
         functions.find(|found| found.whole.contains(&byte)).map(|found| found.whole.clone())
     }
 
@@ -228,19 +228,22 @@ impl Units {
         file: usize,
         name: Symbol,
         wanted: &Use,
-    ) -> impl Iterator<Item = &Declaration> {
+    ) -> impl Iterator<Item = &GlslDeclaration> {
         let is_member = *wanted == Use::Member;
         let is_hidden = self.is_prefixes(file);
         self.names.outlines[file].declarations.iter().filter(move |found| {
-            found.name == name && (found.kind == Kind::Member) == is_member && !is_hidden
+            found.name == name && (found.kind == SymbolKind::Member) == is_member && !is_hidden
         })
     }
 
     /// Every place that writes what is meant, and those of them that declare it. The places of a
     /// name that nothing declares are those of directives: it may be an axis.
-    pub fn places(&self, meant: &Meant, from: usize) -> (Vec<Place>, Vec<Place>) {
-        let place =
-            |file: usize, range: &Range<u32>| Place { file, start: range.start, end: range.end };
+    pub fn places(&self, meant: &Meant, from: usize) -> (Vec<NamePlace>, Vec<NamePlace>) {
+        let place = |file: usize, range: &Range<u32>| NamePlace {
+            file,
+            start: range.start,
+            end: range.end,
+        };
         let of_token = |file: usize, at: usize| {
             let token = self.module(file).tokens[at];
             place(file, &(token.start..token.end))
@@ -248,7 +251,7 @@ impl Units {
         let (name, wanted) = match meant {
             Meant::Local(file, declared, _) => {
                 let uses = declared.iter().flat_map(|local| self.uses_of_local(*file, local));
-                let mut all: Vec<Place> = uses.map(|at| of_token(*file, at)).collect();
+                let mut all: Vec<NamePlace> = uses.map(|at| of_token(*file, at)).collect();
                 all.sort();
                 all.dedup();
                 return (all, declared.iter().map(|range| place(*file, range)).collect());
@@ -257,7 +260,7 @@ impl Units {
             Meant::Global(name) => (*name, Use::Global),
         };
         let files = self.sharing_files(name, &wanted, from);
-        let declared: Vec<Place> = files
+        let declared: Vec<NamePlace> = files
             .iter()
             .flat_map(|file| self.declarations_in(*file, name, &wanted).map(|found| (*file, found)))
             .map(|(file, found)| place(file, &found.place))
@@ -282,7 +285,7 @@ impl Units {
         let targets = &self.names.graph.targets[file];
         let mut includes = self.module(file).includes.iter().zip(targets);
         includes.find_map(|(include, target)| match target {
-            Target::Module(to) if include.span.start <= byte && byte <= include.span.end => {
+            IncludeTarget::Module(to) if include.span.start <= byte && byte <= include.span.end => {
                 Some(*to)
             }
             _ => None,
@@ -290,13 +293,13 @@ impl Units {
     }
 
     /// Where a file is included.
-    pub fn includes_of(&self, file: usize) -> Vec<Place> {
+    pub fn includes_of(&self, file: usize) -> Vec<NamePlace> {
         let all = self.names.graph.modules.iter().zip(&self.names.graph.targets).enumerate();
         let found = all.flat_map(|(includer, (module, targets))| {
             let pairs = module.includes.iter().zip(targets);
-            let here =
-                pairs.filter(|(_, target)| matches!(target, Target::Module(to) if *to == file));
-            here.map(move |(include, _)| Place {
+            let here = pairs
+                .filter(|(_, target)| matches!(target, IncludeTarget::Module(to) if *to == file));
+            here.map(move |(include, _)| NamePlace {
                 file: includer,
                 start: include.span.start,
                 end: include.span.end,
@@ -310,7 +313,7 @@ fn reached_files(graph: &Graph, from: usize) -> BTreeSet<usize> {
     let (mut found, mut open) = (BTreeSet::from([from]), vec![from]);
     while let Some(file) = open.pop() {
         for target in &graph.targets[file] {
-            if let Target::Module(next) = target
+            if let IncludeTarget::Module(next) = target
                 && found.insert(*next)
             {
                 open.push(*next);
@@ -324,7 +327,7 @@ fn reached_files(graph: &Graph, from: usize) -> BTreeSet<usize> {
 fn branches_at(module: &Module, byte: u32) -> Vec<usize> {
     let mut open = Vec::new();
     for (index, part) in module.parts.iter().enumerate() {
-        let Part::Directive(directive, span) = part else { continue };
+        let FilePart::Directive(directive, span) = part else { continue };
         if span.start > byte {
             break;
         }
@@ -345,11 +348,11 @@ fn branches_at(module: &Module, byte: u32) -> Vec<usize> {
 fn is_parameter(module: &Module, token: usize) -> bool {
     let found = module.tokens[token];
     let after = module.parts.partition_point(|part| match part {
-        Part::Text(text) => text.bytes.start <= found.start,
-        Part::Directive(_, span) => span.start <= found.start,
+        FilePart::Text(text) => text.bytes.start <= found.start,
+        FilePart::Directive(_, span) => span.start <= found.start,
     });
     let part = after.checked_sub(1).and_then(|index| module.parts.get(index));
-    let Some(Part::Directive(Directive::Define(defined), _)) = part else { return false };
+    let Some(FilePart::Directive(Directive::Define(defined), _)) = part else { return false };
     if defined.parameters.is_none() || found.start < defined.name_span.end {
         return false;
     }

@@ -1,7 +1,7 @@
 //! Reads directives.
 
 use super::{
-    BodyToken, DIRECTIVES, Directive, Include, Macro, Module, Part, Symbol, Symbols, Token,
+    BodyToken, DIRECTIVES, Directive, FilePart, Include, Macro, Module, Symbol, Symbols, Token,
     TokenKind, known,
 };
 use crate::diagnostic::{Code, Diagnostic, codes};
@@ -15,11 +15,11 @@ pub fn push_directive(module: &mut Module, hash: usize, end: usize, symbols: &Sy
     );
     let directive = read_directive(module, hash + 1, end, symbols)
         .unwrap_or_else(|error| Directive::Invalid(Box::new(error)));
-    module.parts.push(Part::Directive(directive, span));
+    module.parts.push(FilePart::Directive(directive, span));
 }
 
 /// A conditional whose `#endif` was not reached yet.
-struct Open {
+struct OpenConditional {
     /// Its branches so far, as indices of parts.
     branches: Vec<usize>,
     otherwise: Option<Span>,
@@ -27,13 +27,13 @@ struct Open {
 
 /// Connects the branches of every conditional; unbalanced ones are errors of the module.
 pub fn link_branches(module: &mut Module) {
-    let mut open: Vec<Open> = Vec::new();
+    let mut open: Vec<OpenConditional> = Vec::new();
     for index in 0..module.parts.len() {
-        let Part::Directive(directive, span) = &module.parts[index] else { continue };
+        let FilePart::Directive(directive, span) = &module.parts[index] else { continue };
         let span = *span;
         match directive {
             Directive::If { .. } | Directive::Ifdef { .. } => {
-                open.push(Open { branches: vec![index], otherwise: None })
+                open.push(OpenConditional { branches: vec![index], otherwise: None })
             }
             Directive::Elif { .. } | Directive::Else { .. } => {
                 let otherwise = matches!(directive, Directive::Else { .. }).then_some(span);
@@ -58,7 +58,7 @@ pub fn link_branches(module: &mut Module) {
         }
     }
     for open in open {
-        if let Part::Directive(_, span) = &module.parts[open.branches[0]] {
+        if let FilePart::Directive(_, span) = &module.parts[open.branches[0]] {
             module.errors.push(unbalanced_directive(
                 "a conditional is never closed",
                 *span,
@@ -69,7 +69,7 @@ pub fn link_branches(module: &mut Module) {
 }
 
 fn check_branch(
-    open: Option<&mut Open>,
+    open: Option<&mut OpenConditional>,
     index: usize,
     span: Span,
     otherwise: Option<Span>,
@@ -92,10 +92,10 @@ fn unbalanced_directive(message: &str, span: Span, label: &str) -> Diagnostic {
     Diagnostic::error(codes::UNBALANCED_CONDITIONAL, message).at(span, label)
 }
 
-fn connect_branches(parts: &mut [Part], branches: &[usize]) {
+fn connect_branches(parts: &mut [FilePart], branches: &[usize]) {
     let last = branches[branches.len() - 1];
     for pair in branches.windows(2) {
-        let Part::Directive(directive, _) = &mut parts[pair[0]] else { continue };
+        let FilePart::Directive(directive, _) = &mut parts[pair[0]] else { continue };
         match directive {
             Directive::If { next, .. } | Directive::Ifdef { next, .. } => *next = pair[1],
             Directive::Elif { next, end, .. } => (*next, *end) = (pair[1], last),
@@ -115,7 +115,7 @@ fn read_directive(
     if start == end {
         return Ok(Directive::Empty);
     }
-    let line = Line { module, start: start + 1, end, symbols };
+    let line = DirectiveTokens { module, start: start + 1, end, symbols };
     let condition = start as u32 + 1..end as u32;
     match line.module.tokens[start].symbol {
         known::INCLUDE => {
@@ -149,14 +149,14 @@ fn read_directive(
 }
 
 /// The tokens after a directive's name.
-struct Line<'m> {
+struct DirectiveTokens<'m> {
     module: &'m Module,
     start: usize,
     end: usize,
     symbols: &'m Symbols,
 }
 
-impl Line<'_> {
+impl DirectiveTokens<'_> {
     fn token(&self, index: usize) -> Option<&Token> {
         self.module.tokens[self.start..self.end].get(index)
     }

@@ -43,7 +43,7 @@ pub struct Module {
     /// All tokens, those of directives too.
     pub tokens: Vec<Token>,
     /// The runs of text and the directives of the file, in order.
-    pub parts: Vec<Part>,
+    pub parts: Vec<FilePart>,
     /// Every `#include`, active or not.
     pub includes: Vec<Include>,
     /// Errors that do not depend on which parts are active.
@@ -53,14 +53,14 @@ pub struct Module {
 
 /// A part of a file, in whole lines.
 #[derive(Debug)]
-pub enum Part {
-    Text(Text),
+pub enum FilePart {
+    Text(TextPart),
     Directive(Directive, Span),
 }
 
 /// Text between directives.
 #[derive(Debug)]
-pub struct Text {
+pub struct TextPart {
     /// Indices of its tokens.
     pub tokens: Range<u32>,
     /// Its bytes, comments and white space at both ends included.
@@ -154,13 +154,13 @@ impl Module {
     }
 
     /// The run of text that has the token; `None` for a token of a directive.
-    pub fn text_part(&self, token: u32) -> Option<&Text> {
+    pub fn text_part(&self, token: u32) -> Option<&TextPart> {
         let after = self.parts.partition_point(|part| match part {
-            Part::Text(text) => text.bytes.start <= self.tokens[token as usize].start,
-            Part::Directive(_, span) => span.start <= self.tokens[token as usize].start,
+            FilePart::Text(text) => text.bytes.start <= self.tokens[token as usize].start,
+            FilePart::Directive(_, span) => span.start <= self.tokens[token as usize].start,
         });
         match self.parts.get(after.checked_sub(1)?) {
-            Some(Part::Text(text)) => Some(text),
+            Some(FilePart::Text(text)) => Some(text),
             _ => None,
         }
     }
@@ -240,5 +240,7 @@ fn push_text(module: &mut Module, tokens: Range<usize>, bytes: Range<usize>) {
     module.tokens[tokens.start].clean = false;
     module.tokens[tokens.start].first_of_part = true;
     let bytes = bytes.start as u32..bytes.end as u32;
-    module.parts.push(Part::Text(Text { tokens: tokens.start as u32..tokens.end as u32, bytes }));
+    module
+        .parts
+        .push(FilePart::Text(TextPart { tokens: tokens.start as u32..tokens.end as u32, bytes }));
 }

@@ -7,12 +7,12 @@ use super::block;
 use super::condition::{self, Chain};
 use super::cursor::Tokens;
 use super::import::read_origin;
-use super::item::{Place, after_template};
+use super::item::{ItemPlace, after_template};
 use super::module::{
-    ConditionId, Event, ItemKind, LocalUse, Module, Origin, Parts, Path, Reference,
+    ConditionId, Event, ItemKind, LocalUse, Module, Origin, Path, PathParts, UsedName,
 };
 use super::name::{Name, Names};
-use super::scope::{Meaning, Scopes};
+use super::scope::{IdentifierMeaning, Scopes};
 use super::token::{Token, TokenKind};
 use super::trivia;
 use crate::diagnostic::Diagnostic;
@@ -29,7 +29,7 @@ pub fn scan_body(
     module: &mut Module,
     tokens: &[Token],
     names: &Names,
-    places: Vec<Place>,
+    places: Vec<ItemPlace>,
     traced: bool,
 ) {
     let text = Arc::clone(&module.text);
@@ -37,7 +37,7 @@ pub fn scan_body(
     let mut global = vec![false; names.len()];
     module.items.iter().for_each(|item| global[item.name.0 as usize] = true);
     module.imports.iter().for_each(|import| global[import.alias.0 as usize] = true);
-    let mut scanner = Scanner {
+    let mut scanner = BodyScanner {
         tokens,
         global,
         named: HashMap::new(),
@@ -69,7 +69,7 @@ fn sorted_names(names: &mut Vec<Name>) -> Vec<Name> {
 
 /// Scans one item at a time. Every method takes the index of the first token and returns the one
 /// after the last. Recursion is as deep as brackets nest.
-pub(super) struct Scanner<'a, 'b> {
+pub(super) struct BodyScanner<'a, 'b> {
     pub(super) module: &'a mut Module,
     pub(super) tokens: Tokens<'b>,
     pub(super) scopes: Scopes,
@@ -83,8 +83,8 @@ pub(super) struct Scanner<'a, 'b> {
     traced: bool,
 }
 
-impl Scanner<'_, '_> {
-    fn item(&mut self, place: Place, kind: ItemKind) -> Result<(), Diagnostic> {
+impl BodyScanner<'_, '_> {
+    fn item(&mut self, place: ItemPlace, kind: ItemKind) -> Result<(), Diagnostic> {
         self.attributes(place.start, place.keyword)?;
         let mut at = place.keyword + 1;
         if kind == ItemKind::Var {
@@ -294,7 +294,7 @@ impl Scanner<'_, '_> {
         if self.traced {
             self.trace(at, name);
         }
-        let Meaning::Global(guard) = self.scopes.meaning(name) else { return };
+        let IdentifierMeaning::Global(guard) = self.scopes.meaning(name) else { return };
         if !self.global[name.0 as usize] {
             self.free.push(name);
             return;
@@ -302,7 +302,7 @@ impl Scanner<'_, '_> {
         let next = self.module.references.len() as u32;
         let reference = *self.named.entry(name).or_insert(next);
         if reference == next {
-            self.module.references.push(Reference::Name(name));
+            self.module.references.push(UsedName::Name(name));
         }
         let token = self.tokens.tokens[at];
         self.events.push(Event::Use { reference, guard, start: token.start, end: token.end });
@@ -321,7 +321,7 @@ impl Scanner<'_, '_> {
             end += 1;
         }
         let range = self.tokens.range(at, end);
-        let parts = Parts {
+        let parts = PathParts {
             first: self.tokens.range(first, first + 1),
             parents: self.tokens.range(at, end.saturating_sub(2).max(at)),
             last: self.tokens.range(end - 1, end),
@@ -329,7 +329,7 @@ impl Scanner<'_, '_> {
         let next = self.module.references.len() as u32;
         let reference = *self.paths.entry((origin, segments.clone())).or_insert(next);
         if reference == next {
-            self.module.references.push(Reference::Path(Path {
+            self.module.references.push(UsedName::Path(Path {
                 origin,
                 segments,
                 range: range.clone(),

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::cursor::Tokens;
 use super::module::{
-    Comparison, Condition, ConditionId, Expression, ExpressionId, Module, Operand,
+    ComparisonOperand, ComparisonOperator, Condition, ConditionId, Expression, ExpressionId, Module,
 };
 use super::name::Name;
 use super::token::TokenKind;
@@ -163,7 +163,7 @@ fn read_parenthesised(
     open: usize,
 ) -> Result<ExpressionId, Diagnostic> {
     let close = tokens.partner(open);
-    let mut reader = Reader { module, tokens, at: open + 1 };
+    let mut reader = ConditionReader { module, tokens, at: open + 1 };
     let expression = reader.expression()?;
     if tokens.is(reader.at, b',') {
         reader.at += 1;
@@ -177,13 +177,13 @@ fn unexpected_token(tokens: Tokens<'_>, at: usize) -> Diagnostic {
         .note("a condition has names, `true`, `false`, `!`, `&&`, `||` and parentheses; declared axes may be compared")
 }
 
-struct Reader<'a, 'b> {
+struct ConditionReader<'a, 'b> {
     module: &'a mut Module,
     tokens: Tokens<'b>,
     at: usize,
 }
 
-impl Reader<'_, '_> {
+impl ConditionReader<'_, '_> {
     fn add(&mut self, expression: Expression) -> ExpressionId {
         self.module.expressions.push(expression);
         self.module.expressions.len() as u32 - 1
@@ -250,8 +250,8 @@ impl Reader<'_, '_> {
         let left = self.operand()?;
         let Some(operator) = self.comparison() else {
             return match left {
-                Operand::Name(name, range) => Ok(self.add(Expression::Flag(name, range))),
-                Operand::Integer(..) => Err(unexpected_token(self.tokens, start)),
+                ComparisonOperand::Name(name, range) => Ok(self.add(Expression::Flag(name, range))),
+                ComparisonOperand::Integer(..) => Err(unexpected_token(self.tokens, start)),
             };
         };
         let right = self.operand()?;
@@ -259,14 +259,14 @@ impl Reader<'_, '_> {
         Ok(self.add(Expression::Compare { left, operator, right, range }))
     }
 
-    fn comparison(&mut self) -> Option<Comparison> {
-        const OPERATORS: &[(&[u8], Comparison)] = &[
-            (b"==", Comparison::Equal),
-            (b"!=", Comparison::NotEqual),
-            (b"<=", Comparison::LessEqual),
-            (b">=", Comparison::GreaterEqual),
-            (b"<", Comparison::Less),
-            (b">", Comparison::Greater),
+    fn comparison(&mut self) -> Option<ComparisonOperator> {
+        const OPERATORS: &[(&[u8], ComparisonOperator)] = &[
+            (b"==", ComparisonOperator::Equal),
+            (b"!=", ComparisonOperator::NotEqual),
+            (b"<=", ComparisonOperator::LessEqual),
+            (b">=", ComparisonOperator::GreaterEqual),
+            (b"<", ComparisonOperator::Less),
+            (b">", ComparisonOperator::Greater),
         ];
         let (text, operator) = OPERATORS.iter().find(|(text, _)| match text {
             [first, second] => self.pair(*first, *second),
@@ -276,7 +276,7 @@ impl Reader<'_, '_> {
         Some(*operator)
     }
 
-    fn operand(&mut self) -> Result<Operand, Diagnostic> {
+    fn operand(&mut self) -> Result<ComparisonOperand, Diagnostic> {
         let start = self.at;
         if self.tokens.is(self.at, b'-') && self.tokens.kind(self.at + 1) == Some(TokenKind::Number)
         {
@@ -288,11 +288,13 @@ impl Reader<'_, '_> {
         match kind {
             Some(TokenKind::Number) => match parse_integer(self.tokens.text(self.at - 1), negative)
             {
-                Some(value) => Ok(Operand::Integer(value, range)),
+                Some(value) => Ok(ComparisonOperand::Integer(value, range)),
                 None => Err(unexpected_token(self.tokens, self.at - 1)
                     .note("only integers may be compared")),
             },
-            Some(TokenKind::Word(name)) if !name.is_keyword() => Ok(Operand::Name(name, range)),
+            Some(TokenKind::Word(name)) if !name.is_keyword() => {
+                Ok(ComparisonOperand::Name(name, range))
+            }
             _ => Err(unexpected_token(self.tokens, start)),
         }
     }

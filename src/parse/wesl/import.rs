@@ -1,7 +1,7 @@
 //! `import` statements, flattened to one entry for each name.
 
 use super::cursor::Tokens;
-use super::module::{ConditionId, Import, Module, Origin, Parts, Path};
+use super::module::{ConditionId, Import, Module, Origin, Path, PathParts};
 use super::name::Name;
 use super::token::TokenKind;
 use crate::diagnostic::{Diagnostic, codes};
@@ -16,9 +16,10 @@ pub fn read_import(
     let first = at + 1;
     let (origin, after) = read_origin(tokens, first)?;
     let nowhere = tokens.range(first, first);
-    let parts = Parts { first: nowhere.clone(), parents: nowhere.clone(), last: nowhere.clone() };
+    let parts =
+        PathParts { first: nowhere.clone(), parents: nowhere.clone(), last: nowhere.clone() };
     let path = Path { origin, segments: Vec::new(), range: nowhere, parts };
-    let mut reader = Reader { module, tokens, condition, at: after };
+    let mut reader = ImportReader { module, tokens, condition, at: after };
     match reader.tokens.is(after, b'{') {
         true => reader.collection(&path)?,
         false => reader.path(path, Some(first))?,
@@ -63,14 +64,14 @@ fn misplaced_as(tokens: Tokens<'_>, at: usize) -> Diagnostic {
     }
 }
 
-struct Reader<'a, 'b> {
+struct ImportReader<'a, 'b> {
     module: &'a mut Module,
     tokens: Tokens<'b>,
     condition: Option<ConditionId>,
     at: usize,
 }
 
-impl Reader<'_, '_> {
+impl ImportReader<'_, '_> {
     /// Reads `a::b::c`, `a::b as c` or `a::{...}`. This recursion is bounded, since the nesting of
     /// brackets is.
     ///

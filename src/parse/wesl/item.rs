@@ -12,7 +12,7 @@ use crate::diagnostic::{Diagnostic, codes};
 
 /// Where the parts of an item are among the tokens.
 #[derive(Debug, Clone, Copy)]
-pub struct Place {
+pub struct ItemPlace {
     /// Its first attribute, or its keyword.
     pub start: usize,
     pub keyword: usize,
@@ -32,10 +32,10 @@ const KINDS: &[(Name, ItemKind)] = &[
 
 /// Fills the module's directives, imports and items. The items do not have their events yet.
 /// Returns where each item is among the tokens.
-pub fn split_items(module: &mut Module, tokens: &[Token], names: &Names) -> Vec<Place> {
+pub fn split_items(module: &mut Module, tokens: &[Token], names: &Names) -> Vec<ItemPlace> {
     let text = std::sync::Arc::clone(&module.text);
     let tokens = Tokens { tokens, text: &text, names, source: module.source };
-    let mut splitter = Splitter {
+    let mut splitter = ItemSplitter {
         module,
         tokens,
         chain: Chain::default(),
@@ -64,11 +64,11 @@ fn recover_from(tokens: Tokens<'_>, from: usize, limit: usize) -> usize {
     at
 }
 
-struct Splitter<'a, 'b> {
+struct ItemSplitter<'a, 'b> {
     module: &'a mut Module,
     tokens: Tokens<'b>,
     chain: Chain,
-    places: Vec<Place>,
+    places: Vec<ItemPlace>,
     /// The byte at which the item before ended.
     behind: u32,
     /// The end of the file, or the brace that ends the block.
@@ -77,7 +77,7 @@ struct Splitter<'a, 'b> {
     declared: bool,
 }
 
-impl Splitter<'_, '_> {
+impl ItemSplitter<'_, '_> {
     /// The nodes from a token up to the limit.
     fn nodes(&mut self, from: usize) {
         let mut at = from;
@@ -214,7 +214,7 @@ impl Splitter<'_, '_> {
             locals: Vec::new(),
             free: Vec::new(),
         });
-        self.places.push(Place { start, keyword, end });
+        self.places.push(ItemPlace { start, keyword, end });
         Ok(end)
     }
 

@@ -18,8 +18,9 @@ mod token;
 mod trivia;
 
 pub use module::{
-    Comparison, Condition, ConditionId, Directive, Event, Expression, ExpressionId, Guard, Import,
-    Item, ItemKind, LocalUse, Module, Operand, Origin, Parts, Path, Placed, Reference,
+    ComparisonOperand, ComparisonOperator, Condition, ConditionId, Directive, Event, Expression,
+    ExpressionId, Guard, Import, Item, ItemKind, LocalUse, Module, Origin, Path, PathParts,
+    PlacedModule, UsedName,
 };
 pub use name::{Name, Names, is_keyword, keywords};
 

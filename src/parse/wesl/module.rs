@@ -11,7 +11,7 @@ use crate::source::{SourceId, Span};
 #[derive(Debug)]
 pub struct Module {
     /// The file that it was first parsed for. Another file may have the same text and share the
-    /// parsed form, so [`Placed`] makes the spans.
+    /// parsed form, so [`PlacedModule`] makes the spans.
     pub(in crate::parse::wesl) source: SourceId,
     pub text: Arc<str>,
     pub directives: Vec<Directive>,
@@ -19,7 +19,7 @@ pub struct Module {
     pub items: Vec<Item>,
     pub conditions: Vec<Condition>,
     pub expressions: Vec<Expression>,
-    pub references: Vec<Reference>,
+    pub references: Vec<UsedName>,
     pub guards: Vec<Guard>,
     /// Each place that names a parameter or a local; only where these were asked for.
     pub local_uses: Vec<LocalUse>,
@@ -32,7 +32,7 @@ pub struct Module {
 /// A parsed text together with the file that it is used for. Several files, or several readings of
 /// one, may share a parsed text.
 #[derive(Debug)]
-pub struct Placed {
+pub struct PlacedModule {
     pub source: SourceId,
     /// Errors in parts of the file that could not be parsed.
     pub errors: Vec<Diagnostic>,
@@ -41,7 +41,7 @@ pub struct Placed {
     module: Arc<Module>,
 }
 
-impl Placed {
+impl PlacedModule {
     /// The parsed text as that of the file.
     pub fn new(module: Arc<Module>, source: SourceId) -> Self {
         let moved = |found: &[Diagnostic]| {
@@ -61,7 +61,7 @@ impl Placed {
     }
 }
 
-impl Deref for Placed {
+impl Deref for PlacedModule {
     type Target = Module;
 
     fn deref(&self) -> &Module {
@@ -96,7 +96,12 @@ pub enum Expression {
     Not(ExpressionId),
     All(Vec<ExpressionId>),
     Any(Vec<ExpressionId>),
-    Compare { left: Operand, operator: Comparison, right: Operand, range: Range<u32> },
+    Compare {
+        left: ComparisonOperand,
+        operator: ComparisonOperator,
+        right: ComparisonOperand,
+        range: Range<u32>,
+    },
 }
 
 impl Expression {
@@ -113,12 +118,12 @@ impl Expression {
 
 /// A side of a comparison.
 #[derive(Debug, Clone)]
-pub enum Operand {
+pub enum ComparisonOperand {
     Name(Name, Range<u32>),
     Integer(i64, Range<u32>),
 }
 
-impl Operand {
+impl ComparisonOperand {
     fn name(&self) -> Option<Name> {
         match self {
             Self::Name(name, _) => Some(*name),
@@ -129,7 +134,7 @@ impl Operand {
 
 /// An operator of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Comparison {
+pub enum ComparisonOperator {
     Equal,
     NotEqual,
     Less,
@@ -165,12 +170,12 @@ pub struct Path {
     pub origin: Origin,
     pub segments: Vec<Name>,
     pub range: Range<u32>,
-    pub parts: Parts,
+    pub parts: PathParts,
 }
 
 /// Places within a path. In a collection, `a::{b, c}`, the shared part is before `range`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub struct Parts {
+pub struct PathParts {
     /// The first name.
     pub first: Range<u32>,
     /// All names but the last, as far as they are written in one piece.
@@ -239,7 +244,7 @@ pub enum Event {
 
 /// What a use names.
 #[derive(Debug, Clone)]
-pub enum Reference {
+pub enum UsedName {
     /// An item of the module or an imported name.
     Name(Name),
     /// A path written in place.

@@ -5,7 +5,7 @@ use super::name::Name;
 
 /// What an identifier may mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Meaning {
+pub enum IdentifierMeaning {
     /// A local, whatever the settings.
     Local,
     /// Something global, unless a guard in the chain holds.
@@ -15,15 +15,15 @@ pub enum Meaning {
 /// The declarations in scope. Looking a name up takes constant time.
 #[derive(Debug, Default)]
 pub struct Scopes {
-    declarations: Vec<Declaration>,
+    declarations: Vec<ScopedName>,
     /// By name: one more than the index of its innermost declaration.
     innermost: Vec<u32>,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Declaration {
+struct ScopedName {
     name: Name,
-    meaning: Meaning,
+    meaning: IdentifierMeaning,
     /// The value in `innermost` before this declaration.
     outer: u32,
     /// Whether it was declared in the braces of a condition that have ended. Its first use gets a
@@ -59,17 +59,17 @@ impl Scopes {
         condition: Option<ConditionId>,
     ) {
         let meaning = match (condition, self.meaning(name)) {
-            (None, _) | (_, Meaning::Local) => Meaning::Local,
-            (Some(condition), Meaning::Global(next)) => {
+            (None, _) | (_, IdentifierMeaning::Local) => IdentifierMeaning::Local,
+            (Some(condition), IdentifierMeaning::Global(next)) => {
                 module.guards.push(Guard { condition, next });
-                Meaning::Global(Some(module.guards.len() as u32 - 1))
+                IdentifierMeaning::Global(Some(module.guards.len() as u32 - 1))
             }
         };
         let outer = std::mem::replace(
             &mut self.innermost[name.0 as usize],
             self.declarations.len() as u32 + 1,
         );
-        self.declarations.push(Declaration { name, meaning, outer, behind_block: false, place });
+        self.declarations.push(ScopedName { name, meaning, outer, behind_block: false, place });
     }
 
     /// Ends the braces of a condition. What was declared in them stays in scope.
@@ -91,9 +91,9 @@ impl Scopes {
         Some(self.declarations[index as usize].place)
     }
 
-    pub fn meaning(&self, name: Name) -> Meaning {
+    pub fn meaning(&self, name: Name) -> IdentifierMeaning {
         match self.innermost[name.0 as usize] {
-            0 => Meaning::Global(None),
+            0 => IdentifierMeaning::Global(None),
             index => self.declarations[index as usize - 1].meaning,
         }
     }

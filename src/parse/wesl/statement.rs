@@ -1,13 +1,13 @@
 //! Scans statements: where each ends, what it declares, and how long that is in scope.
 
 use super::block;
-use super::body::Scanner;
+use super::body::BodyScanner;
 use super::condition::{self, Attributes, Chain};
 use super::module::{ConditionId, Event};
 use super::name::Name;
 use crate::diagnostic::Diagnostic;
 
-impl Scanner<'_, '_> {
+impl BodyScanner<'_, '_> {
     /// The block whose `{` is at `open`.
     pub(super) fn block(&mut self, open: usize) -> Result<(), Diagnostic> {
         let close = self.tokens.partner(open);

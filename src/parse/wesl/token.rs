@@ -32,7 +32,7 @@ pub struct Token {
 
 /// Splits a text into tokens. The error is about the first thing that cannot be a token.
 pub fn tokenize(text: &str, source: SourceId, names: &mut Names) -> Result<Vec<Token>, Diagnostic> {
-    let mut scanner = Scanner { text, bytes: text.as_bytes(), at: 0, source };
+    let mut scanner = TokenScanner { text, bytes: text.as_bytes(), at: 0, source };
     let mut tokens: Vec<Token> = Vec::with_capacity(text.len() / 4);
     let mut open: Vec<u32> = Vec::new();
     if text.starts_with('\u{feff}') {
@@ -82,7 +82,7 @@ fn close_bracket(
     tokens: &mut [Token],
     open: &mut Vec<u32>,
     mark: u8,
-    scanner: &Scanner<'_>,
+    scanner: &TokenScanner<'_>,
     start: usize,
 ) -> Result<(), Diagnostic> {
     let index = tokens.len() - 1;
@@ -121,14 +121,14 @@ fn span_of(token: &Token, source: SourceId) -> Span {
     Span { source, start: token.start, end: token.end }
 }
 
-struct Scanner<'a> {
+struct TokenScanner<'a> {
     text: &'a str,
     bytes: &'a [u8],
     at: usize,
     source: SourceId,
 }
 
-impl Scanner<'_> {
+impl TokenScanner<'_> {
     fn span(&self, start: usize) -> Span {
         Span::new(self.source, start..self.at)
     }

@@ -3,18 +3,19 @@
 use super::lexer::{TokenKind, constraint_tokens};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::permute::Setting;
-use crate::permute::axis::{Axis, Kind, ValueSet};
+use crate::permute::axis::{Axis, AxisKind, ValueSet};
 use crate::permute::key::{find_axis, find_value};
 use crate::permute::quoted::Quoted;
-use crate::permute::space::Formula;
+use crate::permute::space::ConstraintFormula;
 use crate::source::Span;
 
 /// How deeply parentheses, negations and implications may nest.
 const NESTING: usize = crate::limits::CONSTRAINT_NESTING;
 
 /// The condition that the text states about the axes.
-pub fn parse(axes: &[Axis], text: &Quoted) -> Result<Formula, Diagnostic> {
-    let mut parser = Parser { axes, text, tokens: constraint_tokens(&text.text), at: 0, depth: 0 };
+pub fn parse(axes: &[Axis], text: &Quoted) -> Result<ConstraintFormula, Diagnostic> {
+    let mut parser =
+        ConstraintParser { axes, text, tokens: constraint_tokens(&text.text), at: 0, depth: 0 };
     let formula = parser.condition()?;
     match parser.kind() {
         TokenKind::End => Ok(formula),
@@ -22,7 +23,7 @@ pub fn parse(axes: &[Axis], text: &Quoted) -> Result<Formula, Diagnostic> {
     }
 }
 
-struct Parser<'a> {
+struct ConstraintParser<'a> {
     axes: &'a [Axis],
     text: &'a Quoted,
     tokens: Vec<super::lexer::Token<'a>>,
@@ -41,26 +42,26 @@ const ORDERS: &[(&str, Order)] =
 const HINTS: &[(&str, &str)] =
     &[("=", "=="), ("&", "&&"), ("|", "||"), ("and", "&&"), ("or", "||"), ("not", "!")];
 
-impl<'a> Parser<'a> {
-    fn condition(&mut self) -> Result<Formula, Diagnostic> {
+impl<'a> ConstraintParser<'a> {
+    fn condition(&mut self) -> Result<ConstraintFormula, Diagnostic> {
         self.deeper(|parser| {
-            let premise = parser.series("||", Formula::Any, |parser| {
-                parser.series("&&", Formula::All, Self::unary)
+            let premise = parser.series("||", ConstraintFormula::Any, |parser| {
+                parser.series("&&", ConstraintFormula::All, Self::unary)
             })?;
             if !parser.take("=>") {
                 return Ok(premise);
             }
             let conclusion = parser.condition()?;
-            Ok(Formula::Any(vec![Formula::Not(Box::new(premise)), conclusion]))
+            Ok(ConstraintFormula::Any(vec![ConstraintFormula::Not(Box::new(premise)), conclusion]))
         })
     }
 
     fn series(
         &mut self,
         sign: &str,
-        join: fn(Vec<Formula>) -> Formula,
-        mut part: impl FnMut(&mut Self) -> Result<Formula, Diagnostic>,
-    ) -> Result<Formula, Diagnostic> {
+        join: fn(Vec<ConstraintFormula>) -> ConstraintFormula,
+        mut part: impl FnMut(&mut Self) -> Result<ConstraintFormula, Diagnostic>,
+    ) -> Result<ConstraintFormula, Diagnostic> {
         let first = part(self)?;
         let mut parts = vec![first];
         while self.take(sign) {
@@ -69,9 +70,9 @@ impl<'a> Parser<'a> {
         Ok(if parts.len() == 1 { parts.remove(0) } else { join(parts) })
     }
 
-    fn unary(&mut self) -> Result<Formula, Diagnostic> {
+    fn unary(&mut self) -> Result<ConstraintFormula, Diagnostic> {
         if self.take("!") {
-            return self.deeper(|parser| Ok(Formula::Not(Box::new(parser.unary()?))));
+            return self.deeper(|parser| Ok(ConstraintFormula::Not(Box::new(parser.unary()?))));
         }
         if self.take("(") {
             let inner = self.condition()?;
@@ -81,7 +82,7 @@ impl<'a> Parser<'a> {
         self.atom()
     }
 
-    fn atom(&mut self) -> Result<Formula, Diagnostic> {
+    fn atom(&mut self) -> Result<ConstraintFormula, Diagnostic> {
         if self.kind() != TokenKind::Word || self.is_keyword() {
             return Err(self.unexpected("an axis, `!` or `(`"));
         }
@@ -89,7 +90,7 @@ impl<'a> Parser<'a> {
         let name = self.next_text();
         let axis = find_axis(self.axes, name, span).map_err(|unknown| with_hint(unknown, name))?;
         let set = self.values_of(axis, span)?;
-        Ok(Formula::Is(axis, set))
+        Ok(ConstraintFormula::Is(axis, set))
     }
 
     /// The values that make the rest of an atom true.
@@ -108,7 +109,7 @@ impl<'a> Parser<'a> {
         }
         match ORDERS.iter().find(|(sign, _)| self.tokens[self.at].text == *sign) {
             Some((_, holds)) => self.order(found, *holds),
-            None if found.kind == Kind::Bool => {
+            None if found.kind == AxisKind::Bool => {
                 Ok(found.ordinal(&Setting::Bool(true)).into_iter().collect())
             }
             None if self.kind() == TokenKind::Stray => Err(self.unexpected("a comparison")),
@@ -119,7 +120,7 @@ impl<'a> Parser<'a> {
     fn order(&mut self, axis: &Axis, holds: Order) -> Result<ValueSet, Diagnostic> {
         let sign = self.span();
         self.at += 1;
-        if axis.kind != Kind::Int {
+        if axis.kind != AxisKind::Int {
             let message = format!(
                 "axis `{}` is {}, and only integer axes are ordered",
                 axis.name,
@@ -237,9 +238,9 @@ fn with_hint(diagnostic: Diagnostic, found: &str) -> Diagnostic {
     }
 }
 
-fn with_article(kind: Kind) -> String {
+fn with_article(kind: AxisKind) -> String {
     match kind {
-        Kind::Bool => "a boolean".to_owned(),
-        Kind::Int | Kind::Enum => format!("an {}", kind.name()),
+        AxisKind::Bool => "a boolean".to_owned(),
+        AxisKind::Int | AxisKind::Enum => format!("an {}", kind.name()),
     }
 }

@@ -1,11 +1,11 @@
 //! The tables `axis` and `constraint` of a program.
 
 use super::names;
-use super::reader::{Name, Reader, Value};
+use super::reader::{ManifestReader, TomlName, TomlValue};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::limits::CONSTRAINTS;
 use crate::permute::Setting;
-use crate::permute::axis::{Axis, Kind, MAX, Mode};
+use crate::permute::axis::{Axis, AxisKind, MAX, Mode};
 use crate::permute::constraint;
 use crate::permute::key::find_value;
 use crate::permute::space::Constraint;
@@ -15,7 +15,7 @@ const AXIS_KEYS: &[&str] = &["values", "default", "mode", "doc"];
 const CONSTRAINT_KEYS: &[&str] = &["require", "doc"];
 
 /// The axes, by name; `None` if one of them could not be read.
-pub fn read_axes(reader: &mut Reader, value: &Value) -> Option<Vec<Axis>> {
+pub fn read_axes(reader: &mut ManifestReader, value: &TomlValue) -> Option<Vec<Axis>> {
     let table = reader.table(value, "`axis`")?;
     if table.len() > MAX {
         let message = format!("a program may have {MAX} axes, and this one has {}", table.len());
@@ -32,7 +32,11 @@ pub fn read_axes(reader: &mut Reader, value: &Value) -> Option<Vec<Axis>> {
 }
 
 /// The constraints over the axes, in the order declared.
-pub fn read_constraints(reader: &mut Reader, axes: &[Axis], value: &Value) -> Vec<Constraint> {
+pub fn read_constraints(
+    reader: &mut ManifestReader,
+    axes: &[Axis],
+    value: &TomlValue,
+) -> Vec<Constraint> {
     let Some(array) = reader.array(value, "`constraint`") else { return Vec::new() };
     if array.len() > CONSTRAINTS {
         let message = format!("a program may have {CONSTRAINTS} constraints, not {}", array.len());
@@ -46,7 +50,7 @@ pub fn read_constraints(reader: &mut Reader, axes: &[Axis], value: &Value) -> Ve
     array.iter().filter_map(|value| read_constraint(reader, axes, value)).collect()
 }
 
-fn read_axis(reader: &mut Reader, name: &Name, value: &Value) -> Option<Axis> {
+fn read_axis(reader: &mut ManifestReader, name: &TomlName, value: &TomlValue) -> Option<Axis> {
     let span = reader.span(name.span());
     let name = name.get_ref().to_string();
     let what = format!("axis `{name}`");
@@ -57,7 +61,7 @@ fn read_axis(reader: &mut Reader, name: &Name, value: &Value) -> Option<Axis> {
     let doc = reader.doc(table);
     let list = reader.required(table, "values", &what, span)?;
     let values = read_values(reader, &what, list)?;
-    let kind = Kind::of(values.first()?);
+    let kind = AxisKind::of(values.first()?);
     let mut axis = Axis { name, kind, values, default: 0, mode: mode?, doc, span };
     if let Some(value) = table.get("default") {
         axis.default = read_default(reader, &axis, value)?;
@@ -65,19 +69,19 @@ fn read_axis(reader: &mut Reader, name: &Name, value: &Value) -> Option<Axis> {
     Some(axis)
 }
 
-fn read_default(reader: &mut Reader, axis: &Axis, value: &Value) -> Option<usize> {
+fn read_default(reader: &mut ManifestReader, axis: &Axis, value: &TomlValue) -> Option<usize> {
     let setting = reader.setting(value, "`default`")?;
     let span = reader.span(value.span());
     find_value(axis, &setting, span).map_err(|problem| reader.problems.push(problem)).ok()
 }
 
-fn read_mode(reader: &mut Reader, value: &Value) -> Option<Mode> {
+fn read_mode(reader: &mut ManifestReader, value: &TomlValue) -> Option<Mode> {
     let unknown = (codes::UNKNOWN_VALUE, ["there is no mode", "not a mode", "modes"]);
     reader.choice(value, "`mode`", Mode::ALL.iter().copied(), unknown)
 }
 
 /// The values, if there is at least one and nothing is wrong with any.
-fn read_values(reader: &mut Reader, what: &str, list: &Value) -> Option<Vec<Setting>> {
+fn read_values(reader: &mut ManifestReader, what: &str, list: &TomlValue) -> Option<Vec<Setting>> {
     let array = reader.array(list, "`values`")?;
     let span = reader.span(list.span());
     if array.is_empty() || array.len() > MAX {
@@ -99,7 +103,7 @@ fn read_values(reader: &mut Reader, what: &str, list: &Value) -> Option<Vec<Sett
 
 fn value_problem(what: &str, values: &[(Setting, Span)], index: usize) -> Option<Diagnostic> {
     let ((value, span), (first, first_span)) = (&values[index], &values[0]);
-    let (kind, expected) = (Kind::of(value), Kind::of(first));
+    let (kind, expected) = (AxisKind::of(value), AxisKind::of(first));
     if kind != expected {
         let message = format!("{what} mixes {} and {} values", expected.name(), kind.name());
         return Some(
@@ -122,7 +126,11 @@ fn value_problem(what: &str, values: &[(Setting, Span)], index: usize) -> Option
     }
 }
 
-fn read_constraint(reader: &mut Reader, axes: &[Axis], value: &Value) -> Option<Constraint> {
+fn read_constraint(
+    reader: &mut ManifestReader,
+    axes: &[Axis],
+    value: &TomlValue,
+) -> Option<Constraint> {
     let table = reader.table(value, "a constraint")?;
     reader.check_keys(table, CONSTRAINT_KEYS, "a constraint");
     let doc = reader.doc(table);

@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use toml::de::DeTable;
 
 use super::names;
-use super::reader::{Name, Reader, Value};
+use super::reader::{ManifestReader, TomlName, TomlValue};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::permute::{Setting, Settings};
 use crate::source::{SourceId, SourceSet, Span};
@@ -81,13 +81,13 @@ pub fn read_file(sources: &SourceSet, id: SourceId) -> Result<Features, Diagnost
     if !errors.is_empty() {
         return Err(errors.iter().map(|error| super::syntax_error(sources, id, error)).collect());
     }
-    let mut reader = Reader::new(sources, id);
+    let mut reader = ManifestReader::new(sources, id);
     let found = read_features(&mut reader, document.get_ref());
     if reader.problems.is_empty() { Ok(found) } else { Err(reader.problems) }
 }
 
 /// The features of a document.
-pub fn read_features(reader: &mut Reader, document: &DeTable) -> Features {
+pub fn read_features(reader: &mut ManifestReader, document: &DeTable) -> Features {
     let mut found = Features::default();
     let Some(value) = document.get("features") else { return found };
     let Some(table) = reader.table(value, "`features`") else { return found };
@@ -110,7 +110,11 @@ pub fn read_features(reader: &mut Reader, document: &DeTable) -> Features {
     found
 }
 
-fn read_feature(reader: &mut Reader, name: &Name, value: &Value) -> Option<Feature> {
+fn read_feature(
+    reader: &mut ManifestReader,
+    name: &TomlName,
+    value: &TomlValue,
+) -> Option<Feature> {
     let span = reader.span(name.span());
     let text = name.get_ref().to_string();
     reader.problems.extend(names::check_name(&text, "a feature", span));

@@ -1,6 +1,6 @@
 //! The lists `include`, `only` and `exclude` of a program.
 
-use super::reader::{Name, Reader, Value};
+use super::reader::{ManifestReader, TomlName, TomlValue};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::permute::axis::{Axis, ValueSet};
 use crate::permute::key::{Assignment, find_axis, find_value, parse};
@@ -11,25 +11,33 @@ use crate::permute::space::{Slice, Space};
 const ANY: &str = "*";
 
 /// Reads slices in which an axis that is not named has its default.
-pub fn read_only(reader: &mut Reader, axes: &[Axis], value: &Value) -> Vec<Slice> {
+pub fn read_only(reader: &mut ManifestReader, axes: &[Axis], value: &TomlValue) -> Vec<Slice> {
     let unnamed: Vec<ValueSet> = axes.iter().map(|axis| ValueSet::single(axis.default)).collect();
     read_slices(reader, axes, value, "only", &unnamed)
 }
 
 /// Reads slices in which an axis that is not named has any value.
-pub fn read_exclude(reader: &mut Reader, axes: &[Axis], value: &Value) -> Vec<Slice> {
+pub fn read_exclude(reader: &mut ManifestReader, axes: &[Axis], value: &TomlValue) -> Vec<Slice> {
     let unnamed: Vec<ValueSet> =
         axes.iter().map(|axis| ValueSet::full(axis.values.len())).collect();
     read_slices(reader, axes, value, "exclude", &unnamed)
 }
 
 /// The points that keys name; `space` has the constraints, and each must satisfy them.
-pub fn read_include(reader: &mut Reader, space: &Space, value: &Value) -> Vec<Assignment> {
+pub fn read_include(
+    reader: &mut ManifestReader,
+    space: &Space,
+    value: &TomlValue,
+) -> Vec<Assignment> {
     let Some(array) = reader.array(value, "`include`") else { return Vec::new() };
     array.iter().filter_map(|value| included_point(reader, space, value)).collect()
 }
 
-fn included_point(reader: &mut Reader, space: &Space, value: &Value) -> Option<Assignment> {
+fn included_point(
+    reader: &mut ManifestReader,
+    space: &Space,
+    value: &TomlValue,
+) -> Option<Assignment> {
     let key = reader.string(value, "an entry of `include`")?;
     let point = parse(space, &key).map_err(|problems| reader.problems.extend(problems)).ok()?;
     let broken: Vec<Diagnostic> = space
@@ -50,9 +58,9 @@ fn invalid_key(key: &Quoted, constraint: &str, span: crate::source::Span) -> Dia
 }
 
 fn read_slices(
-    reader: &mut Reader,
+    reader: &mut ManifestReader,
     axes: &[Axis],
-    value: &Value,
+    value: &TomlValue,
     list: &str,
     unnamed: &[ValueSet],
 ) -> Vec<Slice> {
@@ -61,9 +69,9 @@ fn read_slices(
 }
 
 fn read_slice(
-    reader: &mut Reader,
+    reader: &mut ManifestReader,
     axes: &[Axis],
-    value: &Value,
+    value: &TomlValue,
     list: &str,
     unnamed: &[ValueSet],
 ) -> Option<Slice> {
@@ -79,10 +87,10 @@ fn read_slice(
 
 /// An axis of a slice and the values that it may have.
 fn named_values(
-    reader: &mut Reader,
+    reader: &mut ManifestReader,
     axes: &[Axis],
-    name: &Name,
-    value: &Value,
+    name: &TomlName,
+    value: &TomlValue,
 ) -> Option<(usize, ValueSet)> {
     let span = reader.span(name.span());
     let axis = find_axis(axes, name.get_ref(), span)
@@ -99,7 +107,7 @@ fn named_values(
     Some((axis, set))
 }
 
-fn value_index(reader: &mut Reader, axis: &Axis, value: &Value) -> Option<usize> {
+fn value_index(reader: &mut ManifestReader, axis: &Axis, value: &TomlValue) -> Option<usize> {
     let setting = reader.setting(value, &format!("a value of `{}`", axis.name))?;
     let span = reader.span(value.span());
     find_value(axis, &setting, span).map_err(|problem| reader.problems.push(problem)).ok()

@@ -42,13 +42,13 @@ mod program;
 mod reader;
 
 pub use features::{Feature, Features, read_file as read_features};
-pub use program::{File, Glsl, Program};
+pub use program::{Glsl, ManifestFile, Program};
 
 use toml::de::DeTable;
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use crate::source::{SourceId, SourceSet, Span};
-use reader::Reader;
+use reader::ManifestReader;
 
 /// What a manifest declares.
 #[derive(Debug, Clone)]
@@ -83,7 +83,7 @@ pub fn parse(sources: &SourceSet, id: SourceId) -> Result<Manifest, Diagnostics>
     if !errors.is_empty() {
         return Err(errors.iter().map(|error| syntax_error(sources, id, error)).collect());
     }
-    let mut reader = Reader::new(sources, id);
+    let mut reader = ManifestReader::new(sources, id);
     let programs = read_programs(&mut reader, document.get_ref());
     let features = features::read_features(&mut reader, document.get_ref());
     let mut problems = reader.problems;
@@ -96,7 +96,7 @@ pub fn parse(sources: &SourceSet, id: SourceId) -> Result<Manifest, Diagnostics>
     Ok(manifest)
 }
 
-fn read_programs(reader: &mut Reader, document: &DeTable) -> Vec<Program> {
+fn read_programs(reader: &mut ManifestReader, document: &DeTable) -> Vec<Program> {
     reader.check_keys(document, &["program", "features"], "a manifest");
     let Some(found) = document.get("program") else {
         if document.contains_key("features") {

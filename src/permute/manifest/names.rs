@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::diagnostic::{Diagnostic, codes};
 use crate::parse::wesl::is_keyword;
-use crate::permute::axis::{Axis, Kind};
+use crate::permute::axis::{Axis, AxisKind};
 use crate::source::Span;
 
 /// The only word of the constraint language that is not a keyword of WGSL.
@@ -64,7 +64,7 @@ pub fn macro_collisions(axes: &[Axis]) -> Vec<Diagnostic> {
 }
 
 fn axis_macros(axis: &Axis) -> Vec<(String, String, Span)> {
-    let values = if axis.kind == Kind::Enum { axis.value_names() } else { Vec::new() };
+    let values = if axis.kind == AxisKind::Enum { axis.value_names() } else { Vec::new() };
     let values = values.into_iter().map(|value| format!("value `{value}` of axis `{}`", axis.name));
     let meanings = std::iter::once(format!("axis `{}`", axis.name)).chain(values);
     axis.macros()

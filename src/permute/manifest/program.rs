@@ -2,12 +2,12 @@
 
 use toml::de::DeTable;
 
-use super::reader::{Name, Reader, Value};
+use super::reader::{ManifestReader, TomlName, TomlValue};
 use super::{axes, lists, names};
-use crate::bundle::{Bounds, Clip, Convention, Conventions, Target};
+use crate::bundle::{BoundsChecks, ClipConvention, Convention, Conventions, Target};
 use crate::diagnostic::{Diagnostic, Severity, codes};
 use crate::permute::axis::Axis;
-use crate::permute::space::{Constraint, Lists, Space, TooComplex};
+use crate::permute::space::{Constraint, SliceLists, Space, TooComplex};
 use crate::permute::{lint, report};
 use crate::source::{LIMITS, Span};
 
@@ -19,7 +19,7 @@ pub struct Program {
     /// What it is, in the manifest's words.
     pub doc: Option<String>,
     /// The root module. There is this, or `glsl`, or both.
-    pub wesl: Option<File>,
+    pub wesl: Option<ManifestFile>,
     /// Its root files in GLSL, one for each stage.
     pub glsl: Option<Glsl>,
     /// In the order declared; all, where the manifest names none.
@@ -29,7 +29,7 @@ pub struct Program {
     /// Its permutations.
     pub space: Space,
     /// A list of the keys that engines asked for: only these are wanted, and those of `include`.
-    pub usage: Option<File>,
+    pub usage: Option<ManifestFile>,
     /// The most permutations that it may have. A program with more is refused.
     pub limit: usize,
     /// The name in the manifest.
@@ -38,13 +38,13 @@ pub struct Program {
 
 impl Program {
     /// The root files of both languages.
-    pub fn files(&self) -> impl Iterator<Item = &File> {
+    pub fn files(&self) -> impl Iterator<Item = &ManifestFile> {
         let glsl = self.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
         self.wesl.iter().chain(glsl)
     }
 
     /// As [`Self::files`], but mutable.
-    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut File> {
+    pub fn files_mut(&mut self) -> impl Iterator<Item = &mut ManifestFile> {
         let glsl = self.glsl.iter_mut().flat_map(|glsl| [&mut glsl.vertex, &mut glsl.fragment]);
         self.wesl.iter_mut().chain(glsl.flatten())
     }
@@ -52,7 +52,7 @@ impl Program {
 
 /// A file that a manifest names.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct File {
+pub struct ManifestFile {
     /// Relative to the package's root, `/`-separated.
     pub path: String,
     /// Where it is named.
@@ -63,9 +63,9 @@ pub struct File {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Glsl {
     /// Root file of the vertex stage.
-    pub vertex: Option<File>,
+    pub vertex: Option<ManifestFile>,
     /// Root file of the fragment stage.
-    pub fragment: Option<File>,
+    pub fragment: Option<ManifestFile>,
 }
 
 const KEYS: &[&str] = &[
@@ -86,7 +86,11 @@ const KEYS: &[&str] = &[
 ];
 
 /// Reads a program; `None` if there is an error in it.
-pub fn read_program(reader: &mut Reader, name: &Name, value: &Value) -> Option<Program> {
+pub fn read_program(
+    reader: &mut ManifestReader,
+    name: &TomlName,
+    value: &TomlValue,
+) -> Option<Program> {
     let errors = error_count(reader);
     let span = reader.span(name.span());
     let name = name.get_ref().to_string();
@@ -119,16 +123,16 @@ pub fn read_program(reader: &mut Reader, name: &Name, value: &Value) -> Option<P
     (self::error_count(reader) == errors).then_some(program)
 }
 
-fn error_count(reader: &Reader) -> usize {
+fn error_count(reader: &ManifestReader) -> usize {
     reader.problems.iter().filter(|problem| problem.severity == Severity::Error).count()
 }
 
-fn read_file(reader: &mut Reader, value: &Value, what: &str) -> Option<File> {
+fn read_file(reader: &mut ManifestReader, value: &TomlValue, what: &str) -> Option<ManifestFile> {
     let text = reader.string(value, what)?;
-    Some(File { path: text.text, span: text.span })
+    Some(ManifestFile { path: text.text, span: text.span })
 }
 
-fn read_glsl(reader: &mut Reader, value: &Value) -> Option<Glsl> {
+fn read_glsl(reader: &mut ManifestReader, value: &TomlValue) -> Option<Glsl> {
     let table = reader.table(value, "`glsl`")?;
     reader.check_keys(table, &["vertex", "fragment"], "`glsl`");
     let mut stage = |name: &str| {
@@ -145,7 +149,7 @@ fn read_glsl(reader: &mut Reader, value: &Value) -> Option<Glsl> {
     Some(found)
 }
 
-fn read_targets(reader: &mut Reader, value: &Value) -> Vec<Target> {
+fn read_targets(reader: &mut ManifestReader, value: &TomlValue) -> Vec<Target> {
     let Some(array) = reader.array(value, "`targets`") else { return Vec::new() };
     let mut found: Vec<Target> = Vec::new();
     for value in array.iter() {
@@ -155,7 +159,7 @@ fn read_targets(reader: &mut Reader, value: &Value) -> Vec<Target> {
     found
 }
 
-fn read_target(reader: &mut Reader, value: &Value) -> Option<Target> {
+fn read_target(reader: &mut ManifestReader, value: &TomlValue) -> Option<Target> {
     let unknown = (codes::UNKNOWN_TARGET, ["there is no target", "not a target", "targets"]);
     let known = Target::ALL.iter().map(|target| (target.name(), *target));
     reader.choice(value, "a target", known, unknown)
@@ -163,15 +167,15 @@ fn read_target(reader: &mut Reader, value: &Value) -> Option<Target> {
 
 /// The conventions of a program. Where a name is wrong, the error is reported and the default is
 /// used.
-fn read_conventions(reader: &mut Reader, table: &DeTable) -> Conventions {
+fn read_conventions(reader: &mut ManifestReader, table: &DeTable) -> Conventions {
     let clip = table.get("clip").and_then(|value| {
         let unknown = (codes::UNKNOWN_CLIP, ["there is no clip space", "not one", "clip spaces"]);
-        reader.choice(value, "`clip`", Clip::ALL.iter().copied(), unknown)
+        reader.choice(value, "`clip`", ClipConvention::ALL.iter().copied(), unknown)
     });
     let bounds = table.get("bounds").and_then(|value| {
         let unknown =
             (codes::UNKNOWN_BOUNDS, ["there is no choice of checks", "not one", "checks"]);
-        reader.choice(value, "`bounds`", Bounds::ALL.iter().copied(), unknown)
+        reader.choice(value, "`bounds`", BoundsChecks::ALL.iter().copied(), unknown)
     });
     Conventions { clip: clip.unwrap_or_default(), bounds: bounds.unwrap_or_default() }
 }
@@ -180,7 +184,7 @@ fn read_conventions(reader: &mut Reader, table: &DeTable) -> Conventions {
 const FEATURES: &[(&str, Option<bool>)] =
     &[("on", Some(true)), ("off", Some(false)), ("error", None)];
 
-fn features_default(reader: &mut Reader, value: &Value) -> Option<bool> {
+fn features_default(reader: &mut ManifestReader, value: &TomlValue) -> Option<bool> {
     let text = reader.string(value, "`features_default`")?;
     let found = FEATURES.iter().find(|(name, _)| *name == text.text);
     if found.is_none() {
@@ -192,7 +196,7 @@ fn features_default(reader: &mut Reader, value: &Value) -> Option<bool> {
     found.and_then(|(_, undeclared)| *undeclared)
 }
 
-fn read_limit(reader: &mut Reader, value: &Value) -> Option<usize> {
+fn read_limit(reader: &mut ManifestReader, value: &TomlValue) -> Option<usize> {
     let number = reader.integer(value, "`limit`")?;
     let found =
         usize::try_from(number).ok().filter(|limit| (1..=LIMITS.permutations).contains(limit));
@@ -209,7 +213,12 @@ fn read_limit(reader: &mut Reader, value: &Value) -> Option<usize> {
 
 /// Reads the axes first. If one of them is missing nothing else is read, since most errors would
 /// only follow from that.
-fn read_space(reader: &mut Reader, table: &DeTable, what: &str, place: Span) -> Option<Space> {
+fn read_space(
+    reader: &mut ManifestReader,
+    table: &DeTable,
+    what: &str,
+    place: Span,
+) -> Option<Space> {
     let before = error_count(reader);
     let axes =
         table.get("axis").map_or(Some(Vec::new()), |value| axes::read_axes(reader, value))?;
@@ -219,8 +228,13 @@ fn read_space(reader: &mut Reader, table: &DeTable, what: &str, place: Span) -> 
     let only = table.get("only").map_or(Vec::new(), |value| lists::read_only(reader, &axes, value));
     let exclude =
         table.get("exclude").map_or(Vec::new(), |value| lists::read_exclude(reader, &axes, value));
-    let space =
-        read_lists(reader, table, axes, constraints, Lists { only, exclude, include: Vec::new() });
+    let space = read_lists(
+        reader,
+        table,
+        axes,
+        constraints,
+        SliceLists { only, exclude, include: Vec::new() },
+    );
     let Ok(space) = space else {
         let message = format!(
             "the constraints and lists of {what} are too complex to count its permutations"
@@ -239,19 +253,19 @@ fn read_space(reader: &mut Reader, table: &DeTable, what: &str, place: Span) -> 
 
 /// Reads the lists. Keys can be read only once there is a space, which the lists then narrow.
 fn read_lists(
-    reader: &mut Reader,
+    reader: &mut ManifestReader,
     table: &DeTable,
     axes: Vec<Axis>,
     constraints: Vec<Constraint>,
-    mut lists: Lists,
+    mut lists: SliceLists,
 ) -> Result<Space, TooComplex> {
-    let valid = Space::new(axes.clone(), constraints.clone(), Lists::default())?;
+    let valid = Space::new(axes.clone(), constraints.clone(), SliceLists::default())?;
     lists.include =
         table.get("include").map_or(Vec::new(), |value| lists::read_include(reader, &valid, value));
-    if lists == Lists::default() { Ok(valid) } else { Space::new(axes, constraints, lists) }
+    if lists == SliceLists::default() { Ok(valid) } else { Space::new(axes, constraints, lists) }
 }
 
-fn check_limit(reader: &mut Reader, program: &Program) {
+fn check_limit(reader: &mut ManifestReader, program: &Program) {
     if program.space.count() <= program.limit as u128 {
         return;
     }

@@ -10,17 +10,17 @@ use crate::permute::Setting;
 use crate::permute::quoted::Quoted;
 use crate::source::{SourceId, SourceSet, Span};
 
-pub type Value<'t> = Spanned<DeValue<'t>>;
-pub type Name<'t> = Spanned<DeString<'t>>;
+pub type TomlValue<'t> = Spanned<DeValue<'t>>;
+pub type TomlName<'t> = Spanned<DeString<'t>>;
 
 /// The manifest being read and what was found wrong with it.
-pub struct Reader<'s> {
+pub struct ManifestReader<'s> {
     pub sources: &'s SourceSet,
     pub id: SourceId,
     pub problems: Vec<Diagnostic>,
 }
 
-impl<'s> Reader<'s> {
+impl<'s> ManifestReader<'s> {
     pub fn new(sources: &'s SourceSet, id: SourceId) -> Self {
         Self { sources, id, problems: Vec::new() }
     }
@@ -50,7 +50,7 @@ impl<'s> Reader<'s> {
         key: &str,
         what: &str,
         place: Span,
-    ) -> Option<&'v Value<'t>> {
+    ) -> Option<&'v TomlValue<'t>> {
         let found = table.get(key);
         if found.is_none() {
             self.problems.push(
@@ -61,17 +61,25 @@ impl<'s> Reader<'s> {
         found
     }
 
-    pub fn table<'t, 'v>(&mut self, value: &'v Value<'t>, what: &str) -> Option<&'v DeTable<'t>> {
+    pub fn table<'t, 'v>(
+        &mut self,
+        value: &'v TomlValue<'t>,
+        what: &str,
+    ) -> Option<&'v DeTable<'t>> {
         let found = value.get_ref().as_table();
         self.expect(found, value, what, "a table")
     }
 
-    pub fn array<'t, 'v>(&mut self, value: &'v Value<'t>, what: &str) -> Option<&'v DeArray<'t>> {
+    pub fn array<'t, 'v>(
+        &mut self,
+        value: &'v TomlValue<'t>,
+        what: &str,
+    ) -> Option<&'v DeArray<'t>> {
         let found = value.get_ref().as_array();
         self.expect(found, value, what, "an array")
     }
 
-    pub fn string(&mut self, value: &Value, what: &str) -> Option<Quoted> {
+    pub fn string(&mut self, value: &TomlValue, what: &str) -> Option<Quoted> {
         let found = value
             .get_ref()
             .as_str()
@@ -83,7 +91,7 @@ impl<'s> Reader<'s> {
     /// the label, and what the words are.
     pub fn choice<T: Copy>(
         &mut self,
-        value: &Value,
+        value: &TomlValue,
         what: &str,
         known: impl Iterator<Item = (&'static str, T)> + Clone,
         (code, [message, label, words]): (&'static Code, [&str; 3]),
@@ -100,17 +108,17 @@ impl<'s> Reader<'s> {
         found.map(|(_, choice)| choice)
     }
 
-    pub fn boolean(&mut self, value: &Value, what: &str) -> Option<bool> {
+    pub fn boolean(&mut self, value: &TomlValue, what: &str) -> Option<bool> {
         self.expect(value.get_ref().as_bool(), value, what, "a boolean")
     }
 
-    pub fn integer(&mut self, value: &Value, what: &str) -> Option<i64> {
+    pub fn integer(&mut self, value: &TomlValue, what: &str) -> Option<i64> {
         let found = integer_value(value.get_ref());
         self.expect(found, value, what, "an integer of 64 bits")
     }
 
     /// A value of an axis.
-    pub fn setting(&mut self, value: &Value, what: &str) -> Option<Setting> {
+    pub fn setting(&mut self, value: &TomlValue, what: &str) -> Option<Setting> {
         let found = match value.get_ref() {
             DeValue::Boolean(value) => Some(Setting::Bool(*value)),
             DeValue::String(value) => Some(Setting::Name(value.clone().into_owned())),
@@ -128,7 +136,7 @@ impl<'s> Reader<'s> {
     fn expect<T>(
         &mut self,
         found: Option<T>,
-        value: &Value,
+        value: &TomlValue,
         what: &str,
         expected: &str,
     ) -> Option<T> {

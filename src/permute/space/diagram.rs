@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 
-use super::formula::{Conditions, FALSE, Id};
+use super::formula::{ConditionPool, FALSE, FormulaId};
 use super::{Assignment, TooComplex};
 use crate::permute::axis::ValueSet;
 
@@ -14,12 +14,12 @@ use crate::permute::axis::ValueSet;
 pub struct Diagram {
     /// The axis asked at each level.
     order: Vec<usize>,
-    nodes: Vec<Node>,
+    nodes: Vec<DiagramNode>,
     root: u32,
 }
 
 #[derive(Debug, Clone)]
-struct Node {
+struct DiagramNode {
     level: u8,
     /// The node below for each ordinal of the level's axis.
     children: Box<[u32]>,
@@ -35,12 +35,12 @@ const NODES: usize = 1 << 18;
 impl Diagram {
     /// The points of the domains where the condition holds, asking the axes in that order.
     pub fn new(
-        conditions: &mut Conditions,
-        condition: Id,
+        conditions: &mut ConditionPool,
+        condition: FormulaId,
         domains: &[ValueSet],
         order: Vec<usize>,
     ) -> Result<Self, TooComplex> {
-        let end = Node { level: u8::MAX, children: Box::default() };
+        let end = DiagramNode { level: u8::MAX, children: Box::default() };
         let mut builder = Builder {
             conditions,
             domains,
@@ -151,7 +151,7 @@ impl Diagram {
         mut count: impl FnMut(usize, &[u32], &[u128]) -> Result<u128, TooComplex>,
     ) -> Result<u128, TooComplex> {
         let mut counts = vec![0, 1];
-        for Node { level, children } in &self.nodes[2..] {
+        for DiagramNode { level, children } in &self.nodes[2..] {
             let found = count(self.order[usize::from(*level)], children, &counts)?;
             counts.push(found);
         }
@@ -192,7 +192,7 @@ impl Diagram {
             found.push(Assignment(point.as_slice().into()));
             return;
         }
-        let Node { level, children } = &self.nodes[node as usize];
+        let DiagramNode { level, children } = &self.nodes[node as usize];
         for (ordinal, child) in children.iter().enumerate().filter(|(_, child)| **child != DEAD) {
             point[self.order[usize::from(*level)]] = ordinal as u8;
             self.walk(*child, point, found);
@@ -205,15 +205,15 @@ fn sum_counts(children: &[u32], counts: &[u128]) -> u128 {
 }
 
 struct Builder<'a> {
-    conditions: &'a mut Conditions,
+    conditions: &'a mut ConditionPool,
     domains: &'a [ValueSet],
     order: &'a [usize],
-    nodes: Vec<Node>,
-    known: HashMap<(usize, Id), u32>,
+    nodes: Vec<DiagramNode>,
+    known: HashMap<(usize, FormulaId), u32>,
 }
 
 impl Builder<'_> {
-    fn node(&mut self, level: usize, condition: Id) -> Result<u32, TooComplex> {
+    fn node(&mut self, level: usize, condition: FormulaId) -> Result<u32, TooComplex> {
         if condition == FALSE {
             return Ok(DEAD);
         }
@@ -235,7 +235,7 @@ impl Builder<'_> {
         &mut self,
         level: usize,
         axis: usize,
-        condition: Id,
+        condition: FormulaId,
     ) -> Result<Box<[u32]>, TooComplex> {
         let domain = self.domains[axis];
         let count = domain.iter().last().map_or(0, |last| last + 1);
@@ -248,7 +248,7 @@ impl Builder<'_> {
     }
 
     fn push(&mut self, level: usize, children: Box<[u32]>) -> Result<u32, TooComplex> {
-        self.nodes.push(Node { level: level as u8, children });
+        self.nodes.push(DiagramNode { level: level as u8, children });
         if self.nodes.len() > NODES { Err(TooComplex) } else { Ok(self.nodes.len() as u32 - 1) }
     }
 }

@@ -13,18 +13,18 @@ use crate::permute::axis::ValueSet;
 
 /// A condition as written: axes by index, values by ordinal.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Formula {
+pub enum ConstraintFormula {
     /// The axis's value is in the set.
     Is(usize, ValueSet),
     /// The formula does not hold.
-    Not(Box<Formula>),
+    Not(Box<ConstraintFormula>),
     /// All of them hold.
-    All(Vec<Formula>),
+    All(Vec<ConstraintFormula>),
     /// At least one of them holds.
-    Any(Vec<Formula>),
+    Any(Vec<ConstraintFormula>),
 }
 
-impl Formula {
+impl ConstraintFormula {
     /// Whether it holds where `ordinals[axis]` is the value of each axis.
     pub fn holds(&self, ordinals: &[u8]) -> bool {
         match self {
@@ -47,16 +47,16 @@ impl Formula {
 
 /// An interned condition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Id(u32);
+pub struct FormulaId(u32);
 
-pub const FALSE: Id = Id(0);
-pub const TRUE: Id = Id(1);
+pub const FALSE: FormulaId = FormulaId(0);
+pub const TRUE: FormulaId = FormulaId(1);
 
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-enum Node {
+enum ConditionNode {
     Constant(bool),
     Is(u8, ValueSet),
-    Join(Join, Box<[Id]>),
+    Join(Join, Box<[FormulaId]>),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -67,7 +67,7 @@ enum Join {
 
 impl Join {
     /// The constant that decides the whole condition, whatever its other parts are.
-    fn absorbing(self) -> Id {
+    fn absorbing(self) -> FormulaId {
         match self {
             Self::All => FALSE,
             Self::Any => TRUE,
@@ -75,7 +75,7 @@ impl Join {
     }
 
     /// The constant that can be left out of the condition.
-    fn neutral(self) -> Id {
+    fn neutral(self) -> FormulaId {
         match self {
             Self::All => TRUE,
             Self::Any => FALSE,
@@ -84,17 +84,17 @@ impl Join {
 }
 
 /// Interned conditions over axes with the given domains.
-pub struct Conditions {
+pub struct ConditionPool {
     domains: Vec<ValueSet>,
-    nodes: Vec<Node>,
+    nodes: Vec<ConditionNode>,
     /// Axes mentioned by each node, one bit each.
     support: Vec<u128>,
-    ids: HashMap<Node, Id>,
-    restricted: HashMap<(Id, u8, ValueSet), Id>,
+    ids: HashMap<ConditionNode, FormulaId>,
+    restricted: HashMap<(FormulaId, u8, ValueSet), FormulaId>,
     steps: Steps,
 }
 
-impl Conditions {
+impl ConditionPool {
     /// A store without conditions. After `steps` steps, its conditions are called too complex.
     /// Counting the points that satisfy arbitrary conditions is #P-hard, so hostile input must meet
     /// a bound; real manifests take some thousands of steps.
@@ -107,8 +107,8 @@ impl Conditions {
             restricted: HashMap::new(),
             steps,
         };
-        store.intern(Node::Constant(false));
-        store.intern(Node::Constant(true));
+        store.intern(ConditionNode::Constant(false));
+        store.intern(ConditionNode::Constant(true));
         store
     }
 
@@ -118,17 +118,22 @@ impl Conditions {
     }
 
     /// The condition in normal form.
-    pub fn add(&mut self, formula: &Formula) -> Result<Id, TooComplex> {
+    pub fn add(&mut self, formula: &ConstraintFormula) -> Result<FormulaId, TooComplex> {
         self.add_signed(formula, true)
     }
 
     /// The condition that all of the given ones hold.
-    pub fn all(&mut self, parts: Vec<Id>) -> Result<Id, TooComplex> {
+    pub fn all(&mut self, parts: Vec<FormulaId>) -> Result<FormulaId, TooComplex> {
         self.join(Join::All, parts)
     }
 
     /// What is left of a condition where the axis's value is known to be in the set.
-    pub fn restrict(&mut self, id: Id, axis: usize, set: ValueSet) -> Result<Id, TooComplex> {
+    pub fn restrict(
+        &mut self,
+        id: FormulaId,
+        axis: usize,
+        set: ValueSet,
+    ) -> Result<FormulaId, TooComplex> {
         if self.support[id.0 as usize] >> axis & 1 == 0 {
             return Ok(id);
         }
@@ -137,10 +142,10 @@ impl Conditions {
             return Ok(*known);
         }
         let answer = match self.nodes[id.0 as usize].clone() {
-            Node::Constant(_) => id,
-            Node::Is(_, allowed) if set.without(allowed).is_empty() => TRUE,
-            Node::Is(_, allowed) => self.is(axis, allowed.and(set)),
-            Node::Join(join, parts) => {
+            ConditionNode::Constant(_) => id,
+            ConditionNode::Is(_, allowed) if set.without(allowed).is_empty() => TRUE,
+            ConditionNode::Is(_, allowed) => self.is(axis, allowed.and(set)),
+            ConditionNode::Join(join, parts) => {
                 let parts = parts
                     .iter()
                     .map(|part| self.restrict(*part, axis, set))
@@ -152,16 +157,20 @@ impl Conditions {
         Ok(answer)
     }
 
-    fn add_signed(&mut self, formula: &Formula, positive: bool) -> Result<Id, TooComplex> {
+    fn add_signed(
+        &mut self,
+        formula: &ConstraintFormula,
+        positive: bool,
+    ) -> Result<FormulaId, TooComplex> {
         match formula {
-            Formula::Is(axis, set) => {
+            ConstraintFormula::Is(axis, set) => {
                 Ok(self.is(*axis, if positive { *set } else { self.domains[*axis].without(*set) }))
             }
-            Formula::Not(inner) => self.add_signed(inner, !positive),
-            Formula::All(parts) => {
+            ConstraintFormula::Not(inner) => self.add_signed(inner, !positive),
+            ConstraintFormula::All(parts) => {
                 self.add_join(if positive { Join::All } else { Join::Any }, parts, positive)
             }
-            Formula::Any(parts) => {
+            ConstraintFormula::Any(parts) => {
                 self.add_join(if positive { Join::Any } else { Join::All }, parts, positive)
             }
         }
@@ -170,47 +179,51 @@ impl Conditions {
     fn add_join(
         &mut self,
         join: Join,
-        parts: &[Formula],
+        parts: &[ConstraintFormula],
         positive: bool,
-    ) -> Result<Id, TooComplex> {
+    ) -> Result<FormulaId, TooComplex> {
         let parts =
             parts.iter().map(|part| self.add_signed(part, positive)).collect::<Result<_, _>>()?;
         self.join(join, parts)
     }
 
-    fn is(&mut self, axis: usize, set: ValueSet) -> Id {
+    fn is(&mut self, axis: usize, set: ValueSet) -> FormulaId {
         let set = set.and(self.domains[axis]);
         if set.is_empty() {
             FALSE
         } else if set == self.domains[axis] {
             TRUE
         } else {
-            self.intern(Node::Is(axis as u8, set))
+            self.intern(ConditionNode::Is(axis as u8, set))
         }
     }
 
     /// The normal form of a conjunction or disjunction: flattens it, merges the atoms of each axis,
     /// and simplifies the other parts by each atom until nothing changes (unit propagation, and its
     /// dual for `Any`).
-    fn join(&mut self, join: Join, parts: Vec<Id>) -> Result<Id, TooComplex> {
+    fn join(&mut self, join: Join, parts: Vec<FormulaId>) -> Result<FormulaId, TooComplex> {
         let mut atoms: BTreeMap<u8, ValueSet> = BTreeMap::new();
-        let mut others: BTreeSet<Id> = BTreeSet::new();
+        let mut others: BTreeSet<FormulaId> = BTreeSet::new();
         let mut pending = parts;
         while let Some(part) = pending.pop() {
             self.spend(1)?;
             match self.nodes[part.0 as usize].clone() {
                 _ if part == join.absorbing() => return Ok(part),
-                Node::Constant(_) => {}
-                Node::Join(inner, parts) if inner == join => pending.extend(parts),
-                Node::Join(..) => pending.extend(self.settle(join, part, &atoms, &mut others)?),
-                Node::Is(axis, set) => {
+                ConditionNode::Constant(_) => {}
+                ConditionNode::Join(inner, parts) if inner == join => pending.extend(parts),
+                ConditionNode::Join(..) => {
+                    pending.extend(self.settle(join, part, &atoms, &mut others)?)
+                }
+                ConditionNode::Is(axis, set) => {
                     let Some(merged) = self.merge(join, &mut atoms, axis, set) else {
                         return Ok(join.absorbing());
                     };
                     if merged {
                         let support = &self.support;
-                        let is_touched = |other: &Id| support[other.0 as usize] >> axis & 1 == 1;
-                        let touched: Vec<Id> = others.iter().copied().filter(is_touched).collect();
+                        let is_touched =
+                            |other: &FormulaId| support[other.0 as usize] >> axis & 1 == 1;
+                        let touched: Vec<FormulaId> =
+                            others.iter().copied().filter(is_touched).collect();
                         if !touched.is_empty() {
                             others.retain(|other| !is_touched(other));
                             pending.extend(touched);
@@ -219,7 +232,7 @@ impl Conditions {
                 }
             }
         }
-        let atoms: Vec<Id> =
+        let atoms: Vec<FormulaId> =
             atoms.into_iter().map(|(axis, set)| self.is(axis.into(), set)).collect();
         Ok(self.joined(join, atoms.into_iter().chain(others).collect()))
     }
@@ -229,10 +242,10 @@ impl Conditions {
     fn settle(
         &mut self,
         join: Join,
-        part: Id,
+        part: FormulaId,
         atoms: &BTreeMap<u8, ValueSet>,
-        others: &mut BTreeSet<Id>,
-    ) -> Result<Option<Id>, TooComplex> {
+        others: &mut BTreeSet<FormulaId>,
+    ) -> Result<Option<FormulaId>, TooComplex> {
         let mut simpler = part;
         for (axis, set) in atoms {
             let known = match join {
@@ -271,24 +284,24 @@ impl Conditions {
         (!decided).then_some(before != Some(after))
     }
 
-    fn joined(&mut self, join: Join, mut parts: Vec<Id>) -> Id {
+    fn joined(&mut self, join: Join, mut parts: Vec<FormulaId>) -> FormulaId {
         parts.sort();
         match parts.as_slice() {
             [] => join.neutral(),
             [only] => *only,
-            _ => self.intern(Node::Join(join, parts.into())),
+            _ => self.intern(ConditionNode::Join(join, parts.into())),
         }
     }
 
-    fn intern(&mut self, node: Node) -> Id {
+    fn intern(&mut self, node: ConditionNode) -> FormulaId {
         if let Some(id) = self.ids.get(&node) {
             return *id;
         }
-        let id = Id(self.nodes.len() as u32);
+        let id = FormulaId(self.nodes.len() as u32);
         self.support.push(match &node {
-            Node::Constant(_) => 0,
-            Node::Is(axis, _) => 1 << axis,
-            Node::Join(_, parts) => {
+            ConditionNode::Constant(_) => 0,
+            ConditionNode::Is(axis, _) => 1 << axis,
+            ConditionNode::Join(_, parts) => {
                 parts.iter().fold(0, |bits, part| bits | self.support[part.0 as usize])
             }
         });

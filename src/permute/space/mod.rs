@@ -4,18 +4,18 @@
 mod diagram;
 mod formula;
 
-pub use formula::Formula;
+pub use formula::ConstraintFormula;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::axis::{Axis, Kind, Mode, ValueSet};
+use super::axis::{Axis, AxisKind, Mode, ValueSet};
 use super::key::{Assignment, Key};
 use super::{Setting, Settings};
 use crate::limits::{Exhausted, SPACE_STEPS, Steps};
 use crate::source::Span;
 use diagram::Diagram;
-use formula::Conditions;
+use formula::ConditionPool;
 
 /// A condition that every permutation satisfies.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub struct Constraint {
     /// Why, in the manifest's words.
     pub doc: Option<String>,
     /// What must hold.
-    pub formula: Formula,
+    pub formula: ConstraintFormula,
     /// The text in the manifest, quotes included.
     pub span: Span,
 }
@@ -40,9 +40,13 @@ pub struct Slice {
 }
 
 impl Slice {
-    fn formula(&self) -> Formula {
-        Formula::All(
-            self.values.iter().enumerate().map(|(axis, set)| Formula::Is(axis, *set)).collect(),
+    fn formula(&self) -> ConstraintFormula {
+        ConstraintFormula::All(
+            self.values
+                .iter()
+                .enumerate()
+                .map(|(axis, set)| ConstraintFormula::Is(axis, *set))
+                .collect(),
         )
     }
 }
@@ -50,7 +54,7 @@ impl Slice {
 /// Which valid points are wanted: those in a slice of `only` (all, if it is empty) and in no slice
 /// of `exclude`, and always those of `include`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Lists {
+pub struct SliceLists {
     /// Where there are any, nothing else ships.
     pub only: Vec<Slice>,
     /// These do not ship.
@@ -59,12 +63,17 @@ pub struct Lists {
     pub include: Vec<Assignment>,
 }
 
-impl Lists {
-    fn formula(&self) -> Formula {
-        let any = |slices: &[Slice]| Formula::Any(slices.iter().map(Slice::formula).collect());
-        let chosen = if self.only.is_empty() { Formula::All(Vec::new()) } else { any(&self.only) };
-        let kept = Formula::All(vec![chosen, Formula::Not(Box::new(any(&self.exclude)))]);
-        Formula::Any(self.include.iter().map(Assignment::formula).chain([kept]).collect())
+impl SliceLists {
+    fn formula(&self) -> ConstraintFormula {
+        let any =
+            |slices: &[Slice]| ConstraintFormula::Any(slices.iter().map(Slice::formula).collect());
+        let chosen =
+            if self.only.is_empty() { ConstraintFormula::All(Vec::new()) } else { any(&self.only) };
+        let kept = ConstraintFormula::All(vec![
+            chosen,
+            ConstraintFormula::Not(Box::new(any(&self.exclude))),
+        ]);
+        ConstraintFormula::Any(self.include.iter().map(Assignment::formula).chain([kept]).collect())
     }
 }
 
@@ -77,7 +86,7 @@ pub struct TooComplex;
 pub struct Space {
     axes: Vec<Axis>,
     constraints: Vec<Constraint>,
-    lists: Lists,
+    lists: SliceLists,
     valid: Diagram,
     wanted: Diagram,
     /// [`Settings::enums`] at every point.
@@ -94,16 +103,16 @@ impl Space {
     pub fn new(
         axes: Vec<Axis>,
         constraints: Vec<Constraint>,
-        lists: Lists,
+        lists: SliceLists,
     ) -> Result<Self, TooComplex> {
         let order = axis_order(axes.len(), &constraints);
-        let valid = build_diagram(&axes, &constraints, &Lists::default(), order.clone())?;
-        let wanted = if lists == Lists::default() {
+        let valid = build_diagram(&axes, &constraints, &SliceLists::default(), order.clone())?;
+        let wanted = if lists == SliceLists::default() {
             valid.clone()
         } else {
             build_diagram(&axes, &constraints, &lists, order)?
         };
-        let enums = axes.iter().filter(|axis| axis.kind == Kind::Enum);
+        let enums = axes.iter().filter(|axis| axis.kind == AxisKind::Enum);
         let enums = enums.map(|axis| (axis.name.clone(), axis.value_names())).collect();
         Ok(Self {
             enums: Arc::new(enums),
@@ -133,7 +142,7 @@ impl Space {
     }
 
     /// Slices and keys that decide what ships.
-    pub fn lists(&self) -> &Lists {
+    pub fn lists(&self) -> &SliceLists {
         &self.lists
     }
 
@@ -211,11 +220,15 @@ impl Space {
     }
 
     /// How many points of the full product satisfy one condition, within the steps that are left.
-    pub fn satisfying(&self, formula: &Formula, steps: &mut Steps) -> Result<u128, TooComplex> {
+    pub fn satisfying(
+        &self,
+        formula: &ConstraintFormula,
+        steps: &mut Steps,
+    ) -> Result<u128, TooComplex> {
         let domains = axis_domains(&self.axes);
         // Every level of the diagram is made, whatever the condition is.
         steps.spend(domains.len() as u64).map_err(|Exhausted| TooComplex)?;
-        let mut conditions = Conditions::new(domains.clone(), *steps);
+        let mut conditions = ConditionPool::new(domains.clone(), *steps);
         let order = (0..self.axes.len()).collect();
         let diagram = conditions
             .add(formula)
@@ -236,7 +249,7 @@ impl Space {
 
     /// The settings for a composition at a point: every axis with its value, dynamic ones too.
     pub fn settings(&self, point: &Assignment) -> Settings {
-        let integers = self.axes.iter().filter(|axis| axis.kind == Kind::Int);
+        let integers = self.axes.iter().filter(|axis| axis.kind == AxisKind::Int);
         let open = self.axes.iter().filter(|axis| axis.mode == Mode::Spec);
         let axes = self.axes.iter().enumerate();
         let axes = axes.map(|(index, axis)| (axis.name.clone(), self.value(index, point).clone()));
@@ -259,11 +272,11 @@ impl Space {
 fn build_diagram(
     axes: &[Axis],
     constraints: &[Constraint],
-    lists: &Lists,
+    lists: &SliceLists,
     order: Vec<usize>,
 ) -> Result<Diagram, TooComplex> {
     let domains = axis_domains(axes);
-    let mut conditions = Conditions::new(domains.clone(), Steps::new(SPACE_STEPS));
+    let mut conditions = ConditionPool::new(domains.clone(), Steps::new(SPACE_STEPS));
     let lists = lists.formula();
     let formulas = constraints.iter().map(|constraint| &constraint.formula).chain([&lists]);
     let parts = formulas.map(|formula| conditions.add(formula)).collect::<Result<_, _>>()?;
@@ -303,7 +316,7 @@ fn axis_order(count: usize, constraints: &[Constraint]) -> Vec<usize> {
     order
 }
 
-fn mentioned_axes(count: usize, formula: &Formula) -> Vec<bool> {
+fn mentioned_axes(count: usize, formula: &ConstraintFormula) -> Vec<bool> {
     let mut axes = vec![false; count];
     formula.mark(&mut axes);
     axes

@@ -79,10 +79,10 @@ fn bound_function(
     bound_block(&mut function.body, &mut function.expressions, [counter, one, most]);
 }
 
-type Value = Handle<Expression>;
+type BudgetValue = Handle<Expression>;
 
 /// Begins the body of every loop with `trips += 1; if trips > most { break; }`.
-fn bound_block(block: &mut Block, arena: &mut Arena<Expression>, given: [Value; 3]) {
+fn bound_block(block: &mut Block, arena: &mut Arena<Expression>, given: [BudgetValue; 3]) {
     for statement in block.iter_mut() {
         for inner in inner_blocks_mut(statement) {
             bound_block(inner, arena, given);
@@ -93,7 +93,7 @@ fn bound_block(block: &mut Block, arena: &mut Arena<Expression>, given: [Value; 
     }
 }
 
-fn counted_trip(arena: &mut Arena<Expression>, [counter, one, most]: [Value; 3]) -> Block {
+fn counted_trip(arena: &mut Arena<Expression>, [counter, one, most]: [BudgetValue; 3]) -> Block {
     let mut add = |expression| arena.append(expression, Span::UNDEFINED);
     let before = add(Expression::Load { pointer: counter });
     let binary = |op, left, right| Expression::Binary { op, left, right };

@@ -13,5 +13,5 @@ pub mod probe;
 mod programs;
 
 pub use budget::bound_loops;
-pub use pack::{Leaf, buffer_leaves, pack_buffer};
-pub use programs::{Composed, Programs, Stages};
+pub use pack::{BufferLeaf, buffer_leaves, pack_buffer};
+pub use programs::{Programs, ReadyStage, Stages};

@@ -5,11 +5,11 @@ use crate::diagnostic::{Diagnostic, codes};
 
 /// Gives the numbers of a field by its path, such as `lamps.lights[2].color`. A matrix is given
 /// column by column; an empty list stands for zeros. `None` if nothing knows the field.
-pub type Numbers<'n> = dyn Fn(&str) -> Option<Vec<f64>> + 'n;
+pub type FieldNumbers<'n> = dyn Fn(&str) -> Option<Vec<f64>> + 'n;
 
 /// A scalar, a vector or a matrix in a buffer.
-pub struct Leaf<'b> {
-    /// As in [`Numbers`].
+pub struct BufferLeaf<'b> {
+    /// As in [`FieldNumbers`].
     pub path: String,
     /// Type in WGSL.
     pub ty: &'b str,
@@ -21,34 +21,34 @@ pub struct Leaf<'b> {
 ///
 /// # Errors
 /// A field that nothing knows, or for which there are too few numbers.
-pub fn pack_buffer(binding: &Binding, numbers: &Numbers<'_>) -> Result<Vec<u8>, Diagnostic> {
+pub fn pack_buffer(binding: &Binding, numbers: &FieldNumbers<'_>) -> Result<Vec<u8>, Diagnostic> {
     let mut bytes = vec![0; binding.size.unwrap_or(0) as usize];
     buffer_leaves(binding).iter().try_for_each(|leaf| pack_leaf(&mut bytes, leaf, numbers))?;
     Ok(bytes)
 }
 
 /// Everything in a buffer that has numbers, in the order of the buffer.
-pub fn buffer_leaves(binding: &Binding) -> Vec<Leaf<'_>> {
+pub fn buffer_leaves(binding: &Binding) -> Vec<BufferLeaf<'_>> {
     let mut leaves = Vec::new();
     if binding.members.is_empty() {
         let size = binding.size.unwrap_or(0);
-        leaves.push(Leaf { path: binding.name.clone(), ty: &binding.ty, at: 0, size });
+        leaves.push(BufferLeaf { path: binding.name.clone(), ty: &binding.ty, at: 0, size });
     }
     members(&mut leaves, 0, &binding.name, &binding.members);
     leaves
 }
 
-fn members<'b>(leaves: &mut Vec<Leaf<'b>>, base: u32, path: &str, members: &'b [Member]) {
+fn members<'b>(leaves: &mut Vec<BufferLeaf<'b>>, base: u32, path: &str, members: &'b [Member]) {
     for one in members {
         member(leaves, base + one.offset, format!("{path}.{}", one.name), one);
     }
 }
 
-fn member<'b>(leaves: &mut Vec<Leaf<'b>>, at: u32, path: String, member: &'b Member) {
+fn member<'b>(leaves: &mut Vec<BufferLeaf<'b>>, at: u32, path: String, member: &'b Member) {
     let is_array = |stride: &u32| *stride > 0 && member.ty.starts_with("array");
     let Some(stride) = member.stride.filter(is_array) else {
         if member.members.is_empty() {
-            return leaves.push(Leaf { path, ty: &member.ty, at, size: member.size });
+            return leaves.push(BufferLeaf { path, ty: &member.ty, at, size: member.size });
         }
         return members(leaves, at, &path, &member.members);
     };
@@ -56,15 +56,19 @@ fn member<'b>(leaves: &mut Vec<Leaf<'b>>, at: u32, path: String, member: &'b Mem
         let (at, path) = (at + index * stride, format!("{path}[{index}]"));
         if member.members.is_empty() {
             let ty = member.ty.trim_start_matches("array<").split(',').next().unwrap_or_default();
-            leaves.push(Leaf { path, ty, at, size: stride });
+            leaves.push(BufferLeaf { path, ty, at, size: stride });
         } else {
             members(leaves, at, &path, &member.members);
         }
     }
 }
 
-fn pack_leaf(bytes: &mut [u8], leaf: &Leaf<'_>, numbers: &Numbers<'_>) -> Result<(), Diagnostic> {
-    let Leaf { path, ty, at, size } = leaf;
+fn pack_leaf(
+    bytes: &mut [u8],
+    leaf: &BufferLeaf<'_>,
+    numbers: &FieldNumbers<'_>,
+) -> Result<(), Diagnostic> {
+    let BufferLeaf { path, ty, at, size } = leaf;
     let values = numbers(path).ok_or_else(|| without_number(path, ty))?;
     let offsets: Vec<u32> = scalar_offsets(ty, *size).collect();
     if !values.is_empty() && values.len() < offsets.len() {

@@ -5,7 +5,7 @@ use naga::{
     Statement, StructMember, Type, TypeInner, VectorSize,
 };
 
-use crate::execute::kernel::{Body, Value};
+use crate::execute::kernel::{FunctionBody, KernelValue};
 
 /// A rewritten module.
 #[derive(Debug)]
@@ -78,20 +78,20 @@ fn inner_function(module: &mut Module, index: usize) -> Option<Handle<Function>>
 }
 
 /// An empty body with the arguments of an entry point.
-fn entry_body(module: &mut Module, index: usize) -> Body<'_> {
+fn entry_body(module: &mut Module, index: usize) -> FunctionBody<'_> {
     let arguments = module.entry_points[index].function.arguments.clone();
-    Body { module, function: Function { arguments, ..Function::default() } }
+    FunctionBody { module, function: Function { arguments, ..Function::default() } }
 }
 
-impl Body<'_> {
-    fn argument_values(&mut self) -> Vec<Value> {
+impl FunctionBody<'_> {
+    fn argument_values(&mut self) -> Vec<KernelValue> {
         (0..self.function.arguments.len() as u32)
             .map(|index| self.add(Expression::FunctionArgument(index)))
             .collect()
     }
 
     /// The words of all arguments in groups of four. Words after the last argument are 0.
-    fn input_words(&mut self) -> Vec<Value> {
+    fn input_words(&mut self) -> Vec<KernelValue> {
         let types: Vec<_> = self.function.arguments.iter().map(|argument| argument.ty).collect();
         let mut words = Vec::new();
         for (value, ty) in self.argument_values().into_iter().zip(types) {
@@ -100,12 +100,12 @@ impl Body<'_> {
         let zero = self.literal(0);
         words.resize(words.len().next_multiple_of(4), zero);
         let ty = self.words();
-        let four = |four: &[Value]| Expression::Compose { ty, components: four.to_vec() };
+        let four = |four: &[KernelValue]| Expression::Compose { ty, components: four.to_vec() };
         words.chunks(4).map(|words| self.add(four(words))).collect()
     }
 
     /// The bits of what the function returns at a location.
-    fn color(&mut self, inner: Handle<Function>, location: u32) -> Option<Value> {
+    fn color(&mut self, inner: Handle<Function>, location: u32) -> Option<KernelValue> {
         let arguments = self.argument_values();
         let ty = self.module.functions[inner].result.as_ref()?.ty;
         let member = match &self.module.types[ty].inner {
@@ -127,7 +127,7 @@ impl Body<'_> {
     }
 
     /// Returns one value of four words at each location.
-    fn finish_entry(mut self, components: Vec<Value>, index: usize) {
+    fn finish_entry(mut self, components: Vec<KernelValue>, index: usize) {
         let four = self.words();
         let location = |location: usize| Binding::Location {
             location: location as u32,

@@ -7,9 +7,9 @@ use crate::bundle::{Language, Reflection};
 use crate::compose::{self, Options, PartKind};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::emit::reflect;
-use crate::permute::manifest::{File, Program};
+use crate::permute::manifest::{ManifestFile, Program};
 use crate::permute::{Manifest, Settings};
-use crate::picture::needs::Table;
+use crate::picture::needs::NeedsTable;
 use crate::project;
 use crate::resolve::{self, Graph};
 use crate::source::SourceSet;
@@ -18,22 +18,22 @@ use crate::validate::{Validated, validate};
 /// The library's programs. Each graph is read once.
 pub struct Programs {
     manifest: Manifest,
-    pictures: Table,
-    kept: Mutex<Kept>,
+    pictures: NeedsTable,
+    kept: Mutex<KeptPrograms>,
 }
 
 /// The texts, and the graph of each file.
-struct Kept {
+struct KeptPrograms {
     texts: SourceSet,
     graphs: BTreeMap<String, Arc<Graph>>,
     /// The permutations that were asked for last, the latest at the end. Pictures of the same one
     /// follow each other while somebody moves a lamp.
-    stages: VecDeque<(Asked, Stages)>,
+    stages: VecDeque<(StagesKey, Stages)>,
 }
 
-impl Kept {
+impl KeptPrograms {
     /// Stages that are kept. They become the most recently used ones.
-    fn again(&mut self, asked: &Asked) -> Option<Stages> {
+    fn again(&mut self, asked: &StagesKey) -> Option<Stages> {
         let at = self.stages.iter().position(|(known, _)| known == asked)?;
         let found = self.stages.remove(at)?;
         let stages = found.1.clone();
@@ -43,7 +43,7 @@ impl Kept {
 }
 
 /// The program, settings and language of stages.
-type Asked = (String, Settings, Language);
+type StagesKey = (String, Settings, Language);
 
 /// How many permutations are kept: as many as the passes of a picture.
 const KEPT_STAGES: usize = 8;
@@ -51,13 +51,13 @@ const KEPT_STAGES: usize = 8;
 /// The stages of one permutation. Without a fragment stage it draws only depth.
 #[derive(Debug, Clone)]
 pub struct Stages {
-    pub vertex: Composed,
-    pub fragment: Option<Composed>,
+    pub vertex: ReadyStage,
+    pub fragment: Option<ReadyStage>,
 }
 
 /// An entry point, ready to run.
 #[derive(Debug, Clone)]
-pub struct Composed {
+pub struct ReadyStage {
     pub validated: Arc<Validated>,
     pub entry: &'static str,
     pub reflection: Reflection,
@@ -74,10 +74,10 @@ impl Programs {
     /// The manifest's, with the texts to show them in.
     pub fn load() -> Result<Self, (SourceSet, Diagnostics)> {
         let (mut texts, manifest) = project::library_manifest()?;
-        match Table::load(&mut texts, &manifest) {
+        match NeedsTable::load(&mut texts, &manifest) {
             Ok(pictures) => {
                 let (graphs, stages) = Default::default();
-                let kept = Mutex::new(Kept { texts, graphs, stages });
+                let kept = Mutex::new(KeptPrograms { texts, graphs, stages });
                 Ok(Self { manifest, pictures, kept })
             }
             Err(problems) => Err((texts, problems)),
@@ -85,7 +85,7 @@ impl Programs {
     }
 
     /// What pictures need from the programs.
-    pub fn pictures(&self) -> &Table {
+    pub fn pictures(&self) -> &NeedsTable {
         &self.pictures
     }
 
@@ -138,7 +138,7 @@ impl Programs {
             (Language::Glsl, _, Some(glsl)) => {
                 let vertex =
                     glsl.vertex.as_ref().ok_or_else(|| absent_language(program, language))?;
-                let stage = |file: &File| {
+                let stage = |file: &ManifestFile| {
                     self.composed(file, settings, language)
                         .and_then(|text| ready_text(&text, "main"))
                 };
@@ -151,7 +151,7 @@ impl Programs {
         }
     }
 
-    fn of_wesl(&self, file: &File, settings: &Settings) -> Result<Stages, Diagnostics> {
+    fn of_wesl(&self, file: &ManifestFile, settings: &Settings) -> Result<Stages, Diagnostics> {
         let text = self.composed(file, settings, Language::Wesl)?;
         let mut points = text.validated.module.entry_points.iter();
         let has_fragment = points.any(|point| point.name == "fs_main");
@@ -161,18 +161,18 @@ impl Programs {
 
     fn composed(
         &self,
-        file: &File,
+        file: &ManifestFile,
         settings: &Settings,
         language: Language,
-    ) -> Result<Text, Diagnostics> {
+    ) -> Result<CompiledText, Diagnostics> {
         let composed =
             compose::compose(&*self.graph(file, language)?, settings, &Options::default())?;
         let validated = Arc::new(validate(&composed)?);
         let functions = library_functions(&composed, &self.kept().texts);
-        Ok(Text { text: composed.text.into(), functions, validated })
+        Ok(CompiledText { text: composed.text.into(), functions, validated })
     }
 
-    fn graph(&self, file: &File, language: Language) -> Result<Arc<Graph>, Diagnostics> {
+    fn graph(&self, file: &ManifestFile, language: Language) -> Result<Arc<Graph>, Diagnostics> {
         let mut kept = self.kept();
         if let Some(graph) = kept.graphs.get(&file.path) {
             return Ok(graph.clone());
@@ -187,13 +187,13 @@ impl Programs {
         Ok(graph)
     }
 
-    fn kept(&self) -> MutexGuard<'_, Kept> {
+    fn kept(&self) -> MutexGuard<'_, KeptPrograms> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 /// A composed text, compiled.
-struct Text {
+struct CompiledText {
     text: Arc<str>,
     functions: Arc<[String]>,
     validated: Arc<Validated>,
@@ -212,9 +212,9 @@ fn library_functions(composed: &compose::Composed, texts: &SourceSet) -> Arc<[St
     functions.filter_map(path).collect::<BTreeSet<_>>().into_iter().collect()
 }
 
-fn ready_text(text: &Text, entry: &'static str) -> Result<Composed, Diagnostics> {
+fn ready_text(text: &CompiledText, entry: &'static str) -> Result<ReadyStage, Diagnostics> {
     let reflection = reflect(&text.validated, entry).map_err(|problem| vec![problem])?;
-    Ok(Composed {
+    Ok(ReadyStage {
         validated: text.validated.clone(),
         entry,
         reflection,

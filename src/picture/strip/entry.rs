@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
 
-use crate::catalogue::preset::Number;
+use crate::catalogue::preset::PresetNumber;
 use crate::catalogue::reader;
 use crate::diagnostic::Diagnostics;
 use crate::scene::sets;
@@ -44,7 +44,7 @@ pub struct Panel {
     pub cascades: u32,
     /// Numbers that replace those of the scene, by group and field, as in a preset.
     #[serde(default)]
-    pub numbers: BTreeMap<String, BTreeMap<String, Number>>,
+    pub numbers: BTreeMap<String, BTreeMap<String, PresetNumber>>,
     /// Instead of a key, a WGSL expression for the colour at `at`, which goes from (-4/3, -1) to
     /// (4/3, 1).
     pub value: Option<String>,
@@ -55,8 +55,8 @@ fn default_one() -> u32 {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Entry {
+#[serde(deny_unknown_fields, rename = "Entry")]
+struct ComparisonEntry {
     doc: String,
     look: String,
     #[serde(default)]
@@ -74,16 +74,16 @@ struct Entry {
 /// Those of the file.
 pub fn library_comparisons(sources: &mut SourceSet) -> Result<Vec<Comparison>, Diagnostics> {
     let id = reader::add_own(sources, PATH)?;
-    let entries: BTreeMap<String, Entry> = reader::read_data(sources, id)?;
+    let entries: BTreeMap<String, ComparisonEntry> = reader::read_data(sources, id)?;
     let mut problems = Vec::new();
-    let comparison = |(name, entry): (String, Entry)| {
+    let comparison = |(name, entry): (String, ComparisonEntry)| {
         if let Some(scene) = &entry.scene
             && !sets::ALL.iter().any(|set| set.name == scene.get_ref())
         {
             let message = format!("there is no scene `{}`", scene.get_ref());
             problems.push(reader::invalid_data(Span::new(id, scene.span()), message));
         }
-        let Entry { doc, look, scene, code, inset, differs, panels } = entry;
+        let ComparisonEntry { doc, look, scene, code, inset, differs, panels } = entry;
         let scene = scene.map_or_else(String::new, Spanned::into_inner);
         Comparison { name, doc, look, scene, code, inset, differs, panels }
     };

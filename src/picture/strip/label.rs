@@ -16,7 +16,7 @@ const INK: Rgb888 = Rgb888::new(232, 234, 238);
 
 /// Writes one line from a place to the right, as far as the width allows.
 pub fn write_label(picture: &mut Picture, text: &str, [left, top]: [u32; 2], width: u32) {
-    let mut page = Page { picture, right: left + width };
+    let mut page = LabelCanvas { picture, right: left + width };
     let style = MonoTextStyle::new(&FONT_10X20, INK);
     let place = Point::new(left as i32, top as i32);
     // Writing pixels in memory cannot fail.
@@ -24,18 +24,18 @@ pub fn write_label(picture: &mut Picture, text: &str, [left, top]: [u32; 2], wid
 }
 
 /// A picture to write on.
-struct Page<'p> {
+struct LabelCanvas<'p> {
     picture: &'p mut Picture,
     right: u32,
 }
 
-impl Dimensions for Page<'_> {
+impl Dimensions for LabelCanvas<'_> {
     fn bounding_box(&self) -> Rectangle {
         Rectangle::new(Point::zero(), Size::new(self.right, self.picture.height))
     }
 }
 
-impl DrawTarget for Page<'_> {
+impl DrawTarget for LabelCanvas<'_> {
     type Color = Rgb888;
     type Error = Infallible;
 

@@ -1,13 +1,13 @@
 //! The values that a parameter takes in a case.
 
 use super::random::Random;
-use super::reader::{CaseValue, Node};
+use super::reader::{CaseNode, CaseValue};
 use super::values::{
     even_steps, neighbours_of, related_directions, special_values, specials, unit_vectors,
     value_grid,
 };
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::execute::kernel::Shape;
+use crate::execute::kernel::TypeShape;
 use crate::limits::CASE_ROWS;
 use naga::ScalarKind;
 
@@ -16,29 +16,29 @@ const MOST: u32 = CASE_ROWS as u32;
 
 /// A kind of domain in a case file: its key, the keys that may stand beside that, and how it is
 /// read.
-struct Kind {
+struct DomainKind {
     key: &'static str,
     others: &'static [&'static str],
-    read: fn(&Node, &Node) -> Result<Domain, Diagnostic>,
+    read: fn(&CaseNode, &CaseNode) -> Result<Domain, Diagnostic>,
 }
 
-const KINDS: &[Kind] = &[
-    Kind {
+const KINDS: &[DomainKind] = &[
+    DomainKind {
         key: "values",
         others: &[],
         read: |value, _| {
             Ok(Domain::Values(
-                value.elements()?.iter().map(Node::numbers).collect::<Result<_, _>>()?,
+                value.elements()?.iter().map(CaseNode::numbers).collect::<Result<_, _>>()?,
             ))
         },
     },
-    Kind {
+    DomainKind {
         key: "grid",
         others: &["count"],
         read: |value, all| Ok(Domain::Grid { range: value.pair()?, count: read_count(all)? }),
     },
-    Kind { key: "log", others: &["count"], read: read_log },
-    Kind {
+    DomainKind { key: "log", others: &["count"], read: read_log },
+    DomainKind {
         key: "random",
         others: &["count", "seed"],
         read: |value, all| {
@@ -49,29 +49,29 @@ const KINDS: &[Kind] = &[
             })
         },
     },
-    Kind {
+    DomainKind {
         key: "unit",
         others: &["seed"],
         read: |value, all| Ok(Domain::Unit { count: value.count(1, MOST)?, seed: read_seed(all)? }),
     },
-    Kind {
+    DomainKind {
         key: "hemisphere",
         others: &["count", "seed"],
         read: |value, all| read_about(value, all, About::Hemisphere),
     },
-    Kind {
+    DomainKind {
         key: "grazing",
         others: &["count", "seed"],
         read: |value, all| read_about(value, all, About::Grazing),
     },
-    Kind {
+    DomainKind {
         key: "same",
         others: &[],
         read: |value, _| {
             Ok(Domain::About { of: read_path(value)?, kind: About::Same, count: 1, seed: 0 })
         },
     },
-    Kind {
+    DomainKind {
         key: "around",
         others: &["ulps"],
         read: |value, all| {
@@ -81,7 +81,7 @@ const KINDS: &[Kind] = &[
             })
         },
     },
-    Kind {
+    DomainKind {
         key: "special",
         others: &[],
         read: |value, _| Ok(Domain::Special(value.choice(SPECIALS)?)),
@@ -130,8 +130,8 @@ pub enum Domain {
 /// Reads the domains below a path: one for a plain parameter, one for each field of a struct.
 pub fn read_domains(
     path: &str,
-    node: &Node,
-    found: &mut Vec<(String, Domain, Node)>,
+    node: &CaseNode,
+    found: &mut Vec<(String, Domain, CaseNode)>,
 ) -> Result<(), Diagnostics> {
     match &node.value {
         CaseValue::Table(entries) if !is_domain(node) => {
@@ -149,15 +149,15 @@ pub fn read_domains(
 }
 
 /// Whether every key belongs to one kind of domain. If not, the table lists fields of a struct.
-fn is_domain(node: &Node) -> bool {
+fn is_domain(node: &CaseNode) -> bool {
     KINDS.iter().any(|kind| node.get(kind.key).is_some() && node.only(&domain_keys(kind)).is_ok())
 }
 
-fn domain_keys(kind: &Kind) -> Vec<&'static str> {
+fn domain_keys(kind: &DomainKind) -> Vec<&'static str> {
     std::iter::once(kind.key).chain(kind.others.iter().copied()).collect()
 }
 
-fn read_domain(node: &Node) -> Result<Domain, Diagnostic> {
+fn read_domain(node: &CaseNode) -> Result<Domain, Diagnostic> {
     match &node.value {
         CaseValue::Array(elements) => {
             elements.iter().map(read_part).collect::<Result<_, _>>().map(Domain::Union)
@@ -175,24 +175,24 @@ fn read_domain(node: &Node) -> Result<Domain, Diagnostic> {
 
 /// Reads an element of a union. An array there lists values; the value of a vector is an array
 /// itself.
-fn read_part(node: &Node) -> Result<Domain, Diagnostic> {
+fn read_part(node: &CaseNode) -> Result<Domain, Diagnostic> {
     match &node.value {
         CaseValue::Array(values) => {
-            values.iter().map(Node::numbers).collect::<Result<_, _>>().map(Domain::Values)
+            values.iter().map(CaseNode::numbers).collect::<Result<_, _>>().map(Domain::Values)
         }
         _ => read_domain(node),
     }
 }
 
-fn read_count(all: &Node) -> Result<u32, Diagnostic> {
+fn read_count(all: &CaseNode) -> Result<u32, Diagnostic> {
     all.required("count")?.count(1, MOST)
 }
 
-fn read_seed(all: &Node) -> Result<u64, Diagnostic> {
+fn read_seed(all: &CaseNode) -> Result<u64, Diagnostic> {
     all.get("seed").map_or(Ok(1), |node| node.count(0, u32::MAX).map(u64::from))
 }
 
-fn read_log(value: &Node, all: &Node) -> Result<Domain, Diagnostic> {
+fn read_log(value: &CaseNode, all: &CaseNode) -> Result<Domain, Diagnostic> {
     let range = value.pair()?;
     if range.0 * range.1 <= 0.0 {
         return Err(value.error("a logarithmic range may not hold zero"));
@@ -200,7 +200,7 @@ fn read_log(value: &Node, all: &Node) -> Result<Domain, Diagnostic> {
     Ok(Domain::Log { range, count: read_count(all)? })
 }
 
-fn read_about(value: &Node, all: &Node, kind: About) -> Result<Domain, Diagnostic> {
+fn read_about(value: &CaseNode, all: &CaseNode, kind: About) -> Result<Domain, Diagnostic> {
     Ok(Domain::About {
         of: read_path(value)?,
         kind,
@@ -209,7 +209,7 @@ fn read_about(value: &Node, all: &Node, kind: About) -> Result<Domain, Diagnosti
     })
 }
 
-fn read_path(value: &Node) -> Result<String, Diagnostic> {
+fn read_path(value: &CaseNode) -> Result<String, Diagnostic> {
     value.text().map(str::to_owned)
 }
 
@@ -250,8 +250,8 @@ impl Domain {
     /// `other` gives the shape of a needed parameter.
     pub fn count(
         &self,
-        shape: &Shape,
-        other: &dyn Fn(&str) -> Option<Shape>,
+        shape: &TypeShape,
+        other: &dyn Fn(&str) -> Option<TypeShape>,
     ) -> Result<usize, String> {
         let size = shape.words() as usize;
         let fits = |given: usize| match given == 1 || given == size {
@@ -296,7 +296,7 @@ impl Domain {
     /// makes random values of different rows differ.
     pub fn words(
         &self,
-        shape: &Shape,
+        shape: &TypeShape,
         other: &dyn Fn(&str) -> Vec<f64>,
         salt: u64,
     ) -> Vec<Vec<u32>> {

@@ -1,15 +1,17 @@
 //! Reads `[fixture.NAME]` tables: samplers, and textures made from a pattern.
 
-use super::reader::Node;
+use super::reader::CaseNode;
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::execute::fixture::{Address, Compare, Fixture, Sampler, Texture, TextureKind};
+use crate::execute::fixture::{
+    Address, Compare, Fixture, FixtureSampler, FixtureTexture, TextureKind,
+};
 
 const TEXTURE_KEYS: &[&str] =
     &["kind", "size", "pattern", "low", "high", "cells", "edge", "texels"];
 const SAMPLER_KEYS: &[&str] = &["kind", "compare", "filter", "address"];
 
 /// A pattern: gives the weight of `high`, from the settings, the place in [0, 1)^2 and the layer.
-type Pattern = fn(&Settings, f64, f64, u32) -> f64;
+type Pattern = fn(&FixtureSettings, f64, f64, u32) -> f64;
 
 const PATTERNS: &[(&str, Pattern)] = &[
     ("constant", |_, _, _, _| 0.0),
@@ -26,7 +28,7 @@ const PATTERNS: &[(&str, Pattern)] = &[
     ),
 ];
 
-struct Settings {
+struct FixtureSettings {
     low: Vec<f64>,
     high: Vec<f64>,
     cells: f64,
@@ -34,7 +36,7 @@ struct Settings {
 }
 
 /// The fixture of a table.
-pub fn read_fixture(node: &Node) -> Result<Fixture, Diagnostics> {
+pub fn read_fixture(node: &CaseNode) -> Result<Fixture, Diagnostics> {
     let kind = node.required("kind").map_err(one_error)?;
     if kind.text().map_err(one_error)? == "sampler" {
         node.only(SAMPLER_KEYS)?;
@@ -50,17 +52,17 @@ fn one_error(error: Diagnostic) -> Diagnostics {
     vec![error]
 }
 
-fn read_sampler(node: &Node) -> Result<Sampler, Diagnostic> {
+fn read_sampler(node: &CaseNode) -> Result<FixtureSampler, Diagnostic> {
     let compare = node.get("compare").map(|node| node.choice(Compare::NAMES)).transpose()?;
     let linear = node
         .get("filter")
         .map_or(Ok(false), |node| node.choice(&[("linear", true), ("nearest", false)]))?;
     let address =
         node.get("address").map_or(Ok(Address::Clamp), |node| node.choice(Address::NAMES))?;
-    Ok(Sampler { compare, linear, address })
+    Ok(FixtureSampler { compare, linear, address })
 }
 
-fn read_texture(node: &Node, kind: TextureKind) -> Result<Texture, Diagnostic> {
+fn read_texture(node: &CaseNode, kind: TextureKind) -> Result<FixtureTexture, Diagnostic> {
     let size = node.required("size")?;
     let (width, height) = match size.elements()? {
         [width, height] => (width.count(1, 1024)?, height.count(1, 1024)?),
@@ -77,10 +79,10 @@ fn read_texture(node: &Node, kind: TextureKind) -> Result<Texture, Diagnostic> {
     if kind.is_depth() && texels.iter().any(|depth| !(0.0..=1.0).contains(depth)) {
         return Err(node.error("depths lie in [0, 1]"));
     }
-    Ok(Texture { kind, width, height, texels })
+    Ok(FixtureTexture { kind, width, height, texels })
 }
 
-fn explicit_texels(node: &Node, wanted: usize) -> Result<Vec<f32>, Diagnostic> {
+fn explicit_texels(node: &CaseNode, wanted: usize) -> Result<Vec<f32>, Diagnostic> {
     let texels: Vec<f32> = node.numbers()?.into_iter().map(|value| value as f32).collect();
     if texels.len() != wanted {
         return Err(node.error(format!("expected {wanted} values, found {}", texels.len())));
@@ -89,16 +91,16 @@ fn explicit_texels(node: &Node, wanted: usize) -> Result<Vec<f32>, Diagnostic> {
 }
 
 fn patterned_texels(
-    node: &Node,
+    node: &CaseNode,
     kind: TextureKind,
     width: u32,
     height: u32,
 ) -> Result<Vec<f32>, Diagnostic> {
     let pattern = node.required("pattern")?.choice(PATTERNS)?;
     let numbers =
-        |name: &str, default: f64| node.get(name).map_or(Ok(vec![default]), Node::numbers);
-    let number = |name: &str, default: f64| node.get(name).map_or(Ok(default), Node::number);
-    let settings = Settings {
+        |name: &str, default: f64| node.get(name).map_or(Ok(vec![default]), CaseNode::numbers);
+    let number = |name: &str, default: f64| node.get(name).map_or(Ok(default), CaseNode::number);
+    let settings = FixtureSettings {
         low: numbers("low", 0.0)?,
         high: numbers("high", 1.0)?,
         cells: number("cells", 4.0)?,

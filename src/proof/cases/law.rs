@@ -1,14 +1,14 @@
 //! Reads laws from a case file.
 
-use super::Text;
-use super::reader::{CaseValue, Node};
+use super::FormulaText;
+use super::reader::{CaseNode, CaseValue};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::proof::laws::{
-    self, Albedo, Area, Equality, Formulas, Integral, Inverse, Law, Over, Takes, Wanted,
+    self, Albedo, Area, Equality, Formulas, Integral, IntegralValue, Inverse, Law, Over, Takes,
 };
 
 /// Reads one law.
-pub fn read_law(node: &Node) -> Result<Law, Diagnostic> {
+pub fn read_law(node: &CaseNode) -> Result<Law, Diagnostic> {
     let entries = node.entries()?;
     let found = entries
         .iter()
@@ -33,7 +33,7 @@ pub fn read_law(node: &Node) -> Result<Law, Diagnostic> {
 }
 
 /// The law with the values that its kind takes.
-fn fill_law(mut law: Law, node: &Node, value: &Node) -> Result<Law, Diagnostic> {
+fn fill_law(mut law: Law, node: &CaseNode, value: &CaseNode) -> Result<Law, Diagnostic> {
     match law.kind.takes {
         Takes::Numbers => law.numbers = value.numbers()?,
         Takes::Names => law.names = read_names(law.kind.name, value)?,
@@ -69,8 +69,8 @@ fn fill_law(mut law: Law, node: &Node, value: &Node) -> Result<Law, Diagnostic> 
         }
         Takes::Finite => {
             law.numbers = vec![read_magnitude(value)?];
-            law.filter = node.get("where").map(Text::read).transpose()?;
-            let reason = node.get("because").map(Node::text).transpose()?;
+            law.filter = node.get("where").map(FormulaText::read).transpose()?;
+            let reason = node.get("because").map(CaseNode::text).transpose()?;
             if law.filter.is_some() && reason.is_none_or(str::is_empty) {
                 return Err(node.error("a law with `where` says why in `because`"));
             }
@@ -80,7 +80,7 @@ fn fill_law(mut law: Law, node: &Node, value: &Node) -> Result<Law, Diagnostic> 
 }
 
 /// Reads the largest magnitude of arguments, for the law `finite`.
-fn read_magnitude(node: &Node) -> Result<f64, Diagnostic> {
+fn read_magnitude(node: &CaseNode) -> Result<f64, Diagnostic> {
     let number = node.number()?;
     match number > 0.0 && number.is_finite() {
         true => Ok(number),
@@ -88,12 +88,12 @@ fn read_magnitude(node: &Node) -> Result<f64, Diagnostic> {
     }
 }
 
-fn read_texts(node: &Node) -> Result<Vec<String>, Diagnostic> {
+fn read_texts(node: &CaseNode) -> Result<Vec<String>, Diagnostic> {
     node.one_or_more().iter().map(|one| one.text().map(str::to_owned)).collect()
 }
 
 /// Reads names of parameters. The law `swap` needs pairs of them.
-fn read_names(kind: &str, node: &Node) -> Result<Vec<String>, Diagnostic> {
+fn read_names(kind: &str, node: &CaseNode) -> Result<Vec<String>, Diagnostic> {
     let names = read_texts(node)?;
     match kind == "swap" && (names.is_empty() || names.len() % 2 != 0) {
         true => Err(node.error("parameters are exchanged in pairs")),
@@ -101,7 +101,7 @@ fn read_names(kind: &str, node: &Node) -> Result<Vec<String>, Diagnostic> {
     }
 }
 
-fn read_integral(node: &Node) -> Result<Integral, Diagnostic> {
+fn read_integral(node: &CaseNode) -> Result<Integral, Diagnostic> {
     let about = node.get("about").map(|about| about.text().map(str::to_owned)).transpose()?;
     let cosine =
         node.get("cosine").is_some_and(|cosine| matches!(cosine.value, CaseValue::Bool(true)));
@@ -117,19 +117,19 @@ fn read_integral(node: &Node) -> Result<Integral, Diagnostic> {
     })
 }
 
-fn read_steps(node: &Node) -> Result<usize, Diagnostic> {
+fn read_steps(node: &CaseNode) -> Result<usize, Diagnostic> {
     Ok(node.get("steps").map_or(Ok(16), |steps| steps.count(2, 128))? as usize)
 }
 
-fn read_albedo(node: &Node) -> Result<Albedo, Diagnostic> {
+fn read_albedo(node: &CaseNode) -> Result<Albedo, Diagnostic> {
     let text = |name: &str| node.get(name).map(|node| node.text().map(str::to_owned)).transpose();
     let over =
         [("l", Over::Light), ("h", Over::Half), ("below", Over::Below), ("sphere", Over::Sphere)];
     Ok(Albedo {
         over: node.get("over").map_or(Ok(Over::Light), |node| node.choice(&over))?,
         view: text("view")?.unwrap_or_else(|| "nv".to_owned()),
-        azimuth: node.get("azimuth").map_or(Ok(0.0), Node::number)?,
-        peak: node.get("peak").map(Text::read).transpose()?,
+        azimuth: node.get("azimuth").map_or(Ok(0.0), CaseNode::number)?,
+        peak: node.get("peak").map(FormulaText::read).transpose()?,
         with: node.get("with").map_or(Ok(Formulas::new()), read_formulas)?,
         component: node
             .get("component")
@@ -141,21 +141,21 @@ fn read_albedo(node: &Node) -> Result<Albedo, Diagnostic> {
     })
 }
 
-fn read_wanted(node: &Node) -> Result<Wanted, Diagnostic> {
+fn read_wanted(node: &CaseNode) -> Result<IntegralValue, Diagnostic> {
     Ok(match (node.get("gives"), node.get("at_most")) {
-        (Some(gives), _) => Wanted::Exactly(read_formula(gives)?),
-        (None, Some(most)) => Wanted::AtMost(read_formula(most)?),
-        (None, None) => Wanted::Own,
+        (Some(gives), _) => IntegralValue::Exactly(read_formula(gives)?),
+        (None, Some(most)) => IntegralValue::AtMost(read_formula(most)?),
+        (None, None) => IntegralValue::Own,
     })
 }
 
-fn read_equality(node: &Node) -> Result<Equality, Diagnostic> {
-    let tables = node.get("with").map_or(&[][..], Node::one_or_more);
+fn read_equality(node: &CaseNode) -> Result<Equality, Diagnostic> {
+    let tables = node.get("with").map_or(&[][..], CaseNode::one_or_more);
     let with = tables.iter().map(read_formulas).collect::<Result<_, _>>()?;
     Ok(Equality { with, within: node.required("within")?.number()? })
 }
 
-fn read_area(node: &Node) -> Result<Area, Diagnostic> {
+fn read_area(node: &CaseNode) -> Result<Area, Diagnostic> {
     Ok(Area {
         along: node.required("along")?.text()?.to_owned(),
         from: read_formula(node.required("from")?)?,
@@ -170,22 +170,22 @@ fn read_area(node: &Node) -> Result<Area, Diagnostic> {
 }
 
 /// Formulas by name.
-fn read_formulas(node: &Node) -> Result<Formulas, Diagnostic> {
+fn read_formulas(node: &CaseNode) -> Result<Formulas, Diagnostic> {
     let entries = node.entries()?.iter();
     entries.map(|(key, value)| Ok((key.name.clone(), read_formula(value)?))).collect()
 }
 
 /// Reads a formula. Plain numbers become the formula `vec(...)` of them.
-fn read_formula(node: &Node) -> Result<Text, Diagnostic> {
+fn read_formula(node: &CaseNode) -> Result<FormulaText, Diagnostic> {
     if let CaseValue::Text(_) = node.value {
-        return Text::read(node);
+        return FormulaText::read(node);
     }
     let numbers: Vec<String> =
         node.numbers()?.iter().map(|number| format!("(0 + {number:?})")).collect();
-    Ok(Text { text: format!("vec({})", numbers.join(", ")), span: node.span })
+    Ok(FormulaText { text: format!("vec({})", numbers.join(", ")), span: node.span })
 }
 
-fn read_inverse(node: &Node) -> Result<Inverse, Diagnostic> {
+fn read_inverse(node: &CaseNode) -> Result<Inverse, Diagnostic> {
     let of = node.get("of").map(|of| of.text().map(str::to_owned)).transpose()?;
     Ok(Inverse { of, within: node.required("within")?.number()? })
 }

@@ -70,7 +70,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::fixture::Fixture;
 use crate::limits::CASES;
 use crate::source::{SourceId, SourceSet, Span};
-use reader::Node;
+use reader::CaseNode;
 
 const CASE_KEYS: &[&str] = &[
     "function",
@@ -90,11 +90,11 @@ const CASE_KEYS: &[&str] = &[
 
 /// Cases of one module.
 #[derive(Debug)]
-pub struct File {
+pub struct CaseFile {
     pub cases: Vec<Case>,
 }
 
-impl File {
+impl CaseFile {
     /// Adds the law that values are finite to the first case of each function that has it in no
     /// case.
     pub fn promise_finite(&mut self) {
@@ -127,9 +127,9 @@ pub struct Case {
     inputs: Vec<(String, Domain, Span)>,
     zip: bool,
     pub oracle: Oracle,
-    pub tolerance: Vec<Term<Text>>,
-    filter: Option<Text>,
-    pub near: Option<(Text, f64)>,
+    pub tolerance: Vec<Term<FormulaText>>,
+    filter: Option<FormulaText>,
+    pub near: Option<(FormulaText, f64)>,
     /// The largest share of rows that may be ambiguous.
     pub ambiguous: f64,
     pub laws: Vec<Law>,
@@ -146,7 +146,7 @@ pub enum Oracle {
     Reference,
     /// The code's own value in f64.
     Eval,
-    Formula(Text),
+    Formula(FormulaText),
     Table(Vec<TableRow>),
     None,
 }
@@ -161,19 +161,19 @@ pub struct TableRow {
 
 /// A formula as text.
 #[derive(Debug, Clone)]
-pub struct Text {
+pub struct FormulaText {
     pub text: String,
     pub span: Span,
 }
 
 impl Case {
     /// The formula that says which rows are kept.
-    pub fn filter(&self) -> Option<&Text> {
+    pub fn filter(&self) -> Option<&FormulaText> {
         self.filter.as_ref()
     }
 }
 
-impl Text {
+impl FormulaText {
     /// Parses the formula. `scope` has the parameters of the function.
     pub fn bind(&self, scope: &Scope<'_>) -> Result<Formula, Diagnostic> {
         Formula::parse(&self.text, scope).map_err(|Mistake { range, message, note }| {
@@ -191,18 +191,18 @@ impl Text {
         })
     }
 
-    fn read(node: &Node) -> Result<Self, Diagnostic> {
+    fn read(node: &CaseNode) -> Result<Self, Diagnostic> {
         Ok(Self { text: node.text()?.to_owned(), span: node.span })
     }
 }
 
 /// Parses a case file.
-pub fn parse_cases(sources: &SourceSet, id: SourceId) -> Result<File, Diagnostics> {
+pub fn parse_cases(sources: &SourceSet, id: SourceId) -> Result<CaseFile, Diagnostics> {
     let root = reader::read_toml(&sources.get(id).text, id).map_err(|error| vec![error])?;
     root.only(&["case", "fixture"])?;
     let fixtures = named_fixtures(&root)?;
     let nodes =
-        root.get("case").map_or(Ok(&[][..]), Node::elements).map_err(|error| vec![error])?;
+        root.get("case").map_or(Ok(&[][..]), CaseNode::elements).map_err(|error| vec![error])?;
     if let Some(node) = nodes.get(CASES) {
         return Err(vec![node.error(format!("a file may have {CASES} cases"))]);
     }
@@ -213,10 +213,10 @@ pub fn parse_cases(sources: &SourceSet, id: SourceId) -> Result<File, Diagnostic
             Err(found) => errors.extend(found),
         }
     }
-    if errors.is_empty() { Ok(File { cases }) } else { Err(errors) }
+    if errors.is_empty() { Ok(CaseFile { cases }) } else { Err(errors) }
 }
 
-fn named_fixtures(root: &Node) -> Result<BTreeMap<String, Arc<Fixture>>, Diagnostics> {
+fn named_fixtures(root: &CaseNode) -> Result<BTreeMap<String, Arc<Fixture>>, Diagnostics> {
     let Some(node) = root.get("fixture") else { return Ok(BTreeMap::new()) };
     let entries = node.entries().map_err(|error| vec![error])?;
     entries
@@ -225,7 +225,10 @@ fn named_fixtures(root: &Node) -> Result<BTreeMap<String, Arc<Fixture>>, Diagnos
         .collect()
 }
 
-fn read_case(node: &Node, fixtures: &BTreeMap<String, Arc<Fixture>>) -> Result<Case, Diagnostics> {
+fn read_case(
+    node: &CaseNode,
+    fixtures: &BTreeMap<String, Arc<Fixture>>,
+) -> Result<Case, Diagnostics> {
     node.only(CASE_KEYS)?;
     let mut inputs = Vec::new();
     if let Some(table) = node.get("inputs") {
@@ -238,13 +241,13 @@ fn read_case(node: &Node, fixtures: &BTreeMap<String, Arc<Fixture>>) -> Result<C
 }
 
 fn read_simple(
-    node: &Node,
+    node: &CaseNode,
     fixtures: &BTreeMap<String, Arc<Fixture>>,
     inputs: Vec<(String, Domain, Span)>,
 ) -> Result<Case, Diagnostic> {
     let function = node.required("function")?;
-    let text = |name: &str| node.get(name).map(Text::read).transpose();
-    let number = |name: &str, default: f64| node.get(name).map_or(Ok(default), Node::number);
+    let text = |name: &str| node.get(name).map(FormulaText::read).transpose();
+    let number = |name: &str, default: f64| node.get(name).map_or(Ok(default), CaseNode::number);
     let margin = number("margin", 1e-6)?;
     Ok(Case {
         function: function.text()?.to_owned(),
@@ -267,7 +270,7 @@ fn read_simple(
 }
 
 fn chosen_fixtures(
-    node: &Node,
+    node: &CaseNode,
     fixtures: &BTreeMap<String, Arc<Fixture>>,
 ) -> Result<BTreeMap<String, Arc<Fixture>>, Diagnostic> {
     let Some(table) = node.get("fixtures") else { return Ok(BTreeMap::new()) };
@@ -282,7 +285,7 @@ fn chosen_fixtures(
     chosen.collect()
 }
 
-fn fixture_names(node: &Node) -> Result<Vec<(String, String)>, Diagnostic> {
+fn fixture_names(node: &CaseNode) -> Result<Vec<(String, String)>, Diagnostic> {
     let Some(table) = node.get("fixtures") else { return Ok(Vec::new()) };
     table
         .entries()?
@@ -297,9 +300,9 @@ type NamedOracle = (&'static str, fn() -> Oracle);
 const ORACLES: &[NamedOracle] =
     &[("reference", || Oracle::Reference), ("eval", || Oracle::Eval), ("none", || Oracle::None)];
 
-fn read_oracle(node: &Node) -> Result<Oracle, Diagnostic> {
+fn read_oracle(node: &CaseNode) -> Result<Oracle, Diagnostic> {
     if let Some(formula) = node.get("formula") {
-        return Text::read(formula).map(Oracle::Formula);
+        return FormulaText::read(formula).map(Oracle::Formula);
     }
     if let Some(rows) = node.get("rows") {
         return rows.elements()?.iter().map(table_row).collect::<Result<_, _>>().map(Oracle::Table);
@@ -307,7 +310,7 @@ fn read_oracle(node: &Node) -> Result<Oracle, Diagnostic> {
     node.get("oracle").map_or(Ok(Oracle::Default), |node| Ok(node.choice(ORACLES)?()))
 }
 
-fn table_row(node: &Node) -> Result<TableRow, Diagnostic> {
+fn table_row(node: &CaseNode) -> Result<TableRow, Diagnostic> {
     let expect = node.required("expect")?.numbers()?;
     Ok(TableRow { values: values_by_path("", node, &["expect"])?, expect, span: node.span })
 }
@@ -315,7 +318,7 @@ fn table_row(node: &Node) -> Result<TableRow, Diagnostic> {
 /// The values of a table by path. Tables within it are fields.
 fn values_by_path(
     prefix: &str,
-    node: &Node,
+    node: &CaseNode,
     skipped: &[&str],
 ) -> Result<Vec<(String, Vec<f64>)>, Diagnostic> {
     let mut values = Vec::new();
@@ -333,7 +336,7 @@ fn values_by_path(
     Ok(values)
 }
 
-fn tolerance_terms(node: &Node) -> Result<Vec<Term<Text>>, Diagnostic> {
+fn tolerance_terms(node: &CaseNode) -> Result<Vec<Term<FormulaText>>, Diagnostic> {
     let mut terms = Vec::new();
     for table in node.one_or_more() {
         let only = table.get("for").map(|node| node.text().map(str::to_owned)).transpose()?;
@@ -357,18 +360,21 @@ fn tolerance_terms(node: &Node) -> Result<Vec<Term<Text>>, Diagnostic> {
 
 /// The coefficient and the formulas of a term. A term without formulas is a plain number, which is
 /// its coefficient.
-fn term_parts(kind: &tolerance::Kind, node: &Node) -> Result<(f64, Vec<Text>), Diagnostic> {
+fn term_parts(
+    kind: &tolerance::TermKind,
+    node: &CaseNode,
+) -> Result<(f64, Vec<FormulaText>), Diagnostic> {
     if kind.formulas.is_empty() {
         return Ok((node.number()?, Vec::new()));
     }
     let known: Vec<_> = kind.formulas.iter().copied().chain(["ulp"]).collect();
     node.only(&known).map_err(|mut errors| errors.remove(0))?;
-    let coefficient = node.get("ulp").map_or(Ok(kind.default), Node::number)?;
+    let coefficient = node.get("ulp").map_or(Ok(kind.default), CaseNode::number)?;
     Ok((
         coefficient,
         kind.formulas
             .iter()
-            .map(|name| Text::read(node.required(name)?))
+            .map(|name| FormulaText::read(node.required(name)?))
             .collect::<Result<_, _>>()?,
     ))
 }

@@ -8,7 +8,7 @@ use crate::source::{SourceId, Span};
 
 /// A value of a case file, and its place.
 #[derive(Debug, Clone)]
-pub struct Node {
+pub struct CaseNode {
     pub value: CaseValue,
     pub span: Span,
 }
@@ -19,28 +19,28 @@ pub enum CaseValue {
     Bool(bool),
     Number(f64),
     Text(String),
-    Array(Vec<Node>),
-    Table(Vec<(Key, Node)>),
+    Array(Vec<CaseNode>),
+    Table(Vec<(CaseKey, CaseNode)>),
 }
 
 /// A key, and its place.
 #[derive(Debug, Clone)]
-pub struct Key {
+pub struct CaseKey {
     pub name: String,
     pub span: Span,
 }
 
 /// The whole file as a table.
-pub fn read_toml(text: &str, source: SourceId) -> Result<Node, Diagnostic> {
+pub fn read_toml(text: &str, source: SourceId) -> Result<CaseNode, Diagnostic> {
     let table = DeTable::parse(text).map_err(|error| {
         let span = Span::new(source, error.span().unwrap_or(0..0));
         Diagnostic::error(codes::CASE_SYNTAX, error.message().to_owned()).at(span, "here")
     })?;
     let span = Span::new(source, table.span());
-    Ok(Node { value: self::table_of(table.get_ref(), source), span })
+    Ok(CaseNode { value: self::table_of(table.get_ref(), source), span })
 }
 
-fn node_of(value: &Spanned<DeValue<'_>>, source: SourceId) -> Node {
+fn node_of(value: &Spanned<DeValue<'_>>, source: SourceId) -> CaseNode {
     let span = Span::new(source, value.span());
     let value = match value.get_ref() {
         DeValue::Boolean(value) => CaseValue::Bool(*value),
@@ -54,11 +54,11 @@ fn node_of(value: &Spanned<DeValue<'_>>, source: SourceId) -> Node {
         }
         DeValue::Table(values) => table_of(values, source),
     };
-    Node { value, span }
+    CaseNode { value, span }
 }
 
 fn table_of(table: &DeTable<'_>, source: SourceId) -> CaseValue {
-    let key = |key: &Spanned<std::borrow::Cow<'_, str>>| Key {
+    let key = |key: &Spanned<std::borrow::Cow<'_, str>>| CaseKey {
         name: key.get_ref().to_string(),
         span: Span::new(source, key.span()),
     };
@@ -68,14 +68,14 @@ fn table_of(table: &DeTable<'_>, source: SourceId) -> CaseValue {
     CaseValue::Table(entries)
 }
 
-impl Node {
+impl CaseNode {
     /// An error at this place.
     pub fn error(&self, message: impl Into<String>) -> Diagnostic {
         Diagnostic::error(codes::CASE_INVALID, message).at(self.span, "here")
     }
 
     /// The entries of a table.
-    pub fn entries(&self) -> Result<&[(Key, Node)], Diagnostic> {
+    pub fn entries(&self) -> Result<&[(CaseKey, CaseNode)], Diagnostic> {
         match &self.value {
             CaseValue::Table(entries) => Ok(entries),
             _ => Err(self.error("expected a table")),
@@ -83,7 +83,7 @@ impl Node {
     }
 
     /// The elements of an array.
-    pub fn elements(&self) -> Result<&[Node], Diagnostic> {
+    pub fn elements(&self) -> Result<&[CaseNode], Diagnostic> {
         match &self.value {
             CaseValue::Array(elements) => Ok(elements),
             _ => Err(self.error("expected an array")),
@@ -91,7 +91,7 @@ impl Node {
     }
 
     /// An array's elements, or the value itself as the only one.
-    pub fn one_or_more(&self) -> &[Node] {
+    pub fn one_or_more(&self) -> &[CaseNode] {
         match &self.value {
             CaseValue::Array(elements) => elements,
             _ => std::slice::from_ref(self),

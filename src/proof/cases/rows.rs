@@ -3,7 +3,7 @@
 use super::domain::{self, Domain};
 use super::{Case, Oracle, TableRow};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::execute::kernel::Shape;
+use crate::execute::kernel::TypeShape;
 use crate::execute::kernel::word_value;
 use crate::limits::{CASE_ROWS, CASE_WORDS, Steps};
 use crate::proof::formula::Scope;
@@ -27,7 +27,7 @@ pub struct Rows {
 struct Column<'a> {
     /// Index of its first word in a row.
     first: usize,
-    shape: Shape,
+    shape: TypeShape,
     domain: &'a Domain,
     /// How many values the domain has: the same for every row.
     count: usize,
@@ -93,14 +93,14 @@ pub fn case_rows(case: &Case, scope: &Scope<'_>, steps: &mut Steps) -> Result<Ro
     Ok(rows.with_words(kept))
 }
 
-type Generated = (Vec<u32>, Vec<std::ops::Range<usize>>);
+type GeneratedRows = (Vec<u32>, Vec<std::ops::Range<usize>>);
 
 fn generate_rows(
     case: &Case,
     scope: &Scope<'_>,
     kinds: &[ScalarKind],
     steps: &mut Steps,
-) -> Result<Generated, Diagnostic> {
+) -> Result<GeneratedRows, Diagnostic> {
     let columns = ordered_columns(case, scope)?;
     let stride = kinds.len().max(1);
     let count = bounded_count(case, &columns, stride)?;

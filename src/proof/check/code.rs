@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use super::job::Job;
+use super::job::CaseJob;
 use crate::execute::fixture::Fixture;
 use crate::execute::kernel::Kernel;
 
 /// Gives the kernels of one function with the same fixtures the same code, so that executors
 /// compile it once for all its cases and laws.
-pub fn share_code(jobs: &mut [Job<'_>]) {
+pub fn share_code(jobs: &mut [CaseJob<'_>]) {
     let mut known: Vec<(String, Vec<Arc<Fixture>>, Vec<u64>)> = Vec::new();
     let mut share = |path: String, fixtures: &[Arc<Fixture>], kernels: &mut [(_, Kernel)]| {
         let is_same =
@@ -24,7 +24,7 @@ pub fn share_code(jobs: &mut [Job<'_>]) {
         }
     };
     for job in jobs {
-        let Job { module, case, fixtures, kernels, laws, .. } = job;
+        let CaseJob { module, case, fixtures, kernels, laws, .. } = job;
         share(format!("{module}::{}", case.function), fixtures, kernels);
         for law in laws {
             for (partner, name) in law.partners.iter_mut().zip(&law.law.partners) {

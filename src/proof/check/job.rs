@@ -7,23 +7,23 @@ use rayon::prelude::*;
 
 use super::code::share_code;
 use super::partner::{self, Partner};
-use super::share::{Parts, Total, steps_of_case};
-use super::{Options, Subjects};
+use super::share::{RowFormulas, Total, steps_of_case};
+use super::{CheckOptions, Subjects};
 use crate::bundle::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::eval::{Bounded, FindingKind, Number};
 use crate::execute::fixture::Fixture;
-use crate::execute::interpreter::{Calls, Interpreter, slot_value};
-use crate::execute::kernel::{self, Kernel, Shape};
-use crate::proof::cases::{self, Case, File, Oracle, Rows};
+use crate::execute::interpreter::{Interpreter, KernelCalls, slot_value};
+use crate::execute::kernel::{self, Kernel, TypeShape};
+use crate::proof::cases::{self, Case, CaseFile, Oracle, Rows};
 use crate::proof::formula::{Formula, Scope};
 use crate::proof::laws::{self, Law};
-use crate::proof::references::{self, Arguments, Expected, Reference};
-use crate::proof::tolerance::{self, Bound};
+use crate::proof::references::{self, CallArguments, Expected, Reference};
+use crate::proof::tolerance::{self, BoundTerm};
 use naga::ScalarKind;
 
 /// One case of one module.
-pub struct Job<'a> {
+pub struct CaseJob<'a> {
     pub module: String,
     pub case: &'a Case,
     /// Index of the case in its file.
@@ -34,7 +34,7 @@ pub struct Job<'a> {
     pub rows: Rows,
     /// The expected values of each row; empty where the case has only laws.
     pub expected: Vec<Goal>,
-    pub terms: Vec<Bound>,
+    pub terms: Vec<BoundTerm>,
     pub near: Option<(Formula, f64)>,
     pub filter: Option<Formula>,
     pub laws: Vec<BoundLaw<'a>>,
@@ -76,7 +76,7 @@ impl From<Expected> for Goal {
     }
 }
 
-impl Job<'_> {
+impl CaseJob<'_> {
     /// The expected values of rows; `None` if the oracle knows only the rows of the case.
     pub fn goals(&self, rows: &Rows) -> Result<Option<Vec<Goal>>, Diagnostic> {
         let each = |expect: &(dyn Fn(&[f64]) -> Expected + Sync)| -> Vec<Goal> {
@@ -84,7 +84,7 @@ impl Job<'_> {
         };
         match &self.oracle {
             BoundOracle::Reference(reference) => {
-                Ok(Some(each(&|row| reference(&mut Arguments::new(row, &self.fixtures)))))
+                Ok(Some(each(&|row| reference(&mut CallArguments::new(row, &self.fixtures)))))
             }
             BoundOracle::Formula(formula) => {
                 Ok(Some(each(&|row| Expected::words(formula.eval(row)))))
@@ -105,11 +105,11 @@ impl Job<'_> {
 /// The jobs of a module's case file.
 pub fn prepare_jobs<'a>(
     module: &str,
-    file: &'a File,
+    file: &'a CaseFile,
     languages: &[Language],
     subjects: &Subjects<'_>,
-    options: &Options<'_>,
-) -> Result<Vec<Job<'a>>, Diagnostics> {
+    options: &CheckOptions<'_>,
+) -> Result<Vec<CaseJob<'a>>, Diagnostics> {
     let mut functions: Vec<String> = file.cases.iter().map(|case| case.function.clone()).collect();
     functions.sort();
     functions.dedup();
@@ -129,7 +129,7 @@ pub fn prepare_jobs<'a>(
         .par_iter()
         .enumerate()
         .map(|(index, record)| {
-            let place = Place { file, index, record, total: &total };
+            let place = CasePlace { file, index, record, total: &total };
             make_job(module, place, &modules, (subjects, options))
         })
         .collect();
@@ -176,10 +176,10 @@ fn build_kernels(
 
 fn make_job<'a>(
     module: &str,
-    Place { file, index, record, total }: Place<'a, '_>,
+    CasePlace { file, index, record, total }: CasePlace<'a, '_>,
     modules: &[(Language, Arc<naga::Module>)],
-    (subjects, options): (&Subjects<'_>, &Options<'_>),
-) -> Result<Job<'a>, Diagnostic> {
+    (subjects, options): (&Subjects<'_>, &CheckOptions<'_>),
+) -> Result<CaseJob<'a>, Diagnostic> {
     let case = &file.cases[index];
     let placed = |error: Diagnostic| placed_at(error, case);
     let mut steps = steps_of_case(file);
@@ -202,7 +202,7 @@ fn make_job<'a>(
         .transpose()?;
     let filter = case.filter().map(|text| text.bind(&scope)).transpose()?;
     let oracle = judge_case(module, case, &scope, first, options)?;
-    let parts = Parts { terms: &terms, near: &near, filter: &filter, oracle: &oracle };
+    let parts = RowFormulas { terms: &terms, near: &near, filter: &filter, oracle: &oracle };
     parts.spend(case, &rows, &mut steps)?;
     let bound = |law| {
         let mut partners =
@@ -217,7 +217,7 @@ fn make_job<'a>(
         .filter(|law| options.partners || law.partners.is_empty())
         .map(bound)
         .collect::<Result<_, Diagnostic>>()?;
-    let mut job = Job {
+    let mut job = CaseJob {
         module: module.to_owned(),
         record: record.to_owned(),
         case,
@@ -237,8 +237,8 @@ fn make_job<'a>(
 }
 
 /// A case of a file, and what the cases of the file share.
-struct Place<'a, 't> {
-    file: &'a File,
+struct CasePlace<'a, 't> {
+    file: &'a CaseFile,
     index: usize,
     record: &'t str,
     total: &'t Total,
@@ -246,7 +246,7 @@ struct Place<'a, 't> {
 
 /// The names under which the measurements of the cases are recorded: `math::safe::saturate`, and
 /// from a function's second case on `math::safe::saturate#2`.
-fn record_names<'f>(module: &str, file: &'f File) -> Vec<String> {
+fn record_names<'f>(module: &str, file: &'f CaseFile) -> Vec<String> {
     let mut seen: HashMap<&'f str, usize> = HashMap::new();
     let record = |case: &'f Case| {
         let earlier = seen.entry(&case.function).or_default();
@@ -284,7 +284,7 @@ fn judge_case(
     case: &Case,
     scope: &Scope<'_>,
     kernel: &Kernel,
-    options: &Options<'_>,
+    options: &CheckOptions<'_>,
 ) -> Result<BoundOracle, Diagnostic> {
     let reference = || {
         references::find_reference(module, &case.function)
@@ -307,14 +307,14 @@ fn judge_case(
     }
 }
 
-fn expected_goals(job: &Job<'_>) -> Result<Vec<Goal>, Diagnostic> {
+fn expected_goals(job: &CaseJob<'_>) -> Result<Vec<Goal>, Diagnostic> {
     let expected: Vec<Goal> = match &job.case.oracle {
         Oracle::Table(table) => {
             table.iter().map(|row| Expected::words(row.expect.iter().copied()).into()).collect()
         }
         _ => job.goals(&job.rows).map_err(|error| placed_at(error, job.case))?.unwrap_or_default(),
     };
-    let words = job.kernel().results.iter().map(Shape::words).sum::<u32>() as usize;
+    let words = job.kernel().results.iter().map(TypeShape::words).sum::<u32>() as usize;
     match expected.iter().find(|goal| goal.expected.value.len() != words) {
         Some(wrong) => {
             let message = format!(
@@ -353,7 +353,7 @@ pub fn bounded_goals(
 }
 
 fn bounded_row(
-    calls: &mut Calls<'_, Bounded>,
+    calls: &mut KernelCalls<'_, Bounded>,
     row: &[u32],
     kinds: &[ScalarKind],
 ) -> Result<Goal, Diagnostic> {

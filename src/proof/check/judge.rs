@@ -1,6 +1,6 @@
 //! Compares what an executor returned with what was expected.
 
-use super::job::{Goal, Job};
+use super::job::{CaseJob, Goal};
 use super::law::LawVerdict;
 use super::profile::Profile;
 use crate::execute::kernel::word_value;
@@ -10,7 +10,7 @@ use naga::ScalarKind;
 
 /// The result of checking the rows of a case.
 #[derive(Debug, Default)]
-pub struct Verdict {
+pub struct CaseVerdict {
     /// How many rows were tried.
     pub inputs: usize,
     /// Rows for which every result is accepted: f32 cannot represent the expected value, or the
@@ -46,7 +46,7 @@ pub struct Worst {
     pub allowed: f64,
 }
 
-impl Verdict {
+impl CaseVerdict {
     /// Whether every row and every law holds.
     pub fn passed(&self) -> bool {
         self.failing.is_empty() && self.passed_but_for_values()
@@ -81,9 +81,14 @@ impl Worst {
 }
 
 /// Judges every row.
-pub fn judge_rows(job: &Job<'_>, rows: &Rows, expected: &[Goal], results: &[u32]) -> Verdict {
+pub fn judge_rows(
+    job: &CaseJob<'_>,
+    rows: &Rows,
+    expected: &[Goal],
+    results: &[u32],
+) -> CaseVerdict {
     let kinds = job.kernel().result_kinds();
-    let mut verdict = Verdict { inputs: rows.len(), ..Verdict::default() };
+    let mut verdict = CaseVerdict { inputs: rows.len(), ..CaseVerdict::default() };
     for (index, (goal, found)) in
         expected.iter().zip(results.chunks(kinds.len().max(1))).enumerate()
     {
@@ -116,7 +121,7 @@ pub fn judge_rows(job: &Job<'_>, rows: &Rows, expected: &[Goal], results: &[u32]
 
 /// Compares with each accepted value, and returns the worst component for the value that fits best.
 pub fn compare_goal(
-    job: &Job<'_>,
+    job: &CaseJob<'_>,
     row: &[f64],
     goal: &Goal,
     found: &[u32],
@@ -131,7 +136,7 @@ pub fn compare_goal(
 /// Compares with one accepted value. `of` is that value, and for each word an error that is allowed
 /// beside the terms.
 fn compare_one(
-    job: &Job<'_>,
+    job: &CaseJob<'_>,
     row: &[f64],
     of: (&[f64], &[f64]),
     found: &[u32],
@@ -182,13 +187,13 @@ pub fn is_indeterminate(goal: &Goal) -> bool {
 }
 
 /// Whether rounding may decide a comparison that the case names in `near`.
-pub fn is_ambiguous(job: &Job<'_>, row: &[f64]) -> bool {
+pub fn is_ambiguous(job: &CaseJob<'_>, row: &[f64]) -> bool {
     job.near.as_ref().is_some_and(|(formula, margin)| formula.scalar(row).abs() <= *margin)
 }
 
 /// The largest distance between the results of two languages on one executor, in units in the last
 /// place. It is infinite if values differ that are not floats, or are not finite.
-pub fn language_parity(job: &Job<'_>, first: &[u32], second: &[u32]) -> f64 {
+pub fn language_parity(job: &CaseJob<'_>, first: &[u32], second: &[u32]) -> f64 {
     let kinds = job.kernel().result_kinds();
     let apart = |((a, b), kind): ((&u32, &u32), &ScalarKind)| {
         let (x, y) = (word_value(*a, *kind), word_value(*b, *kind));

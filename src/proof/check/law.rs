@@ -1,6 +1,6 @@
 //! Judges the laws of a case.
 
-use super::job::{Goal, Job};
+use super::job::{CaseJob, Goal};
 use super::{judge, profile};
 use crate::execute::kernel::word_value;
 use crate::proof::cases::Rows;
@@ -24,7 +24,7 @@ pub struct LawVerdict {
 
 /// Rows with their results.
 #[derive(Clone, Copy)]
-pub struct Given<'a> {
+pub struct RowResults<'a> {
     pub rows: &'a Rows,
     /// The expected value of each row, if that is known.
     pub expected: &'a [Goal],
@@ -40,7 +40,7 @@ impl LawVerdict {
 }
 
 /// Judges one law over all rows.
-pub fn judge_law(job: &Job<'_>, law: &Law, given: &Given<'_>) -> LawVerdict {
+pub fn judge_law(job: &CaseJob<'_>, law: &Law, given: &RowResults<'_>) -> LawVerdict {
     let kinds = job.kernel().result_kinds();
     match (law.kind.name, &law.integral, given.transformed) {
         ("reaches", ..) => judge_reaches(law, given.results, &kinds),
@@ -53,7 +53,12 @@ pub fn judge_law(job: &Job<'_>, law: &Law, given: &Given<'_>) -> LawVerdict {
 }
 
 /// Judges a law about single rows, or about a row and its transformed row.
-fn judge_each(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> LawVerdict {
+fn judge_each(
+    job: &CaseJob<'_>,
+    law: &Law,
+    given: &RowResults<'_>,
+    kinds: &[ScalarKind],
+) -> LawVerdict {
     let mut verdict = LawVerdict::new(law);
     for index in 0..given.rows.len() {
         let row = given.rows.row(index);
@@ -109,7 +114,7 @@ fn input_distance(row: &[f64], other: &[f64]) -> f64 {
 }
 
 fn judge_integral(
-    job: &Job<'_>,
+    job: &CaseJob<'_>,
     law: &Law,
     rule: &Integral,
     (rows, found): (&Rows, &[u32]),
@@ -146,7 +151,12 @@ fn judge_integral(
 
 /// Judges the law `finite` for its own rows and, unless it has a `where`, for the case's rows. Rows
 /// with arguments above the law's magnitude are skipped.
-fn judge_finite(job: &Job<'_>, law: &Law, given: &Given<'_>, kinds: &[ScalarKind]) -> LawVerdict {
+fn judge_finite(
+    job: &CaseJob<'_>,
+    law: &Law,
+    given: &RowResults<'_>,
+    kinds: &[ScalarKind],
+) -> LawVerdict {
     let mut verdict = LawVerdict::new(law);
     let mut judge = |rows: &Rows, found: &[u32]| {
         for (index, words) in found.chunks(kinds.len().max(1)).enumerate() {

@@ -12,9 +12,9 @@ mod share;
 mod shrink;
 mod told;
 
-pub use judge::{Verdict, Worst};
+pub use judge::{CaseVerdict, Worst};
 pub use law::LawVerdict;
-pub use profile::{Axis, BINS, Bin, CELLS, Input, Map, Profile, Scale};
+pub use profile::{BINS, Bin, CELLS, ErrorMap, Profile, ProfileAxis, ProfileScale, ProfiledInput};
 pub use proof::{Parity, Proof, Spec, ValueProof};
 pub use report::{headroom_text, lacking_text, report_table, short_number, stricter_cases};
 pub use told::{failures_as_text, of_outcome, of_proof, report_failures};
@@ -23,7 +23,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::cases::File;
+use super::cases::CaseFile;
 use super::ratchet::{self, Ratchet};
 use crate::bundle::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes, stopped_message};
@@ -31,7 +31,7 @@ use crate::execute::kernel::Kernel;
 use crate::execute::{STACK, Session};
 use crate::source::Span;
 use crate::validate::on_large_stack;
-use job::Job;
+use job::CaseJob;
 
 /// Composes the module of a path in a language, with only the named functions and what they need.
 /// The result is parsed and valid, and the functions keep their names.
@@ -39,7 +39,7 @@ pub type Subjects<'a> =
     dyn Fn(&str, Language, &[String]) -> Result<Arc<naga::Module>, Diagnostics> + Sync + 'a;
 
 /// An executor that is open.
-pub struct Open {
+pub struct OpenExecutor {
     /// Name on the command line.
     pub executor: &'static str,
     pub session: Box<dyn Session>,
@@ -47,7 +47,7 @@ pub struct Open {
 
 /// What a check found, in the order of files, cases, languages and executors.
 #[derive(Debug, Default)]
-pub struct Report {
+pub struct CheckReport {
     pub outcomes: Vec<Outcome>,
     /// The proof of each case, if proofs were asked for.
     pub proofs: Vec<Proof>,
@@ -73,7 +73,7 @@ pub struct Outcome {
     /// case on, the number of the case, as in `math::safe::saturate#2`.
     pub record: String,
     /// The result, or why the executor did not run the function.
-    pub verdict: Result<Verdict, Diagnostic>,
+    pub verdict: Result<CaseVerdict, Diagnostic>,
     /// The share of the stated tolerance that is recorded for this adapter.
     pub recorded: Option<f64>,
     /// The share that a waiver allows the executor, with its reason.
@@ -121,14 +121,14 @@ impl Outcome {
         self.verdict.as_ref().is_ok_and(|verdict| verdict.passed() || self.is_waived(verdict))
     }
 
-    fn is_waived(&self, verdict: &Verdict) -> bool {
+    fn is_waived(&self, verdict: &CaseVerdict) -> bool {
         let share = verdict.worst.map_or(0.0, |worst| worst.share());
         verdict.passed_but_for_values()
             && self.waiver.as_ref().is_some_and(|(waived, _)| share <= *waived)
     }
 }
 
-impl Report {
+impl CheckReport {
     /// Whether everything that could be run holds.
     pub fn passed(&self) -> bool {
         !self.outcomes.iter().any(Outcome::failed) && self.proofs.iter().all(Proof::passed)
@@ -144,7 +144,7 @@ impl Report {
 
 /// How to check.
 #[derive(Debug, Clone, Copy)]
-pub struct Options<'a> {
+pub struct CheckOptions<'a> {
     /// Whether the references of `src/proof/references/` apply to modules of these paths.
     pub references: bool,
     /// Whether to record how the error depends on the inputs.
@@ -158,7 +158,7 @@ pub struct Options<'a> {
     pub ratchet: Option<&'a Ratchet>,
 }
 
-impl Default for Options<'_> {
+impl Default for CheckOptions<'_> {
     fn default() -> Self {
         Self { references: true, profile: false, prove: false, partners: true, ratchet: None }
     }
@@ -166,24 +166,24 @@ impl Default for Options<'_> {
 
 /// [`check_with`] the default options.
 pub fn check(
-    files: &[(String, File)],
+    files: &[(String, CaseFile)],
     languages: &[Language],
     subjects: &Subjects<'_>,
-    open: &mut [Open],
-) -> Result<Report, Diagnostics> {
-    check_with(files, languages, subjects, open, &Options::default())
+    open: &mut [OpenExecutor],
+) -> Result<CheckReport, Diagnostics> {
+    check_with(files, languages, subjects, open, &CheckOptions::default())
 }
 
 /// Checks the cases of each module (`lighting::spot` and its file).
 ///
 /// Errors are mistakes in the cases or in the modules. Wrong results are in the report.
 pub fn check_with(
-    files: &[(String, File)],
+    files: &[(String, CaseFile)],
     languages: &[Language],
     subjects: &Subjects<'_>,
-    open: &mut [Open],
-    options: &Options<'_>,
-) -> Result<Report, Diagnostics> {
+    open: &mut [OpenExecutor],
+    options: &CheckOptions<'_>,
+) -> Result<CheckReport, Diagnostics> {
     // All in one batch on the large stacks. A thread that waits for a part of its job takes up
     // another job on the same stack meanwhile.
     let prepared: Vec<_> = on_large_stack(|| {
@@ -219,7 +219,7 @@ pub fn check_with(
             .map(|(column, name)| column.ok_or_else(|| vec![executor_stopped(name)]))
             .collect::<Result<_, Diagnostics>>()
     })?;
-    Ok(Report {
+    Ok(CheckReport {
         outcomes: interleave_outcomes(columns),
         proofs: if options.prove { proof::prove_jobs(&jobs) } else { Vec::new() },
         untested: Vec::new(),
@@ -233,7 +233,11 @@ fn executor_stopped(executor: &str) -> Diagnostic {
     )
 }
 
-fn run_all(jobs: &[Job<'_>], open: &mut Open, options: &Options<'_>) -> Vec<Outcome> {
+fn run_all(
+    jobs: &[CaseJob<'_>],
+    open: &mut OpenExecutor,
+    options: &CheckOptions<'_>,
+) -> Vec<Outcome> {
     let adapter = open.session.adapter();
     let kernels = jobs.iter().flat_map(|job| &job.kernels).map(|(_, kernel)| kernel);
     open.session.prepare(&kernels.collect::<Vec<_>>());
@@ -272,12 +276,12 @@ fn run_all(jobs: &[Job<'_>], open: &mut Open, options: &Options<'_>) -> Vec<Outc
 /// Runs one case in one language. `first` keeps the results of the first language, with which the
 /// others are compared.
 fn run_case(
-    job: &Job<'_>,
+    job: &CaseJob<'_>,
     (language, kernel): (Language, &Kernel),
     session: &mut dyn Session,
     first: &mut Option<Vec<u32>>,
-    options: &Options<'_>,
-) -> Result<Verdict, Diagnostic> {
+    options: &CheckOptions<'_>,
+) -> Result<CaseVerdict, Diagnostic> {
     let results = session.run(kernel, &job.rows.words)?;
     let mut verdict = judge::judge_rows(job, &job.rows, &job.expected, &results);
     for law in &job.laws {
@@ -291,7 +295,7 @@ fn run_case(
         let mut found = law::judge_law(
             job,
             law.law,
-            &law::Given {
+            &law::RowResults {
                 rows: &job.rows,
                 expected: &job.expected,
                 results: &results,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::job::{BoundLaw, Job};
+use super::job::{BoundLaw, CaseJob};
 use super::judge;
 use super::law::LawVerdict;
 use super::{Language, Session, Subjects};
@@ -10,7 +10,7 @@ use crate::diagnostic::{Diagnostic, Diagnostics};
 use crate::execute::kernel::{self, Kernel, word_value};
 use crate::proof::cases::{Rows, word_of};
 use crate::proof::formula::{Formula, Scope};
-use crate::proof::laws::{self, Albedo, Area, Equality, Inverse, Law, Wanted};
+use crate::proof::laws::{self, Albedo, Area, Equality, IntegralValue, Inverse, Law};
 
 /// Another function that a law is about.
 pub struct Partner {
@@ -59,7 +59,7 @@ fn first_error(errors: Diagnostics, law: &Law, name: &str) -> Diagnostic {
 /// Judges a law that has partners; `None` for other laws. `results` are those of the case's own
 /// rows.
 pub fn judge_partners(
-    job: &Job<'_>,
+    job: &CaseJob<'_>,
     bound: &BoundLaw<'_>,
     language: Language,
     results: &[u32],
@@ -87,14 +87,14 @@ pub fn judge_partners(
 }
 
 /// The components of a function's values, one list for each call.
-type Values = Vec<Vec<f64>>;
+type PartnerValues = Vec<Vec<f64>>;
 
 fn run_partner(
     partner: &Partner,
     language: Language,
     rows: &Rows,
     session: &mut dyn Session,
-) -> Result<Values, Diagnostic> {
+) -> Result<PartnerValues, Diagnostic> {
     let Some((_, kernel)) = partner.kernels.iter().find(|(known, _)| *known == language) else {
         return Ok(Vec::new());
     };
@@ -107,7 +107,7 @@ fn run_partner(
 }
 
 /// The product, component by component. A single number is multiplied with every component.
-fn component_product(left: &Values, right: &Values) -> Values {
+fn component_product(left: &PartnerValues, right: &PartnerValues) -> PartnerValues {
     let pick = |values: &[f64], index: usize| values[if values.len() == 1 { 0 } else { index }];
     let one = |(a, b): (&Vec<f64>, &Vec<f64>)| {
         (0..a.len().max(b.len())).map(|index| pick(a, index) * pick(b, index)).collect()
@@ -120,8 +120,8 @@ fn partner_product(
     bound: &BoundLaw<'_>,
     language: Language,
     session: &mut dyn Session,
-) -> Result<Values, Diagnostic> {
-    let mut values: Option<Values> = None;
+) -> Result<PartnerValues, Diagnostic> {
+    let mut values: Option<PartnerValues> = None;
     for partner in &bound.partners {
         let Some(rows) = &partner.rows else { continue };
         let found = run_partner(partner, language, rows, session)?;
@@ -131,10 +131,10 @@ fn partner_product(
 }
 
 fn judge_albedo(
-    job: &Job<'_>,
+    job: &CaseJob<'_>,
     law: &Law,
     rule: &Albedo,
-    values: &Values,
+    values: &PartnerValues,
     results: &[u32],
 ) -> Result<LawVerdict, Diagnostic> {
     let scope = Scope(job.kernel().words().collect());
@@ -142,8 +142,11 @@ fn judge_albedo(
         Some(component) => component..component + 1,
         None => 0..values.first().map_or(0, Vec::len),
     };
-    let target =
-        Target { wanted: &rule.wanted, within: rule.within, chosen: rule.chosen(&job.rows) };
+    let target = IntegralTarget {
+        wanted: &rule.wanted,
+        within: rule.within,
+        chosen: rule.chosen(&job.rows),
+    };
     let mut verdict = LawVerdict::new(law);
     for component in components {
         let column: Vec<f64> = values.iter().map(|call| component_of(call, component)).collect();
@@ -154,15 +157,18 @@ fn judge_albedo(
 }
 
 fn judge_area(
-    job: &Job<'_>,
+    job: &CaseJob<'_>,
     law: &Law,
     rule: &Area,
-    values: &Values,
+    values: &PartnerValues,
     results: &[u32],
 ) -> Result<LawVerdict, Diagnostic> {
     let scope = Scope(job.kernel().words().collect());
-    let target =
-        Target { wanted: &rule.wanted, within: rule.within, chosen: rule.chosen(&job.rows) };
+    let target = IntegralTarget {
+        wanted: &rule.wanted,
+        within: rule.within,
+        chosen: rule.chosen(&job.rows),
+    };
     let mut verdict = LawVerdict::new(law);
     for component in 0..values.first().map_or(0, Vec::len) {
         let column: Vec<f64> = values.iter().map(|call| component_of(call, component)).collect();
@@ -173,23 +179,23 @@ fn judge_area(
 }
 
 /// What integrals must be, and the rows of the case that they belong to.
-struct Target<'a> {
-    wanted: &'a Wanted,
+struct IntegralTarget<'a> {
+    wanted: &'a IntegralValue,
     within: f64,
     chosen: Vec<usize>,
 }
 
-impl Target<'_> {
+impl IntegralTarget<'_> {
     /// Judges the integrals of one component.
     fn judge(
         &self,
-        job: &Job<'_>,
+        job: &CaseJob<'_>,
         results: &[u32],
         (component, sums): (usize, &[f64]),
         verdict: &mut LawVerdict,
     ) -> Result<(), Diagnostic> {
         let wanted = wanted_formula(self.wanted, &Scope(job.kernel().words().collect()))?;
-        let at_most = matches!(self.wanted, Wanted::AtMost(_));
+        let at_most = matches!(self.wanted, IntegralValue::AtMost(_));
         for (row, sum) in self.chosen.iter().zip(sums) {
             let inputs = job.rows.row(*row);
             let wanted = match &wanted {
@@ -213,10 +219,10 @@ impl Target<'_> {
 }
 
 fn judge_equality(
-    job: &Job<'_>,
+    job: &CaseJob<'_>,
     law: &Law,
     rule: &Equality,
-    values: &Values,
+    values: &PartnerValues,
     results: &[u32],
 ) -> LawVerdict {
     let (mut verdict, count) = (LawVerdict::new(law), job.kernel().result_words() as usize);
@@ -244,10 +250,13 @@ fn judge_equality(
     verdict
 }
 
-fn wanted_formula(wanted: &Wanted, scope: &Scope<'_>) -> Result<Option<Formula>, Diagnostic> {
+fn wanted_formula(
+    wanted: &IntegralValue,
+    scope: &Scope<'_>,
+) -> Result<Option<Formula>, Diagnostic> {
     match wanted {
-        Wanted::Own => Ok(None),
-        Wanted::Exactly(text) | Wanted::AtMost(text) => text.bind(scope).map(Some),
+        IntegralValue::Own => Ok(None),
+        IntegralValue::Exactly(text) | IntegralValue::AtMost(text) => text.bind(scope).map(Some),
     }
 }
 
@@ -258,7 +267,7 @@ fn component_of(values: &[f64], component: usize) -> f64 {
 }
 
 /// A component of the result of the case's function. A single number stands for every component.
-fn own_component(job: &Job<'_>, results: &[u32], row: usize, component: usize) -> f64 {
+fn own_component(job: &CaseJob<'_>, results: &[u32], row: usize, component: usize) -> f64 {
     let kinds = job.kernel().result_kinds();
     let component = if kinds.len() == 1 { 0 } else { component };
     results
@@ -267,7 +276,7 @@ fn own_component(job: &Job<'_>, results: &[u32], row: usize, component: usize) -
 }
 
 fn judge_inverse(
-    job: &Job<'_>,
+    job: &CaseJob<'_>,
     (law, rule, partner): (&Law, &Inverse, &Partner),
     language: Language,
     results: &[u32],
@@ -307,7 +316,7 @@ fn nan_max(a: f64, b: f64) -> f64 {
 
 /// The arguments of the calls of the inverse: the words of the result, and then each further
 /// parameter from the case's parameter of the same name, or 0 where the case has none.
-fn inverse_rows(job: &Job<'_>, kernel: &Kernel, scope: &Scope<'_>, results: &[u32]) -> Rows {
+fn inverse_rows(job: &CaseJob<'_>, kernel: &Kernel, scope: &Scope<'_>, results: &[u32]) -> Rows {
     let kinds: Vec<_> = kernel.words().flat_map(|(_, shape)| shape.kinds()).collect();
     let (count, own) = (job.kernel().result_words() as usize, job.kernel().result_kinds());
     let mut words = Vec::new();

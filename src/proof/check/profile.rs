@@ -1,8 +1,8 @@
 //! How the error of a case depends on its inputs, for the plots of a report.
 
-use super::job::{Goal, Job};
+use super::job::{CaseJob, Goal};
 use super::judge::{self, Worst};
-use crate::execute::kernel::Shape;
+use crate::execute::kernel::TypeShape;
 
 /// How many bins an axis is divided into.
 pub const BINS: usize = 48;
@@ -18,26 +18,26 @@ const WIDE: f64 = 1e3;
 #[derive(Debug, Clone)]
 pub struct Profile {
     /// An axis for each word of a row that varies.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<ProfileAxis>,
     /// A map, if exactly two words vary.
-    pub map: Option<Map>,
+    pub map: Option<ErrorMap>,
     /// The inputs whose error is closest to what is allowed, or beyond it.
-    pub worst: Vec<Input>,
+    pub worst: Vec<ProfiledInput>,
 }
 
 /// One varying word of the rows.
 #[derive(Debug, Clone)]
-pub struct Axis {
+pub struct ProfileAxis {
     /// `c`, `at.uv.x`.
     pub name: String,
-    pub scale: Scale,
+    pub scale: ProfileScale,
     /// The bins, by their place along the scale. Bins without a row are left out.
     pub bins: Vec<Bin>,
 }
 
 /// How the values of an axis are placed along a plot.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Scale {
+pub struct ProfileScale {
     pub low: f64,
     pub high: f64,
     /// Values up to this size are placed linearly, larger ones by their logarithm; 0 for a linear
@@ -57,7 +57,7 @@ pub struct Bin {
 
 /// The largest errors over two parameters, each as a share of what is allowed.
 #[derive(Debug, Clone)]
-pub struct Map {
+pub struct ErrorMap {
     /// Indices of the axes.
     pub across: usize,
     pub up: usize,
@@ -67,13 +67,13 @@ pub struct Map {
 
 /// One input with its outcome.
 #[derive(Debug, Clone)]
-pub struct Input {
+pub struct ProfiledInput {
     /// Name, value and bits of each word.
     pub words: Vec<(String, f64, u32)>,
     pub worst: Worst,
 }
 
-impl Scale {
+impl ProfileScale {
     fn of(values: impl Iterator<Item = f64> + Clone) -> Self {
         let (low, high) =
             values.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
@@ -116,7 +116,7 @@ impl Scale {
 }
 
 /// The profile of the results for the rows of a job.
-pub fn make_profile(job: &Job<'_>, results: &[u32]) -> Profile {
+pub fn make_profile(job: &CaseJob<'_>, results: &[u32]) -> Profile {
     let kinds = job.kernel().result_kinds();
     let found: Vec<Worst> = job
         .expected
@@ -133,7 +133,7 @@ pub fn make_profile(job: &Job<'_>, results: &[u32]) -> Profile {
     let found: Vec<Worst> =
         found.into_iter().filter(|worst| worst.share() <= 1.0 || !is_doubtful(worst.row)).collect();
     let names = column_names(job);
-    let varying: Vec<(usize, Scale)> = (0..names.len().min(job.rows.stride))
+    let varying: Vec<(usize, ProfileScale)> = (0..names.len().min(job.rows.stride))
         .filter_map(|column| Some((column, column_scale(job, column)?)))
         .collect();
     let axes = varying
@@ -147,13 +147,19 @@ pub fn make_profile(job: &Job<'_>, results: &[u32]) -> Profile {
     Profile { axes, map, worst: worst_inputs(job, found, &names) }
 }
 
-fn column_scale(job: &Job<'_>, column: usize) -> Option<Scale> {
+fn column_scale(job: &CaseJob<'_>, column: usize) -> Option<ProfileScale> {
     let values = (0..job.rows.len()).map(|row| job.rows.row(row)[column]);
-    let scale = Scale::of(values);
+    let scale = ProfileScale::of(values);
     (scale.low < scale.high).then_some(scale)
 }
 
-fn profile_axis(job: &Job<'_>, found: &[Worst], name: String, column: usize, scale: Scale) -> Axis {
+fn profile_axis(
+    job: &CaseJob<'_>,
+    found: &[Worst],
+    name: String,
+    column: usize,
+    scale: ProfileScale,
+) -> ProfileAxis {
     let mut bins: Vec<Option<Bin>> = vec![None; BINS];
     for worst in found {
         let index = scale.index(job.rows.row(worst.row)[column], BINS);
@@ -162,10 +168,15 @@ fn profile_axis(job: &Job<'_>, found: &[Worst], name: String, column: usize, sca
         bin.allowed = bin.allowed.max(worst.allowed);
         bin.ulps = bin.ulps.max(worst.ulps());
     }
-    Axis { name, scale, bins: bins.into_iter().flatten().collect() }
+    ProfileAxis { name, scale, bins: bins.into_iter().flatten().collect() }
 }
 
-fn profile_map(job: &Job<'_>, found: &[Worst], across: (usize, Scale), up: (usize, Scale)) -> Map {
+fn profile_map(
+    job: &CaseJob<'_>,
+    found: &[Worst],
+    across: (usize, ProfileScale),
+    up: (usize, ProfileScale),
+) -> ErrorMap {
     let mut cells = vec![f64::NAN; CELLS * CELLS];
     for worst in found {
         let row = job.rows.row(worst.row);
@@ -173,14 +184,14 @@ fn profile_map(job: &Job<'_>, found: &[Worst], across: (usize, Scale), up: (usiz
             &mut cells[up.1.index(row[up.0], CELLS) * CELLS + across.1.index(row[across.0], CELLS)];
         *cell = cell.max(worst.share());
     }
-    Map { across: 0, up: 1, cells }
+    ErrorMap { across: 0, up: 1, cells }
 }
 
-fn worst_inputs(job: &Job<'_>, mut found: Vec<Worst>, names: &[String]) -> Vec<Input> {
+fn worst_inputs(job: &CaseJob<'_>, mut found: Vec<Worst>, names: &[String]) -> Vec<ProfiledInput> {
     found.sort_by(|a, b| b.share().total_cmp(&a.share()).then(a.row.cmp(&b.row)));
     let input = |worst: Worst| {
         let words = names.iter().zip(job.rows.row(worst.row)).zip(job.rows.row_words(worst.row));
-        Input {
+        ProfiledInput {
             words: words.map(|((name, value), word)| (name.clone(), *value, *word)).collect(),
             worst,
         }
@@ -189,32 +200,32 @@ fn worst_inputs(job: &Job<'_>, mut found: Vec<Worst>, names: &[String]) -> Vec<I
 }
 
 /// The words of a row by their names: `d = 1.5, light.kind = 3`.
-pub fn arguments_text(job: &Job<'_>, row: &[f64]) -> String {
+pub fn arguments_text(job: &CaseJob<'_>, row: &[f64]) -> String {
     let named = column_names(job).into_iter().zip(row);
     named.map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
 }
 
 /// The name of each word of a row.
-fn column_names(job: &Job<'_>) -> Vec<String> {
+fn column_names(job: &CaseJob<'_>) -> Vec<String> {
     job.kernel().words().flat_map(|(name, shape)| part_names(name, shape)).collect()
 }
 
-fn part_names(name: &str, shape: &Shape) -> Vec<String> {
+fn part_names(name: &str, shape: &TypeShape) -> Vec<String> {
     let letters = |size: u32| "xyzw".chars().take(size as usize);
     match shape {
-        Shape::Scalar(_) => vec![name.to_owned()],
-        Shape::Vector { size, .. } => {
+        TypeShape::Scalar(_) => vec![name.to_owned()],
+        TypeShape::Vector { size, .. } => {
             letters(*size).map(|letter| format!("{name}.{letter}")).collect()
         }
-        Shape::Matrix { columns, rows } => (0..*columns)
+        TypeShape::Matrix { columns, rows } => (0..*columns)
             .flat_map(|column| {
                 letters(*rows).map(move |letter| format!("{name}[{column}].{letter}"))
             })
             .collect(),
-        Shape::Array { base, count } => {
+        TypeShape::Array { base, count } => {
             (0..*count).flat_map(|index| part_names(&format!("{name}[{index}]"), base)).collect()
         }
-        Shape::Struct { members } => members
+        TypeShape::Struct { members } => members
             .iter()
             .flat_map(|(member, shape)| part_names(&format!("{name}.{member}"), shape))
             .collect(),

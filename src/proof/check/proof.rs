@@ -4,7 +4,7 @@
 
 use rayon::prelude::*;
 
-use super::job::{self, BoundOracle, Goal, Job};
+use super::job::{self, BoundOracle, CaseJob, Goal};
 use super::{judge, profile};
 use crate::diagnostic::Diagnostic;
 use crate::execute::interpreter::Interpreter;
@@ -102,11 +102,11 @@ impl Proof {
 }
 
 /// Proves what there is to prove of each job.
-pub fn prove_jobs(jobs: &[Job<'_>]) -> Vec<Proof> {
+pub fn prove_jobs(jobs: &[CaseJob<'_>]) -> Vec<Proof> {
     on_large_stack(|| jobs.par_iter().map(prove_one).collect())
 }
 
-fn prove_one(job: &Job<'_>) -> Proof {
+fn prove_one(job: &CaseJob<'_>) -> Proof {
     let text = |error: Diagnostic| error.message;
     let kinds = job.kernel().result_kinds();
     let bounded: Vec<Result<Vec<Goal>, String>> = job
@@ -149,7 +149,7 @@ fn prove_one(job: &Job<'_>) -> Proof {
     }
 }
 
-fn spec_proof(job: &Job<'_>, bounds: &[Goal], kinds: &[ScalarKind]) -> Spec {
+fn spec_proof(job: &CaseJob<'_>, bounds: &[Goal], kinds: &[ScalarKind]) -> Spec {
     let mut spec = Spec::default();
     for (index, (bound, goal)) in bounds.iter().zip(&job.expected).enumerate() {
         if bound.doubtful || judge::is_indeterminate(bound) || judge::is_indeterminate(goal) {
@@ -188,7 +188,7 @@ fn spec_proof(job: &Job<'_>, bounds: &[Goal], kinds: &[ScalarKind]) -> Spec {
     spec
 }
 
-fn value_proof(job: &Job<'_>, found: &[Goal]) -> Option<ValueProof> {
+fn value_proof(job: &CaseJob<'_>, found: &[Goal]) -> Option<ValueProof> {
     if matches!(job.oracle, BoundOracle::Eval(_)) || job.expected.is_empty() {
         return None;
     }
@@ -211,7 +211,7 @@ fn value_proof(job: &Job<'_>, found: &[Goal]) -> Option<ValueProof> {
 
 /// The error divided by the tolerance: of the worst component, for the accepted value that fits
 /// best.
-fn error_share(job: &Job<'_>, inputs: &[f64], found: &Goal, goal: &Goal) -> f64 {
+fn error_share(job: &CaseJob<'_>, inputs: &[f64], found: &Goal, goal: &Goal) -> f64 {
     let values = tolerance::formula_values(&job.terms, inputs);
     let of = |expected: &Vec<f64>| {
         let component = |(word, (found, expected)): (usize, (&f64, &f64))| {

@@ -1,6 +1,6 @@
 //! Writes a report as text.
 
-use super::{Outcome, Proof, Report};
+use super::{CheckReport, Outcome, Proof};
 
 const HEADINGS: [&str; COLUMNS] = [
     "function",
@@ -19,7 +19,7 @@ const HEADINGS: [&str; COLUMNS] = [
 const COLUMNS: usize = 12;
 
 /// One line for each function, language and executor.
-pub fn report_table(report: &Report) -> String {
+pub fn report_table(report: &CheckReport) -> String {
     let rows: Vec<[String; COLUMNS]> = std::iter::once(HEADINGS.map(str::to_owned))
         .chain(report.outcomes.iter().map(table_row))
         .collect();
@@ -79,7 +79,7 @@ fn table_row(outcome: &Outcome) -> [String; COLUMNS] {
 }
 
 /// The cases whose tolerance is below what WGSL allows their code, one line for each.
-pub fn stricter_cases(report: &Report) -> String {
+pub fn stricter_cases(report: &CheckReport) -> String {
     let line = |proof: &Proof| {
         let spec = proof.spec.as_ref().ok().filter(|spec| spec.stricter > 0)?;
         let (name, rows) = (format!("{}::{}", proof.module, proof.function), spec.rows);
@@ -94,7 +94,7 @@ pub fn stricter_cases(report: &Report) -> String {
 }
 
 /// What executors cannot run, with the reason, one line for each.
-pub fn lacking_text(report: &Report) -> String {
+pub fn lacking_text(report: &CheckReport) -> String {
     let line = |outcome: &Outcome| {
         let (reason, case) = (&outcome.lacks()?.message, outcome.case + 1);
         let (path, language) = (outcome.path(), outcome.language.name());

@@ -5,13 +5,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::job::BoundOracle;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::limits::{CASE_ROWS, CASE_WORDS, CASE_WORK, Steps};
-use crate::proof::cases::{self, Case, File, Rows};
+use crate::proof::cases::{self, Case, CaseFile, Rows};
 use crate::proof::formula::Formula;
-use crate::proof::tolerance::Bound;
+use crate::proof::tolerance::BoundTerm;
 
 /// The steps that each case of a file may take: an equal share of the limit of the file. The order
 /// in which cases run therefore makes no difference.
-pub fn steps_of_case(file: &File) -> Steps {
+pub fn steps_of_case(file: &CaseFile) -> Steps {
     Steps::new(CASE_WORK / file.cases.len().max(1) as u64)
 }
 
@@ -31,7 +31,7 @@ impl Total {
         self.words.fetch_add(words, Ordering::Relaxed);
     }
 
-    pub fn check(&self, file: &File) -> Result<(), Diagnostic> {
+    pub fn check(&self, file: &CaseFile) -> Result<(), Diagnostic> {
         let is_too_much = self.rows.load(Ordering::Relaxed) > CASE_ROWS
             || self.words.load(Ordering::Relaxed) > CASE_WORDS;
         let Some(first) = file.cases.first().filter(|_| is_too_much) else { return Ok(()) };
@@ -44,14 +44,14 @@ impl Total {
 }
 
 /// What is evaluated for each row of a case.
-pub struct Parts<'a> {
-    pub terms: &'a [Bound],
+pub struct RowFormulas<'a> {
+    pub terms: &'a [BoundTerm],
     pub near: &'a Option<(Formula, f64)>,
     pub filter: &'a Option<Formula>,
     pub oracle: &'a BoundOracle,
 }
 
-impl Parts<'_> {
+impl RowFormulas<'_> {
     /// Subtracts the work of these parts from the steps, before any of it is done: for every row
     /// once for the values and once for each law.
     pub fn spend(&self, case: &Case, rows: &Rows, steps: &mut Steps) -> Result<(), Diagnostic> {
@@ -61,7 +61,7 @@ impl Parts<'_> {
             BoundOracle::Formula(formula) => formula.parts(),
             _ => 1,
         };
-        let terms: usize = self.terms.iter().map(Bound::parts).sum();
+        let terms: usize = self.terms.iter().map(BoundTerm::parts).sum();
         let each = (1 + case.laws.len()).saturating_mul(rows.stride + near + filter + terms);
         cases::spend_steps(case, rows.len(), each.saturating_add(oracle), steps)
     }

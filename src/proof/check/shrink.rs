@@ -1,9 +1,9 @@
 //! Makes a failing input simpler: towards 0, 1 and few mantissa bits, with a batch of candidates in
 //! each draw.
 
-use super::job::{Goal, Job};
+use super::job::{CaseJob, Goal};
 use super::judge;
-use super::law::{self, Given};
+use super::law::{self, RowResults};
 use crate::diagnostic::Diagnostic;
 use crate::execute::Session;
 use crate::execute::kernel::Kernel;
@@ -19,7 +19,7 @@ const ROUNDS: usize = 24;
 /// Simplifies a failing row. Returns text: the values in decimal and hexadecimal, and a case ready
 /// to paste.
 pub fn shrink_row(
-    job: &Job<'_>,
+    job: &CaseJob<'_>,
     kernel: &Kernel,
     session: &mut dyn Session,
     failing: usize,
@@ -43,7 +43,7 @@ pub fn shrink_row(
 
 /// As [`shrink_row`], for a row that breaks a law.
 pub fn shrink_law(
-    job: &Job<'_>,
+    job: &CaseJob<'_>,
     kernel: &Kernel,
     session: &mut dyn Session,
     law: &Law,
@@ -60,12 +60,12 @@ pub fn shrink_law(
         Ok(law::judge_law(
             job,
             law,
-            &Given { rows, expected: &expected, results: &results, transformed },
+            &RowResults { rows, expected: &expected, results: &results, transformed },
         )
         .row)
     })?;
     let found = session.run(kernel, &best)?;
-    let input = Input::new(job, &best);
+    let input = ShrunkInput::new(job, &best);
     let found = format!("  found {}\n\n", decimal_words(&found, &job.kernel().result_kinds()));
     let head = format!("[[case]]\nfunction = {:?}\noracle = \"none\"\n", job.case.function);
     let laws =
@@ -76,7 +76,7 @@ pub fn shrink_law(
 /// The simplest input found that still fails. `first_failing` gives the index of the first of some
 /// rows that fails.
 fn smallest_input(
-    job: &Job<'_>,
+    job: &CaseJob<'_>,
     failing: usize,
     first_failing: &mut dyn FnMut(&Rows) -> Result<Option<usize>, Diagnostic>,
 ) -> Result<Vec<u32>, Diagnostic> {
@@ -102,7 +102,7 @@ fn smallest_input(
 }
 
 /// Inputs with one value, or one unit vector, made simpler.
-fn simpler_inputs(job: &Job<'_>, row: &[u32]) -> Vec<Vec<u32>> {
+fn simpler_inputs(job: &CaseJob<'_>, row: &[u32]) -> Vec<Vec<u32>> {
     let mut found = Vec::new();
     for range in &job.rows.units {
         for axis in 0..2 * range.len() {
@@ -136,7 +136,7 @@ fn simpler_words(word: u32, kind: ScalarKind) -> Vec<u32> {
 }
 
 /// The least and the largest value of each column.
-fn column_ranges(job: &Job<'_>) -> Vec<(f64, f64)> {
+fn column_ranges(job: &CaseJob<'_>) -> Vec<(f64, f64)> {
     let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); job.rows.kinds.len()];
     for row in 0..job.rows.len() {
         ranges
@@ -148,7 +148,7 @@ fn column_ranges(job: &Job<'_>) -> Vec<(f64, f64)> {
 }
 
 /// Whether the case is about such an input: within the ranges of the columns, and not filtered out.
-fn is_meant(job: &Job<'_>, ranges: &[(f64, f64)], candidate: &[u32]) -> bool {
+fn is_meant(job: &CaseJob<'_>, ranges: &[(f64, f64)], candidate: &[u32]) -> bool {
     let row = crate::proof::cases::words_to_numbers(candidate, &job.rows.kinds);
     let is_within =
         row.iter().zip(ranges).all(|(value, (low, high))| (*low..=*high).contains(value));
@@ -157,7 +157,7 @@ fn is_meant(job: &Job<'_>, ranges: &[(f64, f64)], candidate: &[u32]) -> bool {
 
 /// A measure of complexity, smaller is simpler: how many values are not 0, then mantissa bits, then
 /// magnitude.
-fn row_complexity(job: &Job<'_>, row: &[u32]) -> (u32, u32) {
+fn row_complexity(job: &CaseJob<'_>, row: &[u32]) -> (u32, u32) {
     let cost = |(word, kind): (&u32, &ScalarKind)| match kind {
         ScalarKind::Float if *word & 0x7fff_ffff == 0 => (0, *word >> 31),
         ScalarKind::Float => {
@@ -173,7 +173,7 @@ fn row_complexity(job: &Job<'_>, row: &[u32]) -> (u32, u32) {
 }
 
 /// One row, parameter by parameter.
-struct Input {
+struct ShrunkInput {
     /// In decimal and hexadecimal, one line for each value.
     text: String,
     /// As the row of a table.
@@ -183,8 +183,8 @@ struct Input {
     bits: String,
 }
 
-impl Input {
-    fn new(job: &Job<'_>, words: &[u32]) -> Self {
+impl ShrunkInput {
+    fn new(job: &CaseJob<'_>, words: &[u32]) -> Self {
         let numbers = crate::proof::cases::words_to_numbers(words, &job.rows.kinds);
         let (mut text, mut at) = (String::new(), 0);
         let (mut row, mut lists, mut bits) = (Vec::new(), Vec::new(), Vec::new());
@@ -208,8 +208,8 @@ impl Input {
 }
 
 /// The input in decimal and hexadecimal, then a case to paste that fails in the same way.
-fn describe_input(job: &Job<'_>, words: &[u32], goal: &Goal, found: &[u32]) -> String {
-    let input = Input::new(job, words);
+fn describe_input(job: &CaseJob<'_>, words: &[u32], goal: &Goal, found: &[u32]) -> String {
+    let input = ShrunkInput::new(job, words);
     let worst = judge::judge_rows(
         job,
         &job.rows.with_words(words.to_vec()),
@@ -228,7 +228,7 @@ fn describe_input(job: &Job<'_>, words: &[u32], goal: &Goal, found: &[u32]) -> S
 }
 
 /// A case with the one row, and the fixtures that it names.
-fn case_to_paste(job: &Job<'_>, input: &Input, expected: &str, allowed: f64) -> String {
+fn case_to_paste(job: &CaseJob<'_>, input: &ShrunkInput, expected: &str, allowed: f64) -> String {
     let mut text = format!("[[case]]\nfunction = {:?}\n", job.case.function);
     if allowed > 0.0 {
         text += &format!("tolerance = {{ abs = {allowed:e} }}\n");
@@ -242,7 +242,7 @@ fn case_to_paste(job: &Job<'_>, input: &Input, expected: &str, allowed: f64) -> 
 }
 
 /// The line of a case that names its fixtures; empty if it has none.
-fn fixtures_line(job: &Job<'_>) -> String {
+fn fixtures_line(job: &CaseJob<'_>) -> String {
     let names: Vec<String> = job
         .case
         .fixture_names

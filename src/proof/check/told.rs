@@ -1,12 +1,12 @@
 //! Turns what failed in a check into diagnostics at the cases.
 
 use super::report::short_number;
-use super::{Outcome, Proof, Report, Verdict};
+use super::{CaseVerdict, CheckReport, Outcome, Proof};
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::proof::ratchet::SLACK;
 
 /// What failed in a report, each with its simplest input; empty if nothing did.
-pub fn report_failures(report: &Report) -> Diagnostics {
+pub fn report_failures(report: &CheckReport) -> Diagnostics {
     let proofs = report.proofs.iter().filter_map(of_proof);
     proofs.chain(report.outcomes.iter().filter_map(of_outcome)).collect()
 }
@@ -78,7 +78,7 @@ fn failed_check(message: String) -> Diagnostic {
 }
 
 /// Why a verdict does not pass.
-fn failure_reasons(outcome: &Outcome, verdict: &Verdict) -> Vec<String> {
+fn failure_reasons(outcome: &Outcome, verdict: &CaseVerdict) -> Vec<String> {
     let mut reasons = Vec::new();
     if !verdict.failing.is_empty() {
         let (off, all) = (verdict.failing.len(), verdict.inputs);
@@ -113,7 +113,7 @@ fn failure_reasons(outcome: &Outcome, verdict: &Verdict) -> Vec<String> {
 }
 
 /// The simplest inputs that fail, each with a case to paste.
-fn smallest_failing(verdict: &Verdict) -> impl Iterator<Item = String> {
+fn smallest_failing(verdict: &CaseVerdict) -> impl Iterator<Item = String> {
     let of_laws = verdict.laws.iter().filter_map(|law| law.smallest.as_deref());
     let texts = of_laws.chain(verdict.smallest.as_deref());
     texts.flat_map(|text| text.trim_end().split("\n\n").map(first_part))

@@ -28,12 +28,12 @@ const FUNCTION: &str = "lamplight_eval";
 /// The components of a value as words: structs and arrays are flattened, matrices go column by
 /// column.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Value {
+pub struct ExpressionValue {
     pub words: Vec<u32>,
     pub kinds: Vec<ScalarKind>,
 }
 
-impl fmt::Display for Value {
+impl fmt::Display for ExpressionValue {
     /// Separated by spaces; f32 as the shortest decimal that reads back the same.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let texts: Vec<String> = self
@@ -65,7 +65,7 @@ pub fn evaluate_expression(
     text: &str,
     language: Language,
     session: &mut dyn Session,
-) -> Result<Value, Diagnostics> {
+) -> Result<ExpressionValue, Diagnostics> {
     let id = lock_sources(sources).add("<expression>", text);
     let module =
         expression_module(library, sources, text, language).map_err(|(errors, wrapper)| {
@@ -84,7 +84,7 @@ pub fn evaluate_expression(
     let kernel = kernel::build_kernel(&module, FUNCTION, &BTreeMap::new())
         .map_err(|error| vec![whole(error)])?;
     let words = session.run(&kernel, &[]).map_err(|error| vec![whole(error)])?;
-    Ok(Value { words, kinds: kernel.result_kinds() })
+    Ok(ExpressionValue { words, kinds: kernel.result_kinds() })
 }
 
 type Failed = (Diagnostics, Rewritten);

@@ -1,18 +1,18 @@
 //! The functions of formulas: the numeric built-in functions of WGSL in f64, and `dot_abs` and
 //! `vec`.
 
-use super::{Function, map_components, zip_components};
+use super::{FormulaFunction, map_components, zip_components};
 
 const fn make_function(
     name: &'static str,
     arity: usize,
     apply: fn(&[Vec<f64>]) -> Vec<f64>,
-) -> Function {
-    Function { name, arity: Some(arity), apply }
+) -> FormulaFunction {
+    FormulaFunction { name, arity: Some(arity), apply }
 }
 
 /// Every function, by name.
-pub const ALL: &[Function] = &[
+pub const ALL: &[FormulaFunction] = &[
     make_function("abs", 1, |a| map_components(&a[0], f64::abs)),
     make_function("acos", 1, |a| map_components(&a[0], f64::acos)),
     make_function("asin", 1, |a| map_components(&a[0], f64::asin)),
@@ -62,7 +62,7 @@ pub const ALL: &[Function] = &[
     make_function("tan", 1, |a| map_components(&a[0], f64::tan)),
     make_function("tanh", 1, |a| map_components(&a[0], f64::tanh)),
     make_function("trunc", 1, |a| map_components(&a[0], f64::trunc)),
-    Function { name: "vec", arity: None, apply: |a| a.concat() },
+    FormulaFunction { name: "vec", arity: None, apply: |a| a.concat() },
 ];
 
 fn minus(a: &[f64], b: &[f64]) -> Vec<f64> {

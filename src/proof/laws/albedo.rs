@@ -22,7 +22,7 @@ use std::f64::consts::PI;
 use super::factor::{Factor, Formulas};
 use super::integral::{MOST_CALLS, MOST_ROWS};
 use crate::diagnostic::Diagnostic;
-use crate::proof::cases::{Rows, Text};
+use crate::proof::cases::{FormulaText, Rows};
 use crate::proof::formula::Scope;
 use crate::quadrature::gauss_legendre;
 
@@ -35,7 +35,7 @@ pub struct Albedo {
     /// Angle of the viewer about the normal from the tangent, radians.
     pub azimuth: f64,
     /// The width of the lobe around the half vector.
-    pub peak: Option<Text>,
+    pub peak: Option<FormulaText>,
     /// Formulas for parameters that neither the geometry nor the case has.
     pub with: Formulas,
     /// The component of the function's value and of the product that is compared. Without it, all
@@ -44,7 +44,7 @@ pub struct Albedo {
     /// Steps in the cosine. There are twice as many azimuths.
     pub steps: usize,
     pub within: f64,
-    pub wanted: Wanted,
+    pub wanted: IntegralValue,
 }
 
 /// The directions that are integrated over.
@@ -59,25 +59,25 @@ pub enum Over {
 
 /// What the integral must be.
 #[derive(Debug, Clone)]
-pub enum Wanted {
+pub enum IntegralValue {
     /// The value of the case's function.
     Own,
-    Exactly(Text),
-    AtMost(Text),
+    Exactly(FormulaText),
+    AtMost(FormulaText),
 }
 
-type Vector = [f64; 3];
+type Vec3 = [f64; 3];
 
 /// The directions of one call.
 #[derive(Debug, Clone, Copy)]
-struct Geometry {
-    l: Vector,
-    v: Vector,
-    h: Vector,
+struct CallDirections {
+    l: Vec3,
+    v: Vec3,
+    h: Vec3,
 }
 
 /// A cosine of the geometry by the name that parameters have for it.
-type Cosine = (&'static str, fn(&Geometry) -> f64);
+type Cosine = (&'static str, fn(&CallDirections) -> f64);
 
 const COSINES: &[Cosine] = &[
     ("nl", |g| g.l[2]),
@@ -98,7 +98,7 @@ const COSINES: &[Cosine] = &[
 ];
 
 /// A direction by the name that parameters have for it.
-type Direction = (&'static str, fn(&Geometry) -> Vector);
+type Direction = (&'static str, fn(&CallDirections) -> Vec3);
 
 const DIRECTIONS: &[Direction] =
     &[("n", |_| [0.0, 0.0, 1.0]), ("l", |g| g.l), ("v", |g| g.v), ("h", |g| g.h)];
@@ -135,7 +135,11 @@ impl Albedo {
     }
 
     /// The directions and weights of the rule for one row. Calls without weight are included.
-    fn nodes(&self, row: &[f64], case: &Scope<'_>) -> Result<Vec<(Geometry, f64)>, Diagnostic> {
+    fn nodes(
+        &self,
+        row: &[f64],
+        case: &Scope<'_>,
+    ) -> Result<Vec<(CallDirections, f64)>, Diagnostic> {
         let nv = self.cosine_to_viewer(row, case);
         let sine = (1.0 - nv * nv).max(0.0).sqrt();
         let v = [sine * self.azimuth.cos(), sine * self.azimuth.sin(), nv];
@@ -170,7 +174,7 @@ impl Albedo {
         let mut sums = Vec::new();
         for (row, values) in self.chosen(rows).into_iter().zip(values.chunks(self.calls())) {
             let nodes = self.nodes(rows.row(row), case)?;
-            let weighted = |((_, weight), value): (&(Geometry, f64), &f64)| {
+            let weighted = |((_, weight), value): (&(CallDirections, f64), &f64)| {
                 if *weight == 0.0 { 0.0 } else { weight * value }
             };
             sums.push(nodes.iter().zip(values).map(weighted).sum());
@@ -179,7 +183,7 @@ impl Albedo {
     }
 }
 
-impl Geometry {
+impl CallDirections {
     /// A cosine or a direction by the name of a parameter.
     fn value(&self, name: &str) -> Option<Vec<f64>> {
         let cosine = COSINES.iter().find(|(known, _)| *known == name);
@@ -192,12 +196,12 @@ impl Geometry {
 
 /// Evenly spaced azimuths, and Gauss-Legendre in the cosine from `low` to 1, with their solid
 /// angles.
-fn even_directions(steps: usize, low: f64) -> Vec<(Vector, f64)> {
+fn even_directions(steps: usize, low: f64) -> Vec<(Vec3, f64)> {
     ring_directions(steps, |x| (low + (1.0 - low) * x, 1.0 - low))
 }
 
 /// Half vectors distributed as those of GGX of width alpha: tan^2 = alpha^2*u/(1 - u).
-fn about_half(steps: usize, alpha: f64) -> Vec<(Vector, f64)> {
+fn about_half(steps: usize, alpha: f64) -> Vec<(Vec3, f64)> {
     ring_directions(steps, |u| {
         let tan2 = alpha * alpha * u / (1.0 - u);
         let cosine = 1.0 / (1.0 + tan2).sqrt();
@@ -207,7 +211,7 @@ fn about_half(steps: usize, alpha: f64) -> Vec<(Vector, f64)> {
 
 /// Directions at evenly spaced azimuths, with their solid angles. `cosine` maps [0, 1] to the
 /// cosine of the polar angle and its derivative.
-fn ring_directions(steps: usize, cosine: impl Fn(f64) -> (f64, f64)) -> Vec<(Vector, f64)> {
+fn ring_directions(steps: usize, cosine: impl Fn(f64) -> (f64, f64)) -> Vec<(Vec3, f64)> {
     let azimuths = 2 * steps;
     let mut found = Vec::new();
     for (x, weight) in gauss_legendre(steps) {
@@ -223,27 +227,27 @@ fn ring_directions(steps: usize, cosine: impl Fn(f64) -> (f64, f64)) -> Vec<(Vec
 }
 
 /// The geometry of a call for a direction of the light.
-fn light_call(v: Vector, l: Vector, weight: f64) -> (Geometry, f64) {
+fn light_call(v: Vec3, l: Vec3, weight: f64) -> (CallDirections, f64) {
     let sum = [0, 1, 2].map(|index| l[index] + v[index]);
     let length = dot(sum, sum).sqrt().max(1e-12);
-    (Geometry { l, v, h: sum.map(|value| value / length) }, weight)
+    (CallDirections { l, v, h: sum.map(|value| value / length) }, weight)
 }
 
 /// The geometry of a call for the light that `h` mirrors towards the viewer. The solid angle is
 /// that of `h`, and dl = 4*(v.h)*dh.
-fn mirrored_call(v: Vector, h: Vector, weight: f64) -> (Geometry, f64) {
+fn mirrored_call(v: Vec3, h: Vec3, weight: f64) -> (CallDirections, f64) {
     let vh = dot(v, h);
     let l = [0, 1, 2].map(|index| 2.0 * vh * h[index] - v[index]);
     let seen = vh > 0.0 && l[2] > 0.0;
-    (Geometry { l, v, h }, if seen { weight * 4.0 * vh * l[2] } else { 0.0 })
+    (CallDirections { l, v, h }, if seen { weight * 4.0 * vh * l[2] } else { 0.0 })
 }
 
 /// The geometry of a call for `h` as the normal of a microfacet, whose weight has the factor n.h.
-fn facet_call(v: Vector, h: Vector, weight: f64) -> (Geometry, f64) {
+fn facet_call(v: Vec3, h: Vec3, weight: f64) -> (CallDirections, f64) {
     let (geometry, _) = mirrored_call(v, h, weight);
     (geometry, weight * h[2])
 }
 
-fn dot(a: Vector, b: Vector) -> f64 {
+fn dot(a: Vec3, b: Vec3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

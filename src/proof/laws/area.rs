@@ -1,12 +1,12 @@
 //! The laws `area` and `equal`: integrals of other functions along one parameter, and equality with
 //! other functions.
 
-use super::Wanted;
+use super::IntegralValue;
 use super::factor::{Factor, Formulas};
 use super::integral::MOST_CALLS;
 use crate::diagnostic::Diagnostic;
-use crate::execute::kernel::Shape;
-use crate::proof::cases::{Rows, Text};
+use crate::execute::kernel::TypeShape;
+use crate::proof::cases::{FormulaText, Rows};
 use crate::proof::formula::{Formula, Scope};
 use crate::quadrature::gauss_legendre;
 use crate::source::Span;
@@ -51,23 +51,23 @@ pub struct Area {
     /// The parameter that is integrated over. It may be one of the case, whose own value the limits
     /// can name, or only one of the functions or of `times`.
     pub along: String,
-    pub from: Text,
-    pub to: Text,
+    pub from: FormulaText,
+    pub to: FormulaText,
     /// Steps become finer towards `to`, down to about this size.
-    pub finest: Option<Text>,
+    pub finest: Option<FormulaText>,
     /// A weight, which may contain the parameter.
-    pub times: Option<Text>,
+    pub times: Option<FormulaText>,
     /// Formulas for parameters that the case does not have.
     pub with: Formulas,
     pub steps: usize,
     pub within: f64,
-    pub wanted: Wanted,
+    pub wanted: IntegralValue,
 }
 
-static NUMBER: Shape = Shape::Scalar(ScalarKind::Float);
+static NUMBER: TypeShape = TypeShape::Scalar(ScalarKind::Float);
 
 /// The formulas of an area for the parameters of a case.
-struct Bound {
+struct AreaFormulas {
     from: Formula,
     to: Formula,
     finest: Option<Formula>,
@@ -133,13 +133,13 @@ impl Area {
         Ok(self.chosen(rows).into_iter().zip(values.chunks(self.steps)).map(area).collect())
     }
 
-    fn bind(&self, case: &Scope<'_>) -> Result<Bound, Diagnostic> {
+    fn bind(&self, case: &Scope<'_>) -> Result<AreaFormulas, Diagnostic> {
         let finest = self.finest.as_ref().map(|finest| finest.bind(case)).transpose()?;
-        Ok(Bound { from: self.from.bind(case)?, to: self.to.bind(case)?, finest })
+        Ok(AreaFormulas { from: self.from.bind(case)?, to: self.to.bind(case)?, finest })
     }
 
     /// The nodes of the rule, rounded to f32 as the functions get them, and their weights.
-    fn nodes(&self, row: &[f64], bound: &Bound) -> Vec<(f64, f64)> {
+    fn nodes(&self, row: &[f64], bound: &AreaFormulas) -> Vec<(f64, f64)> {
         let (from, to) = (bound.from.scalar(row), bound.to.scalar(row));
         let (length, finest) = (to - from, bound.finest.as_ref().map(|finest| finest.scalar(row)));
         let node = |(x, weight): (f64, f64)| {

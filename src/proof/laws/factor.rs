@@ -3,12 +3,12 @@
 use naga::ScalarKind;
 
 use crate::diagnostic::{Diagnostic, codes};
-use crate::proof::cases::{Text, word_of};
+use crate::proof::cases::{FormulaText, word_of};
 use crate::proof::formula::{Formula, Scope};
 use crate::source::Span;
 
 /// Formulas over the case's parameters, by the names of parameters of other functions.
-pub type Formulas = Vec<(String, Text)>;
+pub type Formulas = Vec<(String, FormulaText)>;
 
 /// Another function that a law calls. Each of its arguments is the value of a formula of the law,
 /// else what the law itself gives for this name, else the case's parameter of this name.
@@ -27,7 +27,7 @@ impl<'a> Factor<'a> {
         with: &Formulas,
         span: Span,
     ) -> Result<Self, Diagnostic> {
-        let bound = |(name, text): &(String, Text)| Ok((name.clone(), text.bind(case)?));
+        let bound = |(name, text): &(String, FormulaText)| Ok((name.clone(), text.bind(case)?));
         let with = with.iter().map(bound).collect::<Result<_, Diagnostic>>()?;
         Ok(Self { case, own, with, span })
     }

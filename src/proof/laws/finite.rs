@@ -5,7 +5,7 @@
 //! gets seeded combinations: of the largest values alone, of edge values alone, and of plain values
 //! with some edge values among them, since an edge value often makes a function return early.
 
-use crate::execute::kernel::Shape;
+use crate::execute::kernel::TypeShape;
 use crate::limits::CASE_WORDS;
 use crate::proof::cases::{Random, Rows, word_of, words_to_numbers};
 use crate::proof::formula::{Formula, Scope};
@@ -75,7 +75,7 @@ const INTEGERS: &[f64] = &[
 
 /// Arguments no larger than `up_to`, as rows. `filter` says which are kept.
 pub fn edge_rows(scope: &Scope<'_>, up_to: f64, filter: Option<&Formula>) -> Rows {
-    let shapes: Vec<&Shape> = scope.0.iter().map(|(_, shape)| *shape).collect();
+    let shapes: Vec<&TypeShape> = scope.0.iter().map(|(_, shape)| *shape).collect();
     let kinds: Vec<ScalarKind> = shapes.iter().flat_map(|shape| shape.kinds()).collect();
     let mut words = Vec::new();
     let mut keep = |row: &[f64]| {
@@ -144,7 +144,7 @@ struct Draw {
 }
 
 impl Draw {
-    fn row(&mut self, shapes: &[&Shape], index: usize) -> Vec<f64> {
+    fn row(&mut self, shapes: &[&TypeShape], index: usize) -> Vec<f64> {
         if index < LARGEST {
             let kinds = shapes.iter().flat_map(|shape| shape.kinds());
             return kinds.map(|kind| self.largest(kind, index)).collect();
@@ -173,14 +173,16 @@ impl Draw {
         values[self.random.range(0.0, values.len() as f64) as usize]
     }
 
-    fn value(&mut self, shape: &Shape) -> Vec<f64> {
+    fn value(&mut self, shape: &TypeShape) -> Vec<f64> {
         match shape {
-            Shape::Scalar(kind) => vec![self.number(*kind)],
-            Shape::Vector { size, kind: ScalarKind::Float } => self.vector(*size as usize),
-            Shape::Vector { size, kind } => (0..*size).map(|_| self.number(*kind)).collect(),
-            Shape::Matrix { columns, rows } => self.matrix(*columns as usize, *rows as usize),
-            Shape::Array { base, count } => (0..*count).flat_map(|_| self.value(base)).collect(),
-            Shape::Struct { members } => {
+            TypeShape::Scalar(kind) => vec![self.number(*kind)],
+            TypeShape::Vector { size, kind: ScalarKind::Float } => self.vector(*size as usize),
+            TypeShape::Vector { size, kind } => (0..*size).map(|_| self.number(*kind)).collect(),
+            TypeShape::Matrix { columns, rows } => self.matrix(*columns as usize, *rows as usize),
+            TypeShape::Array { base, count } => {
+                (0..*count).flat_map(|_| self.value(base)).collect()
+            }
+            TypeShape::Struct { members } => {
                 members.iter().flat_map(|(_, shape)| self.value(shape)).collect()
             }
         }

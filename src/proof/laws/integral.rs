@@ -32,13 +32,13 @@ pub struct Integral {
 }
 
 /// A direction of the rule and its weight. The z axis of its frame is `about`.
-struct Node {
+struct QuadratureNode {
     direction: [f64; 3],
     weight: f64,
 }
 
 impl Integral {
-    fn nodes(&self) -> Vec<Node> {
+    fn nodes(&self) -> Vec<QuadratureNode> {
         let azimuths = 2 * self.steps;
         let (low, high) = if self.about.is_some() { (0.0, 1.0) } else { (-1.0, 1.0) };
         let rings = gauss_legendre(self.steps).into_iter().flat_map(|(x, weight)| {
@@ -47,7 +47,7 @@ impl Integral {
             let weight = weight * (high - low) / 2.0 * factor * 2.0 * PI / azimuths as f64;
             (0..azimuths).map(move |step| {
                 let (sin, cos) = (2.0 * PI * (step as f64 + 0.5) / azimuths as f64).sin_cos();
-                Node { direction: [radius * cos, radius * sin, z], weight }
+                QuadratureNode { direction: [radius * cos, radius * sin, z], weight }
             })
         });
         rings.collect()

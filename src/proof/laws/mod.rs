@@ -25,22 +25,22 @@ mod factor;
 pub mod finite;
 mod integral;
 
-pub use albedo::{Albedo, Over, Wanted};
+pub use albedo::{Albedo, IntegralValue, Over};
 pub use area::{Area, Equality};
 pub use factor::Formulas;
 pub use integral::Integral;
 
 use std::ops::Range;
 
-use super::cases::{Rows, Text};
+use super::cases::{FormulaText, Rows};
 use super::formula::Scope;
 use crate::diagnostic::{Diagnostic, codes};
-use crate::execute::kernel::Shape;
+use crate::execute::kernel::TypeShape;
 use crate::source::Span;
 use naga::ScalarKind;
 
 /// A kind of law.
-pub struct Kind {
+pub struct LawKind {
     pub name: &'static str,
     pub takes: Takes,
 }
@@ -104,27 +104,27 @@ impl Takes {
 pub const FINITE: &str = "finite";
 
 /// Every kind.
-pub const KINDS: &[Kind] = &[
-    Kind { name: "range", takes: Takes::Numbers },
-    Kind { name: "reaches", takes: Takes::Numbers },
-    Kind { name: "rising", takes: Takes::Names },
-    Kind { name: "falling", takes: Takes::Names },
-    Kind { name: "swap", takes: Takes::Names },
-    Kind { name: "even", takes: Takes::Names },
-    Kind { name: "continuous", takes: Takes::Slope },
-    Kind { name: "at", takes: Takes::Point },
-    Kind { name: "integral", takes: Takes::Integral },
-    Kind { name: "albedo", takes: Takes::Albedo },
-    Kind { name: "inverse", takes: Takes::Inverse },
-    Kind { name: "equal", takes: Takes::Equality },
-    Kind { name: "area", takes: Takes::Area },
-    Kind { name: FINITE, takes: Takes::Finite },
+pub const KINDS: &[LawKind] = &[
+    LawKind { name: "range", takes: Takes::Numbers },
+    LawKind { name: "reaches", takes: Takes::Numbers },
+    LawKind { name: "rising", takes: Takes::Names },
+    LawKind { name: "falling", takes: Takes::Names },
+    LawKind { name: "swap", takes: Takes::Names },
+    LawKind { name: "even", takes: Takes::Names },
+    LawKind { name: "continuous", takes: Takes::Slope },
+    LawKind { name: "at", takes: Takes::Point },
+    LawKind { name: "integral", takes: Takes::Integral },
+    LawKind { name: "albedo", takes: Takes::Albedo },
+    LawKind { name: "inverse", takes: Takes::Inverse },
+    LawKind { name: "equal", takes: Takes::Equality },
+    LawKind { name: "area", takes: Takes::Area },
+    LawKind { name: FINITE, takes: Takes::Finite },
 ];
 
 /// One law of a case.
 #[derive(Debug)]
 pub struct Law {
-    pub kind: &'static Kind,
+    pub kind: &'static LawKind,
     pub span: Span,
     pub names: Vec<String>,
     pub numbers: Vec<f64>,
@@ -137,7 +137,7 @@ pub struct Law {
     /// The other functions that the law is about, by their names in the file.
     pub partners: Vec<String>,
     /// The arguments that the law `finite` tries; without it, all of them.
-    pub filter: Option<Text>,
+    pub filter: Option<FormulaText>,
 }
 
 /// An inverse: called with a row's value, and with the row's other parameters by name, the function
@@ -150,7 +150,7 @@ pub struct Inverse {
     pub within: f64,
 }
 
-impl std::fmt::Debug for Kind {
+impl std::fmt::Debug for LawKind {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.name)
     }
@@ -180,12 +180,12 @@ pub fn law_toml(law: &Law) -> String {
 
 impl Law {
     /// The law that values are finite for arguments up to a magnitude.
-    pub fn finite(kind: &'static Kind, up_to: f64, span: Span) -> Self {
+    pub fn finite(kind: &'static LawKind, up_to: f64, span: Span) -> Self {
         Self { numbers: vec![up_to], ..Self::new(kind, span) }
     }
 
     /// A law of a kind, without any of its values yet.
-    pub fn new(kind: &'static Kind, span: Span) -> Self {
+    pub fn new(kind: &'static LawKind, span: Span) -> Self {
         Self {
             kind,
             span,
@@ -212,7 +212,7 @@ impl Law {
 }
 
 /// The kind of that name.
-pub fn find_kind(name: &str) -> Option<&'static Kind> {
+pub fn find_kind(name: &str) -> Option<&'static LawKind> {
     KINDS.iter().find(|kind| kind.name == name)
 }
 
@@ -291,7 +291,7 @@ fn argument_place<'a>(
     law: &Law,
     name: &str,
     scope: &'a Scope<'_>,
-) -> Result<(usize, &'a Shape), Diagnostic> {
+) -> Result<(usize, &'a TypeShape), Diagnostic> {
     let parts: Vec<String> = name.split('.').map(str::to_owned).collect();
     scope.find(&parts).ok_or_else(|| scope.unknown(name).at(law.span, "in this law"))
 }
@@ -309,7 +309,7 @@ fn direction_words(law: &Law, name: &str, scope: &Scope<'_>) -> Result<Range<usi
     .at(law.span, "in this law"))
 }
 
-fn words_of<'a>(places: &'a [(usize, &Shape)]) -> impl Iterator<Item = usize> + 'a {
+fn words_of<'a>(places: &'a [(usize, &TypeShape)]) -> impl Iterator<Item = usize> + 'a {
     places.iter().flat_map(|(first, shape)| *first..first + shape.words() as usize)
 }
 
@@ -332,7 +332,7 @@ fn raise_word(word: &mut u32, kind: ScalarKind) {
     };
 }
 
-fn swap_arguments(row: &mut [u32], places: &[(usize, &Shape)]) {
+fn swap_arguments(row: &mut [u32], places: &[(usize, &TypeShape)]) {
     let (pairs, _) = places.as_chunks::<2>();
     for [(first, shape), (second, other)] in pairs {
         for word in 0..shape.words().min(other.words()) as usize {

@@ -2,7 +2,7 @@
 
 use naga::{Block, Expression, Function, Handle, Range, Statement, TypeInner};
 
-use super::site::{Edit, Site, equal_value};
+use super::site::{Mutation, Site, equal_value};
 use crate::emit::blocks::inner_blocks_mut;
 
 /// Puts the mistake into the function; `false` if the function does not have its site.
@@ -12,37 +12,37 @@ pub fn apply_mutation(
     inner: impl Fn(Handle<Expression>) -> Option<TypeInner>,
 ) -> bool {
     match &site.edit {
-        Edit::Expression { at, with, .. } => replace_expression(function, *at, with.clone()),
-        Edit::Negated { statement, .. } => {
+        Mutation::Expression { at, with, .. } => replace_expression(function, *at, with.clone()),
+        Mutation::Negated { statement, .. } => {
             change_statement(&mut function.body, *statement, &mut |found| {
                 if let Statement::If { accept, reject, .. } = found {
                     std::mem::swap(accept, reject);
                 }
             })
         }
-        Edit::NoExit { statement, .. } => {
+        Mutation::NoExit { statement, .. } => {
             change_statement(&mut function.body, *statement, &mut |found| {
                 if let Statement::If { reject, .. } = found {
                     *found = Statement::Block(std::mem::take(reject));
                 }
             })
         }
-        Edit::Decided { statement, holds, .. } => {
+        Mutation::Decided { statement, holds, .. } => {
             change_statement(&mut function.body, *statement, &mut |found| {
                 keep_branch(found, *holds)
             })
         }
-        Edit::Exchanged { statement, first, .. } => {
+        Mutation::Exchanged { statement, first, .. } => {
             change_statement(&mut function.body, *statement, &mut |found| {
                 if let Statement::Call { arguments, .. } = found {
                     arguments.swap(*first, *first + 1);
                 }
             })
         }
-        Edit::NoStore { statement } => {
+        Mutation::NoStore { statement } => {
             change_statement(&mut function.body, *statement, &mut remove_statement)
         }
-        Edit::Argument { statement, result, argument } => {
+        Mutation::Argument { statement, result, argument } => {
             let Some(with) = inner(*argument).and_then(|inner| equal_value(&inner, *argument))
             else {
                 return false;

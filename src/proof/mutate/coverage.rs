@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use super::suite::{self, Subject, Suite};
 use super::words::author_span;
 use crate::diagnostic::Diagnostics;
-use crate::eval::{Branch, FunctionId, Machine, Point, Program};
+use crate::eval::{Branch, CoveragePoint, FunctionId, Machine, Program};
 use crate::execute::interpreter::Interpreter;
 use crate::proof::library::Library;
 use crate::source::SourceSet;
@@ -19,12 +19,12 @@ pub struct Coverage {
     /// How many blocks of statements there are: bodies, branches (written or not), and what follows
     /// a branch.
     pub blocks: usize,
-    pub uncovered: Vec<Place>,
+    pub uncovered: Vec<UncoveredBlock>,
 }
 
 /// A block that no case reaches.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct UncoveredBlock {
     pub function: String,
     /// The author's `file:line`.
     pub place: String,
@@ -32,7 +32,7 @@ pub struct Place {
 }
 
 /// A block by its function, its place in the composed text, and how it is reached.
-type Key = (String, u32, u32, u8);
+type BlockKey = (String, u32, u32, u8);
 
 /// Runs every row of the cases of the modules, and finds the blocks that none reaches.
 ///
@@ -59,7 +59,7 @@ fn suite_coverage(suite: &Suite<'_>, sources: &SourceSet) -> Coverage {
         return Coverage { module: suite.module.clone(), blocks, uncovered };
     };
     for subject in &suite.subjects {
-        let own = |point: &&Point| point.function == FunctionId::from(subject.function);
+        let own = |point: &&CoveragePoint| point.function == FunctionId::from(subject.function);
         for point in program.points().iter().filter(own) {
             blocks += 1;
             if !reached.contains_key(&coverage_key(&subject.name, point)) {
@@ -70,18 +70,18 @@ fn suite_coverage(suite: &Suite<'_>, sources: &SourceSet) -> Coverage {
     Coverage { module: suite.module.clone(), blocks, uncovered }
 }
 
-fn coverage_key(function: &str, point: &Point) -> Key {
+fn coverage_key(function: &str, point: &CoveragePoint) -> BlockKey {
     let range = point.span.to_range().unwrap_or_default();
     (function.to_owned(), range.start as u32, range.end as u32, point.branch as u8)
 }
 
 /// How often each block was reached.
-fn reached_blocks(suite: &Suite<'_>) -> BTreeMap<Key, u64> {
+fn reached_blocks(suite: &Suite<'_>) -> BTreeMap<BlockKey, u64> {
     let mut reached = BTreeMap::new();
     for case in &suite.cases {
         let Ok(interpreter) = Interpreter::new(case.job.kernel()) else { continue };
         let program = interpreter.program();
-        let name = |point: &Point| {
+        let name = |point: &CoveragePoint| {
             program.signature(point.function).map_or("", |function| function.name.as_str())
         };
         if program
@@ -106,7 +106,12 @@ fn reached_blocks(suite: &Suite<'_>) -> BTreeMap<Key, u64> {
     reached
 }
 
-fn block_place(suite: &Suite<'_>, sources: &SourceSet, subject: &Subject, point: &Point) -> Place {
+fn block_place(
+    suite: &Suite<'_>,
+    sources: &SourceSet,
+    subject: &Subject,
+    point: &CoveragePoint,
+) -> UncoveredBlock {
     let span = author_span(&suite.map, point.span);
     let place = span.map_or("?".to_owned(), |span| {
         format!(
@@ -115,7 +120,7 @@ fn block_place(suite: &Suite<'_>, sources: &SourceSet, subject: &Subject, point:
             sources.position(span.source, span.start as usize).0
         )
     });
-    Place { function: subject.name.clone(), place, branch: point.branch }
+    UncoveredBlock { function: subject.name.clone(), place, branch: point.branch }
 }
 
 impl std::fmt::Display for Coverage {

@@ -21,7 +21,7 @@ mod site;
 mod suite;
 mod words;
 
-pub use coverage::{Coverage, Place, measure_coverage};
+pub use coverage::{Coverage, UncoveredBlock, measure_coverage};
 pub use report::{Fate, MutantOutcome, MutantReport};
 
 use std::sync::Mutex;
@@ -87,7 +87,7 @@ fn mutant_outcome(
     site: &Site,
 ) -> Option<MutantOutcome> {
     let fate = suite.fate(subject, site)?;
-    let text = words::Text {
+    let text = words::QuotedSource {
         sources,
         map: &suite.map,
         function: &suite.whole.functions[subject.function],

@@ -3,17 +3,17 @@
 use naga::ScalarKind;
 
 use crate::diagnostic::Diagnostic;
-use crate::execute::interpreter::{Calls, Interpreter, word_of};
+use crate::execute::interpreter::{Interpreter, KernelCalls, word_of};
 use crate::execute::kernel::Kernel;
 
 /// Runs rows of a kernel in f32.
-pub struct Runner<'p> {
-    pub calls: Calls<'p, f32>,
+pub struct RowRunner<'p> {
+    pub calls: KernelCalls<'p, f32>,
     kinds: Vec<ScalarKind>,
     stride: usize,
 }
 
-impl<'p> Runner<'p> {
+impl<'p> RowRunner<'p> {
     pub fn new(kernel: &Kernel, interpreter: &'p Interpreter) -> Result<Self, Diagnostic> {
         let mut calls = interpreter.calls::<f32>()?;
         calls.machine.loop_limit = super::suite::TRIPS;

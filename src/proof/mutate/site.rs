@@ -14,12 +14,12 @@ use crate::emit::blocks::inner_blocks;
 #[derive(Debug, Clone)]
 pub struct Site {
     pub span: Span,
-    pub edit: Edit,
+    pub edit: Mutation,
 }
 
 /// What a mistake changes. Statements are counted in the order of the text, outer ones first.
 #[derive(Debug, Clone)]
-pub enum Edit {
+pub enum Mutation {
     /// An expression becomes another over the same operands.
     Expression { at: Handle<Expression>, with: Expression, how: How },
     /// The branches of an `if` are swapped: its condition is negated.
@@ -64,7 +64,7 @@ pub fn mutation_sites(module: &Module, info: &ModuleInfo, handle: Handle<Functio
         let span = function.expressions.get_span(at);
         let changed = finder.expression(at, expression).into_iter();
         sites.extend(
-            changed.map(|(with, how)| Site { span, edit: Edit::Expression { at, with, how } }),
+            changed.map(|(with, how)| Site { span, edit: Mutation::Expression { at, with, how } }),
         );
     }
     finder.block(&function.body, &mut 0, &mut sites);
@@ -265,7 +265,7 @@ impl Finder<'_> {
                 sites.extend(self.conditions(at, *condition, accept, reject));
             }
             Statement::Store { pointer, .. } if !self.is_unnamed(*pointer) => {
-                sites.push(Site { span, edit: Edit::NoStore { statement: at } })
+                sites.push(Site { span, edit: Mutation::NoStore { statement: at } })
             }
             Statement::Call { arguments, result: Some(result), .. } => {
                 sites.extend(self.call(at, arguments, *result));
@@ -282,11 +282,12 @@ impl Finder<'_> {
         reject: &Block,
     ) -> Vec<Site> {
         let span = self.function.expressions.get_span(condition);
-        let mut edits = vec![Edit::Negated { statement, condition }];
+        let mut edits = vec![Mutation::Negated { statement, condition }];
         if matches!(accept.last(), Some(Statement::Return { .. } | Statement::Kill)) {
-            edits.push(Edit::NoExit { statement, condition });
+            edits.push(Mutation::NoExit { statement, condition });
         } else if !ends_flow(accept) && !ends_flow(reject) {
-            let decided = [true, false].map(|holds| Edit::Decided { statement, condition, holds });
+            let decided =
+                [true, false].map(|holds| Mutation::Decided { statement, condition, holds });
             edits.extend(decided);
         }
         edits.into_iter().map(|edit| Site { span, edit }).collect()
@@ -302,9 +303,9 @@ impl Finder<'_> {
         let argument = arguments
             .iter()
             .find(|argument| self.ty(**argument) == ty && equal_value(ty, **argument).is_some())
-            .map(|argument| Edit::Argument { statement, result, argument: *argument });
+            .map(|argument| Mutation::Argument { statement, result, argument: *argument });
         let pairs = arguments.windows(2).enumerate().filter(|(_, pair)| self.can_exchange(pair));
-        let exchanged = pairs.map(|(first, pair)| Edit::Exchanged {
+        let exchanged = pairs.map(|(first, pair)| Mutation::Exchanged {
             statement,
             first,
             arguments: [pair[0], pair[1]],

@@ -9,20 +9,20 @@ use rayon::prelude::*;
 use super::apply::apply_mutation;
 use super::order::row_order;
 use super::report::Fate;
-use super::runner::Runner;
+use super::runner::RowRunner;
 use super::site::Site;
 use super::words::author_span;
 use crate::bundle::Language;
 use crate::compose::SourceMap;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::eval::Machine;
-use crate::execute::interpreter::{Calls, Interpreter, slot_value};
+use crate::execute::interpreter::{Interpreter, KernelCalls, slot_value};
 use crate::execute::module_info;
-use crate::proof::cases::{File, Rows};
-use crate::proof::check::Options;
-use crate::proof::check::job::{self, BoundOracle, Goal, Job};
+use crate::proof::cases::{CaseFile, Rows};
+use crate::proof::check::CheckOptions;
+use crate::proof::check::job::{self, BoundOracle, CaseJob, Goal};
 use crate::proof::check::judge;
-use crate::proof::check::law::{self, Given};
+use crate::proof::check::law::{self, RowResults};
 use crate::proof::library::Library;
 use crate::proof::tolerance;
 use crate::source::SourceSet;
@@ -50,7 +50,7 @@ pub struct Suite<'f> {
     pub info: ModuleInfo,
     /// The module's own functions.
     pub subjects: Vec<Subject>,
-    pub cases: Vec<Ready<'f>>,
+    pub cases: Vec<ReadyCase<'f>>,
 }
 
 /// A function that the module itself declares.
@@ -60,14 +60,14 @@ pub struct Subject {
 }
 
 /// A case with its rows in batches. Rows that probably notice a mistake come first.
-pub struct Ready<'f> {
-    pub job: Job<'f>,
+pub struct ReadyCase<'f> {
+    pub job: CaseJob<'f>,
     order: Vec<usize>,
-    batches: Vec<Batch>,
+    batches: Vec<RowBatch>,
 }
 
 /// Rows with their expected values.
-struct Batch {
+struct RowBatch {
     rows: Rows,
     expected: Vec<Goal>,
     /// The allowed error of each word in f64: twice the error of the code without a mistake, which
@@ -78,14 +78,14 @@ struct Batch {
 }
 
 /// A module's path, and its cases if it has any.
-pub type Named = (String, Option<File>);
+pub type NamedCases = (String, Option<CaseFile>);
 
 /// The case files of the modules.
 pub fn case_files(
     library: &Library,
     sources: &Mutex<SourceSet>,
     modules: &[String],
-) -> Result<Vec<Named>, Diagnostics> {
+) -> Result<Vec<NamedCases>, Diagnostics> {
     let present = library.case_files();
     let read = |module: &String| {
         let path = format!("{}.toml", module.replace("::", "/"));
@@ -101,7 +101,7 @@ pub fn case_files(
 pub fn make_suites<'f>(
     library: &Library,
     sources: &Mutex<SourceSet>,
-    files: &'f [Named],
+    files: &'f [NamedCases],
 ) -> Result<Vec<Suite<'f>>, Diagnostics> {
     files
         .par_iter()
@@ -113,7 +113,7 @@ fn make_suite<'f>(
     library: &Library,
     sources: &Mutex<SourceSet>,
     module: &str,
-    file: Option<&'f File>,
+    file: Option<&'f CaseFile>,
 ) -> Result<Suite<'f>, Diagnostics> {
     let (composed, validated) = library.whole(sources, module)?;
     let mut whole = validated.module;
@@ -129,7 +129,7 @@ fn make_suite<'f>(
             &|_, _, _| Ok(parsed.clone()),
             // A mutant changes one module, and its results are compared with the case's oracle, so
             // laws about several functions are left out.
-            &Options { partners: false, ..Options::default() },
+            &CheckOptions { partners: false, ..CheckOptions::default() },
         )?,
         None => Vec::new(),
     };
@@ -163,7 +163,7 @@ fn is_file(path: &str, file: &str) -> bool {
     path == file || path.strip_suffix(file).is_some_and(|rest| rest.ends_with('/'))
 }
 
-fn ready_job(job: Job<'_>) -> Result<Ready<'_>, Diagnostics> {
+fn ready_job(job: CaseJob<'_>) -> Result<ReadyCase<'_>, Diagnostics> {
     let order = row_order(&job.rows);
     let interpreter = Interpreter::new(job.kernel()).map_err(|error| vec![error])?;
     let mut calls = interpreter.calls::<f64>().map_err(|error| vec![error])?;
@@ -177,18 +177,18 @@ fn ready_job(job: Job<'_>) -> Result<Ready<'_>, Diagnostics> {
             chosen.iter().map(|row| job.expected[*row].clone()).collect::<Vec<_>>(),
         );
         let slack = row_slack(&job, &rows, &expected, &mut calls).map_err(|error| vec![error])?;
-        batches.push(Batch { rows, expected, slack });
+        batches.push(RowBatch { rows, expected, slack });
         (from, size) = (from + size, size * 4);
     }
     drop(calls);
-    Ok(Ready { order, batches, job })
+    Ok(ReadyCase { order, batches, job })
 }
 
 fn row_slack(
-    job: &Job<'_>,
+    job: &CaseJob<'_>,
     rows: &Rows,
     expected: &[Goal],
-    calls: &mut Calls<'_, f64>,
+    calls: &mut KernelCalls<'_, f64>,
 ) -> Result<Vec<f64>, Diagnostic> {
     let kinds = job.kernel().result_kinds();
     let mut slack = Vec::new();
@@ -210,7 +210,7 @@ fn row_slack(
 
 /// The result of one row in f64.
 fn exact_result(
-    calls: &mut Calls<'_, f64>,
+    calls: &mut KernelCalls<'_, f64>,
     row: &[u32],
     kinds: &[ScalarKind],
 ) -> Result<Vec<f64>, Diagnostic> {
@@ -247,8 +247,9 @@ impl Suite<'_> {
 
     /// What becomes of the mutant with this mistake; `None` if the mutant is not valid.
     pub fn fate(&self, subject: &Subject, site: &Site) -> Option<Fate> {
-        let reaching =
-            |case: &&Ready<'_>| find_function(&case.job.kernel().module, &subject.name).is_some();
+        let reaching = |case: &&ReadyCase<'_>| {
+            find_function(&case.job.kernel().module, &subject.name).is_some()
+        };
         let (own, others): (Vec<_>, Vec<_>) = self
             .cases
             .iter()
@@ -265,7 +266,7 @@ impl Suite<'_> {
         fate
     }
 
-    fn run(&self, case: &Ready<'_>, subject: &Subject, site: &Site) -> Option<Fate> {
+    fn run(&self, case: &ReadyCase<'_>, subject: &Subject, site: &Site) -> Option<Fate> {
         let mut module = case.job.kernel().module.clone();
         let ty = |handle: Handle<Expression>| {
             Some(self.info[subject.function][handle].ty.inner_with(&self.whole.types).clone())
@@ -286,7 +287,7 @@ fn find_function(module: &Module, name: &str) -> Option<Handle<Function>> {
         .map(|(handle, _)| handle)
 }
 
-impl Ready<'_> {
+impl ReadyCase<'_> {
     /// An interpreter for a changed copy of the kernel's module. All rows run twice, in f64 and in
     /// f32, and once more for each law with rows of its own. Each time may take the steps of a case.
     fn interpreter(&self, module: &Module) -> Result<Interpreter, Diagnostic> {
@@ -321,11 +322,11 @@ impl Ready<'_> {
 
     /// Whether a row in f32, or a law, fails as `lamplight check` judges them.
     fn fails(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
-        let mut runner = Runner::new(self.job.kernel(), interpreter)?;
+        let mut runner = RowRunner::new(self.job.kernel(), interpreter)?;
         let words = self.job.kernel().result_words() as usize;
         let mut results = vec![0; words * self.job.rows.len()];
         let mut order = self.order.iter();
-        for Batch { rows, expected, .. } in &self.batches {
+        for RowBatch { rows, expected, .. } in &self.batches {
             let found = runner.run(&rows.words)?;
             if !judge::judge_rows(&self.job, rows, expected, &found).failing.is_empty() {
                 return Ok(true);
@@ -344,7 +345,7 @@ impl Ready<'_> {
         for law in &self.job.laws {
             let transformed = law.rows.as_ref().map(|rows| runner.run(&rows.words)).transpose()?;
             let transformed = law.rows.as_ref().zip(transformed.as_deref());
-            let given = Given {
+            let given = RowResults {
                 rows: &self.job.rows,
                 expected: &self.job.expected,
                 results: &results,
@@ -363,7 +364,7 @@ impl Ready<'_> {
         interpreter: &Interpreter,
         seen: &mut dyn FnMut(&Machine<'_, f32>),
     ) -> Result<(), Diagnostic> {
-        let mut runner = Runner::new(self.job.kernel(), interpreter)?;
+        let mut runner = RowRunner::new(self.job.kernel(), interpreter)?;
         runner.run(&self.job.rows.words)?;
         seen(&runner.calls.machine);
         Ok(())

@@ -3,7 +3,7 @@
 use naga::{Expression, Function, Handle, Span};
 
 use super::operators::COMPONENTS;
-use super::site::{Edit, How, Site};
+use super::site::{How, Mutation, Site};
 use crate::compose::SourceMap;
 use crate::parse::words::is_word;
 use crate::source::{self, SourceSet};
@@ -12,13 +12,13 @@ use crate::source::{self, SourceSet};
 const LONGEST: usize = 80;
 
 /// What is needed to quote a composed function as its author wrote it.
-pub struct Text<'a> {
+pub struct QuotedSource<'a> {
     pub sources: &'a SourceSet,
     pub map: &'a SourceMap,
     pub function: &'a Function,
 }
 
-impl Text<'_> {
+impl QuotedSource<'_> {
     /// `file:line` and the trimmed line.
     pub fn place(&self, span: Span) -> (String, String) {
         let Some(found) = author_span(self.map, span) else {
@@ -34,17 +34,21 @@ impl Text<'_> {
     pub fn words(&self, site: &Site) -> String {
         let whole = self.excerpt(site.span);
         match &site.edit {
-            Edit::Expression { how, .. } => self.expression(*how, &whole),
-            Edit::Negated { condition, .. } => format!("`{}` negated", self.operand(*condition)),
-            Edit::NoExit { condition, .. } => {
+            Mutation::Expression { how, .. } => self.expression(*how, &whole),
+            Mutation::Negated { condition, .. } => {
+                format!("`{}` negated", self.operand(*condition))
+            }
+            Mutation::NoExit { condition, .. } => {
                 format!("no early exit at `{}`", self.operand(*condition))
             }
-            Edit::Decided { condition, holds, .. } => {
+            Mutation::Decided { condition, holds, .. } => {
                 format!("`{holds}` instead of `{}`", self.operand(*condition))
             }
-            Edit::Exchanged { arguments: [one, other], .. } => self.exchange(*one, *other, &whole),
-            Edit::NoStore { .. } => format!("no assignment `{whole}`"),
-            Edit::Argument { argument, .. } => {
+            Mutation::Exchanged { arguments: [one, other], .. } => {
+                self.exchange(*one, *other, &whole)
+            }
+            Mutation::NoStore { .. } => format!("no assignment `{whole}`"),
+            Mutation::Argument { argument, .. } => {
                 format!("`{}` instead of `{whole}`", self.operand(*argument))
             }
         }

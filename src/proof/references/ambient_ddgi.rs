@@ -1,8 +1,8 @@
 //! Sources: Majercik et al., 2019, section 5.2; NVIDIA, RTXGI SDK 1.3, 2022.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "ambient::ddgi",
     functions: &[
         ("ddgi_chebyshev", |a| chebyshev(a, None).into()),
@@ -14,7 +14,7 @@ pub const REFERENCES: Entry = Entry {
 
 /// 1 up to the mean distance. Beyond it, the cube of var/(var + (d - mean)^2), but at least
 /// `least`, which is read from the arguments if it is `None`.
-fn chebyshev(a: &mut Arguments<'_>, least: Option<f64>) -> f64 {
+fn chebyshev(a: &mut CallArguments<'_>, least: Option<f64>) -> f64 {
     let (mean, mean2, dist) = (a.f64(), a.f64(), a.f64());
     let least = least.unwrap_or_else(|| a.f64()).clamp(0.0, 1.0);
     if dist <= mean {
@@ -28,7 +28,7 @@ fn chebyshev(a: &mut Arguments<'_>, least: Option<f64>) -> f64 {
 /// The wrapped cosine, squared, plus 0.2, times the visibility. A weight w below 0.2 becomes
 /// w^3/0.2^2. The result is multiplied by the trilinear share. Without `least`, the visibility is
 /// an argument.
-fn weight(a: &mut Arguments<'_>, least: Option<f64>) -> Expected {
+fn weight(a: &mut CallArguments<'_>, least: Option<f64>) -> Expected {
     let (n, dir, share) = (a.vec3(), a.vec3(), a.f64());
     let visibility = if least.is_some() { chebyshev(a, least) } else { a.f64() };
     let w = ((((n.dot(dir) + 1.0) / 2.0).powi(2) + 0.2) * visibility).max(f64::from(1e-6f32));

@@ -1,9 +1,9 @@
 //! Source: OpenGL Programming Guide, "Hemisphere Lighting" and example 7.12.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "ambient::hemisphere",
     functions: &[
         ("hemisphere_weight", |a| weight(a.vec3(), a.vec3()).into()),
@@ -18,7 +18,7 @@ fn weight(n: DVec3, up: DVec3) -> f64 {
 }
 
 /// 1 - sin(t)/2 for angles t between the two directions up to 90 degrees, sin(t)/2 beyond.
-fn weight_sine(a: &mut Arguments<'_>) -> Expected {
+fn weight_sine(a: &mut CallArguments<'_>) -> Expected {
     let (n, up) = (a.vec3(), a.vec3());
     let half = 0.5 * n.cross(up).length();
     if n.dot(up) >= 0.0 { (1.0 - half).into() } else { half.into() }
@@ -28,7 +28,7 @@ fn hemisphere(n: DVec3, up: DVec3, sky: DVec3, ground: DVec3) -> DVec3 {
     ground.lerp(sky, weight(n, up))
 }
 
-fn hemisphere_oglpg(a: &mut Arguments<'_>) -> Expected {
+fn hemisphere_oglpg(a: &mut CallArguments<'_>) -> Expected {
     let (n, p, light, sky, ground) = (a.vec3(), a.vec3(), a.vec3(), a.vec3(), a.vec3());
     hemisphere(n, (light - p).normalize(), sky, ground).into()
 }

@@ -1,10 +1,10 @@
 //! Sources: OpenGL Programming Guide, example 7.13; Karis, "Real Shading in Unreal Engine 4", 2013;
 //! Lagarde and Zanuttini, 2012.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "ambient::ibl",
     functions: &[
         ("ibl_mix", ibl_mix),
@@ -17,26 +17,26 @@ pub const REFERENCES: Entry = Entry {
 };
 
 /// c = mix(B, D*B, dp), then mix(c, S + c, sp).
-fn ibl_mix(a: &mut Arguments<'_>) -> Expected {
+fn ibl_mix(a: &mut CallArguments<'_>) -> Expected {
     let (base, diffuse, specular, dp, sp) = (a.vec3(), a.vec3(), a.vec3(), a.f64(), a.f64());
     let c = base.lerp(diffuse * base, dp);
     c.lerp(specular + c, sp).into()
 }
 
 /// The mirror direction of the view vector, turned from eye to world space.
-fn reflect_world(a: &mut Arguments<'_>) -> Expected {
+fn reflect_world(a: &mut CallArguments<'_>) -> Expected {
     let (view, n, v) = (a.mat3(), a.vec3(), a.vec3());
     (view.transpose() * (2.0 * n.dot(v) * n - v)).into()
 }
 
-fn split_sum(a: &mut Arguments<'_>) -> Expected {
+fn split_sum(a: &mut CallArguments<'_>) -> Expected {
     let (f0, dfg, prefiltered) = (a.vec3(), a.vec2(), a.vec3());
     (prefiltered * (f0 * dfg.x + dfg.y)).into()
 }
 
 /// The vector from the point `c` of the environment to where the ray from `p` along `r` first meets
 /// a plane of the box. Planes behind `p` count as if `p` were on them.
-fn box_project(a: &mut Arguments<'_>) -> Expected {
+fn box_project(a: &mut CallArguments<'_>) -> Expected {
     let (r, p, lo, hi, c) = (a.vec3(), a.vec3(), a.vec3(), a.vec3(), a.vec3());
     if r == DVec3::ZERO {
         return (p - c).into();

@@ -1,11 +1,11 @@
 //! Sources: Lagarde and de Rousiers, 2014, section 4.10.2; Jimenez et al., 2016, equations 7 and
 //! 10; Russell, 2015; Roberts, 2018; Chapman, 2013.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "ambient::occlusion",
     functions: &[
         ("specular_occlusion", specular),
@@ -17,13 +17,13 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-fn specular(a: &mut Arguments<'_>) -> Expected {
+fn specular(a: &mut CallArguments<'_>) -> Expected {
     let [nv, ao, alpha] = [a.f64(), a.f64(), a.f64()].map(|x| x.clamp(0.0, 1.0));
     ((nv + ao).powf((-16.0 * alpha - 1.0).exp2()) - 1.0 + ao).clamp(0.0, 1.0).into()
 }
 
 /// The cubic polynomial of the visibility whose coefficients are linear in the albedo.
-fn multibounce(a: &mut Arguments<'_>) -> Expected {
+fn multibounce(a: &mut CallArguments<'_>) -> Expected {
     let (v, albedo) = (a.f64().clamp(0.0, 1.0), a.vec3().clamp(DVec3::ZERO, DVec3::ONE));
     Expected::words(albedo.to_array().map(|rho| {
         let cubic = (2.0404 * rho - 0.3324) * v.powi(3)
@@ -33,13 +33,13 @@ fn multibounce(a: &mut Arguments<'_>) -> Expected {
     }))
 }
 
-fn horizon(a: &mut Arguments<'_>) -> Expected {
+fn horizon(a: &mut CallArguments<'_>) -> Expected {
     let (r, n, k) = (a.vec3(), a.vec3(), a.f64().max(0.0));
     (1.0 + k * r.dot(n)).clamp(0.0, 1.0).powi(2).into()
 }
 
 /// The integral of cos(t - gamma)*|sin(t)| from the viewer's direction, 0, to the horizon.
-fn gtao_arc(a: &mut Arguments<'_>) -> Expected {
+fn gtao_arc(a: &mut CallArguments<'_>) -> Expected {
     let (h, gamma) = (a.f64(), a.f64());
     let h = h.clamp(gamma - FRAC_PI_2, gamma + FRAC_PI_2);
     const STEPS: u32 = 500;
@@ -74,7 +74,7 @@ fn kernel(i: f64, count: f64) -> DVec3 {
 /// The share of the cone of the reflection lobe that lies in the cone of the unoccluded directions.
 /// The area that both caps share is the smaller cap where one contains the other, 0 where they are
 /// apart, and smoothly between otherwise. The effect fades out for small alpha.
-fn gtso(a: &mut Arguments<'_>) -> Expected {
+fn gtso(a: &mut CallArguments<'_>) -> Expected {
     let (bent, r) = (a.vec3(), a.vec3());
     let [ao, alpha] = [a.f64(), a.f64()].map(|x| x.clamp(0.0, 1.0));
     let step = |from: f64, to: f64, x: f64| {

@@ -1,9 +1,9 @@
 //! Source: Cigolle et al., 2014, section 3.1.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DVec2, DVec3};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "ambient::octahedral",
     functions: &[("octahedral_encode", encode), ("octahedral_decode", |a| decode(a.vec2()).into())],
 };
@@ -14,7 +14,7 @@ fn sign(x: f64) -> f64 {
 
 /// The direction scaled onto |x| + |y| + |z| = 1. The lower half is mirrored at the edges of the
 /// diamond |x| + |y| = 1.
-fn encode(a: &mut Arguments<'_>) -> Expected {
+fn encode(a: &mut CallArguments<'_>) -> Expected {
     let n = a.vec3();
     if n.abs().max_element() <= f64::from(1e-30f32) {
         return DVec2::ZERO.into();

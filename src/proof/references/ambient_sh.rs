@@ -2,11 +2,11 @@
 //! Maps", 2001, equations 3 and 13; OpenGL Programming Guide, equation 7.1; Hazel,
 //! 2015; Roughton et al., 2024; Sloan, 2008.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "ambient::sh",
     functions: &[
         ("sh9_irradiance", |a| irradiance(a, 9).into()),
@@ -37,7 +37,7 @@ fn basis(n: DVec3) -> [f64; 9] {
 }
 
 /// Equation 13, as printed with c1 to c5, over the first `count` coefficients.
-fn irradiance(a: &mut Arguments<'_>, count: usize) -> DVec3 {
+fn irradiance(a: &mut CallArguments<'_>, count: usize) -> DVec3 {
     let n = a.vec3();
     let mut sh = [DVec3::ZERO; 9];
     sh[..count].iter_mut().for_each(|coefficient| *coefficient = a.vec3());
@@ -62,18 +62,18 @@ fn lobe(n: DVec3, constant: f64, axis: DVec3) -> f64 {
     mean * (a + (1.0 - a) * (p + 1.0) * q.powf(p))
 }
 
-fn four(a: &mut Arguments<'_>) -> [DVec3; 4] {
+fn four(a: &mut CallArguments<'_>) -> [DVec3; 4] {
     [(); 4].map(|()| a.vec3())
 }
 
-fn geomerics(a: &mut Arguments<'_>) -> Expected {
+fn geomerics(a: &mut CallArguments<'_>) -> Expected {
     let (n, [l00, l1m1, l10, l11]) = (a.vec3(), four(a));
     let channel = |c: usize| lobe(n, l00[c], DVec3::new(l11[c], l1m1[c], l10[c]));
     DVec3::new(channel(0), channel(1), channel(2)).into()
 }
 
 /// The bands 0 and 1, and for band 2 a zonal coefficient about the axis of the luminance.
-fn zh3(a: &mut Arguments<'_>) -> Expected {
+fn zh3(a: &mut CallArguments<'_>) -> Expected {
     let (n, [l00, l1m1, l10, l11]) = (a.vec3(), four(a));
     let luma = DVec3::new(0.2126, 0.7152, 0.0722);
     let axis = DVec3::new(l11.dot(luma), l1m1.dot(luma), l10.dot(luma)).normalize_or_zero();

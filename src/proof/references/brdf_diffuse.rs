@@ -3,11 +3,11 @@
 //! and Hill, 2025 (EON); Hill's fit in MaterialX, 2021; Khronos Group,
 //! KHR_materials_diffuse_transmission, 2024; McAuley, 2011 (energy of a wrap).
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 use std::f64::consts::{FRAC_1_PI, PI};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::diffuse",
     functions: &[
         ("lambert", |a| lambert(a.vec3(), a.vec3()).into()),
@@ -29,13 +29,13 @@ pub fn lambert(n: DVec3, l: DVec3) -> f64 {
     n.dot(l).max(0.0)
 }
 
-fn wrap(a: &mut Arguments<'_>) -> Expected {
+fn wrap(a: &mut CallArguments<'_>) -> Expected {
     let (cosine, w) = (a.vec3().dot(a.vec3()), a.f64().max(0.0));
     ((cosine + w) / (1.0 + w)).max(0.0).into()
 }
 
 /// cos(tl)*(A + B*max(cos(phi), 0)*sin(max(tl, tv))*tan(min(tl, tv))), from angles.
-fn oren_nayar(a: &mut Arguments<'_>) -> Expected {
+fn oren_nayar(a: &mut CallArguments<'_>) -> Expected {
     let (n, l, v, sigma) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
     let (nl, nv) = (n.dot(l), n.dot(v).max(0.0));
     if nl <= 0.0 {
@@ -48,7 +48,7 @@ fn oren_nayar(a: &mut Arguments<'_>) -> Expected {
     (nl * (rough + slope * cos_phi * tl.max(tv).sin() * tl.min(tv).tan())).into()
 }
 
-fn burley(a: &mut Arguments<'_>) -> Expected {
+fn burley(a: &mut CallArguments<'_>) -> Expected {
     let (nl, nv, lh, roughness) = (a.f64(), a.f64(), a.f64(), a.f64());
     let f90 = 0.5 + 2.0 * roughness * lh * lh;
     let rise = |cosine: f64| 1.0 + (f90 - 1.0) * (1.0 - cosine.clamp(0.0, 1.0)).powi(5);
@@ -73,7 +73,7 @@ fn eon_albedo(mu: f64, roughness: f64) -> f64 {
 }
 
 /// The single-scattering lobe, and rho_ms/pi*(1 - E_o)*(1 - E_i)/(1 - E_avg).
-fn eon(a: &mut Arguments<'_>) -> Expected {
+fn eon(a: &mut CallArguments<'_>) -> Expected {
     let (albedo, roughness) = (a.vec3().clamp(DVec3::ZERO, DVec3::ONE), a.f64().clamp(0.0, 1.0));
     let (nl, nv, lv) = (a.f64(), a.f64(), a.f64());
     if nl <= 0.0 || nv <= 0.0 {
@@ -94,7 +94,7 @@ fn eon(a: &mut Arguments<'_>) -> Expected {
 
 /// A blend by roughness of two fits: for a smooth surface with the fifth power of 1 - x, for a
 /// rough one a cubic in x.
-fn burley_albedo(a: &mut Arguments<'_>) -> Expected {
+fn burley_albedo(a: &mut CallArguments<'_>) -> Expected {
     let (x, r) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));
     let smooth = 0.97619 - 0.488095 * (1.0 - x).powi(5);
     let rough = 1.55754 - 2.02221 * x + 2.56283 * x * x - 1.06244 * x * x * x;
@@ -103,7 +103,7 @@ fn burley_albedo(a: &mut Arguments<'_>) -> Expected {
 
 /// Lambert's cosine: on the viewer's side the share that is not transmitted, on the other side the
 /// rest.
-fn diffuse_transmission(a: &mut Arguments<'_>) -> Expected {
+fn diffuse_transmission(a: &mut CallArguments<'_>) -> Expected {
     let (nl, share) = (a.f64(), a.f64().clamp(0.0, 1.0));
     (((1.0 - share) * nl.max(0.0) + share * (-nl).max(0.0)) * FRAC_1_PI).into()
 }

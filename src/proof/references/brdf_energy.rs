@@ -2,10 +2,10 @@
 //! Fdez-Agüera, 2019; Kulla and Conty, 2017; Hill, in MaterialX; Karis, 2014; Lazarov, 2013, as
 //! Knarkowicz has it.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::energy",
     functions: &[
         ("dfg_approx", dfg_approx),
@@ -26,7 +26,7 @@ fn polynomial(x: f64, r: f64, terms: &[(f64, i32, i32)]) -> f64 {
 /// Scale and bias of the split sum, from two quotients of polynomials in sqrt(nv) and the
 /// roughness: `lost` is what single scattering loses, and `1 + rim` is the bias over (1 - nv)^5 of
 /// the rest.
-fn dfg_approx(a: &mut Arguments<'_>) -> Expected {
+fn dfg_approx(a: &mut CallArguments<'_>) -> Expected {
     let (x, r) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(f64::from(0.001f32), 1.0));
     let quotient = |above: &[(f64, i32, i32)], below: &[(f64, i32, i32)]| {
         polynomial(x.sqrt(), r, above) / polynomial(x.sqrt(), r, below)
@@ -61,7 +61,7 @@ fn dfg_approx(a: &mut Arguments<'_>) -> Expected {
 }
 
 /// 1 + f0*(1 - E)/E.
-fn energy_compensation(a: &mut Arguments<'_>) -> Expected {
+fn energy_compensation(a: &mut CallArguments<'_>) -> Expected {
     let (f0, dfg) = (a.vec3(), a.vec2());
     let albedo = (dfg.x + dfg.y).clamp(f64::from(0.05f32), 1.0);
     (1.0 + f0 * (1.0 - albedo) / albedo).into()
@@ -69,7 +69,7 @@ fn energy_compensation(a: &mut Arguments<'_>) -> Expected {
 
 /// Single scattering, and the light that it loses and that is reflected again: a geometric series
 /// in the average reflectance times the lost share.
-fn split_sum_multi(a: &mut Arguments<'_>) -> Expected {
+fn split_sum_multi(a: &mut CallArguments<'_>) -> Expected {
     let (f0, ks, dfg) = (a.vec3().clamp(DVec3::ZERO, DVec3::ONE), a.vec3(), a.vec2());
     let single = ks * dfg.x + dfg.y;
     let lost = 1.0 - (dfg.x + dfg.y).clamp(f64::from(0.05f32), 1.0);
@@ -81,7 +81,7 @@ fn split_sum_multi(a: &mut Arguments<'_>) -> Expected {
 
 /// The lobe of all further bounces: (1 - Eo)*(1 - Ei)/(pi*(1 - E)), with the average albedo E, for
 /// a white surface. Its colour is the sum over the bounces, of which each keeps and loses a share.
-fn ms_lobe(a: &mut Arguments<'_>) -> Expected {
+fn ms_lobe(a: &mut CallArguments<'_>) -> Expected {
     let (eo, ei) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));
     let kept = a.f64().clamp(f64::from(0.05f32), f64::from(0.9999f32));
     let white = (1.0 - eo) * (1.0 - ei) / (std::f64::consts::PI * (1.0 - kept));

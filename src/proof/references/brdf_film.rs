@@ -1,12 +1,12 @@
 //! Sources: Belcour and Barla, 2017, and the coefficients of its supplement; Khronos Group,
 //! KHR_materials_iridescence, 2022.
 
-use super::Entry;
+use super::ReferenceEntry;
 use super::brdf_fresnel::dielectric;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::film",
     functions: &[
         ("film_sensitivity", |a| sensitivity(a.f64() * 1e-9, a.vec3()).into()),

@@ -2,10 +2,10 @@
 //! Optics, sections 1.5 and 14.2); Kutz, Hašan, Edmondson, 2021; Jakob et al., 2014; this library's
 //! fit of the average; Duntley, 1942; Gulbrandsen, 2014.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DVec2, DVec3};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::fresnel",
     functions: &[
         ("f0_from_ior", |a| dielectric(1.0, a.f64().max(0.0)).into()),
@@ -69,7 +69,7 @@ pub fn conductor(c: f64, n: f64, k: f64) -> f64 {
 
 /// The reflectance at three wavelengths, with parameters clamped to the range that the
 /// documentation names.
-fn f_conductor(a: &mut Arguments<'_>) -> Expected {
+fn f_conductor(a: &mut CallArguments<'_>) -> Expected {
     let (mu, n, k) = (a.f64(), a.vec3(), a.vec3());
     let [least, thin, most] = [1e-7f32, 1e-4, 1e4].map(f64::from);
     let one =
@@ -79,7 +79,7 @@ fn f_conductor(a: &mut Arguments<'_>) -> Expected {
 
 /// Schlick's approximation, less a term by which the result at the cosine of 1/7 is `tint` times as
 /// large.
-fn f_schlick_f82(a: &mut Arguments<'_>) -> Expected {
+fn f_schlick_f82(a: &mut CallArguments<'_>) -> Expected {
     let (f0, tint, mu) = (a.vec3(), a.vec3(), a.f64().clamp(0.0, 1.0));
     let schlick = |mu: f64| f0 + (1.0 - f0) * (1.0 - mu).powi(5);
     let lobe = |mu: f64| mu * (1.0 - mu).powi(6);
@@ -87,7 +87,7 @@ fn f_schlick_f82(a: &mut Arguments<'_>) -> Expected {
     (schlick(mu) - lobe(mu) / lobe(m) * schlick(m) * (1.0 - tint)).max(DVec3::ZERO).into()
 }
 
-fn f_average_schlick(a: &mut Arguments<'_>) -> Expected {
+fn f_average_schlick(a: &mut CallArguments<'_>) -> Expected {
     let (f0, f90) = (a.vec3(), a.vec3());
     (f0 + (f90 - f0) / 21.0).into()
 }
@@ -108,7 +108,7 @@ pub fn average(eta: f64) -> f64 {
 
 /// n follows from the mapping of Gulbrandsen. k follows from n and the reflectance r at normal
 /// incidence: r*((n + 1)^2 + k^2) = (n - 1)^2 + k^2.
-fn ior_artistic(a: &mut Arguments<'_>) -> Expected {
+fn ior_artistic(a: &mut CallArguments<'_>) -> Expected {
     let (r, g) = (a.vec3(), a.vec3().clamp(DVec3::ZERO, DVec3::ONE));
     let r = r.clamp(DVec3::ZERO, DVec3::splat(f64::from(0.999f32)));
     let one = |r: f64, g: f64| {

@@ -2,11 +2,11 @@
 //! KHR_materials_anisotropy, 2023; Tokuyoshi and Kaplanyan, 2019; Filament, section 4.10.1; OpenPBR
 //! 1.1; Kelemen and Szirmay-Kalos, 2001; Dupuy and Benyoub, 2023.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::microfacet",
     functions: &[
         ("d_ggx_aniso", |a| d_ggx_aniso(a.vec3(), a.vec2()).into()),
@@ -34,7 +34,7 @@ pub fn d_ggx_aniso(h: DVec3, alpha: DVec2) -> f64 {
 
 /// G2/(4*nl*nv) with G2 = 1/(1 + Lambda(v) + Lambda(l)), Lambda = (sqrt(1 + a^2) - 1)/2, where
 /// a^2 = (at^2*t^2 + ab^2*b^2)/n^2.
-fn v_smith_ggx_aniso(a: &mut Arguments<'_>) -> Expected {
+fn v_smith_ggx_aniso(a: &mut CallArguments<'_>) -> Expected {
     let (v, l, alpha) = (a.vec3(), a.vec3(), a.vec2());
     if v.z <= 0.0 || l.z <= 0.0 {
         return 0.0.into();
@@ -46,7 +46,7 @@ fn v_smith_ggx_aniso(a: &mut Arguments<'_>) -> Expected {
     (1.0 / ((1.0 + lambda(v) + lambda(l)) * 4.0 * l.z * v.z)).into()
 }
 
-fn alpha_aniso(a: &mut Arguments<'_>) -> Expected {
+fn alpha_aniso(a: &mut CallArguments<'_>) -> Expected {
     let (alpha, strength) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));
     let share = strength * strength;
     DVec2::new(alpha * (1.0 - share) + share, alpha).into()
@@ -54,14 +54,14 @@ fn alpha_aniso(a: &mut Arguments<'_>) -> Expected {
 
 /// The variance of the shading normal within the pixel, times 2 * sigma2 and limited, is added to
 /// the square of alpha.
-fn specular_aa(a: &mut Arguments<'_>) -> Expected {
+fn specular_aa(a: &mut CallArguments<'_>) -> Expected {
     let (alpha, dx, dy, sigma2, limit) = (a.f64(), a.vec3(), a.vec3(), a.f64(), a.f64());
     let kernel = 2.0 * sigma2 * (dx.length_squared() + dy.length_squared());
     (alpha * alpha + kernel.min(limit)).clamp(0.0, 1.0).sqrt().into()
 }
 
 /// The bent normal is (b x v) x b, mixed with n and mirrored.
-fn bent_reflection(a: &mut Arguments<'_>) -> Expected {
+fn bent_reflection(a: &mut CallArguments<'_>) -> Expected {
     let (v, n, b) = (a.vec3(), a.vec3(), a.vec3());
     let (strength, roughness) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));
     let bent = b.cross(v).cross(b).try_normalize().unwrap_or(n);
@@ -69,20 +69,20 @@ fn bent_reflection(a: &mut Arguments<'_>) -> Expected {
     (2.0 * m.dot(v) * m - v).into()
 }
 
-fn alpha_filament(a: &mut Arguments<'_>) -> Expected {
+fn alpha_filament(a: &mut CallArguments<'_>) -> Expected {
     let (alpha, strength) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(-1.0, 1.0));
     (alpha * DVec2::new(1.0 + strength, 1.0 - strength)).into()
 }
 
 /// The alphas are alpha/aspect and alpha*aspect, with aspect = sqrt(1 - 0.9*strength).
-fn alpha_disney(a: &mut Arguments<'_>) -> Expected {
+fn alpha_disney(a: &mut CallArguments<'_>) -> Expected {
     let (alpha, strength) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));
     let aspect = (1.0 - 0.9 * strength).sqrt();
     DVec2::new(alpha / aspect, alpha * aspect).into()
 }
 
 /// Both alphas have the ratio 1 - s, and the mean of their squares is that of `alpha`.
-fn alpha_openpbr(a: &mut Arguments<'_>) -> Expected {
+fn alpha_openpbr(a: &mut CallArguments<'_>) -> Expected {
     let (alpha, strength) = (a.f64().clamp(0.0, 1.0), a.f64().clamp(0.0, 1.0));
     let ratio = DVec2::new(1.0, 1.0 - strength);
     (alpha * ratio * (2.0 / ratio.length_squared()).sqrt()).into()
@@ -91,7 +91,7 @@ fn alpha_openpbr(a: &mut Arguments<'_>) -> Expected {
 /// Samples the visible normals by a spherical cap: a direction whose height is even in the second
 /// number from -w.z to 1, where w is the stretched view direction. The half vector of both,
 /// unstretched, is the normal.
-fn sample_visible(a: &mut Arguments<'_>) -> Expected {
+fn sample_visible(a: &mut CallArguments<'_>) -> Expected {
     let (v, alpha, u) = (a.vec3(), a.vec2(), a.vec2());
     let stretch = alpha.extend(1.0);
     let w = (DVec3::new(v.x, v.y, v.z.max(0.0)) * stretch).try_normalize().unwrap_or(DVec3::Z);

@@ -2,11 +2,11 @@
 //! KHR_materials_sheen, 2020; the fit of the albedo: MaterialX shader library, 2020;
 //! Zeltner et al., 2022, in the fit of MaterialX, 2023.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::sheen",
     functions: &[
         ("d_charlie", |a| d_charlie(a.f64(), a.f64()).into()),
@@ -27,7 +27,7 @@ pub fn d_charlie(nh: f64, alpha: f64) -> f64 {
     (2.0 + power) * cosine.acos().sin().powf(power) / (2.0 * PI)
 }
 
-fn v_neubelt(a: &mut Arguments<'_>) -> Expected {
+fn v_neubelt(a: &mut CallArguments<'_>) -> Expected {
     let (nl, nv) = (a.f64(), a.f64());
     if nl <= 0.0 || nv <= 0.0 {
         return 0.0.into();
@@ -61,7 +61,7 @@ fn lambda(mu: f64, alpha: f64) -> f64 {
     power.exp()
 }
 
-fn v_charlie(a: &mut Arguments<'_>) -> Expected {
+fn v_charlie(a: &mut CallArguments<'_>) -> Expected {
     let (nl, nv, alpha) = (a.f64(), a.f64(), a.f64());
     if nl <= 0.0 || nv <= 0.0 {
         return 0.0.into();
@@ -80,7 +80,7 @@ fn sheen_albedo(nv: f64, alpha: f64) -> f64 {
     (over / under).clamp(0.0, 1.0)
 }
 
-fn sheen_scale(a: &mut Arguments<'_>) -> Expected {
+fn sheen_scale(a: &mut CallArguments<'_>) -> Expected {
     let (color, ev, el) = (a.vec3(), a.f64(), a.f64());
     let left = |albedo: f64| 1.0 - color.max_element() * albedo;
     left(ev).min(left(el)).clamp(0.0, 1.0).into()

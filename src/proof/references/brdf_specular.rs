@@ -3,11 +3,11 @@
 //! 1994, equation 15.
 
 use super::math_safe::safe_pow;
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::specular",
     functions: &[
         ("phong", |a| phong(a.vec3(), a.vec3(), a.vec3(), a.f64()).into()),
@@ -32,7 +32,7 @@ fn phong(n: DVec3, l: DVec3, v: DVec3, s: f64) -> f64 {
     if n.dot(l) > 0.0 { safe_pow(mirrored(n, l).dot(v), s) } else { 0.0 }
 }
 
-fn phong_igl(a: &mut Arguments<'_>) -> Expected {
+fn phong_igl(a: &mut CallArguments<'_>) -> Expected {
     let (n, l, v, s) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
     let value = if n.dot(l) >= 0.0 { mirrored(n, l).dot(v).max(0.0).powf(s) } else { 0.0 };
     value.into()
@@ -50,7 +50,7 @@ pub fn blinn_phong(n: DVec3, l: DVec3, v: DVec3, s: f64) -> f64 {
     if n.dot(l) > 0.0 { safe_pow(n.dot((l + v).normalize_or_zero()), s) } else { 0.0 }
 }
 
-fn blinn_phong_half(a: &mut Arguments<'_>) -> Expected {
+fn blinn_phong_half(a: &mut CallArguments<'_>) -> Expected {
     let (cosine, n_dot_l, s) = (a.vec3().dot(a.vec3()), a.f64(), a.f64());
     let value = if n_dot_l > 0.0 { safe_pow(cosine, s) } else { 0.0 };
     value.into()
@@ -61,13 +61,13 @@ fn blinn_phong_hpg(n: DVec3, l: DVec3, v: DVec3, s: f64) -> f64 {
     if base > 0.0 { base.powf(s) } else { f64::NAN }
 }
 
-fn blinn_phong_normalized(a: &mut Arguments<'_>) -> Expected {
+fn blinn_phong_normalized(a: &mut CallArguments<'_>) -> Expected {
     let (n, l, v, s) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
     ((s + 8.0) / (8.0 * PI) * blinn_phong(n, l, v, s)).into()
 }
 
 /// a^2/(pi*(|n x h|^2 + (n.h)^2 a^2)^2), which is a^2/(pi*((n.h)^2(a^2 - 1) + 1)^2).
-fn d_ggx(a: &mut Arguments<'_>) -> Expected {
+fn d_ggx(a: &mut CallArguments<'_>) -> Expected {
     let (nh, cross2, alpha) = (a.f64(), a.f64(), a.f64());
     if alpha == 0.0 {
         return 0.0.into();
@@ -75,7 +75,7 @@ fn d_ggx(a: &mut Arguments<'_>) -> Expected {
     (alpha * alpha / (PI * (cross2 + (nh * alpha).powi(2)).powi(2))).into()
 }
 
-fn v_smith_ggx(a: &mut Arguments<'_>) -> Expected {
+fn v_smith_ggx(a: &mut CallArguments<'_>) -> Expected {
     let (nv, nl, a2) = (a.f64(), a.f64(), a.f64().powi(2));
     if nv <= 0.0 || nl <= 0.0 {
         return 0.0.into();
@@ -84,7 +84,7 @@ fn v_smith_ggx(a: &mut Arguments<'_>) -> Expected {
     (0.5 / (side(nl, nv) + side(nv, nl))).into()
 }
 
-fn f_schlick(a: &mut Arguments<'_>) -> Expected {
+fn f_schlick(a: &mut CallArguments<'_>) -> Expected {
     let (f0, f90, vh) = (a.vec3(), a.f64(), a.f64());
     (f0 + (f90 - f0) * (1.0 - vh.clamp(0.0, 1.0)).powi(5)).into()
 }

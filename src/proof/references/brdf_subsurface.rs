@@ -1,9 +1,9 @@
 //! Source: Christensen and Burley, 2015, equations 3, 5 and 11.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use std::f64::consts::PI;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::subsurface",
     functions: &[
         ("diffusion_profile", |a| profile(a.f64(), a.f64()).into()),
@@ -29,7 +29,7 @@ pub fn cdf(x: f64) -> f64 {
     -0.25 * (-x).exp_m1() - 0.75 * (-x / 3.0).exp_m1()
 }
 
-fn diffusion_s(a: &mut Arguments<'_>) -> Expected {
+fn diffusion_s(a: &mut CallArguments<'_>) -> Expected {
     Expected::words(a.vec3().to_array().map(|albedo| {
         let albedo = albedo.clamp(0.0, 1.0);
         1.85 - albedo + 7.0 * (albedo - 0.8).abs().powi(3)

@@ -2,11 +2,11 @@
 //! 2021 to 2024; Beer's and Snell's laws; Walter et al., 2007, equations 21, 33 and 34.
 
 use super::brdf_fresnel::dielectric;
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "brdf::transmission",
     functions: &[
         ("specular_f0", specular_f0),
@@ -19,13 +19,13 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-fn specular_f0(a: &mut Arguments<'_>) -> Expected {
+fn specular_f0(a: &mut CallArguments<'_>) -> Expected {
     let (f0, weight) = (dielectric(1.0, a.f64().max(0.0)), a.f64().clamp(0.0, 1.0));
     ((f0 * a.vec3()).clamp(DVec3::ZERO, DVec3::ONE) * weight).into()
 }
 
 /// exp(-x*sigma) with sigma = -ln(color)/d.
-fn volume_transmittance(a: &mut Arguments<'_>) -> Expected {
+fn volume_transmittance(a: &mut CallArguments<'_>) -> Expected {
     let (color, x, d) = (a.vec3(), a.f64(), a.f64());
     if x <= 0.0 || d <= 0.0 {
         return DVec3::ONE.into();
@@ -37,7 +37,7 @@ fn volume_transmittance(a: &mut Arguments<'_>) -> Expected {
 
 /// The refracted ray inside, by Snell's law, times the thickness: the part along the surface is
 /// divided by the index, and the rest points inwards.
-fn refract_exit(a: &mut Arguments<'_>) -> Expected {
+fn refract_exit(a: &mut CallArguments<'_>) -> Expected {
     let (v, n, ior, thickness) = (a.vec3(), a.vec3(), a.f64().max(1.0), a.f64());
     let along = -(v - n * n.dot(v)) / ior;
     let sine2 = (1.0 - n.dot(v).powi(2)) / (ior * ior);
@@ -45,7 +45,7 @@ fn refract_exit(a: &mut Arguments<'_>) -> Expected {
 }
 
 /// D*G1(l)*G1(v)/(4*nl*nv) for the light mirrored onto the viewer's side.
-fn btdf_thin(a: &mut Arguments<'_>) -> Expected {
+fn btdf_thin(a: &mut CallArguments<'_>) -> Expected {
     let (n, l, v, alpha) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
     let l = l - 2.0 * n.dot(l) * n;
     let (nl, nv) = (n.dot(l), n.dot(v));
@@ -59,14 +59,14 @@ fn btdf_thin(a: &mut Arguments<'_>) -> Expected {
     (d / (side(nl) * side(nv)).max(f64::from(1e-12f32))).into()
 }
 
-fn dispersion_ior(a: &mut Arguments<'_>) -> Expected {
+fn dispersion_ior(a: &mut CallArguments<'_>) -> Expected {
     let ends = DVec2::new(a.f64().max(1.0), a.f64().max(0.0));
     let half_spread = (ends.x - 1.0) * 0.025 * ends.y;
     DVec3::new((ends.x - half_spread).max(1.0), ends.x, ends.x + half_spread).into()
 }
 
 /// Equation 21 without 1 - F, for an index of 1 on the viewer's side, with G1 by equation 34.
-fn btdf_volume(a: &mut Arguments<'_>) -> Expected {
+fn btdf_volume(a: &mut CallArguments<'_>) -> Expected {
     let (n, l, v, alpha, ior) = (a.vec3(), a.vec3(), a.vec3(), a.f64(), a.f64());
     let h = -(ior * l + v);
     let h = h * if ior < 1.0 { -1.0 } else { 1.0 } / h.length();

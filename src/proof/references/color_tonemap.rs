@@ -3,10 +3,10 @@
 //! Blender 4, 2023; Polyphony Digital, 2025.
 
 use super::color_transfer::{from_ictcp, ictcp};
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DMat3, DVec2, DVec3};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "color::tonemap",
     functions: &[
         ("agx_curve", |a| agx_curve(a.f64()).into()),
@@ -197,7 +197,7 @@ fn hable(x: f64) -> f64 {
     (x * (a * x + c * b) + d * e) / (x * (a * x + b) + d * f) - e / f
 }
 
-fn reinhard_extended(a: &mut Arguments<'_>) -> Expected {
+fn reinhard_extended(a: &mut CallArguments<'_>) -> Expected {
     let (c, white) = (a.vec3(), a.f64().max(f64::from(0.001f32)));
     c.map(|x| {
         let x = x.max(0.0);

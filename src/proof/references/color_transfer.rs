@@ -1,10 +1,10 @@
 //! Sources: IEC 61966-2-1:1999; Reinhard et al., 2002, equation 3; Narkowicz, 2016; OpenGL 2.1
 //! specification, section 3.10 (fog); SMPTE ST 2084:2014; ITU-R BT.2100-2; Roberts, 1962.
 
-use super::{Entry, Expected};
+use super::{Expected, ReferenceEntry};
 use glam::{DMat3, DVec3};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "color::transfer",
     functions: &[
         ("srgb_from_linear_channel", |a| encode(a.f64())),

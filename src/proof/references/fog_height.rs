@@ -1,8 +1,8 @@
 //! Sources: Wenzel, 2006; Quilez, 2010: the integral of the density along the view.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "fog::height",
     functions: &[
         ("fog_height", depth),
@@ -11,7 +11,7 @@ pub const REFERENCES: Entry = Entry {
 };
 
 /// The density at the eye's height times the integral of exp(-falloff*dy*t) over the distance.
-fn depth(a: &mut Arguments<'_>) -> Expected {
+fn depth(a: &mut CallArguments<'_>) -> Expected {
     let (y0, dy, dist) = (a.f64(), a.f64(), a.f64().clamp(0.0, 1e6));
     let (density, falloff, base) = (a.f64().clamp(0.0, 1e6), a.f64().max(0.0), a.f64());
     let x = (falloff * dy * dist).clamp(-60.0, 60.0);

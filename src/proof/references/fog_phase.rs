@@ -1,10 +1,10 @@
 //! Sources: Henyey and Greenstein, 1941; Cornette and Shanks, 1992; Draine, 2003; Jendersie and
 //! d'Eon, 2023.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use std::f64::consts::PI;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "fog::phase",
     functions: &[
         ("hg", |a| hg(a.f64(), a.f64()).into()),
@@ -29,7 +29,7 @@ fn hg(c: f64, g: f64) -> f64 {
 }
 
 /// 3/(8*pi)*(1 - g^2)*(1 + c^2)/((2 + g^2)*(1 + g^2 - 2*g*c)^1.5).
-fn cornette_shanks(a: &mut Arguments<'_>) -> Expected {
+fn cornette_shanks(a: &mut CallArguments<'_>) -> Expected {
     let (c, g) = (cosine(a.f64()), asymmetry(a.f64()));
     let shape = (1.0 + c * c) / (1.0 + g * g - 2.0 * g * c).powf(1.5);
     (3.0 / (8.0 * PI) * (1.0 - g * g) / (2.0 + g * g) * shape).into()
@@ -42,7 +42,7 @@ fn draine(c: f64, g: f64, alpha: f64) -> f64 {
 
 /// The parameters of both lobes, fitted over the diameter of the droplets, and the blend of the
 /// lobes.
-fn droplet(a: &mut Arguments<'_>) -> Expected {
+fn droplet(a: &mut CallArguments<'_>) -> Expected {
     let (c, d) = (a.f64(), a.f64().clamp(5.0, 50.0));
     let g_hg = (-0.0990567 / (d - 1.67154)).exp();
     let g_d = (-2.20679 / (d + 3.91029) - 0.428934).exp();

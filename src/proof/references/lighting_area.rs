@@ -3,11 +3,11 @@
 //! "Moving Frostbite to Physically Based Rendering", 2014, section 4.7; Karis, "Real Shading in
 //! Unreal Engine 4", 2013; Heitz and Hill, 2017 (lines and disks).
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::PI;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::area",
     functions: &[
         ("ltc_edge", |a| edge(a.vec3(), a.vec3()).into()),
@@ -41,7 +41,7 @@ fn any_tangent(n: DVec3) -> DVec3 {
 }
 
 /// The polygon cut at the horizon by Sutherland and Hodgman, then the sum of its edges.
-fn ltc_rect(a: &mut Arguments<'_>) -> Expected {
+fn ltc_rect(a: &mut CallArguments<'_>) -> Expected {
     let (n, v, p, minv) = (a.vec3(), a.vec3(), a.vec3(), a.mat3());
     let t1 = (v - n * v.dot(n)).try_normalize().unwrap_or(any_tangent(n));
     let frame = DMat3::from_cols(t1, n.cross(t1), n).transpose();
@@ -68,7 +68,7 @@ fn ltc_uv(nv: f64, roughness: f64) -> DVec2 {
     DVec2::new(texel(roughness.clamp(0.0, 1.0)), texel((1.0 - nv.clamp(0.0, 1.0)).sqrt()))
 }
 
-fn ltc_matrix(a: &mut Arguments<'_>) -> Expected {
+fn ltc_matrix(a: &mut CallArguments<'_>) -> Expected {
     let t = a.vec4();
     DMat3::from_cols_array_2d(&[[t.x, 0.0, t.y], [0.0, 1.0, 0.0], [t.z, 0.0, t.w]]).into()
 }
@@ -107,7 +107,7 @@ fn smooth_integral(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
     (to - from) * (0..STEPS).map(step).sum::<f64>() / f64::from(STEPS)
 }
 
-fn disk(a: &mut Arguments<'_>) -> Expected {
+fn disk(a: &mut CallArguments<'_>) -> Expected {
     let (mu, facing, sin2) = (a.f64(), a.f64(), a.f64());
     (sphere(mu, sin2) * facing.clamp(0.0, 1.0)).into()
 }
@@ -121,7 +121,7 @@ fn nearest_sphere(l: DVec3, r: DVec3, radius: f64) -> DVec3 {
 
 /// The sphere around the point of the segment that is nearest to the ray, with the place t =
 /// ((r.l0)*(r.d) - l0.d)/(|d|^2 - (r.d)^2) along the segment.
-fn nearest_tube(a: &mut Arguments<'_>) -> Expected {
+fn nearest_tube(a: &mut CallArguments<'_>) -> Expected {
     let (l0, l1, r, radius) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
     let d = l1 - l0;
     let below = d.length_squared() * r.length_squared() - r.dot(d).powi(2);
@@ -130,7 +130,7 @@ fn nearest_tube(a: &mut Arguments<'_>) -> Expected {
     nearest_sphere(l0 + d * t, r, radius).into()
 }
 
-fn area_alpha(a: &mut Arguments<'_>) -> Expected {
+fn area_alpha(a: &mut CallArguments<'_>) -> Expected {
     let (alpha, radius, d) = (a.f64(), a.f64().max(0.0), a.f64());
     let added = if radius == 0.0 { 0.0 } else { radius / (2.0 * d.max(0.0)) };
     (alpha + added).clamp(0.0, 1.0).into()
@@ -153,7 +153,7 @@ fn frame_of(n: DVec3, v: DVec3) -> DMat3 {
 
 /// The vector irradiance of the transformed ellipse, as an integral over its outline, which
 /// converges fast. The result is for a sphere with the same vector irradiance, cut at the horizon.
-fn ltc_disk(a: &mut Arguments<'_>) -> Expected {
+fn ltc_disk(a: &mut CallArguments<'_>) -> Expected {
     let (n, v, p, minv) = (a.vec3(), a.vec3(), a.vec3(), a.mat3());
     let inside = minv * frame_of(n, v);
     let (c, x, y) = (inside * (a.vec3() - p), inside * a.vec3(), inside * a.vec3());
@@ -172,7 +172,7 @@ fn ltc_disk(a: &mut Arguments<'_>) -> Expected {
 
 /// The integral of the transformed lobe along the line. Each point has the solid angle of a strip
 /// as wide as the diameter.
-fn ltc_line(a: &mut Arguments<'_>) -> Expected {
+fn ltc_line(a: &mut CallArguments<'_>) -> Expected {
     let (n, v, p, minv) = (a.vec3(), a.vec3(), a.vec3(), a.mat3());
     let frame = frame_of(n, v);
     let (head, tail) = (frame * (a.vec3() - p), frame * (a.vec3() - p));

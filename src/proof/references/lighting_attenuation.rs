@@ -2,11 +2,11 @@
 //! de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014; Karis, "Real Shading in
 //! Unreal Engine 4", 2013; glTF extension KHR_lights_punctual; three.js.
 
-use super::Entry;
+use super::ReferenceEntry;
 use super::math_safe::safe_pow;
 use glam::DVec3;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::attenuation",
     functions: &[
         ("polynomial", |a| polynomial(a.f64(), a.vec3()).into()),

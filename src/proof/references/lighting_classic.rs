@@ -4,10 +4,10 @@
 use super::brdf_diffuse::lambert;
 use super::brdf_specular::{blinn_phong, phong_oglpg};
 use super::lighting_light::{Light, Sample};
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::classic",
     functions: &[
         ("accumulate", accumulate),
@@ -18,16 +18,16 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-struct Material {
+struct ClassicMaterial {
     emission: DVec3,
     ambient: DVec3,
     diffuse: DVec3,
     specular: DVec3,
 }
 
-impl Material {
+impl ClassicMaterial {
     /// Reads all eight fields, in the order in which they are declared.
-    fn read(a: &mut Arguments<'_>) -> Self {
+    fn read(a: &mut CallArguments<'_>) -> Self {
         let (emission, _shininess, ambient, _roughness) = (a.vec3(), a.f64(), a.vec3(), a.f64());
         let (diffuse, _wrap, specular, _sigma) = (a.vec3(), a.f64(), a.vec3(), a.f64());
         Self { emission, ambient, diffuse, specular }
@@ -35,8 +35,8 @@ impl Material {
 }
 
 /// scattered += La*Ma*ambient + Lc*Md*diff*att, reflected += Lc*Ms*spec*strength*att.
-fn accumulate(a: &mut Arguments<'_>) -> Expected {
-    let (scattered, reflected, material) = (a.vec3(), a.vec3(), Material::read(a));
+fn accumulate(a: &mut CallArguments<'_>) -> Expected {
+    let (scattered, reflected, material) = (a.vec3(), a.vec3(), ClassicMaterial::read(a));
     let (light, sample) = (Light::read(a), Sample::read(a));
     let (ambient, diffuse, specular, visibility) = (a.f64(), a.f64(), a.f64(), a.f64());
     let lit = light.color * sample.attenuation * sample.spot * visibility;
@@ -47,8 +47,9 @@ fn accumulate(a: &mut Arguments<'_>) -> Expected {
 }
 
 /// emission + base*scattered + reflected.
-fn resolve(a: &mut Arguments<'_>) -> Expected {
-    let (base, material, scattered, reflected) = (a.vec3(), Material::read(a), a.vec3(), a.vec3());
+fn resolve(a: &mut CallArguments<'_>) -> Expected {
+    let (base, material, scattered, reflected) =
+        (a.vec3(), ClassicMaterial::read(a), a.vec3(), a.vec3());
     (material.emission + base * scattered + reflected).into()
 }
 
@@ -58,7 +59,7 @@ fn shadow_mix(visibility: f64, strength: f64) -> f64 {
 }
 
 /// (tex*Lc + Lc*spec*0.33)*att*lambert + tex*Lc*0.1, specular at 50: the tutorial's code.
-fn shade_ncl(a: &mut Arguments<'_>) -> Expected {
+fn shade_ncl(a: &mut CallArguments<'_>) -> Expected {
     let (base, color, n, l, v, attenuation) =
         (a.vec3(), a.vec3(), a.vec3(), a.vec3(), a.vec3(), a.f64());
     let lit = base * color + color * blinn_phong(n, l, v, 50.0) * 0.33;
@@ -66,7 +67,7 @@ fn shade_ncl(a: &mut Arguments<'_>) -> Expected {
 }
 
 /// amb + f*(kd*diff + ks*spec).
-fn shade_oglpg_7_21(a: &mut Arguments<'_>) -> Expected {
+fn shade_oglpg_7_21(a: &mut CallArguments<'_>) -> Expected {
     let (ambient, diffuse, specular, power) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
     let (n, l, v, visibility) = (a.vec3(), a.vec3(), a.vec3(), a.f64());
     (ambient + visibility * (diffuse * lambert(n, l) + specular * phong_oglpg(n, l, v, power)))

@@ -1,8 +1,8 @@
 //! Sources: Olsson, Billeter and Assarsson, 2012, section 3.2; Sousa and Geffroy, 2016.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::cluster",
     functions: &[
         ("cluster_slice", cluster_slice),
@@ -38,14 +38,14 @@ fn slices(z: f64, near: f64, far: f64, count: f64) -> (f64, f64) {
     (found, if above != found { above } else { search(z * (1.0 - slack)) })
 }
 
-fn cluster_slice(a: &mut Arguments<'_>) -> Expected {
+fn cluster_slice(a: &mut CallArguments<'_>) -> Expected {
     let (found, other) = slices(a.f64(), a.f64(), a.f64(), a.f64());
     Expected::from(found).or(other)
 }
 
 /// Cells are numbered row by row, then layer by layer. Near a border of layers, either layer is
 /// right.
-fn cluster_index(a: &mut Arguments<'_>) -> Expected {
+fn cluster_index(a: &mut CallArguments<'_>) -> Expected {
     let (uv, z, near, far, counts) = (a.vec2(), a.f64(), a.f64(), a.f64(), a.vec3());
     let cell = |u: f64, count: f64| (u.clamp(0.0, 1.0) * count).floor().min(count.max(1.0) - 1.0);
     let (x, y) = (cell(uv.x, counts.x), cell(uv.y, counts.y));

@@ -2,10 +2,10 @@
 
 use super::lighting_attenuation::polynomial;
 use super::lighting_spot::cone_exponent;
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::light",
     functions: &[
         ("sample_directional", |a| directional(&Light::read(a)).words()),
@@ -40,7 +40,7 @@ pub struct Sample {
 
 impl Light {
     /// Reads all fourteen fields.
-    pub fn read(a: &mut Arguments<'_>) -> Self {
+    pub fn read(a: &mut CallArguments<'_>) -> Self {
         let (color, kind, ambient, _range) = (a.vec3(), a.f64(), a.vec3(), a.f64());
         let (position, exponent, axis, cutoff) = (a.vec3(), a.f64(), a.vec3(), a.f64());
         let (attenuation, _inner, _outer, strength) = (a.vec3(), a.f64(), a.f64(), a.f64());
@@ -51,7 +51,7 @@ impl Light {
 
 impl Sample {
     /// Reads the four fields.
-    pub fn read(a: &mut Arguments<'_>) -> Self {
+    pub fn read(a: &mut CallArguments<'_>) -> Self {
         Self { l: a.vec3(), distance: a.f64(), attenuation: a.f64(), spot: a.f64() }
     }
 
@@ -88,7 +88,7 @@ fn spot(light: &Light, p: DVec3) -> Sample {
 }
 
 /// By kind: 1 directional, 2 point, 3 spot; a light that is off sends nothing.
-fn sample_light(a: &mut Arguments<'_>) -> Expected {
+fn sample_light(a: &mut CallArguments<'_>) -> Expected {
     let (light, p) = (Light::read(a), a.vec3());
     match light.kind as u32 {
         1 => directional(&light).words(),

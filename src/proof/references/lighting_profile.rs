@@ -1,10 +1,10 @@
 //! Sources: IES LM-63; Segal et al., 1992, section 3.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::profile",
     functions: &[
         ("ies_u", |a| (a.f64().clamp(-1.0, 1.0).acos() / PI).into()),
@@ -14,7 +14,7 @@ pub const REFERENCES: Entry = Entry {
 };
 
 /// The polar angle to the axis over pi, and the azimuth around it over 2 pi.
-fn ies_uv(a: &mut Arguments<'_>) -> Expected {
+fn ies_uv(a: &mut CallArguments<'_>) -> Expected {
     let (away, axis, right) = (-a.vec3(), a.vec3(), a.vec3());
     let vertical = away.dot(axis).clamp(-1.0, 1.0).acos() / PI;
     let (x, y) = (away.dot(right), away.dot(axis.cross(right)));
@@ -29,7 +29,7 @@ fn ies_uv(a: &mut Arguments<'_>) -> Expected {
 }
 
 /// The homogeneous point divided by its last coordinate.
-fn cookie_uv(a: &mut Arguments<'_>) -> Expected {
+fn cookie_uv(a: &mut CallArguments<'_>) -> Expected {
     let (p, m) = (a.vec3(), a.mat4());
     let q = m * p.extend(1.0);
     let seen = q.w > f64::from(1e-30f32);

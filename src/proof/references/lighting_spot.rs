@@ -2,10 +2,10 @@
 //! Performance Graphics, recipe 4, and Igalia, part I (exclusive); glTF extension
 //! KHR_lights_punctual (scale and offset).
 
-use super::Entry;
+use super::ReferenceEntry;
 use super::math_safe::safe_pow;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::spot",
     functions: &[
         ("cone_hard", |a| (a.f64() >= a.f64()).into()),

@@ -1,10 +1,10 @@
 //! Sources: Lagarde and de Rousiers, 2014, sections 4.5, 4.7 and 5.1; ISO 2720:1974; ISO
 //! 12232:2006; Guy and Agopian, 2018, section 5.2.2.2.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use std::f64::consts::PI;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "lighting::units",
     functions: &[
         ("intensity_point", |a| (a.f64() / (4.0 * PI)).into()),
@@ -19,14 +19,14 @@ pub const REFERENCES: Entry = Entry {
 };
 
 /// The power over the cone's solid angle, 2*pi*(1 - cos).
-fn intensity_spot(a: &mut Arguments<'_>) -> Expected {
+fn intensity_spot(a: &mut CallArguments<'_>) -> Expected {
     let (lm, cosine) = (a.f64(), a.f64());
     let open = (1.0 - cosine).clamp(f64::from(1e-6f32), 2.0);
     (lm / (2.0 * PI * open)).into()
 }
 
 /// 2^EV = N^2/t at a sensitivity of 100.
-fn ev100(a: &mut Arguments<'_>) -> Expected {
+fn ev100(a: &mut CallArguments<'_>) -> Expected {
     let [n, t, iso] = [a.f64(), a.f64(), a.f64()].map(|x| x.max(f64::from(1e-6f32)));
     (2.0 * n.log2() - t.log2() - (iso / 100.0).log2()).into()
 }

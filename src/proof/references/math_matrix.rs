@@ -1,10 +1,10 @@
 //! Sources: the definition of the inverse; the normal matrix as all the books have it: the inverse
 //! transpose of the upper 3x3 part.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DMat3;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "math::matrix",
     functions: &[("inverse3", |a| inverse(a.mat3()).into()), ("normal_matrix", normal_matrix)],
 };
@@ -16,7 +16,7 @@ fn inverse(m: DMat3) -> DMat3 {
 
 /// The inverse transpose of the upper 3x3 part. For a singular one, the matrix of cofactors, which
 /// still turns normals correctly.
-fn normal_matrix(a: &mut Arguments<'_>) -> Expected {
+fn normal_matrix(a: &mut CallArguments<'_>) -> Expected {
     let m = DMat3::from_mat4(a.mat4());
     if !is_singular(m) {
         return m.inverse().transpose().into();

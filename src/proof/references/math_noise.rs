@@ -2,11 +2,11 @@
 //! GPU Rendering", 2020 (one step of PCG); OpenGL: Build High Performance Graphics, recipe 6 (the
 //! sine); Vogel, 1979 (the golden angle); Roberts, 2018 (the sequence R2).
 
-use super::{Entry, Expected};
+use super::{Expected, ReferenceEntry};
 use glam::{DVec2, DVec4};
 use std::f64::consts::{PI, TAU};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "math::noise",
     functions: &[
         ("interleaved_gradient_noise", |a| gradient_noise(a.vec2())),

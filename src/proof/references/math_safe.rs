@@ -1,9 +1,9 @@
 //! Sources: IEEE 754-2019, section 3.4; OpenGL Programming Guide, example 7.2.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec3;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "math::safe",
     functions: &[
         ("safe_normalize", safe_normalize),
@@ -14,7 +14,7 @@ pub const REFERENCES: Entry = Entry {
 
 /// The normalised vector. A device may flush subnormal components to zero first, so that result is
 /// accepted too. If every component is zero or subnormal, the result is the fallback.
-fn safe_normalize(a: &mut Arguments<'_>) -> Expected {
+fn safe_normalize(a: &mut CallArguments<'_>) -> Expected {
     let (v, fallback) = (a.vec3(), a.vec3());
     let smallest = f64::from(f32::MIN_POSITIVE);
     let flushed = v.map(|x| if x.abs() < smallest { 0.0 } else { x });

@@ -2,10 +2,10 @@
 //! High Performance Graphics, recipe 7 (a constant); Holbert, 2011 (normal offset); Isidoro, 2006
 //! (receiver plane).
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DMat2, DVec2};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::bias",
     functions: &[
         ("constant_bias", |a| (a.f64() - a.f64()).into()),
@@ -23,13 +23,13 @@ fn slope(cosine: f64, b: f64, limit: f64) -> f64 {
 }
 
 /// The point moved along the normal, by the sine of the angle to the light.
-fn normal_offset(a: &mut Arguments<'_>) -> Expected {
+fn normal_offset(a: &mut CallArguments<'_>) -> Expected {
     let (p, n, l, texel, scale) = (a.vec3(), a.vec3(), a.vec3(), a.f64(), a.f64());
     (p + n * (scale * texel * n.cross(l).length())).into()
 }
 
 /// The gradient g with dot(g, duv_dx) = dz.x and dot(g, duv_dy) = dz.y.
-fn receiver_plane(a: &mut Arguments<'_>) -> Expected {
+fn receiver_plane(a: &mut CallArguments<'_>) -> Expected {
     let (dx, dy, dz) = (a.vec2(), a.vec2(), a.vec2());
     let rows = DMat2::from_cols(dx, dy).transpose();
     if rows.determinant().abs() < 1e-30 { DVec2::ZERO.into() } else { (rows.inverse() * dz).into() }
@@ -40,7 +40,7 @@ fn cube_texel(d: f64, size: f64) -> f64 {
     2.0 * d / size.max(1.0)
 }
 
-fn cube_bias(a: &mut Arguments<'_>) -> Expected {
+fn cube_bias(a: &mut CallArguments<'_>) -> Expected {
     let texel = cube_texel(a.f64().max(0.0), a.f64());
     slope(a.f64(), texel, 8.0 * texel).into()
 }

@@ -1,9 +1,9 @@
 //! Sources: Zhang, Sun, Xu and Lun, 2006; Microsoft, "Cascaded Shadow Maps"; Valient, 2008.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DVec2, DVec4};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::cascade",
     functions: &[
         ("cascade_index", |a| (index(a.f64(), a.vec4()) as f64).into()),
@@ -20,7 +20,7 @@ fn index(depth: f64, splits: DVec4) -> usize {
 }
 
 /// From 0 to 1 over the last `overlap` units before the end.
-fn blend(a: &mut Arguments<'_>) -> Expected {
+fn blend(a: &mut CallArguments<'_>) -> Expected {
     let (depth, splits, overlap) = (a.f64(), a.vec4(), a.f64());
     match splits.to_array().get(index(depth, splits)) {
         Some(end) if overlap > 0.0 => (1.0 - (end - depth) / overlap).clamp(0.0, 1.0).into(),
@@ -29,7 +29,7 @@ fn blend(a: &mut Arguments<'_>) -> Expected {
 }
 
 /// The logarithmic and the even split, mixed by `lambda`.
-fn split(a: &mut Arguments<'_>) -> Expected {
+fn split(a: &mut CallArguments<'_>) -> Expected {
     let (index, count, near, far, lambda) = (a.f64(), a.f64(), a.f64(), a.f64(), a.f64());
     let near = near.max(f64::from(1e-6f32));
     if far <= near || count == 0.0 {
@@ -41,7 +41,7 @@ fn split(a: &mut Arguments<'_>) -> Expected {
 }
 
 /// The offset to the nearest whole texel. Half way between two texels, either is right.
-fn snap(a: &mut Arguments<'_>) -> Expected {
+fn snap(a: &mut CallArguments<'_>) -> Expected {
     let (origin, size) = (a.vec2(), a.f64().max(1.0));
     let texel = origin * size / 2.0;
     let offset = |tie: DVec2| (((texel + tie).floor() - texel) * 2.0 / size).to_array();

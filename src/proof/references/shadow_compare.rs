@@ -4,12 +4,12 @@
 //! and penumbra); Gerasimov, GPU Gems, chapter 12 (the cube).
 
 use super::math_noise::{hash, pixel_seed, random_hpg, unit, vogel_disk};
-use super::{Arguments, Entry, Expected};
-use crate::execute::fixture::{Sampler, Texture};
+use super::{CallArguments, Expected, ReferenceEntry};
+use crate::execute::fixture::{FixtureSampler, FixtureTexture};
 use crate::execute::sampling;
 use glam::{DVec2, DVec4};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::compare",
     functions: &[
         ("compare_tap", compare_tap),
@@ -41,35 +41,35 @@ struct At {
 }
 
 impl At {
-    fn read(a: &mut Arguments<'_>) -> Self {
+    fn read(a: &mut CallArguments<'_>) -> Self {
         Self { uv: a.vec2(), depth: a.f64(), inside: a.bool() }
     }
 }
 
-fn size(map: &Texture) -> DVec2 {
+fn size(map: &FixtureTexture) -> DVec2 {
     DVec2::new(f64::from(map.width), f64::from(map.height))
 }
 
 /// The share of the texels around a place that pass; places off the map are lit.
-fn compare(map: &Texture, sampler: Sampler, uv: DVec2, depth: f64) -> f64 {
+fn compare(map: &FixtureTexture, sampler: FixtureSampler, uv: DVec2, depth: f64) -> f64 {
     let is_on_map = uv.min_element() >= 0.0 && uv.max_element() <= 1.0;
     if is_on_map { sampling::compare_depth(map, sampler, uv, depth) } else { 1.0 }
 }
 
-fn compare_tap(a: &mut Arguments<'_>) -> Expected {
+fn compare_tap(a: &mut CallArguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     compare(map, sampler, a.vec2(), a.f64()).into()
 }
 
 /// The weighted mean of the comparisons at all taps; 1, lit, for a point outside the map.
-fn averaged(a: &mut Arguments<'_>, taps: fn(&mut Arguments<'_>, &At) -> Taps) -> Expected {
+fn averaged(a: &mut CallArguments<'_>, taps: fn(&mut CallArguments<'_>, &At) -> Taps) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let at = At::read(a);
     let taps = taps(a, &at);
     if at.inside { mean(map, sampler, at, &taps).into() } else { 1.0.into() }
 }
 
-fn mean(map: &Texture, sampler: Sampler, at: At, taps: &Taps) -> f64 {
+fn mean(map: &FixtureTexture, sampler: FixtureSampler, at: At, taps: &Taps) -> f64 {
     let tap = |(weight, offset): &(f64, DVec2)| {
         weight * compare(map, sampler, at.uv + *offset / size(map), at.depth)
     };
@@ -91,7 +91,7 @@ fn bell(weights: &[f64], step: f64) -> Taps {
 
 /// Sixteen random offsets in the square of half side `radius`, by a chain of hashes that starts
 /// with the seed of the pixel.
-fn random16(a: &mut Arguments<'_>, _: &At) -> Taps {
+fn random16(a: &mut CallArguments<'_>, _: &At) -> Taps {
     let (radius, pixel) = (a.f64(), a.vec2());
     let mut state = pixel_seed(pixel);
     let mut next = || {
@@ -103,7 +103,7 @@ fn random16(a: &mut Arguments<'_>, _: &At) -> Taps {
 
 /// The mean of sixteen comparisons at random places to the right and below, up to a quarter of the
 /// map over `w` away. Sines of the pixel give the places.
-fn random16_hpg(a: &mut Arguments<'_>) -> Expected {
+fn random16_hpg(a: &mut CallArguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (sc, least, pixel) = (a.vec4(), a.f64(), a.vec2());
     let ndc = sc.truncate() / sc.w;
@@ -128,7 +128,7 @@ fn disk(count: f64, radius: f64, phi: f64) -> Taps {
         .collect()
 }
 
-fn castano_row(a: &mut Arguments<'_>) -> Expected {
+fn castano_row(a: &mut CallArguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (columns, v, weights, depth) = (a.vec3(), a.f64(), a.vec3(), a.f64());
     let tap = |i: usize| weights[i] * compare(map, sampler, DVec2::new(columns[i], v), depth);
@@ -136,7 +136,7 @@ fn castano_row(a: &mut Arguments<'_>) -> Expected {
 }
 
 /// The distinct depths that a sample may read if its place is off by up to so many texels.
-fn depths_around(map: &Texture, sampler: Sampler, uv: DVec2, off: f64) -> Vec<f64> {
+fn depths_around(map: &FixtureTexture, sampler: FixtureSampler, uv: DVec2, off: f64) -> Vec<f64> {
     let sides = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)];
     let mut depths: Vec<f64> = sides
         .map(|(x, y)| {
@@ -151,7 +151,13 @@ fn depths_around(map: &Texture, sampler: Sampler, uv: DVec2, off: f64) -> Vec<f6
 /// The means that are accepted, each of the samples that are nearer than the point; the point's own
 /// depth if none is. A device's sine and cosine may be off by 2^-11, and places by a ten-thousandth
 /// of a texel. Where such an error changes which texel is read, either texel is right.
-fn blockers(map: &Texture, sampler: Sampler, at: At, radius: f64, phi: f64) -> Vec<f64> {
+fn blockers(
+    map: &FixtureTexture,
+    sampler: FixtureSampler,
+    at: At,
+    radius: f64,
+    phi: f64,
+) -> Vec<f64> {
     let off = radius * (-11f64).exp2() + 1e-4;
     let mut sums = vec![(0u32, 0.0)];
     for (_, offset) in disk(16.0, radius, phi) {
@@ -175,14 +181,14 @@ fn one_of(values: impl IntoIterator<Item = f64>) -> Expected {
     values.fold(first.into(), Expected::or)
 }
 
-fn mean_blocker(a: &mut Arguments<'_>) -> Expected {
+fn mean_blocker(a: &mut CallArguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (at, radius, phi) = (At::read(a), a.f64(), a.f64());
     one_of(blockers(map, sampler, at, radius, phi))
 }
 
 /// penumbra = (receiver - blocker)*light/blocker, between one texel and the light's size.
-fn pcss(a: &mut Arguments<'_>) -> Expected {
+fn pcss(a: &mut CallArguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (Some(depths), Some(plain)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (at, light, phi) = (At::read(a), a.f64().max(1.0), a.f64());
@@ -199,7 +205,7 @@ fn pcss(a: &mut Arguments<'_>) -> Expected {
     one_of(blockers(depths, plain, at, light, phi).into_iter().map(visible))
 }
 
-fn cube_compare(a: &mut Arguments<'_>) -> Expected {
+fn cube_compare(a: &mut CallArguments<'_>) -> Expected {
     let (Some(map), Some(sampler)) = (a.texture(), a.sampler()) else { return f64::NAN.into() };
     let (offset, depth) = (a.vec3(), a.f64());
     if !(0.0..=1.0).contains(&depth) {

@@ -1,8 +1,8 @@
 //! Sources: Sousa, Kasyan and Schulz, 2011; Chan, 2018.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::contact",
     functions: &[
         ("contact_hit", hit),
@@ -12,19 +12,19 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-fn hit(a: &mut Arguments<'_>) -> Expected {
+fn hit(a: &mut CallArguments<'_>) -> Expected {
     let (ray, scene, bias, thickness) = (a.f64(), a.f64(), a.f64(), a.f64());
     (ray > scene + bias && ray < scene + thickness).into()
 }
 
-fn march_point(a: &mut Arguments<'_>) -> Expected {
+fn march_point(a: &mut CallArguments<'_>) -> Expected {
     let (start, l, reach, index, count, jitter) =
         (a.vec3(), a.vec3(), a.f64(), a.f64(), a.f64(), a.f64());
     (start + l * reach * (index + jitter) / count.max(1.0)).into()
 }
 
 /// The least distance to the four edges over the width of the fade, from 0 to 1.
-fn edge_fade(a: &mut Arguments<'_>) -> Expected {
+fn edge_fade(a: &mut CallArguments<'_>) -> Expected {
     let (uv, border) = (a.vec2(), a.f64());
     let nearest = [uv.x, 1.0 - uv.x, uv.y, 1.0 - uv.y].into_iter().fold(1.0, f64::min);
     if nearest <= 0.0 {

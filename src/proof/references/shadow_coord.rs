@@ -2,10 +2,10 @@
 //! Graphics, recipe 5 (the guard on w); Igalia, part II (the depth view); Gerasimov, GPU Gems,
 //! chapter 12 (the largest component is the distance along the face's axis).
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec4;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::coord",
     functions: &[
         ("is_on_map", |a| {
@@ -21,7 +21,7 @@ pub const REFERENCES: Entry = Entry {
     ],
 };
 
-fn shadow_coord(a: &mut Arguments<'_>) -> Expected {
+fn shadow_coord(a: &mut CallArguments<'_>) -> Expected {
     let (matrix, p) = (a.mat4(), a.vec3());
     Expected::words((matrix * p.extend(1.0)).to_array())
 }
@@ -38,7 +38,7 @@ fn project(clip: DVec4, min_w: f64) -> Expected {
 }
 
 /// OpenGL's bias matrix: everything scaled and moved by one half.
-fn project_gl(a: &mut Arguments<'_>) -> Expected {
+fn project_gl(a: &mut CallArguments<'_>) -> Expected {
     let (clip, min_w) = (a.vec4(), a.f64());
     if clip.w <= min_w.max(0.0) {
         return Expected::words([0.0; 4]);
@@ -49,20 +49,20 @@ fn project_gl(a: &mut Arguments<'_>) -> Expected {
 }
 
 /// n*f/(f - d*(f - n)).
-fn linearize_depth(a: &mut Arguments<'_>) -> Expected {
+fn linearize_depth(a: &mut CallArguments<'_>) -> Expected {
     let (d, near, far) = (a.f64(), a.f64(), a.f64());
     (near * far / (far - d * (far - near))).into()
 }
 
 /// f/(f - n)*(z - n)/z, the perspective depth at z = max(|x|, |y|, |z|), at least n.
-fn cube_depth(a: &mut Arguments<'_>) -> Expected {
+fn cube_depth(a: &mut CallArguments<'_>) -> Expected {
     let (offset, near, far) = (a.vec3(), a.f64(), a.f64());
     let z = offset.abs().max_element().max(near);
     (far / (far - near) * (z - near) / z).into()
 }
 
 /// The tangent of half the angle to the axis, in the direction of the point.
-fn paraboloid_uv(a: &mut Arguments<'_>) -> Expected {
+fn paraboloid_uv(a: &mut CallArguments<'_>) -> Expected {
     let p = a.vec3();
     let across = p.truncate();
     let at = across.normalize_or_zero() * (across.length().atan2(p.z) / 2.0).tan();

@@ -2,10 +2,10 @@
 //! Lauritzen, GPU Gems 3, chapter 8 (slope, bleeding); Lauritzen and McCool, 2008 (exponential);
 //! Annen et al., 2008 (exponential shadow maps); Peters and Klein, 2015 (four moments).
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::moments",
     functions: &[
         ("vsm_moments", |a| moments(a.f64()).into()),
@@ -43,7 +43,7 @@ fn chebyshev(m: DVec2, t: f64, min_variance: f64, bleed: f64) -> f64 {
 
 /// 1 up to the mean depth. Beyond it, Chebyshev's upper bound after the correction of light
 /// bleeding, but at least `least`.
-fn vsm_visibility(a: &mut Arguments<'_>) -> Expected {
+fn vsm_visibility(a: &mut CallArguments<'_>) -> Expected {
     let (m, t, min_variance, least, bleed) = (a.vec2(), a.f64(), a.f64(), a.f64(), a.f64());
     chebyshev(m, t, min_variance, bleed).max(least).into()
 }
@@ -54,14 +54,14 @@ fn warp(d: f64, exponents: DVec2) -> DVec2 {
     DVec2::new((exponents.x * z).exp(), -(-exponents.y * z).exp())
 }
 
-fn evsm_moments(a: &mut Arguments<'_>) -> Expected {
+fn evsm_moments(a: &mut CallArguments<'_>) -> Expected {
     let w = warp(a.f64(), a.vec2());
     DVec4::new(w.x, w.x * w.x, w.y, w.y * w.y).into()
 }
 
 /// The smaller of the bounds of both warps. The least variance grows with the square of the slope
 /// of the warp, 2*e*w.
-fn evsm_visibility(a: &mut Arguments<'_>) -> Expected {
+fn evsm_visibility(a: &mut CallArguments<'_>) -> Expected {
     let (m, t, exponents, min_variance, bleed) = (a.vec4(), a.f64(), a.vec2(), a.f64(), a.f64());
     let w = warp(t, exponents);
     let least = min_variance * (2.0 * exponents * w).powf(2.0);
@@ -74,7 +74,7 @@ fn exponent(d: f64, c: f64) -> f64 {
 }
 
 /// The filtered exponential over the exponential of the point's depth.
-fn esm_visibility(a: &mut Arguments<'_>) -> Expected {
+fn esm_visibility(a: &mut CallArguments<'_>) -> Expected {
     let (m, t, c) = (a.f64(), a.f64(), a.f64());
     (m / exponent(t, c).exp()).clamp(0.0, 1.0).into()
 }

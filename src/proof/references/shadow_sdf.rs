@@ -1,16 +1,16 @@
 //! Sources: Quilez, 2010; Aaltonen, 2018.
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::DVec2;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::sdf",
     functions: &[("sdf_soft_step", soft_step), ("sdf_soft_smooth", |a| smooth(a.f64()).into())],
 };
 
 /// The circles of two steps, one `ph` behind the other, meet at a point beside the ray; its
 /// distance from the ray over that along the ray is the cone's slope.
-fn soft_step(a: &mut Arguments<'_>) -> Expected {
+fn soft_step(a: &mut CallArguments<'_>) -> Expected {
     let (res, h, ph, t, k) =
         (a.f64().clamp(0.0, 1.0), a.f64().max(0.0), a.f64(), a.f64(), a.f64().max(0.0));
     let place = if ph > 0.0 && h < 2.0 * ph {

@@ -1,10 +1,10 @@
 //! Sources: Newcastle University, tutorial 11 (face normals); Blinn, 1978, and glTF 2.0 (normal
 //! maps with the bitangent's sign); Hill, 2012 (blending).
 
-use super::{Arguments, Entry, Expected};
+use super::{CallArguments, Expected, ReferenceEntry};
 use glam::{DQuat, DVec2, DVec3};
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "surface::normal",
     functions: &[
         ("face_normal_area", |a| area(a.vec3(), a.vec3(), a.vec3()).into()),
@@ -27,7 +27,7 @@ fn area(a: DVec3, b: DVec3, c: DVec3) -> DVec3 {
 
 /// The texel as a vector over tangent, bitangent and normal. The tangent is first made
 /// perpendicular to the normal.
-fn perturb(a: &mut Arguments<'_>) -> Expected {
+fn perturb(a: &mut CallArguments<'_>) -> Expected {
     let (n, tangent, sign, texel) = (a.vec3(), a.vec3(), a.f64(), a.vec3());
     let Some(t) = (tangent - n * n.dot(tangent)).try_normalize() else { return n.into() };
     let bent = 2.0 * texel - 1.0;
@@ -36,7 +36,7 @@ fn perturb(a: &mut Arguments<'_>) -> Expected {
 }
 
 /// The detail turned by the rotation that takes z to the base.
-fn blend_rnm(a: &mut Arguments<'_>) -> Expected {
+fn blend_rnm(a: &mut CallArguments<'_>) -> Expected {
     let (base, detail) = (a.vec3(), a.vec3());
     if base == DVec3::ZERO || base.z + 1.0 <= 1e-6 {
         return base.into();
@@ -46,7 +46,7 @@ fn blend_rnm(a: &mut Arguments<'_>) -> Expected {
 }
 
 /// x and y are the sums of both; z is that of the base times a `height` of the detail.
-fn slopes(a: &mut Arguments<'_>, height: fn(DVec3) -> f64) -> Expected {
+fn slopes(a: &mut CallArguments<'_>, height: fn(DVec3) -> f64) -> Expected {
     let (base, detail) = (a.vec3(), a.vec3());
     let sum = DVec3::new(base.x + detail.x, base.y + detail.y, base.z * height(detail));
     sum.try_normalize().unwrap_or(base).into()

@@ -1,9 +1,9 @@
 //! Source: OpenGL Programming Guide, "Lighting Coordinate Systems".
 
-use super::Entry;
+use super::ReferenceEntry;
 use glam::DVec3;
 
-pub const REFERENCES: Entry = Entry {
+pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "surface::view",
     functions: &[
         ("view_local", |a| (-a.vec3()).try_normalize().unwrap_or(DVec3::Z).into()),

@@ -1,6 +1,6 @@
 //! Finds the files that the path of an `#include` may name.
 
-use super::Place;
+use super::PackagePath;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::resolve::Packages;
 use crate::source::Package;
@@ -23,10 +23,10 @@ pub fn package_at(packages: &Packages, number: usize) -> &Package {
 /// root; `<name/path>` is in the package of that name, then relative to the root package's root.
 pub fn include_candidates(
     packages: &Packages,
-    includer: &Place,
+    includer: &PackagePath,
     path: &str,
     angled: bool,
-) -> Result<Vec<Place>, Diagnostic> {
+) -> Result<Vec<PackagePath>, Diagnostic> {
     let mut places = Vec::new();
     if angled {
         if let Some((name, rest)) = path.split_once('/')
@@ -53,7 +53,7 @@ pub fn searched_packages(packages: &Packages, includer: usize, angled: bool) -> 
 /// The path by which an `#include` of the includer would name a file.
 pub fn include_spelling(
     packages: &Packages,
-    includer: &Place,
+    includer: &PackagePath,
     (number, file): (usize, &str),
     angled: bool,
 ) -> String {

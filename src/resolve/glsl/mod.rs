@@ -17,7 +17,7 @@ pub struct Graph {
     /// The root first, then in the order of first mention, breadth first.
     pub modules: Vec<Module>,
     /// For each module, where each of its includes leads.
-    pub targets: Vec<Vec<Target>>,
+    pub targets: Vec<Vec<IncludeTarget>>,
     /// Spellings of all tokens.
     pub symbols: Symbols,
     /// For each module, its path as diagnostics show it.
@@ -66,9 +66,9 @@ impl Graph {
     /// before the module, so following includers always ends.
     fn includer(&self, module: usize) -> Option<(usize, usize)> {
         self.targets[..module].iter().enumerate().find_map(|(includer, targets)| {
-            let index = targets
-                .iter()
-                .position(|target| matches!(target, Target::Module(found) if *found == module))?;
+            let index = targets.iter().position(
+                |target| matches!(target, IncludeTarget::Module(found) if *found == module),
+            )?;
             let span = self.modules[includer].includes[index].span;
             Some((includer, self.modules[includer].line(span.start)))
         })
@@ -77,7 +77,7 @@ impl Graph {
 
 /// Where an `#include` leads.
 #[derive(Debug, Clone)]
-pub enum Target {
+pub enum IncludeTarget {
     /// Index of a module.
     Module(usize),
     /// Nowhere. This is an error once the directive is active.
@@ -85,7 +85,7 @@ pub enum Target {
 }
 
 /// A package, by number, and a normalised path in it.
-type Place = (usize, String);
+type PackagePath = (usize, String);
 
 /// What has been read so far.
 struct Loader<'a> {
@@ -94,8 +94,8 @@ struct Loader<'a> {
     symbols: Symbols,
     modules: Vec<Module>,
     paths: Vec<String>,
-    places: Vec<Place>,
-    known: HashMap<Place, Result<Option<usize>, Box<Diagnostic>>>,
+    places: Vec<PackagePath>,
+    known: HashMap<PackagePath, Result<Option<usize>, Box<Diagnostic>>>,
     listings: HashMap<usize, Vec<String>>,
 }
 
@@ -177,7 +177,7 @@ impl<'a> Loader<'a> {
     }
 
     /// Resolves every include of a module that was read.
-    fn targets(&mut self, module: usize) -> Result<Vec<Target>, Diagnostics> {
+    fn targets(&mut self, module: usize) -> Result<Vec<IncludeTarget>, Diagnostics> {
         let includes: Vec<_> = self.modules[module]
             .includes
             .iter()
@@ -196,20 +196,22 @@ impl<'a> Loader<'a> {
         Ok(targets)
     }
 
-    fn target(&mut self, module: usize, path: &str, angled: bool, span: Span) -> Target {
+    fn target(&mut self, module: usize, path: &str, angled: bool, span: Span) -> IncludeTarget {
         let places =
             match include::include_candidates(self.packages, &self.places[module], path, angled) {
                 Ok(places) => places,
-                Err(error) => return Target::Missing(Box::new(error.at(span, "this path"))),
+                Err(error) => return IncludeTarget::Missing(Box::new(error.at(span, "this path"))),
             };
         for place in places {
             match self.module(&place) {
-                Ok(Some(found)) => return Target::Module(found),
+                Ok(Some(found)) => return IncludeTarget::Module(found),
                 Ok(None) => {}
-                Err(error) => return Target::Missing(Box::new(error.at(span, "included here"))),
+                Err(error) => {
+                    return IncludeTarget::Missing(Box::new(error.at(span, "included here")));
+                }
             }
         }
-        Target::Missing(Box::new(self.missing(module, path, angled, span)))
+        IncludeTarget::Missing(Box::new(self.missing(module, path, angled, span)))
     }
 
     fn missing(&mut self, module: usize, path: &str, angled: bool, span: Span) -> Diagnostic {
@@ -229,7 +231,7 @@ impl<'a> Loader<'a> {
     }
 
     /// The module at a place, which is read when first asked for.
-    fn module(&mut self, place: &Place) -> Result<Option<usize>, Box<Diagnostic>> {
+    fn module(&mut self, place: &PackagePath) -> Result<Option<usize>, Box<Diagnostic>> {
         if let Some(known) = self.known.get(place) {
             return known.clone();
         }
@@ -241,7 +243,7 @@ impl<'a> Loader<'a> {
         found
     }
 
-    fn add(&mut self, place: &Place, source: SourceId) -> usize {
+    fn add(&mut self, place: &PackagePath, source: SourceId) -> usize {
         let module = parse(self.sources, source, &mut self.symbols);
         self.modules.push(module);
         self.paths.push(self.sources.get(source).path.clone());

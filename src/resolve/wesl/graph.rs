@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use crate::diagnostic::{Diagnostic, Diagnostics};
-use crate::parse::wesl::{ConditionId, Expression, Name, Names, Placed};
+use crate::parse::wesl::{ConditionId, Expression, Name, Names, PlacedModule};
 use crate::source::{SourceId, Span};
 
 /// The most imports that a diagnostic lists of the chain that led to its file.
@@ -17,10 +17,10 @@ const TRACED: usize = 16;
 pub struct Graph {
     pub(crate) names: Arc<Names>,
     /// The root module first.
-    pub(crate) nodes: Vec<Node>,
+    pub(crate) nodes: Vec<ModuleNode>,
     /// The nodes in the order of the output: by label, with the root module last.
     pub(crate) order: Vec<u32>,
-    pub(crate) constants: Vec<Constant>,
+    pub(crate) constants: Vec<ConstantUse>,
     /// Errors that are reported once something needs what failed.
     pub(crate) failures: Vec<Diagnostic>,
     /// How many items, conditions and bindings all nodes have together.
@@ -84,9 +84,9 @@ pub struct Bases {
 
 /// A module with its place in the graph.
 #[derive(Debug)]
-pub struct Node {
+pub struct ModuleNode {
     /// Its items, imports and conditions.
-    pub module: Placed,
+    pub module: PlacedModule,
     /// 0 for the root package, else one more than the dependency's index.
     pub package: usize,
     /// Names from the package's root.
@@ -98,7 +98,7 @@ pub struct Node {
     /// Indices of imports, by the name that they bring into scope.
     pub aliases: Arc<FxHashMap<Name, Vec<usize>>>,
     /// For each import, what it may lead to.
-    pub imports: Arc<Vec<Vec<Target>>>,
+    pub imports: Arc<Vec<Vec<PathTarget>>>,
     /// For each reference, what it may mean: the first candidate whose conditions hold.
     pub bindings: Arc<Vec<Vec<Candidate>>>,
     /// Imports that lead nowhere, with their conditions. They are reported if the module is reached
@@ -128,12 +128,12 @@ pub struct Candidate {
     /// Conditions of the module that uses it. All must hold.
     pub conditions: Vec<ConditionId>,
     /// What the import leads to.
-    pub target: Target,
+    pub target: PathTarget,
 }
 
 /// What a path leads to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Target {
+pub enum PathTarget {
     /// The items of that name in a node; conditions choose.
     Items {
         /// Number of the module.
@@ -151,7 +151,7 @@ pub enum Target {
 
 /// `constants::NAME`, used somewhere.
 #[derive(Debug)]
-pub struct Constant {
+pub struct ConstantUse {
     /// The name that is imported.
     pub name: Name,
     /// Its first use.
@@ -182,7 +182,7 @@ pub fn certain_errors(graph: &Graph) -> Diagnostics {
         let certainly =
             node.bindings.iter().flatten().filter(|candidate| candidate.conditions.is_empty());
         open.extend(certainly.filter_map(|candidate| match candidate.target {
-            Target::Items { node, .. } => Some(node as usize),
+            PathTarget::Items { node, .. } => Some(node as usize),
             _ => None,
         }));
     }

@@ -20,7 +20,7 @@ const NAMES: usize = 1 << 20;
 
 /// A parsed text, with what it declares.
 #[derive(Debug, Clone)]
-pub struct Parsed {
+pub struct ParsedModule {
     pub module: Arc<Module>,
     /// Indices of items by name, in the order of the text.
     pub sets: Arc<FxHashMap<Name, Vec<u32>>>,
@@ -28,7 +28,7 @@ pub struct Parsed {
     pub aliases: Arc<FxHashMap<Name, Vec<usize>>>,
 }
 
-impl Parsed {
+impl ParsedModule {
     pub fn new(module: Arc<Module>) -> Self {
         let mut sets: FxHashMap<Name, Vec<u32>> = FxHashMap::default();
         let named = module.items.iter().enumerate();
@@ -45,22 +45,22 @@ impl Parsed {
 
 /// Identifies a module: the root file of the reading, the number of the module's package, and its
 /// path in that package.
-pub type Key = (String, usize, Vec<String>);
+pub type ModuleKey = (String, usize, Vec<String>);
 
 /// Parsed texts by their content, the identifiers that all of them share, and the resolutions of
 /// modules.
 #[derive(Debug, Default)]
-pub struct Kept {
+pub struct KeptModules {
     /// `None` during a reading, which has taken them, and after a reading that ended early.
     names: Option<Arc<Names>>,
-    modules: FxHashMap<Arc<str>, (Parsed, u64)>,
-    resolutions: FxHashMap<Key, (Arc<Resolution>, u64)>,
+    modules: FxHashMap<Arc<str>, (ParsedModule, u64)>,
+    resolutions: FxHashMap<ModuleKey, (Arc<Resolution>, u64)>,
     /// The names of the package and of its dependencies. Paths start with them.
     packages: Vec<String>,
     reading: u64,
 }
 
-impl Kept {
+impl KeptModules {
     /// Begins a reading; gives the identifiers to it.
     pub(super) fn begin(&mut self, packages: &Packages) -> Names {
         self.reading += 1;
@@ -91,20 +91,25 @@ impl Kept {
 
     /// The parsed text. It may have been parsed before, for this file or for another one with the
     /// same text.
-    pub(super) fn parse(&mut self, source: SourceId, text: Arc<str>, names: &mut Names) -> Parsed {
+    pub(super) fn parse(
+        &mut self,
+        source: SourceId,
+        text: Arc<str>,
+        names: &mut Names,
+    ) -> ParsedModule {
         let reading = self.reading;
         if let Some((parsed, last)) = self.modules.get_mut(&text) {
             *last = reading;
             return parsed.clone();
         }
         let module = parse_for_editor(source, Arc::clone(&text), names);
-        let parsed = Parsed::new(Arc::new(module));
+        let parsed = ParsedModule::new(Arc::new(module));
         self.modules.insert(text, (parsed.clone(), reading));
         parsed
     }
 
     /// The resolution of a module that was kept last.
-    pub(super) fn resolution(&mut self, key: &Key) -> Option<Arc<Resolution>> {
+    pub(super) fn resolution(&mut self, key: &ModuleKey) -> Option<Arc<Resolution>> {
         let (resolution, last) = self.resolutions.get_mut(key)?;
         *last = self.reading;
         Some(Arc::clone(resolution))
@@ -112,7 +117,7 @@ impl Kept {
 
     /// Keeps the resolution of a module. With `None`, which means that it holds only for this
     /// reading, an earlier one is dropped.
-    pub(super) fn keep_resolution(&mut self, key: Key, resolution: Option<Resolution>) {
+    pub(super) fn keep_resolution(&mut self, key: ModuleKey, resolution: Option<Resolution>) {
         match resolution {
             Some(resolution) => {
                 self.resolutions.insert(key, (Arc::new(resolution), self.reading));

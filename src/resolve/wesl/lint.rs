@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::graph::{Candidate, Graph, Node, Target};
+use super::graph::{Candidate, Graph, ModuleNode, PathTarget};
 use super::load::Loader;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
-use crate::parse::wesl::{ConditionId, Expression, Name, Origin, Path, Reference};
+use crate::parse::wesl::{ConditionId, Expression, Name, Origin, Path, UsedName};
 use crate::permute::Settings;
 use crate::source::Span;
 
 /// Warnings about a module: those of the parser, and those about its imports. Modules of
 /// dependencies have none, since their users cannot change them.
-pub fn import_lints(loader: &Loader<'_>, node: &Node) -> Vec<Diagnostic> {
+pub fn import_lints(loader: &Loader<'_>, node: &ModuleNode) -> Vec<Diagnostic> {
     if node.package != 0 {
         return Vec::new();
     }
@@ -52,7 +52,7 @@ pub fn import_lints(loader: &Loader<'_>, node: &Node) -> Vec<Diagnostic> {
 }
 
 /// The name of the package that an import's path starts with, if there is no such package.
-fn absent_package<'l>(loader: &'l Loader<'_>, node: &Node, path: &Path) -> Option<&'l str> {
+fn absent_package<'l>(loader: &'l Loader<'_>, node: &ModuleNode, path: &Path) -> Option<&'l str> {
     let is_there = |name: Name| {
         let text = loader.names.text(name);
         name == Name::CONSTANTS
@@ -89,7 +89,7 @@ pub fn report_duplicates(loader: &mut Loader<'_>, node: u32) {
         }
     }
     for (condition, error) in found {
-        if let Target::Failed(index) = loader.fail(error) {
+        if let PathTarget::Failed(index) = loader.fail(error) {
             loader.nodes[node as usize].duplicates.push((condition, index));
         }
     }
@@ -130,7 +130,7 @@ pub fn report_clashes(
         }
     }
     for failure in failures {
-        if let Target::Failed(index) = loader.fail(failure) {
+        if let PathTarget::Failed(index) = loader.fail(failure) {
             loader.nodes[node as usize].broken_imports.push((Vec::new(), index));
         }
     }
@@ -141,19 +141,19 @@ fn candidates_differ(candidates: &[Candidate]) -> bool {
     let mut targets = candidates
         .iter()
         .map(|candidate| candidate.target)
-        .filter(|target| !matches!(target, Target::Failed(_)));
+        .filter(|target| !matches!(target, PathTarget::Failed(_)));
     let first = targets.next();
     targets.any(|target| Some(target) != first)
 }
 
 /// The names with which references and paths of imports start. If an import's own path starts with
 /// the name that it imports, that means a package.
-pub fn used_names(node: &Node) -> FxHashSet<Name> {
+pub fn used_names(node: &ModuleNode) -> FxHashSet<Name> {
     let start =
         |path: &Path| path.segments.first().copied().filter(|_| path.origin == Origin::Scope);
     let named = node.module.references.iter().filter_map(|reference| match reference {
-        Reference::Name(name) => Some(*name),
-        Reference::Path(path) => start(path),
+        UsedName::Name(name) => Some(*name),
+        UsedName::Path(path) => start(path),
     });
     let passed = node
         .module

@@ -6,13 +6,15 @@ use std::sync::Arc;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::graph::{Bases, Candidate, Constant, Graph, Importer, Node, Target, certain_errors};
-use super::kept::{Kept, Parsed};
+use super::graph::{
+    Bases, Candidate, ConstantUse, Graph, Importer, ModuleNode, PathTarget, certain_errors,
+};
+use super::kept::{KeptModules, ParsedModule};
 use super::lint;
-use super::replay::Notes;
+use super::replay::LoadNotes;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::limits::{RESOLVE_FACTOR, RESOLVE_STEPS, Steps};
-use crate::parse::wesl::{self, ConditionId, Name, Names, Path, Placed, Reference};
+use crate::parse::wesl::{self, ConditionId, Name, Names, Path, PlacedModule, UsedName};
 use crate::resolve::Packages;
 use crate::source::{self, LIMITS, Package, SourceId, SourceSet, Span};
 
@@ -21,13 +23,13 @@ pub struct Loader<'a> {
     pub(super) sources: &'a mut SourceSet,
     pub(super) packages: &'a Packages,
     pub(super) names: Names,
-    pub(super) nodes: Vec<Node>,
-    pub(super) constants: Vec<Constant>,
+    pub(super) nodes: Vec<ModuleNode>,
+    pub(super) constants: Vec<ConstantUse>,
     /// By name: the index in `constants`.
     pub(super) constant_places: FxHashMap<Name, u32>,
     pub(super) failures: Vec<Diagnostic>,
     /// Parsed texts of earlier readings, for editors.
-    pub(super) kept: Option<&'a mut Kept>,
+    pub(super) kept: Option<&'a mut KeptModules>,
     /// By package and path: the node of a file, `None` if there is no such file, or why it cannot
     /// be read.
     known: HashMap<(usize, String), Result<Option<u32>, Diagnostic>>,
@@ -38,7 +40,7 @@ pub struct Loader<'a> {
     /// The steps that looking names up has taken.
     pub(super) spent: Cell<u64>,
     /// What the resolving of the present module asked.
-    pub(super) notes: Notes,
+    pub(super) notes: LoadNotes,
     /// The root module, by which earlier results are kept.
     pub(super) root: String,
     /// By file: the byte whose line and column were asked for last, then that line and column.
@@ -62,7 +64,7 @@ impl<'a> Loader<'a> {
             listings: FxHashMap::default(),
             steps: Cell::new(Steps::new(RESOLVE_STEPS)),
             spent: Cell::new(0),
-            notes: Notes::default(),
+            notes: LoadNotes::default(),
             root: String::new(),
             positions: FxHashMap::default(),
             used: None,
@@ -71,7 +73,7 @@ impl<'a> Loader<'a> {
 
     /// With the parsed texts of earlier readings, and the results of those with the same root. The
     /// loader gives back what it took.
-    pub fn with_kept(mut self, kept: &'a mut Kept, root: &str) -> Self {
+    pub fn with_kept(mut self, kept: &'a mut KeptModules, root: &str) -> Self {
         self.names = kept.begin(self.packages);
         self.kept = Some(kept);
         root.clone_into(&mut self.root);
@@ -243,17 +245,17 @@ impl<'a> Loader<'a> {
         let mut steps = self.steps.get();
         steps.grant(RESOLVE_FACTOR.saturating_mul(text.len() as u64));
         self.steps.set(steps);
-        let Parsed { module, sets, aliases } = match &mut self.kept {
+        let ParsedModule { module, sets, aliases } = match &mut self.kept {
             Some(kept) => kept.parse(source, text, &mut self.names),
-            None => Parsed::new(Arc::new(wesl::parse(source, text, &mut self.names))),
+            None => ParsedModule::new(Arc::new(wesl::parse(source, text, &mut self.names))),
         };
-        let module = Placed::new(module, source);
+        let module = PlacedModule::new(module, source);
         path.iter().for_each(|part| {
             self.names.intern(part);
         });
         let label = self.label(package, &path);
         let importer = asker.map(|span| Importer { span, note: self.note(span) });
-        self.nodes.push(Node {
+        self.nodes.push(ModuleNode {
             module,
             package,
             path,
@@ -317,9 +319,9 @@ impl<'a> Loader<'a> {
         outcome.is_ok()
     }
 
-    pub(super) fn fail(&mut self, error: Diagnostic) -> Target {
+    pub(super) fn fail(&mut self, error: Diagnostic) -> PathTarget {
         self.failures.push(error);
-        Target::Failed(self.failures.len() as u32 - 1)
+        PathTarget::Failed(self.failures.len() as u32 - 1)
     }
 
     /// Resolves a module's imports, then its uses.
@@ -337,7 +339,7 @@ impl<'a> Loader<'a> {
             for mut candidate in self.candidates(node, path, Some(index)) {
                 candidate.conditions.extend(*condition);
                 targets.push(candidate.target);
-                if let Target::Failed(failure) = candidate.target
+                if let PathTarget::Failed(failure) = candidate.target
                     && !lint::is_harmless(self, node, *alias, failure)
                 {
                     self.nodes[node as usize]
@@ -361,19 +363,19 @@ impl<'a> Loader<'a> {
     fn binding(
         &mut self,
         node: u32,
-        reference: &Reference,
+        reference: &UsedName,
         imported: &FxHashMap<Name, Vec<Candidate>>,
     ) -> Vec<Candidate> {
         match reference {
-            Reference::Path(path) => self.candidates(node, path, None),
-            Reference::Name(name) => {
+            UsedName::Path(path) => self.candidates(node, path, None),
+            UsedName::Name(name) => {
                 if !self.step(1 + imported.get(name).map_or(0, Vec::len)) {
                     return Vec::new();
                 }
                 let own = self.nodes[node as usize].sets.contains_key(name);
                 let own = own.then(|| Candidate {
                     conditions: Vec::new(),
-                    target: Target::Items { node, name: *name },
+                    target: PathTarget::Items { node, name: *name },
                 });
                 own.into_iter().chain(imported.get(name).into_iter().flatten().cloned()).collect()
             }
@@ -382,7 +384,7 @@ impl<'a> Loader<'a> {
 }
 
 /// The error for a graph in which looking names up takes more than `most` steps.
-pub fn too_entangled(module: &Placed, most: u64) -> Diagnostic {
+pub fn too_entangled(module: &PlacedModule, most: u64) -> Diagnostic {
     let message = format!("what names mean here takes more than {most} steps to find");
     Diagnostic::error(codes::LIMIT_EXCEEDED, message)
         .at(module.span(0..0), "in this file and what it imports")

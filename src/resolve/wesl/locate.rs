@@ -1,9 +1,9 @@
 //! Finds what a path names: follows imports and packages to a module, and finds the item in it.
 
-use super::graph::{Candidate, Constant, Target};
+use super::graph::{Candidate, ConstantUse, PathTarget};
 use super::load::Loader;
 use crate::diagnostic::{Diagnostic, codes};
-use crate::parse::wesl::{ConditionId, Name, Origin, Path, Placed};
+use crate::parse::wesl::{ConditionId, Name, Origin, Path, PlacedModule};
 use crate::source::{LIMITS, Span};
 
 /// A path from a package's root.
@@ -23,7 +23,7 @@ const SUGGESTED: usize = 100;
 
 /// The places of a path that an error may be about.
 #[derive(Debug, Clone, Copy)]
-struct Places {
+struct PathPlaces {
     whole: Span,
     first: Span,
     /// All names but the last; the whole path if these are not written in one piece.
@@ -31,8 +31,8 @@ struct Places {
     last: Span,
 }
 
-impl Places {
-    fn new(module: &Placed, path: &Path) -> Self {
+impl PathPlaces {
+    fn new(module: &PlacedModule, path: &Path) -> Self {
         let whole = module.span(path.range.clone());
         let parents = Some(path.parts.parents.clone()).filter(|range| range.start < range.end);
         Self {
@@ -57,7 +57,7 @@ impl Loader<'_> {
         if !self.step(1) {
             return Vec::new();
         }
-        let places = Places::new(&self.nodes[node as usize].module, path);
+        let places = PathPlaces::new(&self.nodes[node as usize].module, path);
         let mut visiting: Vec<usize> = import.into_iter().collect();
         let found = self.absolute(node, path, &mut visiting).and_then(|absolutes| {
             let candidate = |absolute: Absolute| {
@@ -79,7 +79,7 @@ impl Loader<'_> {
         visiting: &mut Vec<usize>,
     ) -> Result<Vec<Absolute>, Diagnostic> {
         let here = &self.nodes[node as usize];
-        let places = Places::new(&here.module, path);
+        let places = PathPlaces::new(&here.module, path);
         match path.origin {
             Origin::Package => Ok(vec![Absolute {
                 package: Some(here.package),
@@ -181,7 +181,7 @@ impl Loader<'_> {
         &self,
         node: u32,
         segments: &[Name],
-        places: Places,
+        places: PathPlaces,
         in_circle: bool,
     ) -> Result<Absolute, Diagnostic> {
         let first = self.names.text(segments[0]);
@@ -222,24 +222,24 @@ impl Loader<'_> {
     fn target(
         &mut self,
         absolute: &Absolute,
-        places: Places,
+        places: PathPlaces,
         import: bool,
-    ) -> Result<Target, Diagnostic> {
+    ) -> Result<PathTarget, Diagnostic> {
         let span = places.whole;
         let Some(package) = absolute.package else {
             return Ok(self.constant(&absolute.segments, span));
         };
         let Some((last, parents)) = absolute.segments.split_last() else {
-            return Ok(Target::Module);
+            return Ok(PathTarget::Module);
         };
         let parent = self.ask_module(package, parents, span)?;
         if let Some(node) = parent.filter(|node| self.nodes[*node as usize].sets.contains_key(last))
         {
-            return Ok(Target::Items { node, name: *last });
+            return Ok(PathTarget::Items { node, name: *last });
         }
         self.notes.lacks.extend(parent.map(|node| (node, *last)));
         if self.is_module(package, &absolute.segments, span, import)? {
-            return Ok(Target::Module);
+            return Ok(PathTarget::Module);
         }
         Err(match parent {
             // The missing item may be in the part of the module that could not be parsed.
@@ -255,16 +255,16 @@ impl Loader<'_> {
         })
     }
 
-    fn constant(&mut self, segments: &[Name], span: Span) -> Target {
+    fn constant(&mut self, segments: &[Name], span: Span) -> PathTarget {
         match segments {
-            [] => Target::Module,
+            [] => PathTarget::Module,
             [name] => {
                 let next = self.constants.len() as u32;
                 let index = *self.constant_places.entry(*name).or_insert(next);
                 if index == next {
-                    self.constants.push(Constant { name: *name, span });
+                    self.constants.push(ConstantUse { name: *name, span });
                 }
-                Target::Constant(index)
+                PathTarget::Constant(index)
             }
             _ => self.fail(
                 Diagnostic::error(codes::MISSING_MODULE, "the module `constants` has no modules")

@@ -8,8 +8,8 @@ mod load;
 mod locate;
 mod replay;
 
-pub use graph::{Candidate, Constant, Graph, Node, Target};
-pub use kept::Kept;
+pub use graph::{Candidate, ConstantUse, Graph, ModuleNode, PathTarget};
+pub use kept::KeptModules;
 pub use lint::{PLACES, flag_places, shown_at, undeclared_flags};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
@@ -34,7 +34,7 @@ pub fn load_kept(
     sources: &mut SourceSet,
     packages: &Packages,
     root: &str,
-    kept: &mut Kept,
+    kept: &mut KeptModules,
 ) -> Result<Graph, Diagnostics> {
     load_with(load::Loader::new(sources, packages).with_kept(kept, root), root)
 }
@@ -54,7 +54,7 @@ pub fn load_all(
     sources: &mut SourceSet,
     packages: &Packages,
     paths: &[String],
-    kept: &mut Kept,
+    kept: &mut KeptModules,
 ) -> Option<Graph> {
     load::Loader::new(sources, packages).with_kept(kept, "").every(paths)
 }

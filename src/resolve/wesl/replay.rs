@@ -10,7 +10,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::graph::{Candidate, Target};
+use super::graph::{Candidate, PathTarget};
 use super::load::Loader;
 use crate::diagnostic::Diagnostic;
 use crate::parse::wesl::{Module, Name};
@@ -18,7 +18,7 @@ use crate::source::Span;
 
 /// A module that was asked for, and the answer.
 #[derive(Debug)]
-struct Ask {
+struct ModuleRequest {
     package: usize,
     path: Vec<Name>,
     /// The place of the path that asks, in the module that is resolved.
@@ -31,20 +31,20 @@ struct Ask {
 pub struct Resolution {
     module: Arc<Module>,
     node: u32,
-    asks: Vec<Ask>,
+    asks: Vec<ModuleRequest>,
     /// The items that were found in other modules.
     items: Vec<(u32, Name)>,
     /// The items that were not found, so that the name is that of a module.
     lacks: Vec<(u32, Name)>,
     steps: u64,
-    imports: Arc<Vec<Vec<Target>>>,
+    imports: Arc<Vec<Vec<PathTarget>>>,
     bindings: Arc<Vec<Vec<Candidate>>>,
 }
 
 /// What a loader notes while it resolves a module.
 #[derive(Debug, Default)]
-pub struct Notes {
-    asks: Vec<Ask>,
+pub struct LoadNotes {
+    asks: Vec<ModuleRequest>,
     /// The items that were not found in a module.
     pub lacks: Vec<(u32, Name)>,
     /// Whether a module could not be read, or the files of a folder were asked for. Then the result
@@ -81,7 +81,7 @@ impl Loader<'_> {
         let answer = self.module(package, path, asker);
         if self.kept.is_some() {
             match &answer {
-                Ok(answer) => self.notes.asks.push(Ask {
+                Ok(answer) => self.notes.asks.push(ModuleRequest {
                     package,
                     path: path.to_vec(),
                     place: asker.start..asker.end,
@@ -96,7 +96,7 @@ impl Loader<'_> {
     /// Begins to note what resolving asks.
     fn begin_notes(&mut self) {
         let (failures, steps) = (self.failures.len(), self.spent.get());
-        self.notes = Notes { failures, steps, ..Notes::default() };
+        self.notes = LoadNotes { failures, steps, ..LoadNotes::default() };
     }
 
     /// What was noted, if the module may be resolved like this again.
@@ -112,9 +112,11 @@ impl Loader<'_> {
         let mut items = Vec::new();
         for target in here.imports.iter().flatten().copied().chain(bound) {
             match target {
-                Target::Items { node: other, name } if other != node => items.push((other, name)),
-                Target::Items { .. } | Target::Module => {}
-                Target::Constant(_) | Target::Failed(_) => return None,
+                PathTarget::Items { node: other, name } if other != node => {
+                    items.push((other, name))
+                }
+                PathTarget::Items { .. } | PathTarget::Module => {}
+                PathTarget::Constant(_) | PathTarget::Failed(_) => return None,
             }
         }
         items.sort_unstable();

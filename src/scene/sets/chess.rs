@@ -4,7 +4,8 @@ use glam::{DMat4, DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::{
-    Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base_scene, maps, placed_at,
+    Eye, Lamp, LampKind, Maps, Material, Object, Scene, Set, TextureMap, base_scene, maps,
+    placed_at,
 };
 use crate::scene::chessmen::{Man, Standing, open_share};
 use crate::scene::layers::Layers;
@@ -201,7 +202,7 @@ fn chess_maps() -> Maps {
 }
 
 /// A square map of the board. `number` gives the value of a texel from its place on the board.
-fn board_map(side: usize, number: impl Fn(DVec2) -> f64 + Sync) -> Map {
+fn board_map(side: usize, number: impl Fn(DVec2) -> f64 + Sync) -> TextureMap {
     let texel = |index: usize| {
         let at = (DVec2::new((index % side) as f64, (index / side) as f64) + 0.5) / side as f64;
         let share = if at.x < BOARD.0 {
@@ -211,17 +212,21 @@ fn board_map(side: usize, number: impl Fn(DVec2) -> f64 + Sync) -> Map {
         };
         DVec3::splat(share).extend(1.0)
     };
-    Map { width: side, height: side, texels: (0..side * side).into_par_iter().map(texel).collect() }
+    TextureMap {
+        width: side,
+        height: side,
+        texels: (0..side * side).into_par_iter().map(texel).collect(),
+    }
 }
 
-fn open_map() -> Map {
+fn open_map() -> TextureMap {
     let men: Vec<_> =
         GAME.iter().map(|(man, _, x, z)| Standing::new(*man, DVec2::new(*x, *z))).collect();
     board_map(256, |at| open_share(at, &men))
 }
 
 /// The grain of the squares and of the frame: rings of growth, cut along, and fine fibres.
-fn wood_map() -> Map {
+fn wood_map() -> TextureMap {
     board_map(1024, |at| {
         let is_framed = at.abs().max_element() > 4.06;
         let across = is_framed && at.x.abs() > at.y.abs();

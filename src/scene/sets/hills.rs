@@ -4,7 +4,9 @@
 use glam::{DMat4, DVec2, DVec3};
 
 use super::palette;
-use super::{Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base_scene, maps};
+use super::{
+    Eye, Lamp, LampKind, Maps, Material, Object, Scene, Set, TextureMap, base_scene, maps,
+};
 use crate::scene::shape::Shape;
 
 /// Quads along each side, and the side, scene units.
@@ -53,7 +55,7 @@ pub fn scene() -> Scene {
 
 /// Earth with patches of grass. The other maps are those of bricks.
 fn hill_textures() -> Maps {
-    let base = Map::of(512, |at| {
+    let base = TextureMap::of(512, |at| {
         let lumpy_noise = |cells| 0.5 + 0.5 * maps::value_noise(at, cells);
         let fine = lumpy_noise(60);
         let tone = 0.8 + 0.25 * fine + 0.15 * lumpy_noise(170);

@@ -5,7 +5,7 @@ use glam::{DMat4, DVec3};
 use super::floor::tiles;
 use super::palette::{self, CHALK, CORAL};
 use super::{Eye, Lamp, LampKind, Layers, Material, Object, Scene, Set, base_scene, placed_at};
-use crate::scene::interior::{self, Panel, Side};
+use crate::scene::interior::{self, Panel, RoomSide};
 use crate::scene::shape::Shape;
 
 /// The entry in the list of all scenes.
@@ -67,7 +67,7 @@ pub fn scene() -> Scene {
     ];
     let panels = interior::panels();
     let seen = panels.iter().enumerate();
-    let seen = seen.filter(|(_, panel)| !matches!(panel.side, Side::Floor | Side::Front));
+    let seen = seen.filter(|(_, panel)| !matches!(panel.side, RoomSide::Floor | RoomSide::Front));
     objects.extend(seen.map(wall_panel).map(|object| Object { casts: false, ..object }));
     let eye = Eye {
         position: DVec3::new(0.35, 1.9, 4.9),

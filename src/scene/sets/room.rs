@@ -7,7 +7,8 @@ use rayon::prelude::*;
 
 use super::palette::{self, AMBER, CHALK, CORAL, LEAF};
 use super::{
-    Eye, Lamp, LampKind, Map, Maps, Material, Object, Scene, Set, base_scene, maps, placed_at,
+    Eye, Lamp, LampKind, Maps, Material, Object, Scene, Set, TextureMap, base_scene, maps,
+    placed_at,
 };
 use crate::scene::bulbs::{glow, glowing_material};
 use crate::scene::shape::Shape;
@@ -156,7 +157,7 @@ fn room_textures() -> Maps {
 }
 
 /// The light of the panel on every surface, and a little from everywhere.
-fn baked_light() -> Map {
+fn baked_light() -> TextureMap {
     let (width, height) = (CHARTS.0 * CHART, CHARTS.1 * CHART);
     let texel = |index: usize| {
         let (column, row) = (index % width, index / width);
@@ -168,7 +169,7 @@ fn baked_light() -> Map {
             if chart == PANEL_CHART { DVec3::splat(2.0) } else { arriving_light(point, normal) };
         light.extend(1.0)
     };
-    Map { width, height, texels: (0..width * height).into_par_iter().map(texel).collect() }
+    TextureMap { width, height, texels: (0..width * height).into_par_iter().map(texel).collect() }
 }
 
 /// The point and the normal at a chart's place.

@@ -4,12 +4,12 @@ use naga::valid::{EntryPointError, VaryingError};
 use naga::{Function, Module};
 
 use super::{
-    Said, foreign_words, function, inner_type_text, lacking_words, spaced_name, stage_name,
+    Sentence, foreign_words, function, inner_type_text, lacking_words, spaced_name, stage_name,
     type_text,
 };
 use crate::diagnostic::codes;
 
-pub fn entry_words(module: &Module, of: Option<&Function>, error: &EntryPointError) -> Said {
+pub fn entry_words(module: &Module, of: Option<&Function>, error: &EntryPointError) -> Sentence {
     let text = match error {
         EntryPointError::Conflict => "two entry points of one stage have this name".to_owned(),
         EntryPointError::MissingVertexOutputPosition => {
@@ -63,7 +63,7 @@ pub fn entry_words(module: &Module, of: Option<&Function>, error: &EntryPointErr
             return foreign_words("ray tracing");
         }
     };
-    Said::plain(text)
+    Sentence::plain(text)
 }
 
 fn variable_words(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> String {
@@ -74,7 +74,7 @@ fn variable_words(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -
 }
 
 /// The message for two variables with the same group and binding.
-fn collision_words(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> Said {
+fn collision_words(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> Sentence {
     let binding = module.global_variables[handle].binding;
     let other = module.global_variables.iter().find(|(other, found)| {
         *other != handle && found.binding.is_some() && found.binding == binding
@@ -92,10 +92,10 @@ fn collision_words(module: &Module, handle: naga::Handle<naga::GlobalVariable>) 
     let beside = other.map(|(other, _)| {
         (module.global_variables.get_span(other), "has the same place".to_owned())
     });
-    Said { beside, ..Said::coded(codes::BINDING_CONFLICT, message) }
+    Sentence { beside, ..Sentence::coded(codes::BINDING_CONFLICT, message) }
 }
 
-pub fn varying_words(module: &Module, error: &VaryingError) -> Said {
+pub fn varying_words(module: &Module, error: &VaryingError) -> Sentence {
     let text = match error {
         VaryingError::InvalidType(handle) | VaryingError::NotIOShareableType(handle) => format!(
             "{} cannot enter or leave a stage: scalars and vectors of numbers can",
@@ -127,13 +127,13 @@ pub fn varying_words(module: &Module, error: &VaryingError) -> Said {
             format!("member {} needs `@location` or `@builtin`", index + 1)
         }
         VaryingError::BindingCollision { location } => {
-            return Said::coded(
+            return Sentence::coded(
                 codes::BINDING_CONFLICT,
                 format!("`@location({location})` is used twice"),
             );
         }
         VaryingError::BindingCollisionBlendSrc { blend_src } => {
-            return Said::coded(
+            return Sentence::coded(
                 codes::BINDING_CONFLICT,
                 format!("`@blend_src({blend_src})` is used twice"),
             );
@@ -165,7 +165,7 @@ pub fn varying_words(module: &Module, error: &VaryingError) -> Said {
             return foreign_words("inputs for each vertex of a triangle");
         }
     };
-    Said::plain(text)
+    Sentence::plain(text)
 }
 
 /// As WGSL spells it, as far as it follows from naga's name.

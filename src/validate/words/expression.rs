@@ -4,17 +4,19 @@ use naga::valid::ExpressionError;
 use naga::{BinaryOperator, Module, UnaryOperator};
 
 use super::function::mismatch_words;
-use super::{Said, foreign_words, inner_type_text, lacking_words, spaced_name, type_text, types};
+use super::{
+    Sentence, foreign_words, inner_type_text, lacking_words, spaced_name, type_text, types,
+};
 use crate::diagnostic::codes;
 
-pub fn expression_words(module: &Module, error: &ExpressionError) -> Said {
+pub fn expression_words(module: &Module, error: &ExpressionError) -> Sentence {
     use ExpressionError as E;
     let text = match error {
         E::InvalidBaseType(_) => "this has no members and no elements",
         E::InvalidIndexType(_) => "an index is an integer",
         E::NegativeIndex(_) => "an index is not negative",
         E::IndexOutOfBounds(_, index) => {
-            return Said::plain(format!("index {index} is out of bounds"));
+            return Sentence::plain(format!("index {index} is out of bounds"));
         }
         E::InvalidPointerType(_) => "there is nothing to be read here",
         E::InvalidArrayType(_) => "only arrays in storage buffers have a length to ask for",
@@ -22,11 +24,11 @@ pub fn expression_words(module: &Module, error: &ExpressionError) -> Said {
         E::InvalidVectorType(_) => "only vectors have components such as `xyz`",
         E::InvalidSwizzleComponent(component, _) => {
             let name = spaced_name(&format!("{component:?}"));
-            return Said::plain(format!("the vector has no component `{name}`"));
+            return Sentence::plain(format!("the vector has no component `{name}`"));
         }
         E::Compose(error) => return types::compose_words(module, error),
         E::InvalidZeroValue(handle) => {
-            return Said::plain(format!("there is no zero of {}", type_text(module, *handle)));
+            return Sentence::plain(format!("there is no zero of {}", type_text(module, *handle)));
         }
         E::IndexableLength(_) => "the length of this is not known",
         E::InvalidUnaryOperandType(operator, _) => {
@@ -92,13 +94,13 @@ pub fn expression_words(module: &Module, error: &ExpressionError) -> Said {
         E::WrongArgumentCount(function) => {
             let name = spaced_name(&format!("{function:?}"));
             let message = format!("`{name}` takes another number of arguments");
-            return Said::coded(codes::CALL_MISMATCH, message);
+            return Sentence::coded(codes::CALL_MISMATCH, message);
         }
         E::InvalidArgumentType(function, index, _) => {
             let name = spaced_name(&format!("{function:?}"));
             let message =
                 format!("argument {} of `{name}` has a type that it does not take", index + 1);
-            return Said::coded(codes::CALL_MISMATCH, message);
+            return Sentence::coded(codes::CALL_MISMATCH, message);
         }
         E::MissingCapabilities(capabilities) => return lacking_words(*capabilities),
         E::Literal(error) => return types::literal_words(error),
@@ -106,7 +108,7 @@ pub fn expression_words(module: &Module, error: &ExpressionError) -> Said {
             return foreign_words(&format!("this function for {} bits", u32::from(*width) * 8));
         }
         E::ShiftAmountTooLarge { lhs_type, .. } => {
-            return Said::plain(format!(
+            return Sentence::plain(format!(
                 "{} has fewer bits than that",
                 inner_type_text(module, lhs_type)
             ));
@@ -121,11 +123,11 @@ pub fn expression_words(module: &Module, error: &ExpressionError) -> Said {
             "this type cannot be loaded for a whole workgroup"
         }
     };
-    Said::plain(text)
+    Sentence::plain(text)
 }
 
 /// The message for a wrong lookup of a texture, by what does not fit the texture.
-fn texture_words(error: &ExpressionError) -> Said {
+fn texture_words(error: &ExpressionError) -> Sentence {
     use ExpressionError as E;
     let text = match error {
         E::InvalidImageArrayIndex => {
@@ -161,7 +163,7 @@ fn texture_words(error: &ExpressionError) -> Said {
         }
         _ => "this texture cannot be used in this way",
     };
-    Said::coded(codes::CALL_MISMATCH, text)
+    Sentence::coded(codes::CALL_MISMATCH, text)
 }
 
 fn unary_sign(operator: UnaryOperator) -> &'static str {

@@ -3,10 +3,10 @@
 use naga::valid::{CallError, FunctionError, LocalVariableError, SubgroupError};
 use naga::{Function, Handle, Module};
 
-use super::{Said, expression, foreign_words, inner_type_text, lacking_words, type_text};
+use super::{Sentence, expression, foreign_words, inner_type_text, lacking_words, type_text};
 use crate::diagnostic::codes;
 
-pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> Said {
+pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> Sentence {
     let text = match error {
         FunctionError::Expression { source, .. } => {
             return expression::expression_words(module, source);
@@ -106,14 +106,14 @@ pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> 
             return foreign_words("mesh and task shaders");
         }
     };
-    Said::plain(text)
+    Sentence::plain(text)
 }
 
-pub fn mismatch_words(message: impl Into<String>) -> Said {
-    Said::coded(codes::TYPE_MISMATCH, message)
+pub fn mismatch_words(message: impl Into<String>) -> Sentence {
+    Sentence::coded(codes::TYPE_MISMATCH, message)
 }
 
-fn returned_words(module: &Module, expected: Option<Handle<naga::Type>>) -> Said {
+fn returned_words(module: &Module, expected: Option<Handle<naga::Type>>) -> Sentence {
     match expected {
         Some(expected) => mismatch_words(format!(
             "the function returns {}, and this has another type",
@@ -129,10 +129,10 @@ fn local_words(
     handle: Handle<naga::LocalVariable>,
     name: &str,
     error: &LocalVariableError,
-) -> Said {
+) -> Sentence {
     match error {
         LocalVariableError::InvalidType(handle) => {
-            Said::plain(format!("`{name}` cannot have the type {}", type_text(module, *handle)))
+            Sentence::plain(format!("`{name}` cannot have the type {}", type_text(module, *handle)))
         }
         LocalVariableError::InitializerType => {
             let declared = of.local_variables.iter().find(|(found, _)| *found == handle);
@@ -142,20 +142,20 @@ fn local_words(
             mismatch_words(format!("the first value of `{name}` does not fit its type{declared}"))
         }
         LocalVariableError::NonConstOrOverrideInitializer => {
-            Said::plain(format!("the first value of `{name}` must be a constant"))
+            Sentence::plain(format!("the first value of `{name}` must be a constant"))
         }
     }
 }
 
-fn call_words(module: &Module, handle: Handle<Function>, error: &CallError) -> Said {
+fn call_words(module: &Module, handle: Handle<Function>, error: &CallError) -> Sentence {
     let called = &module.functions[handle];
     let name = called.name.as_deref().unwrap_or("the function");
     let said = match error {
-        CallError::ArgumentCount { required, seen } => Said::coded(
+        CallError::ArgumentCount { required, seen } => Sentence::coded(
             codes::CALL_MISMATCH,
             format!("`{name}` takes {required} arguments, not {seen}"),
         ),
-        CallError::ArgumentType { index, required, .. } => Said::coded(
+        CallError::ArgumentType { index, required, .. } => Sentence::coded(
             codes::CALL_MISMATCH,
             format!(
                 "argument {} of `{name}` is {}, and this has another type",
@@ -167,7 +167,7 @@ fn call_words(module: &Module, handle: Handle<Function>, error: &CallError) -> S
         CallError::ResultAlreadyInScope(_)
         | CallError::ResultAlreadyPopulated(_)
         | CallError::ExpressionMismatch(_) => {
-            Said::plain("naga's parser gave the call a form that naga's validator refuses")
+            Sentence::plain("naga's parser gave the call a form that naga's validator refuses")
         }
     };
     said.note(format!("declared: {}", signature_text(module, called)))
@@ -189,7 +189,7 @@ fn signature_text(module: &Module, of: &Function) -> String {
     format!("`{}({}){result}`", of.name.as_deref().unwrap_or_default(), arguments.join(", "))
 }
 
-fn subgroup_words(error: &SubgroupError) -> Said {
+fn subgroup_words(error: &SubgroupError) -> Sentence {
     match error {
         SubgroupError::InvalidOperand(_)
         | SubgroupError::ResultTypeMismatch(_)

@@ -3,9 +3,9 @@
 use naga::valid::GlobalVariableError;
 use naga::{AddressSpace, Module};
 
-use super::{Said, foreign_words, lacking_words, type_text};
+use super::{Sentence, foreign_words, lacking_words, type_text};
 
-pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) -> Said {
+pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) -> Sentence {
     let text = match error {
         GlobalVariableError::InvalidUsage(space) => {
             format!("`{name}` is used in a way that {} does not allow", space_name(*space))
@@ -27,7 +27,7 @@ pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) 
              other variables do not"
         ),
         GlobalVariableError::Alignment(_, handle, disalignment) => {
-            return Said::plain(format!(
+            return Sentence::plain(format!(
                 "the layout of {} does not fit a uniform buffer",
                 type_text(module, *handle)
             ))
@@ -53,7 +53,7 @@ pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) 
             return foreign_words(&format!("the kind of variable that `{name}` is"));
         }
     };
-    Said::plain(text)
+    Sentence::plain(text)
 }
 
 pub fn space_name(space: AddressSpace) -> &'static str {

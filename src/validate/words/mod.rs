@@ -21,7 +21,7 @@ use crate::diagnostic::{Code, codes};
 
 /// A sentence, with the code for kinds that have one of their own.
 #[derive(Debug)]
-pub struct Said {
+pub struct Sentence {
     pub code: Option<&'static Code>,
     pub message: String,
     pub notes: Vec<String>,
@@ -29,7 +29,7 @@ pub struct Said {
     pub beside: Option<(naga::Span, String)>,
 }
 
-impl Said {
+impl Sentence {
     fn plain(message: impl Into<String>) -> Self {
         Self { code: None, message: message.into(), notes: Vec::new(), beside: None }
     }
@@ -45,21 +45,21 @@ impl Said {
 }
 
 /// The message for an error of naga's validator.
-pub fn validation_words(module: &Module, error: &ValidationError) -> Said {
+pub fn validation_words(module: &Module, error: &ValidationError) -> Sentence {
     match error {
         ValidationError::InvalidHandle(_) | ValidationError::Corrupted => {
-            Said::plain("naga's parser gave the text a form that naga's validator refuses")
+            Sentence::plain("naga's parser gave the text a form that naga's validator refuses")
         }
         ValidationError::Layouter(_) => {
-            Said::plain("a type has no layout in memory: its size is not known, or too large")
+            Sentence::plain("a type has no layout in memory: its size is not known, or too large")
         }
         ValidationError::Type { name, source, .. } => types::type_of(module, name, source),
         ValidationError::ConstExpression { source, .. } => types::constant_words(module, source),
         ValidationError::ArraySizeError { .. } => {
-            Said::plain("the size of an array must be above 0")
+            Sentence::plain("the size of an array must be above 0")
         }
         ValidationError::Constant { name, source, .. } => {
-            Said::plain(types::of_constant(name, source))
+            Sentence::plain(types::of_constant(name, source))
         }
         ValidationError::Override { name, source, .. } => types::of_override(module, name, source),
         ValidationError::GlobalVariable { name, source, .. } => {
@@ -95,10 +95,10 @@ fn inner_type_text(module: &Module, inner: &TypeInner) -> String {
 }
 
 /// The message for something that needs capabilities which not every target has.
-fn lacking_words(capabilities: Capabilities) -> Said {
+fn lacking_words(capabilities: Capabilities) -> Sentence {
     let names: Vec<String> =
         capabilities.iter_names().map(|(name, _)| name.to_lowercase().replace('_', " ")).collect();
-    Said::coded(
+    Sentence::coded(
         codes::NOT_PORTABLE,
         format!("not every target has what this needs: {}", names.join(", ")),
     )
@@ -119,8 +119,8 @@ fn stage_name(stage: naga::ShaderStage) -> &'static str {
 }
 
 /// The message for something that belongs to stages or devices which no target has.
-fn foreign_words(what: &str) -> Said {
-    Said::coded(codes::NOT_PORTABLE, format!("no target has {what}"))
+fn foreign_words(what: &str) -> Sentence {
+    Sentence::coded(codes::NOT_PORTABLE, format!("no target has {what}"))
 }
 
 /// A name from naga's enums, such as `SampleCount`, as words: `sample count`.

@@ -6,111 +6,115 @@ use naga::valid::{
     WidthError,
 };
 
-use super::{Said, entry, foreign_words, lacking_words, type_text};
+use super::{Sentence, entry, foreign_words, lacking_words, type_text};
 use crate::diagnostic::codes;
 
-pub fn type_of(module: &Module, name: &str, error: &TypeError) -> Said {
+pub fn type_of(module: &Module, name: &str, error: &TypeError) -> Sentence {
     let what = if name.is_empty() { "this type".to_owned() } else { format!("`{name}`") };
     match error {
         TypeError::MissingCapability(capabilities) => lacking_words(*capabilities),
-        TypeError::InvalidAtomicWidth(..) => Said::plain(format!(
+        TypeError::InvalidAtomicWidth(..) => Sentence::plain(format!(
             "{what} is not a type that an atomic can have: `u32` and `i32` are"
         )),
         TypeError::InvalidPointerBase(base) => {
-            Said::plain(format!("there are no pointers to {}", type_text(module, *base)))
+            Sentence::plain(format!("there are no pointers to {}", type_text(module, *base)))
         }
-        TypeError::InvalidPointerToUnsized { base, .. } => Said::plain(format!(
+        TypeError::InvalidPointerToUnsized { base, .. } => Sentence::plain(format!(
             "the size of {} is not known, so it can only be in a storage buffer",
             type_text(module, *base)
         )),
         TypeError::InvalidData(base) => {
-            Said::plain(format!("{} cannot be a member here", type_text(module, *base)))
+            Sentence::plain(format!("{} cannot be a member here", type_text(module, *base)))
         }
         TypeError::InvalidArrayBaseType(base) => {
-            Said::plain(format!("there are no arrays of {}", type_text(module, *base)))
+            Sentence::plain(format!("there are no arrays of {}", type_text(module, *base)))
         }
         TypeError::MatrixElementNotFloat => {
-            Said::plain("the elements of a matrix are floating-point numbers")
+            Sentence::plain("the elements of a matrix are floating-point numbers")
         }
         TypeError::UnsupportedSpecializedArrayLength(_) => {
-            Said::plain("an override cannot be the size of an array")
+            Sentence::plain("an override cannot be the size of an array")
         }
         TypeError::UnsupportedImageType { arrayed, .. } => {
             let many = if *arrayed { "arrays of such textures" } else { "such textures" };
             foreign_words(many)
         }
-        TypeError::InvalidArrayStride { stride, expected } => Said::plain(format!(
+        TypeError::InvalidArrayStride { stride, expected } => Sentence::plain(format!(
             "the elements of {what} are {stride} bytes apart, and must be {expected}"
         )),
         TypeError::InvalidDynamicArray(field, _) => {
-            Said::plain(format!("`{field}` has no fixed size, so it must be the last member"))
+            Sentence::plain(format!("`{field}` has no fixed size, so it must be the last member"))
         }
         TypeError::BindingArrayBaseTypeNotStruct(_)
         | TypeError::BindingArrayBaseExternalTextures => foreign_words("arrays of such bindings"),
-        TypeError::MemberOverlap { index, offset } => Said::plain(format!(
+        TypeError::MemberOverlap { index, offset } => Sentence::plain(format!(
             "member {} of {what}, at byte {offset}, overlaps the member before it",
             index + 1
         )),
-        TypeError::MemberOutOfBounds { index, offset, size, span } => Said::plain(format!(
+        TypeError::MemberOutOfBounds { index, offset, size, span } => Sentence::plain(format!(
             "member {} of {what} has {size} bytes at {offset}, beyond the {span} of the structure",
             index + 1
         )),
-        TypeError::EmptyStruct => Said::plain(format!("{what} needs at least one member")),
+        TypeError::EmptyStruct => Sentence::plain(format!("{what} needs at least one member")),
         TypeError::InvalidBlendSrc(error) => entry::varying_words(module, error),
         TypeError::WidthError(error) => width_words(error),
         TypeError::UnresolvedOverride(_) | TypeError::InvalidArraySize(_) => {
-            Said::plain(format!("the size of {what} must be a constant above 0"))
+            Sentence::plain(format!("the size of {what} must be a constant above 0"))
         }
     }
 }
 
-pub fn width_words(error: &WidthError) -> Said {
+pub fn width_words(error: &WidthError) -> Sentence {
     match error {
         WidthError::Invalid(_, bytes) => {
             foreign_words(&format!("numbers of {} bits", u32::from(*bytes) * 8))
         }
         WidthError::MissingCapability { name, .. } => {
-            Said::coded(codes::NOT_PORTABLE, format!("not every target has the type `{name}`"))
+            Sentence::coded(codes::NOT_PORTABLE, format!("not every target has the type `{name}`"))
         }
-        WidthError::Abstract => Said::plain("this number needs a type, such as `1.0f` or `f32(x)`"),
+        WidthError::Abstract => {
+            Sentence::plain("this number needs a type, such as `1.0f` or `f32(x)`")
+        }
     }
 }
 
-pub fn literal_words(error: &LiteralError) -> Said {
+pub fn literal_words(error: &LiteralError) -> Sentence {
     match error {
-        LiteralError::NaN => Said::plain("a constant is not a number"),
-        LiteralError::Infinity => Said::plain("a constant is infinite"),
+        LiteralError::NaN => Sentence::plain("a constant is not a number"),
+        LiteralError::Infinity => Sentence::plain("a constant is infinite"),
         LiteralError::Width(error) => width_words(error),
     }
 }
 
-pub fn compose_words(module: &Module, error: &ComposeError) -> Said {
+pub fn compose_words(module: &Module, error: &ComposeError) -> Sentence {
     match error {
-        ComposeError::Type(handle) => Said::plain(format!(
+        ComposeError::Type(handle) => Sentence::plain(format!(
             "{} cannot be constructed from components",
             type_text(module, *handle)
         )),
-        ComposeError::ComponentCount { given, expected } => Said::coded(
+        ComposeError::ComponentCount { given, expected } => Sentence::coded(
             codes::CALL_MISMATCH,
             format!("a constructor takes {expected} components, not {given}"),
         ),
-        ComposeError::ComponentType { index } => Said::coded(
+        ComposeError::ComponentType { index } => Sentence::coded(
             codes::CALL_MISMATCH,
             format!("argument {} of a constructor has another type than it takes", index + 1),
         ),
     }
 }
 
-pub fn constant_words(module: &Module, error: &ConstExpressionError) -> Said {
+pub fn constant_words(module: &Module, error: &ConstExpressionError) -> Sentence {
     match error {
         ConstExpressionError::NonConstOrOverride | ConstExpressionError::NonFullyEvaluatedConst => {
-            Said::plain("this must be known when the shader is compiled")
+            Sentence::plain("this must be known when the shader is compiled")
         }
         ConstExpressionError::Compose(error) => compose_words(module, error),
         ConstExpressionError::InvalidSplatType(_) => {
-            Said::plain("only a scalar can fill all components of a vector")
+            Sentence::plain("only a scalar can fill all components of a vector")
         }
-        ConstExpressionError::Type(_) => Said::plain("the type of a constant cannot be inferred"),
+        ConstExpressionError::Type(_) => {
+            Sentence::plain("the type of a constant cannot be inferred")
+        }
         ConstExpressionError::Literal(error) => literal_words(error),
         ConstExpressionError::Width(error) => width_words(error),
     }
@@ -128,7 +132,7 @@ pub fn of_constant(name: &str, error: &ConstantError) -> String {
     }
 }
 
-pub fn of_override(module: &Module, name: &str, error: &OverrideError) -> Said {
+pub fn of_override(module: &Module, name: &str, error: &OverrideError) -> Sentence {
     let text = match error {
         OverrideError::MissingNameAndID => "an override needs a name".to_owned(),
         OverrideError::DuplicateID => format!("the `@id` of `{name}` is used twice"),
@@ -143,5 +147,5 @@ pub fn of_override(module: &Module, name: &str, error: &OverrideError) -> Said {
         OverrideError::UninitializedOverride => format!("`{name}` needs a default"),
         OverrideError::ConstExpression { source, .. } => return constant_words(module, source),
     };
-    Said::plain(text)
+    Sentence::plain(text)
 }

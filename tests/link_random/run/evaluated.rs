@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use lamplight::eval::{
-    Bounded, Function, FunctionId, Kind as Slot, Machine, Number as _, Program, Resources,
+    Bounded, Function, FunctionId, Machine, Number as _, Program, Resources, SlotKind as Slot,
 };
 use naga::Binding;
 

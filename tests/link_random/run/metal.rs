@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use lamplight::bundle::Target;
 use lamplight::diagnostic::Diagnostic;
 use lamplight::execute::frame::Drawing;
-use lamplight::execute::raster::Compiled;
+use lamplight::execute::raster::CompiledStages;
 
 use super::{Ready, Stages, Targets};
 
 /// All stages of a batch in MSL, compiled at once.
 pub struct Metal {
-    compiled: Compiled,
+    compiled: CompiledStages,
     /// For each stage that has MSL, the index of its vertex stage. The fragment stages that are
     /// drawn with it follow: the one that is tried, if it is one, and the one that writes its inputs.
     first: BTreeMap<usize, usize>,
@@ -26,7 +26,7 @@ impl Metal {
                 stages.extend([vertex].into_iter().chain(fragment).chain(tells).cloned());
             }
         }
-        let compiled = Compiled::new(stages).map_err(|missing| missing.reason)?;
+        let compiled = CompiledStages::new(stages).map_err(|missing| missing.reason)?;
         Ok(Self { compiled, first })
     }
 

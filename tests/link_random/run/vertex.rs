@@ -8,8 +8,8 @@ use std::fmt::Write as _;
 use lamplight::bundle::{Language, Reflection};
 use lamplight::compose::Composed;
 use lamplight::diagnostic::Diagnostics;
-use lamplight::eval::{Bounded, Kind as Slot, Machine, Number as _};
-use lamplight::execute::frame::{Attribute, Mesh, VertexFormat};
+use lamplight::eval::{Bounded, Machine, Number as _, SlotKind as Slot};
+use lamplight::execute::frame::{Mesh, VertexAttribute, VertexFormat};
 use lamplight::picture::frame::probe;
 use lamplight::validate::validate;
 use naga::{Binding, BuiltIn};
@@ -41,7 +41,7 @@ pub fn partner(reflection: &Reflection) -> Result<Partner, Diagnostics> {
 
 /// One triangle with the attributes that all vertex stages have.
 pub fn mesh(random: &mut Random) -> Mesh {
-    let attribute = |location, format| Attribute { location, format };
+    let attribute = |location, format| VertexAttribute { location, format };
     let attributes =
         vec![attribute(0, VertexFormat::Float32x3), attribute(1, VertexFormat::Float32x4)];
     let words = (0..3 * (3 + 4)).map(|_| (number(random) as f32).to_bits()).collect();

@@ -11,8 +11,8 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use std::{fs, thread};
 
-use super::{Package, environment};
-use crate::Failure;
+use super::{FaultPackage, environment};
+use crate::CommandFailure;
 
 const SHIM: &str = include_str!("clock.c");
 const FAULT: &str = "system clock that is set";
@@ -24,9 +24,9 @@ const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Makes every run with every jump; returns what went wrong.
 pub fn run(
-    package: &Package,
+    package: &FaultPackage,
     counts: &mut BTreeMap<&'static str, usize>,
-) -> Result<Vec<String>, Failure> {
+) -> Result<Vec<String>, CommandFailure> {
     let clock = Clock::new(package)?;
     let mut findings = Vec::new();
     for days in JUMPS {
@@ -42,9 +42,9 @@ pub fn run(
 }
 
 /// One run under a clock that jumps by so many days. Returns what is wrong afterwards, if anything.
-type Run = fn(&Package, &Clock, i64) -> Result<Option<String>, Failure>;
+type ClockRun = fn(&FaultPackage, &Clock, i64) -> Result<Option<String>, CommandFailure>;
 
-const RUNS: &[(&str, Run)] = &[
+const RUNS: &[(&str, ClockRun)] = &[
     ("`gen` after a change", changed),
     ("`gen` from the cache", cached),
     ("two runs at once", at_once),
@@ -57,7 +57,7 @@ struct Clock {
 }
 
 impl Clock {
-    fn new(package: &Package) -> Result<Self, Failure> {
+    fn new(package: &FaultPackage) -> Result<Self, CommandFailure> {
         let (source, library) = (package.folder.join("clock.c"), package.folder.join("clock.so"));
         fs::write(&source, SHIM).map_err(environment)?;
         let mut compiler = Command::new("cc");
@@ -68,14 +68,14 @@ impl Clock {
         let year = |days| clock.year(days);
         match made.status.success() {
             true if year(25_000)? != year(0)? => Ok(clock),
-            true => Err(Failure::environment("no program's clock can be set here")),
-            false => Err(Failure::environment(format!("cc: {said}"))),
+            true => Err(CommandFailure::environment("no program's clock can be set here")),
+            false => Err(CommandFailure::environment(format!("cc: {said}"))),
         }
     }
 
     /// The year that `date` prints under the clock. It shows whether clocks can be set on this
     /// machine.
-    fn year(&self, days: i64) -> Result<Vec<u8>, Failure> {
+    fn year(&self, days: i64) -> Result<Vec<u8>, CommandFailure> {
         let mut date = Command::new("date");
         let output = self.set(date.arg("+%Y"), days).output().map_err(environment)?;
         Ok(output.stdout)
@@ -87,7 +87,7 @@ impl Clock {
     }
 }
 
-impl Package {
+impl FaultPackage {
     fn gen_with(&self, clock: &Clock, days: i64) -> Command {
         let mut command = self.command();
         clock.set(&mut command, days);
@@ -96,7 +96,7 @@ impl Package {
 
     /// What is wrong after a run that should have written this number into each of the three
     /// shaders.
-    fn current(&self, output: &Output, number: usize) -> Result<Option<String>, Failure> {
+    fn current(&self, output: &Output, number: usize) -> Result<Option<String>, CommandFailure> {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         Ok(match output.status.success() {
             false => Some(format!("the run fails: {said}")),
@@ -105,7 +105,7 @@ impl Package {
     }
 
     /// What is wrong unless each of the three shaders of a bundle has this number.
-    fn lacks(&self, bundle: &Path, number: usize) -> Result<Option<String>, Failure> {
+    fn lacks(&self, bundle: &Path, number: usize) -> Result<Option<String>, CommandFailure> {
         // naga writes a whole number in this way.
         let words = format!("{number}f");
         let mut found = 0;
@@ -123,7 +123,11 @@ fn fresh(days: i64, salt: usize) -> usize {
     salt + (days + 30_000) as usize
 }
 
-fn changed(package: &Package, clock: &Clock, days: i64) -> Result<Option<String>, Failure> {
+fn changed(
+    package: &FaultPackage,
+    clock: &Clock,
+    days: i64,
+) -> Result<Option<String>, CommandFailure> {
     let number = fresh(days, 1_000_000);
     package.change(number)?;
     let output = package.gen_with(clock, days).output().map_err(environment)?;
@@ -131,7 +135,11 @@ fn changed(package: &Package, clock: &Clock, days: i64) -> Result<Option<String>
 }
 
 /// Records of the cache that were written under one clock are found under another.
-fn cached(package: &Package, clock: &Clock, days: i64) -> Result<Option<String>, Failure> {
+fn cached(
+    package: &FaultPackage,
+    clock: &Clock,
+    days: i64,
+) -> Result<Option<String>, CommandFailure> {
     let number = fresh(days, 2_000_000);
     package.change(number)?;
     let first = package.gen_with(clock, days).output().map_err(environment)?;
@@ -146,7 +154,11 @@ fn cached(package: &Package, clock: &Clock, days: i64) -> Result<Option<String>,
 }
 
 /// Two runs on one folder, each under a clock of its own: one waits for the other.
-fn at_once(package: &Package, clock: &Clock, days: i64) -> Result<Option<String>, Failure> {
+fn at_once(
+    package: &FaultPackage,
+    clock: &Clock,
+    days: i64,
+) -> Result<Option<String>, CommandFailure> {
     let number = fresh(days, 3_000_000);
     package.change(number)?;
     let start = |days| {
@@ -164,7 +176,11 @@ fn at_once(package: &Package, clock: &Clock, days: i64) -> Result<Option<String>
 }
 
 /// `watch` sees a change and bundles it.
-fn watched(package: &Package, clock: &Clock, days: i64) -> Result<Option<String>, Failure> {
+fn watched(
+    package: &FaultPackage,
+    clock: &Clock,
+    days: i64,
+) -> Result<Option<String>, CommandFailure> {
     let (before, after) = (fresh(days, 4_000_000), fresh(days, 5_000_000));
     package.change(before)?;
     let mut command = Command::new(&package.program);
@@ -185,7 +201,11 @@ fn watched(package: &Package, clock: &Clock, days: i64) -> Result<Option<String>
 }
 
 /// Waits until the bundle has the number; returns what it lacks when that takes too long.
-fn seen(package: &Package, number: usize, watch: &mut Child) -> Result<Option<String>, Failure> {
+fn seen(
+    package: &FaultPackage,
+    number: usize,
+    watch: &mut Child,
+) -> Result<Option<String>, CommandFailure> {
     let (start, bundle) = (Instant::now(), package.folder.join("bundle"));
     loop {
         // The folder of the bundle may not be there yet.

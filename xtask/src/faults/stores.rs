@@ -6,16 +6,16 @@ use std::fs::{self, File, FileTimes};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use super::{Package, environment};
-use crate::Failure;
+use super::{FaultPackage, environment};
+use crate::CommandFailure;
 
 /// Rounds of each kind of wrong record, each over all records.
 const ROUNDS: usize = 12;
 
 /// What a store returns instead of a record.
-type Wrong = fn(&[u8], &[u8], u64) -> Vec<u8>;
+type StoreFault = fn(&[u8], &[u8], u64) -> Vec<u8>;
 
-const WRONG: &[(&str, Wrong)] = &[
+const WRONG: &[(&str, StoreFault)] = &[
     ("record with a flipped bit", |record, _, number| flipped(record, number)),
     ("record that ends early", |record, _, number| record[..at(record, number)].to_vec()),
     ("another text's record", |_, other, _| other.to_vec()),
@@ -29,10 +29,10 @@ const JUMPS: [i64; 6] = [-20_000, -366, -1, 1, 366, 20_000];
 
 /// Tries every kind of wrong record and every jump; returns the findings.
 pub fn run(
-    package: &Package,
+    package: &FaultPackage,
     seed: u64,
     counts: &mut BTreeMap<&'static str, usize>,
-) -> Result<Vec<String>, Failure> {
+) -> Result<Vec<String>, CommandFailure> {
     let mut findings = Vec::new();
     package.change(0)?;
     let expected = package.made(true)?;
@@ -59,10 +59,10 @@ pub fn run(
     Ok(findings)
 }
 
-impl Package {
+impl FaultPackage {
     /// The files of the bundle that a run makes in an empty folder. With `alone`, the run has no
     /// cache.
-    fn made(&self, alone: bool) -> Result<BTreeMap<PathBuf, Vec<u8>>, Failure> {
+    fn made(&self, alone: bool) -> Result<BTreeMap<PathBuf, Vec<u8>>, CommandFailure> {
         let out = self.folder.join("fresh");
         let _ = fs::remove_dir_all(&out);
         let mut command = std::process::Command::new(&self.program);
@@ -71,7 +71,7 @@ impl Package {
         let output = self.prepared(command).output().map_err(environment)?;
         if !output.status.success() {
             let said = String::from_utf8_lossy(&output.stderr).into_owned();
-            return Err(Failure::check(format!("a run with a wrong cache fails: {said}")));
+            return Err(CommandFailure::check(format!("a run with a wrong cache fails: {said}")));
         }
         let read = |path: PathBuf| {
             let name = path.strip_prefix(&out).unwrap_or(&path).to_owned();
@@ -82,7 +82,7 @@ impl Package {
 }
 
 /// Makes every record of the cache wrong; returns how many there are.
-fn spoil(package: &Package, wrong: Wrong, seed: u64) -> Result<usize, Failure> {
+fn spoil(package: &FaultPackage, wrong: StoreFault, seed: u64) -> Result<usize, CommandFailure> {
     let paths = files(&package.folder.join("cache"))?;
     let records: Vec<Vec<u8>> =
         paths.iter().map(fs::read).collect::<Result<_, _>>().map_err(environment)?;
@@ -94,7 +94,7 @@ fn spoil(package: &Package, wrong: Wrong, seed: u64) -> Result<usize, Failure> {
     Ok(paths.len())
 }
 
-fn shift(path: &Path, days: i64) -> Result<(), Failure> {
+fn shift(path: &Path, days: i64) -> Result<(), CommandFailure> {
     let by = Duration::from_secs(days.unsigned_abs() * 86_400);
     let now = SystemTime::now();
     let then = if days < 0 { now.checked_sub(by) } else { now.checked_add(by) };
@@ -103,7 +103,7 @@ fn shift(path: &Path, days: i64) -> Result<(), Failure> {
     file.set_times(times).map_err(environment)
 }
 
-fn files(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+fn files(folder: &Path) -> Result<Vec<PathBuf>, CommandFailure> {
     let (mut found, mut open) = (Vec::new(), vec![folder.to_owned()]);
     while let Some(folder) = open.pop() {
         for entry in fs::read_dir(folder).map_err(environment)? {

@@ -6,10 +6,10 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use super::mutate::{self, Random};
+use super::mutate::{self, FuzzRandom};
 use crate::faults::beside_this;
 use crate::generate::root;
-use crate::{Failure, Outcome};
+use crate::{CommandFailure, CommandResult};
 
 /// A command that reads a file.
 pub struct Surface {
@@ -77,7 +77,7 @@ const MOST_SECONDS: u64 = 5;
 const LONGEST: Duration = Duration::from_secs(60);
 
 /// Fuzzes a command for its share of the time; returns the number of findings.
-pub fn fuzz(surface: &Surface, seed: u64, seconds: u64) -> Result<usize, Failure> {
+pub fn fuzz(surface: &Surface, seed: u64, seconds: u64) -> Result<usize, CommandFailure> {
     let program = beside_this()?;
     let folder = root().join("target/fuzz/commands").join(surface.name);
     fs::create_dir_all(&folder).map_err(environment)?;
@@ -86,7 +86,7 @@ pub fn fuzz(surface: &Surface, seed: u64, seconds: u64) -> Result<usize, Failure
     }
     let corpus = mutate::corpus_of(&root(), &[surface.corpus]);
     let words: Vec<&str> = surface.words.split(' ').filter(|word| !word.is_empty()).collect();
-    let (mut random, started) = (Random(seed), Instant::now());
+    let (mut random, started) = (FuzzRandom(seed), Instant::now());
     let (mut inputs, mut findings) = (0u64, 0);
     while started.elapsed().as_secs() < seconds {
         let input = mutate::mutated(&mut random, &corpus, &words);
@@ -102,7 +102,11 @@ pub fn fuzz(surface: &Surface, seed: u64, seconds: u64) -> Result<usize, Failure
 }
 
 /// What is wrong with a run.
-fn judge(program: &Path, folder: &Path, arguments: &[&str]) -> Result<Option<String>, Failure> {
+fn judge(
+    program: &Path,
+    folder: &Path,
+    arguments: &[&str],
+) -> Result<Option<String>, CommandFailure> {
     let limited = format!("ulimit -v {MEMORY_KIB}; ulimit -t {MOST_SECONDS}; exec \"$@\"");
     let said = fs::File::create(folder.join("said")).map_err(environment)?;
     let mut child = Command::new("sh")
@@ -139,7 +143,7 @@ fn judge(program: &Path, folder: &Path, arguments: &[&str]) -> Result<Option<Str
     })
 }
 
-fn keep(surface: &Surface, input: &[u8], reason: &str) -> Outcome {
+fn keep(surface: &Surface, input: &[u8], reason: &str) -> CommandResult {
     println!("{}: {reason} ({} bytes)", surface.name, input.len());
     let folder = root().join("target/fuzz/findings").join(surface.name);
     fs::create_dir_all(&folder).map_err(environment)?;
@@ -148,6 +152,6 @@ fn keep(surface: &Surface, input: &[u8], reason: &str) -> Outcome {
     fs::write(folder.join(name), input).map_err(environment)
 }
 
-fn environment(error: std::io::Error) -> Failure {
-    Failure::environment(error.to_string())
+fn environment(error: std::io::Error) -> CommandFailure {
+    CommandFailure::environment(error.to_string())
 }

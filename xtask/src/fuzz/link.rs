@@ -1,7 +1,7 @@
 //! `cargo xtask fuzz link`: random programs, which the trial `link::random` of the tests makes,
 //! judges, runs and compares.
 
-use crate::{Failure, Outcome, test};
+use crate::{CommandFailure, CommandResult, test};
 
 const USAGE: &str =
     "usage: cargo xtask fuzz link [--programs N] [--seed N] [--every N] [--most N] [--run N] [--shrink]
@@ -14,7 +14,7 @@ const USAGE: &str =
   --shrink      make the first finding of each kind small";
 
 /// Runs the trial. Findings are left in `target/fuzz/link/` and give exit code 3.
-pub fn run(arguments: &[String]) -> Outcome {
+pub fn run(arguments: &[String]) -> CommandResult {
     let mut settings = vec![("PROGRAMS", "20000".to_owned()), ("JUDGED", "1".to_owned())];
     settings.extend([("MOST", "2".to_owned()), ("RUN", "8".to_owned())]);
     let mut rest = arguments.iter();
@@ -29,10 +29,10 @@ pub fn run(arguments: &[String]) -> Outcome {
                 settings.push(("SHRINK", "1".to_owned()));
                 continue;
             }
-            _ => return Err(Failure::usage(USAGE)),
+            _ => return Err(CommandFailure::usage(USAGE)),
         };
         let value = rest.next().filter(|value| value.parse::<u64>().is_ok());
-        let value = value.ok_or_else(|| Failure::usage(USAGE))?;
+        let value = value.ok_or_else(|| CommandFailure::usage(USAGE))?;
         settings.push((name, value.clone()));
     }
     let settings =

@@ -8,9 +8,9 @@ use std::path::Path;
 const MOST_BYTES: usize = 200_000;
 
 /// The generator splitmix64: the same seed gives the same inputs.
-pub struct Random(pub u64);
+pub struct FuzzRandom(pub u64);
 
-impl Random {
+impl FuzzRandom {
     pub fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -69,7 +69,7 @@ fn cases(files: &[std::path::PathBuf]) -> Vec<Vec<u8>> {
 }
 
 /// One valid input with a few mutations.
-pub fn mutated(random: &mut Random, corpus: &[Vec<u8>], words: &[&str]) -> Vec<u8> {
+pub fn mutated(random: &mut FuzzRandom, corpus: &[Vec<u8>], words: &[&str]) -> Vec<u8> {
     let mut input = corpus[random.below(corpus.len())].clone();
     for _ in 0..1 + random.below(6) {
         let pieces = pieces(&input);
@@ -90,10 +90,10 @@ pub fn mutated(random: &mut Random, corpus: &[Vec<u8>], words: &[&str]) -> Vec<u
     input
 }
 
-type Piece = Vec<u8>;
+type InputPiece = Vec<u8>;
 
 /// Words, blanks, and single other characters.
-fn pieces(input: &[u8]) -> Vec<Piece> {
+fn pieces(input: &[u8]) -> Vec<InputPiece> {
     let class = |byte: u8| match byte {
         b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'_' | 0x80.. => 0,
         b' ' | b'\t' | b'\r' => 1,
@@ -102,16 +102,16 @@ fn pieces(input: &[u8]) -> Vec<Piece> {
     input.chunk_by(|a, b| class(*a) == class(*b) && class(*a) != 2).map(<[u8]>::to_vec).collect()
 }
 
-fn range(random: &mut Random, length: usize) -> std::ops::Range<usize> {
+fn range(random: &mut FuzzRandom, length: usize) -> std::ops::Range<usize> {
     let start = random.below(length + 1);
     let most = [2, 8, 40][random.below(3)];
     start..(start + 1 + random.below(most)).min(length).max(start)
 }
 
 fn chunk(
-    random: &mut Random,
-    pieces: &[Piece],
-    change: impl FnOnce(&[Piece]) -> Vec<Piece>,
+    random: &mut FuzzRandom,
+    pieces: &[InputPiece],
+    change: impl FnOnce(&[InputPiece]) -> Vec<InputPiece>,
 ) -> Vec<u8> {
     let range = range(random, pieces.len());
     [&pieces[..range.start], &change(&pieces[range.clone()]), &pieces[range.end..]]
@@ -120,7 +120,7 @@ fn chunk(
 }
 
 /// Repeats a few words very often: deep nesting, long lists, long chains.
-fn many(random: &mut Random, pieces: &[Piece]) -> Vec<u8> {
+fn many(random: &mut FuzzRandom, pieces: &[InputPiece]) -> Vec<u8> {
     let times = [30, 300, 3000][random.below(3)];
     let range = range(random, pieces.len());
     let part = &pieces[range.start..range.end.min(range.start + 6)];
@@ -130,7 +130,7 @@ fn many(random: &mut Random, pieces: &[Piece]) -> Vec<u8> {
         .concat()
 }
 
-fn swapped(random: &mut Random, mut pieces: Vec<Piece>) -> Vec<u8> {
+fn swapped(random: &mut FuzzRandom, mut pieces: Vec<InputPiece>) -> Vec<u8> {
     if !pieces.is_empty() {
         let (a, b) = (random.below(pieces.len()), random.below(pieces.len()));
         pieces.swap(a, b);
@@ -138,7 +138,7 @@ fn swapped(random: &mut Random, mut pieces: Vec<Piece>) -> Vec<u8> {
     pieces.concat()
 }
 
-fn spliced(random: &mut Random, into: &[Piece], corpus: &[Vec<u8>]) -> Vec<u8> {
+fn spliced(random: &mut FuzzRandom, into: &[InputPiece], corpus: &[Vec<u8>]) -> Vec<u8> {
     let other = pieces(&corpus[random.below(corpus.len())]);
     let part = range(random, other.len());
     let at = random.below(into.len() + 1);
@@ -146,9 +146,10 @@ fn spliced(random: &mut Random, into: &[Piece], corpus: &[Vec<u8>]) -> Vec<u8> {
 }
 
 /// Replaces a word of the input by another word from the same input.
-fn borrowed(random: &mut Random, pieces: &[Piece]) -> Vec<u8> {
-    let is_word = |piece: &&Piece| piece.first().is_some_and(|byte| byte.is_ascii_alphanumeric());
-    let words: Vec<&Piece> = pieces.iter().filter(is_word).collect();
+fn borrowed(random: &mut FuzzRandom, pieces: &[InputPiece]) -> Vec<u8> {
+    let is_word =
+        |piece: &&InputPiece| piece.first().is_some_and(|byte| byte.is_ascii_alphanumeric());
+    let words: Vec<&InputPiece> = pieces.iter().filter(is_word).collect();
     if words.is_empty() {
         return pieces.concat();
     }
@@ -161,7 +162,7 @@ fn borrowed(random: &mut Random, pieces: &[Piece]) -> Vec<u8> {
     changed.concat()
 }
 
-fn invented(random: &mut Random, mut pieces: Vec<Piece>, words: &[&str]) -> Vec<u8> {
+fn invented(random: &mut FuzzRandom, mut pieces: Vec<InputPiece>, words: &[&str]) -> Vec<u8> {
     if words.is_empty() {
         return bytes(random, pieces.concat());
     }
@@ -174,7 +175,7 @@ fn invented(random: &mut Random, mut pieces: Vec<Piece>, words: &[&str]) -> Vec<
     pieces.concat()
 }
 
-fn numbers(random: &mut Random, mut pieces: Vec<Piece>) -> Vec<u8> {
+fn numbers(random: &mut FuzzRandom, mut pieces: Vec<InputPiece>) -> Vec<u8> {
     const EXTREMES: [&str; 8] = [
         "0",
         "1",
@@ -194,7 +195,7 @@ fn numbers(random: &mut Random, mut pieces: Vec<Piece>) -> Vec<u8> {
     pieces.concat()
 }
 
-fn bytes(random: &mut Random, mut input: Vec<u8>) -> Vec<u8> {
+fn bytes(random: &mut FuzzRandom, mut input: Vec<u8>) -> Vec<u8> {
     for _ in 0..1 + random.below(4) {
         if !input.is_empty() {
             let at = random.below(input.len());

@@ -5,9 +5,9 @@ use lamplight::permute::{Manifest, manifest};
 use lamplight::source::SourceSet;
 
 use super::axis_places::{program_files, testing_lines, with_errors};
-use super::{Kind, Made, Repository, check_name};
+use super::{NewFiles, Repository, TaskKind, check_name};
 
-pub const KIND: Kind = Kind {
+pub const KIND: TaskKind = TaskKind {
     name: "axis-value",
     example: &["forward::fog=layered"],
     rest: "['`layered` is fog in layers.']",
@@ -19,13 +19,13 @@ const LOCK: &str = "shaderlib/lamplight.lock";
 const PICTURES: &str = "shaderlib/pictures.toml";
 
 /// A value, the axis and the program.
-struct Named<'n> {
+struct NamedValue<'n> {
     program: &'n str,
     axis: &'n str,
     value: &'n str,
 }
 
-impl<'n> Named<'n> {
+impl<'n> NamedValue<'n> {
     fn read(text: &'n str) -> Result<Self, String> {
         let parsed = text.split_once("::").and_then(|(program, rest)| {
             let (axis, value) = rest.split_once('=')?;
@@ -39,14 +39,14 @@ impl<'n> Named<'n> {
     }
 }
 
-fn make(repository: &Repository<'_>, text: &str, rest: &[&str]) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, text: &str, rest: &[&str]) -> Result<NewFiles, String> {
     let said = match rest {
         [] => None,
         [said] => Some(*said),
         _ => return Err("after the value: a sentence for `doc` of the axis, or nothing".to_owned()),
     };
-    let named = Named::read(text)?;
-    let Named { program, axis, value } = named;
+    let named = NamedValue::read(text)?;
+    let NamedValue { program, axis, value } = named;
     let table = format!("[program.{program}.axis.{axis}]\n");
     let old = repository.read(MANIFEST)?;
     let text = in_manifest(&old, &table, value)?;
@@ -62,7 +62,7 @@ fn make(repository: &Repository<'_>, text: &str, rest: &[&str]) -> Result<Made, 
     if has_pictures {
         files.push((PICTURES.to_owned(), with_row));
     }
-    let places = Places::find(repository, &read_manifest(&old)?, &named)?;
+    let places = AxisPlaces::find(repository, &read_manifest(&old)?, &named)?;
     let mut next = places.steps(&named);
     files.extend(places.changed);
     if has_pictures {
@@ -76,11 +76,11 @@ fn make(repository: &Repository<'_>, text: &str, rest: &[&str]) -> Result<Made, 
     });
     next.push("cargo xtask record library:: _budget; read the difference".to_owned());
     next.push("cargo xtask docs".to_owned());
-    Ok(Made { files, next })
+    Ok(NewFiles { files, next })
 }
 
 /// Where a program tests the axis.
-struct Places {
+struct AxisPlaces {
     /// Files of GLSL in which the new value is an error now.
     changed: Vec<(String, String)>,
     /// Lines that test the axis, with their places.
@@ -89,11 +89,11 @@ struct Places {
     sharing: Vec<String>,
 }
 
-impl Places {
+impl AxisPlaces {
     fn find(
         repository: &Repository<'_>,
         manifest: &Manifest,
-        Named { program, axis, value }: &Named<'_>,
+        NamedValue { program, axis, value }: &NamedValue<'_>,
     ) -> Result<Self, String> {
         let mut found = Self { changed: Vec::new(), lines: Vec::new(), sharing: Vec::new() };
         let mut testing = Vec::new();
@@ -122,7 +122,7 @@ impl Places {
         Ok(found)
     }
 
-    fn steps(&self, Named { axis, value, .. }: &Named<'_>) -> Vec<String> {
+    fn steps(&self, NamedValue { axis, value, .. }: &NamedValue<'_>) -> Vec<String> {
         let (name, constant) = (axis.to_uppercase(), format!("{axis}_{value}").to_uppercase());
         let mut steps = vec![format!(
             "the effect, `@if({axis} == {value})` in WESL and `#if {name} == {constant}` in GLSL, with an import in WESL and an `#include` in GLSL of what it calls (trial library::values_have_effect); what a branch uses may have a condition of its own, and a function of WESL must return for `{value}` too; these lines test the axis:"

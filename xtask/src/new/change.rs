@@ -1,14 +1,14 @@
 //! A line of the changelog.
 
-use super::{Kind, Made, Repository};
+use super::{NewFiles, Repository, TaskKind};
 
-pub const KIND: Kind =
-    Kind { name: "change", example: &["Pictures", "The scene `staircase`."], rest: "", make };
+pub const KIND: TaskKind =
+    TaskKind { name: "change", example: &["Pictures", "The scene `staircase`."], rest: "", make };
 
 const CHANGELOG: &str = "CHANGELOG.md";
 
 /// Adds the line at the end of a section of what is not released yet.
-fn make(repository: &Repository<'_>, section: &str, rest: &[&str]) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, section: &str, rest: &[&str]) -> Result<NewFiles, String> {
     let [words] = rest else {
         return Err("name a section and say what changed: SECTION 'WHAT USERS NOTICE.'".into());
     };
@@ -27,7 +27,7 @@ fn make(repository: &Repository<'_>, section: &str, rest: &[&str]) -> Result<Mad
     let (before, after) = (&text[..lines], &text[next..]);
     let gap = if after.trim().is_empty() { "" } else { "\n" };
     let changed = format!("{before}{list}\n- {}\n{gap}{}", words.trim(), after.trim_start());
-    Ok(Made {
+    Ok(NewFiles {
         files: vec![(CHANGELOG.to_owned(), changed)],
         next: vec!["read the line once more".to_owned()],
     })

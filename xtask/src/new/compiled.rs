@@ -11,12 +11,12 @@ use lamplight::source::{Disk, Files, Memory, Package, ReadError, SourceSet};
 use lamplight::validate::validate;
 
 /// The library on disk, with some files replaced.
-struct Overlay {
+struct ChangedFiles {
     changed: Memory,
     disk: Option<Disk>,
 }
 
-impl Files for Overlay {
+impl Files for ChangedFiles {
     fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
         match (self.changed.read(path)?, &self.disk) {
             (None, Some(disk)) => disk.read(path),
@@ -60,7 +60,7 @@ pub fn first_problem(
         ),
     };
     let file = file.trim_start_matches("shaderlib/").to_owned();
-    let library = Overlay {
+    let library = ChangedFiles {
         changed: Memory(BTreeMap::from([(file, text.to_owned())])),
         disk: Disk::new(root.join("shaderlib")).ok(),
     };

@@ -1,10 +1,11 @@
 //! A kind of diagnostic.
 
-use super::{Kind, Made, Repository, check_name, refuse_rest};
+use super::{NewFiles, Repository, TaskKind, check_name, refuse_rest};
 
-pub const KIND: Kind = Kind { name: "diagnostic", example: &["unknown-swizzle"], rest: "", make };
+pub const KIND: TaskKind =
+    TaskKind { name: "diagnostic", example: &["unknown-swizzle"], rest: "", make };
 
-fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFiles, String> {
     refuse_rest(rest)?;
     check_name(name, '-')?;
     let file = format!("src/diagnostic/codes/{name}.md");
@@ -20,5 +21,5 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
         ),
         "cargo xtask record guide; read the difference".to_owned(),
     ];
-    Ok(Made { files: vec![(file, "#\n\nPage: \n".to_owned())], next })
+    Ok(NewFiles { files: vec![(file, "#\n\nPage: \n".to_owned())], next })
 }

@@ -1,10 +1,14 @@
 //! An executor, which runs functions and draws frames: a device of wgpu, or a copy of an executor
 //! that exists.
 
-use super::{Kind, Made, Repository, check_name};
+use super::{NewFiles, Repository, TaskKind, check_name};
 
-pub const KIND: Kind =
-    Kind { name: "executor", example: &["dx12"], rest: "[EXECUTOR THAT IT IS LIKE, or own]", make };
+pub const KIND: TaskKind = TaskKind {
+    name: "executor",
+    example: &["dx12"],
+    rest: "[EXECUTOR THAT IT IS LIKE, or own]",
+    make,
+};
 
 const FOLDER: &str = "src/execute/executors";
 const CARGO: &str = "Cargo.toml";
@@ -13,7 +17,7 @@ const CARGO: &str = "Cargo.toml";
 /// wgpu, and the systems.
 const INTERFACES: [(&str, &str); 2] = [("dx12", "windows"), ("metal", "macos, ios")];
 
-fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFiles, String> {
     check_name(name, '_')?;
     let file = format!("{FOLDER}/{name}.rs");
     repository.refuse_existing(&file)?;
@@ -37,7 +41,7 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
             "cargo build, with a network: Cargo.lock gets what the interface needs".to_owned(),
         );
     }
-    Ok(Made { files, next })
+    Ok(NewFiles { files, next })
 }
 
 /// What remains to be done. `is_vulkan` means that no argument chose another form than a Vulkan
@@ -109,10 +113,10 @@ const TEXT: &str = r#"//! wgpu on NAME.
 //!
 //! Runs on: SYSTEMS
 
-use super::{DEVICE_SAMPLES, Entry};
-use crate::execute::gpu::{Named, Shaders, Wanted};
+use super::{DEVICE_SAMPLES, ExecutorEntry};
+use crate::execute::gpu::{AdapterName, DeviceRequest, Shaders};
 
-pub const EXECUTOR: Entry = Entry {
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "NAME",
     // One line for listings.
     about: "",
@@ -124,12 +128,12 @@ pub const EXECUTOR: Entry = Entry {
     samples: Some(DEVICE_SAMPLES),
     // The first adapter that fits, a software adapter before others. Without one, the error says so.
     open: || {
-        super::open_gpu(Wanted {
+        super::open_gpu(DeviceRequest {
             // One interface of wgpu: `VULKAN`, `GL`, `DX12` or `METAL`.
             backend: wgpu::Backends::BACKEND,
-            // A part of the adapter's name. An empty part allows every adapter. `Named::Without` is
-            // for adapters whose names do not have the part.
-            named: Named::With("PART"),
+            // A part of the adapter's name. An empty part allows every adapter.
+            // `AdapterName::Without` is for adapters whose names do not have the part.
+            named: AdapterName::With("PART"),
             // wgpu translates the shaders. `Shaders::Emitted(Target::SPIRV)` gives the driver the
             // texts of a target unchanged, which the adapter must allow (`PASSTHROUGH_SHADERS`).
             shaders: Shaders::Translated,
@@ -144,7 +148,7 @@ const OWN: &str = r#"//! NAME.
 //!
 //! Runs on: every system but WebAssembly
 
-use super::{Entry, Unavailable};
+use super::{ExecutorEntry, Unavailable};
 use crate::bundle::Target;
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::Session;
@@ -153,7 +157,7 @@ use crate::execute::gpu::run_batches;
 use crate::execute::kernel::{ENTRY, INPUT_WIDTH, Kernel, TARGET_WIDTH};
 
 /// The executor, for the table of all.
-pub const EXECUTOR: Entry = Entry {
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "NAME",
     // One line for listings.
     about: "",

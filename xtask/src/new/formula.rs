@@ -4,7 +4,7 @@ use super::parameter::TYPES;
 
 /// The statements of a formula. The last one returns the result.
 #[derive(Debug)]
-pub struct Formula {
+pub struct FormulaBody {
     statements: Vec<Statement>,
 }
 
@@ -39,7 +39,7 @@ const NAMES: [(&str, &str); 6] = [
 const CALLS: [(&str, &str); 2] =
     [("saturate", "clamp($0, 0.0, 1.0)"), ("select", "($2 ? $1 : $0)")];
 
-impl Formula {
+impl FormulaBody {
     /// Reads an expression, or statements with `;` between them.
     pub fn read(text: &str) -> Result<Self, String> {
         let parts: Vec<&str> =

@@ -3,18 +3,18 @@
 use lamplight::bundle::Language;
 
 use super::compiled::first_problem;
-use super::formula::Formula;
-use super::parameter::{Parameter, Type, read_parameters, type_of};
-use super::{Kind, Made, Repository, check_name};
+use super::formula::FormulaBody;
+use super::parameter::{NewParameter, Type, read_parameters, type_of};
+use super::{NewFiles, Repository, TaskKind, check_name};
 
-pub const KIND: Kind = Kind {
+pub const KIND: TaskKind = TaskKind {
     name: "function",
     example: &["brdf::diffuse::minnaert", "nl: f32, nv: f32, k: f32 0..2", "f32"],
     rest: "['let a = nl * nv; return pow(a, k - 1.0)']",
     make,
 };
 
-fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<NewFiles, String> {
     let parts: Vec<&str> = path.split("::").collect();
     parts.iter().try_for_each(|part| check_name(part, '_'))?;
     let [folder, module, name] = parts[..] else {
@@ -22,7 +22,7 @@ fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, 
     };
     let (parameters, result, formula) = match rest {
         [parameters, result] => (parameters, result, None),
-        [parameters, result, formula] => (parameters, result, Some(Formula::read(formula)?)),
+        [parameters, result, formula] => (parameters, result, Some(FormulaBody::read(formula)?)),
         _ => {
             let what = "the parameters, the type of the result and, if you like, the formula";
             return Err(format!("after the name: {what}, as in the usage"));
@@ -39,7 +39,7 @@ fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, 
     };
     let stem = format!("shaderlib/{folder}/{module}");
     let reference = format!("src/proof/references/{folder}_{module}.rs");
-    let edits: [(String, Edit); 6] = [
+    let edits: [(String, FileEdit); 6] = [
         (format!("{stem}.wesl"), wesl),
         (format!("{stem}.glsl"), glsl),
         (format!("{stem}.toml"), cases),
@@ -55,7 +55,7 @@ fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, 
         files.push((file, text));
     }
     let is_new = repository.find(&format!("{stem}.wesl")).is_none();
-    Ok(Made { files, next: steps(&stem, &reference, &new, is_new) })
+    Ok(NewFiles { files, next: steps(&stem, &reference, &new, is_new) })
 }
 
 /// Compiles the formula in its module, in WESL and then in GLSL. If it cannot be translated for
@@ -63,7 +63,7 @@ fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, 
 fn complete_formula(
     repository: &Repository<'_>,
     new: &mut Signature<'_>,
-    [(in_wesl, _), (in_glsl, _), ..]: &[(String, Edit); 6],
+    [(in_wesl, _), (in_glsl, _), ..]: &[(String, FileEdit); 6],
 ) -> Result<(), String> {
     let Some(mut formula) = new.formula.take() else { return Ok(()) };
     let path = [new.folder, new.module, new.name];
@@ -142,9 +142,9 @@ struct Signature<'n> {
     folder: &'n str,
     module: &'n str,
     name: &'n str,
-    parameters: Vec<Parameter<'n>>,
+    parameters: Vec<NewParameter<'n>>,
     result: Type,
-    formula: Option<Formula>,
+    formula: Option<FormulaBody>,
     /// Why GLSL does not have the formula.
     untranslated: Option<String>,
 }
@@ -153,7 +153,7 @@ impl Signature<'_> {
     /// The body in WESL: the formula, or else a value of the result's type.
     fn wesl_body(&self) -> String {
         let nothing = || format!("    return {}();\n", self.result.wesl);
-        self.formula.as_ref().map_or_else(nothing, Formula::in_wesl)
+        self.formula.as_ref().map_or_else(nothing, FormulaBody::in_wesl)
     }
 
     /// The body in GLSL.
@@ -165,7 +165,7 @@ impl Signature<'_> {
     }
 
     /// `of` each parameter, joined by commas.
-    fn list(&self, of: impl Fn(&Parameter<'_>) -> String) -> String {
+    fn list(&self, of: impl Fn(&NewParameter<'_>) -> String) -> String {
         self.parameters.iter().map(of).collect::<Vec<_>>().join(", ")
     }
 
@@ -179,7 +179,7 @@ impl Signature<'_> {
 }
 
 /// The new text of a file from the old one, if there is one.
-type Edit = fn(Option<&str>, &Signature<'_>) -> Result<String, String>;
+type FileEdit = fn(Option<&str>, &Signature<'_>) -> Result<String, String>;
 
 fn wesl(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
     wesl_with(old, new, &new.wesl_body())
@@ -267,7 +267,7 @@ fn cases(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
 /// The first number is drawn from left to right, and the last one has a curve for each of three
 /// values. Without numbers, the last vector turns.
 fn plot(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
-    let numbers: Vec<&Parameter<'_>> =
+    let numbers: Vec<&NewParameter<'_>> =
         new.parameters.iter().filter(|one| one.is_number()).collect();
     let across = numbers.first().copied();
     let curves = numbers.last().copied().filter(|_| numbers.len() > 1);
@@ -276,7 +276,7 @@ fn plot(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
         .iter()
         .rfind(|one| one.ty.wesl.starts_with("vec"))
         .filter(|_| across.is_none());
-    let is_one = |one: &Parameter<'_>, other: Option<&Parameter<'_>>| {
+    let is_one = |one: &NewParameter<'_>, other: Option<&NewParameter<'_>>| {
         other.is_some_and(|other| other.name == one.name)
     };
     let arguments = new.list(|one| match one.ty.wesl {
@@ -302,7 +302,7 @@ fn plot(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
         "[{}]\nvalue = \"{value}\"\nx = {{ label = \"{label}\", from = {low}, to = {high}{unit} }}\n",
         new.name
     );
-    if let Some(Parameter { name, range: [low, high], .. }) = curves {
+    if let Some(NewParameter { name, range: [low, high], .. }) = curves {
         let middle =
             [low, high].iter().filter_map(|text| text.parse::<f64>().ok()).sum::<f64>() / 2.0;
         plot += &format!("curves = {{ name = \"{name}\", values = [{low}, {middle}, {high}] }}\n");
@@ -313,8 +313,8 @@ fn plot(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
 fn reference_text(old: Option<&str>, new: &Signature<'_>) -> Result<String, String> {
     let Signature { folder, module, name, .. } = new;
     let fresh = format!(
-        "//! Sources:\n\nuse super::Entry;\n\npub const REFERENCES: Entry =\n    \
-         Entry {{ module: \"{folder}::{module}\", functions: &[] }};\n"
+        "//! Sources:\n\nuse super::ReferenceEntry;\n\npub const REFERENCES: ReferenceEntry =\n    \
+         ReferenceEntry {{ module: \"{folder}::{module}\", functions: &[] }};\n"
     );
     let old = old.unwrap_or(&fresh);
     let text =
@@ -327,7 +327,8 @@ fn reference_text(old: Option<&str>, new: &Signature<'_>) -> Result<String, Stri
     };
     Ok(format!(
         "{text}\n/// The formula of the source goes here. Until then, no result equals this one.\n\
-         fn {name}(a: &mut super::Arguments<'_>) -> super::Expected {{\n    let {names} = {reads};\n    \
+         fn {name}(a: &mut super::CallArguments<'_>) -> super::Expected {{\n    \
+         let {names} = {reads};\n    \
          {}.into()\n}}\n",
         new.result.nothing
     ))

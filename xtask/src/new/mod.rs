@@ -1,7 +1,7 @@
 //! What `cargo xtask new` writes: one file of this folder for each kind of thing.
 //!
-//! The files are incomplete on purpose. A trial fails until they are completed, and [`Made::next`]
-//! names it.
+//! The files are incomplete on purpose. A trial fails until they are completed, and
+//! [`NewFiles::next`] names it.
 
 mod axis_places;
 mod axis_value;
@@ -20,7 +20,7 @@ mod target;
 use std::path::Path;
 
 /// A kind of thing that is added by adding or extending files.
-pub struct Kind {
+pub struct TaskKind {
     /// As written on the command line.
     pub name: &'static str,
     /// Its name, and further arguments that it must have.
@@ -28,14 +28,14 @@ pub struct Kind {
     /// Arguments that it may have, for the usage.
     pub rest: &'static str,
     /// Makes the texts of new and of extended files for a name. It only reads the repository.
-    pub make: Make,
+    pub make: MakeTask,
 }
 
 /// Makes one thing from its name and the arguments that follow it.
-pub type Make = fn(&Repository<'_>, &str, &[&str]) -> Result<Made, String>;
+pub type MakeTask = fn(&Repository<'_>, &str, &[&str]) -> Result<NewFiles, String>;
 
 /// Every kind.
-pub const KINDS: &[Kind] = &[
+pub const KINDS: &[TaskKind] = &[
     function::KIND,
     reason::KIND,
     axis_value::KIND,
@@ -48,7 +48,7 @@ pub const KINDS: &[Kind] = &[
 
 /// What to write, and what to do afterwards.
 #[derive(Debug, Default)]
-pub struct Made {
+pub struct NewFiles {
     /// Paths below the repository's root, each with the file's whole new text.
     pub files: Vec<(String, String)>,
     /// Steps that complete the work, each with the trial that demands it.
@@ -93,7 +93,7 @@ impl Repository<'_> {
 }
 
 /// The files for one thing of a kind.
-pub fn make(root: &Path, kind: &str, name: &str, rest: &[&str]) -> Result<Made, String> {
+pub fn make(root: &Path, kind: &str, name: &str, rest: &[&str]) -> Result<NewFiles, String> {
     let known: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
     let kind = KINDS
         .iter()

@@ -16,11 +16,11 @@ pub struct Type {
     /// A value that a plot gives a parameter.
     pub plotted: &'static str,
     /// A domain of a numeric case.
-    domain: Domain,
+    domain: ParameterDomain,
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Domain {
+enum ParameterDomain {
     /// Numbers of a range.
     Range,
     /// The same text for every parameter.
@@ -31,7 +31,7 @@ const fn number(
     wesl: &'static str,
     glsl: &'static str,
     plotted: &'static str,
-    domain: Domain,
+    domain: ParameterDomain,
 ) -> Type {
     let (read, nothing) = ("f64", "f64::NAN");
     Type { wesl, glsl, read, nothing, number: "f32($)", plotted, domain }
@@ -44,15 +44,26 @@ const fn vector(
     domain: &'static str,
 ) -> Type {
     let [wesl, glsl, read] = names;
-    Type { wesl, glsl, read, nothing, number: "$.x", plotted, domain: Domain::Fixed(domain) }
+    Type {
+        wesl,
+        glsl,
+        read,
+        nothing,
+        number: "$.x",
+        plotted,
+        domain: ParameterDomain::Fixed(domain),
+    }
 }
 
 /// Every type that a new function may take or return.
 pub const TYPES: [Type; 9] = [
-    Type { number: "$", ..number("f32", "float", "0.5", Domain::Range) },
-    number("i32", "int", "1", Domain::Fixed("[-2, -1, 0, 1, 2]")),
-    number("u32", "uint", "1u", Domain::Fixed("[0, 1, 2, 3]")),
-    Type { read: "bool", ..number("bool", "bool", "true", Domain::Fixed("[false, true]")) },
+    Type { number: "$", ..number("f32", "float", "0.5", ParameterDomain::Range) },
+    number("i32", "int", "1", ParameterDomain::Fixed("[-2, -1, 0, 1, 2]")),
+    number("u32", "uint", "1u", ParameterDomain::Fixed("[0, 1, 2, 3]")),
+    Type {
+        read: "bool",
+        ..number("bool", "bool", "true", ParameterDomain::Fixed("[false, true]"))
+    },
     vector(["vec2f", "vec2", "vec2"], "glam::DVec2::NAN", "vec2f(0.6, 0.8)", "{ unit = 32 }"),
     vector(["vec3f", "vec3", "vec3"], "glam::DVec3::NAN", "vec3f(0.0, 0.0, 1.0)", "{ unit = 32 }"),
     vector(
@@ -93,7 +104,7 @@ pub fn type_of(name: &str) -> Result<Type, String> {
 
 /// One parameter.
 #[derive(Debug)]
-pub struct Parameter<'t> {
+pub struct NewParameter<'t> {
     /// Its name.
     pub name: &'t str,
     /// Its type.
@@ -102,7 +113,7 @@ pub struct Parameter<'t> {
     pub range: [&'t str; 2],
 }
 
-impl<'t> Parameter<'t> {
+impl<'t> NewParameter<'t> {
     /// Reads `NAME: TYPE`, or `NAME: f32 LOW..HIGH`.
     fn read(text: &'t str) -> Result<Self, String> {
         let wrong =
@@ -129,18 +140,19 @@ impl<'t> Parameter<'t> {
         let [low, high] = self.range;
         let count = [33, 17, 9].get(all - 1).unwrap_or(&5);
         match self.ty.domain {
-            Domain::Range => format!("[{{ grid = [{low}, {high}], count = {count} }}]"),
-            Domain::Fixed(domain) => domain.to_owned(),
+            ParameterDomain::Range => format!("[{{ grid = [{low}, {high}], count = {count} }}]"),
+            ParameterDomain::Fixed(domain) => domain.to_owned(),
         }
     }
 }
 
 /// Reads a list of parameters.
-pub fn read_parameters(text: &str) -> Result<Vec<Parameter<'_>>, String> {
-    let found: Vec<Parameter<'_>> =
-        text.split(',').map(Parameter::read).collect::<Result<_, _>>()?;
-    let is_known =
-        |(at, one): (usize, &Parameter<'_>)| found[..at].iter().any(|other| other.name == one.name);
+pub fn read_parameters(text: &str) -> Result<Vec<NewParameter<'_>>, String> {
+    let found: Vec<NewParameter<'_>> =
+        text.split(',').map(NewParameter::read).collect::<Result<_, _>>()?;
+    let is_known = |(at, one): (usize, &NewParameter<'_>)| {
+        found[..at].iter().any(|other| other.name == one.name)
+    };
     match found.iter().enumerate().find(|pair| is_known(*pair)) {
         Some((_, twice)) => Err(format!("two parameters are called `{}`", twice.name)),
         None => Ok(found),

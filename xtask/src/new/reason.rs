@@ -1,8 +1,8 @@
 //! Why a function of the shader library may cost more than its formula without guards.
 
-use super::{Kind, Made, Repository, check_name};
+use super::{NewFiles, Repository, TaskKind, check_name};
 
-pub const KIND: Kind = Kind {
+pub const KIND: TaskKind = TaskKind {
     name: "reason",
     example: &["brdf::diffuse::wrap", "A negative width would divide by zero."],
     rest: "",
@@ -12,7 +12,7 @@ pub const KIND: Kind = Kind {
 /// What begins the line above the function's plain text.
 const REASON: &str = "/// Reason:";
 
-fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<NewFiles, String> {
     let parts: Vec<&str> = path.split("::").collect();
     parts.iter().try_for_each(|part| check_name(part, '_'))?;
     let ([folder, module, name], [reason]) = (&parts[..], rest) else {
@@ -35,5 +35,5 @@ fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<Made, 
     }
     let text = format!("{before}{REASON} {}\n{after}", reason.trim());
     let next = vec!["cargo xtask record plain::; read docs/costs.md".to_owned()];
-    Ok(Made { files: vec![(file, text)], next })
+    Ok(NewFiles { files: vec![(file, text)], next })
 }

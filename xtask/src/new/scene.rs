@@ -1,12 +1,12 @@
 //! A scene of the pictures, and a preset that shows it.
 
-use super::{Kind, Made, Repository, check_name, refuse_rest};
+use super::{NewFiles, Repository, TaskKind, check_name, refuse_rest};
 
-pub const KIND: Kind = Kind { name: "scene", example: &["staircase"], rest: "", make };
+pub const KIND: TaskKind = TaskKind { name: "scene", example: &["staircase"], rest: "", make };
 
 const PRESETS: &str = "shaderlib/presets.toml";
 
-fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFiles, String> {
     refuse_rest(rest)?;
     check_name(name, '_')?;
     let file = format!("src/scene/sets/{name}.rs");
@@ -36,7 +36,7 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
     ];
     let preset = format!("{}\n\n{}", presets.trim_end(), PRESET.replace("NAME", name));
     let files = vec![(file, TEXT.replace("NAME", name)), (PRESETS.to_owned(), preset)];
-    Ok(Made { files, next })
+    Ok(NewFiles { files, next })
 }
 
 /// Of each line that begins with `start`, the text up to `end`, joined by commas. Functions that

@@ -1,10 +1,10 @@
 //! An output language, made after one that exists: most new ones are another version of it.
 
 use super::renumber::Renaming;
-use super::{Kind, Made, Repository, check_name};
+use super::{NewFiles, Repository, TaskKind, check_name};
 
-pub const KIND: Kind =
-    Kind { name: "target", example: &["essl310"], rest: "[TARGET THAT IT IS LIKE]", make };
+pub const KIND: TaskKind =
+    TaskKind { name: "target", example: &["essl310"], rest: "[TARGET THAT IT IS LIKE]", make };
 
 const TARGETS: &str = "src/emit/targets";
 const EXECUTORS: &str = "src/execute/executors";
@@ -12,7 +12,7 @@ const GUIDE: &str = "docs/guide/targets.md";
 /// What versions of GLSL lack: a line of Rust for each, with the first versions that have it.
 const LACKS: &str = "src/emit/lacks.rs";
 
-fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, String> {
+fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFiles, String> {
     check_name(name, '_')?;
     let file = format!("{TARGETS}/{name}.rs");
     let own_executor = format!("{EXECUTORS}/{name}.rs");
@@ -53,7 +53,10 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<Made, 
     let target = with_numbers(&target, &like_numbers, name);
     // Only GLSL ES 3.00 is a language of WebGL.
     let target = target.replace(" and WebGL 2", "");
-    Ok(Made { files: vec![(file, target), (own_executor, text), (GUIDE.to_owned(), guide)], next })
+    Ok(NewFiles {
+        files: vec![(file, target), (own_executor, text), (GUIDE.to_owned(), guide)],
+        next,
+    })
 }
 
 /// The target with the same letters before its number, and the nearest number.

@@ -2,8 +2,8 @@
 
 use lamplight::bundle::{Conventions, Target};
 use lamplight::diagnostic;
-use lamplight::execute::fixture::{Fixture, Sampler, Texture, TextureKind};
-use lamplight::execute::frame::{self, Buffers, EntryPoint, Side, VertexFormat};
+use lamplight::execute::fixture::{Fixture, FixtureSampler, FixtureTexture, TextureKind};
+use lamplight::execute::frame::{self, Buffers, EntryPoint, Face, VertexFormat};
 use lamplight::execute::shipped::Shipped;
 
 use crate::linkers::LINKERS;
@@ -32,8 +32,8 @@ pub fn described(
         keep_depth: state.keep_depth,
         cull: match state.cull {
             None => "none",
-            Some(Side::Front) => "front",
-            Some(Side::Back) => "back",
+            Some(Face::Front) => "front",
+            Some(Face::Back) => "back",
         }
         .to_owned(),
         mirrored: state.mirrored,
@@ -51,9 +51,9 @@ fn stage(entry: EntryPoint<'_>, target: Target) -> Result<Stage, diagnostic::Dia
     Ok(Stage { text: String::from_utf8_lossy(&bytes).into_owned(), native, reflection })
 }
 
-fn mesh(item: &frame::Item<'_>) -> Mesh {
+fn mesh(item: &frame::DrawItem<'_>) -> Mesh {
     let bytes = |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect();
-    let attribute = |(attribute, offset): (frame::Attribute, u64)| Attribute {
+    let attribute = |(attribute, offset): (frame::VertexAttribute, u64)| Attribute {
         location: attribute.location,
         format: match attribute.format {
             VertexFormat::Uint32 => "uint32",
@@ -105,7 +105,7 @@ fn fixtures(drawing: &frame::Drawing<'_>) -> (Vec<TextureInfo>, Vec<SamplerInfo>
     (textures, samplers)
 }
 
-fn level(texture: &Texture) -> Level {
+fn level(texture: &FixtureTexture) -> Level {
     Level {
         width: texture.width,
         height: texture.height,
@@ -113,7 +113,7 @@ fn level(texture: &Texture) -> Level {
     }
 }
 
-fn sampling((group, binding): (u32, u32), sampler: Sampler) -> SamplerInfo {
+fn sampling((group, binding): (u32, u32), sampler: FixtureSampler) -> SamplerInfo {
     let (address, compare) = sampler.web_words();
     SamplerInfo { group, binding, compare, linear: sampler.linear, address: address.to_owned() }
 }

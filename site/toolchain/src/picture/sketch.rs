@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use lamplight::compose;
 use lamplight::diagnostic::Diagnostics;
-use lamplight::picture::sketch::{MODELS, SOURCES, Setting, Sketch};
+use lamplight::picture::sketch::{MODELS, SOURCES, Sketch, SketchOptions};
 use lamplight::picture::{Shot, Surroundings};
 use lamplight::scene::environment;
 use lamplight::source::SourceSet;
@@ -133,10 +133,10 @@ pub fn sketch_controls(request: Ts<SketchRequest>) -> Answer<SketchControls> {
 fn sketched(
     request: &SketchRequest,
     sources: &mut SourceSet,
-) -> Result<(Sketch, Setting), Diagnostics> {
+) -> Result<(Sketch, SketchOptions), Diagnostics> {
     let composed: compose::Composed = composed_text(&request.shader, sources)?;
     let sketch = Sketch::new(validate(&composed)?, request.shader.entry.as_deref());
-    let setting = Setting {
+    let setting = SketchOptions {
         model: request.model.clone(),
         turn: request.turn,
         lamp: request.lamp.unwrap_or(LAMP).into(),

@@ -1,6 +1,6 @@
 //! Calls of the author's macros: reads their arguments, and replaces each call by the macro's body.
 
-use super::{Call, Expander, Fatal, Frame, Input};
+use super::{Call, Expander, Fatal, MacroFrame, TokenInput};
 use crate::compose::glsl::token::{NO_SETTING, NONE, Tok};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::parse::glsl::{Macro, known, single_token};
@@ -12,7 +12,7 @@ impl<'g> Expander<'g, '_> {
         definition: &'g Macro,
         name: Tok,
         floor: usize,
-        input: &mut Input<'_>,
+        input: &mut TokenInput<'_>,
         out: &mut Vec<Tok>,
     ) -> Result<(), Fatal> {
         let Some(parameters) = definition.parameters else {
@@ -59,7 +59,7 @@ impl<'g> Expander<'g, '_> {
         &mut self,
         name: Tok,
         floor: usize,
-        input: &mut Input<'_>,
+        input: &mut TokenInput<'_>,
     ) -> Result<Option<Call>, Fatal> {
         self.take(floor, input);
         let mut arguments = vec![Vec::new()];
@@ -124,7 +124,7 @@ impl<'g> Expander<'g, '_> {
             last.after = close.after;
         }
         self.table.set_active(definition.name, true);
-        self.frames.push(Frame { tokens, at: 0, name: definition.name });
+        self.frames.push(MacroFrame { tokens, at: 0, name: definition.name });
         Ok(())
     }
 
@@ -170,7 +170,7 @@ impl<'g> Expander<'g, '_> {
             if self.depth > LIMITS.nesting {
                 return Err(Box::new(self.too_deep(site)));
             }
-            self.run(Input::Tokens { tokens: argument, at: 0 }, &mut tokens)?;
+            self.run(TokenInput::Tokens { tokens: argument, at: 0 }, &mut tokens)?;
             self.depth -= 1;
             *cache = Some(tokens);
         }

@@ -4,19 +4,19 @@ use std::ops::Range;
 
 use super::super::always;
 use super::super::condition::evaluate_condition;
-use super::super::expand::{Fatal, Input};
-use super::State;
+use super::super::expand::{Fatal, TokenInput};
+use super::PreprocessorState;
 use crate::compose::Decision;
 use crate::diagnostic::Diagnostics;
 use crate::limits::count_steps;
-use crate::parse::glsl::{Directive, Part};
+use crate::parse::glsl::{Directive, FilePart};
 use crate::source::Span;
 
-impl State<'_, '_> {
+impl PreprocessorState<'_, '_> {
     /// Continues in the first branch whose condition holds. If a condition has an error, no branch
     /// is taken, since errors in the branches would only follow from it.
     pub(super) fn choose(&mut self, module: usize, mut index: usize) -> Result<(), Fatal> {
-        while let Some(Part::Directive(directive, span)) =
+        while let Some(FilePart::Directive(directive, span)) =
             self.graph.modules[module].parts.get(index)
         {
             count_steps(1);
@@ -79,7 +79,7 @@ impl State<'_, '_> {
         let before = self.expander.errors.len();
         self.expander.in_condition = true;
         self.expander.run(
-            Input::Source { module: module as u32, at: condition.start, end: condition.end },
+            TokenInput::Source { module: module as u32, at: condition.start, end: condition.end },
             &mut tokens,
         )?;
         self.expander.in_condition = false;
@@ -93,7 +93,7 @@ impl State<'_, '_> {
     fn skip_all(&mut self, mut next: usize) {
         let module = self.open.last().map_or(0, |open| open.module);
         let branch = self.graph.modules[module].parts.get(next);
-        if let Some(Part::Directive(Directive::Elif { end, .. } | Directive::Else { end }, _)) =
+        if let Some(FilePart::Directive(Directive::Elif { end, .. } | Directive::Else { end }, _)) =
             branch
         {
             next = *end;

@@ -2,20 +2,20 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::super::{Gpu, executor_failed, fixtures, pipeline};
+use super::super::{WgpuDevice, executor_failed, fixtures, pipeline};
 use super::Groups;
 use crate::diagnostic::Diagnostic;
-use crate::execute::fixture::{Address, Fixture, Sampler};
-use crate::execute::frame::{Buffers, Drawing, Item, Place};
+use crate::execute::fixture::{Address, Fixture, FixtureSampler};
+use crate::execute::frame::{BindingPlace, Buffers, DrawItem, Drawing};
 
 /// The bindings that the stages use, with their textures and samplers uploaded.
 pub struct Bindings {
-    used: BTreeSet<Place>,
-    kept: BTreeMap<Place, Kept>,
+    used: BTreeSet<BindingPlace>,
+    kept: BTreeMap<BindingPlace, KeptResource>,
 }
 
 /// What keeps a binding's resource alive.
-enum Kept {
+enum KeptResource {
     Buffer(wgpu::Buffer),
     View(wgpu::TextureView),
     Sampler(wgpu::Sampler),
@@ -23,9 +23,9 @@ enum Kept {
 
 impl Bindings {
     pub fn new(
-        gpu: &Gpu,
+        gpu: &WgpuDevice,
         drawing: &Drawing<'_>,
-        used: BTreeSet<Place>,
+        used: BTreeSet<BindingPlace>,
     ) -> Result<Self, Diagnostic> {
         let mut kept = BTreeMap::new();
         for place in used.iter().filter(|place| !drawing.is_buffer(**place)) {
@@ -37,10 +37,10 @@ impl Bindings {
     /// The bind groups of one item in one view.
     pub fn groups(
         &self,
-        gpu: &Gpu,
+        gpu: &WgpuDevice,
         drawing: &Drawing<'_>,
         view: &Buffers,
-        item: &Item<'_>,
+        item: &DrawItem<'_>,
         layout: &dyn Fn(u32) -> Option<wgpu::BindGroupLayout>,
     ) -> Result<Groups, Diagnostic> {
         let buffers = self.buffers(gpu, drawing, view, item)?;
@@ -63,13 +63,14 @@ impl Bindings {
 
     /// Adds samplers that nothing reads at the unused bindings of its groups. wgpu numbers bindings
     /// without gaps, but a shipped stage has the author's numbers.
-    pub fn without_gaps(mut self, gpu: &Gpu) -> Self {
+    pub fn without_gaps(mut self, gpu: &WgpuDevice) -> Self {
         let last: BTreeMap<u32, u32> = self.used.iter().copied().collect();
         for place in last.iter().flat_map(|(group, last)| (0..*last).map(|one| (*group, one))) {
             if !self.used.contains(&place) {
-                let settings = Sampler { compare: None, linear: false, address: Address::Clamp };
+                let settings =
+                    FixtureSampler { compare: None, linear: false, address: Address::Clamp };
                 let sampler = fixtures::create_sampler(&gpu.device, settings);
-                self.kept.insert(place, Kept::Sampler(sampler));
+                self.kept.insert(place, KeptResource::Sampler(sampler));
             }
         }
         self
@@ -78,16 +79,17 @@ impl Bindings {
     /// The layouts of all groups.
     pub fn layouts(
         &self,
-        gpu: &Gpu,
+        gpu: &WgpuDevice,
         drawing: &Drawing<'_>,
     ) -> BTreeMap<u32, wgpu::BindGroupLayout> {
-        let places: BTreeSet<Place> = self.used.iter().chain(self.kept.keys()).copied().collect();
-        let fixture = |place: &Place| drawing.fixtures.get(place).map(|fixture| &**fixture);
+        let places: BTreeSet<BindingPlace> =
+            self.used.iter().chain(self.kept.keys()).copied().collect();
+        let fixture = |place: &BindingPlace| drawing.fixtures.get(place).map(|fixture| &**fixture);
         // Not every device can filter f32 textures, so filtering is asked for only where a stage
         // filters.
         let is_filter = |fixture: &Fixture| matches!(fixture, Fixture::Sampler(one) if one.linear && one.compare.is_none());
         let filters = self.used.iter().filter_map(fixture).any(is_filter);
-        let entry = |place: &Place| wgpu::BindGroupLayoutEntry {
+        let entry = |place: &BindingPlace| wgpu::BindGroupLayoutEntry {
             binding: place.1,
             visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
             ty: match (self.used.contains(place), fixture(place)) {
@@ -109,18 +111,18 @@ impl Bindings {
 
     fn buffers(
         &self,
-        gpu: &Gpu,
+        gpu: &WgpuDevice,
         drawing: &Drawing<'_>,
         view: &Buffers,
-        item: &Item<'_>,
-    ) -> Result<BTreeMap<Place, Kept>, Diagnostic> {
+        item: &DrawItem<'_>,
+    ) -> Result<BTreeMap<BindingPlace, KeptResource>, Diagnostic> {
         let places = self.used.iter().filter(|place| !self.kept.contains_key(place));
-        let buffer = |place: &Place| {
+        let buffer = |place: &BindingPlace| {
             let bytes =
                 drawing.buffer(view, item, *place).ok_or_else(|| missing_binding(*place))?;
             Ok((
                 *place,
-                Kept::Buffer(
+                KeptResource::Buffer(
                     gpu.buffer(bytes, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::STORAGE),
                 ),
             ))
@@ -129,7 +131,7 @@ impl Bindings {
     }
 }
 
-impl Kept {
+impl KeptResource {
     fn resource(&self) -> wgpu::BindingResource<'_> {
         match self {
             Self::Buffer(buffer) => buffer.as_entire_binding(),
@@ -164,19 +166,28 @@ fn binding_type(fixture: &Fixture, filterable: bool) -> wgpu::BindingType {
     }
 }
 
-fn bound_fixture(gpu: &Gpu, drawing: &Drawing<'_>, place: Place) -> Result<Kept, Diagnostic> {
+fn bound_fixture(
+    gpu: &WgpuDevice,
+    drawing: &Drawing<'_>,
+    place: BindingPlace,
+) -> Result<KeptResource, Diagnostic> {
     match drawing.fixtures.get(&place).map(|fixture| &**fixture) {
         Some(Fixture::Texture(texture)) => {
             let levels = drawing.levels.get(&place).map_or(&[][..], Vec::as_slice);
-            Ok(Kept::View(fixtures::upload_levels(&gpu.device, &gpu.queue, texture, levels)))
+            Ok(KeptResource::View(fixtures::upload_levels(
+                &gpu.device,
+                &gpu.queue,
+                texture,
+                levels,
+            )))
         }
         Some(Fixture::Sampler(sampler)) => {
-            Ok(Kept::Sampler(fixtures::create_sampler(&gpu.device, *sampler)))
+            Ok(KeptResource::Sampler(fixtures::create_sampler(&gpu.device, *sampler)))
         }
         None => Err(missing_binding(place)),
     }
 }
 
-fn missing_binding(place: Place) -> Diagnostic {
+fn missing_binding(place: BindingPlace) -> Diagnostic {
     executor_failed(format!("nothing is given for group {}, binding {}", place.0, place.1))
 }

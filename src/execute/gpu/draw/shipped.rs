@@ -2,16 +2,16 @@
 
 use std::collections::BTreeSet;
 
-use super::super::passthrough::Binary;
-use super::super::{Gpu, Shaders, executor_failed, heaps, hlsl, lock_mutex};
+use super::super::passthrough::SpirvBinary;
+use super::super::{Shaders, WgpuDevice, executor_failed, heaps, hlsl, lock_mutex};
 use super::bindings::Bindings;
 use super::target::Targets;
-use super::{LAVAPIPE_BLOCKS, Meshes, Stages};
+use super::{LAVAPIPE_BLOCKS, Meshes, StageModules};
 use crate::bundle::{SamplerHeap, Stage, Target};
 use crate::diagnostic::{Diagnostic, codes};
-use crate::execute::Pair;
-use crate::execute::frame::{Drawing, Frame, Place};
-use crate::execute::shipped::{Format, Shipped};
+use crate::execute::ShippedPair;
+use crate::execute::frame::{BindingPlace, Drawing, Frame};
+use crate::execute::shipped::{ColorFormat, Shipped};
 
 /// A stage as a shader module of the device.
 struct Loaded {
@@ -20,11 +20,11 @@ struct Loaded {
     heaps: Vec<SamplerHeap>,
 }
 
-impl Gpu {
+impl WgpuDevice {
     /// Draws the frame of each view with shipped stages, and reads it back.
     pub fn shipped_frames(
         &self,
-        pair: Pair<'_>,
+        pair: ShippedPair<'_>,
         drawing: &Drawing<'_>,
     ) -> Result<Vec<Frame>, Diagnostic> {
         self.can_draw(pair)?;
@@ -33,7 +33,7 @@ impl Gpu {
         frames.into_iter().map(|frame| frame.read(self, None)).collect()
     }
 
-    fn can_draw(&self, pair: Pair<'_>) -> Result<(), Diagnostic> {
+    fn can_draw(&self, pair: ShippedPair<'_>) -> Result<(), Diagnostic> {
         let own = match self.shaders {
             Shaders::Translated => Target::WGSL,
             Shaders::Emitted(target) => target,
@@ -54,9 +54,9 @@ impl Gpu {
 
     fn submit_shipped(
         &self,
-        pair: Pair<'_>,
+        pair: ShippedPair<'_>,
         drawing: &Drawing<'_>,
-        formats: &[Format],
+        formats: &[ColorFormat],
     ) -> Result<Vec<super::target::Pending>, Diagnostic> {
         let used = read_places(pair);
         let group = used.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
@@ -80,7 +80,7 @@ impl Gpu {
             bind_group_layouts: &in_order,
             immediate_size: 0,
         });
-        let stages = Stages {
+        let stages = StageModules {
             vertex: (&vertex.module, &vertex.entry),
             fragment: Some((&fragment.module, &fragment.entry)),
         };
@@ -121,16 +121,16 @@ impl Gpu {
     }
 }
 
-impl Gpu {
+impl WgpuDevice {
     /// The stage as SPIR-V. Results are kept, since many drawings share a vertex stage and
     /// translating HLSL runs two programs.
-    fn binary(&self, shipped: &Shipped, heaps: u32) -> Result<Binary, Diagnostic> {
+    fn binary(&self, shipped: &Shipped, heaps: u32) -> Result<SpirvBinary, Diagnostic> {
         let key = (shipped.bytes.clone(), heaps);
         if let Some(known) = lock_mutex(&self.binaries).get(&key) {
             return Ok(known.clone());
         }
         let Shipped { target, bytes, native, reflection } = shipped;
-        let binary = Binary::new(*target, reflection.stage, bytes, native, heaps);
+        let binary = SpirvBinary::new(*target, reflection.stage, bytes, native, heaps);
         let binary = binary.map_err(executor_failed)?;
         lock_mutex(&self.binaries).insert(key, binary.clone());
         Ok(binary)
@@ -147,7 +147,7 @@ fn stage_lacks(stage: &Shipped) -> Option<&'static str> {
 }
 
 /// The bindings of both stages.
-fn read_places(pair: Pair<'_>) -> BTreeSet<Place> {
+fn read_places(pair: ShippedPair<'_>) -> BTreeSet<BindingPlace> {
     let stages = [pair.vertex, pair.fragment].into_iter();
     stages
         .flat_map(|stage| &stage.reflection.bindings)

@@ -1,10 +1,10 @@
 //! The attachments of a frame, and how they are read back.
 
 use super::super::textures::{TEXEL, color_attachment, copy_to_buffer, create_texture, padded_row};
-use super::super::{Gpu, TARGET_FORMAT, pipeline};
+use super::super::{TARGET_FORMAT, WgpuDevice, pipeline};
 use crate::diagnostic::Diagnostic;
 use crate::execute::frame::{Drawing, Frame};
-use crate::execute::shipped::Format;
+use crate::execute::shipped::ColorFormat;
 
 pub const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
@@ -25,7 +25,7 @@ const DEPTH: &str = "
 /// The attachments of one frame.
 pub struct Targets {
     size: [u32; 2],
-    color: Vec<(wgpu::Texture, Format)>,
+    color: Vec<(wgpu::Texture, ColorFormat)>,
     depth: Option<wgpu::Texture>,
     keep_depth: bool,
 }
@@ -38,7 +38,7 @@ pub struct Pending {
 }
 
 impl Targets {
-    pub fn new(device: &wgpu::Device, drawing: &Drawing<'_>, formats: &[Format]) -> Self {
+    pub fn new(device: &wgpu::Device, drawing: &Drawing<'_>, formats: &[ColorFormat]) -> Self {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let depth_usage =
             wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
@@ -84,7 +84,7 @@ impl Targets {
     }
 
     /// Copies the targets, and the depth if it is kept, into buffers that can be mapped.
-    pub fn download(&self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder) -> Pending {
+    pub fn download(&self, gpu: &WgpuDevice, encoder: &mut wgpu::CommandEncoder) -> Pending {
         let color = self
             .color
             .iter()
@@ -100,7 +100,11 @@ impl Targets {
 }
 
 impl Pending {
-    pub fn read(&self, gpu: &Gpu, detour: Option<&'static str>) -> Result<Frame, Diagnostic> {
+    pub fn read(
+        &self,
+        gpu: &WgpuDevice,
+        detour: Option<&'static str>,
+    ) -> Result<Frame, Diagnostic> {
         let color = |buffer: &wgpu::Buffer| {
             gpu.mapped(buffer, |bytes| self.texels(bytes, TEXEL, u32::from_le_bytes))
         };
@@ -125,10 +129,10 @@ impl Pending {
 }
 
 /// The texture format of a target.
-pub fn texture_format(of: Format) -> wgpu::TextureFormat {
+pub fn texture_format(of: ColorFormat) -> wgpu::TextureFormat {
     match of {
-        Format::Float => wgpu::TextureFormat::Rgba32Float,
-        Format::Uint => TARGET_FORMAT,
+        ColorFormat::Float => wgpu::TextureFormat::Rgba32Float,
+        ColorFormat::Uint => TARGET_FORMAT,
     }
 }
 
@@ -143,7 +147,7 @@ fn depth_reader(device: &wgpu::Device) -> (wgpu::BindGroupLayout, wgpu::RenderPi
 
 /// Draws the bits of a depth texture into a target of words.
 fn as_words(
-    gpu: &Gpu,
+    gpu: &WgpuDevice,
     encoder: &mut wgpu::CommandEncoder,
     depth: &wgpu::Texture,
     [width, height]: [u32; 2],
@@ -161,7 +165,7 @@ fn as_words(
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
     let target = create_texture(device, [width, height, 1], 1, READ_FORMAT, usage);
     let view = target.create_view(&Default::default());
-    let attachments = [Some(color_attachment(&view, Format::Uint))];
+    let attachments = [Some(color_attachment(&view, ColorFormat::Uint))];
     let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         color_attachments: &attachments,
         ..Default::default()

@@ -11,14 +11,14 @@ use naga::back::glsl::Version;
 
 /// An interface, and the lowest version that a context must have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Api {
+pub enum OpenGlApi {
     /// OpenGL with the core profile.
     Core(i32, i32),
     /// OpenGL ES.
     Embedded(i32, i32),
 }
 
-impl Api {
+impl OpenGlApi {
     /// The first version of OpenGL that has a version of GLSL. From 3.30 on the numbers are equal.
     pub fn of_glsl(version: Version) -> Self {
         match version {
@@ -35,18 +35,18 @@ impl Api {
 }
 
 /// A context; it is current on a thread only while calls are made.
-pub struct Context {
+pub struct OpenGlContext {
     egl: Egl,
     display: egl::Display,
     context: egl::Context,
     gl: glow::Context,
-    api: Api,
+    api: OpenGlApi,
     adapter: String,
 }
 
 // SAFETY: the pointers are EGL's handles, which any thread may use, and the context is not
 // current on any thread between calls. There is no `Sync`: one thread at a time makes calls.
-unsafe impl Send for Context {}
+unsafe impl Send for OpenGlContext {}
 
 type Egl = egl::DynamicInstance<egl::EGL1_5>;
 
@@ -62,10 +62,10 @@ const DEVICES: usize = 16;
 type QueryDevices = extern "system" fn(egl::Int, *mut *mut c_void, *mut egl::Int) -> egl::Boolean;
 type QueryDeviceString = extern "system" fn(*mut c_void, egl::Int) -> *const c_char;
 
-impl Context {
+impl OpenGlContext {
     /// Opens a context on the software device if there is one, since its numbers are the same on
     /// every machine. The error is a message.
-    pub fn open(api: Api) -> Result<Self, String> {
+    pub fn open(api: OpenGlApi) -> Result<Self, String> {
         // SAFETY: the library with that name is EGL.
         let egl = unsafe { Egl::load_required() }.map_err(|error| format!("EGL: {error}"))?;
         let display = open_display(&egl)?;
@@ -91,7 +91,7 @@ impl Context {
     }
 
     /// The interface of the context.
-    pub fn api(&self) -> Api {
+    pub fn api(&self) -> OpenGlApi {
         self.api
     }
 
@@ -116,14 +116,14 @@ impl Context {
     }
 }
 
-impl Drop for Context {
+impl Drop for OpenGlContext {
     fn drop(&mut self) {
         // The display stays open: other contexts of the process share it.
         let _ = self.egl.destroy_context(self.display, self.context);
     }
 }
 
-impl Api {
+impl OpenGlApi {
     fn bound(self) -> egl::Enum {
         match self {
             Self::Core(..) => egl::OPENGL_API,
@@ -147,7 +147,7 @@ impl Api {
     }
 }
 
-impl std::fmt::Display for Api {
+impl std::fmt::Display for OpenGlApi {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Core(major, minor) => write!(f, "OpenGL {major}.{minor} core"),

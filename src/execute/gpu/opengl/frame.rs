@@ -4,31 +4,33 @@ use std::collections::BTreeMap;
 
 use glow::HasContext as _;
 
-use super::{Unit, plain_state, program, texture};
-use crate::bundle::{Combined, FrontFace, Slot};
-use crate::execute::Pair;
+use super::{TextureUnit, plain_state, program, texture};
+use crate::bundle::{BindingSlot, Combined, FrontFace};
+use crate::execute::ShippedPair;
 use crate::execute::fixture::Fixture;
-use crate::execute::frame::{Buffers, Drawing, Frame, Item, Mesh, Place, State, VertexFormat};
-use crate::execute::gpu::opengl::context::Api;
+use crate::execute::frame::{
+    BindingPlace, Buffers, DrawItem, Drawing, Frame, Mesh, PipelineState, VertexFormat,
+};
+use crate::execute::gpu::opengl::context::OpenGlApi;
 use crate::execute::kernel::SENTINEL;
-use crate::execute::shipped::{Format, Shipped};
+use crate::execute::shipped::{ColorFormat, Shipped};
 
 /// A program, with what is the same for all its frames.
-struct Ready {
+struct FrameProgram {
     program: glow::Program,
-    units: Vec<Unit>,
+    units: Vec<TextureUnit>,
     /// The binding of each uniform block.
-    blocks: BTreeMap<Place, u32>,
+    blocks: BTreeMap<BindingPlace, u32>,
 }
 
 /// Draws the frame of each view. Errors are messages.
 pub fn draw_frames(
     gl: &glow::Context,
-    api: Api,
-    pair: Pair<'_>,
+    api: OpenGlApi,
+    pair: ShippedPair<'_>,
     drawing: &Drawing<'_>,
 ) -> Result<Vec<Frame>, String> {
-    if drawing.state != State::default() || !drawing.levels.is_empty() {
+    if drawing.state != PipelineState::default() || !drawing.levels.is_empty() {
         return Err("shipped texts are drawn without depth test, culling and smaller levels".into());
     }
     let formats = pair.fragment.targets()?;
@@ -56,9 +58,9 @@ pub fn draw_frames(
 
 fn prepare_frame(
     gl: &glow::Context,
-    pair: Pair<'_>,
+    pair: ShippedPair<'_>,
     drawing: &Drawing<'_>,
-) -> Result<Ready, String> {
+) -> Result<FrameProgram, String> {
     let program = program::link_program(gl, &pair.vertex.text(), &pair.fragment.text())?;
     let (mut blocks, mut units) = (BTreeMap::new(), Vec::new());
     for stage in [pair.vertex, pair.fragment] {
@@ -76,10 +78,10 @@ fn prepare_frame(
         }
     }
     program::check_error(gl)?;
-    Ok(Ready { program, units, blocks })
+    Ok(FrameProgram { program, units, blocks })
 }
 
-fn find_slot(stage: &Shipped, (group, binding): Place) -> Result<&Slot, String> {
+fn find_slot(stage: &Shipped, (group, binding): BindingPlace) -> Result<&BindingSlot, String> {
     let mut slots = stage.native.slots.iter();
     slots
         .find(|slot| (slot.group, slot.binding) == (group, binding))
@@ -95,7 +97,7 @@ fn texture_unit(
     combined: &Combined,
     next: u32,
     drawing: &Drawing<'_>,
-) -> Result<Unit, String> {
+) -> Result<TextureUnit, String> {
     let [group, binding] = combined.texture;
     let fixture = drawing.fixtures.get(&(group, binding)).map(|fixture| &**fixture);
     let Some(Fixture::Texture(fixture)) = fixture else {
@@ -108,19 +110,19 @@ fn texture_unit(
     let settings = combined.sampler.and_then(|place| drawing.sampler_at(place));
     let sampler = settings.map(|settings| texture::create_sampler(gl, settings)).transpose()?;
     let (target, texture) = texture::upload_fixture(gl, fixture)?;
-    Ok(Unit { index, target, texture, sampler })
+    Ok(TextureUnit { index, target, texture, sampler })
 }
 
 fn draw_frame(
     gl: &glow::Context,
-    ready: &Ready,
+    ready: &FrameProgram,
     drawing: &Drawing<'_>,
     view: &Buffers,
-    formats: &[Format],
+    formats: &[ColorFormat],
 ) -> Result<Frame, String> {
     let targets = formats
         .iter()
-        .map(|format| texture::target_texture(gl, drawing.size, *format == Format::Float))
+        .map(|format| texture::target_texture(gl, drawing.size, *format == ColorFormat::Float))
         .collect::<Result<Vec<_>, _>>()?;
     let [width, height] = drawing.size.map(|size| size as i32);
     // SAFETY: the context is current, and every name is of it.
@@ -161,16 +163,16 @@ fn draw_frame(
     }
 }
 
-unsafe fn clear_targets(gl: &glow::Context, formats: &[Format]) {
+unsafe fn clear_targets(gl: &glow::Context, formats: &[ColorFormat]) {
     for (index, format) in (0..).zip(formats) {
         // SAFETY: a framebuffer with so many targets is bound.
         unsafe {
             match format {
-                Format::Float => {
+                ColorFormat::Float => {
                     let value = f32::from_bits(SENTINEL);
                     gl.clear_buffer_f32_slice(glow::COLOR, index, &[value; 4]);
                 }
-                Format::Uint => gl.clear_buffer_u32_slice(glow::COLOR, index, &[SENTINEL; 4]),
+                ColorFormat::Uint => gl.clear_buffer_u32_slice(glow::COLOR, index, &[SENTINEL; 4]),
             }
         }
     }
@@ -178,11 +180,15 @@ unsafe fn clear_targets(gl: &glow::Context, formats: &[Format]) {
 
 /// The words of the bound target, row by row. OpenGL reads the bottom row first. This is the top
 /// row of the frame, since the emitted vertex stages flip y.
-unsafe fn read_target(gl: &glow::Context, [width, height]: [i32; 2], format: Format) -> Vec<u32> {
+unsafe fn read_target(
+    gl: &glow::Context,
+    [width, height]: [i32; 2],
+    format: ColorFormat,
+) -> Vec<u32> {
     let mut bytes = vec![0u8; width as usize * height as usize * 16];
     let (format, ty) = match format {
-        Format::Float => (glow::RGBA, glow::FLOAT),
-        Format::Uint => (glow::RGBA_INTEGER, glow::UNSIGNED_INT),
+        ColorFormat::Float => (glow::RGBA, glow::FLOAT),
+        ColorFormat::Uint => (glow::RGBA_INTEGER, glow::UNSIGNED_INT),
     };
     // SAFETY: `bytes` holds the whole target.
     unsafe {
@@ -194,10 +200,10 @@ unsafe fn read_target(gl: &glow::Context, [width, height]: [i32; 2], format: For
 
 unsafe fn draw_item(
     gl: &glow::Context,
-    ready: &Ready,
+    ready: &FrameProgram,
     drawing: &Drawing<'_>,
     view: &Buffers,
-    item: &Item<'_>,
+    item: &DrawItem<'_>,
 ) -> Result<(), String> {
     // SAFETY: the context is current and the program is in use.
     unsafe {

@@ -9,7 +9,7 @@ mod frame;
 mod program;
 mod texture;
 
-pub use context::Api;
+pub use context::OpenGlApi;
 
 use std::collections::HashMap;
 
@@ -22,28 +22,28 @@ use crate::emit::Emitted;
 use crate::execute::fixture::Fixture;
 use crate::execute::frame::{Drawing, Frame};
 use crate::execute::kernel::{INPUT_WIDTH, Kernel, SENTINEL, TARGET_WIDTH};
-use crate::execute::{Pair, Session};
-use context::Context;
+use crate::execute::{Session, ShippedPair};
+use context::OpenGlContext;
 
 /// Group and binding of a kernel's input texture.
 const INPUTS: [u32; 2] = [0, 0];
 
 /// A context that runs the texts of one target.
 pub struct OpenGl {
-    context: Context,
+    context: OpenGlContext,
     target: Target,
-    kept: HashMap<u64, Kept>,
+    kept: HashMap<u64, OpenGlKernel>,
 }
 
 /// What is kept for a kernel: the program, the unit of its inputs, and the fixtures on their units.
-struct Kept {
+struct OpenGlKernel {
     program: glow::Program,
     inputs: u32,
-    units: Vec<Unit>,
+    units: Vec<TextureUnit>,
 }
 
 /// A texture unit, and what is bound to it.
-struct Unit {
+struct TextureUnit {
     index: u32,
     target: u32,
     texture: glow::Texture,
@@ -52,8 +52,8 @@ struct Unit {
 
 impl OpenGl {
     /// Opens a context for the texts of a target. The error is a message.
-    pub fn open(api: Api, target: Target) -> Result<Self, String> {
-        Ok(Self { context: Context::open(api)?, target, kept: HashMap::new() })
+    pub fn open(api: OpenGlApi, target: Target) -> Result<Self, String> {
+        Ok(Self { context: OpenGlContext::open(api)?, target, kept: HashMap::new() })
     }
 
     fn has_extensions(&self, text: &[u8]) -> Result<(), Diagnostic> {
@@ -100,7 +100,7 @@ impl Session for OpenGl {
 
     fn draw_shipped(
         &self,
-        pair: Pair<'_>,
+        pair: ShippedPair<'_>,
         drawing: &Drawing<'_>,
     ) -> Result<Vec<Frame>, Diagnostic> {
         for stage in [pair.vertex, pair.fragment] {
@@ -119,7 +119,7 @@ fn keep_kernel(
     kernel: &Kernel,
     vertex: &str,
     emitted: &Emitted,
-) -> Result<Kept, String> {
+) -> Result<OpenGlKernel, String> {
     let text = str::from_utf8(&emitted.bytes).map_err(|error| error.to_string())?;
     let program = program::link_program(gl, vertex, text)?;
     let (mut inputs, mut units) = (0, Vec::new());
@@ -135,10 +135,10 @@ fn keep_kernel(
         let settings = combined.sampler.and_then(|place| kernel.fixture_at(place[1])?.sampler());
         let sampler = settings.map(|settings| texture::create_sampler(gl, settings)).transpose()?;
         let (target, texture) = texture::upload_fixture(gl, fixture)?;
-        units.push(Unit { index, target, texture, sampler });
+        units.push(TextureUnit { index, target, texture, sampler });
     }
     program::check_error(gl)?;
-    Ok(Kept { program, inputs, units })
+    Ok(OpenGlKernel { program, inputs, units })
 }
 
 /// The unit that the text declares. Where the language has no such declaration, the next free one
@@ -160,8 +160,8 @@ fn texture_unit(
 
 fn draw_kernel(
     gl: &glow::Context,
-    api: Api,
-    kept: &Kept,
+    api: OpenGlApi,
+    kept: &OpenGlKernel,
     texels: &[u32],
     rows: u32,
 ) -> Result<Vec<u32>, String> {
@@ -205,21 +205,21 @@ fn draw_kernel(
 
 /// Sets the state: every fragment is written, and cubes are filtered across their edges, as WebGPU
 /// demands. OpenGL does that only if it is enabled; OpenGL ES 3 always does.
-fn plain_state(gl: &glow::Context, api: Api) {
+fn plain_state(gl: &glow::Context, api: OpenGlApi) {
     let off =
         [glow::SCISSOR_TEST, glow::DEPTH_TEST, glow::STENCIL_TEST, glow::CULL_FACE, glow::BLEND];
     // SAFETY: the context is current.
     unsafe {
         off.iter().for_each(|state| gl.disable(*state));
         gl.color_mask(true, true, true, true);
-        if matches!(api, Api::Core(..)) {
+        if matches!(api, OpenGlApi::Core(..)) {
             gl.enable(glow::TEXTURE_CUBE_MAP_SEAMLESS);
         }
     }
 }
 
 /// Binds the inputs and the fixtures to their units.
-fn bind_inputs(gl: &glow::Context, kept: &Kept, inputs: glow::Texture) {
+fn bind_inputs(gl: &glow::Context, kept: &OpenGlKernel, inputs: glow::Texture) {
     // SAFETY: the context is current and every name is of it.
     unsafe {
         gl.active_texture(glow::TEXTURE0 + kept.inputs);

@@ -2,7 +2,7 @@
 
 use glow::HasContext as _;
 
-use super::context::Api;
+use super::context::OpenGlApi;
 
 /// The full-screen triangle, without the `#version` line.
 const TRIANGLE: &str = "
@@ -13,10 +13,10 @@ void main() {
 ";
 
 /// A vertex stage that draws one triangle over everything.
-pub fn triangle_stage(api: Api) -> String {
+pub fn triangle_stage(api: OpenGlApi) -> String {
     let version = match api {
-        Api::Core(major, minor) => format!("{major}{minor}0 core"),
-        Api::Embedded(major, minor) => format!("{major}{minor}0 es"),
+        OpenGlApi::Core(major, minor) => format!("{major}{minor}0 core"),
+        OpenGlApi::Embedded(major, minor) => format!("{major}{minor}0 es"),
     };
     format!("#version {version}\n{TRIANGLE}")
 }

@@ -2,12 +2,12 @@
 
 use glow::HasContext as _;
 
-use crate::execute::fixture::{Address, Compare, Sampler, Texture};
+use crate::execute::fixture::{Address, Compare, FixtureSampler, FixtureTexture};
 
 /// Uploads the fixture as a texture; also returns its target.
 pub fn upload_fixture(
     gl: &glow::Context,
-    texture: &Texture,
+    texture: &FixtureTexture,
 ) -> Result<(u32, glow::Texture), String> {
     let (internal, format) = if texture.kind.is_depth() {
         (glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT)
@@ -103,7 +103,10 @@ pub unsafe fn set_nearest(gl: &glow::Context, target: u32) {
 }
 
 /// A sampler object with these settings.
-pub fn create_sampler(gl: &glow::Context, settings: Sampler) -> Result<glow::Sampler, String> {
+pub fn create_sampler(
+    gl: &glow::Context,
+    settings: FixtureSampler,
+) -> Result<glow::Sampler, String> {
     let filter = if settings.linear { glow::LINEAR } else { glow::NEAREST };
     let wrap = match settings.address {
         Address::Clamp => glow::CLAMP_TO_EDGE,
