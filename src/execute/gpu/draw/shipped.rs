@@ -65,12 +65,11 @@ impl WgpuDevice {
         let bindings = Bindings::new(self, drawing, used)?.without_gaps(self);
         let layouts = bindings.layouts(self, drawing);
         let all = [vertex.heaps, fragment.heaps].concat();
-        let heaps = match all.is_empty() {
-            true => None,
-            false => {
-                let sampler = |place: [u32; 2]| drawing.sampler_at(place);
-                Some(heaps::bind_heaps(&self.device, &all, &sampler).map_err(executor_failed)?)
-            }
+        let heaps = if all.is_empty() {
+            None
+        } else {
+            let sampler = |place: [u32; 2]| drawing.sampler_at(place);
+            Some(heaps::bind_heaps(&self.device, &all, &sampler).map_err(executor_failed)?)
         };
         let mut in_order: Vec<Option<&wgpu::BindGroupLayout>> =
             (0..group).map(|index| layouts.get(&index)).collect();
