@@ -1,5 +1,6 @@
 //! External validators accept the composed texts and the outputs of programs.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -70,23 +71,54 @@ pub fn validators(
     for (entry, compose) in sources.languages() {
         let texts =
             texts(program, &sources.texts, &cover::pairwise(&program.space).points, &*compose)?;
-        let refused = |(index, (composed, point)): (usize, &'_ (Composed, Assignment))| {
+        let write = |(index, (composed, point)): (usize, &'_ (Composed, Assignment))| {
             let prefix = folder.path().join(format!("{entry}{index}"));
-            Some((point.clone(), accepted(composed, entry, stage.2, &prefix).err()?))
+            (point.clone(), write_outputs(composed, entry, stage.2, &prefix))
         };
-        let failures: Vec<_> =
-            on_large_stack(|| texts.composed.par_iter().enumerate().filter_map(refused).collect());
-        report(program, failures.iter().map(|(point, what)| (point, what.clone())).collect())?;
+        let written: Vec<_> =
+            on_large_stack(|| texts.composed.par_iter().enumerate().map(write).collect());
+        let mut failures = Vec::new();
+        let mut files: BTreeMap<&str, Vec<(&Assignment, &String)>> = BTreeMap::new();
+        for (point, outputs) in &written {
+            match outputs {
+                Ok(outputs) => outputs
+                    .iter()
+                    .for_each(|(rule, path)| files.entry(rule).or_default().push((point, path))),
+                Err(what) => failures.push((point, what.clone())),
+            }
+        }
+        let batches: Vec<_> = files.values().flat_map(|files| files.chunks(BATCH)).collect();
+        failures.par_extend(batches.into_par_iter().flat_map_iter(|one| refused(stage.2, one)));
+        report(program, failures)?;
     }
     Ok(())
 }
 
-fn accepted(
+/// The files of a batch that glslangValidator refuses. All are judged by the same rules, in one run
+/// if it accepts all.
+fn refused<'p>(
+    extension: &str,
+    batch: &[(&'p Assignment, &String)],
+) -> Vec<(&'p Assignment, String)> {
+    let judge = |files: &[(&Assignment, &String)]| {
+        let paths = files.iter().map(|(_, path)| path.as_str());
+        let arguments: Vec<&str> = ["-S", extension].into_iter().chain(paths).collect();
+        run("glslangValidator", &arguments)
+    };
+    match judge(batch) {
+        Ok(()) => Vec::new(),
+        Err(_) => batch.chunks(1).filter_map(|one| Some((one[0].0, judge(one).err()?))).collect(),
+    }
+}
+
+/// Writes the outputs of a text, has spirv-val and the rules of Vulkan judge those that they are
+/// for, and returns the files for glslangValidator, each with a name for its rules.
+fn write_outputs(
     composed: &Composed,
     entry: &str,
     extension: &str,
     prefix: &Path,
-) -> Result<(), String> {
+) -> Result<Vec<(String, String)>, String> {
     let alone = alone(composed, entry).map_err(|problems| problems[0].message.clone())?;
     let write = |target: Target, extension: &str| -> Result<String, String> {
         let path = prefix.with_extension(format!("{target}.{extension}"));
@@ -95,26 +127,27 @@ fn accepted(
         Ok(path.to_string_lossy().into_owned())
     };
     run("spirv-val", &["--target-env", "vulkan1.1", &write(Target::SPIRV, "spv")?])?;
-    for entry in targets::ALL.iter().filter(|entry| entry.glsl.is_some()) {
-        let path = write(entry.target, extension)?;
-        run("glslangValidator", &["-S", extension, &path])?;
-        // Engines use the text for ES 3.00 with later versions of ES too, so it must be valid there.
-        let is_version = |rule: &&&str| rule.starts_with(|first: char| first.is_ascii_digit());
-        for version in entry.judged.rules.iter().filter(is_version) {
-            let text = std::fs::read_to_string(&path).map_err(|error| error.to_string())?;
-            let (_, rest) = text.split_once('\n').ok_or("the text has one line")?;
-            let text = format!("#version {version}\n{rest}");
-            let name = format!("{}.later", entry.target);
-            run("glslangValidator", &[&save(&text, prefix, &name, extension)?])?;
-        }
-    }
     if composed.language == Language::Glsl {
         run(
             "glslangValidator",
             &[VULKAN, &[&save(&composed.text, prefix, "source", extension)?]].concat(),
         )?;
     }
-    Ok(())
+    let mut files = Vec::new();
+    for entry in targets::ALL.iter().filter(|entry| entry.glsl.is_some()) {
+        let path = write(entry.target, extension)?;
+        files.push((entry.target.to_string(), path.clone()));
+        // Engines use the text for ES 3.00 with later versions of ES too, so it must be valid there.
+        let is_version = |rule: &&&str| rule.starts_with(|first: char| first.is_ascii_digit());
+        for version in entry.judged.rules.iter().filter(is_version) {
+            let text = std::fs::read_to_string(&path).map_err(|error| error.to_string())?;
+            let (_, rest) = text.split_once('\n').ok_or("the text has one line")?;
+            let text = format!("#version {version}\n{rest}");
+            let name = format!("{}.{}", entry.target, version.replace(' ', "_"));
+            files.push((name.clone(), save(&text, prefix, &name, extension)?));
+        }
+    }
+    Ok(files)
 }
 
 fn save(text: &str, prefix: &Path, name: &str, extension: &str) -> Result<String, String> {
