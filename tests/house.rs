@@ -2,6 +2,7 @@
 //! paths, functions and files are short, and no run left a file behind.
 
 mod lengths;
+mod one_way;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -25,7 +26,8 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("house::leftovers", nothing_is_left_behind),
         Trial::test("house::leftovers_are_seen", leftovers_are_seen),
         Trial::test("house::paths", paths_are_short),
-        Trial::test("house::one_way_to_the_terminal", one_way_to_the_terminal),
+        Trial::test("house::one_way_to_the_terminal", one_way::to_the_terminal),
+        Trial::test("house::one_rename", one_way::to_rename),
         Trial::test("house::needs_of_executors", needs_are_installed),
         Trial::test("house::described", entries_are_described),
         Trial::test("house::lengths", lengths::are_kept),
@@ -197,28 +199,6 @@ const BINARIES: [&str; 13] = [
 
 /// A path must have fewer characters. Windows allows 260, with the folder that holds the repository.
 const LONGEST: usize = 120;
-
-/// Commands print through `src/cli/terminal.rs`, which escapes control characters.
-fn one_way_to_the_terminal() -> Result<(), Failed> {
-    let mut files = Vec::new();
-    rust_files(&Path::new(ROOT).join("src/cli"), &mut files)?;
-    let names_a_stream = |line: &str| {
-        let imports = line.starts_with("use std::io")
-            && ["stdout", "stderr"].iter().any(|stream| line.contains(stream));
-        imports || line.contains("io::stdout(") || line.contains("io::stderr(")
-    };
-    let mut found = Vec::new();
-    for file in files.iter().filter(|file| !file.ends_with("terminal.rs")) {
-        let text = std::fs::read_to_string(file)?;
-        if let Some(line) = text.lines().find(|line| names_a_stream(line)) {
-            found.push(format!("{}: {line}", file.display()));
-        }
-    }
-    match found.is_empty() {
-        true => Ok(()),
-        false => Err(format!("use `cli::terminal` instead:\n{}", found.join("\n")).into()),
-    }
-}
 
 /// The repository has no file that a run left behind.
 fn nothing_is_left_behind() -> Result<(), Failed> {

@@ -211,7 +211,7 @@ impl DirectoryWriter {
         self.move_blobs(&staged)?;
         self.write_retired(self.live.difference(&next))?;
         if !is_same {
-            fs::rename(&written, &place).map_err(|error| io_error(&place, &error))?;
+            output::rename_finished(&written, &place).map_err(|error| io_error(&place, &error))?;
             output::sync_folder(&self.path);
         }
         Ok(())
@@ -240,7 +240,7 @@ impl DirectoryWriter {
         fs::create_dir_all(&blobs).map_err(|error| io_error(&blobs, &error))?;
         for name in staged {
             let place = blobs.join(name);
-            fs::rename(self.scratch.path(name), &place)
+            output::rename_finished(&self.scratch.path(name), &place)
                 .map_err(|error| io_error(&place, &error))?;
         }
         output::sync_folder(&blobs);
@@ -260,7 +260,8 @@ impl DirectoryWriter {
         if !lines.is_empty() {
             let text = RETIRED_HEADER.to_owned() + &lines;
             let written = self.scratch.write(RETIRED, text.as_bytes())?;
-            return fs::rename(written, &place).map_err(|error| io_error(&place, &error));
+            return output::rename_finished(&written, &place)
+                .map_err(|error| io_error(&place, &error));
         }
         match fs::remove_file(&place) {
             Err(error) if error.kind() != ErrorKind::NotFound => Err(io_error(&place, &error)),

@@ -79,7 +79,7 @@ impl CacheFolder {
 
     fn put_file(&self, scratch: &Scratch, path: &Path, bytes: &[u8]) -> Result<(), String> {
         let written = scratch.write_unsynced(bytes).map_err(|error| error.to_string())?;
-        fs::rename(&written, path).map_err(|error| {
+        output::rename_finished(&written, path).map_err(|error| {
             let _ = fs::remove_file(&written);
             error.to_string()
         })

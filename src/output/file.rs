@@ -5,7 +5,7 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 use super::scratch::sync_folder;
-use super::{Error, Foreign, Replace, Scratch, make_folder};
+use super::{Error, Foreign, Replace, Scratch, make_folder, rename_finished};
 
 /// How many bytes of a file are read to see whether it is ours.
 pub const HEAD_BYTES: usize = 4096;
@@ -72,7 +72,7 @@ fn put_file(path: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> 
     if let Some(permissions) = permissions {
         fs::set_permissions(&written, permissions).map_err(|error| Error::io(path, &error))?;
     }
-    fs::rename(written, path).map_err(|error| Error::io(path, &error))?;
+    rename_finished(&written, path).map_err(|error| Error::io(path, &error))?;
     sync_folder(&folder);
     Ok(())
 }

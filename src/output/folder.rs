@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::file::{has_bytes, kind_of_entry};
 use super::scratch::sync_folder;
-use super::{Error, Foreign, Replace, Scratch, make_folder, wait_for_turn};
+use super::{Error, Foreign, Replace, Scratch, make_folder, rename_finished, wait_for_turn};
 
 /// The record's name, and how it begins.
 const RECORD: &str = ".lamplight-outputs";
@@ -154,7 +154,7 @@ impl OutputFolder {
         let folder = path.parent().unwrap_or(&self.path);
         make_folder(folder)?;
         let written = self.scratch.write("file", bytes)?;
-        fs::rename(written, &path).map_err(|error| Error::io(&path, &error))?;
+        rename_finished(&written, &path).map_err(|error| Error::io(&path, &error))?;
         sync_folder(folder);
         Ok(())
     }
@@ -168,7 +168,7 @@ impl OutputFolder {
         let path = self.path.join(RECORD);
         let written =
             self.scratch.write("record", (HEADER.to_owned() + &lines.concat()).as_bytes())?;
-        fs::rename(written, &path).map_err(|error| Error::io(&path, &error))?;
+        rename_finished(&written, &path).map_err(|error| Error::io(&path, &error))?;
         // The record is on the disk before any file that it lists.
         sync_folder(&self.path);
         Ok(())

@@ -17,7 +17,7 @@
 //!    the disk.
 //! 3. `put_file` in `file.rs` gives the file the permissions of the one that it replaces, and
 //!    renames it into its place. In an output folder, `OutputFolder::put` in `folder.rs` only
-//!    renames it.
+//!    renames it. Both call [`rename_finished`], as bundles and the cache do.
 //! 4. `sync_folder` in `scratch.rs` syncs the folder, so that the new name survives a loss of power.
 //! 5. The scratch folder is removed: when it is dropped, or by the next run if this one was killed.
 //!
@@ -83,6 +83,11 @@ pub fn wait_for_turn(folder: &Path, waiting: &dyn Fn()) -> Option<File> {
         }
         Err(TryLockError::Error(_)) => None,
     }
+}
+
+/// Renames a finished file into its place. Every rename goes through here.
+pub fn rename_finished(finished: &Path, place: &Path) -> std::io::Result<()> {
+    fs::rename(finished, place)
 }
 
 /// Makes a folder and those above it.
