@@ -12,7 +12,7 @@ use super::compiled::request::{
 use super::fixture::Fixture;
 use super::frame::{Drawing, EntryPoint, Frame};
 use super::gpu::{emitted, run_batches};
-use super::kernel::{INPUT_WIDTH, Kernel, TARGET_WIDTH, first_of_code};
+use super::kernel::{INPUT_WIDTH, Kernel, TARGET_WIDTH, kernels_to_compile};
 use super::raster::CompiledStages;
 use super::shipped::Shipped;
 use super::{Session, ShippedPair, executor_failed};
@@ -50,8 +50,7 @@ impl Metal {
 
     /// Compiles the kernels that are new, all of them at once.
     fn compile(&mut self, kernels: &[&Kernel]) {
-        let mut new = first_of_code(kernels);
-        new.retain(|kernel| !self.kept.contains_key(&kernel.code));
+        let new = kernels_to_compile(kernels, |code| self.kept.contains_key(&code));
         if new.is_empty() {
             return;
         }

@@ -149,7 +149,7 @@ impl Linear {
         background: &Background,
         exposure: f64,
     ) {
-        let ([width, height], columns) = (self.size.map(f64::from), self.size[0] as usize);
+        let ([width, height], columns) = (self.size.map(f64::from), self.size[0].max(1) as usize);
         let (factor, is_first) = (exposure.exp2(), self.samples == 0);
         let rows = self.sums.par_chunks_mut(columns).zip(self.first.par_chunks_mut(columns));
         rows.enumerate().for_each(|(y, (sums, first))| {

@@ -54,8 +54,8 @@ const LEAF: usize = 4;
 const NEAREST: f64 = 1e-6;
 /// The relative and the absolute error that is allowed for in distances of boxes.
 const MARGIN: f64 = 1e-12;
-/// More levels than the hierarchy of any scene has.
-const DEPTH: usize = 64;
+/// Room for the boxes that wait to be visited: at most one for each level of the hierarchy.
+const LEVELS: usize = 64;
 
 impl Surfaces {
     /// The triangles of everything that casts a shadow.
@@ -80,11 +80,10 @@ impl Surfaces {
     /// length.
     pub fn hit(&self, from: DVec3, towards: DVec3) -> Option<Hit> {
         let ray = Ray::new(from, towards);
-        let mut best = f64::INFINITY;
-        let mut found = usize::MAX;
-        self.walk(&ray, f64::INFINITY, |index, distance| {
-            // Of triangles at the same distance, the first counts, in whatever order they are met.
-            if distance < best || (distance == best && index < found) {
+        // Of triangles at the same distance, the first counts, in whatever order they are met.
+        let (mut best, mut found) = (f64::INFINITY, usize::MAX);
+        self.walk(&ray, best, |index, distance| {
+            if (distance, index) < (best, found) {
                 (best, found) = (distance, index);
             }
             best
@@ -112,9 +111,8 @@ impl Surfaces {
     /// Calls `meet` with the index and the distance of each triangle that the ray meets, in boxes
     /// that it enters before a distance. `meet` returns that distance anew. Of two boxes, the nearer
     /// one comes first.
-    fn walk(&self, ray: &Ray, before: f64, mut meet: impl FnMut(usize, f64) -> f64) {
-        let mut before = before;
-        let mut waiting = Vec::with_capacity(DEPTH);
+    fn walk(&self, ray: &Ray, mut before: f64, mut meet: impl FnMut(usize, f64) -> f64) {
+        let mut waiting = Vec::with_capacity(LEVELS);
         let enter = |index: usize| Some((self.nodes.get(index)?.enter(ray)?, index));
         waiting.extend(enter(0));
         while let Some((distance, index)) = waiting.pop() {

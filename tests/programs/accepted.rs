@@ -32,12 +32,11 @@ pub fn glslang_takes_sources(
         let path =
             folder.path().join(format!("{index}.{}", stage.2)).to_string_lossy().into_owned();
         std::fs::write(&path, &composed.text)?;
-        files.push((path, point));
+        files.push((point, path));
     }
-    let refused = |batch: &[(String, &Assignment)]| -> Vec<(Assignment, String)> {
-        // glslangValidator links the files of one call. If all of them compile, linking fails, with
-        // status 3.
-        let paths = batch.iter().map(|(path, _)| path);
+    // glslangValidator links the files of one call. If all of them compile, linking fails, with
+    // status 3.
+    let accepts_all = |paths: &[&str]| {
         let status = Command::new("glslangValidator")
             // It writes its output to the current folder.
             .current_dir(folder.path())
@@ -45,16 +44,28 @@ pub fn glslang_takes_sources(
             .args(paths)
             .stdout(Stdio::null())
             .status();
-        if batch.len() > 1 && status.is_ok_and(|status| status.code() == Some(3)) {
-            return Vec::new();
-        }
-        let alone = |(path, point): &(String, &Assignment)| {
-            Some(((*point).clone(), run("glslangValidator", &[VULKAN, &[path]].concat()).err()?))
-        };
-        batch.iter().filter_map(alone).collect()
+        paths.len() > 1 && status.is_ok_and(|status| status.code() == Some(3))
     };
-    let failures: Vec<_> = files.par_chunks(BATCH).flat_map_iter(refused).collect();
-    report(program, failures.iter().map(|(point, what)| (point, what.clone())).collect())
+    let judge = |path: &str| run("glslangValidator", &[VULKAN, &[path]].concat());
+    let batches = files.par_chunks(BATCH);
+    report(program, batches.flat_map_iter(|batch| refused(batch, accepts_all, judge)).collect())
+}
+
+/// A file, and the permutation that it is of.
+type FileOf<'p> = (&'p Assignment, String);
+
+/// The files of a batch that are refused. Each is judged by itself, unless all are accepted in one
+/// run.
+fn refused<'p>(
+    batch: &[FileOf<'p>],
+    accepts_all: impl Fn(&[&str]) -> bool,
+    judge: impl Fn(&str) -> Result<(), String>,
+) -> Vec<(&'p Assignment, String)> {
+    let paths: Vec<&str> = batch.iter().map(|(_, path)| path.as_str()).collect();
+    if accepts_all(&paths) {
+        return Vec::new();
+    }
+    batch.iter().filter_map(|(point, path)| Some((*point, judge(path).err()?))).collect()
 }
 
 /// Options of glslangValidator for GLSL with Vulkan's semantics.
@@ -78,37 +89,24 @@ pub fn validators(
         let written: Vec<_> =
             on_large_stack(|| texts.composed.par_iter().enumerate().map(write).collect());
         let mut failures = Vec::new();
-        let mut files: BTreeMap<&str, Vec<(&Assignment, &String)>> = BTreeMap::new();
+        let mut files: BTreeMap<&str, Vec<FileOf<'_>>> = BTreeMap::new();
         for (point, outputs) in &written {
             match outputs {
-                Ok(outputs) => outputs
-                    .iter()
-                    .for_each(|(rule, path)| files.entry(rule).or_default().push((point, path))),
+                Ok(outputs) => outputs.iter().for_each(|(rule, path)| {
+                    files.entry(rule).or_default().push((point, path.clone()));
+                }),
                 Err(what) => failures.push((point, what.clone())),
             }
         }
+        let judge = |paths: &[&str]| run("glslangValidator", &[&["-S", stage.2], paths].concat());
+        let judge_all = |paths: &[&str]| judge(paths).is_ok();
+        let judge_one = |path: &str| judge(&[path]);
         let batches: Vec<_> = files.values().flat_map(|files| files.chunks(BATCH)).collect();
-        failures.par_extend(batches.into_par_iter().flat_map_iter(|one| refused(stage.2, one)));
+        let batches = batches.into_par_iter();
+        failures.par_extend(batches.flat_map_iter(|one| refused(one, judge_all, judge_one)));
         report(program, failures)?;
     }
     Ok(())
-}
-
-/// The files of a batch that glslangValidator refuses. All are judged by the same rules, in one run
-/// if it accepts all.
-fn refused<'p>(
-    extension: &str,
-    batch: &[(&'p Assignment, &String)],
-) -> Vec<(&'p Assignment, String)> {
-    let judge = |files: &[(&Assignment, &String)]| {
-        let paths = files.iter().map(|(_, path)| path.as_str());
-        let arguments: Vec<&str> = ["-S", extension].into_iter().chain(paths).collect();
-        run("glslangValidator", &arguments)
-    };
-    match judge(batch) {
-        Ok(()) => Vec::new(),
-        Err(_) => batch.chunks(1).filter_map(|one| Some((one[0].0, judge(one).err()?))).collect(),
-    }
 }
 
 /// Writes the outputs of a text, has spirv-val and the rules of Vulkan judge those that they are

@@ -34,15 +34,15 @@ pub fn draw_gallery(
         .map(|preset| Ok((preset, Plan::of_preset(programs, preset, &probes)?)))
         .collect::<Result<Vec<_>, _>>()
         .map_err(|problems| input_failure(programs, problems))?;
-    let exhibit = |painter: &mut dyn Session, (preset, plan): &(&Preset, Plan)| {
+    let draw_exhibit = |painter: &mut dyn Session, (preset, plan): &(&Preset, Plan)| {
         let exhibit = Exhibit::new(painter, programs, preset, plan, shot)
             .map_err(|problems| input_failure(programs, problems))?;
         let [picture, thumb] = gallery::picture_files(&preset.name);
         let small = exhibit.picture.shrunk(gallery::THUMB);
         Ok((vec![(picture, png_of(&exhibit.picture)?), (thumb, png_of(&small)?)], exhibit))
     };
-    let exhibits = draw_all(entry, &plans, exhibit, &mut folder)?;
-    let strip = |painter: &mut dyn Session, comparison: &Comparison| {
+    let exhibits = draw_all(entry, &plans, draw_exhibit, &mut folder)?;
+    let draw_strip = |painter: &mut dyn Session, comparison: &Comparison| {
         let picture = strip::draw_strip(painter, programs, comparison, shot)
             .map_err(|problems| input_failure(programs, problems))?;
         let card = StripCard::new(programs, comparison.clone(), shot.language)
@@ -51,7 +51,7 @@ pub fn draw_gallery(
         Ok((vec![(gallery::strip_file(&comparison.name), png_of(&picture)?)], (card, line)))
     };
     let (strips, drawn): (Vec<_>, Vec<_>) =
-        draw_all(entry, &compared, strip, &mut folder)?.into_iter().unzip();
+        draw_all(entry, &compared, draw_strip, &mut folder)?.into_iter().unzip();
     let lines = gallery::adapter_lines(&exhibits, shot) + &drawn.concat();
     let cards: Vec<&Card> = exhibits.iter().map(|exhibit| &exhibit.card).collect();
     folder.write("README.md", gallery::markdown_page(&cards, &strips).as_bytes())?;

@@ -36,7 +36,10 @@ pub fn draw_all<S: Sync, T: Send>(
     let work = |sender: Sender<NumberedFiles<T>>| {
         let mut painter = match executor::open_executor(entry) {
             Ok(painter) => painter,
-            Err(failure) => return drop(sender.send((0, Err(failure)))),
+            Err(failure) => {
+                is_stopped.store(true, Ordering::Relaxed);
+                return drop(sender.send((0, Err(failure))));
+            }
         };
         while !is_stopped.load(Ordering::Relaxed) {
             let index = next.fetch_add(1, Ordering::Relaxed);
@@ -49,17 +52,22 @@ pub fn draw_all<S: Sync, T: Send>(
         }
     };
     std::thread::scope(|scope| {
-        for _ in 0..AT_ONCE.min(subjects.len()) {
+        let start = |_| {
             let (work, sender) = (&work, sender.clone());
             let thread = std::thread::Builder::new().stack_size(STACK);
-            thread
-                .spawn_scoped(scope, move || work(sender))
-                .map_err(|error| Failure::environment(error.to_string()))?;
-        }
+            thread.spawn_scoped(scope, move || work(sender))
+        };
+        let threads = (0..AT_ONCE.min(subjects.len())).map(start).collect::<Result<Vec<_>, _>>();
+        let threads = threads.map_err(|error| Failure::environment(error.to_string()))?;
         drop(sender);
+        // If a file cannot be written, the receiver is gone, and the threads end at their next send.
         let kept = collect(drawn, subjects.len(), folder);
-        is_stopped.fetch_or(kept.is_err(), Ordering::Relaxed);
-        kept
+        // The end of a scope does not wait for the thread-local state of drivers, but this does.
+        let ended: Vec<_> = threads.into_iter().map(|thread| thread.join()).collect();
+        match ended.iter().all(Result::is_ok) {
+            true => kept,
+            false => Err(Failure::environment(stopped_message("the renderer"))),
+        }
     })
 }
 

@@ -162,10 +162,14 @@ impl Kernel {
     }
 }
 
-/// The kernels that are compiled: the first one of each code.
-pub fn first_of_code<'k>(kernels: &[&'k Kernel]) -> Vec<&'k Kernel> {
+/// The kernels that are still to be compiled: the first one of each code that is not kept.
+pub fn kernels_to_compile<'k>(
+    kernels: &[&'k Kernel],
+    is_kept: impl Fn(u64) -> bool,
+) -> Vec<&'k Kernel> {
     let mut seen = BTreeSet::new();
-    kernels.iter().copied().filter(|kernel| seen.insert(kernel.code)).collect()
+    let is_new = |kernel: &&Kernel| !is_kept(kernel.code) && seen.insert(kernel.code);
+    kernels.iter().copied().filter(is_new).collect()
 }
 
 /// Wraps `function` of a module; textures and samplers among its parameters are bound to the

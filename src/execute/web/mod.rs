@@ -18,7 +18,7 @@ use serde_json::{Value, json};
 use super::emitted;
 use super::frame::{Drawing, Frame};
 use super::gpu::run_batches;
-use super::kernel::{Kernel, first_of_code};
+use super::kernel::{Kernel, kernels_to_compile};
 use super::{Session, ShippedPair, executor_failed};
 use crate::browser::serve::{HttpServer, ServedFiles};
 use crate::browser::{Browser, BrowserPage, PATIENCE, Problem};
@@ -184,8 +184,7 @@ impl Web {
 
     /// Gives the page the kernels that are new to it, some at a time.
     fn compile(&self, state: &mut WebState, kernels: &[&Kernel]) -> Result<(), WebFailure> {
-        let mut new = first_of_code(kernels);
-        new.retain(|kernel| !state.kept.contains_key(&kernel.code));
+        let new = kernels_to_compile(kernels, |code| state.kept.contains_key(&code));
         let target = self.api.target();
         for some in new.chunks(AT_ONCE) {
             let emit = |kernel: &&Kernel| {

@@ -288,7 +288,7 @@ fn find_function(module: &Module, name: &str) -> Option<Handle<Function>> {
 }
 
 impl ReadyCase<'_> {
-    /// An interpreter for a changed copy of the kernel's module. All rows run twice, in f64 and in
+    /// An interpreter for the kernel's module, or for a changed copy of it. All rows run twice, in f64 and in
     /// f32, and once more for each law with rows of its own. Each time may take the steps of a case.
     fn interpreter(&self, module: &Module) -> Result<Interpreter, Diagnostic> {
         let with_rows = self.job.laws.iter().filter(|law| law.rows.is_some()).count();
