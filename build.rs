@@ -194,13 +194,20 @@ fn runs_here(file: &Path) -> std::io::Result<bool> {
     match line {
         Some("every system") => Ok(true),
         Some("every system but WebAssembly") => Ok(!is_wasm),
-        Some(names) => Ok(names.split(", ").any(|name| name == system)),
-        None => {
-            let what = "no line `//! Runs on: every system but WebAssembly`, or another system";
-            Err(std::io::Error::other(format!("{}: {what}", file.display())))
+        Some(names) if names.split(", ").all(|name| SYSTEMS.contains(&name)) => {
+            Ok(names.split(", ").any(|name| name == system))
+        }
+        _ => {
+            let what = "a line `//! Runs on: ` is needed, with `every system`, `every system but \
+                WebAssembly`, or some of";
+            let systems = SYSTEMS.join(", ");
+            Err(std::io::Error::other(format!("{}: {what} `{systems}`", file.display())))
         }
     }
 }
+
+/// The systems that a line `Runs on:` may name.
+const SYSTEMS: [&str; 6] = ["android", "freebsd", "ios", "linux", "macos", "windows"];
 
 /// The shader library as text, so that an installed binary carries it.
 fn embedded(folder: &Path) -> std::io::Result<String> {

@@ -1,6 +1,7 @@
 //! The numeric harness: executors, kernels, expressions and cases.
 
 mod refused;
+mod visibility;
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
@@ -306,7 +307,11 @@ fn runs(executor: &'static executors::ExecutorEntry) -> Result<(), Failed> {
         assert_eq!(found, shapes_expected(i as u32), "invocation {i} on {}", session.adapter());
     }
     assert_eq!(results.len(), count as usize * 13);
-    draws_as_listed(executor, session.as_ref())
+    draws_as_listed(executor, session.as_ref())?;
+    match executor.samples {
+        Some(_) => Ok(visibility::holds(session.as_ref())?),
+        None => Ok(()),
+    }
 }
 
 /// An executor draws frames exactly if its entry says so.

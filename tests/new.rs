@@ -200,17 +200,27 @@ fn own_executor() -> Outcome {
     Ok(())
 }
 
-/// A new executor opens a device of wgpu, or is a copy of another one. Its description is empty, or
-/// that of the other, which trials notice.
+/// A new executor opens a device of wgpu, or is a copy of another one with comments that explain its
+/// fields. Its description is empty, which trials notice.
 fn executor() -> Outcome {
     rust("executor", "src/execute/executors/fresh.rs")?;
     let copy = make("executor", "other", &["vulkan"])?;
     let text = text(&copy, "src/execute/executors/other.rs")?;
     let known = std::fs::read_to_string(root().join("src/execute/executors/vulkan.rs"))?;
-    if text != known.replace("name: \"vulkan\"", "name: \"other\"") {
-        return Err(
-            format!("expected a copy of vulkan.rs with another name, found:\n{text}").into()
-        );
+    let code = |text: &str| -> String {
+        let is_code = |line: &&str| !line.trim_start().starts_with("//");
+        text.lines().filter(is_code).map(|line| format!("{line}\n")).collect()
+    };
+    let about = known.lines().find(|line| line.contains("about: ")).ok_or("no description")?;
+    let renamed = known.replace("name: \"vulkan\"", "name: \"other\"");
+    let expected = code(&renamed.replace(about, "    about: \"\","));
+    if code(&text) != expected {
+        return Err(format!("expected the code\n{expected}\nfound:\n{text}").into());
+    }
+    let told =
+        ["//! other, as `vulkan` is. TODO", "//! Runs on: every system", "    // One line for"];
+    if let Some(lost) = told.iter().find(|told| !text.contains(**told)) {
+        return Err(format!("a copy has no `{lost}`:\n{text}").into());
     }
     match house::same_twice(
         "folder",

@@ -131,7 +131,7 @@ pub struct DrawItem<'a> {
 pub struct PipelineState {
     /// Whether nearer fragments (of smaller depth) hide others.
     pub depth_test: bool,
-    /// Whether [`Frame::depth`] is filled.
+    /// Whether [`Frame::depth`] is filled. This needs the depth test.
     pub keep_depth: bool,
     pub cull: Option<Face>,
     /// Whether front faces wind clockwise in the frame, because it is drawn mirrored.

@@ -25,8 +25,8 @@ pub fn msl_tokens(text: &str) -> Vec<Token<'_>> {
         let rest = &text[at..];
         let length = if rest.starts_with("//") || first == '#' {
             rest.find('\n').unwrap_or(rest.len())
-        } else if rest.starts_with("/*") {
-            rest[2..].find("*/").map_or(rest.len(), |end| end + 4)
+        } else if let Some(comment) = rest.strip_prefix("/*") {
+            comment.find("*/").map_or(rest.len(), |end| end + 4)
         } else if first.is_whitespace() {
             first.len_utf8()
         } else {

@@ -4,7 +4,7 @@ use naga::{Binding, BuiltIn};
 use rayon::prelude::*;
 
 use super::corners::{Corner, ScalarSource, scalar_sources, vertex_attribute};
-use super::{Quad, ShadedQuad, Shading};
+use super::{FragmentOutput, Quad, ShadedQuad, Shading};
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Batch, Function, FunctionId, Machine, Number, Program, Resources, SlotKind};
 use crate::execute::frame::{Buffers, Drawing, EntryPoint, Mesh};
@@ -142,8 +142,8 @@ impl Shading for Evaluated {
                     let mut shaded = vec![ShadedQuad::default(); quads.len()];
                     let called =
                         batch.quads(*function, &arguments, &mut |lane, slots, is_discarded| {
-                            let targets = || target_words(&outputs, &signature.result, slots);
-                            shaded[lane / 4][lane % 4] = (!is_discarded).then(targets);
+                            let output = || fragment_output(&outputs, &signature.result, slots);
+                            shaded[lane / 4][lane % 4] = (!is_discarded).then(output);
                         });
                     called.map_err(eval_failed)?;
                     Ok(shaded)
@@ -171,16 +171,21 @@ fn clip_position(outputs: &[ScalarSource], slots: &[f32]) -> [f64; 4] {
     clip
 }
 
-/// What is returned at each location, as words.
-fn target_words(outputs: &[ScalarSource], kinds: &[SlotKind], slots: &[f32]) -> Vec<[u32; 4]> {
-    let mut targets: Vec<[u32; 4]> = Vec::new();
+fn fragment_output(outputs: &[ScalarSource], kinds: &[SlotKind], slots: &[f32]) -> FragmentOutput {
+    let mut output = FragmentOutput { targets: Vec::new(), depth: None };
     for ((source, kind), slot) in outputs.iter().zip(kinds).zip(slots) {
-        let ScalarSource::Location(location, component) = *source else { continue };
-        if targets.len() <= location as usize {
-            targets.resize(location as usize + 1, [0; 4]);
+        match *source {
+            ScalarSource::Location(location, component) => {
+                let location = location as usize;
+                if output.targets.len() <= location {
+                    output.targets.resize(location + 1, [0; 4]);
+                }
+                output.targets[location][component & 3] =
+                    if *kind == SlotKind::Float { slot.bits() } else { slot.word() };
+            }
+            ScalarSource::BuiltIn(BuiltIn::FragDepth, _) => output.depth = Some(*slot),
+            _ => {}
         }
-        targets[location as usize][component & 3] =
-            if *kind == SlotKind::Float { slot.bits() } else { slot.word() };
     }
-    targets
+    output
 }

@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use naga::BuiltIn;
 
 use super::corners::{Corner, ScalarSource, vertex_attribute};
-use super::{Quad, ShadedQuad, Shading};
+use super::{FragmentOutput, Quad, ShadedQuad, Shading};
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Number, Resources};
 use crate::execute::compiled::CompiledProgram;
@@ -169,6 +169,8 @@ impl Shading for StagePair<'_> {
             .map(|quad| quad.arguments.each_ref().map(|slots| make_fragment(slots)))
             .collect();
         let shaded = self.compiled.program().quads(stage.index, &bound, &fragments);
+        let is_depth = |part: &InterfaceMember| part.role == InterfaceRole::Depth;
+        let writes_depth = stage.interface.output.iter().any(is_depth);
         let mut results: Vec<ShadedQuad> = Vec::new();
         for (given, shaded) in fragments.iter().zip(shaded.map_err(executor_failed)?) {
             results.push(std::array::from_fn(|lane| {
@@ -177,7 +179,8 @@ impl Shading for StagePair<'_> {
                     targets.resize(drawn, [0; 4]);
                     targets.extend(fragment_words(&given[lane]));
                 }
-                (!shaded[lane].is_discarded).then_some(targets)
+                let depth = writes_depth.then_some(shaded[lane].depth);
+                (!shaded[lane].is_discarded).then_some(FragmentOutput { targets, depth })
             }));
         }
         Ok(results)

@@ -3,15 +3,17 @@
 //! `corners (vertex stage) -> triangles (clipped) -> what each pixel shows -> quads (fragment stage)`
 //!
 //! The stages run on our own evaluator ([`evaluated`]) or as compiled MSL ([`metal`]). The fragment
-//! stage runs only for visible fragments, in quads of 2 x 2 in lock-step, with hidden fragments as
-//! helper invocations. So programs that discard fragments or write depth are drawn wrongly: what is
-//! behind a discarded fragment is missing, and the written depth is ignored.
+//! stage runs in quads of 2 x 2 in lock-step, with other pixels as helper invocations. It runs only
+//! for visible fragments, after the depth test of all triangles. If it discards fragments or writes
+//! depth, it decides itself what is visible. Then it runs for all fragments, and each is tested
+//! afterwards, in the order of the triangles.
 
 mod corners;
 mod evaluated;
 mod metal;
 mod shade;
 mod triangles;
+mod visibility;
 
 use std::collections::BTreeMap;
 
@@ -47,15 +49,21 @@ pub trait Shading {
 
 /// Four fragments of a triangle.
 pub struct Quad {
-    pub pixels: [(u32, u32); 4],
-    /// Which of them show the triangle. The others are helper invocations.
-    pub covered: [bool; 4],
     /// The scalars that the stage takes.
     pub arguments: [Vec<f32>; 4],
 }
 
-/// Four words for each target; `None` where the fragment was discarded.
-pub type ShadedQuad = [Option<Vec<[u32; 4]>>; 4];
+/// What the fragment stage returned for a quad; `None` where the fragment was discarded.
+pub type ShadedQuad = [Option<FragmentOutput>; 4];
+
+/// What the fragment stage returned for a fragment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FragmentOutput {
+    /// Four words for each target.
+    pub targets: Vec<[u32; 4]>,
+    /// The depth, if the stage writes it.
+    pub depth: Option<f32>,
+}
 
 /// Draws a frame for each view.
 pub fn draw_frames(drawing: &Drawing<'_>, shading: &dyn Shading) -> Result<Vec<Frame>, Diagnostic> {
@@ -98,9 +106,15 @@ fn draw_frame(
         );
         drawn.corners.push(corners);
     }
-    drawn.seen.draw(&drawn.triangles, drawing.state);
-    let targets = shade::shade_frame(drawing, view, shading, &drawn, textures)?;
-    let depth = if drawing.state.keep_depth { drawn.seen.depth } else { Vec::new() };
+    let shader = shade::Shader { drawing, view, shading, textures };
+    let (targets, depth) = match drawing.fragment {
+        Some(stage) if visibility::is_decided_by(stage.module) => shader.shade_all(&drawn)?,
+        _ => {
+            drawn.seen.draw(&drawn.triangles, drawing.state);
+            (shader.shade_visible(&drawn)?, drawn.seen.depth)
+        }
+    };
+    let depth = if drawing.state.keep_depth { depth } else { Vec::new() };
     Ok(Frame { targets, depth, detour: None })
 }
 

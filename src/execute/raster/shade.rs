@@ -1,11 +1,13 @@
-//! Runs the fragment stage for visible fragments.
+//! Runs the fragment stage.
+
+use std::ops::Range;
 
 use naga::BuiltIn;
 use rayon::prelude::*;
 
 use super::corners::ScalarSource;
 use super::triangles::{NONE, Triangle};
-use super::{DrawnView, Quad, ShadedQuad, Shading, cleared_target, item_buffers};
+use super::{DrawnView, FragmentOutput, Quad, ShadedQuad, Shading, cleared_target, item_buffers};
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Number, Resources};
 use crate::execute::frame::{Buffers, Drawing};
@@ -13,28 +15,104 @@ use crate::execute::frame::{Buffers, Drawing};
 /// How many quads are shaded at a time. This bounds the memory for the arguments of large frames.
 const AT_ONCE: usize = 1 << 16;
 
-/// The targets of a frame.
-pub fn shade_frame(
-    drawing: &Drawing<'_>,
-    view: &Buffers,
-    shading: &dyn Shading,
-    drawn: &DrawnView,
-    textures: &Resources,
-) -> Result<Vec<Vec<u32>>, Diagnostic> {
-    let Some(taken) = shading.taken() else { return Ok(Vec::new()) };
-    let mut targets = vec![cleared_target(drawing.size); drawing.targets as usize];
-    let wiring = wire_stages(&shading.given(), &taken);
-    let screen = Screen { drawn, size: drawing.size, wiring };
-    for (item, places) in drawing.items.iter().zip(screen.places(drawing.items.len())) {
-        for places in places.chunks(AT_ONCE) {
-            let quads: Vec<Quad> = places.par_iter().map(|place| screen.quad(place)).collect();
-            let shaded = shading.shade(item_buffers(drawing, view, item), textures, &quads)?;
-            for (quad, shaded) in quads.iter().zip(&shaded) {
-                store_quad(&mut targets, drawing.size[0], quad, shaded);
+/// Shades the fragments of a frame.
+pub struct Shader<'a> {
+    pub drawing: &'a Drawing<'a>,
+    pub view: &'a Buffers,
+    pub shading: &'a dyn Shading,
+    /// The textures and the samplers.
+    pub textures: &'a Resources,
+}
+
+/// The words of each target of a frame.
+type Targets = Vec<Vec<u32>>;
+
+impl Shader<'_> {
+    /// The targets of a frame of which is known what each pixel shows.
+    pub fn shade_visible(&self, drawn: &DrawnView) -> Result<Targets, Diagnostic> {
+        let Some(screen) = self.screen(drawn) else { return Ok(Vec::new()) };
+        let mut targets = self.cleared();
+        for (item, places) in screen.visible(self.drawing.items.len()).iter().enumerate() {
+            for places in places.chunks(AT_ONCE) {
+                for (place, shaded) in places.iter().zip(self.quads(&screen, item, places)?) {
+                    for (pixel, output) in self.returned(place, &shaded) {
+                        store_output(&mut targets, pixel, output);
+                    }
+                }
             }
         }
+        Ok(targets)
     }
-    Ok(targets)
+
+    /// The targets of a frame whose fragments are tested after they are shaded, and the depth of
+    /// each pixel.
+    pub fn shade_all(&self, drawn: &DrawnView) -> Result<(Targets, Vec<f32>), Diagnostic> {
+        let mut depths = drawn.seen.depth.clone();
+        let Some(screen) = self.screen(drawn) else { return Ok((Vec::new(), depths)) };
+        let mut targets = self.cleared();
+        for of_item in drawn.triangles.chunk_by(|one, next| one.item == next.item) {
+            let mut places =
+                of_item.iter().flat_map(|triangle| screen.covered(triangle)).peekable();
+            while places.peek().is_some() {
+                let places: Vec<CoveredQuad<'_>> = places.by_ref().take(AT_ONCE).collect();
+                let shaded = self.quads(&screen, of_item[0].item, &places)?;
+                for (place, shaded) in places.iter().zip(&shaded) {
+                    for (pixel, output) in self.returned(place, shaded) {
+                        let own = || self.own_depth(place.triangle, pixel);
+                        let depth = output.depth.map_or_else(own, |depth| depth.clamp(0.0, 1.0));
+                        if !self.drawing.state.depth_test || depth < depths[pixel] {
+                            depths[pixel] = depth;
+                            store_output(&mut targets, pixel, output);
+                        }
+                    }
+                }
+            }
+        }
+        Ok((targets, depths))
+    }
+
+    /// `None` if there is no fragment stage.
+    fn screen<'d>(&self, drawn: &'d DrawnView) -> Option<Screen<'d>> {
+        let wiring = wire_stages(&self.shading.given(), &self.shading.taken()?);
+        Some(Screen { drawn, size: self.drawing.size, wiring })
+    }
+
+    fn cleared(&self) -> Targets {
+        vec![cleared_target(self.drawing.size); self.drawing.targets as usize]
+    }
+
+    /// Shades quads of one item.
+    fn quads(
+        &self,
+        screen: &Screen<'_>,
+        item: usize,
+        places: &[CoveredQuad<'_>],
+    ) -> Result<Vec<ShadedQuad>, Diagnostic> {
+        let quads: Vec<Quad> = places.par_iter().map(|place| screen.quad(place)).collect();
+        let buffers = item_buffers(self.drawing, self.view, &self.drawing.items[item]);
+        self.shading.shade(buffers, self.textures, &quads)
+    }
+
+    /// What was returned for each covered pixel, by its index.
+    fn returned<'s>(
+        &self,
+        place: &CoveredQuad<'_>,
+        shaded: &'s ShadedQuad,
+    ) -> impl Iterator<Item = (usize, &'s FragmentOutput)> {
+        let (width, covered, pixels) = (self.drawing.size[0], place.covered, place.pixels);
+        let lanes = shaded.iter().enumerate().filter(move |(lane, _)| covered[*lane]);
+        lanes.filter_map(move |(lane, output)| {
+            let (x, y) = pixels[lane];
+            Some(((y * width + x) as usize, output.as_ref()?))
+        })
+    }
+
+    /// The depth of a triangle at a pixel.
+    fn own_depth(&self, triangle: &Triangle, pixel: usize) -> f32 {
+        let width = self.drawing.size[0] as usize;
+        let (x, y) = ((pixel % width) as f64 + 0.5, (pixel / width) as f64 + 0.5);
+        triangle.depth(x, y, triangle.offset(self.drawing.state.offset))
+    }
 }
 
 /// The source of a scalar of the fragment stage.
@@ -72,22 +150,23 @@ struct Screen<'a> {
     wiring: Vec<ScalarInput>,
 }
 
-/// A quad in which at least one pixel shows the triangle.
+/// A quad in which at least one pixel is drawn with the triangle.
 struct CoveredQuad<'a> {
     triangle: &'a Triangle,
     pixels: [(u32, u32); 4],
+    /// Which of them are. The others are helper invocations.
     covered: [bool; 4],
 }
 
 impl<'a> Screen<'a> {
     /// The quads of each item. Four pixels that show several triangles are one quad for each of
     /// these.
-    fn places(&self, items: usize) -> Vec<Vec<CoveredQuad<'a>>> {
+    fn visible(&self, items: usize) -> Vec<Vec<CoveredQuad<'a>>> {
         let mut places: Vec<Vec<CoveredQuad<'a>>> = Vec::new();
         places.resize_with(items, Vec::new);
         let [columns, rows] = self.size.map(|size| (0..size).step_by(2));
         for (x, y) in rows.flat_map(|y| columns.clone().map(move |x| (x, y))) {
-            let pixels = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)];
+            let pixels = quad_pixels(x, y);
             let shown = pixels.map(|(x, y)| self.shown(x, y));
             for lane in 0..4 {
                 let id = shown[lane];
@@ -102,11 +181,24 @@ impl<'a> Screen<'a> {
         places
     }
 
+    /// All quads of a triangle, visible or not.
+    fn covered(&self, triangle: &'a Triangle) -> impl Iterator<Item = CoveredQuad<'a>> {
+        let [width, height] = self.size;
+        let [columns, rows] = triangle.bounds(self.size);
+        let even = |range: Range<u32>| (range.start & !1..range.end).step_by(2);
+        let corners = even(rows).flat_map(move |y| even(columns.clone()).map(move |x| (x, y)));
+        corners.filter_map(move |(x, y)| {
+            let pixels = quad_pixels(x, y);
+            let covered = pixels
+                .map(|(x, y)| x < width && y < height && triangle.covers(middle(x), middle(y)));
+            covered.contains(&true).then_some(CoveredQuad { triangle, pixels, covered })
+        })
+    }
+
     fn quad(&self, place: &CoveredQuad<'_>) -> Quad {
-        let middle = |x: u32| f64::from(x) + 0.5;
         let arguments =
             place.pixels.map(|(x, y)| self.arguments(place.triangle, middle(x), middle(y)));
-        Quad { pixels: place.pixels, covered: place.covered, arguments }
+        Quad { arguments }
     }
 
     fn shown(&self, x: u32, y: u32) -> u32 {
@@ -131,13 +223,17 @@ impl<'a> Screen<'a> {
     }
 }
 
-/// Writes the results of fragments to their pixels.
-fn store_quad(targets: &mut [Vec<u32>], width: u32, quad: &Quad, shaded: &ShadedQuad) {
-    for lane in (0..4).filter(|lane| quad.covered[*lane]) {
-        let (x, y) = quad.pixels[lane];
-        let pixel = (y * width + x) as usize;
-        for (target, words) in targets.iter_mut().zip(shaded[lane].iter().flatten()) {
-            target[4 * pixel..4 * pixel + 4].copy_from_slice(words);
-        }
+fn quad_pixels(x: u32, y: u32) -> [(u32, u32); 4] {
+    [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)]
+}
+
+/// The middle of a pixel, along one axis.
+fn middle(x: u32) -> f64 {
+    f64::from(x) + 0.5
+}
+
+fn store_output(targets: &mut Targets, pixel: usize, output: &FragmentOutput) {
+    for (target, words) in targets.iter_mut().zip(&output.targets) {
+        target[4 * pixel..4 * pixel + 4].copy_from_slice(words);
     }
 }

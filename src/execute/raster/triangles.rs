@@ -1,5 +1,7 @@
 //! Clips triangles, places them on the frame, and finds which are visible.
 
+use std::ops::Range;
+
 use super::corners::Corner;
 use crate::execute::frame::{Face, Mesh, PipelineState};
 
@@ -172,7 +174,7 @@ impl Triangle {
 
     /// Whether the triangle covers a point. A point on an edge is covered only if that is a top or
     /// a left edge.
-    fn covers(&self, x: f64, y: f64) -> bool {
+    pub fn covers(&self, x: f64, y: f64) -> bool {
         let [a, b, c] = self.points;
         [(b, c), (c, a), (a, b)].into_iter().all(|(from, to)| {
             let side = edge_area(from, to, x, y);
@@ -180,8 +182,25 @@ impl Triangle {
         })
     }
 
+    /// The columns and rows of a frame that the triangle may cover.
+    pub fn bounds(&self, size: [u32; 2]) -> [Range<u32>; 2] {
+        let bounds = |axis: fn(&ScreenPoint) -> f64, size: u32| {
+            let places = self.points.iter().map(axis);
+            let low =
+                places.clone().fold(f64::INFINITY, f64::min).floor().clamp(0.0, f64::from(size));
+            let high = places.fold(f64::NEG_INFINITY, f64::max).ceil().clamp(0.0, f64::from(size));
+            low as u32..high as u32
+        };
+        [bounds(|point| point.x, size[0]), bounds(|point| point.y, size[1])]
+    }
+
+    /// The depth that is stored for a point, with polygon offset.
+    pub fn depth(&self, x: f64, y: f64, offset: f64) -> f32 {
+        (self.at(x, y).1 + offset).clamp(0.0, 1.0) as f32
+    }
+
     /// What polygon offset adds to the depth of each fragment.
-    fn offset(&self, [factor, units]: [f32; 2]) -> f64 {
+    pub fn offset(&self, [factor, units]: [f32; 2]) -> f64 {
         if factor == 0.0 && units == 0.0 {
             return 0.0;
         }
@@ -208,22 +227,14 @@ impl VisibleTriangles {
     }
 
     fn draw_one(&mut self, index: u32, triangle: &Triangle, state: PipelineState) {
-        let bounds = |axis: fn(&ScreenPoint) -> f64, size: u32| {
-            let places = triangle.points.iter().map(axis);
-            let low =
-                places.clone().fold(f64::INFINITY, f64::min).floor().clamp(0.0, f64::from(size));
-            let high = places.fold(f64::NEG_INFINITY, f64::max).ceil().clamp(0.0, f64::from(size));
-            (low as u32, high as u32)
-        };
-        let (columns, rows) =
-            (bounds(|point| point.x, self.size[0]), bounds(|point| point.y, self.size[1]));
+        let [columns, rows] = triangle.bounds(self.size);
         let offset = triangle.offset(state.offset);
-        for (y, x) in (rows.0..rows.1).flat_map(|y| (columns.0..columns.1).map(move |x| (y, x))) {
+        for (y, x) in rows.flat_map(|y| columns.clone().map(move |x| (y, x))) {
             let place = (f64::from(x) + 0.5, f64::from(y) + 0.5);
             if !triangle.covers(place.0, place.1) {
                 continue;
             }
-            let depth = (triangle.at(place.0, place.1).1 + offset).clamp(0.0, 1.0) as f32;
+            let depth = triangle.depth(place.0, place.1, offset);
             let pixel = (y * self.size[0] + x) as usize;
             if !state.depth_test || depth < self.depth[pixel] {
                 (self.depth[pixel], self.triangle[pixel]) = (depth, index);

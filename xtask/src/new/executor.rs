@@ -1,6 +1,8 @@
 //! An executor, which runs functions and draws frames: a device of wgpu, or a copy of an executor
 //! that exists.
 
+use std::fmt::Write as _;
+
 use super::{NewFiles, Repository, TaskKind, check_name};
 
 pub const KIND: TaskKind = TaskKind {
@@ -24,12 +26,11 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFil
     let known = repository.stems(FOLDER)?;
     let interface = INTERFACES.iter().find(|(one, _)| *rest.first().unwrap_or(&name) == *one);
     let text = match rest {
-        ["own"] => OWN.replace("NAME", name),
+        ["own"] => explained(&OWN.replace("NAME", name)),
         [] | [_] if interface.is_some() => of_wgpu(name, interface),
         [] => of_wgpu(name, None),
         [like] if known.iter().any(|known| known == like) => {
-            let text = repository.read(&format!("{FOLDER}/{like}.rs"))?;
-            text.replace(&format!("name: {like:?}"), &format!("name: {name:?}"))
+            copy_of(&repository.read(&format!("{FOLDER}/{like}.rs"))?, like, name)
         }
         _ => return Err(format!("name one executor of {}, dx12, metal", known.join(", "))),
     };
@@ -52,15 +53,16 @@ fn steps(file: &str, name: &str, is_vulkan: bool, is_own: bool) -> Vec<String> {
             "{file}: `about`, and what opens it, as its comments say (trials house::described, harness::executor::{name})"
         ),
         format!(
-            "{file}: `needs`, each package listed in xtask/src/machine.rs too, as `Need {{ package: \"libegl1\", what: \"EGL\", found: || library(\"libEGL.so.1\") }}`, or with `installed` or `program` (trial house::needs_of_executors)"
+            "{file}: `needs`; for each package that xtask/src/machine.rs lacks, add to `NEEDS` there one like `Need {{ package: \"libegl1\", what: \"EGL\", found: || library(\"libEGL.so.1\") }}`, or with `installed` or `program` (trial house::needs_of_executors)"
         ),
         format!(
             "{file}: `samples: None` where it draws no frames, and `shipping` where it takes a target's files as they are (trials harness::executor::{name}, frames/shipped)"
         ),
         format!(
-            "{file}: `Runs on:`; other systems are built without the executor and do not know its name"
+            "{file}: `Runs on:` has `every system`, `every system but WebAssembly`, or names as `linux, windows, macos`; other systems are built without the executor and do not know its name"
         ),
         "trials that open all executors fail where one is not available: have its packages installed by xtask/src/machine.rs, or narrow `Runs on:`".to_owned(),
+        format!("cargo run -- list executors; cargo run -- check --executor {name} brdf::diffuse"),
         "cargo xtask record diagnostics; cargo xtask record guide; read the difference".to_owned(),
     ];
     if is_own {
@@ -93,7 +95,69 @@ fn of_wgpu(name: &str, interface: Option<&(&str, &str)>) -> String {
         ("BACKEND", &backend),
         ("PART", part),
     ];
-    words.iter().fold(TEXT.to_owned(), |text, (word, value)| text.replace(word, value))
+    explained(&words.iter().fold(TEXT.to_owned(), |text, (word, value)| text.replace(word, value)))
+}
+
+/// What a field of an executor is for. The text is a comment above the first line that begins with
+/// the field.
+const FIELDS: &[(&str, &str)] = &[
+    ("about: ", "One line for listings, unlike that of every other executor."),
+    ("needs: ", "Names of Debian packages, such as `\"libegl1\"`."),
+    (
+        "before_threads: ",
+        "A function that is called while the process has one thread, such as one that sets a\n\
+         variable: `announce` in `swiftshader.rs`. All executors of the process see the variable. If\n\
+         it changes what another one opens, write an executor with a process of its own instead.",
+    ),
+    (
+        "samples: ",
+        "How many places in each pixel of a picture are averaged; `None` if it draws no frames.",
+    ),
+    ("backend: ", "One interface of wgpu: `VULKAN`, `GL`, `DX12` or `METAL`."),
+    (
+        "named: ",
+        "A part of the adapter's name. An empty part allows every adapter. `AdapterName::Without` is\n\
+         for adapters whose names do not have the part. A software adapter comes before others.",
+    ),
+    (
+        "shaders: ",
+        "wgpu translates the shaders. `Shaders::Emitted(Target::SPIRV)` gives the driver the texts of a\n\
+         target unchanged, which the adapter must allow (`PASSTHROUGH_SHADERS`).",
+    ),
+    (
+        "shipping: ",
+        "`Some(Shipping { target, open })` if it draws the files of a target as they are.",
+    ),
+];
+
+/// The text with a comment above each field of [`FIELDS`].
+fn explained(text: &str) -> String {
+    let mut rest: Vec<_> = FIELDS.iter().collect();
+    let mut to = String::new();
+    for line in text.lines() {
+        let code = line.trim_start();
+        if let Some(place) = rest.iter().position(|(field, _)| code.starts_with(field)) {
+            let indent = &line[..line.len() - code.len()];
+            for comment in rest.remove(place).1.lines() {
+                let _ = writeln!(to, "{indent}// {comment}");
+            }
+        }
+        let _ = writeln!(to, "{line}");
+    }
+    to
+}
+
+/// A copy of an executor, which does not describe itself yet.
+fn copy_of(text: &str, like: &str, name: &str) -> String {
+    let head_end = text.find("//! Runs on:").unwrap_or_default();
+    let text =
+        format!("//! {name}, as `{like}` is. TODO: say what it is.\n//!\n{}", &text[head_end..]);
+    let renamed = text.replace(&format!("name: {like:?}"), &format!("name: {name:?}"));
+    let lines = renamed.lines().map(|line| match line.trim_start().starts_with("about: ") {
+        true => "    about: \"\",".to_owned(),
+        false => line.to_owned(),
+    });
+    explained(&lines.fold(String::new(), |text, line| text + &line + "\n"))
 }
 
 /// The manifest of the crate, with a feature of wgpu.
@@ -107,8 +171,7 @@ fn with_feature(text: &str, feature: &str) -> Result<String, String> {
     Ok(format!("{}, {feature:?}{}", &text[..end], &text[end..]))
 }
 
-/// The template of an executor on wgpu. Its comments explain the fields; a copy of another executor
-/// has no such comments.
+/// The template of an executor on wgpu.
 const TEXT: &str = r#"//! wgpu on NAME.
 //!
 //! Runs on: SYSTEMS
@@ -118,28 +181,17 @@ use crate::execute::gpu::{AdapterName, DeviceRequest, Shaders};
 
 pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "NAME",
-    // One line for listings.
     about: "",
-    // Debian packages.
     needs: &[NEEDS],
-    // A function that is called while the process has one thread, such as one that sets a variable.
     before_threads: None,
-    // How many places in each pixel of a picture are averaged; `None` if it draws no frames.
     samples: Some(DEVICE_SAMPLES),
-    // The first adapter that fits, a software adapter before others. Without one, the error says so.
     open: || {
         super::open_gpu(DeviceRequest {
-            // One interface of wgpu: `VULKAN`, `GL`, `DX12` or `METAL`.
             backend: wgpu::Backends::BACKEND,
-            // A part of the adapter's name. An empty part allows every adapter.
-            // `AdapterName::Without` is for adapters whose names do not have the part.
             named: AdapterName::With("PART"),
-            // wgpu translates the shaders. `Shaders::Emitted(Target::SPIRV)` gives the driver the
-            // texts of a target unchanged, which the adapter must allow (`PASSTHROUGH_SHADERS`).
             shaders: Shaders::Translated,
         })
     },
-    // `Some(Shipping { target, open })` if it draws the files of a target as they are.
     shipping: None,
 };
 "#;
@@ -159,16 +211,11 @@ use crate::execute::kernel::{ENTRY, INPUT_WIDTH, Kernel, TARGET_WIDTH};
 /// The executor, for the table of all.
 pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "NAME",
-    // One line for listings.
     about: "",
-    // Debian packages.
     needs: &[],
-    // A function that is called while the process has one thread, such as one that sets a variable.
     before_threads: None,
-    // How many places in each pixel of a picture are averaged; `None` if it draws no frames.
     samples: None,
     open: || Ok(Box::new(Own { adapter: open_device()? })),
-    // `Some(Shipping { target, open })` if it draws the files of a target as they are.
     shipping: None,
 };
 
