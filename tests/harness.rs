@@ -9,8 +9,9 @@ use std::sync::{Arc, Mutex};
 use lamplight::bundle::Language;
 use lamplight::execute::frame::{Buffers, DrawItem, Drawing, EntryPoint, Mesh, PipelineState};
 use lamplight::execute::{self, Session, executors, kernel};
+use lamplight::proof::check;
+use lamplight::proof::expression::CompiledExpression;
 use lamplight::proof::library::Library;
-use lamplight::proof::{check, expression};
 use lamplight::source::{Embedded, Files as _, Memory, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
@@ -240,30 +241,32 @@ const EXPRESSIONS: &[(&str, &str)] = &[
 ];
 
 fn expressions() -> Result<(), Failed> {
+    let (library, sources) = (Library::embedded(), Mutex::new(SourceSet::default()));
+    let mut compiled = Vec::new();
+    for (text, expected) in EXPRESSIONS {
+        for language in [Language::Wesl, Language::Glsl] {
+            let one = CompiledExpression::new(&library, &sources, text, language)
+                .map_err(|errors| render(&sources, &errors))?;
+            compiled.push((*text, language, *expected, one));
+        }
+    }
     opened(|open| {
-        let (library, sources) = (Library::embedded(), Mutex::new(SourceSet::default()));
         let mut wrong = String::new();
-        for (text, expected) in EXPRESSIONS {
-            for open in open.iter_mut() {
-                for language in [Language::Wesl, Language::Glsl] {
-                    let found = match expression::evaluate_expression(
-                        &library,
-                        &sources,
-                        text,
-                        language,
-                        open.session.as_mut(),
-                    ) {
-                        Ok(value) => value.to_string(),
-                        Err(errors) => {
-                            render(&sources, &errors).message().unwrap_or_default().to_owned()
-                        }
-                    };
-                    if found != *expected {
-                        wrong += &format!(
-                            "{text} in {language:?} on {}: found {found}, expected {expected}\n",
-                            open.executor
-                        );
+        for open in open.iter_mut() {
+            let kernels: Vec<_> = compiled.iter().map(|(.., one)| &one.kernel).collect();
+            open.session.prepare(&kernels);
+            for (text, language, expected, one) in &compiled {
+                let found = match one.value(open.session.as_mut()) {
+                    Ok(value) => value.to_string(),
+                    Err(errors) => {
+                        render(&sources, &errors).message().unwrap_or_default().to_owned()
                     }
+                };
+                if found != *expected {
+                    wrong += &format!(
+                        "{text} in {language:?} on {}: found {found}, expected {expected}\n",
+                        open.executor
+                    );
                 }
             }
         }

@@ -7,7 +7,7 @@ use std::process::Command;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use lamplight::bundle::key::{has_value, without_axis, write as write_key};
-use lamplight::bundle::{Contents, EntryContents, Language, Target, blob_files, write_directory};
+use lamplight::bundle::{Artifact, Contents, EntryContents, Hash, Language, Target, Unit};
 use lamplight::compose::{Keep, Options, compose};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{Request, in_memory};
@@ -248,23 +248,27 @@ fn difference_is_shown() -> Result<(), Failed> {
     }
 }
 
-/// Every seventh output of each target is judged here. `cargo xtask gen` judges all.
-const JUDGED: usize = 7;
+/// The fewest outputs of a target that must be judged.
+const JUDGED: usize = 100;
 
-/// The judge of each target accepts its outputs. Tint is not asked here, since its package comes
-/// from npm; `cargo xtask gen` asks it.
+/// The judge of each target accepts every line of its outputs: the outputs are judged that have a
+/// line which no output before them has, but for the numbers of generated names. `cargo xtask gen` judges all. Tint is not asked here, since
+/// its package comes from npm; `cargo xtask gen` asks it.
 fn judges() -> Result<(), Failed> {
-    let folder = tempfile::tempdir()?;
-    write_directory(&*contents()?, folder.path())?;
-    let outputs = judge::outputs(blob_files(folder.path())?)?;
+    let (folder, contents) = (tempfile::tempdir()?, contents()?);
     let mut some: Vec<judge::Output> = Vec::new();
     for target in Target::ALL {
-        let of_target = outputs.iter().filter(|output| output.target == *target);
         let before = some.len();
-        some.extend(of_target.step_by(JUDGED).cloned());
-        if some.len() < before + 100 {
-            let found = some.len() - before;
-            return Err(format!("{target}: {found} outputs to judge, expected 100").into());
+        for (hash, unit, artifact) in with_new_lines(&contents, *target)? {
+            let file = folder.path().join(format!("{}.{}", some.len(), artifact.extension));
+            std::fs::write(&file, &artifact.bytes)?;
+            let (stage, entry) = (unit.reflection.stage, artifact.native.entry_name.clone());
+            some.push(judge::Output { target: *target, stage, entry, file, unit: hash });
+        }
+        let found = some.len() - before;
+        println!("{target}: {found} outputs have all lines");
+        if found < JUDGED {
+            return Err(format!("{target}: {found} outputs to judge, expected {JUDGED}").into());
         }
     }
     let refusals = judge::judge(&some, None, &|_, _| ())?;
@@ -273,4 +277,25 @@ fn judges() -> Result<(), Failed> {
     }
     let told: Vec<String> = refusals.iter().take(5).map(|refusal| format!("{refusal:?}")).collect();
     Err(format!("{} of {} refused:\n{}", refusals.len(), some.len(), told.join("\n")).into())
+}
+
+/// The units whose output for a target has a line that no output before it has. SPIR-V has no lines,
+/// so its units are those of GLSL 4.50.
+fn with_new_lines(
+    contents: &Contents,
+    target: Target,
+) -> Result<Vec<(Hash, &Unit, &Artifact)>, Failed> {
+    let with_lines = if target == Target::SPIRV { Target::GLSL450 } else { target };
+    let (mut seen, mut found) = (judge::SeenText::default(), Vec::new());
+    let languages = contents.programs.values().flat_map(|program| program.languages.values());
+    for (hash, unit) in languages.flat_map(|entries| entries.values()).flat_map(|one| &one.units) {
+        let [text, output] = [with_lines, target].map(|one| unit.targets.get(one.name()));
+        let (Some(text), Some(output)) = (text, output) else {
+            return Err(format!("a unit has no output for {target}").into());
+        };
+        if seen.add(std::str::from_utf8(&text.bytes)?).line {
+            found.push((*hash, unit, output));
+        }
+    }
+    Ok(found)
 }

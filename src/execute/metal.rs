@@ -1,7 +1,7 @@
 //! Runs the emitted MSL on the CPU, compiled by clang. Kernels are run in batches; frames are drawn
 //! by our own rasterizer.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use rayon::prelude::*;
 
@@ -27,6 +27,9 @@ use crate::validate::on_large_stack;
 pub struct Metal {
     compiler: String,
     programs: Vec<CompiledProgram>,
+    /// For each text that was compiled its program, and its index there. Kernels of one function
+    /// have the same text, whatever is in their textures.
+    texts: HashMap<String, (usize, usize)>,
     /// For each kernel its program, its text and its bindings; or why it could not be compiled.
     kept: HashMap<u64, Result<MetalKernel, Diagnostic>>,
 }
@@ -45,7 +48,7 @@ impl Metal {
     /// It is missing.
     pub fn open() -> Result<Self, ClangMissing> {
         let compiler = clang_version()?;
-        Ok(Self { compiler, programs: Vec::new(), kept: HashMap::new() })
+        Ok(Self { compiler, programs: Vec::new(), texts: HashMap::new(), kept: HashMap::new() })
     }
 
     /// Compiles the kernels that are new, all of them at once.
@@ -58,21 +61,37 @@ impl Metal {
             |kernel: &&Kernel| emitted::emit_kernel(kernel, Target::MSL).and_then(emitted_text);
         let outputs: Vec<Result<(String, Native), Diagnostic>> =
             on_large_stack(|| new.par_iter().map(emit).collect());
-        let texts: Vec<&str> = outputs.iter().flatten().map(|(text, _)| text.as_str()).collect();
-        let program =
-            CompiledProgram::build(&texts).map_err(|missing| executor_failed(missing.reason));
-        let (index, mut next) = (self.programs.len(), 0);
-        for (kernel, output) in new.iter().zip(&outputs) {
-            let kept = match (output, &program) {
-                (Ok((_, native)), Ok(_)) => {
-                    next += 1;
-                    Ok(MetalKernel { program: index, text: next - 1, native: native.clone() })
-                }
-                (Err(error), _) | (_, Err(error)) => Err(error.clone()),
-            };
+        let failure = self.compile_texts(outputs.iter().flatten().map(|(text, _)| text)).err();
+        for (kernel, output) in new.iter().zip(outputs) {
+            let kept = output.and_then(|(text, native)| match (self.texts.get(&text), &failure) {
+                (Some(&(program, text)), _) => Ok(MetalKernel { program, text, native }),
+                (None, Some(error)) => Err(error.clone()),
+                (None, None) => Err(executor_failed("a text was not compiled")),
+            });
             self.kept.insert(kernel.code, kept);
         }
-        self.programs.extend(program);
+    }
+
+    /// Compiles the texts that are new as one program.
+    fn compile_texts<'t>(
+        &mut self,
+        texts: impl Iterator<Item = &'t String>,
+    ) -> Result<(), Diagnostic> {
+        let new: BTreeSet<&str> =
+            texts.map(String::as_str).filter(|text| !self.texts.contains_key(*text)).collect();
+        if new.is_empty() {
+            return Ok(());
+        }
+        let new: Vec<&str> = new.into_iter().collect();
+        let program =
+            CompiledProgram::build(&new).map_err(|missing| executor_failed(missing.reason))?;
+        let places = new
+            .iter()
+            .enumerate()
+            .map(|(index, text)| ((*text).to_owned(), (self.programs.len(), index)));
+        self.texts.extend(places.collect::<Vec<_>>());
+        self.programs.push(program);
+        Ok(())
     }
 
     /// One draw: the words of the target.

@@ -19,6 +19,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use rayon::prelude::*;
 
 pub use blame::{OutputOrigin, blame};
+pub use novel::{Novelty, SeenText};
 pub use tint::Tint;
 
 use crate::bundle::{BlobFile, Error, Hash, Stage, Target};

@@ -4,6 +4,8 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::Output;
+use std::sync::OnceLock;
+use std::{fs, io};
 
 use rayon::prelude::*;
 
@@ -120,10 +122,19 @@ fn output_text(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).trim().to_owned()
 }
 
-/// Compiles the runtime, which reads requests and calls the shaders.
+/// Compiles the runtime, which reads requests and calls the shaders. It is the same for all
+/// programs, so that a process compiles it once.
 fn compile_runtime(clang: &Clang) -> Objects {
-    let name = "runtime.o";
-    check_output(clang.call(&["-std=c++17", "-O1", "-c", "runtime.cpp", "-o", name])?)?;
+    static COMPILED: OnceLock<Vec<u8>> = OnceLock::new();
+    let (name, path) = ("runtime.o", clang.path("runtime.o"));
+    let unusable = |error: io::Error| ClangMissing { reason: format!("`{name}`: {error}") };
+    if let Some(bytes) = COMPILED.get() {
+        fs::write(path, bytes).map_err(unusable)?;
+    } else {
+        check_output(clang.call(&["-std=c++17", "-O1", "-c", "runtime.cpp", "-o", name])?)?;
+        let bytes = fs::read(path).map_err(unusable)?;
+        COMPILED.get_or_init(|| bytes);
+    }
     Ok(vec![ObjectFile::Compiled(name.to_owned())])
 }
 

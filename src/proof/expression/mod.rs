@@ -17,7 +17,7 @@ use super::library::{Library, lock_sources};
 use crate::bundle::Language;
 use crate::diagnostic::{Diagnostic, Diagnostics, codes};
 use crate::execute::Session;
-use crate::execute::kernel::{self, word_value};
+use crate::execute::kernel::{self, Kernel, word_value};
 use crate::source::{SourceId, SourceSet, Span};
 use crate::validate::Validated;
 use rewrite::Rewritten;
@@ -66,25 +66,49 @@ pub fn evaluate_expression(
     language: Language,
     session: &mut dyn Session,
 ) -> Result<ExpressionValue, Diagnostics> {
-    let id = lock_sources(sources).add("<expression>", text);
-    let module =
-        expression_module(library, sources, text, language).map_err(|(errors, wrapper)| {
-            errors
-                .into_iter()
-                .map(|error| relocate_labels(error, &lock_sources(sources), &wrapper, id))
-                .collect::<Vec<_>>()
-        })?;
-    let whole = |error: Diagnostic| {
-        if error.labels.is_empty() {
-            error.at(Span::new(id, 0..text.len()), "in this expression")
-        } else {
-            error
-        }
-    };
-    let kernel = kernel::build_kernel(&module, FUNCTION, &BTreeMap::new())
-        .map_err(|error| vec![whole(error)])?;
-    let words = session.run(&kernel, &[]).map_err(|error| vec![whole(error)])?;
-    Ok(ExpressionValue { words, kinds: kernel.result_kinds() })
+    CompiledExpression::new(library, sources, text, language)?.value(session)
+}
+
+/// An expression as a kernel, which any number of executors can run.
+pub struct CompiledExpression {
+    pub kernel: Kernel,
+    /// Where the whole expression is.
+    span: Span,
+}
+
+impl CompiledExpression {
+    /// Reads an expression. Errors point into it, as a source named `<expression>`.
+    pub fn new(
+        library: &Library,
+        sources: &Mutex<SourceSet>,
+        text: &str,
+        language: Language,
+    ) -> Result<Self, Diagnostics> {
+        let id = lock_sources(sources).add("<expression>", text);
+        let module =
+            expression_module(library, sources, text, language).map_err(|(errors, wrapper)| {
+                errors
+                    .into_iter()
+                    .map(|error| relocate_labels(error, &lock_sources(sources), &wrapper, id))
+                    .collect::<Vec<_>>()
+            })?;
+        let span = Span::new(id, 0..text.len());
+        let kernel = kernel::build_kernel(&module, FUNCTION, &BTreeMap::new())
+            .map_err(|error| vec![placed(error, span)])?;
+        Ok(Self { kernel, span })
+    }
+
+    /// Its value on an executor.
+    pub fn value(&self, session: &mut dyn Session) -> Result<ExpressionValue, Diagnostics> {
+        let words =
+            session.run(&self.kernel, &[]).map_err(|error| vec![placed(error, self.span)])?;
+        Ok(ExpressionValue { words, kinds: self.kernel.result_kinds() })
+    }
+}
+
+/// The error with the place of the whole expression, unless it has one.
+fn placed(error: Diagnostic, whole: Span) -> Diagnostic {
+    if error.labels.is_empty() { error.at(whole, "in this expression") } else { error }
 }
 
 type Failed = (Diagnostics, Rewritten);
