@@ -64,8 +64,12 @@ fn same_field(bench: &Bench<'_>) -> Result<(), String> {
 /// textures.
 fn follow_changes(bench: &Bench<'_>) -> Result<(), String> {
     let key = format!("{KEY},attenuation=inverse_square_window,cone=smooth");
+    // A coarse grid is enough to see a change.
+    let probes = Some(Probes { counts: [6, 3, 4], beyond: DVec3::ZERO });
+    let scene = Arc::new(Scene { probes, ..halls()? });
     let light = |change: Option<(&str, &[f64])>| -> Result<_, String> {
         let mut plan = bench.plan(&key, "halls", &[])?;
+        plan.model = Some(scene.clone());
         let change = change.map(|(path, numbers)| (path.to_owned(), numbers.to_vec()));
         plan.changes.uniforms.extend(change);
         let prepared = bench.prepared(&plan, SIZE)?;

@@ -7,19 +7,55 @@ use std::process::Command;
 /// a few of them waits for the build, so it is not in `Cargo.toml`.
 const OPTIMISED: [&str; 2] = ["--config", "profile.test.package.lamplight.opt-level=2"];
 
-/// Prepares the machine, then runs every test. Arguments are passed to the test binary.
+/// Prepares the machine, then runs every test. Arguments are passed to the test binary; with names of
+/// trials among them, only what these need is built.
 pub fn run(arguments: &[String]) -> CommandResult {
     machine::prepare()?;
-    // Trials `toolchain::` run the package in Node, and trials `site::` in a browser.
-    site::toolchain(site::SiteBuild::Quick)?;
-    site::pages()?;
-    // With every feature, since shared stores are tested with a server.
-    let test = |what: &[&str], rest| {
-        let package = ["test", "--package", "lamplight", "--features", "store"];
-        cargo(&[&package[..], &OPTIMISED, what].concat(), rest)
-    };
+    let names: Vec<&String> = arguments.iter().filter(|one| !one.starts_with('-')).collect();
+    let of_site = |name: &&String| SITE_TRIALS.iter().any(|group| name.starts_with(group));
+    if !names.is_empty() {
+        if names.iter().any(of_site) {
+            for_node_and_browser()?;
+        }
+        return test(&["--test", "all"], &with_threads(arguments));
+    }
+    // Each build has times in which only one core has work.
+    let (site, tests) = std::thread::scope(|scope| {
+        let site = scope.spawn(for_node_and_browser);
+        let tests = test(&["--test", "all", "--no-run"], &[]);
+        (site.join(), tests)
+    });
+    site.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+    tests?;
     test(&["--doc"], &[])?;
-    test(&["--test", "all"], arguments)
+    test(&["--test", "all"], &with_threads(arguments))
+}
+
+/// The trials that run the npm package in Node, or the site in a browser.
+const SITE_TRIALS: [&str; 2] = ["toolchain", "site"];
+
+/// Builds what the trials of [`SITE_TRIALS`] run.
+fn for_node_and_browser() -> CommandResult {
+    site::toolchain(site::SiteBuild::Quick)?;
+    site::pages()
+}
+
+/// `cargo test` with every feature, since shared stores are tested with a server.
+fn test(what: &[&str], rest: &[String]) -> CommandResult {
+    let package = ["test", "--package", "lamplight", "--features", "store"];
+    cargo(&[&package[..], &OPTIMISED, what].concat(), rest)
+}
+
+/// The arguments with a number of threads, unless they have one. It is one more than there are
+/// cores, since trials wait for browsers and other programs.
+fn with_threads(arguments: &[String]) -> Vec<String> {
+    const OPTION: &str = "--test-threads";
+    let mut all = arguments.to_vec();
+    if !all.iter().any(|one| one.starts_with(OPTION)) {
+        let cores = std::thread::available_parallelism().map_or(1, usize::from);
+        all.push(format!("{OPTION}={}", cores + 1));
+    }
+    all
 }
 
 /// Runs cargo in the workspace; a failure is exit code 3.
