@@ -79,7 +79,11 @@ use std::process::ExitCode;
 
 use libtest_mimic::{Arguments, Trial};
 
+/// Those come first of which some take long on one core, so that the other cores do not wait for
+/// them at the end.
 const KINDS: &[fn() -> Vec<Trial>] = &[
+    toolchain::trials,
+    site::trials,
     browser::trials,
     bundle::trials,
     catalogue::trials,
@@ -128,12 +132,10 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     scene::trials,
     shaderlib::trials,
     shadow::trials,
-    site::trials,
     sketch::trials,
     specialise::trials,
     tables::trials,
     texts::trials,
-    toolchain::trials,
     traps::trials,
 ];
 

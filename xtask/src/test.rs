@@ -11,13 +11,9 @@ const OPTIMISED: [&str; 2] = ["--config", "profile.test.package.lamplight.opt-le
 /// trials among them, only what these need is built.
 pub fn run(arguments: &[String]) -> CommandResult {
     machine::prepare()?;
-    let names: Vec<&String> = arguments.iter().filter(|one| !one.starts_with('-')).collect();
-    let of_site = |name: &&String| SITE_TRIALS.iter().any(|group| name.starts_with(group));
+    let (names, options) = names_and_options(arguments);
     if !names.is_empty() {
-        if names.iter().any(of_site) {
-            for_node_and_browser()?;
-        }
-        return test(&["--test", "all"], &with_threads(arguments));
+        return some(&names, &options);
     }
     // Each build has times in which only one core has work.
     let (site, tests) = std::thread::scope(|scope| {
@@ -29,6 +25,35 @@ pub fn run(arguments: &[String]) -> CommandResult {
     tests?;
     test(&["--doc"], &[])?;
     test(&["--test", "all"], &with_threads(arguments))
+}
+
+/// Options of the test binary whose value is the next argument.
+const WITH_VALUE: [&str; 5] = ["--color", "--format", "--logfile", "--skip", "--test-threads"];
+
+/// Separates the names of trials from the options.
+fn names_and_options(arguments: &[String]) -> (Vec<String>, Vec<String>) {
+    let (mut names, mut options, mut is_value) = (Vec::new(), Vec::new(), false);
+    for argument in arguments.iter().cloned() {
+        if is_value || argument.starts_with('-') {
+            is_value = !is_value && WITH_VALUE.contains(&argument.as_str());
+            options.push(argument);
+        } else {
+            names.push(argument);
+        }
+    }
+    (names, options)
+}
+
+/// Runs the trials that have one of some names in theirs.
+fn some(names: &[String], options: &[String]) -> CommandResult {
+    let of_site = |name: &String| SITE_TRIALS.iter().any(|group| name.starts_with(group));
+    if names.iter().any(of_site) {
+        for_node_and_browser()?;
+    }
+    // The test binary takes one name at a time.
+    names.iter().try_for_each(|name| {
+        test(&["--test", "all"], &with_threads(&[&[name.clone()], options].concat()))
+    })
 }
 
 /// The trials that run the npm package in Node, or the site in a browser.
