@@ -4,8 +4,8 @@
 //! outputs that are known to have passed before.
 //!
 //! Each file of `judges/` is a judge, and each target names one, so no target is without one.
-//! Programs are started for batches of outputs. If a batch is refused, its outputs are judged again
-//! one by one.
+//! Programs are started for batches of outputs. If a batch is refused, its halves are judged, until
+//! the outputs at fault are found.
 
 mod blame;
 mod known;

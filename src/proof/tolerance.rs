@@ -121,6 +121,11 @@ pub fn formula_values(terms: &[BoundTerm], row: &[f64]) -> Vec<f64> {
     terms.iter().flat_map(|bound| &bound.term.formulas).map(|formula| formula.scalar(row)).collect()
 }
 
+/// How many values [`formula_values`] gives.
+pub fn formula_count(terms: &[BoundTerm]) -> usize {
+    terms.iter().map(|bound| bound.term.formulas.len()).sum()
+}
+
 /// What the terms allow for one component of a row's result, given the row's [`formula_values`].
 pub fn allowed_error(terms: &[BoundTerm], values: &[f64], word: usize, expected: f64) -> f64 {
     let (mut sum, mut rest) = (0.0, values);

@@ -19,7 +19,9 @@ use super::{Sources, alone, report, texts};
 /// The number of files in one call of glslangValidator.
 const BATCH: usize = 64;
 
-/// glslangValidator accepts the composed GLSL of every permutation that ships.
+/// glslangValidator accepts every line of the composed GLSL of the permutations that ship: it reads
+/// the texts that have a line which no text before them has. Trials `shipped` find names that are
+/// not declared in some permutation.
 pub fn glslang_takes_sources(
     program: &Program,
     stage: &(&'static str, &'static str, &'static str),
@@ -28,8 +30,9 @@ pub fn glslang_takes_sources(
     let folder = tempfile::tempdir()?;
     let [_, (_, compose)] = sources.languages();
     let texts = texts(program, &sources.texts, &program.space.enumerate(), &*compose)?;
-    let mut files = Vec::new();
-    for (index, (composed, point)) in texts.composed.iter().enumerate() {
+    let (mut files, mut seen) = (Vec::new(), SeenText::default());
+    let new = texts.composed.iter().filter(|(composed, _)| seen.add(&composed.text).line);
+    for (index, (composed, point)) in new.enumerate() {
         let path =
             folder.path().join(format!("{index}.{}", stage.2)).to_string_lossy().into_owned();
         std::fs::write(&path, &composed.text)?;

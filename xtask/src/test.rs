@@ -68,7 +68,9 @@ fn for_node_and_browser() -> CommandResult {
 /// `cargo test` with every feature, since shared stores are tested with a server.
 fn test(what: &[&str], rest: &[String]) -> CommandResult {
     let package = ["test", "--package", "lamplight", "--features", "store"];
-    cargo(&[&package[..], &OPTIMISED, what].concat(), rest)
+    // Trials free much memory and soon need as much again.
+    let kept = [("MIMALLOC_PURGE_DELAY".to_owned(), "1000".to_owned())];
+    cargo_with(&[&package[..], &OPTIMISED, what].concat(), rest, &kept)
 }
 
 /// The arguments with a number of threads, unless they have one. It is one more than there are

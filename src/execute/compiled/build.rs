@@ -15,7 +15,7 @@ use crate::metal::{Clang, ClangMissing};
 
 /// Bytes of texts in a unit. It is large enough that the headers cost little, and small enough that
 /// all cores have work.
-const UNIT: usize = 1 << 17;
+const UNIT: usize = 1 << 18;
 
 /// How shaders are compiled: without contraction, so that each operation is rounded by itself, and
 /// without undefined behaviour where Metal has none.

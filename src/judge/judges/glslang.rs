@@ -88,17 +88,30 @@ fn plan_compiled<'w>(
     Ok(works)
 }
 
-/// Judges texts in one run, or one by one if the run fails.
-fn judge_together(arguments: &[&str], outputs: &[&Output]) -> JudgeResult {
-    if run_glslang(arguments, outputs.iter().map(|output| &*output.file))?.status.success() {
+/// Judges texts in one run. If it fails, each half is judged by itself, until the texts at fault
+/// are found.
+fn judge_halves<T: Copy>(
+    texts: &[T],
+    accepts: &dyn Fn(&[T]) -> Result<bool, String>,
+    judge: &dyn Fn(T) -> JudgeResult,
+) -> JudgeResult {
+    if let [text] = texts {
+        return judge(*text);
+    }
+    if accepts(texts)? {
         return Ok(Vec::new());
     }
-    judge_each(arguments, outputs)
+    let (first, second) = texts.split_at(texts.len() / 2);
+    let halves = [first, second].map(|half| judge_halves(half, accepts, judge));
+    let [first, second] = halves;
+    Ok([first?, second?].concat())
 }
 
-fn judge_each(arguments: &[&str], outputs: &[&Output]) -> JudgeResult {
-    let found = outputs.iter().map(|output| judge_one(arguments, output));
-    Ok(found.collect::<Result<Vec<_>, _>>()?.concat())
+fn judge_together(arguments: &[&str], outputs: &[&Output]) -> JudgeResult {
+    let accepts = |outputs: &[&Output]| {
+        Ok(run_glslang(arguments, outputs.iter().map(|output| &*output.file))?.status.success())
+    };
+    judge_halves(outputs, &accepts, &|output| judge_one(arguments, output))
 }
 
 fn judge_one(arguments: &[&str], output: &Output) -> JudgeResult {
@@ -121,27 +134,31 @@ fn judge_later_version(
         let text = format!("#version {version}{rest}");
         files.push(scratch.write_unsynced(text.as_bytes()).map_err(|error| error.to_string())?);
     }
-    let said = run_glslang(arguments, files.iter().map(|file| &**file))?;
-    let mut refusals = Vec::new();
-    for (output, file) in outputs.iter().zip(&files) {
-        if !said.status.success() {
-            refusals.extend(make_refusal(output, file, &run_glslang(arguments, [&**file])?));
-        }
+    let texts: Vec<(&Output, &Path)> =
+        outputs.iter().copied().zip(files.iter().map(|file| &**file)).collect();
+    let accepts = |texts: &[(&Output, &Path)]| {
+        Ok(run_glslang(arguments, texts.iter().map(|(_, file)| *file))?.status.success())
+    };
+    let judge = |(output, file): (&Output, &Path)| {
+        Ok(make_refusal(output, file, &run_glslang(arguments, [file])?).into_iter().collect())
+    };
+    let refusals = judge_halves(&texts, &accepts, &judge);
+    for file in &files {
         // A file that cannot be removed now is removed with the folder.
         let _ = std::fs::remove_file(file);
     }
-    Ok(refusals)
+    refusals
 }
 
 /// Parses texts in one run, which also tries to link them. Linking always fails, and that is
 /// ignored.
 fn judge_parse(arguments: &[&str], outputs: &[&Output]) -> JudgeResult {
-    let said = run_glslang(arguments, outputs.iter().map(|output| &*output.file))?;
-    let of_a_text = |line: &str| line.starts_with("ERROR: ") && !line.contains(" Linking ");
-    if said.status.code().is_some() && !printed_words(&said).lines().any(of_a_text) {
-        return Ok(Vec::new());
-    }
-    judge_each(arguments, outputs)
+    let accepts = |outputs: &[&Output]| {
+        let said = run_glslang(arguments, outputs.iter().map(|output| &*output.file))?;
+        let of_a_text = |line: &str| line.starts_with("ERROR: ") && !line.contains(" Linking ");
+        Ok(said.status.code().is_some() && !printed_words(&said).lines().any(of_a_text))
+    };
+    judge_halves(outputs, &accepts, &|output| judge_one(arguments, output))
 }
 
 fn run_glslang<'f>(

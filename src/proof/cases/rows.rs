@@ -2,6 +2,8 @@
 
 use super::domain::{self, Domain};
 use super::{Case, Oracle, TableRow};
+use std::sync::OnceLock;
+
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::kernel::TypeShape;
 use crate::execute::kernel::word_value;
@@ -21,6 +23,19 @@ pub struct Rows {
     pub kinds: Vec<ScalarKind>,
     /// The ranges of words that hold a unit vector. Shrinking changes such a vector as a whole.
     pub units: Vec<std::ops::Range<usize>>,
+    pub facts: RowFacts,
+}
+
+/// What the formulas of a case say about each row, once that is asked for. All executors and
+/// languages ask for the same.
+#[derive(Debug, Default)]
+pub struct RowFacts {
+    /// The values of the formulas of the tolerance, row by row.
+    pub terms: OnceLock<Vec<f64>>,
+    /// Whether rounding may decide a comparison that the case names in `near`.
+    pub near: OnceLock<Vec<bool>>,
+    /// Whether the row is within the case's filter.
+    pub inside: OnceLock<Vec<bool>>,
 }
 
 /// A parameter, or a field of one, and its domain, while rows are made.
@@ -37,7 +52,7 @@ impl Rows {
     /// Rows of words of these kinds.
     pub fn of(words: Vec<u32>, kinds: Vec<ScalarKind>) -> Self {
         let (numbers, stride) = (words_to_numbers(&words, &kinds), kinds.len().max(1));
-        Self { words, numbers, stride, kinds, units: Vec::new() }
+        Self { words, numbers, stride, kinds, units: Vec::new(), facts: RowFacts::default() }
     }
 
     /// Number of rows.
@@ -69,6 +84,7 @@ impl Rows {
             stride: self.stride,
             kinds: self.kinds.clone(),
             units: self.units.clone(),
+            facts: RowFacts::default(),
         }
     }
 }
@@ -82,7 +98,8 @@ pub fn case_rows(case: &Case, scope: &Scope<'_>, steps: &mut Steps) -> Result<Ro
         Oracle::Table(table) => (table_words(table, scope, stride)?, Vec::new()),
         _ => generate_rows(case, scope, &kinds, steps)?,
     };
-    let rows = Rows { numbers: words_to_numbers(&words, &kinds), words, stride, kinds, units };
+    let (numbers, facts) = (words_to_numbers(&words, &kinds), RowFacts::default());
+    let rows = Rows { numbers, words, stride, kinds, units, facts };
     let Some(filter) = &case.filter else { return Ok(rows) };
     let filter = filter.bind(scope)?;
     spend_steps(case, rows.len(), filter.parts(), steps)?;

@@ -1,5 +1,6 @@
 //! Compares what an executor returned with what was expected.
 
+use super::facts;
 use super::job::{CaseJob, Goal};
 use super::law::LawVerdict;
 use super::profile::Profile;
@@ -92,13 +93,12 @@ pub fn judge_rows(
     for (index, (goal, found)) in
         expected.iter().zip(results.chunks(kinds.len().max(1))).enumerate()
     {
-        let row = rows.row(index);
         if is_indeterminate(goal) {
             verdict.indeterminate += 1;
             continue;
         }
-        let Some(worst) = compare_goal(job, row, goal, found, &kinds, index) else { continue };
-        let is_ambiguous = goal.doubtful || is_ambiguous(job, row);
+        let Some(worst) = compare_goal(job, rows, goal, found, &kinds, index) else { continue };
+        let is_ambiguous = goal.doubtful || facts::is_ambiguous(job, rows, index);
         if worst.share() <= 1.0 || !is_ambiguous {
             verdict.largest = verdict.largest.max(worst.error);
         }
@@ -122,35 +122,36 @@ pub fn judge_rows(
 /// Compares with each accepted value, and returns the worst component for the value that fits best.
 pub fn compare_goal(
     job: &CaseJob<'_>,
-    row: &[f64],
+    rows: &Rows,
     goal: &Goal,
     found: &[u32],
     kinds: &[ScalarKind],
     index: usize,
 ) -> Option<Worst> {
     let values = std::iter::once(&goal.expected.value).chain(&goal.expected.alternatives);
-    let one = |value: &Vec<f64>| compare_one(job, row, (value, &goal.errors), found, kinds, index);
+    let terms = facts::term_values(job, rows, index);
+    let one =
+        |value: &Vec<f64>| compare_one(job, terms, (value, &goal.errors), found, kinds, index);
     values.filter_map(one).min_by(|a, b| a.share().total_cmp(&b.share()))
 }
 
-/// Compares with one accepted value. `of` is that value, and for each word an error that is allowed
-/// beside the terms.
+/// Compares with one accepted value. `terms` has the values of the row's formulas. `of` is the
+/// accepted value, and for each word an error that is allowed beside the terms.
 fn compare_one(
     job: &CaseJob<'_>,
-    row: &[f64],
+    terms: &[f64],
     of: (&[f64], &[f64]),
     found: &[u32],
     kinds: &[ScalarKind],
     index: usize,
 ) -> Option<Worst> {
-    let values = tolerance::formula_values(&job.terms, row);
     let component = |word: usize| {
         let found = word_value(found[word], kinds[word]);
         let expected = of.0[word];
         let is_float = kinds[word] == ScalarKind::Float;
         let own = of.1.get(word).copied().unwrap_or(0.0);
         let allowed = if is_float {
-            tolerance::allowed_error(&job.terms, &values, word, expected) + own
+            tolerance::allowed_error(&job.terms, terms, word, expected) + own
         } else {
             0.0
         };

@@ -1,7 +1,7 @@
 //! Judges the laws of a case.
 
 use super::job::{CaseJob, Goal};
-use super::{judge, profile};
+use super::{facts, judge, profile};
 use crate::execute::kernel::word_value;
 use crate::proof::cases::Rows;
 use crate::proof::laws::{self, Integral, Law};
@@ -63,14 +63,11 @@ fn judge_each(
     for index in 0..given.rows.len() {
         let row = given.rows.row(index);
         let other_row = given.transformed.map(|(rows, _)| rows.row(index));
-        let outside = other_row
-            .zip(job.filter.as_ref())
-            .is_some_and(|(other, filter)| filter.scalar(other) != 1.0);
         let goal = given.expected.get(index);
-        if outside || goal.is_some_and(judge::is_indeterminate) || judge::is_ambiguous(job, row) {
+        if is_left_out(job, given, index) {
             continue;
         }
-        let values = tolerance::formula_values(&job.terms, row);
+        let values = facts::term_values(job, given.rows, index);
         let moved = other_row.map_or(0.0, |other| input_distance(row, other));
         for (word, kind) in kinds.iter().enumerate().filter(|(_, kind)| **kind != ScalarKind::Bool)
         {
@@ -79,7 +76,7 @@ fn judge_each(
             let other = given.transformed.map(|(_, words)| word_value(words[at], *kind));
             let allowed = if other.is_some() {
                 let own = goal.and_then(|goal| goal.errors.get(word)).copied().unwrap_or(0.0);
-                2.0 * (tolerance::allowed_error(&job.terms, &values, word, value) + own)
+                2.0 * (tolerance::allowed_error(&job.terms, values, word, value) + own)
                     + f64::from(f32::MIN_POSITIVE)
             } else {
                 0.0
@@ -101,6 +98,14 @@ fn judge_each(
         }
     }
     verdict
+}
+
+/// Whether the law says nothing about a row: its transformed row is outside of the case's filter,
+/// every result is accepted, or rounding may decide a comparison.
+fn is_left_out(job: &CaseJob<'_>, given: &RowResults<'_>, index: usize) -> bool {
+    given.transformed.is_some_and(|(rows, _)| !facts::is_inside(job, rows, index))
+        || given.expected.get(index).is_some_and(judge::is_indeterminate)
+        || facts::is_ambiguous(job, given.rows, index)
 }
 
 /// An error in scientific notation; `0` for none.

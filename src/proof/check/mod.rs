@@ -1,6 +1,7 @@
 //! Runs cases of modules in each language on each executor. Prints nothing: results are data.
 
 mod code;
+mod facts;
 pub(super) mod job;
 pub(super) mod judge;
 pub mod law;

@@ -125,7 +125,7 @@ pub fn make_profile(job: &CaseJob<'_>, results: &[u32]) -> Profile {
         .enumerate()
         .filter(|(_, (goal, _))| !judge::is_indeterminate(goal))
         .filter_map(|(index, (goal, found)): (usize, (&Goal, &[u32]))| {
-            judge::compare_goal(job, job.rows.row(index), goal, found, &kinds, index)
+            judge::compare_goal(job, &job.rows, goal, found, &kinds, index)
         })
         .collect();
     let is_doubtful =
