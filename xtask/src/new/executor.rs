@@ -50,7 +50,7 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFil
 fn steps(file: &str, name: &str, is_vulkan: bool, is_own: bool) -> Vec<String> {
     let mut next = vec![
         format!(
-            "{file}: `about`, and what opens it, as its comments say (trials house::described, harness::executor::{name})"
+            "{file}: `about`, and what opens it, as its comments say, which you delete; imports that are not used any more (trials house::described, harness::executor::{name})"
         ),
         format!(
             "{file}: `needs`; for each package that xtask/src/machine.rs lacks, add to `NEEDS` there one like `Need {{ package: \"libegl1\", what: \"EGL\", found: || library(\"libEGL.so.1\") }}`, or with `installed` or `program` (trial house::needs_of_executors)"
@@ -59,7 +59,7 @@ fn steps(file: &str, name: &str, is_vulkan: bool, is_own: bool) -> Vec<String> {
             "{file}: `samples: None` where it draws no frames, and `shipping` where it takes a target's files as they are (trials harness::executor::{name}, frames/shipped)"
         ),
         format!(
-            "{file}: `Runs on:` has `every system`, `every system but WebAssembly`, or names as `linux, windows, macos`; other systems are built without the executor and do not know its name"
+            "{file}: `Runs on:` has `every system`, `every system but WebAssembly`, or names in its place as `linux, windows, macos`; other systems are built without the executor and do not know its name"
         ),
         "trials that open all executors fail where one is not available: have its packages installed by xtask/src/machine.rs, or narrow `Runs on:`".to_owned(),
         format!("cargo run -- list executors; cargo run -- check --executor {name} brdf::diffuse"),
@@ -106,8 +106,8 @@ const FIELDS: &[(&str, &str)] = &[
     (
         "before_threads: ",
         "A function that is called while the process has one thread, such as one that sets a\n\
-         variable: `announce` in `swiftshader.rs`. All executors of the process see the variable. If\n\
-         it changes what another one opens, write an executor with a process of its own instead.",
+         variable: `announce` in `swiftshader.rs`. All executors of the process see it. If it\n\
+         changes what another one opens, write an executor with a process of its own instead.",
     ),
     (
         "samples: ",
@@ -116,13 +116,14 @@ const FIELDS: &[(&str, &str)] = &[
     ("backend: ", "One interface of wgpu: `VULKAN`, `GL`, `DX12` or `METAL`."),
     (
         "named: ",
-        "A part of the adapter's name. An empty part allows every adapter. `AdapterName::Without` is\n\
-         for adapters whose names do not have the part. A software adapter comes before others.",
+        "`AdapterName::With(\"part\")`: the adapter's name has the part, upper and lower case\n\
+         as it is; an empty part allows every adapter. `AdapterName::Without` is for adapters\n\
+         whose names do not have it. A software adapter comes before others.",
     ),
     (
         "shaders: ",
-        "wgpu translates the shaders. `Shaders::Emitted(Target::SPIRV)` gives the driver the texts of a\n\
-         target unchanged, which the adapter must allow (`PASSTHROUGH_SHADERS`).",
+        "wgpu translates the shaders. `Shaders::Emitted(Target::SPIRV)` gives the driver the\n\
+         texts of a target unchanged, which the adapter must allow (`PASSTHROUGH_SHADERS`).",
     ),
     (
         "shipping: ",
