@@ -80,3 +80,31 @@ pub fn printed_words(said: &Output) -> String {
     let all = [said.stdout.as_slice(), said.stderr.as_slice()].concat();
     String::from_utf8_lossy(&all).trim().to_owned()
 }
+
+/// Runs a program on a batch. If it refuses the batch, it runs on each half, until those at fault are
+/// found.
+///
+/// Parameters: `together` returns what was found for a batch, or `None` if the program refuses it;
+/// `alone` returns what was found for a single one.
+///
+/// # Errors
+/// The first error of a run.
+pub fn halve_refused<T, F, E>(
+    batch: &[T],
+    together: &dyn Fn(&[T]) -> Result<Option<Vec<F>>, E>,
+    alone: &dyn Fn(&T) -> Result<Vec<F>, E>,
+) -> Result<Vec<F>, E> {
+    match batch {
+        [] => Ok(Vec::new()),
+        [one] => alone(one),
+        _ => match together(batch)? {
+            Some(found) => Ok(found),
+            None => {
+                let (first, second) = batch.split_at(batch.len() / 2);
+                let mut found = halve_refused(first, together, alone)?;
+                found.extend(halve_refused(second, together, alone)?);
+                Ok(found)
+            }
+        },
+    }
+}

@@ -6,6 +6,7 @@ use super::adapt::adapt_text;
 use super::attributes;
 use super::clang::{Clang, ClangMissing};
 use super::token::msl_tokens;
+use crate::tools::halve_refused;
 
 /// A text that is not well formed.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -30,7 +31,7 @@ pub fn judge_batch(clang: &Clang, batch: &[IndexedText<'_>]) -> Refusals {
             None => sound.push((*index, *text)),
         }
     }
-    judge_sound(clang, &sound, &mut refusals)?;
+    refusals.extend(judge_sound(clang, &sound)?);
     Ok(refusals)
 }
 
@@ -49,27 +50,17 @@ fn before_clang(text: &str) -> Option<String> {
 
 type IndexedText<'t> = (usize, &'t str);
 
-/// Judges a batch. If it is refused, it is divided in halves until the texts at fault are found,
-/// since a mistake in one text may make others look wrong.
-fn judge_sound(
-    clang: &Clang,
-    batch: &[IndexedText<'_>],
-    to: &mut Vec<MslRefusal>,
-) -> Result<(), ClangMissing> {
-    if batch.is_empty() {
-        return Ok(());
-    }
-    let output = clang.compile(&unit_text(batch), &["-fsyntax-only"])?;
-    if output.status.success() {
-        return Ok(());
-    }
-    if let [(index, _)] = batch {
-        to.push(MslRefusal { index: *index, errors: clang_errors(&output.stderr) });
-        return Ok(());
-    }
-    let (first, second) = batch.split_at(batch.len() / 2);
-    judge_sound(clang, first, to)?;
-    judge_sound(clang, second, to)
+/// Judges a batch. Its halves are judged if it is refused, since a mistake in one text may make
+/// others look wrong.
+fn judge_sound(clang: &Clang, batch: &[IndexedText<'_>]) -> Refusals {
+    let judged = |batch: &[IndexedText<'_>]| clang.compile(&unit_text(batch), &["-fsyntax-only"]);
+    let together = |batch: &[IndexedText<'_>]| Ok(judged(batch)?.status.success().then(Vec::new));
+    let alone = |one: &IndexedText<'_>| {
+        let output = judged(&[*one])?;
+        let refusal = || MslRefusal { index: one.0, errors: clang_errors(&output.stderr) };
+        Ok((!output.status.success()).then(refusal).into_iter().collect())
+    };
+    halve_refused(batch, &together, &alone)
 }
 
 /// Texts side by side, each in a namespace of its own.

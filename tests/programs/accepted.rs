@@ -7,7 +7,6 @@ use std::process::{Command, Stdio};
 use lamplight::bundle::{Language, Target};
 use lamplight::compose::Composed;
 use lamplight::emit::{emit, targets};
-use lamplight::judge::SeenText;
 use lamplight::permute::manifest::Program;
 use lamplight::permute::{Assignment, cover};
 use lamplight::validate::on_large_stack;
@@ -19,9 +18,7 @@ use super::{Sources, alone, report, texts};
 /// The number of files in one call of glslangValidator.
 const BATCH: usize = 64;
 
-/// glslangValidator accepts every line of the composed GLSL of the permutations that ship: it reads
-/// the texts that have a line which no text before them has. Trials `shipped` find names that are
-/// not declared in some permutation.
+/// glslangValidator accepts the composed GLSL of every permutation that ships.
 pub fn glslang_takes_sources(
     program: &Program,
     stage: &(&'static str, &'static str, &'static str),
@@ -30,9 +27,8 @@ pub fn glslang_takes_sources(
     let folder = tempfile::tempdir()?;
     let [_, (_, compose)] = sources.languages();
     let texts = texts(program, &sources.texts, &program.space.enumerate(), &*compose)?;
-    let (mut files, mut seen) = (Vec::new(), SeenText::default());
-    let new = texts.composed.iter().filter(|(composed, _)| seen.add(&composed.text).line);
-    for (index, (composed, point)) in new.enumerate() {
+    let mut files = Vec::new();
+    for (index, (composed, point)) in texts.composed.iter().enumerate() {
         let path =
             folder.path().join(format!("{index}.{}", stage.2)).to_string_lossy().into_owned();
         std::fs::write(&path, &composed.text)?;
@@ -75,8 +71,8 @@ fn refused<'p>(
 /// Options of glslangValidator for GLSL with Vulkan's semantics.
 const VULKAN: &[&str] = &["-V", "-o", "/dev/null"];
 
-/// spirv-val and glslangValidator accept the outputs of the covering set. glslangValidator compiles
-/// GLSL sources to SPIR-V: those that have two neighbouring tokens that no source before them has.
+/// spirv-val and glslangValidator accept the outputs of the covering set, and glslangValidator the
+/// GLSL sources from which they were made.
 pub fn validators(
     program: &Program,
     stage: &(&'static str, &'static str, &'static str),
@@ -86,16 +82,9 @@ pub fn validators(
     for (entry, compose) in sources.languages() {
         let texts =
             texts(program, &sources.texts, &cover::pairwise(&program.space).points, &*compose)?;
-        let mut seen = SeenText::default();
-        let is_new: Vec<bool> =
-            texts.composed.iter().map(|(composed, _)| seen.add(&composed.text).pair).collect();
         let write = |(index, (composed, point)): (usize, &'_ (Composed, Assignment))| {
             let prefix = folder.path().join(format!("{entry}{index}"));
-            let source = (is_new[index] && composed.language == Language::Glsl)
-                .then(|| compile_source(&composed.text, &prefix, stage.2));
-            let outputs =
-                source.transpose().and_then(|_| write_outputs(composed, entry, stage.2, &prefix));
-            (point.clone(), outputs)
+            (point.clone(), write_outputs(composed, entry, stage.2, &prefix))
         };
         let written: Vec<_> =
             on_large_stack(|| texts.composed.par_iter().enumerate().map(write).collect());
@@ -120,14 +109,8 @@ pub fn validators(
     Ok(())
 }
 
-/// Compiles a source in GLSL to SPIR-V.
-fn compile_source(text: &str, prefix: &Path, extension: &str) -> Result<(), String> {
-    let path = save(text, prefix, "source", extension)?;
-    run("glslangValidator", &[VULKAN, &[&path]].concat())
-}
-
-/// Writes the outputs of a text, has spirv-val judge the one that it is for, and returns the files
-/// for glslangValidator, each with a name for its rules.
+/// Writes the outputs of a text, has spirv-val and the rules of Vulkan judge those that they are
+/// for, and returns the files for glslangValidator, each with a name for its rules.
 fn write_outputs(
     composed: &Composed,
     entry: &str,
@@ -142,6 +125,12 @@ fn write_outputs(
         Ok(path.to_string_lossy().into_owned())
     };
     run("spirv-val", &["--target-env", "vulkan1.1", &write(Target::SPIRV, "spv")?])?;
+    if composed.language == Language::Glsl {
+        run(
+            "glslangValidator",
+            &[VULKAN, &[&save(&composed.text, prefix, "source", extension)?]].concat(),
+        )?;
+    }
     let mut files = Vec::new();
     for entry in targets::ALL.iter().filter(|entry| entry.glsl.is_some()) {
         let path = write(entry.target, extension)?;

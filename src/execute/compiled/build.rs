@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::interface::{Interface, InterfaceMember, InterfaceRole};
 use crate::metal::adapt::adapt_text;
 use crate::metal::{Clang, ClangMissing};
+use crate::tools::halve_refused;
 
 /// Bytes of texts in a unit. It is large enough that the headers cost little, and small enough that
 /// all cores have work.
@@ -100,22 +101,27 @@ fn text_units<'t>(
     units
 }
 
-/// Compiles a unit. If it is refused it is divided in halves, until the texts at fault are found.
+/// Compiles a unit, and its halves if it is refused, until the texts at fault are found.
 fn compile_unit(clang: &Clang, texts: &[&str], unit: &[TextInterface<'_>]) -> Objects {
-    let Some((first, _)) = unit.first() else { return Ok(Vec::new()) };
-    let name = format!("unit{first}-{}.o", unit.len());
-    let arguments: Vec<&str> = FLAGS.iter().copied().chain(["-o", &name]).collect();
-    let output = clang.compile(&unit_source(texts, unit), &arguments)?;
-    if output.status.success() {
-        return Ok(vec![ObjectFile::Compiled(name)]);
-    }
-    if unit.len() == 1 {
-        return Ok(vec![ObjectFile::Refused(*first, output_text(&output))]);
-    }
-    let (first, second) = unit.split_at(unit.len() / 2);
-    let mut objects = compile_unit(clang, texts, first)?;
-    objects.extend(compile_unit(clang, texts, second)?);
-    Ok(objects)
+    let compile = |unit: &[TextInterface<'_>]| {
+        let first = unit.first().map_or(0, |(index, _)| *index);
+        let name = format!("unit{first}-{}.o", unit.len());
+        let arguments: Vec<&str> = FLAGS.iter().copied().chain(["-o", &name]).collect();
+        let output = clang.compile(&unit_source(texts, unit), &arguments)?;
+        Ok((ObjectFile::Compiled(name), output))
+    };
+    let together = |unit: &[TextInterface<'_>]| {
+        let (object, output) = compile(unit)?;
+        Ok(output.status.success().then(|| vec![object]))
+    };
+    let alone = |one: &TextInterface<'_>| {
+        let (object, output) = compile(&[*one])?;
+        match output.status.success() {
+            true => Ok(vec![object]),
+            false => Ok(vec![ObjectFile::Refused(one.0, output_text(&output))]),
+        }
+    };
+    halve_refused(unit, &together, &alone)
 }
 
 fn output_text(output: &Output) -> String {

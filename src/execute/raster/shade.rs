@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::corners::ScalarSource;
 use super::triangles::{NONE, Triangle};
-use super::{DrawnView, FragmentOutput, Quad, ShadedQuad, Shading, cleared_target, item_buffers};
+use super::{DrawnView, FragmentOutput, Quad, Shading, cleared_target, item_buffers};
 use crate::diagnostic::Diagnostic;
 use crate::eval::{Number, Resources};
 use crate::execute::frame::{Buffers, Drawing};
@@ -32,14 +32,10 @@ impl Shader<'_> {
     pub fn shade_visible(&self, drawn: &DrawnView) -> Result<Targets, Diagnostic> {
         let Some(screen) = self.screen(drawn) else { return Ok(Vec::new()) };
         let mut targets = self.cleared();
-        for (item, places) in screen.visible(self.drawing.items.len()).iter().enumerate() {
-            for places in places.chunks(AT_ONCE) {
-                for (place, shaded) in places.iter().zip(self.quads(&screen, item, places)?) {
-                    for (pixel, output) in self.returned(place, &shaded) {
-                        store_output(&mut targets, pixel, output);
-                    }
-                }
-            }
+        for (item, places) in screen.visible(self.drawing.items.len()).into_iter().enumerate() {
+            self.shade(&screen, item, places.into_iter(), |_, pixel, output| {
+                store_output(&mut targets, self.index(pixel), output);
+            })?;
         }
         Ok(targets)
     }
@@ -49,24 +45,18 @@ impl Shader<'_> {
     pub fn shade_all(&self, drawn: &DrawnView) -> Result<(Targets, Vec<f32>), Diagnostic> {
         let mut depths = drawn.seen.depth.clone();
         let Some(screen) = self.screen(drawn) else { return Ok((Vec::new(), depths)) };
-        let mut targets = self.cleared();
+        let (mut targets, state) = (self.cleared(), self.drawing.state);
         for of_item in drawn.triangles.chunk_by(|one, next| one.item == next.item) {
-            let mut places =
-                of_item.iter().flat_map(|triangle| screen.covered(triangle)).peekable();
-            while places.peek().is_some() {
-                let places: Vec<CoveredQuad<'_>> = places.by_ref().take(AT_ONCE).collect();
-                let shaded = self.quads(&screen, of_item[0].item, &places)?;
-                for (place, shaded) in places.iter().zip(&shaded) {
-                    for (pixel, output) in self.returned(place, shaded) {
-                        let own = || self.own_depth(place.triangle, pixel);
-                        let depth = output.depth.map_or_else(own, |depth| depth.clamp(0.0, 1.0));
-                        if !self.drawing.state.depth_test || depth < depths[pixel] {
-                            depths[pixel] = depth;
-                            store_output(&mut targets, pixel, output);
-                        }
-                    }
+            let places = of_item.iter().flat_map(|triangle| screen.covered(triangle));
+            self.shade(&screen, of_item[0].item, places, |triangle, (x, y), output| {
+                let own = || triangle.depth(middle(x), middle(y), triangle.offset(state.offset));
+                let depth = output.depth.map_or_else(own, |depth| depth.clamp(0.0, 1.0));
+                let index = self.index((x, y));
+                if !state.depth_test || depth < depths[index] {
+                    depths[index] = depth;
+                    store_output(&mut targets, index, output);
                 }
-            }
+            })?;
         }
         Ok((targets, depths))
     }
@@ -81,37 +71,35 @@ impl Shader<'_> {
         vec![cleared_target(self.drawing.size); self.drawing.targets as usize]
     }
 
-    /// Shades quads of one item.
-    fn quads(
+    /// Shades quads of one item in order. Calls `store` for each covered pixel whose fragment was
+    /// not discarded.
+    fn shade<'d>(
         &self,
         screen: &Screen<'_>,
         item: usize,
-        places: &[CoveredQuad<'_>],
-    ) -> Result<Vec<ShadedQuad>, Diagnostic> {
-        let quads: Vec<Quad> = places.par_iter().map(|place| screen.quad(place)).collect();
-        let buffers = item_buffers(self.drawing, self.view, &self.drawing.items[item]);
-        self.shading.shade(buffers, self.textures, &quads)
+        mut places: impl Iterator<Item = CoveredQuad<'d>>,
+        mut store: impl FnMut(&Triangle, (u32, u32), &FragmentOutput),
+    ) -> Result<(), Diagnostic> {
+        loop {
+            let some: Vec<CoveredQuad<'_>> = places.by_ref().take(AT_ONCE).collect();
+            if some.is_empty() {
+                return Ok(());
+            }
+            let quads: Vec<Quad> = some.par_iter().map(|place| screen.quad(place)).collect();
+            let buffers = item_buffers(self.drawing, self.view, &self.drawing.items[item]);
+            let shaded = self.shading.shade(buffers, self.textures, &quads)?;
+            for (place, shaded) in some.iter().zip(&shaded) {
+                for lane in (0..4).filter(|lane| place.covered[*lane]) {
+                    if let Some(output) = &shaded[lane] {
+                        store(place.triangle, place.pixels[lane], output);
+                    }
+                }
+            }
+        }
     }
 
-    /// What was returned for each covered pixel, by its index.
-    fn returned<'s>(
-        &self,
-        place: &CoveredQuad<'_>,
-        shaded: &'s ShadedQuad,
-    ) -> impl Iterator<Item = (usize, &'s FragmentOutput)> {
-        let (width, covered, pixels) = (self.drawing.size[0], place.covered, place.pixels);
-        let lanes = shaded.iter().enumerate().filter(move |(lane, _)| covered[*lane]);
-        lanes.filter_map(move |(lane, output)| {
-            let (x, y) = pixels[lane];
-            Some(((y * width + x) as usize, output.as_ref()?))
-        })
-    }
-
-    /// The depth of a triangle at a pixel.
-    fn own_depth(&self, triangle: &Triangle, pixel: usize) -> f32 {
-        let width = self.drawing.size[0] as usize;
-        let (x, y) = ((pixel % width) as f64 + 0.5, (pixel / width) as f64 + 0.5);
-        triangle.depth(x, y, triangle.offset(self.drawing.state.offset))
+    fn index(&self, (x, y): (u32, u32)) -> usize {
+        (y * self.drawing.size[0] + x) as usize
     }
 }
 

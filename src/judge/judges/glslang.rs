@@ -20,7 +20,7 @@ use crate::judge::{
     JudgeEntry, JudgeResult, JudgeWork, Output, OutputGroup, Refusal, divide_group,
 };
 use crate::output::Scratch;
-use crate::tools::{GLSLANG, printed_words};
+use crate::tools::{GLSLANG, halve_refused, printed_words};
 
 /// The judge, for the table of all.
 pub const JUDGE: JudgeEntry = JudgeEntry {
@@ -88,30 +88,13 @@ fn plan_compiled<'w>(
     Ok(works)
 }
 
-/// Judges texts in one run. If it fails, each half is judged by itself, until the texts at fault
-/// are found.
-fn judge_halves<T: Copy>(
-    texts: &[T],
-    accepts: &dyn Fn(&[T]) -> Result<bool, String>,
-    judge: &dyn Fn(T) -> JudgeResult,
-) -> JudgeResult {
-    if let [text] = texts {
-        return judge(*text);
-    }
-    if accepts(texts)? {
-        return Ok(Vec::new());
-    }
-    let (first, second) = texts.split_at(texts.len() / 2);
-    let halves = [first, second].map(|half| judge_halves(half, accepts, judge));
-    let [first, second] = halves;
-    Ok([first?, second?].concat())
-}
-
+/// Judges texts in one run if it accepts them all.
 fn judge_together(arguments: &[&str], outputs: &[&Output]) -> JudgeResult {
-    let accepts = |outputs: &[&Output]| {
-        Ok(run_glslang(arguments, outputs.iter().map(|output| &*output.file))?.status.success())
+    let together = |outputs: &[&Output]| {
+        let said = run_glslang(arguments, outputs.iter().map(|output| &*output.file))?;
+        Ok(said.status.success().then(Vec::new))
     };
-    judge_halves(outputs, &accepts, &|output| judge_one(arguments, output))
+    halve_refused(outputs, &together, &|output| judge_one(arguments, output))
 }
 
 fn judge_one(arguments: &[&str], output: &Output) -> JudgeResult {
@@ -136,13 +119,14 @@ fn judge_later_version(
     }
     let texts: Vec<(&Output, &Path)> =
         outputs.iter().copied().zip(files.iter().map(|file| &**file)).collect();
-    let accepts = |texts: &[(&Output, &Path)]| {
-        Ok(run_glslang(arguments, texts.iter().map(|(_, file)| *file))?.status.success())
+    let together = |texts: &[(&Output, &Path)]| {
+        let said = run_glslang(arguments, texts.iter().map(|(_, file)| *file))?;
+        Ok(said.status.success().then(Vec::new))
     };
-    let judge = |(output, file): (&Output, &Path)| {
-        Ok(make_refusal(output, file, &run_glslang(arguments, [file])?).into_iter().collect())
+    let alone = |(output, file): &(&Output, &Path)| {
+        Ok(make_refusal(output, file, &run_glslang(arguments, [*file])?).into_iter().collect())
     };
-    let refusals = judge_halves(&texts, &accepts, &judge);
+    let refusals = halve_refused(&texts, &together, &alone);
     for file in &files {
         // A file that cannot be removed now is removed with the folder.
         let _ = std::fs::remove_file(file);
@@ -153,12 +137,13 @@ fn judge_later_version(
 /// Parses texts in one run, which also tries to link them. Linking always fails, and that is
 /// ignored.
 fn judge_parse(arguments: &[&str], outputs: &[&Output]) -> JudgeResult {
-    let accepts = |outputs: &[&Output]| {
+    let together = |outputs: &[&Output]| {
         let said = run_glslang(arguments, outputs.iter().map(|output| &*output.file))?;
         let of_a_text = |line: &str| line.starts_with("ERROR: ") && !line.contains(" Linking ");
-        Ok(said.status.code().is_some() && !printed_words(&said).lines().any(of_a_text))
+        let accepts = said.status.code().is_some() && !printed_words(&said).lines().any(of_a_text);
+        Ok(accepts.then(Vec::new))
     };
-    judge_halves(outputs, &accepts, &|output| judge_one(arguments, output))
+    halve_refused(outputs, &together, &|output| judge_one(arguments, output))
 }
 
 fn run_glslang<'f>(

@@ -1,9 +1,9 @@
 //! Makes the input words of every invocation from the domains of a case.
 
-use super::domain::{self, Domain};
-use super::{Case, Oracle, TableRow};
 use std::sync::OnceLock;
 
+use super::domain::{self, Domain};
+use super::{Case, Oracle, TableRow};
 use crate::diagnostic::{Diagnostic, codes};
 use crate::execute::kernel::TypeShape;
 use crate::execute::kernel::word_value;

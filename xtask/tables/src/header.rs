@@ -51,7 +51,10 @@ pub fn check_header(published: &str, errors: &Errors, bytes: &[u8]) -> Result<()
         if stated.len() != found.len() {
             return Err(format!("`{name}` has {} numbers, expected {}", stated.len(), found.len()));
         }
-        let is_worse = |(found, stated): (&f64, &f64)| found.is_nan() || *found > *stated * SLACK;
+        // A NaN on either side is worse.
+        let is_worse = |(found, stated): (&f64, &f64)| {
+            found.partial_cmp(&(stated * SLACK)).is_none_or(std::cmp::Ordering::is_gt)
+        };
         if let Some(index) = found.iter().zip(&stated).position(is_worse) {
             let (found, stated) = (found[index], stated[index]);
             return Err(format!("`{name}` of column {index} is {found}, published is {stated}"));
