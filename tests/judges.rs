@@ -10,7 +10,7 @@ use std::process::{Command, Output as Said};
 
 use lamplight::bundle::{Target, blob_files};
 use lamplight::emit::targets;
-use lamplight::judge::{self, Output};
+use lamplight::judge::{self, Novelty, Output, SeenText};
 use libtest_mimic::{Failed, Trial};
 
 use placed::{glsl_means_something_else, refusals_are_placed, writers_are_placed};
@@ -19,9 +19,10 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 10] = [
+    let cases: [Case; 11] = [
         ("every_judge_refuses", every_judge_refuses),
         ("one_of_many_is_found", one_of_many_is_found),
+        ("numbers_of_names_are_not_new", numbers_of_names_are_not_new),
         ("later_versions", later_versions),
         ("refusals_are_placed", refusals_are_placed),
         ("writers_are_placed", writers_are_placed),
@@ -186,6 +187,43 @@ fn one_of_many_is_found() -> Outcome {
     match found == wrong {
         true => Ok(()),
         false => Err(format!("refused should be {wrong:?}, found {refusals:?}").into()),
+    }
+}
+
+/// A line is new if it differs in more than the numbers of generated names: in a type, a literal's
+/// kind, an operator or a name of the author.
+fn numbers_of_names_are_not_new() -> Outcome {
+    let line = "vec3 _e12 = color_3 * mat2x3[1].yzx - 0.5;";
+    let mut seen = SeenText::default();
+    if seen.add(line) != (Novelty { line: true, pair: true }) {
+        return Err("the first text should be new".into());
+    }
+    for same in [
+        line,
+        "vec3 _e7 = color_41 * mat2x3[1].yzx - 0.5;",
+        "  vec3 _e1 = color_0 * mat2x3[1].yzx - 0.5;",
+    ] {
+        if seen.add(same) != Novelty::default() {
+            return Err(format!("`{same}` should not be new").into());
+        }
+    }
+    for (from, to) in [
+        ("vec3", "vec4"),
+        ("mat2x3", "mat2x4"),
+        ("_e12", "e12"),
+        ("color_3", "color3"),
+        ("-", "+"),
+        ("yzx", "zyx"),
+    ] {
+        let other = line.replacen(from, to, 1);
+        if seen.add(&other) != (Novelty { line: true, pair: true }) {
+            return Err(format!("`{other}` should be new").into());
+        }
+    }
+    // All numbers are one token, so that another number makes a new line without a new pair.
+    match seen.add(&line.replace("0.5", "0.25")) {
+        Novelty { line: true, pair: false } => Ok(()),
+        other => Err(format!("another number should make a new line only: {other:?}").into()),
     }
 }
 
