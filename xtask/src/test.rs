@@ -1,11 +1,37 @@
 //! The one test command.
 
-use crate::{CommandFailure, CommandResult, machine, site};
-use std::process::Command;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
 
-/// All tests together gain more by this setting than the build loses. Whoever runs `cargo test` for
-/// a few of them waits for the build, so it is not in `Cargo.toml`.
-const OPTIMISED: [&str; 2] = ["--config", "profile.test.package.lamplight.opt-level=2"];
+use serde_json::Value;
+
+use crate::{CommandFailure, CommandResult, machine, site};
+
+/// The package that is tested. Every feature is on, since shared stores are tested with a server.
+/// All tests together gain more by the optimisation than the build loses. Whoever runs `cargo test`
+/// for a few of them waits for the build, so it is not in `Cargo.toml`.
+const TESTED: [&str; 6] = [
+    "--package",
+    "lamplight",
+    "--features",
+    "store",
+    "--config",
+    "profile.test.package.lamplight.opt-level=2",
+];
+
+/// The trials themselves are not optimised: their time is spent in the crate.
+const TRIALS: [&str; 9] = [
+    "--profile",
+    "test",
+    "--test",
+    "all",
+    "--message-format",
+    "json-render-diagnostics",
+    "--",
+    "-C",
+    "opt-level=0",
+];
 
 /// Prepares the machine, then runs every test. Arguments are passed to the test binary; with names of
 /// trials among them, only what these need is built.
@@ -16,15 +42,14 @@ pub fn run(arguments: &[String]) -> CommandResult {
         return some(&names, &options);
     }
     // Each build has times in which only one core has work.
-    let (site, tests) = std::thread::scope(|scope| {
+    let (site, trials) = std::thread::scope(|scope| {
         let site = scope.spawn(for_node_and_browser);
-        let tests = test(&["--test", "all", "--no-run"], &[]);
-        (site.join(), tests)
+        let trials = build_trials();
+        (site.join(), trials)
     });
     site.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-    tests?;
-    test(&["--doc"], &[])?;
-    test(&["--test", "all"], &with_threads(arguments))
+    cargo(&[&["test", "--doc"], &TESTED[..]].concat(), &[])?;
+    run_trials(&trials?, &with_threads(arguments))
 }
 
 /// Options of the test binary whose value is the next argument.
@@ -50,9 +75,10 @@ fn some(names: &[String], options: &[String]) -> CommandResult {
     if names.iter().any(of_site) {
         for_node_and_browser()?;
     }
+    let trials = build_trials()?;
     // The test binary takes one name at a time.
     names.iter().try_for_each(|name| {
-        test(&["--test", "all"], &with_threads(&[&[name.clone()], options].concat()))
+        run_trials(&trials, &with_threads(&[&[name.clone()], options].concat()))
     })
 }
 
@@ -65,12 +91,31 @@ fn for_node_and_browser() -> CommandResult {
     site::pages()
 }
 
-/// `cargo test` with every feature, since shared stores are tested with a server.
-fn test(what: &[&str], rest: &[String]) -> CommandResult {
-    let package = ["test", "--package", "lamplight", "--features", "store"];
+/// Builds the test binary, and returns its path.
+fn build_trials() -> Result<PathBuf, CommandFailure> {
+    let arguments = [&["rustc"], &TESTED[..], &TRIALS[..]].concat();
+    let mut command = cargo_command(&arguments);
+    let built = command.stderr(Stdio::inherit()).output();
+    let built = built.map_err(|error| not_run("cargo", &error))?;
+    succeeded(built.status, &command_line(&arguments))?;
+    let messages = String::from_utf8_lossy(&built.stdout);
+    let executables = messages.lines().filter_map(|line| {
+        let message: Value = serde_json::from_str(line).ok()?;
+        let is_trials = message["target"]["name"] == "all";
+        message["executable"].as_str().filter(|_| is_trials).map(PathBuf::from)
+    });
+    executables.last().ok_or_else(|| CommandFailure::check("cargo built no test binary"))
+}
+
+/// Runs the test binary as `cargo test` does.
+fn run_trials(trials: &Path, arguments: &[String]) -> CommandResult {
+    let mut command = Command::new(trials);
+    command.args(arguments).current_dir(ROOT);
+    command.env("CARGO", cargo_program()).env("CARGO_PKG_NAME", "lamplight");
     // Trials free much memory and soon need as much again.
-    let kept = [("MIMALLOC_PURGE_DELAY".to_owned(), "1000".to_owned())];
-    cargo_with(&[&package[..], &OPTIMISED, what].concat(), rest, &kept)
+    command.env("MIMALLOC_PURGE_DELAY", "1000");
+    let status = command.status().map_err(|error| not_run("the test binary", &error))?;
+    succeeded(status, "tests")
 }
 
 /// The arguments with a number of threads, unless they have one. It is one more than there are
@@ -96,15 +141,35 @@ pub fn cargo_with(
     rest: &[String],
     variables: &[(String, String)],
 ) -> CommandResult {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let mut command = cargo_command(arguments);
     command.envs(variables.iter().cloned());
-    command.args(arguments).current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
     if !rest.is_empty() {
         command.arg("--").args(rest);
     }
-    match command.status() {
-        Ok(status) if status.success() => Ok(()),
-        Ok(_) => Err(CommandFailure::check(format!("failed: cargo {}", arguments.join(" ")))),
-        Err(error) => Err(CommandFailure::environment(format!("cargo could not be run: {error}"))),
-    }
+    let status = command.status().map_err(|error| not_run("cargo", &error))?;
+    succeeded(status, &command_line(arguments))
+}
+
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+
+fn cargo_program() -> OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
+}
+
+fn cargo_command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(cargo_program());
+    command.args(arguments).current_dir(ROOT);
+    command
+}
+
+fn command_line(arguments: &[&str]) -> String {
+    format!("cargo {}", arguments.join(" "))
+}
+
+fn succeeded(status: ExitStatus, what: &str) -> CommandResult {
+    if status.success() { Ok(()) } else { Err(CommandFailure::check(format!("failed: {what}"))) }
+}
+
+fn not_run(what: &str, error: &std::io::Error) -> CommandFailure {
+    CommandFailure::environment(format!("{what} could not be run: {error}"))
 }
