@@ -81,17 +81,19 @@ pub fn printed_words(said: &Output) -> String {
     String::from_utf8_lossy(&all).trim().to_owned()
 }
 
+/// Runs a program on a batch, and returns what was found, or `None` if the program refuses the batch.
+pub type RunBatch<'r, T, F, E> = dyn Fn(&[T]) -> Result<Option<Vec<F>>, E> + 'r;
+
 /// Runs a program on a batch. If it refuses the batch, it runs on each half, until those at fault are
 /// found.
 ///
-/// Parameters: `together` returns what was found for a batch, or `None` if the program refuses it;
-/// `alone` returns what was found for a single one.
+/// Parameter: `alone` returns what was found for a single one.
 ///
 /// # Errors
 /// The first error of a run.
 pub fn halve_refused<T, F, E>(
     batch: &[T],
-    together: &dyn Fn(&[T]) -> Result<Option<Vec<F>>, E>,
+    together: &RunBatch<'_, T, F, E>,
     alone: &dyn Fn(&T) -> Result<Vec<F>, E>,
 ) -> Result<Vec<F>, E> {
     match batch {

@@ -48,8 +48,11 @@ const REVIEWED: &[(&str, &str)] = &[
     ),
 ];
 
+/// The name of a trial, and what it does.
+type NamedTrial = (&'static str, fn() -> Result<(), Failed>);
+
 /// The trials that ask for [`contents`], each once.
-const OF_CONTENTS: [(&str, fn() -> Result<(), Failed>); 4] = [
+const OF_CONTENTS: [NamedTrial; 4] = [
     ("library::hashes", hashes),
     ("library::difference_is_shown", difference_is_shown),
     ("library::values_have_effect", values_have_effect),
@@ -157,10 +160,13 @@ fn readable(target: Target, bytes: &[u8]) -> Result<String, Failed> {
     }
 }
 
+/// A bundle that trials share, or why it could not be made.
+type SharedContents = Result<Arc<Contents>, String>;
+
 /// The bundle of the library's whole manifest. It is made once for all trials, and dropped with the
 /// last of them, since it takes several gigabytes.
 fn contents() -> Result<Arc<Contents>, Failed> {
-    static MADE: Mutex<(usize, Option<Result<Arc<Contents>, String>>)> = Mutex::new((0, None));
+    static MADE: Mutex<(usize, Option<SharedContents>)> = Mutex::new((0, None));
     let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
     made.0 += 1;
     let contents = made.1.get_or_insert_with(|| on_large_stack(library).map(Arc::new)).clone();

@@ -214,7 +214,7 @@ fn executor() -> Outcome {
     let about = known.lines().find(|line| line.contains("about: ")).ok_or("no description")?;
     let renamed = known.replace("name: \"vulkan\"", "name: \"other\"");
     let expected = code(&renamed.replace(about, "    about: \"\","));
-    if code(&text) != expected {
+    if code(text) != expected {
         return Err(format!("expected the code\n{expected}\nfound:\n{text}").into());
     }
     let told =

@@ -204,13 +204,16 @@ fn around_ball(
     Ok((without_way.collect(), texel))
 }
 
-/// As [`around_ball`]. The second number is the distance from the fragment to the ball's centre,
-/// along the direction of the light.
+/// Of a fragment, the distance from the border of the shadow, the distance to the ball's centre along
+/// the direction of the light, and the visibility.
+type BelowBall = (f64, f64, f64);
+
+/// As [`around_ball`], with the distance to the ball's centre.
 fn below_ball(
     bench: &Bench<'_>,
     shadow: &str,
     more: Numbers<'_>,
-) -> Result<(Vec<(f64, f64, f64)>, f64), String> {
+) -> Result<(Vec<BelowBall>, f64), String> {
     let (casters, towards) = (casters()?, TOWARDS.normalize());
     let axis = (-towards).to_array();
     let mut numbers: Vec<(&str, &str, &[f64])> =

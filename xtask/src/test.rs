@@ -78,7 +78,7 @@ fn some(names: &[String], options: &[String]) -> CommandResult {
     let trials = build_trials()?;
     // The test binary takes one name at a time.
     names.iter().try_for_each(|name| {
-        run_trials(&trials, &with_threads(&[&[name.clone()], options].concat()))
+        run_trials(&trials, &with_threads(&[std::slice::from_ref(name), options].concat()))
     })
 }
 
@@ -99,12 +99,12 @@ fn build_trials() -> Result<PathBuf, CommandFailure> {
     let built = built.map_err(|error| not_run("cargo", &error))?;
     succeeded(built.status, &command_line(&arguments))?;
     let messages = String::from_utf8_lossy(&built.stdout);
-    let executables = messages.lines().filter_map(|line| {
+    let mut executables = messages.lines().filter_map(|line| {
         let message: Value = serde_json::from_str(line).ok()?;
         let is_trials = message["target"]["name"] == "all";
         message["executable"].as_str().filter(|_| is_trials).map(PathBuf::from)
     });
-    executables.last().ok_or_else(|| CommandFailure::check("cargo built no test binary"))
+    executables.next().ok_or_else(|| CommandFailure::check("cargo built no test binary"))
 }
 
 /// Runs the test binary as `cargo test` does.

@@ -71,6 +71,10 @@ fn kernel(i: f64, count: f64) -> DVec3 {
         * (0.1 + 0.9 * share * share)
 }
 
+/// `log2(10)` with the digits that Filament publishes.
+#[allow(clippy::approx_constant)]
+const LOG2_OF_10: f64 = 3.321928;
+
 /// The share of the cone of the reflection lobe that lies in the cone of the unoccluded directions.
 /// The area that both caps share is the smaller cap where one contains the other, 0 where they are
 /// apart, and smoothly between otherwise. The effect fades out for small alpha.
@@ -81,7 +85,7 @@ fn gtso(a: &mut CallArguments<'_>) -> Expected {
         let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
     };
-    let (open, lobe) = ((1.0 - ao).sqrt().acos(), (-3.321928 * alpha * alpha).exp2().acos());
+    let (open, lobe) = ((1.0 - ao).sqrt().acos(), (-LOG2_OF_10 * alpha * alpha).exp2().acos());
     let apart = bent.dot(r).clamp(-1.0, 1.0).acos();
     let cap = |angle: f64| 1.0 - angle.cos();
     let both = if apart <= (open - lobe).abs() {
