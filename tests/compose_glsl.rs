@@ -179,15 +179,15 @@ fn validate(composed: &Composed) -> Result<(), Failed> {
     glslang(&composed.text, composed_stage.suffix())
 }
 
-/// Asks glslangValidator. Passes if it is not installed.
+/// Asks glslangValidator.
 fn glslang(text: &str, stage: &str) -> Result<(), Failed> {
     let file = tempfile::Builder::new().suffix(&format!(".{stage}")).tempfile()?;
     fs::write(file.path(), text)?;
-    let Ok(output) =
-        Command::new("glslangValidator").args(["-V", "-o", "/dev/null"]).arg(file.path()).output()
-    else {
-        return Ok(());
-    };
+    let mut command = Command::new("glslangValidator");
+    let output =
+        command.args(["-V", "-o", "/dev/null"]).arg(file.path()).output().map_err(|error| {
+            format!("glslangValidator does not start ({error}): install Debian's `glslang-tools`")
+        })?;
     if output.status.success() {
         Ok(())
     } else {

@@ -66,16 +66,15 @@ pub fn trials() -> Vec<Trial> {
         .chain(shadows::FORMS)
         .chain(cascades::FORMS)
         .chain(probes::FORMS);
-    let form_on = |(name, form): &'static (&str, closed_forms::Form), (backend, language)| {
-        Trial::test(format!("render/{name}/{backend}"), move || {
-            on_device(backend, |painter| form(&frames::Bench { painter, language }))
+    let forms = forms.flat_map(|(name, form)| {
+        BACKENDS.map(|(backend, language)| {
+            Trial::test(format!("render/{name}/{backend}"), move || {
+                on_device(backend, |painter| form(&frames::Bench { painter, language }))
+            })
         })
-    };
-    let forms = forms.flat_map(|form| BACKENDS.map(|backend| form_on(form, backend)));
-    let prepared = probes::PREPARED.iter().map(|form| form_on(form, BACKENDS[0]));
+    });
     presets
         .chain(forms)
-        .chain(prepared)
         .chain(accounted::trials())
         .chain(clustered::trials())
         .chain(compared::trials())

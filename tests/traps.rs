@@ -28,12 +28,10 @@ struct Writer {
     files: &'static [&'static str],
     /// Whether the command does not end by itself. Its first line then says that it wrote.
     endless: bool,
-    /// Whether the command takes a second. Traps are then at one file of each folder.
-    slow: bool,
 }
 
 const fn writer(name: &'static str, arguments: &'static [&'static str]) -> Writer {
-    Writer { name, arguments, files: &[], endless: false, slow: false }
+    Writer { name, arguments, files: &[], endless: false }
 }
 
 /// Commands that write into a folder.
@@ -49,7 +47,7 @@ const FOLDERS: &[Writer] = &[
     writer("migrate", &["migrate", "--from", "naga_oil", "oil", "-o", "OUT"]),
     writer("man", &["man", "-o", "OUT"]),
     writer("export_npm", &["export", "OUT", "--form", "npm"]),
-    Writer { slow: true, ..writer("catalogue", &["catalogue", "-o", "OUT", "--without-pictures"]) },
+    writer("catalogue", &["catalogue", "-o", "OUT", "--without-pictures"]),
     writer("report", &["check", "half.toml", "--report", "OUT"]),
     Writer {
         files: &["README.md", "hpg_4_spot.png"],
@@ -240,8 +238,7 @@ fn ensure(holds: bool, message: impl Into<String>) -> Outcome {
     if holds { Ok(()) } else { Err(message.into().into()) }
 }
 
-/// A few files that the command writes: the first and the last of each of up to three folders, or
-/// only the last for a slow command.
+/// A few files that the command writes: the first and the last of each of up to three folders.
 fn places(writer: &Writer) -> Result<Vec<String>, Failed> {
     if !writer.files.is_empty() {
         return Ok(writer.files.iter().map(|name| (*name).to_owned()).collect());
@@ -260,8 +257,8 @@ fn places(writer: &Writer) -> Result<Vec<String>, Failed> {
     ensure(!by_folder.is_empty(), format!("`{}` wrote no file", writer.name))?;
     let mut places: Vec<String> = Vec::new();
     for (_, names) in by_folder.into_iter().take(3) {
-        places.extend(names.first().filter(|_| names.len() > 1 && !writer.slow).cloned());
-        places.extend(names.last().cloned());
+        places.extend(names.first().cloned());
+        places.extend(names.last().filter(|_| names.len() > 1).cloned());
     }
     Ok(places)
 }

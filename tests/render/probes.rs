@@ -11,11 +11,11 @@ use lamplight::scene::{ProbeField, ProbeGrid, Surfaces};
 use super::closed_forms::Form;
 use super::frames::{Bench, Fragment};
 
-pub const FORMS: &[(&str, Form)] =
-    &[("probes_of_the_host", same_field), ("probes_leak_nothing", no_leaks)];
-
-/// What the host prepares for a frame is the same on every device.
-pub const PREPARED: &[(&str, Form)] = &[("probes_see_what_was_changed", follow_changes)];
+pub const FORMS: &[(&str, Form)] = &[
+    ("probes_of_the_host", same_field),
+    ("probes_leak_nothing", no_leaks),
+    ("probes_see_what_was_changed", follow_changes),
+];
 
 /// The width and the height of a frame, in pixels.
 const SIZE: u32 = 128;

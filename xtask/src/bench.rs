@@ -1,8 +1,8 @@
 //! Runs benchmarks, which are a separate binary built for release.
 
-use crate::{CommandResult, test};
+use crate::{CommandResult, process};
 
 /// Runs the benchmark of that name.
 pub fn run(arguments: &[String]) -> CommandResult {
-    test::cargo(&["run", "--quiet", "--release", "--package", "lamplight-bench"], arguments)
+    process::cargo(&["run", "--quiet", "--release", "--package", "lamplight-bench"], arguments)
 }

@@ -3,7 +3,7 @@
 
 use std::process::Command;
 
-use crate::{CommandFailure, CommandResult, test};
+use crate::{CommandFailure, CommandResult, process};
 
 /// Writes them. With `--check` it only fails if any is not up to date. With `--costs` it first
 /// measures what functions and axes cost.
@@ -15,10 +15,10 @@ pub fn run(arguments: &[String]) -> CommandResult {
         arguments.iter().map(String::as_str).partition(|argument| *argument == "--costs");
     let lamplight = ["run", "--quiet", "--package", "lamplight", "--", "catalogue", "--force"];
     if !costs.is_empty() {
-        test::cargo(&[&lamplight[..], &["--costs", "shaderlib/costs.toml"]].concat(), &[])?;
+        process::cargo(&[&lamplight[..], &["--costs", "shaderlib/costs.toml"]].concat(), &[])?;
     }
     for made in [["--modules", "shaderlib"], ["--output", "docs/catalogue"]] {
-        test::cargo(&[&lamplight[..], &made, &check].concat(), &[])?;
+        process::cargo(&[&lamplight[..], &made, &check].concat(), &[])?;
     }
     if check.is_empty() { book() } else { Ok(()) }
 }

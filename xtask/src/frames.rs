@@ -3,7 +3,7 @@
 
 use lamplight::bundle::Target;
 
-use crate::{CommandFailure, CommandResult, test};
+use crate::{CommandFailure, CommandResult, process};
 
 fn usage() -> CommandFailure {
     let targets: Vec<&str> = Target::ALL.iter().map(|target| target.name()).collect();
@@ -45,5 +45,5 @@ pub fn run(arguments: &[String]) -> CommandResult {
 fn trials(name: &str, variables: &[(String, String)]) -> CommandResult {
     let command =
         ["test", "--quiet", "--package", "lamplight", "--features", "store", "--test", "all"];
-    test::cargo_with(&command, &[name.to_owned(), "--nocapture".to_owned()], variables)
+    process::cargo_with(&command, &[name.to_owned(), "--nocapture".to_owned()], variables)
 }

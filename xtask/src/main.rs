@@ -13,6 +13,7 @@ mod generate;
 mod machine;
 mod mutate;
 mod new;
+mod process;
 mod record;
 mod site;
 mod tables;

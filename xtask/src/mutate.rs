@@ -1,6 +1,6 @@
 //! Puts mistakes into the library, to see whether its numeric cases notice them.
 
-use crate::{CommandResult, test};
+use crate::{CommandResult, process};
 
 /// Runs `lamplight mutate` over the library's sources, in release: it makes thousands of mutants.
 /// Arguments (modules, `--coverage`) are passed on.
@@ -11,5 +11,5 @@ pub fn run(arguments: &[String]) -> CommandResult {
         .chain(["--root", "shaderlib"])
         .chain(arguments.iter().map(String::as_str))
         .collect();
-    test::cargo(&all, &[])
+    process::cargo(&all, &[])
 }

@@ -1,7 +1,7 @@
 //! `cargo xtask record`: writes down anew what tests compare with, such as messages, listings and
 //! outputs. Read the difference before you commit it.
 
-use crate::{CommandFailure, CommandResult, test};
+use crate::{CommandFailure, CommandResult, process};
 
 /// The tests that compare with a record. Pictures are not among them: those are drawn on purpose.
 const RECORDED: [&str; 9] = [
@@ -27,7 +27,7 @@ pub fn run(arguments: &[String]) -> CommandResult {
     let command = ["test", "--package", "lamplight", "--features", "store", "--test", "all"];
     let record = |filter: &String| {
         let filter = [filter.clone(), "--quiet".to_owned()];
-        test::cargo_with(&command, &filter, &variables).err().map(|failure| failure.message)
+        process::cargo_with(&command, &filter, &variables).err().map(|failure| failure.message)
     };
     let failed: Vec<String> = chosen.iter().filter_map(record).collect();
     match failed.is_empty() {

@@ -3,17 +3,17 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
+use crate::process::{ROOT, cargo_command, finish};
 use crate::{CommandFailure, CommandResult, machine};
 
-const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// The size of the stack, since naga recurses along expressions. The limits leave most of it
 /// unused.
 const STACK: &str = "-C link-arg=-zstack-size=8388608";
 
-/// What is tested is built once and used for two minutes. naga is small and takes half of that time;
-/// optimising the rest of the code takes longer than it saves.
+/// What is tested is built once and used for two minutes. That is long enough to optimise naga, but
+/// not to optimise the crate.
 const QUICK: [&str; 2] = ["profile.dev.incremental=false", "profile.dev.package.naga.opt-level=1"];
 
 /// How much work goes into the size and speed of the WebAssembly.
@@ -21,7 +21,7 @@ const QUICK: [&str; 2] = ["profile.dev.incremental=false", "profile.dev.package.
 pub enum SiteBuild {
     /// As it is published: small and fast.
     Small,
-    /// As it is tested: the same code with less optimisation, built in half the time.
+    /// As it is tested: the same code with less optimisation, which is built faster.
     Quick,
 }
 
@@ -81,7 +81,7 @@ pub fn toolchain(build: SiteBuild) -> Result<PathBuf, CommandFailure> {
     let module = below.join(TARGET).join(build.folder()).join("lamplight_toolchain.wasm");
     let package = Path::new(ROOT).join("target/toolchain");
     std::fs::create_dir_all(&package).map_err(|error| unwritten(&package, &error))?;
-    let mut bind = cargo();
+    let mut bind = cargo_command();
     bind.args(["run", "--quiet", "--package", "lamplight-bind", "--target-dir"]).arg(&below);
     bind.args(["--config", "profile.dev.incremental=false"]);
     finish(bind.arg("--").arg(&module).arg(&package), "lamplight-bind")?;
@@ -97,7 +97,7 @@ pub fn toolchain(build: SiteBuild) -> Result<PathBuf, CommandFailure> {
 /// Compiles to WebAssembly, with the target of rustup or with Debian's packages for it.
 fn webassembly(build: SiteBuild, below: &Path) -> CommandResult {
     let mut command = match has_target() || added_target() {
-        true => cargo(),
+        true => cargo_command(),
         false => debian()?,
     };
     command.args(["build", "--package", "lamplight-toolchain", "--profile", build.profile()]);
@@ -107,12 +107,6 @@ fn webassembly(build: SiteBuild, below: &Path) -> CommandResult {
     }
     command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", STACK);
     finish(&mut command, "cargo build --package lamplight-toolchain")
-}
-
-fn cargo() -> Command {
-    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.current_dir(ROOT);
-    command
 }
 
 /// Whether the compiler in use has the standard library of the target.
@@ -140,14 +134,6 @@ fn debian() -> Result<Command, CommandFailure> {
     command.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO");
     command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", LINKER);
     Ok(command)
-}
-
-fn finish(command: &mut Command, name: &str) -> CommandResult {
-    match command.status() {
-        Ok(status) if status.success() => Ok(()),
-        Ok(_) => Err(CommandFailure::check(format!("failed: {name}"))),
-        Err(error) => Err(CommandFailure::environment(format!("{name} could not be run: {error}"))),
-    }
 }
 
 fn unwritten(path: &Path, error: &std::io::Error) -> CommandFailure {

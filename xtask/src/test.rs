@@ -1,11 +1,11 @@
 //! The one test command.
 
-use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
+use crate::process::{self, ROOT};
 use crate::{CommandFailure, CommandResult, machine, site};
 
 /// The package that is tested. Every feature is on, since shared stores are tested with a server.
@@ -20,7 +20,8 @@ const TESTED: [&str; 6] = [
     "profile.test.package.lamplight.opt-level=2",
 ];
 
-/// The trials themselves are not optimised: their time is spent in the crate.
+/// The trials themselves are not optimised, which shortens the build by more than it lengthens the
+/// run: most of the time is spent in the crate.
 const TRIALS: [&str; 9] = [
     "--profile",
     "test",
@@ -48,7 +49,7 @@ pub fn run(arguments: &[String]) -> CommandResult {
         (site.join(), trials)
     });
     site.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-    cargo(&[&["test", "--doc"], &TESTED[..]].concat(), &[])?;
+    process::cargo(&[&["test", "--doc"], &TESTED[..]].concat(), &[])?;
     run_trials(&trials?, &with_threads(arguments))
 }
 
@@ -93,11 +94,10 @@ fn for_node_and_browser() -> CommandResult {
 
 /// Builds the test binary, and returns its path.
 fn build_trials() -> Result<PathBuf, CommandFailure> {
-    let arguments = [&["rustc"], &TESTED[..], &TRIALS[..]].concat();
-    let mut command = cargo_command(&arguments);
-    let built = command.stderr(Stdio::inherit()).output();
-    let built = built.map_err(|error| not_run("cargo", &error))?;
-    succeeded(built.status, &command_line(&arguments))?;
+    let mut command = process::cargo_command();
+    command.arg("rustc").args(TESTED).args(TRIALS).stderr(Stdio::inherit());
+    let built = command.output().map_err(|error| process::not_run("cargo rustc", &error))?;
+    process::succeeded(built.status, "cargo rustc --test all")?;
     let messages = String::from_utf8_lossy(&built.stdout);
     let mut executables = messages.lines().filter_map(|line| {
         let message: Value = serde_json::from_str(line).ok()?;
@@ -111,11 +111,10 @@ fn build_trials() -> Result<PathBuf, CommandFailure> {
 fn run_trials(trials: &Path, arguments: &[String]) -> CommandResult {
     let mut command = Command::new(trials);
     command.args(arguments).current_dir(ROOT);
-    command.env("CARGO", cargo_program()).env("CARGO_PKG_NAME", "lamplight");
+    command.env("CARGO", process::cargo_program()).env("CARGO_PKG_NAME", "lamplight");
     // Trials free much memory and soon need as much again.
     command.env("MIMALLOC_PURGE_DELAY", "1000");
-    let status = command.status().map_err(|error| not_run("the test binary", &error))?;
-    succeeded(status, "tests")
+    process::finish(&mut command, "the tests")
 }
 
 /// The arguments with a number of threads, unless they have one. It is one more than there are
@@ -128,48 +127,4 @@ fn with_threads(arguments: &[String]) -> Vec<String> {
         all.push(format!("{OPTION}={}", cores + 1));
     }
     all
-}
-
-/// Runs cargo in the workspace; a failure is exit code 3.
-pub fn cargo(arguments: &[&str], rest: &[String]) -> CommandResult {
-    cargo_with(arguments, rest, &[])
-}
-
-/// [`cargo`] with variables in its environment.
-pub fn cargo_with(
-    arguments: &[&str],
-    rest: &[String],
-    variables: &[(String, String)],
-) -> CommandResult {
-    let mut command = cargo_command(arguments);
-    command.envs(variables.iter().cloned());
-    if !rest.is_empty() {
-        command.arg("--").args(rest);
-    }
-    let status = command.status().map_err(|error| not_run("cargo", &error))?;
-    succeeded(status, &command_line(arguments))
-}
-
-const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-
-fn cargo_program() -> OsString {
-    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
-}
-
-fn cargo_command(arguments: &[&str]) -> Command {
-    let mut command = Command::new(cargo_program());
-    command.args(arguments).current_dir(ROOT);
-    command
-}
-
-fn command_line(arguments: &[&str]) -> String {
-    format!("cargo {}", arguments.join(" "))
-}
-
-fn succeeded(status: ExitStatus, what: &str) -> CommandResult {
-    if status.success() { Ok(()) } else { Err(CommandFailure::check(format!("failed: {what}"))) }
-}
-
-fn not_run(what: &str, error: &std::io::Error) -> CommandFailure {
-    CommandFailure::environment(format!("{what} could not be run: {error}"))
 }

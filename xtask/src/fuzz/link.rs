@@ -1,7 +1,7 @@
 //! `cargo xtask fuzz link`: random programs, which the trial `link::random` of the tests makes,
 //! judges, runs and compares.
 
-use crate::{CommandFailure, CommandResult, test};
+use crate::{CommandFailure, CommandResult, process};
 
 const USAGE: &str =
     "usage: cargo xtask fuzz link [--programs N] [--seed N] [--every N] [--most N] [--run N] [--shrink]
@@ -39,5 +39,5 @@ pub fn run(arguments: &[String]) -> CommandResult {
         settings.into_iter().map(|(name, value)| (format!("LAMPLIGHT_LINK_{name}"), value));
     let command =
         ["test", "--quiet", "--package", "lamplight", "--features", "store", "--test", "all"];
-    test::cargo_with(&command, &["link::random".to_owned()], &settings.collect::<Vec<_>>())
+    process::cargo_with(&command, &["link::random".to_owned()], &settings.collect::<Vec<_>>())
 }

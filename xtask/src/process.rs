@@ -1,0 +1,56 @@
+//! Runs cargo and other programs in the workspace.
+
+use std::ffi::OsString;
+use std::process::{Command, ExitStatus};
+
+use crate::{CommandFailure, CommandResult};
+
+/// The workspace.
+pub const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+
+/// Runs cargo; a failure is exit code 3.
+pub fn cargo(arguments: &[&str], rest: &[String]) -> CommandResult {
+    cargo_with(arguments, rest, &[])
+}
+
+/// [`cargo`] with variables in its environment.
+pub fn cargo_with(
+    arguments: &[&str],
+    rest: &[String],
+    variables: &[(String, String)],
+) -> CommandResult {
+    let mut command = cargo_command();
+    command.args(arguments).envs(variables.iter().cloned());
+    if !rest.is_empty() {
+        command.arg("--").args(rest);
+    }
+    finish(&mut command, &format!("cargo {}", arguments.join(" ")))
+}
+
+/// The cargo that runs this command.
+pub fn cargo_program() -> OsString {
+    std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
+}
+
+/// Cargo without arguments.
+pub fn cargo_command() -> Command {
+    let mut command = Command::new(cargo_program());
+    command.current_dir(ROOT);
+    command
+}
+
+/// Runs a command to its end; a failure is exit code 3.
+pub fn finish(command: &mut Command, name: &str) -> CommandResult {
+    let status = command.status().map_err(|error| not_run(name, &error))?;
+    succeeded(status, name)
+}
+
+/// Exit code 3 unless a command succeeded.
+pub fn succeeded(status: ExitStatus, name: &str) -> CommandResult {
+    if status.success() { Ok(()) } else { Err(CommandFailure::check(format!("failed: {name}"))) }
+}
+
+/// Exit code 4, since a command did not start.
+pub fn not_run(name: &str, error: &std::io::Error) -> CommandFailure {
+    CommandFailure::environment(format!("{name} could not be run: {error}"))
+}
