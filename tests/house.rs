@@ -28,22 +28,27 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("house::paths", paths_are_short),
         Trial::test("house::one_way_to_the_terminal", one_way::to_the_terminal),
         Trial::test("house::one_rename", one_way::to_rename),
-        Trial::test("house::needs_of_executors", needs_are_installed),
+        Trial::test("house::needs", needs_are_installed),
         Trial::test("house::described", entries_are_described),
         Trial::test("house::lengths", lengths::are_kept),
         Trial::test("house::lengths_are_counted", lengths::are_counted),
     ]
 }
 
-/// `cargo xtask test` installs what executors need.
+/// `cargo xtask test` installs what executors and judges need.
 fn needs_are_installed() -> Result<(), Failed> {
     let machine = std::fs::read_to_string(Path::new(ROOT).join("xtask/src/machine.rs"))?;
-    for entry in lamplight::execute::executors::ALL {
-        let is_missing = |need: &&&str| !machine.contains(&format!("package: \"{need}\""));
-        if let Some(need) = entry.needs.iter().find(is_missing) {
-            let what = format!("which the executor `{}` needs", entry.name);
-            return Err(format!("xtask/src/machine.rs does not install `{need}`, {what}").into());
-        }
+    let of_executors = lamplight::execute::executors::ALL
+        .iter()
+        .flat_map(|entry| entry.needs.iter().map(|need| (*need, "executor", entry.name)));
+    let of_judges = lamplight::judge::judges::ALL
+        .iter()
+        .flat_map(|entry| entry.tools.iter().map(|tool| (tool.package, "judge", entry.name)));
+    let is_missing =
+        |need: &(&str, &str, &str)| !machine.contains(&format!("package: \"{}\"", need.0));
+    if let Some((need, kind, name)) = of_executors.chain(of_judges).find(is_missing) {
+        let what = format!("which the {kind} `{name}` needs");
+        return Err(format!("xtask/src/machine.rs does not install `{need}`, {what}").into());
     }
     Ok(())
 }

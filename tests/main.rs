@@ -34,6 +34,7 @@ mod folders;
 mod fragments;
 mod frames;
 mod generate;
+mod glslang;
 mod guide;
 mod harness;
 mod hostile;

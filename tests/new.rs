@@ -4,7 +4,7 @@
 mod axis_values;
 mod contributing;
 mod functions;
-#[path = "../xtask/src/new/mod.rs"]
+#[path = "../xtask/make/src/new/mod.rs"]
 mod made;
 
 use std::collections::BTreeMap;

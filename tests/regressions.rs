@@ -1,11 +1,11 @@
 //! Inputs that once caused a failure, one file each in `tests/regressions/KIND/`. `cargo xtask fuzz`
 //! or a person found them. Each must give the same answer twice, without a panic, within seconds.
 
-#[path = "../xtask/src/fuzz/ending.rs"]
+#[path = "../xtask/make/src/fuzz/ending.rs"]
 mod ending;
 #[path = "../fuzz/src/kinds.rs"]
 pub mod kinds;
-#[path = "../xtask/src/fuzz/mutate.rs"]
+#[path = "../xtask/make/src/fuzz/mutate.rs"]
 mod mutate;
 #[path = "../fuzz/src/proofs.rs"]
 mod proofs;

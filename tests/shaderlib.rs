@@ -1,6 +1,7 @@
 //! Every module of the shader library is valid in both languages, has the same functions in both, and
 //! is documented.
 
+mod compilers;
 mod documented;
 mod emits;
 mod twins;
@@ -21,6 +22,7 @@ use naga::{Module, ShaderStage};
 
 pub use documented::undocumented;
 
+use compilers::{DIALECTS, Dialect, in_dialect, in_every_target, with_include_path};
 use documented::functions_are_documented;
 use twins::{same, twins_agree};
 
@@ -30,41 +32,15 @@ type Check = fn(&str) -> Result<(), Failed>;
 const CHECKS: &[(&str, Check)] = &[
     ("wesl", wesl_is_valid),
     ("glsl", glsl_is_valid),
-    ("glslang_450", |module| glslang(module, &DIALECTS[0])),
-    ("glslang_330", |module| glslang(module, &DIALECTS[1])),
-    ("glslang_300_es", |module| glslang(module, &DIALECTS[2])),
-    ("glslang_310_es", |module| glslang(module, &DIALECTS[3])),
-    ("include_path", glslang_includes),
-    ("targets", every_target_writes),
+    ("glslang_450", |module| in_dialect(module, 0)),
+    ("glslang_330", |module| in_dialect(module, 1)),
+    ("glslang_300_es", |module| in_dialect(module, 2)),
+    ("glslang_310_es", |module| in_dialect(module, 3)),
+    ("include_path", with_include_path),
+    ("targets", in_every_target),
     ("twins", twins_agree),
     ("doc", functions_are_documented),
 ];
-
-/// A version of GLSL: the lines before the module, the declaration of an output, and the options of
-/// glslangValidator.
-struct Dialect {
-    head: &'static str,
-    output: &'static str,
-    options: &'static [&'static str],
-}
-
-const DIALECTS: [Dialect; 4] = [
-    Dialect {
-        head: "#version 450\n",
-        output: "layout(location = 0) out vec4 colour;\n",
-        options: &["-V", "-o", "/dev/null"],
-    },
-    Dialect {
-        head: "#version 330 core\n#define LAMPLIGHT_COMBINED_SAMPLERS 1\n",
-        output: "out vec4 colour;\n",
-        options: &[],
-    },
-    Dialect { head: ES_300, output: "out vec4 colour;\n", options: &[] },
-    Dialect { head: ES_310, output: "out vec4 colour;\n", options: &[] },
-];
-
-const ES_300: &str = "#version 300 es\n#define LAMPLIGHT_COMBINED_SAMPLERS 1\nprecision highp float;\nprecision highp int;\n";
-const ES_310: &str = "#version 310 es\n#define LAMPLIGHT_COMBINED_SAMPLERS 1\nprecision highp float;\nprecision highp int;\n";
 
 /// One trial for each module and check, and trials for the whole library.
 pub fn trials() -> Vec<Trial> {
@@ -73,6 +49,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("shaderlib::names", names_are_unique),
         Trial::test("shaderlib::edges", documented::silent_parameters_are_found),
         Trial::test("shaderlib::together", modules_go_together),
+        Trial::test("shaderlib::compilers", compilers::see_mistakes),
         Trial::test("shaderlib::prefixed", modules_go_beside_names),
         Trial::test("shaderlib::prefixed_include_path", modules_go_beside_names_elsewhere),
     ];
@@ -125,7 +102,7 @@ fn names_are_unique() -> Result<(), Failed> {
 fn modules_go_together() -> Result<(), Failed> {
     let all = modules().iter().map(|module| include(module)).collect::<String>();
     for dialect in &DIALECTS {
-        run_glslang(&fragment(&all, dialect)?, dialect.options)?;
+        run_glslang(&fragment(&all, dialect)?, dialect.options())?;
     }
     Ok(())
 }
@@ -136,7 +113,7 @@ fn modules_go_beside_names() -> Result<(), Failed> {
     let includes = modules().iter().map(|module| include(module)).collect::<String>();
     let all = format!("#define LAMPLIGHT_PREFIX\n{includes}{}", of_the_host()?);
     for dialect in &DIALECTS {
-        run_glslang(&fragment(&all, dialect)?, dialect.options)?;
+        run_glslang(&fragment(&all, dialect)?, dialect.options())?;
     }
     Ok(())
 }
@@ -146,7 +123,8 @@ fn modules_go_beside_names_elsewhere() -> Result<(), Failed> {
     let path = concat!("-I", env!("CARGO_MANIFEST_DIR"), "/shaderlib");
     let includes: String =
         modules().iter().map(|module| format!("#include \"{module}.glsl\"\n")).collect();
-    for Dialect { head, output, options } in &DIALECTS {
+    for dialect in &DIALECTS {
+        let (Dialect { head, output, .. }, options) = (dialect, dialect.options());
         let text = format!(
             "{head}#extension GL_GOOGLE_include_directive : require\n#define LAMPLIGHT_PREFIX\n\
              {includes}{}{output}void main() {{\n    colour = vec4(1.0);\n}}\n",
@@ -182,15 +160,6 @@ fn wesl_is_valid(module: &str) -> Result<(), Failed> {
 /// versions, glslangValidator judges the modules and what naga writes.
 fn glsl_is_valid(module: &str) -> Result<(), Failed> {
     parse_glsl(module).map(|_| ())
-}
-
-fn every_target_writes(module: &str) -> Result<(), Failed> {
-    for (version, text) in emits::emits(&called_wesl(module)?)? {
-        run_glslang(&text, &[]).map_err(|error| {
-            format!("{version:?}: {}\n{text}", error.message().unwrap_or_default())
-        })?;
-    }
-    Ok(())
 }
 
 /// A function as it is declared in the text.
@@ -346,20 +315,6 @@ fn validated(module: Module) -> Result<Module, Failed> {
         .validate(&module)
         .map_err(|error| format!("{error:?}"))?;
     Ok(module)
-}
-
-fn glslang(module: &str, dialect: &Dialect) -> Result<(), Failed> {
-    run_glslang(&fragment(&include(module), dialect)?, dialect.options)
-}
-
-/// The module compiles without our composer, with the include path of glslangValidator.
-fn glslang_includes(module: &str) -> Result<(), Failed> {
-    let path = concat!("-I", env!("CARGO_MANIFEST_DIR"), "/shaderlib");
-    let Dialect { head, output, options } = &DIALECTS[0];
-    let include =
-        format!("#extension GL_GOOGLE_include_directive : require\n#include \"{module}.glsl\"\n");
-    let text = format!("{head}{include}{output}void main() {{\n    colour = vec4(1.0);\n}}\n");
-    run_glslang(&text, &[options, &[path][..]].concat())
 }
 
 fn run_glslang(text: &str, options: &[&str]) -> Result<(), Failed> {

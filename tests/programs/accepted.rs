@@ -14,9 +14,7 @@ use libtest_mimic::Failed;
 use rayon::prelude::*;
 
 use super::{Sources, alone, report, texts};
-
-/// The number of files in one call of glslangValidator.
-const BATCH: usize = 64;
+use crate::glslang::{BATCH, refused, refused_by_glslc, refused_by_version, run};
 
 /// glslangValidator accepts the composed GLSL of every permutation that ships.
 pub fn glslang_takes_sources(
@@ -46,7 +44,7 @@ pub fn glslang_takes_sources(
             .status();
         paths.len() > 1 && status.is_ok_and(|status| status.code() == Some(3))
     };
-    let judge = |path: &str| run("glslangValidator", &[VULKAN, &[path]].concat());
+    let judge = |path: &str| run(folder.path(), "glslangValidator", &[VULKAN, &[path]].concat());
     let batches = files.par_chunks(BATCH);
     report(program, batches.flat_map_iter(|batch| refused(batch, accepts_all, judge)).collect())
 }
@@ -54,25 +52,11 @@ pub fn glslang_takes_sources(
 /// A file, and the permutation that it is of.
 type FileOf<'p> = (&'p Assignment, String);
 
-/// The files of a batch that are refused. Each is judged by itself, unless all are accepted in one
-/// run.
-fn refused<'p>(
-    batch: &[FileOf<'p>],
-    accepts_all: impl Fn(&[&str]) -> bool,
-    judge: impl Fn(&str) -> Result<(), String>,
-) -> Vec<(&'p Assignment, String)> {
-    let paths: Vec<&str> = batch.iter().map(|(_, path)| path.as_str()).collect();
-    if accepts_all(&paths) {
-        return Vec::new();
-    }
-    batch.iter().filter_map(|(point, path)| Some((*point, judge(path).err()?))).collect()
-}
-
 /// Options of glslangValidator for GLSL with Vulkan's semantics.
 const VULKAN: &[&str] = &["-V", "-o", "/dev/null"];
 
-/// spirv-val and glslangValidator accept the outputs of the covering set, and glslangValidator the
-/// GLSL sources from which they were made.
+/// spirv-val and glslangValidator accept the outputs of the covering set. glslc compiles the GLSL
+/// sources from which they were made.
 pub fn validators(
     program: &Program,
     stage: &(&'static str, &'static str, &'static str),
@@ -98,19 +82,23 @@ pub fn validators(
                 Err(what) => failures.push((point, what.clone())),
             }
         }
-        let judge = |paths: &[&str]| run("glslangValidator", &[&["-S", stage.2], paths].concat());
-        let judge_all = |paths: &[&str]| judge(paths).is_ok();
-        let judge_one = |path: &str| judge(&[path]);
-        let batches: Vec<_> = files.values().flat_map(|files| files.chunks(BATCH)).collect();
-        let batches = batches.into_par_iter();
-        failures.par_extend(batches.flat_map_iter(|one| refused(one, judge_all, judge_one)));
+        let batches =
+            files.iter().flat_map(|(rule, files)| files.chunks(BATCH).map(|batch| (*rule, batch)));
+        let batches: Vec<_> = batches.collect();
+        failures.par_extend(batches.into_par_iter().flat_map_iter(|(rule, batch)| match rule {
+            SOURCES => refused_by_glslc(folder.path(), &[], batch),
+            _ => refused_by_version(folder.path(), stage.2, batch),
+        }));
         report(program, failures)?;
     }
     Ok(())
 }
 
-/// Writes the outputs of a text, has spirv-val and the rules of Vulkan judge those that they are
-/// for, and returns the files for glslangValidator, each with a name for its rules.
+/// The name of the GLSL sources among the rules.
+const SOURCES: &str = "sources";
+
+/// Writes the outputs of a text, has spirv-val judge the SPIR-V, and returns the files of GLSL, each
+/// with a name for the rules by which it is judged.
 fn write_outputs(
     composed: &Composed,
     entry: &str,
@@ -124,14 +112,12 @@ fn write_outputs(
         std::fs::write(&path, emitted.bytes).map_err(|error| error.to_string())?;
         Ok(path.to_string_lossy().into_owned())
     };
-    run("spirv-val", &["--target-env", "vulkan1.1", &write(Target::SPIRV, "spv")?])?;
-    if composed.language == Language::Glsl {
-        run(
-            "glslangValidator",
-            &[VULKAN, &[&save(&composed.text, prefix, "source", extension)?]].concat(),
-        )?;
-    }
+    let spirv = write(Target::SPIRV, "spv")?;
+    run(Path::new("."), "spirv-val", &["--target-env", "vulkan1.1", &spirv])?;
     let mut files = Vec::new();
+    if composed.language == Language::Glsl {
+        files.push((SOURCES.to_owned(), save(&composed.text, prefix, "source", extension)?));
+    }
     for entry in targets::ALL.iter().filter(|entry| entry.glsl.is_some()) {
         let path = write(entry.target, extension)?;
         files.push((entry.target.to_string(), path.clone()));
@@ -152,18 +138,4 @@ fn save(text: &str, prefix: &Path, name: &str, extension: &str) -> Result<String
     let path = prefix.with_extension(format!("{name}.{extension}"));
     std::fs::write(&path, text).map_err(|error| error.to_string())?;
     Ok(path.to_string_lossy().into_owned())
-}
-
-fn run(tool: &str, arguments: &[&str]) -> Result<(), String> {
-    let output = Command::new(tool)
-        .args(arguments)
-        .stdin(Stdio::null())
-        .output()
-        .map_err(|error| format!("{tool}: {error}"))?;
-    let said = [output.stdout, output.stderr].concat();
-    if output.status.success() {
-        Ok(())
-    } else {
-        Err(format!("{tool}: {}", String::from_utf8_lossy(&said)))
-    }
 }

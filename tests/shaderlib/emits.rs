@@ -8,8 +8,16 @@ use naga::proc::BoundsCheckPolicies;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{Module, ShaderStage};
 
-/// Writes a module, given as WGSL, for every kind of target. Gives the GLSL texts with their versions.
-pub fn emits(text: &str) -> Result<Vec<(glsl::Version, String)>, Failed> {
+/// The versions of GLSL that naga writes.
+pub const VERSIONS: [glsl::Version; 4] = [
+    glsl::Version::Desktop(330),
+    glsl::Version::Desktop(450),
+    glsl::Version::new_gles(300),
+    glsl::Version::new_gles(310),
+];
+
+/// Writes a module, given as WGSL, for every kind of target. Gives the texts of [`VERSIONS`].
+pub fn emits(text: &str) -> Result<Vec<String>, Failed> {
     let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
         .validate(&module)
@@ -20,16 +28,7 @@ pub fn emits(text: &str) -> Result<Vec<(glsl::Version, String)>, Failed> {
     let mut hlsl = String::new();
     hlsl::Writer::new(&mut hlsl, &hlsl::Options::default(), &hlsl::PipelineOptions::default())
         .write(&module, &info, None)?;
-    let versions = [
-        glsl::Version::Desktop(330),
-        glsl::Version::Desktop(450),
-        glsl::Version::new_gles(300),
-        glsl::Version::new_gles(310),
-    ];
-    versions
-        .into_iter()
-        .map(|version| Ok((version, write_glsl(&module, &info, version)?)))
-        .collect()
+    VERSIONS.into_iter().map(|version| write_glsl(&module, &info, version)).collect()
 }
 
 fn write_glsl(

@@ -1,6 +1,6 @@
 //! Runs benchmarks, which are a separate binary built for release.
 
-use crate::{CommandResult, process};
+use xtask::{CommandResult, process};
 
 /// Runs the benchmark of that name.
 pub fn run(arguments: &[String]) -> CommandResult {

@@ -1,6 +1,8 @@
 //! What continuous integration runs beyond the tests.
 
-use crate::{CommandResult, process, test};
+use xtask::{CommandResult, process};
+
+use crate::test;
 
 /// Format, lints without a warning, tests.
 pub fn run(arguments: &[String]) -> CommandResult {

@@ -3,7 +3,7 @@
 
 use std::process::Command;
 
-use crate::{CommandFailure, CommandResult, process};
+use xtask::{CommandFailure, CommandResult, process};
 
 /// Writes them. With `--check` it only fails if any is not up to date. With `--costs` it first
 /// measures what functions and axes cost.

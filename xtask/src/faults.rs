@@ -13,8 +13,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use crate::generate::root;
-use crate::{CommandFailure, CommandResult};
+use xtask::process::{beside_this, root};
+use xtask::{CommandFailure, CommandResult};
 
 /// System calls that name a file, or that write to one.
 const CALLS: &[&str] = &[
@@ -181,15 +181,6 @@ impl FaultPackage {
         let looked = self.prepared(command).output().ok()?;
         let reason = String::from_utf8_lossy(&looked.stderr).into_owned();
         (!looked.status.success()).then_some(reason)
-    }
-}
-
-/// The program that was built together with this one, in the same profile.
-pub fn beside_this() -> Result<PathBuf, CommandFailure> {
-    let program = std::env::current_exe().map_err(environment)?.with_file_name("lamplight");
-    match program.is_file() {
-        true => Ok(program),
-        false => Err(CommandFailure::environment("build it first: cargo build")),
     }
 }
 

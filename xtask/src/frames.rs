@@ -1,19 +1,27 @@
 //! `cargo xtask frames`: permutations of programs, drawn from the bytes that a bundle holds of
 //! each target, by the trials `frames/shipped` and `metal::frames` of the tests.
 
-use lamplight::bundle::Target;
-
-use crate::{CommandFailure, CommandResult, process};
+use xtask::process::{self, root};
+use xtask::{CommandFailure, CommandResult};
 
 fn usage() -> CommandFailure {
-    let targets: Vec<&str> = Target::ALL.iter().map(|target| target.name()).collect();
     CommandFailure::usage(format!(
         "usage: cargo xtask frames [--permutations N] [--target T[,T]]
 
   --permutations N  how many of each program and language (all: 200 or more, with all pairs of values)
   --target T        of {} (all)",
-        targets.join(", ")
+        targets().join(", ")
     ))
+}
+
+/// Every target has a file of its name.
+fn targets() -> Vec<String> {
+    let files = std::fs::read_dir(root().join("src/emit/targets")).into_iter().flatten().flatten();
+    let names = files.map(|file| file.file_name().to_string_lossy().into_owned());
+    let mut targets: Vec<String> =
+        names.filter_map(|name| name.strip_suffix(".rs").map(str::to_owned)).collect();
+    targets.sort();
+    targets
 }
 
 /// Runs the trials. A wrong picture gives exit code 3.

@@ -3,9 +3,6 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use lamplight::judge::judges;
-use lamplight::tools::Tool;
-
 use crate::{CommandFailure, CommandResult};
 
 /// Something that the tests need: the Debian package that has it, and how to see whether it is
@@ -42,6 +39,7 @@ const NEEDS: &[Need] = &[
         what: "glslangValidator",
         found: || program("glslangValidator"),
     },
+    Need { package: "glslc", what: "glslc", found: || program("glslc") },
     Need { package: "clang", what: "clang++, for MSL", found: || program("clang++") },
     Need {
         package: "neovim",
@@ -76,19 +74,10 @@ pub fn prepare() -> CommandResult {
     }
 }
 
-/// The package and the purpose of everything that is missing. The files of judges list their
-/// programs themselves.
+/// The package and the purpose of everything that is missing.
 fn missing() -> Vec<(&'static str, &'static str)> {
-    let listed = NEEDS.iter().filter(|need| !(need.found)());
-    let tools = judges::ALL.iter().flat_map(|judge| judge.tools);
-    let is_listed = |tool: &&Tool| NEEDS.iter().any(|need| need.package == tool.package);
-    let of_judges = tools.filter(|tool| !is_listed(tool) && tool.path().is_none());
-    let mut found: Vec<(&str, &str)> = listed
-        .map(|need| (need.package, need.what))
-        .chain(of_judges.map(|tool| (tool.package, tool.program)))
-        .collect();
-    found.dedup();
-    found
+    let missing = NEEDS.iter().filter(|need| !(need.found)());
+    missing.map(|need| (need.package, need.what)).collect()
 }
 
 /// Installs packages of Debian.

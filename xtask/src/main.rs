@@ -4,69 +4,31 @@
 
 mod bench;
 mod ci;
-mod create;
 mod docs;
 mod faults;
 mod frames;
-mod fuzz;
-mod generate;
-mod machine;
+mod make;
 mod mutate;
-mod new;
-mod process;
 mod record;
 mod site;
 mod tables;
 mod test;
-mod validate;
 
 use std::process::ExitCode;
 
-/// A command: its name, one line of help, and what it does with its arguments.
-type XtaskCommand = (&'static str, &'static str, fn(&[String]) -> CommandResult);
-
-/// Exit code 0, or another with its reason on standard error.
-type CommandResult = Result<(), CommandFailure>;
-
-/// Why a command failed, with the documented exit code.
-struct CommandFailure {
-    code: u8,
-    message: String,
-}
-
-impl CommandFailure {
-    /// The input is wrong (1).
-    fn input(message: impl Into<String>) -> Self {
-        Self { code: 1, message: message.into() }
-    }
-
-    /// Wrong usage (2).
-    fn usage(message: impl Into<String>) -> Self {
-        Self { code: 2, message: message.into() }
-    }
-
-    /// A check or a comparison failed (3).
-    fn check(message: impl Into<String>) -> Self {
-        Self { code: 3, message: message.into() }
-    }
-
-    /// The environment lacks something (4).
-    fn environment(message: impl Into<String>) -> Self {
-        Self { code: 4, message: message.into() }
-    }
-}
+use xtask::XtaskCommand;
 
 const COMMANDS: &[XtaskCommand] = &[
     (
         "gen",
         "write the library's bundle to target/bundles/, once all its outputs are judged",
-        generate::run,
+        make::generate,
     ),
     ("test", "install what the tests need, then run every test", test::run),
     (
         "new",
         "write the files for a new function, axis-value, target, executor, scene or diagnostic",
-        create::run,
+        make::create,
     ),
     (
         "record",
@@ -74,7 +36,7 @@ const COMMANDS: &[XtaskCommand] = &[
         record::run,
     ),
     ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),
-    ("validate", "let the judges of all targets look at a bundle", validate::run),
+    ("validate", "let the judges of all targets look at a bundle", make::validate),
     (
         "docs",
         "write the catalogue, the modules made from data, the guide as a book (--check: only compare, --costs: measure first)",
@@ -99,7 +61,7 @@ const COMMANDS: &[XtaskCommand] = &[
     (
         "fuzz",
         "hostile inputs for every parser: [--seconds N] [--seed N] [KIND]...; or `link`",
-        fuzz::run,
+        make::fuzz,
     ),
     (
         "frames",
@@ -115,26 +77,5 @@ const COMMANDS: &[XtaskCommand] = &[
 ];
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let command =
-        arguments.first().and_then(|name| COMMANDS.iter().find(|(known, ..)| known == name));
-    let outcome = match command {
-        Some((.., run)) => run(&arguments[1..]),
-        None => Err(CommandFailure::usage(usage())),
-    };
-    match outcome {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            eprintln!("{}", failure.message);
-            ExitCode::from(failure.code)
-        }
-    }
-}
-
-fn usage() -> String {
-    let mut text = String::from("usage: cargo xtask COMMAND\n");
-    for (name, about, _) in COMMANDS {
-        text.push_str(&format!("\n  {name:10} {about}"));
-    }
-    text
+    xtask::run(COMMANDS)
 }

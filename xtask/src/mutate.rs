@@ -1,6 +1,6 @@
 //! Puts mistakes into the library, to see whether its numeric cases notice them.
 
-use crate::{CommandResult, process};
+use xtask::{CommandResult, process};
 
 /// Runs `lamplight mutate` over the library's sources, in release: it makes thousands of mutants.
 /// Arguments (modules, `--coverage`) are passed on.

@@ -1,12 +1,18 @@
 //! Runs cargo and other programs in the workspace.
 
 use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus};
 
 use crate::{CommandFailure, CommandResult};
 
 /// The workspace.
 pub const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+
+/// The workspace, as a path to print.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new(".")).to_owned()
+}
 
 /// Runs cargo; a failure is exit code 3.
 pub fn cargo(arguments: &[&str], rest: &[String]) -> CommandResult {
@@ -53,4 +59,14 @@ pub fn succeeded(status: ExitStatus, name: &str) -> CommandResult {
 /// Exit code 4, since a command did not start.
 pub fn not_run(name: &str, error: &std::io::Error) -> CommandFailure {
     CommandFailure::environment(format!("{name} could not be run: {error}"))
+}
+
+/// The command `lamplight` that was built together with this program, in the same profile.
+pub fn beside_this() -> Result<PathBuf, CommandFailure> {
+    let program = std::env::current_exe().map_err(|error| not_run("lamplight", &error))?;
+    let program = program.with_file_name("lamplight");
+    match program.is_file() {
+        true => Ok(program),
+        false => Err(CommandFailure::environment("build it first: cargo build")),
+    }
 }

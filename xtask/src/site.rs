@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use crate::process::{ROOT, cargo_command, finish};
-use crate::{CommandFailure, CommandResult, machine};
+use xtask::process::{ROOT, cargo_command, finish};
+use xtask::{CommandFailure, CommandResult, machine};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 

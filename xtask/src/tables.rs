@@ -1,6 +1,6 @@
 //! Makes the tables that techniques read, with a separate crate that is built for release.
 
-use crate::{CommandResult, process};
+use xtask::{CommandResult, process};
 
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../shaderlib/tables");
 

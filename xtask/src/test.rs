@@ -5,8 +5,10 @@ use std::process::{Command, Stdio};
 
 use serde_json::Value;
 
-use crate::process::{self, ROOT};
-use crate::{CommandFailure, CommandResult, machine, site};
+use xtask::process::{self, ROOT};
+use xtask::{CommandFailure, CommandResult, machine};
+
+use crate::site;
 
 /// The package that is tested. Every feature is on, since shared stores are tested with a server.
 /// All tests together gain more by the optimisation than the build loses. Whoever runs `cargo test`

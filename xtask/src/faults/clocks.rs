@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use std::{fs, thread};
 
 use super::{FaultPackage, environment};
-use crate::CommandFailure;
+use xtask::CommandFailure;
 
 const SHIM: &str = include_str!("clock.c");
 const FAULT: &str = "system clock that is set";

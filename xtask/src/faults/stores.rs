@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use super::{FaultPackage, environment};
-use crate::CommandFailure;
+use xtask::CommandFailure;
 
 /// Rounds of each kind of wrong record, each over all records.
 const ROUNDS: usize = 12;

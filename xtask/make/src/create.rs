@@ -1,8 +1,9 @@
 //! `cargo xtask new KIND NAME`: writes the files that a task needs, so that nobody has to find
 //! them.
 
-use crate::generate::root;
-use crate::{CommandFailure, CommandResult, new};
+use crate::new;
+use xtask::process::root;
+use xtask::{CommandFailure, CommandResult};
 
 /// Writes the files, and prints them with what remains to be done.
 pub fn run(arguments: &[String]) -> CommandResult {

@@ -1,7 +1,7 @@
 //! `cargo xtask fuzz link`: random programs, which the trial `link::random` of the tests makes,
 //! judges, runs and compares.
 
-use crate::{CommandFailure, CommandResult, process};
+use xtask::{CommandFailure, CommandResult, process};
 
 const USAGE: &str =
     "usage: cargo xtask fuzz link [--programs N] [--seed N] [--every N] [--most N] [--run N] [--shrink]

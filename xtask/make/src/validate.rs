@@ -7,7 +7,10 @@ use lamplight::bundle::{BlobFile, Target, blob_files};
 use lamplight::cache::Cache;
 use lamplight::judge::{MissingTool, Output, Refusal, Tint, missing, outputs, verdict};
 
-use crate::{CommandFailure, CommandResult, generate, machine};
+use xtask::process::root;
+use xtask::{CommandFailure, CommandResult, machine};
+
+use crate::generate;
 
 /// How many refusals are printed.
 const TOLD: usize = 20;
@@ -91,7 +94,7 @@ pub fn judge(
 
 /// Tint below `target/`. If it is missing and npm is there, it is installed now.
 fn tint() -> Tint {
-    let tint = Tint::at(generate::root().join("target/lamplight-tint"));
+    let tint = Tint::at(root().join("target/lamplight-tint"));
     let is_missing = !missing(&[Target::WGSL], &tint).is_empty();
     if is_missing && machine::program("npm") && machine::program("node") {
         let [npm, arguments @ ..] = tint.install();

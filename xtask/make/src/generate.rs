@@ -4,7 +4,7 @@
 
 use std::collections::BTreeSet;
 use std::io::{IsTerminal, Write, stderr};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use lamplight::bundle::{self, BlobFile, Bundle, Contents, DirectoryWriter, blob_files};
 use lamplight::cache::{Cache, CacheFolder};
@@ -20,16 +20,12 @@ use lamplight::resolve::Packages;
 use lamplight::source::SourceSet;
 
 use crate::validate::{JudgedOutputs, judge};
-use crate::{CommandFailure, CommandResult};
+use xtask::process::root;
+use xtask::{CommandFailure, CommandResult};
 
 /// Where the library's bundle goes.
 pub fn bundle() -> PathBuf {
     root().join("target/bundles/lamplight")
-}
-
-/// The workspace's root.
-pub fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new(".")).to_owned()
 }
 
 /// Generates, judges what is new, writes the bundle and prints the summary. If an output is

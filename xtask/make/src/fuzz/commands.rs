@@ -7,9 +7,9 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use super::mutate::{self, FuzzRandom};
-use crate::faults::beside_this;
-use crate::generate::root;
-use crate::{CommandFailure, CommandResult};
+use xtask::process::beside_this;
+use xtask::process::root;
+use xtask::{CommandFailure, CommandResult};
 
 /// A command that reads a file.
 pub struct Surface {

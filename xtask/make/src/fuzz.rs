@@ -7,7 +7,7 @@
 mod commands;
 mod ending;
 mod judge;
-#[path = "../../fuzz/src/kinds.rs"]
+#[path = "../../../fuzz/src/kinds.rs"]
 mod kinds;
 mod link;
 mod mutate;
@@ -18,10 +18,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 
-use crate::generate::root;
-use crate::{CommandFailure, CommandResult};
 use kinds::{KINDS, Kind};
 use mutate::FuzzRandom;
+use xtask::process::root;
+use xtask::{CommandFailure, CommandResult};
 
 const USAGE: &str = "usage: cargo xtask fuzz [--seconds N] [--seed N] [KIND]...\n       cargo xtask fuzz link [--programs N] [--seed N]";
 /// A worker that gives no sign of life for this long is in an endless loop.

@@ -53,7 +53,7 @@ fn steps(file: &str, name: &str, is_vulkan: bool, is_own: bool) -> Vec<String> {
             "{file}: `about`, and what opens it, as its comments say, which you delete; imports that are not used any more (trials house::described, harness::executor::{name})"
         ),
         format!(
-            "{file}: `needs`; for each package that xtask/src/machine.rs lacks, add to `NEEDS` there one like `Need {{ package: \"libegl1\", what: \"EGL\", found: || library(\"libEGL.so.1\") }}`, or with `installed` or `program` (trial house::needs_of_executors)"
+            "{file}: `needs`; for each package that xtask/src/machine.rs lacks, add to `NEEDS` there one like `Need {{ package: \"libegl1\", what: \"EGL\", found: || library(\"libEGL.so.1\") }}`, or with `installed` or `program` (trial house::needs)"
         ),
         format!(
             "{file}: `samples: None` where it draws no frames, and `shipping` where it takes a target's files as they are (trials harness::executor::{name}, frames/shipped)"
