@@ -144,6 +144,7 @@ fn main() -> ExitCode {
     // This changes environment variables, so it must be done while there is one thread. If something
     // is missing, the trials that need it say so.
     lamplight::execute::executors::prepare_process(lamplight::execute::executors::ALL);
+    lamplight::browser::Browser::keep_shared();
     let trials = KINDS.iter().flat_map(|kind| kind()).collect();
     libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
 }

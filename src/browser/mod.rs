@@ -63,6 +63,17 @@ impl fmt::Display for Problem {
 
 impl std::error::Error for Problem {}
 
+/// The browser of this process.
+struct SharedBrowser {
+    open: Weak<Browser>,
+    /// Whether it stays open although nobody else holds it.
+    keeps: bool,
+    kept: Option<Arc<Browser>>,
+}
+
+static SHARED: Mutex<SharedBrowser> =
+    Mutex::new(SharedBrowser { open: Weak::new(), keeps: false, kept: None });
+
 /// A browser with a profile of its own. It ends when its last page and its last owner are dropped.
 #[derive(Debug)]
 pub struct Browser {
@@ -100,20 +111,26 @@ impl Browser {
     }
 
     /// The browser of this process. Everyone who asks gets the same one, as long as somebody holds
-    /// it.
+    /// it, or until the process ends after [`Self::keep_shared`].
     ///
     /// # Errors
     /// Those of [`Self::start`].
     pub fn shared() -> Result<Arc<Self>, Problem> {
-        static SHARED: Mutex<Weak<Browser>> = Mutex::new(Weak::new());
         // The lock is held while the browser starts, so that only one is started.
         let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(browser) = shared.upgrade().filter(|browser| !browser.wire.is_closed()) {
+        if let Some(browser) = shared.open.upgrade().filter(|browser| !browser.wire.is_closed()) {
             return Ok(browser);
         }
         let browser = Self::start()?;
-        *shared = Arc::downgrade(&browser);
+        shared.open = Arc::downgrade(&browser);
+        shared.kept = shared.keeps.then(|| Arc::clone(&browser));
         Ok(browser)
+    }
+
+    /// From now on the shared browser stays open until the process ends. This is for a process that
+    /// needs it again and again, since starting it takes two seconds of processor time.
+    pub fn keep_shared() {
+        SHARED.lock().unwrap_or_else(PoisonError::into_inner).keeps = true;
     }
 
     /// Name and version.
