@@ -109,6 +109,11 @@ fn build_trials() -> Result<PathBuf, CommandFailure> {
     executables.next().ok_or_else(|| CommandFailure::check("cargo built no test binary"))
 }
 
+/// glibc asks for memory in large pieces and pages, and keeps what is freed. A tenth of the time of
+/// all programs is saved, and a quarter of that of glslangValidator with a small text.
+const LARGE_PAGES: &str = "glibc.malloc.hugetlb=1:glibc.malloc.top_pad=16777216:\
+    glibc.malloc.mmap_threshold=1073741824:glibc.malloc.trim_threshold=1073741824";
+
 /// Runs the test binary as `cargo test` does.
 fn run_trials(trials: &Path, arguments: &[String]) -> CommandResult {
     let mut command = Command::new(trials);
@@ -116,6 +121,8 @@ fn run_trials(trials: &Path, arguments: &[String]) -> CommandResult {
     command.env("CARGO", process::cargo_program()).env("CARGO_PKG_NAME", "lamplight");
     // Trials free much memory and soon need as much again.
     command.env("MIMALLOC_PURGE_DELAY", "1000");
+    // The programs that they start, such as glslangValidator, use much memory for a short time.
+    command.env("GLIBC_TUNABLES", LARGE_PAGES);
     process::finish(&mut command, "the tests")
 }
 

@@ -165,13 +165,22 @@ impl<'p, N: Number> Machine<'p, N> {
     /// `eval-arguments`, `eval-loop-limit`, `eval-needs-quad`, `eval-unbound`, or why the
     /// function could not be lowered.
     pub fn call(&mut self, id: FunctionId, arguments: &[N]) -> Result<&[N], Error> {
+        N::run_call(self, id, arguments)?;
+        Ok(self.result(id))
+    }
+
+    /// [`Self::call`] without its result.
+    pub(in crate::eval) fn run_call(
+        &mut self,
+        id: FunctionId,
+        arguments: &[N],
+    ) -> Result<(), Error> {
         let program = self.program;
         let function = callable_function(program, id, arguments.len())?;
         self.check_buffers(function)?;
         begin_lane(program, &mut self.lane);
         place_arguments(&mut self.lane, function, arguments);
-        self.run(function.entry)?;
-        Ok(result_slots(&self.lane, function))
+        self.run(function.entry)
     }
 
     /// As [`Self::call`], with every scalar as its 32 bits.

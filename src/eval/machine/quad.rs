@@ -18,6 +18,15 @@ impl<N: Number> Machine<'_, N> {
     /// # Errors
     /// Those of [`Self::call`].
     pub fn quad(&mut self, id: FunctionId, arguments: [&[N]; 4]) -> Result<[Vec<N>; 4], Error> {
+        N::run_quad(self, id, arguments)
+    }
+
+    /// [`Self::quad`].
+    pub(in crate::eval) fn run_quad(
+        &mut self,
+        id: FunctionId,
+        arguments: [&[N]; 4],
+    ) -> Result<[Vec<N>; 4], Error> {
         let program = self.program;
         let mut lanes = std::mem::take(&mut self.quad);
         lanes.resize_with(4, || self.lane.clone());

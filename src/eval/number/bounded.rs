@@ -7,6 +7,7 @@
 
 use super::Number;
 use crate::eval::code::{Binary, Compare, Ternary, Unary};
+use crate::eval::{Error, FunctionId, Machine};
 
 /// A value, and a bound of the absolute error that a computation of it in f32 may have.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -364,6 +365,22 @@ impl Number for Bounded {
             sum.0,
             sum.2 + if exact || sum.1 == 0.0 { 0.0 } else { a.len() as f64 * ulp(sum.1) },
         )
+    }
+
+    fn run_call(
+        machine: &mut Machine<'_, Self>,
+        id: FunctionId,
+        arguments: &[Self],
+    ) -> Result<(), Error> {
+        machine.run_call(id, arguments)
+    }
+
+    fn run_quad(
+        machine: &mut Machine<'_, Self>,
+        id: FunctionId,
+        arguments: [&[Self]; 4],
+    ) -> Result<[Vec<Self>; 4], Error> {
+        machine.run_quad(id, arguments)
     }
 }
 

@@ -8,6 +8,9 @@ pub use bounded::Bounded;
 pub use half::{half_from, half_to};
 
 use super::code::{Binary, Compare, Ternary, Unary};
+use super::error::Error;
+use super::machine::Machine;
+use super::program::FunctionId;
 
 /// A slot of the memory. It holds a number of the shader's type `f32`, or the 32-bit word of an
 /// integer or a boolean; the instructions know which.
@@ -39,6 +42,25 @@ pub trait Number: Copy + Default + Send + Sync + std::fmt::Debug + 'static {
     fn compare(op: Compare, a: Self, b: Self, doubt: &mut bool) -> bool;
     /// The sum of products of two slices of the same length.
     fn dot(a: &[Self], b: &[Self]) -> Self;
+    /// [`Machine::call`] without its result. Every kind writes this and [`Self::run_quad`] itself, so
+    /// that the machine for it is compiled with this crate, whatever the optimisation of the caller.
+    ///
+    /// # Errors
+    /// Those of [`Machine::call`].
+    fn run_call(
+        machine: &mut Machine<'_, Self>,
+        id: FunctionId,
+        arguments: &[Self],
+    ) -> Result<(), Error>;
+    /// [`Machine::quad`].
+    ///
+    /// # Errors
+    /// Those of [`Machine::quad`].
+    fn run_quad(
+        machine: &mut Machine<'_, Self>,
+        id: FunctionId,
+        arguments: [&[Self]; 4],
+    ) -> Result<[Vec<Self>; 4], Error>;
 
     /// The bits as `f32`. All NaNs have the same bits.
     fn bits(self) -> u32 {

@@ -3,6 +3,7 @@
 
 use super::{Number, half_from, half_to};
 use crate::eval::code::{Binary, Compare, Ternary, Unary};
+use crate::eval::{Error, FunctionId, Machine};
 
 macro_rules! native {
     ($float:ident, $from_word:expr, $to_word:expr) => {
@@ -124,6 +125,22 @@ macro_rules! native {
             #[inline]
             fn dot(a: &[Self], b: &[Self]) -> Self {
                 a.iter().zip(b).map(|(a, b)| a * b).reduce(|sum, term| sum + term).unwrap_or(0.0)
+            }
+
+            fn run_call(
+                machine: &mut Machine<'_, Self>,
+                id: FunctionId,
+                arguments: &[Self],
+            ) -> Result<(), Error> {
+                machine.run_call(id, arguments)
+            }
+
+            fn run_quad(
+                machine: &mut Machine<'_, Self>,
+                id: FunctionId,
+                arguments: [&[Self]; 4],
+            ) -> Result<[Vec<Self>; 4], Error> {
+                machine.run_quad(id, arguments)
             }
         }
     };
