@@ -61,7 +61,7 @@ pub enum Ternary {
 
 /// Comparisons of floats. In a comparison sampler, the left side is the reference, and the right
 /// side is the stored depth.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Compare {
     /// `reference == stored`
     Equal,

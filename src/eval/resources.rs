@@ -122,7 +122,7 @@ impl Texels {
 }
 
 /// What a sampler returns for coordinates outside of a texture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 pub enum Address {
     /// The texel at the edge.
     #[default]

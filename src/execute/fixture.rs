@@ -57,7 +57,7 @@ impl TextureKind {
 }
 
 /// How a texture is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct FixtureSampler {
     pub compare: Option<Compare>,
     pub linear: bool,

@@ -9,12 +9,13 @@
 //! All other elements of a heap are samplers that give other results. So an index that was read
 //! from the wrong place changes the picture.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::num::NonZeroU32;
+use std::sync::Mutex;
 
 use wgpu::util::DeviceExt as _;
 
-use super::fixtures;
+use super::{fixtures, lock_mutex};
 use crate::bundle::{HeapSampler, SamplerHeap};
 use crate::execute::fixture::{Address, Compare, FixtureSampler};
 
@@ -33,22 +34,53 @@ pub fn heap_bindings(heaps: &[SamplerHeap]) -> impl Iterator<Item = (String, u32
     heaps.iter().map(|heap| (heap.name.clone(), u32::from(heap.comparison))).chain(buffers)
 }
 
-/// The bind group with the heaps of all stages, and its layout. `sampler` gives the sampler at a
-/// group and a binding.
-pub fn bind_heaps(
-    device: &wgpu::Device,
-    heaps: &[SamplerHeap],
-    sampler: &dyn Fn([u32; 2]) -> Option<FixtureSampler>,
-) -> Result<(wgpu::BindGroupLayout, wgpu::BindGroup), String> {
+/// A bind group with the heaps of all stages, and its layout.
+#[derive(Clone)]
+pub struct HeapGroup {
+    pub layout: wgpu::BindGroupLayout,
+    pub group: wgpu::BindGroup,
+}
+
+/// The heaps of all stages, and the settings of each of their samplers.
+type HeapContents = (Vec<SamplerHeap>, Vec<FixtureSampler>);
+
+/// The bind groups with heaps of a device. They are kept, since a software driver clears the memory of
+/// many heaps for each new one.
+#[derive(Default)]
+pub struct HeapGroups {
+    known: Mutex<HashMap<HeapContents, HeapGroup>>,
+}
+
+impl HeapGroups {
+    /// The bind group with heaps. `sampler` gives the sampler at a group and a binding.
+    pub fn bind(
+        &self,
+        device: &wgpu::Device,
+        heaps: &[SamplerHeap],
+        sampler: &dyn Fn([u32; 2]) -> Option<FixtureSampler>,
+    ) -> Result<HeapGroup, String> {
+        let settings = all_samplers(heaps).map(|HeapSampler { group, binding, .. }| {
+            let lacks = || format!("no sampler for group {group}, binding {binding}");
+            sampler([*group, *binding]).ok_or_else(lacks)
+        });
+        let contents = (heaps.to_vec(), settings.collect::<Result<Vec<_>, _>>()?);
+        let known = lock_mutex(&self.known).get(&contents).cloned();
+        let bound = known.unwrap_or_else(|| bind_heaps(device, &contents));
+        Ok(lock_mutex(&self.known).entry(contents).or_insert(bound).clone())
+    }
+}
+
+fn bind_heaps(device: &wgpu::Device, (heaps, settings): &HeapContents) -> HeapGroup {
     let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: None,
         entries: &layout_entries(heaps),
     });
     let places = sampler_places(heaps);
-    let arrays = [
-        heap_samplers(device, heaps, false, &places, sampler)?,
-        heap_samplers(device, heaps, true, &places, sampler)?,
-    ];
+    let places_of = all_samplers(heaps).map(|sampler| [sampler.group, sampler.binding]);
+    let settings: BTreeMap<[u32; 2], FixtureSampler> =
+        places_of.zip(settings.iter().copied()).collect();
+    let arrays = [false, true]
+        .map(|comparison| heap_samplers(device, heaps, comparison, &places, &settings));
     let arrays = arrays.each_ref().map(|array| array.iter().collect::<Vec<_>>());
     let buffers: Vec<_> =
         index_numbers(heaps, &places).iter().map(|numbers| index_buffer(device, numbers)).collect();
@@ -63,7 +95,7 @@ pub fn bind_heaps(
         layout: &layout,
         entries: &entries,
     });
-    Ok((layout, group))
+    HeapGroup { layout, group }
 }
 
 /// Bindings without gaps, as wgpu numbers them: both heaps, and an index buffer for each group up
@@ -93,8 +125,8 @@ fn heap_samplers(
     heaps: &[SamplerHeap],
     comparison: bool,
     places: &BTreeMap<[u32; 2], u32>,
-    sampler: &dyn Fn([u32; 2]) -> Option<FixtureSampler>,
-) -> Result<Vec<wgpu::Sampler>, String> {
+    settings: &BTreeMap<[u32; 2], FixtureSampler>,
+) -> Vec<wgpu::Sampler> {
     let mut array = vec![
         fixtures::create_sampler(device, decoy_sampler(comparison));
         heap_size(heaps) as usize
@@ -102,11 +134,9 @@ fn heap_samplers(
     let own = heaps.iter().filter(|heap| heap.comparison == comparison);
     for HeapSampler { group, binding, .. } in own.flat_map(|heap| &heap.samplers) {
         let place = [*group, *binding];
-        let settings = sampler(place)
-            .ok_or_else(|| format!("no sampler for group {group}, binding {binding}"))?;
-        array[places[&place] as usize] = fixtures::create_sampler(device, settings);
+        array[places[&place] as usize] = fixtures::create_sampler(device, settings[&place]);
     }
-    Ok(array)
+    array
 }
 
 /// How many elements each heap has.

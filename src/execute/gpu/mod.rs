@@ -26,6 +26,7 @@ use super::{Session, ShippedPair, draws_none, executor_failed};
 use crate::bundle::Stage;
 use crate::diagnostic::Diagnostic;
 use crate::emit::Emitted;
+use heaps::HeapGroups;
 use passthrough::SpirvBinary;
 use pipeline::PreparedKernel;
 use textures::{TEXEL, color_attachment, copy_to_buffer, create_texture, write_level};
@@ -46,6 +47,7 @@ pub struct WgpuDevice {
     prepared: HashMap<u64, PreparedKernel>,
     /// Shipped stages as SPIR-V, by their bytes and the bind group of their heaps.
     binaries: Mutex<HashMap<(Vec<u8>, u32), SpirvBinary>>,
+    heaps: HeapGroups,
 }
 
 impl Session for WgpuDevice {
@@ -116,7 +118,8 @@ impl WgpuDevice {
                 }
             };
             let prepared = self.guarded(|gpu| {
-                PreparedKernel::new(&gpu.device, &gpu.queue, &gpu.vertex, kernel, emitted.as_ref())
+                let emitted = emitted.as_ref().map(|emitted| (emitted, &gpu.heaps));
+                PreparedKernel::new(&gpu.device, &gpu.queue, &gpu.vertex, kernel, emitted)
             })?;
             self.prepared.insert(kernel.code, prepared.map_err(executor_failed)?);
         }

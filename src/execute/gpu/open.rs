@@ -116,6 +116,7 @@ pub fn open_gpu(wanted: DeviceRequest) -> Result<WgpuDevice, String> {
         vertex,
         prepared: HashMap::new(),
         binaries: Mutex::new(HashMap::new()),
+        heaps: Default::default(),
     })
 }
 

@@ -1,7 +1,8 @@
 //! A kernel's pipeline, and the bindings that are the same for all its draws.
 
+use super::heaps::HeapGroups;
 use super::passthrough::SpirvBinary;
-use super::{TARGET_FORMAT, fixtures, heaps};
+use super::{TARGET_FORMAT, fixtures};
 use crate::execute::fixture::{Fixture, FixtureSampler};
 use crate::execute::kernel::{ENTRY, Kernel, ResourceClass};
 
@@ -30,11 +31,11 @@ impl PreparedKernel {
         queue: &wgpu::Queue,
         vertex: &wgpu::ShaderModule,
         kernel: &Kernel,
-        emitted: Option<&SpirvBinary>,
+        emitted: Option<(&SpirvBinary, &HeapGroups)>,
     ) -> Result<Self, String> {
         let layout = bind_layout(device, kernel);
         let fragment = match emitted {
-            Some(emitted) => emitted.module(device, &kernel.name),
+            Some((emitted, _)) => emitted.module(device, &kernel.name),
             None => {
                 let source =
                     wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(kernel.module.clone()));
@@ -45,22 +46,22 @@ impl PreparedKernel {
             }
         };
         let heaps = match emitted {
-            Some(emitted) if !emitted.heaps.is_empty() => {
+            Some((emitted, groups)) if !emitted.heaps.is_empty() => {
                 let sampler = |[_, binding]: [u32; 2]| kernel.fixture_at(binding)?.sampler();
-                Some(heaps::bind_heaps(device, &emitted.heaps, &sampler)?)
+                Some(groups.bind(device, &emitted.heaps, &sampler)?)
             }
             _ => None,
         };
         let layouts: Vec<_> =
-            std::iter::once(&layout).chain(heaps.as_ref().map(|(layout, _)| layout)).collect();
-        let entry = emitted.map_or(ENTRY, SpirvBinary::entry);
+            std::iter::once(&layout).chain(heaps.as_ref().map(|bound| &bound.layout)).collect();
+        let entry = emitted.map_or(ENTRY, |(emitted, _)| emitted.entry());
         let pipeline =
             draw_pipeline(device, &layouts, vertex, (&fragment, entry), Some(TARGET_FORMAT), None);
         let resources = kernel
             .resources()
             .map(|resource| (resource.binding, bound_fixture(device, queue, &resource.fixture)))
             .collect();
-        Ok(Self { pipeline, layout, resources, heaps: heaps.map(|(_, group)| group) })
+        Ok(Self { pipeline, layout, resources, heaps: heaps.map(|bound| bound.group) })
     }
 
     /// The bind group of one draw.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::super::passthrough::SpirvBinary;
-use super::super::{Shaders, WgpuDevice, executor_failed, heaps, hlsl, lock_mutex};
+use super::super::{Shaders, WgpuDevice, executor_failed, hlsl, lock_mutex};
 use super::bindings::Bindings;
 use super::target::Targets;
 use super::{LAVAPIPE_BLOCKS, Meshes, StageModules};
@@ -69,11 +69,11 @@ impl WgpuDevice {
             None
         } else {
             let sampler = |place: [u32; 2]| drawing.sampler_at(place);
-            Some(heaps::bind_heaps(&self.device, &all, &sampler).map_err(executor_failed)?)
+            Some(self.heaps.bind(&self.device, &all, &sampler).map_err(executor_failed)?)
         };
         let mut in_order: Vec<Option<&wgpu::BindGroupLayout>> =
             (0..group).map(|index| layouts.get(&index)).collect();
-        in_order.extend(heaps.as_ref().map(|(layout, _)| Some(layout)));
+        in_order.extend(heaps.as_ref().map(|bound| Some(&bound.layout)));
         let layout = self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
             bind_group_layouts: &in_order,
@@ -94,7 +94,7 @@ impl WgpuDevice {
                 .map(|item| {
                     let layout = |index| layouts.get(&index).cloned();
                     let mut groups = bindings.groups(self, drawing, view, item, &layout)?;
-                    groups.extend(heaps.as_ref().map(|(_, bound)| (group, bound.clone())));
+                    groups.extend(heaps.as_ref().map(|bound| (group, bound.group.clone())));
                     Ok(groups)
                 })
                 .collect::<Result<_, Diagnostic>>()?;
