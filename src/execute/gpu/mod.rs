@@ -4,6 +4,7 @@ mod draw;
 mod fixtures;
 mod heaps;
 mod hlsl;
+mod layouts;
 mod open;
 mod opengl;
 mod passthrough;
@@ -27,6 +28,7 @@ use crate::bundle::Stage;
 use crate::diagnostic::Diagnostic;
 use crate::emit::Emitted;
 use heaps::HeapGroups;
+use layouts::GroupLayouts;
 use passthrough::SpirvBinary;
 use pipeline::PreparedKernel;
 use textures::{TEXEL, color_attachment, copy_to_buffer, create_texture, write_level};
@@ -48,6 +50,7 @@ pub struct WgpuDevice {
     /// Shipped stages as SPIR-V, by their bytes and the bind group of their heaps.
     binaries: Mutex<HashMap<(Vec<u8>, u32), SpirvBinary>>,
     heaps: HeapGroups,
+    layouts: GroupLayouts,
 }
 
 impl Session for WgpuDevice {
@@ -117,10 +120,8 @@ impl WgpuDevice {
                     Some(binary.map_err(executor_failed)?)
                 }
             };
-            let prepared = self.guarded(|gpu| {
-                let emitted = emitted.as_ref().map(|emitted| (emitted, &gpu.heaps));
-                PreparedKernel::new(&gpu.device, &gpu.queue, &gpu.vertex, kernel, emitted)
-            })?;
+            let prepared =
+                self.guarded(|gpu| PreparedKernel::new(gpu, kernel, emitted.as_ref()))?;
             self.prepared.insert(kernel.code, prepared.map_err(executor_failed)?);
         }
         Ok(())

@@ -117,6 +117,7 @@ pub fn open_gpu(wanted: DeviceRequest) -> Result<WgpuDevice, String> {
         prepared: HashMap::new(),
         binaries: Mutex::new(HashMap::new()),
         heaps: Default::default(),
+        layouts: Default::default(),
     })
 }
 

@@ -1,8 +1,7 @@
 //! A kernel's pipeline, and the bindings that are the same for all its draws.
 
-use super::heaps::HeapGroups;
 use super::passthrough::SpirvBinary;
-use super::{TARGET_FORMAT, fixtures};
+use super::{TARGET_FORMAT, WgpuDevice, fixtures};
 use crate::execute::fixture::{Fixture, FixtureSampler};
 use crate::execute::kernel::{ENTRY, Kernel, ResourceClass};
 
@@ -27,15 +26,14 @@ impl PreparedKernel {
     /// Compiles the kernel and uploads its fixtures. If `emitted` is given, the driver gets it
     /// unchanged as the kernel's shader. Errors of the device go to its error scopes.
     pub fn new(
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
-        vertex: &wgpu::ShaderModule,
+        gpu: &WgpuDevice,
         kernel: &Kernel,
-        emitted: Option<(&SpirvBinary, &HeapGroups)>,
+        emitted: Option<&SpirvBinary>,
     ) -> Result<Self, String> {
-        let layout = bind_layout(device, kernel);
+        let WgpuDevice { device, queue, vertex, .. } = gpu;
+        let layout = gpu.layouts.of(device, layout_entries(kernel));
         let fragment = match emitted {
-            Some((emitted, _)) => emitted.module(device, &kernel.name),
+            Some(emitted) => emitted.module(device, &kernel.name),
             None => {
                 let source =
                     wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(kernel.module.clone()));
@@ -46,15 +44,15 @@ impl PreparedKernel {
             }
         };
         let heaps = match emitted {
-            Some((emitted, groups)) if !emitted.heaps.is_empty() => {
+            Some(emitted) if !emitted.heaps.is_empty() => {
                 let sampler = |[_, binding]: [u32; 2]| kernel.fixture_at(binding)?.sampler();
-                Some(groups.bind(device, &emitted.heaps, &sampler)?)
+                Some(gpu.heaps.bind(device, &emitted.heaps, &sampler)?)
             }
             _ => None,
         };
         let layouts: Vec<_> =
             std::iter::once(&layout).chain(heaps.as_ref().map(|bound| &bound.layout)).collect();
-        let entry = emitted.map_or(ENTRY, |(emitted, _)| emitted.entry());
+        let entry = emitted.map_or(ENTRY, SpirvBinary::entry);
         let pipeline =
             draw_pipeline(device, &layouts, vertex, (&fragment, entry), Some(TARGET_FORMAT), None);
         let resources = kernel
@@ -164,7 +162,7 @@ pub fn draw_pipeline(
 
 /// The layout of the kernel's bindings. It also has the samplers that the shader does not use: wgpu
 /// numbers bindings without gaps, but an emitted shader keeps its own numbers.
-fn bind_layout(device: &wgpu::Device, kernel: &Kernel) -> wgpu::BindGroupLayout {
+fn layout_entries(kernel: &Kernel) -> Vec<wgpu::BindGroupLayoutEntry> {
     let inputs = texture_type(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
     // Not every device can filter f32 textures, so filtering is asked for only where a kernel
     // filters colours.
@@ -174,7 +172,7 @@ fn bind_layout(device: &wgpu::Device, kernel: &Kernel) -> wgpu::BindGroupLayout 
     let rest = kernel.resources().map(|resource| {
         (resource.binding, binding_type(resource.class, &resource.fixture, filterable))
     });
-    let entries: Vec<_> = std::iter::once((0, inputs))
+    std::iter::once((0, inputs))
         .chain(rest)
         .map(|(binding, ty)| wgpu::BindGroupLayoutEntry {
             binding,
@@ -182,11 +180,7 @@ fn bind_layout(device: &wgpu::Device, kernel: &Kernel) -> wgpu::BindGroupLayout 
             ty,
             count: None,
         })
-        .collect();
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: None,
-        entries: &entries,
-    })
+        .collect()
 }
 
 fn binding_type(class: ResourceClass, fixture: &Fixture, filterable: bool) -> wgpu::BindingType {

@@ -102,9 +102,7 @@ impl Bindings {
         let groups: BTreeSet<u32> = places.iter().map(|(group, _)| *group).collect();
         let layout = |group: u32| {
             let own = places.iter().filter(|(other, _)| *other == group);
-            let entries: Vec<_> = own.map(entry).collect();
-            let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
-            (group, gpu.device.create_bind_group_layout(&descriptor))
+            (group, gpu.layouts.of(&gpu.device, own.map(entry).collect()))
         };
         groups.into_iter().map(layout).collect()
     }
