@@ -2,8 +2,8 @@
 //! A foreign file, folder or link must stay as it is, and the exit code must say that the command
 //! wrote nothing. A pipe or a device is written to. Nothing is ever deleted.
 //!
-//! A new command that writes is one line in [`FOLDERS`] or [`FILES`]; a trial fails until it is
-//! there. A new trap is one line in [`FOLDER_TRAPS`] or [`FILE_TRAPS`].
+//! A new command that writes is one line in [`FOLDERS`] or [`FILES`]. If it is a top-level command
+//! with `--force`, a trial fails until it is there. A new trap is one line in [`FOLDER_TRAPS`] or [`FILE_TRAPS`].
 
 mod file;
 mod folder;
@@ -19,7 +19,8 @@ use tempfile::TempDir;
 
 type Outcome = Result<(), Failed>;
 
-/// A command that writes. `OUT` in its arguments stands for the place that it writes to.
+/// A command that writes. `OUT` in its arguments stands for the place that it writes to. `--force` is
+/// not among them: it is added where it is tried.
 struct Writer {
     name: &'static str,
     arguments: &'static [&'static str],

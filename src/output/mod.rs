@@ -1,4 +1,5 @@
-//! The one way to the disk. Every file that a command or the loader writes goes through here.
+//! The one way to the disk. Every file that a command or the loader writes for the user goes through
+//! here; temporary files for other programs do not.
 //!
 //! | to write | call | it lives in |
 //! |---|---|---|
@@ -8,29 +9,34 @@
 //! | many files that point to each other | [`Scratch`]: stage all, sync once, rename in the order of use | `scratch.rs`; `publish` in `src/bundle/directory_writer.rs` and `src/cache/folder.rs` do so |
 //!
 //! Where a file has the new bytes already, [`write_file`] and [`OutputFolder`] write nothing: `has_bytes` in
-//! `file.rs` tells. The record of a folder, and the cache, are written in any case. Otherwise a write
-//! takes these steps, in this order, so that a crash between two of them loses nothing:
+//! `file.rs` tells. The cache is written in any case. Otherwise a write takes these steps, in this
+//! order, so that neither a crash between two of them nor a full disk loses anything:
 //!
 //! 1. `Scratch::new` makes a folder beside the place. The run keeps a file in it locked, which
 //!    tells a later run whether this one is still alive.
 //! 2. `Scratch::write` writes the bytes to a new file in this folder, and waits until they are on
-//!    the disk.
+//!    the disk. A full disk is an error here, before anything is replaced.
 //! 3. `put_file` in `file.rs` gives the file the permissions of the one that it replaces, and
 //!    renames it into its place. In an output folder, `OutputFolder::put` in `folder.rs` only
 //!    renames it. Both call [`rename_finished`], as bundles and the cache do.
 //! 4. `sync_folder` in `scratch.rs` syncs the folder, so that the new name survives a loss of power.
-//! 5. The scratch folder is removed: when it is dropped, or by the next run if this one was killed.
+//!    Not every system can do this, and where it fails the write is complete nevertheless.
+//! 5. `remove_scratch` removes the scratch folder: when it is dropped, or in the next run's
+//!    `Scratch::new` if this run was killed.
 //!
-//! For a folder, the record of hashes is written before the files, with the old and the new hash of
-//! each, and once more at the end. So neither a killed run nor a loss of power leaves a file that
+//! For a folder, `OutputFolder::note` writes the record of hashes before the files, with the old and
+//! the new hash of each, and `OutputFolder::finish` writes it once more at the end; neither does if
+//! the record would stay the same. So neither a killed run nor a loss of power leaves a file that
 //! the next run takes for a foreign one.
 //!
 //! A command flattens `Overwrite` of `src/cli/overwrite.rs`, which adds `--force`, and passes
 //! `overwrite.replace()`; `src/cli/export/mod.rs` is an example. A command that writes has one line
-//! in the tables of `tests/traps.rs`, which set a trap at each of its files. A trial finds
+//! in `FILES` or `FOLDERS` of `tests/traps.rs`, which set a trap at each of its files. A trial finds
 //! top-level commands with `--force` that have none; it does not see subcommands, further forms of
-//! a command, and commands that write without this module. `cargo xtask faults` makes calls of the
-//! system fail in `gen`, and ends it at them.
+//! a command, and commands that write without this module.
+//!
+//! `cargo xtask faults` makes calls of the system fail in `gen`, and ends it at them. It tries no
+//! other command.
 //!
 //! What holds for all of it:
 //!
