@@ -9,7 +9,6 @@
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::Arc;
 use std::{env, fs};
 
@@ -23,6 +22,7 @@ use lamplight::source::{Memory, Package, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
 use crate::folders::packages_in;
+use crate::glslang::{COMPILED, accepts_text};
 
 /// How a failing case is accepted.
 const ACCEPT: &str = "\n(`cargo xtask record compose_` accepts this)";
@@ -176,23 +176,7 @@ fn validate(composed: &Composed) -> Result<(), Failed> {
     )
     .validate(&module)
     .map_err(|error| format!("naga: {}", error.emit_to_string(&composed.text)))?;
-    glslang(&composed.text, composed_stage.suffix())
-}
-
-/// Asks glslangValidator.
-fn glslang(text: &str, stage: &str) -> Result<(), Failed> {
-    let file = tempfile::Builder::new().suffix(&format!(".{stage}")).tempfile()?;
-    fs::write(file.path(), text)?;
-    let mut command = Command::new("glslangValidator");
-    let output =
-        command.args(["-V", "-o", "/dev/null"]).arg(file.path()).output().map_err(|error| {
-            format!("glslangValidator does not start ({error}): install Debian's `glslang-tools`")
-        })?;
-    if output.status.success() {
-        Ok(())
-    } else {
-        Err(format!("glslangValidator: {}\n{text}", String::from_utf8_lossy(&output.stdout)).into())
-    }
+    accepts_text(&composed.text, composed_stage.suffix(), COMPILED)
 }
 
 /// A name, the code of the expected error (empty for none), and the files.

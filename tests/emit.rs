@@ -114,10 +114,7 @@ fn judge(entry: &str, stage: naga::ShaderStage, target: Target, emitted: &Emitte
 }
 
 fn run(command: &mut Command) -> Outcome {
-    let output = command.output().map_err(|error| format!("{command:?} cannot be run: {error}"))?;
-    let said = String::from_utf8_lossy(&output.stdout).into_owned()
-        + &String::from_utf8_lossy(&output.stderr);
-    if output.status.success() { Ok(()) } else { Err(said.into()) }
+    crate::examples::run(command).map(|_| ())
 }
 
 /// Texts that would exhaust naga's stack give the error `limit-exceeded` before naga sees them.

@@ -166,7 +166,7 @@ pub fn cargo(folder: &Path, arguments: &[&str]) -> Result<String, Failed> {
 pub fn run(command: &mut Command) -> Result<String, Failed> {
     let output = command
         .output()
-        .map_err(|error| format!("{}: {error}", command.get_program().to_string_lossy()))?;
+        .map_err(|error| format!("{command:?} does not start ({error}): see `cargo xtask test`"))?;
     if output.status.success() {
         return Ok(String::from_utf8(output.stdout)?);
     }

@@ -1,24 +1,34 @@
 //! Compilers of GLSL that read many files in one run. Most of a run with a single short file is the
 //! start of the compiler.
 
+use std::convert::Infallible;
 use std::path::Path;
 use std::process::{Command, Stdio};
+
+use lamplight::tools::halve_refused;
+use libtest_mimic::Failed;
+
+use crate::examples;
 
 /// The number of files in one run.
 pub const BATCH: usize = 64;
 
-/// The files that are refused, each with the compiler's words. Each is judged by itself, unless all
-/// are accepted in one run.
+/// The files that are refused, each with the compiler's words. A batch is halved until those at fault
+/// are found.
 pub fn refused<K: Copy>(
     batch: &[(K, String)],
     accepts_all: impl Fn(&[&str]) -> bool,
     judge: impl Fn(&str) -> Result<(), String>,
 ) -> Vec<(K, String)> {
-    let paths: Vec<&str> = batch.iter().map(|(_, path)| path.as_str()).collect();
-    if accepts_all(&paths) {
-        return Vec::new();
-    }
-    batch.iter().filter_map(|(key, path)| Some((*key, judge(path).err()?))).collect()
+    let together = |files: &[(K, String)]| {
+        let paths: Vec<&str> = files.iter().map(|(_, path)| path.as_str()).collect();
+        Ok::<_, Infallible>(accepts_all(&paths).then(Vec::new))
+    };
+    let alone = |(key, path): &(K, String)| {
+        Ok(judge(path).err().map(|words| (*key, words)).into_iter().collect())
+    };
+    let Ok(refused) = halve_refused(batch, &together, &alone);
+    refused
 }
 
 /// The files that glslc refuses to compile to SPIR-V for Vulkan. It writes its outputs to `folder`.
@@ -42,17 +52,22 @@ pub fn refused_by_version<K: Copy>(
     refused(batch, |paths| judge(paths).is_ok(), |path| judge(&[path]))
 }
 
+/// Options of glslangValidator for GLSL by the rules of Vulkan, which it compiles to SPIR-V.
+pub const COMPILED: &[&str] = &["-V", "-o", "/dev/null"];
+
+/// glslangValidator accepts a text of a stage.
+pub fn accepts_text(text: &str, stage: &str, options: &[&str]) -> Result<(), Failed> {
+    let folder = tempfile::tempdir()?;
+    std::fs::write(folder.path().join("text"), text)?;
+    let arguments = [&["-S", stage], options, &["text"]].concat();
+    run(folder.path(), "glslangValidator", &arguments)
+        .map_err(|words| format!("{words}\n{text}").into())
+}
+
 /// Runs a program in a folder; fails with its words.
 pub fn run(folder: &Path, tool: &str, arguments: &[&str]) -> Result<(), String> {
-    let output = Command::new(tool)
-        .current_dir(folder)
-        .args(arguments)
-        .stdin(Stdio::null())
-        .output()
-        .map_err(|error| format!("`{tool}` does not start: {error}"))?;
-    let said = [output.stdout, output.stderr].concat();
-    match output.status.success() {
-        true => Ok(()),
-        false => Err(format!("{tool}: {}", String::from_utf8_lossy(&said))),
-    }
+    let mut command = Command::new(tool);
+    command.current_dir(folder).args(arguments).stdin(Stdio::null());
+    let said = examples::run(&mut command).map(|_| ());
+    said.map_err(|error| format!("{tool}: {}", error.message().unwrap_or_default()))
 }

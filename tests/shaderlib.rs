@@ -7,8 +7,6 @@ mod emits;
 mod twins;
 
 use std::collections::BTreeMap;
-use std::io::Write as _;
-use std::process::{Command, Stdio};
 
 use lamplight::compose::{self, Composed, Keep, Options};
 use lamplight::diagnostic::Diagnostic;
@@ -25,6 +23,8 @@ pub use documented::undocumented;
 use compilers::{DIALECTS, Dialect, in_dialect, in_every_target, with_include_path};
 use documented::functions_are_documented;
 use twins::{same, twins_agree};
+
+use crate::glslang::accepts_text;
 
 /// A check of a module. It is given the module's path without extension, such as `lighting/spot`.
 type Check = fn(&str) -> Result<(), Failed>;
@@ -102,7 +102,7 @@ fn names_are_unique() -> Result<(), Failed> {
 fn modules_go_together() -> Result<(), Failed> {
     let all = modules().iter().map(|module| include(module)).collect::<String>();
     for dialect in &DIALECTS {
-        run_glslang(&fragment(&all, dialect)?, dialect.options())?;
+        accepts_text(&fragment(&all, dialect)?, "frag", dialect.options())?;
     }
     Ok(())
 }
@@ -113,7 +113,7 @@ fn modules_go_beside_names() -> Result<(), Failed> {
     let includes = modules().iter().map(|module| include(module)).collect::<String>();
     let all = format!("#define LAMPLIGHT_PREFIX\n{includes}{}", of_the_host()?);
     for dialect in &DIALECTS {
-        run_glslang(&fragment(&all, dialect)?, dialect.options())?;
+        accepts_text(&fragment(&all, dialect)?, "frag", dialect.options())?;
     }
     Ok(())
 }
@@ -132,7 +132,7 @@ fn modules_go_beside_names_elsewhere() -> Result<(), Failed> {
         );
         // glslangValidator reads includes only for Vulkan or when it links.
         let with_includes: &[&str] = if options.is_empty() { &[path, "-l"] } else { &[path] };
-        run_glslang(&text, &[options, with_includes].concat())?;
+        accepts_text(&text, "frag", &[options, with_includes].concat())?;
     }
     Ok(())
 }
@@ -315,24 +315,4 @@ fn validated(module: Module) -> Result<Module, Failed> {
         .validate(&module)
         .map_err(|error| format!("{error:?}"))?;
     Ok(module)
-}
-
-fn run_glslang(text: &str, options: &[&str]) -> Result<(), Failed> {
-    let mut command = Command::new("glslangValidator");
-    command
-        .args(["--stdin", "-S", "frag"])
-        .args(options)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped());
-    let started = command.spawn();
-    let mut child = started.map_err(|error| {
-        format!("glslangValidator does not start ({error}): install Debian's `glslang-tools`")
-    })?;
-    child.stdin.take().expect("piped").write_all(text.as_bytes())?;
-    let output = child.wait_with_output()?;
-    if output.status.success() {
-        Ok(())
-    } else {
-        Err(String::from_utf8_lossy(&output.stdout).into_owned().into())
-    }
 }

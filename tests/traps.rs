@@ -3,7 +3,8 @@
 //! wrote nothing. A pipe or a device is written to. Nothing is ever deleted.
 //!
 //! A new command that writes is one line in [`FOLDERS`] or [`FILES`]. If it is a top-level command
-//! with `--force`, a trial fails until it is there. A new trap is one line in [`FOLDER_TRAPS`] or [`FILE_TRAPS`].
+//! with `--force`, a trial fails until it is there. A new trap is one line in [`FOLDER_TRAPS`] or
+//! [`FILE_TRAPS`].
 
 mod file;
 mod folder;

@@ -118,17 +118,16 @@ impl Browser {
     pub fn shared() -> Result<Arc<Self>, Problem> {
         // The lock is held while the browser starts, so that only one is started.
         let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(browser) = shared.open.upgrade().filter(|browser| !browser.wire.is_closed()) {
-            return Ok(browser);
-        }
-        let browser = Self::start()?;
+        let open = shared.open.upgrade().filter(|browser| !browser.wire.is_closed());
+        let browser = open.map_or_else(Self::start, Ok)?;
         shared.open = Arc::downgrade(&browser);
         shared.kept = shared.keeps.then(|| Arc::clone(&browser));
         Ok(browser)
     }
 
-    /// From now on the shared browser stays open until the process ends. This is for a process that
-    /// needs it again and again, since starting it takes two seconds of processor time.
+    /// The shared browser that somebody next asks for stays open until the process ends. This is for
+    /// a process that needs it again and again, since each start takes more than a second of
+    /// processor time.
     pub fn keep_shared() {
         SHARED.lock().unwrap_or_else(PoisonError::into_inner).keeps = true;
     }

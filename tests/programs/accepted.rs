@@ -14,7 +14,7 @@ use libtest_mimic::Failed;
 use rayon::prelude::*;
 
 use super::{Sources, alone, report, texts};
-use crate::glslang::{BATCH, refused, refused_by_glslc, refused_by_version, run};
+use crate::glslang::{BATCH, COMPILED, refused, refused_by_glslc, refused_by_version, run};
 
 /// glslangValidator accepts the composed GLSL of every permutation that ships.
 pub fn glslang_takes_sources(
@@ -42,18 +42,15 @@ pub fn glslang_takes_sources(
             .args(paths)
             .stdout(Stdio::null())
             .status();
-        paths.len() > 1 && status.is_ok_and(|status| status.code() == Some(3))
+        status.is_ok_and(|status| status.code() == Some(3))
     };
-    let judge = |path: &str| run(folder.path(), "glslangValidator", &[VULKAN, &[path]].concat());
+    let judge = |path: &str| run(folder.path(), "glslangValidator", &[COMPILED, &[path]].concat());
     let batches = files.par_chunks(BATCH);
     report(program, batches.flat_map_iter(|batch| refused(batch, accepts_all, judge)).collect())
 }
 
 /// A file, and the permutation that it is of.
 type FileOf<'p> = (&'p Assignment, String);
-
-/// Options of glslangValidator for GLSL with Vulkan's semantics.
-const VULKAN: &[&str] = &["-V", "-o", "/dev/null"];
 
 /// spirv-val and glslangValidator accept the outputs of the covering set. glslc compiles the GLSL
 /// sources from which they were made.

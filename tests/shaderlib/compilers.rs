@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::emits::{self, VERSIONS};
 use super::{called_wesl, fragment, include, modules};
-use crate::glslang::{refused_by_glslc, refused_by_version};
+use crate::glslang::{COMPILED, refused_by_glslc, refused_by_version};
 
 /// A version of GLSL: the lines before the module, and the declaration of an output.
 pub struct Dialect {
@@ -45,7 +45,7 @@ impl Dialect {
     /// The options of glslangValidator for one text. By the rules of Vulkan it makes SPIR-V.
     pub fn options(&self) -> &'static [&'static str] {
         match self.compiler {
-            Compiler::Glslc(_) => &["-V", "-o", "/dev/null"],
+            Compiler::Glslc(_) => COMPILED,
             Compiler::GlslangValidator => &[],
         }
     }
@@ -58,7 +58,7 @@ const ES_310: &str = "#version 310 es\n#define LAMPLIGHT_COMBINED_SAMPLERS 1\npr
 type Verdicts = BTreeMap<String, Result<(), String>>;
 
 /// A module's texts, or why it has none.
-type Texts = Result<Vec<String>, String>;
+type Texts<const N: usize> = Result<[String; N], String>;
 
 /// The module compiles in a dialect.
 pub fn in_dialect(module: &str, index: usize) -> Result<(), Failed> {
@@ -66,8 +66,8 @@ pub fn in_dialect(module: &str, index: usize) -> Result<(), Failed> {
         [const { OnceLock::new() }; DIALECTS.len()];
     let dialect = &DIALECTS[index];
     let verdicts = VERDICTS[index].get_or_init(|| {
-        let text = |module: &str| Ok(vec![fragment(&include(module), dialect)?]);
-        judge(&text, &[dialect.compiler])
+        let text = |module: &str| Ok([fragment(&include(module), dialect)?]);
+        judge(&text, [dialect.compiler])
     });
     look_up(verdicts, module)
 }
@@ -78,12 +78,12 @@ pub fn with_include_path(module: &str) -> Result<(), Failed> {
     const PATH: &str = concat!("-I", env!("CARGO_MANIFEST_DIR"), "/shaderlib");
     let Dialect { head, output, .. } = &DIALECTS[0];
     let text = |module: &str| {
-        Ok(vec![format!(
+        Ok([format!(
             "{head}#extension GL_GOOGLE_include_directive : require\n#include \"{module}.glsl\"\n\
              {output}void main() {{\n    colour = vec4(1.0);\n}}\n"
         )])
     };
-    look_up(VERDICTS.get_or_init(|| judge(&text, &[Compiler::Glslc(Some(PATH))])), module)
+    look_up(VERDICTS.get_or_init(|| judge(&text, [Compiler::Glslc(Some(PATH))])), module)
 }
 
 /// What naga writes for the module compiles, for every kind of target with such a compiler.
@@ -91,7 +91,7 @@ pub fn in_every_target(module: &str) -> Result<(), Failed> {
     static VERDICTS: OnceLock<Verdicts> = OnceLock::new();
     let texts = |module: &str| emits::emits(&called_wesl(module)?);
     let verdicts =
-        VERDICTS.get_or_init(|| judge(&texts, &[Compiler::GlslangValidator; VERSIONS.len()]));
+        VERDICTS.get_or_init(|| judge(&texts, [Compiler::GlslangValidator; VERSIONS.len()]));
     look_up(verdicts, module)
 }
 
@@ -116,23 +116,23 @@ fn look_up(verdicts: &Verdicts, module: &str) -> Result<(), Failed> {
 }
 
 /// Judges the texts of all modules. The compiler at an index judges the text at this index.
-fn judge(
-    texts: &(dyn Fn(&str) -> Result<Vec<String>, Failed> + Sync),
-    compilers: &[Compiler],
+fn judge<const N: usize>(
+    texts: &(dyn Fn(&str) -> Result<[String; N], Failed> + Sync),
+    compilers: [Compiler; N],
 ) -> Verdicts {
     let made = modules().into_par_iter().map(|module| {
         let texts = texts(&module);
         (module, texts.map_err(|error| error.message().unwrap_or_default().to_owned()))
     });
-    let made: BTreeMap<String, Texts> = made.collect();
+    let made: BTreeMap<String, Texts<N>> = made.collect();
     let refused = compilers.par_iter().enumerate().map(|(index, compiler)| {
         let texts = made.iter().filter_map(|(module, texts)| {
-            Some((module.as_str(), texts.as_ref().ok()?.get(index)?.as_str()))
+            Some((module.as_str(), texts.as_ref().ok()?[index].as_str()))
         });
         refused_texts(*compiler, texts.collect())
     });
     let refused: Vec<(&str, String)> = refused.flatten_iter().collect();
-    let verdict = |(module, texts): (&String, &Texts)| {
+    let verdict = |(module, texts): (&String, &Texts<N>)| {
         let words = refused.iter().find(|(refused, _)| refused == module);
         let said = words.map(|(_, words)| words.clone());
         let made = texts.as_ref().map(|_| ()).map_err(String::clone);

@@ -17,7 +17,7 @@ pub const VERSIONS: [glsl::Version; 4] = [
 ];
 
 /// Writes a module, given as WGSL, for every kind of target. Gives the texts of [`VERSIONS`].
-pub fn emits(text: &str) -> Result<Vec<String>, Failed> {
+pub fn emits(text: &str) -> Result<[String; VERSIONS.len()], Failed> {
     let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
         .validate(&module)
@@ -28,7 +28,11 @@ pub fn emits(text: &str) -> Result<Vec<String>, Failed> {
     let mut hlsl = String::new();
     hlsl::Writer::new(&mut hlsl, &hlsl::Options::default(), &hlsl::PipelineOptions::default())
         .write(&module, &info, None)?;
-    VERSIONS.into_iter().map(|version| write_glsl(&module, &info, version)).collect()
+    let mut texts = VERSIONS.map(|_| String::new());
+    for (text, version) in texts.iter_mut().zip(VERSIONS) {
+        *text = write_glsl(&module, &info, version)?;
+    }
+    Ok(texts)
 }
 
 fn write_glsl(

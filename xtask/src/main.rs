@@ -22,13 +22,13 @@ const COMMANDS: &[XtaskCommand] = &[
     (
         "gen",
         "write the library's bundle to target/bundles/, once all its outputs are judged",
-        make::generate,
+        |arguments| make::run("gen", arguments),
     ),
     ("test", "install what the tests need, then run every test", test::run),
     (
         "new",
         "write the files for a new function, axis-value, target, executor, scene or diagnostic",
-        make::create,
+        |arguments| make::run("new", arguments),
     ),
     (
         "record",
@@ -36,7 +36,9 @@ const COMMANDS: &[XtaskCommand] = &[
         record::run,
     ),
     ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),
-    ("validate", "let the judges of all targets look at a bundle", make::validate),
+    ("validate", "let the judges of all targets look at a bundle", |arguments| {
+        make::run("validate", arguments)
+    }),
     (
         "docs",
         "write the catalogue, the modules made from data, the guide as a book (--check: only compare, --costs: measure first)",
@@ -61,7 +63,7 @@ const COMMANDS: &[XtaskCommand] = &[
     (
         "fuzz",
         "hostile inputs for every parser: [--seconds N] [--seed N] [KIND]...; or `link`",
-        make::fuzz,
+        |arguments| make::run("fuzz", arguments),
     ),
     (
         "frames",

@@ -14,28 +14,8 @@ const RUN: [&str; 7] = [
     "--",
 ];
 
-/// `cargo xtask gen`.
-pub fn generate(arguments: &[String]) -> CommandResult {
-    run("gen", arguments)
-}
-
-/// `cargo xtask new`.
-pub fn create(arguments: &[String]) -> CommandResult {
-    run("new", arguments)
-}
-
-/// `cargo xtask fuzz`.
-pub fn fuzz(arguments: &[String]) -> CommandResult {
-    run("fuzz", arguments)
-}
-
-/// `cargo xtask validate`.
-pub fn validate(arguments: &[String]) -> CommandResult {
-    run("validate", arguments)
-}
-
 /// Runs a command with its own exit code.
-fn run(name: &str, arguments: &[String]) -> CommandResult {
+pub fn run(name: &str, arguments: &[String]) -> CommandResult {
     let mut command = process::cargo_command();
     command.args(RUN).arg(name).args(arguments);
     let status = command.status().map_err(|error| process::not_run("cargo run", &error))?;

@@ -7,9 +7,6 @@ use std::process::{Command, ExitStatus};
 use crate::{CommandFailure, CommandResult};
 
 /// The workspace.
-pub const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
-
-/// The workspace, as a path to print.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new(".")).to_owned()
 }
@@ -41,7 +38,7 @@ pub fn cargo_program() -> OsString {
 /// Cargo without arguments.
 pub fn cargo_command() -> Command {
     let mut command = Command::new(cargo_program());
-    command.current_dir(ROOT);
+    command.current_dir(root());
     command
 }
 

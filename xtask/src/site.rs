@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use xtask::process::{ROOT, cargo_command, finish};
+use xtask::process::{cargo_command, finish, root};
 use xtask::{CommandFailure, CommandResult, machine};
 
 const TARGET: &str = "wasm32-unknown-unknown";
@@ -61,7 +61,7 @@ pub fn run(arguments: &[String]) -> CommandResult {
 
 /// Builds the site in `target/site/`, around the npm package that was built before.
 pub fn pages() -> CommandResult {
-    let folder = Path::new(ROOT).join("site");
+    let folder = root().join("site");
     if !machine::program("npm") {
         machine::install(&["npm"])?;
     }
@@ -76,16 +76,16 @@ pub fn pages() -> CommandResult {
 
 /// Builds the npm package `@lamplight/toolchain` in `target/toolchain/`.
 pub fn toolchain(build: SiteBuild) -> Result<PathBuf, CommandFailure> {
-    let below = Path::new(ROOT).join("target/wasm");
+    let below = root().join("target/wasm");
     webassembly(build, &below)?;
     let module = below.join(TARGET).join(build.folder()).join("lamplight_toolchain.wasm");
-    let package = Path::new(ROOT).join("target/toolchain");
+    let package = root().join("target/toolchain");
     std::fs::create_dir_all(&package).map_err(|error| unwritten(&package, &error))?;
     let mut bind = cargo_command();
     bind.args(["run", "--quiet", "--package", "lamplight-bind", "--target-dir"]).arg(&below);
     bind.args(["--config", "profile.dev.incremental=false"]);
     finish(bind.arg("--").arg(&module).arg(&package), "lamplight-bind")?;
-    let sources = Path::new(ROOT).join("site/toolchain/js");
+    let sources = root().join("site/toolchain/js");
     for name in ["index.js", "index.d.ts", "package.json", "README.md"] {
         let to = package.join(name);
         std::fs::copy(sources.join(name), &to).map_err(|error| unwritten(&to, &error))?;
@@ -114,13 +114,13 @@ fn webassembly(build: SiteBuild, below: &Path) -> CommandResult {
 /// Whether the compiler in use has the standard library of the target.
 fn has_target() -> bool {
     let arguments = ["--print", "target-libdir", "--target", TARGET];
-    let found = Command::new("rustc").args(arguments).current_dir(ROOT).output();
+    let found = Command::new("rustc").args(arguments).current_dir(root()).output();
     found.is_ok_and(|found| Path::new(String::from_utf8_lossy(&found.stdout).trim()).is_dir())
 }
 
 fn added_target() -> bool {
     let mut add = Command::new("rustup");
-    add.args(["target", "add", TARGET]).current_dir(ROOT).stderr(Stdio::null());
+    add.args(["target", "add", TARGET]).current_dir(root()).stderr(Stdio::null());
     machine::program("rustup") && add.status().is_ok_and(|status| status.success()) && has_target()
 }
 
@@ -131,7 +131,7 @@ fn debian() -> Result<Command, CommandFailure> {
         machine::install(&["rustc-web", "cargo-web", "rust-web-src", "lld-22"])?;
     }
     let mut command = Command::new("/usr/bin/cargo");
-    command.args(["-Zbuild-std=std,panic_abort"]).current_dir(ROOT);
+    command.args(["-Zbuild-std=std,panic_abort"]).current_dir(root());
     command.env("RUSTC", "/usr/bin/rustc").env("RUSTC_BOOTSTRAP", "1");
     command.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO");
     command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", LINKER);

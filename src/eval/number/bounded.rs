@@ -367,21 +367,7 @@ impl Number for Bounded {
         )
     }
 
-    fn run_call(
-        machine: &mut Machine<'_, Self>,
-        id: FunctionId,
-        arguments: &[Self],
-    ) -> Result<(), Error> {
-        machine.run_call(id, arguments)
-    }
-
-    fn run_quad(
-        machine: &mut Machine<'_, Self>,
-        id: FunctionId,
-        arguments: [&[Self]; 4],
-    ) -> Result<[Vec<Self>; 4], Error> {
-        machine.run_quad(id, arguments)
-    }
+    machine_of_this_crate!();
 }
 
 /// `t * t * (3 - 2t)`, whose slope is at most 1.5, with four roundings.

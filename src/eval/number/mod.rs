@@ -1,5 +1,28 @@
 //! The numbers a program can run on.
 
+/// Writes [`Number::run_call`] and [`Number::run_quad`] into an implementation, as they are in the
+/// trait. So the machine for this kind of number is compiled with this crate. What the trait writes is
+/// compiled with each crate that calls it, which may be optimised less.
+macro_rules! machine_of_this_crate {
+    () => {
+        fn run_call(
+            machine: &mut Machine<'_, Self>,
+            id: FunctionId,
+            arguments: &[Self],
+        ) -> Result<(), Error> {
+            machine.run_call(id, arguments)
+        }
+
+        fn run_quad(
+            machine: &mut Machine<'_, Self>,
+            id: FunctionId,
+            arguments: [&[Self]; 4],
+        ) -> Result<[Vec<Self>; 4], Error> {
+            machine.run_quad(id, arguments)
+        }
+    };
+}
+
 mod bounded;
 mod half;
 mod native;
@@ -42,8 +65,8 @@ pub trait Number: Copy + Default + Send + Sync + std::fmt::Debug + 'static {
     fn compare(op: Compare, a: Self, b: Self, doubt: &mut bool) -> bool;
     /// The sum of products of two slices of the same length.
     fn dot(a: &[Self], b: &[Self]) -> Self;
-    /// [`Machine::call`] without its result. Every kind writes this and [`Self::run_quad`] itself, so
-    /// that the machine for it is compiled with this crate, whatever the optimisation of the caller.
+
+    /// [`Machine::call`] without its result.
     ///
     /// # Errors
     /// Those of [`Machine::call`].
@@ -51,7 +74,10 @@ pub trait Number: Copy + Default + Send + Sync + std::fmt::Debug + 'static {
         machine: &mut Machine<'_, Self>,
         id: FunctionId,
         arguments: &[Self],
-    ) -> Result<(), Error>;
+    ) -> Result<(), Error> {
+        machine.run_call(id, arguments)
+    }
+
     /// [`Machine::quad`].
     ///
     /// # Errors
@@ -60,7 +86,9 @@ pub trait Number: Copy + Default + Send + Sync + std::fmt::Debug + 'static {
         machine: &mut Machine<'_, Self>,
         id: FunctionId,
         arguments: [&[Self]; 4],
-    ) -> Result<[Vec<Self>; 4], Error>;
+    ) -> Result<[Vec<Self>; 4], Error> {
+        machine.run_quad(id, arguments)
+    }
 
     /// The bits as `f32`. All NaNs have the same bits.
     fn bits(self) -> u32 {

@@ -127,21 +127,7 @@ macro_rules! native {
                 a.iter().zip(b).map(|(a, b)| a * b).reduce(|sum, term| sum + term).unwrap_or(0.0)
             }
 
-            fn run_call(
-                machine: &mut Machine<'_, Self>,
-                id: FunctionId,
-                arguments: &[Self],
-            ) -> Result<(), Error> {
-                machine.run_call(id, arguments)
-            }
-
-            fn run_quad(
-                machine: &mut Machine<'_, Self>,
-                id: FunctionId,
-                arguments: [&[Self]; 4],
-            ) -> Result<[Vec<Self>; 4], Error> {
-                machine.run_quad(id, arguments)
-            }
+            machine_of_this_crate!();
         }
     };
 }

@@ -41,11 +41,11 @@ pub struct HeapGroup {
     pub group: wgpu::BindGroup,
 }
 
-/// The heaps of all stages, and the settings of each of their samplers.
-type HeapContents = (Vec<SamplerHeap>, Vec<FixtureSampler>);
+/// The heaps of all stages, and the settings of the sampler at each group and binding.
+type HeapContents = (Vec<SamplerHeap>, BTreeMap<[u32; 2], FixtureSampler>);
 
-/// The bind groups with heaps of a device. They are kept, since a software driver clears the memory of
-/// many heaps for each new one.
+/// The bind groups with heaps of a device. They are kept, since a driver on the CPU clears the memory
+/// of many heaps for each new one.
 #[derive(Default)]
 pub struct HeapGroups {
     known: Mutex<HashMap<HeapContents, HeapGroup>>,
@@ -61,26 +61,29 @@ impl HeapGroups {
     ) -> Result<HeapGroup, String> {
         let settings = all_samplers(heaps).map(|HeapSampler { group, binding, .. }| {
             let lacks = || format!("no sampler for group {group}, binding {binding}");
-            sampler([*group, *binding]).ok_or_else(lacks)
+            Ok(([*group, *binding], sampler([*group, *binding]).ok_or_else(lacks)?))
         });
-        let contents = (heaps.to_vec(), settings.collect::<Result<Vec<_>, _>>()?);
-        let known = lock_mutex(&self.known).get(&contents).cloned();
-        let bound = known.unwrap_or_else(|| bind_heaps(device, &contents));
-        Ok(lock_mutex(&self.known).entry(contents).or_insert(bound).clone())
+        let contents = (heaps.to_vec(), settings.collect::<Result<_, String>>()?);
+        let mut known = lock_mutex(&self.known);
+        let bound = known
+            .entry(contents)
+            .or_insert_with_key(|(heaps, settings)| bind_heaps(device, heaps, settings));
+        Ok(bound.clone())
     }
 }
 
-fn bind_heaps(device: &wgpu::Device, (heaps, settings): &HeapContents) -> HeapGroup {
+fn bind_heaps(
+    device: &wgpu::Device,
+    heaps: &[SamplerHeap],
+    settings: &BTreeMap<[u32; 2], FixtureSampler>,
+) -> HeapGroup {
     let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: None,
         entries: &layout_entries(heaps),
     });
     let places = sampler_places(heaps);
-    let places_of = all_samplers(heaps).map(|sampler| [sampler.group, sampler.binding]);
-    let settings: BTreeMap<[u32; 2], FixtureSampler> =
-        places_of.zip(settings.iter().copied()).collect();
-    let arrays = [false, true]
-        .map(|comparison| heap_samplers(device, heaps, comparison, &places, &settings));
+    let arrays =
+        [false, true].map(|comparison| heap_samplers(device, heaps, comparison, &places, settings));
     let arrays = arrays.each_ref().map(|array| array.iter().collect::<Vec<_>>());
     let buffers: Vec<_> =
         index_numbers(heaps, &places).iter().map(|numbers| index_buffer(device, numbers)).collect();

@@ -7,8 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use super::mutate::{self, FuzzRandom};
-use xtask::process::beside_this;
-use xtask::process::root;
+use xtask::process::{beside_this, root};
 use xtask::{CommandFailure, CommandResult};
 
 /// A command that reads a file.
