@@ -14,7 +14,7 @@ use lamplight::bundle::{BindingKind, Bundle, Language, Reflection, Target, pack 
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::fixture::Fixture;
 use lamplight::execute::frame::{
-    Buffers, DrawItem, Drawing, EntryPoint, Mesh, VertexAttribute, VertexFormat,
+    Buffers, DrawItem, Drawing, EntryPoint, Mesh, PipelineState, VertexAttribute, VertexFormat,
 };
 use lamplight::execute::{Session, executors, on_thread};
 use lamplight::generate::{Request, in_memory};
@@ -307,6 +307,12 @@ fn mesh(vertex: &Reflection) -> Mesh {
     Mesh { attributes, words, indices: Vec::new() }
 }
 
+/// With the depth test, as engines draw. It hides nothing, since there is one layer. llvmpipe compiles
+/// shaders once for it, and twice without.
+pub fn tested() -> PipelineState {
+    PipelineState { depth_test: true, ..PipelineState::default() }
+}
+
 fn agrees(renderer: &dyn Session, scene: &Scene, most: f64) -> Result<Tally, String> {
     let Scene { vertex, fragment, drawn: [drawn_vertex, drawn_fragment], mesh, buffers, .. } =
         scene;
@@ -316,6 +322,7 @@ fn agrees(renderer: &dyn Session, scene: &Scene, most: f64) -> Result<Tally, Str
     let items = [DrawItem { mesh, buffers }];
     let drawing = Drawing {
         targets: watched.targets,
+        state: tested(),
         ..Drawing::of_items([vertex, point], &items, &scene.fixtures, [WIDTH, HEIGHT])
     };
     let frame = renderer.draw_frames(&drawing).map_err(|problem| problem.message)?.remove(0);

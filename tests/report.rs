@@ -92,7 +92,7 @@ impl Checked {
     }
 }
 
-/// All three forms have the failure, and are well formed.
+/// All forms have the failure, and are well formed.
 fn forms_list_the_failure() -> Outcome {
     let checked = Checked::new(MODULE, CASES)?;
     checked.exits(3)?;
@@ -106,6 +106,14 @@ fn forms_list_the_failure() -> Outcome {
             "<testsuites name=\"lamplight\" tests=\"4\" failures=\"2\">",
             "classname=\"fades &amp; more\"",
             "<failure message=",
+        ],
+    )?;
+    contains(
+        &checked.read("errors.md")?,
+        &[
+            "| eval | lamplight eval, f32 | 3 | 1 | 0 |",
+            "| <code>fades &amp; more::fade</code> | **FAILED** ",
+            "| <code>fades &amp; more::threshold</code> | exact |",
         ],
     )?;
     let page = checked.read("index.html")?;

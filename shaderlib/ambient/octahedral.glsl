@@ -15,12 +15,13 @@
 /// Edges: the sign of 0 counts as positive; (0, 0) for a zero vector.
 /// Error model: absolute 4*2^-23.
 vec2 octahedral_encode(vec3 n) {
-    float largest = max(max(abs(n.x), abs(n.y)), abs(n.z));
-    if (!(largest > 1e-30)) {
+    // A sixteenth, so that the sum stays below 2^126, beyond which GPUs may divide to 0.
+    vec3 m = 0.0625 * n;
+    float sum = abs(m.x) + abs(m.y) + abs(m.z);
+    if (!(sum > 6.25e-32)) {
         return vec2(0.0);
     }
-    vec3 m = n / largest;
-    vec2 e = m.xy / (abs(m.x) + abs(m.y) + abs(m.z));
+    vec2 e = m.xy / sum;
     if (m.z >= 0.0) {
         return e;
     }

@@ -138,7 +138,8 @@ vec3 aces_hill(vec3 c) {
 /// Error model: absolute 2^-22.
 float hable_channel(float x) {
     float v = clamp(x, 0.0, 1e6);
-    return (v * (0.15 * v + 0.05) + 0.004) / (v * (0.15 * v + 0.5) + 0.06) - 0.066666667;
+    // The published difference of two quotients over one denominator, so that black is exactly 0.
+    return v * (0.14 * v + 0.016666667) / (v * (0.15 * v + 0.5) + 0.06);
 }
 
 /// A filmic curve with a toe and a shoulder, by channel.

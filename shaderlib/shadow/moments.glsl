@@ -92,9 +92,11 @@ vec4 evsm_moments(float d, vec2 exponents) {
 /// Error model: that of `chebyshev`, with the relative errors of `evsm_moments` for those of the moments; 2^-18 for mixtures of two depths and exponents up to 40.
 float evsm_visibility(vec4 m4, float t, vec2 exponents, float min_variance, float bleed) {
     vec2 w = evsm_warp(t, exponents);
-    vec2 slope = 2.0 * exponents * w;
-    float positive = chebyshev(m4.xy, w.x, min_variance * slope.x * slope.x, bleed);
-    float negative = chebyshev(m4.zw, w.y, min_variance * slope.y * slope.y, bleed);
+    // Deviations are scaled, not variances: the square of the slope alone may overflow, and
+    // compilers may regroup factors.
+    vec2 least = 2.0 * sqrt(max(min_variance, 0.0)) * exponents * w;
+    float positive = chebyshev(m4.xy, w.x, least.x * least.x, bleed);
+    float negative = chebyshev(m4.zw, w.y, least.y * least.y, bleed);
     return min(positive, negative);
 }
 

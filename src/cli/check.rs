@@ -38,7 +38,8 @@ pub struct Arguments {
     /// Run only one language [default: both].
     #[arg(long, value_enum)]
     lang: Option<LanguageName>,
-    /// Write an HTML page with plots, a JSON file and a JUnit file into this folder.
+    /// Write an HTML page with plots, a JSON file, a JUnit file and a table of errors into this
+    /// folder.
     #[arg(long, value_name = "DIR")]
     report: Option<PathBuf>,
     /// Record the measured errors in the package's `tolerances.toml`, where they are lower than

@@ -1,5 +1,5 @@
 //! A check's report as files: a page to look at, JSON for programs, JUnit for continuous
-//! integration.
+//! integration, and a table to keep.
 //!
 //! Each is a function from the [`CheckReport`] and its [`ReportOrigin`] to a text; the command line
 //! writes them.
@@ -8,6 +8,7 @@ mod html;
 mod json;
 mod junit;
 mod plot;
+mod table;
 
 use crate::proof::check::CheckReport;
 use crate::source::{SourceSet, Span};
@@ -40,4 +41,5 @@ pub const ALL: &[ReportForm] = &[
     ReportForm { file: "index.html", text: html::html_report },
     ReportForm { file: "report.json", text: json::json_report },
     ReportForm { file: "junit.xml", text: junit::junit_report },
+    ReportForm { file: "errors.md", text: table::error_table },
 ];

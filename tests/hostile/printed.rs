@@ -75,7 +75,7 @@ fn composed() -> Outcome {
     }
 }
 
-/// A page, JSON and JUnit of a failing case whose module, file and report folder have hostile names.
+/// A page, JSON, JUnit and a table of a failing case whose module, file and report folder have hostile names.
 fn reports() -> Outcome {
     let folder = tempfile::tempdir()?;
     let name = format!("<script>alert(1)<\u{8}script>\"'&--]]>{EVIL}");
@@ -88,7 +88,7 @@ fn reports() -> Outcome {
     if output.status.code() != Some(3) {
         return Err(String::from_utf8_lossy(&output.stderr).into());
     }
-    for form in ["index.html", "junit.xml", "report.json"] {
+    for form in ["index.html", "junit.xml", "errors.md", "report.json"] {
         let text = fs::read_to_string(folder.path().join(&report).join(form))?;
         if let Some(found) = text.chars().find(|letter| is_obeyed(*letter)) {
             return Err(format!("{form} has {found:?}").into());

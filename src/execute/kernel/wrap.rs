@@ -114,6 +114,7 @@ impl FunctionBody<'_> {
         let results = self.call(&kernel.name, kernel.function, &sources, &words)?;
         let chosen = self.choose(&results, place.part);
         let value = self.echo(&place, chosen);
+        self.drop_beyond(&place);
         self.function.body.push(Statement::Return { value: Some(value) }, Span::UNDEFINED);
         Ok(())
     }
@@ -261,6 +262,18 @@ impl FunctionBody<'_> {
         self.function.body.push(Statement::Store { pointer, value }, Span::UNDEFINED);
         written.push((pointer, ty));
         pointer
+    }
+
+    /// Drops the fragment if it is beyond the target, which none is. A shader that may drop fragments
+    /// is compiled once by llvmpipe; others it compiles a second time, for tiles that are covered
+    /// whole.
+    fn drop_beyond(&mut self, place: &FragmentPlace) {
+        let pixels = self.component(place.header, 1);
+        let condition = self.binary(Op::GreaterEqual, place.index, pixels);
+        let mut accept = naga::Block::new();
+        accept.push(Statement::Kill, Span::UNDEFINED);
+        let statement = Statement::If { condition, accept, reject: naga::Block::new() };
+        self.function.body.push(statement, Span::UNDEFINED);
     }
 
     /// The echo in the first and the last pixel, and `value` in all others.

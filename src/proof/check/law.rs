@@ -76,7 +76,9 @@ fn judge_each(
             let other = given.transformed.map(|(_, words)| word_value(words[at], *kind));
             let allowed = if other.is_some() {
                 let own = goal.and_then(|goal| goal.errors.get(word)).copied().unwrap_or(0.0);
-                2.0 * (tolerance::allowed_error(&job.terms, values, word, value) + own)
+                let compared =
+                    if law.kind.takes == laws::Takes::Point { law.number(word) } else { value };
+                2.0 * (tolerance::allowed_error(&job.terms, values, word, compared) + own)
                     + f64::from(f32::MIN_POSITIVE)
             } else {
                 0.0
