@@ -111,7 +111,7 @@ fn forms_list_the_failure() -> Outcome {
     contains(
         &checked.read("errors.md")?,
         &[
-            "| eval | lamplight eval, f32 | 3 | 1 | 0 |",
+            "| eval | lamplight eval, f32 | 1 | 1 | 0 |",
             "| <code>fades &amp; more::fade</code> | **FAILED** ",
             "| <code>fades &amp; more::threshold</code> | exact |",
         ],
