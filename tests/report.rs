@@ -12,12 +12,13 @@ type Outcome = Result<(), Failed>;
 type Case = fn() -> Outcome;
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [(&str, Case); 6] = [
+    let cases: [(&str, Case); 7] = [
         ("forms_list_the_failure", forms_list_the_failure),
         ("pasted_case_fails_alike", pasted_case_fails_alike),
         ("off_before_rounding", off_before_rounding),
         ("broken_laws", broken_laws),
         ("kept_laws", kept_laws),
+        ("at_allows_the_error_of_its_value", at_allows_the_error_of_its_value),
         ("passing_report", passing_report),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("report::{name}"), case)).collect()
@@ -256,6 +257,19 @@ fn kept_laws() -> Outcome {
             "[[case]]\nfunction = \"{function}\"\noracle = \"none\"\ntolerance = {{ ulp = 2 }}\nlaws = [{law}]\ninputs = {inputs}\n"
         );
         Checked::new(MODULE, &case)?.exits(0)?;
+    }
+    Ok(())
+}
+
+/// Two units of 5 are allowed where the law gives 5, and not two units of what a row itself gives:
+/// 0.25 or 1024.
+fn at_allows_the_error_of_its_value() -> Outcome {
+    for (far, code) in [("5.000001", 0), ("5.00001", 3)] {
+        let module = format!(
+            "fn jump(x: f32) -> f32 {{ return select(select(0.25, 1024.0, x > 0.0), {far}, x > 1.0); }}\n"
+        );
+        let case = "[[case]]\nfunction = \"jump\"\noracle = \"none\"\ntolerance = { ulp = 2 }\nlaws = [{ at = { x = 2 }, gives = 5 }]\ninputs = { x = [0, 1] }\n";
+        Checked::new(&module, case)?.exits(code)?;
     }
     Ok(())
 }
