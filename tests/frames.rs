@@ -307,12 +307,6 @@ fn mesh(vertex: &Reflection) -> Mesh {
     Mesh { attributes, words, indices: Vec::new() }
 }
 
-/// With the depth test, as engines draw. It hides nothing, since there is one layer. llvmpipe compiles
-/// shaders once for it, and twice without.
-pub fn tested() -> PipelineState {
-    PipelineState { depth_test: true, ..PipelineState::default() }
-}
-
 fn agrees(renderer: &dyn Session, scene: &Scene, most: f64) -> Result<Tally, String> {
     let Scene { vertex, fragment, drawn: [drawn_vertex, drawn_fragment], mesh, buffers, .. } =
         scene;
@@ -322,7 +316,9 @@ fn agrees(renderer: &dyn Session, scene: &Scene, most: f64) -> Result<Tally, Str
     let items = [DrawItem { mesh, buffers }];
     let drawing = Drawing {
         targets: watched.targets,
-        state: tested(),
+        // As engines draw. It hides nothing, since there is one layer. llvmpipe compiles a shader
+        // once for it, and twice without.
+        state: PipelineState { depth_test: true, ..PipelineState::default() },
         ..Drawing::of_items([vertex, point], &items, &scene.fixtures, [WIDTH, HEIGHT])
     };
     let frame = renderer.draw_frames(&drawing).map_err(|problem| problem.message)?.remove(0);

@@ -5,8 +5,8 @@ mod columns;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::ReportOrigin;
 use super::plot::{Series, error_plot, heat_map};
+use super::{ReportOrigin, executors_of, functions_of};
 use crate::bundle::Language;
 use crate::diagnostic::escape_markup;
 use crate::proof::check::{
@@ -38,20 +38,14 @@ pub fn html_report(report: &CheckReport, origin: &ReportOrigin<'_>) -> String {
 struct ReportPage<'a> {
     report: &'a CheckReport,
     origin: &'a ReportOrigin<'a>,
-    /// In the order in which they first ran.
-    executors: Vec<&'static str>,
+    /// With their adapters, in the order in which they first ran.
+    executors: Vec<(&'static str, &'a str)>,
     functions: BTreeMap<String, Vec<&'a Outcome>>,
 }
 
 impl<'a> ReportPage<'a> {
     fn new(report: &'a CheckReport, origin: &'a ReportOrigin<'a>) -> Self {
-        let (mut executors, mut functions) = (Vec::new(), BTreeMap::<String, Vec<&Outcome>>::new());
-        for outcome in &report.outcomes {
-            if !executors.contains(&outcome.executor) {
-                executors.push(outcome.executor);
-            }
-            functions.entry(outcome.path()).or_default().push(outcome);
-        }
+        let (executors, functions) = (executors_of(report), functions_of(report));
         Self { report, origin, executors, functions }
     }
 
@@ -87,7 +81,7 @@ impl<'a> ReportPage<'a> {
     }
 
     fn class(&self, outcome: &Outcome) -> usize {
-        self.executors.iter().position(|executor| *executor == outcome.executor).unwrap_or(0)
+        self.executors.iter().position(|(name, _)| *name == outcome.executor).unwrap_or(0)
     }
 
     fn summary(&self, html: &mut String) {
@@ -112,13 +106,7 @@ impl<'a> ReportPage<'a> {
             self.functions.len()
         );
         html.push_str("<ul class=\"key\">");
-        for (index, executor) in self.executors.iter().enumerate() {
-            let adapter = self
-                .report
-                .outcomes
-                .iter()
-                .find(|outcome| outcome.executor == *executor)
-                .map_or("", |outcome| &outcome.adapter);
+        for (index, (executor, adapter)) in self.executors.iter().enumerate() {
             let _ = write!(
                 html,
                 "<li><i class=\"swatch b{index}\"></i><b>{executor}</b> {}</li>",
@@ -134,13 +122,13 @@ impl<'a> ReportPage<'a> {
     /// One row a function, one column an executor.
     fn index(&self, html: &mut String) {
         html.push_str("<table class=\"index\"><thead><tr><th>function</th>");
-        for executor in &self.executors {
+        for (executor, _) in &self.executors {
             let _ = write!(html, "<th>{executor}</th>");
         }
         html.push_str("</tr></thead><tbody>\n");
         for (path, outcomes) in self.failures_first() {
             let _ = write!(html, "<tr><td><a href=\"#{0}\">{0}</a></td>", escape_markup(path));
-            for executor in &self.executors {
+            for (executor, _) in &self.executors {
                 let own: Vec<&&Outcome> =
                     outcomes.iter().filter(|outcome| outcome.executor == *executor).collect();
                 let share = own.iter().map(|outcome| worst_share(outcome)).fold(0.0, f64::max);

@@ -10,7 +10,9 @@ mod junit;
 mod plot;
 mod table;
 
-use crate::proof::check::CheckReport;
+use std::collections::BTreeMap;
+
+use crate::proof::check::{CheckReport, Outcome};
 use crate::source::{SourceSet, Span};
 
 /// A form of a report.
@@ -43,3 +45,23 @@ pub const ALL: &[ReportForm] = &[
     ReportForm { file: "junit.xml", text: junit::junit_report },
     ReportForm { file: "errors.md", text: table::error_table },
 ];
+
+/// The executors with their adapters, in the order in which they first ran.
+fn executors_of(report: &CheckReport) -> Vec<(&'static str, &str)> {
+    let mut found: Vec<(&'static str, &str)> = Vec::new();
+    for outcome in &report.outcomes {
+        if !found.iter().any(|(executor, _)| *executor == outcome.executor) {
+            found.push((outcome.executor, &outcome.adapter));
+        }
+    }
+    found
+}
+
+/// The outcomes of each function, by its path.
+fn functions_of(report: &CheckReport) -> BTreeMap<String, Vec<&Outcome>> {
+    let mut found = BTreeMap::<String, Vec<&Outcome>>::new();
+    for outcome in &report.outcomes {
+        found.entry(outcome.path()).or_default().push(outcome);
+    }
+    found
+}

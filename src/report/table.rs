@@ -1,15 +1,11 @@
 //! `errors.md`: the worst error of each function on each executor, to keep as documentation of a
 //! driver.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::ReportOrigin;
+use super::{ReportOrigin, executors_of, functions_of};
 use crate::diagnostic::escape_markup;
 use crate::proof::check::{CheckReport, Outcome, short_number};
-
-/// The outcomes of a function on an executor: all its cases in all languages.
-type Outcomes<'a> = Vec<&'a Outcome>;
 
 /// The report as a table in Markdown.
 pub fn error_table(report: &CheckReport, origin: &ReportOrigin<'_>) -> String {
@@ -32,38 +28,20 @@ pub fn error_table(report: &CheckReport, origin: &ReportOrigin<'_>) -> String {
              error. The second is the largest share of the tolerance that an input needed.\n\n| function |";
     executors.iter().for_each(|(executor, _)| text += &format!(" {executor} |"));
     text += &format!("\n|---|{}\n", "---|".repeat(executors.len()));
-    for (path, by_executor) in functions_of(report) {
+    for (path, outcomes) in functions_of(report) {
         let _ = write!(text, "| <code>{}</code> |", cell(&path));
         for (executor, _) in &executors {
-            let found = by_executor.get(executor).map_or_else(|| "-".to_owned(), worst_text);
-            let _ = write!(text, " {found} |");
+            let own = outcomes.iter().copied().filter(|outcome| outcome.executor == *executor);
+            let _ = write!(text, " {} |", worst_text(&own.collect::<Vec<_>>()));
         }
         text.push('\n');
     }
     text
 }
 
-/// The executors with their adapters, in the order in which they first ran.
-fn executors_of(report: &CheckReport) -> Vec<(&'static str, &str)> {
-    let mut found: Vec<(&'static str, &str)> = Vec::new();
-    for outcome in &report.outcomes {
-        if !found.iter().any(|(executor, _)| *executor == outcome.executor) {
-            found.push((outcome.executor, &outcome.adapter));
-        }
-    }
-    found
-}
-
-fn functions_of(report: &CheckReport) -> BTreeMap<String, BTreeMap<&'static str, Outcomes<'_>>> {
-    let mut found: BTreeMap<String, BTreeMap<&'static str, Outcomes<'_>>> = BTreeMap::new();
-    for outcome in &report.outcomes {
-        found.entry(outcome.path()).or_default().entry(outcome.executor).or_default().push(outcome);
-    }
-    found
-}
-
-/// The largest error and share of some outcomes, and whether one fails.
-fn worst_text(outcomes: &Outcomes<'_>) -> String {
+/// The largest error and share of a function on an executor, in all cases and languages, and whether
+/// one of them fails.
+fn worst_text(outcomes: &[&Outcome]) -> String {
     let failed = outcomes.iter().any(|outcome| outcome.failed());
     let verdicts: Vec<_> =
         outcomes.iter().filter_map(|outcome| outcome.verdict.as_ref().ok()).collect();

@@ -1,10 +1,14 @@
 //! The numbers a program can run on.
 
-/// Writes [`Number::run_call`] and [`Number::run_quad`] into an implementation, as they are in the
-/// trait. So the machine for this kind of number is compiled with this crate. What the trait writes is
-/// compiled with each crate that calls it, which may be optimised less.
+/// Writes `run_call` and `run_quad` into the trait, and again into the implementations for which the
+/// machine is to be compiled with this crate. What only the trait has is compiled with each crate that
+/// calls it, which may be optimised less.
 macro_rules! machine_of_this_crate {
     () => {
+        /// [`Machine::call`] without its result.
+        ///
+        /// # Errors
+        /// Those of [`Machine::call`].
         fn run_call(
             machine: &mut Machine<'_, Self>,
             id: FunctionId,
@@ -13,6 +17,10 @@ macro_rules! machine_of_this_crate {
             machine.run_call(id, arguments)
         }
 
+        /// [`Machine::quad`].
+        ///
+        /// # Errors
+        /// Those of [`Machine::quad`].
         fn run_quad(
             machine: &mut Machine<'_, Self>,
             id: FunctionId,
@@ -66,29 +74,7 @@ pub trait Number: Copy + Default + Send + Sync + std::fmt::Debug + 'static {
     /// The sum of products of two slices of the same length.
     fn dot(a: &[Self], b: &[Self]) -> Self;
 
-    /// [`Machine::call`] without its result.
-    ///
-    /// # Errors
-    /// Those of [`Machine::call`].
-    fn run_call(
-        machine: &mut Machine<'_, Self>,
-        id: FunctionId,
-        arguments: &[Self],
-    ) -> Result<(), Error> {
-        machine.run_call(id, arguments)
-    }
-
-    /// [`Machine::quad`].
-    ///
-    /// # Errors
-    /// Those of [`Machine::quad`].
-    fn run_quad(
-        machine: &mut Machine<'_, Self>,
-        id: FunctionId,
-        arguments: [&[Self]; 4],
-    ) -> Result<[Vec<Self>; 4], Error> {
-        machine.run_quad(id, arguments)
-    }
+    machine_of_this_crate!();
 
     /// The bits as `f32`. All NaNs have the same bits.
     fn bits(self) -> u32 {

@@ -72,7 +72,7 @@ fn kernel(i: f64, count: f64) -> DVec3 {
 }
 
 /// `log2(10)` with the digits that Filament publishes.
-#[allow(clippy::approx_constant)]
+#[expect(clippy::approx_constant, reason = "the published digits are compared with")]
 const LOG2_OF_10: f64 = 3.321928;
 
 /// The share of the cone of the reflection lobe that lies in the cone of the unoccluded directions.
