@@ -13,6 +13,7 @@ pub struct Tool {
 }
 
 pub const GLSLANG: Tool = Tool { program: "glslangValidator", package: "glslang-tools" };
+pub const GLSLC: Tool = Tool { program: "glslc", package: "glslc" };
 pub const SPIRV_VAL: Tool = Tool { program: "spirv-val", package: "spirv-tools" };
 pub const SPIRV_OPT: Tool = Tool { program: "spirv-opt", package: "spirv-tools" };
 pub const CLANG: Tool = Tool { program: "clang++", package: "clang" };
@@ -70,8 +71,19 @@ impl Tool {
         arguments: &[impl AsRef<OsStr>],
         files: impl IntoIterator<Item = impl AsRef<Path>>,
     ) -> io::Result<Output> {
+        self.run_in(Path::new("."), arguments, files)
+    }
+
+    /// Runs it on files, in a folder to which it writes.
+    pub fn run_in(
+        self,
+        folder: &Path,
+        arguments: &[impl AsRef<OsStr>],
+        files: impl IntoIterator<Item = impl AsRef<Path>>,
+    ) -> io::Result<Output> {
         let files = files.into_iter().map(|file| file.as_ref().as_os_str().to_owned());
-        Command::new(self.program).args(arguments).args(files).stdin(Stdio::null()).output()
+        let mut command = Command::new(self.program);
+        command.args(arguments).args(files).current_dir(folder).stdin(Stdio::null()).output()
     }
 }
 

@@ -30,6 +30,7 @@ use crate::fragments::{self, Tally, Watched};
 use crate::metal::scrambled;
 pub use given::fixture;
 use given::number;
+pub use shipped::most_points;
 
 /// The size of a frame in pixels.
 const WIDTH: u32 = 256;

@@ -15,7 +15,7 @@ pub const BATCH: usize = 64;
 
 /// The files that are refused, each with the compiler's words. A batch is halved until those at fault
 /// are found.
-pub fn refused<K: Copy>(
+fn refused<K: Copy>(
     batch: &[(K, String)],
     accepts_all: impl Fn(&[&str]) -> bool,
     judge: impl Fn(&str) -> Result<(), String>,

@@ -20,12 +20,12 @@ use lamplight::validate::{Validated, on_large_stack, validate};
 use libtest_mimic::{Failed, Trial};
 use rayon::prelude::*;
 
-use accepted::{glslang_takes_sources, validators};
+use accepted::{glslc_takes_sources, validators};
 
 /// How many failures of a trial are printed.
 const SHOWN: usize = 3;
 
-/// The stages: name, entry point in WESL, and name for glslangValidator.
+/// The stages: name, entry point in WESL, and name for glslangValidator and glslc.
 const STAGES: [(&str, &str, &str); 2] =
     [("vertex", "vs_main", "vert"), ("fragment", "fs_main", "frag")];
 
@@ -49,8 +49,8 @@ pub fn trials() -> Vec<Trial> {
                 every(&covered, stage, &points, &covered.targets)
             }));
             let (sampled, whole) = (program.clone(), program.clone());
-            trials.push(Trial::test(format!("{name}::glslang"), move || {
-                glslang_takes_sources(&whole, stage)
+            trials.push(Trial::test(format!("{name}::glslc"), move || {
+                glslc_takes_sources(&whole, stage)
             }));
             trials.push(Trial::test(format!("{name}::validators"), move || {
                 validators(&sampled, stage)

@@ -75,19 +75,18 @@ pub fn drivers(targets: &[Target]) -> Result<Vec<Driver>, String> {
     Ok(drivers)
 }
 
-/// How many permutations are drawn: the number in the environment, or [`DRAWN_POINTS`].
-fn most_points(program: &str) -> Result<usize, String> {
+/// How many permutations are drawn: the number in the environment, or the usual one.
+pub fn most_points(usual: usize) -> Result<usize, String> {
     match std::env::var("LAMPLIGHT_FRAMES_PERMUTATIONS") {
         Ok(text) => text.parse().map_err(|_| format!("`{text}` is not a number")),
-        Err(_) if program == "forward" => Ok(DRAWN_POINTS),
-        Err(_) => Ok(DRAWN_OF_SMALL),
+        Err(_) => Ok(usual),
     }
 }
 
 fn drawn(program: &'static str, language: Language) -> Result<(), String> {
     let (targets, sources) = (targets()?, Sources::load(program, language)?);
     let mut points = points(&sources.space, LEAST_POINTS);
-    points.truncate(most_points(program)?);
+    points.truncate(most_points(if program == "forward" { DRAWN_POINTS } else { DRAWN_OF_SMALL })?);
     let start = Instant::now();
     let bundle = bundle(&sources, &points, &targets)?;
     let mut drivers = drivers(&targets)?;

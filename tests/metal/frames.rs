@@ -13,11 +13,13 @@ use libtest_mimic::{Failed, Trial};
 use naga::{Binding, BuiltIn};
 
 use crate::fragments::{self, Tally, Watched, entry_function};
-use crate::frames::{PROGRAMS, Scene, Sources, bundle, most_open, points};
+use crate::frames::{PROGRAMS, Scene, Sources, bundle, most_open, most_points, points};
 
 /// The number of permutations of `forward` in each language. All pairs of values are among them, as
 /// they are of the other programs.
 const LEAST_POINTS: usize = 200;
+/// How many of them the tests draw. `cargo xtask frames` draws all.
+const DRAWN_POINTS: usize = 64;
 /// The size of a frame in pixels.
 const SIZE: [u32; 2] = [128, 64];
 /// Every 29th quad is computed again.
@@ -41,7 +43,8 @@ pub fn trials() -> Vec<Trial> {
 
 fn drawn(program: &'static str, language: Language) -> Result<(), String> {
     let sources = Sources::load(program, language)?;
-    let points = points(&sources.space, if program == "forward" { LEAST_POINTS } else { 1 });
+    let mut points = points(&sources.space, if program == "forward" { LEAST_POINTS } else { 1 });
+    points.truncate(most_points(DRAWN_POINTS)?);
     let bundle = bundle(&sources, &points, &[Target::MSL])?;
     let (mut total, mut failures) = (Tally::default(), Vec::new());
     for points in points.chunks(BATCH) {

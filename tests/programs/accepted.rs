@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 use lamplight::bundle::{Language, Target};
 use lamplight::compose::Composed;
@@ -14,10 +13,10 @@ use libtest_mimic::Failed;
 use rayon::prelude::*;
 
 use super::{Sources, alone, report, texts};
-use crate::glslang::{BATCH, COMPILED, refused, refused_by_glslc, refused_by_version, run};
+use crate::glslang::{BATCH, refused_by_glslc, refused_by_version, run};
 
-/// glslangValidator accepts the composed GLSL of every permutation that ships.
-pub fn glslang_takes_sources(
+/// glslc compiles the composed GLSL of every permutation that ships.
+pub fn glslc_takes_sources(
     program: &Program,
     stage: &(&'static str, &'static str, &'static str),
 ) -> Result<(), Failed> {
@@ -32,21 +31,9 @@ pub fn glslang_takes_sources(
         std::fs::write(&path, &composed.text)?;
         files.push((point, path));
     }
-    // glslangValidator links the files of one call. If all of them compile, linking fails, with
-    // status 3.
-    let accepts_all = |paths: &[&str]| {
-        let status = Command::new("glslangValidator")
-            // It writes its output to the current folder.
-            .current_dir(folder.path())
-            .args(["--client", "vulkan100"])
-            .args(paths)
-            .stdout(Stdio::null())
-            .status();
-        status.is_ok_and(|status| status.code() == Some(3))
-    };
-    let judge = |path: &str| run(folder.path(), "glslangValidator", &[COMPILED, &[path]].concat());
     let batches = files.par_chunks(BATCH);
-    report(program, batches.flat_map_iter(|batch| refused(batch, accepts_all, judge)).collect())
+    let refused = batches.flat_map_iter(|batch| refused_by_glslc(folder.path(), &[], batch));
+    report(program, refused.collect())
 }
 
 /// A file, and the permutation that it is of.

@@ -36,7 +36,7 @@ pub fn run(arguments: &[String]) -> CommandResult {
             _ => return Err(usage()),
         }
     }
-    // MSL has a trial of its own, which compiles many stages at once and draws all of them.
+    // MSL has a trial of its own, which compiles many stages at once.
     let msl = targets.is_empty() || targets.iter().any(|target| target == "msl");
     let is_other = |target: &String| target != "msl";
     let mut variables = vec![("LAMPLIGHT_FRAMES_PERMUTATIONS".to_owned(), permutations)];

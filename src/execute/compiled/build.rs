@@ -19,12 +19,14 @@ use crate::tools::halve_refused;
 const UNIT: usize = 1 << 18;
 
 /// How shaders are compiled: without contraction, so that each operation is rounded by itself, and
-/// without undefined behaviour where Metal has none.
+/// without undefined behaviour where Metal has none. Only functions of the headers are inlined, since
+/// inlining those of shaders takes longer than it saves.
 const FLAGS: &[&str] = &[
     "-c",
     "-O1",
     "-ffp-contract=off",
     "-fno-exceptions",
+    "-finline-hint-functions",
     "-fno-math-errno",
     "-fno-rtti",
     "-fno-strict-aliasing",

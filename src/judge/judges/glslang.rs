@@ -1,9 +1,10 @@
-//! GLSL and HLSL: glslangValidator.
+//! GLSL and HLSL: glslangValidator, and glslc, which has the same compiler in it.
 //!
-//! Starting it takes longer than reading a text, so it gets many texts at once. When it makes
-//! SPIR-V it links all of them, which makes no sense here, so its messages about linking are
-//! ignored. Outputs with something new in them ([`novel_outputs`]) are compiled to SPIR-V one by
-//! one.
+//! Starting either of them takes longer than reading a text, so they get many texts at once. When
+//! glslangValidator makes SPIR-V it links all texts, which makes no sense here, so it only reads
+//! them, and its messages about linking are ignored. glslc compiles each text by itself. Compiling
+//! HLSL takes twice as long as reading it, so only outputs with something new in them
+//! ([`novel_outputs`]) are compiled. If glslc refuses a text, glslangValidator decides.
 //!
 //! | rule | judged are |
 //! |---|---|
@@ -12,7 +13,8 @@
 //! | `vulkan` | texts for OpenGL by the rules of Vulkan, as far as they can keep them |
 //! | `hlsl` | texts of HLSL, compiled for Vulkan |
 
-use std::path::Path;
+use std::io;
+use std::path::{Path, PathBuf};
 use std::process::Output as Said;
 
 use crate::judge::novel::novel_outputs;
@@ -20,12 +22,12 @@ use crate::judge::{
     JudgeEntry, JudgeResult, JudgeWork, Output, OutputGroup, Refusal, divide_group,
 };
 use crate::output::Scratch;
-use crate::tools::{GLSLANG, halve_refused, printed_words};
+use crate::tools::{GLSLANG, GLSLC, halve_refused, printed_words};
 
 /// The judge, for the table of all.
 pub const JUDGE: JudgeEntry = JudgeEntry {
     name: "glslang",
-    tools: &[GLSLANG],
+    tools: &[GLSLANG, GLSLC],
     lacks: |_| None,
     version: |_| String::new(),
     plan,
@@ -52,17 +54,22 @@ fn plan_rule<'w>(
 ) -> Result<Vec<JudgeWork<'w>>, String> {
     let (outputs, scratch) = (group.outputs, group.scratch);
     let own = vec!["-S", first.stage.suffix()];
+    let stage = format!("-fshader-stage={}", first.stage.suffix());
     match rule {
         "own" => Ok(divide_group(outputs, BATCH, move |outputs| judge_together(&own, outputs))),
         // The relaxed rules accept OpenGL's names of built-in variables. They also accept uniforms
-        // outside of blocks, which get bindings.
+        // outside of blocks, which get bindings. glslc has no such option, but few texts need them.
         "vulkan" => {
-            let more = ["-V", "-R", "--amb", "-o", "/dev/null"];
-            plan_compiled(outputs, [&own[..], &more].concat())
+            let options = format!("{stage} -fauto-bind-uniforms -fauto-map-locations");
+            let alone = [&own[..], &["-V", "-R", "--amb", "-o", "/dev/null"]].concat();
+            Ok(divide_group(outputs, BATCH, move |outputs| {
+                judge_compiled(&options, &alone, outputs)
+            }))
         }
         "hlsl" => {
-            let more = ["-D", "-V", "-e", &first.entry, "-o", "/dev/null"];
-            plan_compiled(outputs, [&own[..], &more].concat())
+            let options = format!("{stage} -x hlsl -fentry-point={}", first.entry);
+            let alone = [&own[..], &["-D", "-V", "-e", &first.entry, "-o", "/dev/null"]].concat();
+            plan_hlsl(outputs, options, alone)
         }
         version if version.starts_with(|first: char| first.is_ascii_digit()) => {
             Ok(divide_group(outputs, BATCH, move |outputs| {
@@ -74,18 +81,36 @@ fn plan_rule<'w>(
 }
 
 /// Reads each text, and compiles those with something new in them.
-fn plan_compiled<'w>(
+fn plan_hlsl<'w>(
     group: &'w [&'w Output],
-    arguments: Vec<&'w str>,
+    options: String,
+    alone: Vec<&'w str>,
 ) -> Result<Vec<JudgeWork<'w>>, String> {
-    let alone = arguments.clone();
-    let mut works = divide_group(group, BATCH, move |outputs| judge_parse(&arguments, outputs));
-    let each = novel_outputs(group)?.into_iter().map(|output| {
-        let arguments = alone.clone();
-        JudgeWork { outputs: 1, run: Box::new(move || judge_one(&arguments, output)) }
-    });
-    works.extend(each);
+    let read = alone.clone();
+    let mut works = divide_group(group, BATCH, move |outputs| judge_parse(&read, outputs));
+    let novel = novel_outputs(group)?;
+    works.extend(novel.chunks(BATCH).map(|part| {
+        let outputs = part.len();
+        let (part, options, alone) = (part.to_vec(), options.clone(), alone.clone());
+        JudgeWork { outputs, run: Box::new(move || judge_compiled(&options, &alone, &part)) }
+    }));
     Ok(works)
+}
+
+/// Has glslc compile texts to SPIR-V in one run. glslangValidator judges each text that glslc refuses.
+///
+/// Parameters: `options` of glslc, separated by spaces; those of glslangValidator, `alone`.
+fn judge_compiled(options: &str, alone: &[&str], outputs: &[&Output]) -> JudgeResult {
+    // glslc writes the SPIR-V to the current folder.
+    let scratch = Scratch::new(&std::env::temp_dir()).map_err(|error| error.to_string())?;
+    let together = |outputs: &[&Output]| {
+        let options: Vec<&str> = options.split(' ').chain(["-Werror", "-c"]).collect();
+        let files = outputs.iter().map(|output| std::path::absolute(&output.file));
+        let files = files.collect::<io::Result<Vec<PathBuf>>>();
+        let said = files.and_then(|files| GLSLC.run_in(&scratch.path(""), &options, files));
+        Ok(said.map_err(|error| error.to_string())?.status.success().then(Vec::new))
+    };
+    halve_refused(outputs, &together, &|output| judge_one(alone, output))
 }
 
 /// Judges texts in one run if it accepts them all.

@@ -4,6 +4,10 @@
 #include "math.h"
 #include "runtime.h"
 
+// The runtime knows where a fragment waits for its neighbours by the address of the call. Each use in
+// a shader has an address of its own only if these functions are inlined.
+#pragma clang attribute push(__attribute__((always_inline)), apply_to = function)
+
 namespace metal {
 
 enum class access { sample, read, write, read_write };
@@ -307,3 +311,5 @@ inline float fwidth(float v) { return abs(dfdx(v)) + abs(dfdy(v)); }
 inline void discard_fragment() { __lamplight::discard(); }
 
 }  // namespace metal
+
+#pragma clang attribute pop
