@@ -8,6 +8,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use libtest_mimic::Failed;
+use serde_json::json;
 
 use crate::snapshot;
 
@@ -115,15 +116,21 @@ fn environment(command: &mut Command, stage: &Path) {
     command.env("COLUMNS", "80").env("NO_COLOR", "1").env("LC_ALL", "C.UTF-8");
 }
 
-/// Makes cargo use this repository in place of the registry, so that pages need no network.
+/// Makes cargo use this repository in place of the registry, so that pages need no network. It builds
+/// in the folder of the tests, and as they do, so that dependencies are not built twice.
 fn cargo_config(stage: &Path) -> Result<(), Failed> {
     let root = snapshot::root();
-    let target = root.join("target/tmp/guide");
-    let text = format!(
-        "[patch.crates-io]\nlamplight = {{ path = {root:?} }}\n[net]\noffline = true\n[build]\ntarget-dir = {target:?}\n[profile.dev]\ndebug = false\n"
-    );
+    let binaries = Path::new(env!("CARGO_BIN_EXE_lamplight")).parent();
+    let target = binaries.and_then(Path::parent).ok_or("the tests have no target folder")?;
+    let manifest: toml::Table = toml::from_str(&fs::read_to_string(root.join("Cargo.toml"))?)?;
+    let config = json!({
+        "patch": { "crates-io": { "lamplight": { "path": root } } },
+        "net": { "offline": true },
+        "build": { "target-dir": target },
+        "profile": { "dev": manifest["profile"]["dev"] },
+    });
     fs::create_dir_all(stage.join(".cargo"))?;
-    fs::write(stage.join(".cargo/config.toml"), text)?;
+    fs::write(stage.join(".cargo/config.toml"), toml::to_string(&config)?)?;
     fs::copy(root.join("Cargo.lock"), work(stage).join("Cargo.lock"))?;
     Ok(())
 }

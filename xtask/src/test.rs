@@ -98,6 +98,10 @@ fn for_node_and_browser() -> CommandResult {
 fn build_trials() -> Result<PathBuf, CommandFailure> {
     let mut command = process::cargo_command();
     command.arg("rustc").args(TESTED).args(TRIALS).stderr(Stdio::inherit());
+    if !was_built() {
+        // The state for incremental builds costs more than it saves, unless there are later ones.
+        command.env("CARGO_INCREMENTAL", "0");
+    }
     let built = command.output().map_err(|error| process::not_run("cargo rustc", &error))?;
     process::succeeded(built.status, "cargo rustc --test all")?;
     let messages = String::from_utf8_lossy(&built.stdout);
@@ -107,6 +111,12 @@ fn build_trials() -> Result<PathBuf, CommandFailure> {
         message["executable"].as_str().filter(|_| is_trials).map(PathBuf::from)
     });
     executables.next().ok_or_else(|| CommandFailure::check("cargo built no test binary"))
+}
+
+/// Whether the tests were built before.
+fn was_built() -> bool {
+    let built = std::fs::read_dir(root().join("target/debug/deps")).into_iter().flatten().flatten();
+    built.map(|file| file.file_name()).any(|name| name.to_string_lossy().starts_with("all-"))
 }
 
 /// glibc asks for memory in large pieces and pages, and keeps what is freed. It saves a quarter of the

@@ -2,7 +2,7 @@
 //! level one node for each condition that is still to be satisfied. Branches without a valid point
 //! are left out, so that counting and listing cost no more than what they find.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use super::formula::{ConditionPool, FALSE, FormulaId};
 use super::{Assignment, TooComplex};
@@ -46,7 +46,7 @@ impl Diagram {
             domains,
             order: &order,
             nodes: vec![end.clone(), end],
-            known: HashMap::new(),
+            known: FxHashMap::default(),
         };
         let root = builder.node(0, condition)?;
         let nodes = builder.nodes;
@@ -60,7 +60,7 @@ impl Diagram {
 
     /// How many points there are if those that differ only in one axis count as one.
     pub fn count_without(&self, axis: usize) -> Result<u128, TooComplex> {
-        let mut known = HashMap::new();
+        let mut known = FxHashMap::default();
         self.counts(|asked, children, counts| match asked == axis {
             true => self.merged(children.to_vec(), counts, &mut known),
             false => Ok(sum_counts(children, counts)),
@@ -163,7 +163,7 @@ impl Diagram {
         &self,
         mut nodes: Vec<u32>,
         counts: &[u128],
-        known: &mut HashMap<Vec<u32>, u128>,
+        known: &mut FxHashMap<Vec<u32>, u128>,
     ) -> Result<u128, TooComplex> {
         nodes.retain(|node| *node != DEAD);
         nodes.sort_unstable();
@@ -209,7 +209,7 @@ struct Builder<'a> {
     domains: &'a [ValueSet],
     order: &'a [usize],
     nodes: Vec<DiagramNode>,
-    known: HashMap<(usize, FormulaId), u32>,
+    known: FxHashMap<(usize, FormulaId), u32>,
 }
 
 impl Builder<'_> {

@@ -5,7 +5,9 @@
 //! conditions with the same normal form have the same number. The diagram uses this number to share
 //! nodes.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::rc::Rc;
+
+use rustc_hash::FxHashMap;
 
 use super::TooComplex;
 use crate::limits::{Exhausted, Steps};
@@ -56,7 +58,7 @@ pub const TRUE: FormulaId = FormulaId(1);
 enum ConditionNode {
     Constant(bool),
     Is(u8, ValueSet),
-    Join(Join, Box<[FormulaId]>),
+    Join(Join, Rc<[FormulaId]>),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -83,14 +85,17 @@ impl Join {
     }
 }
 
+/// The value of an axis is in a set.
+type Atom = (u8, ValueSet);
+
 /// Interned conditions over axes with the given domains.
 pub struct ConditionPool {
     domains: Vec<ValueSet>,
     nodes: Vec<ConditionNode>,
     /// Axes mentioned by each node, one bit each.
     support: Vec<u128>,
-    ids: HashMap<ConditionNode, FormulaId>,
-    restricted: HashMap<(FormulaId, u8, ValueSet), FormulaId>,
+    ids: FxHashMap<ConditionNode, FormulaId>,
+    restricted: FxHashMap<(FormulaId, u8, ValueSet), FormulaId>,
     steps: Steps,
 }
 
@@ -103,8 +108,8 @@ impl ConditionPool {
             domains,
             nodes: Vec::new(),
             support: Vec::new(),
-            ids: HashMap::new(),
-            restricted: HashMap::new(),
+            ids: FxHashMap::default(),
+            restricted: FxHashMap::default(),
             steps,
         };
         store.intern(ConditionNode::Constant(false));
@@ -202,15 +207,16 @@ impl ConditionPool {
     /// and simplifies the other parts by each atom until nothing changes (unit propagation, and its
     /// dual for `Any`).
     fn join(&mut self, join: Join, parts: Vec<FormulaId>) -> Result<FormulaId, TooComplex> {
-        let mut atoms: BTreeMap<u8, ValueSet> = BTreeMap::new();
-        let mut others: BTreeSet<FormulaId> = BTreeSet::new();
+        // Both are sorted. There are few of them, so vectors are faster than trees.
+        let mut atoms: Vec<Atom> = Vec::new();
+        let mut others: Vec<FormulaId> = Vec::new();
         let mut pending = parts;
         while let Some(part) = pending.pop() {
             self.spend(1)?;
             match self.nodes[part.0 as usize].clone() {
                 _ if part == join.absorbing() => return Ok(part),
                 ConditionNode::Constant(_) => {}
-                ConditionNode::Join(inner, parts) if inner == join => pending.extend(parts),
+                ConditionNode::Join(inner, parts) if inner == join => pending.extend(&*parts),
                 ConditionNode::Join(..) => {
                     pending.extend(self.settle(join, part, &atoms, &mut others)?)
                 }
@@ -243,8 +249,8 @@ impl ConditionPool {
         &mut self,
         join: Join,
         part: FormulaId,
-        atoms: &BTreeMap<u8, ValueSet>,
-        others: &mut BTreeSet<FormulaId>,
+        atoms: &[Atom],
+        others: &mut Vec<FormulaId>,
     ) -> Result<Option<FormulaId>, TooComplex> {
         let mut simpler = part;
         for (axis, set) in atoms {
@@ -255,7 +261,9 @@ impl ConditionPool {
             simpler = self.restrict(simpler, (*axis).into(), known)?;
         }
         if simpler == part {
-            others.insert(part);
+            if let Err(at) = others.binary_search(&part) {
+                others.insert(at, part);
+            }
             return Ok(None);
         }
         Ok(Some(simpler))
@@ -263,20 +271,18 @@ impl ConditionPool {
 
     /// Adds an atom to those of its axis. Returns whether they changed, or `None` if the atom
     /// decides the whole condition.
-    fn merge(
-        &self,
-        join: Join,
-        atoms: &mut BTreeMap<u8, ValueSet>,
-        axis: u8,
-        set: ValueSet,
-    ) -> Option<bool> {
-        let before = atoms.get(&axis).copied();
+    fn merge(&self, join: Join, atoms: &mut Vec<Atom>, axis: u8, set: ValueSet) -> Option<bool> {
+        let place = atoms.binary_search_by_key(&axis, |(axis, _)| *axis);
+        let before = place.ok().map(|at| atoms[at].1);
         let after = match (join, before) {
             (_, None) => set,
             (Join::All, Some(before)) => before.and(set),
             (Join::Any, Some(before)) => before.or(set),
         };
-        atoms.insert(axis, after);
+        match place {
+            Ok(at) => atoms[at].1 = after,
+            Err(at) => atoms.insert(at, (axis, after)),
+        }
         let decided = match join {
             Join::All => after.is_empty(),
             Join::Any => after == self.domains[usize::from(axis)],
