@@ -159,7 +159,8 @@ fn build_script_compiles() -> Result<(), Failed> {
 /// Runs cargo, as a user of the examples does.
 pub fn cargo(folder: &Path, arguments: &[&str]) -> Result<String, Failed> {
     let program = std::env::var_os("CARGO").unwrap_or_else(|| OsString::from("cargo"));
-    run(Command::new(program).current_dir(folder).args(arguments))
+    // What is built here is rarely built again.
+    run(Command::new(program).env("CARGO_INCREMENTAL", "0").current_dir(folder).args(arguments))
 }
 
 /// Runs a command. Gives its standard output, or fails with all of its output.

@@ -126,7 +126,7 @@ fn cargo_config(stage: &Path) -> Result<(), Failed> {
     let config = json!({
         "patch": { "crates-io": { "lamplight": { "path": root } } },
         "net": { "offline": true },
-        "build": { "target-dir": target },
+        "build": { "target-dir": target, "incremental": false },
         "profile": { "dev": manifest["profile"]["dev"] },
     });
     fs::create_dir_all(stage.join(".cargo"))?;
