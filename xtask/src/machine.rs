@@ -135,6 +135,26 @@ pub fn program(name: &str) -> bool {
     std::env::split_paths(&path).any(|folder| folder.join(name).is_file())
 }
 
+/// A command with the lowest priority, so that it runs while others wait. Where the system has no
+/// program `nice`, it is the command itself.
+pub fn with_lowest_priority(command: Command) -> Command {
+    if !program("nice") {
+        return command;
+    }
+    let mut nice = Command::new("nice");
+    nice.args(["-n", "19"]).arg(command.get_program()).args(command.get_args());
+    for (name, value) in command.get_envs() {
+        match value {
+            Some(value) => nice.env(name, value),
+            None => nice.env_remove(name),
+        };
+    }
+    if let Some(folder) = command.get_current_dir() {
+        nice.current_dir(folder);
+    }
+    nice
+}
+
 fn library(name: &str) -> bool {
     let folders = [
         "/usr/lib/x86_64-linux-gnu",

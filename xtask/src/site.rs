@@ -39,6 +39,15 @@ impl SiteBuild {
             Self::Quick => "debug",
         }
     }
+
+    /// The command as it is run. The tests wait for their own build longer than for this one, so that
+    /// goes first.
+    fn prioritised(self, command: Command) -> Command {
+        match self {
+            Self::Small => command,
+            Self::Quick => machine::with_lowest_priority(command),
+        }
+    }
 }
 
 /// Makes the npm package in `target/toolchain/`, then the site in `target/site/`.
@@ -84,7 +93,8 @@ pub fn toolchain(build: SiteBuild) -> Result<PathBuf, CommandFailure> {
     let mut bind = cargo_command();
     bind.args(["run", "--quiet", "--package", "lamplight-bind", "--target-dir"]).arg(&below);
     bind.args(["--config", "profile.dev.incremental=false"]);
-    finish(bind.arg("--").arg(&module).arg(&package), "lamplight-bind")?;
+    bind.arg("--").arg(&module).arg(&package);
+    finish(&mut build.prioritised(bind), "lamplight-bind")?;
     let sources = root().join("site/toolchain/js");
     for name in ["index.js", "index.d.ts", "package.json", "README.md"] {
         let to = package.join(name);
@@ -108,7 +118,7 @@ fn webassembly(build: SiteBuild, below: &Path) -> CommandResult {
         command.args(QUICK.iter().flat_map(|setting| ["--config", *setting]));
     }
     command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", STACK);
-    finish(&mut command, "cargo build --package lamplight-toolchain")
+    finish(&mut build.prioritised(command), "cargo build --package lamplight-toolchain")
 }
 
 /// Whether the compiler in use has the standard library of the target.

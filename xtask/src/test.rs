@@ -45,13 +45,14 @@ pub fn run(arguments: &[String]) -> CommandResult {
         return some(&names, &options);
     }
     // Each build has times in which only one core has work.
+    let incremental = incremental_state();
     let (site, trials) = std::thread::scope(|scope| {
         let site = scope.spawn(for_node_and_browser);
-        let trials = build_trials();
+        let trials = build_trials(&incremental);
         (site.join(), trials)
     });
     site.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
-    process::cargo(&[&["test", "--doc"], &TESTED[..]].concat(), &[])?;
+    process::cargo_with(&[&["test", "--doc"], &TESTED[..]].concat(), &[], &incremental)?;
     run_trials(&trials?, &with_threads(arguments))
 }
 
@@ -78,7 +79,7 @@ fn some(names: &[String], options: &[String]) -> CommandResult {
     if names.iter().any(of_site) {
         for_node_and_browser()?;
     }
-    let trials = build_trials()?;
+    let trials = build_trials(&[])?;
     // The test binary takes one name at a time.
     names.iter().try_for_each(|name| {
         run_trials(&trials, &with_threads(&[std::slice::from_ref(name), options].concat()))
@@ -95,13 +96,10 @@ fn for_node_and_browser() -> CommandResult {
 }
 
 /// Builds the test binary, and returns its path.
-fn build_trials() -> Result<PathBuf, CommandFailure> {
+fn build_trials(variables: &[(String, String)]) -> Result<PathBuf, CommandFailure> {
     let mut command = process::cargo_command();
     command.arg("rustc").args(TESTED).args(TRIALS).stderr(Stdio::inherit());
-    if !was_built() {
-        // The state for incremental builds costs more than it saves, unless there are later ones.
-        command.env("CARGO_INCREMENTAL", "0");
-    }
+    command.envs(variables.iter().cloned());
     let built = command.output().map_err(|error| process::not_run("cargo rustc", &error))?;
     process::succeeded(built.status, "cargo rustc --test all")?;
     let messages = String::from_utf8_lossy(&built.stdout);
@@ -113,10 +111,15 @@ fn build_trials() -> Result<PathBuf, CommandFailure> {
     executables.next().ok_or_else(|| CommandFailure::check("cargo built no test binary"))
 }
 
-/// Whether the tests were built before.
-fn was_built() -> bool {
+/// Variables for cargo. A first build of everything keeps no state for later ones, since the state
+/// costs more than it saves on a machine that builds once.
+fn incremental_state() -> Vec<(String, String)> {
     let built = std::fs::read_dir(root().join("target/debug/deps")).into_iter().flatten().flatten();
-    built.map(|file| file.file_name()).any(|name| name.to_string_lossy().starts_with("all-"))
+    let mut names = built.map(|file| file.file_name());
+    match names.any(|name| name.to_string_lossy().starts_with("all-")) {
+        true => Vec::new(),
+        false => vec![("CARGO_INCREMENTAL".to_owned(), "0".to_owned())],
+    }
 }
 
 /// glibc asks for memory in large pieces and pages, and keeps what is freed. It saves a quarter of the
