@@ -87,9 +87,14 @@ impl Judges {
         let failed = |error: Error| Failure::environment(error.to_string());
         let scratch = Scratch::new(&std::env::temp_dir())?;
         let folder = scratch.path("bundle");
-        write_directory(contents, &folder).map_err(failed)?;
-        let files = blob_files(&folder).map_err(failed)?;
-        self.files(files, &|| Ok(contents.clone()), inputs, bar)
+        let written = write_directory(contents, &folder).and_then(|_| blob_files(&folder));
+        let judged = written
+            .map_err(failed)
+            .and_then(|files| self.files(files, &|| Ok(contents.clone()), inputs, bar));
+        // `Scratch` removes only files. If this fails, the bundle stays in the folder for temporary
+        // files.
+        let _ = std::fs::remove_dir_all(&folder);
+        judged
     }
 
     /// Judges a bundle that is there.

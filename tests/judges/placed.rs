@@ -7,7 +7,7 @@ use lamplight::bundle::Bundle;
 use super::{COUNTED, COUNTED_MANIFEST, Outcome, Package, expect};
 
 /// A judge's refusal is told at the author's line, with the permutation and the target. The older
-/// bundle stays as it was, as a folder and as a file.
+/// bundle stays as it was, as a folder and as a file. Nothing is left among the temporary files.
 pub fn refusals_are_placed() -> Outcome {
     // naga writes the sample mask as one number, but GLSL has an array.
     let masked = "@fragment fn fs_main(
@@ -19,10 +19,13 @@ pub fn refusals_are_placed() -> Outcome {
     let refused = COUNTED.replace("countOneBits", "abs").replace(head, masked);
     let sound = COUNTED.replace("countOneBits", "abs");
     let package = Package::new(COUNTED_MANIFEST, &sound)?;
+    let temporary = package.path("temporary");
+    fs::create_dir(&temporary)?;
+    let run = |arguments: &[&str]| package.command(arguments).env("TMPDIR", &temporary).output();
     for out in ["bundle", "one.lamplight"] {
         fs::write(package.path("one.wesl"), &sound)?;
         let arguments = ["gen", "--validate", "--no-cache", "-o", out];
-        expect(&package.run(&arguments)?, 0, &["4 outputs judged, 0 known to pass"])?;
+        expect(&run(&arguments)?, 0, &["4 outputs judged, 0 known to pass"])?;
         let before = Bundle::open(package.path(out))?.contents()?;
         fs::write(package.path("one.wesl"), &refused)?;
         let words = [
@@ -31,11 +34,15 @@ pub fn refusals_are_placed() -> Outcome {
             "line ",
             "in permutation `bits` of one fs_main (wesl)",
         ];
-        expect(&package.run(&arguments)?, 1, &words)?;
+        expect(&run(&arguments)?, 1, &words)?;
         let bundle = Bundle::open(package.path(out))?;
         bundle.verify()?;
         if bundle.contents()? != before {
             return Err(format!("{out} was replaced although an output was refused").into());
+        }
+        let left: Vec<_> = fs::read_dir(&temporary)?.flatten().map(|left| left.path()).collect();
+        if !left.is_empty() {
+            return Err(format!("after judging {out}, these are left: {left:?}").into());
         }
     }
     Ok(())
