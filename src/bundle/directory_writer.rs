@@ -18,8 +18,8 @@ use super::directory::{
     BLOBS, BlobFile, MANIFEST, MOST_MANIFEST_BYTES, blob_files_of_manifest, read_manifest,
 };
 use super::manifest::{self, Before, Manifest, ManifestArtifact};
+use super::staging::add_unit;
 use super::{Contents, Digest, Digester, Error, Unit};
-use crate::limits::GROUP_BYTES;
 use crate::output::{self, Foreign, Replace, Scratch};
 
 /// The file that lists the blobs that only the bundle before this one has, one on each line.
@@ -106,21 +106,8 @@ impl DirectoryWriter {
 
     /// Keeps the blobs of a unit for [`Self::finish`]; keys refer to it by the digest's hash.
     pub fn add(&self, unit: &Unit) -> Result<Digest, Error> {
-        let digest = self.digester.digest(unit)?;
-        if let Some(found) = digest.targets.iter().find(|found| found.length as usize > GROUP_BYTES)
-        {
-            let bytes = found.length;
-            return Err(Error::Io(format!(
-                "a blob of {bytes} bytes is larger than a bundle takes"
-            )));
-        }
-        let mut part = Manifest::default();
-        part.add_unit(&digest, unit)?;
-        for (target, named) in part.units.values().flat_map(|unit| &unit.targets) {
-            if let Some(artifact) = unit.targets.get(target) {
-                self.stage(named.file()?, &artifact.bytes)?;
-            }
-        }
+        let (digest, part) =
+            add_unit(&self.digester, unit, &mut |name, bytes| self.stage(name, bytes))?;
         self.manifest().absorb(part);
         Ok(digest)
     }

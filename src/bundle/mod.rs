@@ -22,6 +22,7 @@ mod names;
 mod pack;
 mod reflection;
 mod reload;
+mod staging;
 mod store;
 mod target;
 mod usage;
@@ -44,6 +45,7 @@ pub use reflection::{
     Member, Native, Override, OverrideChoice, Pair, Place, Reflection, RowOrder, SamplerHeap,
     Semantic, Varying, Viewport, YAxis,
 };
+pub use staging::stage_blobs;
 pub use target::Target;
 pub use usage::Usage;
 #[cfg(feature = "compile")]

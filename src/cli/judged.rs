@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::failure::Failure;
 use super::progress::Bar;
-use crate::bundle::{BlobFile, Bundle, Contents, Error, Target, blob_files, write_directory};
+use crate::bundle::{BlobFile, Bundle, Contents, Error, Target, blob_files, stage_blobs};
 use crate::cache::Cache;
 use crate::generate::{JudgedCount, Progress, Request};
 use crate::judge::{MissingTool, OutputOrigin, Tint, blame, missing, outputs, verdict};
@@ -86,15 +86,8 @@ impl Judges {
     ) -> Result<JudgedCount, Failure> {
         let failed = |error: Error| Failure::environment(error.to_string());
         let scratch = Scratch::new(&std::env::temp_dir())?;
-        let folder = scratch.path("bundle");
-        let written = write_directory(contents, &folder).and_then(|_| blob_files(&folder));
-        let judged = written
-            .map_err(failed)
-            .and_then(|files| self.files(files, &|| Ok(contents.clone()), inputs, bar));
-        // `Scratch` removes only files. If this fails, the bundle stays in the folder for temporary
-        // files.
-        let _ = std::fs::remove_dir_all(&folder);
-        judged
+        let files = stage_blobs(contents, &scratch).map_err(failed)?;
+        self.files(files, &|| Ok(contents.clone()), inputs, bar)
     }
 
     /// Judges a bundle that is there.

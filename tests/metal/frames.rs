@@ -18,7 +18,7 @@ use crate::frames::{PROGRAMS, Scene, Sources, bundle, most_open, most_points, po
 /// The number of permutations of `forward` in each language. All pairs of values are among them, as
 /// they are of the other programs.
 const LEAST_POINTS: usize = 200;
-/// How many of them the tests draw. `cargo xtask frames` draws all.
+/// How many permutations of each program and language the tests draw. `cargo xtask frames` draws all.
 const DRAWN_POINTS: usize = 64;
 /// The size of a frame in pixels.
 const SIZE: [u32; 2] = [128, 64];

@@ -40,8 +40,8 @@ impl SiteBuild {
         }
     }
 
-    /// The command as it is run. The tests wait for their own build longer than for this one, so that
-    /// goes first.
+    /// The command as it is run. The build of the tests takes longer than the quick one, so it goes
+    /// first.
     fn prioritised(self, command: Command) -> Command {
         match self {
             Self::Small => command,

@@ -44,8 +44,8 @@ pub fn run(arguments: &[String]) -> CommandResult {
     if !names.is_empty() {
         return some(&names, &options);
     }
-    // Each build has times in which only one core has work.
     let incremental = incremental_state();
+    // Each build has times in which only one core has work.
     let (site, trials) = std::thread::scope(|scope| {
         let site = scope.spawn(for_node_and_browser);
         let trials = build_trials(&incremental);
@@ -114,7 +114,8 @@ fn build_trials(variables: &[(String, String)]) -> Result<PathBuf, CommandFailur
 /// Variables for cargo. A first build of everything keeps no state for later ones, since the state
 /// costs more than it saves on a machine that builds once.
 fn incremental_state() -> Vec<(String, String)> {
-    let built = std::fs::read_dir(root().join("target/debug/deps")).into_iter().flatten().flatten();
+    let program = std::env::current_exe().unwrap_or_default();
+    let built = std::fs::read_dir(program.with_file_name("deps")).into_iter().flatten().flatten();
     let mut names = built.map(|file| file.file_name());
     match names.any(|name| name.to_string_lossy().starts_with("all-")) {
         true => Vec::new(),

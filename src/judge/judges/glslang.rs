@@ -60,14 +60,15 @@ fn plan_rule<'w>(
         // The relaxed rules accept OpenGL's names of built-in variables. They also accept uniforms
         // outside of blocks, which get bindings. glslc has no such option, but few texts need them.
         "vulkan" => {
-            let options = format!("{stage} -fauto-bind-uniforms -fauto-map-locations");
+            let options = vec![stage, "-fauto-bind-uniforms".into(), "-fauto-map-locations".into()];
             let alone = [&own[..], &["-V", "-R", "--amb", "-o", "/dev/null"]].concat();
             Ok(divide_group(outputs, BATCH, move |outputs| {
                 judge_compiled(&options, &alone, outputs)
             }))
         }
         "hlsl" => {
-            let options = format!("{stage} -x hlsl -fentry-point={}", first.entry);
+            let entry = format!("-fentry-point={}", first.entry);
+            let options = vec![stage, "-x".into(), "hlsl".into(), entry];
             let alone = [&own[..], &["-D", "-V", "-e", &first.entry, "-o", "/dev/null"]].concat();
             plan_hlsl(outputs, options, alone)
         }
@@ -83,7 +84,7 @@ fn plan_rule<'w>(
 /// Reads each text, and compiles those with something new in them.
 fn plan_hlsl<'w>(
     group: &'w [&'w Output],
-    options: String,
+    options: Vec<String>,
     alone: Vec<&'w str>,
 ) -> Result<Vec<JudgeWork<'w>>, String> {
     let read = alone.clone();
@@ -99,12 +100,14 @@ fn plan_hlsl<'w>(
 
 /// Has glslc compile texts to SPIR-V in one run. glslangValidator judges each text that glslc refuses.
 ///
-/// Parameters: `options` of glslc, separated by spaces; those of glslangValidator, `alone`.
-fn judge_compiled(options: &str, alone: &[&str], outputs: &[&Output]) -> JudgeResult {
-    // glslc writes the SPIR-V to the current folder.
+/// Parameters: `options` of glslc; those of glslangValidator, `alone`.
+fn judge_compiled(options: &[String], alone: &[&str], outputs: &[&Output]) -> JudgeResult {
+    // glslc writes the SPIR-V to the current folder. It is removed after each batch, since that of
+    // a whole bundle takes hundreds of megabytes.
     let scratch = Scratch::new(&std::env::temp_dir()).map_err(|error| error.to_string())?;
     let together = |outputs: &[&Output]| {
-        let options: Vec<&str> = options.split(' ').chain(["-Werror", "-c"]).collect();
+        let given = options.iter().map(String::as_str);
+        let options: Vec<&str> = given.chain(["-Werror", "-c"]).collect();
         let files = outputs.iter().map(|output| std::path::absolute(&output.file));
         let files = files.collect::<io::Result<Vec<PathBuf>>>();
         let said = files.and_then(|files| GLSLC.run_in(&scratch.path(""), &options, files));
