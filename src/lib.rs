@@ -110,112 +110,67 @@
 //! Modules that are not listed here serve the command line and may change with any version.
 
 #![warn(missing_docs)]
-// A page has no devices, files or programs: what only those use is not called there.
-#![cfg_attr(target_family = "wasm", allow(dead_code, unused_imports))]
 
-pub mod bundle;
-#[doc(hidden)]
-pub mod input;
-#[doc(hidden)]
-pub mod limits;
-#[doc(hidden)]
-pub mod output;
-#[cfg(feature = "single-file")]
-#[path = "packing/zstd.rs"]
-mod packing;
-#[cfg(not(feature = "single-file"))]
-#[path = "packing/absent.rs"]
-mod packing;
-#[doc(hidden)]
-pub mod quadrature;
-#[cfg(all(feature = "compile", target_os = "linux"))]
-#[path = "syncing/system.rs"]
-mod syncing;
-#[cfg(not(all(feature = "compile", target_os = "linux")))]
-#[path = "syncing/each.rs"]
-mod syncing;
-
-#[cfg(feature = "compile")]
-pub mod cache;
-#[cfg(feature = "compile")]
-pub mod compose;
-#[cfg(feature = "compile")]
-pub mod diagnostic;
-#[cfg(feature = "compile")]
-pub mod emit;
-#[cfg(feature = "eval")]
-pub mod eval;
-#[cfg(feature = "compile")]
-pub mod generate;
-#[cfg(feature = "compile")]
-pub mod judge;
-#[cfg(feature = "compile")]
-pub mod keys;
-#[cfg(feature = "compile")]
-#[doc(hidden)]
-pub mod link;
-#[cfg(feature = "compile")]
-pub mod lint;
-#[cfg(feature = "compile")]
-#[doc(hidden)]
-pub mod metal;
-#[cfg(feature = "migrate")]
-#[doc(hidden)]
-pub mod migrate;
-#[cfg(feature = "compile")]
-#[doc(hidden)]
-pub mod parse;
-#[cfg(feature = "compile")]
-pub mod permute;
-#[cfg(feature = "compile")]
 pub mod project;
-#[cfg(feature = "compile")]
-#[doc(hidden)]
-pub mod rehearse;
-#[cfg(feature = "compile")]
-pub mod resolve;
-#[cfg(feature = "compile")]
-pub mod source;
-#[cfg(feature = "store")]
-pub mod store;
-#[cfg(all(feature = "compile", not(feature = "store")))]
-#[path = "store/absent.rs"]
-pub mod store;
-#[cfg(feature = "compile")]
-#[doc(hidden)]
-pub mod tools;
-#[cfg(feature = "compile")]
-pub mod validate;
 
-#[cfg(all(feature = "harness", not(target_family = "wasm")))]
+pub use lamplight_bundle as bundle;
+pub use lamplight_compose as compose;
+pub use lamplight_compose::resolve;
+pub use lamplight_diagnostic as diagnostic;
+pub use lamplight_diagnostic::source;
+pub use lamplight_emit as emit;
+pub use lamplight_eval as eval;
 #[doc(hidden)]
-pub mod browser;
-#[cfg(feature = "harness")]
+pub use lamplight_files::{input, limits, output, rehearse};
+pub use lamplight_generate as generate;
+pub use lamplight_generate::{cache, store};
+pub use lamplight_keys as keys;
 #[doc(hidden)]
-pub mod catalogue;
-#[cfg(all(feature = "harness", not(target_family = "wasm")))]
+pub use lamplight_link as link;
+pub use lamplight_lint as lint;
+pub use lamplight_permute as permute;
 #[doc(hidden)]
-pub mod cost;
-#[cfg(feature = "harness")]
+pub use lamplight_syntax as parse;
+pub use lamplight_validate as validate;
+
+/// The identity of this build, for [`cache::Cache::new`]. It changes with the sources of this crate
+/// and of those that it is made of, with the versions of their dependencies, and with the system that
+/// it is built for.
+pub const BUILD: &str = env!("LAMPLIGHT_BUILD");
+
+/// The files of the shader library, which this crate carries.
+pub const LIBRARY_FILES: source::Embedded =
+    source::Embedded { texts: lamplight_shaderlib::FILES, tables: lamplight_shaderlib::TABLES };
+
+#[cfg(feature = "cli")]
 #[doc(hidden)]
-pub mod execute;
-#[cfg(feature = "harness")]
-#[doc(hidden)]
-pub mod lsp;
-#[cfg(all(feature = "harness", not(target_family = "wasm")))]
-#[doc(hidden)]
-pub mod model;
-#[cfg(feature = "harness")]
-#[doc(hidden)]
-pub mod picture;
-#[cfg(feature = "harness")]
-#[doc(hidden)]
-pub mod proof;
-#[cfg(feature = "harness")]
-#[doc(hidden)]
-pub mod report;
-#[cfg(feature = "harness")]
-pub mod scene;
+pub use whole::*;
+
+/// What the command uses beside the stages above.
+#[cfg(feature = "cli")]
+mod whole {
+    pub use lamplight_catalogue as catalogue;
+    pub use lamplight_check as proof;
+    pub use lamplight_check::report;
+    pub use lamplight_cost as cost;
+    pub use lamplight_execute as execute;
+    pub use lamplight_lsp as lsp;
+    pub use lamplight_migrate as migrate;
+    pub use lamplight_mutate as mutate;
+    pub use lamplight_picture as picture;
+    pub use lamplight_scene::quadrature;
+    pub use lamplight_scenes::model;
+    pub use lamplight_tools as tools;
+    pub use lamplight_tools::{browser, metal};
+    pub use lamplight_validators as judge;
+}
+
+/// The mathematics of lighting for the host, and what pictures show.
+#[cfg(feature = "cli")]
+pub mod scene {
+    pub use lamplight_scene::*;
+    pub use lamplight_scenes::*;
+}
 
 #[cfg(feature = "cli")]
 #[doc(hidden)]

@@ -6,6 +6,7 @@ mod plots;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use lamplight::LIBRARY_FILES;
 use lamplight::catalogue::{self, CatalogueItemKind, preset, probe};
 use lamplight::diagnostic::Diagnostic;
 use lamplight::diagnostic::render::{Form, render};
@@ -38,9 +39,10 @@ pub fn trials() -> Vec<Trial> {
 
 /// `docs/catalogue` has exactly the pages that `cargo xtask docs` would write now.
 fn pages_are_up_to_date() -> Result<(), Failed> {
-    same_on_disk("docs/catalogue", &made(catalogue_files())?)?;
+    same_on_disk("docs/catalogue", &made(catalogue_files(LIBRARY_FILES))?)?;
     let found = on_disk("docs/catalogue");
-    let mut expected: BTreeSet<String> = made(catalogue_files())?.into_keys().collect();
+    let mut expected: BTreeSet<String> =
+        made(catalogue_files(LIBRARY_FILES))?.into_keys().collect();
     expected.extend(figures::pictures()?);
     let stale: Vec<&String> = found.iter().filter(|path| !expected.contains(*path)).collect();
     if stale.is_empty() {
@@ -51,7 +53,7 @@ fn pages_are_up_to_date() -> Result<(), Failed> {
 }
 
 fn modules_are_up_to_date() -> Result<(), Failed> {
-    same_on_disk("shaderlib", &made(made_modules())?)
+    same_on_disk("shaderlib", &made(made_modules(LIBRARY_FILES))?)
 }
 
 fn same_on_disk(folder: &str, files: &CatalogueFiles) -> Result<(), Failed> {
@@ -86,7 +88,7 @@ fn on_disk(folder: &str) -> Vec<String> {
 }
 
 fn same_bytes_twice() -> Result<(), Failed> {
-    match made(catalogue_files())? == made(catalogue_files())? {
+    match made(catalogue_files(LIBRARY_FILES))? == made(catalogue_files(LIBRARY_FILES))? {
         true => Ok(()),
         false => Err("the pages of the catalogue were made twice and differ".into()),
     }
@@ -99,7 +101,8 @@ fn made(
 }
 
 fn every_item_has_a_twin() -> Result<(), Failed> {
-    let items = catalogue::library_modules().into_iter().flat_map(|module| module.items);
+    let items =
+        catalogue::library_modules(LIBRARY_FILES).into_iter().flat_map(|module| module.items);
     let alone: Vec<String> =
         items.filter(|item| item.glsl.is_none()).map(|item| item.path()).collect();
     if alone.is_empty() { Ok(()) } else { Err(format!("not in GLSL: {alone:?}").into()) }
@@ -108,7 +111,8 @@ fn every_item_has_a_twin() -> Result<(), Failed> {
 /// Every parameter of a function and every field of a struct has a description, and no part of the
 /// line `Parameters:` is missing from them.
 fn every_member_is_described() -> Result<(), Failed> {
-    let items = catalogue::library_modules().into_iter().flat_map(|module| module.items);
+    let items =
+        catalogue::library_modules(LIBRARY_FILES).into_iter().flat_map(|module| module.items);
     let silent = |item: &catalogue::CatalogueItem| -> Vec<String> {
         let members = item.members.iter().filter(|member| member.doc.is_empty());
         let silent = members.map(|member| format!("{}: `{}`", item.path(), member.name));
@@ -131,8 +135,8 @@ fn every_member_is_described() -> Result<(), Failed> {
 /// A function of numbers that returns a number can be plotted without choosing anything, so each of
 /// them must have a plot.
 fn every_plain_function_is_plotted() -> Result<(), Failed> {
-    let files = made(catalogue_files())?;
-    let items = catalogue::library_modules()
+    let files = made(catalogue_files(LIBRARY_FILES))?;
+    let items = catalogue::library_modules(LIBRARY_FILES)
         .into_iter()
         .flat_map(|module| module.items)
         .filter(|item| item.kind == CatalogueItemKind::Function);
@@ -154,7 +158,7 @@ fn every_plain_function_is_plotted() -> Result<(), Failed> {
 fn presets() -> Result<Vec<preset::Preset>, Failed> {
     let (mut sources, manifest) = project::library_manifest()
         .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
-    catalogue::library_examples(&mut sources, &manifest)
+    catalogue::library_examples(LIBRARY_FILES, &mut sources, &manifest)
         .map(|(presets, _)| presets)
         .map_err(|problems| render(&sources, &problems, Form::Human).into())
 }
@@ -230,7 +234,7 @@ fn preset_mistakes_are_reported() -> Result<(), Failed> {
 /// A group of a preset's numbers is named after a uniform. If that is a struct of the library, the
 /// struct must have every field that the preset sets.
 fn preset_numbers_name_fields() -> Result<(), Failed> {
-    let structs: BTreeMap<String, Vec<String>> = catalogue::library_modules()
+    let structs: BTreeMap<String, Vec<String>> = catalogue::library_modules(LIBRARY_FILES)
         .into_iter()
         .flat_map(|module| module.items)
         .filter(|item| item.kind == CatalogueItemKind::Struct)
@@ -256,7 +260,7 @@ fn preset_numbers_name_fields() -> Result<(), Failed> {
 /// One light probe was published twice, with two digits and with six. The two differ by no more than
 /// rounding, so a wrong digit in either would be noticed.
 fn probe_forms_agree() -> Result<(), Failed> {
-    let probes = probe::library_probes(&mut SourceSet::default())
+    let probes = probe::library_probes(LIBRARY_FILES, &mut SourceSet::default())
         .map_err(|problems| format!("{problems:?}"))?;
     let find = |name: &str| {
         probes.iter().find(|probe| probe.name == name).ok_or_else(|| format!("no probe `{name}`"))

@@ -15,6 +15,7 @@ use std::collections::btree_map::Entry;
 use std::f64::consts::PI;
 
 use glam::{DQuat, DVec2, DVec3};
+use lamplight::LIBRARY_FILES;
 use lamplight::bundle::{BindingKind, Language};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::eval::{FunctionId, Machine, Program, Resources};
@@ -153,8 +154,8 @@ fn white_furnace() -> Result<(), Failed> {
 }
 
 fn computed_cells(places: impl Iterator<Item = Place>) -> Result<BTreeMap<Place, Cell>, String> {
-    let programs =
-        Programs::load().map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
+    let programs = Programs::load(LIBRARY_FILES)
+        .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
     let mut furnaces: BTreeMap<(usize, bool), Furnace> = BTreeMap::new();
     let mut cells = BTreeMap::new();
     for place @ (case, metal, roughness, angle) in places {

@@ -10,6 +10,7 @@ mod whole;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use lamplight::LIBRARY_FILES;
 use lamplight::bundle::{BindingKind, Bundle, Language, Reflection, Target, pack as pack_bundle};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::fixture::Fixture;
@@ -175,7 +176,7 @@ pub struct Scene {
 
 impl Sources {
     pub fn load(program: &'static str, language: Language) -> Result<Self, String> {
-        let programs = Programs::load()
+        let programs = Programs::load(LIBRARY_FILES)
             .map_err(|(sources, problems)| render(&sources, &problems, Form::Human))?;
         let space = programs.manifest().program(program).ok_or("no such program")?.space.clone();
         Ok(Self { programs, program, language, space, bundle: None })

@@ -6,13 +6,14 @@ mod visibility;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
+use lamplight::LIBRARY_FILES;
 use lamplight::bundle::Language;
 use lamplight::execute::frame::{Buffers, DrawItem, Drawing, EntryPoint, Mesh, PipelineState};
 use lamplight::execute::{self, Session, executors, kernel};
 use lamplight::proof::check;
 use lamplight::proof::expression::CompiledExpression;
 use lamplight::proof::library::Library;
-use lamplight::source::{Embedded, Files as _, Memory, SourceSet};
+use lamplight::source::{Files as _, Memory, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
 use refused::{case_errors, expression_errors, wrong_function};
@@ -88,7 +89,7 @@ fn browsers() -> Result<(), Failed> {
 
 fn library_on(wanted: fn(&str) -> bool, part: usize) -> Result<(), Failed> {
     opened_of(wanted, |open| {
-        let library = Library::embedded();
+        let library = Library::shipped(LIBRARY_FILES);
         let sources = Mutex::new(SourceSet::default());
         let only = std::env::var("LAMPLIGHT_CASES").unwrap_or_default();
         let paths: Vec<_> = library
@@ -184,8 +185,8 @@ fn lacking() -> Result<(), Failed> {
 /// Every function of every module has a numeric case beside it.
 fn every_function_has_cases() -> Result<(), Failed> {
     let mut missing = Vec::new();
-    for path in Embedded.list(&["wesl"]).iter().filter(|path| !path.starts_with("programs/")) {
-        let read = |path: &str| Embedded.read(path).ok().flatten().unwrap_or_default();
+    for path in LIBRARY_FILES.list(&["wesl"]).iter().filter(|path| !path.starts_with("programs/")) {
+        let read = |path: &str| LIBRARY_FILES.read(path).ok().flatten().unwrap_or_default();
         let (module, cases) = (read(path), read(&path.replace(".wesl", ".toml")));
         let names =
             module.lines().filter_map(|line| Some(line.strip_prefix("fn ")?.split_once('(')?.0));
@@ -241,7 +242,7 @@ const EXPRESSIONS: &[(&str, &str)] = &[
 ];
 
 fn expressions() -> Result<(), Failed> {
-    let (library, sources) = (Library::embedded(), Mutex::new(SourceSet::default()));
+    let (library, sources) = (Library::shipped(LIBRARY_FILES), Mutex::new(SourceSet::default()));
     let mut compiled = Vec::new();
     for (text, expected) in EXPRESSIONS {
         for language in [Language::Wesl, Language::Glsl] {

@@ -4,9 +4,10 @@
 
 use std::sync::{Arc, Mutex};
 
+use lamplight::LIBRARY_FILES;
 use lamplight::diagnostic::render::{Form, render};
+use lamplight::mutate::{self, Fate, MutantReport};
 use lamplight::proof::library::Library;
-use lamplight::proof::mutate::{self, Fate, MutantReport};
 use lamplight::source::{Memory, SourceSet};
 use libtest_mimic::{Failed, Trial};
 use toml::Table;
@@ -43,7 +44,7 @@ const LEAST_QUICK: usize = 290;
 
 /// The cases of these modules notice every mutant but one.
 fn library_kills() -> Outcome {
-    let report = mutants(&Library::embedded(), QUICK)?;
+    let report = mutants(&Library::shipped(LIBRARY_FILES), QUICK)?;
     let (killed, all) = report.killed();
     // Only one mutant, of `is_nan_bits`, is not noticed, and the list has the reason.
     let explained =
@@ -60,7 +61,7 @@ fn library_kills() -> Outcome {
 /// Every entry of the list of equivalent mutants has a function and a line that exist, and a reason,
 /// and is listed once. The entries of a quick module are mutants that really survive.
 fn list_is_sound() -> Outcome {
-    let library = Library::embedded();
+    let library = Library::shipped(LIBRARY_FILES);
     let list: Table =
         toml::from_str(&library.text("survivors.toml").ok_or("no `survivors.toml`")?)?;
     let entries =
@@ -216,7 +217,7 @@ fn stale_entries_are_told() -> Outcome {
 
 /// Cases reach every statement and every branch of the library.
 fn every_block_is_reached() -> Outcome {
-    let (library, sources) = (Library::embedded(), Mutex::new(SourceSet::default()));
+    let (library, sources) = (Library::shipped(LIBRARY_FILES), Mutex::new(SourceSet::default()));
     let found = mutate::measure_coverage(&library, &sources, &library.modules());
     let found =
         found.map_err(|errors| render(&sources.into_inner().unwrap(), &errors, Form::Short))?;

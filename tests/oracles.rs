@@ -8,6 +8,7 @@ mod march;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
+use lamplight::LIBRARY_FILES;
 use lamplight::bundle::Language;
 use lamplight::diagnostic::Diagnostic;
 use lamplight::execute::kernel::Kernel;
@@ -59,7 +60,7 @@ impl Calls<'_> {
     /// A function of the library.
     fn kernel(&self, module: &str, function: &str) -> Result<Kernel, String> {
         let sources = Mutex::new(SourceSet::default());
-        let library = Library::embedded();
+        let library = Library::shipped(LIBRARY_FILES);
         let naga = library.module(&sources, module, self.language, &[function.to_owned()]);
         let naga = naga.map_err(|errors| said(&errors))?;
         kernel::build_kernel(&naga, function, &BTreeMap::new()).map_err(|error| said(&[error]))

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
-use lamplight::source::{Embedded, Files as _};
+use lamplight::LIBRARY_FILES;
+use lamplight::source::Files as _;
 use libtest_mimic::{Failed, Trial};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use wesl::{CodegenModule, CodegenPkg};
@@ -113,7 +114,7 @@ fn npm_package_is_complete() -> Result<(), Failed> {
     if !exported("types")?.is_file() {
         return Err("the file that `exports` names for `types` does not exist".into());
     }
-    for path in Embedded.list(&["glsl"]) {
+    for path in LIBRARY_FILES.list(&["glsl"]) {
         if std::fs::read_to_string(package.join("glsl/lamplight").join(&path))? != text(&path) {
             return Err(format!("`{path}` in the package differs from the library's").into());
         }
@@ -132,7 +133,7 @@ fn npm_package_is_complete() -> Result<(), Failed> {
 }
 
 fn text(path: &str) -> String {
-    Embedded.read(path).ok().flatten().unwrap_or_default()
+    LIBRARY_FILES.read(path).ok().flatten().unwrap_or_default()
 }
 
 fn same(found: &serde_json::Value, expected: &serde_json::Value) -> Result<(), Failed> {

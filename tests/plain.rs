@@ -13,6 +13,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
+use lamplight::LIBRARY_FILES;
 use lamplight::catalogue::{self, CatalogueItem, CatalogueItemKind, CatalogueModule};
 use lamplight::source::Disk;
 use libtest_mimic::{Failed, Trial};
@@ -59,7 +60,7 @@ fn plain_functions() -> Result<BTreeMap<String, CatalogueItem>, Failed> {
 }
 
 fn library_functions() -> BTreeMap<String, CatalogueItem> {
-    functions(catalogue::library_modules())
+    functions(catalogue::library_modules(LIBRARY_FILES))
 }
 
 /// What a line of a function's comment says after this word.

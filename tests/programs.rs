@@ -7,6 +7,7 @@ mod accepted;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use lamplight::LIBRARY_FILES;
 use lamplight::bundle::{Reflection, Target, Varying};
 use lamplight::compose::{self, Composed, Keep, Options};
 use lamplight::diagnostic::Diagnostics;
@@ -15,7 +16,7 @@ use lamplight::emit::{emit, isolate, reflect};
 use lamplight::permute::manifest::{self, ManifestFile, Program};
 use lamplight::permute::{Assignment, ReadTree, Settings, cover};
 use lamplight::resolve::{self, Packages};
-use lamplight::source::{Embedded, Files as _, Package, SourceSet};
+use lamplight::source::{Files as _, Package, SourceSet};
 use lamplight::validate::{Validated, on_large_stack, validate};
 use libtest_mimic::{Failed, Trial};
 use rayon::prelude::*;
@@ -65,7 +66,7 @@ pub fn trials() -> Vec<Trial> {
 
 fn programs() -> Result<Vec<Program>, Failed> {
     let mut sources = SourceSet::default();
-    let text = Embedded.read("lamplight.toml").ok().flatten().ok_or("no manifest")?;
+    let text = LIBRARY_FILES.read("lamplight.toml").ok().flatten().ok_or("no manifest")?;
     let id = sources.add("lamplight.toml", text);
     Ok(manifest::parse(&sources, id)
         .map_err(|problems| render(&sources, &problems, Form::Human))?
@@ -95,7 +96,7 @@ impl Sources {
         (stage, entry, _): &(&'static str, &'static str, &'static str),
     ) -> Result<Self, Failed> {
         let packages = Packages {
-            root: Package { name: "lamplight".to_owned(), files: Box::new(Embedded) },
+            root: Package { name: "lamplight".to_owned(), files: Box::new(LIBRARY_FILES) },
             dependencies: Vec::new(),
         };
         let mut texts = SourceSet::default();

@@ -23,6 +23,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use glam::DVec3;
+use lamplight::LIBRARY_FILES;
 use lamplight::bundle::Language;
 use lamplight::catalogue::preset::{self, Preset};
 use lamplight::catalogue::probe::{self, Probe};
@@ -98,12 +99,15 @@ pub struct Library {
 pub fn library() -> &'static Library {
     static LIBRARY: OnceLock<Library> = OnceLock::new();
     LIBRARY.get_or_init(|| {
-        let programs = Programs::load()
+        let programs = Programs::load(LIBRARY_FILES)
             .map_err(|(texts, problems)| render(&texts, &problems, Form::Human))
             .unwrap();
-        let probes = programs.with_texts(probe::library_probes).unwrap();
+        let probes =
+            programs.with_texts(|texts| probe::library_probes(LIBRARY_FILES, texts)).unwrap();
         let presets = programs
-            .with_texts(|texts| preset::library_presets(texts, programs.manifest(), &probes))
+            .with_texts(|texts| {
+                preset::library_presets(LIBRARY_FILES, texts, programs.manifest(), &probes)
+            })
             .unwrap();
         Library { programs, presets, probes }
     })

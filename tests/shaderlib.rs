@@ -8,12 +8,13 @@ mod twins;
 
 use std::collections::BTreeMap;
 
+use lamplight::LIBRARY_FILES;
 use lamplight::compose::{self, Composed, Keep, Options};
 use lamplight::diagnostic::Diagnostic;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::permute::Settings;
 use lamplight::resolve::{self, Packages};
-use lamplight::source::{Embedded, Files as _, SourceSet};
+use lamplight::source::{Files as _, SourceSet};
 use libtest_mimic::{Failed, Trial};
 use naga::front::{glsl, wgsl};
 use naga::{Module, ShaderStage};
@@ -69,7 +70,7 @@ pub fn modules() -> Vec<String> {
 }
 
 fn stems(extension: &str) -> Vec<String> {
-    let files = Embedded.list(&[extension]);
+    let files = LIBRARY_FILES.list(&[extension]);
     files
         .iter()
         .filter(|path| !path.starts_with("programs/"))
@@ -139,7 +140,9 @@ fn modules_go_beside_names_elsewhere() -> Result<(), Failed> {
 
 /// A function for each name that the library declares, and a call of one of the library's own.
 fn of_the_host() -> Result<String, Failed> {
-    let items = lamplight::catalogue::library_modules().into_iter().flat_map(|module| module.items);
+    let items = lamplight::catalogue::library_modules(LIBRARY_FILES)
+        .into_iter()
+        .flat_map(|module| module.items);
     let mut names: Vec<String> = items.map(|item| item.name).collect();
     names.sort();
     if names.len() < 150 || !names.iter().any(|name| name == "wrap") {
@@ -220,7 +223,7 @@ fn parameters(declaration: &str) -> (Vec<String>, Vec<String>) {
 }
 
 fn read(path: &str) -> String {
-    Embedded
+    LIBRARY_FILES
         .read(path)
         .expect("the embedded library is readable")
         .unwrap_or_else(|| panic!("no `{path}` in the library"))

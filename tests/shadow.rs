@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
 use glam::{DMat4, DVec4};
+use lamplight::LIBRARY_FILES;
 use lamplight::bundle::Language;
 use lamplight::diagnostic::Diagnostic;
 use lamplight::execute::fixture::{
@@ -17,7 +18,7 @@ use lamplight::execute::fixture::{
 };
 use lamplight::execute::{Session, executors, kernel, on_thread};
 use lamplight::proof::library::Library;
-use lamplight::source::{Embedded, Memory, SourceSet};
+use lamplight::source::{Memory, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
 use bias::{
@@ -190,7 +191,7 @@ fn everywhere(property: Property) -> Result<(), Failed> {
         let library = Library::new(
             "scene",
             Arc::new(Memory(files.into())),
-            vec![("lamplight".to_owned(), Arc::new(Embedded))],
+            vec![("lamplight".to_owned(), Arc::new(LIBRARY_FILES))],
         );
         let mut failed = String::new();
         for entry in executors::ALL {

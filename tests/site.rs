@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+use lamplight::LIBRARY_FILES;
 use lamplight::browser::serve::{HttpServer, ServedFiles};
 use lamplight::browser::{Browser, BrowserPage};
 use lamplight::catalogue;
@@ -94,7 +95,7 @@ fn without_errors(page: &mut BrowserPage) -> Outcome {
 fn catalogue() -> Outcome {
     let opened = Opened::new()?;
     let mut page = opened.page("#/catalogue")?;
-    let modules = catalogue::library_modules();
+    let modules = catalogue::library_modules(LIBRARY_FILES);
     let items = modules.iter().flat_map(|module| &module.items);
     let paths: Vec<Value> = items.map(|item| json!([item.path(), item.name])).collect();
     let script = format!(

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
 
+use lamplight::LIBRARY_FILES;
 use lamplight::bundle::{Language, Target};
 use lamplight::compose::{Options, compose};
 use lamplight::diagnostic::render::{Form, render};
@@ -19,7 +20,7 @@ use lamplight::proof::expression::evaluate_expression;
 use lamplight::proof::library::Library;
 use lamplight::proof::references;
 use lamplight::resolve::{self, Packages};
-use lamplight::source::{Embedded, Files as _, Memory, Package, SourceSet};
+use lamplight::source::{Files as _, Memory, Package, SourceSet};
 use lamplight::{catalogue, lint};
 use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
@@ -130,7 +131,8 @@ fn permutations(asked: &mut Asked) -> Result<(), Failed> {
             permutation(asked, program, &key, index % 2 == 1)?;
         }
     }
-    let (presets, _) = catalogue::library_examples(&mut sources, &manifest).map_err(told)?;
+    let (presets, _) =
+        catalogue::library_examples(LIBRARY_FILES, &mut sources, &manifest).map_err(told)?;
     let mut seen = BTreeSet::new();
     for preset in &presets {
         let missing = || format!("an example names the unknown program `{}`", preset.program);
@@ -262,10 +264,10 @@ fn example(
 /// plot. At the second place the expression is read as GLSL, elsewhere as WESL.
 fn expressions(asked: &mut Asked) -> Result<(), Failed> {
     let (library, mut session) =
-        (Library::embedded(), EXECUTOR.start().map_err(|_| "no evaluator")?);
-    for module in catalogue::library_modules() {
+        (Library::shipped(LIBRARY_FILES), EXECUTOR.start().map_err(|_| "no evaluator")?);
+    for module in catalogue::library_modules(LIBRARY_FILES) {
         let path = catalogue::plot::plot_path(&module.path);
-        let Some(text) = Embedded.read(&path).ok().flatten() else { continue };
+        let Some(text) = LIBRARY_FILES.read(&path).ok().flatten() else { continue };
         let mut sources = SourceSet::default();
         let id = sources.add(path, text);
         for (name, plot) in catalogue::plot::parse_plots(&sources, id).map_err(told)? {

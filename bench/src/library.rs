@@ -6,10 +6,11 @@ use std::error::Error;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+use lamplight::LIBRARY_FILES;
 use lamplight::compose::{Keep, Options, wesl as composer};
 use lamplight::permute::Settings;
 use lamplight::resolve;
-use lamplight::source::{Embedded, Files, SourceSet};
+use lamplight::source::{Files, SourceSet};
 use wesl::ModulePath;
 use wesl::syntax::PathOrigin;
 
@@ -69,8 +70,8 @@ fn theirs() -> Result<Duration, Box<dyn Error>> {
         ModulePath::new(PathOrigin::Absolute, file.split('/').map(str::to_owned).collect())
     };
     let mut resolver = wesl::VirtualResolver::new();
-    for file in Embedded.list(&["wesl"]) {
-        let text = Embedded.read(&file).ok().flatten().unwrap_or_default();
+    for file in LIBRARY_FILES.list(&["wesl"]) {
+        let text = LIBRARY_FILES.read(&file).ok().flatten().unwrap_or_default();
         resolver.add_module(path(file.trim_end_matches(".wesl")), Cow::Owned(text));
     }
     let mut compiler = wesl::Wesl::new_barebones().set_custom_resolver(resolver);

@@ -4,6 +4,7 @@
 use std::error::Error;
 use std::time::{Duration, Instant};
 
+use lamplight::LIBRARY_FILES;
 use lamplight::bundle::Language;
 use lamplight::catalogue::{preset, probe};
 use lamplight::diagnostic::Diagnostics;
@@ -45,10 +46,10 @@ pub fn run() -> Outcome {
 /// Draws each preset once.
 fn time_presets(painter: &dyn Session, samples: u32) -> Result<Vec<Timed>, Box<dyn Error>> {
     let told = |problems: Diagnostics| format!("{problems:?}");
-    let programs = Programs::load().map_err(|(_, problems)| told(problems))?;
+    let programs = Programs::load(LIBRARY_FILES).map_err(|(_, problems)| told(problems))?;
     let (presets, probes) = programs.with_texts(|texts| {
-        let probes = probe::library_probes(texts).map_err(told)?;
-        let presets = preset::library_presets(texts, programs.manifest(), &probes);
+        let probes = probe::library_probes(LIBRARY_FILES, texts).map_err(told)?;
+        let presets = preset::library_presets(LIBRARY_FILES, texts, programs.manifest(), &probes);
         presets.map(|presets| (presets, probes)).map_err(told)
     })?;
     let shot = Shot {

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
+use lamplight::LIBRARY_FILES;
 use lamplight::browser::serve::{HttpServer, ServedFiles};
 use lamplight::browser::{Browser, BrowserPage};
 use lamplight::bundle::{Conventions, Language, Target};
@@ -22,7 +23,7 @@ use lamplight::proof::library::Library as ProofLibrary;
 use lamplight::resolve::wesl::{self, KeptModules};
 use lamplight::resolve::{self, Graph, Packages};
 use lamplight::scene::environment;
-use lamplight::source::{Embedded, Files as _, Memory, Package, SourceSet};
+use lamplight::source::{Files as _, Memory, Package, SourceSet};
 use serde_json::Value;
 
 use crate::Outcome;
@@ -120,9 +121,9 @@ fn compile(graph: &Graph, settings: &Settings, linker: &Linker<'_>) -> Result<()
 
 /// From an edit of `forward`, in a package that imports the library, to its WGSL.
 fn keystroke() -> Result<Duration, Diagnostics> {
-    let text = Embedded.read(FORWARD).ok().flatten().ok_or_else(Diagnostics::new)?;
+    let text = LIBRARY_FILES.read(FORWARD).ok().flatten().ok_or_else(Diagnostics::new)?;
     let text = text.replace("import package::", "import lamplight::");
-    let manifest = Embedded.read(MANIFEST).ok().flatten().ok_or_else(Diagnostics::new)?;
+    let manifest = LIBRARY_FILES.read(MANIFEST).ok().flatten().ok_or_else(Diagnostics::new)?;
     let linker = Linker::with(&[Target::WGSL], Conventions::default());
     // The parsed manifest and the parsed texts are kept, as the page keeps them.
     let mut read = SourceSet::default();
@@ -134,7 +135,10 @@ fn keystroke() -> Result<Duration, Diagnostics> {
         let files = BTreeMap::from([(FORWARD.to_owned(), edited)]);
         let packages = Packages {
             root: Package { name: "package".to_owned(), files: Box::new(Memory(files)) },
-            dependencies: vec![Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) }],
+            dependencies: vec![Package {
+                name: LIBRARY.to_owned(),
+                files: Box::new(LIBRARY_FILES),
+            }],
         };
         let mut sources = read.clone();
         let settings = of_manifest(&manifest, "")?;
@@ -169,7 +173,7 @@ fn evaluating() -> Result<Duration, Diagnostics> {
     let sources = Mutex::new(SourceSet::default());
     median(|_| {
         let mut session = executors::eval::EXECUTOR.start().map_err(|_| Diagnostics::new())?;
-        let library = ProofLibrary::embedded();
+        let library = ProofLibrary::shipped(LIBRARY_FILES);
         let session = session.as_mut();
         evaluate_expression(&library, &sources, EXPRESSION, Language::Wesl, session).map(drop)
     })
@@ -186,7 +190,7 @@ fn new_keys() -> Vec<String> {
 /// From a key to the picture, which Vulkan draws. With as many keys as runs, each permutation is
 /// drawn for the first time.
 fn switched_axis(count: usize, keys: &[String]) -> Result<Duration, Diagnostics> {
-    let programs = Programs::load().map_err(|(_, problems)| problems)?;
+    let programs = Programs::load(LIBRARY_FILES).map_err(|(_, problems)| problems)?;
     let shot = Shot {
         size: [256; 2],
         samples: 1,

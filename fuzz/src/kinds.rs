@@ -11,6 +11,7 @@ mod stores;
 
 use std::sync::OnceLock;
 
+use lamplight::LIBRARY_FILES;
 use lamplight::bundle::{Bundle, Language, Target};
 use lamplight::compose::{self, Keep, Options};
 use lamplight::diagnostic::Diagnostics;
@@ -19,7 +20,7 @@ use lamplight::link::{self, Linker};
 use lamplight::permute::{Manifest, Quoted, Setting, Settings, Space, cover, key, lock, manifest};
 use lamplight::project;
 use lamplight::resolve::{self, Packages};
-use lamplight::source::{Embedded, Memory, Package, SourceSet};
+use lamplight::source::{Memory, Package, SourceSet};
 use lamplight::validate::validate;
 
 /// A part of the crate that reads input that others wrote.
@@ -122,7 +123,7 @@ fn glsl(bytes: &[u8]) -> String {
 fn composed(bytes: &[u8], root: &str, language: Language) -> String {
     let text = String::from_utf8_lossy(bytes);
     let own = Package { name: "package".to_owned(), files: Box::new(files(root, &text)) };
-    let library = Package { name: project::LIBRARY.to_owned(), files: Box::new(Embedded) };
+    let library = Package { name: project::LIBRARY.to_owned(), files: Box::new(LIBRARY_FILES) };
     let packages = Packages { root: own, dependencies: vec![library] };
     let mut sources = SourceSet::default();
     let graph = match resolve::load(&mut sources, &packages, root, language) {
@@ -146,7 +147,7 @@ fn composed(bytes: &[u8], root: &str, language: Language) -> String {
 fn compile(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let own = Package { name: "package".to_owned(), files: Box::new(files("main.wesl", &text)) };
-    let library = Package { name: project::LIBRARY.to_owned(), files: Box::new(Embedded) };
+    let library = Package { name: project::LIBRARY.to_owned(), files: Box::new(LIBRARY_FILES) };
     let packages = Packages { root: own, dependencies: vec![library] };
     let mut sources = SourceSet::default();
     let graph = match resolve::load(&mut sources, &packages, "main.wesl", Language::Wesl) {

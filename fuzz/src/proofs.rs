@@ -151,7 +151,7 @@ const PLACES: usize = 4;
 /// editor. The lines between two such messages are a new text of one of the editor's two files: of
 /// the GLSL file if the text has a directive, which WESL does not know, and of the WESL file if not.
 fn lsp(bytes: &[u8]) -> String {
-    let mut server = LanguageServer::new(Box::new(|_| None));
+    let mut server = LanguageServer::new(Box::new(|_| None), lamplight::LIBRARY_FILES);
     let mut answers = String::new();
     let mut edited = String::new();
     let all = text(bytes);

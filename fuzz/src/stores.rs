@@ -58,7 +58,8 @@ impl Storage for Fixed {
 /// Reads the input as a record of a cache, with the correct checksum for the name it is asked for.
 pub fn record(bytes: &[u8]) -> String {
     let asked = Arc::<Mutex<Vec<String>>>::default();
-    let cache = Cache::new(vec![Box::new(Fixed { packed: bytes.to_vec(), asked: asked.clone() })]);
+    let cache =
+        Cache::new("fuzz", vec![Box::new(Fixed { packed: bytes.to_vec(), asked: asked.clone() })]);
     let composed = Composed::of_text(Language::Wesl, None, "fn f() {}".to_owned());
     let found = cache.find(CompileJob {
         text: "fn f() {}",

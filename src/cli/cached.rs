@@ -23,7 +23,7 @@ impl Cached {
     /// The cache of a package, or of the current folder where there is no manifest.
     pub fn open(&self, manifest: Option<&Path>) -> Result<Option<Cache>, Failure> {
         let storages = self.storages(manifest)?;
-        Ok((!storages.is_empty()).then(|| Cache::new(storages)))
+        Ok((!storages.is_empty()).then(|| Cache::new(crate::BUILD, storages)))
     }
 
     /// The cache folder as a storage. The list is empty with `--no-cache`, and where no folder is

@@ -9,12 +9,13 @@ use super::cost;
 use super::failure::Failure;
 use super::overwrite::Overwrite;
 use super::terminal::stdout;
+use crate::LIBRARY_FILES;
 use crate::catalogue::cost::is_record;
 use crate::catalogue::{self as library, figure};
 use crate::diagnostic::Diagnostics;
 use crate::picture::figure::{Pictures, draw_figures, stale_figures};
 use crate::proof::catalogue::{self, CatalogueFiles};
-use crate::source::SourceSet;
+use crate::source::{Embedded, SourceSet};
 use crate::{input, output};
 
 /// The most bytes of a picture that is kept.
@@ -57,8 +58,8 @@ pub fn run_catalogue(arguments: Arguments, gpus: cost::OpenedGpus) -> Result<(),
         return Ok(output::write_file(path, text.as_bytes(), is_record, replace)?);
     }
     let (folder, files) = match &arguments.modules {
-        Some(folder) => (folder, catalogue::made_modules()),
-        None => (&arguments.output, catalogue::catalogue_files()),
+        Some(folder) => (folder, catalogue::made_modules(LIBRARY_FILES)),
+        None => (&arguments.output, catalogue::catalogue_files(LIBRARY_FILES)),
     };
     let files = files.map_err(|(sources, problems)| Failure::Input(sources, problems))?;
     let changed = changed_files(folder, &files);
@@ -92,9 +93,10 @@ pub fn run_catalogue(arguments: Arguments, gpus: cost::OpenedGpus) -> Result<(),
     )?)
 }
 
-/// A function over figures. Its arguments are the kinds of figures, all figures, and a function
+/// A function over figures. Its arguments are the library, the kinds of figures, all figures, and a function
 /// that reads a figure's picture from the folder.
 type FigureWork<T> = fn(
+    Embedded,
     &figure::Kinds,
     &figure::Figures,
     &(dyn Fn(&str) -> Option<Vec<u8>> + Sync),
@@ -104,9 +106,14 @@ type FigureWork<T> = fn(
 fn with_figures<T>(folder: &Path, work: FigureWork<T>) -> Result<T, Failure> {
     let mut sources = SourceSet::default();
     let read = |sources: &mut SourceSet| {
-        let kinds = figure::library_kinds(sources)?;
-        let figures = figure::library_figures(sources, &library::library_modules(), &kinds)?;
-        work(&kinds, &figures, &|path| {
+        let kinds = figure::library_kinds(LIBRARY_FILES, sources)?;
+        let figures = figure::library_figures(
+            LIBRARY_FILES,
+            sources,
+            &library::library_modules(LIBRARY_FILES),
+            &kinds,
+        )?;
+        work(LIBRARY_FILES, &kinds, &figures, &|path| {
             let file = folder.join(figure::picture_path(path));
             input::read_file(&file, MOST_BYTES).ok()
         })

@@ -10,6 +10,7 @@ use super::executor;
 use super::failure::Failure;
 use super::features;
 use super::input::{self, LanguageName};
+use crate::LIBRARY_FILES;
 use crate::bundle::Language;
 use crate::cli::terminal::stdout;
 use crate::diagnostic::{Diagnostics, nearest_name, stopped_message};
@@ -233,7 +234,7 @@ fn parse_selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
         arguments.path.iter().chain(&default).partition(|path| Path::new(path).exists());
     let mut selections = Vec::new();
     if own.is_empty() || !of_library.is_empty() {
-        let library = Library::embedded();
+        let library = Library::shipped(LIBRARY_FILES);
         let files = library_files(&library, &of_library)?;
         let languages = LANGUAGES
             .iter()

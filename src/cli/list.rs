@@ -9,6 +9,7 @@ use super::compile;
 use super::failure::Failure;
 use super::own::OwnPackage;
 use super::text;
+use crate::LIBRARY_FILES;
 use crate::catalogue::{self, CatalogueItemKind, probe};
 use crate::cli::terminal::stdout;
 use crate::emit::targets;
@@ -87,7 +88,7 @@ pub fn run_list(arguments: Arguments) -> Result<(), Failure> {
 /// The modules of the user's own package, then those of the library.
 pub fn known_modules(own: &OwnPackage) -> Result<Vec<catalogue::CatalogueModule>, Failure> {
     let own = own.packages()?.map(|packages| catalogue::own_modules(&*packages.root.files));
-    Ok(own.into_iter().flatten().chain(catalogue::library_modules()).collect())
+    Ok(own.into_iter().flatten().chain(catalogue::library_modules(LIBRARY_FILES)).collect())
 }
 
 /// The programs of the user's own manifest, then those of the library.
@@ -154,7 +155,7 @@ fn axis_table(programs: &[Program]) -> ListTable {
 
 fn preset_table() -> Result<ListTable, Failure> {
     let (mut sources, manifest) = own_manifest()?;
-    let (presets, _) = catalogue::library_examples(&mut sources, &manifest)
+    let (presets, _) = catalogue::library_examples(LIBRARY_FILES, &mut sources, &manifest)
         .map_err(|problems| Failure::Input(sources, problems))?;
     let things = presets.iter().map(super::show::preset_json).collect();
     Ok(ListTable { shown: &["preset", "program", "scene", "key"], things })
@@ -162,7 +163,7 @@ fn preset_table() -> Result<ListTable, Failure> {
 
 fn probe_table() -> Result<ListTable, Failure> {
     let mut sources = SourceSet::default();
-    let probes = probe::library_probes(&mut sources)
+    let probes = probe::library_probes(LIBRARY_FILES, &mut sources)
         .map_err(|problems| Failure::Input(sources, problems))?;
     Ok(ListTable {
         shown: &["probe", "title"],

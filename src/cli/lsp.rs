@@ -13,11 +13,12 @@ use serde_json::Value;
 
 use super::failure::Failure;
 use super::terminal;
+use crate::LIBRARY_FILES;
 use crate::input;
 use crate::lsp::wire::{self, Incoming};
 use crate::lsp::{LanguageServer, LibraryPaths};
 use crate::output::{self, Replace};
-use crate::source::{Embedded, Files};
+use crate::source::Files;
 use crate::validate::on_large_stack;
 
 /// Run a language server for WESL, WGSL and GLSL on standard input and output.
@@ -50,7 +51,7 @@ pub fn run_lsp(_: Arguments) -> Result<(), Failure> {
 
 /// Answers until the editor leaves; returns the exit code that the protocol demands.
 fn serve_editor(receiver: &Receiver<Incoming>) -> Result<u8, Failure> {
-    let mut server = LanguageServer::new(library_copy());
+    let mut server = LanguageServer::new(library_copy(), LIBRARY_FILES);
     let mut pause = PAUSE;
     loop {
         let next = match server.is_idle() {
@@ -99,7 +100,7 @@ fn library_copy() -> LibraryPaths {
     let copy = OnceCell::new();
     Box::new(move |name| {
         let folder: &Option<PathBuf> = copy.get_or_init(write_library);
-        Embedded.read(name).ok()??;
+        LIBRARY_FILES.read(name).ok()??;
         Some(folder.as_ref()?.join(name))
     })
 }
@@ -109,8 +110,8 @@ fn write_library() -> Option<PathBuf> {
         |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let cache = variable("XDG_CACHE_HOME").or_else(|| Some(variable("HOME")?.join(".cache")))?;
     let folder = cache.join("lamplight").join(env!("CARGO_PKG_VERSION"));
-    let names = Embedded.list(&["wesl", "wgsl", "glsl", "toml"]);
-    let text = |name: &String| Some((name.clone(), Embedded.read(name).ok()??));
+    let names = LIBRARY_FILES.list(&["wesl", "wgsl", "glsl", "toml"]);
+    let text = |name: &String| Some((name.clone(), LIBRARY_FILES.read(name).ok()??));
     let files: Vec<(String, String)> = names.iter().filter_map(text).collect();
     let is_there = |(name, text): &(String, String)| {
         let found = input::read_file(&folder.join(name), text.len() as u64);

@@ -9,8 +9,9 @@ use clap::Args;
 
 use super::failure::Failure;
 use super::terminal::stdout;
+use crate::LIBRARY_FILES;
+use crate::mutate::{measure_coverage, run_mutants};
 use crate::proof::library::Library;
-use crate::proof::mutate::{measure_coverage, run_mutants};
 use crate::source::{Disk, SourceSet};
 
 /// Put mistakes into functions, one at a time, and see whether the numeric cases notice.
@@ -37,7 +38,7 @@ pub fn run_mutate(arguments: Arguments) -> Result<(), Failure> {
 }
 
 fn open_library(arguments: &Arguments) -> Result<Library, Failure> {
-    let Some(root) = &arguments.root else { return Ok(Library::embedded()) };
+    let Some(root) = &arguments.root else { return Ok(Library::shipped(LIBRARY_FILES)) };
     let disk = Disk::new(root)
         .map_err(|error| Failure::input(format!("cannot read `{}`: {error}", root.display())))?;
     Ok(Library::new("lamplight", Arc::new(disk), Vec::new()))

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::failure::Failure;
+use crate::LIBRARY_FILES;
 use crate::permute::Manifest;
 use crate::project::{self, LIBRARY};
 use crate::proof::library::Library;
@@ -46,7 +47,7 @@ impl OwnPackage {
 
     /// The functions that expressions may call: those of the library, and its own.
     pub fn library(&self) -> Result<Library, Failure> {
-        let Some(packages) = self.packages()? else { return Ok(Library::embedded()) };
+        let Some(packages) = self.packages()? else { return Ok(Library::shipped(LIBRARY_FILES)) };
         let dependencies = packages.dependencies.into_iter();
         let dependencies =
             dependencies.map(|package| (package.name, Arc::from(package.files))).collect();

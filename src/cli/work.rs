@@ -241,7 +241,7 @@ fn open_cache(places: &PathArguments, manifest: &Path) -> Result<Option<Cache>, 
     if let Some(address) = &places.store {
         storages.push(store::open(address).map_err(Failure::environment)?);
     }
-    Ok((!storages.is_empty()).then(|| Cache::new(storages)))
+    Ok((!storages.is_empty()).then(|| Cache::new(crate::BUILD, storages)))
 }
 
 /// Warns if the cache failed. The run does not fail because of that.

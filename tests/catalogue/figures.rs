@@ -1,10 +1,11 @@
 //! Every function has a plot or a picture, and the pictures show what the functions compute.
 
+use lamplight::LIBRARY_FILES;
 use lamplight::catalogue::figure::{Figures, Kinds, library_figures, library_kinds, picture_path};
 use lamplight::catalogue::plot::{parse_plots, plot_path};
 use lamplight::catalogue::{self, CatalogueItemKind};
 use lamplight::picture::figure::stale_figures;
-use lamplight::source::{Embedded, Files as _, SourceSet};
+use lamplight::source::{Files as _, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
 use crate::snapshot::root;
@@ -19,8 +20,13 @@ pub fn trials() -> Vec<Trial> {
 fn figures() -> Result<(Kinds, Figures), Failed> {
     let mut sources = SourceSet::default();
     let mut read = || {
-        let kinds = library_kinds(&mut sources)?;
-        let figures = library_figures(&mut sources, &catalogue::library_modules(), &kinds)?;
+        let kinds = library_kinds(LIBRARY_FILES, &mut sources)?;
+        let figures = library_figures(
+            LIBRARY_FILES,
+            &mut sources,
+            &catalogue::library_modules(LIBRARY_FILES),
+            &kinds,
+        )?;
         Ok((kinds, figures))
     };
     read().map_err(|problems: Vec<_>| format!("{problems:?}").into())
@@ -37,10 +43,10 @@ pub fn pictures() -> Result<Vec<String>, Failed> {
 fn every_function_is_drawn() -> Result<(), Failed> {
     let (_, figures) = figures()?;
     let mut missing = Vec::new();
-    for module in catalogue::library_modules() {
+    for module in catalogue::library_modules(LIBRARY_FILES) {
         let mut sources = SourceSet::default();
         let path = plot_path(&module.path);
-        let text = Embedded.read(&path).ok().flatten().unwrap_or_default();
+        let text = LIBRARY_FILES.read(&path).ok().flatten().unwrap_or_default();
         let id = sources.add(path, text);
         let plots = parse_plots(&sources, id).map_err(|problems| format!("{problems:?}"))?;
         let functions = module.items.iter().filter(|item| item.kind == CatalogueItemKind::Function);
@@ -62,7 +68,7 @@ fn figures_are_up_to_date() -> Result<(), Failed> {
     let (kinds, figures) = figures()?;
     let folder = root().join("docs/catalogue");
     let existing = |path: &str| std::fs::read(folder.join(picture_path(path))).ok();
-    let stale = stale_figures(&kinds, &figures, &existing);
+    let stale = stale_figures(LIBRARY_FILES, &kinds, &figures, &existing);
     let stale = stale.map_err(|problems| format!("{problems:?}"))?;
     match stale.is_empty() {
         true => Ok(()),

@@ -2,11 +2,12 @@
 
 use std::sync::Mutex;
 
+use lamplight::LIBRARY_FILES;
 use lamplight::catalogue::{self, plot};
 use lamplight::execute::executors::eval::EXECUTOR;
 use lamplight::proof::library::Library;
 use lamplight::proof::plots::plot_curves;
-use lamplight::source::{Embedded, Files as _, SourceSet};
+use lamplight::source::{Files as _, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
 /// How far apart two curves must be at some point, as a fraction of the plot's height. It is the
@@ -24,9 +25,9 @@ pub fn trials() -> Vec<Trial> {
 /// Every plot of the library, with the path of its function.
 fn all_plots() -> Result<Vec<(String, plot::Plot)>, Failed> {
     let mut all = Vec::new();
-    for module in catalogue::library_modules() {
+    for module in catalogue::library_modules(LIBRARY_FILES) {
         let path = plot::plot_path(&module.path);
-        let Some(text) = Embedded.read(&path).ok().flatten() else { continue };
+        let Some(text) = LIBRARY_FILES.read(&path).ok().flatten() else { continue };
         let mut sources = SourceSet::default();
         let id = sources.add(path, text);
         let plots = plot::parse_plots(&sources, id).map_err(|problems| format!("{problems:?}"))?;
@@ -39,7 +40,7 @@ fn all_plots() -> Result<Vec<(String, plot::Plot)>, Failed> {
 
 /// A curve that lies on its neighbour does not show what the varied parameter does.
 fn curves_are_apart() -> Result<(), Failed> {
-    let library = Library::embedded();
+    let library = Library::shipped(LIBRARY_FILES);
     let mut session = EXECUTOR.start().map_err(|_| "no evaluator")?;
     let mut alike = Vec::new();
     for (path, plot) in all_plots()? {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use lamplight::LIBRARY_FILES;
 use lamplight::catalogue::cost;
 use lamplight::project;
 use lamplight::source::SourceSet;
@@ -66,7 +67,7 @@ fn all_are_recorded(measured: &[u8], recorded: &[u8]) -> Outcome {
 /// if this machine has the driver that was recorded. Every recorded axis and value exists.
 pub fn record_is_current() -> Outcome {
     let mut sources = SourceSet::default();
-    let library = cost::library_costs(&mut sources);
+    let library = cost::library_costs(LIBRARY_FILES, &mut sources);
     let recorded = library.map_err(|problems| format!("{problems:?}"))?;
     let (_, manifest) =
         project::library_manifest().map_err(|(_, problems)| format!("{problems:?}"))?;

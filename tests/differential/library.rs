@@ -4,10 +4,11 @@
 //! Conditions over enum axes are our addition to WESL. For the crate they are translated to one flag
 //! for each value: `shadow == vsm` becomes `shadow_is_vsm`.
 
+use lamplight::LIBRARY_FILES;
 use lamplight::compose::Mangle;
 use lamplight::permute::{Assignment, Axis, Program, Setting, Settings, cover};
 use lamplight::project;
-use lamplight::source::{Embedded, Files as _};
+use lamplight::source::Files as _;
 use libtest_mimic::{Failed, Trial};
 
 use super::normal::{normal, normal_functions};
@@ -23,7 +24,7 @@ const UNCOMPARED: [&str; 1] = ["deferred"];
 
 pub fn trials() -> Vec<Trial> {
     let modules =
-        Embedded.list(&["wesl"]).into_iter().filter(|path| !path.starts_with("programs/"));
+        LIBRARY_FILES.list(&["wesl"]).into_iter().filter(|path| !path.starts_with("programs/"));
     let modules = modules
         .map(|path| Trial::test(format!("differential::library::{path}"), move || module(&path)));
     let programs =
@@ -36,12 +37,12 @@ pub fn trials() -> Vec<Trial> {
 }
 
 fn text(path: &str) -> String {
-    Embedded.read(path).ok().flatten().unwrap_or_default()
+    LIBRARY_FILES.read(path).ok().flatten().unwrap_or_default()
 }
 
 /// The whole library as a package.
 fn package(name: &str) -> Files {
-    Embedded
+    LIBRARY_FILES
         .list(&["wesl"])
         .into_iter()
         .map(|path| ((name.to_owned(), path.clone()), text(&path)))

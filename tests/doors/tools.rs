@@ -390,7 +390,7 @@ fn walk(folder: &Path) -> Result<Vec<PathBuf>, libtest_mimic::Failed> {
 fn stores() -> Outcome {
     let package = Package::new(&[])?;
     package.run("gen --help")?.ends(0)?.says(&[lamplight::store::HELP])?;
-    let absent = include_str!("../../src/store/absent.rs");
+    let absent = include_str!("../../crates/generate/src/store/absent.rs");
     let help = absent.lines().find(|line| line.contains("const HELP")).ok_or("no help")?;
     equal((help.contains("fs:/path"), help.contains("redis")), (true, false))?;
     let present = package.run("gen --store redis://127.0.0.1:1 --root none")?;

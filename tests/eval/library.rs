@@ -2,18 +2,19 @@
 //! evaluator's error bound.
 
 use super::program;
+use lamplight::LIBRARY_FILES;
 use lamplight::compose::{Keep, Options, wesl::compose};
 use lamplight::eval::{Bounded, FindingKind, FunctionId, Machine, Number, Program, SlotKind};
 use lamplight::permute::Settings;
 use lamplight::resolve::{Packages, wesl::load};
-use lamplight::source::{Embedded, Files as _, Package, SourceSet};
+use lamplight::source::{Files as _, Package, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
 /// The number of inputs for each function.
 const INPUTS: u32 = 200;
 
 pub fn trials() -> Vec<Trial> {
-    let modules = Embedded
+    let modules = LIBRARY_FILES
         .list(&["wesl"])
         .into_iter()
         .filter(|path| path.contains('/') && !path.starts_with("programs/"));
@@ -23,7 +24,7 @@ pub fn trials() -> Vec<Trial> {
 /// The program of all functions of a module.
 pub fn library_program(path: &str) -> Result<Program, Failed> {
     let packages = Packages {
-        root: Package { name: "lamplight".into(), files: Box::new(Embedded) },
+        root: Package { name: "lamplight".into(), files: Box::new(LIBRARY_FILES) },
         dependencies: Vec::new(),
     };
     let said = |errors| Failed::from(format!("{errors:?}"));

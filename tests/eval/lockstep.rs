@@ -7,11 +7,12 @@ use super::library::{library_program, random_word};
 use super::program;
 pub use draft::Dice;
 use draft::draft_program;
+use lamplight::LIBRARY_FILES;
 use lamplight::eval::{
     Address, Batch, Error, Filter, FunctionId, LOOP_LIMIT, Machine, Program, Resources, Sampler,
     SlotKind, Texture, TextureDimension,
 };
-use lamplight::source::{Embedded, Files as _};
+use lamplight::source::Files as _;
 use libtest_mimic::{Failed, Trial};
 
 /// How many random programs run.
@@ -152,7 +153,7 @@ fn bits_of(slots: &[f32]) -> Vec<u32> {
 /// Calls of every function of the library agree. Each lane has its own inputs, and the number of
 /// lanes is not a multiple of [`Batch::LANES`].
 fn library_functions() -> Result<(), Failed> {
-    let modules = Embedded.list(&["wesl"]);
+    let modules = LIBRARY_FILES.list(&["wesl"]);
     let is_module = |path: &&String| path.contains('/') && !path.starts_with("programs/");
     let mut compared = 0;
     for path in modules.iter().filter(is_module) {

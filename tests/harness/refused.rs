@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex};
 
+use lamplight::LIBRARY_FILES;
 use lamplight::bundle::Language;
 use lamplight::diagnostic::render::Form;
 use lamplight::proof::expression;
@@ -21,7 +22,7 @@ const EXPRESSION_ERRORS: &[(&str, Language, &str)] = &[
 
 pub fn expression_errors() -> Result<(), Failed> {
     opened(|open| {
-        let library = Library::embedded();
+        let library = Library::shipped(LIBRARY_FILES);
         for (text, language, expected) in EXPRESSION_ERRORS {
             let sources = Mutex::new(SourceSet::default());
             let errors = expression::evaluate_expression(

@@ -23,7 +23,7 @@ fn edit() -> Value {
 /// A message with too many edits is not applied, and the user is told. The server then gives no
 /// answers about the document, since its text differs from the editor's.
 fn many() -> Outcome {
-    let mut server = LanguageServer::new(Box::new(|_| None));
+    let mut server = LanguageServer::new(Box::new(|_| None), lamplight::LIBRARY_FILES);
     let document = json!({ "uri": URI, "version": 1, "text": "x".repeat(BYTES) });
     let opened = json!({ "textDocument": document });
     server.receive(&json!({ "method": "textDocument/didOpen", "params": opened }));

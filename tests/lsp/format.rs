@@ -1,6 +1,7 @@
 //! Formatting of documents.
 
-use lamplight::source::{Embedded, Files as _};
+use lamplight::LIBRARY_FILES;
+use lamplight::source::Files as _;
 use libtest_mimic::Failed;
 use serde_json::json;
 
@@ -27,8 +28,8 @@ pub fn formatting() -> Outcome {
     expect(words(&once) == words(&odd), &once)?;
     expect(once.contains("    return   vec4f(\n        sum\n    );\n}\n"), &once)?;
     expect(format(&once)? == once, &once)?;
-    for file in Embedded.list(&["wesl"]) {
-        let text = Embedded.read(&file).ok().flatten().ok_or("unreadable")?;
+    for file in LIBRARY_FILES.list(&["wesl"]) {
+        let text = LIBRARY_FILES.read(&file).ok().flatten().ok_or("unreadable")?;
         let once = format(&text)?;
         expect(words(&once) == words(&text) && format(&once)? == once, &file)?;
     }

@@ -164,12 +164,12 @@ pub fn symbols() -> Outcome {
 /// The outline (`documentSymbol`) of each of the library's modules has every name that the
 /// catalogue lists for it. A request for half of a file is answered too.
 pub fn library() -> Outcome {
-    use lamplight::source::{Embedded, Files as _};
-    let known = lamplight::catalogue::library_modules();
+    use lamplight::source::Files as _;
+    let known = lamplight::catalogue::library_modules(lamplight::LIBRARY_FILES);
     let mut session = session()?;
     for module in &known {
         let path = format!("{}.glsl", module.path.replace("::", "/"));
-        let text = Embedded.read(&path).ok().flatten().ok_or("unreadable")?;
+        let text = lamplight::LIBRARY_FILES.read(&path).ok().flatten().ok_or("unreadable")?;
         let name = path.replace('/', "_");
         session.open(&name, &text)?;
         let document = json!({ "textDocument": { "uri": session.uri(&name)? } });

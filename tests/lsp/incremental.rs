@@ -52,7 +52,10 @@ struct Editor {
 
 impl Editor {
     fn new() -> Self {
-        Self { server: LanguageServer::new(Box::new(|_| None)), told: BTreeMap::new() }
+        Self {
+            server: LanguageServer::new(Box::new(|_| None), lamplight::LIBRARY_FILES),
+            told: BTreeMap::new(),
+        }
     }
 
     fn tell(&mut self, method: &str, parameters: Value) {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use lamplight::LIBRARY_FILES;
 use lamplight::bundle::Language;
 use lamplight::catalogue::plot;
 use lamplight::compose::{self, Keep, Options};
@@ -9,7 +10,7 @@ use lamplight::diagnostic::render::{Form, render};
 use lamplight::permute::Settings;
 use lamplight::proof::cases;
 use lamplight::resolve::{self, Packages};
-use lamplight::source::{Embedded, Files, Memory, Package, ReadError, SourceSet};
+use lamplight::source::{Files, Memory, Package, ReadError, SourceSet};
 use lamplight::validate::validate;
 use libtest_mimic::Failed;
 
@@ -168,10 +169,10 @@ pub fn forms() -> Outcome {
     }
     let first = LAWS.lines().next().unwrap_or_default();
     let mark = first.split('.').next().unwrap_or_default();
-    let library = Embedded.list(&["toml"]);
-    let kept = library
-        .iter()
-        .find(|path| Embedded.read(path).ok().flatten().is_some_and(|text| text.contains(mark)));
+    let library = LIBRARY_FILES.list(&["toml"]);
+    let kept = library.iter().find(|path| {
+        LIBRARY_FILES.read(path).ok().flatten().is_some_and(|text| text.contains(mark))
+    });
     match kept {
         Some(path) => Err(format!("shaderlib/{path}: choose forms, and delete their list").into()),
         None if library.is_empty() => Err("the library has no cases".into()),
@@ -242,11 +243,11 @@ struct Overlay(Memory);
 
 impl Files for Overlay {
     fn read(&self, path: &str) -> Result<Option<String>, ReadError> {
-        Ok(self.0.read(path)?.or(Embedded.read(path)?))
+        Ok(self.0.read(path)?.or(LIBRARY_FILES.read(path)?))
     }
 
     fn list(&self, extensions: &[&str]) -> Vec<String> {
-        let mut all = [self.0.list(extensions), Embedded.list(extensions)].concat();
+        let mut all = [self.0.list(extensions), LIBRARY_FILES.list(extensions)].concat();
         all.sort();
         all.dedup();
         all

@@ -14,7 +14,10 @@ const SIZE: [u32; 2] = [320, 240];
 const VISIBLE: f64 = 4.0;
 
 pub fn trials() -> Vec<Trial> {
-    let comparisons = library().programs.with_texts(strip::library_comparisons).unwrap();
+    let comparisons = library()
+        .programs
+        .with_texts(|texts| strip::library_comparisons(lamplight::LIBRARY_FILES, texts))
+        .unwrap();
     let trial = |comparison: Comparison| {
         Trial::test(format!("render/compared/{}", comparison.name), move || {
             on_device("vulkan", |_| neighbours_differ(&comparison))

@@ -78,7 +78,10 @@ fn gallery_is_current() -> Result<(), Failed> {
         .map(|preset| gallery::Card::new(&library().programs, preset, Language::Wesl));
     let cards: Vec<gallery::Card> = cards.collect::<Result<_, _>>().map_err(said)?;
     let cards: Vec<&gallery::Card> = cards.iter().collect();
-    let strips = library().programs.with_texts(strip::library_comparisons).map_err(said)?;
+    let strips = library()
+        .programs
+        .with_texts(|texts| strip::library_comparisons(lamplight::LIBRARY_FILES, texts))
+        .map_err(said)?;
     let strips = strips
         .into_iter()
         .map(|one| gallery::StripCard::new(&library().programs, one, Language::Wesl));

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
+use lamplight::LIBRARY_FILES;
 use lamplight::browser::BrowserPage;
 use lamplight::bundle::Language;
 use lamplight::catalogue;
@@ -82,9 +83,10 @@ fn compare(name: &str, data: &str, wanted: &Picture) -> Outcome {
 /// The picture of `lamplight render PRESET --size 192x192 --samples 4`.
 fn rendered(preset: &str) -> Result<Picture, Failed> {
     let drawn = on_thread(|| {
-        let programs = Programs::load().map_err(|(_, problems)| problems)?;
-        let (presets, probes) =
-            programs.with_texts(|texts| catalogue::library_examples(texts, programs.manifest()))?;
+        let programs = Programs::load(LIBRARY_FILES).map_err(|(_, problems)| problems)?;
+        let (presets, probes) = programs.with_texts(|texts| {
+            catalogue::library_examples(LIBRARY_FILES, texts, programs.manifest())
+        })?;
         let found = presets.iter().find(|one| one.name == preset).ok_or_else(Vec::new)?;
         let plan = Plan::of_preset(&programs, found, &probes)?;
         let shot = shot(192).ok_or_else(Vec::new)?;

@@ -1,6 +1,6 @@
 //! Loads the bundle that the build script made, and prints the size of each permutation.
 
-use lamplight::bundle::{Bundle, Error, Target};
+use lamplight_bundle::{Bundle, Error, Target};
 
 fn main() -> Result<(), Error> {
     let bundle = Bundle::from_bytes(

@@ -1,7 +1,8 @@
 //! What values of axes cost, as `cargo xtask docs --costs` recorded it.
 
-use lamplight::catalogue::cost::{self, SHOWN};
+use lamplight::LIBRARY_FILES;
 use lamplight::source::SourceSet;
+use lamplight_catalogue::cost::{self, SHOWN};
 use serde::Serialize;
 use tsify::Tsify;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -44,7 +45,7 @@ pub struct AxisCost {
 #[wasm_bindgen(js_name = costs)]
 pub fn axis_costs(program: &str) -> Answer<CostInfo> {
     // The library's own files have no errors.
-    let record = cost::library_costs(&mut SourceSet::default()).unwrap_or_default();
+    let record = cost::library_costs(LIBRARY_FILES, &mut SourceSet::default()).unwrap_or_default();
     let shown = record.gpus.iter().find(|gpu| gpu.name == SHOWN);
     let axis = |cost: &cost::AxisCost| AxisCost {
         axis: cost.axis.clone(),

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use lamplight::catalogue::plot::{self, Plot};
-use lamplight::catalogue::{self, CatalogueItem, CatalogueItemKind};
+use lamplight::LIBRARY_FILES;
 use lamplight::parse::words::has_word;
 use lamplight::project::LIBRARY;
-use lamplight::proof::references;
-use lamplight::source::{self, Embedded, Files as _, Package, SourceSet};
+use lamplight::source::{self, Files as _, Package, SourceSet};
+use lamplight_catalogue::plot::{self, Plot};
+use lamplight_catalogue::{self as catalogue, CatalogueItem, CatalogueItemKind};
+use lamplight_check::references;
 use serde::Serialize;
 use tsify::Tsify;
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -89,7 +90,7 @@ pub struct PlotInfo {
 /// Every module of the library.
 #[wasm_bindgen]
 pub fn library() -> Answer<LibraryInfo> {
-    let modules = catalogue::library_modules().into_iter().map(|module| {
+    let modules = catalogue::library_modules(LIBRARY_FILES).into_iter().map(|module| {
         let plots = plots(&module.path);
         let items = module.items.iter().map(|item| info(item, plots.get(&item.name)));
         ModuleInfo { items: items.collect(), path: module.path.clone(), doc: module.doc.clone() }
@@ -100,7 +101,7 @@ pub fn library() -> Answer<LibraryInfo> {
 /// The plots of a module. The library's own files have no errors.
 fn plots(module: &str) -> plot::Plots {
     let mut sources = SourceSet::default();
-    let package = Package { name: LIBRARY.to_owned(), files: Box::new(Embedded) };
+    let package = Package { name: LIBRARY.to_owned(), files: Box::new(LIBRARY_FILES) };
     match source::read(&mut sources, &package, &plot::plot_path(module)) {
         Ok(Some(id)) => plot::parse_plots(&sources, id).unwrap_or_default(),
         _ => plot::Plots::new(),
@@ -152,13 +153,13 @@ fn plotted(plot: &Plot) -> PlotInfo {
 /// Paths of the library's files with one of the endings.
 #[wasm_bindgen]
 pub fn files(endings: Vec<String>) -> Vec<String> {
-    Embedded.list(&endings.iter().map(String::as_str).collect::<Vec<_>>())
+    LIBRARY_FILES.list(&endings.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 /// The text of a file of the library.
 #[wasm_bindgen]
 pub fn file(path: &str) -> Option<String> {
-    Embedded.read(path).ok().flatten()
+    LIBRARY_FILES.read(path).ok().flatten()
 }
 
 /// A function's text, and the files that use it.
@@ -183,7 +184,7 @@ pub fn written(path: &str) -> Answer<Written> {
     let last = module.rsplit("::").next().unwrap_or(module);
     let is_user = |text: &str| has_word(text, name) && has_word(text, last);
     let own = format!("{stem}.wesl");
-    let others = Embedded.list(&["wesl"]).into_iter().filter(|path| *path != own);
+    let others = LIBRARY_FILES.list(&["wesl"]).into_iter().filter(|path| *path != own);
     let used_by =
         others.filter(|path| file(path).is_some_and(|text| is_user(&code(&text)))).collect();
     answer(&Written { wesl: text("wesl"), glsl: text("glsl"), used_by })
@@ -238,7 +239,7 @@ pub fn search(query: &str) -> Answer<SearchResult> {
         return answer(&SearchResult { hits });
     }
     let mut texts = BTreeMap::new();
-    for item in catalogue::library_modules().iter().flat_map(|module| &module.items) {
+    for item in catalogue::library_modules(LIBRARY_FILES).iter().flat_map(|module| &module.items) {
         let stem = item.module.replace("::", "/");
         let text = texts
             .entry(item.module.clone())

@@ -4,17 +4,18 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
+use lamplight::LIBRARY_FILES;
 use lamplight::bundle::Language;
 use lamplight::diagnostic::{self, Diagnostics, codes};
 use lamplight::eval::{Bounded, Number};
-use lamplight::execute::executors::eval::EXECUTOR;
-use lamplight::execute::interpreter::Interpreter;
-use lamplight::execute::kernel;
 use lamplight::project::LIBRARY;
-use lamplight::proof::expression;
-use lamplight::proof::library::Library;
-use lamplight::proof::references;
-use lamplight::source::{Embedded, Memory, SourceSet};
+use lamplight::source::{Memory, SourceSet};
+use lamplight_check::expression;
+use lamplight_check::library::Library;
+use lamplight_check::references;
+use lamplight_execute::executors::eval::EXECUTOR;
+use lamplight_execute::interpreter::Interpreter;
+use lamplight_execute::kernel;
 use serde::{Deserialize, Serialize};
 use tsify::{Ts, Tsify};
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -76,11 +77,11 @@ const OWN: &str = "lamplight_own";
 
 fn library(files: Option<Files>) -> Library {
     match files {
-        None => Library::embedded(),
+        None => Library::shipped(LIBRARY_FILES),
         Some(files) => Library::new(
             OWN,
             Arc::new(Memory(files)),
-            vec![(LIBRARY.to_owned(), Arc::new(Embedded))],
+            vec![(LIBRARY.to_owned(), Arc::new(LIBRARY_FILES))],
         ),
     }
 }
@@ -179,7 +180,9 @@ fn drawn(
     );
     if kept.as_ref().is_none_or(|kept| kept.text != text) {
         let root = ("plot.wesl", text.as_str());
-        let module = Library::embedded().importing(sources, root, Language::Wesl, FUNCTION)?.module;
+        let module = Library::shipped(LIBRARY_FILES)
+            .importing(sources, root, Language::Wesl, FUNCTION)?
+            .module;
         let one = |problem| vec![problem];
         let kernel = kernel::build_kernel(&module, FUNCTION, &BTreeMap::new()).map_err(one)?;
         if kernel.input_words() != 2 || kernel.result_words() != 1 {

@@ -19,16 +19,17 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
+use lamplight::LIBRARY_FILES;
 use lamplight::bundle::{Language, Target};
-use lamplight::catalogue::preset::{self, Preset, PresetNumber};
-use lamplight::catalogue::probe::{self, Probe};
 use lamplight::diagnostic::{self, Diagnostics, codes};
-use lamplight::execute::Session;
-use lamplight::execute::frame::{self, Frame};
-use lamplight::execute::kernel::Kernel;
-use lamplight::picture::frame::Programs;
-use lamplight::picture::{self, Plan, PreparedPass, Shot, Surroundings};
-use lamplight::scene::{ENVIRONMENTS, sets};
+use lamplight_catalogue::preset::{self, Preset, PresetNumber};
+use lamplight_catalogue::probe::{self, Probe};
+use lamplight_execute::Session;
+use lamplight_execute::frame::{self, Frame};
+use lamplight_execute::kernel::Kernel;
+use lamplight_picture::frame::Programs;
+use lamplight_picture::{self as picture, Plan, PreparedPass, Shot, Surroundings};
+use lamplight_scenes::{ENVIRONMENTS, sets};
 use tsify::Ts;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -176,11 +177,11 @@ fn with_kept<T>(run: impl FnOnce(&Kept) -> T) -> Result<T, Vec<Diagnostic>> {
 }
 
 fn load() -> Result<Kept, Vec<Diagnostic>> {
-    let programs =
-        Programs::load().map_err(|(sources, problems)| diagnostics(&sources, &problems))?;
+    let programs = Programs::load(LIBRARY_FILES)
+        .map_err(|(sources, problems)| diagnostics(&sources, &problems))?;
     let read = programs.with_texts(|texts| {
-        let probes = probe::library_probes(texts)?;
-        Ok((preset::library_presets(texts, programs.manifest(), &probes)?, probes))
+        let probes = probe::library_probes(LIBRARY_FILES, texts)?;
+        Ok((preset::library_presets(LIBRARY_FILES, texts, programs.manifest(), &probes)?, probes))
     });
     match read {
         Ok((presets, probes)) => Ok(Kept { presets, probes, programs }),

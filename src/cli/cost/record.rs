@@ -6,6 +6,7 @@ use std::sync::Mutex;
 
 use super::super::failure::Failure;
 use super::{OpenedGpus, axis_changes, measure_costs, subjects};
+use crate::LIBRARY_FILES;
 use crate::bundle::{Conventions, Language};
 use crate::catalogue::cost::{AxisCost, Chip, Costs, FIGURES, SHOWN};
 use crate::catalogue::{self, CatalogueItem, quality};
@@ -20,7 +21,7 @@ use crate::source::SourceSet;
 /// Measures every cost that the catalogue shows of the library.
 pub fn record_costs(opened: OpenedGpus) -> Result<Costs, Failure> {
     let devices = opened.map_err(Failure::environment)?;
-    let modules = catalogue::library_modules();
+    let modules = catalogue::library_modules(LIBRARY_FILES);
     let items: Vec<&CatalogueItem> = modules.iter().flat_map(|module| &module.items).collect();
     let plain = Conventions::default();
     let functions = subjects::function_subjects(&items, &[], Language::Wesl, plain)?;
@@ -75,9 +76,10 @@ fn by_function(devices: &[Device], costs: &[Cost]) -> BTreeMap<String, Vec<[i64;
 
 /// Measures the expressions that the catalogue plots.
 fn of_expressions(devices: &[Device]) -> Result<BTreeMap<String, [i64; FIGURES.len()]>, Failure> {
-    let (library, sources) = (Library::embedded(), Mutex::new(SourceSet::default()));
+    let (library, sources) = (Library::shipped(LIBRARY_FILES), Mutex::new(SourceSet::default()));
     let told = |problems| Failure::Input(lock_sources(&sources).clone(), problems);
-    let groups = quality::library_groups(&mut lock_sources(&sources)).map_err(told)?;
+    let groups =
+        quality::library_groups(LIBRARY_FILES, &mut lock_sources(&sources)).map_err(told)?;
     let mut subjects = Vec::new();
     for (group, entry) in
         groups.iter().flat_map(|group| group.entries.iter().map(move |entry| (group, entry)))

@@ -8,6 +8,7 @@ use super::super::input::{ComposedInput, ErrorContext};
 use super::super::progress::Bar;
 use super::super::variants;
 use super::Arguments;
+use crate::LIBRARY_FILES;
 use crate::bundle::key::DEFAULT;
 use crate::bundle::{Axis, Conventions, Language, Stage, Target};
 use crate::cache::Cache;
@@ -36,7 +37,7 @@ pub fn asked_subjects(
     let mut subjects = Vec::new();
     let (files, named): (Vec<&String>, Vec<&String>) =
         arguments.subjects.iter().partition(|name| is_file(name));
-    let modules = catalogue::library_modules();
+    let modules = catalogue::library_modules(LIBRARY_FILES);
     let items: Vec<&CatalogueItem> = modules.iter().flat_map(|module| &module.items).collect();
     let (paths, keys) = separate_paths(arguments, &items, named)?;
     if arguments.subjects.is_empty() || !paths.is_empty() {
@@ -163,7 +164,7 @@ pub fn function_subjects(
     language: Language,
     conventions: Conventions,
 ) -> Result<Vec<CostSubject>, Failure> {
-    let library = Library::embedded();
+    let library = Library::shipped(LIBRARY_FILES);
     let functions: Vec<&CatalogueItem> =
         items.iter().copied().filter(|item| item.kind == CatalogueItemKind::Function).collect();
     for named in paths {

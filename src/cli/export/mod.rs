@@ -12,9 +12,10 @@ use clap::{Args, ValueEnum};
 use super::failure::Failure;
 use super::overwrite::Overwrite;
 use super::terminal::stdout;
+use crate::LIBRARY_FILES;
 use crate::output;
 use crate::project::LIBRARY;
-use crate::source::{Embedded, Files as _};
+use crate::source::Files as _;
 
 /// Write the shader library for other tools.
 #[derive(Args)]
@@ -98,11 +99,11 @@ fn library_modules() -> Result<PackageContents, Failure> {
 }
 
 fn library_texts(extensions: &[&str]) -> Result<PackageContents, Failure> {
-    let text = |path: String| match Embedded.read(&path) {
+    let text = |path: String| match LIBRARY_FILES.read(&path) {
         Ok(Some(text)) => Ok((path, text)),
         _ => Err(Failure::environment(format!("the binary carries no `{path}`"))),
     };
-    Embedded.list(extensions).into_iter().map(text).collect()
+    LIBRARY_FILES.list(extensions).into_iter().map(text).collect()
 }
 
 /// The files below a folder of the package.

@@ -16,6 +16,7 @@ use super::failure::{DiagnosticForm, Failure};
 use super::input::{LanguageName, axis_value};
 use super::overwrite::Overwrite;
 use super::terminal::{self, stdout};
+use crate::LIBRARY_FILES;
 use crate::bundle::Language;
 use crate::catalogue::preset::{self, Preset};
 use crate::catalogue::probe;
@@ -114,8 +115,8 @@ pub fn run_render(arguments: Arguments, _: DiagnosticForm) -> Result<(), Failure
 }
 
 fn draw_picture(arguments: &Arguments) -> Result<(), Failure> {
-    let programs =
-        Programs::load().map_err(|(sources, problems)| Failure::Input(sources, problems))?;
+    let programs = Programs::load(LIBRARY_FILES)
+        .map_err(|(sources, problems)| Failure::Input(sources, problems))?;
     let entry = executor::find_drawing(&arguments.executor)?;
     let shot = make_shot(arguments, entry)?;
     if arguments.all {
@@ -262,8 +263,8 @@ fn of_preset(programs: &Programs, arguments: &Arguments, name: &str) -> Result<P
 /// Presets and light probes of the library.
 pub fn library_examples(programs: &Programs) -> Result<(Vec<Preset>, Vec<probe::Probe>), Failure> {
     let read = programs.with_texts(|texts| {
-        let probes = probe::library_probes(texts)?;
-        Ok((preset::library_presets(texts, programs.manifest(), &probes)?, probes))
+        let probes = probe::library_probes(LIBRARY_FILES, texts)?;
+        Ok((preset::library_presets(LIBRARY_FILES, texts, programs.manifest(), &probes)?, probes))
     });
     read.map_err(|problems| input_failure(programs, problems))
 }
@@ -271,7 +272,7 @@ pub fn library_examples(programs: &Programs) -> Result<(Vec<Preset>, Vec<probe::
 /// Comparisons of the library.
 pub fn library_comparisons(programs: &Programs) -> Result<Vec<Comparison>, Failure> {
     programs
-        .with_texts(strip::library_comparisons)
+        .with_texts(|texts| strip::library_comparisons(LIBRARY_FILES, texts))
         .map_err(|problems| input_failure(programs, problems))
 }
 

@@ -16,6 +16,7 @@ use serde_json::Value;
 use super::failure::Failure;
 use super::list::known_modules;
 use super::own::OwnPackage;
+use crate::LIBRARY_FILES;
 use crate::catalogue::preset::Preset;
 use crate::catalogue::probe::Probe;
 use crate::catalogue::{self, CatalogueItem, CatalogueModule};
@@ -70,7 +71,7 @@ pub fn run_show(arguments: Arguments) -> Result<(), Failure> {
 fn open_library(own: &OwnPackage) -> Result<ShowIndex, Failure> {
     let (mut sources, manifest) = project::library_manifest()
         .map_err(|(sources, problems)| Failure::Input(sources, problems))?;
-    match catalogue::library_examples(&mut sources, &manifest) {
+    match catalogue::library_examples(LIBRARY_FILES, &mut sources, &manifest) {
         Ok((presets, probes)) => {
             let manifests = own.manifest()?.into_iter().chain([manifest]).collect();
             Ok(ShowIndex { modules: known_modules(own)?, manifests, presets, probes })

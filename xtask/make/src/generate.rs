@@ -44,7 +44,7 @@ pub fn run(arguments: &[String]) -> CommandResult {
     let (packages, out, request) = (observer.observe(packages), bundle(), Request::default());
     let folder = CacheFolder::new(root().join("target/lamplight-cache"))
         .map_err(|foreign| CommandFailure::input(foreign.to_string()))?;
-    let cache = Cache::new(vec![Box::new(folder)]);
+    let cache = Cache::new(lamplight::BUILD, vec![Box::new(folder)]);
     let as_run = || TracedRun {
         manifest: &path,
         declared: &declared,

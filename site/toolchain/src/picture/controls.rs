@@ -1,7 +1,7 @@
 //! What can be changed in a picture.
 
-use lamplight::picture;
-use lamplight::scene::sets::LampKind;
+use lamplight_picture as picture;
+use lamplight_scenes::sets::LampKind;
 use serde::Serialize;
 use tsify::{Ts, Tsify};
 use wasm_bindgen::prelude::wasm_bindgen;

@@ -2,9 +2,9 @@
 
 use lamplight::bundle::{Conventions, Target};
 use lamplight::diagnostic;
-use lamplight::execute::fixture::{Fixture, FixtureSampler, FixtureTexture, TextureKind};
-use lamplight::execute::frame::{self, Buffers, EntryPoint, Face, VertexFormat};
-use lamplight::execute::shipped::Shipped;
+use lamplight_execute::fixture::{Fixture, FixtureSampler, FixtureTexture, TextureKind};
+use lamplight_execute::frame::{self, Buffers, EntryPoint, Face, VertexFormat};
+use lamplight_execute::shipped::Shipped;
 
 use crate::linkers::LINKERS;
 

@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use lamplight::bundle::Target;
-use lamplight::execute::frame::{Buffers, Drawing, Frame};
+use lamplight_execute::frame::{Buffers, Drawing, Frame};
 
 /// How many drawings are kept: those of a picture, and of the one before it.
 const KEPT: usize = 4;

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use lamplight::compose;
 use lamplight::diagnostic::Diagnostics;
-use lamplight::picture::sketch::{MODELS, SOURCES, Sketch, SketchOptions};
-use lamplight::picture::{Shot, Surroundings};
-use lamplight::scene::environment;
 use lamplight::source::SourceSet;
 use lamplight::validate::validate;
+use lamplight_picture::sketch::{MODELS, SOURCES, Sketch, SketchOptions};
+use lamplight_picture::{Shot, Surroundings};
+use lamplight_scenes::environment;
 use serde::{Deserialize, Serialize};
 use tsify::{Ts, Tsify};
 use wasm_bindgen::prelude::wasm_bindgen;

@@ -1,0 +1,247 @@
+//! The directory form: `manifest.json` and `blobs/`.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::contents::{checksum, from_hex, refuse_control_characters, to_hex};
+use super::layout::MOST_GROUP_BYTES;
+use super::manifest::{self, Manifest, ManifestArtifact, ManifestUnit};
+use super::store::{self, Store, StoredArtifact, StoredProgram, StoredPrograms};
+use super::{Axis, Error, Hash, Native, Reflection, Stage};
+use lamplight_files::input;
+
+pub(super) const MANIFEST: &str = "manifest.json";
+pub(super) const BLOBS: &str = "blobs";
+
+/// The most bytes of a manifest: forty times what 100,000 permutations need.
+pub(super) const MOST_MANIFEST_BYTES: u64 = lamplight_files::limits::MANIFEST_BYTES;
+
+/// Artifacts by target, each with the index of its blob.
+type NumberedArtifacts = BTreeMap<String, (ManifestArtifact, u32)>;
+
+/// An open directory; blobs are read when asked for.
+pub struct Directory {
+    blobs: PathBuf,
+    programs: StoredPrograms,
+    /// For each entry point, the unit of each key.
+    keys: Vec<BTreeMap<String, u32>>,
+    units: Vec<(Arc<Reflection>, NumberedArtifacts)>,
+    natives: BTreeMap<String, Arc<Native>>,
+    /// The blobs, each distinct one once.
+    artifacts: Vec<ManifestArtifact>,
+    numbers: BTreeMap<ManifestArtifact, u32>,
+}
+
+/// The manifest of a directory.
+pub(super) fn read_manifest(path: &Path) -> Result<Manifest, Error> {
+    let text = input::read_file(&path.join(MANIFEST), MOST_MANIFEST_BYTES)
+        .map_err(|error| Error::Io(format!("{MANIFEST}: {error}")))?;
+    manifest::read_manifest(
+        &String::from_utf8(text).map_err(|_| Error::corrupt(MANIFEST, "it is not UTF-8"))?,
+    )
+}
+
+/// Reads the manifest.
+pub fn open(path: &Path) -> Result<Directory, Error> {
+    let manifest = read_manifest(path)?;
+    let mut directory = Directory {
+        blobs: path.join(BLOBS),
+        programs: StoredPrograms::new(),
+        keys: Vec::new(),
+        units: Vec::new(),
+        natives: manifest
+            .natives
+            .into_iter()
+            .map(|(name, native)| (name, Arc::new(native)))
+            .collect(),
+        artifacts: Vec::new(),
+        numbers: BTreeMap::new(),
+    };
+    let reflections: BTreeMap<_, _> = manifest
+        .reflections
+        .into_iter()
+        .map(|(name, reflection)| (name, Arc::new(reflection)))
+        .collect();
+    let mut numbers = BTreeMap::new();
+    for (name, unit) in manifest.units {
+        numbers.insert(name, directory.units.len() as u32);
+        directory.add_unit(unit, &reflections)?;
+    }
+    for (name, program) in manifest.programs {
+        let entries = program.entries.values().flat_map(BTreeMap::keys);
+        refuse_control_characters(MANIFEST, std::iter::once(&name).chain(entries))?;
+        refuse_control_characters(MANIFEST, program.axes.iter().flat_map(Axis::names))?;
+        let mut index = StoredProgram { axes: program.axes, ..StoredProgram::default() };
+        for (language, entries) in program.entries {
+            for (entry, contents) in entries {
+                index.entries.insert((language, entry), directory.keys.len());
+                let number = |(key, unit)| Some((key, *numbers.get(&unit)?));
+                let keys: Option<_> = contents.keys.into_iter().map(number).collect();
+                directory
+                    .keys
+                    .push(keys.ok_or_else(|| Error::corrupt(MANIFEST, "a key names no unit"))?);
+            }
+        }
+        directory.programs.insert(name, index);
+    }
+    Ok(directory)
+}
+
+/// The file of one blob of a directory bundle, with its target and its stage.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct BlobFile {
+    /// Name of the target.
+    pub target: String,
+    /// Stage of the entry point.
+    pub stage: Stage,
+    /// Name of the entry point in the output.
+    pub entry: String,
+    /// The file.
+    pub path: PathBuf,
+    /// A unit that has this blob.
+    pub unit: Hash,
+}
+
+/// Every distinct blob of a directory bundle: for tools that take files.
+pub fn blob_files(path: impl AsRef<Path>) -> Result<BTreeSet<BlobFile>, Error> {
+    let path = path.as_ref();
+    blob_files_of_manifest(&read_manifest(path)?, &|name| path.join(BLOBS).join(name))
+}
+
+/// The distinct blobs of a manifest. `place` returns the path of a blob's file, given its name.
+pub(super) fn blob_files_of_manifest(
+    manifest: &Manifest,
+    place: &dyn Fn(&str) -> PathBuf,
+) -> Result<BTreeSet<BlobFile>, Error> {
+    let lost = |what: &str| Error::corrupt(MANIFEST, format!("a unit names no {what}"));
+    let mut files = BTreeMap::new();
+    for (name, unit) in &manifest.units {
+        let reflection = manifest.reflections.get(&unit.reflection);
+        let stage = reflection.ok_or_else(|| lost("reflection"))?.stage;
+        let hash = from_hex(name).ok_or_else(|| Error::corrupt(MANIFEST, "a unit has no name"))?;
+        for (target, artifact) in &unit.targets {
+            let native = manifest.natives.get(&artifact.native).ok_or_else(|| lost("native"))?;
+            let file = artifact.file()?;
+            files.entry((target, file)).or_insert_with_key(|(_, file)| BlobFile {
+                target: target.clone(),
+                stage,
+                entry: native.entry_name.clone(),
+                path: place(file),
+                unit: hash,
+            });
+        }
+    }
+    Ok(files.into_values().collect())
+}
+
+impl Directory {
+    fn add_unit(
+        &mut self,
+        unit: ManifestUnit,
+        reflections: &BTreeMap<String, Arc<Reflection>>,
+    ) -> Result<(), Error> {
+        let reflection = reflections
+            .get(&unit.reflection)
+            .ok_or_else(|| Error::corrupt(MANIFEST, "a unit names no reflection"))?;
+        let mut targets = BTreeMap::new();
+        refuse_control_characters(MANIFEST, unit.targets.keys())?;
+        for (target, artifact) in unit.targets {
+            artifact.file()?;
+            let next = self.artifacts.len() as u32;
+            let number = *self.numbers.entry(artifact.clone()).or_insert(next);
+            if number == next {
+                self.artifacts.push(artifact.clone());
+            }
+            targets.insert(target, (artifact, number));
+        }
+        self.units.push((reflection.clone(), targets));
+        Ok(())
+    }
+
+    fn entry(&self, entry: usize) -> Result<&BTreeMap<String, u32>, Error> {
+        self.keys
+            .get(entry)
+            .ok_or_else(|| Error::corrupt(MANIFEST, "an entry point is out of range"))
+    }
+}
+
+impl Store for Directory {
+    fn programs(&self) -> &StoredPrograms {
+        &self.programs
+    }
+
+    fn find(&self, entry: usize, key: &str) -> Result<Option<u32>, Error> {
+        Ok(self.entry(entry)?.get(key).copied())
+    }
+
+    fn each_key(&self, entry: usize, visit: &mut dyn FnMut(&str, u32)) -> Result<(), Error> {
+        self.entry(entry)?.iter().for_each(|(key, unit)| visit(key, *unit));
+        Ok(())
+    }
+
+    fn unit(&self, unit: u32) -> Result<store::StoredUnit, Error> {
+        let (reflection, targets) = self
+            .units
+            .get(unit as usize)
+            .ok_or_else(|| Error::corrupt(MANIFEST, "a unit is out of range"))?;
+        let targets = targets.iter().map(|(target, (artifact, blob))| {
+            let native = self
+                .natives
+                .get(&artifact.native)
+                .ok_or_else(|| Error::corrupt(MANIFEST, "an artifact names no native"))?;
+            Ok((
+                target.clone(),
+                StoredArtifact {
+                    extension: artifact.extension.clone(),
+                    native: native.clone(),
+                    blob: *blob,
+                },
+            ))
+        });
+        Ok(store::StoredUnit {
+            reflection: reflection.clone(),
+            targets: targets.collect::<Result<_, Error>>()?,
+        })
+    }
+
+    fn digest(&self, blob: u32) -> Result<String, Error> {
+        let artifact = self.artifacts.get(blob as usize);
+        let artifact =
+            artifact.ok_or_else(|| Error::corrupt(MANIFEST, "a blob is out of range"))?;
+        Ok(artifact.blob.clone())
+    }
+
+    fn blob(&self, blob: u32) -> Result<Vec<u8>, Error> {
+        let artifact = self
+            .artifacts
+            .get(blob as usize)
+            .ok_or_else(|| Error::corrupt(MANIFEST, "a blob is out of range"))?;
+        let name = artifact.file()?;
+        let path = self.blobs.join(&name);
+        let part = format!("{BLOBS}/{name}");
+        let io = |error| Error::Io(format!("{part}: {error}"));
+        let found = input::open_file(&path).and_then(|file| file.metadata()).map_err(io)?.len();
+        if found != artifact.bytes {
+            let words = format!("it has {found} bytes, not {}", artifact.bytes);
+            return Err(Error::corrupt(part, words));
+        }
+        let bytes = input::read_file(&path, found.min(MOST_GROUP_BYTES as u64)).map_err(io)?;
+        if to_hex(&checksum(&bytes)) == artifact.blob {
+            Ok(bytes)
+        } else {
+            Err(Error::corrupt(part, "the checksum does not match"))
+        }
+    }
+
+    /// Refuses nothing. Each blob is read once, however many units name it, and no blob may be
+    /// larger than a group, so the memory is in proportion to the bundle.
+    fn measure(&self) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn verify(&self) -> Result<(), Error> {
+        (0..self.artifacts.len() as u32).try_for_each(|blob| self.blob(blob).map(|_| ()))?;
+        (0..self.units.len() as u32).try_for_each(|unit| self.unit(unit).map(|_| ()))
+    }
+}

@@ -1,0 +1,399 @@
+//! Reads the single file in place: only its header and META are parsed on opening.
+
+mod verify;
+
+use std::collections::BTreeMap;
+use std::io::ErrorKind;
+use std::path::Path;
+use std::sync::{Arc, Mutex, OnceLock};
+
+use memmap2::Mmap;
+use serde::de::DeserializeOwned;
+
+use super::contents::{Hash, checksum, refuse_control_characters, to_hex};
+use super::layout::*;
+use super::store::{Store, StoredArtifact, StoredProgram, StoredPrograms, StoredUnit};
+use super::{Axis, Error, Reflection, VERSION};
+use crate::packing;
+use lamplight_files::input;
+
+/// How many decompressed groups are kept, and how many bytes: about what the shaders of one level
+/// of a game need.
+const KEPT_GROUPS: usize = 16;
+const KEPT_BYTES: usize = 32 << 20;
+
+/// An open single-file bundle.
+pub struct Packed {
+    bytes: BundleBytes,
+    sections: [(usize, usize, Hash); SECTIONS.len()],
+    /// The result of each section's checksum, which is computed on first use.
+    checked: [OnceLock<Result<(), Error>>; SECTIONS.len()],
+    meta: Meta,
+    programs: StoredPrograms,
+    entries: Vec<EntryMeta>,
+    groups: Mutex<Vec<(u32, Arc<[u8]>)>>,
+}
+
+enum BundleBytes {
+    Mapped(Mmap),
+    Owned(Vec<u8>),
+}
+
+impl std::ops::Deref for BundleBytes {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::Mapped(map) => map,
+            Self::Owned(bytes) => bytes,
+        }
+    }
+}
+
+/// Maps the file. It must not be changed in place while it is open: replace it by renaming, as
+/// [`super::write_file`] does.
+pub fn open(path: &Path) -> Result<Packed, Error> {
+    let file = input::open_file(path)?;
+    if file.metadata()?.len() < HEADER_BYTES as u64 {
+        return Err(Error::corrupt("header", "the file is too short"));
+    }
+    // SAFETY: the map is read-only and private to this value. Another process could still change
+    // the file under it, which the documentation of this function excludes.
+    let map = unsafe { Mmap::map(&file)? };
+    parse_file(BundleBytes::Mapped(map))
+}
+
+/// As [`open`], for bytes in memory.
+pub fn from_bytes(bytes: Vec<u8>) -> Result<Packed, Error> {
+    parse_file(BundleBytes::Owned(bytes))
+}
+
+fn parse_file(bytes: BundleBytes) -> Result<Packed, Error> {
+    let sections = read_header(&bytes)?;
+    let (offset, length, expected) = sections[META];
+    let text = slice_at(&bytes, offset, length, "meta")?;
+    if checksum(text) != expected {
+        return Err(Error::corrupt("meta", "the checksum does not match"));
+    }
+    let meta: Meta =
+        serde_json::from_slice(text).map_err(|error| Error::corrupt("meta", error.to_string()))?;
+    meta.targets.iter().try_for_each(|target| {
+        refuse_control_characters("meta", [&target.name, &target.extension])
+    })?;
+    let mut programs = StoredPrograms::new();
+    let mut entries = Vec::new();
+    for (name, program) in &meta.programs {
+        refuse_control_characters(
+            "meta",
+            std::iter::once(name).chain(program.entries.iter().map(|entry| &entry.name)),
+        )?;
+        refuse_control_characters("meta", program.axes.iter().flat_map(Axis::names))?;
+        let mut numbers = BTreeMap::new();
+        for entry in &program.entries {
+            numbers.insert((entry.language, entry.name.clone()), entries.len());
+            entries.push(entry.clone());
+        }
+        programs
+            .insert(name.clone(), StoredProgram { axes: program.axes.clone(), entries: numbers });
+    }
+    Ok(Packed {
+        bytes,
+        sections,
+        checked: Default::default(),
+        meta,
+        programs,
+        entries,
+        groups: Mutex::default(),
+    })
+}
+
+/// The offset, length and checksum of each section, from a header whose own checksum is right.
+fn read_header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], Error> {
+    let part = "header";
+    if slice_at(bytes, 0, 8, part)? != MAGIC {
+        return Err(Error::corrupt(part, "this is not a Lamplight bundle"));
+    }
+    let version = u32_at(bytes, 8, part)?;
+    if version != VERSION {
+        return Err(Error::Version { found: version, known: VERSION });
+    }
+    if hash_at(bytes, HEADER_BYTES - 16, part)?
+        != checksum(slice_at(bytes, 0, HEADER_BYTES - 16, part)?)
+    {
+        return Err(Error::corrupt(part, "the checksum does not match"));
+    }
+    if u32_at(bytes, 12, part)? as usize != SECTIONS.len()
+        || u64_at(bytes, 16, part)? != bytes.len() as u64
+    {
+        return Err(Error::corrupt(
+            part,
+            format!("the file has {} bytes, not those it was written with", bytes.len()),
+        ));
+    }
+    let mut sections = [(0, 0, [0; 16]); SECTIONS.len()];
+    let mut next = HEADER_BYTES;
+    for (index, section) in sections.iter_mut().enumerate() {
+        let at = 24 + index * 32;
+        let (offset, length) =
+            (u64_at(bytes, at, part)? as usize, u64_at(bytes, at + 8, part)? as usize);
+        slice_at(bytes, offset, length, SECTIONS[index])?;
+        if offset != next {
+            return Err(Error::corrupt(
+                SECTIONS[index],
+                "the section is not where the one before ends",
+            ));
+        }
+        next = offset + length;
+        *section = (offset, length, hash_at(bytes, at + 16, part)?);
+    }
+    if next == bytes.len() {
+        Ok(sections)
+    } else {
+        Err(Error::corrupt("data", "bytes follow the last section"))
+    }
+}
+
+impl Packed {
+    /// The bytes of a section, whose checksum is verified once.
+    fn section(&self, index: usize) -> Result<&[u8], Error> {
+        let (offset, length, expected) = self.sections[index];
+        let section = slice_at(&self.bytes, offset, length, SECTIONS[index])?;
+        if index != DATA {
+            let check = || {
+                if checksum(section) == expected {
+                    Ok(())
+                } else {
+                    Err(Error::corrupt(SECTIONS[index], "the checksum does not match"))
+                }
+            };
+            if let Err(error) = self.checked[index].get_or_init(check) {
+                return Err(error.clone());
+            }
+        }
+        Ok(section)
+    }
+
+    fn entry(&self, entry: usize) -> Result<&EntryMeta, Error> {
+        self.entries
+            .get(entry)
+            .ok_or_else(|| Error::corrupt("meta", "an entry point is out of range"))
+    }
+
+    fn key<'a>(&self, keys: &'a [u8], set: &KeySet, index: usize) -> Result<&'a [u8], Error> {
+        let record = set.records as usize + index * RECORD_BYTES;
+        slice_at(
+            keys,
+            u32_at(keys, record, "keys")? as usize,
+            u32_at(keys, record + 4, "keys")? as usize,
+            "keys",
+        )
+    }
+
+    fn unit_of(&self, keys: &[u8], entry: &EntryMeta, index: usize) -> Result<u32, Error> {
+        if index >= entry.keys.count as usize {
+            return Err(Error::corrupt("keys", "an index is out of range"));
+        }
+        u32_at(keys, entry.units as usize + index * 4, "keys")
+    }
+
+    /// One of the JSON texts, parsed.
+    fn text<T: DeserializeOwned>(&self, index: u32) -> Result<T, Error> {
+        if index >= self.meta.texts {
+            return Err(Error::corrupt("texts", "a number is out of range"));
+        }
+        let texts = self.section(TEXTS)?;
+        let record = index as usize * RECORD_BYTES;
+        let text = slice_at(
+            texts,
+            u32_at(texts, record, "texts")? as usize,
+            u32_at(texts, record + 4, "texts")? as usize,
+            "texts",
+        )?;
+        serde_json::from_slice(text).map_err(|error| Error::corrupt("texts", error.to_string()))
+    }
+
+    /// Of a unit: the reflection, the first artifact and the number of artifacts.
+    fn unit_record(&self, unit: u32) -> Result<(u32, u32, u32), Error> {
+        let units = self.section(UNITS)?;
+        let at = unit as usize * UNIT_BYTES;
+        let record = (
+            u32_at(units, at, "units")?,
+            u32_at(units, at + 4, "units")?,
+            u32_at(units, at + 8, "units")?,
+        );
+        let in_range = unit < self.meta.units
+            && record.1.checked_add(record.2).is_some_and(|end| end <= self.meta.artifacts);
+        if in_range { Ok(record) } else { Err(Error::corrupt("units", "a number is out of range")) }
+    }
+
+    /// Of an artifact: the target, the number of its native text, and the blob.
+    fn artifact_record(&self, artifact: u32) -> Result<(&TargetMeta, u32, u32), Error> {
+        let units = self.section(UNITS)?;
+        let at = self.meta.units as usize * UNIT_BYTES + artifact as usize * ARTIFACT_BYTES;
+        let target = self.meta.targets.get(u32_at(units, at, "units")? as usize);
+        let target = target.ok_or_else(|| Error::corrupt("units", "a target is out of range"))?;
+        Ok((target, u32_at(units, at + 4, "units")?, u32_at(units, at + 8, "units")?))
+    }
+
+    fn artifact_of(
+        &self,
+        target: &TargetMeta,
+        native: u32,
+        blob: u32,
+    ) -> Result<StoredArtifact, Error> {
+        let (extension, native) = (target.extension.clone(), Arc::new(self.text(native)?));
+        Ok(StoredArtifact { extension, native, blob })
+    }
+
+    /// A decompressed group: one that was kept, or else one that is decompressed now.
+    fn group(&self, group: u32) -> Result<Arc<[u8]>, Error> {
+        if let Ok(kept) = self.groups.lock()
+            && let Some((_, bytes)) = kept.iter().find(|(index, _)| *index == group)
+        {
+            return Ok(bytes.clone());
+        }
+        let bytes: Arc<[u8]> = self.decompress(group)?.into();
+        if let Ok(mut kept) = self.groups.lock() {
+            kept.truncate(KEPT_GROUPS - 1);
+            kept.insert(0, (group, bytes.clone()));
+            let mut sum = 0;
+            kept.retain(|(_, bytes)| {
+                sum += bytes.len();
+                sum <= KEPT_BYTES
+            });
+        }
+        Ok(bytes)
+    }
+
+    fn decompress(&self, group: u32) -> Result<Vec<u8>, Error> {
+        let part = format!("group {group}");
+        let (offset, packed, raw, expected) = self.group_record(group)?;
+        let packed = slice_at(self.section(DATA)?, offset, packed, &part)?;
+        if checksum(packed) != expected {
+            return Err(Error::corrupt(part, "the checksum does not match"));
+        }
+        let bytes = packing::decompress(packed, raw).map_err(|error| match error.kind() {
+            ErrorKind::Unsupported => error.into(),
+            _ => Error::corrupt(part.as_str(), error.to_string()),
+        })?;
+        if bytes.len() == raw {
+            Ok(bytes)
+        } else {
+            Err(Error::corrupt(part, "the length does not match"))
+        }
+    }
+
+    /// Of a group: offset in DATA, length there, length decompressed, checksum.
+    fn group_record(&self, group: u32) -> Result<(usize, usize, usize, Hash), Error> {
+        let table = self.section(BLOBS)?;
+        let at = self.meta.blobs as usize * BLOB_BYTES + group as usize * GROUP_BYTES;
+        let raw = u32_at(table, at + 12, "blobs")? as usize;
+        if group >= self.meta.groups || raw > MOST_GROUP_BYTES {
+            return Err(Error::corrupt("blobs", "a group is out of range"));
+        }
+        Ok((
+            u64_at(table, at, "blobs")? as usize,
+            u32_at(table, at + 8, "blobs")? as usize,
+            raw,
+            hash_at(table, at + 16, "blobs")?,
+        ))
+    }
+}
+
+impl Store for Packed {
+    fn programs(&self) -> &StoredPrograms {
+        &self.programs
+    }
+
+    fn find(&self, entry: usize, key: &str) -> Result<Option<u32>, Error> {
+        let entry = self.entry(entry)?;
+        let set = &entry.keys;
+        let keys = self.section(KEYS)?;
+        if !set.slot_count.is_power_of_two() {
+            return Err(Error::corrupt("meta", "a number of slots is not a power of two"));
+        }
+        let slots =
+            slice_at(keys, set.slots as usize, set.slot_count as usize * SLOT_BYTES, "keys")?
+                .as_chunks::<SLOT_BYTES>()
+                .0;
+        let hash = hash_key(key.as_bytes());
+        let mask = slots.len() - 1;
+        for step in 0..slots.len().min(PROBES) {
+            let slot = u128::from_le_bytes(slots[(hash as usize).wrapping_add(step) & mask]);
+            if slot as u32 == 0 {
+                return Ok(None);
+            }
+            if slot >> 32 == hash >> 32 {
+                return self.unit_of(keys, entry, slot as u32 as usize - 1).map(Some);
+            }
+        }
+        if slots.len() > PROBES {
+            return Err(Error::corrupt("keys", "the slots are too full"));
+        }
+        Ok(None)
+    }
+
+    fn each_key(&self, entry: usize, visit: &mut dyn FnMut(&str, u32)) -> Result<(), Error> {
+        let entry = self.entry(entry)?;
+        let keys = self.section(KEYS)?;
+        for index in 0..entry.keys.count as usize {
+            let key = std::str::from_utf8(self.key(keys, &entry.keys, index)?)
+                .map_err(|_| Error::corrupt("keys", "a key is not UTF-8"))?;
+            visit(key, self.unit_of(keys, entry, index)?);
+        }
+        Ok(())
+    }
+
+    fn unit(&self, unit: u32) -> Result<StoredUnit, Error> {
+        let (reflection, first, count) = self.unit_record(unit)?;
+        let mut targets = BTreeMap::new();
+        for artifact in first..first + count {
+            let (target, native, blob) = self.artifact_record(artifact)?;
+            targets.insert(target.name.clone(), self.artifact_of(target, native, blob)?);
+        }
+        Ok(StoredUnit { reflection: Arc::new(self.text(reflection)?), targets })
+    }
+
+    fn artifact(
+        &self,
+        unit: u32,
+        target: &str,
+    ) -> Result<(Arc<Reflection>, StoredArtifact), Error> {
+        let (reflection, first, count) = self.unit_record(unit)?;
+        let mut known = Vec::new();
+        for artifact in first..first + count {
+            let (found, native, blob) = self.artifact_record(artifact)?;
+            if found.name == target {
+                let artifact = self.artifact_of(found, native, blob)?;
+                return Ok((Arc::new(self.text(reflection)?), artifact));
+            }
+            known.push(found.name.clone());
+        }
+        Err(Error::NotFound { what: "target", name: target.to_owned(), known })
+    }
+
+    fn blob(&self, blob: u32) -> Result<Vec<u8>, Error> {
+        if blob >= self.meta.blobs {
+            return Err(Error::corrupt("blobs", "a number is out of range"));
+        }
+        let table = self.section(BLOBS)?;
+        let at = blob as usize * BLOB_BYTES;
+        let (offset, length) =
+            (u32_at(table, at + 4, "blobs")? as usize, u32_at(table, at + 8, "blobs")? as usize);
+        let group = self.group(u32_at(table, at, "blobs")?)?;
+        slice_at(&group, offset, length, "blobs").map(<[u8]>::to_vec)
+    }
+
+    fn digest(&self, blob: u32) -> Result<String, Error> {
+        let table = self.section(BLOBS)?;
+        hash_at(table, blob as usize * BLOB_BYTES + 12, "blobs").map(|hash| to_hex(&hash))
+    }
+
+    fn measure(&self) -> Result<(), Error> {
+        self.within_budget()
+    }
+
+    fn verify(&self) -> Result<(), Error> {
+        self.verify_all()
+    }
+}

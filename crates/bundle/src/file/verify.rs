@@ -1,0 +1,176 @@
+//! Checks beyond checksums. Parts must be where a writer puts them, and their total size must be in
+//! proportion to the file. So a small file cannot ask for much memory or time.
+
+use super::*;
+use lamplight_files::limits::{BUNDLE_BYTES, BUNDLE_FACTOR, Steps};
+
+/// How many bytes one part of the bundle may still have, in total.
+struct Budget {
+    left: Steps,
+    part: &'static str,
+}
+
+impl Budget {
+    /// The budget of one part, for a file of that size.
+    fn new(bytes: usize, part: &'static str) -> Self {
+        let most = BUNDLE_BYTES.saturating_add(BUNDLE_FACTOR.saturating_mul(bytes as u64));
+        Self { left: Steps::new(most), part }
+    }
+
+    fn spend(&mut self, bytes: usize) -> Result<(), Error> {
+        // An empty part costs time too, so it counts as a byte.
+        self.left.spend(bytes as u64 + 1).map_err(|_| {
+            let mib = BUNDLE_BYTES >> 20;
+            let reason = format!("it holds more than {mib} MiB and {BUNDLE_FACTOR} times the file");
+            Error::corrupt(self.part, reason)
+        })
+    }
+}
+
+impl Packed {
+    pub(super) fn verify_all(&self) -> Result<(), Error> {
+        (0..SECTIONS.len()).try_for_each(|section| self.section(section).map(|_| ()))?;
+        if self.sections[DATA].2 != [0; 16] {
+            return Err(Error::corrupt("header", "the data section has a checksum of its own"));
+        }
+        self.within_budget()?;
+        self.verify_groups()?;
+        self.verify_keys()?;
+        (0..self.meta.units).try_for_each(|unit| self.unit(unit).map(|_| ()))?;
+        let table = self.section(BLOBS)?;
+        for blob in 0..self.meta.blobs {
+            if checksum(&self.blob(blob)?)
+                != hash_at(table, blob as usize * BLOB_BYTES + 12, "blobs")?
+            {
+                return Err(Error::corrupt(format!("blob {blob}"), "the checksum does not match"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that each part is within its budget. It reads only tables: nothing is decompressed,
+    /// parsed or copied.
+    pub(super) fn within_budget(&self) -> Result<(), Error> {
+        let mut groups = Budget::new(self.bytes.len(), "data");
+        for group in 0..self.meta.groups {
+            groups.spend(self.group_record(group)?.2)?;
+        }
+        let lengths = self.blob_lengths()?;
+        let (mut units, mut texts) =
+            (Budget::new(self.bytes.len(), "units"), Budget::new(self.bytes.len(), "texts"));
+        for unit in 0..self.meta.units {
+            let (reflection, first, count) = self.unit_record(unit)?;
+            texts.spend(self.text_length(reflection)?)?;
+            for artifact in first..first + count {
+                let (_, native, blob) = self.artifact_record(artifact)?;
+                texts.spend(self.text_length(native)?)?;
+                let length = lengths.get(blob as usize).copied();
+                units.spend(
+                    length.ok_or_else(|| Error::corrupt("blobs", "a number is out of range"))?,
+                )?;
+            }
+        }
+        self.keys_within_budget()
+    }
+
+    fn keys_within_budget(&self) -> Result<(), Error> {
+        let mut budget = Budget::new(self.bytes.len(), "keys");
+        let keys = self.section(KEYS)?;
+        for entry in &self.entries {
+            for index in 0..entry.keys.count as usize {
+                budget.spend(self.key(keys, &entry.keys, index)?.len())?;
+            }
+        }
+        Ok(())
+    }
+
+    fn text_length(&self, index: u32) -> Result<usize, Error> {
+        u32_at(self.section(TEXTS)?, index as usize * RECORD_BYTES + 4, "texts")
+            .map(|length| length as usize)
+    }
+
+    /// The length of each blob. Blobs must follow each other through the groups, and none may
+    /// overlap another.
+    fn blob_lengths(&self) -> Result<Vec<usize>, Error> {
+        let table = self.section(BLOBS)?;
+        let (mut lengths, mut group, mut next) = (Vec::new(), 0, 0);
+        for blob in 0..self.meta.blobs as usize {
+            let at = blob * BLOB_BYTES;
+            let (found, offset, length) = (
+                u32_at(table, at, "blobs")?,
+                u32_at(table, at + 4, "blobs")? as usize,
+                u32_at(table, at + 8, "blobs")? as usize,
+            );
+            if found != group {
+                self.ends(group, next)?;
+                (group, next) = (group + 1, 0);
+            }
+            if found != group || offset != next {
+                let reason = "it is not where the one before ends";
+                return Err(Error::corrupt(format!("blob {blob}"), reason));
+            }
+            next += length;
+            lengths.push(length);
+        }
+        if self.meta.groups > 0 {
+            self.ends(group, next)?;
+        }
+        match group + 1 < self.meta.groups {
+            true => Err(Error::corrupt("blobs", "a group has no blobs")),
+            false => Ok(lengths),
+        }
+    }
+
+    /// Checks that a group ends at `at`, where its last blob ends.
+    fn ends(&self, group: u32, at: usize) -> Result<(), Error> {
+        match self.group_record(group)?.2 == at {
+            true => Ok(()),
+            false => Err(Error::corrupt(format!("group {group}"), "its blobs do not fill it")),
+        }
+    }
+
+    /// Checks that the groups fill DATA without a gap, so that their checksums cover all of it.
+    fn verify_groups(&self) -> Result<(), Error> {
+        let mut next = 0;
+        for group in 0..self.meta.groups {
+            let (offset, packed, ..) = self.group_record(group)?;
+            if offset != next {
+                return Err(Error::corrupt(
+                    format!("group {group}"),
+                    "it is not where the one before ends",
+                ));
+            }
+            next = offset.saturating_add(packed);
+            self.decompress(group)?;
+        }
+        if next == self.section(DATA)?.len() {
+            Ok(())
+        } else {
+            Err(Error::corrupt("data", "bytes follow the last group"))
+        }
+    }
+
+    /// Checks that keys are sorted, are found by their hashes, and have units.
+    fn verify_keys(&self) -> Result<(), Error> {
+        for (number, entry) in self.entries.iter().enumerate() {
+            let mut previous: Option<String> = None;
+            let mut outcome = Ok(());
+            self.each_key(number, &mut |key, unit| {
+                let is_sorted = previous.as_deref().is_none_or(|previous| previous < key);
+                if outcome.is_ok()
+                    && (!is_sorted
+                        || unit >= self.meta.units
+                        || self.find(number, key) != Ok(Some(unit)))
+                {
+                    outcome = Err(Error::corrupt(
+                        "keys",
+                        format!("`{key}` of `{}` is not where it belongs", entry.name),
+                    ));
+                }
+                previous = Some(key.to_owned());
+            })?;
+            outcome?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,301 @@
+//! Writes the single file; [`super::layout`] says how it is laid out.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::contents::{checksum, to_json};
+use super::layout::{
+    EntryMeta, HEADER_BYTES, KeySet, MAGIC, MOST_GROUP_BYTES, Meta, PROBES, ProgramMeta,
+    RECORD_BYTES, SLOT_BYTES, TargetMeta, hash_key,
+};
+use super::{Contents, EntryContents, Error, Hash, Unit, VERSION};
+use crate::packing;
+use lamplight_files::output::{self, Replace};
+
+/// A group is closed when it has this many blobs or bytes. That is large enough for similar shaders
+/// to share their common text, and small enough to be decompressed within a millisecond.
+const GROUP_BLOBS: usize = 32;
+const GROUP_BYTES: usize = 256 << 10;
+
+/// Writes the single-file form. The same contents always give the same bytes.
+///
+/// # Errors
+/// [`Error::Io`] where a table is larger than 4 GiB or a blob larger than 16 MiB.
+pub fn pack(contents: &Contents) -> Result<Vec<u8>, Error> {
+    let mut packer = Packer::default();
+    packer.collect_blobs(contents)?;
+    for (name, program) in &contents.programs {
+        let mut sets = BTreeMap::new();
+        let mut entries = Vec::new();
+        for (language, entry, contents) in
+            program.languages.iter().flat_map(|(language, entries)| {
+                entries.iter().map(move |(name, entry)| (*language, name, entry))
+            })
+        {
+            let keys = packer.key_set(&mut sets, contents)?;
+            let units = packer.unit_numbers(contents)?;
+            entries.push(EntryMeta { language, name: entry.clone(), keys, units });
+        }
+        packer
+            .meta
+            .programs
+            .insert(name.clone(), ProgramMeta { axes: program.axes.clone(), entries });
+    }
+    packer.finish()
+}
+
+/// As [`pack`], into a file. It is replaced as a whole, if it is a bundle or empty or does not
+/// exist.
+pub fn write_file(contents: &Contents, path: impl AsRef<Path>) -> Result<(), Error> {
+    replace_file(contents, path, Replace::Ours)
+}
+
+/// As [`write_file`], but replaces what the caller allows.
+pub fn replace_file(
+    contents: &Contents,
+    path: impl AsRef<Path>,
+    replace: Replace,
+) -> Result<(), Error> {
+    let is_bundle = |head: &[u8]| head.starts_with(MAGIC);
+    Ok(output::write_file(path.as_ref(), &pack(contents)?, is_bundle, replace)?)
+}
+
+#[derive(Default)]
+struct Packer {
+    meta: Meta,
+    keys: Vec<u8>,
+    units: Vec<u8>,
+    unit_numbers: BTreeMap<Hash, u32>,
+    artifacts: Vec<u8>,
+    texts: Vec<Vec<u8>>,
+    text_numbers: BTreeMap<Vec<u8>, u32>,
+    blobs: Vec<Arc<[u8]>>,
+    blob_numbers: BTreeMap<Hash, u32>,
+}
+
+impl Packer {
+    /// Numbers the blobs so that similar ones are neighbours: by target, then by entry point.
+    fn collect_blobs(&mut self, contents: &Contents) -> Result<(), Error> {
+        let units = contents.entries().flat_map(|entry| entry.units.values());
+        let artifacts = units.flat_map(|unit| &unit.targets);
+        let mut targets: Vec<TargetMeta> = artifacts
+            .map(|(name, artifact)| TargetMeta {
+                name: name.clone(),
+                extension: artifact.extension.clone(),
+            })
+            .collect();
+        targets.sort();
+        targets.dedup();
+        for target in &targets {
+            let units = contents.entries().flat_map(in_key_order);
+            for artifact in units.filter_map(|unit| unit.targets.get(&target.name)) {
+                if artifact.extension == target.extension {
+                    self.add_blob(&artifact.bytes)?;
+                }
+            }
+        }
+        self.meta.targets = targets;
+        Ok(())
+    }
+
+    fn add_blob(&mut self, bytes: &Arc<[u8]>) -> Result<(), Error> {
+        if bytes.len() > MOST_GROUP_BYTES {
+            return Err(Error::Io(format!(
+                "a blob of {} bytes is larger than a bundle takes",
+                bytes.len()
+            )));
+        }
+        let hash = checksum(bytes);
+        let next = to_u32(self.blobs.len())?;
+        if *self.blob_numbers.entry(hash).or_insert(next) == next {
+            self.blobs.push(bytes.clone());
+        }
+        Ok(())
+    }
+
+    /// Writes the keys of an entry point as a set, unless an earlier entry point of the program has
+    /// the same keys.
+    fn key_set<'a>(
+        &mut self,
+        sets: &mut BTreeMap<Vec<&'a str>, KeySet>,
+        entry: &'a EntryContents,
+    ) -> Result<KeySet, Error> {
+        let keys: Vec<&str> = entry.keys.keys().map(String::as_str).collect();
+        if let Some(set) = sets.get(&keys) {
+            return Ok(*set);
+        }
+        let slot_count = (keys.len() + keys.len() / 4 + 1).next_power_of_two();
+        let set = KeySet {
+            count: to_u32(keys.len())?,
+            records: to_u32(self.keys.len())?,
+            slots: to_u32(self.keys.len() + keys.len() * RECORD_BYTES)?,
+            slot_count: to_u32(slot_count)?,
+        };
+        let mut text_at = self.keys.len() + keys.len() * RECORD_BYTES + slot_count * SLOT_BYTES;
+        for key in &keys {
+            push_words(&mut self.keys, &[to_u32(text_at)?, to_u32(key.len())?]);
+            text_at += key.len();
+        }
+        build_slots(&keys, slot_count)?
+            .iter()
+            .for_each(|slot| self.keys.extend_from_slice(&slot.to_le_bytes()));
+        keys.iter().for_each(|key| self.keys.extend_from_slice(key.as_bytes()));
+        sets.insert(keys, set);
+        Ok(set)
+    }
+
+    /// Writes one unit number for each key, and returns where they start.
+    fn unit_numbers(&mut self, entry: &EntryContents) -> Result<u32, Error> {
+        let start = to_u32(self.keys.len())?;
+        for hash in entry.keys.values() {
+            let unit = entry
+                .units
+                .get(hash)
+                .ok_or_else(|| Error::Io("a key refers to no unit".to_owned()))?;
+            let unit = self.unit(hash, unit)?;
+            push_words(&mut self.keys, &[unit]);
+        }
+        Ok(start)
+    }
+
+    fn unit(&mut self, hash: &Hash, unit: &Unit) -> Result<u32, Error> {
+        if let Some(number) = self.unit_numbers.get(hash) {
+            return Ok(*number);
+        }
+        let reflection = self.text(to_json(&*unit.reflection)?)?;
+        push_words(
+            &mut self.units,
+            &[reflection, self.meta.artifacts, to_u32(unit.targets.len())?],
+        );
+        for (target, artifact) in &unit.targets {
+            let position =
+                |known: &TargetMeta| known.name == *target && known.extension == artifact.extension;
+            let target = to_u32(self.meta.targets.iter().position(position).unwrap_or_default())?;
+            let native = self.text(to_json(&*artifact.native)?)?;
+            let blob =
+                self.blob_numbers.get(&checksum(&artifact.bytes)).copied().unwrap_or_default();
+            push_words(&mut self.artifacts, &[target, native, blob]);
+            self.meta.artifacts += 1;
+        }
+        self.unit_numbers.insert(*hash, self.meta.units);
+        self.meta.units += 1;
+        Ok(self.meta.units - 1)
+    }
+
+    fn text(&mut self, text: Vec<u8>) -> Result<u32, Error> {
+        let next = to_u32(self.texts.len())?;
+        let found = *self.text_numbers.entry(text.clone()).or_insert(next);
+        if found == next {
+            self.texts.push(text);
+        }
+        Ok(found)
+    }
+
+    fn finish(mut self) -> Result<Vec<u8>, Error> {
+        let (blobs, data) = self.groups()?;
+        self.meta.texts = to_u32(self.texts.len())?;
+        self.meta.blobs = to_u32(self.blobs.len())?;
+        self.units.append(&mut self.artifacts);
+        join_sections([
+            to_json(&self.meta)?,
+            self.keys,
+            self.units,
+            text_heap(&self.texts)?,
+            blobs,
+            data,
+        ])
+    }
+
+    /// Builds the BLOBS and DATA sections.
+    fn groups(&mut self) -> Result<(Vec<u8>, Vec<u8>), Error> {
+        let (mut table, mut groups, mut data) = (Vec::new(), Vec::new(), Vec::new());
+        let mut raw = Vec::new();
+        let mut members = 0;
+        for (index, blob) in self.blobs.iter().enumerate() {
+            push_words(&mut table, &[self.meta.groups, to_u32(raw.len())?, to_u32(blob.len())?]);
+            table.extend_from_slice(&checksum(blob));
+            raw.extend_from_slice(blob);
+            members += 1;
+            let next = self.blobs.get(index + 1).map_or(usize::MAX, |blob| blob.len());
+            if members == GROUP_BLOBS || raw.len().saturating_add(next) > GROUP_BYTES {
+                let packed = packing::compress(&raw)?;
+                groups.extend_from_slice(&(data.len() as u64).to_le_bytes());
+                push_words(&mut groups, &[to_u32(packed.len())?, to_u32(raw.len())?]);
+                groups.extend_from_slice(&checksum(&packed));
+                data.extend_from_slice(&packed);
+                raw.clear();
+                members = 0;
+                self.meta.groups += 1;
+            }
+        }
+        table.append(&mut groups);
+        Ok((table, data))
+    }
+}
+
+/// The unit of each key, in the order of the keys, so that neighbours differ little. A unit comes
+/// once for each of its keys.
+fn in_key_order(entry: &EntryContents) -> impl Iterator<Item = &Unit> {
+    entry.keys.values().filter_map(|hash| entry.units.get(hash))
+}
+
+/// Builds the hash table of a key set.
+fn build_slots(keys: &[&str], count: usize) -> Result<Vec<u128>, Error> {
+    let mut slots = vec![0; count];
+    for (index, key) in keys.iter().enumerate() {
+        let hash = hash_key(key.as_bytes());
+        let mut at = hash as usize & (count - 1);
+        let mut probes = 1;
+        while slots[at] != 0 {
+            at = (at + 1) & (count - 1);
+            probes += 1;
+            if probes > PROBES {
+                return Err(Error::Io(format!("too many keys have the hash of `{key}`")));
+            }
+        }
+        slots[at] = hash >> 32 << 32 | u128::from(to_u32(index + 1)?);
+    }
+    Ok(slots)
+}
+
+/// A section of texts: the offset and length of each, then the texts.
+fn text_heap(texts: &[Vec<u8>]) -> Result<Vec<u8>, Error> {
+    let mut section = Vec::new();
+    let mut at = texts.len() * 8;
+    for text in texts {
+        push_words(&mut section, &[to_u32(at)?, to_u32(text.len())?]);
+        at += text.len();
+    }
+    texts.iter().for_each(|text| section.extend_from_slice(text));
+    Ok(section)
+}
+
+/// The header and the sections. DATA has no checksum of its own, since each of its groups has one.
+fn join_sections(sections: [Vec<u8>; 6]) -> Result<Vec<u8>, Error> {
+    let total = HEADER_BYTES + sections.iter().map(Vec::len).sum::<usize>();
+    let mut file = Vec::with_capacity(total);
+    file.extend_from_slice(MAGIC);
+    push_words(&mut file, &[VERSION, to_u32(sections.len())?]);
+    file.extend_from_slice(&(total as u64).to_le_bytes());
+    let mut at = HEADER_BYTES;
+    for (index, section) in sections.iter().enumerate() {
+        file.extend_from_slice(&(at as u64).to_le_bytes());
+        file.extend_from_slice(&(section.len() as u64).to_le_bytes());
+        let is_data = index + 1 == sections.len();
+        file.extend_from_slice(&if is_data { [0; 16] } else { checksum(section) });
+        at += section.len();
+    }
+    let header = checksum(&file);
+    file.extend_from_slice(&header);
+    sections.iter().for_each(|section| file.extend_from_slice(section));
+    Ok(file)
+}
+
+fn push_words(bytes: &mut Vec<u8>, words: &[u32]) {
+    words.iter().for_each(|word| bytes.extend_from_slice(&word.to_le_bytes()));
+}
+
+fn to_u32(value: usize) -> Result<u32, Error> {
+    u32::try_from(value).map_err(|_| Error::Io("a table of the bundle outgrows 32 bits".to_owned()))
+}

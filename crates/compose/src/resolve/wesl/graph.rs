@@ -1,0 +1,194 @@
+//! The resolved modules.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use rustc_hash::FxHashMap;
+
+use lamplight_diagnostic::source::{Embedded, SourceId, Span};
+use lamplight_diagnostic::{Diagnostic, Diagnostics};
+use lamplight_syntax::wesl::{ConditionId, Expression, Name, Names, PlacedModule};
+
+/// The most imports that a diagnostic lists of the chain that led to its file.
+const TRACED: usize = 16;
+
+/// Every module that a root module may reach, ready to be composed any number of times.
+#[derive(Debug)]
+pub struct Graph {
+    pub names: Arc<Names>,
+    /// The root module first.
+    pub nodes: Vec<ModuleNode>,
+    /// The nodes in the order of the output: by label, with the root module last.
+    pub order: Vec<u32>,
+    pub constants: Vec<ConstantUse>,
+    /// Errors that are reported once something needs what failed.
+    pub failures: Vec<Diagnostic>,
+    /// How many items, conditions and bindings all nodes have together.
+    pub totals: Bases,
+    pub by_source: BTreeMap<SourceId, u32>,
+    /// What hints about unknown names are taken from.
+    pub library: Option<Embedded>,
+}
+
+impl Graph {
+    /// The imports that led to a file, from its own importer to one in the root module.
+    ///
+    /// Empty for the root module and for files that are not of this graph.
+    pub fn chain(&self, source: SourceId) -> Vec<Span> {
+        self.importers(source).map(|(span, _)| span).collect()
+    }
+
+    /// [`Self::chain`] as notes: `imported by main.wesl:3:8`.
+    pub fn trace(&self, source: SourceId) -> Vec<String> {
+        self.importers(source).map(|(_, note)| note.to_owned()).collect()
+    }
+
+    /// The diagnostic with the chain of imports that led to the file it stands in.
+    pub fn traced(&self, diagnostic: Diagnostic) -> Diagnostic {
+        let source = diagnostic.labels.first().map(|label| label.span.source);
+        let notes = source.into_iter().flat_map(|source| self.importers(source)).take(TRACED);
+        notes.fold(diagnostic, |diagnostic, (_, note)| diagnostic.note(note))
+    }
+
+    /// Whether any condition or `constants::` may ask for the axis or feature.
+    pub fn may_ask(&self, name: &str) -> bool {
+        let Some(name) = self.names.find(name) else { return false };
+        let expressions = self.nodes.iter().flat_map(|node| &node.module.expressions);
+        expressions.flat_map(Expression::names).any(|asked| asked == name)
+            || self.constants.iter().any(|constant| constant.name == name)
+    }
+
+    /// Whether the file is in the root package.
+    pub fn is_own(&self, source: SourceId) -> bool {
+        self.by_source.get(&source).is_some_and(|node| self.nodes[*node as usize].package == 0)
+    }
+
+    fn importers(&self, source: SourceId) -> impl Iterator<Item = (Span, &str)> {
+        let first = self
+            .by_source
+            .get(&source)
+            .and_then(|node| self.nodes[*node as usize].importer.as_ref());
+        std::iter::successors(first, |importer| {
+            let node = self.by_source.get(&importer.span.source)?;
+            self.nodes[*node as usize].importer.as_ref()
+        })
+        .map(|importer| (importer.span, importer.note.as_str()))
+    }
+}
+
+/// Where a module's entries start in tables over all modules.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Bases {
+    pub items: u32,
+    pub conditions: u32,
+    pub bindings: u32,
+}
+
+/// A module with its place in the graph.
+#[derive(Debug)]
+pub struct ModuleNode {
+    /// Its items, imports and conditions.
+    pub module: PlacedModule,
+    /// 0 for the root package, else one more than the dependency's index.
+    pub package: usize,
+    /// Names from the package's root.
+    pub path: Vec<String>,
+    /// `package::a::b` or `lamplight::brdf::specular`.
+    pub label: String,
+    /// Item indices by name, in source order.
+    pub sets: Arc<FxHashMap<Name, Vec<u32>>>,
+    /// Indices of imports, by the name that they bring into scope.
+    pub aliases: Arc<FxHashMap<Name, Vec<usize>>>,
+    /// For each import, what it may lead to.
+    pub imports: Arc<Vec<Vec<PathTarget>>>,
+    /// For each reference, what it may mean: the first candidate whose conditions hold.
+    pub bindings: Arc<Vec<Vec<Candidate>>>,
+    /// Imports that lead nowhere, with their conditions. They are reported if the module is reached
+    /// and the conditions hold.
+    pub broken_imports: Vec<(Vec<ConditionId>, u32)>,
+    /// Declarations of a name that is declared twice under the same condition. These failures are
+    /// reported if the module is reached, unless items were asked for by name.
+    pub duplicates: Vec<(Option<ConditionId>, u32)>,
+    /// Warnings, only for modules of the root package.
+    pub lints: Vec<Diagnostic>,
+    /// What led here first; `None` for the root module.
+    pub importer: Option<Importer>,
+    /// Offsets of this module's items, conditions and bindings in the tables over all modules.
+    pub bases: Bases,
+}
+
+/// The import or inline path that led to a module.
+#[derive(Debug, Clone)]
+pub struct Importer {
+    pub span: Span,
+    pub note: String,
+}
+
+/// One thing that a use may mean.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    /// Conditions of the module that uses it. All must hold.
+    pub conditions: Vec<ConditionId>,
+    /// What the import leads to.
+    pub target: PathTarget,
+}
+
+/// What a path leads to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PathTarget {
+    /// The items of that name in a node; conditions choose.
+    Items {
+        /// Number of the module.
+        node: u32,
+        /// Name of its items.
+        name: Name,
+    },
+    /// Index into [`Graph::constants`].
+    Constant(u32),
+    /// A module, which can be imported but is no value itself.
+    Module,
+    /// Index into [`Graph::failures`].
+    Failed(u32),
+}
+
+/// `constants::NAME`, used somewhere.
+#[derive(Debug)]
+pub struct ConstantUse {
+    /// The name that is imported.
+    pub name: Name,
+    /// Its first use.
+    pub span: Span,
+}
+
+/// The errors that every composition has: those of the root module, and of what it imports without
+/// a condition.
+pub fn certain_errors(graph: &Graph) -> Diagnostics {
+    let mut certain = vec![false; graph.nodes.len()];
+    let mut failed = vec![false; graph.failures.len()];
+    let mut errors = Vec::new();
+    let mut open = vec![0];
+    while let Some(index) = open.pop() {
+        if std::mem::replace(&mut certain[index], true) {
+            continue;
+        }
+        let node = &graph.nodes[index];
+        let broken = node.broken_imports.iter().filter(|(conditions, _)| conditions.is_empty());
+        let broken =
+            broken.filter(|(_, failure)| !std::mem::replace(&mut failed[*failure as usize], true));
+        let found = node
+            .module
+            .errors
+            .iter()
+            .chain(broken.map(|(_, failure)| &graph.failures[*failure as usize]));
+        errors.extend(found.map(|error| graph.traced(error.clone())));
+        let certainly =
+            node.bindings.iter().flatten().filter(|candidate| candidate.conditions.is_empty());
+        open.extend(certainly.filter_map(|candidate| match candidate.target {
+            PathTarget::Items { node, .. } => Some(node as usize),
+            _ => None,
+        }));
+    }
+    errors.sort_by_key(|error| error.labels.first().map(|label| label.span));
+    errors.dedup();
+    errors
+}

@@ -1,0 +1,350 @@
+//! Finds what a path names: follows imports and packages to a module, and finds the item in it.
+
+use super::graph::{Candidate, ConstantUse, PathTarget};
+use super::load::Loader;
+use lamplight_diagnostic::source::{LIMITS, Span};
+use lamplight_diagnostic::{Diagnostic, codes};
+use lamplight_syntax::wesl::{ConditionId, Name, Origin, Path, PlacedModule};
+
+/// A path from a package's root.
+#[derive(Debug, Clone)]
+struct Absolute {
+    /// `None` for the virtual package `constants`.
+    package: Option<usize>,
+    segments: Vec<Name>,
+    conditions: Vec<ConditionId>,
+}
+
+/// The most meanings that one path may have under different conditions.
+const MEANINGS: usize = 64;
+
+/// The most failures of a graph for which names are suggested.
+const SUGGESTED: usize = 100;
+
+/// The places of a path that an error may be about.
+#[derive(Debug, Clone, Copy)]
+struct PathPlaces {
+    whole: Span,
+    first: Span,
+    /// All names but the last; the whole path if these are not written in one piece.
+    parents: Span,
+    last: Span,
+}
+
+impl PathPlaces {
+    fn new(module: &PlacedModule, path: &Path) -> Self {
+        let whole = module.span(path.range.clone());
+        let parents = Some(path.parts.parents.clone()).filter(|range| range.start < range.end);
+        Self {
+            whole,
+            first: module.span(path.parts.first.clone()),
+            parents: parents.map_or(whole, |range| module.span(range)),
+            last: module.span(path.parts.last.clone()),
+        }
+    }
+}
+
+impl Loader<'_> {
+    /// What a path in a module may mean. `import` is the index of the import that has the path, if
+    /// one has it: the name that this import brings does not count for the path's first segment,
+    /// and the path may name a module.
+    pub(super) fn candidates(
+        &mut self,
+        node: u32,
+        path: &Path,
+        import: Option<usize>,
+    ) -> Vec<Candidate> {
+        if !self.step(1) {
+            return Vec::new();
+        }
+        let places = PathPlaces::new(&self.nodes[node as usize].module, path);
+        let mut visiting: Vec<usize> = import.into_iter().collect();
+        let found = self.absolute(node, path, &mut visiting).and_then(|absolutes| {
+            let candidate = |absolute: Absolute| {
+                let target = self.target(&absolute, places, import.is_some())?;
+                Ok(Candidate { conditions: absolute.conditions, target })
+            };
+            absolutes.into_iter().map(candidate).collect()
+        });
+        found.unwrap_or_else(|error| {
+            vec![Candidate { conditions: Vec::new(), target: self.fail(error) }]
+        })
+    }
+
+    /// The path from a package's root, for each import that its first segment may mean.
+    fn absolute(
+        &self,
+        node: u32,
+        path: &Path,
+        visiting: &mut Vec<usize>,
+    ) -> Result<Vec<Absolute>, Diagnostic> {
+        let here = &self.nodes[node as usize];
+        let places = PathPlaces::new(&here.module, path);
+        match path.origin {
+            Origin::Package => Ok(vec![Absolute {
+                package: Some(here.package),
+                segments: path.segments.clone(),
+                conditions: Vec::new(),
+            }]),
+            Origin::Super(ups) => {
+                let place = places.whole;
+                self.above(node, ups as usize, &path.segments, place).map(|absolute| vec![absolute])
+            }
+            // The path of an import starts with a package, even where another import brings the
+            // same name.
+            Origin::Scope if !visiting.is_empty() && self.is_package(node, path.segments[0]) => {
+                self.in_package(node, &path.segments, places, false).map(|absolute| vec![absolute])
+            }
+            Origin::Scope => {
+                let named = here.aliases.get(&path.segments[0]).into_iter().flatten();
+                let (seen, through): (Vec<usize>, Vec<usize>) =
+                    named.partition(|index| visiting.contains(index));
+                if through.is_empty() {
+                    let cyclic = visiting.len() > 1 && !seen.is_empty();
+                    return self
+                        .in_package(node, &path.segments, places, cyclic)
+                        .map(|absolute| vec![absolute]);
+                }
+                self.through_imports(node, path, &through, visiting)
+            }
+        }
+    }
+
+    fn through_imports(
+        &self,
+        node: u32,
+        path: &Path,
+        imports: &[usize],
+        visiting: &mut Vec<usize>,
+    ) -> Result<Vec<Absolute>, Diagnostic> {
+        let module = &self.nodes[node as usize].module;
+        let many = || {
+            let message = format!("a path with more than {MEANINGS} meanings");
+            Diagnostic::error(codes::CYCLIC_IMPORT, message)
+                .at(module.span(path.range.clone()), "here")
+        };
+        // Each import has a meaning or an error, so a bound on imports bounds the meanings.
+        if imports.len() > MEANINGS || !self.step(imports.len()) {
+            return Err(many());
+        }
+        let mut found = Vec::new();
+        for index in imports {
+            let import = &module.imports[*index];
+            visiting.push(*index);
+            if visiting.len() > LIMITS.include_depth {
+                return Err(cyclic_import(module.span(path.range.clone())));
+            }
+            for mut absolute in self.absolute(node, &import.path, visiting)? {
+                absolute.conditions.extend(import.condition);
+                absolute.segments.extend(&path.segments[1..]);
+                found.push(absolute);
+            }
+            visiting.pop();
+            if found.len() > MEANINGS {
+                return Err(many());
+            }
+        }
+        Ok(found)
+    }
+
+    fn above(
+        &self,
+        node: u32,
+        ups: usize,
+        segments: &[Name],
+        span: Span,
+    ) -> Result<Absolute, Diagnostic> {
+        let here = &self.nodes[node as usize];
+        let Some(depth) = here.path.len().checked_sub(ups) else {
+            let message = format!(
+                "the path leaves the root of its package: `{}` is {} deep",
+                here.label,
+                here.path.len()
+            );
+            return Err(Diagnostic::error(codes::OUTSIDE_ROOT, message)
+                .at(span, format!("{ups} times `super`")));
+        };
+        let above = here.path[..depth].iter().filter_map(|part| self.names.find(part));
+        let segments = above.chain(segments.iter().copied()).collect();
+        Ok(Absolute { package: Some(here.package), segments, conditions: Vec::new() })
+    }
+
+    /// Whether a path may start with the name as that of a package.
+    fn is_package(&self, node: u32, name: Name) -> bool {
+        let text = self.names.text(name);
+        name == Name::CONSTANTS
+            || self.packages.dependencies.iter().any(|package| package.name == text)
+            || self.package(self.nodes[node as usize].package).name == text
+    }
+
+    fn in_package(
+        &self,
+        node: u32,
+        segments: &[Name],
+        places: PathPlaces,
+        in_circle: bool,
+    ) -> Result<Absolute, Diagnostic> {
+        let first = self.names.text(segments[0]);
+        let dependency =
+            self.packages.dependencies.iter().position(|package| package.name == first);
+        let own = self.package(self.nodes[node as usize].package).name == first;
+        let package = match dependency {
+            Some(index) => Some(index + 1),
+            None if own => Some(self.nodes[node as usize].package),
+            None if segments[0] == Name::CONSTANTS => None,
+            None if in_circle => return Err(cyclic_import(places.whole)),
+            None => return Err(self.unknown_package(node, first, places.first)),
+        };
+        Ok(Absolute { package, segments: segments[1..].to_vec(), conditions: Vec::new() })
+    }
+
+    fn unknown_package(&self, node: u32, first: &str, span: Span) -> Diagnostic {
+        let error =
+            Diagnostic::error(codes::UNKNOWN_PACKAGE, format!("there is no package `{first}`"))
+                .at(span, "not a package");
+        let files = self.package(self.nodes[node as usize].package).files.list(&["wesl", "wgsl"]);
+        let own = files.iter().any(|file| file.split(['/', '.']).next() == Some(first));
+        match own {
+            true => {
+                error.note(format!("help: for the module of this package write `package::{first}`"))
+            }
+            false => error.suggest(
+                first,
+                self.packages
+                    .dependencies
+                    .iter()
+                    .map(|package| package.name.as_str())
+                    .chain(["package", "super"]),
+            ),
+        }
+    }
+
+    fn target(
+        &mut self,
+        absolute: &Absolute,
+        places: PathPlaces,
+        import: bool,
+    ) -> Result<PathTarget, Diagnostic> {
+        let span = places.whole;
+        let Some(package) = absolute.package else {
+            return Ok(self.constant(&absolute.segments, span));
+        };
+        let Some((last, parents)) = absolute.segments.split_last() else {
+            return Ok(PathTarget::Module);
+        };
+        let parent = self.ask_module(package, parents, span)?;
+        if let Some(node) = parent.filter(|node| self.nodes[*node as usize].sets.contains_key(last))
+        {
+            return Ok(PathTarget::Items { node, name: *last });
+        }
+        self.notes.lacks.extend(parent.map(|node| (node, *last)));
+        if self.is_module(package, &absolute.segments, span, import)? {
+            return Ok(PathTarget::Module);
+        }
+        Err(match parent {
+            // The missing item may be in the part of the module that could not be parsed.
+            Some(node) if !self.nodes[node as usize].module.errors.is_empty() => {
+                self.nodes[node as usize].module.errors[0].clone()
+            }
+            Some(node) => self.missing_item(node, *last, places.last),
+            // The last name may be an item or a module. Below a folder it is a module.
+            None if parents.is_empty() || self.is_module(package, parents, span, false)? => {
+                self.missing_module(package, &absolute.segments, span)
+            }
+            None => self.missing_module(package, parents, places.parents),
+        })
+    }
+
+    fn constant(&mut self, segments: &[Name], span: Span) -> PathTarget {
+        match segments {
+            [] => PathTarget::Module,
+            [name] => {
+                let next = self.constants.len() as u32;
+                let index = *self.constant_places.entry(*name).or_insert(next);
+                if index == next {
+                    self.constants.push(ConstantUse { name: *name, span });
+                }
+                PathTarget::Constant(index)
+            }
+            _ => self.fail(
+                Diagnostic::error(codes::MISSING_MODULE, "the module `constants` has no modules")
+                    .at(span, "too long a path"),
+            ),
+        }
+    }
+
+    /// Whether there is a module or a folder at a path. For an import the module is read. If that
+    /// finds none, or for other paths, the listing of the package's files decides.
+    fn is_module(
+        &mut self,
+        package: usize,
+        segments: &[Name],
+        span: Span,
+        import: bool,
+    ) -> Result<bool, Diagnostic> {
+        let path = segments.iter().map(|name| self.names.text(*name)).collect::<Vec<_>>().join("/");
+        if import && self.ask_module(package, segments, span)?.is_some() {
+            return Ok(true);
+        }
+        self.notes.is_open = true;
+        // The listing is sorted, so if any file begins with `start`, the first one not before it
+        // does.
+        let listing = self.listing(package);
+        let begins = |start: String| {
+            let at = listing.partition_point(|file| *file < start);
+            listing.get(at).is_some_and(|file| file.starts_with(&start))
+        };
+        Ok(begins(format!("{path}/")) || begins(format!("{path}.")))
+    }
+
+    fn missing_item(&mut self, node: u32, name: Name, span: Span) -> Diagnostic {
+        let here = &self.nodes[node as usize];
+        let text = self.names.text(name);
+        let error = Diagnostic::error(
+            codes::MISSING_ITEM,
+            format!("`{}` has no item `{text}`", here.label),
+        )
+        .at(span, "not found");
+        let imports = here.module.imports.iter().any(|import| import.alias == name);
+        let error = if imports {
+            error.note("it imports that name, but imports are not passed on")
+        } else {
+            error
+        };
+        let suggested = if self.failures.len() < SUGGESTED { here.module.items.len() } else { 0 };
+        error.suggest(
+            text,
+            here.module.items.iter().take(suggested).map(|item| self.names.text(item.name)),
+        )
+    }
+
+    fn missing_module(&mut self, package: usize, path: &[Name], span: Span) -> Diagnostic {
+        let path: Vec<String> = path.iter().map(|name| self.names.text(*name).to_owned()).collect();
+        let label = self.label(package, &path);
+        let shown = self.package(package).files.display(&path.join("/"));
+        let listing = if self.failures.len() < SUGGESTED {
+            self.listing(package).to_vec()
+        } else {
+            Vec::new()
+        };
+        let mut known: Vec<String> = Vec::new();
+        for file in listing {
+            let parts: Vec<String> = file
+                .rsplit_once('.')
+                .map_or(&*file, |(stem, _)| stem)
+                .split('/')
+                .map(str::to_owned)
+                .collect();
+            known.extend((1..=parts.len()).map(|depth| self.label(package, &parts[..depth])));
+        }
+        Diagnostic::error(codes::MISSING_MODULE, format!("there is no module `{label}`"))
+            .at(span, "not found")
+            .note(format!("looked for `{shown}.wesl` and `{shown}.wgsl`"))
+            .suggest(&label, known.iter().map(String::as_str))
+    }
+}
+
+fn cyclic_import(span: Span) -> Diagnostic {
+    Diagnostic::error(codes::CYCLIC_IMPORT, "imports refer to each other in a cycle")
+        .at(span, "leads back to itself")
+}

@@ -1,0 +1,232 @@
+//! Uses Mesa's RADV for GPUs that are not installed: compiles pipelines and reads their figures.
+//!
+//! With `RADV_FORCE_FAMILY` the driver makes a device of that family on top of no hardware. Nothing
+//! is ever submitted to it. The loader is pointed at RADV alone, so that no other driver, and no
+//! real device, is touched; the environment is put back before anything else reads it.
+
+use std::ffi::CStr;
+use std::path::Path;
+
+use ash::{khr, vk};
+
+use super::gpu::Gpu;
+use super::made::PipelineObjects;
+use super::pipeline::Pipeline;
+use super::statistics::Statistics;
+use lamplight_bundle::Stage;
+
+/// The environment variable that names another manifest of the driver.
+const MANIFEST: &str = "LAMPLIGHT_RADV_MANIFEST";
+
+/// Where packages put the driver's manifest.
+const MANIFESTS: &[&str] = &[
+    "/usr/share/vulkan/icd.d/radeon_icd.x86_64.json",
+    "/usr/share/vulkan/icd.d/radeon_icd.json",
+    "/etc/vulkan/icd.d/radeon_icd.x86_64.json",
+];
+
+/// A part of the device's name if it has no hardware.
+const NULL_HARDWARE: &str = "Null hardware";
+
+/// How to get the driver.
+pub const INSTALL: &str = "apt-get install mesa-vulkan-drivers libvulkan1";
+
+/// A GPU to compile for.
+pub struct Device {
+    pub gpu: &'static Gpu,
+    /// The driver's version. Figures of different versions differ.
+    pub driver: String,
+    _entry: ash::Entry,
+    instance: ash::Instance,
+    device: ash::Device,
+    executables: khr::pipeline_executable_properties::Device,
+}
+
+impl Device {
+    /// Opens the GPU. Call this while the process has only one thread: it changes the environment
+    /// for a moment, since the loader and the driver read it.
+    ///
+    /// # Errors
+    /// Why the device cannot be opened. If the driver is missing, the command that installs it.
+    pub fn open(gpu: &'static Gpu) -> Result<Self, String> {
+        let manifest =
+            driver_manifest().ok_or_else(|| missing_feature("there is no RADV driver"))?;
+        let settings = [
+            ("RADV_FORCE_FAMILY", gpu.name),
+            ("VK_DRIVER_FILES", &manifest),
+            ("VK_ICD_FILENAMES", &manifest),
+            ("VK_LOADER_LAYERS_DISABLE", "~all~"),
+            ("NODEVICE_SELECT", "1"),
+            ("MESA_SHADER_CACHE_DISABLE", "true"),
+        ];
+        let before = settings.map(|(name, _)| (name, std::env::var_os(name)));
+        for (name, value) in settings {
+            // SAFETY: the process has one thread, as the caller promises.
+            unsafe { std::env::set_var(name, value) };
+        }
+        let opened = Self::create(gpu);
+        for (name, value) in before {
+            // SAFETY: as above.
+            match value {
+                Some(value) => unsafe { std::env::set_var(name, value) },
+                None => unsafe { std::env::remove_var(name) },
+            }
+        }
+        opened
+    }
+
+    fn create(gpu: &'static Gpu) -> Result<Self, String> {
+        // SAFETY: the loader is the system's, and outlives what is made with it in `Device`.
+        let entry = unsafe { ash::Entry::load() }
+            .map_err(|_| missing_feature("there is no Vulkan loader"))?;
+        let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_3);
+        let info = vk::InstanceCreateInfo::default().application_info(&application);
+        // SAFETY: the structures live during the call.
+        let instance = unsafe { entry.create_instance(&info, None) }.map_err(refusal_text)?;
+        // SAFETY: `instance` is valid until it is destroyed in `drop`, and here on failure.
+        let found = unsafe { instance.enumerate_physical_devices() }.map_err(refusal_text);
+        let opened = found.and_then(|found| {
+            let physical =
+                found.first().copied().ok_or_else(|| missing_feature("RADV has no device"))?;
+            open_device(&instance, physical, gpu)
+        });
+        match opened {
+            Ok((device, driver)) => {
+                let executables =
+                    khr::pipeline_executable_properties::Device::new(&instance, &device);
+                Ok(Self { gpu, driver, _entry: entry, instance, device, executables })
+            }
+            Err(error) => {
+                // SAFETY: nothing was made of it.
+                unsafe { instance.destroy_instance(None) };
+                Err(error)
+            }
+        }
+    }
+
+    /// Compiles a pipeline and gives the figures of each of its stages.
+    ///
+    /// # Errors
+    /// What the driver says where it refuses the pipeline.
+    pub fn measure(&self, pipeline: &Pipeline) -> Result<Vec<(Stage, Statistics)>, String> {
+        let mut made = PipelineObjects::new(&self.device);
+        let compiled = made.pipeline(pipeline).map_err(refusal_text)?;
+        self.figures(compiled)
+    }
+
+    fn figures(&self, pipeline: vk::Pipeline) -> Result<Vec<(Stage, Statistics)>, String> {
+        let info = vk::PipelineInfoKHR::default().pipeline(pipeline);
+        // SAFETY: the pipeline was made by this device with its statistics captured.
+        let found = unsafe { self.executables.get_pipeline_executable_properties(&info) };
+        let mut stages = Vec::new();
+        for (index, executable) in found.map_err(refusal_text)?.iter().enumerate() {
+            let Some(stage) = stage_of(executable.stages) else { continue };
+            let info = vk::PipelineExecutableInfoKHR::default()
+                .pipeline(pipeline)
+                .executable_index(index as u32);
+            // SAFETY: as above; the index is one of those just told.
+            let named = unsafe { self.executables.get_pipeline_executable_statistics(&info) };
+            let named = named.map_err(refusal_text)?;
+            let named = named.iter().filter_map(|named| {
+                Some((named.name_as_c_str().ok()?.to_str().ok()?, statistic_value(named)))
+            });
+            stages.push((stage, Statistics::from_named(named)));
+        }
+        Ok(stages)
+    }
+}
+
+impl Drop for Device {
+    fn drop(&mut self) {
+        // SAFETY: both were made by `create` and nothing of theirs is left.
+        unsafe {
+            self.device.destroy_device(None);
+            self.instance.destroy_instance(None);
+        }
+    }
+}
+
+/// The driver's manifest: that of `LAMPLIGHT_RADV_MANIFEST`, or where packages put it.
+fn driver_manifest() -> Option<String> {
+    let named = std::env::var(MANIFEST).ok();
+    let known = || MANIFESTS.iter().map(|path| (*path).to_owned());
+    let mut paths: Box<dyn Iterator<Item = String>> = match named {
+        Some(named) => Box::new(std::iter::once(named)),
+        None => Box::new(known()),
+    };
+    paths.find(|path| Path::new(path).is_file())
+}
+
+/// The logical device, and the driver's version.
+fn open_device(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+    gpu: &Gpu,
+) -> Result<(ash::Device, String), String> {
+    let mut driver = vk::PhysicalDeviceDriverProperties::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
+    // SAFETY: `physical` is one of the instance's.
+    unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
+    let name = text_of(properties.properties.device_name_as_c_str());
+    if !name.contains(NULL_HARDWARE) {
+        return Err(format!(
+            "RADV gave the device `{name}` instead of {} without hardware",
+            gpu.name
+        ));
+    }
+    let version = text_of(driver.driver_info_as_c_str());
+    let priorities = [1.0];
+    let queues = [vk::DeviceQueueCreateInfo::default().queue_priorities(&priorities)];
+    let extensions = [khr::pipeline_executable_properties::NAME.as_ptr()];
+    let mut executables = vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR::default()
+        .pipeline_executable_info(true);
+    let mut rendering =
+        vk::PhysicalDeviceDynamicRenderingFeatures::default().dynamic_rendering(true);
+    // SAFETY: as above.
+    let features = unsafe { instance.get_physical_device_features(physical) };
+    let info = vk::DeviceCreateInfo::default()
+        .queue_create_infos(&queues)
+        .enabled_extension_names(&extensions)
+        .enabled_features(&features)
+        .push_next(&mut executables)
+        .push_next(&mut rendering);
+    // SAFETY: the structures live during the call.
+    let device = unsafe { instance.create_device(physical, &info, None) }.map_err(refusal_text)?;
+    Ok((device, version))
+}
+
+fn missing_feature(what: &str) -> String {
+    format!("{what}\ninstall it with: {INSTALL}")
+}
+
+fn refusal_text(error: vk::Result) -> String {
+    format!("the driver answered {error}")
+}
+
+fn text_of(name: Result<&CStr, std::ffi::FromBytesUntilNulError>) -> String {
+    name.map_or(String::new(), |name| name.to_string_lossy().into_owned())
+}
+
+fn stage_of(flags: vk::ShaderStageFlags) -> Option<Stage> {
+    if flags.contains(vk::ShaderStageFlags::FRAGMENT) {
+        Some(Stage::Fragment)
+    } else if flags.contains(vk::ShaderStageFlags::VERTEX) {
+        Some(Stage::Vertex)
+    } else if flags.contains(vk::ShaderStageFlags::COMPUTE) {
+        Some(Stage::Compute)
+    } else {
+        None
+    }
+}
+
+fn statistic_value(named: &vk::PipelineExecutableStatisticKHR) -> i64 {
+    // SAFETY: the format tells which field was written.
+    unsafe {
+        match named.format {
+            vk::PipelineExecutableStatisticFormatKHR::BOOL32 => i64::from(named.value.b32),
+            vk::PipelineExecutableStatisticFormatKHR::INT64 => named.value.i64,
+            vk::PipelineExecutableStatisticFormatKHR::UINT64 => named.value.u64 as i64,
+            _ => named.value.f64 as i64,
+        }
+    }
+}

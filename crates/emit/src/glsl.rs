@@ -1,0 +1,210 @@
+//! What the GLSL targets share: combined samplers, names and coordinates.
+
+use naga::back::glsl::{Options, PipelineOptions, ReflectionInfo, Version, Writer, WriterFlags};
+use naga::proc::BoundsCheckPolicies;
+
+use super::lacks;
+use super::reflect::place_of;
+use super::remainder;
+use super::rename;
+use super::slots::{EXPLICIT_LIMIT, Numbering, assign_slots, native_reflection};
+use super::text::BoundedText;
+use super::{EmitSource, Emitted};
+use lamplight_bundle::{BindingKind, ClipConvention, Combined, Native};
+
+/// The uniform that naga adds for WebGPU's first instance, which OpenGL does not count from.
+const FIRST_INSTANCE: &str = "naga_vs_first_instance";
+
+/// What lines before the first declaration begin with: directives, and precisions in GLSL ES.
+pub const HEADER: &[&str] = &["#", "precision "];
+
+/// Writes GLSL of one version.
+pub fn write_glsl(
+    source: &EmitSource<'_>,
+    version: Version,
+    numbering: Numbering,
+) -> Result<Emitted, String> {
+    if let Some(reason) = lacks::first_lack(source.module, version) {
+        return Err(reason);
+    }
+    let changed = rename::rename_taken(source.module, &is_taken);
+    let source = &EmitSource { module: changed.as_ref().unwrap_or(source.module), ..*source };
+    let defined = remainder::with_defined_remainders(source.module, source.info)?;
+    let (module, info) =
+        defined.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
+    let source = &EmitSource { module, info, ..*source };
+    let options = writer_options(source, version, numbering)?;
+    let pipeline = PipelineOptions {
+        shader_stage: source.stage,
+        entry_point: source.entry.to_owned(),
+        multiview: None,
+    };
+    let mut text = BoundedText::default();
+    let written = Writer::new(
+        &mut text,
+        source.module,
+        source.info,
+        &options,
+        &pipeline,
+        bounds_policies(source, version),
+    )
+    .and_then(|mut writer| writer.write());
+    let mut info = written.map_err(|error| text.explain(error))?;
+    // naga omits the prefix of this one extension's name, and no driver knows it without.
+    let mut text = text.0.replacen("#extension ARB_", "#extension GL_ARB_", 1);
+    if defined.is_some() {
+        text = remainder::with_plain_parameters(text);
+    }
+    name_blocks(source, &mut text, &mut info);
+    let mut native = glsl_reflection(source, &info, numbering);
+    let is_asked = text.contains(&format!("uniform uint {FIRST_INSTANCE};"));
+    native.first_instance = is_asked.then(|| FIRST_INSTANCE.to_owned());
+    Ok(Emitted { bytes: text.into_bytes(), native })
+}
+
+/// naga checks loads of textures, which needs the number of their levels. GLSL has a function for
+/// it from 4.30.
+fn bounds_policies(source: &EmitSource<'_>, version: Version) -> BoundsCheckPolicies {
+    match version {
+        Version::Desktop(430..) => source.bounds_policies(),
+        _ => BoundsCheckPolicies::default(),
+    }
+}
+
+/// Words that extensions reserve, and that compilers of GLSL refuse whether an extension is enabled
+/// or not. naga does not avoid them.
+const WORDS: &[&str] = &[
+    "devicecoherent",
+    "fcoopmatNV",
+    "icoopmatNV",
+    "nonprivate",
+    "pervertexEXT",
+    "pervertexNV",
+    "queuefamilycoherent",
+    "samplerExternalOES",
+    "shadercallcoherent",
+    "subgroupcoherent",
+    "ucoopmatNV",
+    "workgroupcoherent",
+];
+
+/// How the names of types with a size begin, such as `f16vec2`. One of `KINDS` follows.
+const SIZED: &[&str] = &["f16", "f32", "f64", "i16", "i32", "i64", "i8", "u16", "u32", "u64", "u8"];
+const KINDS: &[&str] = &["image", "mat", "sampler", "subpass", "texture", "vec"];
+
+fn is_taken(name: &str) -> bool {
+    let behind = |start: &&str| name.strip_prefix(*start);
+    let is_sized =
+        SIZED.iter().filter_map(behind).any(|rest| KINDS.iter().any(|kind| rest.starts_with(kind)));
+    let number = ["uint", "int", "float"].iter().find_map(behind);
+    let is_number = number.is_some_and(|bits| matches!(bits, "8_t" | "16_t" | "32_t" | "64_t"));
+    // naga itself makes names with this beginning, so it would put `gen_` before the author's. `gl`
+    // is taken since naga would call a second variable of that name `gl_1`.
+    let is_nagas = name.starts_with("_group");
+    is_sized || is_number || is_nagas || WORDS.contains(&name) || name.trim_end_matches('_') == "gl"
+}
+
+fn writer_options(
+    source: &EmitSource<'_>,
+    version: Version,
+    numbering: Numbering,
+) -> Result<Options, String> {
+    let mut options = Options {
+        version,
+        writer_flags: match source.conventions.clip {
+            ClipConvention::Wgpu => WriterFlags::ADJUST_COORDINATE_SPACE,
+            ClipConvention::Native => WriterFlags::empty(),
+        },
+        ..Options::default()
+    };
+    if numbering == Numbering::Explicit {
+        for (binding, _, index) in assign_slots(source, numbering) {
+            let slot = index.and_then(|index| u8::try_from(index).ok()).ok_or_else(|| {
+                format!(
+                    "@group({}) @binding({}) has no number: this target takes groups and bindings below {EXPLICIT_LIMIT}",
+                    binding.group, binding.binding
+                )
+            })?;
+            options.binding_map.insert(binding, slot);
+        }
+    }
+    Ok(options)
+}
+
+/// What stands between the name of a block's type and its group and binding.
+pub const BLOCK: &str = "_block_";
+
+/// The keywords that declare a block.
+const BLOCK_KEYWORDS: [&str; 2] = ["uniform", "buffer"];
+
+/// The name of a block's type in the form that the block's own name begins with. naga ends names
+/// with an underscore, and browsers refuse two in a row in GLSL ES.
+pub fn before_block(ty: &str) -> &str {
+    ty.trim_end_matches('_')
+}
+
+/// Names blocks after their group and binding. naga numbers them in the order of the text, so that
+/// a block's name would depend on what else the permutation has.
+fn name_blocks(source: &EmitSource<'_>, text: &mut String, info: &mut ReflectionInfo) {
+    for (handle, name) in &mut info.uniforms {
+        let numbered = name.rsplit_once(BLOCK).map(|(ty, number)| {
+            (ty, number.trim_start_matches(|digit: char| digit.is_ascii_digit()))
+        });
+        if let (Some((ty, stage)), Some([group, binding])) =
+            (numbered, place_of(source.module, *handle))
+        {
+            let own = format!("{}{BLOCK}{group}_{binding}{stage}", before_block(ty));
+            // Only the name behind the keyword is replaced: a structure of the author may have the
+            // same name.
+            for keyword in BLOCK_KEYWORDS {
+                if let Some(at) = text.find(&format!("{keyword} {name} {{")) {
+                    let start = at + keyword.len() + 1;
+                    text.replace_range(start..start + name.len(), &own);
+                }
+            }
+            *name = own;
+        }
+    }
+}
+
+/// The reflection. Samplers are combined with the textures that they are used with, and only the
+/// combined names have units.
+fn glsl_reflection(source: &EmitSource<'_>, info: &ReflectionInfo, numbering: Numbering) -> Native {
+    let mut native = native_reflection(source, "main", numbering);
+    let samplers: Vec<_> = assign_slots(source, numbering)
+        .into_iter()
+        .filter(|(_, kind, _)| {
+            matches!(kind, BindingKind::Sampler | BindingKind::ComparisonSampler)
+        })
+        .map(|(binding, ..)| [binding.group, binding.binding])
+        .collect();
+    native.slots.retain(|slot| !samplers.contains(&[slot.group, slot.binding]));
+    native.combined = combined_samplers(source, info);
+    let blocks = info
+        .uniforms
+        .iter()
+        .filter_map(|(handle, name)| Some((place_of(source.module, *handle)?, name.clone())));
+    let textures = native.combined.iter().map(|combined| (combined.texture, combined.name.clone()));
+    let names: std::collections::BTreeMap<_, _> = blocks.chain(textures).collect();
+    for slot in &mut native.slots {
+        slot.name = names.get(&[slot.group, slot.binding]).cloned();
+    }
+    native
+}
+
+fn combined_samplers(source: &EmitSource<'_>, info: &ReflectionInfo) -> Vec<Combined> {
+    let mut found: Vec<Combined> = info
+        .texture_mapping
+        .iter()
+        .filter_map(|(name, mapping)| {
+            let sampler = mapping.sampler.and_then(|sampler| place_of(source.module, sampler));
+            Some(Combined {
+                texture: place_of(source.module, mapping.texture)?,
+                sampler,
+                name: name.clone(),
+            })
+        })
+        .collect();
+    found.sort();
+    found
+}

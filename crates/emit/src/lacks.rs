@@ -1,0 +1,252 @@
+//! Refuses what naga would write although the language lacks it, or gives it another meaning.
+//!
+//! Older versions of GLSL lack some functions, whose names naga writes all the same. For
+//! `frexp` it writes a function of its own based on `log2`, which is wrong for negative numbers and
+//! for small ones. In std140 a column of a matrix of two rows takes 16 bytes, but 8 bytes in WGSL
+//! and in the reflection.
+
+use naga::back::glsl::Version;
+use naga::{
+    AddressSpace, Binding, BuiltIn, Expression, Function, Handle, ImageClass, ImageQuery,
+    MathFunction, Module, Span, Type, TypeInner, VectorSize,
+};
+
+use super::{columns, targets};
+use lamplight_bundle::Target;
+use lamplight_compose::Composed;
+use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+use lamplight_validate::Validated;
+
+/// Something that GLSL did not have from the start.
+struct Later {
+    /// What GLSL calls it.
+    name: &'static str,
+    /// The first version of GLSL that has it.
+    desktop: u16,
+    /// The first version of GLSL ES that has it, if one does.
+    embedded: Option<u16>,
+}
+
+impl Later {
+    const fn since(name: &'static str, desktop: u16, embedded: Option<u16>) -> Self {
+        Self { name, desktop, embedded }
+    }
+
+    /// Its name, if a version lacks it.
+    fn lacking(&self, version: Version) -> Option<&'static str> {
+        let is_there = match version {
+            Version::Desktop(number) => number >= self.desktop,
+            Version::Embedded { version: number, .. } => {
+                self.embedded.is_some_and(|first| number >= first)
+            }
+        };
+        (!is_there).then_some(self.name)
+    }
+}
+
+const BIT_COUNT: Later = Later::since("`bitCount`", 400, Some(310));
+const EXTRACT: Later = Later::since("`bitfieldExtract`", 400, Some(310));
+const INSERT: Later = Later::since("`bitfieldInsert`", 400, Some(310));
+const REVERSE: Later = Later::since("`bitfieldReverse`", 400, Some(310));
+const LOWEST_BIT: Later = Later::since("`findLSB`", 400, Some(310));
+const HIGHEST_BIT: Later = Later::since("`findMSB`", 400, Some(310));
+const FREXP: Later = Later::since("`frexp`", 400, Some(310));
+const LDEXP: Later = Later::since("`ldexp`", 400, Some(310));
+const HALF: Later = Later::since("`unpackHalf2x16`", 420, Some(300));
+const GATHER: Later = Later::since("`textureGather`", 400, Some(310));
+const LEVELS: Later = Later::since("`textureQueryLevels`", 430, None);
+const SAMPLES: Later = Later::since("`textureSamples`", 450, None);
+const NESTED: Later = Later::since("array of arrays", 430, Some(310));
+const SAMPLE_ID: Later = Later::since("`gl_SampleID`", 400, Some(320));
+
+/// Functions of WGSL, with what naga writes for them.
+const LATER: &[(MathFunction, Later)] = &[
+    (MathFunction::CountOneBits, BIT_COUNT),
+    (MathFunction::CountTrailingZeros, LOWEST_BIT),
+    (MathFunction::Dot4I8Packed, EXTRACT),
+    (MathFunction::Dot4U8Packed, EXTRACT),
+    (MathFunction::ExtractBits, EXTRACT),
+    (MathFunction::FirstLeadingBit, HIGHEST_BIT),
+    (MathFunction::FirstTrailingBit, LOWEST_BIT),
+    (MathFunction::Frexp, FREXP),
+    (MathFunction::InsertBits, INSERT),
+    (MathFunction::Ldexp, LDEXP),
+    (MathFunction::Pack4xI8, INSERT),
+    (MathFunction::Pack4xI8Clamp, INSERT),
+    (MathFunction::Pack4xU8, INSERT),
+    (MathFunction::Pack4xU8Clamp, INSERT),
+    (MathFunction::QuantizeToF16, HALF),
+    (MathFunction::ReverseBits, REVERSE),
+    (MathFunction::Unpack4xI8, EXTRACT),
+    (MathFunction::Unpack4xU8, EXTRACT),
+];
+
+const TWO_ROWS: &str =
+    "a matrix of two rows in a uniform block has another layout in GLSL: use vectors";
+
+/// Refuses what targets lack, at the author's places where `composed` knows them.
+///
+/// # Errors
+/// `emit-failed` for each.
+pub fn check_lacks(
+    composed: &Composed,
+    validated: &Validated,
+    wanted: &[Target],
+) -> Result<(), Diagnostics> {
+    let (module, mut found) = (&validated.module, Diagnostics::new());
+    let mut refuse = |message: String, span: Span, label: &str| {
+        let place = span.to_range().and_then(|range| composed.map.lookup(range));
+        let error = Diagnostic::error(codes::EMIT_FAILED, message);
+        found.push(place.into_iter().fold(error, |error, span| error.at(span, label)));
+    };
+    let entries = targets::ALL.iter().filter(|entry| wanted.contains(&entry.target));
+    for (target, version) in entries.filter_map(|entry| Some((entry.target, entry.glsl?))) {
+        for (what, span) in lacking_features(module, version) {
+            refuse(lack_message(target, what), span, "it is written so");
+        }
+        for span in two_rows(module) {
+            refuse(format!("target `{target}`: {TWO_ROWS}"), span, "it is in here");
+        }
+    }
+    if wanted.contains(&Target::HLSL) {
+        for span in columns::taken_from_values(module, &validated.info) {
+            refuse(format!("target `hlsl`: {}", columns::TAKEN), span, "it is taken here");
+        }
+    }
+    if found.is_empty() { Ok(()) } else { Err(found) }
+}
+
+fn lack_message(target: Target, what: &str) -> String {
+    format!("target `{target}`: the language has no {what}, which is needed here")
+}
+
+/// The first thing in the module that a version of GLSL lacks.
+pub fn first_lack(module: &Module, version: Version) -> Option<String> {
+    if two_rows(module).next().is_some() {
+        return Some(TWO_ROWS.to_owned());
+    }
+    let sample = SAMPLE_ID.lacking(version).filter(|_| asks_for_sample(module));
+    let what = sample.or_else(|| lacking_features(module, version).next().map(|(what, _)| what))?;
+    Some(format!("the language has no {what}, which is needed"))
+}
+
+/// The places of uniform blocks that have matrices of two rows.
+fn two_rows(module: &Module) -> impl Iterator<Item = Span> {
+    let blocks = module.global_variables.iter();
+    let blocks = blocks.filter(|(_, one)| one.space == AddressSpace::Uniform);
+    blocks
+        .filter(|(_, one)| has_two_rows(module, one.ty))
+        .map(|(handle, _)| module.global_variables.get_span(handle))
+}
+
+fn has_two_rows(module: &Module, ty: Handle<Type>) -> bool {
+    match &module.types[ty].inner {
+        TypeInner::Matrix { rows, .. } => *rows == VectorSize::Bi,
+        TypeInner::Array { base, .. } => has_two_rows(module, *base),
+        TypeInner::Struct { members, .. } => {
+            members.iter().any(|member| has_two_rows(module, member.ty))
+        }
+        _ => false,
+    }
+}
+
+fn lacking_features(
+    module: &Module,
+    version: Version,
+) -> impl Iterator<Item = (&'static str, Span)> {
+    let points = module.entry_points.iter().map(|point| &point.function);
+    let all = module.functions.iter().map(|(_, function)| function).chain(points);
+    let expressions = all.flat_map(move |function| {
+        let expressions = function.expressions.iter();
+        expressions.filter_map(move |(handle, expression)| {
+            let what = later_builtin(module, function, version, expression)?;
+            Some((what, function.expressions.get_span(handle)))
+        })
+    });
+    expressions.chain(arrays_of_arrays(module, version))
+}
+
+fn arrays_of_arrays(
+    module: &Module,
+    version: Version,
+) -> impl Iterator<Item = (&'static str, Span)> {
+    let what = NESTED.lacking(version);
+    module.types.iter().filter_map(move |(handle, ty)| match &ty.inner {
+        TypeInner::Array { base, .. } => {
+            let is_array = matches!(module.types[*base].inner, TypeInner::Array { .. });
+            what.filter(|_| is_array).map(|what| (what, place_of(module, handle)))
+        }
+        _ => None,
+    })
+}
+
+/// Where a type without a name is first used.
+fn place_of(module: &Module, ty: Handle<Type>) -> Span {
+    let points = module.entry_points.iter().map(|point| &point.function);
+    let functions = module.functions.iter().map(|(_, function)| function).chain(points);
+    let in_functions = functions.flat_map(|function| {
+        let locals = function.local_variables.iter().filter(move |(_, local)| local.ty == ty);
+        let made = function.expressions.iter().filter(move |(_, one)| {
+            matches!(one, Expression::Compose { ty: own, .. } | Expression::ZeroValue(own) if *own == ty)
+        });
+        let locals = locals.map(|(handle, _)| function.local_variables.get_span(handle));
+        locals.chain(made.map(|(handle, _)| function.expressions.get_span(handle)))
+    });
+    let globals = module.global_variables.iter().filter(|(_, global)| global.ty == ty);
+    let globals = globals.map(|(handle, _)| module.global_variables.get_span(handle));
+    let holders = module.types.iter().filter(|(_, one)| match &one.inner {
+        TypeInner::Struct { members, .. } => members.iter().any(|member| member.ty == ty),
+        _ => false,
+    });
+    let holders = holders.map(|(handle, _)| module.types.get_span(handle));
+    let mut all = globals.chain(holders).chain(in_functions);
+    all.find(Span::is_defined).unwrap_or_default()
+}
+
+/// The name, in GLSL, of something that a version lacks.
+fn later_builtin(
+    module: &Module,
+    function: &Function,
+    version: Version,
+    expression: &Expression,
+) -> Option<&'static str> {
+    match expression {
+        Expression::ImageSample { image, depth_ref: None, .. }
+            if is_depth(module, function, *image) =>
+        {
+            Some(PLAIN_DEPTH)
+        }
+        Expression::Math { fun, .. } => {
+            let (_, later) = LATER.iter().find(|(known, _)| known == fun)?;
+            later.lacking(version)
+        }
+        Expression::ImageSample { gather: Some(_), .. } => GATHER.lacking(version),
+        Expression::ImageQuery { query: ImageQuery::NumLevels, .. } => LEVELS.lacking(version),
+        Expression::ImageQuery { query: ImageQuery::NumSamples, .. } => SAMPLES.lacking(version),
+        _ => None,
+    }
+}
+
+const PLAIN_DEPTH: &str = "depth texture that is sampled without a comparison";
+
+fn is_depth(module: &Module, function: &Function, image: Handle<Expression>) -> bool {
+    let ty = match &function.expressions[image] {
+        Expression::GlobalVariable(variable) => module.global_variables[*variable].ty,
+        Expression::FunctionArgument(index) => function.arguments[*index as usize].ty,
+        _ => return false,
+    };
+    let depth = ImageClass::Depth { multi: false };
+    matches!(&module.types[ty].inner, TypeInner::Image { class, .. } if *class == depth)
+}
+
+/// Whether an entry point uses the sample's index.
+fn asks_for_sample(module: &Module) -> bool {
+    let is_it = |ty: Handle<Type>, binding: Option<&Binding>| match &module.types[ty].inner {
+        TypeInner::Struct { members, .. } => {
+            members.iter().any(|one| one.binding == Some(Binding::BuiltIn(BuiltIn::SampleIndex)))
+        }
+        _ => binding == Some(&Binding::BuiltIn(BuiltIn::SampleIndex)),
+    };
+    let mut points = module.entry_points.iter().map(|point| &point.function);
+    points.any(|one| one.arguments.iter().any(|given| is_it(given.ty, given.binding.as_ref())))
+}

@@ -1,0 +1,283 @@
+//! Writes a valid module in each output language, one file a language.
+//!
+//! Unless [`ClipConvention::Native`](lamplight_bundle::ClipConvention) is asked for, all targets keep
+//! WebGPU's conventions, so that one host-side path serves them: NDC depth is [0, 1], NDC y points
+//! up, texture and framebuffer rows start at the top.
+//! - `spirv`: as written; the host gives a viewport of negative height, as wgpu does.
+//! - GLSL in every version: a vertex stage ends with `y = -y, z = 2z - w`, so that under
+//!   GL's own clip space (leave `glClipControl` alone) depth values, shadow lookups, derivatives
+//!   and `gl_FragCoord` are those of the other targets. Images are stored top row first: the last
+//!   pass to the window flips them, and front faces wind the other way round for `glFrontFace`.
+//! - `msl`, `hlsl`, `wgsl`: the same conventions are native.
+
+pub mod blocks;
+pub mod clip;
+mod columns;
+pub mod glsl;
+mod header;
+mod isolate;
+mod lacks;
+mod lists;
+mod names;
+mod reflect;
+mod remainder;
+mod rename;
+mod setters;
+mod slots;
+mod specialise;
+pub mod spirv;
+mod text;
+mod zeros;
+
+pub use header::is_header_line;
+pub use isolate::isolate;
+pub use names::type_name;
+pub use reflect::reflect;
+
+use naga::ShaderStage;
+use naga::back::glsl::Version;
+use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
+
+use lamplight_bundle::{self as bundle, BoundsChecks, Conventions, Native, Target};
+use lamplight_compose::{Composed, Part, PartKind};
+use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+use lamplight_validate::{Validated, guard, on_large_stack};
+
+/// An output language.
+#[derive(Debug)]
+pub struct TargetEntry {
+    /// Its name.
+    pub target: Target,
+    /// The extension of its files, without the dot.
+    pub extension: &'static str,
+    /// Whether the output is bytes rather than text.
+    pub binary: bool,
+    /// One line for listings.
+    pub about: &'static str,
+    /// The version, if the language is GLSL. [`lacks`] refuses what this version does not have.
+    pub glsl: Option<Version>,
+    /// What lines before the first declaration begin with. Comments need not be listed.
+    pub header: &'static [&'static str],
+    /// What the language has for overrides.
+    pub overrides: Overrides,
+    /// What judges whether its outputs are well formed.
+    pub judged: JudgeRules,
+    /// The clip spaces of its vertex stages.
+    pub clip: &'static clip::Spaces,
+    /// Writes the entry point of a module without overrides; only [`emit`] calls it.
+    pub write: fn(&EmitSource<'_>) -> Result<Emitted, String>,
+}
+
+/// How the host chooses the value of an override.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Overrides {
+    /// The language has overrides.
+    Kept,
+    /// Specialisation constants of SPIR-V.
+    Specialised,
+    /// Function constants of Metal.
+    FunctionConstants,
+    /// Macros, which the host defines before the text is compiled.
+    Macros,
+}
+
+/// What judges the outputs of a target, from their bytes. Every target has a judge, and the module
+/// `judge` runs it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct JudgeRules {
+    /// The name of a file of `src/judge/judges/`.
+    pub judge: &'static str,
+    /// The rules that outputs must keep. They are those of the judge, whose file explains them.
+    pub rules: &'static [&'static str],
+}
+
+/// One file for each output language.
+pub mod targets {
+    use super::TargetEntry;
+    include!(concat!(env!("OUT_DIR"), "/targets.rs"));
+
+    /// The entry of a target.
+    pub fn find(target: lamplight_bundle::Target) -> Option<&'static TargetEntry> {
+        ALL.iter().copied().find(|entry| entry.target == target)
+    }
+}
+
+/// What an output is written from.
+pub struct EmitSource<'a> {
+    /// A valid module without overrides.
+    pub module: &'a naga::Module,
+    /// What naga's validator found out about the module.
+    pub info: &'a naga::valid::ModuleInfo,
+    /// Stage of the entry point.
+    pub stage: ShaderStage,
+    /// Name of the entry point.
+    pub entry: &'a str,
+    /// Index of the entry point in the module.
+    pub index: usize,
+    /// The clip space and the bounds checks that are asked for.
+    pub conventions: Conventions,
+}
+
+impl EmitSource<'_> {
+    /// Whether the output checks indices and loops.
+    pub fn is_restricted(&self) -> bool {
+        self.conventions.bounds == BoundsChecks::Restrict
+    }
+
+    /// The checks, as naga names them.
+    pub fn bounds_policies(&self) -> BoundsCheckPolicies {
+        let policy = match self.conventions.bounds {
+            BoundsChecks::Unchecked => BoundsCheckPolicy::Unchecked,
+            BoundsChecks::Restrict => BoundsCheckPolicy::Restrict,
+        };
+        let (index, buffer, image_load) = (policy, policy, policy);
+        // Arrays of bindings have no length that an output could ask for.
+        let binding_array = BoundsCheckPolicy::Unchecked;
+        BoundsCheckPolicies { index, buffer, image_load, binding_array }
+    }
+}
+
+/// One shader in one output language.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Emitted {
+    /// The output: text, or the words of SPIR-V.
+    pub bytes: Vec<u8>,
+    /// Its entry point's name, slots and combined samplers.
+    pub native: Native,
+}
+
+/// Refuses what targets cannot express, before anything is written: overrides whose default is not
+/// a number, and functions that are newer than a target's language.
+///
+/// # Errors
+/// `dependent-override`, `emit-failed`; in the author's places where `composed` knows them.
+pub fn check_targets(
+    composed: &Composed,
+    validated: &Validated,
+    targets: &[Target],
+) -> Result<(), Diagnostics> {
+    specialise::check_overrides(composed, validated)?;
+    lacks::check_lacks(composed, validated, targets)
+}
+
+/// Writes one entry point for one target. Overrides stay open: [`Native::choices`] says how each
+/// is chosen.
+///
+/// # Errors
+/// `emit-failed` with the writer's message, `naga-internal` where the writer panicked,
+/// `unknown-entry-point`, and `dependent-override`, whose place [`check_targets`] gives.
+pub fn emit(validated: &Validated, entry: &str, target: Target) -> Result<Emitted, Diagnostic> {
+    emit_for(validated, entry, target, Conventions::default())
+}
+
+/// [`emit()`] with conventions.
+///
+/// # Errors
+/// As of [`emit()`].
+pub fn emit_for(
+    validated: &Validated,
+    entry: &str,
+    target: Target,
+    conventions: Conventions,
+) -> Result<Emitted, Diagnostic> {
+    let index = find_target(validated, entry)?;
+    let Some(writer) = targets::find(target) else {
+        return Err(Diagnostic::error(
+            codes::EMIT_FAILED,
+            format!("there is no writer for target `{target}`"),
+        ));
+    };
+    on_large_stack(|| guard("", || write_entry(validated, index, writer, conventions)))
+        .and_then(|result| result)
+        .map_err(|error| error.note(format!("while writing `{entry}` for target `{target}`")))
+}
+
+fn write_entry(
+    validated: &Validated,
+    index: usize,
+    writer: &TargetEntry,
+    conventions: Conventions,
+) -> Result<Emitted, Diagnostic> {
+    let mut emitted = written_plainly(validated, index, writer, conventions)?;
+    let is_vertex = validated.module.entry_points[index].stage == ShaderStage::Vertex;
+    emitted.native.clip = is_vertex.then(|| writer.clip.of(conventions.clip));
+    Ok(emitted)
+}
+
+fn written_plainly(
+    validated: &Validated,
+    index: usize,
+    writer: &TargetEntry,
+    conventions: Conventions,
+) -> Result<Emitted, Diagnostic> {
+    let failed = |reason: String| {
+        Diagnostic::error(codes::EMIT_FAILED, format!("target `{}`: {reason}", writer.target))
+    };
+    let point = &validated.module.entry_points[index];
+    specialise::refuse_overrides(&validated.module)?;
+    let source = EmitSource {
+        module: &validated.module,
+        info: &validated.info,
+        stage: point.stage,
+        entry: &point.name,
+        index,
+        conventions,
+    };
+    if writer.overrides == Overrides::Kept || validated.module.overrides.is_empty() {
+        return (writer.write)(&source).map_err(failed);
+    }
+    if let Some(written) = specialise::write_open(&source, writer) {
+        return written.map_err(failed);
+    }
+    let chosen = Some((point.stage, point.name.as_str()));
+    let (module, info) = naga::back::pipeline_constants::process_overrides(
+        &validated.module,
+        &validated.info,
+        chosen,
+        &Default::default(),
+    )
+    .map_err(|error| failed(error.to_string()))?;
+    (writer.write)(&EmitSource { module: &module, info: &info, index: 0, ..source }).map_err(failed)
+}
+
+/// Gives an error of a writer, which has no place of its own, that of the entry point.
+pub fn at_entry(error: Diagnostic, composed: &Composed, entry: &str) -> Diagnostic {
+    let is_entry = |part: &&Part| {
+        part.kind == PartKind::Function && part.names.iter().any(|name| name == entry)
+    };
+    let part = composed.parts.iter().find(is_entry).filter(|_| error.labels.is_empty());
+    let name = part.map(|part| {
+        let at = composed.text[part.range.clone()].find(&format!("fn {entry}"));
+        part.range.start + at.map_or(0, |at| at + 3)
+    });
+    match name.and_then(|start| composed.map.lookup(start..start + entry.len())) {
+        Some(span) => error.at(span, "of this entry point"),
+        None => error,
+    }
+}
+
+/// Index of the entry point of that name.
+fn find_target(validated: &Validated, entry: &str) -> Result<usize, Diagnostic> {
+    let points = &validated.module.entry_points;
+    points.iter().position(|point| point.name == entry).ok_or_else(|| {
+        let names: Vec<&str> = points.iter().map(|point| point.name.as_str()).collect();
+        let list = if names.is_empty() {
+            "there are no entry points".to_owned()
+        } else {
+            format!("entry points: {}", names.join(", "))
+        };
+        Diagnostic::error(codes::UNKNOWN_ENTRY_POINT, format!("no entry point is named `{entry}`"))
+            .suggest(entry, names.iter().copied())
+            .note(list)
+    })
+}
+
+/// The stage, if it is one that the crate handles.
+fn known_stage(stage: ShaderStage) -> Option<bundle::Stage> {
+    match stage {
+        ShaderStage::Vertex => Some(bundle::Stage::Vertex),
+        ShaderStage::Fragment => Some(bundle::Stage::Fragment),
+        ShaderStage::Compute => Some(bundle::Stage::Compute),
+        _ => None,
+    }
+}

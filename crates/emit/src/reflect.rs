@@ -1,0 +1,245 @@
+//! Reflection of one entry point.
+
+use naga::proc::Layouter;
+use naga::valid::{FunctionInfo, GlobalUse};
+use naga::{AddressSpace, Expression, GlobalVariable, Handle, ImageClass, Module, Type, TypeInner};
+
+use super::names::{builtin_name, interpolation_name, sampling_name, type_name};
+use lamplight_bundle::{Binding, BindingKind, Member, Override, Pair, Place, Reflection, Varying};
+use lamplight_diagnostic::{Diagnostic, codes};
+use lamplight_validate::{Validated, guard};
+
+/// What an engine must know of the entry point, whatever the target.
+///
+/// # Errors
+/// `unknown-entry-point`; `emit-failed` for stages that no target of the crate has.
+pub fn reflect(validated: &Validated, entry: &str) -> Result<Reflection, Diagnostic> {
+    let index = super::find_target(validated, entry)?;
+    guard("", || entry_point(validated, index)).and_then(|result| result)
+}
+
+fn entry_point(validated: &Validated, index: usize) -> Result<Reflection, Diagnostic> {
+    let module = &validated.module;
+    let point = &module.entry_points[index];
+    let info = validated.info.get_entry_point(index);
+    let stage = super::known_stage(point.stage).ok_or_else(|| {
+        Diagnostic::error(
+            codes::EMIT_FAILED,
+            format!("`{}` has a stage that no target has", point.name),
+        )
+    })?;
+    let mut layouter = Layouter::default();
+    layouter
+        .update(module.to_ctx())
+        .map_err(|error| Diagnostic::error(codes::NAGA_INTERNAL, error.to_string()))?;
+    Ok(Reflection {
+        stage,
+        workgroup_size: (point.stage == naga::ShaderStage::Compute).then_some(point.workgroup_size),
+        inputs: entry_inputs(module, &point.function),
+        outputs: entry_outputs(module, &point.function),
+        bindings: used_bindings(module, info, &layouter),
+        pairs: texture_pairs(module, info),
+        overrides: module
+            .overrides
+            .iter()
+            .map(|(_, constant)| override_of(module, constant))
+            .collect(),
+    })
+}
+
+/// The inputs of an entry point: locations in order, then built-ins.
+pub fn entry_inputs(module: &Module, function: &naga::Function) -> Vec<Varying> {
+    let arguments = function.arguments.iter();
+    sorted_varyings(
+        arguments
+            .flat_map(|argument| {
+                bound_varyings(
+                    module,
+                    argument.name.as_deref(),
+                    argument.ty,
+                    argument.binding.as_ref(),
+                )
+            })
+            .collect(),
+    )
+}
+
+fn entry_outputs(module: &Module, function: &naga::Function) -> Vec<Varying> {
+    let result = function.result.iter();
+    sorted_varyings(
+        result
+            .flat_map(|result| bound_varyings(module, None, result.ty, result.binding.as_ref()))
+            .collect(),
+    )
+}
+
+/// Locations first, by number; then built-ins, by name.
+fn sorted_varyings(mut varyings: Vec<Varying>) -> Vec<Varying> {
+    varyings.sort_by_key(|varying| {
+        (varying.location.is_none(), varying.location, varying.builtin.clone())
+    });
+    varyings
+}
+
+/// A bound value, or the bound members of a struct.
+fn bound_varyings(
+    module: &Module,
+    name: Option<&str>,
+    ty: Handle<Type>,
+    binding: Option<&naga::Binding>,
+) -> Vec<Varying> {
+    match (binding, &module.types[ty].inner) {
+        (Some(binding), _) => vec![make_varying(module, name, ty, binding)],
+        (None, TypeInner::Struct { members, .. }) => members
+            .iter()
+            .flat_map(|member| {
+                bound_varyings(module, member.name.as_deref(), member.ty, member.binding.as_ref())
+            })
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+fn make_varying(
+    module: &Module,
+    name: Option<&str>,
+    ty: Handle<Type>,
+    binding: &naga::Binding,
+) -> Varying {
+    let blank = Varying {
+        name: name.map(str::to_owned),
+        location: None,
+        builtin: None,
+        ty: type_name(module, ty),
+        interpolation: None,
+        sampling: None,
+    };
+    match *binding {
+        naga::Binding::BuiltIn(builtin) => {
+            Varying { builtin: Some(builtin_name(builtin)), ..blank }
+        }
+        naga::Binding::Location { location, interpolation, sampling, .. } => Varying {
+            location: Some(location),
+            interpolation: interpolation.map(interpolation_name),
+            sampling: sampling.map(sampling_name),
+            ..blank
+        },
+    }
+}
+
+fn used_bindings(module: &Module, info: &FunctionInfo, layouter: &Layouter) -> Vec<Binding> {
+    let mut found: Vec<Binding> = used_globals(module, info)
+        .filter_map(|(handle, variable)| make_binding(module, info[handle], variable, layouter))
+        .collect();
+    found.sort_by_key(|binding| (binding.group, binding.binding));
+    found
+}
+
+/// Globals the entry point uses, itself or through the functions it calls.
+pub(super) fn used_globals<'a>(
+    module: &'a Module,
+    info: &'a FunctionInfo,
+) -> impl Iterator<Item = (Handle<GlobalVariable>, &'a GlobalVariable)> + use<'a> {
+    module.global_variables.iter().filter(|(handle, _)| !info[*handle].is_empty())
+}
+
+fn make_binding(
+    module: &Module,
+    usage: GlobalUse,
+    variable: &GlobalVariable,
+    layouter: &Layouter,
+) -> Option<Binding> {
+    let place = variable.binding?;
+    let kind = binding_kind(module, variable)?;
+    let ty = &module.types[variable.ty];
+    let is_buffer = matches!(kind, BindingKind::Uniform | BindingKind::Storage);
+    Some(Binding {
+        group: place.group,
+        binding: place.binding,
+        // A GLSL block without an instance name is known by the block's name.
+        name: variable.name.clone().or_else(|| ty.name.clone()).unwrap_or_default(),
+        kind,
+        ty: type_name(module, variable.ty),
+        size: is_buffer.then(|| layouter[variable.ty].size),
+        writable: usage.contains(GlobalUse::WRITE),
+        members: if is_buffer { struct_members(module, variable.ty, layouter) } else { Vec::new() },
+    })
+}
+
+pub(super) fn binding_kind(module: &Module, variable: &GlobalVariable) -> Option<BindingKind> {
+    match (variable.space, &module.types[variable.ty].inner) {
+        (AddressSpace::Uniform, _) => Some(BindingKind::Uniform),
+        (AddressSpace::Storage { .. }, _) => Some(BindingKind::Storage),
+        (_, TypeInner::Sampler { comparison: true }) => Some(BindingKind::ComparisonSampler),
+        (_, TypeInner::Sampler { comparison: false }) => Some(BindingKind::Sampler),
+        (_, TypeInner::Image { class: ImageClass::Storage { .. }, .. }) => {
+            Some(BindingKind::StorageTexture)
+        }
+        (_, TypeInner::Image { .. }) => Some(BindingKind::Texture),
+        _ => None,
+    }
+}
+
+/// Members of a struct, or of the elements of an array of structs.
+fn struct_members(module: &Module, ty: Handle<Type>, layouter: &Layouter) -> Vec<Member> {
+    match &module.types[ty].inner {
+        TypeInner::Struct { members, .. } => {
+            members.iter().map(|member| self::make_member(module, member, layouter)).collect()
+        }
+        TypeInner::Array { base, .. } => self::struct_members(module, *base, layouter),
+        _ => Vec::new(),
+    }
+}
+
+fn make_member(module: &Module, member: &naga::StructMember, layouter: &Layouter) -> Member {
+    let stride = match module.types[member.ty].inner {
+        TypeInner::Array { stride, .. } => Some(stride),
+        _ => None,
+    };
+    Member {
+        name: member.name.clone().unwrap_or_default(),
+        ty: type_name(module, member.ty),
+        offset: member.offset,
+        size: layouter[member.ty].size,
+        stride,
+        members: struct_members(module, member.ty, layouter),
+    }
+}
+
+/// The group and binding of a global that has them.
+pub(super) fn place_of(module: &Module, handle: Handle<GlobalVariable>) -> Option<Place> {
+    module.global_variables[handle].binding.map(|binding| [binding.group, binding.binding])
+}
+
+fn texture_pairs(module: &Module, info: &FunctionInfo) -> Vec<Pair> {
+    let keys = info.sampling_set.iter();
+    let mut pairs: Vec<Pair> = keys
+        .filter_map(|key| {
+            Some(Pair {
+                texture: place_of(module, key.image)?,
+                sampler: place_of(module, key.sampler)?,
+            })
+        })
+        .collect();
+    pairs.sort();
+    pairs
+}
+
+fn override_of(module: &Module, constant: &naga::Override) -> Override {
+    Override {
+        name: constant.name.clone(),
+        id: constant.id,
+        ty: type_name(module, constant.ty),
+        default: constant.init.and_then(|init| literal_text(module, init)),
+    }
+}
+
+fn literal_text(module: &Module, expression: Handle<Expression>) -> Option<String> {
+    Some(match super::specialise::literal_of(module, expression)? {
+        naga::Literal::F32(value) => format!("{value:?}"),
+        naga::Literal::U32(value) => value.to_string(),
+        naga::Literal::I32(value) => value.to_string(),
+        naga::Literal::Bool(value) => value.to_string(),
+        _ => return None,
+    })
+}

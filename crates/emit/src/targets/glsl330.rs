@@ -1,0 +1,31 @@
+//! GLSL 3.30 core, for OpenGL 3.3.
+//!
+//! The language has no explicit bindings: look up the names of the reflection with
+//! `glGetUniformBlockIndex` and `glGetUniformLocation`. Coordinates: see [`crate`].
+
+use naga::back::glsl::Version;
+
+use lamplight_bundle::Target;
+use crate::glsl;
+use crate::slots::Numbering;
+use crate::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip};
+
+const VERSION: Version = Version::Desktop(330);
+
+/// The target, for the table of all.
+pub const TARGET: TargetEntry = TargetEntry {
+    target: Target::GLSL330,
+    extension: "glsl330.glsl",
+    binary: false,
+    about: "GLSL 3.30 core, for OpenGL 3.3",
+    glsl: Some(VERSION),
+    header: glsl::HEADER,
+    overrides: Overrides::Macros,
+    judged: JudgeRules { judge: "glslang", rules: &["own"] },
+    clip: &clip::OPENGL,
+    write,
+};
+
+fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
+    glsl::write_glsl(source, VERSION, Numbering::Named)
+}

@@ -1,0 +1,105 @@
+//! Metal Shading Language 2.0.
+//!
+//! Buffers, textures and samplers each count from 0 in the order of group and binding, over what
+//! the entry point uses; each stage has its own tables. Put vertex buffers above the uniforms.
+
+use std::collections::BTreeMap;
+
+use naga::back::msl::{
+    BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, Writer,
+};
+
+use lamplight_bundle::{BindingKind, BufferSizes, Target};
+use crate::names::first_entry_name;
+use crate::slots::{Numbering, assign_slots, native_reflection};
+use crate::text::BoundedText;
+use crate::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip, rename};
+
+/// The target, for the table of all.
+pub const TARGET: TargetEntry = TargetEntry {
+    target: Target::MSL,
+    extension: "metal",
+    binary: false,
+    about: "Metal Shading Language 2.0 (macOS 10.13, iOS 11)",
+    glsl: None,
+    header: &["#", "using "],
+    overrides: Overrides::FunctionConstants,
+    judged: JudgeRules { judge: "clang", rules: &[] },
+    clip: &clip::SHARED,
+    write,
+};
+
+/// Metal does not know the length of a buffer, so naga reads it from a buffer of lengths. Here that
+/// is the last of the 31.
+const SIZES_BUFFER: u8 = 30;
+
+fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
+    let options = Options {
+        lang_version: (2, 0),
+        per_entry_point_map: BTreeMap::from([(source.entry.to_owned(), entry_resources(source)?)]),
+        fake_missing_bindings: false,
+        bounds_check_policies: source.bounds_policies(),
+        force_loop_bounding: source.is_restricted(),
+        ..Options::default()
+    };
+    let pipeline = PipelineOptions {
+        entry_point: Some((source.stage, source.entry.to_owned())),
+        ..PipelineOptions::default()
+    };
+    let unlike = rename::rename_types_like_members(source.module);
+    let module = unlike.as_ref().unwrap_or(source.module);
+    let mut text = BoundedText::default();
+    let written = Writer::new(&mut text).write(module, source.info, &options, &pipeline);
+    let info = written.map_err(|error| text.explain(error))?;
+    let text = text.0;
+    let name = first_entry_name(info.entry_point_names)?;
+    let mut native = native_reflection(source, &name, Numbering::PerKind);
+    native.buffer_sizes = buffer_sizes(source, &text);
+    Ok(Emitted { bytes: text.into_bytes(), native })
+}
+
+/// The argument with sizes of buffers, if naga gave the entry point one. It has a member for each
+/// buffer of the module that needs one, named after the index of its variable in the module.
+fn buffer_sizes(source: &EmitSource<'_>, text: &str) -> Option<BufferSizes> {
+    let argument = format!("[[buffer({SIZES_BUFFER})]]");
+    text.lines().find(|line| line.contains("_mslBufferSizes&") && line.contains(&argument))?;
+    let (_, members) = text.split_once("struct _mslBufferSizes {")?;
+    let (members, _) = members.split_once('}')?;
+    let place = |member: &str| {
+        let number: usize = member.trim().strip_prefix("uint size")?.parse().ok()?;
+        let (_, variable) = source.module.global_variables.iter().nth(number)?;
+        variable.binding.map(|binding| [binding.group, binding.binding])
+    };
+    Some(BufferSizes {
+        index: SIZES_BUFFER.into(),
+        buffers: members.split(';').filter_map(place).collect(),
+    })
+}
+
+fn entry_resources(source: &EmitSource<'_>) -> Result<EntryPointResources, String> {
+    let mut resources = EntryPointResources::default();
+    for (binding, kind, index) in assign_slots(source, Numbering::PerKind) {
+        let slot = index
+            .and_then(|index| u8::try_from(index).ok())
+            .ok_or("more bindings than Metal has slots")?;
+        resources.resources.insert(binding, bind_target(kind, slot));
+    }
+    resources.sizes_buffer = Some(SIZES_BUFFER);
+    Ok(resources)
+}
+
+fn bind_target(kind: BindingKind, slot: u8) -> BindTarget {
+    match kind {
+        BindingKind::Uniform => BindTarget { buffer: Some(slot), ..BindTarget::default() },
+        BindingKind::Storage => {
+            BindTarget { buffer: Some(slot), mutable: true, ..BindTarget::default() }
+        }
+        BindingKind::Texture => BindTarget { texture: Some(slot), ..BindTarget::default() },
+        BindingKind::StorageTexture => {
+            BindTarget { texture: Some(slot), mutable: true, ..BindTarget::default() }
+        }
+        BindingKind::Sampler | BindingKind::ComparisonSampler => {
+            BindTarget { sampler: Some(BindSamplerTarget::Resource(slot)), ..BindTarget::default() }
+        }
+    }
+}

@@ -1,0 +1,21 @@
+//! Runs the emitted GLSL 4.50 unchanged, on OpenGL 4.5.
+//!
+//! Runs on: every system but WebAssembly
+
+use super::{ExecutorEntry, Shipping, Unavailable};
+use lamplight_bundle::Target;
+use crate::Session;
+
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
+    name: "glsl",
+    about: "the emitted GLSL 4.50 as it is, on OpenGL 4.5, Mesa's llvmpipe preferred",
+    needs: &["libegl1", "libgl1-mesa-dri"],
+    before_threads: None,
+    samples: None,
+    open,
+    shipping: Some(Shipping { target: Target::GLSL450, open }),
+};
+
+fn open() -> Result<Box<dyn Session>, Unavailable> {
+    super::opened_opengl(Target::GLSL450)
+}

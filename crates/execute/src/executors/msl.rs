@@ -1,0 +1,23 @@
+//! Runs the emitted MSL unchanged: clang compiles it for the CPU, with headers of our own.
+//!
+//! Runs on: every system but WebAssembly
+
+use super::{ExecutorEntry, Shipping, Unavailable};
+use lamplight_bundle::Target;
+use crate::Session;
+use crate::metal::Metal;
+use lamplight_tools::CLANG;
+
+pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
+    name: "msl",
+    about: "the emitted MSL as it is, compiled for the CPU by clang",
+    needs: &[CLANG.package],
+    before_threads: None,
+    samples: Some(1),
+    open,
+    shipping: Some(Shipping { target: Target::MSL, open }),
+};
+
+fn open() -> Result<Box<dyn Session>, Unavailable> {
+    Ok(Box::new(Metal::open().map_err(|missing| missing.reason)?))
+}

@@ -1,0 +1,318 @@
+//! Builds the fragment entry point around a function. It works on naga's modules, so it is the same
+//! for WESL and for GLSL.
+
+use naga::{
+    AddressSpace, BinaryOperator as Op, Binding, BuiltIn, EntryPoint, Expression, Function,
+    FunctionArgument, FunctionResult, GlobalVariable, Handle, ImageClass, ImageDimension, Literal,
+    LocalVariable, MathFunction, Module, ResourceBinding, ScalarKind, ShaderStage, Span, Statement,
+    SwizzleComponent, Type, TypeInner, VectorSize,
+};
+
+use super::body::{FunctionBody, KernelValue};
+use super::{
+    ECHO, ENTRY, INPUT_WIDTH, Kernel, Parameter, ParameterKind, TARGET_WIDTH, pointed_type,
+};
+use lamplight_diagnostic::{Diagnostic, codes};
+
+/// The module with its entry points replaced by the kernel's, and the function's handle in it.
+pub fn wrap_kernel(
+    module: &Module,
+    kernel: &Kernel,
+) -> Result<(Module, Handle<Function>), Diagnostic> {
+    let module = with_entry(module, |body| body.main(kernel))?;
+    let function = called_function(&module).ok_or_else(|| lost_function(&kernel.name))?;
+    Ok((module, function))
+}
+
+/// The module with one fragment stage as its only entry point, and without anything that this does
+/// not reach.
+pub(super) fn with_entry(
+    module: &Module,
+    write: impl FnOnce(&mut FunctionBody<'_>) -> Result<(), Diagnostic>,
+) -> Result<Module, Diagnostic> {
+    let mut module = module.clone();
+    module.entry_points.clear();
+    let mut body = FunctionBody { module: &mut module, function: Function::default() };
+    write(&mut body)?;
+    let function = body.function;
+    module.entry_points.push(EntryPoint {
+        name: ENTRY.to_owned(),
+        stage: ShaderStage::Fragment,
+        early_depth_test: None,
+        workgroup_size: [0; 3],
+        workgroup_size_overrides: None,
+        function,
+        mesh_info: None,
+        task_payload: None,
+        incoming_ray_payload: None,
+    });
+    naga::compact::compact(&mut module, naga::compact::KeepUnused::No);
+    Ok(module)
+}
+
+/// Finds the function that the entry point calls, since compaction changes handles.
+fn called_function(module: &Module) -> Option<Handle<Function>> {
+    module.entry_points[0].function.body.iter().find_map(|statement| match statement {
+        Statement::Call { function, .. } => Some(*function),
+        _ => None,
+    })
+}
+
+fn lost_function(name: &str) -> Diagnostic {
+    Diagnostic::error(codes::UNTESTABLE_FUNCTION, format!("`{name}` could not be wrapped"))
+}
+
+/// Where an argument comes from.
+pub(super) enum ArgumentSource {
+    /// A texture or a sampler, by its binding in group 0.
+    Binding(u32),
+    /// Words, of which this is the first.
+    Words(u32),
+}
+
+impl ArgumentSource {
+    fn of(parameter: &Parameter) -> Self {
+        match &parameter.kind {
+            ParameterKind::Resource(resource) => Self::Binding(resource.binding),
+            ParameterKind::Words { offset, .. } => Self::Words(*offset),
+        }
+    }
+}
+
+/// What the fragment finds out from its position.
+struct FragmentPlace {
+    /// The pixel's index in the target.
+    index: KernelValue,
+    header: KernelValue,
+    /// First input texel of the invocation.
+    first: KernelValue,
+    /// Which four words of the result the pixel holds.
+    part: KernelValue,
+}
+
+impl FunctionBody<'_> {
+    fn main(&mut self, kernel: &Kernel) -> Result<(), Diagnostic> {
+        let position = self.vector(VectorSize::Quad, ScalarKind::Float);
+        let target = self.vector(VectorSize::Quad, ScalarKind::Uint);
+        let built_in = Binding::BuiltIn(BuiltIn::Position { invariant: false });
+        let color = Binding::Location {
+            location: 0,
+            interpolation: None,
+            sampling: None,
+            blend_src: None,
+            per_primitive: false,
+        };
+        self.function.arguments =
+            vec![FunctionArgument { name: None, ty: position, binding: Some(built_in) }];
+        self.function.result = Some(FunctionResult { ty: target, binding: Some(color) });
+
+        let inputs = self.inputs();
+        let place = self.place(inputs, kernel);
+        let words = self.arguments(inputs, &place, kernel);
+        let sources: Vec<ArgumentSource> =
+            kernel.parameters.iter().map(ArgumentSource::of).collect();
+        let results = self.call(&kernel.name, kernel.function, &sources, &words)?;
+        let chosen = self.choose(&results, place.part);
+        let value = self.echo(&place, chosen);
+        self.drop_beyond(&place);
+        self.function.body.push(Statement::Return { value: Some(value) }, Span::UNDEFINED);
+        Ok(())
+    }
+
+    /// The input texture, binding 0.
+    fn inputs(&mut self) -> KernelValue {
+        let class = ImageClass::Sampled { kind: ScalarKind::Uint, multi: false };
+        let ty = self.ty(TypeInner::Image { dim: ImageDimension::D2, arrayed: false, class });
+        self.global("lamplight_inputs", ty, 0)
+    }
+
+    fn global(&mut self, name: &str, ty: Handle<Type>, binding: u32) -> KernelValue {
+        let variable = GlobalVariable {
+            name: Some(name.to_owned()),
+            space: AddressSpace::Handle,
+            binding: Some(ResourceBinding { group: 0, binding }),
+            ty,
+            init: None,
+            memory_decorations: naga::MemoryDecorations::empty(),
+        };
+        let variable = self.module.global_variables.append(variable, Span::UNDEFINED);
+        self.add(Expression::GlobalVariable(variable))
+    }
+
+    fn place(&mut self, inputs: KernelValue, kernel: &Kernel) -> FragmentPlace {
+        let position = self.add(Expression::FunctionArgument(0));
+        let x = self.component(position, 0);
+        let y = self.component(position, 1);
+        let x = self.convert(x, ScalarKind::Uint);
+        let y = self.convert(y, ScalarKind::Uint);
+        let width = self.literal(TARGET_WIDTH);
+        let row = self.binary(Op::Multiply, y, width);
+        let index = self.binary(Op::Add, row, x);
+        let zero = self.literal(0);
+        let header = self.load(inputs, zero);
+
+        let one = self.literal(1);
+        let echoed = self.math(MathFunction::Min, index, one);
+        let pixel = self.binary(Op::Subtract, index, echoed);
+        let pixels = self.literal(kernel.result_texels());
+        let wanted = self.binary(Op::Divide, pixel, pixels);
+        let part = self.binary(Op::Modulo, pixel, pixels);
+        let count = self.component(header, 0);
+        let last = self.binary(Op::Subtract, count, one);
+        let invocation = self.math(MathFunction::Min, wanted, last);
+        let texels = self.literal(kernel.input_texels());
+        let skipped = self.binary(Op::Multiply, invocation, texels);
+        let first = self.binary(Op::Add, skipped, one);
+        FragmentPlace { index, header, first, part }
+    }
+
+    /// One texel of the input texture.
+    fn load(&mut self, inputs: KernelValue, index: KernelValue) -> KernelValue {
+        let width = self.literal(INPUT_WIDTH);
+        let x = self.binary(Op::Modulo, index, width);
+        let y = self.binary(Op::Divide, index, width);
+        let pair = self.vector(VectorSize::Bi, ScalarKind::Uint);
+        let coordinate = self.add(Expression::Compose { ty: pair, components: vec![x, y] });
+        let level = Some(self.add(Expression::Literal(Literal::I32(0))));
+        self.add(Expression::ImageLoad {
+            image: inputs,
+            coordinate,
+            array_index: None,
+            sample: None,
+            level,
+        })
+    }
+
+    /// All words of the invocation's arguments, as u32.
+    fn arguments(
+        &mut self,
+        inputs: KernelValue,
+        place: &FragmentPlace,
+        kernel: &Kernel,
+    ) -> Vec<KernelValue> {
+        let mut words = Vec::new();
+        for texel in 0..kernel.input_texels() {
+            let skipped = self.literal(texel);
+            let index = self.binary(Op::Add, place.first, skipped);
+            let loaded = self.load(inputs, index);
+            words.extend((0..4).map(|component| self.component(loaded, component)));
+        }
+        words
+    }
+
+    /// Calls the function, and flattens what it returns and what is behind its pointers afterwards.
+    pub(super) fn call(
+        &mut self,
+        name: &str,
+        function: Handle<Function>,
+        sources: &[ArgumentSource],
+        words: &[KernelValue],
+    ) -> Result<Vec<KernelValue>, Diagnostic> {
+        let declared = self.module.functions[function].arguments.clone();
+        let returned = self.module.functions[function].result.as_ref().map(|result| result.ty);
+        let mut arguments = Vec::new();
+        let mut written = Vec::new();
+        for (source, argument) in sources.iter().zip(&declared) {
+            let value = match source {
+                ArgumentSource::Binding(binding) => {
+                    let name = argument.name.as_deref().unwrap_or("resource");
+                    self.global(name, argument.ty, *binding)
+                }
+                ArgumentSource::Words(offset) => {
+                    let base = pointed_type(self.module, argument.ty);
+                    let value = self
+                        .unflatten(base, &mut words[*offset as usize..].iter().copied())
+                        .ok_or_else(|| lost_function(name))?;
+                    if base == argument.ty {
+                        value
+                    } else {
+                        self.variable(base, value, &mut written)
+                    }
+                }
+            };
+            arguments.push(value);
+        }
+        let result = returned.map(|_| {
+            self.function.expressions.append(Expression::CallResult(function), Span::UNDEFINED)
+        });
+        self.function.body.push(Statement::Call { function, arguments, result }, Span::UNDEFINED);
+        let mut flat = Vec::new();
+        if let (Some(result), Some(ty)) = (result, returned) {
+            self.flatten(result, ty, &mut flat);
+        }
+        for (pointer, ty) in written {
+            let value = self.add(Expression::Load { pointer });
+            self.flatten(value, ty, &mut flat);
+        }
+        Ok(flat)
+    }
+
+    /// A local variable that holds the value of a pointer parameter.
+    fn variable(
+        &mut self,
+        ty: Handle<Type>,
+        value: KernelValue,
+        written: &mut Vec<(KernelValue, Handle<Type>)>,
+    ) -> KernelValue {
+        let local = self
+            .function
+            .local_variables
+            .append(LocalVariable { name: None, ty, init: None }, Span::UNDEFINED);
+        let pointer = self.add(Expression::LocalVariable(local));
+        self.function.body.push(Statement::Store { pointer, value }, Span::UNDEFINED);
+        written.push((pointer, ty));
+        pointer
+    }
+
+    /// Drops the fragment if it is beyond the target, which none is. A shader that may drop fragments
+    /// is compiled once by llvmpipe; others it compiles a second time, for tiles that are covered
+    /// whole.
+    fn drop_beyond(&mut self, place: &FragmentPlace) {
+        let pixels = self.component(place.header, 1);
+        let condition = self.binary(Op::GreaterEqual, place.index, pixels);
+        let mut accept = naga::Block::new();
+        accept.push(Statement::Kill, Span::UNDEFINED);
+        let statement = Statement::If { condition, accept, reject: naga::Block::new() };
+        self.function.body.push(statement, Span::UNDEFINED);
+    }
+
+    /// The echo in the first and the last pixel, and `value` in all others.
+    fn echo(&mut self, place: &FragmentPlace, value: KernelValue) -> KernelValue {
+        let magic = self.literal(ECHO);
+        let mark = self.binary(Op::ExclusiveOr, place.index, magic);
+        let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
+        let size = VectorSize::Tri;
+        let pattern =
+            [SwizzleComponent::X, SwizzleComponent::Y, SwizzleComponent::Z, SwizzleComponent::W];
+        let header = self.add(Expression::Swizzle { size, vector: place.header, pattern });
+        let accept = self.add(Expression::Compose { ty, components: vec![header, mark] });
+        let (zero, one) = (self.literal(0), self.literal(1));
+        let pixels = self.component(place.header, 1);
+        let last = self.binary(Op::Subtract, pixels, one);
+        let is_first = self.binary(Op::Equal, place.index, zero);
+        let is_last = self.binary(Op::Equal, place.index, last);
+        let condition = self.binary(Op::LogicalOr, is_first, is_last);
+        self.add(Expression::Select { condition, accept, reject: value })
+    }
+
+    /// The four words of this pixel: those of part 0, unless `part` is another.
+    fn choose(&mut self, words: &[KernelValue], part: KernelValue) -> KernelValue {
+        let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
+        let zero = self.literal(0);
+        let mut chosen = self.add(Expression::Compose {
+            ty,
+            components: padded_words(words.get(..4).unwrap_or(words), zero),
+        });
+        for (index, four) in words.chunks(4).enumerate().skip(1) {
+            let accept = self.add(Expression::Compose { ty, components: padded_words(four, zero) });
+            let index = self.literal(index as u32);
+            let condition = self.binary(Op::Equal, part, index);
+            chosen = self.add(Expression::Select { condition, accept, reject: chosen });
+        }
+        chosen
+    }
+}
+
+fn padded_words(words: &[KernelValue], zero: KernelValue) -> Vec<KernelValue> {
+    words.iter().copied().chain(std::iter::repeat(zero)).take(4).collect()
+}

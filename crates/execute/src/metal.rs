@@ -1,0 +1,202 @@
+//! Runs the emitted MSL on the CPU, compiled by clang. Kernels are run in batches; frames are drawn
+//! by our own rasterizer.
+
+use std::collections::{BTreeSet, HashMap};
+
+use rayon::prelude::*;
+
+use super::compiled::CompiledProgram;
+use super::compiled::request::{
+    FragmentInput, ImageLevel, MetalImage, MetalResources, TexelFormat,
+};
+use super::fixture::Fixture;
+use super::frame::{Drawing, EntryPoint, Frame};
+use super::gpu::{emitted, run_batches};
+use super::kernel::{INPUT_WIDTH, Kernel, TARGET_WIDTH, kernels_to_compile};
+use super::raster::CompiledStages;
+use super::shipped::Shipped;
+use super::{Session, ShippedPair, executor_failed};
+use lamplight_bundle::{Native, Target};
+use lamplight_diagnostic::Diagnostic;
+use lamplight_emit::Emitted;
+use lamplight_eval::{Sampler, Texture, TextureDimension};
+use lamplight_tools::metal::{ClangMissing, clang_version};
+use lamplight_validate::on_large_stack;
+
+/// A session. It holds programs, each of which has many kernels.
+pub struct Metal {
+    compiler: String,
+    programs: Vec<CompiledProgram>,
+    /// For each text that was compiled its program, and its index there. Kernels of one function
+    /// have the same text, whatever is in their textures.
+    texts: HashMap<String, (usize, usize)>,
+    /// For each kernel its program, its text and its bindings; or why it could not be compiled.
+    kept: HashMap<u64, Result<MetalKernel, Diagnostic>>,
+}
+
+/// A kernel within a program.
+struct MetalKernel {
+    program: usize,
+    text: usize,
+    native: Native,
+}
+
+impl Metal {
+    /// Looks for clang.
+    ///
+    /// # Errors
+    /// It is missing.
+    pub fn open() -> Result<Self, ClangMissing> {
+        let compiler = clang_version()?;
+        Ok(Self { compiler, programs: Vec::new(), texts: HashMap::new(), kept: HashMap::new() })
+    }
+
+    /// Compiles the kernels that are new, all of them at once.
+    fn compile(&mut self, kernels: &[&Kernel]) {
+        let new = kernels_to_compile(kernels, |code| self.kept.contains_key(&code));
+        if new.is_empty() {
+            return;
+        }
+        let emit =
+            |kernel: &&Kernel| emitted::emit_kernel(kernel, Target::MSL).and_then(emitted_text);
+        let outputs: Vec<Result<(String, Native), Diagnostic>> =
+            on_large_stack(|| new.par_iter().map(emit).collect());
+        let failure = self.compile_texts(outputs.iter().flatten().map(|(text, _)| text)).err();
+        for (kernel, output) in new.iter().zip(outputs) {
+            let kept = output.and_then(|(text, native)| match (self.texts.get(&text), &failure) {
+                (Some(&(program, text)), _) => Ok(MetalKernel { program, text, native }),
+                (None, Some(error)) => Err(error.clone()),
+                (None, None) => Err(executor_failed("a text was not compiled")),
+            });
+            self.kept.insert(kernel.code, kept);
+        }
+    }
+
+    /// Compiles the texts that are new as one program.
+    fn compile_texts<'t>(
+        &mut self,
+        texts: impl Iterator<Item = &'t String>,
+    ) -> Result<(), Diagnostic> {
+        let new: BTreeSet<&str> =
+            texts.map(String::as_str).filter(|text| !self.texts.contains_key(*text)).collect();
+        if new.is_empty() {
+            return Ok(());
+        }
+        let new: Vec<&str> = new.into_iter().collect();
+        let program =
+            CompiledProgram::build(&new).map_err(|missing| executor_failed(missing.reason))?;
+        let places = new
+            .iter()
+            .enumerate()
+            .map(|(index, text)| ((*text).to_owned(), (self.programs.len(), index)));
+        self.texts.extend(places.collect::<Vec<_>>());
+        self.programs.push(program);
+        Ok(())
+    }
+
+    /// One draw: the words of the target.
+    fn draw(&mut self, kernel: &Kernel, texels: &[u32], rows: u32) -> Result<Vec<u32>, Diagnostic> {
+        let kept = match self.kept.get(&kernel.code) {
+            Some(Ok(kept)) => kept,
+            Some(Err(error)) => return Err(error.clone()),
+            None => return Err(executor_failed("the kernel was not prepared")),
+        };
+        let Some(program) = self.programs.get_mut(kept.program) else {
+            return Err(executor_failed("the program was lost"));
+        };
+        let bound = bind_kernel(kernel, &kept.native, texels);
+        let quads: Vec<[FragmentInput; 4]> = (0..rows.div_ceil(2))
+            .flat_map(|y| (0..TARGET_WIDTH / 2).map(move |x| quad_fragments(2 * x, 2 * y)))
+            .collect();
+        let shaded = program.quads(kept.text, &bound, &quads).map_err(executor_failed)?;
+        let mut pixels = vec![0; (rows * TARGET_WIDTH) as usize * 4];
+        for (fragment, shaded) in quads.iter().flatten().zip(shaded.iter().flatten()) {
+            let [x, y, ..] = fragment.position.map(|place| place as usize);
+            let first = (y * TARGET_WIDTH as usize + x) * 4;
+            if let (Some(pixel), Some(words)) =
+                (pixels.get_mut(first..first + 4), shaded.targets.first())
+            {
+                pixel.copy_from_slice(words);
+            }
+        }
+        Ok(pixels)
+    }
+}
+
+impl Session for Metal {
+    fn adapter(&self) -> String {
+        self.compiler.clone()
+    }
+
+    fn prepare(&mut self, kernels: &[&Kernel]) {
+        self.compile(kernels);
+    }
+
+    fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
+        self.compile(&[kernel]);
+        run_batches(kernel, inputs, |texels, rows| self.draw(kernel, texels, rows))
+    }
+
+    fn draw_frames(&self, drawing: &Drawing<'_>) -> Result<Vec<Frame>, Diagnostic> {
+        let shipped = |stage: EntryPoint<'_>| Shipped::of(stage, Target::MSL);
+        let mut stages = vec![shipped(drawing.vertex)?];
+        stages.extend(drawing.fragment.map(shipped).transpose()?);
+        let fragment = stages.len().checked_sub(2).map(|_| 1);
+        let compiled =
+            CompiledStages::new(stages).map_err(|missing| executor_failed(missing.reason))?;
+        compiled.draw(0, fragment, drawing)
+    }
+
+    fn draw_shipped(
+        &self,
+        pair: ShippedPair<'_>,
+        drawing: &Drawing<'_>,
+    ) -> Result<Vec<Frame>, Diagnostic> {
+        let targets = pair.fragment.targets().map_err(executor_failed)?.len() as u32;
+        let stages = vec![pair.vertex.clone(), pair.fragment.clone()];
+        let compiled =
+            CompiledStages::new(stages).map_err(|missing| executor_failed(missing.reason))?;
+        compiled.draw(0, Some(1), &Drawing { targets, ..*drawing })
+    }
+}
+
+fn emitted_text(emitted: Emitted) -> Result<(String, Native), Diagnostic> {
+    let text =
+        String::from_utf8(emitted.bytes).map_err(|error| executor_failed(error.to_string()))?;
+    Ok((text, emitted.native))
+}
+
+/// The fragments of the quad whose first pixel is (x, y).
+fn quad_fragments(x: u32, y: u32) -> [FragmentInput; 4] {
+    [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].map(|(x, y)| FragmentInput {
+        position: [x as f32 + 0.5, y as f32 + 0.5, 0.0, 1.0],
+        front: true,
+        locations: Vec::new(),
+    })
+}
+
+/// Binds the inputs and the fixtures of a kernel to the slots that its text declares.
+fn bind_kernel(kernel: &Kernel, native: &Native, texels: &[u32]) -> MetalResources {
+    let mut bound = MetalResources::default();
+    for slot in &native.slots {
+        let Some(index) = slot.index else { continue };
+        match kernel.fixture_at(slot.binding) {
+            Some(Fixture::Texture(texture)) => {
+                let image = MetalImage::new(&Texture::from(texture), TexelFormat::Float);
+                bound.textures.insert(index, image);
+            }
+            Some(Fixture::Sampler(sampler)) => {
+                bound.samplers.insert(index, Sampler::from(*sampler));
+            }
+            None => drop(bound.textures.insert(index, input_image(texels))),
+        }
+    }
+    bound
+}
+
+/// The input texture, binding 0.
+fn input_image(texels: &[u32]) -> MetalImage {
+    let height = texels.len() as u32 / 4 / INPUT_WIDTH;
+    let level = ImageLevel { width: INPUT_WIDTH, height, layers: 1, words: texels.to_vec() };
+    MetalImage { shape: TextureDimension::D2, format: TexelFormat::Unsigned, levels: vec![level] }
+}

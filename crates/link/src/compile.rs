@@ -1,0 +1,208 @@
+//! Compiles one text for every target: linked from functions where possible, as a whole elsewhere.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::{Linker, Reason};
+use lamplight_bundle::{
+    Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Target, Unit,
+};
+use lamplight_compose::Composed;
+use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+use lamplight_emit::{self as emit, targets};
+use lamplight_files::limits::GROUP_BYTES;
+use lamplight_validate::{
+    self as validate, Validated, on_large_stack, validate, validate_rehearsed,
+};
+
+/// One text in two forms: as its author reads it, for errors; and without comments and layout,
+/// which is what is compiled.
+#[derive(Debug, Clone, Copy)]
+pub struct TextForms<'a> {
+    pub composed: &'a Composed,
+    pub lean: &'a Composed,
+}
+
+/// What compiling a text gives: a unit, and the warnings for its author.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CompiledUnit {
+    pub unit: Unit,
+    pub warnings: Diagnostics,
+    /// Targets that were compiled as a whole instead of from separate functions, with the reason.
+    pub whole: Vec<(Target, Reason)>,
+}
+
+/// Compiles a text for every target. Every command gets the bytes that ship from here.
+///
+/// # Errors
+/// What naga finds wrong with the text, at the places in its author's files.
+pub fn compile(
+    text: &TextForms<'_>,
+    entry: &str,
+    targets: &[Target],
+    linker: &Linker<'_>,
+) -> Result<CompiledUnit, Diagnostics> {
+    let linked = match linker.link(text.lean, entry) {
+        Ok(linked) => linked,
+        Err(reason) => {
+            let (unit, warnings) = compile_whole(text, entry, targets, linker)?;
+            check_size(&unit).map_err(|error| vec![error])?;
+            let whole = targets.iter().map(|target| (*target, reason)).collect();
+            return Ok(CompiledUnit { unit, warnings, whole });
+        }
+    };
+    let mut unit = Unit { reflection: linked.reflection, targets: BTreeMap::new() };
+    let mut whole = Vec::new();
+    for (target, made) in targets.iter().zip(linked.targets) {
+        match made {
+            Ok(artifact) => {
+                unit.targets.insert(target.name().to_owned(), artifact);
+            }
+            Err(reason) => whole.push((*target, reason)),
+        }
+    }
+    if !whole.is_empty() {
+        let left: Vec<Target> = whole.iter().map(|(target, _)| *target).collect();
+        unit.targets.extend(compile_whole(text, entry, &left, linker)?.0.targets);
+    }
+    let warnings = if linked.suspect { lint_text(text)? } else { Vec::new() };
+    check_size(&unit).map_err(|error| vec![error])?;
+    Ok(CompiledUnit { unit, warnings, whole })
+}
+
+/// Validates a text after a rehearsal: a large text first goes through everything that is asked for
+/// in another process, which shows that naga survives it.
+fn rehearse_and_validate(
+    text: &TextForms<'_>,
+    entry: &str,
+    targets: &[Target],
+    linker: &Linker<'_>,
+) -> Result<Validated, Diagnostics> {
+    let outputs = || {
+        let targets = targets.iter().map(|target| target.name().to_owned()).collect();
+        let Conventions { clip, bounds } = linker.conventions;
+        let [clip, bounds] = [clip.name(), bounds.name()].map(str::to_owned);
+        Some(validate::RehearsalOutputs { entry: entry.to_owned(), targets, clip, bounds })
+    };
+    match validate::rehearse(text.lean, text.composed, outputs) {
+        // The lean text is validated faster. Only the author's text has places for errors.
+        Ok(()) => validate_rehearsed(text.lean).or_else(|_| validate(text.composed)),
+        Err(error) if error.code == codes::NAGA_EXHAUSTED => Err(vec![error]),
+        // Expanded aliases can make the lean text too large where the author's text is not.
+        Err(_) => {
+            let tried = validate::rehearse(text.composed, text.composed, outputs);
+            tried.map_err(|error| vec![error])?;
+            validate_rehearsed(text.composed)
+        }
+    }
+}
+
+/// Does what [`compile`] and [`validate()`] would do with a large text. It is called in a process
+/// of its own, and its result does not matter: only that the process survives.
+pub fn perform_job(job: &validate::RehearsalJob) {
+    let composed = Composed::of_text(job.language, job.stage, job.text.clone());
+    let Some(outputs) = &job.outputs else {
+        let _ = validate(&composed);
+        return;
+    };
+    let targets: Vec<Target> =
+        outputs.targets.iter().filter_map(|name| Target::find(name)).collect();
+    let text = TextForms { composed: &composed, lean: &composed };
+    let conventions = Conventions {
+        clip: ClipConvention::find(&outputs.clip).unwrap_or_default(),
+        bounds: BoundsChecks::find(&outputs.bounds).unwrap_or_default(),
+    };
+    let linker = Linker::with(&targets, conventions);
+    let _ = on_large_stack(|| compile_whole(&text, &outputs.entry, &targets, &linker));
+}
+
+/// Refuses an output that is larger than a bundle allows.
+fn check_size(unit: &Unit) -> Result<(), Diagnostic> {
+    match unit.targets.iter().find(|(_, artifact)| artifact.bytes.len() > GROUP_BYTES) {
+        None => Ok(()),
+        Some((target, artifact)) => {
+            let bytes = artifact.bytes.len();
+            let message = format!(
+                "the output for target `{target}` has {bytes} bytes, more than the {GROUP_BYTES} \
+                 that a bundle takes"
+            );
+            Err(Diagnostic::error(codes::LIMIT_EXCEEDED, message))
+        }
+    }
+}
+
+fn lint_text(text: &TextForms<'_>) -> Result<Diagnostics, Diagnostics> {
+    // naga refuses some texts for their aliases, which the lean one does not have.
+    let (composed, validated) = match validate(text.composed) {
+        Ok(validated) => (text.composed, validated),
+        Err(_) => (text.lean, validate(text.lean)?),
+    };
+    Ok(validate::lint(composed, &validated))
+}
+
+/// Validates a text, reflects its entry point and writes it for some targets.
+fn compile_whole(
+    text: &TextForms<'_>,
+    entry: &str,
+    targets: &[Target],
+    linker: &Linker<'_>,
+) -> Result<(Unit, Diagnostics), Diagnostics> {
+    let whole = || validate(text.composed);
+    let validated = rehearse_and_validate(text, entry, targets, linker)?;
+    emit::check_targets(text.lean, &validated, targets)
+        .or_else(|_| emit::check_targets(text.composed, &whole()?, targets))?;
+    let unit = compile_unit(text, &validated, entry, targets, linker)
+        .map_err(|error| vec![emit::at_entry(error, text.composed, entry)])?;
+    // Lints are looked for in the author's text, since the lean text has no places.
+    let warnings = if validate::has_lints(&validated) { lint_text(text)? } else { Vec::new() };
+    Ok((unit, warnings))
+}
+
+fn compile_unit(
+    text: &TextForms<'_>,
+    validated: &Validated,
+    entry: &str,
+    targets: &[Target],
+    linker: &Linker<'_>,
+) -> Result<Unit, Diagnostic> {
+    let reflection = Arc::new(emit::reflect(validated, entry)?);
+    let artifacts = targets.iter().map(|&target| {
+        let artifact = compile_artifact(validated, entry, target, linker.conventions);
+        let artifact = artifact.map_err(|error| place_error(error, text, entry, target, linker))?;
+        Ok((target.name().to_owned(), artifact))
+    });
+    let targets = artifacts.collect::<Result<BTreeMap<_, _>, Diagnostic>>()?;
+    Ok(Unit { reflection, targets })
+}
+
+/// Gives an error of a writer its place: the function that the target cannot express, or else the
+/// entry point.
+fn place_error(
+    error: Diagnostic,
+    text: &TextForms<'_>,
+    entry: &str,
+    target: Target,
+    linker: &Linker<'_>,
+) -> Diagnostic {
+    if !error.labels.is_empty() {
+        return error;
+    }
+    let culprit = linker.culprit(text.lean, entry, target);
+    let function = culprit.as_deref().and_then(|name| text.composed.function(name));
+    let function = function.or_else(|| text.composed.function(entry));
+    match function.and_then(|function| text.composed.place_of(function)) {
+        Some(span) => error.at(span, format!("`{target}` cannot express this function")),
+        None => error,
+    }
+}
+
+fn compile_artifact(
+    validated: &Validated,
+    entry: &str,
+    target: Target,
+    conventions: Conventions,
+) -> Result<Artifact, Diagnostic> {
+    let emitted = emit::emit_for(validated, entry, target, conventions)?;
+    let extension = targets::find(target).map_or("", |entry| entry.extension).to_owned();
+    Ok(Artifact { bytes: emitted.bytes.into(), extension, native: Arc::new(emitted.native) })
+}

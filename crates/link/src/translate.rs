@@ -1,0 +1,211 @@
+//! Translates one unit for every target: naga writes its canonical text, of which the unit's own
+//! part is kept.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use naga::front::{glsl, wgsl};
+use naga::valid::ModuleInfo;
+use naga::{Function, Module};
+use rustc_hash::FxHashSet;
+
+use super::canonical::{IDLE, Recipe, UnitId};
+use super::cut::{self, Cut, TextFragment};
+use super::marked::mark_module;
+use super::outline::Outline;
+use super::reason::Reason;
+use super::summary::{FunctionSummary, summarise_function, used_globals};
+use super::uses::{call_function, show_stubs};
+use lamplight_bundle::Language;
+use lamplight_bundle::{Conventions, Native, Reflection, Target};
+use lamplight_compose::Composed;
+use lamplight_emit as emit;
+use lamplight_emit::spirv::words;
+use lamplight_validate::{Validated, guard, info_of, is_bounded, is_calm, on_large_stack};
+
+/// A unit in every target.
+pub struct Translated {
+    pub summary: FunctionSummary,
+    /// One result for each target, in their order. Where one output cannot be cut, only that target
+    /// is compiled as a whole.
+    pub targets: Vec<Result<WrittenUnit, Reason>>,
+    /// The reflection, for an entry point.
+    pub reflection: Option<Arc<Reflection>>,
+}
+
+/// A unit in one target.
+pub enum WrittenUnit {
+    /// Text, with references for the author's names; `native` is the native names as JSON.
+    Text { cut: Cut, native: Option<TextFragment> },
+    /// A SPIR-V module, in which names stay as they are.
+    Words { words: Vec<u32>, native: Native },
+}
+
+/// The module of a canonical text.
+struct ParsedRecipe {
+    validated: Validated,
+    entry: String,
+    /// The author's names, indexed by the number of their mark.
+    names: Vec<String>,
+    marked: Validated,
+}
+
+/// Translates a unit for some targets.
+///
+/// # Errors
+/// The reason why texts with the unit are compiled as a whole.
+pub fn translate_unit(
+    outline: &Outline<'_>,
+    recipe: &Recipe<'_>,
+    targets: &[Target],
+    conventions: Conventions,
+) -> Result<Translated, Reason> {
+    let text = recipe.text(outline)?;
+    let stage = Some(match outline.stage {
+        naga::ShaderStage::Vertex => lamplight_bundle::Stage::Vertex,
+        _ => lamplight_bundle::Stage::Fragment,
+    });
+    let composed = Composed::of_text(outline.language, stage, text);
+    if !is_calm(&composed).map_err(|_| Reason::Refused)? {
+        return Err(Reason::Large);
+    }
+    on_large_stack(|| {
+        guard(&composed.text, || translate_inner(outline, recipe, &composed, targets, conventions))
+    })
+    .unwrap_or(Err(Reason::Refused))
+}
+
+fn translate_inner(
+    outline: &Outline<'_>,
+    recipe: &Recipe<'_>,
+    composed: &Composed,
+    targets: &[Target],
+    conventions: Conventions,
+) -> Result<Translated, Reason> {
+    let mut module = parse_recipe(outline, &composed.text)?;
+    if !is_bounded(&module) {
+        return Err(Reason::Refused);
+    }
+    show_stubs(outline, recipe, &mut module)?;
+    call_function(outline, recipe, &mut module)?;
+    let info = info_of(&module).map_err(|_| Reason::Refused)?;
+    let summary = checked_summary(outline, recipe, &module, &info)?;
+    let is_entry = recipe.unit == UnitId::Entry;
+    if is_entry && !summary.is_for(outline.stage) {
+        return Err(Reason::Stage);
+    }
+    let entry = module.entry_points.first().ok_or(Reason::EntryPoint)?.name.clone();
+    let (marked, names) = mark_module(outline, recipe, &module)?;
+    let marked = Validated { language: outline.language, module: marked, info: info.clone() };
+    let validated = Validated { language: outline.language, module, info };
+    let reflection = is_entry.then(|| emit::reflect(&validated, &entry).map(Arc::new));
+    let reflection = reflection.transpose().map_err(|_| Reason::Refused)?;
+    let parsed = ParsedRecipe { validated, entry, names, marked };
+    let targets =
+        targets.iter().map(|target| write_target(outline, recipe, &parsed, *target, conventions));
+    Ok(Translated { summary, targets: targets.collect(), reflection })
+}
+
+fn parse_recipe(outline: &Outline<'_>, text: &str) -> Result<Module, Reason> {
+    match outline.language {
+        Language::Wesl => wgsl::parse_str(text).map_err(|_| Reason::Refused),
+        Language::Glsl => glsl::Frontend::default()
+            .parse(&glsl::Options::from(outline.stage), text)
+            .map_err(|_| Reason::Refused),
+    }
+}
+
+/// The summary of the unit, after a check that every stub uses the same variables as its function.
+fn checked_summary(
+    outline: &Outline<'_>,
+    recipe: &Recipe<'_>,
+    module: &Module,
+    info: &ModuleInfo,
+) -> Result<FunctionSummary, Reason> {
+    let mut stubs = BTreeMap::new();
+    for (handle, function) in module.functions.iter() {
+        let name = function.name.as_deref();
+        let is_it = |(stub, _): &&(usize, &FunctionSummary)| {
+            name == Some(outline.declarations[*stub].name())
+        };
+        if let Some((_, summary)) = recipe.stubs.iter().find(is_it) {
+            if used_globals(module, &info[handle]).as_ref() != Some(&summary.globals) {
+                return Err(Reason::Stub);
+            }
+            stubs.insert(handle, *summary);
+        }
+    }
+    let callee = |handle| stubs.get(&handle).copied();
+    let found = match (recipe.unit, recipe.function) {
+        (UnitId::Function(index), _) => {
+            let name = Some(outline.declarations[index].name());
+            let mut functions = module.functions.iter();
+            let found = functions.find(|(_, function)| function.name.as_deref() == name);
+            let (handle, function) = found.ok_or(Reason::Refused)?;
+            summarise_function(module, &info[handle], function, &callee)
+        }
+        (UnitId::Entry, _) => {
+            let point = module.entry_points.first().ok_or(Reason::EntryPoint)?;
+            summarise_function(module, info.get_entry_point(0), &point.function, &callee)
+        }
+    };
+    found.ok_or(Reason::Sampling)
+}
+
+fn write_target(
+    outline: &Outline<'_>,
+    recipe: &Recipe<'_>,
+    parsed: &ParsedRecipe,
+    target: Target,
+    conventions: Conventions,
+) -> Result<WrittenUnit, Reason> {
+    if target == Target::SPIRV {
+        let emitted = emit::emit_for(&parsed.validated, &parsed.entry, target, conventions);
+        let emitted = emitted.map_err(|_| Reason::Refused)?;
+        let words = words(&emitted.bytes);
+        return Ok(WrittenUnit::Words { words, native: emitted.native });
+    }
+    let entry = parsed.marked.module.entry_points.first().map_or(IDLE, |point| &point.name);
+    let emitted = emit::emit_for(&parsed.marked, entry, target, conventions);
+    let emitted = emitted.map_err(|_| Reason::Refused)?;
+    let text = String::from_utf8(emitted.bytes).map_err(|_| Reason::Shape)?;
+    let function = match recipe.unit {
+        UnitId::Function(index) => Some(outline.declarations[index].name()),
+        UnitId::Entry => None,
+    };
+    let wanted =
+        cut::WantedParts { function, entry: &emitted.native.entry_name, names: &parsed.names };
+    let mut cut = cut::cut_output(&text, &wanted)?;
+    cut.add_locals(&local_names(recipe, &parsed.validated.module, function), wanted.entry);
+    let native = match recipe.unit {
+        UnitId::Function(_) => None,
+        UnitId::Entry => {
+            let native = serde_json::to_string(&emitted.native).map_err(|_| Reason::Shape)?;
+            Some(TextFragment::read(&native, &parsed.names)?)
+        }
+    };
+    Ok(WrittenUnit::Text { cut, native })
+}
+
+/// Names that the author gave within the unit's function, to which naga may append numbers.
+fn local_names<'m>(
+    recipe: &Recipe<'_>,
+    module: &'m Module,
+    name: Option<&str>,
+) -> FxHashSet<&'m str> {
+    let function = match recipe.unit {
+        UnitId::Entry => module.entry_points.first().map(|point| &point.function),
+        UnitId::Function(_) => {
+            let mut functions = module.functions.iter().map(|(_, function)| function);
+            functions.find(|function| function.name.as_deref() == name)
+        }
+    };
+    let of = |function: &'m Function| {
+        let arguments = function.arguments.iter().filter_map(|argument| argument.name.as_deref());
+        let variables =
+            function.local_variables.iter().filter_map(|(_, local)| local.name.as_deref());
+        let values = function.named_expressions.values().map(String::as_str);
+        arguments.chain(variables).chain(values)
+    };
+    function.into_iter().flat_map(of).map(|name| name.trim_end_matches('_')).collect()
+}

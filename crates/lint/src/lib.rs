@@ -1,0 +1,164 @@
+//! Checks a whole package, whether or not anything reaches a declaration: every module is composed
+//! with everything that it declares, and validated by naga.
+
+mod flags;
+mod settings;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use lamplight_bundle::Language;
+use lamplight_compose::resolve::{self, Graph, Packages};
+use lamplight_compose::{self as compose, Composed, Keep, Options};
+use lamplight_diagnostic::source::SourceSet;
+use lamplight_diagnostic::{Diagnostic, Diagnostics};
+use lamplight_permute::{Manifest, Settings};
+use lamplight_validate as validate;
+
+/// What to check, and with which settings.
+pub struct Request<'a> {
+    /// The package and what it may import.
+    pub packages: &'a Packages,
+    /// The package's manifest, whose axes have values.
+    pub manifest: Option<&'a Manifest>,
+    /// The settings that are chosen in addition to the manifest's axes.
+    pub settings: &'a Settings,
+    /// Paths below the package's root.
+    pub paths: &'a [String],
+}
+
+/// What was found.
+#[derive(Debug, Default)]
+pub struct Linted {
+    /// Each once, by place.
+    pub diagnostics: Diagnostics,
+    /// Modules that were looked at.
+    pub modules: usize,
+}
+
+/// The language of a file by its name, if it is a module.
+pub fn language(path: &str) -> Option<Language> {
+    match path.rsplit_once('.')?.1 {
+        "wesl" | "wgsl" => Some(Language::Wesl),
+        "glsl" | "vert" | "frag" | "comp" => Some(Language::Glsl),
+        _ => None,
+    }
+}
+
+/// Extensions of modules.
+pub const EXTENSIONS: &[&str] = &["wesl", "wgsl", "glsl", "vert", "frag", "comp"];
+
+/// Looks at modules of the root package.
+pub fn lint(sources: &mut SourceSet, request: &Request<'_>) -> Linted {
+    let mut graphs = BTreeMap::new();
+    let (mut found, mut modules) = (Diagnostics::new(), 0);
+    for path in request.paths {
+        let Some(language) = language(path) else { continue };
+        modules += 1;
+        match resolve::load(sources, request.packages, path, language) {
+            Ok(graph) => {
+                graphs.insert(path.clone(), graph);
+            }
+            Err(errors) => found.extend(errors),
+        }
+    }
+    let included = included_files(sources, &graphs);
+    for (path, graph) in &graphs {
+        found.extend(flags::undeclared_flags(graph, request));
+        // A GLSL file that others include is checked where it is included.
+        if !included.contains(&request.packages.root.files.display(path)) {
+            found.extend(lint_module(graph, request, path));
+        }
+    }
+    Linted { diagnostics: distinct_in_order(sources, found), modules }
+}
+
+/// Names of the GLSL files that others of the package include.
+fn included_files(sources: &SourceSet, graphs: &BTreeMap<String, Graph>) -> BTreeSet<String> {
+    let of = |graph: &Graph| match graph {
+        Graph::Glsl(graph) => graph
+            .modules
+            .iter()
+            .skip(1)
+            .map(|module| sources.get(module.source).path.clone())
+            .collect(),
+        Graph::Wesl(_) => Vec::new(),
+    };
+    graphs.values().flat_map(of).collect()
+}
+
+/// Checks a module with each of the settings that matter to it.
+fn lint_module(graph: &Graph, request: &Request<'_>, path: &str) -> Diagnostics {
+    let mut found = Diagnostics::new();
+    let mut texts = BTreeSet::new();
+    for settings in settings::candidate_settings(graph, request, path) {
+        let composed = compose::compose(graph, &settings, &lint_options(graph, path));
+        match composed {
+            Ok(composed) => {
+                if texts.insert(composed.text.clone()) {
+                    found.extend(graph.traced(lint_text(graph, &composed)));
+                }
+            }
+            Err(errors) => {
+                found.extend(errors);
+                found.extend(one_by_one(graph, &settings));
+            }
+        }
+    }
+    found
+}
+
+/// Checks the items of a module one by one, if it cannot be composed as a whole.
+fn one_by_one(graph: &Graph, settings: &Settings) -> Diagnostics {
+    let mut found = Diagnostics::new();
+    for name in graph.root_items() {
+        let options = Options { keep: Keep::Items(vec![name]), ..Options::default() };
+        match compose::compose(graph, settings, &options) {
+            Ok(composed) => found.extend(graph.traced(lint_text(graph, &composed))),
+            // An item that was asked for by name has no place if it is missing.
+            Err(errors) => {
+                found.extend(errors.into_iter().filter(|error| !error.labels.is_empty()))
+            }
+        }
+    }
+    found
+}
+
+/// Options that keep everything that a module declares. For a GLSL file with a stage in its name
+/// they also keep what it includes.
+pub fn lint_options(graph: &Graph, path: &str) -> Options {
+    let stem = path.strip_suffix(".glsl").unwrap_or(path);
+    let has_stage = [".vert", ".frag", ".comp"].iter().any(|ending| stem.ends_with(ending));
+    let keep = match graph {
+        Graph::Glsl(_) if has_stage => Keep::All,
+        _ => Keep::Root,
+    };
+    Options { keep, ..Options::default() }
+}
+
+/// The warnings from composing a text, then what naga finds in it.
+pub fn lint_text(graph: &Graph, composed: &Composed) -> Diagnostics {
+    let warnings = graph.own(composed.warnings.clone());
+    match validate::validate_every(composed) {
+        Ok(validated) => {
+            let more = graph.own(validate::lint(composed, &validated));
+            warnings.into_iter().chain(more).collect()
+        }
+        Err(errors) => warnings.into_iter().chain(errors).collect(),
+    }
+}
+
+/// Each diagnostic once, in the order of places. A module is read again for each one that reaches
+/// it.
+fn distinct_in_order(sources: &SourceSet, found: Diagnostics) -> Diagnostics {
+    let key = |diagnostic: &Diagnostic| {
+        let place = diagnostic.labels.first().map(|label| {
+            (sources.get(label.span.source).path.clone(), label.span.start, label.span.end)
+        });
+        (place, diagnostic.code.name, diagnostic.message.clone())
+    };
+    let mut known = BTreeSet::new();
+    let mut kept: Diagnostics =
+        found.into_iter().filter(|diagnostic| known.insert(key(diagnostic))).collect();
+    kept.sort_by_cached_key(key);
+    kept
+}

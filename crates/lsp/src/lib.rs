@@ -1,0 +1,388 @@
+//! A language server over WESL, WGSL and GLSL: what editors ask, answered from the same stages
+//! that composing goes through.
+//!
+//! [`LanguageServer::receive`] takes one message and returns the messages to send;
+//! [`LanguageServer::look`] returns the diagnostics of documents that changed. Nothing here reads
+//! or writes a stream, and a message that is not valid has an answer too.
+
+mod act;
+mod choose;
+mod complete;
+mod describe;
+mod format;
+mod glsl;
+mod look;
+mod members;
+mod navigate;
+mod offers;
+mod package;
+mod place;
+mod shade;
+mod told;
+mod unchanged;
+pub mod wire;
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, VecDeque};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use lamplight_catalogue as catalogue;
+use lamplight_compose::project;
+use lamplight_compose::resolve::Graph;
+use lamplight_compose::resolve::wesl::KeptModules;
+use lamplight_diagnostic::Diagnostics;
+use lamplight_diagnostic::source::{Embedded, SourceSet};
+use lamplight_files::limits::{EDIT_STEPS, Steps};
+use look::ChosenValues;
+use package::{OpenTexts, OpenedPackage, PackageModules};
+use wire::{
+    FAILED, NO_METHOD, WRONG_PARAMETERS, answer_message, error_message, notification_message,
+};
+
+/// Where a file of the embedded library lies on the disk, for editors to show.
+pub type LibraryPaths = Box<dyn Fn(&str) -> Option<PathBuf>>;
+
+/// A text that an editor has open.
+struct Document {
+    text: String,
+    version: Value,
+    /// Root folder of its package, and its path below that.
+    root: PathBuf,
+    path: String,
+}
+
+/// The state of one session.
+pub struct LanguageServer {
+    documents: BTreeMap<PathBuf, Document>,
+    /// The permutation that the editor chose, by root folder of a package.
+    choices: BTreeMap<PathBuf, ChosenValues>,
+    /// By root folder of a package: what was parsed, which a keystroke in one file does not change.
+    kept: RefCell<BTreeMap<PathBuf, KeptModules>>,
+    unchanged: Arc<unchanged::Unchanged>,
+    /// The modules of the package that was asked about last, kept until a document changes.
+    modules: Option<(PathBuf, Arc<PackageModules>)>,
+    /// The same for the GLSL files of a package.
+    whole: Option<(PathBuf, Arc<glsl::Whole>)>,
+    /// Documents to analyse, the one that was edited last first.
+    changed: VecDeque<PathBuf>,
+    items: Option<Arc<Vec<catalogue::CatalogueModule>>>,
+    library: LibraryPaths,
+    files: Embedded,
+    is_shut_down: bool,
+    /// The exit code, once the editor sent `exit`.
+    pub exit: Option<u8>,
+}
+
+type Handler = fn(&mut LanguageServer, &Value) -> Result<Value, String>;
+
+/// What editors ask for.
+const REQUESTS: &[(&str, Handler)] = &[
+    ("textDocument/hover", describe::hover_at),
+    ("textDocument/signatureHelp", describe::signature_help),
+    ("textDocument/definition", navigate::definition_at),
+    ("textDocument/references", navigate::references_at),
+    ("textDocument/prepareRename", navigate::prepare_rename),
+    ("textDocument/rename", navigate::rename_symbol),
+    ("textDocument/documentSymbol", navigate::document_symbols),
+    ("workspace/symbol", navigate::workspace_symbols),
+    ("textDocument/completion", complete::complete_at),
+    ("textDocument/codeAction", act::code_actions),
+    ("textDocument/formatting", act::format_document),
+    ("textDocument/semanticTokens/full", shade::semantic_tokens),
+    ("textDocument/inlayHint", shade::inlay_hints),
+    ("textDocument/codeLens", choose::code_lenses),
+    ("workspace/executeCommand", choose::execute_command),
+    ("lamplight/permutation", choose::choose_permutation),
+];
+
+impl LanguageServer {
+    /// A session before `initialize`.
+    pub fn new(library: LibraryPaths, files: Embedded) -> Self {
+        Self {
+            documents: BTreeMap::new(),
+            choices: BTreeMap::new(),
+            kept: RefCell::default(),
+            unchanged: Arc::default(),
+            modules: None,
+            whole: None,
+            changed: VecDeque::new(),
+            items: None,
+            library,
+            files,
+            is_shut_down: false,
+            exit: None,
+        }
+    }
+
+    /// Handles a message; returns the messages to send.
+    pub fn receive(&mut self, message: &Value) -> Vec<Value> {
+        let nothing = Value::Null;
+        let method = message.get("method").and_then(Value::as_str);
+        let parameters = message.get("params").unwrap_or(&nothing);
+        match (method, message.get("id")) {
+            (Some(method), Some(id)) => vec![self.request(method, id, parameters)],
+            (Some(method), None) => self.notified(method, parameters),
+            // An answer to a request of the server, which sends no requests.
+            (None, _) if message.get("result").or(message.get("error")).is_some() => Vec::new(),
+            (None, id) => {
+                vec![error_message(
+                    id.unwrap_or(&nothing),
+                    wire::PARSE_ERROR,
+                    "a message has a method",
+                )]
+            }
+        }
+    }
+
+    fn request(&mut self, method: &str, id: &Value, parameters: &Value) -> Value {
+        match method {
+            "initialize" => return answer_message(id, offers::server_capabilities()),
+            "shutdown" => {
+                self.is_shut_down = true;
+                return answer_message(id, Value::Null);
+            }
+            _ => {}
+        }
+        let Some((_, handler)) = REQUESTS.iter().find(|(known, _)| *known == method) else {
+            return error_message(id, NO_METHOD, &format!("there is no request `{method}`"));
+        };
+        match handler(self, parameters) {
+            Ok(result) => answer_message(id, result),
+            Err(words) if words.is_empty() => error_message(
+                id,
+                WRONG_PARAMETERS,
+                &format!("these are not parameters of `{method}`"),
+            ),
+            Err(words) => error_message(id, FAILED, &words),
+        }
+    }
+
+    fn notified(&mut self, method: &str, parameters: &Value) -> Vec<Value> {
+        let document = parameters.get("textDocument");
+        let uri = document.and_then(|found| found.get("uri")).and_then(Value::as_str);
+        let path = uri.and_then(place::path_of_address);
+        match (method, path) {
+            ("exit", _) => self.exit = Some(u8::from(!self.is_shut_down)),
+            ("textDocument/didOpen", Some(path)) => {
+                let text = document.and_then(|found| found.get("text")).and_then(Value::as_str);
+                let version = document.and_then(|found| found.get("version")).cloned();
+                if let Some(text) = text {
+                    self.open(path, text.to_owned(), version.unwrap_or_default());
+                }
+            }
+            ("textDocument/didChange", Some(path)) => {
+                let version = document.and_then(|found| found.get("version")).cloned();
+                return self.change(&path, parameters, version.unwrap_or_default());
+            }
+            ("textDocument/didClose", Some(path)) => {
+                self.documents.remove(&path);
+                self.forget(None);
+                self.changed.push_front(path);
+            }
+            ("textDocument/didSave" | "workspace/didChangeWatchedFiles", _) => self.forget(None),
+            _ => {}
+        }
+        Vec::new()
+    }
+
+    fn open(&mut self, path: PathBuf, text: String, version: Value) {
+        let (root, below) = package_of_file(&path);
+        let document = Document { text, version, root, path: below };
+        self.documents.insert(path.clone(), document);
+        self.forget(Some(&path));
+    }
+
+    fn change(&mut self, path: &Path, parameters: &Value, version: Value) -> Vec<Value> {
+        let Some(document) = self.documents.get_mut(path) else { return Vec::new() };
+        let mut steps = Steps::new(EDIT_STEPS);
+        let changes = parameters.get("contentChanges").and_then(Value::as_array);
+        for change in changes.into_iter().flatten() {
+            let Some(new) = change.get("text").and_then(Value::as_str) else { continue };
+            // An edit searches its position from the start of the text, and moves the text after
+            // it.
+            if steps.spend((2 * document.text.len() + new.len()) as u64).is_err() {
+                return self.close_overloaded(path);
+            }
+            let range = change.get("range").map(|range| {
+                let byte = |end: &str| place::byte_of_position(&document.text, range.get(end)?);
+                byte("start").zip(byte("end")).filter(|(start, end)| start <= end)
+            });
+            match range {
+                None => new.clone_into(&mut document.text),
+                Some(Some((start, end))) => document.text.replace_range(start..end, new),
+                Some(None) => {}
+            }
+        }
+        document.version = version;
+        self.forget(Some(path));
+        Vec::new()
+    }
+
+    /// Forgets a document whose edits were too large to apply: its text is no longer that of the
+    /// editor, so no answer about it would be right.
+    fn close_overloaded(&mut self, path: &Path) -> Vec<Value> {
+        self.documents.remove(path);
+        self.forget(None);
+        let words = format!(
+            "the edits of one message to `{}` are too large: close the file and open it again",
+            path.display()
+        );
+        vec![notification_message("window/showMessage", json!({ "type": 1, "message": words }))]
+    }
+
+    /// Drops cached results after a change. Every open document is analysed again, the edited one
+    /// first.
+    fn forget(&mut self, edited: Option<&Path>) {
+        self.modules = None;
+        self.whole = None;
+        let others =
+            self.documents.keys().map(PathBuf::as_path).filter(|path| Some(*path) != edited);
+        self.changed = edited.into_iter().chain(others).map(Path::to_owned).collect();
+        let documents = &self.documents;
+        let is_open = |root: &PathBuf| documents.values().any(|document| document.root == *root);
+        self.kept.get_mut().retain(|root, _| is_open(root));
+    }
+
+    /// Whether every document was analysed since it changed.
+    pub fn is_idle(&self) -> bool {
+        self.changed.is_empty()
+    }
+
+    /// The message with the diagnostics of the next changed document. To be called when no message
+    /// waits.
+    pub fn look(&mut self) -> Vec<Value> {
+        let next = self.changed.pop_front();
+        next.and_then(|path| self.look_at(&path)).into_iter().collect()
+    }
+
+    fn look_at(&self, file: &Path) -> Option<Value> {
+        let uri = place::file_address(file);
+        let Some(document) = self.documents.get(file) else {
+            // The document was closed: its diagnostics are cleared.
+            let parameters = json!({ "uri": uri, "diagnostics": [] });
+            return Some(notification_message("textDocument/publishDiagnostics", parameters));
+        };
+        let found = self.problems(document, &uri).unwrap_or_default();
+        let parameters = json!({ "uri": uri, "version": document.version, "diagnostics": found });
+        Some(notification_message("textDocument/publishDiagnostics", parameters))
+    }
+
+    fn problems(&self, document: &Document, uri: &str) -> Option<Vec<Value>> {
+        let shown = |sources: &_, found: &[_], note: Option<&str>| {
+            let here = found.iter().filter(|found: &&lamplight_diagnostic::Diagnostic| {
+                let place = found.labels.first().map(|label| label.span.source);
+                let library = &*self.library;
+                place.and_then(|id| told::address_of(sources, id, library)).as_deref() == Some(uri)
+            });
+            let told = |found| told::diagnostic_json(sources, found, note, &*self.library);
+            here.filter_map(told).collect::<Vec<_>>()
+        };
+        let mut opened = match self.open_package(&document.root) {
+            Ok(opened) => opened,
+            Err((sources, problems)) => return Some(shown(&sources, &problems, None)),
+        };
+        if !look::is_module(&document.path) {
+            return Some(shown(&opened.sources, &opened.problems, None));
+        }
+        let (settings, note) =
+            look::module_settings(&opened, &document.path, &self.choice(&document.root));
+        match self.graph(&mut opened, &document.path) {
+            Ok(graph) => {
+                let found = look::module_problems(&graph, &settings, &document.path);
+                let mut told = shown(&opened.sources, &found, Some(&note));
+                told.extend(shade::inactive_hints(&document.text, &graph, &settings));
+                Some(told)
+            }
+            Err(found) => Some(shown(&opened.sources, &found, None)),
+        }
+    }
+
+    /// The open texts of a package.
+    fn texts(&self, root: &Path) -> OpenTexts {
+        let own = self.documents.values().filter(|document| document.root == root);
+        Arc::new(own.map(|document| (document.path.clone(), document.text.clone())).collect())
+    }
+
+    fn choice(&self, root: &Path) -> ChosenValues {
+        self.choices.get(root).cloned().unwrap_or_default()
+    }
+
+    fn opened(&self, root: &Path) -> Option<OpenedPackage> {
+        self.open_package(root).ok()
+    }
+
+    fn open_package(&self, root: &Path) -> Result<OpenedPackage, (SourceSet, Diagnostics)> {
+        package::open_package(root, self.files, &self.texts(root), &self.unchanged)
+    }
+
+    /// A graph with a module as its root.
+    fn graph(&self, opened: &mut OpenedPackage, path: &str) -> Result<Graph, Diagnostics> {
+        let root = opened.root.clone();
+        self.with_kept(&root, |kept| look::module_graph(opened, path, kept))
+    }
+
+    fn with_kept<T>(&self, root: &Path, work: impl FnOnce(&mut KeptModules) -> T) -> T {
+        let mut all = self.kept.borrow_mut();
+        work(all.entry(root.to_owned()).or_default())
+    }
+
+    /// All modules of a package, read again once a document changed.
+    fn modules(&mut self, root: &Path) -> Option<Arc<PackageModules>> {
+        if let Some((_, known)) = self.modules.as_ref().filter(|(known, _)| known == root) {
+            return Some(Arc::clone(known));
+        }
+        let mut opened = self.opened(root)?;
+        let modules = self.with_kept(root, |kept| package::read_modules(&mut opened, kept))?;
+        let modules = Arc::new(modules);
+        self.modules = Some((root.to_owned(), Arc::clone(&modules)));
+        Some(modules)
+    }
+
+    /// All GLSL files of a package, read again once a document changed.
+    fn whole(&mut self, root: &Path) -> Option<Arc<glsl::Whole>> {
+        if let Some((_, known)) = self.whole.as_ref().filter(|(known, _)| known == root) {
+            return Some(Arc::clone(known));
+        }
+        let whole = Arc::new(glsl::read_whole(self.opened(root)?)?);
+        self.whole = Some((root.to_owned(), Arc::clone(&whole)));
+        Some(whole)
+    }
+
+    /// The library's items, as `show` tells them.
+    fn items(&mut self) -> Arc<Vec<catalogue::CatalogueModule>> {
+        Arc::clone(
+            self.items.get_or_insert_with(|| Arc::new(catalogue::library_modules(self.files))),
+        )
+    }
+
+    /// The document that parameters name, and the byte of their position in it.
+    fn asked(&self, parameters: &Value) -> Result<(&Document, usize), String> {
+        let document = self.document(parameters)?;
+        let position = parameters.get("position").ok_or_else(String::new)?;
+        let byte = place::byte_of_position(&document.text, position).ok_or_else(String::new)?;
+        Ok((document, byte))
+    }
+
+    fn document(&self, parameters: &Value) -> Result<&Document, String> {
+        let uri = parameters.get("textDocument").and_then(|found| found.get("uri"));
+        let uri = uri.or_else(|| parameters.get("uri")).and_then(Value::as_str);
+        let path = uri.ok_or_else(String::new).map(place::path_of_address)?;
+        path.and_then(|path| self.documents.get(&path))
+            .ok_or_else(|| "the document is not open".to_owned())
+    }
+}
+
+/// The package of a file, which need not be on the disk yet, and its path there.
+fn package_of_file(file: &Path) -> (PathBuf, String) {
+    let folder = file.parent().unwrap_or(Path::new("/"));
+    let real = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+    let name = file.file_name().unwrap_or_default();
+    let root = project::package_at(&real).or_else(|| project::package_above(&real));
+    let root = root.and_then(|root| root.canonicalize().ok());
+    let root = root.filter(|root| real.starts_with(root)).unwrap_or_else(|| real.clone());
+    let below = real.strip_prefix(&root).unwrap_or(Path::new("")).join(name);
+    (root, below.to_string_lossy().replace('\\', "/"))
+}

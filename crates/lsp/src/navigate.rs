@@ -1,0 +1,246 @@
+//! Definitions, references, renaming and lists of symbols.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use super::members::members_at;
+use super::package::{PackageModules, WeslSymbol};
+use super::place::Lines;
+use super::{LanguageServer, glsl, told};
+use lamplight_compose::project;
+use lamplight_diagnostic::source::Span;
+use lamplight_syntax::wesl::{ItemKind, Name, is_keyword};
+use lamplight_syntax::words::is_word;
+
+/// The most symbols in an answer to `workspace/symbol`.
+const SYMBOLS: usize = 500;
+
+impl LanguageServer {
+    /// What parameters ask about: the modules of its package, the symbol, and its place.
+    pub(super) fn symbol(
+        &mut self,
+        parameters: &Value,
+    ) -> Result<Option<(Arc<PackageModules>, WeslSymbol, Span)>, String> {
+        let Some((modules, node, byte)) = self.asked_module(parameters)? else { return Ok(None) };
+        let found = modules
+            .symbol(node, byte as u32)
+            .map(|(symbol, range)| (symbol, modules.graph.nodes[node as usize].module.span(range)));
+        Ok(found.map(|(symbol, span)| (modules, symbol, span)))
+    }
+
+    /// The modules of the package that parameters name, with the module and the byte in it.
+    pub(super) fn asked_module(
+        &mut self,
+        parameters: &Value,
+    ) -> Result<Option<(Arc<PackageModules>, u32, usize)>, String> {
+        let (document, byte) = self.asked(parameters)?;
+        let (root, path) = (document.root.clone(), document.path.clone());
+        let Some(modules) = self.modules(&root) else { return Ok(None) };
+        let node = modules.node(&path);
+        Ok(node.map(|node| (modules, node, byte)))
+    }
+
+    fn location(&self, modules: &PackageModules, span: Span) -> Option<Value> {
+        let uri = told::address_of(&modules.sources, span.source, &*self.library)?;
+        let lines = Lines::new(&modules.sources.get(span.source).text);
+        Some(json!({ "uri": uri, "range": lines.range(span.range()) }))
+    }
+}
+
+/// `textDocument/definition`.
+pub fn definition_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+    if glsl::is_asked(server, parameters) {
+        return glsl::definition_at(server, parameters);
+    }
+    let Some((modules, symbol, _)) = server.symbol(parameters)? else {
+        let Some((modules, node, byte)) = server.asked_module(parameters)? else {
+            return Ok(Value::Null);
+        };
+        let Some((_, found)) = members_at(&modules, node, byte) else { return Ok(Value::Null) };
+        let places = found.iter().map(|member| member.place);
+        return Ok(places.filter_map(|span| server.location(&modules, span)).collect());
+    };
+    let places = modules.declarations(symbol);
+    Ok(places.into_iter().filter_map(|span| server.location(&modules, span)).collect())
+}
+
+/// `textDocument/references`.
+pub fn references_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+    if glsl::is_asked(server, parameters) {
+        return glsl::references_at(server, parameters);
+    }
+    let Some((modules, symbol, _)) = server.symbol(parameters)? else { return Ok(json!([])) };
+    let declared = parameters.pointer("/context/includeDeclaration").and_then(Value::as_bool);
+    let declarations = modules.declarations(symbol);
+    let places = modules.references(symbol).into_iter();
+    let places = places.filter(|span| declared != Some(false) || !declarations.contains(span));
+    Ok(places.filter_map(|span| server.location(&modules, span)).collect())
+}
+
+/// Why a symbol cannot be renamed; `None` if it can.
+fn why_fixed(modules: &PackageModules, symbol: WeslSymbol) -> Option<&'static str> {
+    match symbol {
+        WeslSymbol::Items { node, .. } if modules.graph.nodes[node as usize].package != 0 => {
+            Some("it is declared in another package")
+        }
+        WeslSymbol::Items { .. } | WeslSymbol::Local { .. } => None,
+        WeslSymbol::Flag(_) => Some("axes and features are named in more than these files"),
+        WeslSymbol::Constant(_) => Some("constants come from outside"),
+    }
+}
+
+/// Fails for the copy of the library that editors show: edits there would be lost when it is
+/// written again.
+fn refuse_copy(server: &LanguageServer, parameters: &Value) -> Result<(), String> {
+    let root = &server.document(parameters)?.root;
+    let copy = (server.library)(project::MANIFEST);
+    let is_copy = copy.and_then(|file| file.parent()?.canonicalize().ok()).as_ref() == Some(root);
+    if is_copy { Err("this is a copy of the library".to_owned()) } else { Ok(()) }
+}
+
+/// `textDocument/prepareRename`.
+pub fn prepare_rename(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+    refuse_copy(server, parameters)?;
+    if glsl::is_asked(server, parameters) {
+        return glsl::prepare_rename(server, parameters);
+    }
+    let Some((modules, symbol, span)) = server.symbol(parameters)? else {
+        return Ok(Value::Null);
+    };
+    if let Some(reason) = why_fixed(&modules, symbol) {
+        return Err(reason.to_owned());
+    }
+    let text = &modules.sources.get(span.source).text;
+    Ok(Lines::new(text).range(last_name(text, span).range()))
+}
+
+/// The last name of a path.
+fn last_name(text: &str, span: Span) -> Span {
+    let written = text.get(span.range()).unwrap_or_default();
+    let start = written.rfind("::").map_or(0, |at| at + "::".len());
+    let blank = written[start..].len() - written[start..].trim_start().len();
+    Span { start: span.start + (start + blank) as u32, ..span }
+}
+
+/// `textDocument/rename`: each place that writes the name; those that write an alias stay.
+pub fn rename_symbol(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+    refuse_copy(server, parameters)?;
+    if glsl::is_asked(server, parameters) {
+        return glsl::rename_symbol(server, parameters);
+    }
+    let new = parameters.get("newName").and_then(Value::as_str).ok_or_else(String::new)?.to_owned();
+    let Some((modules, symbol, span)) = server.symbol(parameters)? else {
+        return Err("there is no name here".to_owned());
+    };
+    if let Some(reason) = why_fixed(&modules, symbol) {
+        return Err(reason.to_owned());
+    }
+    if !is_word(&new) || is_keyword(&new) || new == "_" {
+        return Err(format!("`{new}` is not a name in WGSL"));
+    }
+    let declared = modules.declarations(symbol);
+    let old = declared.first().map(|span| modules.sources.text(*span).to_owned());
+    let old = old.ok_or("its declaration is not known")?;
+    if let Some(taken) = name_taken_in(&modules, symbol, &new) {
+        return Err(format!("`{new}` is already declared in `{taken}`"));
+    }
+    // The place that was asked about may write an alias, which is a name of its own.
+    if modules.sources.text(last_name(&modules.sources.get(span.source).text, span)) != old {
+        return Err("this is another name for it: rename it in its import".to_owned());
+    }
+    let places = modules.references(symbol).into_iter().filter_map(|span| {
+        let text: &str = &modules.sources.get(span.source).text;
+        let name = last_name(text, span);
+        let uri = || told::address_of(&modules.sources, span.source, &*server.library);
+        (modules.sources.text(name) == old).then(|| (uri(), text, name.range()))
+    });
+    told::rename_json(&new, places)
+}
+
+/// A module that declares or uses the symbol and already has the new name.
+fn name_taken_in(modules: &PackageModules, symbol: WeslSymbol, new: &str) -> Option<String> {
+    let name: Name = modules.graph.names.find(new)?;
+    let places = modules.references(symbol);
+    let nodes = modules.graph.nodes.iter();
+    let mut used = nodes.filter(|node| places.iter().any(|span| span.source == node.module.source));
+    let has = |node: &&lamplight_compose::resolve::wesl::ModuleNode| {
+        node.sets.contains_key(&name)
+            || node.aliases.contains_key(&name)
+            || node.module.items.iter().any(|item| item.locals.contains(&name))
+    };
+    used.find(has).map(|node| node.label.clone())
+}
+
+/// The protocol's `SymbolKind` of an item.
+pub(super) fn symbol_kind(kind: ItemKind) -> u32 {
+    match kind {
+        ItemKind::Function => 12,
+        ItemKind::Struct => 23,
+        ItemKind::Const | ItemKind::Override => 14,
+        ItemKind::Var => 13,
+        ItemKind::Alias => 26,
+        ItemKind::ConstAssert => 24,
+    }
+}
+
+/// `textDocument/documentSymbol`.
+pub fn document_symbols(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+    if glsl::is_asked(server, parameters) {
+        return glsl::document_symbols(server, parameters);
+    }
+    let document = server.document(parameters)?;
+    let (root, path) = (document.root.clone(), document.path.clone());
+    let Some(modules) = server.modules(&root) else { return Ok(json!([])) };
+    let Some(node) = modules.node(&path) else { return Ok(json!([])) };
+    let module = &modules.graph.nodes[node as usize].module;
+    let lines = Lines::new(&module.text);
+    let range =
+        |range: &std::ops::Range<u32>| lines.range(range.start as usize..range.end as usize);
+    let symbols = module.items.iter().map(|item| {
+        let name = match item.kind {
+            ItemKind::ConstAssert => "const_assert",
+            _ => modules.graph.names.text(item.name),
+        };
+        json!({
+            "name": name,
+            "kind": symbol_kind(item.kind),
+            "range": range(&item.range),
+            "selectionRange": range(&item.name_range),
+        })
+    });
+    Ok(symbols.collect())
+}
+
+/// `workspace/symbol`: of the packages of all open documents, and of the library.
+pub fn workspace_symbols(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+    let query = parameters.get("query").and_then(Value::as_str).unwrap_or_default().to_lowercase();
+    let roots: BTreeSet<_> = server.documents.values().map(|found| found.root.clone()).collect();
+    let mut found = Vec::new();
+    for root in roots {
+        if let Some(whole) = server.whole(&root) {
+            let most = SYMBOLS.saturating_sub(found.len());
+            found.extend(glsl::workspace_symbols(server, &whole, &query, most));
+        }
+        let Some(modules) = server.modules(&root) else { continue };
+        for node in &modules.graph.nodes {
+            for item in node.module.items.iter().filter(|item| item.name != Name::UNDERSCORE) {
+                let name = modules.graph.names.text(item.name);
+                let span = node.module.span(item.name_range.clone());
+                if found.len() < SYMBOLS && name.to_lowercase().contains(&query) {
+                    let place = server.location(&modules, span);
+                    found.extend(place.map(|location| {
+                        json!({
+                            "name": name,
+                            "kind": symbol_kind(item.kind),
+                            "containerName": node.label,
+                            "location": location,
+                        })
+                    }));
+                }
+            }
+        }
+    }
+    Ok(Value::Array(found))
+}

@@ -1,0 +1,64 @@
+//! Makes meshes from shapes, with the attributes that a vertex stage reads.
+
+use lamplight_bundle::{Reflection, Varying};
+use lamplight_execute::frame::{Mesh, VertexAttribute, VertexFormat};
+use lamplight_scenes::sets::Object;
+use lamplight_scenes::{Shape, Vertex};
+
+/// The mesh of an object for a vertex stage. With `faceted`, each triangle has vertices of its own,
+/// with the normal of its face.
+pub fn object_mesh(object: &Object, vertex: &Reflection, faceted: bool) -> Mesh {
+    let attributes = vertex_attributes(vertex);
+    let own = faceted.then(|| object.shape.faceted());
+    let shape: &Shape = own.as_ref().unwrap_or(&object.shape);
+    let words = |corner: &Vertex| {
+        let one = |attribute: &VertexAttribute| {
+            corner_numbers(
+                corner,
+                attribute.location,
+                object.material_index,
+                component_count(*attribute),
+            )
+        };
+        attributes.iter().flat_map(one).collect::<Vec<u32>>()
+    };
+    let words = shape.vertices.iter().flat_map(words).collect();
+    Mesh { attributes, words, indices: shape.indices.clone() }
+}
+
+/// The attributes that the stage reads, in its order.
+pub fn vertex_attributes(vertex: &Reflection) -> Vec<VertexAttribute> {
+    let attribute = |input: &Varying| {
+        Some(VertexAttribute { location: input.location?, format: vertex_format(&input.ty) })
+    };
+    vertex.inputs.iter().filter_map(attribute).collect()
+}
+
+fn vertex_format(ty: &str) -> VertexFormat {
+    match ty {
+        "u32" => VertexFormat::Uint32,
+        "f32" => VertexFormat::Float32,
+        ty if ty.starts_with("vec2") => VertexFormat::Float32x2,
+        ty if ty.starts_with("vec3") => VertexFormat::Float32x3,
+        _ => VertexFormat::Float32x4,
+    }
+}
+
+fn component_count(attribute: VertexAttribute) -> usize {
+    attribute.format.words() as usize
+}
+
+/// The words that `forward` reads at a location. `programs/forward.wesl` has the table of
+/// locations.
+fn corner_numbers(corner: &Vertex, location: u32, material: u32, count: usize) -> Vec<u32> {
+    let numbers = match location {
+        0 => corner.position.extend(1.0).to_array(),
+        1 => corner.normal.extend(0.0).to_array(),
+        2 => corner.color.extend(1.0).to_array(),
+        3 => corner.uv.extend(0.0).extend(0.0).to_array(),
+        4 => corner.light_uv.extend(0.0).extend(0.0).to_array(),
+        5 => corner.tangent.to_array(),
+        _ => return vec![material; count],
+    };
+    numbers.iter().take(count).map(|number| (*number as f32).to_bits()).collect()
+}

@@ -1,0 +1,231 @@
+//! The extensions of glTF's materials: factors, and what of them the programs do not have.
+
+use glam::{DVec2, DVec3};
+use serde_json::{Map, Value};
+
+use super::GltfReader;
+use super::part::is_drawn;
+use crate::Layers;
+use crate::sets::Object;
+
+/// Axes of `forward`, and whether a material needs them.
+type AxisNeed = (&'static str, fn(&Layers) -> bool);
+
+const AXES: [AxisNeed; 8] = [
+    ("clearcoat", |layers| layers.clearcoat > 0.0),
+    ("sheen", |layers| layers.sheen_color != DVec3::ZERO),
+    ("iridescence", |layers| layers.iridescence > 0.0),
+    ("anisotropy", |layers| layers.anisotropy > 0.0),
+    ("transmission", |layers| layers.transmission > 0.0),
+    ("diffuse_transmission", |layers| layers.diffuse_transmission > 0.0),
+    ("volume", has_body),
+    ("dispersion", |layers| {
+        layers.dispersion > 0.0 && layers.transmission > 0.0 && has_body(layers)
+    }),
+];
+
+/// The extensions that the parser does not know and that are read here. Any other unknown one is
+/// noted as left out.
+const READ: [&str; 6] = [
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",
+    "KHR_materials_iridescence",
+    "KHR_materials_sheen",
+];
+
+/// Whether light that is transmitted by the surface goes through a volume.
+fn has_body(layers: &Layers) -> bool {
+    layers.thickness > 0.0 && (layers.transmission > 0.0 || layers.diffuse_transmission > 0.0)
+}
+
+/// The values of axes that show the layers of some objects.
+pub fn layer_axes(objects: &[Object]) -> Vec<String> {
+    let is_needed = |needs: fn(&Layers) -> bool| {
+        objects.iter().filter_map(|object| object.material.layers.as_ref()).any(needs)
+    };
+    let own = AXES.iter().filter(|(_, needs)| is_needed(*needs));
+    let base = std::iter::once("metallic_roughness");
+    base.chain(own.map(|(axis, _)| *axis)).map(|axis| format!("{axis}=true")).collect()
+}
+
+/// The layers of a material, apart from its colour, roughness and emission.
+///
+/// # Errors
+/// A value that is not valid, with its place.
+pub fn read_layers(
+    reader: &mut GltfReader<'_>,
+    material: &gltf::Material<'_>,
+) -> Result<Layers, String> {
+    let place = match material.index() {
+        Some(index) => format!("materials[{index}]"),
+        None => return Ok(Layers { metallic: 1.0, ..Layers::default() }),
+    };
+    let known = |name: &&String| !READ.contains(&name.as_str());
+    for name in material.extensions().into_iter().flat_map(|all| all.keys()).filter(known) {
+        reader.notes.insert(format!("left out, since the programs do not have it: {name}"));
+    }
+    let mut layers = parsed_layers(material, &place)?;
+    let mut values =
+        |name: &str| ExtensionValues::of(reader, material.extension_value(name), &place, name);
+    if let Some(own) = values("KHR_materials_clearcoat")? {
+        layers.clearcoat = own.share("clearcoatFactor", 0.0)?;
+        layers.clearcoat_roughness = own.share("clearcoatRoughnessFactor", 0.0)?;
+    }
+    if let Some(own) = values("KHR_materials_sheen")? {
+        layers.sheen_color = own.color("sheenColorFactor", DVec3::ZERO)?;
+        layers.sheen_roughness = own.share("sheenRoughnessFactor", 0.0)?;
+    }
+    if let Some(own) = values("KHR_materials_anisotropy")? {
+        layers.anisotropy = own.share("anisotropyStrength", 0.0)?;
+        layers.anisotropy_direction =
+            DVec2::from_angle(own.number("anisotropyRotation", 0.0, f64::MIN)?);
+    }
+    if let Some(own) = values("KHR_materials_iridescence")? {
+        layers.iridescence = own.share("iridescenceFactor", 0.0)?;
+        layers.iridescence_ior = own.number("iridescenceIor", 1.3, 1.0)?;
+        layers.iridescence_least = own.number("iridescenceThicknessMinimum", 100.0, 0.0)?;
+        // Without a texture the film is everywhere as thick as it can be.
+        layers.iridescence_thickness = own.number("iridescenceThicknessMaximum", 400.0, 0.0)?;
+    }
+    if let Some(own) = values("KHR_materials_dispersion")? {
+        layers.dispersion = own.number("dispersion", 0.0, 0.0)?;
+    }
+    if let Some(own) = values("KHR_materials_diffuse_transmission")? {
+        layers.diffuse_transmission = own.share("diffuseTransmissionFactor", 0.0)?;
+        layers.diffuse_transmission_color =
+            own.color("diffuseTransmissionColorFactor", DVec3::ONE)?;
+    }
+    Ok(layers)
+}
+
+/// The factors that the parser gives.
+fn parsed_layers(material: &gltf::Material<'_>, place: &str) -> Result<Layers, String> {
+    let at = |name: &str| format!("{place}.extensions.{name}");
+    let own = material.pbr_metallic_roughness();
+    let mut layers =
+        Layers { metallic: f64::from(own.metallic_factor()).clamp(0.0, 1.0), ..Layers::default() };
+    if let Some(ior) = material.ior() {
+        // 0 stands for full reflection. Any other value must be at least 1.
+        let least = if ior == 0.0 { 0.0 } else { 1.0 };
+        layers.ior = bounded(ior.into(), least, f64::MAX, &at("KHR_materials_ior.ior"))?;
+    }
+    if let Some(specular) = material.specular() {
+        let name = "KHR_materials_specular";
+        let factor = specular.specular_factor().into();
+        layers.specular = bounded(factor, 0.0, 1.0, &at(&format!("{name}.specularFactor")))?;
+        let color = specular.specular_color_factor();
+        layers.specular_color = bounded_color(color, &at(&format!("{name}.specularColorFactor")))?;
+    }
+    if let Some(transmission) = material.transmission() {
+        let name = "KHR_materials_transmission";
+        let factor = transmission.transmission_factor().into();
+        layers.transmission =
+            bounded(factor, 0.0, 1.0, &at(&format!("{name}.transmissionFactor")))?;
+    }
+    volume_layers(material, place, &mut layers)?;
+    Ok(layers)
+}
+
+/// The thickness and the attenuation of a volume.
+fn volume_layers(
+    material: &gltf::Material<'_>,
+    place: &str,
+    layers: &mut Layers,
+) -> Result<(), String> {
+    const NAME: &str = "KHR_materials_volume";
+    let Some(volume) = material.volume() else { return Ok(()) };
+    let at = |field: &str| format!("{place}.extensions.{NAME}.{field}");
+    let thickness = volume.thickness_factor().into();
+    layers.thickness = bounded(thickness, 0.0, f64::MAX, &at("thicknessFactor"))?;
+    // Infinity is the default: nothing is absorbed.
+    let distance = f64::from(volume.attenuation_distance());
+    if distance != f64::INFINITY {
+        let place = at("attenuationDistance");
+        layers.attenuation_distance = bounded(distance, f64::MIN_POSITIVE, f64::MAX, &place)?;
+    }
+    layers.attenuation_color = bounded_color(volume.attenuation_color(), &at("attenuationColor"))?;
+    Ok(())
+}
+
+/// A number between two bounds.
+fn bounded(value: f64, least: f64, most: f64, place: &str) -> Result<f64, String> {
+    if value.is_finite() && (least..=most).contains(&value) {
+        return Ok(value);
+    }
+    let range = match (least, most) {
+        (f64::MIN, _) => "a finite number".to_owned(),
+        (f64::MIN_POSITIVE, _) => "a number above 0".to_owned(),
+        (_, f64::MAX) => format!("a number of {least} or more"),
+        _ => format!("a number from {least} to {most}"),
+    };
+    Err(format!("{place}: expected {range}, found {value}"))
+}
+
+fn bounded_color(color: [f32; 3], place: &str) -> Result<DVec3, String> {
+    for channel in color {
+        bounded(channel.into(), 0.0, f64::MAX, place)?;
+    }
+    Ok(DVec3::from_array(color.map(f64::from)))
+}
+
+/// The values of an extension that the parser does not know.
+struct ExtensionValues<'v> {
+    fields: &'v Map<String, Value>,
+    place: String,
+}
+
+impl<'v> ExtensionValues<'v> {
+    /// `None` if the material does not have the extension.
+    fn of(
+        reader: &mut GltfReader<'_>,
+        value: Option<&'v Value>,
+        place: &str,
+        name: &str,
+    ) -> Result<Option<Self>, String> {
+        let place = format!("{place}.extensions.{name}");
+        let Some(value) = value else { return Ok(None) };
+        let fields = value.as_object();
+        let fields = fields.ok_or_else(|| format!("{place}: expected an object, found {value}"))?;
+        let left_out = |key: &&String| key.ends_with("Texture") && !is_drawn(name, key);
+        for key in fields.keys().filter(left_out) {
+            let note = format!("left out, since the programs do not have it: {key} of {name}");
+            reader.notes.insert(note);
+        }
+        Ok(Some(Self { fields, place }))
+    }
+
+    fn checked(&self, key: &str, usual: f64, least: f64, most: f64) -> Result<f64, String> {
+        let place = format!("{}.{key}", self.place);
+        let Some(value) = self.fields.get(key) else { return Ok(usual) };
+        let number = value.as_f64();
+        let number = number.ok_or_else(|| format!("{place}: expected a number, found {value}"))?;
+        bounded(number, least, most, &place)
+    }
+
+    /// A number of at least `least`.
+    fn number(&self, key: &str, usual: f64, least: f64) -> Result<f64, String> {
+        self.checked(key, usual, least, f64::MAX)
+    }
+
+    /// A number from 0 to 1.
+    fn share(&self, key: &str, usual: f64) -> Result<f64, String> {
+        self.checked(key, usual, 0.0, 1.0)
+    }
+
+    fn color(&self, key: &str, usual: DVec3) -> Result<DVec3, String> {
+        let place = format!("{}.{key}", self.place);
+        let Some(value) = self.fields.get(key) else { return Ok(usual) };
+        let numbers = value.as_array().map(|list| list.iter().map(Value::as_f64).collect());
+        let numbers: Option<Vec<f64>> = numbers.unwrap_or_default();
+        let Some([red, green, blue]) = numbers.and_then(|list| <[f64; 3]>::try_from(list).ok())
+        else {
+            return Err(format!("{place}: expected three numbers, found {value}"));
+        };
+        for channel in [red, green, blue] {
+            bounded(channel, 0.0, f64::MAX, &place)?;
+        }
+        Ok(DVec3::new(red, green, blue))
+    }
+}

@@ -1,0 +1,201 @@
+//! Primitives of meshes as objects in world space.
+
+use glam::{DMat4, DVec2, DVec3, DVec4};
+use gltf::mesh::Mode;
+
+use super::GltfReader;
+use super::coordinates::Coordinates;
+use super::nodes::PlacedMesh;
+use super::surface::{Means, read_surface};
+use super::texture::Sheet;
+use crate::sets::Object;
+use crate::{Shape, Vertex};
+use lamplight_files::limits::MODEL_CORNERS;
+use lamplight_scene::smooth_normals;
+
+/// The objects of a mesh in its place: one for each primitive of triangles.
+pub fn mesh_objects(
+    reader: &mut GltfReader<'_>,
+    part: &PlacedMesh,
+    sheet: &Sheet,
+    corners: &mut usize,
+) -> Result<Vec<(Object, Means)>, String> {
+    let document = reader.document;
+    let mesh = document.meshes().nth(part.mesh).ok_or("a node has a mesh that is not there")?;
+    let mut objects = Vec::new();
+    for primitive in mesh.primitives() {
+        let place = format!("meshes[{}].primitives[{}]", part.mesh, primitive.index());
+        if primitive.morph_targets().next().is_some() {
+            reader.notes.insert("morph targets are left out".to_owned());
+        }
+        let Some(indices) = triangle_indices(reader, &primitive, &place)? else { continue };
+        // Vertices that no triangle uses take memory too, again for each node that has the mesh.
+        let count = primitive.get(&gltf::Semantic::Positions).map_or(0, |rows| rows.count());
+        *corners += indices.len().max(count);
+        if *corners > MODEL_CORNERS {
+            return Err(format!("{place}: more than {MODEL_CORNERS} vertices of triangles"));
+        }
+        let own = sheet.coordinates(reader, &primitive.material())?;
+        if own.set > 0 && primitive.get(&gltf::Semantic::TexCoords(own.set)).is_none() {
+            let note = format!("{place}: no `TEXCOORD_{}`, which its textures name", own.set);
+            reader.notes.insert(note);
+        }
+        let vertices = mesh_vertices(reader, &primitive, (&indices, own), &place)?;
+        let shape = Shape { vertices, indices };
+        let shape = sheet.placed(reader, shape, &primitive.material())?;
+        let shape = shape.transformed(part.world_from_mesh);
+        let shape =
+            if part.world_from_mesh.determinant() < 0.0 { mirror_winding(shape) } else { shape };
+        let (color, mut material, means) = read_surface(reader, &primitive.material())?;
+        // The thickness of a volume scales with the mesh.
+        let scale = part.world_from_mesh.determinant().abs().cbrt();
+        if let Some(layers) = &mut material.layers {
+            layers.thickness *= scale;
+        }
+        objects.push((Object::made(shape, DMat4::IDENTITY, color, material), means));
+    }
+    Ok(objects)
+}
+
+/// Whether a primitive is made of triangles. Others are left out.
+pub fn has_triangles(primitive: &gltf::Primitive<'_>) -> bool {
+    matches!(primitive.mode(), Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)
+}
+
+/// Mirrored triangles wind the other way round.
+fn mirror_winding(mut shape: Shape) -> Shape {
+    shape.indices.chunks_exact_mut(3).for_each(|triangle| triangle.swap(1, 2));
+    shape
+}
+
+/// The indices of triangles, three for each; `None` for points and lines.
+fn triangle_indices(
+    reader: &mut GltfReader<'_>,
+    primitive: &gltf::Primitive<'_>,
+    place: &str,
+) -> Result<Option<Vec<u32>>, String> {
+    let Some(positions) = primitive.get(&gltf::Semantic::Positions) else {
+        return Err(format!("{place}: no `POSITION`"));
+    };
+    let count = positions.count();
+    if count > MODEL_CORNERS {
+        return Err(format!("{place}: more than {MODEL_CORNERS} vertices"));
+    }
+    let listed = match primitive.indices() {
+        Some(accessor) => reader.indices(&accessor, &format!("{place}.indices"))?,
+        None => (0..count as u32).collect(),
+    };
+    if let Some(index) = listed.iter().find(|index| **index as usize >= count) {
+        return Err(format!("{place}.indices: {index} is beyond the last of {count} vertices"));
+    }
+    let step = |at: usize| match primitive.mode() {
+        Mode::TriangleStrip if at % 2 == 1 => [at + 1, at, at + 2],
+        Mode::TriangleFan => [0, at + 1, at + 2],
+        _ => [at, at + 1, at + 2],
+    };
+    Ok(Some(match primitive.mode() {
+        Mode::Triangles => {
+            let whole = listed.len() / 3 * 3;
+            listed[..whole].to_vec()
+        }
+        Mode::TriangleStrip | Mode::TriangleFan => {
+            let starts = 0..listed.len().saturating_sub(2);
+            starts.flat_map(step).map(|at| listed[at]).collect()
+        }
+        _ => {
+            reader.notes.insert("points and lines are left out".to_owned());
+            return Ok(None);
+        }
+    }))
+}
+
+/// The texture coordinates of a primitive's vertices, with the textures' transform applied. Empty
+/// if it has none.
+pub fn mesh_coordinates(
+    reader: &GltfReader<'_>,
+    primitive: &gltf::Primitive<'_>,
+    own: Coordinates,
+    place: &str,
+) -> Result<Vec<DVec2>, String> {
+    let name = format!("TEXCOORD_{}", own.set);
+    let Some(accessor) = primitive.get(&gltf::Semantic::TexCoords(own.set)) else {
+        return Ok(Vec::new());
+    };
+    let moved = own.texture_from_set();
+    let rows = reader.rows(&accessor, &format!("{place}.attributes.{name}"))?;
+    let at = |row: &[f64; 4]| moved.transform_point2(DVec2::new(row[0], row[1]));
+    Ok(rows.iter().map(at).map(|at| if at.is_finite() { at } else { DVec2::ZERO }).collect())
+}
+
+fn mesh_vertices(
+    reader: &GltfReader<'_>,
+    primitive: &gltf::Primitive<'_>,
+    (indices, own): (&[u32], Coordinates),
+    place: &str,
+) -> Result<Vec<Vertex>, String> {
+    let rows = |semantic: gltf::Semantic, name: &str| match primitive.get(&semantic) {
+        Some(accessor) => reader.rows(&accessor, &format!("{place}.attributes.{name}")).map(Some),
+        None => Ok(None),
+    };
+    let positions = rows(gltf::Semantic::Positions, "POSITION")?.unwrap_or_default();
+    let normals = rows(gltf::Semantic::Normals, "NORMAL")?;
+    let tangents = rows(gltf::Semantic::Tangents, "TANGENT")?;
+    let coordinates = mesh_coordinates(reader, primitive, own, place)?;
+    let colors = rows(gltf::Semantic::Colors(0), "COLOR_0")?;
+    let vector = |row: &[f64; 4]| DVec3::new(row[0], row[1], row[2]);
+    let points: Vec<DVec3> = positions.iter().map(vector).collect();
+    let smooth = match &normals {
+        Some(_) => Vec::new(),
+        None => smooth_normals(&points, Some(indices)).map_err(|error| error.to_string())?,
+    };
+    let row = |rows: &Option<Vec<[f64; 4]>>, index: usize| {
+        rows.as_ref().and_then(|rows| rows.get(index).copied())
+    };
+    let vertex = |(index, position): (usize, &DVec3)| {
+        let own = row(&normals, index).map(|normal| vector(&normal).normalize_or_zero());
+        let normal = own.or_else(|| smooth.get(index).copied()).unwrap_or(DVec3::Y);
+        let uv = coordinates.get(index).copied().unwrap_or_default();
+        Vertex {
+            position: *position,
+            normal,
+            color: row(&colors, index).map_or(DVec3::ONE, |color| vector(&color)),
+            uv,
+            light_uv: uv,
+            tangent: row(&tangents, index).map_or(DVec4::ZERO, DVec4::from_array),
+        }
+    };
+    let mut vertices: Vec<Vertex> = points.iter().enumerate().map(vertex).collect();
+    if tangents.is_none() {
+        set_tangents(&mut vertices, indices);
+    }
+    Ok(vertices)
+}
+
+/// Tangents along u, from the sum over all triangles at a vertex (Lengyel, *Foundations of Game
+/// Engine Development* 2, 7.5). Green in a normal map points up in the image, which is against v in
+/// glTF.
+fn set_tangents(vertices: &mut [Vertex], indices: &[u32]) {
+    let mut sums = vec![(DVec3::ZERO, DVec3::ZERO); vertices.len()];
+    for triangle in indices.chunks_exact(3) {
+        let [a, b, c] = [0, 1, 2].map(|corner| vertices[triangle[corner] as usize]);
+        let (ab, ac) = (b.position - a.position, c.position - a.position);
+        let (s, t) = (b.uv - a.uv, c.uv - a.uv);
+        let area = s.perp_dot(t);
+        if area == 0.0 {
+            continue;
+        }
+        let (along, down) = ((ab * t.y - ac * s.y) / area, (ac * s.x - ab * t.x) / area);
+        for corner in triangle {
+            let (sum_along, sum_down) = &mut sums[*corner as usize];
+            *sum_along += along;
+            *sum_down += down;
+        }
+    }
+    for (vertex, (along, down)) in vertices.iter_mut().zip(sums) {
+        let flat = (along - vertex.normal * vertex.normal.dot(along)).normalize_or_zero();
+        let other = || vertex.normal.try_normalize().unwrap_or(DVec3::Y).any_orthonormal_vector();
+        let tangent = if flat == DVec3::ZERO { other() } else { flat };
+        let is_mirrored = vertex.normal.cross(tangent).dot(down) > 0.0;
+        vertex.tangent = tangent.extend(if is_mirrored { -1.0 } else { 1.0 });
+    }
+}

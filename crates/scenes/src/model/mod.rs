@@ -1,0 +1,259 @@
+//! Models of users: a binary glTF file as a scene.
+//!
+//! `bytes -> document -> meshes in their places, lamps, textures -> scene`
+//!
+//! What the programs do not have is left out, and a note says so. What is broken is an error that
+//! names its place in the document. All memory is bounded by [`limits`](lamplight_files::limits).
+
+mod accessor;
+mod coordinates;
+mod layers;
+mod mesh;
+mod nodes;
+mod part;
+mod surface;
+mod texture;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use glam::DVec3;
+
+pub use self::surface::Lacks;
+use self::surface::Means;
+use self::texture::Sheet;
+use crate::sets::{Eye, Lamp, LampKind, Scene};
+use lamplight_files::limits::{MODEL_BYTES, MODEL_JSON_BYTES};
+use lamplight_validate::catch_panics;
+
+/// A model, ready to be drawn.
+#[derive(Debug)]
+pub struct Model {
+    pub scene: Scene,
+    /// What was left out, each once.
+    pub notes: BTreeSet<String>,
+    /// Values of the axes of `forward` that show it, such as `specular=ggx`.
+    pub axes: Vec<String>,
+    /// Values of its axes that show the layers of the materials, such as `clearcoat=true`, and the
+    /// textures that multiply their factors.
+    pub layers: Vec<String>,
+    /// The textures that at least one material has, by the names of their bindings.
+    textures: BTreeSet<&'static str>,
+    /// The means of the textures of each object.
+    means: Vec<Means>,
+}
+
+impl Model {
+    /// The scene for a permutation. The means of textures that the permutation does not have are
+    /// multiplied into the factors of the materials. The second value is a note that lists such
+    /// textures, if there are any.
+    pub fn scene_of(mut self, lacks: Lacks) -> (Scene, Option<String>) {
+        for (object, means) in self.scene.objects.iter_mut().zip(&self.means) {
+            means.apply(&mut object.material, lacks);
+        }
+        let shown = |name: &&&str| match **name {
+            "base_map" | "normal_map" => false,
+            "occlusion_map" => lacks.occlusion,
+            _ => lacks.maps,
+        };
+        let names: Vec<&str> = self.textures.iter().filter(shown).copied().collect();
+        let said = "textures that the permutation does not have count with their mean, and those of \
+            extensions not at all";
+        (self.scene, (!names.is_empty()).then(|| format!("{said}: {}", names.join(", "))))
+    }
+}
+
+/// From where a model is seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum View {
+    /// The first camera of the model, or a place before it that sees all of it.
+    Own,
+    /// The camera with that number.
+    Camera(usize),
+    /// A place and what is looked at.
+    At(DVec3, DVec3),
+}
+
+/// A document that is being read, and what is gathered from it.
+struct GltfReader<'b> {
+    document: &'b gltf::Document,
+    blob: &'b [u8],
+    notes: BTreeSet<String>,
+    /// Means of images, by number and whether they are colours.
+    means: BTreeMap<(usize, bool), DVec3>,
+    /// Whether no material that is drawn is lit.
+    all_unlit: bool,
+}
+
+/// Reads a binary glTF file.
+///
+/// # Errors
+/// In words, with the place in the document: a file that is not binary glTF, or that is broken or
+/// too large.
+pub fn read_model(bytes: &[u8], view: View) -> Result<Model, String> {
+    if bytes.len() as u64 > MODEL_BYTES {
+        return Err(format!("{} bytes are more than {MODEL_BYTES}", bytes.len()));
+    }
+    let (json, blob) = document_and_bytes(bytes)?;
+    // The crate that reads documents panics at some that are broken.
+    let read = || -> Result<Model, String> {
+        let document =
+            gltf::Gltf::from_slice(json).map_err(|error| document_error(&error))?.document;
+        let (notes, means) = (BTreeSet::new(), BTreeMap::new());
+        let mut reader = GltfReader { document: &document, blob, notes, means, all_unlit: false };
+        model_scene(&mut reader, view)
+    };
+    catch_panics(read).unwrap_or_else(|reason| Err(format!("the document is broken: {reason}")))
+}
+
+/// The JSON document of a binary file, and the bytes of its buffer.
+fn document_and_bytes(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
+    const HEADER: usize = 12;
+    if !bytes.starts_with(b"glTF") {
+        return Err("the file is not a binary glTF file (`.glb`)".to_owned());
+    }
+    let version = word_at(bytes, 4)?;
+    if version != 2 {
+        return Err(format!("glTF of version {version} is not read, only of version 2"));
+    }
+    let (json, after) = chunk_bytes(bytes, HEADER, b"JSON")?;
+    if json.len() > MODEL_JSON_BYTES {
+        return Err(format!("its document has more bytes than {MODEL_JSON_BYTES}"));
+    }
+    let has_more = after + 8 <= bytes.len();
+    let blob = if has_more { chunk_bytes(bytes, after, b"BIN\0")?.0 } else { &[] };
+    Ok((json, blob))
+}
+
+/// The bytes of the chunk that begins at a place, and where the next one begins.
+fn chunk_bytes<'b>(
+    bytes: &'b [u8],
+    at: usize,
+    kind: &[u8; 4],
+) -> Result<(&'b [u8], usize), String> {
+    let length = word_at(bytes, at)? as usize;
+    let end = (at + 8).checked_add(length).filter(|end| *end <= bytes.len());
+    let end = end
+        .ok_or_else(|| format!("the chunk at byte {at} has {length} bytes, more than the file"))?;
+    if &bytes[at + 4..at + 8] != kind {
+        return Err(format!("the chunk at byte {at} is not `{}`", kind.escape_ascii()));
+    }
+    Ok((&bytes[at + 8..end], end.next_multiple_of(4)))
+}
+
+fn word_at(bytes: &[u8], at: usize) -> Result<u32, String> {
+    let four = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
+    four.map(u32::from_le_bytes).ok_or_else(|| format!("the file ends at byte {}", bytes.len()))
+}
+
+/// What is wrong with a document, with the places that its reader names.
+fn document_error(error: &gltf::Error) -> String {
+    const SHOWN: usize = 4;
+    let gltf::Error::Validation(problems) = error else { return error.to_string() };
+    let told = |(path, problem): &(gltf::json::Path, gltf::json::validation::Error)| {
+        format!("{path}: {problem}")
+    };
+    let shown: Vec<String> = problems.iter().take(SHOWN).map(told).collect();
+    shown.join("; ")
+}
+
+fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String> {
+    let placed = nodes::walk_scene(reader)?;
+    reader.all_unlit = drawn_materials(reader.document, &placed).all(|one| one.unlit());
+    let sheet = texture::texture_sheet(reader, &placed)?;
+    let mut found = Vec::new();
+    let mut corners = 0;
+    for part in &placed.parts {
+        found.extend(mesh::mesh_objects(reader, part, &sheet, &mut corners)?);
+    }
+    let (objects, means): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+    if objects.is_empty() {
+        return Err("the model has no triangles".to_owned());
+    }
+    let bounds = nodes::bounding_ball(&objects);
+    let eye = model_eye(&placed, &bounds, view)?;
+    let lamps = nodes::model_lamps(&placed, &bounds, &eye);
+    let mut layers = if reader.all_unlit { Vec::new() } else { layers::layer_axes(&objects) };
+    let is_mapped = |name: &&str| !matches!(*name, "base_map" | "normal_map" | "occlusion_map");
+    if sheet.names.iter().any(is_mapped) {
+        layers.push("material_maps=true".to_owned());
+    }
+    let axes = model_axes(reader, &placed, &sheet, (&lamps, &layers));
+    if sheet.names.contains("occlusion_map") {
+        layers.push("occlusion=map".to_owned());
+    }
+    let mut scene = Scene::of_model(objects, eye, lamps);
+    scene.own_maps = sheet.maps.map(Arc::new);
+    let notes = std::mem::take(&mut reader.notes);
+    Ok(Model { scene, notes, axes, layers, textures: sheet.names, means })
+}
+
+/// The materials of everything that is drawn.
+fn drawn_materials<'d>(
+    document: &'d gltf::Document,
+    placed: &nodes::PlacedNodes,
+) -> impl Iterator<Item = gltf::Material<'d>> {
+    let meshes = placed.parts.iter().filter_map(|part| document.meshes().nth(part.mesh));
+    meshes.flat_map(|mesh| mesh.primitives().map(|part| part.material()).collect::<Vec<_>>())
+}
+
+/// The values of axes for the model: microfacets as in glTF, as many lamps as there are, and
+/// textures where there are any.
+fn model_axes(
+    reader: &GltfReader<'_>,
+    placed: &nodes::PlacedNodes,
+    sheet: &Sheet,
+    (lamps, layers): (&[Lamp], &[String]),
+) -> Vec<String> {
+    if reader.all_unlit {
+        let textured =
+            if sheet.names.contains("base_map") { "base_map=true" } else { "base_map=false" };
+        return ["lights=none", "ambient=none", textured].map(str::to_owned).to_vec();
+    }
+    let most = [1, 4, 10].into_iter().find(|most| lamps.len() <= *most).unwrap_or(10);
+    let shadow = match lamps.first().map(|lamp| lamp.kind) {
+        Some(LampKind::Directional) => "shadow=pcf_3x3,shadow_light=directional",
+        Some(LampKind::Spot) => "shadow=pcf_3x3,shadow_light=spot",
+        _ => "shadow=none",
+    };
+    // Layers reflect or transmit their surroundings, so they need image-based lighting.
+    let ambient = if layers.len() > 1 { "ibl" } else { "hemisphere" };
+    let mut chosen = format!("specular=ggx,ambient={ambient},max_lights={most},{shadow}");
+    if sheet.names.contains("base_map") {
+        chosen += ",base_map=true";
+    }
+    if sheet.names.contains("normal_map") {
+        chosen += ",normal_map=true";
+    }
+    if drawn_materials(reader.document, placed).any(|material| material.double_sided()) {
+        chosen += ",two_sided=true";
+    }
+    chosen.split(',').map(str::to_owned).collect()
+}
+
+fn model_eye(placed: &nodes::PlacedNodes, bounds: &nodes::Ball, view: View) -> Result<Eye, String> {
+    let (near, far) = (0.005 * bounds.radius, 40.0 * bounds.radius);
+    let looking = |position: DVec3, target: DVec3, fov_y: f64| Eye {
+        position,
+        target,
+        fov_y,
+        near,
+        far: far.max(2.0 * position.distance(bounds.middle)),
+    };
+    match view {
+        View::At(position, target) => Ok(looking(position, target, 0.7)),
+        View::Own if placed.cameras.is_empty() => {
+            let towards = DVec3::new(0.35, 0.28, 1.0).normalize();
+            let position = bounds.middle + towards * bounds.radius / (0.5_f64 * 0.7).sin() * 1.02;
+            Ok(looking(position, bounds.middle, 0.7))
+        }
+        View::Own => Ok(placed.cameras[0].eye(bounds)),
+        View::Camera(index) => {
+            let count = placed.cameras.len();
+            let camera = placed.cameras.get(index);
+            let camera =
+                camera.ok_or_else(|| format!("there is no camera {index}, of {count} in it"))?;
+            Ok(camera.eye(bounds))
+        }
+    }
+}

@@ -1,0 +1,303 @@
+//! Puts the textures of all materials on one sheet (an atlas), since the programs have one texture
+//! of each kind.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Cursor;
+
+use glam::{DVec2, DVec3, DVec4};
+use gltf::image::Source;
+use image::{DynamicImage, ImageDecoder as _, ImageError};
+
+use super::GltfReader;
+use super::coordinates::{Coordinates, Window};
+use super::mesh::{has_triangles, mesh_coordinates};
+use super::nodes::PlacedNodes;
+use super::part::{ImageChannels, material_parts};
+use crate::sets::{Maps, TextureMap};
+use crate::{Shape, blank_texel};
+use lamplight_files::limits::{MODEL_CORNERS, MODEL_PIXELS, MODEL_TEXTURES};
+
+/// All textures of a model: each set of them, as a material has it, is in a cell.
+#[derive(Default)]
+pub struct Sheet {
+    pub maps: Option<Maps>,
+    /// The textures that at least one material has, by the names of their bindings.
+    pub names: BTreeSet<&'static str>,
+    cells: BTreeMap<Vec<ImageChannels>, Cell>,
+}
+
+/// The place of a set of textures on the sheet.
+#[derive(Debug, Clone, Copy)]
+struct Cell {
+    index: usize,
+    /// The coordinates of the surfaces with this set: those of the textures if all of them have the
+    /// same, else a set of coordinates without a transform.
+    own: Coordinates,
+    is_shared: bool,
+    window: Window,
+}
+
+impl Cell {
+    /// The cell for the textures of a material. If their transforms differ, these are applied to
+    /// the images as they are drawn into the cell. A texture with another set of coordinates than
+    /// the first cannot be drawn into the cell.
+    fn new(index: usize, parts: &[ImageChannels]) -> Self {
+        let first = parts.first().map_or_else(Coordinates::default, |part| part.coordinates);
+        let is_shared = parts.iter().all(|part| part.coordinates == first);
+        let own = if is_shared { first } else { Coordinates::of_set(first.set) };
+        Self { index, own, is_shared, window: Window::UNIT }
+    }
+
+    /// The coordinates in a texture, in [0, 1), of a position in the cell, in [0, 1].
+    fn in_texture(&self, part: &ImageChannels, share: DVec2) -> DVec2 {
+        let at = self.window.at(share);
+        let at = if self.is_shared {
+            at
+        } else {
+            part.coordinates.texture_from_set().transform_point2(at)
+        };
+        at - at.floor()
+    }
+}
+
+/// Puts the textures of all materials that are drawn on a sheet.
+pub fn texture_sheet(reader: &mut GltfReader<'_>, placed: &PlacedNodes) -> Result<Sheet, String> {
+    let cells = texture_cells(reader, placed)?;
+    let names: BTreeSet<&str> = cells.keys().flatten().map(|part| part.map).collect();
+    if names.is_empty() {
+        return Ok(Sheet { cells, ..Sheet::default() });
+    }
+    if cells.len() > MODEL_TEXTURES {
+        return Err(format!("materials: more than {MODEL_TEXTURES} sets of textures"));
+    }
+    let across = cells_across(cells.len());
+    let mut maps = BTreeMap::new();
+    for (parts, cell) in &cells {
+        for part in parts {
+            let side = (sheet_side(part.map) / across).min(1024);
+            let map = maps.entry(part.map);
+            let map = map.or_insert_with(|| blank_map(across * side, blank_of(part.map)));
+            let Some(image) = reader.image(part.image, part.is_color)? else { continue };
+            let at = [cell.index % across * side, cell.index / across * side];
+            if part.coordinates.set == cell.own.set {
+                place_image(map, part, &image, (at, side), |share| cell.in_texture(part, share));
+            } else {
+                let what = "textures with other coordinates than the first one of their material \
+                    count with their mean";
+                reader.notes.insert(what.to_owned());
+                let mean = blank_map(1, image.mean());
+                place_image(map, part, &mean, (at, side), |_| DVec2::ZERO);
+            }
+        }
+    }
+    let mut taken = |name: &str| maps.remove(name).unwrap_or_else(|| blank_map(1, blank_of(name)));
+    let (base, normal) = (taken("base_map"), taken("normal_map"));
+    let (occlusion, light) = (taken("occlusion_map"), taken("light_map"));
+    let maps = Some(Maps { base, normal, occlusion, light, material: maps });
+    Ok(Sheet { maps, names, cells })
+}
+
+/// A cell for each set of textures. A single set is repeated by the sampler. With several, the
+/// repetitions are drawn into the cells.
+fn texture_cells(
+    reader: &GltfReader<'_>,
+    placed: &PlacedNodes,
+) -> Result<BTreeMap<Vec<ImageChannels>, Cell>, String> {
+    let document = reader.document;
+    let mut cells = BTreeMap::new();
+    let mut bounds: BTreeMap<usize, (DVec2, DVec2)> = BTreeMap::new();
+    let mut corners = 0;
+    let meshes: BTreeSet<usize> = placed.parts.iter().map(|part| part.mesh).collect();
+    for index in meshes {
+        let mesh = document.meshes().nth(index).ok_or("a node has a mesh that is not there")?;
+        for primitive in mesh.primitives().filter(has_triangles) {
+            let parts = material_parts(reader, &primitive.material())?;
+            let count = cells.len();
+            let cell = *cells.entry(parts).or_insert_with_key(|parts| Cell::new(count, parts));
+            let place = format!("meshes[{index}].primitives[{}]", primitive.index());
+            let rows = mesh_coordinates(reader, &primitive, cell.own, &place)?;
+            corners += rows.len();
+            if corners > MODEL_CORNERS {
+                return Err(format!("{place}: more than {MODEL_CORNERS} vertices of triangles"));
+            }
+            let (low, high) =
+                bounds.entry(cell.index).or_insert((DVec2::INFINITY, DVec2::NEG_INFINITY));
+            for uv in rows {
+                (*low, *high) = (low.min(uv), high.max(uv));
+            }
+        }
+    }
+    let is_alone = cells.len() == 1;
+    for cell in cells.values_mut().filter(|cell| !(is_alone && cell.is_shared)) {
+        if let Some((low, high)) = bounds.get(&cell.index) {
+            cell.window = Window::around(*low, *high);
+        }
+    }
+    Ok(cells)
+}
+
+/// Texels along an edge of a sheet. A model may need ten sheets.
+fn sheet_side(map: &str) -> usize {
+    if matches!(map, "base_map" | "normal_map") { 2048 } else { 1024 }
+}
+
+/// The texel where a material has no texture.
+fn blank_of(map: &str) -> DVec4 {
+    let other = if map == "normal_map" { DVec4::new(0.5, 0.5, 1.0, 1.0) } else { DVec4::ONE };
+    blank_texel(map).unwrap_or(other)
+}
+
+impl Sheet {
+    /// The coordinates that the corners of a material's surfaces have.
+    pub fn coordinates(
+        &self,
+        reader: &GltfReader<'_>,
+        material: &gltf::Material<'_>,
+    ) -> Result<Coordinates, String> {
+        let cell = self.cells.get(&material_parts(reader, material)?);
+        Ok(cell.map_or_else(Coordinates::default, |cell| cell.own))
+    }
+
+    /// A shape whose coordinates are those of its material's cell.
+    pub fn placed(
+        &self,
+        reader: &GltfReader<'_>,
+        shape: Shape,
+        material: &gltf::Material<'_>,
+    ) -> Result<Shape, String> {
+        let across = cells_across(self.cells.len());
+        let parts = material_parts(reader, material)?;
+        let Some(cell) = self.cells.get(&parts) else { return Ok(shape) };
+        if across == 1 {
+            // The window of a single cell is repeated by the sampler.
+            let window = cell.window;
+            return Ok(shape.map(|vertex| vertex.uv = (vertex.uv - window.low) / window.size));
+        }
+        let corner = DVec2::new((cell.index % across) as f64, (cell.index / across) as f64);
+        // Off the rim, so that filters do not reach into the next cell.
+        let within = |uv: DVec2| 0.004 + 0.992 * cell.window.share(uv);
+        Ok(shape.map(|vertex| vertex.uv = (corner + within(vertex.uv)) / across as f64))
+    }
+}
+
+impl GltfReader<'_> {
+    /// The mean of a texture, for permutations that do not have it. Each image is decoded once.
+    pub fn texture_mean(
+        &mut self,
+        texture: &gltf::Texture<'_>,
+        is_color: bool,
+    ) -> Result<DVec3, String> {
+        let key = (texture.source().index(), is_color);
+        if let Some(mean) = self.means.get(&key) {
+            return Ok(*mean);
+        }
+        if self.means.len() >= MODEL_TEXTURES {
+            return Err(format!("materials: more than {MODEL_TEXTURES} sets of textures"));
+        }
+        // A texture that cannot be read counts as 1, which changes no factor.
+        let mean = self.image(key.0, is_color)?.map_or(DVec3::ONE, |map| map.mean().truncate());
+        self.means.insert(key, mean);
+        Ok(mean)
+    }
+
+    /// An image of the document, linear. One that cannot be decoded is left out with a note.
+    fn image(&mut self, index: usize, is_color: bool) -> Result<Option<TextureMap>, String> {
+        match decode_image(self, index, is_color)? {
+            Ok(map) => Ok(Some(map)),
+            Err(reason) => {
+                let note = format!("images[{index}] is left out: {reason}");
+                self.notes.insert(note);
+                Ok(None)
+            }
+        }
+    }
+}
+
+/// Cells in a row of the sheet.
+fn cells_across(cells: usize) -> usize {
+    (1..).find(|side| side * side >= cells).unwrap_or(1)
+}
+
+fn blank_map(side: usize, texel: DVec4) -> TextureMap {
+    TextureMap { width: side, height: side, texels: vec![texel; side * side] }
+}
+
+/// Writes the channels of an image that count into a cell, the nearest pixel for each texel.
+fn place_image(
+    map: &mut TextureMap,
+    part: &ImageChannels,
+    image: &TextureMap,
+    ([left, top], side): ([usize; 2], usize),
+    in_texture: impl Fn(DVec2) -> DVec2,
+) {
+    for (y, x) in (0..side).flat_map(|y| (0..side).map(move |x| (y, x))) {
+        let at = in_texture((DVec2::new(x as f64, y as f64) + 0.5) / side as f64);
+        let column = ((at.x * image.width as f64) as usize).min(image.width - 1);
+        let row = ((at.y * image.height as f64) as usize).min(image.height - 1);
+        let own = part.weakened(image.texels[row * image.width + column]);
+        let texel = &mut map.texels[(top + y) * map.width + left + x];
+        for channel in part.channels {
+            texel[*channel] = own[*channel];
+        }
+    }
+}
+
+/// The bytes of an image as they are in the file.
+fn image_bytes<'b>(reader: &GltfReader<'b>, index: usize, place: &str) -> Result<&'b [u8], String> {
+    let image = reader.document.images().nth(index).ok_or(format!("{place}: is not there"))?;
+    match image.source() {
+        Source::View { view, .. } => reader.view(&view, place),
+        Source::Uri { .. } => Err(format!("{place}: is in another file; export one `.glb`")),
+    }
+}
+
+/// An image of the document, linear, or why it cannot be decoded.
+///
+/// # Errors
+/// Bytes that are not in the file, and an image that is too large.
+fn decode_image(
+    reader: &GltfReader<'_>,
+    index: usize,
+    is_color: bool,
+) -> Result<Result<TextureMap, String>, String> {
+    let place = format!("images[{index}]");
+    let bytes = image_bytes(reader, index, &place)?;
+    let mut limits = image::Limits::default();
+    limits.max_alloc = Some(16 * MODEL_PIXELS);
+    let mut file = image::ImageReader::new(Cursor::new(bytes))
+        .with_guessed_format()
+        .map_err(|error| format!("{place}: {error}"))?;
+    file.limits(limits);
+    // What is too large is an error, and anything else is a kind of image that is not known.
+    let undecoded = |error: ImageError| match error {
+        ImageError::Limits(error) => Err(format!("{place}: {error}")),
+        error => Ok(Err(error.to_string())),
+    };
+    let decoder = match file.into_decoder() {
+        Ok(decoder) => decoder,
+        Err(error) => return undecoded(error),
+    };
+    let (width, height) = decoder.dimensions();
+    if u64::from(width) * u64::from(height) > MODEL_PIXELS || width == 0 || height == 0 {
+        return Err(format!("{place}: {width} x {height} pixels are more than {MODEL_PIXELS}"));
+    }
+    let decoded = match DynamicImage::from_decoder(decoder) {
+        Ok(decoded) => decoded,
+        Err(error) => return undecoded(error),
+    };
+    // No finer than a cell can be.
+    let small = decoded.thumbnail(1024.min(width), 1024.min(height)).to_rgba8();
+    let linear = |byte: u8| {
+        let share = f64::from(byte) / 255.0;
+        if is_color { crate::linear_from_srgb(share) } else { share }
+    };
+    let texel = |pixel: &image::Rgba<u8>| {
+        let [red, green, blue, alpha] = pixel.0;
+        DVec3::from_array([red, green, blue].map(linear)).extend(f64::from(alpha) / 255.0)
+    };
+    Ok(Ok(TextureMap {
+        width: small.width() as usize,
+        height: small.height() as usize,
+        texels: small.pixels().map(texel).collect(),
+    }))
+}

@@ -1,0 +1,340 @@
+//! The scenes of the pictures: shapes, lamps, materials and a viewer, all made by formulas.
+
+pub use super::maps::{Maps, TextureMap};
+pub use super::probing::Probes;
+
+use std::sync::Arc;
+
+use glam::{DMat4, DVec2, DVec3};
+
+use super::layers::Layers;
+use super::profiles::{luminaire, window};
+use super::shape::Shape;
+use super::{maps, palette};
+use lamplight_scene::look_at;
+use lamplight_scene::{Clip, Depth, perspective};
+
+/// Everything that is drawn, and the viewer.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// What is drawn.
+    pub objects: Vec<Object>,
+    /// Where it is seen from.
+    pub eye: Eye,
+    /// Lamps, the most important one first. The first one casts the shadow.
+    pub lamps: Vec<Lamp>,
+    /// The materials for `material=array`: fourteen fronts with their backs.
+    pub materials: Vec<[Material; 2]>,
+    /// Ambient light of one colour.
+    pub ambient: DVec3,
+    /// Ambient light from above.
+    pub sky: DVec3,
+    /// Ambient light from below.
+    pub ground: DVec3,
+    /// The colour into which distance fades.
+    pub haze: DVec3,
+    /// Distances at which the haze begins and is full.
+    pub haze_range: (f64, f64),
+    /// Makes the textures. They are made only when they are asked for.
+    pub maps: fn() -> Maps,
+    /// Textures of a model that was read, which replace those of `maps`.
+    pub own_maps: Option<Arc<Maps>>,
+    /// Texels along an edge of the shadow map, if that does not depend on the picture's size.
+    pub map_size: Option<u32>,
+    /// Whether lamps with a position are drawn as objects.
+    pub shows_lamps: bool,
+    /// Its light probes, if they are not the usual ones.
+    pub probes: Option<Probes>,
+    /// Half of the width and height of lamps with an area, if they are not of the usual size.
+    pub lamp_size: Option<DVec2>,
+    /// The name of the environment, if that is not the usual one.
+    pub around: Option<&'static str>,
+    /// The box whose walls the environment shows: two opposite corners, and the point from which
+    /// the environment is seen.
+    pub room: Option<[DVec3; 3]>,
+}
+
+/// A shape with its place in the scene.
+#[derive(Debug, Clone)]
+pub struct Object {
+    /// Corners and triangles.
+    pub shape: Shape,
+    /// Places the shape in the world.
+    pub world_from_object: DMat4,
+    /// Multiplied with the colours of the corners.
+    pub color: DVec3,
+    /// The material for `material=single`.
+    pub material: Material,
+    /// The index for `material=array`.
+    pub material_index: u32,
+    /// Whether it casts a shadow. A drawn lamp must not, since it would shade everything.
+    pub casts: bool,
+}
+
+/// The viewer.
+#[derive(Debug, Clone, Copy)]
+pub struct Eye {
+    /// In world space.
+    pub position: DVec3,
+    /// A point that is looked at, in world space.
+    pub target: DVec3,
+    /// The whole vertical angle, radians.
+    pub fov_y: f64,
+    /// Distance of the near plane.
+    pub near: f64,
+    /// Distance of the far plane.
+    pub far: f64,
+}
+
+/// A light that can be of any kind: a directional light shines along its axis, a point light to all
+/// sides, a spot light into its cone.
+#[derive(Debug, Clone, Copy)]
+pub struct Lamp {
+    /// The light that arrives at the target, whatever the falloff is.
+    pub color: DVec3,
+    /// In world space.
+    pub position: DVec3,
+    /// A point that it shines at, in world space.
+    pub target: DVec3,
+    /// Half the angle of the cone, radians.
+    pub half_angle: f64,
+    /// The kind for `lights=mixed`.
+    pub kind: LampKind,
+}
+
+/// What a lamp is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LampKind {
+    /// Shines in one direction everywhere.
+    Directional,
+    /// Shines to all sides.
+    Point,
+    /// Shines into a cone.
+    Spot,
+}
+
+/// The shape of an area light.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LampShape {
+    /// A rectangle that shines along the axis of the lamp.
+    Rectangle,
+    /// A sphere as high as the rectangle.
+    Sphere,
+    /// A tube as wide as the rectangle.
+    Tube,
+}
+
+impl LampShape {
+    /// The radius of a sphere or tube, from half of the width and height of area lights; 0 for a
+    /// rectangle.
+    pub fn radius(self, size: DVec2) -> f64 {
+        match self {
+            Self::Rectangle => 0.0,
+            Self::Sphere => size.y,
+            Self::Tube => 0.12 * size.y,
+        }
+    }
+}
+
+/// The texture that varies the light of a lamp with the direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LampProfile {
+    /// Intensities by angle, as an IES file has them for a luminaire.
+    Ies,
+    /// A picture that the lamp projects.
+    Cookie,
+}
+
+impl LampProfile {
+    /// The texture of it.
+    pub fn map(self) -> TextureMap {
+        match self {
+            Self::Ies => luminaire(),
+            Self::Cookie => window(),
+        }
+    }
+}
+
+/// What a surface does with light.
+#[derive(Debug, Clone, Copy)]
+pub struct Material {
+    /// Linear colour that it gives off by itself.
+    pub emission: DVec3,
+    /// Exponent of the classic highlights.
+    pub shininess: f64,
+    /// Share of the ambient light that it reflects.
+    pub ambient: DVec3,
+    /// Roughness of the microfacet highlight, [0, 1].
+    pub roughness: f64,
+    /// Share of the light that it reflects to all sides.
+    pub diffuse: DVec3,
+    /// How far light wraps around the terminator, [0, 1].
+    pub wrap: f64,
+    /// Share of the light in its highlight.
+    pub specular: DVec3,
+    /// Roughness of Oren and Nayar, radians.
+    pub sigma: f64,
+    /// Its factors as a glTF surface. Without them, pictures choose them.
+    pub layers: Option<Layers>,
+}
+
+impl Default for Material {
+    /// White and a little glossy.
+    fn default() -> Self {
+        Self {
+            emission: DVec3::ZERO,
+            shininess: 40.0,
+            ambient: DVec3::ONE,
+            roughness: 0.45,
+            diffuse: DVec3::ONE,
+            wrap: 0.4,
+            specular: DVec3::splat(0.25),
+            sigma: 0.6,
+            layers: None,
+        }
+    }
+}
+
+impl Material {
+    /// The material with a highlight of another sharpness, and the roughness that fits.
+    pub(super) fn shiny(self, shininess: f64) -> Self {
+        Self { shininess, roughness: (2.0 / (shininess + 2.0)).powf(0.25), ..self }
+    }
+
+    pub(super) fn glossy(self, share: f64) -> Self {
+        Self { specular: DVec3::splat(share), ..self }
+    }
+}
+
+impl Object {
+    pub(super) fn new(shape: Shape, place: DMat4, color: DVec3) -> Self {
+        Self {
+            shape,
+            world_from_object: place,
+            color,
+            material: Material::default(),
+            material_index: 0,
+            casts: true,
+        }
+    }
+
+    /// An object with a material of its own. Its index in the array is 0.
+    pub fn made(shape: Shape, place: DMat4, color: DVec3, material: Material) -> Self {
+        Self::new(shape, place, color).of(material, 0)
+    }
+
+    pub(super) fn of(self, material: Material, material_index: u32) -> Self {
+        Self { material, material_index, ..self }
+    }
+}
+
+impl Lamp {
+    /// Direction in which the light shines, of unit length.
+    pub fn axis(&self) -> DVec3 {
+        (self.target - self.position).normalize_or(DVec3::NEG_Y)
+    }
+
+    /// Unit vectors to the right and up, whose cross product is the axis.
+    pub fn sides(&self) -> (DVec3, DVec3) {
+        let axis = self.axis();
+        let right = DVec3::Y.cross(axis).normalize_or(DVec3::X);
+        (right, axis.cross(right))
+    }
+
+    /// From the world to the coordinates of a picture that the lamp projects into its cone.
+    pub fn uv_from_world(&self) -> DMat4 {
+        let fov = (2.0 * self.half_angle).clamp(0.1, 3.0);
+        let projection = perspective(fov, 1.0, 0.05, 100.0, Clip::Wgpu, Depth::Normal);
+        let half = DVec3::new(0.5, -0.5, 1.0);
+        let uv_from_clip =
+            DMat4::from_translation(DVec3::new(0.5, 0.5, 0.0)) * DMat4::from_scale(half);
+        uv_from_clip * projection * look_at(self.position, self.target, DVec3::Y)
+    }
+
+    /// Distance of the target.
+    pub fn reach(&self) -> f64 {
+        self.position.distance(self.target)
+    }
+}
+
+impl Eye {
+    /// World to view space.
+    pub fn view(&self) -> DMat4 {
+        look_at(self.position, self.target, DVec3::Y)
+    }
+}
+
+impl Scene {
+    /// The scene of a model that was read.
+    pub fn of_model(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Self {
+        base_scene(objects, eye, lamps)
+    }
+
+    /// Half of the width and height of lamps with an area.
+    pub fn lamp_size(&self) -> DVec2 {
+        self.lamp_size.unwrap_or(DVec2::new(0.6, 0.4))
+    }
+
+    /// Every vertex of every object that casts a shadow, in world space.
+    pub fn points(&self) -> Vec<DVec3> {
+        let of = |object: &Object| {
+            let matrix = object.world_from_object;
+            object
+                .shape
+                .vertices
+                .iter()
+                .map(move |vertex| matrix.transform_point3(vertex.position))
+                .collect::<Vec<_>>()
+        };
+        self.objects.iter().filter(|object| object.casts).flat_map(of).collect()
+    }
+}
+
+/// A scene with its name. Each has a file of `sets/`.
+#[derive(Debug)]
+pub struct Set {
+    /// As presets and the command line name it.
+    pub name: &'static str,
+    /// One line.
+    pub about: &'static str,
+    /// The scene.
+    pub make: fn() -> Scene,
+}
+
+include!(concat!(env!("OUT_DIR"), "/sets.rs"));
+
+/// The scene of that name.
+pub fn scene(name: &str) -> Option<Scene> {
+    ALL.iter().find(|set| set.name == name).map(|set| (set.make)())
+}
+
+/// A transformation that rotates about y and then moves.
+fn placed_at(x: f64, y: f64, z: f64, turn: f64) -> DMat4 {
+    DMat4::from_translation(DVec3::new(x, y, z)) * DMat4::from_rotation_y(turn)
+}
+
+/// A scene with what most scenes share: the materials, ambient light, haze and textures.
+fn base_scene(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Scene {
+    Scene {
+        objects,
+        eye,
+        lamps,
+        materials: palette::materials(),
+        ambient: DVec3::new(0.05, 0.055, 0.07),
+        sky: DVec3::new(0.55, 0.68, 0.9),
+        ground: DVec3::new(0.2, 0.15, 0.1),
+        haze: DVec3::new(0.42, 0.48, 0.56),
+        haze_range: (5.0, 26.0),
+        maps: maps::bricks,
+        own_maps: None,
+        map_size: None,
+        shows_lamps: false,
+        probes: None,
+        lamp_size: None,
+        around: None,
+        room: None,
+    }
+}

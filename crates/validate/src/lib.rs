@@ -1,0 +1,179 @@
+//! Runs naga's parser and validator on a composed text, and reports errors in the author's terms
+//! and places.
+//!
+//! naga recurses over what it reads, and it panics on some inputs. So its input is bounded first
+//! ([`limits`]), and every call runs on a large stack with panics caught ([`guard`]).
+
+mod constants;
+mod every;
+mod guard;
+mod hints;
+mod limits;
+mod rehearsal;
+mod report;
+mod sizes;
+mod uniformity;
+mod words;
+
+pub use every::validate_every;
+pub use guard::{catch_panics, guard, on_large_stack};
+pub use hints::glsl_words;
+pub use limits::{LIMITS, NagaLimits};
+#[doc(hidden)]
+pub use rehearsal::{RehearsalJob, RehearsalOutputs, STAGE, rehearse};
+pub use uniformity::{has_lints, lint};
+
+use naga::front::{glsl, wgsl};
+use naga::valid::{Capabilities, ModuleInfo, ValidationError, ValidationFlags, Validator};
+
+use lamplight_bundle::{Language, Stage};
+use lamplight_compose::Composed;
+use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+
+/// A module that naga accepts, with what it found out about it.
+#[derive(Debug, Clone)]
+pub struct Validated {
+    /// Language of the text.
+    pub language: Language,
+    /// As naga's front end read it.
+    pub module: naga::Module,
+    /// What naga's validator found out about it.
+    pub info: ModuleInfo,
+}
+
+/// What every target of the crate supports. Sample shading and cube arrays are included, since naga
+/// takes them for granted; the targets without cube arrays refuse them. Types of 16 or 64 bits are
+/// not included.
+pub const CAPABILITIES: Capabilities =
+    Capabilities::MULTISAMPLED_SHADING.union(Capabilities::CUBE_ARRAY_TEXTURES);
+
+/// Parses and validates.
+///
+/// # Errors
+/// `limit-exceeded` before naga sees the text; `wgsl-error` or `glsl-error` from its parser or
+/// validator, in the author's places; `naga-internal` where it panicked, `naga-exhausted` where it
+/// would have ended the process.
+pub fn validate(composed: &Composed) -> Result<Validated, Diagnostics> {
+    rehearse(composed, composed, || None).map_err(|error| vec![error])?;
+    read_text(composed)
+}
+
+/// As [`validate`], for a text that was rehearsed together with what is done to it afterwards.
+pub fn validate_rehearsed(composed: &Composed) -> Result<Validated, Diagnostics> {
+    limits::check_limits(composed).map_err(|error| vec![error])?;
+    read_text(composed)
+}
+
+fn read_text(composed: &Composed) -> Result<Validated, Diagnostics> {
+    on_large_stack(|| {
+        guard(&composed.text, || {
+            parse_text(composed).and_then(|module| analyse_module(composed, module))
+        })
+    })
+    .map_err(|error| vec![error])
+    .and_then(|result| result)
+}
+
+/// Whether a text is below the calm part of every limit.
+///
+/// # Errors
+/// `limit-exceeded` where naga should not see it at all.
+pub fn is_calm(composed: &Composed) -> Result<bool, Diagnostic> {
+    limits::check_limits(composed).map(|large| large.is_none())
+}
+
+fn parse_text(composed: &Composed) -> Result<naga::Module, Diagnostics> {
+    match composed.language {
+        Language::Wesl => wgsl::parse_str(&composed.text)
+            .map_err(|error| vec![report::wgsl_error(composed, &error)]),
+        Language::Glsl => {
+            let stage = composed.stage.ok_or_else(|| {
+                vec![Diagnostic::error(
+                    codes::GLSL_ERROR,
+                    "the stage of the GLSL text is not known",
+                )]
+            })?;
+            let options = glsl::Options::from(naga_stage(stage));
+            glsl::Frontend::default()
+                .parse(&options, &composed.text)
+                .map_err(|errors| report::glsl_errors(composed, &errors))
+        }
+    }
+}
+
+/// Whether no type or value of a module is too large to be written out.
+pub fn is_bounded(module: &naga::Module) -> bool {
+    sizes::check_sizes(module).is_none()
+}
+
+fn analyse_module(composed: &Composed, module: naga::Module) -> Result<Validated, Diagnostics> {
+    if let Some(large) = sizes::check_sizes(&module) {
+        let error = Diagnostic::error(codes::LIMIT_EXCEEDED, large.message);
+        let range = large.span.to_range().unwrap_or(0..0);
+        return Err(vec![match composed.map.lookup(range.clone()) {
+            Some(span) => error.at(span, "declared here"),
+            None => error,
+        }]);
+    }
+    if let Some(name) = compute_with_inputs(&module) {
+        return Err(vec![inputs_of_compute(composed, name)]);
+    }
+    let info = info_of(&module)
+        .map_err(|error| vec![report::validation_error(composed, &module, &error)])?;
+    Ok(Validated { language: composed.language, module, info })
+}
+
+/// naga's error about a module.
+pub type Invalid = Box<naga::WithSpan<ValidationError>>;
+
+/// What naga finds out about a module that it accepts.
+pub fn info_of(module: &naga::Module) -> Result<ModuleInfo, Invalid> {
+    Validator::new(ValidationFlags::all(), CAPABILITIES).validate(module).map_err(Box::new)
+}
+
+/// The same for a module that was made from a valid one: the analysis without the checks.
+pub fn info_unchecked(module: &naga::Module) -> Result<ModuleInfo, Invalid> {
+    Validator::new(ValidationFlags::empty(), CAPABILITIES).validate(module).map_err(Box::new)
+}
+
+/// Finds a compute shader with an input that only another stage could give. naga accepts it, and
+/// its writers fail on it with an internal error.
+fn compute_with_inputs(module: &naga::Module) -> Option<&str> {
+    let is_location =
+        |binding: &Option<naga::Binding>| matches!(binding, Some(naga::Binding::Location { .. }));
+    let takes = |argument: &naga::FunctionArgument| match &module.types[argument.ty].inner {
+        naga::TypeInner::Struct { members, .. } => {
+            members.iter().any(|member| is_location(&member.binding))
+        }
+        _ => is_location(&argument.binding),
+    };
+    let mut points = module.entry_points.iter();
+    let found = points.find(|point| {
+        point.stage == naga::ShaderStage::Compute && point.function.arguments.iter().any(takes)
+    });
+    found.map(|point| point.name.as_str())
+}
+
+fn inputs_of_compute(composed: &Composed, name: &str) -> Diagnostic {
+    let code = match composed.language {
+        Language::Wesl => codes::WGSL_ERROR,
+        Language::Glsl => codes::GLSL_ERROR,
+    };
+    let message = format!("the compute shader `{name}` takes an input with `@location`");
+    let error = Diagnostic::error(code, message)
+        .note("a compute shader has built-in inputs only: no stage comes before it");
+    let start = composed.text.find(&format!("fn {name}")).map(|at| at + 3);
+    match start.and_then(|start| composed.map.lookup(start..start + name.len())) {
+        Some(span) => error.at(span, "this entry point"),
+        None => error,
+    }
+}
+
+/// A stage as naga names it.
+pub fn naga_stage(stage: Stage) -> naga::ShaderStage {
+    match stage {
+        Stage::Vertex => naga::ShaderStage::Vertex,
+        Stage::Fragment => naga::ShaderStage::Fragment,
+        Stage::Compute => naga::ShaderStage::Compute,
+    }
+}

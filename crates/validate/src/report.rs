@@ -1,0 +1,191 @@
+//! Turns naga's errors into diagnostics about the author's text.
+
+use std::ops::Range;
+
+use naga::Module;
+use naga::front::glsl::ErrorKind;
+use naga::front::{glsl, wgsl};
+use naga::valid::ValidationError;
+
+use super::{hints, words};
+use lamplight_bundle::Language;
+use lamplight_compose::Composed;
+use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+
+/// An error of the WGSL parser, with all its labels and notes.
+///
+/// naga does not publish the kinds of these errors, so its sentences are used, in our style.
+pub fn wgsl_error(composed: &Composed, error: &wgsl::ParseError) -> Diagnostic {
+    let message = as_sentence(error.message());
+    let mut diagnostic = Diagnostic::error(codes::WGSL_ERROR, &*message);
+    for (span, label) in error.labels() {
+        diagnostic = label_or_note(diagnostic, composed, span.to_range(), &as_sentence(label));
+    }
+    diagnostic =
+        error.notes().fold(diagnostic, |diagnostic, note| diagnostic.note(as_sentence(note)));
+    match unknown_name(&message) {
+        Some(name) => hints::hint_unknown(diagnostic, composed, name),
+        None => diagnostic,
+    }
+}
+
+/// How naga's sentences begin before a name that nothing declares.
+const UNKNOWN: &[&str] =
+    &["no definition in scope for identifier: `", "unknown type: `", "unknown identifier: `"];
+
+fn unknown_name(message: &str) -> Option<&str> {
+    let rest = UNKNOWN.iter().find_map(|start| message.strip_prefix(start))?;
+    rest.strip_suffix('`')
+}
+
+/// Every error of the GLSL parser.
+pub fn glsl_errors(composed: &Composed, errors: &glsl::ParseErrors) -> Diagnostics {
+    errors
+        .errors
+        .iter()
+        .map(|error| {
+            let message = as_sentence(&words::glsl_words(&error.kind));
+            if message == "missing entry point" {
+                return Diagnostic::error(codes::NO_ENTRY_POINT, "the file has no function `main`");
+            }
+            let range = error.meta.to_range();
+            match &error.kind {
+                ErrorKind::UnknownVariable(name) | ErrorKind::UnknownType(name) => {
+                    let error = Diagnostic::error(codes::GLSL_ERROR, message);
+                    hints::hint_unknown(
+                        label_or_note(error, composed, range, "here"),
+                        composed,
+                        name,
+                    )
+                }
+                ErrorKind::SemanticError(text) => called_function(composed, text, message, range),
+                _ => label_or_note(
+                    Diagnostic::error(codes::GLSL_ERROR, message),
+                    composed,
+                    range,
+                    "here",
+                ),
+            }
+        })
+        .collect()
+}
+
+/// naga reports a function that does not exist and one with other arguments in the same way. This
+/// tells them apart.
+fn called_function(
+    composed: &Composed,
+    text: &str,
+    message: String,
+    range: Option<Range<usize>>,
+) -> Diagnostic {
+    let name = text.strip_prefix("Unknown function '").and_then(|rest| rest.strip_suffix('\''));
+    let Some(name) = name else {
+        return label_or_note(
+            Diagnostic::error(codes::GLSL_ERROR, message),
+            composed,
+            range,
+            "here",
+        );
+    };
+    let is_declared =
+        composed.parts.iter().any(|part| part.names.iter().any(|known| known == name));
+    if is_declared {
+        let message = format!("`{name}` does not take these arguments");
+        let error = Diagnostic::error(codes::CALL_MISMATCH, message);
+        return hints::note_signatures(
+            label_or_note(error, composed, range, "here"),
+            composed,
+            name,
+        );
+    }
+    let error = Diagnostic::error(codes::GLSL_ERROR, format!("there is no function `{name}`"));
+    hints::hint_unknown(label_or_note(error, composed, range, "here"), composed, name)
+}
+
+/// An error of the validator as a diagnostic, with its spans as labels.
+pub fn validation_error(
+    composed: &Composed,
+    module: &Module,
+    error: &naga::WithSpan<ValidationError>,
+) -> Diagnostic {
+    let fallback = match composed.language {
+        Language::Wesl => codes::WGSL_ERROR,
+        Language::Glsl => codes::GLSL_ERROR,
+    };
+    // The shortest span is the most precise, so it becomes the place of the diagnostic. The span of
+    // a type comes last: it is where the type was first written, which may be anywhere.
+    let mut spans: Vec<_> =
+        error.spans().map(|(span, context)| (span.to_range(), span_kind(context))).collect();
+    spans.sort_by_key(|(range, words)| {
+        (*words == TYPE, range.as_ref().map_or(usize::MAX, ExactSizeIterator::len))
+    });
+    let said = words::validation_words(module, error.as_inner());
+    let diagnostic = Diagnostic::error(said.code.unwrap_or(fallback), said.message);
+    let diagnostic = spans.into_iter().fold(diagnostic, |diagnostic, (range, words)| {
+        label_or_note(diagnostic, composed, range, words)
+    });
+    let diagnostic = said.beside.into_iter().fold(diagnostic, |diagnostic, (span, words)| {
+        label_or_note(diagnostic, composed, span.to_range(), &words)
+    });
+    said.notes.into_iter().fold(diagnostic, Diagnostic::note)
+}
+
+/// Adds a label if the range comes from an author's file, else a note that quotes the composed
+/// text.
+fn label_or_note(
+    diagnostic: Diagnostic,
+    composed: &Composed,
+    range: Option<Range<usize>>,
+    label: &str,
+) -> Diagnostic {
+    let Some(range) = range else {
+        return if label.is_empty() || label == "here" {
+            diagnostic
+        } else {
+            diagnostic.note(label)
+        };
+    };
+    if let Some(span) = composed.map.lookup(range.clone()) {
+        return diagnostic.at(span, label);
+    }
+    let quoted = composed.text.get(range).and_then(|text| text.lines().next()).unwrap_or_default();
+    diagnostic.note(format!("{label}: in text the composer wrote, `{quoted}`"))
+}
+
+/// The label for a type.
+const TYPE: &str = "this type";
+
+/// What a span of the validator is, since naga names the Rust type of the arena.
+fn span_kind(context: &str) -> &'static str {
+    const KINDS: [(&str, &str); 8] = [
+        ("::GlobalVariable", "this variable"),
+        ("::LocalVariable", "this variable"),
+        ("::Expression", "this expression"),
+        ("::Function", "this function"),
+        ("::Constant", "this constant"),
+        ("::Override", "this override"),
+        ("::EntryPoint", "this entry point"),
+        ("::Type", TYPE),
+    ];
+    KINDS.iter().find(|(name, _)| context.contains(name)).map_or("here", |(_, words)| words)
+}
+
+/// naga's message in our style: it starts in lower case, unless with a name, and quotes the
+/// shader's text in backticks.
+fn as_sentence(message: &str) -> String {
+    let message = message.trim().replace(['"', '\''], "`");
+    // An apostrophe is not a quote.
+    let message =
+        APOSTROPHES.iter().fold(message, |message, (wrong, right)| message.replace(wrong, right));
+    let first_word = message.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
+    let is_name = first_word.chars().skip(1).any(char::is_uppercase);
+    match message.chars().next() {
+        Some(first) if !is_name && first.is_uppercase() => {
+            first.to_lowercase().chain(message.chars().skip(1)).collect()
+        }
+        _ => message,
+    }
+}
+
+const APOSTROPHES: &[(&str, &str)] =
+    &[("n`t ", "n't "), ("`s ", "'s "), ("s` ", "s' "), ("`re ", "'re "), ("`ll ", "'ll ")];

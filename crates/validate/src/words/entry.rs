@@ -1,0 +1,177 @@
+//! Entry points, and what enters and leaves them.
+
+use naga::valid::{EntryPointError, VaryingError};
+use naga::{Function, Module};
+
+use super::{
+    Sentence, foreign_words, function, inner_type_text, lacking_words, spaced_name, stage_name,
+    type_text,
+};
+use lamplight_diagnostic::codes;
+
+pub fn entry_words(module: &Module, of: Option<&Function>, error: &EntryPointError) -> Sentence {
+    let text = match error {
+        EntryPointError::Conflict => "two entry points of one stage have this name".to_owned(),
+        EntryPointError::MissingVertexOutputPosition => {
+            "a vertex shader must return `@builtin(position)`".to_owned()
+        }
+        EntryPointError::UnexpectedEarlyDepthTest => {
+            "only fragment shaders have an early depth test".to_owned()
+        }
+        EntryPointError::UnexpectedWorkgroupSize => {
+            "only compute shaders have a workgroup size".to_owned()
+        }
+        EntryPointError::OutOfRangeWorkgroupSize => "the workgroup size is out of range".to_owned(),
+        EntryPointError::ForbiddenStageOperations => {
+            "this stage cannot do what the function does: derivatives, and sampling without a \
+             level, are for fragment shaders"
+                .to_owned()
+        }
+        EntryPointError::InvalidGlobalUsage(handle, _) => {
+            format!("{} is used in a way that it does not allow", variable_words(module, *handle))
+        }
+        EntryPointError::BindingCollision(handle) => return collision_words(module, *handle),
+        EntryPointError::Argument(index, error) => {
+            return varying_words(module, error)
+                .note(format!("argument {} of the entry point", index + 1));
+        }
+        EntryPointError::Result(error) => return varying_words(module, error),
+        EntryPointError::Function(error) => {
+            let nothing = Function::default();
+            return function::function_words(module, of.unwrap_or(&nothing), error);
+        }
+        EntryPointError::UnsupportedCapability(capabilities) => {
+            return lacking_words(*capabilities);
+        }
+        EntryPointError::MoreThanOneImmediateUsed => return foreign_words("immediate data"),
+        EntryPointError::ExpectedMeshShaderAttributes
+        | EntryPointError::UnexpectedMeshShaderAttributes
+        | EntryPointError::UnexpectedTaskPayload
+        | EntryPointError::TaskPayloadWrongAddressSpace
+        | EntryPointError::WrongTaskPayloadUsed
+        | EntryPointError::WrongTaskShaderEntryResult
+        | EntryPointError::ExpectedTaskPayload
+        | EntryPointError::BadMeshOutputVariableType
+        | EntryPointError::BadMeshOutputVariableField
+        | EntryPointError::UnexpectedMeshShaderEntryResult
+        | EntryPointError::InvalidMeshOutputType
+        | EntryPointError::InvalidMeshPrimitiveOutputType
+        | EntryPointError::WrongMeshOutputAddressSpace
+        | EntryPointError::TaskPayloadTooSmall(_) => return foreign_words("mesh and task shaders"),
+        EntryPointError::RayPayloadInInvalidStage(_)
+        | EntryPointError::IncomingRayPayloadInInvalidStage(_) => {
+            return foreign_words("ray tracing");
+        }
+    };
+    Sentence::plain(text)
+}
+
+fn variable_words(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> String {
+    module.global_variables[handle]
+        .name
+        .as_ref()
+        .map_or("a variable without a name".to_owned(), |name| format!("`{name}`"))
+}
+
+/// The message for two variables with the same group and binding.
+fn collision_words(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> Sentence {
+    let binding = module.global_variables[handle].binding;
+    let other = module.global_variables.iter().find(|(other, found)| {
+        *other != handle && found.binding.is_some() && found.binding == binding
+    });
+    let name = variable_words(module, handle);
+    let place = binding.map_or(String::new(), |binding| {
+        format!(" `@group({}) @binding({})`", binding.group, binding.binding)
+    });
+    let message = match other {
+        Some((other, _)) => {
+            format!("{name} and {} have the same place:{place}", variable_words(module, other))
+        }
+        None => format!("{name} has a place that something else has:{place}"),
+    };
+    let beside = other.map(|(other, _)| {
+        (module.global_variables.get_span(other), "has the same place".to_owned())
+    });
+    Sentence { beside, ..Sentence::coded(codes::BINDING_CONFLICT, message) }
+}
+
+pub fn varying_words(module: &Module, error: &VaryingError) -> Sentence {
+    let text = match error {
+        VaryingError::InvalidType(handle) | VaryingError::NotIOShareableType(handle) => format!(
+            "{} cannot enter or leave a stage: scalars and vectors of numbers can",
+            type_text(module, *handle)
+        ),
+        VaryingError::InvalidInterpolationInStage(_, stage) => {
+            format!("this `@interpolate` is only allowed in {} shaders", stage_name(*stage))
+        }
+        VaryingError::InvalidInterpolationSamplingCombination { .. } => {
+            "these two parts of `@interpolate` do not go together".to_owned()
+        }
+        VaryingError::InvalidInterpolationForInteger => {
+            "integers between stages need `@interpolate(flat)`".to_owned()
+        }
+        VaryingError::MissingInterpolation => {
+            "what goes from vertex to fragment shaders needs an interpolation".to_owned()
+        }
+        VaryingError::InvalidBuiltInStage(built_in) => {
+            format!("this stage has no `{}`", built_in_name(*built_in))
+        }
+        VaryingError::InvalidBuiltInType(built_in, found) => {
+            let found = inner_type_text(module, found);
+            format!("`{}` does not have the type {found}", built_in_name(*built_in))
+        }
+        VaryingError::MissingBinding => {
+            "what enters or leaves an entry point needs `@location` or `@builtin`".to_owned()
+        }
+        VaryingError::MemberMissingBinding(index) => {
+            format!("member {} needs `@location` or `@builtin`", index + 1)
+        }
+        VaryingError::BindingCollision { location } => {
+            return Sentence::coded(
+                codes::BINDING_CONFLICT,
+                format!("`@location({location})` is used twice"),
+            );
+        }
+        VaryingError::BindingCollisionBlendSrc { blend_src } => {
+            return Sentence::coded(
+                codes::BINDING_CONFLICT,
+                format!("`@blend_src({blend_src})` is used twice"),
+            );
+        }
+        VaryingError::DuplicateBuiltIn(built_in) => {
+            format!("`{}` occurs twice", built_in_name(*built_in))
+        }
+        VaryingError::UnsupportedCapability(capabilities) => return lacking_words(*capabilities),
+        VaryingError::InvalidInputAttributeInStage(name, stage) => {
+            format!("`@{name}` is for what leaves {} shaders", stage_name(*stage))
+        }
+        VaryingError::InvalidAttributeInStage(name, stage) => {
+            format!("{} shaders have no `@{name}`", stage_name(*stage))
+        }
+        VaryingError::InvalidBlendSrcIndex { .. }
+        | VaryingError::IncompleteBlendSrcUsage { .. }
+        | VaryingError::InvalidBlendSrcWithOtherBindings { .. }
+        | VaryingError::BlendSrcOutputTypeMismatch { .. }
+        | VaryingError::BlendSrcNotOnStructMember => {
+            "`@blend_src(0)` and `@blend_src(1)` are for the two members of one structure, of one \
+             type, at location 0"
+                .to_owned()
+        }
+        VaryingError::InvalidMultiDimensionalSubgroupBuiltIn => return foreign_words("subgroups"),
+        VaryingError::InvalidPerPrimitive | VaryingError::MissingPerPrimitive => {
+            return foreign_words("mesh and task shaders");
+        }
+        VaryingError::PerVertexNotArrayOfThree | VaryingError::InvalidPerVertexSampling => {
+            return foreign_words("inputs for each vertex of a triangle");
+        }
+    };
+    Sentence::plain(text)
+}
+
+/// As WGSL spells it, as far as it follows from naga's name.
+fn built_in_name(built_in: naga::BuiltIn) -> String {
+    use naga::common::wgsl::TryToWgsl;
+    built_in
+        .try_to_wgsl()
+        .map_or_else(|| spaced_name(&format!("{built_in:?}")).replace(' ', "_"), str::to_owned)
+}

@@ -1,0 +1,198 @@
+//! Expressions.
+
+use naga::valid::ExpressionError;
+use naga::{BinaryOperator, Module, UnaryOperator};
+
+use super::function::mismatch_words;
+use super::{
+    Sentence, foreign_words, inner_type_text, lacking_words, spaced_name, type_text, types,
+};
+use lamplight_diagnostic::codes;
+
+pub fn expression_words(module: &Module, error: &ExpressionError) -> Sentence {
+    use ExpressionError as E;
+    let text = match error {
+        E::InvalidBaseType(_) => "this has no members and no elements",
+        E::InvalidIndexType(_) => "an index is an integer",
+        E::NegativeIndex(_) => "an index is not negative",
+        E::IndexOutOfBounds(_, index) => {
+            return Sentence::plain(format!("index {index} is out of bounds"));
+        }
+        E::InvalidPointerType(_) => "there is nothing to be read here",
+        E::InvalidArrayType(_) => "only arrays in storage buffers have a length to ask for",
+        E::InvalidSplatType(_) => "only a scalar can fill all components of a vector",
+        E::InvalidVectorType(_) => "only vectors have components such as `xyz`",
+        E::InvalidSwizzleComponent(component, _) => {
+            let name = spaced_name(&format!("{component:?}"));
+            return Sentence::plain(format!("the vector has no component `{name}`"));
+        }
+        E::Compose(error) => return types::compose_words(module, error),
+        E::InvalidZeroValue(handle) => {
+            return Sentence::plain(format!("there is no zero of {}", type_text(module, *handle)));
+        }
+        E::IndexableLength(_) => "the length of this is not known",
+        E::InvalidUnaryOperandType(operator, _) => {
+            let operator = unary_sign(*operator);
+            return mismatch_words(format!("`{operator}` does not work with this type"));
+        }
+        E::InvalidBinaryOperandTypes { op, lhs_type, rhs_type, .. } => {
+            let (left, right) =
+                (inner_type_text(module, lhs_type), inner_type_text(module, rhs_type));
+            return mismatch_words(format!(
+                "`{}` does not work with {left} and {right}",
+                binary_sign(*op)
+            ));
+        }
+        E::SelectValuesTypeMismatch { accept, reject } => {
+            let (accept, reject) =
+                (inner_type_text(module, accept), inner_type_text(module, reject));
+            return mismatch_words(format!(
+                "the two choices have different types: {accept}, {reject}"
+            ));
+        }
+        E::SelectConditionNotABool { actual } => {
+            return mismatch_words(format!(
+                "the condition is {}, not `bool`",
+                inner_type_text(module, actual)
+            ));
+        }
+        E::InvalidBooleanVector(_) => return mismatch_words("this needs booleans"),
+        E::InvalidFloatArgument(_) => return mismatch_words("this needs floating-point numbers"),
+        E::Type(_) => return mismatch_words("the types of this expression do not go together"),
+        E::ExpectedGlobalVariable | E::ExpectedGlobalOrArgument => {
+            "a texture or sampler must be named directly"
+        }
+        E::ExpectedBindingArrayType(_) => "this is not an array of bindings",
+        E::ExpectedImageType(_) => "this is not a texture",
+        E::ExpectedSamplerType(_) => "this is not a sampler",
+        E::InvalidDerivative => "derivatives need floating-point scalars or vectors",
+        E::InvalidImageClass(_)
+        | E::InvalidImageFormat(_)
+        | E::InvalidImageStorageAccess(_)
+        | E::InvalidImageArrayIndex
+        | E::InvalidImageSampleSelector
+        | E::MissingImageSampleSelector
+        | E::InvalidImageLevelSelector
+        | E::MissingImageLevelSelector
+        | E::InvalidImageArrayIndexType(_)
+        | E::InvalidImageOtherIndexType(_)
+        | E::InvalidImageCoordinateType(..)
+        | E::ComparisonSamplingMismatch { .. }
+        | E::InvalidSampleOffsetExprType
+        | E::InvalidSampleOffset(..)
+        | E::InvalidDepthReference(_)
+        | E::InvalidDepthSampleLevel
+        | E::InvalidGatherLevel
+        | E::InvalidGatherComponent(_)
+        | E::InvalidGatherDimension(_)
+        | E::InvalidSampleLevelExactType(_)
+        | E::InvalidSampleLevelBiasType(_)
+        | E::InvalidSampleLevelBiasDimension(_)
+        | E::InvalidSampleLevelGradientType(..)
+        | E::InvalidSampleClampCoordinateToEdge(_) => return texture_words(error),
+        E::InvalidCastArgument => return mismatch_words("this cannot be converted to that type"),
+        E::WrongArgumentCount(function) => {
+            let name = spaced_name(&format!("{function:?}"));
+            let message = format!("`{name}` takes another number of arguments");
+            return Sentence::coded(codes::CALL_MISMATCH, message);
+        }
+        E::InvalidArgumentType(function, index, _) => {
+            let name = spaced_name(&format!("{function:?}"));
+            let message =
+                format!("argument {} of `{name}` has a type that it does not take", index + 1);
+            return Sentence::coded(codes::CALL_MISMATCH, message);
+        }
+        E::MissingCapabilities(capabilities) => return lacking_words(*capabilities),
+        E::Literal(error) => return types::literal_words(error),
+        E::UnsupportedWidth(_, _, width) => {
+            return foreign_words(&format!("this function for {} bits", u32::from(*width) * 8));
+        }
+        E::ShiftAmountTooLarge { lhs_type, .. } => {
+            return Sentence::plain(format!(
+                "{} has fewer bits than that",
+                inner_type_text(module, lhs_type)
+            ));
+        }
+        E::DivideByZero => "this divides by zero",
+        E::InvalidRayQueryType(_) => return foreign_words("ray tracing"),
+        E::InvalidCooperativeOperand(_) => return foreign_words("cooperative matrices"),
+        E::NotInScope | E::FunctionArgumentDoesntExist(_) => {
+            "naga's parser gave the expression a form that naga's validator refuses"
+        }
+        E::InvalidWorkGroupUniformLoadResultType(_) => {
+            "this type cannot be loaded for a whole workgroup"
+        }
+    };
+    Sentence::plain(text)
+}
+
+/// The message for a wrong lookup of a texture, by what does not fit the texture.
+fn texture_words(error: &ExpressionError) -> Sentence {
+    use ExpressionError as E;
+    let text = match error {
+        E::InvalidImageArrayIndex => {
+            "array textures need the index of a layer, and other textures have none"
+        }
+        E::InvalidImageSampleSelector | E::MissingImageSampleSelector => {
+            "multisampled textures need the index of a sample, and other textures have none"
+        }
+        E::InvalidImageLevelSelector | E::MissingImageLevelSelector => {
+            "textures with mip levels need a level, and other textures have none"
+        }
+        E::InvalidImageArrayIndexType(_) | E::InvalidImageOtherIndexType(_) => {
+            "a layer, a sample and a level are integers"
+        }
+        E::InvalidImageCoordinateType(..) => "the coordinates do not fit the texture",
+        E::ComparisonSamplingMismatch { .. } => {
+            "a comparison needs a depth texture and a `sampler_comparison`; other lookups need a \
+             `sampler`"
+        }
+        E::InvalidSampleOffsetExprType | E::InvalidSampleOffset(..) => {
+            "the offset of a lookup is a constant, with one integer for each axis of the texture"
+        }
+        E::InvalidDepthReference(_) => "the value to compare with is an `f32`",
+        E::InvalidDepthSampleLevel => "a comparison is made at the level of the lookup, or at 0",
+        E::InvalidGatherLevel | E::InvalidGatherComponent(_) | E::InvalidGatherDimension(_) => {
+            "four texels are gathered of level 0 of a 2D texture or cube, from a component it has"
+        }
+        E::InvalidSampleLevelExactType(_)
+        | E::InvalidSampleLevelBiasType(_)
+        | E::InvalidSampleLevelBiasDimension(_)
+        | E::InvalidSampleLevelGradientType(..) => {
+            "the level, bias or gradient does not fit the texture"
+        }
+        _ => "this texture cannot be used in this way",
+    };
+    Sentence::coded(codes::CALL_MISMATCH, text)
+}
+
+fn unary_sign(operator: UnaryOperator) -> &'static str {
+    match operator {
+        UnaryOperator::Negate => "-",
+        UnaryOperator::LogicalNot => "!",
+        UnaryOperator::BitwiseNot => "~",
+    }
+}
+
+fn binary_sign(operator: BinaryOperator) -> &'static str {
+    match operator {
+        BinaryOperator::Add => "+",
+        BinaryOperator::Subtract => "-",
+        BinaryOperator::Multiply => "*",
+        BinaryOperator::Divide => "/",
+        BinaryOperator::Modulo => "%",
+        BinaryOperator::Equal => "==",
+        BinaryOperator::NotEqual => "!=",
+        BinaryOperator::Less => "<",
+        BinaryOperator::LessEqual => "<=",
+        BinaryOperator::Greater => ">",
+        BinaryOperator::GreaterEqual => ">=",
+        BinaryOperator::And => "&",
+        BinaryOperator::ExclusiveOr => "^",
+        BinaryOperator::InclusiveOr => "|",
+        BinaryOperator::LogicalAnd => "&&",
+        BinaryOperator::LogicalOr => "||",
+        BinaryOperator::ShiftLeft => "<<",
+        BinaryOperator::ShiftRight => ">>",
+    }
+}

@@ -1,0 +1,200 @@
+//! Statements, calls and local variables of a function.
+
+use naga::valid::{CallError, FunctionError, LocalVariableError, SubgroupError};
+use naga::{Function, Handle, Module};
+
+use super::{Sentence, expression, foreign_words, inner_type_text, lacking_words, type_text};
+use lamplight_diagnostic::codes;
+
+pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> Sentence {
+    let text = match error {
+        FunctionError::Expression { source, .. } => {
+            return expression::expression_words(module, source);
+        }
+        FunctionError::LocalVariable { handle, name, source } => {
+            return local_words(module, of, *handle, name, source);
+        }
+        FunctionError::InvalidArgumentType { name, .. } => {
+            format!("`{name}` has a type that no function can take")
+        }
+        FunctionError::NonConstructibleReturnType => {
+            "the result has a type that no function can return".to_owned()
+        }
+        FunctionError::InvalidArgumentPointerSpace { name, .. } => {
+            format!("`{name}` is a pointer that no function can take: only `ptr<function>` can")
+        }
+        FunctionError::BreakOutsideOfLoopOrSwitch => {
+            "`break` is outside of a loop or `switch`".to_owned()
+        }
+        FunctionError::ContinueOutsideOfLoop => "`continue` is outside of a loop".to_owned(),
+        FunctionError::InvalidReturnSpot => "`return` is in a `continuing` block".to_owned(),
+        FunctionError::InvalidReturnType { expected_ty, .. } => {
+            return returned_words(module, *expected_ty);
+        }
+        FunctionError::InvalidIfType(_) => "the condition of `if` is not a `bool`".to_owned(),
+        FunctionError::InvalidSwitchType(_) => "`switch` needs an integer".to_owned(),
+        FunctionError::ConflictingSwitchCase(_) => "a case occurs twice".to_owned(),
+        FunctionError::ConflictingCaseType => "the cases have different types".to_owned(),
+        FunctionError::MissingDefaultCase => "`switch` needs a `default`".to_owned(),
+        FunctionError::MultipleDefaultCases => "`switch` has several `default`s".to_owned(),
+        FunctionError::LastCaseFallTrough => "the last case does not end in `break`".to_owned(),
+        FunctionError::InvalidStorePointer(_) => "nothing can be written to this".to_owned(),
+        FunctionError::InvalidStoreTexture { .. } => {
+            "only storage textures can be written to".to_owned()
+        }
+        FunctionError::InvalidStoreValue { actual_ty, expected_ty, .. } => {
+            let (actual, expected) =
+                (inner_type_text(module, actual_ty), inner_type_text(module, expected_ty));
+            return mismatch_words(format!("the texture stores {expected}, and this is {actual}"));
+        }
+        FunctionError::InvalidStoreTypes { .. } => {
+            return mismatch_words("the value does not have the type of what it is assigned to");
+        }
+        FunctionError::InvalidImageStore(error) | FunctionError::InvalidImageAtomic(error) => {
+            return expression::expression_words(module, error);
+        }
+        FunctionError::InvalidCall { function, error } => {
+            return call_words(module, *function, error);
+        }
+        FunctionError::MissingCapability(capabilities) => return lacking_words(*capabilities),
+        FunctionError::NonUniformControlFlow(..) => {
+            "neighbouring fragments may have taken different branches here".to_owned()
+        }
+        FunctionError::NonUniformWorkgroupUniformLoad(_) => {
+            "invocations may have taken different branches here".to_owned()
+        }
+        FunctionError::PipelineInputRegularFunction { name } => format!(
+            "`{name}` has `@location` or `@builtin`, which only entry points' parameters have"
+        ),
+        FunctionError::PipelineOutputRegularFunction => {
+            "the result has `@location` or `@builtin`, which only entry points' results have"
+                .to_owned()
+        }
+        FunctionError::ExpressionAlreadyInScope(_)
+        | FunctionError::WorkgroupUniformLoadExpressionMismatch(_)
+        | FunctionError::WorkgroupUniformLoadInvalidPointer(_)
+        | FunctionError::EmitResult(_)
+        | FunctionError::UnvisitedExpression(_) => {
+            "naga's parser gave the function a form that naga's validator refuses".to_owned()
+        }
+        FunctionError::InvalidAtomic(_)
+        | FunctionError::InvalidImageAtomicFunction(_)
+        | FunctionError::InvalidImageAtomicValue(_) => {
+            "this operation on an atomic does not exist, or its operands have other types"
+                .to_owned()
+        }
+        FunctionError::InvalidSubgroup(error) => return subgroup_words(error),
+        FunctionError::InvalidRayQueryExpression(_)
+        | FunctionError::InvalidAccelerationStructure(_)
+        | FunctionError::MissingAccelerationStructureVertexReturn(..)
+        | FunctionError::MissingRayQueryVertexReturn(_)
+        | FunctionError::InvalidRayDescriptor(_)
+        | FunctionError::InvalidRayQueryType(_)
+        | FunctionError::InvalidHitDistanceType(_)
+        | FunctionError::InvalidPayloadType
+        | FunctionError::InvalidPayloadAddressSpace(_)
+        | FunctionError::MismatchedPayloadType(..)
+        | FunctionError::PayloadPointerNotGlobal => return foreign_words("ray tracing"),
+        FunctionError::InvalidCooperativeStoreTarget(_)
+        | FunctionError::InvalidCooperativeDataPointer(_) => {
+            return foreign_words("cooperative matrices");
+        }
+        FunctionError::InvalidMeshFunctionCall(_)
+        | FunctionError::ConflictingMeshOutputTypes(..)
+        | FunctionError::ConflictingTaskPayloadVariables(..)
+        | FunctionError::InvalidMeshShaderOutputType(_) => {
+            return foreign_words("mesh and task shaders");
+        }
+    };
+    Sentence::plain(text)
+}
+
+pub fn mismatch_words(message: impl Into<String>) -> Sentence {
+    Sentence::coded(codes::TYPE_MISMATCH, message)
+}
+
+fn returned_words(module: &Module, expected: Option<Handle<naga::Type>>) -> Sentence {
+    match expected {
+        Some(expected) => mismatch_words(format!(
+            "the function returns {}, and this has another type",
+            type_text(module, expected)
+        )),
+        None => mismatch_words("the function returns nothing"),
+    }
+}
+
+fn local_words(
+    module: &Module,
+    of: &Function,
+    handle: Handle<naga::LocalVariable>,
+    name: &str,
+    error: &LocalVariableError,
+) -> Sentence {
+    match error {
+        LocalVariableError::InvalidType(handle) => {
+            Sentence::plain(format!("`{name}` cannot have the type {}", type_text(module, *handle)))
+        }
+        LocalVariableError::InitializerType => {
+            let declared = of.local_variables.iter().find(|(found, _)| *found == handle);
+            let declared = declared.map_or(String::new(), |(_, variable)| {
+                format!(", which is {}", type_text(module, variable.ty))
+            });
+            mismatch_words(format!("the first value of `{name}` does not fit its type{declared}"))
+        }
+        LocalVariableError::NonConstOrOverrideInitializer => {
+            Sentence::plain(format!("the first value of `{name}` must be a constant"))
+        }
+    }
+}
+
+fn call_words(module: &Module, handle: Handle<Function>, error: &CallError) -> Sentence {
+    let called = &module.functions[handle];
+    let name = called.name.as_deref().unwrap_or("the function");
+    let said = match error {
+        CallError::ArgumentCount { required, seen } => Sentence::coded(
+            codes::CALL_MISMATCH,
+            format!("`{name}` takes {required} arguments, not {seen}"),
+        ),
+        CallError::ArgumentType { index, required, .. } => Sentence::coded(
+            codes::CALL_MISMATCH,
+            format!(
+                "argument {} of `{name}` is {}, and this has another type",
+                index + 1,
+                type_text(module, *required)
+            ),
+        ),
+        CallError::Argument { source, .. } => return expression::expression_words(module, source),
+        CallError::ResultAlreadyInScope(_)
+        | CallError::ResultAlreadyPopulated(_)
+        | CallError::ExpressionMismatch(_) => {
+            Sentence::plain("naga's parser gave the call a form that naga's validator refuses")
+        }
+    };
+    said.note(format!("declared: {}", signature_text(module, called)))
+}
+
+/// A function as its callers see it.
+fn signature_text(module: &Module, of: &Function) -> String {
+    let plain = |handle| type_text(module, handle).replace('`', "");
+    let arguments: Vec<String> = of
+        .arguments
+        .iter()
+        .map(|argument| {
+            let name = argument.name.as_deref().unwrap_or("_");
+            format!("{name}: {}", plain(argument.ty))
+        })
+        .collect();
+    let result =
+        of.result.as_ref().map_or(String::new(), |result| format!(" -> {}", plain(result.ty)));
+    format!("`{}({}){result}`", of.name.as_deref().unwrap_or_default(), arguments.join(", "))
+}
+
+fn subgroup_words(error: &SubgroupError) -> Sentence {
+    match error {
+        SubgroupError::InvalidOperand(_)
+        | SubgroupError::ResultTypeMismatch(_)
+        | SubgroupError::UnsupportedOperation(_)
+        | SubgroupError::UnknownOperation
+        | SubgroupError::InvalidInvocationIdExprType(_) => foreign_words("subgroups"),
+    }
+}

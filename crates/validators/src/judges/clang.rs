@@ -1,0 +1,33 @@
+//! MSL: clang, with headers of our own in the place of Metal's. It has no rules.
+
+use std::sync::Arc;
+
+use crate::{
+    JudgeEntry, JudgeResult, JudgeWork, Output, OutputGroup, Refusal, divide_group,
+};
+use lamplight_tools::metal::{Clang, judge_batch, shim_hash};
+use lamplight_tools::CLANG;
+
+/// The judge, for the table of all.
+pub const JUDGE: JudgeEntry =
+    JudgeEntry { name: "clang", tools: &[CLANG], lacks: |_| None, version: |_| shim_hash(), plan };
+
+const BATCH: usize = 64;
+
+fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<JudgeWork<'w>>, String> {
+    let clang = Arc::new(Clang::open().map_err(|missing| missing.reason)?);
+    Ok(divide_group(group.outputs, BATCH, move |outputs| judge_msl(&clang, outputs)))
+}
+
+fn judge_msl(clang: &Clang, outputs: &[&Output]) -> JudgeResult {
+    let texts = outputs.iter().map(|output| output.text()).collect::<Result<Vec<_>, _>>()?;
+    let texts: Vec<(usize, &str)> = texts.iter().map(String::as_str).enumerate().collect();
+    let refused = judge_batch(clang, &texts).map_err(|missing| missing.reason)?;
+    let one = |refused: lamplight_tools::metal::MslRefusal| Refusal {
+        output: outputs[refused.index].clone(),
+        judge: "clang",
+        line: refused.errors.split(':').next().and_then(|line| line.parse().ok()),
+        words: refused.errors,
+    };
+    Ok(refused.into_iter().map(one).collect())
+}

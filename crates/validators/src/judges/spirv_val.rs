@@ -1,0 +1,48 @@
+//! SPIR-V: spirv-val, which takes one file at a time. A rule is an environment, such as
+//! `vulkan1.0`.
+
+use crate::{
+    JudgeEntry, JudgeResult, JudgeWork, Output, OutputGroup, Refusal, divide_group,
+};
+use lamplight_tools::{SPIRV_VAL, printed_words};
+
+/// The judge, for the table of all.
+pub const JUDGE: JudgeEntry = JudgeEntry {
+    name: "spirv_val",
+    tools: &[SPIRV_VAL],
+    lacks: |_| None,
+    version: |_| String::new(),
+    plan,
+};
+
+const BATCH: usize = 16;
+
+fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<JudgeWork<'w>>, String> {
+    let environments = group.rules;
+    Ok(divide_group(group.outputs, BATCH, move |outputs| {
+        let mut refusals = Vec::new();
+        for output in outputs {
+            refusals.extend(first_refusal(output, environments)?);
+        }
+        Ok(refusals)
+    }))
+}
+
+/// The refusal of the first environment that does not accept it.
+fn first_refusal(output: &Output, environments: &[&str]) -> JudgeResult {
+    for environment in environments {
+        let said = SPIRV_VAL.run(&["--target-env", environment], [&output.file]);
+        let said = said.map_err(|error| error.to_string())?;
+        if !said.status.success() {
+            let words = format!("for {environment}: {}", printed_words(&said));
+            // Its line numbers count instructions, so they say nothing about the author's text.
+            return Ok(vec![Refusal {
+                output: output.clone(),
+                judge: "spirv-val",
+                line: None,
+                words,
+            }]);
+        }
+    }
+    Ok(Vec::new())
+}
