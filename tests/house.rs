@@ -59,9 +59,9 @@ fn entries_are_described() -> Result<(), Failed> {
     let executors = lamplight::execute::executors::ALL;
     let scenes = lamplight::scene::sets::ALL;
     let all =
-        (targets.iter().map(|target| ("src/emit/targets", target.target.name(), target.about)))
-            .chain(executors.iter().map(|found| ("src/execute/executors", found.name, found.about)))
-            .chain(scenes.iter().map(|scene| ("src/scene/sets", scene.name, scene.about)));
+        (targets.iter().map(|target| ("crates/emit/src/targets", target.target.name(), target.about)))
+            .chain(executors.iter().map(|found| ("crates/execute/src/executors", found.name, found.about)))
+            .chain(scenes.iter().map(|scene| ("crates/scenes/src/sets", scene.name, scene.about)));
     let mut problems = Vec::new();
     for (folder, name, about) in all {
         problems.extend(undescribed(name, about));
@@ -70,11 +70,11 @@ fn entries_are_described() -> Result<(), Failed> {
         }
     }
     let abouts = targets.iter().map(|entry| (entry.target.name(), entry.about.to_owned()));
-    problems.extend(same_twice("src/emit/targets", "description", abouts));
+    problems.extend(same_twice("crates/emit/src/targets", "description", abouts));
     let endings = targets.iter().map(|entry| (entry.target.name(), entry.extension.to_owned()));
-    problems.extend(same_twice("src/emit/targets", "extension", endings));
+    problems.extend(same_twice("crates/emit/src/targets", "extension", endings));
     let abouts = executors.iter().map(|entry| (entry.name, entry.about.to_owned()));
-    problems.extend(same_twice("src/execute/executors", "description", abouts));
+    problems.extend(same_twice("crates/execute/src/executors", "description", abouts));
     if problems.is_empty() { Ok(()) } else { Err(problems.join("\n").into()) }
 }
 

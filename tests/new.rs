@@ -73,7 +73,7 @@ fn parsed<T>(
 /// A new diagnostic has an empty title and page, which trials then demand.
 fn diagnostic() -> Outcome {
     let files = make("diagnostic", "unknown-swizzle", &[])?;
-    let text = text(&files, "src/diagnostic/codes/unknown-swizzle.md")?;
+    let text = text(&files, "crates/diagnostic/src/codes/unknown-swizzle.md")?;
     match text == "#\n\nPage: \n" {
         true => Ok(()),
         false => Err(format!("expected an empty title and page, found:\n{text}").into()),
@@ -94,8 +94,8 @@ fn target() -> Outcome {
         let constant = format!("Target::{}", name.to_uppercase());
         let other = format!("Target::{}", like.to_uppercase());
         let wanted = [
-            (format!("src/emit/targets/{name}.rs"), version.to_owned()),
-            (format!("src/execute/executors/{name}.rs"), format!("name: \"{name}\"")),
+            (format!("crates/emit/src/targets/{name}.rs"), version.to_owned()),
+            (format!("crates/execute/src/executors/{name}.rs"), format!("name: \"{name}\"")),
         ];
         for (path, part) in wanted {
             let text = text(&files, &path)?;
@@ -135,7 +135,7 @@ fn target_version() -> Outcome {
         let made = made::make(&root(), "target", name, &[])?;
         let steps = made.next.join("\n");
         let files: BTreeMap<String, String> = made.files.into_iter().collect();
-        let path = format!("src/emit/targets/{name}.rs");
+        let path = format!("crates/emit/src/targets/{name}.rs");
         let text = text(&files, &path)?;
         if !text.contains(&format!("Numbering::{numbering})")) {
             return Err(format!("{path} should have `Numbering::{numbering}`:\n{text}").into());
@@ -182,7 +182,7 @@ fn change() -> Outcome {
 /// The file of an executor without wgpu has a session with all of its functions. The file of an
 /// executor for a device of wgpu names the choices of devices and of shaders.
 fn own_executor() -> Outcome {
-    let path = "src/execute/executors/fresh.rs";
+    let path = "crates/execute/src/executors/fresh.rs";
     for (rest, parts) in [
         (&["own"][..], &["impl Session for ", "run_batches(", "draw_pixels(", "emit_kernel("][..]),
         (&[], &["`AdapterName::Without`", "`Shaders::Emitted(Target::SPIRV)`"]),
@@ -203,10 +203,10 @@ fn own_executor() -> Outcome {
 /// A new executor opens a device of wgpu, or is a copy of another one with comments that explain its
 /// fields. Its description is empty, which trials notice.
 fn executor() -> Outcome {
-    rust("executor", "src/execute/executors/fresh.rs")?;
+    rust("executor", "crates/execute/src/executors/fresh.rs")?;
     let copy = make("executor", "other", &["vulkan"])?;
-    let text = text(&copy, "src/execute/executors/other.rs")?;
-    let known = std::fs::read_to_string(root().join("src/execute/executors/vulkan.rs"))?;
+    let text = text(&copy, "crates/execute/src/executors/other.rs")?;
+    let known = std::fs::read_to_string(root().join("crates/execute/src/executors/vulkan.rs"))?;
     let code = |text: &str| -> String {
         let is_code = |line: &&str| !line.trim_start().starts_with("//");
         text.lines().filter(is_code).map(|line| format!("{line}\n")).collect()
@@ -236,12 +236,12 @@ fn executor() -> Outcome {
 
 /// A new scene has objects, a lamp and a preset. The preset's words are missing, which is an error.
 fn scene() -> Outcome {
-    rust("scene", "src/scene/sets/fresh.rs")?;
+    rust("scene", "crates/scenes/src/sets/fresh.rs")?;
     if crate::scene::nothing_is_shown(&[]).is_none() {
         return Err("`nothing_is_shown` should notice an empty scene".into());
     }
     let files = make("scene", "fresh", &[])?;
-    let scene = text(&files, "src/scene/sets/fresh.rs")?;
+    let scene = text(&files, "crates/scenes/src/sets/fresh.rs")?;
     let presets = text(&files, "shaderlib/presets.toml")?;
     let parts = ["Shape::cuboid(", "Lamp {", "Eye {"];
     let lost = parts.iter().find(|part| !scene.contains(**part));
@@ -257,12 +257,12 @@ fn interface() -> Outcome {
     let folder = tempfile::tempdir()?;
     let wgpu = "[dependencies]\nwgpu = { version = \"30\", features = [\"std\", \"gles\"] }\n";
     std::fs::write(folder.path().join("Cargo.toml"), wgpu)?;
-    std::fs::create_dir_all(folder.path().join("src/execute/executors"))?;
+    std::fs::create_dir_all(folder.path().join("crates/execute/src/executors"))?;
     let made = made::make(folder.path(), "executor", "dx12", &[])?;
     let files: BTreeMap<String, String> = made.files.into_iter().collect();
     for (path, part) in [
-        ("src/execute/executors/dx12.rs", "//! Runs on: windows\n"),
-        ("src/execute/executors/dx12.rs", "backend: wgpu::Backends::DX12"),
+        ("crates/execute/src/executors/dx12.rs", "//! Runs on: windows\n"),
+        ("crates/execute/src/executors/dx12.rs", "backend: wgpu::Backends::DX12"),
         ("Cargo.toml", "\"gles\", \"dx12\"] }"),
     ] {
         if !text(&files, path)?.contains(part) {

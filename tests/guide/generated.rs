@@ -31,7 +31,7 @@ Every error and warning has a code, which stands in brackets: `error[unknown-axi
 `lamplight explain unknown-axis` prints what this page says of it, and `lamplight explain` lists
 all codes.
 
-This page is made from those explanations: `src/diagnostic/codes/` has one file for each.
+This page is made from those explanations: `crates/diagnostic/src/codes/` has one file for each.
 ";
 
 fn text() -> String {

@@ -104,8 +104,8 @@ fn codes() -> Result<(), Failed> {
     let homeless = generated::homeless();
     if !homeless.is_empty() {
         let message = format!(
-            "the files of {homeless:?} in src/diagnostic/codes/ name no page: write `Page: NAME` \
-             below the title, with a page of src/diagnostic/guide.rs"
+            "the files of {homeless:?} in crates/diagnostic/src/codes/ name no page: write `Page: NAME` \
+             below the title, with a page of crates/diagnostic/src/guide.rs"
         );
         return Err(message.into());
     }

@@ -17,14 +17,14 @@ const ARMS: &str = "a table: one arm for each case of an enumeration of naga's";
 
 /// Functions that may be longer: file, name, reason.
 const FUNCTIONS: &[(&str, &str, &str)] = &[
-    ("src/eval/machine/compute.rs", "compute", "a table: one arm for each instruction"),
-    ("src/link/spirv/operands.rs", "operand_layout", "a table: one arm for each layout of opcodes"),
-    ("src/validate/words/entry.rs", "entry_words", ARMS),
-    ("src/validate/words/entry.rs", "varying_words", ARMS),
-    ("src/validate/words/expression.rs", "expression_words", ARMS),
-    ("src/validate/words/function.rs", "function_words", ARMS),
-    ("src/validate/words/tokens.rs", "token_text", ARMS),
-    ("src/validate/words/types.rs", "type_of", ARMS),
+    ("crates/eval/src/machine/compute.rs", "compute", "a table: one arm for each instruction"),
+    ("crates/link/src/spirv/operands.rs", "operand_layout", "a table: one arm for each layout of opcodes"),
+    ("crates/validate/src/words/entry.rs", "entry_words", ARMS),
+    ("crates/validate/src/words/entry.rs", "varying_words", ARMS),
+    ("crates/validate/src/words/expression.rs", "expression_words", ARMS),
+    ("crates/validate/src/words/function.rs", "function_words", ARMS),
+    ("crates/validate/src/words/tokens.rs", "token_text", ARMS),
+    ("crates/validate/src/words/types.rs", "type_of", ARMS),
 ];
 
 /// Files that may be longer: file, reason.

@@ -39,9 +39,9 @@ pub fn to_rename() -> Result<(), Failed> {
         found.extend((calls > 0).then(|| (file.strip_prefix(ROOT).map(Path::to_owned), calls)));
     }
     match &found[..] {
-        [(Ok(file), 1)] if file == Path::new("src/output/mod.rs") => Ok(()),
+        [(Ok(file), 1)] if file == Path::new("crates/files/src/output/mod.rs") => Ok(()),
         _ => {
-            Err(format!("expected one call of `fs::rename`, in src/output, found {found:?}").into())
+            Err(format!("expected one call of `fs::rename`, in crates/files/src/output, found {found:?}").into())
         }
     }
 }

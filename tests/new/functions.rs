@@ -51,7 +51,7 @@ pub fn in_modules() -> Outcome {
         if !plain.contains("fn unheard_of(n: vec3f, nl: f32, k: f32) -> f32 {\n    return f32();") {
             return Err(format!("no plain text of `unheard_of`:\n{plain}").into());
         }
-        let reference = format!("src/proof/references/{}.rs", module.replace("::", "_"));
+        let reference = format!("crates/check/src/references/{}.rs", module.replace("::", "_"));
         let text = text(&files, &reference)?;
         balanced(text)?;
         let row = "(\"unheard_of\", unheard_of)";
@@ -232,7 +232,7 @@ pub fn of_types() -> Outcome {
             compiles(&files, stem, &value, &glsl)
                 .map_err(|problem| format!("{}: {value}: {problem:?}", ty.wesl))?;
             parsed(text(&files, &format!("{stem}.toml"))?, cases::parse_cases)?;
-            balanced(text(&files, "src/proof/references/brdf_fresh.rs")?)?;
+            balanced(text(&files, "crates/check/src/references/brdf_fresh.rs")?)?;
         }
     }
     Ok(())

@@ -2,7 +2,7 @@
 //!
 //! A key lists the axes that differ from their defaults, sorted by name. An axis whose value is
 //! `true` stands alone. The permutation without a difference is [`DEFAULT`]. The loader, the tools
-//! and the command line read and write keys with this module. Code that `src/keys/` generates for
+//! and the command line read and write keys with this module. Code that `crates/keys/src/` generates for
 //! hosts writes keys by itself, with the marks and words that are constants here.
 
 use super::{Axis, Error};

@@ -104,7 +104,7 @@ impl Library {
         self.check_with(sources, paths, languages, open, &options)
     }
 
-    /// Whether the references in `src/proof/references/` are about this package.
+    /// Whether the references in `crates/check/src/references/` are about this package.
     pub fn has_references(&self) -> bool {
         self.name == LIBRARY
     }

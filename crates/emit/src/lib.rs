@@ -85,7 +85,7 @@ pub enum Overrides {
 /// `judge` runs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct JudgeRules {
-    /// The name of a file of `src/judge/judges/`.
+    /// The name of a file of `crates/validators/src/judges/`.
     pub judge: &'static str,
     /// The rules that outputs must keep. They are those of the judge, whose file explains them.
     pub rules: &'static [&'static str],

@@ -258,7 +258,7 @@ fn refuse_any(lean: &Composed, kept: &[(usize, &Part)]) -> Result<(), Reason> {
 }
 
 /// Refuses the kinds of declaration that cannot be separated. The kinds are listed in
-/// `src/compose/part.rs`.
+/// `crates/compose/src/part.rs`.
 fn refuse_part(part: &Part, text: &str, language: Language) -> Result<(), Reason> {
     let is_storage = |text: &str| match language {
         Language::Wesl => {

@@ -13,7 +13,7 @@ pub enum Reason {
     Override,
     /// A storage buffer: writers pass the lengths of its arrays to the functions that need them. So
     /// the text of a function would depend on what its callees do, and not only on their names,
-    /// parameters and results (the first assumption in `src/link/mod.rs`).
+    /// parameters and results (the first assumption in `crates/link/src/lib.rs`).
     /// `refuse_part` in `outline.rs` finds declarations; `uses.rs` finds pointers in an address
     /// space that no stub has.
     StorageBuffer,

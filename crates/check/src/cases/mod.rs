@@ -38,7 +38,7 @@
 //!
 //! | given | expected is |
 //! |---|---|
-//! | `oracle = "reference"` | the f64 reference of `src/proof/references/` with the function's path |
+//! | `oracle = "reference"` | the f64 reference of `crates/check/src/references/` with the function's path |
 //! | `formula = "max(dot(n, l), 0)"` | the formula's value (see [`super::formula`]) |
 //! | `rows` instead of `inputs` | a table of `{ c = 0.9, ..., expect = [...] }` |
 //! | `oracle = "eval"` | what the code itself gives in f64; what rounding to f32 may add to it is allowed |

@@ -146,7 +146,7 @@ impl CheckReport {
 /// How to check.
 #[derive(Debug, Clone, Copy)]
 pub struct CheckOptions<'a> {
-    /// Whether the references of `src/proof/references/` apply to modules of these paths.
+    /// Whether the references of `crates/check/src/references/` apply to modules of these paths.
     pub references: bool,
     /// Whether to record how the error depends on the inputs.
     pub profile: bool,

@@ -6,7 +6,7 @@
 //! | one file that the user names | [`write_file`], which asks whether a file there is ours | `file.rs` |
 //! | one file whose older content the caller has read | [`write()`] | `file.rs` |
 //! | a folder of files, each known by its hash | [`write_folder`], or [`OutputFolder`] for one after the other | `folder.rs` |
-//! | many files that point to each other | [`Scratch`]: stage all, sync once, rename in the order of use | `scratch.rs`; `publish` in `src/bundle/directory_writer.rs` and `src/cache/folder.rs` do so |
+//! | many files that point to each other | [`Scratch`]: stage all, sync once, rename in the order of use | `scratch.rs`; `publish` in `crates/bundle/src/directory_writer.rs` and `crates/generate/src/cache/folder.rs` do so |
 //!
 //! Where a file has the new bytes already, [`write_file`] and [`OutputFolder`] write nothing: `has_bytes` in
 //! `file.rs` tells. The cache is written in any case. Otherwise a write takes these steps, in this

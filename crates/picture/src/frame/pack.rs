@@ -92,7 +92,7 @@ fn without_number(path: &str, ty: &str) -> Diagnostic {
     let message = format!("nothing has a number for the uniform `{path}: {ty}`");
     Diagnostic::error(codes::PICTURE_INVALID, message).note(
         "help: give it one under `[uniforms]` of `shaderlib/pictures.toml`, or compute it from the \
-         scene in `src/picture/values.rs`",
+         scene in `crates/picture/src/values.rs`",
     )
 }
 

@@ -8,12 +8,12 @@ pub const KIND: TaskKind =
 fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFiles, String> {
     refuse_rest(rest)?;
     check_name(name, '-')?;
-    let file = format!("src/diagnostic/codes/{name}.md");
+    let file = format!("crates/diagnostic/src/codes/{name}.md");
     repository.refuse_existing(&file)?;
     let constant = name.replace('-', "_").to_uppercase();
     let next = vec![
         format!(
-            "{file}: a title, `Page: ` with a page of src/diagnostic/guide.rs, and when it happens and how to mend it (trials diagnostics, guide)"
+            "{file}: a title, `Page: ` with a page of crates/diagnostic/src/guide.rs, and when it happens and how to mend it (trials diagnostics, guide)"
         ),
         format!("`Diagnostic::error(codes::{constant}, message).at(span, words)` where it happens"),
         format!(

@@ -12,7 +12,7 @@ pub const KIND: TaskKind = TaskKind {
     make,
 };
 
-const FOLDER: &str = "src/execute/executors";
+const FOLDER: &str = "crates/execute/src/executors";
 const CARGO: &str = "Cargo.toml";
 
 /// Graphics APIs that wgpu has on some systems only: the name, which is also that of a feature of

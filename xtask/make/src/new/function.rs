@@ -38,7 +38,7 @@ fn make(repository: &Repository<'_>, path: &str, rest: &[&str]) -> Result<NewFil
         untranslated: None,
     };
     let stem = format!("shaderlib/{folder}/{module}");
-    let reference = format!("src/proof/references/{folder}_{module}.rs");
+    let reference = format!("crates/check/src/references/{folder}_{module}.rs");
     let edits: [(String, FileEdit); 6] = [
         (format!("{stem}.wesl"), wesl),
         (format!("{stem}.glsl"), glsl),

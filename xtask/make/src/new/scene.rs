@@ -9,14 +9,14 @@ const PRESETS: &str = "shaderlib/presets.toml";
 fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFiles, String> {
     refuse_rest(rest)?;
     check_name(name, '_')?;
-    let file = format!("src/scene/sets/{name}.rs");
+    let file = format!("crates/scenes/src/sets/{name}.rs");
     repository.refuse_existing(&file)?;
     let presets = repository.read(PRESETS)?;
     if presets.contains(&format!("[tech_{name}]\n")) {
         return Err(format!("`{PRESETS}` has `[tech_{name}]` already"));
     }
-    let palette = repository.read("src/scene/palette.rs")?;
-    let shapes = declared(&repository.read("src/scene/shape.rs")?, "    pub fn ", " -> Self");
+    let palette = repository.read("crates/scenes/src/palette.rs")?;
+    let shapes = declared(&repository.read("crates/scenes/src/shape.rs")?, "    pub fn ", " -> Self");
     let colors = declared(&palette, "pub const ", ": DVec3");
     let picture = format!("target/tech_{name}.png");
     let next = vec![
@@ -50,7 +50,7 @@ fn declared(text: &str, start: &str, end: &str) -> String {
 /// The colours of the array of materials, each with its index.
 fn materials(palette: &str) -> Result<String, String> {
     let fronts = palette.split_once("const FRONTS").and_then(|(_, rest)| rest.split_once("];"));
-    let (fronts, _) = fronts.ok_or("`src/scene/palette.rs` has no `FRONTS`")?;
+    let (fronts, _) = fronts.ok_or("`crates/scenes/src/palette.rs` has no `FRONTS`")?;
     let colors = fronts.lines().filter_map(|line| {
         Some(line.trim().strip_prefix("(DVec3::new(")?.split_once(')')?.0.to_owned())
     });

@@ -6,11 +6,11 @@ use super::{NewFiles, Repository, TaskKind, check_name};
 pub const KIND: TaskKind =
     TaskKind { name: "target", example: &["essl310"], rest: "[TARGET THAT IT IS LIKE]", make };
 
-const TARGETS: &str = "src/emit/targets";
-const EXECUTORS: &str = "src/execute/executors";
+const TARGETS: &str = "crates/emit/src/targets";
+const EXECUTORS: &str = "crates/execute/src/executors";
 const GUIDE: &str = "docs/guide/targets.md";
 /// What versions of GLSL lack: a line of Rust for each, with the first versions that have it.
-const LACKS: &str = "src/emit/lacks.rs";
+const LACKS: &str = "crates/emit/src/lacks.rs";
 
 fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFiles, String> {
     check_name(name, '_')?;
