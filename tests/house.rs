@@ -58,10 +58,11 @@ fn entries_are_described() -> Result<(), Failed> {
     let targets = lamplight::emit::targets::ALL;
     let executors = lamplight::execute::executors::ALL;
     let scenes = lamplight::scene::sets::ALL;
-    let all =
-        (targets.iter().map(|target| ("crates/emit/src/targets", target.target.name(), target.about)))
-            .chain(executors.iter().map(|found| ("crates/execute/src/executors", found.name, found.about)))
-            .chain(scenes.iter().map(|scene| ("crates/scenes/src/sets", scene.name, scene.about)));
+    let all = (targets
+        .iter()
+        .map(|target| ("crates/emit/src/targets", target.target.name(), target.about)))
+    .chain(executors.iter().map(|found| ("crates/execute/src/executors", found.name, found.about)))
+    .chain(scenes.iter().map(|scene| ("crates/scenes/src/sets", scene.name, scene.about)));
     let mut problems = Vec::new();
     for (folder, name, about) in all {
         problems.extend(undescribed(name, about));

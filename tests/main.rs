@@ -16,21 +16,17 @@ static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 mod bounds;
 mod browser;
-mod bundle;
 mod catalogue;
-mod compose_glsl;
-mod compose_wesl;
 mod conventions;
 mod cost;
 mod determinism;
 mod diagnostics;
 mod differential;
 mod doors;
+mod drivers;
 mod emit;
 mod energy;
-mod eval;
 mod examples;
-mod folders;
 mod fragments;
 mod frames;
 mod generate;
@@ -48,36 +44,31 @@ mod link_random;
 mod lsp;
 mod metal;
 mod migrate;
-mod mutate;
 mod new;
 mod one_meaning;
 mod oracles;
 mod packages;
-mod permute;
 mod pipelines;
 mod plain;
 mod programs;
 mod published;
-mod random;
 mod regressions;
 mod render;
 mod report;
 mod robust;
 mod scale;
-mod scene;
 mod shaderlib;
 mod shadow;
 mod site;
 mod sketch;
-mod snapshot;
 mod specialise;
 mod tables;
-mod texts;
 mod toolchain;
 mod traps;
 
 use std::process::ExitCode;
 
+use lamplight_testing::{random, snapshot};
 use libtest_mimic::{Arguments, Trial};
 
 /// Those come first of which some take long on one core, so that the other cores do not wait for
@@ -86,10 +77,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     toolchain::trials,
     site::trials,
     browser::trials,
-    bundle::trials,
     catalogue::trials,
-    compose_glsl::trials,
-    compose_wesl::trials,
     bounds::trials,
     conventions::trials,
     cost::trials,
@@ -97,9 +85,9 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     diagnostics::trials,
     differential::trials,
     doors::trials,
+    drivers::trials,
     emit::trials,
     energy::trials,
-    eval::trials,
     examples::trials,
     frames::trials,
     generate::trials,
@@ -115,12 +103,10 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     lsp::trials,
     metal::trials,
     migrate::trials,
-    mutate::trials,
     new::trials,
     one_meaning::trials,
     oracles::trials,
     packages::trials,
-    permute::trials,
     pipelines::trials,
     plain::trials,
     programs::trials,
@@ -130,13 +116,11 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     report::trials,
     robust::trials,
     scale::trials,
-    scene::trials,
     shaderlib::trials,
     shadow::trials,
     sketch::trials,
     specialise::trials,
     tables::trials,
-    texts::trials,
     traps::trials,
 ];
 

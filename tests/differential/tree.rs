@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 
 use super::peer::{Files, Flags};
 
+use self::random::TreeRandom as _;
 use crate::random::Random;
 
 use imports::Imports;

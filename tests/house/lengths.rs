@@ -18,7 +18,11 @@ const ARMS: &str = "a table: one arm for each case of an enumeration of naga's";
 /// Functions that may be longer: file, name, reason.
 const FUNCTIONS: &[(&str, &str, &str)] = &[
     ("crates/eval/src/machine/compute.rs", "compute", "a table: one arm for each instruction"),
-    ("crates/link/src/spirv/operands.rs", "operand_layout", "a table: one arm for each layout of opcodes"),
+    (
+        "crates/link/src/spirv/operands.rs",
+        "operand_layout",
+        "a table: one arm for each layout of opcodes",
+    ),
     ("crates/validate/src/words/entry.rs", "entry_words", ARMS),
     ("crates/validate/src/words/entry.rs", "varying_words", ARMS),
     ("crates/validate/src/words/expression.rs", "expression_words", ARMS),

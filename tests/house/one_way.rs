@@ -40,8 +40,9 @@ pub fn to_rename() -> Result<(), Failed> {
     }
     match &found[..] {
         [(Ok(file), 1)] if file == Path::new("crates/files/src/output/mod.rs") => Ok(()),
-        _ => {
-            Err(format!("expected one call of `fs::rename`, in crates/files/src/output, found {found:?}").into())
-        }
+        _ => Err(format!(
+            "expected one call of `fs::rename`, in crates/files/src/output, found {found:?}"
+        )
+        .into()),
     }
 }

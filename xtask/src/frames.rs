@@ -16,7 +16,8 @@ fn usage() -> CommandFailure {
 
 /// Every target has a file of its name.
 fn targets() -> Vec<String> {
-    let files = std::fs::read_dir(root().join("crates/emit/src/targets")).into_iter().flatten().flatten();
+    let files =
+        std::fs::read_dir(root().join("crates/emit/src/targets")).into_iter().flatten().flatten();
     let names = files.map(|file| file.file_name().to_string_lossy().into_owned());
     let mut targets: Vec<String> =
         names.filter_map(|name| name.strip_suffix(".rs").map(str::to_owned)).collect();

@@ -3,13 +3,21 @@
 use super::FLAGS;
 use crate::random::Random;
 
-impl Random {
-    pub fn number(&mut self) -> String {
+/// What the generator of packages draws.
+pub trait TreeRandom {
+    /// A number in WGSL.
+    fn number(&mut self) -> String;
+
+    /// A condition over the flags.
+    fn condition(&mut self) -> String;
+}
+
+impl TreeRandom for Random {
+    fn number(&mut self) -> String {
         format!("{}.{}", self.below(8), ["0", "25", "5", "125"][self.below(4)])
     }
 
-    /// A condition over the flags.
-    pub fn condition(&mut self) -> String {
+    fn condition(&mut self) -> String {
         let flag = |random: &mut Self| FLAGS[random.below(FLAGS.len())].to_owned();
         match self.below(7) {
             0 | 1 => flag(self),

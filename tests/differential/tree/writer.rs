@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::imports::Imports;
+use super::random::TreeRandom as _;
 use super::{Item, Kind, NAMES, reaches};
 use crate::random::Random;
 

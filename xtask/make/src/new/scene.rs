@@ -16,7 +16,8 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFil
         return Err(format!("`{PRESETS}` has `[tech_{name}]` already"));
     }
     let palette = repository.read("crates/scenes/src/palette.rs")?;
-    let shapes = declared(&repository.read("crates/scenes/src/shape.rs")?, "    pub fn ", " -> Self");
+    let shapes =
+        declared(&repository.read("crates/scenes/src/shape.rs")?, "    pub fn ", " -> Self");
     let colors = declared(&palette, "pub const ", ": DVec3");
     let picture = format!("target/tech_{name}.png");
     let next = vec![

@@ -1,0 +1,21 @@
+//! The package's tests. Each module lists its own, most of which are found by their files.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::print_stderr
+)]
+
+mod scene;
+
+/// The mathematics for the host, and what pictures show.
+mod both {
+    pub use lamplight_scene::*;
+    pub use lamplight_scenes::*;
+}
+
+fn main() -> std::process::ExitCode {
+    lamplight_testing::run_tests(&[scene::trials])
+}

@@ -1,0 +1,17 @@
+//! What the tests of several packages share: packages in folders, snapshots, random numbers.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+pub mod folders;
+pub mod random;
+pub mod snapshot;
+
+use std::process::ExitCode;
+
+use libtest_mimic::{Arguments, Trial};
+
+/// Runs the tests that some functions list, with the arguments of this process.
+pub fn run_tests(lists: &[fn() -> Vec<Trial>]) -> ExitCode {
+    let tests = lists.iter().flat_map(|list| list()).collect();
+    libtest_mimic::run(&Arguments::from_args(), tests).exit_code()
+}
