@@ -176,7 +176,7 @@ fn too_many_files() -> Result<(), Failed> {
 }
 
 fn unknown_entry_point() -> Result<(), Failed> {
-    let (_, composed) = crate::emit::wrap(
+    let (_, composed) = lamplight_testing::text::wrap(
         "a.wgsl",
         "@fragment fn f() {}".to_owned(),
         lamplight::bundle::Language::Wesl,

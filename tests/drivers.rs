@@ -2,16 +2,16 @@
 //! driver's result must lie within the evaluator's error bound. If it does not, the bounds are wrong,
 //! and with them every verdict of `check`; or the driver is.
 
-#[path = "../crates/eval/tests/eval/sweeps.rs"]
-mod sweeps;
+#[path = "../crates/eval/tests/eval/built_ins.rs"]
+mod built_ins;
 
 use std::collections::BTreeMap;
 
+use built_ins::{ONE, One};
 use lamplight::eval::{Bounded, Machine, Number, Program};
 use lamplight::execute::kernel::{self, Kernel};
 use lamplight::execute::{Session, executors, on_thread};
 use libtest_mimic::{Failed, Trial};
-use sweeps::{ONE, One};
 
 /// Parses and validates a text, and lowers it to the evaluator's program.
 pub fn program(text: &str) -> Result<Program, Failed> {

@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use lamplight::bundle::{Language, Stage, Target};
-use lamplight::compose::{Composed, Segment, SourceMap};
+use lamplight::compose::Composed;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::emit::{self, Emitted};
-use lamplight::source::{SourceSet, Span};
+use lamplight::source::SourceSet;
 use lamplight::validate::{self, Validated, validate};
+use lamplight_testing::text::wrap;
 use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
@@ -211,20 +212,6 @@ fn read(path: &Path) -> (SourceSet, Composed) {
         _ => (Language::Wesl, None),
     };
     wrap(&name, std::fs::read_to_string(path).unwrap(), language, stage)
-}
-
-/// The text as the composer would give it for one file that it does not change.
-pub fn wrap(
-    name: &str,
-    text: String,
-    language: Language,
-    stage: Option<Stage>,
-) -> (SourceSet, Composed) {
-    let mut sources = SourceSet::default();
-    let id = sources.add(name, text.as_str());
-    let mut map = SourceMap::default();
-    map.push(Segment { start: 0, span: Some(Span::new(id, 0..text.len())), verbatim: true });
-    (sources, Composed { map, ..Composed::of_text(language, stage, text) })
 }
 
 fn snapshot(path: &Path, text: String) {

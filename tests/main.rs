@@ -19,9 +19,8 @@ mod browser;
 mod catalogue;
 mod conventions;
 mod cost;
+mod described;
 mod determinism;
-mod diagnostics;
-mod differential;
 mod doors;
 mod drivers;
 mod emit;
@@ -34,7 +33,6 @@ mod glslang;
 mod guide;
 mod harness;
 mod hostile;
-mod house;
 mod judges;
 mod keys;
 mod library;
@@ -45,7 +43,6 @@ mod lsp;
 mod metal;
 mod migrate;
 mod new;
-mod one_meaning;
 mod oracles;
 mod packages;
 mod pipelines;
@@ -55,8 +52,6 @@ mod published;
 mod regressions;
 mod render;
 mod report;
-mod robust;
-mod scale;
 mod shaderlib;
 mod shadow;
 mod site;
@@ -81,9 +76,8 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     bounds::trials,
     conventions::trials,
     cost::trials,
+    described::trials,
     determinism::trials,
-    diagnostics::trials,
-    differential::trials,
     doors::trials,
     drivers::trials,
     emit::trials,
@@ -94,7 +88,6 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     guide::trials,
     harness::trials,
     hostile::trials,
-    house::trials,
     judges::trials,
     keys::trials,
     library::trials,
@@ -104,7 +97,6 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     metal::trials,
     migrate::trials,
     new::trials,
-    one_meaning::trials,
     oracles::trials,
     packages::trials,
     pipelines::trials,
@@ -114,8 +106,6 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     regressions::trials,
     render::trials,
     report::trials,
-    robust::trials,
-    scale::trials,
     shaderlib::trials,
     shadow::trials,
     sketch::trials,

@@ -15,7 +15,7 @@ use lamplight::diagnostic::render::{Form, render};
 use lamplight::source::{SourceId, SourceSet};
 use libtest_mimic::{Failed, Trial};
 
-use crate::house;
+use crate::described;
 use crate::snapshot::root;
 
 type Outcome = Result<(), Failed>;
@@ -222,7 +222,7 @@ fn executor() -> Outcome {
     if let Some(lost) = told.iter().find(|told| !text.contains(**told)) {
         return Err(format!("a copy has no `{lost}`:\n{text}").into());
     }
-    match house::same_twice(
+    match described::same_twice(
         "folder",
         "description",
         [("a", "x".to_owned()), ("b", "x".to_owned())].into_iter(),
@@ -274,7 +274,9 @@ fn rust(kind: &str, path: &str) -> Outcome {
     let files = make(kind, "fresh", &[])?;
     let text = text(&files, path)?;
     balanced(text)?;
-    if house::undescribed("fresh", "").is_none() || house::undescribed("fresh", "What.").is_some() {
+    if described::undescribed("fresh", "").is_none()
+        || described::undescribed("fresh", "What.").is_some()
+    {
         return Err("`undescribed` should notice an empty description, and no other".into());
     }
     let has_name = text.contains("name: \"fresh\"") || text.contains("Target::FRESH");

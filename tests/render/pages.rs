@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use lamplight::bundle::Language;
+use lamplight::diagnostic::Diagnostics;
 use lamplight::picture::{Picture, gallery, is_own_png, render_plan, strip};
 use lamplight::scene::Equirect;
+use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 
 use super::difference::{Difference, is_recorded};
@@ -78,10 +80,7 @@ fn gallery_is_current() -> Result<(), Failed> {
         .map(|preset| gallery::Card::new(&library().programs, preset, Language::Wesl));
     let cards: Vec<gallery::Card> = cards.collect::<Result<_, _>>().map_err(said)?;
     let cards: Vec<&gallery::Card> = cards.iter().collect();
-    let strips = library()
-        .programs
-        .with_texts(|texts| strip::library_comparisons(lamplight::LIBRARY_FILES, texts))
-        .map_err(said)?;
+    let strips = library().programs.with_texts(comparisons).map_err(said)?;
     let strips = strips
         .into_iter()
         .map(|one| gallery::StripCard::new(&library().programs, one, Language::Wesl));
@@ -122,6 +121,10 @@ fn gallery_is_current() -> Result<(), Failed> {
     }
     let command = "lamplight render --all --force -o docs/gallery";
     Err(format!("the gallery is not current, run `{command}`:\n{}", stale.join("\n")).into())
+}
+
+fn comparisons(texts: &mut SourceSet) -> Result<Vec<strip::Comparison>, Diagnostics> {
+    strip::library_comparisons(lamplight::LIBRARY_FILES, texts)
 }
 
 /// Composed texts that no page links, such as those of a preset that has another's text now.

@@ -54,9 +54,10 @@ const NEEDS: &[Need] = &[
     },
 ];
 
-/// Installs what is missing, if that is allowed. Otherwise prints exactly what to install.
-pub fn prepare() -> CommandResult {
-    let missing = missing();
+/// Installs what is missing of some packages, or of all that any test needs, if that is allowed.
+/// Otherwise prints exactly what to install.
+pub fn prepare(only: &Option<Vec<&str>>) -> CommandResult {
+    let missing = missing(only);
     if missing.is_empty() {
         return Ok(());
     }
@@ -65,7 +66,7 @@ pub fn prepare() -> CommandResult {
     }
     let packages: Vec<&str> = missing.iter().map(|(package, _)| *package).collect();
     install(&packages)?;
-    match self::missing().first() {
+    match self::missing(only).first() {
         None => Ok(()),
         Some((_, what)) => Err(CommandFailure::environment(format!(
             "installed {}, yet {what} is not found",
@@ -74,9 +75,10 @@ pub fn prepare() -> CommandResult {
     }
 }
 
-/// The package and the purpose of everything that is missing.
-fn missing() -> Vec<(&'static str, &'static str)> {
-    let missing = NEEDS.iter().filter(|need| !(need.found)());
+/// The package and the purpose of everything that is missing of what is wanted.
+fn missing(only: &Option<Vec<&str>>) -> Vec<(&'static str, &'static str)> {
+    let is_wanted = |need: &&Need| only.as_ref().is_none_or(|only| only.contains(&need.package));
+    let missing = NEEDS.iter().filter(is_wanted).filter(|need| !(need.found)());
     missing.map(|need| (need.package, need.what)).collect()
 }
 

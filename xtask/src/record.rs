@@ -3,6 +3,8 @@
 
 use xtask::{CommandFailure, CommandResult, process};
 
+use crate::test;
+
 /// The tests that compare with a record. Pictures are not among them: those are drawn on purpose.
 const RECORDED: [&str; 9] = [
     "permute",
@@ -24,13 +26,18 @@ pub fn run(arguments: &[String]) -> CommandResult {
     let all = RECORDED.map(str::to_owned);
     let chosen = if arguments.is_empty() { &all[..] } else { arguments };
     let variables = VARIABLES.map(|(name, value)| (name.to_owned(), value.to_owned()));
-    let command = ["test", "--package", "lamplight", "--features", "store", "--test", "all"];
-    let fails = |filter: &&String| {
-        let filter = [(*filter).clone(), "--quiet".to_owned()];
-        process::cargo_with(&command, &filter, &variables).is_err()
-    };
+    let all = test::find_binaries()?;
+    let mut failed = 0;
     // All of them run, even after one that fails.
-    match chosen.iter().filter(fails).count() {
+    for filter in chosen {
+        for binary in test::choose(&all, std::slice::from_ref(filter)) {
+            let command = test::one_command(&binary);
+            let command: Vec<&str> = command.iter().map(String::as_str).collect();
+            let filter = [filter.clone(), "--quiet".to_owned()];
+            failed += usize::from(process::cargo_with(&command, &filter, &variables).is_err());
+        }
+    }
+    match failed {
         0 => Ok(()),
         _ => Err(CommandFailure::check("some tests fail for another reason, as printed above")),
     }

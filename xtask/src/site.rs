@@ -6,6 +6,9 @@ use std::process::{Command, Stdio};
 use xtask::process::{cargo_command, finish, root};
 use xtask::{CommandFailure, CommandResult, machine};
 
+/// The groups of tests that run the npm package in Node, or the site in a browser.
+pub const GROUPS: [&str; 2] = ["toolchain", "site"];
+
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// The size of the stack, since naga recurses along expressions. The limits leave most of it

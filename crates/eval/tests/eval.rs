@@ -6,6 +6,7 @@
 //! - `// finding: f(0) = Domain`: what the sanitizer notices; `none` for nothing.
 //! - `// quad: f(0 | 1 | 0 | 1) = 1 | 1 | 1 | 1`: the four fragments of a quad.
 
+mod built_ins;
 mod constants;
 mod filters;
 mod library;

@@ -5,6 +5,7 @@
 pub mod folders;
 pub mod random;
 pub mod snapshot;
+pub mod text;
 
 use std::process::ExitCode;
 

@@ -9,7 +9,7 @@ use super::code::share_code;
 use super::partner::{self, Partner};
 use super::share::{RowFormulas, Total, steps_of_case};
 use super::{CheckOptions, Subjects};
-use crate::cases::{self, Case, CaseFile, Oracle, Rows};
+use crate::cases::{self, Case, CaseFile, FormulaText, Oracle, Rows};
 use crate::formula::{Formula, Scope};
 use crate::laws::{self, Law};
 use crate::references::{self, CallArguments, Expected, Reference};
@@ -195,27 +195,20 @@ fn make_job<'a>(
     }
     let terms = tolerance::bind_terms(&case.tolerance, &scope, &first.results).map_err(placed)?;
     let languages: Vec<Language> = modules.iter().map(|(language, _)| *language).collect();
-    let near = case
-        .near
-        .as_ref()
-        .map(|(text, margin)| Ok::<_, Diagnostic>((text.bind(&scope)?, *margin)))
-        .transpose()?;
+    let near = bind_margin(case, &scope)?;
     let filter = case.filter().map(|text| text.bind(&scope)).transpose()?;
     let oracle = judge_case(module, case, &scope, first, options)?;
     let parts = RowFormulas { terms: &terms, near: &near, filter: &filter, oracle: &oracle };
     parts.spend(case, &rows, &mut steps)?;
-    let bound = |law| {
-        let mut partners =
-            partner::prepare_partners(law, module, &languages, subjects, &rows, &scope)?;
-        let kernels = partners.iter_mut().flat_map(|partner| &mut partner.kernels);
-        kernels.for_each(|(_, kernel)| kernel.steps = steps.most());
-        Ok(BoundLaw { law, rows: laws::transform_rows(law, &rows, &scope)?, partners })
-    };
-    let laws = case
-        .laws
-        .iter()
-        .filter(|law| options.partners || law.partners.is_empty())
-        .map(bound)
+    let steps = steps.most();
+    let wanted = case.laws.iter().filter(|law| options.partners || law.partners.is_empty());
+    let laws = wanted
+        .map(|law| {
+            let mut partners =
+                partner::prepare_partners(law, module, &languages, subjects, &rows, &scope)?;
+            limit_steps(&mut partners, steps);
+            Ok(BoundLaw { law, rows: laws::transform_rows(law, &rows, &scope)?, partners })
+        })
         .collect::<Result<_, Diagnostic>>()?;
     let mut job = CaseJob {
         module: module.to_owned(),
@@ -234,6 +227,18 @@ fn make_job<'a>(
     };
     job.expected = expected_goals(&job)?;
     Ok(job)
+}
+
+/// The quantity whose closeness to a jump excuses a row, and how close that is.
+fn bind_margin(case: &Case, scope: &Scope<'_>) -> Result<Option<(Formula, f64)>, Diagnostic> {
+    let bind = |(text, margin): &(FormulaText, f64)| Ok((text.bind(scope)?, *margin));
+    case.near.as_ref().map(bind).transpose()
+}
+
+/// Bounds the work of the functions that a law compares with.
+fn limit_steps(partners: &mut [Partner], steps: u64) {
+    let kernels = partners.iter_mut().flat_map(|partner| &mut partner.kernels);
+    kernels.for_each(|(_, kernel)| kernel.steps = steps);
 }
 
 /// A case of a file, and what the cases of the file share.

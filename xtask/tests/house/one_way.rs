@@ -4,7 +4,7 @@ use std::path::Path;
 
 use libtest_mimic::Failed;
 
-use super::{ROOT, rust_files};
+use crate::{ROOT, rust_files};
 
 /// Commands print through `src/cli/terminal.rs`, which escapes control characters.
 pub fn to_the_terminal() -> Result<(), Failed> {
@@ -31,7 +31,10 @@ pub fn to_the_terminal() -> Result<(), Failed> {
 /// Finished files are renamed by `output::rename_finished` alone.
 pub fn to_rename() -> Result<(), Failed> {
     let mut files = Vec::new();
-    rust_files(&Path::new(ROOT).join("src"), &mut files)?;
+    for folder in ["src", "crates"] {
+        rust_files(&Path::new(ROOT).join(folder), &mut files)?;
+    }
+    files.retain(|file| !file.components().any(|part| part.as_os_str() == "tests"));
     let mut found = Vec::new();
     for file in files {
         let text = std::fs::read_to_string(&file)?;

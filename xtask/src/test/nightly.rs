@@ -1,0 +1,40 @@
+//! `cargo xtask test nightly`: every test, then what the tests only sample, whole.
+
+use xtask::{CommandFailure, CommandResult};
+
+use crate::{faults, frames, make, mutate};
+
+/// A part: what it does, and the command that does it.
+type NightlyPart = (&'static str, fn() -> CommandResult);
+
+const PARTS: [NightlyPart; 5] = [
+    ("every test", || super::run(&[])),
+    ("frames from the bytes of every target", || frames::run(&[])),
+    ("20,000 random programs", || {
+        make::run("fuzz", &words("link --programs 20000 --seed 20261126"))
+    }),
+    ("mutants of the whole library", || mutate::run(&[])),
+    ("faults of the system", || faults::run(&[])),
+];
+
+fn words(line: &str) -> Vec<String> {
+    line.split_whitespace().map(str::to_owned).collect()
+}
+
+/// Runs every part, even after one that fails, and lists those that failed.
+pub fn run(arguments: &[String]) -> CommandResult {
+    if !arguments.is_empty() {
+        return Err(CommandFailure::usage("usage: cargo xtask test nightly"));
+    }
+    let mut failed = Vec::new();
+    for (name, part) in PARTS {
+        println!("nightly: {name}");
+        if part().is_err() {
+            failed.push(name);
+        }
+    }
+    match failed.is_empty() {
+        true => Ok(()),
+        false => Err(CommandFailure::check(format!("failed: {}", failed.join("; ")))),
+    }
+}
