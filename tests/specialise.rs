@@ -41,13 +41,14 @@ fn weight(i: i32) -> f32 {
 }";
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 7] = [
+    let cases: [Case; 8] = [
         ("values_arrive", values),
         ("one_shader_for_all_values", shared),
         ("spirv", spirv),
         ("glsl", glsl),
         ("texts", texts),
         ("static_in_glsl_sources", static_in_glsl),
+        ("constants_of_glsl", constants_of_glsl),
         ("usage_lists_narrow_a_manifest", usage),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("specialise::{name}"), case)).collect()
@@ -236,6 +237,31 @@ fn static_in_glsl() -> Outcome {
     let said = run(env!("CARGO_BIN_EXE_lamplight"), &["variants", "--manifest", &manifest])?;
     let words = "static in GLSL, which is composed for each value: negative, taps";
     check(said.contains(words), &format!("expected `{words}` in\n{said}"))
+}
+
+/// A function of GLSL may use a specialisation constant: the outputs declare it, and Metal passes it
+/// along.
+fn constants_of_glsl() -> Outcome {
+    let folder = tempfile::tempdir()?;
+    let manifest = "[program.spec]\nglsl = { fragment = \"spec.frag\" }\n";
+    std::fs::write(folder.path().join("lamplight.toml"), manifest)?;
+    let text = "#version 450\nlayout(constant_id = 3) const float GAIN = 4.0;\n\
+                layout(location = 0) in vec4 v;\nlayout(location = 0) out vec4 c;\n\
+                vec4 gained(vec4 x) { return x * GAIN; }\nvoid main() { c = gained(v) + GAIN; }\n";
+    std::fs::write(folder.path().join("spec.frag"), text)?;
+    let bundle = bundle_of(folder.path())?;
+    let shader = bundle.program("spec")?.shader("fragment")?;
+    let text = |target| Ok::<_, Failed>(String::from_utf8(shader.get("default", target)?.bytes)?);
+    let wgsl = text(Target::WGSL)?;
+    naga::front::wgsl::parse_str(&wgsl).map_err(|error| error.emit_to_string(&wgsl))?;
+    check(wgsl.contains("@id(3) override GAIN: f32 = 4f;"), &wgsl)?;
+    let msl = text(Target::MSL)?;
+    let has = |part: &str| msl.contains(part);
+    let is_passed = ["gained(", "main_1_("].iter().all(|call| {
+        let calls = msl.lines().filter(|line| line.contains(call) && line.ends_with(';'));
+        calls.into_iter().all(|line| line.contains("lamplight_GAIN_open"))
+    });
+    check(has("[[function_constant(3)]]") && is_passed, &msl)
 }
 
 /// With a usage list, exactly its keys are generated. Keys and programs that do not exist any more

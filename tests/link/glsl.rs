@@ -42,7 +42,8 @@ const int rows = 2;
 struct Light { float bias; };
 layout(set = 0, binding = 0) uniform Shadow {
     vec4 tint;
-    float bias, strength[2];
+    float bias;
+    vec4 strength[2], tail;
     vec4 rows;
     vec4 ramp[SIZE];
 } shadow;

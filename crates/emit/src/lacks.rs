@@ -11,8 +11,8 @@ use naga::{
     MathFunction, Module, Span, Type, TypeInner, VectorSize,
 };
 
-use super::{columns, targets};
-use lamplight_bundle::Target;
+use super::{columns, strides, targets};
+use lamplight_bundle::{Language, Target};
 use lamplight_compose::Composed;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_validate::Validated;
@@ -106,6 +106,13 @@ pub fn check_lacks(
         }
         for span in two_rows(module) {
             refuse(format!("target `{target}`: {TWO_ROWS}"), span, "it is in here");
+        }
+    }
+    if validated.language == Language::Glsl {
+        for (target, span) in wanted.iter().flat_map(|target| {
+            strides::wide_arrays(module, *target).into_iter().map(move |span| (target, span))
+        }) {
+            refuse(format!("target `{target}`: {}", strides::WIDE), span, "it is in here");
         }
     }
     if wanted.contains(&Target::HLSL) {

@@ -26,6 +26,7 @@ mod setters;
 mod slots;
 mod specialise;
 pub mod spirv;
+mod strides;
 mod text;
 mod zeros;
 
@@ -38,7 +39,7 @@ use naga::ShaderStage;
 use naga::back::glsl::Version;
 use naga::proc::{BoundsCheckPolicies, BoundsCheckPolicy};
 
-use lamplight_bundle::{self as bundle, BoundsChecks, Conventions, Native, Target};
+use lamplight_bundle::{self as bundle, BoundsChecks, Conventions, Language, Native, Target};
 use lamplight_compose::{Composed, Part, PartKind};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_validate::{Validated, guard, on_large_stack};
@@ -215,6 +216,11 @@ fn written_plainly(
     };
     let point = &validated.module.entry_points[index];
     specialise::refuse_overrides(&validated.module)?;
+    // WGSL's own layouts are those of its writers.
+    let is_glsl = validated.language == Language::Glsl;
+    if is_glsl && !strides::wide_arrays(&validated.module, writer.target).is_empty() {
+        return Err(failed(strides::WIDE.to_owned()));
+    }
     let source = EmitSource {
         module: &validated.module,
         info: &validated.info,

@@ -1,4 +1,5 @@
-//! The evaluator, which runs shaders on the CPU. Cases are comments in `tests/eval/*.wgsl`:
+//! The evaluator, which runs shaders on the CPU. Cases are comments in
+//! `tests/eval/*.wgsl` and `*.glsl`:
 //!
 //! - `// expect: f(1, 2.5) = 3`: arguments and result, flattened to scalars. The result is checked
 //!   in f64 and in f32, and the f32 result must lie within the error bound of the evaluator.
@@ -16,7 +17,10 @@ mod speed;
 mod sweeps;
 mod textures;
 
+use lamplight_bundle::{Language, Stage};
+use lamplight_compose::Composed;
 use lamplight_eval::{Bounded, Function, FunctionId, Machine, Number, Program, SlotKind};
+use lamplight_validate::validate;
 use libtest_mimic::{Failed, Trial};
 
 pub fn trials() -> Vec<Trial> {
@@ -25,11 +29,17 @@ pub fn trials() -> Vec<Trial> {
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .collect();
-    files.retain(|path| path.extension().is_some_and(|extension| extension == "wgsl"));
+    files.retain(|path| {
+        path.extension().is_some_and(|extension| extension == "wgsl" || extension == "glsl")
+    });
     files.sort();
     for path in files {
         let name = format!("eval/{}", path.file_stem().unwrap().to_string_lossy());
-        trials.push(Trial::test(name, move || check(&std::fs::read_to_string(&path).unwrap())));
+        let is_glsl = path.extension().is_some_and(|extension| extension == "glsl");
+        let program = if is_glsl { program_of_glsl } else { program };
+        trials.push(Trial::test(name, move || {
+            check(&std::fs::read_to_string(&path).unwrap(), program)
+        }));
     }
     trials.extend(constants::trials());
     trials.extend(filters::trials());
@@ -52,7 +62,15 @@ pub fn program(text: &str) -> Result<Program, Failed> {
     Ok(Program::new(&module, &info)?)
 }
 
-fn check(text: &str) -> Result<(), Failed> {
+/// The same for a fragment stage in GLSL.
+fn program_of_glsl(text: &str) -> Result<Program, Failed> {
+    let stage = Some(Stage::Fragment);
+    let composed = Composed::of_text(Language::Glsl, stage, text.to_owned());
+    let validated = validate(&composed).map_err(|errors| errors[0].message.clone())?;
+    Ok(Program::new(&validated.module, &validated.info)?)
+}
+
+fn check(text: &str, program: fn(&str) -> Result<Program, Failed>) -> Result<(), Failed> {
     let program = program(text)?;
     let mut failures = String::new();
     let mut cases = 0;

@@ -12,7 +12,7 @@ use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_emit::{self as emit, targets};
 use lamplight_files::limits::GROUP_BYTES;
 use lamplight_validate::{
-    self as validate, Validated, on_large_stack, validate, validate_rehearsed,
+    self as validate, Validated, check_glsl, on_large_stack, validate, validate_rehearsed,
 };
 
 /// One text in two forms: as its author reads it, for errors; and without comments and layout,
@@ -42,6 +42,7 @@ pub fn compile(
     targets: &[Target],
     linker: &Linker<'_>,
 ) -> Result<CompiledUnit, Diagnostics> {
+    on_large_stack(|| check_glsl(text.lean).or_else(|_| check_glsl(text.composed)))?;
     let linked = match linker.link(text.lean, entry) {
         Ok(linked) => linked,
         Err(reason) => {

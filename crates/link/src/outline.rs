@@ -10,7 +10,7 @@ use super::mark;
 use super::reason::Reason;
 use lamplight_bundle::{Language, Stage};
 use lamplight_compose::{Composed, Part, PartKind};
-use lamplight_syntax::words::words;
+use lamplight_syntax::words::{Word, has_word, words};
 
 /// 128 bits of a hash, which identify content.
 pub type ContentKey = [u8; 16];
@@ -276,6 +276,12 @@ fn refuse_part(part: &Part, text: &str, language: Language) -> Result<(), Reason
         PartKind::Other => Err(Reason::Declaration),
         // Aliases were expanded already: this one could not be.
         PartKind::Alias => Err(Reason::Declaration),
+        // A specialisation constant of GLSL.
+        PartKind::Constant | PartKind::Variable
+            if language == Language::Glsl && has_word(text, "constant_id") =>
+        {
+            Err(Reason::Override)
+        }
         PartKind::Variable if is_storage(text) => Err(Reason::StorageBuffer),
         PartKind::Variable if text.contains("binding_array") => Err(Reason::BindingArray),
         _ => Ok(()),
@@ -284,13 +290,28 @@ fn refuse_part(part: &Part, text: &str, language: Language) -> Result<(), Reason
 
 /// Whether a declaration other than a function or an assertion names a variable, such as in an
 /// initial value. Canonical texts sort variables by name, so a variable could come before the one
-/// that it needs.
+/// that it needs. An initial value that calls a function counts too: naga may drop it, and only a
+/// text that is compiled as a whole is checked for that.
 fn initialised_by_variables(declared: &[Declaration<'_>]) -> bool {
     let is_variable = |index: &usize| declared[*index].kind == PartKind::Variable;
     let early = |declaration: &&Declaration<'_>| {
         !matches!(declaration.kind, PartKind::Function | PartKind::Assertion)
     };
-    declared.iter().filter(early).any(|declaration| declaration.uses.iter().any(is_variable))
+    declared
+        .iter()
+        .filter(early)
+        .any(|declaration| declaration.uses.iter().any(is_variable) || is_called_for(declaration))
+}
+
+/// Whether a variable of GLSL has an initial value with a call of anything but a constructor.
+fn is_called_for(declaration: &Declaration<'_>) -> bool {
+    let Some((_, value)) = declaration.text.split_once('=') else { return false };
+    let is_call =
+        |word: &Word<'_>| value[word.at + word.text.len()..].trim_start().starts_with('(');
+    let is_type = |name: &str| ["vec", "mat"].iter().any(|kind| name.contains(kind));
+    let is_scalar = |name: &str| ["bool", "int", "uint", "float"].contains(&name);
+    declaration.kind == PartKind::Variable
+        && words(value).any(|word| is_call(&word) && !is_type(word.text) && !is_scalar(word.text))
 }
 
 /// The functions that the entry point reaches, callees first.

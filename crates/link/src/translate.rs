@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use naga::front::{glsl, wgsl};
+use naga::front::wgsl;
 use naga::valid::ModuleInfo;
 use naga::{Function, Module};
 use rustc_hash::FxHashSet;
@@ -21,7 +21,9 @@ use lamplight_bundle::{Conventions, Native, Reflection, Target};
 use lamplight_compose::Composed;
 use lamplight_emit as emit;
 use lamplight_emit::spirv::words;
-use lamplight_validate::{Validated, guard, info_of, is_bounded, is_calm, on_large_stack};
+use lamplight_validate::{
+    Validated, check_switches, guard, info_of, is_bounded, is_calm, on_large_stack, parse_glsl,
+};
 
 /// A unit in every target.
 pub struct Translated {
@@ -89,6 +91,9 @@ fn translate_inner(
     show_stubs(outline, recipe, &mut module)?;
     call_function(outline, recipe, &mut module)?;
     let info = info_of(&module).map_err(|_| Reason::Refused)?;
+    if outline.language == Language::Glsl {
+        check_switches(composed, &module, &info).map_err(|_| Reason::Refused)?;
+    }
     let summary = checked_summary(outline, recipe, &module, &info)?;
     let is_entry = recipe.unit == UnitId::Entry;
     if is_entry && !summary.is_for(outline.stage) {
@@ -109,9 +114,7 @@ fn translate_inner(
 fn parse_recipe(outline: &Outline<'_>, text: &str) -> Result<Module, Reason> {
     match outline.language {
         Language::Wesl => wgsl::parse_str(text).map_err(|_| Reason::Refused),
-        Language::Glsl => glsl::Frontend::default()
-            .parse(&glsl::Options::from(outline.stage), text)
-            .map_err(|_| Reason::Refused),
+        Language::Glsl => parse_glsl(outline.stage, text).map_err(|_| Reason::Refused),
     }
 }
 

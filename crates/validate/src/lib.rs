@@ -6,6 +6,7 @@
 
 mod constants;
 mod every;
+mod glsl;
 mod guard;
 mod hints;
 mod limits;
@@ -16,6 +17,7 @@ mod uniformity;
 mod words;
 
 pub use every::validate_every;
+pub use glsl::{check_glsl, check_switches, parse_glsl};
 pub use guard::{catch_panics, guard, on_large_stack};
 pub use hints::glsl_words;
 pub use limits::{LIMITS, NagaLimits};
@@ -23,7 +25,7 @@ pub use limits::{LIMITS, NagaLimits};
 pub use rehearsal::{RehearsalJob, RehearsalOutputs, STAGE, rehearse};
 pub use uniformity::{has_lints, lint};
 
-use naga::front::{glsl, wgsl};
+use naga::front::wgsl;
 use naga::valid::{Capabilities, ModuleInfo, ValidationError, ValidationFlags, Validator};
 
 use lamplight_bundle::{Language, Stage};
@@ -50,8 +52,9 @@ pub const CAPABILITIES: Capabilities =
 /// Parses and validates.
 ///
 /// # Errors
-/// `limit-exceeded` before naga sees the text; `wgsl-error` or `glsl-error` from its parser or
-/// validator, in the author's places; `naga-internal` where it panicked, `naga-exhausted` where it
+/// `limit-exceeded` before naga sees the text; `glsl-not-translated` where naga would read it in
+/// another way; `wgsl-error` or `glsl-error` from its parser or validator, in the author's places;
+/// `naga-internal` where it panicked, `naga-exhausted` where it
 /// would have ended the process.
 pub fn validate(composed: &Composed) -> Result<Validated, Diagnostics> {
     rehearse(composed, composed, || None).map_err(|error| vec![error])?;
@@ -93,10 +96,11 @@ fn parse_text(composed: &Composed) -> Result<naga::Module, Diagnostics> {
                     "the stage of the GLSL text is not known",
                 )]
             })?;
-            let options = glsl::Options::from(naga_stage(stage));
-            glsl::Frontend::default()
-                .parse(&options, &composed.text)
-                .map_err(|errors| report::glsl_errors(composed, &errors))
+            check_glsl(composed)?;
+            let module = parse_glsl(naga_stage(stage), &composed.text)
+                .map_err(|errors| report::glsl_errors(composed, &errors))?;
+            glsl::check_initial_values(composed, &module)?;
+            Ok(module)
         }
     }
 }
@@ -120,6 +124,9 @@ fn analyse_module(composed: &Composed, module: naga::Module) -> Result<Validated
     }
     let info = info_of(&module)
         .map_err(|error| vec![report::validation_error(composed, &module, &error)])?;
+    if composed.language == Language::Glsl {
+        check_switches(composed, &module, &info)?;
+    }
     Ok(Validated { language: composed.language, module, info })
 }
 

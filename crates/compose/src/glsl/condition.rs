@@ -176,7 +176,7 @@ impl ConditionParser<'_, '_, '_> {
                 "expected `defined NAME` or `defined(NAME)`",
             ));
         }
-        Ok(i32::from(self.expander.table.has(name.symbol)))
+        Ok(i32::from(self.expander.table.is_defined(name.symbol)))
     }
 
     fn setting(&mut self, token: &Tok, live: bool) -> Result<i32, Diagnostic> {

@@ -34,7 +34,7 @@ pub fn split_items(tokens: &[Tok], modules: &[Module]) -> Result<Items, Diagnost
     while start < tokens.len() {
         let end = end_of(tokens, start).map_err(|token| too_deep(token, modules))?;
         let item = &tokens[start..end];
-        if item[0].symbol != known::SEMICOLON {
+        if item[0].symbol != known::SEMICOLON && !is_per_vertex(item) {
             let (first, number) = (items.names.len(), items.list.len() as u32);
             let function = give_names(item, &mut |name| items.names.push((name, number)));
             items.list.push(GlslItem {
@@ -46,6 +46,13 @@ pub fn split_items(tokens: &[Tok], modules: &[Module]) -> Result<Items, Diagnost
         start = end;
     }
     Ok(items)
+}
+
+/// Whether an item is the block `gl_PerVertex`, which only repeats what a stage has anyway.
+fn is_per_vertex(item: &[Tok]) -> bool {
+    let open = item.iter().position(|token| token.symbol == known::OPEN_BRACE);
+    let name = open.and_then(|open| item.get(open.checked_sub(1)?));
+    name.is_some_and(|name| name.symbol == known::PER_VERTEX)
 }
 
 fn too_deep(token: &Tok, modules: &[Module]) -> Diagnostic {

@@ -9,7 +9,7 @@ mod symbols;
 use std::ops::Range;
 use std::sync::Arc;
 
-pub use lexer::{Token, TokenKind, single_token};
+pub use lexer::{Token, TokenKind, single_token, tokenize};
 pub use symbols::{Symbol, Symbols, known};
 
 use lamplight_diagnostic::source::{LIMITS, SourceId, SourceSet, Span};

@@ -41,6 +41,7 @@ known! {
     MACRO_LINE "__LINE__" MACRO_FILE "__FILE__" MACRO_VERSION "__VERSION__"
     MAIN "main" STRUCT "struct" LAYOUT "layout" PRECISION "precision" INVARIANT "invariant" PRECISE "precise"
     IN "in" OUT "out" UNIFORM "uniform" BUFFER "buffer" CONST "const"
+    INT "int" PER_VERTEX "gl_PerVertex"
 }
 
 /// The number of one of the spellings in `KNOWN`. Any other text is an error at compile time.

@@ -33,7 +33,7 @@ impl PreprocessorState<'_, '_> {
                     (self.decide(module, condition.clone(), *span, true)?, *next)
                 }
                 Directive::Ifdef { name: Ok(name), negated, next } => {
-                    (Ok(self.expander.table.has(*name) != *negated), *next)
+                    (Ok(self.expander.table.is_defined(*name) != *negated), *next)
                 }
                 Directive::Ifdef { name: Err(error), next, .. } => {
                     (Err(vec![(**error).clone()]), *next)
