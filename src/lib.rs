@@ -91,7 +91,7 @@
 //!             return vec4f(lambert(n, vec3f(0.0, 1.0, 0.0)));
 //!         }";
 //!     let mut packages = Packages::of_text("lit.wesl", text.to_owned());
-//!     packages.dependencies.push(project::library_package());
+//!     packages.add(project::library_package());
 //!     let mut sources = SourceSet::default();
 //!     let graph = resolve::load(&mut sources, &packages, "lit.wesl", Language::Wesl)?;
 //!     let composed = compose::compose(&graph, &Settings::default(), &Default::default())?;
@@ -137,6 +137,10 @@ pub use lamplight_validate as validate;
 /// and of those that it is made of, with the versions of their dependencies, and with the system that
 /// it is built for.
 pub const BUILD: &str = env!("LAMPLIGHT_BUILD");
+
+/// The same for every system that this crate is built for, with the version in front. Parts of one
+/// bundle have it in common ([`generate::Tools::tool`]).
+pub const TOOL: &str = env!("LAMPLIGHT_TOOL");
 
 /// The files of the shader library, which this crate carries.
 pub const LIBRARY_FILES: source::Embedded =

@@ -161,7 +161,7 @@ fn too_many_files() -> Result<(), Failed> {
     let files =
         lamplight::source::Memory(modules.chain([("main.wesl".to_owned(), root)]).collect());
     let root = lamplight::source::Package { name: "app".to_owned(), files: Box::new(files) };
-    let packages = lamplight::resolve::Packages { root, dependencies: Vec::new() };
+    let packages = lamplight::resolve::Packages::new(root, Vec::new());
     let outcome = lamplight::resolve::wesl::load(
         &mut lamplight::source::SourceSet::default(),
         &packages,

@@ -95,10 +95,8 @@ impl Sources {
         program: &Program,
         (stage, entry, _): &(&'static str, &'static str, &'static str),
     ) -> Result<Self, Failed> {
-        let packages = Packages {
-            root: Package { name: "lamplight".to_owned(), files: Box::new(LIBRARY_FILES) },
-            dependencies: Vec::new(),
-        };
+        let root = Package { name: "lamplight".to_owned(), files: Box::new(LIBRARY_FILES) };
+        let packages = Packages::new(root, Vec::new());
         let mut texts = SourceSet::default();
         let root = &program.wesl.as_ref().ok_or("no WESL")?.path;
         let wesl = resolve::wesl::load(&mut texts, &packages, root);

@@ -249,7 +249,7 @@ fn composed_glsl(text: String) -> Result<String, Failed> {
 
 fn beside(root: &str, text: String) -> (SourceSet, Packages) {
     let mut packages = Packages::of_text(root, text);
-    packages.dependencies.push(lamplight::project::library_package());
+    packages.add(lamplight::project::library_package());
     (SourceSet::default(), packages)
 }
 

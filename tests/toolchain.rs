@@ -221,7 +221,7 @@ fn shader(
 fn own(files: &BTreeMap<String, String>) -> Packages {
     let library = project::library_package();
     let files = Box::new(Memory(files.clone()));
-    Packages { root: Package { name: "package".to_owned(), files }, dependencies: vec![library] }
+    Packages::new(Package { name: "package".to_owned(), files }, vec![library])
 }
 
 /// Asks for the packages in `examples/`: one with a manifest, in all its permutations, and one

@@ -145,7 +145,7 @@ fn generated(manifest: &Manifest) -> Result<(), String> {
         &project::library_packages(),
         manifest,
         &request,
-        &Tools { sink: &Discard::default(), cache: None, progress: &|_| {} },
+        &Tools { sink: &Discard::default(), cache: None, tool: "test", progress: &|_| {} },
     );
     black_box(generated.map_err(|diagnostics| format!("{diagnostics:?}"))?);
     Ok(())

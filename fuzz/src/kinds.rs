@@ -124,7 +124,7 @@ fn composed(bytes: &[u8], root: &str, language: Language) -> String {
     let text = String::from_utf8_lossy(bytes);
     let own = Package { name: "package".to_owned(), files: Box::new(files(root, &text)) };
     let library = Package { name: project::LIBRARY.to_owned(), files: Box::new(LIBRARY_FILES) };
-    let packages = Packages { root: own, dependencies: vec![library] };
+    let packages = Packages::new(own, vec![library]);
     let mut sources = SourceSet::default();
     let graph = match resolve::load(&mut sources, &packages, root, language) {
         Ok(graph) => graph,
@@ -148,7 +148,7 @@ fn compile(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let own = Package { name: "package".to_owned(), files: Box::new(files("main.wesl", &text)) };
     let library = Package { name: project::LIBRARY.to_owned(), files: Box::new(LIBRARY_FILES) };
-    let packages = Packages { root: own, dependencies: vec![library] };
+    let packages = Packages::new(own, vec![library]);
     let mut sources = SourceSet::default();
     let graph = match resolve::load(&mut sources, &packages, "main.wesl", Language::Wesl) {
         Ok(graph) => graph,

@@ -359,11 +359,8 @@ fn open_package(root: &Path) -> Result<Library, Failure> {
     let mut sources = SourceSet::default();
     let packages = project::packages(root, &mut sources)
         .map_err(|diagnostics| Failure::Input(sources, diagnostics))?;
-    let name = project::declared_name(root).unwrap_or(packages.root.name);
-    let dependencies = packages.dependencies.into_iter().filter(|package| package.name != name);
-    let dependencies =
-        dependencies.map(|package| (package.name, Arc::from(package.files))).collect();
-    Ok(Library::new(&name, Arc::from(packages.root.files), dependencies))
+    let name = project::declared_name(root).unwrap_or_else(|| packages.root.name.clone());
+    Ok(Library::of_packages(&name, packages))
 }
 
 fn unreadable_file(path: &Path, error: &std::io::Error) -> Failure {

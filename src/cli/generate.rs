@@ -9,7 +9,7 @@ use super::compile::{ConventionArguments, TargetChoice, wanted_one, wanted_targe
 use super::failure::{DiagnosticForm, Failure};
 use super::terminal::stdout;
 use super::work::{PathArguments, Work};
-use crate::generate::{Request, Shard, Summary};
+use crate::generate::{Look, Request, Shard, Summary};
 use crate::permute::Quoted;
 use crate::source::SourceSet;
 
@@ -51,7 +51,8 @@ pub fn run_generate(arguments: Arguments, form: DiagnosticForm) -> Result<(), Fa
     if arguments.validate {
         work.judge(&request)?;
     }
-    let mut summary = match work.up_to_date(&request, form) {
+    let look = if arguments.check { Look::Whole } else { Look::Cheap };
+    let mut summary = match work.up_to_date(&request, look, form) {
         Some(summary) => Summary { judged: work.judge_bundle()?, ..summary },
         None => work.run(&request, arguments.check, form)?,
     };

@@ -248,7 +248,8 @@ impl InputArguments {
             chosen.warnings.extend(graph.undeclared(&chosen.settings));
         }
         chosen.warnings.append(&mut composed.warnings);
-        composed.warnings = chosen.warnings;
+        composed.warnings = project.packages.warnings.clone();
+        composed.warnings.append(&mut chosen.warnings);
         let ChosenSettings { settings, conventions, permutation, .. } = chosen;
         Ok((composed, ErrorContext { graph, settings, options, conventions, permutation }))
     }

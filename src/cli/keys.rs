@@ -93,6 +93,9 @@ fn read_lock(
     sources: &mut SourceSet,
     manifest: &Manifest,
 ) -> Result<Option<Lock>, Diagnostics> {
+    if let Some(shared) = project::shared_lock(path) {
+        refuse_shared(path, &shared, sources, manifest)?;
+    }
     if !arguments.lock && !project::lock_path(path).exists() {
         return Ok(None);
     }
@@ -105,6 +108,29 @@ fn read_lock(
     Err(vec![
         Diagnostic::error(codes::LOCK_INCOMPLETE, message)
             .note("help: add `--lock`: what is missing is appended"),
+    ])
+}
+
+/// Refuses to go on without the lock file that the manifest used to have in common with others, if
+/// that has a program of the manifest: integer keys that are in use would change without a word.
+fn refuse_shared(
+    path: &Path,
+    shared: &Path,
+    sources: &mut SourceSet,
+    manifest: &Manifest,
+) -> Result<(), Diagnostics> {
+    let known = project::lock(&path.with_file_name(project::MANIFEST), sources)?;
+    let mut programs = manifest.programs.iter();
+    let Some(program) = programs.find(|program| known.has(&program.name)) else { return Ok(()) };
+    let (own, shared) = (project::lock_path(path), shared.display());
+    let message = format!("`{shared}` has the program `{}` of `{}`", program.name, path.display());
+    Err(vec![
+        Diagnostic::error(codes::LOCK_INCOMPLETE, message)
+            .note(format!("the lock of this manifest is `{}`, which is not there", own.display()))
+            .note(format!(
+                "help: to keep the integer keys, copy `{shared}` to that name; to begin with new \
+                 ones, make it an empty file"
+            )),
     ])
 }
 

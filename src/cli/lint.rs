@@ -114,8 +114,8 @@ fn lint_package(
     }
     paths.sort();
     paths.dedup();
-    let warnings =
-        manifest.iter().flat_map(|manifest| manifest.warnings.clone()).collect::<Vec<_>>();
+    let declared = manifest.iter().flat_map(|manifest| &manifest.warnings);
+    let warnings: Diagnostics = packages.warnings.iter().chain(declared).cloned().collect();
     let request = Request {
         packages: &packages,
         manifest: manifest.as_ref(),

@@ -10,7 +10,7 @@ use super::failure::Failure;
 use super::overwrite::{Overwrite, tell_waiting, write_failure};
 use super::terminal::stdout;
 use super::work::is_file;
-use crate::bundle::{self, Bundle, DirectoryWriter, Error, Language};
+use crate::bundle::{self, Bundle, DirectoryWriter, Error, Language, ShardMismatch, ShardOrigin};
 use crate::project;
 use crate::source::SourceSet;
 
@@ -25,6 +25,9 @@ pub struct Arguments {
     /// Fail if a permutation of this manifest is missing.
     #[arg(long, value_name = "FILE")]
     manifest: Option<PathBuf>,
+    /// Merge the shards that are there, though others are missing. They can be added later.
+    #[arg(long, conflicts_with = "manifest")]
+    partial: bool,
     #[command(flatten)]
     overwrite: Overwrite,
 }
@@ -35,6 +38,7 @@ pub fn run_merge(arguments: Arguments) -> Result<(), Failure> {
     });
     let inputs = inputs.collect::<Result<Vec<_>, _>>()?;
     // Everything is checked before anything is written.
+    check_origins(&arguments, &inputs)?;
     check_complete(&arguments, &inputs)?;
     for (path, bundle) in arguments.inputs.iter().zip(&inputs) {
         bundle
@@ -56,6 +60,49 @@ pub fn run_merge(arguments: Arguments) -> Result<(), Failure> {
             .map_err(failed)?;
     }
     Ok(writeln!(stdout(), "{}: {} bundles merged", arguments.out.display(), inputs.len())?)
+}
+
+/// All shards are parts of one bundle, and none is missing.
+fn check_origins(arguments: &Arguments, inputs: &[Bundle]) -> Result<(), Failure> {
+    let mut named = arguments.inputs.iter().zip(inputs);
+    let Some((first, bundle)) = named.next() else { return Ok(()) };
+    for (path, other) in named {
+        if let Some(mismatch) = ShardMismatch::between(bundle.shard(), other.shard()) {
+            let (first, path, words) = (first.display(), path.display(), mismatch.words());
+            let mut message = format!("`{first}` and `{path}` {words}");
+            if let (Some(left), Some(right)) = (bundle.shard(), other.shard()) {
+                message += &values_of(mismatch, left, right);
+            }
+            return Err(Failure::check(message));
+        }
+    }
+    let Some(origin) = bundle.shard() else { return Ok(()) };
+    let mut all = origin.clone();
+    all.parts.extend(inputs.iter().filter_map(Bundle::shard).flat_map(|shard| &shard.parts));
+    match all.missing() {
+        Some((count, first)) if !arguments.partial => {
+            let of = all.of;
+            let parts = match count {
+                1 => format!("part {first} of {of} is missing"),
+                _ => format!("{count} of {of} parts are missing, such as part {first}"),
+            };
+            Err(Failure::check(format!(
+                "{parts}\nhelp: make it with `gen --shard {first}/{of}`, or add `--partial`"
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The values that differ between two shards, where they say something to a reader.
+fn values_of(mismatch: ShardMismatch, left: &ShardOrigin, right: &ShardOrigin) -> String {
+    let pair = match mismatch {
+        ShardMismatch::Count => (left.of.to_string(), right.of.to_string()),
+        ShardMismatch::Tool => (left.tool.clone(), right.tool.clone()),
+        ShardMismatch::Settings => (left.settings.clone(), right.settings.clone()),
+        ShardMismatch::Sources | ShardMismatch::Whole => return String::new(),
+    };
+    format!("\n  {}\n  {}", pair.0.escape_debug(), pair.1.escape_debug())
 }
 
 /// Every permutation of the manifest is in every entry point of its program, in one of the

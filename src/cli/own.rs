@@ -1,7 +1,6 @@
 //! The user's own package, for commands that are about the library and also about that package.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use clap::Args;
 
@@ -48,10 +47,7 @@ impl OwnPackage {
     /// The functions that expressions may call: those of the library, and its own.
     pub fn library(&self) -> Result<Library, Failure> {
         let Some(packages) = self.packages()? else { return Ok(Library::shipped(LIBRARY_FILES)) };
-        let dependencies = packages.dependencies.into_iter();
-        let dependencies =
-            dependencies.map(|package| (package.name, Arc::from(package.files))).collect();
-        Ok(Library::new(NAME, Arc::from(packages.root.files), dependencies))
+        Ok(Library::of_packages(NAME, packages))
     }
 }
 

@@ -231,7 +231,12 @@ fn compose(
     report.unique_sources = Some(composed.entries.iter().map(|entry| entry.unique as u64).sum());
     if arguments.compile {
         let request = Request { program: Some(program.name.clone()), ..Request::default() };
-        let tools = Tools { sink: &Discard::default(), cache: None, progress: &progress };
+        let tools = Tools {
+            sink: &Discard::default(),
+            cache: None,
+            tool: crate::TOOL,
+            progress: &progress,
+        };
         let compiled = generate::generate(sources, packages, manifest, &request, &tools)?;
         report.unique_outputs =
             Some(compiled.summary.targets.iter().map(|target| target.outputs as u64).sum());

@@ -10,8 +10,8 @@ use clap::Args;
 use super::failure::{DiagnosticForm, Failure};
 use super::terminal::stdout;
 use super::work::{PathArguments, Work};
-use crate::generate::Request;
 use crate::generate::summary::counted_words;
+use crate::generate::{Look, Request};
 use crate::input;
 use crate::permute::Quoted;
 use crate::source::LIMITS;
@@ -77,7 +77,7 @@ fn update_bundle(
 ) -> Result<(), Failure> {
     let start = Instant::now();
     let all = Request::default();
-    if work.up_to_date(&all, form).is_some() {
+    if work.up_to_date(&all, Look::Cheap, form).is_some() {
         return say_line(&format!("up to date, {:.2} s", start.elapsed().as_secs_f64()));
     }
     if let (Some(key), true) = (&arguments.key, work.out.is_dir()) {

@@ -16,7 +16,7 @@ use super::terminal::stderr;
 use crate::bundle::{self, Bundle, Contents, DirectoryWriter};
 use crate::cache::Cache;
 use crate::generate::{
-    Generated, JudgedCount, MemorySink, Observer, Request, RunWarnings, Sink, Summary, Tools,
+    Generated, JudgedCount, Look, MemorySink, Observer, Request, RunWarnings, Sink, Summary, Tools,
     Trace, TracedRun, generate,
 };
 use crate::output::Replace;
@@ -125,8 +125,14 @@ impl Work {
     }
 
     /// The summary of an earlier run, if nothing changed since. Its warnings are printed again.
-    pub fn up_to_date(&self, request: &Request, form: DiagnosticForm) -> Option<Summary> {
-        let Trace { summary, told, .. } = Trace::find(self.cache.as_ref()?, self.as_run(request))?;
+    pub fn up_to_date(
+        &self,
+        request: &Request,
+        look: Look,
+        form: DiagnosticForm,
+    ) -> Option<Summary> {
+        let found = Trace::find(self.cache.as_ref()?, self.as_run(request), look)?;
+        let Trace { summary, told, .. } = found;
         let _ = stderr().write_all(told.text(form.into()).as_bytes());
         Some(Summary { up_to_date: true, judged: None, ..summary })
     }
@@ -225,8 +231,12 @@ impl Work {
         sink: &dyn Sink,
         bar: &Bar,
     ) -> Result<Generated, Failure> {
-        let tools =
-            Tools { sink, cache: self.cache.as_ref(), progress: &|progress| bar.show(progress) };
+        let tools = Tools {
+            sink,
+            cache: self.cache.as_ref(),
+            tool: crate::TOOL,
+            progress: &|progress| bar.show(progress),
+        };
         let generated =
             generate(&mut self.sources, &self.packages, &self.manifest, request, &tools);
         generated.map_err(|diagnostics| {

@@ -42,10 +42,8 @@ pub fn lamplight_with(
     let package =
         |name: &str, files: Memory| Package { name: name.to_owned(), files: Box::new(files) };
     let own = package("package", packages.remove("").unwrap_or_default());
-    let packages = Packages {
-        root: own,
-        dependencies: packages.into_iter().map(|(name, files)| package(name, files)).collect(),
-    };
+    let dependencies = packages.into_iter().map(|(name, files)| package(name, files)).collect();
+    let packages = Packages::new(own, dependencies);
     let mut sources = SourceSet::default();
     let options = Options { mangle, ..Options::default() };
     let composed = resolve::wesl::load(&mut sources, &packages, root)

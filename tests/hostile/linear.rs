@@ -75,7 +75,7 @@ fn outcome(files: &Files) -> Result<(), Diagnostics> {
     let memory = Memory(files.iter().cloned().collect());
     let own = Package { name: "package".to_owned(), files: Box::new(memory) };
     let library = project::library_package();
-    let packages = Packages { root: own, dependencies: vec![library] };
+    let packages = Packages::new(own, vec![library]);
     let graph = resolve::load(&mut sources, &packages, root, language)?;
     compose::compose(&graph, &Settings::default(), &Options::default()).map(|_| ())
 }

@@ -114,7 +114,7 @@ impl Case {
         })?;
         let files = Memory(BTreeMap::from([(program.file.to_owned(), program.text.clone())]));
         let root = Package { name: "package".to_owned(), files: Box::new(files) };
-        let packages = Packages { root, dependencies: Vec::new() };
+        let packages = Packages::new(root, Vec::new());
         Ok(Self { sources, packages, manifest })
     }
 

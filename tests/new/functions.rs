@@ -273,10 +273,10 @@ fn compiles(files: &BTreeMap<String, String>, stem: &str, wesl: &str, glsl: &str
     for (root, text, language) in roots {
         let own = Memory([(root.to_owned(), text)].into());
         let library = Overlay(Memory(files.iter().filter_map(below).collect()));
-        let packages = Packages {
-            root: Package { name: "user".into(), files: Box::new(own) },
-            dependencies: vec![Package { name: "lamplight".into(), files: Box::new(library) }],
-        };
+        let packages = Packages::new(
+            Package { name: "user".into(), files: Box::new(own) },
+            vec![Package { name: "lamplight".into(), files: Box::new(library) }],
+        );
         let mut sources = SourceSet::default();
         let options = Options { keep: Keep::EntryPoints, ..Options::default() };
         resolve::load(&mut sources, &packages, root, language)

@@ -126,7 +126,7 @@ fn preview(page: &BrowserPage, device: &str) -> Outcome {
 fn sketched(stage: &str, uniforms: BTreeMap<String, Vec<f64>>) -> Result<Picture, Failed> {
     const PATH: &str = "stage.wesl";
     let mut packages = Packages::of_text(PATH, stage.to_owned());
-    packages.dependencies.push(project::library_package());
+    packages.add(project::library_package());
     let draw = || {
         let mut sources = SourceSet::default();
         let graph = resolve::load(&mut sources, &packages, PATH, Language::Wesl)?;

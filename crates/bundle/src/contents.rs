@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Digest, Digester, Error, Language, Native, Reflection};
+use super::{Digest, Digester, Error, Language, Native, Reflection, ShardOrigin, shard};
 
 /// The first 128 bits of BLAKE3, which name units and blobs by their content.
 pub type Hash = [u8; 16];
@@ -15,6 +15,8 @@ pub type Hash = [u8; 16];
 pub struct Contents {
     /// Programs by name.
     pub programs: BTreeMap<String, ProgramContents>,
+    /// What the contents were made of, if they are a part of a bundle.
+    pub shard: Option<ShardOrigin>,
 }
 
 /// One program: its axes, and its shaders by language and entry point.
@@ -117,9 +119,13 @@ impl Contents {
     ///
     /// # Errors
     /// [`Error::Conflict`] if both have different shaders for a key, or different axes for a
-    /// program.
+    /// program, or if they are shards that were not made of the same.
     pub fn merge(&mut self, other: Self) -> Result<(), Error> {
-        for (name, program) in other.programs {
+        let Self { programs, shard: origin } = other;
+        self.shard = shard::joined(self.shard.take(), origin).map_err(|mismatch| {
+            Error::Conflict(format!("their origin: they {}", mismatch.words()))
+        })?;
+        for (name, program) in programs {
             let mine = self.programs.entry(name.clone()).or_insert_with(|| ProgramContents {
                 axes: program.axes.clone(),
                 ..Default::default()

@@ -8,7 +8,7 @@ use super::contents::{checksum, from_hex, refuse_control_characters, to_hex};
 use super::layout::MOST_GROUP_BYTES;
 use super::manifest::{self, Manifest, ManifestArtifact, ManifestUnit};
 use super::store::{self, Store, StoredArtifact, StoredProgram, StoredPrograms};
-use super::{Axis, Error, Hash, Native, Reflection, Stage};
+use super::{Axis, Error, Hash, Native, Reflection, ShardOrigin, Stage};
 use lamplight_files::input;
 
 pub(super) const MANIFEST: &str = "manifest.json";
@@ -24,6 +24,7 @@ type NumberedArtifacts = BTreeMap<String, (ManifestArtifact, u32)>;
 pub struct Directory {
     blobs: PathBuf,
     programs: StoredPrograms,
+    shard: Option<ShardOrigin>,
     /// For each entry point, the unit of each key.
     keys: Vec<BTreeMap<String, u32>>,
     units: Vec<(Arc<Reflection>, NumberedArtifacts)>,
@@ -48,6 +49,7 @@ pub fn open(path: &Path) -> Result<Directory, Error> {
     let mut directory = Directory {
         blobs: path.join(BLOBS),
         programs: StoredPrograms::new(),
+        shard: manifest.shard,
         keys: Vec::new(),
         units: Vec::new(),
         natives: manifest
@@ -169,6 +171,10 @@ impl Directory {
 impl Store for Directory {
     fn programs(&self) -> &StoredPrograms {
         &self.programs
+    }
+
+    fn shard(&self) -> Option<&ShardOrigin> {
+        self.shard.as_ref()
     }
 
     fn find(&self, entry: usize, key: &str) -> Result<Option<u32>, Error> {

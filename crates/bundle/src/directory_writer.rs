@@ -18,6 +18,7 @@ use super::directory::{
     BLOBS, BlobFile, MANIFEST, MOST_MANIFEST_BYTES, blob_files_of_manifest, read_manifest,
 };
 use super::manifest::{self, Before, Manifest, ManifestArtifact};
+use super::pack::newer_bundle;
 use super::staging::add_unit;
 use super::{Contents, Digest, Digester, Error, Unit};
 use lamplight_files::output::{self, Foreign, Replace, Scratch};
@@ -277,7 +278,10 @@ fn survey_manifest(path: &Path, replace: Replace) -> Result<Option<BTreeSet<Stri
     let Some(text) = read_own(&place)? else { return Ok(None) };
     match manifest::kind_of_manifest(&text) {
         Before::Whole(files) => Ok(Some(files)),
-        Before::Unreadable => Ok(Some(BTreeSet::new())),
+        Before::Newer(version) if replace == Replace::Ours => {
+            Err(Error::Foreign(Foreign::file(&place, newer_bundle(version))))
+        }
+        Before::Unreadable | Before::Newer(_) => Ok(Some(BTreeSet::new())),
         Before::Foreign if replace == Replace::Any || text.is_empty() => Ok(None),
         Before::Foreign => Err(Error::Foreign(foreign_file(&place))),
     }

@@ -1,5 +1,6 @@
 //! Reads the single file in place: only its header and META are parsed on opening.
 
+mod bytes;
 mod verify;
 
 use std::collections::BTreeMap;
@@ -7,15 +8,15 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::{Arc, Mutex, OnceLock};
 
-use memmap2::Mmap;
 use serde::de::DeserializeOwned;
+
+use bytes::{BundleBytes, map_file};
 
 use super::contents::{Hash, checksum, refuse_control_characters, to_hex};
 use super::layout::*;
 use super::store::{Store, StoredArtifact, StoredProgram, StoredPrograms, StoredUnit};
-use super::{Axis, Error, Reflection, VERSION};
+use super::{Axis, Error, Reflection, ShardOrigin, VERSION};
 use crate::packing;
-use lamplight_files::input;
 
 /// How many decompressed groups are kept, and how many bytes: about what the shaders of one level
 /// of a game need.
@@ -34,33 +35,10 @@ pub struct Packed {
     groups: Mutex<Vec<(u32, Arc<[u8]>)>>,
 }
 
-enum BundleBytes {
-    Mapped(Mmap),
-    Owned(Vec<u8>),
-}
-
-impl std::ops::Deref for BundleBytes {
-    type Target = [u8];
-
-    fn deref(&self) -> &[u8] {
-        match self {
-            Self::Mapped(map) => map,
-            Self::Owned(bytes) => bytes,
-        }
-    }
-}
-
 /// Maps the file. It must not be changed in place while it is open: replace it by renaming, as
 /// [`super::write_file`] does.
 pub fn open(path: &Path) -> Result<Packed, Error> {
-    let file = input::open_file(path)?;
-    if file.metadata()?.len() < HEADER_BYTES as u64 {
-        return Err(Error::corrupt("header", "the file is too short"));
-    }
-    // SAFETY: the map is read-only and private to this value. Another process could still change
-    // the file under it, which the documentation of this function excludes.
-    let map = unsafe { Mmap::map(&file)? };
-    parse_file(BundleBytes::Mapped(map))
+    parse_file(map_file(path)?)
 }
 
 /// As [`open`], for bytes in memory.
@@ -303,6 +281,10 @@ impl Packed {
 impl Store for Packed {
     fn programs(&self) -> &StoredPrograms {
         &self.programs
+    }
+
+    fn shard(&self) -> Option<&ShardOrigin> {
+        self.meta.shard.as_ref()
     }
 
     fn find(&self, entry: usize, key: &str) -> Result<Option<u32>, Error> {

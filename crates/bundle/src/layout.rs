@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::contents::Hash;
-use super::{Axis, Error, Language};
+use super::{Axis, Error, Language, ShardOrigin};
 
 pub const MAGIC: &[u8; 8] = b"LAMPLGHT";
 
@@ -57,6 +57,8 @@ pub struct Meta {
     pub texts: u32,
     pub blobs: u32,
     pub groups: u32,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<ShardOrigin>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

@@ -28,6 +28,7 @@ mod packing;
 mod packing;
 mod reflection;
 mod reload;
+mod shard;
 mod staging;
 mod store;
 mod target;
@@ -51,6 +52,7 @@ pub use reflection::{
     Member, Native, Override, OverrideChoice, Pair, Place, Reflection, RowOrder, SamplerHeap,
     Semantic, Varying, Viewport, YAxis,
 };
+pub use shard::{ShardMismatch, ShardOrigin};
 pub use staging::stage_blobs;
 pub use target::Target;
 pub use usage::Usage;

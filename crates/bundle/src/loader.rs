@@ -9,7 +9,7 @@ use super::store::{self, Store};
 use super::usage::{Recorder, Usage};
 use super::{
     Artifact, Axis, EntryContents, Error, Language, Miss, Native, ProgramContents, Reflection,
-    Target, Unit, directory, file, key,
+    ShardOrigin, Target, Unit, directory, file, key,
 };
 
 /// An open bundle of either form. Cheap to share between threads.
@@ -92,6 +92,11 @@ impl Bundle {
         Ok(Self { store: Box::new(file::from_bytes(bytes)?), recorder: None, path: None })
     }
 
+    /// What the bundle was made of, if it is a part of one.
+    pub fn shard(&self) -> Option<&ShardOrigin> {
+        self.store.shard()
+    }
+
     pub(super) fn path(&self) -> Option<&Path> {
         self.path.as_deref()
     }
@@ -139,7 +144,7 @@ impl Bundle {
     pub fn contents(&self) -> Result<Contents, Error> {
         self.store.measure()?;
         let mut blobs = BTreeMap::new();
-        let mut contents = Contents::default();
+        let mut contents = Contents { shard: self.store.shard().cloned(), ..Contents::default() };
         for (name, program) in self.store.programs() {
             let mut copy =
                 ProgramContents { axes: program.axes.clone(), ..ProgramContents::default() };

@@ -7,7 +7,9 @@ use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
 use super::contents::{checksum, shortened_hash, to_hex};
-use super::{Axis, Contents, Digest, Error, Hash, Language, Native, Reflection, Unit, VERSION};
+use super::{
+    Axis, Contents, Digest, Error, Hash, Language, Native, Reflection, ShardOrigin, Unit, VERSION,
+};
 
 /// The published JSON Schema of the manifest.
 pub const SCHEMA: &str = include_str!("schema.json");
@@ -21,6 +23,9 @@ const BLANK: &str = "00000000000000000000000000000000";
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Manifest {
     pub version: u32,
+    /// In a part of a bundle only.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shard: Option<ShardOrigin>,
     pub programs: BTreeMap<String, ManifestProgram>,
     pub units: BTreeMap<String, ManifestUnit>,
     pub reflections: BTreeMap<String, Reflection>,
@@ -34,6 +39,7 @@ impl Default for Manifest {
     fn default() -> Self {
         Self {
             version: VERSION,
+            shard: None,
             programs: BTreeMap::new(),
             units: BTreeMap::new(),
             reflections: BTreeMap::new(),
@@ -159,8 +165,10 @@ fn is_sealed(text: &str, sum: &str) -> Option<bool> {
 pub enum Before {
     /// An undamaged manifest, with the files of its blobs.
     Whole(BTreeSet<String>),
-    /// One of ours that is damaged or of another version.
+    /// One of ours that is damaged or of an older version.
     Unreadable,
+    /// One of ours, or of a program that came after us, with its version.
+    Newer(u32),
     /// A file of somebody else.
     Foreign,
 }
@@ -168,8 +176,7 @@ pub enum Before {
 /// The parts of a manifest that every version has, and by which a file is recognised as one.
 #[derive(Deserialize)]
 struct ManifestMark {
-    #[serde(rename = "version")]
-    _version: u32,
+    version: u32,
     #[serde(rename = "programs")]
     _programs: BTreeMap<String, IgnoredAny>,
     checksum: String,
@@ -197,6 +204,7 @@ pub fn kind_of_manifest(text: &[u8]) -> Before {
     let is_hex = mark.checksum.len() == 32 && mark.checksum.bytes().all(|c| c.is_ascii_hexdigit());
     match (is_sealed(text, &mark.checksum), mark.units) {
         _ if !is_hex => Before::Foreign,
+        _ if mark.version > VERSION => Before::Newer(mark.version),
         (Some(true), Some(units)) => {
             let artifacts = units.values().flat_map(|unit| unit.targets.values());
             let files = artifacts.filter_map(|found| blob_file_name(&found.blob, &found.extension));
@@ -249,7 +257,9 @@ impl Manifest {
 
     /// Sets the programs, and the keys with the units they refer to.
     pub fn outline(&mut self, contents: &Contents) -> Result<(), Error> {
-        for (name, program) in &contents.programs {
+        let Contents { programs, shard } = contents;
+        self.shard.clone_from(shard);
+        for (name, program) in programs {
             let mut copy =
                 ManifestProgram { axes: program.axes.clone(), ..ManifestProgram::default() };
             for (language, entries) in &program.languages {

@@ -11,21 +11,27 @@ use super::{Bundle, Contents, EntryContents, Error, ProgramContents};
 ///
 /// # Errors
 /// [`Error::Conflict`] if two bundles have different shaders for a key, or different axes for a
-/// program.
+/// program, or if they are shards that were not made of the same.
 pub fn merge(bundles: &[Bundle]) -> Result<Contents, Error> {
     bundles.iter().try_for_each(Bundle::verify)?;
-    let mut all = Contents::default();
-    bundles.iter().try_for_each(|bundle| all.merge(bundle.contents()?))?;
+    merge_contents(bundles.iter().map(Bundle::contents))
+}
+
+fn merge_contents(
+    mut bundles: impl Iterator<Item = Result<Contents, Error>>,
+) -> Result<Contents, Error> {
+    let Some(first) = bundles.next() else { return Ok(Contents::default()) };
+    let mut all = first?;
+    bundles.try_for_each(|next| all.merge(next?))?;
+    // The parts of a whole bundle leave no trace in it.
+    all.shard = all.shard.filter(|origin| origin.missing().is_some());
     Ok(all)
 }
 
 /// [`merge`] into the directory form, unit by unit: memory holds keys and hashes only.
 pub fn merge_into(bundles: &[Bundle], writer: DirectoryWriter) -> Result<(), Error> {
     bundles.iter().try_for_each(Bundle::verify)?;
-    let mut all = Contents::default();
-    for bundle in bundles {
-        all.merge(copy_units(bundle, &writer)?)?;
-    }
+    let all = merge_contents(bundles.iter().map(|bundle| copy_units(bundle, &writer)))?;
     writer.finish(&all)
 }
 
@@ -40,7 +46,7 @@ pub fn patch_directory(contents: &Contents, path: impl AsRef<Path>) -> Result<()
 
 /// Writes the units of a bundle. Returns its programs and keys, without the units.
 fn copy_units(bundle: &Bundle, writer: &DirectoryWriter) -> Result<Contents, Error> {
-    let mut contents = Contents::default();
+    let mut contents = Contents { shard: bundle.shard().cloned(), ..Contents::default() };
     let mut digests = BTreeMap::new();
     for name in bundle.programs() {
         let program = bundle.program(name)?;

@@ -1,6 +1,7 @@
 //! Writes the single file; [`super::layout`] says how it is laid out.
 
 use std::collections::BTreeMap;
+use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -11,7 +12,8 @@ use super::layout::{
 };
 use super::{Contents, EntryContents, Error, Hash, Unit, VERSION};
 use crate::packing;
-use lamplight_files::output::{self, Replace};
+use lamplight_files::input;
+use lamplight_files::output::{self, Foreign, Replace};
 
 /// A group is closed when it has this many blobs or bytes. That is large enough for similar shaders
 /// to share their common text, and small enough to be decompressed within a millisecond.
@@ -23,9 +25,11 @@ const GROUP_BYTES: usize = 256 << 10;
 /// # Errors
 /// [`Error::Io`] where a table is larger than 4 GiB or a blob larger than 16 MiB.
 pub fn pack(contents: &Contents) -> Result<Vec<u8>, Error> {
+    let Contents { programs, shard } = contents;
     let mut packer = Packer::default();
+    packer.meta.shard.clone_from(shard);
     packer.collect_blobs(contents)?;
-    for (name, program) in &contents.programs {
+    for (name, program) in programs {
         let mut sets = BTreeMap::new();
         let mut entries = Vec::new();
         for (language, entry, contents) in
@@ -57,8 +61,27 @@ pub fn replace_file(
     path: impl AsRef<Path>,
     replace: Replace,
 ) -> Result<(), Error> {
+    let path = path.as_ref();
+    if replace == Replace::Ours
+        && let Some(found) = newer_version(path)
+    {
+        return Err(Error::Foreign(Foreign::file(path, newer_bundle(found))));
+    }
     let is_bundle = |head: &[u8]| head.starts_with(MAGIC);
-    Ok(output::write_file(path.as_ref(), &pack(contents)?, is_bundle, replace)?)
+    Ok(output::write_file(path, &pack(contents)?, is_bundle, replace)?)
+}
+
+/// The version of the bundle in a file, if it is newer than the one that is written here.
+fn newer_version(path: &Path) -> Option<u32> {
+    let mut head = [0; MAGIC.len() + 4];
+    input::open_file(path).ok()?.read_exact(&mut head).ok()?;
+    let version = head.strip_prefix(MAGIC)?.first_chunk()?;
+    Some(u32::from_le_bytes(*version)).filter(|version| *version > VERSION)
+}
+
+/// What a bundle of a newer format is, as the end of a sentence.
+pub(super) fn newer_bundle(version: u32) -> String {
+    format!("is a bundle of format version {version}, which is newer than version {VERSION}")
 }
 
 #[derive(Default)]

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::{Axis, Error, Language, Native, Reflection};
+use super::{Axis, Error, Language, Native, Reflection, ShardOrigin};
 
 /// The part of a bundle that is in memory once it is open, which is small.
 pub type StoredPrograms = BTreeMap<String, StoredProgram>;
@@ -34,6 +34,9 @@ pub struct StoredArtifact {
 /// checked on each use.
 pub trait Store: Send + Sync {
     fn programs(&self) -> &StoredPrograms;
+
+    /// What the bundle was made of, if it is a part of one.
+    fn shard(&self) -> Option<&ShardOrigin>;
 
     /// The unit of a key in canonical form.
     fn find(&self, entry: usize, key: &str) -> Result<Option<u32>, Error>;

@@ -105,6 +105,7 @@ fn small() -> Contents {
             ("depth".to_owned(), program.clone()),
             ("forward".to_owned(), program),
         ]),
+        shard: None,
     }
 }
 

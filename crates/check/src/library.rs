@@ -9,7 +9,7 @@ use super::ratchet::{self, Ratchet};
 use super::untested;
 use lamplight_bundle::Language;
 use lamplight_compose::project::LIBRARY;
-use lamplight_compose::resolve::{self, Packages};
+use lamplight_compose::resolve::{self, Packages, ROOT, Scope};
 use lamplight_compose::{self as compose, Composed, Keep, Options};
 use lamplight_diagnostic::source::{self, Embedded, Files, Memory, Package, ReadError, SourceSet};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
@@ -22,6 +22,8 @@ pub struct Library {
     name: String,
     files: Arc<dyn Files>,
     dependencies: Vec<(String, Arc<dyn Files>)>,
+    /// What each may import, the package itself first.
+    scopes: Vec<Scope>,
     /// The settings for which its modules are composed.
     settings: Settings,
 }
@@ -38,7 +40,24 @@ impl Library {
         files: Arc<dyn Files>,
         dependencies: Vec<(String, Arc<dyn Files>)>,
     ) -> Self {
-        Self { name: name.to_owned(), files, dependencies, settings: Settings::default() }
+        let shared = |(name, files): &(String, Arc<dyn Files>)| shared_package(name, files);
+        let all = dependencies.iter().map(shared).collect();
+        let (_, _, scopes) = Packages::new(shared_package(name, &files), all).into_parts();
+        Self { name: name.to_owned(), files, dependencies, scopes, settings: Settings::default() }
+    }
+
+    /// The root of the packages, by a name that it has among them from now on.
+    pub fn of_packages(name: &str, packages: Packages) -> Self {
+        let (root, dependencies, mut scopes) = packages.into_parts();
+        scopes[ROOT].names.insert(name.to_owned(), ROOT);
+        let shared = |package: Package| (package.name, Arc::from(package.files));
+        Self {
+            name: name.to_owned(),
+            files: Arc::from(root.files),
+            dependencies: dependencies.into_iter().map(shared).collect(),
+            scopes,
+            settings: Settings::default(),
+        }
     }
 
     /// The same package, composed under other settings.
@@ -177,7 +196,7 @@ impl Library {
         sources: &Mutex<SourceSet>,
         module: &str,
     ) -> Result<(Composed, Validated), Diagnostics> {
-        let packages = Packages { root: self.package(), dependencies: self.dependencies() };
+        let packages = self.packages(self.package());
         let root = format!("{}.wesl", module.replace("::", "/"));
         let graph = resolve::wesl::load(&mut lock_sources(sources), &packages, &root)?;
         let composed = compose::wesl::compose(&graph, &self.settings, &Options::default())?;
@@ -209,10 +228,7 @@ impl Library {
             base: self.files.clone(),
             extra: extra.map(|text| (root.clone(), text)).into_iter().collect(),
         };
-        let packages = Packages {
-            root: Package { name: self.name.clone(), files: Box::new(files) },
-            dependencies: self.dependencies(),
-        };
+        let packages = self.packages(Package { name: self.name.clone(), files: Box::new(files) });
         self.compose_module(sources, &packages, &root, language, functions)
             .map(|validated| Arc::new(validated.module))
     }
@@ -227,12 +243,8 @@ impl Library {
         function: &str,
     ) -> Result<Validated, Diagnostics> {
         let files = Memory(BTreeMap::from([(root.0.to_owned(), root.1.to_owned())]));
-        let mut dependencies = self.dependencies();
-        dependencies.push(self.package());
-        let packages = Packages {
-            root: Package { name: "expression".to_owned(), files: Box::new(files) },
-            dependencies,
-        };
+        let caller = Package { name: "expression".to_owned(), files: Box::new(files) };
+        let packages = self.packages_of_caller(caller);
         self.compose_module(sources, &packages, root.0, language, &[function.to_owned()])
     }
 
@@ -250,6 +262,25 @@ impl Library {
 
     fn package(&self) -> Package {
         shared_package(&self.name, &self.files)
+    }
+
+    /// The package, as the root of the packages that it may import.
+    fn packages(&self, root: Package) -> Packages {
+        Packages::scoped(root, self.dependencies(), self.scopes.clone())
+    }
+
+    /// A package that may import this one by its name, and all that this one may import.
+    fn packages_of_caller(&self, caller: Package) -> Packages {
+        let mut dependencies = self.dependencies();
+        dependencies.push(self.package());
+        let own = dependencies.len();
+        let mut scopes = self.scopes.clone();
+        // A package that imports the root by a name means the same package under its new number.
+        let numbers = scopes.iter_mut().flat_map(|scope| scope.names.values_mut());
+        numbers.filter(|number| **number == ROOT).for_each(|number| *number = own);
+        scopes.push(scopes[ROOT].clone());
+        scopes[ROOT].names.insert(self.name.clone(), own);
+        Packages::scoped(caller, dependencies, scopes)
     }
 
     fn dependencies(&self) -> Vec<Package> {

@@ -246,10 +246,8 @@ fn name(number: usize) -> String {
 /// Composing ends within seconds on a small stack, with the expected error, or without one.
 fn check_limit(code: &str, files: Vec<(String, String)>) -> Result<(), Failed> {
     let root = files[0].0.clone();
-    let packages = Packages {
-        root: Package { name: "root".into(), files: Box::new(Memory(files.into_iter().collect())) },
-        dependencies: Vec::new(),
-    };
+    let files = Box::new(Memory(files.into_iter().collect()));
+    let packages = Packages::new(Package { name: "root".into(), files }, Vec::new());
     let run = move || {
         let start = std::time::Instant::now();
         let result = load(&mut SourceSet::default(), &packages, &root)

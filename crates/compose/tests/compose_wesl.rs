@@ -191,7 +191,7 @@ fn unreadable() -> Result<(), Failed> {
         files: Box::new(lamplight_diagnostic::source::Disk::new(folder.path())?),
     };
     let mut sources = SourceSet::default();
-    let errors = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl")
+    let errors = load(&mut sources, &Packages::new(root, Vec::new()), "main.wesl")
         .expect_err("none of the three files can be read, but loading succeeded");
     let mut found: Vec<&str> = errors.iter().map(|error| error.code.name).collect();
     found.sort_unstable();
@@ -234,7 +234,7 @@ fn lights() -> (SourceSet, Graph) {
     let files = texts.map(|(path, text)| (path.to_owned(), text.to_owned()));
     let root = Package { name: "app".to_owned(), files: Box::new(Memory(files.into())) };
     let mut sources = SourceSet::default();
-    let graph = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl")
+    let graph = load(&mut sources, &Packages::new(root, Vec::new()), "main.wesl")
         .expect("the modules of this test have no errors");
     (sources, graph)
 }
@@ -337,7 +337,7 @@ fn mutilated() -> Result<(), Failed> {
             ("a", Setting::Bool(false)),
         ]);
         let options = Options { keep: Keep::All, ..Options::default() };
-        let outcome = load(&mut sources, &Packages { root, dependencies: Vec::new() }, "main.wesl")
+        let outcome = load(&mut sources, &Packages::new(root, Vec::new()), "main.wesl")
             .and_then(|graph| compose(&graph, &settings, &options));
         if let Err(errors) = outcome {
             let told = render(&sources, &errors, Form::Short);

@@ -16,6 +16,7 @@ mod permutation;
 mod shader;
 mod shard;
 mod sink;
+mod stamp;
 #[cfg(feature = "store")]
 pub mod store;
 #[cfg(not(feature = "store"))]
@@ -28,18 +29,20 @@ pub use permutation::{Permutation, ShaderName, permutation};
 pub use shader::{CompiledShader, Root, entry_points};
 pub use shard::Shard;
 pub use sink::{Discard, MemorySink, Sink};
+pub use stamp::Look;
 pub use summary::{EntrySummary, JudgedCount, ProgramSummary, Summary, WholeSummary};
 pub use trace::{Observer, RunWarnings, Trace, TracedRun};
 
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use crate::cache::Cache;
+use crate::cache::{Cache, hash_parts};
 use compile::{Compiled, Compiler};
 use compositions::{ComposedForms, EntryResult};
 use entry::ShaderEntry;
+use lamplight_bundle::contents::to_hex;
 use lamplight_bundle::{
-    AskedConventions, Axis, Contents, Digest, EntryContents, ProgramContents, Target,
+    AskedConventions, Axis, Contents, Digest, EntryContents, ProgramContents, ShardOrigin, Target,
 };
 use lamplight_compose::resolve::Packages;
 use lamplight_diagnostic::source::SourceSet;
@@ -69,6 +72,14 @@ pub struct Request {
 }
 
 impl Request {
+    /// What is asked for, without the shard, as one line.
+    fn settings(&self) -> String {
+        let Self { program, only, targets, conventions, shard: _ } = self;
+        let only = only.as_ref().map(|only| &only.text);
+        let targets: Vec<&str> = targets.iter().map(|target| target.name()).collect();
+        format!("program {program:?}, only {only:?}, targets {targets:?}, {conventions:?}")
+    }
+
     /// The targets of a program, each once and in order.
     fn targets_of(&self, program: &Program) -> Vec<Target> {
         let chosen = if self.targets.is_empty() { &program.targets } else { &self.targets };
@@ -85,6 +96,9 @@ pub struct Tools<'a> {
     pub sink: &'a dyn Sink,
     /// Where results are kept between runs, and looked up.
     pub cache: Option<&'a Cache>,
+    /// The identity of the program, which parts of one bundle must share. It is the same on every
+    /// system that the program is built for.
+    pub tool: &'a str,
     /// Called with how far the run is.
     pub progress: &'a (dyn Fn(Progress) + Sync),
 }
@@ -156,12 +170,27 @@ pub fn generate(
         outputs.add(&targets, &results);
         generated.add(program, points, &results);
     }
+    generated.contents.shard =
+        request.shard.and_then(|shard| origin(shard, request, tools.tool, sources));
     generated.warnings.extend(lints.finish());
     generated.warnings = lint::distinct(sources, generated.warnings);
     generated.summary.targets = outputs.summaries();
     generated.summary.cached = tools.cache.map_or(0, Cache::hits);
     generated.summary.seconds = start.elapsed().as_secs_f64();
     Ok(generated)
+}
+
+/// What a part of a bundle was made of; `None` for the only part.
+fn origin(shard: Shard, request: &Request, tool: &str, sources: &SourceSet) -> Option<ShardOrigin> {
+    let (index, count) = shard.numbers();
+    let texts: Vec<&str> = sources.iter().map(|(_, source)| &*source.text).collect();
+    (count > 1).then(|| ShardOrigin {
+        parts: [index as u64].into(),
+        of: count as u64,
+        tool: tool.to_owned(),
+        settings: request.settings(),
+        sources: to_hex(&hash_parts(&texts)),
+    })
 }
 
 /// A program with its permutations and its entry points.
@@ -210,7 +239,7 @@ pub fn in_memory(
         packages,
         manifest,
         request,
-        &Tools { sink: &sink, cache: None, progress },
+        &Tools { sink: &sink, cache: None, tool: env!("CARGO_PKG_VERSION"), progress },
     )?;
     sink.fill(&mut generated.contents);
     Ok(generated)

@@ -17,6 +17,11 @@ impl Shard {
         (1..=count).contains(&index).then_some(Self { index, count })
     }
 
+    /// Its number, from 1, and the number of all parts.
+    pub fn numbers(self) -> (usize, usize) {
+        (self.index, self.count)
+    }
+
     /// The part of all `items`. Every item is in exactly one part.
     pub fn of<T>(self, items: &[T]) -> &[T] {
         let bound =

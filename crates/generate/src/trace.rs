@@ -7,14 +7,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde::{Deserialize, Serialize};
 
+use super::stamp::{BundleStamp, Look};
 use super::{Request, Summary};
 use crate::cache::{Cache, hash_parts};
-use lamplight_bundle::contents::{shortened_hash, to_hex};
+use lamplight_bundle::contents::to_hex;
 use lamplight_compose::resolve::Packages;
 use lamplight_diagnostic::Diagnostic;
 use lamplight_diagnostic::render::{Form, render};
 use lamplight_diagnostic::source::{Files, Package, ReadError, SourceSet};
-use lamplight_files::input;
 
 /// A package, and what was asked of its files.
 type FileQuestion = (String, String);
@@ -26,18 +26,14 @@ pub struct Observer(Arc<Mutex<BTreeMap<FileQuestion, String>>>);
 impl Observer {
     /// The same packages, with their questions recorded.
     pub fn observe(&self, packages: Packages) -> Packages {
-        let observed = |package: Package| Package {
+        packages.map(|package| Package {
             files: Box::new(Observed {
                 package: package.name.clone(),
                 files: package.files,
                 observer: self.clone(),
             }),
             name: package.name,
-        };
-        Packages {
-            root: observed(packages.root),
-            dependencies: packages.dependencies.into_iter().map(observed).collect(),
-        }
+        })
     }
 
     /// Whether the files still give the same answers. Each recorded question is asked once.
@@ -62,8 +58,8 @@ impl Observer {
 pub struct Trace {
     /// Packages, questions and answers.
     reads: Vec<(String, String, String)>,
-    /// The hash of the bundle that was written.
-    output: String,
+    /// The bundle that was written.
+    output: BundleStamp,
     /// The summary of the run that made the bundle.
     pub summary: Summary,
     /// The warnings of that run.
@@ -133,13 +129,13 @@ impl Trace {
             .answers()
             .into_iter()
             .map(|((package, question), answer)| (package, question, answer));
-        Some(Self { reads: reads.collect(), output: output_hash(out)?, summary, told })
+        Some(Self { reads: reads.collect(), output: BundleStamp::of(out)?, summary, told })
     }
 
     /// Finds the trace of an equal run, if everything that it read is the same and the bundle is
-    /// the one that it wrote.
-    pub fn find(cache: &Cache, run: TracedRun<'_>) -> Option<Self> {
-        let trace: Self = serde_json::from_slice(
+    /// the one that it wrote. The look says whether blobs that seem unchanged are read.
+    pub fn find(cache: &Cache, run: TracedRun<'_>, look: Look) -> Option<Self> {
+        let mut trace: Self = serde_json::from_slice(
             &cache.get("runs", trace_key(cache, run.declared, run.request))?,
         )
         .ok()?;
@@ -147,7 +143,12 @@ impl Trace {
             ((package.clone(), question.clone()), answer.clone())
         });
         let is_same = trace.told.is_of(run.manifest) && is_current(&reads.collect(), run.packages);
-        (is_same && output_hash(run.out).as_ref() == Some(&trace.output)).then_some(trace)
+        let now = is_same.then(|| trace.output.renewed(run.out, look)).flatten()?;
+        if now != trace.output {
+            trace.output = now;
+            trace.keep(cache, run);
+        }
+        Some(trace)
     }
 
     /// Keeps the trace for [`Self::find`].
@@ -169,9 +170,7 @@ fn trace_key(cache: &Cache, sources: &SourceSet, request: &Request) -> lamplight
 }
 
 fn is_current(reads: &BTreeMap<FileQuestion, String>, packages: &Packages) -> bool {
-    let find = |name: &str| {
-        packages.dependencies.iter().chain([&packages.root]).find(|package| package.name == name)
-    };
+    let find = |name: &str| packages.all().find(|package| package.name == name);
     reads.iter().all(|((package, question), answer)| {
         find(package).is_some_and(|package| ask_files(&*package.files, question) == *answer)
     })
@@ -228,25 +227,4 @@ impl Files for Observed {
     fn on_disk(&self, path: &str) -> bool {
         self.files.on_disk(path)
     }
-}
-
-/// A larger output is not compared with an earlier one.
-const MOST_BYTES: u64 = 4 << 30;
-
-/// The hash of a bundle: of its file, or of its manifest and the names of its blobs. The content of
-/// blobs is not read: a blob has the name of its content, and was renamed to it only once it was
-/// complete.
-fn output_hash(out: &Path) -> Option<String> {
-    if !out.is_dir() {
-        return Some(to_hex(&shortened_hash(&blake3::hash(
-            &input::read_file(out, MOST_BYTES).ok()?,
-        ))));
-    }
-    let manifest = blake3::hash(&input::read_file(&out.join("manifest.json"), MOST_BYTES).ok()?);
-    let names = std::fs::read_dir(out.join("blobs"))
-        .ok()?
-        .map(|entry| entry.ok()?.file_name().into_string().ok());
-    let mut names = names.collect::<Option<Vec<_>>>()?;
-    names.sort_unstable();
-    Some(format!("{} {}", to_hex(&shortened_hash(&manifest)), listed_answer(&names)))
 }

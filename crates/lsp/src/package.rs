@@ -10,7 +10,7 @@ use lamplight_compose::project;
 use lamplight_compose::resolve::Packages;
 use lamplight_compose::resolve::wesl::{Graph, KeptModules, ModuleNode, PathTarget, load_all};
 use lamplight_diagnostic::Diagnostics;
-use lamplight_diagnostic::source::{Embedded, Files, Memory, Package, ReadError, SourceSet, Span};
+use lamplight_diagnostic::source::{Embedded, Files, Package, ReadError, SourceSet, Span};
 use lamplight_permute::Manifest;
 use lamplight_permute::manifest::Features;
 use lamplight_syntax::wesl::{ComparisonOperand, Event, Expression, Item, Name};
@@ -92,18 +92,21 @@ pub fn open_package(
         // An editor may have a file whose folder is not there yet.
         false => Ok(project::packages_without_folder(library)),
     };
-    let mut packages = match packages {
+    let packages = match packages {
         Ok(packages) => packages,
         Err(problems) => return Err((sources, problems)),
     };
-    cover_files(&mut packages.root, root, texts, unchanged);
-    for dependency in &mut packages.dependencies {
-        cover_files(dependency, root, &OpenTexts::default(), unchanged);
-    }
-    let (manifest, mut problems) = match project::manifest(root, &mut sources) {
-        Ok(manifest) => (manifest, Vec::new()),
-        Err(problems) => (None, problems),
-    };
+    let mut own = Some(texts);
+    let packages = packages.map(|package| {
+        let none = OpenTexts::default();
+        // The root comes first. Only its files may be open.
+        cover_files(package, root, own.take().unwrap_or(&none), unchanged)
+    });
+    let mut problems = packages.warnings.clone();
+    let manifest = project::manifest(root, &mut sources).unwrap_or_else(|more| {
+        problems.extend(more);
+        None
+    });
     let features = match &manifest {
         Some(manifest) => manifest.features.clone(),
         None => project::features(root, &mut sources).unwrap_or_else(|more| {
@@ -116,14 +119,19 @@ pub fn open_package(
 
 /// Makes a package read open texts in place of files, and cached texts of files that have not
 /// changed.
-fn cover_files(package: &mut Package, root: &Path, texts: &OpenTexts, unchanged: &Arc<Unchanged>) {
-    let below = std::mem::replace(&mut package.files, Box::new(Memory::default()));
-    package.files = Box::new(EditorFiles {
+fn cover_files(
+    package: Package,
+    root: &Path,
+    texts: &OpenTexts,
+    unchanged: &Arc<Unchanged>,
+) -> Package {
+    let files = Box::new(EditorFiles {
         root: root.to_owned(),
-        below,
+        below: package.files,
         open: Arc::clone(texts),
         unchanged: Arc::clone(unchanged),
     });
+    Package { name: package.name, files }
 }
 
 /// What a name stands for.

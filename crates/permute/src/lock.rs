@@ -116,6 +116,11 @@ fn read_digit(before: &Lock, line: &str) -> Result<LockDigit, String> {
 }
 
 impl Lock {
+    /// Whether it has an axis of the program.
+    pub fn has(&self, program: &str) -> bool {
+        self.lines.iter().any(|line| line.program == program)
+    }
+
     /// The lock with whatever of the program's axes and values it lacks appended.
     pub fn extended(&self, program: &str, space: &Space) -> Self {
         let mut lock = self.clone();

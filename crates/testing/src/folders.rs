@@ -26,10 +26,8 @@ pub fn packages_in(folder: &Path, root: &str, is_source: fn(&str) -> bool) -> Pa
         name: name.clone(),
         files: Box::new(Named(name, files)),
     };
-    Packages {
-        root: Package { name: root.to_owned(), files: Box::new(own) },
-        dependencies: dependencies.into_iter().map(dependency).collect(),
-    }
+    let root = Package { name: root.to_owned(), files: Box::new(own) };
+    Packages::new(root, dependencies.into_iter().map(dependency).collect())
 }
 
 fn read_files(

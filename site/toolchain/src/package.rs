@@ -49,10 +49,10 @@ impl Value {
 pub fn packages(files: Option<&Files>) -> Packages {
     match files {
         None => project::library_packages(),
-        Some(files) => Packages {
-            root: Package { name: "package".to_owned(), files: Box::new(Memory(files.clone())) },
-            dependencies: vec![project::library_package()],
-        },
+        Some(files) => Packages::new(
+            Package { name: "package".to_owned(), files: Box::new(Memory(files.clone())) },
+            vec![project::library_package()],
+        ),
     }
 }
 

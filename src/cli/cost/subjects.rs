@@ -269,7 +269,7 @@ pub fn permutations_of(
 ) -> Result<(Vec<Axis>, Vec<CostSubject>), Failure> {
     let (memory, bar) = (MemorySink::default(), Bar::new());
     let progress = |progress| bar.show(progress);
-    let tools = Tools { sink: &memory, cache, progress: &progress };
+    let tools = Tools { sink: &memory, cache, tool: crate::TOOL, progress: &progress };
     let generated = generate(sources, packages, manifest, request, &tools);
     bar.clear();
     let generated =

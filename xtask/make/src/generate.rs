@@ -11,7 +11,8 @@ use lamplight::cache::{Cache, CacheFolder};
 use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{
-    Generated, Observer, Progress, Request, RunWarnings, Summary, Tools, Trace, TracedRun, generate,
+    Generated, Look, Observer, Progress, Request, RunWarnings, Summary, Tools, Trace, TracedRun,
+    generate,
 };
 use lamplight::judge::{OutputOrigin, blame};
 use lamplight::permute::Manifest;
@@ -52,7 +53,7 @@ pub fn run(arguments: &[String]) -> CommandResult {
         packages: &packages,
         out: &out,
     };
-    if let Some(Trace { summary, told, .. }) = Trace::find(&cache, as_run()) {
+    if let Some(Trace { summary, told, .. }) = Trace::find(&cache, as_run(), Look::Cheap) {
         eprint!("{}", told.text(Form::Human));
         let judged = judged(is_judged, || blob_files(&out), &cache)?;
         let summary =
@@ -62,7 +63,8 @@ pub fn run(arguments: &[String]) -> CommandResult {
         return finish(&summary, &judged);
     }
     let writer = DirectoryWriter::create(&out).map_err(environment)?;
-    let tools = Tools { sink: &writer, cache: Some(&cache), progress: &show };
+    let tools =
+        Tools { sink: &writer, cache: Some(&cache), tool: lamplight::TOOL, progress: &show };
     let generated = generate(&mut sources, &packages, &manifest, &request, &tools);
     let Generated { contents, summary, warnings } =
         generated.map_err(|diagnostics| input(&sources, diagnostics))?;

@@ -36,7 +36,7 @@ fn many() -> (Contents, Vec<String>) {
     let keys: Vec<String> = entry.keys.keys().cloned().collect();
     let entries = BTreeMap::from([("fs_main".to_owned(), entry)]);
     let program = ProgramContents { axes, languages: BTreeMap::from([(Language::Wesl, entries)]) };
-    (Contents { programs: BTreeMap::from([("forward".to_owned(), program)]) }, keys)
+    (Contents { programs: BTreeMap::from([("forward".to_owned(), program)]), shard: None }, keys)
 }
 
 /// Opening, looking up and fetching stay below a bound. `--nocapture` prints the times.

@@ -2,7 +2,9 @@
 //!
 //! This is the input end of the pipeline. The stages after it read through [`Packages`] only.
 
+mod dependencies;
 mod managers;
+mod names;
 mod place;
 mod wesl_toml;
 
@@ -19,7 +21,8 @@ use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_permute::manifest::Features;
 use lamplight_permute::{Lock, Manifest, lock, manifest, usage};
 
-/// Import name of the shader library, which every package may use without declaring it.
+/// Import name of the shader library, which every package may use without declaring it. Only the
+/// `wesl.toml` of the root package may give the name to another package.
 pub const LIBRARY: &str = "lamplight";
 
 /// A package on disk and the texts read so far.
@@ -60,18 +63,13 @@ pub fn packages(
         )]);
     }
     let disk = Disk::new(root).map_err(|error| vec![unreadable_file(root, &error)])?;
-    let mut dependencies = wesl_toml::dependencies(root, sources)?;
-    if !dependencies.iter().any(|package| package.name == LIBRARY) {
-        dependencies.push(library_package(library));
-    }
-    Ok(Packages { root: root_package(Box::new(disk)), dependencies })
+    dependencies::packages(root, root_package(Box::new(disk)), sources, library)
 }
 
 /// A package that has no folder yet, with the library beside it. Its files come from elsewhere,
 /// such as an editor.
 pub fn packages_without_folder(library: Embedded) -> Packages {
-    let files = Box::new(Memory::default());
-    Packages { root: root_package(files), dependencies: vec![library_package(library)] }
+    Packages::new(root_package(Box::new(Memory::default())), vec![library_package(library)])
 }
 
 fn root_package(files: Box<dyn Files>) -> Package {
@@ -85,7 +83,7 @@ pub fn library_package(library: Embedded) -> Package {
 
 /// The shader library itself as a package.
 pub fn library_packages(library: Embedded) -> Packages {
-    Packages { root: root_package(Box::new(library)), dependencies: Vec::new() }
+    Packages::new(root_package(Box::new(library)), Vec::new())
 }
 
 /// The path of `file` relative to `root`, `/`-separated.
@@ -145,7 +143,7 @@ pub fn manifest(root: &Path, sources: &mut SourceSet) -> Result<Option<Manifest>
 
 /// The features that the package's `wesl.toml` declares, and those of its dependencies.
 pub fn features(root: &Path, sources: &mut SourceSet) -> Result<Features, Diagnostics> {
-    wesl_toml::features(root, sources)
+    dependencies::features(root, sources)
 }
 
 /// Reads a manifest by its path. Its files are named from the package's root.
@@ -176,15 +174,23 @@ pub fn declared(
     let folder = path.parent().unwrap_or(Path::new(""));
     let root = place::root_beside(folder);
     manifest.adopt(features(&root, sources)?);
-    Ok((manifest, packages(&root, sources, library)?))
+    let packages = packages(&root, sources, library)?;
+    manifest.warnings.extend(packages.warnings.iter().cloned());
+    Ok((manifest, packages))
 }
 
-/// File name of the lock that lies beside a manifest.
-pub const LOCK: &str = "lamplight.lock";
-
-/// Where the lock of a manifest lies.
+/// The lock of a manifest lies beside it and has its name: `lamplight.lock` is that of
+/// `lamplight.toml`.
 pub fn lock_path(manifest: &Path) -> PathBuf {
-    manifest.with_file_name(LOCK)
+    manifest.with_extension("lock")
+}
+
+/// The lock of the other manifest in the folder, where this one has none. Manifests of any name
+/// used to have this one.
+pub fn shared_lock(manifest: &Path) -> Option<PathBuf> {
+    let shared = lock_path(&manifest.with_file_name(MANIFEST));
+    let own = lock_path(manifest);
+    (own != shared && !own.exists() && shared.is_file()).then_some(shared)
 }
 
 /// The lock of dense keys beside a manifest; an empty one where there is no file.
@@ -193,7 +199,9 @@ pub fn lock(manifest: &Path, sources: &mut SourceSet) -> Result<Lock, Diagnostic
         manifest.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let disk = Disk::new(folder).map_err(|error| vec![unreadable_file(folder, &error)])?;
     let package = Package { name: String::new(), files: Box::new(disk) };
-    match source::read(sources, &package, LOCK).map_err(|error| vec![error.into()])? {
+    let name = lock_path(manifest);
+    let name = name.file_name().unwrap_or_default().to_string_lossy();
+    match source::read(sources, &package, &name).map_err(|error| vec![error.into()])? {
         Some(id) => lock::parse(sources, id),
         None => Ok(Lock::default()),
     }

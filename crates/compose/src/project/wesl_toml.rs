@@ -6,22 +6,21 @@ use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+use toml::de::DeTable;
 use toml::{Table, Value};
 
-use crate::project::managers::Manager;
 use lamplight_diagnostic::source::{
     self, Disk, Files, LIMITS, Package, ReadError, SourceId, SourceSet, Span, is_inside,
 };
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_files::input;
-use lamplight_permute::manifest::{self, Features};
 
-const NAME: &str = "wesl.toml";
+pub(super) const NAME: &str = "wesl.toml";
 /// The most packages that one `wesl.toml` may list.
-const DEPENDENCIES: usize = lamplight_files::limits::PACKAGES;
+pub(super) const DEPENDENCIES: usize = lamplight_files::limits::PACKAGES;
 const DEFAULT_ROOT: &str = "shaders";
 /// The value that means all packages that the package manager installed.
-const AUTO: &str = "auto";
+pub(super) const AUTO: &str = "auto";
 
 /// The root that the `wesl.toml` of `folder` declares, if it has one.
 pub fn declared_root(folder: &Path) -> Option<PathBuf> {
@@ -58,35 +57,12 @@ fn table_of(folder: &Path) -> Option<Rc<Table>> {
 
 /// The name that the root's `wesl.toml` gives its package.
 pub fn declared_name(root: &Path) -> Option<String> {
-    Some(table_of(&home(root)?)?.get("package")?.get("name")?.as_str()?.to_owned())
+    name_in(&*table_of(&home(root)?)?).map(str::to_owned)
 }
 
-/// The packages that the root's `wesl.toml` lists, those they list in turn included.
-pub fn dependencies(root: &Path, sources: &mut SourceSet) -> Result<Vec<Package>, Diagnostics> {
-    find_tables(root, sources).map(|found| found.packages)
-}
-
-/// The features that the root's `wesl.toml` declares, and those of its dependencies.
-pub fn features(root: &Path, sources: &mut SourceSet) -> Result<Features, Diagnostics> {
-    let mut apart = SourceSet::default();
-    let Ok(found) = find_tables(root, &mut apart) else { return Ok(Features::default()) };
-    let mut features = Features::default();
-    for folder in found.folders {
-        let Ok((table, id)) = parse_tables(&folder, &folder, sources) else { continue };
-        if table.contains_key("features") {
-            features.extend(manifest::read_features(sources, id)?);
-        }
-    }
-    Ok(features)
-}
-
-fn find_tables(root: &Path, sources: &mut SourceSet) -> Result<FoundPackages, Diagnostics> {
-    refuse_broken(root, sources)?;
-    let Some(folder) = home(root) else { return Ok(FoundPackages::default()) };
-    let shown = shown_home(root, &folder);
-    let mut found = FoundPackages { visited: vec![folder], ..FoundPackages::default() };
-    found.collect(&shown, sources);
-    if found.diagnostics.is_empty() { Ok(found) } else { Err(found.diagnostics) }
+/// The name that a `wesl.toml` gives its package.
+pub(super) fn name_in(table: &Table) -> Option<&str> {
+    table.get("package")?.get("name")?.as_str()
 }
 
 /// The folder of the `wesl.toml` that declares `root`.
@@ -111,7 +87,7 @@ pub fn shown_home(root: &Path, home: &Path) -> PathBuf {
 
 /// Refuses a `wesl.toml` of the root, or above it, that cannot be read. To ignore it would make its
 /// imports look wrong.
-fn refuse_broken(root: &Path, sources: &mut SourceSet) -> Result<(), Diagnostics> {
+pub(super) fn refuse_broken(root: &Path, sources: &mut SourceSet) -> Result<(), Diagnostics> {
     let Ok(real) = root.canonicalize() else { return Ok(()) };
     for folder in [Some(real.as_path()), real.parent()]
         .into_iter()
@@ -126,7 +102,7 @@ fn refuse_broken(root: &Path, sources: &mut SourceSet) -> Result<(), Diagnostics
 
 /// The tables of a folder's `wesl.toml`, which is there; `shown` is the folder's name in
 /// diagnostics.
-fn parse_tables(
+pub(super) fn parse_tables(
     folder: &Path,
     shown: &Path,
     sources: &mut SourceSet,
@@ -158,13 +134,14 @@ fn parse_tables(
 
 /// Checks that the values that are read have the expected types.
 fn check_values(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnostic> {
+    let wrong_at = |what: &str, expected: &str, range: std::ops::Range<usize>| {
+        let message = format!("{what} of `wesl.toml` is not {expected}");
+        Err(Diagnostic::error(codes::WESL_TOML, message)
+            .at(Span::new(id, range), format!("expected {expected}")))
+    };
     let wrong = |what: &str, expected: &str, key: &str| {
         let start = text.find(key).unwrap_or(0);
-        let message = format!("{what} of `wesl.toml` is not {expected}");
-        Err(Diagnostic::error(codes::WESL_TOML, message).at(
-            Span::new(id, start..(start + key.len()).min(text.len())),
-            format!("expected {expected}"),
-        ))
+        wrong_at(what, expected, start..(start + key.len()).min(text.len()))
     };
     let package = table.get("package");
     if package.is_some_and(|package| !package.is_table()) {
@@ -195,18 +172,19 @@ fn check_values(table: &Table, id: SourceId, text: &str) -> Result<(), Diagnosti
     }
     for (name, entry) in dependencies {
         if !entry.is_table() {
-            return wrong(&format!("dependency `{name}`"), "a table", name);
+            return wrong_at(&format!("dependency `{name}`"), "a table", key_range(text, name));
         }
         let is_odd = |key: &&&str| entry.get(**key).is_some_and(|value| !value.is_str());
         if let Some(key) = ["path", "package"].iter().find(is_odd) {
-            return wrong(&format!("`{key}` of dependency `{name}`"), "a string", name);
+            let what = format!("`{key}` of dependency `{name}`");
+            return wrong_at(&what, "a string", key_range(text, name));
         }
     }
     Ok(())
 }
 
 /// What the file says about who installs packages.
-fn manager_of(table: &Table) -> Option<&str> {
+pub(super) fn manager_of(table: &Table) -> Option<&str> {
     const KEY: &str = "package-manager";
     let packaged = table.get("package").and_then(|package| package.get(KEY));
     packaged.or_else(|| table.get(KEY)).and_then(Value::as_str)
@@ -246,126 +224,13 @@ fn declared_in(table: &Table) -> &str {
     declared.unwrap_or(DEFAULT_ROOT)
 }
 
-#[derive(Default)]
-struct FoundPackages {
-    packages: Vec<Package>,
-    /// Those with a `wesl.toml`, as they are shown; the root's first.
-    folders: Vec<PathBuf>,
-    visited: Vec<PathBuf>,
-    diagnostics: Diagnostics,
-}
-
-impl FoundPackages {
-    /// Adds what the `wesl.toml` of a folder lists.
-    fn collect(&mut self, folder: &Path, sources: &mut SourceSet) {
-        if !folder.join(NAME).is_file() {
-            return;
-        }
-        let (table, id) = match parse_tables(folder, folder, sources) {
-            Ok(found) => found,
-            Err(error) => return self.diagnostics.push(error),
-        };
-        self.folders.push(folder.to_owned());
-        let text = sources.get(id).text.clone();
-        let section = Span::new(id, key_range(&text, ""));
-        let listed = match table.get("dependencies") {
-            Some(Value::Table(listed)) => listed,
-            Some(Value::String(auto)) if auto == AUTO => {
-                return self.installed(folder, &table, section, sources);
-            }
-            _ => return,
-        };
-        for (name, entry) in listed {
-            let span = Span::new(id, key_range(&text, name));
-            if let Some(path) = entry.get("path").and_then(Value::as_str) {
-                self.add(name, &folder.join(path), span, sources);
-                continue;
-            }
-            let package = entry.get("package").and_then(Value::as_str).unwrap_or(name);
-            let place = Manager::of(folder, manager_of(&table))
-                .and_then(|manager| manager.find(folder, package));
-            match place {
-                Ok(place) => self.add(name, &place, span, sources),
-                Err(reason) => self.diagnostics.push(
-                    Diagnostic::error(
-                        codes::WESL_TOML,
-                        format!("cannot find dependency `{name}`: {reason}"),
-                    )
-                    .at(span, "declared here"),
-                ),
-            }
-        }
-    }
-
-    /// `dependencies = "auto"`: what the package manager's file lists and has a `wesl.toml`.
-    fn installed(&mut self, folder: &Path, table: &Table, span: Span, sources: &mut SourceSet) {
-        let manager = match Manager::of(folder, manager_of(table)) {
-            Ok(manager) => manager,
-            Err(reason) => {
-                let error = Diagnostic::error(codes::WESL_TOML, reason);
-                return self.diagnostics.push(error.at(span, "asked for here"));
-            }
-        };
-        for (name, package) in manager.listed(folder).into_iter().take(DEPENDENCIES) {
-            let place = manager.find(folder, &package);
-            if let Some(place) = place.ok().filter(|place| place.join(NAME).is_file()) {
-                self.add(&name, &place, span, sources);
-            }
-        }
-    }
-
-    /// Adds the dependency in `folder`.
-    fn add(&mut self, name: &str, folder: &Path, span: Span, sources: &mut SourceSet) {
-        if folder.join(NAME).is_file()
-            && let Err(error) = parse_tables(folder, folder, sources)
-        {
-            return self.diagnostics.push(error.at(span, "of this dependency"));
-        }
-        let Some(root) = declared_root(folder) else {
-            self.diagnostics.push(
-                Diagnostic::error(
-                    codes::WESL_TOML,
-                    format!("dependency `{name}` has no `wesl.toml`"),
-                )
-                .at(span, "declared here"),
-            );
-            return;
-        };
-        let disk = match (folder.canonicalize(), Disk::new(root)) {
-            (Ok(real), Ok(disk)) if !disk.is_below(&real) => {
-                let message = format!("the root of dependency `{name}` leads out of its folder");
-                let error = Diagnostic::error(codes::OUTSIDE_ROOT, message);
-                self.diagnostics.push(error.at(span, "declared here"));
-                return;
-            }
-            (Ok(real), Ok(disk)) => {
-                if self.visited.contains(&real) {
-                    return;
-                }
-                self.visited.push(real);
-                disk
-            }
-            (_, Err(error)) | (Err(error), _) => {
-                self.diagnostics.push(
-                    Diagnostic::error(
-                        codes::UNREADABLE,
-                        format!("cannot read dependency `{name}`: {error}"),
-                    )
-                    .at(span, "declared here"),
-                );
-                return;
-            }
-        };
-        self.packages.push(Package { name: name.to_owned(), files: Box::new(disk) });
-        self.collect(folder, sources);
-    }
-}
-
-/// Where a dependency's key stands in the text.
-fn key_range(text: &str, name: &str) -> std::ops::Range<usize> {
-    const SECTION: &str = "[dependencies]";
-    let section = text.find(SECTION).map_or(0, |start| start + SECTION.len());
-    text[section..]
-        .find(name)
-        .map_or(section..section, |start| section + start..section + start + name.len())
+/// Where the key of a dependency stands in the text of a `wesl.toml`; if there is no such key,
+/// where `dependencies` stands.
+pub(super) fn key_range(text: &str, name: &str) -> std::ops::Range<usize> {
+    let Ok(table) = DeTable::parse(text) else { return 0..0 };
+    let listed = table.get_ref().get_key_value("dependencies");
+    let Some((section, listed)) = listed else { return 0..0 };
+    let keys = listed.get_ref().as_table().into_iter().flatten();
+    let mut keys = keys.map(|(key, _)| key).filter(|key| key.get_ref().as_ref() == name);
+    keys.next().map_or_else(|| section.span(), |key| key.span())
 }

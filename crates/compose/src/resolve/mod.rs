@@ -1,40 +1,17 @@
 //! From parsed modules to a graph of items and what each refers to.
 
 pub mod glsl;
+mod packages;
 pub mod wesl;
+
+pub use packages::{Packages, ROOT, Scope};
 
 use std::collections::BTreeSet;
 
 use lamplight_bundle::Language;
 use lamplight_diagnostic::Diagnostics;
-use lamplight_diagnostic::source::{Embedded, Memory, Package, SourceSet};
+use lamplight_diagnostic::source::{Embedded, SourceSet};
 use lamplight_permute::Settings;
-
-/// The packages a composition may read.
-pub struct Packages {
-    /// The author's own; `package::` in WESL.
-    pub root: Package,
-    /// Those it may import by name.
-    pub dependencies: Vec<Package>,
-}
-
-impl Packages {
-    /// A package with nothing but one text, which imports nothing.
-    pub fn of_text(path: &str, text: String) -> Self {
-        let files = Box::new(Memory([(path.to_owned(), text)].into()));
-        Self { root: Package { name: "package".to_owned(), files }, dependencies: Vec::new() }
-    }
-
-    /// The library that may be imported, if it is the one that the program carries.
-    pub fn library(&self) -> Option<Embedded> {
-        self.dependencies.iter().find_map(|package| package.files.embedded())
-    }
-
-    /// The dependency of that name.
-    pub fn dependency(&self, name: &str) -> Option<&Package> {
-        self.dependencies.iter().find(|package| package.name == name)
-    }
-}
 
 /// All that a root file may reach, ready to be composed any number of times.
 #[derive(Debug)]

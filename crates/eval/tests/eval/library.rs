@@ -23,10 +23,8 @@ pub fn trials() -> Vec<Trial> {
 
 /// The program of all functions of a module.
 pub fn library_program(path: &str) -> Result<Program, Failed> {
-    let packages = Packages {
-        root: Package { name: "lamplight".into(), files: Box::new(LIBRARY_FILES) },
-        dependencies: Vec::new(),
-    };
+    let root = Package { name: "lamplight".into(), files: Box::new(LIBRARY_FILES) };
+    let packages = Packages::new(root, Vec::new());
     let said = |errors| Failed::from(format!("{errors:?}"));
     let graph = load(&mut SourceSet::default(), &packages, path).map_err(said)?;
     let composed =

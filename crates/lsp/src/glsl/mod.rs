@@ -24,7 +24,7 @@ use super::place::Lines;
 use super::{LanguageServer, describe, navigate, told};
 use lamplight_bundle::Language;
 use lamplight_compose::project::LIBRARY;
-use lamplight_compose::resolve::{Graph, glsl};
+use lamplight_compose::resolve::{Graph, ROOT, glsl};
 use lamplight_lint as lint;
 use lamplight_permute::axis::Axis;
 use lamplight_syntax::wesl::ItemKind;
@@ -55,8 +55,8 @@ fn read_names(server: &LanguageServer, parameters: &Value) -> Result<Option<Open
 
 impl OpenGlslFile {
     fn package_of(&self, file: usize) -> Option<&str> {
-        let index = self.names.graph.packages[file].checked_sub(1)?;
-        Some(&self.opened.packages.dependencies[index].name)
+        let number = Some(self.names.graph.packages[file]).filter(|number| *number != ROOT)?;
+        Some(&self.opened.packages.package(number).name)
     }
 
     fn location(&self, server: &LanguageServer, file: usize, range: &Range<u32>) -> Option<Value> {

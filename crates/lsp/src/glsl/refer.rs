@@ -14,7 +14,7 @@ use crate::place::Lines;
 use crate::{LanguageServer, describe, told};
 use lamplight_catalogue as catalogue;
 use lamplight_compose::project::LIBRARY;
-use lamplight_compose::resolve::glsl;
+use lamplight_compose::resolve::{ROOT, glsl};
 
 /// Extensions of the files that are read even if no file includes them.
 const EXTENSIONS: &[&str] = &["glsl", "vert", "frag", "comp"];
@@ -73,8 +73,8 @@ impl Whole {
     }
 
     fn is_of_library(&self, file: usize) -> bool {
-        let index = self.units.names.graph.packages[file].checked_sub(1);
-        index.is_some_and(|index| self.opened.packages.dependencies[index].name == LIBRARY)
+        let number = self.units.names.graph.packages[file];
+        number != ROOT && self.opened.packages.package(number).name == LIBRARY
     }
 }
 

@@ -22,7 +22,7 @@ pub use module::{
     ExpressionId, Guard, Import, Item, ItemKind, LocalUse, Module, Origin, Path, PathParts,
     PlacedModule, UsedName,
 };
-pub use name::{Name, Names, is_keyword, keywords};
+pub use name::{Name, Names, is_keyword, is_path_name, keywords};
 
 use std::sync::Arc;
 

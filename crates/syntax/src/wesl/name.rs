@@ -59,6 +59,11 @@ pub fn is_keyword(word: &str) -> bool {
     WORDS[Name::ALIAS.0 as usize..=Name::WHILE.0 as usize].contains(&word)
 }
 
+/// Whether the word can be the first name of a path that leads into another package.
+pub fn is_path_name(word: &str) -> bool {
+    !WORDS.contains(&word) && word != "self"
+}
+
 macro_rules! words {
     ($($constant:ident = $text:literal),* $(,)?) => {
         impl Name { $(#[doc = concat!("`", $text, "`.")] pub const $constant: Name = Name(known_position($text));)* }

@@ -22,7 +22,7 @@ pub fn program_files(
     for file in program.files() {
         let disk = Disk::new(&folder).map_err(|error| format!("`{LIBRARY}`: {error}"))?;
         let root = Package { name: "lamplight".into(), files: Box::new(disk) };
-        let packages = Packages { root, dependencies: Vec::new() };
+        let packages = Packages::new(root, Vec::new());
         let is_glsl = file.path.ends_with(".glsl");
         let language = if is_glsl { Language::Glsl } else { Language::Wesl };
         let mut sources = SourceSet::default();

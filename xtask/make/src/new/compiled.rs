@@ -65,10 +65,10 @@ pub fn first_problem(
         disk: Disk::new(root.join("shaderlib")).ok(),
     };
     let own = Memory(BTreeMap::from([(main.to_owned(), caller)]));
-    let packages = Packages {
-        root: Package { name: "caller".into(), files: Box::new(own) },
-        dependencies: vec![Package { name: "lamplight".into(), files: Box::new(library) }],
-    };
+    let packages = Packages::new(
+        Package { name: "caller".into(), files: Box::new(own) },
+        vec![Package { name: "lamplight".into(), files: Box::new(library) }],
+    );
     let options = Options { keep: Keep::EntryPoints, ..Options::default() };
     let mut sources = SourceSet::default();
     let problems = resolve::load(&mut sources, &packages, main, language)

@@ -1,26 +1,15 @@
 //! Finds the files that the path of an `#include` may name.
 
 use super::PackagePath;
-use crate::resolve::Packages;
-use lamplight_diagnostic::source::Package;
+use crate::resolve::{Packages, ROOT};
 use lamplight_diagnostic::{Diagnostic, codes};
-
-/// Number of the root package; dependency `i` has the number `i + 1`.
-pub const ROOT: usize = 0;
 
 /// Extensions of the files that are worth suggesting.
 pub const EXTENSIONS: &[&str] = &["glsl", "vert", "frag", "comp", "h"];
 
-/// The package of that number.
-pub fn package_at(packages: &Packages, number: usize) -> &Package {
-    number
-        .checked_sub(1)
-        .and_then(|index| packages.dependencies.get(index))
-        .unwrap_or(&packages.root)
-}
-
 /// The places to look at, in order: `"path"` is relative to the includer, then to its package's
-/// root; `<name/path>` is in the package of that name, then relative to the root package's root.
+/// root; `<name/path>` is in the package that the includer's package calls by that name, then
+/// relative to the root package's root.
 pub fn include_candidates(
     packages: &Packages,
     includer: &PackagePath,
@@ -30,7 +19,7 @@ pub fn include_candidates(
     let mut places = Vec::new();
     if angled {
         if let Some((name, rest)) = path.split_once('/')
-            && let Some(number) = named_package(packages, name)
+            && let Some(number) = packages.find(includer.0, name)
         {
             places.push((number, normalize_path("", rest).ok_or_else(|| outside_package(path))?));
         }
@@ -45,21 +34,33 @@ pub fn include_candidates(
     Ok(places)
 }
 
+/// A package whose files an `#include` can name, with the name that stands before their paths.
+pub type SearchedPackage<'p> = (usize, Option<&'p str>);
+
 /// The packages whose files an `#include` can name.
-pub fn searched_packages(packages: &Packages, includer: usize, angled: bool) -> Vec<usize> {
-    if angled { (0..=packages.dependencies.len()).collect() } else { vec![includer] }
+pub fn searched_packages(
+    packages: &Packages,
+    includer: usize,
+    angled: bool,
+) -> Vec<SearchedPackage<'_>> {
+    if !angled {
+        return vec![(includer, None)];
+    }
+    let named = packages.scope(includer).names.iter().filter(|(_, number)| **number != ROOT);
+    let named = named.map(|(name, number)| (*number, Some(name.as_str())));
+    std::iter::once((ROOT, None)).chain(named).collect()
 }
 
-/// The path by which an `#include` of the includer would name a file.
+/// The path by which an `#include` of the includer would name a file of a searched package.
 pub fn include_spelling(
-    packages: &Packages,
     includer: &PackagePath,
-    (number, file): (usize, &str),
+    (_, name): SearchedPackage<'_>,
+    file: &str,
     angled: bool,
 ) -> String {
-    match (angled, number) {
-        (true, ROOT) => file.to_owned(),
-        (true, _) => format!("{}/{file}", package_at(packages, number).name),
+    match (angled, name) {
+        (true, None) => file.to_owned(),
+        (true, Some(name)) => format!("{name}/{file}"),
         (false, _) => relative_path(folder_of(&includer.1), file),
     }
 }
@@ -83,15 +84,6 @@ pub fn normalize_path(folder: &str, path: &str) -> Option<String> {
         }
     }
     Some(parts.join("/"))
-}
-
-fn named_package(packages: &Packages, name: &str) -> Option<usize> {
-    let dependency = packages
-        .dependencies
-        .iter()
-        .position(|package| package.name == name)
-        .map(|index| index + 1);
-    dependency.or((packages.root.name == name).then_some(ROOT))
 }
 
 fn folder_of(path: &str) -> &str {

@@ -4,7 +4,7 @@ mod include;
 
 use std::collections::HashMap;
 
-use crate::resolve::Packages;
+use crate::resolve::{Packages, ROOT};
 use lamplight_diagnostic::source::{self, Embedded, LIMITS, SourceId, SourceSet, Span};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_syntax::glsl::{Module, Symbols, parse};
@@ -61,7 +61,7 @@ impl Graph {
         self.modules
             .iter()
             .position(|module| module.source == source)
-            .is_some_and(|module| self.packages[module] == include::ROOT)
+            .is_some_and(|module| self.packages[module] == ROOT)
     }
 
     /// The first file that includes a module, and the line of the `#include`. That file was read
@@ -113,7 +113,7 @@ pub fn load(
     let mut loader = Loader::new(sources, packages);
     let path =
         include::normalize_path("", root).ok_or_else(|| vec![include::outside_package(root)])?;
-    let place = (include::ROOT, path);
+    let place = (ROOT, path);
     if loader.module(&place).map_err(|error| vec![*error])?.is_none() {
         return Err(vec![Diagnostic::error(
             codes::MISSING_INCLUDE,
@@ -133,21 +133,19 @@ pub fn load_all(
     let mut loader = Loader::new(sources, packages);
     for path in paths {
         // The errors of a file are reported when that file is checked on its own.
-        let _ = loader.module(&(include::ROOT, path.clone()));
+        let _ = loader.module(&(ROOT, path.clone()));
     }
     loader.finish("")
 }
 
 /// How a file of the root package may name the files that it can include, in quotes or in angles.
 pub fn include_spellings(packages: &Packages, includer: &str, angled: bool) -> Vec<String> {
-    let place = (include::ROOT, includer.to_owned());
+    let place = (ROOT, includer.to_owned());
     let mut found = Vec::new();
-    for package in include::searched_packages(packages, include::ROOT, angled) {
-        let files = include::package_at(packages, package).files.list(include::EXTENSIONS);
-        let files = files.iter().filter(|file| package != include::ROOT || *file != includer);
-        found.extend(
-            files.map(|file| include::include_spelling(packages, &place, (package, file), angled)),
-        );
+    for searched in include::searched_packages(packages, ROOT, angled) {
+        let files = packages.package(searched.0).files.list(include::EXTENSIONS);
+        let files = files.iter().filter(|file| searched.0 != ROOT || *file != includer);
+        found.extend(files.map(|file| include::include_spelling(&place, searched, file, angled)));
     }
     found
 }
@@ -222,13 +220,21 @@ impl<'a> Loader<'a> {
             .at(span, "no such file");
         let includer = self.places[module].clone();
         let mut spellings = Vec::new();
-        for package in include::searched_packages(self.packages, includer.0, angled) {
-            let files = self.listings.entry(package).or_insert_with(|| {
-                include::package_at(self.packages, package).files.list(include::EXTENSIONS)
-            });
-            spellings.extend(files.iter().map(|file| {
-                include::include_spelling(self.packages, &includer, (package, file), angled)
-            }));
+        let packages = self.packages;
+        if let Some((name, _)) = path.split_once('/').filter(|_| angled)
+            && let Some(notes) = packages.undeclared_notes(includer.0, name)
+        {
+            return notes.into_iter().fold(error, Diagnostic::note);
+        }
+        for searched in include::searched_packages(packages, includer.0, angled) {
+            let files = self
+                .listings
+                .entry(searched.0)
+                .or_insert_with(|| packages.package(searched.0).files.list(include::EXTENSIONS));
+            let spelled = files
+                .iter()
+                .map(|file| include::include_spelling(&includer, searched, file, angled));
+            spellings.extend(spelled);
         }
         error.suggest(path, spellings.iter().map(String::as_str))
     }
@@ -238,7 +244,7 @@ impl<'a> Loader<'a> {
         if let Some(known) = self.known.get(place) {
             return known.clone();
         }
-        let package = include::package_at(self.packages, place.0);
+        let package = self.packages.package(place.0);
         let read =
             source::read(self.sources, package, &place.1).map_err(|error| Box::new(error.into()));
         let found = read.map(|source| source.map(|source| self.add(place, source)));

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use super::replay::Resolution;
-use crate::resolve::Packages;
+use crate::resolve::{Packages, Scope};
 use lamplight_diagnostic::source::SourceId;
 use lamplight_syntax::wesl::{Module, Name, Names, parse_for_editor};
 
@@ -55,8 +55,9 @@ pub struct KeptModules {
     names: Option<Arc<Names>>,
     modules: FxHashMap<Arc<str>, (ParsedModule, u64)>,
     resolutions: FxHashMap<ModuleKey, (Arc<Resolution>, u64)>,
-    /// The names of the package and of its dependencies. Paths start with them.
-    packages: Vec<String>,
+    /// The names of the package and of its dependencies, which are in labels, and what each may
+    /// import. Paths start with names of the latter.
+    packages: (Vec<String>, Vec<Scope>),
     reading: u64,
 }
 
@@ -67,8 +68,8 @@ impl KeptModules {
         let oldest = self.reading.saturating_sub(READINGS);
         self.modules.retain(|_, (_, last)| *last >= oldest);
         self.resolutions.retain(|_, (_, last)| *last >= oldest);
-        let all = std::iter::once(&packages.root).chain(&packages.dependencies);
-        let packages: Vec<String> = all.map(|package| package.name.clone()).collect();
+        let names = packages.all().map(|package| package.name.clone()).collect();
+        let packages = (names, packages.scopes().to_vec());
         if packages != self.packages {
             self.resolutions.clear();
             self.packages = packages;

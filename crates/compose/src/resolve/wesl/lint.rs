@@ -56,8 +56,7 @@ fn absent_package<'l>(loader: &'l Loader<'_>, node: &ModuleNode, path: &Path) ->
     let is_there = |name: Name| {
         let text = loader.names.text(name);
         name == Name::CONSTANTS
-            || loader.package(node.package).name == text
-            || loader.packages.dependency(text).is_some()
+            || loader.packages.find(node.package, text).is_some()
             || node.aliases.contains_key(&name)
     };
     let first = path.segments.first().copied().filter(|_| path.origin == Origin::Scope)?;

@@ -170,11 +170,8 @@ impl<'a> Loader<'a> {
         }
     }
 
-    pub(super) fn package(&self, index: usize) -> &'a Package {
-        match index {
-            0 => &self.packages.root,
-            dependency => &self.packages.dependencies[dependency - 1],
-        }
+    pub(super) fn package(&self, number: usize) -> &'a Package {
+        self.packages.package(number)
     }
 
     /// The module of a package at a path, which is read when first asked for.

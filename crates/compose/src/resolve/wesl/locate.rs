@@ -172,9 +172,8 @@ impl Loader<'_> {
     /// Whether a path may start with the name as that of a package.
     fn is_package(&self, node: u32, name: Name) -> bool {
         let text = self.names.text(name);
-        name == Name::CONSTANTS
-            || self.packages.dependencies.iter().any(|package| package.name == text)
-            || self.package(self.nodes[node as usize].package).name == text
+        let importer = self.nodes[node as usize].package;
+        name == Name::CONSTANTS || self.packages.find(importer, text).is_some()
     }
 
     fn in_package(
@@ -185,12 +184,8 @@ impl Loader<'_> {
         in_circle: bool,
     ) -> Result<Absolute, Diagnostic> {
         let first = self.names.text(segments[0]);
-        let dependency =
-            self.packages.dependencies.iter().position(|package| package.name == first);
-        let own = self.package(self.nodes[node as usize].package).name == first;
-        let package = match dependency {
-            Some(index) => Some(index + 1),
-            None if own => Some(self.nodes[node as usize].package),
+        let package = match self.packages.find(self.nodes[node as usize].package, first) {
+            Some(number) => Some(number),
             None if segments[0] == Name::CONSTANTS => None,
             None if in_circle => return Err(cyclic_import(places.whole)),
             None => return Err(self.unknown_package(node, first, places.first)),
@@ -202,21 +197,18 @@ impl Loader<'_> {
         let error =
             Diagnostic::error(codes::UNKNOWN_PACKAGE, format!("there is no package `{first}`"))
                 .at(span, "not a package");
-        let files = self.package(self.nodes[node as usize].package).files.list(&["wesl", "wgsl"]);
+        let importer = self.nodes[node as usize].package;
+        let files = self.package(importer).files.list(&["wesl", "wgsl"]);
         let own = files.iter().any(|file| file.split(['/', '.']).next() == Some(first));
-        match own {
-            true => {
-                error.note(format!("help: for the module of this package write `package::{first}`"))
-            }
-            false => error.suggest(
-                first,
-                self.packages
-                    .dependencies
-                    .iter()
-                    .map(|package| package.name.as_str())
-                    .chain(["package", "super"]),
-            ),
+        if own {
+            return error
+                .note(format!("help: for the module of this package write `package::{first}`"));
         }
+        if let Some(notes) = self.packages.undeclared_notes(importer, first) {
+            return notes.into_iter().fold(error, Diagnostic::note);
+        }
+        let known = self.packages.scope(importer).names.keys().map(String::as_str);
+        error.suggest(first, known.chain(["package", "super"]))
     }
 
     fn target(
