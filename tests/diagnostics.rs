@@ -32,6 +32,12 @@ pub fn trials() -> Vec<Trial> {
 }
 
 fn check(name: &str, case: &Path) -> Result<(), Failed> {
+    snapshot::check("diagnostics", name, &transcript(case, false)?)
+}
+
+/// The command lines of a case, with what they print on standard error and their exit codes; with
+/// `all`, also what they print on standard output.
+pub fn transcript(case: &Path, all: bool) -> Result<String, Failed> {
     // The case runs in a copy: its outputs must not land in the repository, and the repository's
     // own configuration files must not be found.
     let folder = tempfile::tempdir()?;
@@ -43,15 +49,15 @@ fn check(name: &str, case: &Path) -> Result<(), Failed> {
         writeln!(text, "{line}")?;
         if !line.starts_with('#') {
             let output = run(folder.path(), line)?;
+            if all {
+                text += &String::from_utf8(output.stdout)?;
+            }
             text += &String::from_utf8(output.stderr)?.replace("lamplight.exe", "lamplight");
             writeln!(text, "=> {}\n", output.status.code().ok_or("killed")?)?;
         }
     }
-    snapshot::check(
-        "diagnostics",
-        name,
-        text.lines().map(|line| line.trim_end().to_owned() + "\n").collect::<String>().trim_end(),
-    )
+    let lines = text.lines().map(|line| line.trim_end().to_owned() + "\n");
+    Ok(lines.collect::<String>().trim_end().to_owned())
 }
 
 fn run(folder: &Path, line: &str) -> Result<Output, Failed> {

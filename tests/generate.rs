@@ -1,6 +1,7 @@
 //! `gen`, `merge` and `watch` over a small package. They do only work that is new, caches and shards
 //! do not change a byte, and errors from a cache are those of a fresh run.
 
+mod damaged;
 mod shards;
 mod shared;
 mod watched;
@@ -15,7 +16,7 @@ use libtest_mimic::{Failed, Trial};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use shards::{parallel, shards, wrong_shards};
+use shards::{mixed_shards, newer, parallel, shards, wrong_shards};
 use shared::{foreign_folder, shared_folder, shared_server};
 use watched::watch;
 
@@ -23,7 +24,7 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 17] = [
+    let cases: [Case; 20] = [
         ("comments_and_layout_go_and_nothing_else", layout),
         ("a_second_run_does_nothing", nothing_to_do),
         ("an_edit_compiles_what_it_reaches", edits),
@@ -31,11 +32,14 @@ pub fn trials() -> Vec<Trial> {
         ("caches_change_no_byte", caching),
         ("damaged_records_are_made_again", damage),
         ("lost_blobs_are_written_again", lost_blobs),
+        ("damaged_bundles_are_noticed_and_repaired", damaged::bundles),
         ("mistakes_come_from_the_cache_in_their_new_place", mistakes),
         ("check_compares", check),
         ("shards_merge_to_the_whole", shards),
         ("shards_run_under_gnu_parallel", parallel),
         ("missing_and_foreign_shards_are_noticed", wrong_shards),
+        ("shards_of_another_origin_are_refused", mixed_shards),
+        ("a_newer_bundle_is_kept", newer),
         ("a_key_and_a_target_can_be_chosen", choices),
         ("watch_follows_edits", watch),
         ("a_folder_can_be_shared", shared_folder),

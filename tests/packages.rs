@@ -1,8 +1,12 @@
-//! The library as packages of cargo and npm. The packages that `lamplight export` writes are
-//! complete, can be built, and work with the tools for which they are made.
+//! Packages that depend on others, and the library as packages of cargo and npm.
+//!
+//! A folder of `tests/packages/` is a package with its dependencies. Its file `command` has command
+//! lines, as in `tests/diagnostics/`; a snapshot holds what they print. The packages that
+//! `lamplight export` writes are complete, can be built, and work with the tools for which they are
+//! made.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use lamplight::LIBRARY_FILES;
@@ -13,14 +17,21 @@ use wesl::{CodegenModule, CodegenPkg};
 
 use crate::examples::{cargo, run};
 use crate::shaderlib::{entry_wesl, modules};
-use crate::snapshot::root;
+use crate::diagnostics::transcript;
+use crate::snapshot::{self, root};
 
 pub fn trials() -> Vec<Trial> {
-    vec![
+    let case = |(name, path): (String, PathBuf)| {
+        let check = move |name: &str| snapshot::check("packages", name, &transcript(&path, true)?);
+        Trial::test(format!("packages::case::{name}"), move || check(&name))
+    };
+    let cases = snapshot::cases("packages").into_iter().map(case);
+    let exported = [
         Trial::test("packages::wesl_toml", wesl_toml_is_read),
         Trial::test("packages::cargo", cargo_package_composes),
         Trial::test("packages::npm", npm_package_is_complete),
-    ]
+    ];
+    exported.into_iter().chain(cases).collect()
 }
 
 /// The `wesl` crate finds all modules in the library's `wesl.toml`, and no programs.

@@ -15,10 +15,8 @@ pub const VALUE: u32 = 4;
 pub fn packages(migrated: &Migrated) -> Packages {
     let wesl = |path: &String| path.replace(".wgsl", ".wesl");
     let files = migrated.files.iter().map(|(path, text)| (wesl(path), text.clone())).collect();
-    Packages {
-        root: Package { name: "package".to_owned(), files: Box::new(Memory(files)) },
-        dependencies: Vec::new(),
-    }
+    let files = Box::new(Memory(files));
+    Packages::new(Package { name: "package".to_owned(), files }, Vec::new())
 }
 
 pub fn ours(

@@ -107,10 +107,8 @@ fn files() -> BTreeMap<String, String> {
 }
 
 fn packages(files: &BTreeMap<String, String>) -> Packages {
-    Packages {
-        root: Package { name: "package".to_owned(), files: Box::new(Memory(files.clone())) },
-        dependencies: Vec::new(),
-    }
+    let files = Box::new(Memory(files.clone()));
+    Packages::new(Package { name: "package".to_owned(), files }, Vec::new())
 }
 
 /// The best of several runs, since the first one touches memory for the first time.

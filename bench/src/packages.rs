@@ -105,10 +105,8 @@ fn packages() -> Packages {
     let roots = (0..ROOTS)
         .map(|root| (format!("root_{root}.wesl"), corpus::root(root, Style::Blocks)))
         .collect();
-    Packages {
-        root: Package { name: "package".to_owned(), files: Box::new(Memory(roots)) },
-        dependencies: files.into_iter().enumerate().map(package).collect(),
-    }
+    let root = Package { name: "package".to_owned(), files: Box::new(Memory(roots)) };
+    Packages::new(root, files.into_iter().enumerate().map(package).collect())
 }
 
 fn settings(permutation: usize) -> Settings {

@@ -133,13 +133,10 @@ fn keystroke() -> Result<Duration, Diagnostics> {
     median(|index| {
         let edited = text.replace("fn fs_main", &format!("// {index}\nfn fs_main"));
         let files = BTreeMap::from([(FORWARD.to_owned(), edited)]);
-        let packages = Packages {
-            root: Package { name: "package".to_owned(), files: Box::new(Memory(files)) },
-            dependencies: vec![Package {
-                name: LIBRARY.to_owned(),
-                files: Box::new(LIBRARY_FILES),
-            }],
-        };
+        let packages = Packages::new(
+            Package { name: "package".to_owned(), files: Box::new(Memory(files)) },
+            vec![Package { name: LIBRARY.to_owned(), files: Box::new(LIBRARY_FILES) }],
+        );
         let mut sources = read.clone();
         let settings = of_manifest(&manifest, "")?;
         let graph = wesl::load_kept(&mut sources, &packages, FORWARD, &mut kept)?;

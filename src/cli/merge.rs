@@ -102,7 +102,7 @@ fn values_of(mismatch: ShardMismatch, left: &ShardOrigin, right: &ShardOrigin) -
         ShardMismatch::Settings => (left.settings.clone(), right.settings.clone()),
         ShardMismatch::Sources | ShardMismatch::Whole => return String::new(),
     };
-    format!("\n  {}\n  {}", pair.0.escape_debug(), pair.1.escape_debug())
+    format!("\n  {}\n  {}", pair.0, pair.1)
 }
 
 /// Every permutation of the manifest is in every entry point of its program, in one of the

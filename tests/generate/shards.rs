@@ -78,3 +78,85 @@ pub fn wrong_shards() -> Outcome {
     equal(package.run(&["merge", "merged", "one", "two"])?.status.code(), Some(3))?;
     equal(package.run(&["gen", "--shard", "3/2"])?.status.code(), Some(2))
 }
+
+/// `merge` refuses shards that were not made of the same, and says what differs. Some shards of a
+/// bundle are merged if the user says so, and the others can be added later.
+pub fn mixed_shards() -> Outcome {
+    let package = Package::new()?;
+    package.generate(&["-o", "whole"])?;
+    let shards = [("1/3", "one"), ("2/3", "two"), ("3/3", "three")];
+    for (shard, out) in shards {
+        package.generate(&["--shard", shard, "-o", out])?;
+    }
+    package.run(&["bundle", "pack", "two", "-o", "two.lamplight"])?;
+    package.generate(&["--shard", "2/3", "--target", "wgsl", "-o", "settings"])?;
+    package.generate(&["--shard", "2/4", "-o", "divided"])?;
+    package.write("tint.wesl", &TINT.replace("1.0, 0.0, 0.0", "0.5, 0.0, 0.0"))?;
+    package.generate(&["--shard", "2/3", "-o", "sources"])?;
+    package.write("tint.wesl", TINT)?;
+    package.write("lamplight.toml", &format!("{}# A comment\n", super::MANIFEST))?;
+    package.generate(&["--shard", "2/3", "-o", "manifest"])?;
+    let tool = fs::read_to_string(package.path().join("two/manifest.json"))?;
+    let tool = tool.replace("\"tool\": \"", "\"tool\": \"9");
+    fs::create_dir(package.path().join("tool"))?;
+    package.write("tool/manifest.json", &sealed(&tool)?)?;
+    for (other, reason) in [
+        ("settings", "different settings"),
+        ("divided", "divided differently"),
+        ("sources", "different sources"),
+        ("manifest", "different sources"),
+        ("tool", "different versions of Lamplight"),
+        ("whole", "only one of them is a shard"),
+    ] {
+        for out in ["merged", "merged.lamplight"] {
+            let output = package.run(&["merge", out, "one", other, "three"])?;
+            let told = String::from_utf8_lossy(&output.stderr).into_owned();
+            equal(output.status.code(), Some(3))?;
+            let is_told = told.contains(reason) && told.contains("`one`") && told.contains(other);
+            ensure(is_told, format!("{other}: {told}"))?;
+            ensure(!package.path().join(out).exists(), format!("`{out}` was written"))?;
+        }
+    }
+    let missing = package.run(&["merge", "merged", "one", "three"])?;
+    equal(missing.status.code(), Some(3))?;
+    let told = String::from_utf8_lossy(&missing.stderr).into_owned();
+    ensure(told.contains("part 2 of 3 is missing"), told)?;
+    equal(package.run(&["merge", "part", "one", "three", "--partial"])?.status.code(), Some(0))?;
+    equal(package.run(&["merge", "merged", "part", "two.lamplight"])?.status.code(), Some(0))?;
+    equal(package.files("merged")?, package.files("whole")?)
+}
+
+/// The text of a manifest with the checksum that belongs to it.
+fn sealed(manifest: &str) -> Result<String, libtest_mimic::Failed> {
+    let (text, _) = manifest.rsplit_once("\"checksum\": \"").ok_or("no checksum")?;
+    let with = |sum: &str| format!("{text}\"checksum\": \"{sum}\"\n}}\n");
+    let hash = blake3::hash(with(&"0".repeat(32)).as_bytes());
+    Ok(with(&hash.to_hex()[..32]))
+}
+
+/// A bundle of a newer format is replaced only with `--force`.
+pub fn newer() -> Outcome {
+    let package = Package::new()?;
+    package.generate(&[])?;
+    package.generate(&["-o", "bundle.lamplight"])?;
+    let manifest = fs::read_to_string(package.path().join("bundle/manifest.json"))?;
+    let manifest = manifest.replace("\"version\": 1", "\"version\": 2");
+    package.write("bundle/manifest.json", &manifest)?;
+    let path = package.path().join("bundle.lamplight");
+    let mut bytes = fs::read(&path)?;
+    bytes[8] = 2;
+    fs::write(&path, &bytes)?;
+    for out in ["bundle", "bundle.lamplight"] {
+        let output = package.run(&["gen", "--cache", "cache", "-o", out])?;
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        equal(output.status.code(), Some(1))?;
+        ensure(told.contains("format version 2") && told.contains("--force"), told)?;
+    }
+    equal(fs::read_to_string(package.path().join("bundle/manifest.json"))?, manifest)?;
+    equal(fs::read(&path)?, bytes)?;
+    for out in ["bundle", "bundle.lamplight"] {
+        package.generate(&["--force", "-o", out])?;
+        equal(package.run(&["bundle", "verify", out])?.status.code(), Some(0))?;
+    }
+    Ok(())
+}

@@ -1,10 +1,12 @@
 //! `cargo xtask faults`: tries system calls that fail, runs that are killed at such a call, caches
-//! that answer wrongly, times of files that jump, and a clock that is set while commands run.
+//! that answer wrongly, bundles that are damaged, times of files that jump, and a clock that is set
+//! while commands run.
 //!
 //! A small bundle is generated over an older one, once for each occurrence of each call. `strace`
 //! makes that occurrence fail or end the run. Whatever happens, the folder must hold a complete
 //! bundle afterwards, the older or the newer one. Panics are findings too.
 
+mod bundles;
 mod clocks;
 mod stores;
 
@@ -77,6 +79,7 @@ pub fn run(arguments: &[String]) -> CommandResult {
         }
     }
     findings.extend(stores::run(&package, seed, &mut counts)?);
+    findings.extend(bundles::run(&package, seed, &mut counts)?);
     findings.extend(clocks::run(&package, &mut counts)?);
     for (fault, count) in &counts {
         println!("{fault:22} {count:6}");

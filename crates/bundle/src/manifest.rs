@@ -197,7 +197,7 @@ struct MarkArtifact {
 
 /// Whether the text of a file with the name of a manifest is one of ours.
 pub fn kind_of_manifest(text: &[u8]) -> Before {
-    let Ok(text) = std::str::from_utf8(text) else { return Before::Foreign };
+    let text = &*String::from_utf8_lossy(text);
     let Ok(mark) = serde_json::from_str::<ManifestMark>(text) else {
         return if is_marked(text) { Before::Unreadable } else { Before::Foreign };
     };

@@ -75,9 +75,17 @@ impl Request {
     /// What is asked for, without the shard, as one line.
     fn settings(&self) -> String {
         let Self { program, only, targets, conventions, shard: _ } = self;
-        let only = only.as_ref().map(|only| &only.text);
-        let targets: Vec<&str> = targets.iter().map(|target| target.name()).collect();
-        format!("program {program:?}, only {only:?}, targets {targets:?}, {conventions:?}")
+        let AskedConventions { clip, bounds } = conventions;
+        let names: Vec<&str> = targets.iter().map(|target| target.name()).collect();
+        let said = [
+            program.as_ref().map(|program| format!("program {program}")),
+            only.as_ref().map(|only| format!("only {}", only.text)),
+            (!names.is_empty()).then(|| format!("targets {}", names.join(","))),
+            clip.map(|clip| format!("clip {clip:?}")),
+            bounds.map(|bounds| format!("bounds {bounds:?}")),
+        ];
+        let said: Vec<String> = said.into_iter().flatten().collect();
+        if said.is_empty() { "of the manifest".to_owned() } else { said.join(", ") }
     }
 
     /// The targets of a program, each once and in order.

@@ -10,12 +10,12 @@ use super::{FaultPackage, environment};
 use xtask::CommandFailure;
 
 /// Rounds of each kind of wrong record, each over all records.
-const ROUNDS: usize = 12;
+pub const ROUNDS: usize = 12;
 
 /// What a store returns instead of a record.
-type StoreFault = fn(&[u8], &[u8], u64) -> Vec<u8>;
+pub type StoreFault = fn(&[u8], &[u8], u64) -> Vec<u8>;
 
-const WRONG: &[(&str, StoreFault)] = &[
+pub const WRONG: &[(&str, StoreFault)] = &[
     ("record with a flipped bit", |record, _, number| flipped(record, number)),
     ("record that ends early", |record, _, number| record[..at(record, number)].to_vec()),
     ("another text's record", |_, other, _| other.to_vec()),
@@ -103,7 +103,7 @@ fn shift(path: &Path, days: i64) -> Result<(), CommandFailure> {
     file.set_times(times).map_err(environment)
 }
 
-fn files(folder: &Path) -> Result<Vec<PathBuf>, CommandFailure> {
+pub fn files(folder: &Path) -> Result<Vec<PathBuf>, CommandFailure> {
     let (mut found, mut open) = (Vec::new(), vec![folder.to_owned()]);
     while let Some(folder) = open.pop() {
         for entry in fs::read_dir(folder).map_err(environment)? {

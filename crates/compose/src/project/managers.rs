@@ -53,12 +53,16 @@ impl Manager {
         }
     }
 
-    /// The packages that the manager's file lists, with the names that WESL can spell.
+    /// The packages that the manager's nearest file lists, with the names that WESL can spell. A
+    /// file further above is another package's.
     pub fn listed(self, folder: &Path) -> Vec<(String, String)> {
+        let nearest = |file: &str| {
+            folders_upwards(folder).map(|above| above.join(file)).find(|path| path.is_file())
+        };
         let names = match self {
-            Self::Npm => folders_upwards(folder).find_map(|above| listed_by_npm(&above)),
-            Self::Cargo => folders_upwards(folder).find_map(|above| {
-                let table = read_table(&above.join("Cargo.toml"))?;
+            Self::Npm => nearest("package.json").and_then(|path| listed_by_npm(&path)),
+            Self::Cargo => nearest("Cargo.toml").and_then(|path| {
+                let table = read_table(&path)?;
                 Some(table.get("dependencies")?.as_table()?.keys().cloned().collect())
             }),
         };
@@ -71,8 +75,8 @@ fn spelled_name(name: &str) -> String {
     name.trim_start_matches('@').replace('/', "__").replace('-', "_")
 }
 
-fn listed_by_npm(folder: &Path) -> Option<Vec<String>> {
-    let bytes = input::read_file(&folder.join("package.json"), LIMITS.file_bytes as u64).ok()?;
+fn listed_by_npm(path: &Path) -> Option<Vec<String>> {
+    let bytes = input::read_file(path, LIMITS.file_bytes as u64).ok()?;
     let document: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
     Some(document.get("dependencies")?.as_object()?.keys().cloned().collect())
 }

@@ -1,0 +1,1 @@
+float k() { return 1.0; }

@@ -1,0 +1,2 @@
+#include <n/k.glsl>
+float f() { return k(); }
