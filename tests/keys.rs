@@ -1,6 +1,7 @@
 //! The typed keys that `lamplight keys` writes. They compile, and give the same keys and numbers as
 //! `permute`. A key's number never changes, because engines store it.
 
+mod documentation;
 mod programs;
 
 use std::io::Write as _;
@@ -37,6 +38,7 @@ pub fn trials() -> Vec<Trial> {
                 &["cc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-fsyntax-only"],
             )
         }),
+        Trial::test("keys::documentation_is_no_code", documentation::is_no_code),
         Trial::test("keys::lock_is_up_to_date", up_to_date),
         Trial::test("keys::growth_changes_no_key", growth),
         Trial::test("keys::incomplete_lock_gives_no_numbers", incomplete),

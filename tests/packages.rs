@@ -15,9 +15,9 @@ use libtest_mimic::{Failed, Trial};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use wesl::{CodegenModule, CodegenPkg};
 
+use crate::diagnostics::transcript;
 use crate::examples::{cargo, run};
 use crate::shaderlib::{entry_wesl, modules};
-use crate::diagnostics::transcript;
 use crate::snapshot::{self, root};
 
 pub fn trials() -> Vec<Trial> {

@@ -383,7 +383,7 @@ fn incomplete_merge() -> Outcome {
     let before = listed(&place.at("whole"))?;
     let merge = ["merge", "whole", "part", "--manifest", "lamplight.toml"].map(str::to_owned);
     let (code, said) = place.run(&merge, false)?;
-    let told = format!("expected exit 3 and `a shard is missing`, found {code}: {said}");
-    ensure(code == 3 && said.contains("a shard is missing"), told)?;
+    let told = format!("expected exit 3 and `parts are missing`, found {code}: {said}");
+    ensure(code == 3 && said.contains("parts are missing"), told)?;
     ensure(listed(&place.at("whole"))? == before, "the failing merge changed the folder `whole`")
 }

@@ -130,7 +130,10 @@ fn described_command() -> clap::Command {
 /// What `--color` says, read before the other options: help and wrong usage are printed before
 /// those are read.
 fn asked_for_color() -> clap::ColorChoice {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    // Arguments need not be UTF-8, and those that matter here are.
+    let arguments = std::env::args_os().skip(1);
+    let arguments: Vec<String> =
+        arguments.map(|argument| argument.to_string_lossy().into_owned()).collect();
     let value = |index: usize| match arguments[index].strip_prefix("--color") {
         Some("") => arguments.get(index + 1).map(String::as_str),
         Some(rest) => rest.strip_prefix('='),

@@ -17,6 +17,12 @@ pub fn is_stream(path: &Path) -> bool {
         || fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
 }
 
+/// Whether a path names what this process has open: `/dev/stdin`, or what a shell makes of `<(...)`.
+fn is_open_already(path: &Path) -> bool {
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    ["/dev/stdin", "/dev/fd", "/proc"].iter().any(|known| path.starts_with(known))
+}
+
 /// Reads the text of a stream. It may be as long as a file may be.
 pub fn read_stream(path: &Path) -> Result<String, Failure> {
     let most = LIMITS.file_bytes as u64;
@@ -24,6 +30,14 @@ pub fn read_stream(path: &Path) -> Result<String, Failure> {
     if path.as_os_str() == STANDARD_INPUT {
         stdin().lock().take(most + 1).read_to_end(&mut bytes)?;
     } else {
+        if !is_open_already(path) {
+            return Err(Failure::input(format!(
+                "`{}` is a pipe or a device, and reading it may wait for ever\nhelp: give it as \
+                 standard input: `- < {}`",
+                path.display(),
+                path.display()
+            )));
+        }
         let unreadable =
             |error| Failure::input(format!("cannot read `{}`: {error}", path.display()));
         let file = File::open(path).map_err(unreadable)?;

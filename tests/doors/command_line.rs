@@ -13,6 +13,8 @@ pub const CASES: &[Case] = &[
     ("depfile", depfile),
     ("standard_input", standard_input),
     ("pipes", pipes),
+    #[cfg(unix)]
+    ("arguments_of_any_bytes", bytes),
     ("features_default", features_default),
     ("features_default_of_the_manifest", manifest_features),
 ];
@@ -122,7 +124,42 @@ fn standard_input() -> Outcome {
 fn pipes() -> Outcome {
     let package = Package::new(&[("half.wesl", HALF)])?;
     package.fed("compose /dev/stdin --lang wesl", BOTH)?.ends(0)?.says(&["fn half(x: f32)"])?;
+    if cfg!(unix) {
+        // Nobody writes to this one, so reading it would never end.
+        let pipe = package.path("pipe.wesl");
+        equal(std::process::Command::new("mkfifo").arg(pipe).status()?.success(), true)?;
+        for command in ["compose pipe.wesl", "compile pipe.wesl --target wgsl"] {
+            package.run(command)?.ends(1)?.says(&["pipe.wesl", "is a pipe or a device"])?;
+        }
+        package.run("compose /dev/zero --lang wesl")?.ends(1)?.says(&["is a pipe or a device"])?;
+    }
     Ok(())
+}
+
+/// Arguments that are not UTF-8 name files as others do.
+#[cfg(unix)]
+fn bytes() -> Outcome {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let package = Package::new(&[("half.wesl", HALF)])?;
+    let odd = OsStr::from_bytes(b"odd\xff.wesl");
+    let run = |arguments: &[&OsStr]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_lamplight"));
+        let output = command.args(arguments).current_dir(package.path("")).output()?;
+        Ok::<_, libtest_mimic::Failed>(super::package::Run::from(output))
+    };
+    run(&["compose".as_ref(), odd])?.ends(1)?.says(&["there is no file or folder"])?;
+    run(&["compose".as_ref(), "half.wesl".as_ref(), odd])?
+        .ends(2)?
+        .says(&["unexpected argument"])?;
+    let text = "@fragment fn m() -> @location(0) vec4f { return vec4f(1); }\n";
+    fs::write(package.path("").join(odd), text)?;
+    package.write("a.wesl", text)?;
+    let out = OsStr::from_bytes(b"out\xff");
+    let whole: Vec<&OsStr> =
+        ["compile", "a.wesl", "--target", "wgsl", "-o"].map(OsStr::new).into_iter().collect();
+    run(&[&whole[..], &[out]].concat())?.ends(0)?;
+    equal(package.path("").join(out).join("a.m.frag.wgsl").is_file(), true)
 }
 
 const FLAG: &str = "@fragment fn m() -> @location(0) vec4f {

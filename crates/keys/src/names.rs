@@ -1,5 +1,6 @@
 //! Names of axes and values as identifiers.
 
+use lamplight_diagnostic::is_obeyed;
 use lamplight_permute::Setting;
 
 /// `pcf_3x3` as `Pcf3x3`.
@@ -55,7 +56,21 @@ pub fn comment_lines(prefix: &str, text: &str) -> String {
     // error in a comment of Rust.
     let text = text.replace("\r\n", "\n").replace(['\r', '\u{2028}', '\u{2029}'], "\n");
     text.lines()
-        .map(|line| line.replace(|c: char| c.is_control() && c != '\t', "?"))
+        .map(|line| line.replace(is_obeyed, "?"))
         .map(|line| format!("{}\n", format!("{prefix} {}", line.replace("*/", "* /")).trim_end()))
         .collect()
+}
+
+/// As [`comment_lines`], for a language whose tools run the code in documentation. No line is code:
+/// it is not indented, and no fence begins or ends in it.
+pub fn documentation_lines(prefix: &str, text: &str) -> String {
+    let plain = |line: &str| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        words.join(" ").replace("```", r"\`\`\`").replace("~~~", r"\~\~\~")
+    };
+    comment_lines(prefix, text).lines().fold(String::new(), |mut lines, line| {
+        let indent = &prefix[..prefix.len() - prefix.trim_start().len()];
+        lines.extend([indent, &plain(line), "\n"]);
+        lines
+    })
 }

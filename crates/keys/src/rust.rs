@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::names::{Taken, camel_case, comment_lines, value_name};
+use super::names::{Taken, camel_case, documentation_lines, value_name};
 use super::ordinal::{Ordinals, Says, key_ordinals};
 use super::{KeyLanguage, default_setting, key_axes, key_part};
 use lamplight_bundle::key::{DEFAULT, SEPARATOR};
@@ -72,7 +72,7 @@ fn program_module(program: &Program, lock: Option<&Lock>, name: &str) -> String 
         &program
             .doc
             .as_deref()
-            .map_or(String::new(), |doc| format!("///\n{}", comment_lines("///", doc))),
+            .map_or(String::new(), |doc| format!("///\n{}", documentation_lines("///", doc))),
     );
     let _ =
         writeln!(text, "#[allow(dead_code, non_camel_case_types, clippy::all)]\npub mod {name} {{");
@@ -88,7 +88,8 @@ fn program_module(program: &Program, lock: Option<&Lock>, name: &str) -> String 
 }
 
 fn write_enumeration(RustAxis { axis, ty, variants, .. }: &RustAxis<'_>) -> String {
-    let mut text = axis.doc.as_deref().map_or(String::new(), |doc| comment_lines("    ///", doc));
+    let mut text =
+        axis.doc.as_deref().map_or(String::new(), |doc| documentation_lines("    ///", doc));
     let _ = writeln!(
         text,
         "    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]\n    pub enum {ty} {{"
@@ -116,7 +117,7 @@ fn write_structure(axes: &[RustAxis<'_>]) -> String {
     text.push_str("    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]\n    pub struct Key {\n");
     for RustAxis { axis, field, ty, .. } in axes {
         let doc = axis.doc.as_deref().filter(|_| axis.kind == AxisKind::Bool);
-        text.push_str(&doc.map_or(String::new(), |doc| comment_lines("        ///", doc)));
+        text.push_str(&doc.map_or(String::new(), |doc| documentation_lines("        ///", doc)));
         let _ = writeln!(text, "        pub {field}: {ty},");
     }
     text.push_str("    }\n\n    impl ::core::default::Default for Key {\n        fn default() -> Self {\n            Self {\n");
