@@ -92,6 +92,7 @@ fn contents() -> Result<(Contents, Vec<String>), Box<dyn std::error::Error>> {
     Ok((
         Contents {
             programs: BTreeMap::from([("forward".to_owned(), ProgramContents { axes, languages })]),
+            shard: None,
         },
         keys,
     ))
