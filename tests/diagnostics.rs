@@ -8,15 +8,18 @@
 mod hostile;
 
 use std::collections::BTreeSet;
-use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 use lamplight::diagnostic::codes;
+use lamplight_testing::commands::{run_line, transcript};
 use libtest_mimic::{Failed, Trial};
 
 use crate::snapshot;
+
+/// The command.
+const LAMPLIGHT: &str = env!("CARGO_BIN_EXE_lamplight");
 
 pub fn trials() -> Vec<Trial> {
     let case = |(name, path): (String, PathBuf)| {
@@ -32,52 +35,11 @@ pub fn trials() -> Vec<Trial> {
 }
 
 fn check(name: &str, case: &Path) -> Result<(), Failed> {
-    snapshot::check("diagnostics", name, &transcript(case, false)?)
-}
-
-/// The command lines of a case, with what they print on standard error and their exit codes; with
-/// `all`, also what they print on standard output.
-pub fn transcript(case: &Path, all: bool) -> Result<String, Failed> {
-    // The case runs in a copy: its outputs must not land in the repository, and the repository's
-    // own configuration files must not be found.
-    let folder = tempfile::tempdir()?;
-    copy(case, folder.path())?;
-    let mut text = String::new();
-    for line in
-        fs::read_to_string(case.join("command"))?.lines().filter(|line| !line.trim().is_empty())
-    {
-        writeln!(text, "{line}")?;
-        if !line.starts_with('#') {
-            let output = run(folder.path(), line)?;
-            if all {
-                text += &String::from_utf8(output.stdout)?;
-            }
-            text += &String::from_utf8(output.stderr)?.replace("lamplight.exe", "lamplight");
-            writeln!(text, "=> {}\n", output.status.code().ok_or("killed")?)?;
-        }
-    }
-    let lines = text.lines().map(|line| line.trim_end().to_owned() + "\n");
-    Ok(lines.collect::<String>().trim_end().to_owned())
+    snapshot::check("diagnostics", name, &transcript(LAMPLIGHT, case, false)?)
 }
 
 fn run(folder: &Path, line: &str) -> Result<Output, Failed> {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
-    command.current_dir(folder).env("COLUMNS", "100").args(line.split_whitespace());
-    Ok(command.output()?)
-}
-
-fn copy(from: &Path, to: &Path) -> Result<(), Failed> {
-    fs::create_dir_all(to)?;
-    for entry in fs::read_dir(from)? {
-        let entry = entry?;
-        let (path, name) = (entry.path(), entry.file_name());
-        if path.is_dir() {
-            copy(&path, &to.join(name))?;
-        } else {
-            fs::copy(&path, to.join(name))?;
-        }
-    }
-    Ok(())
+    run_line(LAMPLIGHT, folder, line)
 }
 
 /// Codes that have no recorded case. For most of them, no input is known that leads to them: they are

@@ -11,18 +11,24 @@ use std::process::Command;
 
 use lamplight::LIBRARY_FILES;
 use lamplight::source::Files as _;
+use lamplight_testing::commands::transcript;
 use libtest_mimic::{Failed, Trial};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use wesl::{CodegenModule, CodegenPkg};
 
-use crate::diagnostics::transcript;
 use crate::examples::{cargo, run};
 use crate::shaderlib::{entry_wesl, modules};
 use crate::snapshot::{self, root};
 
 pub fn trials() -> Vec<Trial> {
     let case = |(name, path): (String, PathBuf)| {
-        let check = move |name: &str| snapshot::check("packages", name, &transcript(&path, true)?);
+        let check = move |name: &str| {
+            snapshot::check(
+                "packages",
+                name,
+                &transcript(env!("CARGO_BIN_EXE_lamplight"), &path, true)?,
+            )
+        };
         Trial::test(format!("packages::case::{name}"), move || check(&name))
     };
     let cases = snapshot::cases("packages").into_iter().map(case);

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
+pub mod commands;
 pub mod folders;
 pub mod random;
 pub mod snapshot;

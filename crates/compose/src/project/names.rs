@@ -2,9 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use lamplight_diagnostic::{Diagnostic, codes};
-use lamplight_syntax::wesl::is_path_name;
-use lamplight_syntax::words::{continues_word, is_word};
 use crate::resolve::Scope;
 use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, codes};
