@@ -13,6 +13,7 @@
 pub mod blocks;
 pub mod clip;
 mod columns;
+mod filters;
 pub mod glsl;
 mod header;
 mod isolate;
@@ -147,17 +148,17 @@ pub struct Emitted {
     pub native: Native,
 }
 
-/// Refuses what targets cannot express, before anything is written: overrides whose default is not
-/// a number, and functions that are newer than a target's language.
+/// Refuses what targets cannot express, before anything is written: overrides without a value, and
+/// functions that are newer than a target's language.
 ///
 /// # Errors
-/// `dependent-override`, `emit-failed`; in the author's places where `composed` knows them.
+/// `override-without-value`, `emit-failed`; in the author's places where `composed` knows them.
 pub fn check_targets(
     composed: &Composed,
     validated: &Validated,
     targets: &[Target],
 ) -> Result<(), Diagnostics> {
-    specialise::check_overrides(composed, validated)?;
+    specialise::check_overrides(composed, validated, targets)?;
     lacks::check_lacks(composed, validated, targets)
 }
 
@@ -166,7 +167,7 @@ pub fn check_targets(
 ///
 /// # Errors
 /// `emit-failed` with the writer's message, `naga-internal` where the writer panicked,
-/// `unknown-entry-point`, and `dependent-override`, whose place [`check_targets`] gives.
+/// `unknown-entry-point`, and `override-without-value`, whose place [`check_targets`] gives.
 pub fn emit(validated: &Validated, entry: &str, target: Target) -> Result<Emitted, Diagnostic> {
     emit_for(validated, entry, target, Conventions::default())
 }
@@ -215,21 +216,22 @@ fn written_plainly(
         Diagnostic::error(codes::EMIT_FAILED, format!("target `{}`: {reason}", writer.target))
     };
     let point = &validated.module.entry_points[index];
-    specialise::refuse_overrides(&validated.module)?;
     // WGSL's own layouts are those of its writers.
     let is_glsl = validated.language == Language::Glsl;
     if is_glsl && !strides::wide_arrays(&validated.module, writer.target).is_empty() {
         return Err(failed(strides::WIDE.to_owned()));
     }
-    let source = EmitSource {
-        module: &validated.module,
-        info: &validated.info,
-        stage: point.stage,
-        entry: &point.name,
-        index,
-        conventions,
+    let fixed = match writer.overrides {
+        Overrides::Kept => None,
+        _ => specialise::with_constants(validated, index)?,
     };
-    if writer.overrides == Overrides::Kept || validated.module.overrides.is_empty() {
+    let (module, info, index) = match &fixed {
+        Some((module, info)) => (module, info, 0),
+        None => (&validated.module, &validated.info, index),
+    };
+    let (stage, entry) = (point.stage, point.name.as_str());
+    let source = EmitSource { module, info, stage, entry, index, conventions };
+    if writer.overrides == Overrides::Kept || module.overrides.is_empty() {
         return (writer.write)(&source).map_err(failed);
     }
     if let Some(written) = specialise::write_open(&source, writer) {
@@ -237,8 +239,8 @@ fn written_plainly(
     }
     let chosen = Some((point.stage, point.name.as_str()));
     let (module, info) = naga::back::pipeline_constants::process_overrides(
-        &validated.module,
-        &validated.info,
+        module,
+        info,
         chosen,
         &Default::default(),
     )

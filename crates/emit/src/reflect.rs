@@ -2,8 +2,9 @@
 
 use naga::proc::Layouter;
 use naga::valid::{FunctionInfo, GlobalUse};
-use naga::{AddressSpace, Expression, GlobalVariable, Handle, ImageClass, Module, Type, TypeInner};
+use naga::{AddressSpace, GlobalVariable, Handle, ImageClass, Module, Type, TypeInner};
 
+use super::specialise;
 use super::names::{builtin_name, interpolation_name, sampling_name, type_name};
 use lamplight_bundle::{Binding, BindingKind, Member, Override, Pair, Place, Reflection, Varying};
 use lamplight_diagnostic::{Diagnostic, codes};
@@ -28,13 +29,15 @@ fn entry_point(validated: &Validated, index: usize) -> Result<Reflection, Diagno
             format!("`{}` has a stage that no target has", point.name),
         )
     })?;
+    let defaults = specialise::default_values(validated, index)?;
     let mut layouter = Layouter::default();
     layouter
         .update(module.to_ctx())
         .map_err(|error| Diagnostic::error(codes::NAGA_INTERNAL, error.to_string()))?;
     Ok(Reflection {
         stage,
-        workgroup_size: (point.stage == naga::ShaderStage::Compute).then_some(point.workgroup_size),
+        workgroup_size: (point.stage == naga::ShaderStage::Compute)
+            .then_some(defaults.workgroup_size),
         inputs: entry_inputs(module, &point.function),
         outputs: entry_outputs(module, &point.function),
         bindings: used_bindings(module, info, &layouter),
@@ -42,7 +45,8 @@ fn entry_point(validated: &Validated, index: usize) -> Result<Reflection, Diagno
         overrides: module
             .overrides
             .iter()
-            .map(|(_, constant)| override_of(module, constant))
+            .filter(|(_, constant)| !specialise::is_length(constant))
+            .map(|(handle, constant)| override_of(module, constant, defaults.values.get(&handle)))
             .collect(),
     })
 }
@@ -225,17 +229,22 @@ fn texture_pairs(module: &Module, info: &FunctionInfo) -> Vec<Pair> {
     pairs
 }
 
-fn override_of(module: &Module, constant: &naga::Override) -> Override {
+fn override_of(
+    module: &Module,
+    constant: &naga::Override,
+    default: Option<&naga::Literal>,
+) -> Override {
+    let naga::Override { name, id, ty, init: _ } = constant;
     Override {
-        name: constant.name.clone(),
-        id: constant.id,
-        ty: type_name(module, constant.ty),
-        default: constant.init.and_then(|init| literal_text(module, init)),
+        name: name.clone(),
+        id: *id,
+        ty: type_name(module, *ty),
+        default: default.and_then(|default| literal_text(*default)),
     }
 }
 
-fn literal_text(module: &Module, expression: Handle<Expression>) -> Option<String> {
-    Some(match super::specialise::literal_of(module, expression)? {
+fn literal_text(literal: naga::Literal) -> Option<String> {
+    Some(match literal {
         naga::Literal::F32(value) => format!("{value:?}"),
         naga::Literal::U32(value) => value.to_string(),
         naga::Literal::I32(value) => value.to_string(),

@@ -8,12 +8,10 @@ use lamplight_bundle::{
     Artifact, BoundsChecks, ClipConvention, Convention, Conventions, Target, Unit,
 };
 use lamplight_compose::Composed;
-use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use lamplight_emit::{self as emit, targets};
 use lamplight_files::limits::GROUP_BYTES;
-use lamplight_validate::{
-    self as validate, Validated, check_glsl, on_large_stack, validate, validate_rehearsed,
-};
+use lamplight_validate::{self as validate, Validated, on_large_stack, validate, validate_rehearsed};
 
 /// One text in two forms: as its author reads it, for errors; and without comments and layout,
 /// which is what is compiled.
@@ -138,7 +136,12 @@ fn lint_text(text: &TextForms<'_>) -> Result<Diagnostics, Diagnostics> {
         Ok(validated) => (text.composed, validated),
         Err(_) => (text.lean, validate(text.lean)?),
     };
-    Ok(validate::lint(composed, &validated))
+    let found = validate::lint(composed, &validated);
+    // A text can make a finding an error: `diagnostic(error, derivative_uniformity)`.
+    match found.iter().any(|one| one.severity == Severity::Error) {
+        true => Err(found),
+        false => Ok(found),
+    }
 }
 
 /// Validates a text, reflects its entry point and writes it for some targets.

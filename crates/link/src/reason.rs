@@ -38,6 +38,9 @@ pub enum Reason {
     /// A stub cannot stand for its function: for example, naga's analysis finds that it uses other
     /// variables.
     Stub,
+    /// Two pointers of a call may lead to one variable. Only the whole text shows whether the
+    /// function changes it, which is an error.
+    Alias,
     /// A texture is sampled in a way that no stub can repeat.
     Sampling,
     /// A vertex entry point uses what only fragment shaders have: a derivative or `discard`. The
@@ -73,6 +76,7 @@ impl Reason {
             Self::Large => "the text or a function is too large, or functions name too much",
             Self::Refused => "naga refuses a function by itself",
             Self::Stub => "a stub cannot stand for a function",
+            Self::Alias => "two pointers of a call may lead to one variable",
             Self::Sampling => "a texture is sampled in a way that a stub cannot repeat",
             Self::Stage => "a function is not for this stage",
             Self::Shape => "an output cannot be divided into declarations",

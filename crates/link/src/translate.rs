@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use naga::front::wgsl;
 use naga::valid::ModuleInfo;
-use naga::{Function, Module};
+use naga::{Function, GlobalVariable, Handle, Module};
 use rustc_hash::FxHashSet;
 
 use super::canonical::{IDLE, Recipe, UnitId};
@@ -22,7 +22,7 @@ use lamplight_compose::Composed;
 use lamplight_emit as emit;
 use lamplight_emit::spirv::words;
 use lamplight_validate::{
-    Validated, check_switches, guard, info_of, is_bounded, is_calm, on_large_stack, parse_glsl,
+    Validated, guard, info_of, is_bounded, is_calm, may_alias, on_large_stack, store_loop_values,
 };
 
 /// A unit in every target.
@@ -88,11 +88,15 @@ fn translate_inner(
     if !is_bounded(&module) {
         return Err(Reason::Refused);
     }
+    store_loop_values(&mut module);
     show_stubs(outline, recipe, &mut module)?;
     call_function(outline, recipe, &mut module)?;
     let info = info_of(&module).map_err(|_| Reason::Refused)?;
     if outline.language == Language::Glsl {
         check_switches(composed, &module, &info).map_err(|_| Reason::Refused)?;
+    }
+    if aliases(&module, &info) {
+        return Err(Reason::Alias);
     }
     let summary = checked_summary(outline, recipe, &module, &info)?;
     let is_entry = recipe.unit == UnitId::Entry;
@@ -109,6 +113,16 @@ fn translate_inner(
     let targets =
         targets.iter().map(|target| write_target(outline, recipe, &parsed, *target, conventions));
     Ok(Translated { summary, targets: targets.collect(), reflection })
+}
+
+/// Whether two pointers of a call may lead to one variable. What a stub does to it is not known.
+fn aliases(module: &Module, info: &ModuleInfo) -> bool {
+    let names = |callee: Handle<Function>, global: Handle<GlobalVariable>| {
+        !info[callee][global].is_empty()
+    };
+    let points = module.entry_points.iter().map(|point| &point.function);
+    let mut all = module.functions.iter().map(|(_, function)| function).chain(points);
+    all.any(|function| may_alias(module, function, &names))
 }
 
 fn parse_recipe(outline: &Outline<'_>, text: &str) -> Result<Module, Reason> {

@@ -4,23 +4,29 @@
 //! naga recurses over what it reads, and it panics on some inputs. So its input is bounded first
 //! ([`limits`]), and every call runs on a large stack with panics caught ([`guard`]).
 
+mod alias;
 mod constants;
 mod every;
 mod glsl;
 mod guard;
 mod hints;
 mod limits;
+mod loops;
+mod operands;
 mod rehearsal;
 mod report;
 mod sizes;
 mod uniformity;
 mod words;
 
+pub use alias::{NamesGlobal, may_alias};
 pub use every::validate_every;
 pub use glsl::{check_glsl, check_switches, parse_glsl};
 pub use guard::{catch_panics, guard, on_large_stack};
 pub use hints::glsl_words;
 pub use limits::{LIMITS, NagaLimits};
+pub use loops::store_loop_values;
+pub use operands::{change_operands, operands};
 #[doc(hidden)]
 pub use rehearsal::{RehearsalJob, RehearsalOutputs, STAGE, rehearse};
 pub use uniformity::{has_lints, lint};
@@ -44,10 +50,13 @@ pub struct Validated {
 }
 
 /// What every target of the crate supports. Sample shading and cube arrays are included, since naga
-/// takes them for granted; the targets without cube arrays refuse them. Types of 16 or 64 bits are
-/// not included.
+/// takes them for granted; the targets without cube arrays refuse them. So are `pack2x16float`
+/// and what is like it, which the targets without it refuse. Types of 16 or 64 bits are not
+/// included.
 pub const CAPABILITIES: Capabilities =
-    Capabilities::MULTISAMPLED_SHADING.union(Capabilities::CUBE_ARRAY_TEXTURES);
+    Capabilities::MULTISAMPLED_SHADING
+        .union(Capabilities::CUBE_ARRAY_TEXTURES)
+        .union(Capabilities::SHADER_FLOAT16_IN_FLOAT32);
 
 /// Parses and validates.
 ///
@@ -110,7 +119,7 @@ pub fn is_bounded(module: &naga::Module) -> bool {
     sizes::check_sizes(module).is_none()
 }
 
-fn analyse_module(composed: &Composed, module: naga::Module) -> Result<Validated, Diagnostics> {
+fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Validated, Diagnostics> {
     if let Some(large) = sizes::check_sizes(&module) {
         let error = Diagnostic::error(codes::LIMIT_EXCEEDED, large.message);
         let range = large.span.to_range().unwrap_or(0..0);
@@ -122,11 +131,13 @@ fn analyse_module(composed: &Composed, module: naga::Module) -> Result<Validated
     if let Some(name) = compute_with_inputs(&module) {
         return Err(vec![inputs_of_compute(composed, name)]);
     }
+    store_loop_values(&mut module);
     let info = info_of(&module)
         .map_err(|error| vec![report::validation_error(composed, &module, &error)])?;
     if composed.language == Language::Glsl {
         check_switches(composed, &module, &info)?;
     }
+    alias::refuse_aliases(composed, &module).map_err(|error| vec![error])?;
     Ok(Validated { language: composed.language, module, info })
 }
 

@@ -1,6 +1,7 @@
 //! Warns of derivatives in non-uniform control flow, and of samples that choose their level by
 //! derivatives there. GPUs give undefined results, browsers refuse such shaders, and naga accepts
-//! them.
+//! them. The filters of the text, such as `diagnostic(off, derivative_uniformity)`, decide whether
+//! it is a warning, an error, or nothing.
 //!
 //! Values that differ between fragments are followed from the inputs of the fragment stage through
 //! expressions, variables, arguments and results. What cannot be followed counts as uniform, since
@@ -8,11 +9,15 @@
 
 use std::collections::BTreeMap;
 
+use naga::diagnostic_filter::{
+    DiagnosticFilter, DiagnosticFilterNode, FilterableTriggeringRule,
+    StandardFilterableTriggeringRule,
+};
 use naga::{Block, Expression, Function, Handle, SampleLevel, ShaderStage, Span, Statement};
 
 use super::Validated;
 use lamplight_compose::Composed;
-use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 
 /// The most rounds in which facts move from function to function. Longer chains of calls stay
 /// unknown.
@@ -51,10 +56,13 @@ fn derivative_warning(
         ),
         false => ("a derivative", "help: take it before the branch"),
     };
-    let warning = Diagnostic::warning(
-        codes::NON_UNIFORM_DERIVATIVE,
-        format!("{what} in non-uniform control flow"),
-    );
+    let warning = Diagnostic {
+        severity: finding.severity,
+        ..Diagnostic::error(
+            codes::NON_UNIFORM_DERIVATIVE,
+            format!("{what} in non-uniform control flow"),
+        )
+    };
     let place = composed.map.lookup(range);
     // A lean text has no places at all.
     if place.is_none() && !composed.map.is_empty() {
@@ -73,8 +81,31 @@ fn derivative_warning(
 /// A derivative in non-uniform control flow.
 struct DerivativeFinding {
     sample: bool,
+    severity: Severity,
     /// The condition that made control flow non-uniform.
     cause: Span,
+}
+
+/// How much a finding in a function weighs, by the filters of the function and of the module; `None`
+/// where they turn it off. A message of the severity `info` is a warning.
+fn severity_in(module: &naga::Module, function: &Function) -> Option<Severity> {
+    let rule =
+        FilterableTriggeringRule::Standard(StandardFilterableTriggeringRule::DerivativeUniformity);
+    let mut next = function.diagnostic_filter_leaf;
+    while let Some(handle) = next {
+        let DiagnosticFilterNode { inner, parent } = &module.diagnostic_filters[handle];
+        let DiagnosticFilter { new_severity, triggering_rule } = inner;
+        if *triggering_rule == rule {
+            return match new_severity {
+                naga::diagnostic_filter::Severity::Off => None,
+                naga::diagnostic_filter::Severity::Info
+                | naga::diagnostic_filter::Severity::Warning => Some(Severity::Warning),
+                naga::diagnostic_filter::Severity::Error => Some(Severity::Error),
+            };
+        }
+        next = *parent;
+    }
+    Some(Severity::Warning)
 }
 
 /// What is known of one function.
@@ -294,11 +325,12 @@ impl<'a> UniformityWalk<'_, 'a> {
             Expression::Derivative { .. } => false,
             _ => return,
         };
+        let Some(severity) = severity_in(self.flow.module, self.function) else { return };
         if let Some(range) = self.function.expressions.get_span(handle).to_range() {
             self.flow
                 .found
                 .entry((range.start, range.end))
-                .or_insert(DerivativeFinding { sample, cause });
+                .or_insert(DerivativeFinding { sample, severity, cause });
         }
     }
 

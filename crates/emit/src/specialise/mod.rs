@@ -5,16 +5,23 @@
 //! where each variable becomes what the language has for overrides: a specialisation constant in
 //! SPIR-V, a function constant in MSL, a macro elsewhere.
 
+mod fixed;
+mod kept;
 mod spirv;
 mod text;
+
+pub use fixed::{default_values, is_length, with_constants};
+pub use kept::{with_expressions, written_module};
+
+use std::collections::BTreeSet;
 
 use naga::back::wgsl::{WriterFlags, write_string};
 use naga::{Expression, Handle, Literal, Module, Override, Scalar, ScalarKind, TypeInner};
 
-use super::{EmitSource, Emitted, Overrides, TargetEntry};
-use lamplight_bundle::OverrideChoice;
+use super::{EmitSource, Emitted, Overrides, TargetEntry, targets};
+use lamplight_bundle::{OverrideChoice, Target};
 use lamplight_compose::Composed;
-use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+use lamplight_diagnostic::Diagnostics;
 use lamplight_validate::{Validated, info_unchecked};
 
 /// An override that stays open.
@@ -38,41 +45,35 @@ impl OpenOverride {
     }
 }
 
-/// Refuses overrides whose default is not a number, such as one that depends on another override.
-/// Only WGSL could express such a default, and naga's writer of WGSL cannot.
+/// Refuses overrides without a value, where a target or the size of a workgroup needs one.
 ///
 /// # Errors
-/// `dependent-override` for each, in the author's place where `composed` knows it.
-pub fn check_overrides(composed: &Composed, validated: &Validated) -> Result<(), Diagnostics> {
-    let found = dependent_overrides(&validated.module).map(|(name, span)| {
-        let place = span.to_range().and_then(|range| composed.map.lookup(range));
-        let error = override_refusal(name);
-        place.into_iter().fold(error, |error, span| error.at(span, "its default is not a number"))
+/// `override-without-value` for each, in the author's place where `composed` knows it.
+pub fn check_overrides(
+    composed: &Composed,
+    validated: &Validated,
+    targets: &[Target],
+) -> Result<(), Diagnostics> {
+    let module = &validated.module;
+    let entries = targets::ALL.iter().filter(|entry| targets.contains(&entry.target));
+    let mut closed = entries.filter(|entry| entry.overrides != Overrides::Kept);
+    let target = closed.next().map(|entry| format!("target `{}`", entry.target));
+    let sizes = module.entry_points.iter().flat_map(|point| fixed::deciding_size(module, point));
+    let sizes: BTreeSet<Handle<Override>> = sizes.collect();
+    let without = module.overrides.iter().filter(|(_, one)| one.init.is_none());
+    let found = without.filter_map(|(handle, _)| {
+        let needed = match &target {
+            _ if sizes.contains(&handle) => "the size of a workgroup",
+            Some(target) => target.as_str(),
+            None => return None,
+        };
+        let error = fixed::missing_value(fixed::shown_name(module, handle), needed);
+        let place = module.overrides.get_span(handle).to_range();
+        let place = place.and_then(|range| composed.map.lookup(range));
+        Some(place.into_iter().fold(error, |error, span| error.at(span, "it has no default")))
     });
     let found: Diagnostics = found.collect();
     if found.is_empty() { Ok(()) } else { Err(found) }
-}
-
-/// Fails as [`check_overrides`] does, but without places.
-pub fn refuse_overrides(module: &Module) -> Result<(), Diagnostic> {
-    dependent_overrides(module).next().map_or(Ok(()), |(name, _)| Err(override_refusal(name)))
-}
-
-fn override_refusal(name: &str) -> Diagnostic {
-    Diagnostic::error(
-        codes::DEPENDENT_OVERRIDE,
-        format!("the default of override `{name}` depends on another override"),
-    )
-    .note("help: compute it where it is used: `let x = ...;` in a function may use any override")
-}
-
-fn dependent_overrides(module: &Module) -> impl Iterator<Item = (&str, naga::Span)> {
-    let overrides = module.overrides.iter();
-    let computed = overrides
-        .filter(|(_, found)| found.init.is_some_and(|init| literal_of(module, init).is_none()));
-    computed.map(|(handle, found)| {
-        (found.name.as_deref().unwrap_or("without a name"), module.overrides.get_span(handle))
-    })
 }
 
 /// The value of an expression that is a literal, a zero value, or a constant with such a value.
@@ -199,6 +200,12 @@ fn opened_module(
     }
     let info = info_unchecked(&module).map_err(|error| error.to_string())?;
     Ok((module, info))
+}
+
+/// Whether a line of naga's WGSL declares an override.
+pub fn is_override_line(line: &str) -> bool {
+    let behind_id = line.strip_prefix("@id(").and_then(|line| line.split_once(") "));
+    behind_id.map_or(line, |(_, rest)| rest).starts_with("override ")
 }
 
 fn declared_variable(line: &str) -> String {

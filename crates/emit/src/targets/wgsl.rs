@@ -7,7 +7,9 @@ use naga::back::wgsl::{Writer, WriterFlags};
 use lamplight_bundle::{OverrideChoice, Target};
 use crate::slots::{Numbering, native_reflection};
 use crate::text::BoundedText;
-use crate::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip};
+use crate::{
+    EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip, filters, specialise,
+};
 
 /// The target, for the table of all.
 pub const TARGET: TargetEntry = TargetEntry {
@@ -16,7 +18,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     binary: false,
     about: "WGSL (WebGPU)",
     glsl: None,
-    header: &["enable ", "requires "],
+    header: &["enable ", "requires ", "diagnostic("],
     overrides: Overrides::Kept,
     judged: JudgeRules { judge: "naga_tint", rules: &[] },
     clip: &clip::SHARED,
@@ -24,10 +26,19 @@ pub const TARGET: TargetEntry = TargetEntry {
 };
 
 fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
+    let written = specialise::written_module(source.module)?;
+    let module = written.as_ref().unwrap_or(source.module);
     let mut text = BoundedText::default();
-    let written = Writer::new(&mut text, WriterFlags::empty()).write(source.module, source.info);
-    written.map_err(|error| text.explain(error))?;
-    let text = text.0;
+    let done = Writer::new(&mut text, WriterFlags::empty()).write(module, source.info);
+    done.map_err(|error| text.explain(error))?;
+    let text = with_largest_numbers(text.0);
+    let names: Vec<String> =
+        declared_names(&text, "override", None).map(str::to_owned).collect();
+    let text = match written {
+        Some(_) => specialise::with_expressions(&text, source.module, &names)?,
+        None => text,
+    };
+    let text = filters::with_filters(&text, source.module)?;
     // naga does not tell the names that it wrote, and it appends an underscore to names that end
     // with a digit.
     let entry =
@@ -35,10 +46,25 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let mut native = native_reflection(source, entry, Numbering::Author);
     let overrides = source.module.overrides.iter().map(|(_, constant)| constant);
     native.choices = overrides
-        .zip(declared_names(&text, "override", None))
+        .zip(names.iter().map(String::as_str))
         .filter_map(override_choice)
         .collect();
     Ok(Emitted { bytes: text.into_bytes(), native })
+}
+
+/// The text with the largest number in hexadecimal. naga writes it with all its digits, which are
+/// those of a number that is a little larger, and browsers refuse that.
+fn with_largest_numbers(text: String) -> String {
+    const DECIMAL: &str = "340282350000000000000000000000000000000f";
+    let mut parts = text.split(DECIMAL);
+    let mut changed = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        // A name can end with these digits.
+        let is_name = changed.ends_with(|last: char| last == '_' || last.is_alphanumeric());
+        changed += if is_name { DECIMAL } else { "0x1.fffffep+127f" };
+        changed += part;
+    }
+    changed
 }
 
 fn override_choice((constant, written): (&naga::Override, &str)) -> Option<OverrideChoice> {

@@ -1,0 +1,81 @@
+//! The filters of WGSL's own diagnostics, such as `diagnostic(off, derivative_uniformity)`. Without
+//! them a browser refuses what the author allowed. naga reads them and does not write them.
+
+use naga::diagnostic_filter::{
+    DiagnosticFilter, DiagnosticFilterNode, FilterableTriggeringRule, Severity,
+    StandardFilterableTriggeringRule,
+};
+use naga::{Function, Handle, Module};
+
+type Leaf = Option<Handle<DiagnosticFilterNode>>;
+
+/// The text that naga wrote of a module, with the filters of the module and of its functions.
+///
+/// # Errors
+/// A message, where the text has another number of functions than the module.
+pub fn with_filters(text: &str, module: &Module) -> Result<String, String> {
+    if module.diagnostic_filters.is_empty() {
+        return Ok(text.to_owned());
+    }
+    let own = written(module, module.diagnostic_filter_leaf, None);
+    let directives: String = own.iter().map(|filter| format!("diagnostic{filter};\n")).collect();
+    let functions = module.functions.iter().map(|(_, function)| function);
+    let mut functions = functions.chain(module.entry_points.iter().map(|point| &point.function));
+    let (mut out, mut has_directives) = (String::with_capacity(text.len()), false);
+    for line in text.split_inclusive('\n') {
+        // Directives come after `enable` and before all declarations.
+        if !has_directives && !super::is_header_line(line) {
+            out.push_str(&directives);
+            has_directives = true;
+        }
+        if line.starts_with("fn ") {
+            // naga adds functions of its own behind those of the module.
+            if let Some(function) = functions.next() {
+                out.push_str(&attributes(module, function));
+            }
+        }
+        out.push_str(line);
+    }
+    match functions.next() {
+        None => Ok(out),
+        Some(_) => Err("a function was not written".to_owned()),
+    }
+}
+
+fn attributes(module: &Module, function: &Function) -> String {
+    let own = written(module, function.diagnostic_filter_leaf, module.diagnostic_filter_leaf);
+    own.iter().map(|filter| format!("@diagnostic{filter} ")).collect()
+}
+
+/// The filters between two nodes, the outermost first, as WGSL writes their arguments.
+fn written(module: &Module, leaf: Leaf, end: Leaf) -> Vec<String> {
+    let (mut next, mut found) = (leaf, Vec::new());
+    while let Some(handle) = next.filter(|_| next != end) {
+        let DiagnosticFilterNode { inner, parent } = &module.diagnostic_filters[handle];
+        let DiagnosticFilter { new_severity, triggering_rule } = inner;
+        let rule = rule_name(triggering_rule);
+        found.push(format!("({}, {rule})", severity_name(*new_severity)));
+        next = *parent;
+    }
+    found.reverse();
+    found
+}
+
+fn severity_name(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Off => "off",
+        Severity::Info => "info",
+        Severity::Warning => "warning",
+        Severity::Error => "error",
+    }
+}
+
+fn rule_name(rule: &FilterableTriggeringRule) -> String {
+    match rule {
+        FilterableTriggeringRule::Standard(
+            StandardFilterableTriggeringRule::DerivativeUniformity,
+        ) => "derivative_uniformity".to_owned(),
+        FilterableTriggeringRule::Unknown(name) => name.to_string(),
+        FilterableTriggeringRule::User(names) => names.join("."),
+    }
+}

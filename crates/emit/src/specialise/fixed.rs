@@ -1,0 +1,267 @@
+//! Overrides that decide a size, or the default of another override.
+//!
+//! In WGSL the host may choose them too. The other languages, as naga writes them, have a number
+//! for the size of a workgroup and for the length of an array, and a number for the default of
+//! each override. So there these overrides are constants, with their defaults.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use naga::back::PipelineConstants;
+use naga::back::pipeline_constants::process_overrides;
+use naga::compact::{KeepUnused, compact};
+use naga::valid::ModuleInfo;
+use naga::{
+    ArraySize, EntryPoint, Expression, Function, Handle, Literal, Module, Override, Span, Type,
+    TypeInner,
+};
+
+use super::literal_of;
+use lamplight_diagnostic::{Diagnostic, codes};
+use lamplight_validate::{Validated, info_unchecked, operands};
+
+type Overrides = BTreeSet<Handle<Override>>;
+
+/// What sizes and defaults are where no override is set.
+pub struct DefaultValues {
+    /// The values of all overrides that the entry point needs.
+    pub values: BTreeMap<Handle<Override>, Literal>,
+    pub workgroup_size: [u32; 3],
+}
+
+/// Whether nobody wrote the override: it stands for the length of an array that depends on others.
+pub fn is_length(found: &Override) -> bool {
+    let Override { name, id, ty: _, init: _ } = found;
+    name.is_none() && id.is_none()
+}
+
+/// The overrides that decide a size, or the default of another override; and those others.
+pub fn deciding(module: &Module) -> Overrides {
+    let mut found = Overrides::new();
+    for point in &module.entry_points {
+        found.append(&mut deciding_size(module, point));
+    }
+    for (_, ty) in module.types.iter() {
+        found.extend(pending_length(&ty.inner));
+    }
+    let computed = module.overrides.iter().filter(|(_, one)| is_computed(module, one));
+    found.extend(computed.map(|(handle, _)| handle));
+    with_named(module, found)
+}
+
+/// The overrides that decide the size of an entry point's workgroups.
+pub fn deciding_size(module: &Module, point: &EntryPoint) -> Overrides {
+    let mut found = Overrides::new();
+    let sizes = point.workgroup_size_overrides.iter().flatten().flatten();
+    sizes.for_each(|size| collect_named(module, *size, &mut found));
+    with_named(module, found)
+}
+
+/// These overrides, and those that their defaults name.
+fn with_named(module: &Module, mut found: Overrides) -> Overrides {
+    let mut open: Vec<_> = found.iter().copied().collect();
+    while let Some(handle) = open.pop() {
+        let mut named = Overrides::new();
+        if let Some(init) = module.overrides[handle].init {
+            collect_named(module, init, &mut named);
+        }
+        open.extend(named.difference(&found));
+        found.append(&mut named);
+    }
+    found
+}
+
+/// Whether the default is computed from other overrides.
+pub fn is_computed(module: &Module, found: &Override) -> bool {
+    found.init.is_some_and(|init| literal_of(module, init).is_none())
+}
+
+/// The override that is the length of an array.
+pub fn pending_length(inner: &TypeInner) -> Option<Handle<Override>> {
+    match inner {
+        TypeInner::Array { base: _, size: ArraySize::Pending(length), stride: _ }
+        | TypeInner::BindingArray { base: _, size: ArraySize::Pending(length) } => Some(*length),
+        _ => None,
+    }
+}
+
+/// Adds the overrides that a constant expression names.
+fn collect_named(module: &Module, expression: Handle<Expression>, found: &mut Overrides) {
+    let mut open = vec![expression];
+    while let Some(expression) = open.pop() {
+        match &module.global_expressions[expression] {
+            Expression::Override(handle) => {
+                found.insert(*handle);
+            }
+            other => open.extend(operands(other)),
+        }
+    }
+}
+
+/// The error about an override that has no value where one is needed.
+pub fn missing_value(name: &str, needed: &str) -> Diagnostic {
+    let message = format!("the override `{name}` has no value, which {needed} needs");
+    Diagnostic::error(codes::OVERRIDE_WITHOUT_VALUE, message).note(format!(
+        "help: give it a default, or a value from outside: `--constant {name}=VALUE`"
+    ))
+}
+
+/// The name of an override, for people.
+pub fn shown_name(module: &Module, handle: Handle<Override>) -> &str {
+    module.overrides[handle].name.as_deref().unwrap_or("without a name")
+}
+
+/// Computes sizes and defaults. An override without a value is left out, unless the size of a
+/// workgroup needs it.
+///
+/// # Errors
+/// `override-without-value`; `emit-failed` where the computation fails or a size is 0.
+pub fn default_values(validated: &Validated, index: usize) -> Result<DefaultValues, Diagnostic> {
+    let module = &validated.module;
+    let point = &module.entry_points[index];
+    if deciding(module).is_empty() {
+        let literal = |one: &Override| one.init.and_then(|init| literal_of(module, init));
+        let all = module.overrides.iter();
+        let values = all.filter_map(|(handle, one)| Some((handle, literal(one)?))).collect();
+        return Ok(DefaultValues { values, workgroup_size: point.workgroup_size });
+    }
+    let without: Overrides = module
+        .overrides
+        .iter()
+        .filter(|(_, one)| one.init.is_none())
+        .map(|(handle, _)| handle)
+        .collect();
+    let needed = deciding_size(module, point);
+    if let Some(missing) = needed.intersection(&without).next() {
+        return Err(missing_value(shown_name(module, *missing), "the size of a workgroup"));
+    }
+    let mut named = module.clone();
+    for (handle, found) in named.overrides.iter_mut() {
+        (found.name, found.id) = (Some(number_name(handle)), None);
+    }
+    // naga computes nothing while a value is missing. What depends on these is left out below.
+    let assumed = without.iter().map(|handle| (number_name(*handle), 1.0));
+    let assumed: PipelineConstants = assumed.collect();
+    let entry = Some((point.stage, point.name.as_str()));
+    let (made, _) = process_overrides(&named, &validated.info, entry, &assumed)
+        .map_err(|error| Diagnostic::error(codes::EMIT_FAILED, error.to_string()))?;
+    let computed: BTreeMap<&str, Literal> = made
+        .overrides
+        .iter()
+        .filter_map(|(_, one)| Some((one.name.as_deref()?, literal_of(&made, one.init?)?)))
+        .collect();
+    let is_known = |handle| with_named(module, Overrides::from([handle])).is_disjoint(&without);
+    let values = module.overrides.iter().filter(|(handle, _)| is_known(*handle));
+    let values = values.filter_map(|(handle, _)| {
+        Some((handle, *computed.get(number_name(handle).as_str())?))
+    });
+    let workgroup_size = match made.entry_points.as_slice() {
+        [only] => only.workgroup_size,
+        all => all.get(index).map_or(point.workgroup_size, |one| one.workgroup_size),
+    };
+    Ok(DefaultValues { values: values.collect(), workgroup_size })
+}
+
+/// A name that leads back to the override after naga has left some of them out.
+fn number_name(handle: Handle<Override>) -> String {
+    format!("lamplight_{}", handle.index())
+}
+
+/// The module of one entry point, in which the overrides that decide something are constants; `None`
+/// where there are none.
+///
+/// # Errors
+/// `override-without-value`, and those of [`default_values`].
+pub fn with_constants(
+    validated: &Validated,
+    index: usize,
+) -> Result<Option<(Module, ModuleInfo)>, Diagnostic> {
+    let deciding = deciding(&validated.module);
+    if deciding.is_empty() {
+        return Ok(None);
+    }
+    let DefaultValues { values, workgroup_size } = default_values(validated, index)?;
+    let mut module = validated.module.clone();
+    module.entry_points = vec![module.entry_points.swap_remove(index)];
+    let fixed: BTreeMap<Handle<Override>, Literal> =
+        values.into_iter().filter(|(handle, _)| deciding.contains(handle)).collect();
+    for (_, expression) in module.global_expressions.iter_mut() {
+        put_literal(expression, &fixed);
+    }
+    for (_, function) in module.functions.iter_mut() {
+        put_literals(function, &fixed);
+    }
+    for point in &mut module.entry_points {
+        put_literals(&mut point.function, &fixed);
+        (point.workgroup_size, point.workgroup_size_overrides) = (workgroup_size, None);
+    }
+    put_lengths(&mut module, &fixed)?;
+    // Whatever still names an override without a value keeps it, and the caller refuses it.
+    for (handle, value) in &fixed {
+        let init = Expression::Literal(*value);
+        let init = module.global_expressions.append(init, Span::UNDEFINED);
+        module.overrides[*handle].init = Some(init);
+    }
+    compact(&mut module, KeepUnused::No);
+    let info = info_unchecked(&module).map_err(|error| {
+        let message = format!("a module with constants for overrides is not valid: {error}");
+        Diagnostic::error(codes::NAGA_INTERNAL, message)
+    })?;
+    Ok(Some((module, info)))
+}
+
+fn put_literals(function: &mut Function, fixed: &BTreeMap<Handle<Override>, Literal>) {
+    function.expressions.iter_mut().for_each(|(_, expression)| put_literal(expression, fixed));
+}
+
+fn put_literal(expression: &mut Expression, fixed: &BTreeMap<Handle<Override>, Literal>) {
+    if let Expression::Override(handle) = expression
+        && let Some(value) = fixed.get(handle)
+    {
+        *expression = Expression::Literal(*value);
+    }
+}
+
+/// Gives arrays their lengths.
+fn put_lengths(
+    module: &mut Module,
+    fixed: &BTreeMap<Handle<Override>, Literal>,
+) -> Result<(), Diagnostic> {
+    let pending: Vec<_> = module
+        .types
+        .iter()
+        .filter_map(|(handle, ty)| Some((handle, pending_length(&ty.inner)?)))
+        .collect();
+    for (handle, length) in pending {
+        let needed = deciding_length(module, length);
+        let value = match fixed.get(&length) {
+            Some(Literal::U32(value)) => std::num::NonZeroU32::new(*value),
+            Some(Literal::I32(value)) => {
+                u32::try_from(*value).ok().and_then(std::num::NonZeroU32::new)
+            }
+            _ => return Err(missing_value(shown_name(module, needed), "the length of an array")),
+        };
+        let value = value.ok_or_else(|| {
+            let name = shown_name(module, needed);
+            let message = format!("the length of an array, which `{name}` decides, is below 1");
+            Diagnostic::error(codes::EMIT_FAILED, message)
+        })?;
+        let Type { mut name, mut inner } = module.types[handle].clone();
+        if let TypeInner::Array { base: _, size, stride: _ }
+        | TypeInner::BindingArray { base: _, size } = &mut inner
+        {
+            *size = ArraySize::Constant(value);
+        }
+        // The module may have the same type already, with a length that is written as a number.
+        while module.types.get(&Type { name: name.clone(), inner: inner.clone() }).is_some() {
+            name.get_or_insert_default().push_str("sized");
+        }
+        module.types.replace(handle, Type { name, inner });
+    }
+    Ok(())
+}
+
+/// The first override with a name that decides a length.
+fn deciding_length(module: &Module, length: Handle<Override>) -> Handle<Override> {
+    let all = with_named(module, Overrides::from([length]));
+    all.into_iter().find(|handle| !is_length(&module.overrides[*handle])).unwrap_or(length)
+}

@@ -1,0 +1,196 @@
+//! Overrides in WGSL where naga's writer does not write them: in the size of a workgroup, in the
+//! length of an array, and in the default of another override.
+//!
+//! naga writes a module that has numbers or nothing in these places, and the expressions are put
+//! into its text.
+
+use naga::back::binary_operation_str;
+use naga::common::wgsl::TryToWgsl;
+use naga::{
+    ArraySize, Expression, Handle, Literal, Module, Override, Scalar, ScalarKind, ShaderStage, Type,
+    TypeInner, UnaryOperator,
+};
+
+use super::fixed::{deciding, is_computed, is_length, pending_length};
+use super::literal_of;
+
+/// The length of the first array whose length is an override, as naga writes it. Those of the
+/// others follow. Text and author's arrays have smaller numbers.
+const FIRST_LENGTH: u32 = 0xfff0_0000;
+
+/// The attributes of a compute shader, up to its size.
+const SIZE: &str = "@compute @workgroup_size(";
+
+/// The module that naga writes; `None` where it writes all overrides itself.
+///
+/// # Errors
+/// A message, where the module has too many such arrays.
+pub fn written_module(module: &Module) -> Result<Option<Module>, String> {
+    if deciding(module).is_empty() {
+        return Ok(None);
+    }
+    let mut written = module.clone();
+    for (number, (handle, _)) in pending_types(module).into_iter().enumerate() {
+        let length = FIRST_LENGTH + number as u32;
+        if number >= 1 << 16 || has_length(module, length) {
+            return Err("an array has a length that is too large".to_owned());
+        }
+        let Type { name, mut inner } = written.types[handle].clone();
+        if let TypeInner::Array { base: _, size, stride: _ }
+        | TypeInner::BindingArray { base: _, size } = &mut inner
+        {
+            *size = ArraySize::Constant(std::num::NonZeroU32::MIN.saturating_add(length - 1));
+        }
+        written.types.replace(handle, Type { name, inner });
+    }
+    for (handle, found) in module.overrides.iter() {
+        if is_length(found) || is_computed(module, found) {
+            written.overrides[handle].init = None;
+        }
+    }
+    Ok(Some(written))
+}
+
+/// The text that naga wrote of [`written_module`], with the expressions in their places. `names` are
+/// those of all overrides, as naga wrote them.
+///
+/// # Errors
+/// A message, where an expression has a form that only functions have.
+pub fn with_expressions(text: &str, module: &Module, names: &[String]) -> Result<String, String> {
+    let print = ExpressionText { module, names };
+    let mut overrides = module.overrides.iter();
+    let mut points = module.entry_points.iter().filter(|one| one.stage == ShaderStage::Compute);
+    let mut out = String::with_capacity(text.len());
+    for line in text.split_inclusive('\n') {
+        if super::is_override_line(line) {
+            let (_, found) = overrides.next().ok_or("an override was written twice")?;
+            match found.init {
+                _ if is_length(found) => {}
+                Some(init) if is_computed(module, found) => {
+                    let declared = line.trim_end().trim_end_matches(';');
+                    out += &format!("{declared} = {};\n", print.expression(init)?);
+                }
+                _ => out.push_str(line),
+            }
+        } else if let Some(rest) = line.strip_prefix(SIZE) {
+            let point = points.next().ok_or("a compute shader was written twice")?;
+            let (_, rest) = rest.split_once(')').ok_or("a size has no end")?;
+            out += &format!("{SIZE}{}){rest}", print.size(point)?);
+        } else {
+            out.push_str(line);
+        }
+    }
+    for (number, (_, length)) in pending_types(module).into_iter().enumerate() {
+        let marked = format!(", {}>", FIRST_LENGTH + number as u32);
+        out = out.replace(&marked, &format!(", {}>", print.name(length)?));
+    }
+    Ok(out)
+}
+
+fn pending_types(module: &Module) -> Vec<(Handle<Type>, Handle<Override>)> {
+    let types = module.types.iter();
+    types.filter_map(|(handle, ty)| Some((handle, pending_length(&ty.inner)?))).collect()
+}
+
+fn has_length(module: &Module, length: u32) -> bool {
+    module.types.iter().any(|(_, ty)| match &ty.inner {
+        TypeInner::Array { base: _, size: ArraySize::Constant(size), stride: _ } => {
+            size.get() == length
+        }
+        _ => false,
+    })
+}
+
+/// Writes constant expressions, which may name overrides.
+struct ExpressionText<'m> {
+    module: &'m Module,
+    names: &'m [String],
+}
+
+impl ExpressionText<'_> {
+    fn size(&self, point: &naga::EntryPoint) -> Result<String, String> {
+        let open = point.workgroup_size_overrides.unwrap_or_default();
+        let sizes = open.iter().zip(point.workgroup_size);
+        let sizes = sizes.map(|(open, number)| match open {
+            Some(expression) => self.expression(*expression),
+            None => Ok(number.to_string()),
+        });
+        Ok(sizes.collect::<Result<Vec<_>, String>>()?.join(", "))
+    }
+
+    fn name(&self, handle: Handle<Override>) -> Result<String, String> {
+        let found = &self.module.overrides[handle];
+        match found.init {
+            Some(init) if is_length(found) => self.expression(init),
+            _ => self.names.get(handle.index()).cloned().ok_or_else(|| "a name is missing".to_owned()),
+        }
+    }
+
+    fn expression(&self, handle: Handle<Expression>) -> Result<String, String> {
+        if let Some(literal) = literal_of(self.module, handle) {
+            return literal_text(literal);
+        }
+        let of = |handle: &Handle<Expression>| self.expression(*handle);
+        Ok(match &self.module.global_expressions[handle] {
+            Expression::Override(handle) => self.name(*handle)?,
+            Expression::Unary { op, expr } => {
+                let sign = match op {
+                    UnaryOperator::Negate => "-",
+                    UnaryOperator::LogicalNot => "!",
+                    UnaryOperator::BitwiseNot => "~",
+                };
+                format!("{sign}({})", of(expr)?)
+            }
+            Expression::Binary { op, left, right } => {
+                format!("({} {} {})", of(left)?, binary_operation_str(*op), of(right)?)
+            }
+            Expression::Select { condition, accept, reject } => {
+                format!("select({}, {}, {})", of(reject)?, of(accept)?, of(condition)?)
+            }
+            Expression::As { expr, kind, convert } => {
+                let ty = scalar_name(*kind)?;
+                match convert {
+                    Some(_) => format!("{ty}({})", of(expr)?),
+                    None => format!("bitcast<{ty}>({})", of(expr)?),
+                }
+            }
+            Expression::Math { fun, arg, arg1, arg2, arg3 } => {
+                let name = fun.try_to_wgsl().ok_or_else(unwritable)?;
+                let rest = [arg1, arg2, arg3].into_iter().flatten();
+                let given = std::iter::once(arg).chain(rest).map(of);
+                format!("{name}({})", given.collect::<Result<Vec<_>, String>>()?.join(", "))
+            }
+            _ => return Err(unwritable()),
+        })
+    }
+}
+
+fn unwritable() -> String {
+    "a default or a size is computed from overrides in a way that only functions allow".to_owned()
+}
+
+fn scalar_name(kind: ScalarKind) -> Result<&'static str, String> {
+    match kind {
+        ScalarKind::Sint => Ok("i32"),
+        ScalarKind::Uint => Ok("u32"),
+        ScalarKind::Float => Ok("f32"),
+        ScalarKind::Bool => Ok("bool"),
+        ScalarKind::AbstractInt | ScalarKind::AbstractFloat => Err(unwritable()),
+    }
+}
+
+fn literal_text(literal: Literal) -> Result<String, String> {
+    Ok(match literal {
+        Literal::I32(i32::MIN) => "i32(-2147483648)".to_owned(),
+        Literal::I32(value) => format!("{value}i"),
+        Literal::U32(value) => format!("{value}u"),
+        Literal::F32(value) => format!("{value:?}f"),
+        Literal::Bool(value) => value.to_string(),
+        Literal::AbstractInt(value) => value.to_string(),
+        Literal::AbstractFloat(value) => format!("{value:?}"),
+        other => {
+            let Scalar { kind, width } = other.scalar();
+            return Err(format!("a default of {} bits of {kind:?} cannot be written", 8 * width));
+        }
+    })
+}
