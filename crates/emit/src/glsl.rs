@@ -3,7 +3,8 @@
 use naga::back::glsl::{Options, PipelineOptions, ReflectionInfo, Version, Writer, WriterFlags};
 use naga::proc::BoundsCheckPolicies;
 
-use super::lacks;
+use super::lacks::{self, has_since};
+use super::plain::{self, Needs};
 use super::reflect::place_of;
 use super::remainder;
 use super::rename;
@@ -27,6 +28,13 @@ pub fn write_glsl(
     if let Some(reason) = lacks::first_lack(source.module, version) {
         return Err(reason);
     }
+    let plain = plain::with_plain_forms(source.module, source.info, first_needs(version))?;
+    let (module, info) =
+        plain.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
+    // The forms above have choices of their own.
+    let separate = plain::with_plain_forms(module, info, last_needs(version))?;
+    let (module, info) = separate.as_ref().map_or((module, info), |(module, info)| (module, info));
+    let source = &EmitSource { module, info, ..*source };
     let changed = rename::rename_taken(source.module, &is_taken);
     let source = &EmitSource { module: changed.as_ref().unwrap_or(source.module), ..*source };
     let defined = remainder::with_defined_remainders(source.module, source.info)?;
@@ -51,7 +59,7 @@ pub fn write_glsl(
     .and_then(|mut writer| writer.write());
     let mut info = written.map_err(|error| text.explain(error))?;
     // naga omits the prefix of this one extension's name, and no driver knows it without.
-    let mut text = text.0.replacen("#extension ARB_", "#extension GL_ARB_", 1);
+    let mut text = with_mask_elements(text.0.replacen("#extension ARB_", "#extension GL_ARB_", 1));
     if defined.is_some() {
         text = remainder::with_plain_parameters(text);
     }
@@ -60,6 +68,37 @@ pub fn write_glsl(
     let is_asked = text.contains(&format!("uniform uint {FIRST_INSTANCE};"));
     native.first_instance = is_asked.then(|| FIRST_INSTANCE.to_owned());
     Ok(Emitted { bytes: text.into_bytes(), native })
+}
+
+/// The text with the first element of the masks of samples, which are arrays of signed numbers.
+fn with_mask_elements(text: String) -> String {
+    const MASK: &str = "gl_SampleMask";
+    if !text.contains(MASK) {
+        return text;
+    }
+    let text = text.replace("gl_SampleMaskIn", "uint(gl_SampleMaskIn[0])");
+    let line = |line: &str| match line.split_once("gl_SampleMask = ") {
+        Some((before, value)) => {
+            let value = value.trim_end().trim_end_matches(';');
+            format!("{before}gl_SampleMask[0] = int({value});\n")
+        }
+        None => line.to_owned(),
+    };
+    text.split_inclusive('\n').map(line).collect()
+}
+
+fn first_needs(version: Version) -> Needs {
+    Needs {
+        whole_offsets: true,
+        defined_divisors: true,
+        clamped_bytes: !has_since(version, 400, Some(310)),
+        clamped_words: !has_since(version, 420, Some(300)),
+        separate_choices: false,
+    }
+}
+
+fn last_needs(version: Version) -> Needs {
+    Needs { separate_choices: !has_since(version, 450, Some(310)), ..Needs::default() }
 }
 
 /// naga checks loads of textures, which needs the number of their levels. GLSL has a function for

@@ -34,13 +34,17 @@ impl Later {
 
     /// Its name, if a version lacks it.
     fn lacking(&self, version: Version) -> Option<&'static str> {
-        let is_there = match version {
-            Version::Desktop(number) => number >= self.desktop,
-            Version::Embedded { version: number, .. } => {
-                self.embedded.is_some_and(|first| number >= first)
-            }
-        };
-        (!is_there).then_some(self.name)
+        (!has_since(version, self.desktop, self.embedded)).then_some(self.name)
+    }
+}
+
+/// Whether a version has what came with a version of GLSL, and with one of GLSL ES.
+pub fn has_since(version: Version, desktop: u16, embedded: Option<u16>) -> bool {
+    match version {
+        Version::Desktop(number) => number >= desktop,
+        Version::Embedded { version: number, is_webgl: _ } => {
+            embedded.is_some_and(|first| number >= first)
+        }
     }
 }
 
@@ -53,11 +57,16 @@ const HIGHEST_BIT: Later = Later::since("`findMSB`", 400, Some(310));
 const FREXP: Later = Later::since("`frexp`", 400, Some(310));
 const LDEXP: Later = Later::since("`ldexp`", 400, Some(310));
 const HALF: Later = Later::since("`unpackHalf2x16`", 420, Some(300));
+const PACK_HALF: Later = Later::since("`packHalf2x16`", 420, Some(300));
+const PACK_BYTES: Later = Later::since("`packUnorm4x8` and `packSnorm4x8`", 400, Some(310));
+const PACK_SIGNED: Later = Later::since("`packSnorm2x16`", 420, Some(300));
+const PACK_UNSIGNED: Later = Later::since("`packUnorm2x16`", 400, Some(300));
 const GATHER: Later = Later::since("`textureGather`", 400, Some(310));
 const LEVELS: Later = Later::since("`textureQueryLevels`", 430, None);
 const SAMPLES: Later = Later::since("`textureSamples`", 450, None);
 const NESTED: Later = Later::since("array of arrays", 430, Some(310));
 const SAMPLE_ID: Later = Later::since("`gl_SampleID`", 400, Some(320));
+const SAMPLE_MASK: Later = Later::since("`gl_SampleMask`", 400, Some(320));
 
 /// Functions of WGSL, with what naga writes for them.
 const LATER: &[(MathFunction, Later)] = &[
@@ -71,12 +80,18 @@ const LATER: &[(MathFunction, Later)] = &[
     (MathFunction::Frexp, FREXP),
     (MathFunction::InsertBits, INSERT),
     (MathFunction::Ldexp, LDEXP),
+    (MathFunction::Pack2x16float, PACK_HALF),
+    (MathFunction::Pack2x16snorm, PACK_SIGNED),
+    (MathFunction::Pack2x16unorm, PACK_UNSIGNED),
+    (MathFunction::Pack4x8snorm, PACK_BYTES),
+    (MathFunction::Pack4x8unorm, PACK_BYTES),
     (MathFunction::Pack4xI8, INSERT),
     (MathFunction::Pack4xI8Clamp, INSERT),
     (MathFunction::Pack4xU8, INSERT),
     (MathFunction::Pack4xU8Clamp, INSERT),
     (MathFunction::QuantizeToF16, HALF),
     (MathFunction::ReverseBits, REVERSE),
+    (MathFunction::Unpack2x16float, HALF),
     (MathFunction::Unpack4xI8, EXTRACT),
     (MathFunction::Unpack4xU8, EXTRACT),
 ];
@@ -132,8 +147,7 @@ pub fn first_lack(module: &Module, version: Version) -> Option<String> {
     if two_rows(module).next().is_some() {
         return Some(TWO_ROWS.to_owned());
     }
-    let sample = SAMPLE_ID.lacking(version).filter(|_| asks_for_sample(module));
-    let what = sample.or_else(|| lacking_features(module, version).next().map(|(what, _)| what))?;
+    let (what, _) = lacking_features(module, version).next()?;
     Some(format!("the language has no {what}, which is needed"))
 }
 
@@ -170,7 +184,7 @@ fn lacking_features(
             Some((what, function.expressions.get_span(handle)))
         })
     });
-    expressions.chain(arrays_of_arrays(module, version))
+    later_values(module, version).chain(expressions).chain(arrays_of_arrays(module, version))
 }
 
 fn arrays_of_arrays(
@@ -230,30 +244,60 @@ fn later_builtin(
         Expression::ImageSample { gather: Some(_), .. } => GATHER.lacking(version),
         Expression::ImageQuery { query: ImageQuery::NumLevels, .. } => LEVELS.lacking(version),
         Expression::ImageQuery { query: ImageQuery::NumSamples, .. } => SAMPLES.lacking(version),
+        Expression::ImageQuery { query: ImageQuery::NumLayers, image }
+            if is_storage(module, function, *image) =>
+        {
+            Some(STORAGE_LAYERS)
+        }
         _ => None,
     }
 }
 
+const STORAGE_LAYERS: &str = "number of layers of a storage texture, as naga writes it";
 const PLAIN_DEPTH: &str = "depth texture that is sampled without a comparison";
 
 fn is_depth(module: &Module, function: &Function, image: Handle<Expression>) -> bool {
+    image_class(module, function, image) == Some(ImageClass::Depth { multi: false })
+}
+
+fn is_storage(module: &Module, function: &Function, image: Handle<Expression>) -> bool {
+    let class = image_class(module, function, image);
+    matches!(class, Some(ImageClass::Storage { format: _, access: _ }))
+}
+
+fn image_class(
+    module: &Module,
+    function: &Function,
+    image: Handle<Expression>,
+) -> Option<ImageClass> {
     let ty = match &function.expressions[image] {
         Expression::GlobalVariable(variable) => module.global_variables[*variable].ty,
         Expression::FunctionArgument(index) => function.arguments[*index as usize].ty,
-        _ => return false,
+        _ => return None,
     };
-    let depth = ImageClass::Depth { multi: false };
-    matches!(&module.types[ty].inner, TypeInner::Image { class, .. } if *class == depth)
+    match module.types[ty].inner {
+        TypeInner::Image { dim: _, arrayed: _, class } => Some(class),
+        _ => None,
+    }
 }
 
-/// Whether an entry point uses the sample's index.
-fn asks_for_sample(module: &Module) -> bool {
-    let is_it = |ty: Handle<Type>, binding: Option<&Binding>| match &module.types[ty].inner {
-        TypeInner::Struct { members, .. } => {
-            members.iter().any(|one| one.binding == Some(Binding::BuiltIn(BuiltIn::SampleIndex)))
-        }
-        _ => binding == Some(&Binding::BuiltIn(BuiltIn::SampleIndex)),
+/// The built-in values of entry points that a version lacks.
+fn later_values(module: &Module, version: Version) -> impl Iterator<Item = (&'static str, Span)> {
+    let values = module.entry_points.iter().flat_map(|point| {
+        let Function { arguments, result, .. } = &point.function;
+        let given = arguments.iter().map(|given| (given.ty, given.binding.as_ref()));
+        given.chain(result.iter().map(|result| (result.ty, result.binding.as_ref())))
+    });
+    let built_in = move |binding: Option<&Binding>| match binding {
+        Some(Binding::BuiltIn(BuiltIn::SampleIndex)) => SAMPLE_ID.lacking(version),
+        Some(Binding::BuiltIn(BuiltIn::SampleMask)) => SAMPLE_MASK.lacking(version),
+        _ => None,
     };
-    let mut points = module.entry_points.iter().map(|point| &point.function);
-    points.any(|one| one.arguments.iter().any(|given| is_it(given.ty, given.binding.as_ref())))
+    values.filter_map(move |(ty, binding)| match &module.types[ty].inner {
+        TypeInner::Struct { members, span: _ } => {
+            let what = members.iter().find_map(|member| built_in(member.binding.as_ref()))?;
+            Some((what, module.types.get_span(ty)))
+        }
+        _ => built_in(binding).map(|what| (what, Span::UNDEFINED)),
+    })
 }

@@ -15,21 +15,27 @@ pub mod op {
     pub const CAPABILITY: u16 = 17;
     pub const TYPE_INT: u16 = 21;
     pub const TYPE_IMAGE: u16 = 25;
+    pub const TYPE_ARRAY: u16 = 28;
     pub const TYPE_STRUCT: u16 = 30;
     pub const TYPE_POINTER: u16 = 32;
+    pub const CONSTANT: u16 = 43;
     pub const SPEC_CONSTANT_TRUE: u16 = 48;
     pub const SPEC_CONSTANT_FALSE: u16 = 49;
     pub const SPEC_CONSTANT: u16 = 50;
     pub const FUNCTION: u16 = 54;
+    pub const FUNCTION_PARAMETER: u16 = 55;
     pub const FUNCTION_END: u16 = 56;
     pub const FUNCTION_CALL: u16 = 57;
     pub const VARIABLE: u16 = 59;
     pub const LOAD: u16 = 61;
+    pub const STORE: u16 = 62;
     pub const ACCESS_CHAIN: u16 = 65;
     pub const DECORATE: u16 = 71;
     pub const MEMBER_DECORATE: u16 = 72;
     pub const COPY_OBJECT: u16 = 83;
     pub const IMAGE_WRITE: u16 = 99;
+    pub const IMAGE_QUERY_SIZE_LOD: u16 = 103;
+    pub const IMAGE_QUERY_SIZE: u16 = 104;
 }
 
 /// The words of a module's bytes, which are little-endian.

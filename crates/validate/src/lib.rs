@@ -26,7 +26,7 @@ pub use guard::{catch_panics, guard, on_large_stack};
 pub use hints::glsl_words;
 pub use limits::{LIMITS, NagaLimits};
 pub use loops::store_loop_values;
-pub use operands::{change_operands, operands};
+pub use operands::{change_operands, change_used, operands, result_mut};
 #[doc(hidden)]
 pub use rehearsal::{RehearsalJob, RehearsalOutputs, STAGE, rehearse};
 pub use uniformity::{has_lints, lint};

@@ -62,11 +62,16 @@ impl Graph {
         named.map(|item| graph.names.text(item.name).to_owned()).collect()
     }
 
-    /// Whether anything names `constants::NAME`; never in GLSL, which has macros.
+    /// Whether anything names `constants::NAME`, or is an override of that name; never in GLSL, which
+    /// has macros.
     pub fn has_constant(&self, name: &str) -> bool {
         match self {
             Self::Wesl(graph) => {
+                let mut items = graph.nodes.iter().flat_map(|node| &node.module.items);
                 graph.constants.iter().any(|constant| graph.names.text(constant.name) == name)
+                    || items.any(|item| {
+                        item.kind == lamplight_syntax::wesl::ItemKind::Override && graph.names.text(item.name) == name
+                    })
             }
             Self::Glsl(_) => false,
         }

@@ -2,12 +2,13 @@
 
 use super::evaluate::Evaluator;
 use super::reached::{Dependency, Reached, ReferenceMeaning, Thing, name_of};
-use crate::resolve::wesl::{Graph, PLACES, PathTarget};
 use crate::{Keep, Options};
-use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_files::limits::count_steps;
+use lamplight_syntax::wesl::{Event, Item, ItemKind, Name, PlacedModule, UsedName};
 use lamplight_permute::Setting;
+use crate::resolve::wesl::{Graph, PLACES, PathTarget};
+use lamplight_diagnostic::source::Span;
 use lamplight_syntax::wesl::{Event, ItemKind, Name, UsedName};
 
 /// Finds what is kept. Errors are added to those of the evaluator.
@@ -144,6 +145,19 @@ impl ReachWalk<'_, '_, '_> {
         });
     }
 
+    /// Makes an override a constant. It is used where WGSL takes no override, or where targets need
+    /// its value: in the size of a workgroup, the length of an array, the default of another
+    /// override. So each value of its axis has a text of its own.
+    fn fix(&mut self, index: u32) {
+        let constant = &self.graph.constants[index as usize];
+        let kept = &self.reached.constants[index as usize];
+        if kept.as_ref().is_some_and(|(keyword, _)| *keyword == "override")
+            && let Some(value) = self.evaluator.number(constant.name, constant.span)
+        {
+            self.reached.constants[index as usize] = Some(("const", format!(" = {value}")));
+        }
+    }
+
     /// Called when something of a module is first kept: its `const_assert`s are kept too, and its
     /// errors count.
     fn node(&mut self, node: u32) {
@@ -188,6 +202,12 @@ impl ReachWalk<'_, '_, '_> {
                 continue;
             };
             self.keep(used);
+            // The attributes before a function's name, and its head, are outside of its body.
+            if let Thing::Constant(constant) = used
+                && (item.kind != ItemKind::Function || range.start < body_of(module, item))
+            {
+                self.fix(constant);
+            }
             if item.kind != ItemKind::Function {
                 self.reached.dependencies.push(Dependency {
                     user,
@@ -266,7 +286,7 @@ impl ReachWalk<'_, '_, '_> {
                     self.graph.names.text(name),
                     here.label
                 );
-                let first: &lamplight_syntax::wesl::Item = &here.module.items[first as usize];
+                let first: &Item = &here.module.items[first as usize];
                 self.evaluator.errors.push(
                     Diagnostic::error(codes::DUPLICATE_ITEM, message)
                         .at(here.module.span(item.name_range.clone()), "declared again")
@@ -327,4 +347,11 @@ impl ReachWalk<'_, '_, '_> {
         self.evaluator.errors.push(error);
         ReferenceMeaning::Free
     }
+}
+
+/// Where the body of a function begins. Nothing before it has braces but comments.
+fn body_of(module: &PlacedModule, item: &Item) -> u32 {
+    let start = item.name_range.end;
+    let head = module.text.get(start as usize..item.range.end as usize).unwrap_or_default();
+    start + head.find('{').unwrap_or(head.len()) as u32
 }

@@ -5,10 +5,11 @@ use std::ops::Range;
 use super::evaluate::Evaluator;
 use super::naming::ItemRenames;
 use super::reached::{Reached, ReferenceMeaning, Thing};
-use crate::resolve::wesl::Graph;
 use crate::{Part, PartKind, Segment, SourceMap};
-use lamplight_diagnostic::source::{LIMITS, Span};
 use lamplight_diagnostic::{Diagnostic, codes};
+use lamplight_syntax::wesl::{Directive, Event, Item, ItemKind, Name, PlacedModule};
+use crate::resolve::wesl::Graph;
+use lamplight_diagnostic::source::{LIMITS, Span};
 use lamplight_syntax::wesl::{Directive, Event, ItemKind, Name, PlacedModule};
 
 /// Writes what is kept, with the map back and the declarations.
@@ -169,7 +170,20 @@ impl Writer<'_> {
         let own = Thing::Item { node, item: index };
         let (mut at, start_of_part) = (item.range.start, self.text.len());
         let (mut uses, mut aliases) = (Vec::new(), Vec::new());
+        // An override with a value from outside is a constant. Its default is left out.
+        let given = evaluator.given(item.name).filter(|_| item.kind == ItemKind::Override);
+        let given = given.map(str::to_owned);
+        let end = match given {
+            Some(_) => value_start(module, item),
+            None => item.range.end,
+        };
+        if given.is_some() {
+            self.own("const ");
+            at = item.name_range.start;
+        }
         evaluator.live(node, &item.events, |_, event| match event {
+            Event::Cut { start, .. } | Event::Node { start, .. } | Event::Use { start, .. }
+                if given.is_some() && !(at..end).contains(&start) => {}
             Event::Cut { start, end } | Event::Node { start, end, .. } => {
                 self.copy(module, at..start);
                 at = at.max(end);
@@ -189,13 +203,17 @@ impl Writer<'_> {
                 }
             }
         });
-        self.copy(module, at..item.range.end);
+        self.copy(module, at..end);
+        if let Some(value) = &given {
+            self.own(&format!(" = {value};"));
+        }
         self.numbers[self.reached.index(own)] = self.parts.len() as u32;
         let name = match item.kind {
             ItemKind::ConstAssert => Vec::new(),
             _ => vec![self.names.text(graph, self.reached, own).to_owned()],
         };
-        self.part(part_kind(item.kind), name, start_of_part);
+        let kind = if given.is_some() { PartKind::Constant } else { part_kind(item.kind) };
+        self.part(kind, name, start_of_part);
         if let Some(part) = self.parts.last_mut() {
             (part.uses, part.aliases) = (uses, aliases);
         }
@@ -233,6 +251,15 @@ impl Writer<'_> {
             *at = range.end;
         }
     }
+}
+
+/// Where the default of an override begins, with the `=` and the blanks before it; or else the
+/// semicolon.
+fn value_start(module: &PlacedModule, item: &Item) -> u32 {
+    let start = item.name_range.end;
+    let rest = module.text.get(start as usize..item.range.end as usize).unwrap_or_default();
+    let before = &rest[..rest.find(['=', ';']).unwrap_or(rest.len())];
+    start + before.trim_end().len() as u32
 }
 
 fn part_kind(kind: ItemKind) -> PartKind {

@@ -14,6 +14,7 @@ use naga::back::hlsl::{
 
 use lamplight_bundle::{BindingKind, HeapSampler, Native, Place, SamplerHeap, Semantic, Target};
 use crate::names::first_entry_name;
+use crate::plain::{self, Needs};
 use crate::reflect::{binding_kind, entry_inputs};
 use crate::slots::{Numbering, assign_slots, native_reflection};
 use crate::text::BoundedText;
@@ -78,6 +79,12 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     if columns::taken_from_values(source.module, source.info).next().is_some() {
         return Err(columns::TAKEN.to_owned());
     }
+    // naga computes these without the lower bound of the result.
+    let needs = Needs { clamped_bytes: true, clamped_words: true, ..Needs::default() };
+    let plain = plain::with_plain_forms(source.module, source.info, needs)?;
+    let (module, info) =
+        plain.as_ref().map_or((source.module, source.info), |(module, info)| (module, info));
+    let source = &EmitSource { module, info, ..*source };
     let options = writer_options(source)?;
     let unlike = rename::rename_types_like_members(source.module);
     let module = unlike.as_ref().unwrap_or(source.module);

@@ -13,7 +13,7 @@ use lamplight_bundle::{BindingKind, BufferSizes, Target};
 use crate::names::first_entry_name;
 use crate::slots::{Numbering, assign_slots, native_reflection};
 use crate::text::BoundedText;
-use crate::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip, rename};
+use crate::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip, gradients, rename};
 
 /// The target, for the table of all.
 pub const TARGET: TargetEntry = TargetEntry {
@@ -51,7 +51,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let mut text = BoundedText::default();
     let written = Writer::new(&mut text).write(module, source.info, &options, &pipeline);
     let info = written.map_err(|error| text.explain(error))?;
-    let text = text.0;
+    let text = gradients::with_dimensions(&text.0);
     let name = first_entry_name(info.entry_point_names)?;
     let mut native = native_reflection(source, &name, Numbering::PerKind);
     native.buffer_sizes = buffer_sizes(source, &text);

@@ -9,7 +9,9 @@ use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 use lamplight_bundle::Target;
 use crate::slots::{Numbering, native_reflection};
 use crate::spirv::{HEADER_WORDS, SpirvInstruction, bytes, instructions, op};
-use crate::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip};
+use crate::{
+    EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip, sample_mask,
+};
 
 /// The target, for the table of all.
 pub const TARGET: TargetEntry = TargetEntry {
@@ -37,7 +39,8 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
         PipelineOptions { shader_stage: source.stage, entry_point: source.entry.to_owned() };
     let words = write_vec(source.module, source.info, &options, Some(&pipeline))
         .map_err(|error| error.to_string())?;
-    let bytes = bytes(&order_variables(&words));
+    let words = sample_mask::with_storage_queries(&order_variables(&words));
+    let bytes = bytes(&sample_mask::as_arrays(&words)?);
     Ok(Emitted { bytes, native: native_reflection(source, source.entry, Numbering::Author) })
 }
 

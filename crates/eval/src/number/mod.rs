@@ -84,11 +84,17 @@ pub trait Number: Copy + Default + Send + Sync + std::fmt::Debug + 'static {
 
     /// Truncated towards zero and clamped to the range of `i32`; 0 for NaN.
     fn to_i32(self, doubt: &mut bool) -> i32 {
-        Self::unary(Unary::Trunc, self, doubt).value() as i32
+        clamped(Self::unary(Unary::Trunc, self, doubt).value(), 2147483520.0) as i32
     }
 
     /// Truncated towards zero and clamped to the range of `u32`; 0 for NaN.
     fn to_u32(self, doubt: &mut bool) -> u32 {
-        Self::unary(Unary::Trunc, self, doubt).value() as u32
+        clamped(Self::unary(Unary::Trunc, self, doubt).value(), 4294967040.0) as u32
     }
+}
+
+/// A number, or the largest one of `f32` that the integer type has. WGSL clamps to this, since the
+/// type's own largest number has no f32. NaN stays.
+fn clamped(value: f64, largest: f64) -> f64 {
+    if value > largest { largest } else { value }
 }

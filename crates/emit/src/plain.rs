@@ -1,0 +1,274 @@
+//! Expressions that a writer writes wrongly, in a form that it writes right.
+
+use std::collections::BTreeMap;
+
+use naga::valid::{FunctionInfo, ModuleInfo};
+use naga::{
+    Arena, BinaryOperator, Expression, Function, Handle, Literal, MathFunction, Module, Scalar,
+    ScalarKind, Span, Type, TypeInner, UniqueArena, VectorSize,
+};
+
+use super::rebuild::rebuild;
+use lamplight_validate::info_unchecked;
+
+type Value = Handle<Expression>;
+
+/// What a target's writer needs.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Needs {
+    /// Offsets of samples as vectors with all their components: naga's writer of GLSL panics where a
+    /// number stands for all of them.
+    pub whole_offsets: bool,
+    /// A choice between vectors of integers, component by component. GLSL has `mix` for them from
+    /// 4.50, and ES from 3.10.
+    pub separate_choices: bool,
+    /// Integer divisors that are never zero, and never -1 for the smallest number: WGSL says what
+    /// the results are, and GLSL does not.
+    pub defined_divisors: bool,
+    /// Unpacked numbers of 8 bits and of 16 bits that are never below -1.
+    pub clamped_bytes: bool,
+    pub clamped_words: bool,
+}
+
+/// What stands in the place of an expression.
+#[derive(Debug, Clone, Copy)]
+enum Form {
+    /// A vector of this type, with one number for all components.
+    Repeated(VectorSize),
+    Separate(VectorSize, Scalar),
+    /// A division or a remainder: of vectors of this size, of signed integers.
+    Defined(Option<VectorSize>, bool),
+    Clamped(VectorSize),
+}
+
+/// The module in which these expressions have another form, and naga's analysis of it; `None` where
+/// it has none of them.
+///
+/// # Errors
+/// The message of naga, if it refuses the new module.
+pub fn with_plain_forms(
+    module: &Module,
+    info: &ModuleInfo,
+    needs: Needs,
+) -> Result<Option<(Module, ModuleInfo)>, String> {
+    let points = module.entry_points.iter().enumerate();
+    let points = points.map(|(index, point)| (&point.function, info.get_entry_point(index)));
+    let all = module.functions.iter().map(|(handle, function)| (function, &info[handle]));
+    let found: Vec<BTreeMap<Value, Form>> =
+        all.chain(points).map(|(function, info)| forms(module, function, info, needs)).collect();
+    if found.iter().all(BTreeMap::is_empty) {
+        return Ok(None);
+    }
+    let mut module = module.clone();
+    let mut found = found.into_iter();
+    let (types, points) = (&mut module.types, &mut module.entry_points);
+    let functions = module.functions.iter_mut().map(|(_, function)| function);
+    for function in functions.chain(points.iter_mut().map(|point| &mut point.function)) {
+        let forms = found.next().unwrap_or_default();
+        if !forms.is_empty() {
+            let mut write = |old: Value, expression, span, expressions: &mut Arena<Expression>| {
+                let mut maker = Maker { types: &mut *types, expressions, span };
+                match forms.get(&old) {
+                    Some(form) => maker.written(*form, expression),
+                    None => maker.add(expression),
+                }
+            };
+            rebuild(function, &mut write);
+        }
+    }
+    let info = info_unchecked(&module)
+        .map_err(|error| format!("a module with other expressions is not valid: {error}"))?;
+    Ok(Some((module, info)))
+}
+
+/// The expressions of a function that need another form.
+fn forms(
+    module: &Module,
+    function: &Function,
+    info: &FunctionInfo,
+    needs: Needs,
+) -> BTreeMap<Value, Form> {
+    let mut found = repeated_offsets(function, needs);
+    for (handle, expression) in function.expressions.iter() {
+        let form = match *expression {
+            Expression::Select { condition, accept: _, reject: _ } if needs.separate_choices => {
+                match (shape(module, info, condition), shape(module, info, handle)) {
+                    (Some((Some(size), _)), Some((_, scalar)))
+                        if scalar.kind != ScalarKind::Float =>
+                    {
+                        Some(Form::Separate(size, scalar))
+                    }
+                    _ => None,
+                }
+            }
+            Expression::Binary {
+                op: BinaryOperator::Divide | BinaryOperator::Modulo,
+                left: _,
+                right,
+            } if needs.defined_divisors && !is_harmless(module, function, right) => {
+                match shape(module, info, handle) {
+                    Some((size, Scalar::I32)) => Some(Form::Defined(size, true)),
+                    Some((size, Scalar::U32)) => Some(Form::Defined(size, false)),
+                    _ => None,
+                }
+            }
+            Expression::Math { fun: MathFunction::Unpack4x8snorm, .. } if needs.clamped_bytes => {
+                Some(Form::Clamped(VectorSize::Quad))
+            }
+            Expression::Math { fun: MathFunction::Unpack2x16snorm, .. } if needs.clamped_words => {
+                Some(Form::Clamped(VectorSize::Bi))
+            }
+            _ => None,
+        };
+        found.extend(form.map(|form| (handle, form)));
+    }
+    found
+}
+
+/// The scalar of a value, and its size if it is a vector.
+fn shape(
+    module: &Module,
+    info: &FunctionInfo,
+    value: Value,
+) -> Option<(Option<VectorSize>, Scalar)> {
+    match *info[value].ty.inner_with(&module.types) {
+        TypeInner::Scalar(scalar) => Some((None, scalar)),
+        TypeInner::Vector { size, scalar } => Some((Some(size), scalar)),
+        _ => None,
+    }
+}
+
+fn repeated_offsets(function: &Function, needs: Needs) -> BTreeMap<Value, Form> {
+    let offsets = function.expressions.iter().filter_map(|(_, expression)| match expression {
+        Expression::ImageSample { offset, .. } if needs.whole_offsets => *offset,
+        _ => None,
+    });
+    let repeated = offsets.filter_map(|offset| match function.expressions[offset] {
+        Expression::Splat { size, value: _ } => Some((offset, Form::Repeated(size))),
+        _ => None,
+    });
+    repeated.collect()
+}
+
+/// Whether a divisor is a number other than 0 and -1.
+fn is_harmless(module: &Module, function: &Function, divisor: Value) -> bool {
+    let is_number = |literal: Literal| !matches!(literal, Literal::I32(0 | -1) | Literal::U32(0));
+    match &function.expressions[divisor] {
+        Expression::Literal(literal) => is_number(*literal),
+        Expression::Constant(constant) => {
+            let init = module.constants[*constant].init;
+            is_harmless_constant(module, init, &is_number)
+        }
+        Expression::Splat { size: _, value } => is_harmless(module, function, *value),
+        Expression::Compose { ty: _, components } => {
+            components.iter().all(|one| is_harmless(module, function, *one))
+        }
+        _ => false,
+    }
+}
+
+fn is_harmless_constant(
+    module: &Module,
+    value: Value,
+    is_number: &dyn Fn(Literal) -> bool,
+) -> bool {
+    match &module.global_expressions[value] {
+        Expression::Literal(literal) => is_number(*literal),
+        Expression::Splat { size: _, value } => is_harmless_constant(module, *value, is_number),
+        Expression::Compose { ty: _, components } => {
+            components.iter().all(|one| is_harmless_constant(module, *one, is_number))
+        }
+        _ => false,
+    }
+}
+
+/// Makes expressions.
+struct Maker<'m> {
+    types: &'m mut UniqueArena<Type>,
+    expressions: &'m mut Arena<Expression>,
+    span: Span,
+}
+
+impl Maker<'_> {
+    fn add(&mut self, expression: Expression) -> Value {
+        self.expressions.append(expression, self.span)
+    }
+
+    fn written(&mut self, form: Form, expression: Expression) -> Value {
+        match (form, expression) {
+            (Form::Repeated(size), Expression::Splat { size: _, value }) => {
+                let ty = self.vector(size, Scalar::I32);
+                self.add(Expression::Compose { ty, components: vec![value; size as usize] })
+            }
+            (
+                Form::Separate(size, scalar),
+                Expression::Select { condition, accept, reject },
+            ) => self.separate(size, scalar, [condition, accept, reject]),
+            (Form::Defined(size, signed), Expression::Binary { op, left, right }) => {
+                let right = self.defined(size, signed, left, right);
+                self.add(Expression::Binary { op, left, right })
+            }
+            (Form::Clamped(size), expression) => {
+                let value = self.add(expression);
+                let least = self.add(Expression::Literal(Literal::F32(-1.0)));
+                let least = self.add(Expression::Splat { size, value: least });
+                let (fun, arg1) = (MathFunction::Max, Some(least));
+                self.add(Expression::Math { fun, arg: value, arg1, arg2: None, arg3: None })
+            }
+            (_, expression) => self.add(expression),
+        }
+    }
+
+    fn both(&mut self, op: BinaryOperator, left: Value, right: Value) -> Value {
+        self.add(Expression::Binary { op, left, right })
+    }
+
+    fn vector(&mut self, size: VectorSize, scalar: Scalar) -> Handle<Type> {
+        let inner = TypeInner::Vector { size, scalar };
+        self.types.insert(Type { name: None, inner }, Span::UNDEFINED)
+    }
+
+    /// A choice between vectors, component by component.
+    fn separate(&mut self, size: VectorSize, scalar: Scalar, operands: [Value; 3]) -> Value {
+        let mut components = Vec::new();
+        for index in 0..size as u32 {
+            let [condition, accept, reject] =
+                operands.map(|base| self.add(Expression::AccessIndex { base, index }));
+            components.push(self.add(Expression::Select { condition, accept, reject }));
+        }
+        let ty = self.vector(size, scalar);
+        self.add(Expression::Compose { ty, components })
+    }
+
+    /// A divisor with 1 in the place of those that have no defined result. Then a division by them
+    /// gives the dividend and a remainder 0, as WGSL says.
+    fn defined(
+        &mut self,
+        size: Option<VectorSize>,
+        signed: bool,
+        left: Value,
+        right: Value,
+    ) -> Value {
+        let number = |value: i32| match signed {
+            true => Literal::I32(value),
+            false => Literal::U32(value.cast_unsigned()),
+        };
+        let all = |maker: &mut Self, value: i32| {
+            let value = maker.add(Expression::Literal(number(value)));
+            match size {
+                None => value,
+                Some(size) => maker.add(Expression::Splat { size, value }),
+            }
+        };
+        let (zero, one) = (all(self, 0), all(self, 1));
+        let mut condition = self.both(BinaryOperator::Equal, right, zero);
+        if signed {
+            let (least, minus) = (all(self, i32::MIN), all(self, -1));
+            let is_least = self.both(BinaryOperator::Equal, left, least);
+            let is_minus = self.both(BinaryOperator::Equal, right, minus);
+            let overflows = self.both(BinaryOperator::And, is_least, is_minus);
+            condition = self.both(BinaryOperator::InclusiveOr, condition, overflows);
+        }
+        self.add(Expression::Select { condition, accept: one, reject: right })
+    }
+}
