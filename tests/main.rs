@@ -44,6 +44,7 @@ mod metal;
 mod migrate;
 mod new;
 mod oracles;
+mod outputs;
 mod packages;
 mod pipelines;
 mod plain;
@@ -98,6 +99,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     migrate::trials,
     new::trials,
     oracles::trials,
+    outputs::trials,
     packages::trials,
     pipelines::trials,
     plain::trials,

@@ -9,14 +9,18 @@ use super::{COUNTED, COUNTED_MANIFEST, Outcome, Package, expect};
 /// A judge's refusal is told at the author's line, with the permutation and the target. The older
 /// bundle stays as it was, as a folder and as a file. Nothing is left among the temporary files.
 pub fn refusals_are_placed() -> Outcome {
-    // naga writes the sample mask as one number, but GLSL has an array.
-    let masked = "@fragment fn fs_main(
-    @location(0) at: vec2f,
-    @if(bits) @builtin(sample_mask) mask: u32,
-) -> @location(0) vec4f {
-    @if(bits) { return vec4f(f32(mask)); }";
+    // No stage of GLSL has so many outputs.
+    let many = "struct Colors {
+    @location(0) first: vec4f,
+    @if(bits) @location(40) last: vec4f,
+}
+@fragment fn fs_main(@location(0) at: vec2f) -> Colors {
+    var colors: Colors;";
     let head = "@fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {";
-    let refused = COUNTED.replace("countOneBits", "abs").replace(head, masked);
+    let refused = COUNTED
+        .replace("countOneBits", "abs")
+        .replace(head, many)
+        .replace("return vec4f(sum);", "colors.first = vec4f(sum);\n    return colors;");
     let sound = COUNTED.replace("countOneBits", "abs");
     let package = Package::new(COUNTED_MANIFEST, &sound)?;
     let temporary = package.path("temporary");
@@ -30,7 +34,7 @@ pub fn refusals_are_placed() -> Outcome {
         fs::write(package.path("one.wesl"), &refused)?;
         let words = [
             "error[output-refused]: glslangValidator refuses the output for `essl300`",
-            "one.wesl:10:15",
+            "one.wesl:12:1",
             "line ",
             "in permutation `bits` of one fs_main (wesl)",
         ];

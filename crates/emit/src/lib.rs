@@ -13,9 +13,9 @@
 pub mod blocks;
 pub mod clip;
 mod columns;
-mod gradients;
 mod filters;
 pub mod glsl;
+mod gradients;
 mod header;
 mod isolate;
 mod lacks;

@@ -200,10 +200,9 @@ impl Maker<'_> {
                 let ty = self.vector(size, Scalar::I32);
                 self.add(Expression::Compose { ty, components: vec![value; size as usize] })
             }
-            (
-                Form::Separate(size, scalar),
-                Expression::Select { condition, accept, reject },
-            ) => self.separate(size, scalar, [condition, accept, reject]),
+            (Form::Separate(size, scalar), Expression::Select { condition, accept, reject }) => {
+                self.separate(size, scalar, [condition, accept, reject])
+            }
             (Form::Defined(size, signed), Expression::Binary { op, left, right }) => {
                 let right = self.defined(size, signed, left, right);
                 self.add(Expression::Binary { op, left, right })

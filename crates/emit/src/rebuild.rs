@@ -8,8 +8,8 @@ use lamplight_validate::{change_operands, change_used, result_mut};
 
 /// Appends what stands for an expression, and returns its value. It gets the old handle, and the
 /// expression with new operands.
-pub type Replace<'r> =
-    dyn FnMut(Handle<Expression>, Expression, Span, &mut Arena<Expression>) -> Handle<Expression> + 'r;
+pub type Replace<'r> = dyn FnMut(Handle<Expression>, Expression, Span, &mut Arena<Expression>) -> Handle<Expression>
+    + 'r;
 
 /// The new expressions of an old one: the first, and the last, which has its value.
 type Moved = (usize, Handle<Expression>);

@@ -4,8 +4,8 @@ use naga::proc::Layouter;
 use naga::valid::{FunctionInfo, GlobalUse};
 use naga::{AddressSpace, GlobalVariable, Handle, ImageClass, Module, Type, TypeInner};
 
-use super::specialise;
 use super::names::{builtin_name, interpolation_name, sampling_name, type_name};
+use super::specialise;
 use lamplight_bundle::{Binding, BindingKind, Member, Override, Pair, Place, Reflection, Varying};
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_validate::{Validated, guard};

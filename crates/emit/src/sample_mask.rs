@@ -27,11 +27,7 @@ struct Mask {
 /// # Errors
 /// Where a pointer has no type.
 pub fn as_arrays(words: &[u32]) -> Result<Vec<u32>, String> {
-    let is_mask = |found: &SpirvInstruction<'_>| match (found.op, found.words) {
-        (op::DECORATE, [_, id, BUILT_IN, SAMPLE_MASK]) => Some(*id),
-        _ => None,
-    };
-    let masks: BTreeSet<u32> = instructions(words).filter_map(|found| is_mask(&found)).collect();
+    let masks = mask_variables(words);
     if masks.is_empty() {
         return Ok(words.to_vec());
     }
@@ -49,12 +45,8 @@ pub fn as_arrays(words: &[u32]) -> Result<Vec<u32>, String> {
             }
             (op::VARIABLE, [_, pointer, id, class, ..]) if masks.contains(id) => {
                 let element = *pointees.get(pointer).ok_or("a pointer has no type")?;
-                let (zero, one, array, to_array) = (fresh(), fresh(), fresh(), fresh());
-                out.extend([first_word(op::CONSTANT, 4), element, zero, 0]);
-                out.extend([first_word(op::CONSTANT, 4), element, one, 1]);
-                out.extend([first_word(op::TYPE_ARRAY, 4), array, element, one]);
-                out.extend([first_word(op::TYPE_POINTER, 4), to_array, *class, array]);
-                out.extend([first_word(op::VARIABLE, 4), to_array, *id, *class]);
+                let [zero, one, array, to_array] = [fresh(), fresh(), fresh(), fresh()];
+                declare(&mut out, element, [zero, one, array, to_array], [*class, *id]);
                 known.insert(*id, Mask { element, pointer: *pointer, zero });
                 continue;
             }
@@ -78,6 +70,29 @@ pub fn as_arrays(words: &[u32]) -> Result<Vec<u32>, String> {
     }
     out[3] = next;
     Ok(out)
+}
+
+/// The variables that hold a mask of samples.
+fn mask_variables(words: &[u32]) -> BTreeSet<u32> {
+    let is_mask = |found: SpirvInstruction<'_>| match (found.op, found.words) {
+        (op::DECORATE, [_, id, BUILT_IN, SAMPLE_MASK]) => Some(*id),
+        _ => None,
+    };
+    instructions(words).filter_map(is_mask).collect()
+}
+
+/// Declares a variable with an array of one element, and what it needs.
+fn declare(
+    out: &mut Vec<u32>,
+    element: u32,
+    [zero, one, array, to_array]: [u32; 4],
+    [class, id]: [u32; 2],
+) {
+    out.extend([first_word(op::CONSTANT, 4), element, zero, 0]);
+    out.extend([first_word(op::CONSTANT, 4), element, one, 1]);
+    out.extend([first_word(op::TYPE_ARRAY, 4), array, element, one]);
+    out.extend([first_word(op::TYPE_POINTER, 4), to_array, class, array]);
+    out.extend([first_word(op::VARIABLE, 4), to_array, id, class]);
 }
 
 /// The module without levels in the questions for the size of storage textures.

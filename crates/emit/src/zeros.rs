@@ -9,7 +9,8 @@ const MOST_LISTED: usize = 1024;
 /// The text without casts of a number to an array.
 pub fn without_casts(text: &str) -> String {
     let line = |line: &str| {
-        zero_declaration(line).or_else(|| zero_return(line)).unwrap_or_else(|| line.to_owned())
+        let changed = zero_declaration(line).or_else(|| zero_assignment(line));
+        changed.or_else(|| zero_return(line)).unwrap_or_else(|| line.to_owned())
     };
     if text.contains("])0;") {
         text.split_inclusive('\n').map(line).collect()
@@ -33,6 +34,16 @@ fn zero_declaration(line: &str) -> Option<String> {
         None if declaration.starts_with("static ") => format!("{declaration};{}", zeros.end),
         None => format!("{declaration};\n{}{}", zeros.assigned(indent, name), zeros.end),
     })
+}
+
+/// `a = (float3[2])0;` with assignments to elements instead. So naga clears what a workgroup shares.
+fn zero_assignment(line: &str) -> Option<String> {
+    let (variable, cast) = line.split_once(" = (")?;
+    let zeros = Zeros::read(cast)?;
+    let name = variable.trim_start();
+    let indent = &variable[..variable.len() - name.len()];
+    let is_name = name.chars().all(|letter| letter == '_' || letter.is_alphanumeric());
+    is_name.then(|| format!("{}{}", zeros.assigned(indent, name), zeros.end))
 }
 
 /// `return (float3[2])0;` with a variable that is returned instead.

@@ -117,9 +117,8 @@ fn translate_inner(
 
 /// Whether two pointers of a call may lead to one variable. What a stub does to it is not known.
 fn aliases(module: &Module, info: &ModuleInfo) -> bool {
-    let names = |callee: Handle<Function>, global: Handle<GlobalVariable>| {
-        !info[callee][global].is_empty()
-    };
+    let names =
+        |callee: Handle<Function>, global: Handle<GlobalVariable>| !info[callee][global].is_empty();
     let points = module.entry_points.iter().map(|point| &point.function);
     let mut all = module.functions.iter().map(|(_, function)| function).chain(points);
     all.any(|function| may_alias(module, function, &names))

@@ -67,9 +67,11 @@ pub fn may_alias(module: &Module, function: &Function, names: NamesGlobal<'_>) -
     let mut found = false;
     for_each_call(function, &mut |callee, arguments, _| {
         let roots = pointer_roots(module, function, arguments);
-        let twice = roots.iter().enumerate().any(|(at, one)| {
-            roots[..at].iter().any(|other| other.root == one.root)
-        });
+        let mut pairs = roots
+            .iter()
+            .enumerate()
+            .flat_map(|(at, one)| roots[..at].iter().map(move |other| one.root == other.root));
+        let twice = pairs.any(|is_same| is_same);
         let names = |root: &PointerRoot| match root.root {
             Root::Global(global) => names(callee, global),
             Root::Local(_) | Root::Parameter(_) => false,
@@ -91,10 +93,13 @@ fn describe(composed: &Composed, found: &AliasedCall) -> Diagnostic {
     };
     let error = Diagnostic::error(codes::ALIASED_POINTER, message);
     let place = |span: &Span| span.to_range().and_then(|range| composed.map.lookup(range));
-    let places: Vec<_> = found.arguments.iter().filter_map(place).collect();
-    let error = match places.is_empty() {
-        false => places.into_iter().fold(error, |error, span| error.at(span, "this variable")),
-        true => place(&found.call).into_iter().fold(error, |error, span| error.at(span, "in this call")),
+    // naga has no place for the name of a variable in GLSL but that of its declaration.
+    let error = match place(&found.call) {
+        Some(span) => error.at(span, "in this call"),
+        None => {
+            let arguments = found.arguments.iter().find_map(place);
+            arguments.into_iter().fold(error, |error, span| error.at(span, "this variable"))
+        }
     };
     error.note("help: pass a copy: `var copy = value;`")
 }
@@ -149,12 +154,18 @@ fn uses_of(module: &Module, function: &Function, known: &[Uses]) -> (Uses, Optio
     (uses, alias)
 }
 
-fn aliased(module: &Module, roots: &[PointerRoot], callee: &Uses, call: Span) -> Option<AliasedCall> {
+fn aliased(
+    module: &Module,
+    roots: &[PointerRoot],
+    callee: &Uses,
+    call: Span,
+) -> Option<AliasedCall> {
     let of = |one: &PointerRoot| {
         callee.get(&Root::Parameter(one.parameter)).copied().unwrap_or_default()
     };
     for (at, one) in roots.iter().enumerate() {
-        let other = roots[..at].iter().find(|other| other.root == one.root && of(one).disturbs(of(other)));
+        let other =
+            roots[..at].iter().find(|other| other.root == one.root && of(one).disturbs(of(other)));
         if let Some(other) = other {
             return Some(AliasedCall { call, arguments: vec![one.span, other.span], global: None });
         }
@@ -202,12 +213,13 @@ fn pointer_roots(
 /// Whether a root is memory. Textures and samplers are passed in the same way.
 fn is_memory(module: &Module, function: &Function, root: Root) -> bool {
     match root {
-        Root::Global(global) => {
-            module.global_variables[global].space != naga::AddressSpace::Handle
-        }
+        Root::Global(global) => module.global_variables[global].space != naga::AddressSpace::Handle,
         Root::Local(_) => true,
         Root::Parameter(index) => function.arguments.get(index as usize).is_some_and(|argument| {
-            matches!(module.types[argument.ty].inner, TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. })
+            matches!(
+                module.types[argument.ty].inner,
+                TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. }
+            )
         }),
     }
 }

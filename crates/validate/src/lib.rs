@@ -53,10 +53,9 @@ pub struct Validated {
 /// takes them for granted; the targets without cube arrays refuse them. So are `pack2x16float`
 /// and what is like it, which the targets without it refuse. Types of 16 or 64 bits are not
 /// included.
-pub const CAPABILITIES: Capabilities =
-    Capabilities::MULTISAMPLED_SHADING
-        .union(Capabilities::CUBE_ARRAY_TEXTURES)
-        .union(Capabilities::SHADER_FLOAT16_IN_FLOAT32);
+pub const CAPABILITIES: Capabilities = Capabilities::MULTISAMPLED_SHADING
+    .union(Capabilities::CUBE_ARRAY_TEXTURES)
+    .union(Capabilities::SHADER_FLOAT16_IN_FLOAT32);
 
 /// Parses and validates.
 ///

@@ -14,8 +14,8 @@ use naga::{
     Type, TypeInner,
 };
 
-use super::operands::{change_operands, change_used, computed, operands, result_mut, used};
 use super::operands::inner_blocks;
+use super::operands::{change_operands, change_used, computed, operands, result_mut, used};
 
 type Value = Handle<Expression>;
 
@@ -64,7 +64,8 @@ fn changed_function(
 ) -> Option<(Function, naga::UniqueArena<Type>)> {
     let mut loops = Vec::new();
     find_loops(&function.body, &mut loops);
-    let mut needs: Vec<LoopNeeds> = loops.iter().map(|(body, rest)| needs_of(body, rest, function)).collect();
+    let mut needs: Vec<LoopNeeds> =
+        loops.iter().map(|(body, rest)| needs_of(body, rest, function)).collect();
     if needs.iter().all(|needs| needs.values.is_empty()) {
         return None;
     }

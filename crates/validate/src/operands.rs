@@ -130,15 +130,7 @@ pub fn change_used(statement: &mut Statement, change: Change<'_>) {
         S::Call { function: _, arguments, result: _ } => arguments.iter_mut().for_each(change),
         S::RayQuery { query, fun } => {
             change(query);
-            match fun {
-                RayQueryFunction::Initialize { acceleration_structure, descriptor } => {
-                    [acceleration_structure, descriptor].into_iter().for_each(change);
-                }
-                RayQueryFunction::GenerateIntersection { hit_t } => change(hit_t),
-                RayQueryFunction::Proceed { result: _ }
-                | RayQueryFunction::ConfirmIntersection
-                | RayQueryFunction::Terminate => {}
-            }
+            change_queried(fun, change);
         }
         S::RayPipelineFunction(RayPipelineFunction::TraceRay {
             acceleration_structure,
@@ -179,6 +171,18 @@ fn change_used_in_memory(statement: &mut Statement, change: Change<'_>) {
     };
     if let AtomicFunction::Exchange { compare } = function {
         compare.iter_mut().for_each(change);
+    }
+}
+
+fn change_queried(function: &mut RayQueryFunction, change: Change<'_>) {
+    match function {
+        RayQueryFunction::Initialize { acceleration_structure, descriptor } => {
+            [acceleration_structure, descriptor].into_iter().for_each(change);
+        }
+        RayQueryFunction::GenerateIntersection { hit_t } => change(hit_t),
+        RayQueryFunction::Proceed { result: _ }
+        | RayQueryFunction::ConfirmIntersection
+        | RayQueryFunction::Terminate => {}
     }
 }
 

@@ -327,10 +327,11 @@ impl<'a> UniformityWalk<'_, 'a> {
         };
         let Some(severity) = severity_in(self.flow.module, self.function) else { return };
         if let Some(range) = self.function.expressions.get_span(handle).to_range() {
-            self.flow
-                .found
-                .entry((range.start, range.end))
-                .or_insert(DerivativeFinding { sample, severity, cause });
+            self.flow.found.entry((range.start, range.end)).or_insert(DerivativeFinding {
+                sample,
+                severity,
+                cause,
+            });
         }
     }
 

@@ -70,7 +70,8 @@ impl Graph {
                 let mut items = graph.nodes.iter().flat_map(|node| &node.module.items);
                 graph.constants.iter().any(|constant| graph.names.text(constant.name) == name)
                     || items.any(|item| {
-                        item.kind == lamplight_syntax::wesl::ItemKind::Override && graph.names.text(item.name) == name
+                        item.kind == lamplight_syntax::wesl::ItemKind::Override
+                            && graph.names.text(item.name) == name
                     })
             }
             Self::Glsl(_) => false,

@@ -2,13 +2,13 @@
 
 use super::evaluate::Evaluator;
 use super::reached::{Dependency, Reached, ReferenceMeaning, Thing, name_of};
+use crate::resolve::wesl::{Graph, PLACES, PathTarget};
 use crate::{Keep, Options};
+use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_files::limits::count_steps;
-use lamplight_syntax::wesl::{Event, Item, ItemKind, Name, PlacedModule, UsedName};
 use lamplight_permute::Setting;
-use crate::resolve::wesl::{Graph, PLACES, PathTarget};
-use lamplight_diagnostic::source::Span;
+use lamplight_syntax::wesl::{Event, Item, ItemKind, Name, PlacedModule, UsedName};
 use lamplight_syntax::wesl::{Event, ItemKind, Name, UsedName};
 
 /// Finds what is kept. Errors are added to those of the evaluator.

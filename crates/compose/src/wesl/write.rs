@@ -5,11 +5,11 @@ use std::ops::Range;
 use super::evaluate::Evaluator;
 use super::naming::ItemRenames;
 use super::reached::{Reached, ReferenceMeaning, Thing};
+use crate::resolve::wesl::Graph;
 use crate::{Part, PartKind, Segment, SourceMap};
+use lamplight_diagnostic::source::{LIMITS, Span};
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_syntax::wesl::{Directive, Event, Item, ItemKind, Name, PlacedModule};
-use crate::resolve::wesl::Graph;
-use lamplight_diagnostic::source::{LIMITS, Span};
 use lamplight_syntax::wesl::{Directive, Event, ItemKind, Name, PlacedModule};
 
 /// Writes what is kept, with the map back and the declarations.
@@ -173,13 +173,10 @@ impl Writer<'_> {
         // An override with a value from outside is a constant. Its default is left out.
         let given = evaluator.given(item.name).filter(|_| item.kind == ItemKind::Override);
         let given = given.map(str::to_owned);
-        let end = match given {
-            Some(_) => value_start(module, item),
-            None => item.range.end,
-        };
+        let mut end = item.range.end;
         if given.is_some() {
             self.own("const ");
-            at = item.name_range.start;
+            (at, end) = (item.name_range.start, value_start(module, item));
         }
         evaluator.live(node, &item.events, |_, event| match event {
             Event::Cut { start, .. } | Event::Node { start, .. } | Event::Use { start, .. }
@@ -204,9 +201,7 @@ impl Writer<'_> {
             }
         });
         self.copy(module, at..end);
-        if let Some(value) = &given {
-            self.own(&format!(" = {value};"));
-        }
+        given.iter().for_each(|value| self.own(&format!(" = {value};")));
         self.numbers[self.reached.index(own)] = self.parts.len() as u32;
         let name = match item.kind {
             ItemKind::ConstAssert => Vec::new(),

@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use naga::back::PipelineConstants;
-use naga::back::pipeline_constants::process_overrides;
+use naga::back::pipeline_constants::{PipelineConstantError, process_overrides};
 use naga::compact::{KeepUnused, compact};
 use naga::valid::ModuleInfo;
 use naga::{
@@ -143,7 +143,7 @@ pub fn default_values(validated: &Validated, index: usize) -> Result<DefaultValu
     let assumed: PipelineConstants = assumed.collect();
     let entry = Some((point.stage, point.name.as_str()));
     let (made, _) = process_overrides(&named, &validated.info, entry, &assumed)
-        .map_err(|error| Diagnostic::error(codes::EMIT_FAILED, error.to_string()))?;
+        .map_err(|error| Diagnostic::error(codes::EMIT_FAILED, reason(&error)))?;
     let computed: BTreeMap<&str, Literal> = made
         .overrides
         .iter()
@@ -151,14 +151,23 @@ pub fn default_values(validated: &Validated, index: usize) -> Result<DefaultValu
         .collect();
     let is_known = |handle| with_named(module, Overrides::from([handle])).is_disjoint(&without);
     let values = module.overrides.iter().filter(|(handle, _)| is_known(*handle));
-    let values = values.filter_map(|(handle, _)| {
-        Some((handle, *computed.get(number_name(handle).as_str())?))
-    });
+    let values = values
+        .filter_map(|(handle, _)| Some((handle, *computed.get(number_name(handle).as_str())?)));
     let workgroup_size = match made.entry_points.as_slice() {
         [only] => only.workgroup_size,
         all => all.get(index).map_or(point.workgroup_size, |one| one.workgroup_size),
     };
     Ok(DefaultValues { values: values.collect(), workgroup_size })
+}
+
+/// Why naga could not compute a size or a default.
+fn reason(error: &PipelineConstantError) -> String {
+    match error {
+        PipelineConstantError::NegativeWorkgroupSize => {
+            "the size of a workgroup, which an override decides, is below 1".to_owned()
+        }
+        error => error.to_string(),
+    }
 }
 
 /// A name that leads back to the override after naga has left some of them out.

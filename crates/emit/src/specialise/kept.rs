@@ -7,8 +7,8 @@
 use naga::back::binary_operation_str;
 use naga::common::wgsl::TryToWgsl;
 use naga::{
-    ArraySize, Expression, Handle, Literal, Module, Override, Scalar, ScalarKind, ShaderStage, Type,
-    TypeInner, UnaryOperator,
+    ArraySize, Expression, Handle, Literal, Module, Override, Scalar, ScalarKind, ShaderStage,
+    Type, TypeInner, UnaryOperator,
 };
 
 use super::fixed::{deciding, is_computed, is_length, pending_length};
@@ -122,7 +122,11 @@ impl ExpressionText<'_> {
         let found = &self.module.overrides[handle];
         match found.init {
             Some(init) if is_length(found) => self.expression(init),
-            _ => self.names.get(handle.index()).cloned().ok_or_else(|| "a name is missing".to_owned()),
+            _ => self
+                .names
+                .get(handle.index())
+                .cloned()
+                .ok_or_else(|| "a name is missing".to_owned()),
         }
     }
 

@@ -1,0 +1,191 @@
+//! Outputs of shaders that naga's writers get wrong without help.
+//!
+//! The cases of `tests/outputs/values/` have the same values on every executor. The shaders of
+//! `tests/outputs/shaders/` are compiled for the targets that their manifest names, and the
+//! independent validators of these targets accept them.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use lamplight::bundle::{Bundle, Found, Stage, Target};
+use lamplight::execute::executors;
+use libtest_mimic::{Failed, Trial};
+
+type Outcome = Result<(), Failed>;
+
+pub fn trials() -> Vec<Trial> {
+    let executors = executors::ALL.iter().filter(|one| !OTHERS.contains(&one.name));
+    executors
+        .map(|executor| {
+            let name = format!("outputs::values::{}", executor.name);
+            Trial::test(name, || values(executor.name))
+        })
+        .chain([
+            Trial::test("outputs::shaders_are_valid", shaders),
+            Trial::test("outputs::sizes", sizes),
+            Trial::test("outputs::sizes_of_spec_axes", spec_sizes),
+            Trial::test("outputs::another_size_is_noticed", other_sizes),
+        ])
+        .collect()
+}
+
+/// Executors in a browser are slow: what they run is the WGSL that `vulkan` runs, and the GLSL of
+/// `essl300`. `gl` runs the GLSL that wgpu writes itself, where GLSL leaves some results open.
+const OTHERS: [&str; 3] = ["gl", "webgl2", "webgpu"];
+
+fn folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/outputs").join(name)
+}
+
+fn lamplight(arguments: &[&str], folder: &Path) -> Outcome {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
+    let output = command.current_dir(folder).args(arguments).output()?;
+    match output.status.success() {
+        true => Ok(()),
+        false => {
+            let said = [output.stdout, output.stderr].concat();
+            Err(format!("{arguments:?}: {}", String::from_utf8_lossy(&said)).into())
+        }
+    }
+}
+
+fn values(executor: &str) -> Outcome {
+    lamplight(&["check", ".", "--executor", executor], &folder("values"))
+}
+
+fn shaders() -> Outcome {
+    let bundle = generated(&folder("shaders"), &["--validate"])?;
+    for_each_output(&bundle, &|name, target, found| {
+        if target != Target::WGSL {
+            return Ok(());
+        }
+        let text = String::from_utf8(found.bytes.clone())?;
+        same_reflection(&text, found).map_err(|what| format!("{name}: {what}\n{text}").into())
+    })
+}
+
+fn generated(folder: &Path, more: &[&str]) -> Result<Bundle, Failed> {
+    let out = tempfile::tempdir()?;
+    let bundle = out.path().join("bundle.lamplight");
+    let path = bundle.to_string_lossy();
+    let mut arguments = vec!["gen", "--no-cache", "-o", &path];
+    arguments.extend(more);
+    lamplight(&arguments, folder)?;
+    Ok(Bundle::from_bytes(std::fs::read(&bundle)?)?)
+}
+
+fn for_each_output(bundle: &Bundle, check: &dyn Fn(&str, Target, &Found) -> Outcome) -> Outcome {
+    for name in bundle.programs() {
+        let program = bundle.program(name)?;
+        for (language, entry) in program.entries() {
+            let shader = program.entry(language, entry)?;
+            for key in shader.keys()? {
+                for target in shader.targets(&key)? {
+                    let target = Target::find(&target).ok_or("a target without a name")?;
+                    check(&format!("{name} {entry} {key}"), target, &shader.get(&key, target)?)?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether naga reads in a text what its reflection says.
+fn same_reflection(text: &str, found: &Found) -> Result<(), String> {
+    let module = naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
+    let [point] = module.entry_points.as_slice() else {
+        return Err(format!("expected one entry point, found {}", module.entry_points.len()));
+    };
+    let info = naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::all(),
+    )
+    .validate(&module)
+    .map_err(|error| error.emit_to_string(text))?;
+    let stage = (point.stage, point.name.as_str());
+    let (made, _) = naga::back::pipeline_constants::process_overrides(
+        &module,
+        &info,
+        Some(stage),
+        &Default::default(),
+    )
+    .map_err(|error| error.to_string())?;
+    let point = made.entry_points.first().ok_or("the entry point was lost")?;
+    let reflection = &found.reflection;
+    let size = (reflection.stage == Stage::Compute).then_some(point.workgroup_size);
+    if reflection.workgroup_size != size || found.native.entry_name != point.name {
+        return Err(format!("the text has the size {size:?} and the name {}", point.name));
+    }
+    let mut places: Vec<[u32; 2]> = made
+        .global_variables
+        .iter()
+        .filter_map(|(_, one)| one.binding.map(|place| [place.group, place.binding]))
+        .collect();
+    places.sort_unstable();
+    let told: Vec<[u32; 2]> =
+        reflection.bindings.iter().map(|one| [one.group, one.binding]).collect();
+    match places == told {
+        true => Ok(()),
+        false => Err(format!("the text binds {places:?}, the reflection {told:?}")),
+    }
+}
+
+/// What the outputs of `sizes.wesl` say about the size of a workgroup and the lengths of arrays: 8 is
+/// twice the default of `count`, and 4 the larger of `count` and 2.
+fn sizes() -> Outcome {
+    let bundle = generated(&folder("shaders"), &["--program", "sizes"])?;
+    let shader = bundle.program("sizes")?.shader("cs_main")?;
+    for (target, expected) in [
+        (Target::WGSL, "@workgroup_size((count * 2u), most, 1)"),
+        (Target::WGSL, "array<array<f32, 3>, (count * 2u)>"),
+        (Target::WGSL, "override most: u32 = max(count, 2u);"),
+        (Target::GLSL450, "local_size_x = 8, local_size_y = 4, local_size_z = 1"),
+        (Target::GLSL450, "shared float rows[8][3];"),
+        (Target::HLSL, "[numthreads(8, 4, 1)]"),
+        (Target::HLSL, "groupshared float rows[8][3];"),
+        // The other override stays open.
+        (Target::HLSL, "#define LAMPLIGHT_WEIGHT 0.5"),
+        (Target::MSL, "LAMPLIGHT_WEIGHT [[function_constant("),
+    ] {
+        let found = shader.get("default", target)?;
+        if found.reflection.workgroup_size != Some([8, 4, 1]) {
+            return Err(format!("the size is {:?}", found.reflection.workgroup_size).into());
+        }
+        let text = String::from_utf8(found.bytes)?;
+        if !text.contains(expected) {
+            return Err(format!("{target}: expected `{expected}` in\n{text}").into());
+        }
+    }
+    Ok(())
+}
+
+/// An axis of the mode `spec` that decides a size is a constant of each permutation.
+fn spec_sizes() -> Outcome {
+    let bundle = generated(&folder("shaders"), &["--program", "samples"])?;
+    let shader = bundle.program("samples")?.shader("cs_main")?;
+    for (key, size) in [("default", 4), ("samples=8", 8), ("samples=16", 16)] {
+        let found = shader.get(key, Target::WGSL)?;
+        let text = String::from_utf8(found.bytes)?;
+        let size_text = format!("@workgroup_size({size}, 1, 1)");
+        let is_right = found.reflection.workgroup_size == Some([size, 1, 1])
+            && found.constants.is_empty()
+            && text.contains(&size_text)
+            && text.contains(&format!("array<u32, {size}>"));
+        if !is_right {
+            return Err(format!("`{key}`: expected {size} everywhere in\n{text}").into());
+        }
+    }
+    Ok(())
+}
+
+/// The comparison with the reflection fails where a text has another size.
+fn other_sizes() -> Outcome {
+    let bundle = generated(&folder("shaders"), &["--program", "samples"])?;
+    let found = bundle.program("samples")?.shader("cs_main")?.get("default", Target::WGSL)?;
+    let text = String::from_utf8(found.bytes.clone())?;
+    let other = text.replace("@workgroup_size(4, 1, 1)", "@workgroup_size(1, 1, 1)");
+    match same_reflection(&other, &found) {
+        Err(_) if other != text => Ok(()),
+        _ => Err("a wrong size was not noticed".into()),
+    }
+}
