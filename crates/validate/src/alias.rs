@@ -249,10 +249,10 @@ fn for_each_statement<'f>(function: &'f Function, visit: &mut dyn FnMut(&'f Stat
     }
 }
 
-fn for_each_call(
-    function: &Function,
-    visit: &mut dyn FnMut(Handle<Function>, &[Handle<Expression>], Span),
-) {
+/// What is done with a call: the function, its arguments, and the place.
+type VisitCall<'v> = dyn FnMut(Handle<Function>, &[Handle<Expression>], Span) + 'v;
+
+fn for_each_call(function: &Function, visit: &mut VisitCall<'_>) {
     for_each_statement(function, &mut |statement, span| {
         if let Statement::Call { function, arguments, result: _ } = statement {
             visit(*function, arguments, span);

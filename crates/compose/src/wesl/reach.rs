@@ -9,7 +9,6 @@ use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_files::limits::count_steps;
 use lamplight_permute::Setting;
 use lamplight_syntax::wesl::{Event, Item, ItemKind, Name, PlacedModule, UsedName};
-use lamplight_syntax::wesl::{Event, ItemKind, Name, UsedName};
 
 /// Finds what is kept. Errors are added to those of the evaluator.
 pub fn find_reached(graph: &Graph, evaluator: &mut Evaluator<'_>, options: &Options) -> Reached {

@@ -10,7 +10,6 @@ use crate::{Part, PartKind, Segment, SourceMap};
 use lamplight_diagnostic::source::{LIMITS, Span};
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_syntax::wesl::{Directive, Event, Item, ItemKind, Name, PlacedModule};
-use lamplight_syntax::wesl::{Directive, Event, ItemKind, Name, PlacedModule};
 
 /// Writes what is kept, with the map back and the declarations.
 pub fn write_reached(
