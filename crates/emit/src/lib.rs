@@ -14,11 +14,7 @@ pub mod blocks;
 pub mod clip;
 mod columns;
 mod filters;
-<<<<<<< HEAD:crates/emit/src/lib.rs
 pub mod glsl;
-=======
-pub(crate) mod glsl;
->>>>>>> 01e99e49 (validate: name the type of a visitor of calls):src/emit/mod.rs
 mod gradients;
 mod header;
 mod isolate;

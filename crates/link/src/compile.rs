@@ -12,7 +12,7 @@ use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use lamplight_emit::{self as emit, targets};
 use lamplight_files::limits::GROUP_BYTES;
 use lamplight_validate::{
-    self as validate, Validated, on_large_stack, validate, validate_rehearsed,
+    self as validate, Validated, check_glsl, on_large_stack, validate, validate_rehearsed,
 };
 
 /// One text in two forms: as its author reads it, for errors; and without comments and layout,

@@ -22,7 +22,8 @@ use lamplight_compose::Composed;
 use lamplight_emit as emit;
 use lamplight_emit::spirv::words;
 use lamplight_validate::{
-    Validated, guard, info_of, is_bounded, is_calm, may_alias, on_large_stack, store_loop_values,
+    Validated, check_switches, guard, info_of, is_bounded, is_calm, may_alias, on_large_stack,
+    parse_glsl, store_loop_values,
 };
 
 /// A unit in every target.

@@ -70,11 +70,7 @@ impl Graph {
                 let mut items = graph.nodes.iter().flat_map(|node| &node.module.items);
                 graph.constants.iter().any(|constant| graph.names.text(constant.name) == name)
                     || items.any(|item| {
-<<<<<<< HEAD:crates/compose/src/resolve/mod.rs
                         item.kind == lamplight_syntax::wesl::ItemKind::Override
-=======
-                        item.kind == lamplight_syntax::wesl::ItemKind::Override
->>>>>>> 01e99e49 (validate: name the type of a visitor of calls):src/resolve/mod.rs
                             && graph.names.text(item.name) == name
                     })
             }
