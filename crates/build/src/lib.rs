@@ -5,6 +5,8 @@
 
 #![allow(clippy::print_stdout)]
 
+pub mod identity;
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
