@@ -3,10 +3,12 @@
 //! `cargo xtask test` builds the site first.
 
 mod keys;
+mod links;
 mod lost;
 mod named;
 mod pictures;
 mod playground;
+mod policy;
 mod programs;
 mod seen;
 
@@ -29,7 +31,7 @@ type Case = (&'static str, fn() -> Outcome);
 const PATIENCE: Duration = Duration::from_secs(120);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 7] = [
+    let cases: [Case; 9] = [
         ("catalogue", catalogue),
         ("pictures", pictures::pictures),
         ("programs", programs::programs),
@@ -37,6 +39,8 @@ pub fn trials() -> Vec<Trial> {
         ("seen", seen::seen),
         ("keys", keys::keys),
         ("lost", lost::lost),
+        ("links", links::links),
+        ("policy", policy::policy),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("site::{name}"), case)).collect()
 }

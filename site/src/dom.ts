@@ -22,6 +22,14 @@ export function sentence(text: string): Child[] {
         index % 2 && index < all.length - 1 ? h("code", {}, part) : index % 2 ? `\`${part}` : part);
 }
 
+/** Letters of a name from an address that an error repeats. */
+const REPEATED = 80;
+
+/** A name from an address, as an error repeats it: not at any length, and without characters that change
+ * how the rest is read. */
+export const repeated = (name: string): string =>
+    (name.length > REPEATED ? `${name.slice(0, REPEATED)} …` : name).replace(/\p{C}/gu, "\ufffd");
+
 /** What went wrong, in words. */
 export const reason = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
@@ -80,11 +88,20 @@ export function countPage() {
     pages += 1;
 }
 
+/** A part of an address, decoded; as it is where it has no meaning, such as `%E0%A4%A`. */
+function decoded(text: string): string {
+    try {
+        return decodeURIComponent(text);
+    } catch {
+        return text;
+    }
+}
+
 export function route(): Route {
     known = location.hash;
     const [way, query] = location.hash.replace(/^#\/?/, "").split("?");
     const [page, ...path] = way.split("/");
-    return { page: page || "catalogue", path: decodeURIComponent(path.join("/")), query: new URLSearchParams(query) };
+    return { page: page || "catalogue", path: decoded(path.join("/")), query: new URLSearchParams(query) };
 }
 
 /** Puts the state of a page into the address without a step of its own in the history. `into` is the

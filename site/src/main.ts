@@ -1,5 +1,5 @@
 import { toolchain } from "./client";
-import { countPage, h, reason, route } from "./dom";
+import { countPage, h, reason, repeated, route } from "./dom";
 
 /** A page fills the place it is given, and says what to do when it is left. */
 export type Page = (into: HTMLElement) => Promise<(() => void) | void>;
@@ -13,6 +13,15 @@ const PAGES: Record<string, { title: string; open: () => Promise<{ page: Page }>
     speed: { title: "Speed", open: () => import("./pages/speed") },
 };
 
+/** What is shown for an address that names no page. */
+const missing = (name: string): typeof PAGES[string] => ({
+    title: "Not found",
+    open: async () => ({
+        page: async (into) => into.replaceChildren(h("h1", {}, "Not found"),
+            h("p", {}, `The site has no page ${repeated(name)}. `, h("a", { href: "#/catalogue" }, "To the catalogue"))),
+    }),
+});
+
 let leave: (() => void) | void;
 let opened = 0;
 
@@ -20,7 +29,8 @@ async function open() {
     const now = ++opened;
     countPage();
     const { page } = route();
-    const known = PAGES[page] ?? PAGES.catalogue;
+    // A plain object has names that are none of its pages, such as `constructor`.
+    const known = Object.hasOwn(PAGES, page) ? PAGES[page] : missing(page);
     leave?.();
     leave = undefined;
     document.title = `${known.title} – Lamplight`;
@@ -63,6 +73,7 @@ toolchain.onLoading = (isLoading) => {
 };
 
 // Nothing fails in silence.
+addEventListener("error", ({ message }) => tell(`Something failed: ${message}`));
 addEventListener("unhandledrejection", ({ reason: error }) => tell(`Something failed: ${reason(error)}`));
 
 document.querySelector(".skip")!.addEventListener("click", (event) => {

@@ -1,18 +1,50 @@
 // State as text in a link, and files as a zip.
-async function through(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream) {
-    return new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+/** Bytes that are unpacked at a time. Each of them becomes at most 1,032, so the limit is noticed
+ * before there is much more than it allows. */
+const PIECE = 1024;
+
+/** A text that unpacks to more than it may. */
+export class TooLarge extends Error {}
+
+/** Bytes in pieces, each of which is made when somebody wants it. */
+function pieces(bytes: Uint8Array<ArrayBuffer>): ReadableStream<BufferSource> {
+    let at = 0;
+    return new ReadableStream<BufferSource>({
+        pull(controller) {
+            if (at >= bytes.length) return controller.close();
+            controller.enqueue(bytes.slice(at, at + PIECE));
+            at += PIECE;
+        },
+    }, { highWaterMark: 0 });
 }
 
 export async function packed(text: string): Promise<string> {
-    const bytes = await through(new TextEncoder().encode(text), new CompressionStream("deflate-raw"));
+    const stream = new Blob([text]).stream().pipeThrough(new CompressionStream("deflate-raw"));
+    const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
     return btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""))
         .replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 }
 
-export async function unpacked(text: string): Promise<string> {
+/** The text, or an error if it is damaged or has more than `most` bytes. No more than that is unpacked. */
+export async function unpacked(text: string, most: number): Promise<string> {
     const letters = atob(text.replaceAll("-", "+").replaceAll("_", "/"));
-    const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
-    return new TextDecoder().decode(await through(bytes, new DecompressionStream("deflate-raw")));
+    const bytes = new Uint8Array(letters.length);
+    for (let at = 0; at < bytes.length; at++) bytes[at] = letters.charCodeAt(at);
+    const reader = pieces(bytes).pipeThrough(new DecompressionStream("deflate-raw")).getReader();
+    const decoder = new TextDecoder("utf-8", { fatal: true });
+    const parts: string[] = [];
+    let size = 0;
+    for (let read = await reader.read(); !read.done; read = await reader.read()) {
+        size += read.value.length;
+        if (size > most) {
+            // Whoever made it does not wait for the rest.
+            reader.cancel().catch(() => {});
+            throw new TooLarge(`it unpacks to more than ${most.toLocaleString("en")} bytes`);
+        }
+        parts.push(decoder.decode(read.value, { stream: true }));
+    }
+    parts.push(decoder.decode());
+    return parts.join("");
 }
 
 function crc(bytes: Uint8Array): number {

@@ -1,6 +1,6 @@
 import type { CurveResult, ItemInfo, LibraryInfo } from "@lamplight/toolchain";
 import { OWN, toolchain } from "../client";
-import { choose, code, h, reason, remember, route, sentence, visit } from "../dom";
+import { choose, code, h, reason, remember, repeated, route, sentence, visit } from "../dom";
 import { packed } from "../pack";
 import { type Computed, computed } from "../parts/computed";
 import { latest } from "../parts/latest";
@@ -59,7 +59,7 @@ export async function page(into: HTMLElement) {
     }
     async function open(path: string, isChosen = false) {
         const item = items.get(path);
-        if (!item) return place.replaceChildren(h("h1", {}, "Catalogue"), h("p", {}, `The library has no ${path}.`));
+        if (!item) return place.replaceChildren(h("h1", {}, "Not found"), h("p", {}, `The library has no ${repeated(path)}.`));
         place.dataset.path = path;
         remember(into, "catalogue", path, { q: search.value.trim() });
         document.title = `${item.name} – Catalogue – Lamplight`;

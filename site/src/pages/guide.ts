@@ -1,4 +1,4 @@
-import { h, route } from "../dom";
+import { h, repeated, route } from "../dom";
 
 type Html = { default: string };
 
@@ -14,7 +14,7 @@ export async function page(into: HTMLElement) {
     const article = h("article", { class: "guide" });
     const load = pages.get(name || "README");
     if (load) article.innerHTML = (await load()).default;
-    else article.replaceChildren(h("p", {}, `The guide has no page ${name}.`));
+    else article.replaceChildren(h("h1", {}, "Not found"), h("p", {}, `The guide has no page ${repeated(name)}.`));
     for (const link of contents.querySelectorAll("a")) {
         if (link.getAttribute("href") === `#/guide/${name || "README"}`) link.setAttribute("aria-current", "page");
     }

@@ -1,13 +1,14 @@
 import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
 import { type Diagnostic as Mark, lintGutter, setDiagnostics } from "@codemirror/lint";
 import { EditorState } from "@codemirror/state";
-import { EditorView, drawSelection, highlightActiveLine, keymap, lineNumbers } from "@codemirror/view";
+import { EditorView, drawSelection, highlightActiveLine, highlightSpecialChars, keymap, lineNumbers } from "@codemirror/view";
 import type { Diagnostic } from "@lamplight/toolchain";
 import { OWN, toolchain, typed } from "../client";
 import { choose, h, reason, remember, route } from "../dom";
 import { output } from "../output";
 import { zip } from "../pack";
-import { FIRST, type Project, earlier, keep, linked, opened } from "../parts/project";
+import { FIRST, earlier, keep, linked, opened } from "../parts/project";
+import { LARGEST, type Project } from "../parts/state";
 import { Files } from "../parts/files";
 import { latest } from "../parts/latest";
 import { Sketch } from "../parts/sketch";
@@ -15,11 +16,8 @@ import { Sketch } from "../parts/sketch";
 /** Milliseconds after which the page says that it still computes. */
 const PATIENCE = 1000;
 
-/** Letters of all files: with more, the page would stand still for a second while it keeps them. */
-const LARGEST = 4 << 20;
-
 export async function page(into: HTMLElement, given?: Project) {
-    const state: Project = given ?? await opened(route().query.get("state"));
+    const { project: state, refused } = given ? { project: given, refused: undefined } : await opened(route().query.get("state"));
     const outputs = h("div", { class: "texts" });
     const problems = h("ul", { class: "problems", "aria-label": "Diagnostics", "aria-live": "polite" });
     const told = h("p", { role: "status", class: "status" });
@@ -36,7 +34,8 @@ export async function page(into: HTMLElement, given?: Project) {
     const begin = () => editor.setState(EditorState.create({
         doc: state.files[state.open] ?? "",
         extensions: [
-            lineNumbers(), history(), drawSelection(), highlightActiveLine(), lintGutter(), EditorView.lineWrapping,
+            // Marks of writing direction and control characters are seen, so that a text reads as it is.
+            highlightSpecialChars(), lineNumbers(), history(), drawSelection(), highlightActiveLine(), lintGutter(), EditorView.lineWrapping,
             EditorView.contentAttributes.of({ "aria-label": `Text of ${state.open}`, "aria-describedby": "leaving" }),
             EditorState.transactionFilter.of((change) => {
                 // Files that are too large already can be made smaller.
@@ -163,6 +162,7 @@ export async function page(into: HTMLElement, given?: Project) {
     const languages = choice([state.target]);
     into.replaceChildren(
         h("h1", { class: "quiet" }, "Playground"),
+        refused === undefined ? "" : h("p", { class: "wrong refused", role: "alert" }, refused),
         h("div", { class: "columns wide" },
             h("div", {}, files.element, panel, leaving, told, problems),
             h("div", {},

@@ -1,6 +1,6 @@
 import type { CostInfo, PictureControls, PictureRequest, Point, ProgramInfo } from "@lamplight/toolchain";
 import { OWN, toolchain } from "../client";
-import { choose, h, reason, remember, route } from "../dom";
+import { choose, h, reason, remember, repeated, route } from "../dom";
 import { Screen, device, picture } from "../draw";
 import { output, texts } from "../output";
 import { axes } from "../parts/axes";
@@ -40,6 +40,9 @@ export async function page(into: HTMLElement) {
         toolchain.call(OWN, "programs", {}), toolchain.call(OWN, "studio"), toolchain.call(OWN, "targets"),
     ]);
     const { path, query } = route();
+    if (path && !programs.some((one) => one.name === path)) {
+        return into.replaceChildren(h("h1", {}, "Not found"), h("p", {}, `The library has no program ${repeated(path)}.`));
+    }
     const state = begun(query, path, studio.presets.find((one) => one.name === query.get("preset")));
     type State = typeof state;
     const canvas = h("canvas", { width: 256, height: 256, role: "img", "aria-label": "The picture" });

@@ -1,13 +1,11 @@
 // The files of the playground as tabs, of which one is open.
 import { h } from "../dom";
+import { NAME } from "./state";
 
 type Kept = { files: Record<string, string>; open: string };
 
 const STEPS: Record<string, number> = { ArrowLeft: -1, ArrowRight: 1 };
 const ENDS: Record<string, number> = { Home: 0, End: -1 };
-
-/** Names that the toolchain and a zip take. */
-const NAME = /^(?!\/)(?!.*\.\.)[\w./-]+$/;
 
 export class Files {
     readonly element: HTMLElement;
@@ -60,7 +58,7 @@ export class Files {
     #asked(suggested: string): string | undefined {
         const name = prompt("Name of the file", suggested)?.trim();
         if (!name || name === this.#kept.open) return undefined;
-        if (name in this.#kept.files) alert(`There is a file ${name} already.`);
+        if (Object.hasOwn(this.#kept.files, name)) alert(`There is a file ${name} already.`);
         else if (!NAME.test(name)) alert("A name has letters, digits, dots, hyphens, underscores and slashes.");
         else return name;
         return undefined;

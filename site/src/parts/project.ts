@@ -1,11 +1,7 @@
 // The files of the playground, and where they are kept: in the link and in the browser.
 import { isFirstPage } from "../dom";
-import { packed, unpacked } from "../pack";
-import type { Look } from "./sketch";
-
-export type Project = {
-    files: Record<string, string>; open: string; target: string; expression: string; look: Look;
-};
+import { TooLarge, packed, unpacked } from "../pack";
+import { LARGEST, type Project, WrongState, sound } from "./state";
 
 export const FIRST: Project = {
     files: {
@@ -50,23 +46,16 @@ const MOST_EARLIER = 4;
 /** Characters of a link that browsers and servers still take. */
 const LONGEST = 60000;
 
-/** A project, whatever a link has. */
-function sound(found: unknown): Project {
-    const given = (typeof found === "object" && found !== null ? found : {}) as Partial<Record<keyof Project, unknown>>;
-    const files = Object.fromEntries(Object.entries(given.files ?? {}).filter(([, text]) => typeof text === "string"));
-    const names = Object.keys(files);
-    if (!names.length) return structuredClone(FIRST);
-    const text = (key: "open" | "target" | "expression") => (typeof given[key] === "string" ? given[key] as string : FIRST[key]);
-    const look = (typeof given.look === "object" && given.look !== null ? given.look : {}) as Look;
-    const open = names.includes(text("open")) ? text("open") : names[0];
-    return { files, open, target: text("target"), expression: text("expression"), look };
-}
+/** Bytes of a state: a letter has at most three, and quotation marks and line ends have two letters in
+ * JSON. */
+const MOST_BYTES = 3 * LARGEST;
 
+/** What the browser kept; nothing if that is no project. Somebody's own files are not refused for what is
+ * wrong beside them. */
 function parsed(text: string | null): Project | undefined {
+    if (text === null) return undefined;
     try {
-        const found = JSON.parse(text ?? "");
-        // Older versions kept the project with its address.
-        return sound(found.project ?? found);
+        return sound(text, FIRST, false);
     } catch {
         return undefined;
     }
@@ -107,24 +96,28 @@ function isReload(): boolean {
     return entry?.type === "reload" && isFirstPage();
 }
 
+/** A project to begin with, and why it is not that of the link. */
+export type Opened = { project: Project; refused?: string };
+
 /** The project of the link; without a link, what was typed last. After a reload it is what was typed
  * in this tab, since the address may not have followed that yet. */
-export async function opened(link: string | null): Promise<Project> {
+export async function opened(link: string | null): Promise<Opened> {
     const again = isReload() ? parsed(stored(KEPT, TAB)) : undefined;
-    if (again) return again;
+    if (again) return { project: again };
     store(KEPT, null, TAB);
     const text = stored(KEPT, ALL);
     const kept = parsed(text);
-    if (!link) return kept ?? structuredClone(FIRST);
+    if (!link) return { project: kept ?? structuredClone(FIRST) };
     let project: Project;
     try {
-        project = sound(JSON.parse(await unpacked(link)));
-    } catch {
-        // A link that was cut short opens what was typed last.
-        return kept ?? structuredClone(FIRST);
+        project = sound(await unpacked(link, MOST_BYTES), FIRST);
+    } catch (error) {
+        const isWord = error instanceof WrongState || error instanceof TooLarge;
+        const why = isWord ? error.message : "it is damaged, or was cut short";
+        return { project: kept ?? structuredClone(FIRST), refused: `The project of the link cannot be opened: ${why}.` };
     }
     if (text && JSON.stringify(kept) !== JSON.stringify(project)) keepEarlier(text);
-    return project;
+    return { project };
 }
 
 function earlierTexts(): string[] {
@@ -151,6 +144,9 @@ export const earlier = (): Project[] =>
 
 /** The project as a part of a link; nothing if it is too large for one. */
 export async function linked(project: Project): Promise<string | undefined> {
-    const text = await packed(JSON.stringify(project));
+    const state = JSON.stringify(project);
+    // Nothing is linked that the page would not open again.
+    if (state.length > LARGEST) return undefined;
+    const text = await packed(state);
     return text.length > LONGEST ? undefined : text;
 }

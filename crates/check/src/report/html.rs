@@ -16,11 +16,17 @@ use lamplight_diagnostic::escape_markup;
 
 const STYLE: &str = include_str!("style.css");
 
+/// What a browser may do with the page: apply its own styles, and nothing else. The page has names
+/// and texts of modules, which may be a stranger's.
+const POLICY: &str =
+    "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
+
 /// The report as a page.
 pub fn html_report(report: &CheckReport, origin: &ReportOrigin<'_>) -> String {
     let page = ReportPage::new(report, origin);
     let mut html = format!(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\n\
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\"><meta name=\"viewport\" content=\"width=device-width\">\n\
          <title>Lamplight: numbers</title>\n<style>\n{STYLE}</style></head>\n<body>\n<header><h1>Lamplight: numbers</h1>\n"
     );
     page.summary(&mut html);

@@ -5,10 +5,12 @@ use std::fmt::Write as _;
 use super::{Card, SIZE, StripCard, THUMB, first_alike, picture_files, strip_file};
 use lamplight_diagnostic::escape_markup;
 
+/// Its policy allows the pictures beside it and its own style, also where it is opened as a file.
 const HEAD: &str = "<!doctype html>
 <html lang=\"en\">
 <head>
 <meta charset=\"utf-8\">
+<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; img-src 'self' file:; base-uri 'none'; form-action 'none'\">
 <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">
 <title>Lamplight: gallery</title>
 <style>
