@@ -13,14 +13,24 @@ const PAGES: Record<string, { title: string; open: () => Promise<{ page: Page }>
     speed: { title: "Speed", open: () => import("./pages/speed") },
 };
 
+/** Letters of an address. The page's own links have at most some 60,000. */
+const LONGEST = 100_000;
+
 /** What is shown for an address that names no page. */
-const missing = (name: string): typeof PAGES[string] => ({
+const missing = (why: string): typeof PAGES[string] => ({
     title: "Not found",
     open: async () => ({
         page: async (into) => into.replaceChildren(h("h1", {}, "Not found"),
-            h("p", {}, `The site has no page ${repeated(name)}. `, h("a", { href: "#/catalogue" }, "To the catalogue"))),
+            h("p", {}, `${why} `, h("a", { href: "#/catalogue" }, "To the catalogue"))),
     }),
 });
+
+/** The page of that name. */
+function named(page: string): typeof PAGES[string] {
+    if (location.hash.length > LONGEST) return missing(`The address has more than ${LONGEST.toLocaleString("en")} letters.`);
+    // A plain object has names that are none of its pages, such as `constructor`.
+    return Object.hasOwn(PAGES, page) ? PAGES[page] : missing(`The site has no page ${repeated(page)}.`);
+}
 
 let leave: (() => void) | void;
 let opened = 0;
@@ -29,8 +39,7 @@ async function open() {
     const now = ++opened;
     countPage();
     const { page } = route();
-    // A plain object has names that are none of its pages, such as `constructor`.
-    const known = Object.hasOwn(PAGES, page) ? PAGES[page] : missing(page);
+    const known = named(page);
     leave?.();
     leave = undefined;
     document.title = `${known.title} – Lamplight`;

@@ -33,6 +33,9 @@ function begun(query: URLSearchParams, path: string, published?: { program: stri
     };
 }
 
+/** Letters of a key. The longest of the library's has some hundreds. */
+const LONGEST_KEY = 4096;
+
 const problems = (all: { message: string }[]) => all.map((one) => one.message).join(" ");
 
 export async function page(into: HTMLElement) {
@@ -42,6 +45,10 @@ export async function page(into: HTMLElement) {
     const { path, query } = route();
     if (path && !programs.some((one) => one.name === path)) {
         return into.replaceChildren(h("h1", {}, "Not found"), h("p", {}, `The library has no program ${repeated(path)}.`));
+    }
+    const long = ["key", "against"].find((name) => (query.get(name) ?? "").length > LONGEST_KEY);
+    if (long) {
+        return into.replaceChildren(h("h1", {}, "Not found"), h("p", {}, `The ${long} of the address has more than ${LONGEST_KEY} letters.`));
     }
     const state = begun(query, path, studio.presets.find((one) => one.name === query.get("preset")));
     type State = typeof state;
@@ -123,7 +130,7 @@ export async function page(into: HTMLElement) {
         ]);
         if (!other.valid) {
             const why = other.broken.join(" ") || problems(other.diagnostics);
-            return text.replaceChildren(h("p", { class: "wrong" }, `${state.against}: ${why}`));
+            return text.replaceChildren(h("p", { class: "wrong" }, `${repeated(state.against)}: ${why}`));
         }
         const before = texts(await shader(other.settings), state.target);
         const after = texts(made, state.target);
