@@ -10,7 +10,6 @@ use super::{Case, Outcome};
 pub const CASES: &[Case] = &[
     ("reload_of_a_folder", || reloads("live")),
     ("reload_of_a_file", || reloads("live.lamplight")),
-    ("package_is_light", package_is_light),
 ];
 
 const MANIFEST: &str = "[program.p]\nwesl = \"p.wesl\"\ntargets = [\"wgsl\", \"glsl330\"]\n\
@@ -72,25 +71,4 @@ fn damaged(package: &Package, out: &str, bundle: &mut Bundle) -> Outcome {
 fn text(bundle: &Bundle, key: &str) -> Result<String, libtest_mimic::Failed> {
     let found = bundle.program("p")?.shader("m")?.get(key, Target::WGSL)?;
     Ok(String::from_utf8(found.bytes)?)
-}
-
-/// The published crate has everything that it is built from, and no tests, snapshots or pictures.
-fn package_is_light() -> Outcome {
-    let root = crate::snapshot::root();
-    let output = std::process::Command::new(env!("CARGO"))
-        .args(["package", "--list", "--allow-dirty", "--offline", "--package", "lamplight"])
-        .current_dir(root)
-        .output()?;
-    let listed = String::from_utf8(output.stdout)?;
-    if !output.status.success() {
-        return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
-    }
-    for wrong in ["tests/", "snapshots/", "docs/", "xtask/", "bench/", "fuzz/"] {
-        equal((wrong, listed.lines().any(|file| file.starts_with(wrong))), (wrong, false))?;
-    }
-    for right in ["src/main.rs", "build.rs", "shaderlib/lamplight.toml", "README.md", "LICENSE-MIT"]
-    {
-        equal((right, listed.lines().any(|file| file == right)), (right, true))?;
-    }
-    Ok(())
 }

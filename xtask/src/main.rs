@@ -3,6 +3,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod bench;
+mod check;
 mod ci;
 mod docs;
 mod faults;
@@ -25,6 +26,11 @@ const COMMANDS: &[XtaskCommand] = &[
         |arguments| make::run("gen", arguments),
     ),
     ("test", "install what the tests need, then run every test", test::run),
+    (
+        "check",
+        "check the numeric cases of modules on the disk, without a build: brdf/fresnel [OPTION]...",
+        check::run,
+    ),
     (
         "new",
         "write the files for a new function, axis-value, target, executor, scene or diagnostic",
@@ -75,7 +81,7 @@ const COMMANDS: &[XtaskCommand] = &[
         "the toolchain as WebAssembly (target/toolchain/) and the site: [--toolchain] [--quick]",
         site::run,
     ),
-    ("ci", "what continuous integration runs: format, lints, tests", ci::run),
+    ("ci", "what continuous integration runs: format, lints, tests; or one step: [STEP]", ci::run),
 ];
 
 fn main() -> ExitCode {

@@ -82,7 +82,7 @@ pub fn pages() -> CommandResult {
         command.args(arguments).current_dir(&folder).stdout(Stdio::null());
         finish(&mut command, &format!("npm {}", arguments.join(" ")))
     };
-    npm(&["install", "--no-save", "--no-audit", "--no-fund", "--loglevel=error"])?;
+    npm(&["ci", "--no-audit", "--no-fund", "--loglevel=error"])?;
     npm(&["run", "build"])
 }
 
@@ -111,10 +111,7 @@ pub fn toolchain(build: SiteBuild) -> Result<PathBuf, CommandFailure> {
 
 /// Compiles to WebAssembly, with the target of rustup or with Debian's packages for it.
 fn webassembly(build: SiteBuild, below: &Path) -> CommandResult {
-    let mut command = match has_target() || added_target() {
-        true => cargo_command(),
-        false => debian()?,
-    };
+    let mut command = cargo_for_webassembly()?;
     command.args(["build", "--package", "lamplight-toolchain", "--profile", build.profile()]);
     command.args(["--target", TARGET, "--target-dir"]).arg(below);
     if build == SiteBuild::Quick {
@@ -122,6 +119,19 @@ fn webassembly(build: SiteBuild, below: &Path) -> CommandResult {
     }
     command.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", STACK);
     finish(&mut build.prioritised(command), "cargo build --package lamplight-toolchain")
+}
+
+/// Whether the toolchain compiles to WebAssembly, without making anything.
+pub fn check_webassembly() -> CommandResult {
+    let mut command = cargo_for_webassembly()?;
+    command.args(["check", "--package", "lamplight-toolchain", "--target", TARGET]);
+    command.arg("--target-dir").arg(root().join("target/wasm"));
+    finish(&mut command, "cargo check --package lamplight-toolchain")
+}
+
+/// Cargo of a compiler that has the target.
+fn cargo_for_webassembly() -> Result<Command, CommandFailure> {
+    if has_target() || added_target() { Ok(cargo_command()) } else { debian() }
 }
 
 /// Whether the compiler in use has the standard library of the target.

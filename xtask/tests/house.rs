@@ -1,5 +1,6 @@
 //! Rules of the repository: the map in ARCHITECTURE.md is true, paths, functions and files are short,
-//! no run left a file behind, and what lists the packages lists all of them.
+//! no run left a file behind, what lists the packages lists all of them, and what is published is
+//! complete.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -9,6 +10,10 @@ mod lengths;
 mod one_way;
 #[path = "house/packages.rs"]
 mod packages;
+#[path = "house/published.rs"]
+mod published;
+#[path = "house/workflows.rs"]
+mod workflows;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -26,6 +31,9 @@ fn rules() -> Vec<Trial> {
         Trial::test("house::map", packages::are_mapped),
         Trial::test("house::packages_are_listed", packages::are_listed),
         Trial::test("house::groups_are_known", packages::groups_are_known),
+        Trial::test("house::published", published::is_complete),
+        Trial::test("house::workflow_steps", workflows::run_known_steps),
+        Trial::test("house::workflow_actions", workflows::are_pinned),
         Trial::test("house::leftovers", nothing_is_left_behind),
         Trial::test("house::leftovers_are_seen", leftovers_are_seen),
         Trial::test("house::paths", paths_are_short),
@@ -37,7 +45,7 @@ fn rules() -> Vec<Trial> {
 }
 
 /// The files that the root of the repository may have.
-const ROOT_FILES: [&str; 13] = [
+const ROOT_FILES: [&str; 15] = [
     ".gitignore",
     "ARCHITECTURE.md",
     "CHANGELOG.md",
@@ -47,9 +55,11 @@ const ROOT_FILES: [&str; 13] = [
     "LICENSE-APACHE",
     "LICENSE-MIT",
     "README.md",
+    "RELEASING.md",
     "SECURITY.md",
     "build.rs",
     "clippy.toml",
+    "deny.toml",
     "rustfmt.toml",
 ];
 

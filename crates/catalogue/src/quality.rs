@@ -1,5 +1,5 @@
 //! Ways to compute the same thing, with their errors and costs: `quality.toml`, which explains its
-//! form. [`lamplight_check`] computes the errors; the costs are recorded in `costs.toml`.
+//! form. The package `check` computes the errors; the costs are recorded in `costs.toml`.
 
 use serde::Deserialize;
 

@@ -5,7 +5,7 @@
 //! [`cases`] reads what to try, [`library`] composes the modules, [`references`] says what should
 //! come out, [`tolerance`] how far off it may be, and [`check`] compares what the executors of
 //! [`execute`](lamplight_execute) gave. [`expression`] runs one expression instead of cases, [`plots`]
-//! draws functions for the [`catalogue`], [`mutate`] asks how much the cases notice.
+//! draws functions for the [`catalogue`], `lamplight-mutate` asks how much the cases notice.
 
 pub mod cases;
 pub mod catalogue;

@@ -34,7 +34,7 @@ pub fn find(name: &str) -> Option<&'static KeyLanguage> {
     LANGUAGES.iter().find(|language| language.name == name)
 }
 
-/// Whether a text begins as one that [`write`] wrote, in any language.
+/// Whether a text begins as one that [`write()`] wrote, in any language.
 pub fn is_written(head: &[u8]) -> bool {
     const MARK: &[u8] = b"Written by `lamplight keys";
     head.windows(MARK.len()).take(16).any(|window| window == MARK)

@@ -2,7 +2,7 @@
 //!
 //! [`naga_oil`] takes the files of one folder. Each is cut into tokens and directives ([`scan`]),
 //! read as lists of declarations, statements and members, so that each condition stands around
-//! whole ones ([`unit`]), and written again with its comments and its layout ([`write`]).
+//! whole ones ([`mod@unit`]), and written again with its comments and its layout ([`write`]).
 
 mod condition;
 mod import;

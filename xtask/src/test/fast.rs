@@ -26,9 +26,7 @@ pub fn run(arguments: &[String]) -> CommandResult {
         false => arguments.iter().map(|name| full_name(name)).collect(),
     };
     let binaries = binaries::find_binaries()?;
-    let is_light =
-        |binary: &&TestBinary| (binary.package.as_str(), binary.target) != ("lamplight", "all");
-    let light: Vec<&TestBinary> = binaries.iter().filter(is_light).collect();
+    let light: Vec<&TestBinary> = binaries.iter().filter(|binary| is_light(binary)).collect();
     let started = Instant::now();
     let mut failed = Vec::new();
     for name in in_order(&workspace, &changed, arguments.is_empty()) {
@@ -46,6 +44,30 @@ pub fn run(arguments: &[String]) -> CommandResult {
         true => Ok(()),
         false => Err(CommandFailure::check(format!("failed: {}", failed.join(", ")))),
     }
+}
+
+/// Whether tests need nothing outside the repository.
+fn is_light(binary: &TestBinary) -> bool {
+    (binary.package.as_str(), binary.target) != ("lamplight", "all")
+}
+
+/// Runs these tests of all packages, whatever changed. Those below `crates/` are built together,
+/// before the whole.
+pub fn test_packages() -> CommandResult {
+    let binaries = binaries::find_binaries()?;
+    let (of_root, of_packages): (Vec<&TestBinary>, Vec<&TestBinary>) = binaries
+        .iter()
+        .filter(|binary| is_light(binary))
+        .partition(|binary| binary.package == "lamplight");
+    let test_all = |binaries: &[&TestBinary]| {
+        let mut arguments = vec!["test", "--locked", "--no-fail-fast"];
+        for TestBinary { package, target, groups: _ } in binaries {
+            arguments.extend(["--package", package, "--test", target]);
+        }
+        process::cargo(&arguments, &[])
+    };
+    let [packages, root] = [of_packages, of_root].map(|binaries| test_all(&binaries));
+    packages.and(root)
 }
 
 /// `eval` for `lamplight-eval`.

@@ -10,6 +10,7 @@ use xtask::{CommandResult, machine, process};
 use crate::site;
 
 pub use binaries::{choose, find_binaries, one_command};
+pub use fast::test_packages;
 
 /// Prepares the machine, then runs every test. With names among the arguments, only the tests that
 /// have one of them in theirs are built and run, and only what these need is installed. Other

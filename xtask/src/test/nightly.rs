@@ -2,12 +2,12 @@
 
 use xtask::{CommandFailure, CommandResult};
 
-use crate::{faults, frames, make, mutate};
+use crate::{ci, faults, frames, make, mutate};
 
 /// A part: what it does, and the command that does it.
 type NightlyPart = (&'static str, fn() -> CommandResult);
 
-const PARTS: [NightlyPart; 5] = [
+const PARTS: [NightlyPart; 6] = [
     ("every test", || super::run(&[])),
     ("frames from the bytes of every target", || frames::run(&[])),
     ("20,000 random programs", || {
@@ -15,6 +15,7 @@ const PARTS: [NightlyPart; 5] = [
     }),
     ("mutants of the whole library", || mutate::run(&[])),
     ("faults of the system", || faults::run(&[])),
+    ("packages as they are published", ci::check_publishing),
 ];
 
 fn words(line: &str) -> Vec<String> {

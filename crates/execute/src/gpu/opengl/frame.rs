@@ -163,6 +163,11 @@ fn draw_frame(
     }
 }
 
+/// Fills every target with [`SENTINEL`].
+///
+/// # Safety
+///
+/// The context is current, and a framebuffer with a target for each format is bound.
 unsafe fn clear_targets(gl: &glow::Context, formats: &[ColorFormat]) {
     for (index, format) in (0..).zip(formats) {
         // SAFETY: a framebuffer with so many targets is bound.
@@ -180,6 +185,10 @@ unsafe fn clear_targets(gl: &glow::Context, formats: &[ColorFormat]) {
 
 /// The words of the bound target, row by row. OpenGL reads the bottom row first. This is the top
 /// row of the frame, since the emitted vertex stages flip y.
+///
+/// # Safety
+///
+/// The context is current, and a framebuffer of this size and format is bound for reading.
 unsafe fn read_target(
     gl: &glow::Context,
     [width, height]: [i32; 2],
@@ -198,6 +207,9 @@ unsafe fn read_target(
     bytes.as_chunks::<4>().0.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect()
 }
 
+/// # Safety
+///
+/// The context is current, and the program of `ready` is in use.
 unsafe fn draw_item(
     gl: &glow::Context,
     ready: &FrameProgram,
@@ -237,6 +249,10 @@ unsafe fn draw_item(
 }
 
 /// Describes the attributes of a mesh to the bound vertex array; returns the buffer with the data.
+///
+/// # Safety
+///
+/// The context is current, and a vertex array is bound.
 unsafe fn bind_attributes(gl: &glow::Context, mesh: &Mesh) -> Result<Option<glow::Buffer>, String> {
     if mesh.attributes.is_empty() {
         return Ok(None);
@@ -260,6 +276,9 @@ unsafe fn bind_attributes(gl: &glow::Context, mesh: &Mesh) -> Result<Option<glow
     }
 }
 
+/// # Safety
+///
+/// The context is current.
 unsafe fn create_buffer(gl: &glow::Context, of: u32, bytes: &[u8]) -> Result<glow::Buffer, String> {
     // SAFETY: the context is current.
     unsafe {

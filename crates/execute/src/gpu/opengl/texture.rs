@@ -93,6 +93,10 @@ fn make_texture(
 }
 
 /// Sets what a texture with one level needs to be complete, where no sampler object is bound.
+///
+/// # Safety
+///
+/// The context is current, and a texture is bound to the target.
 pub unsafe fn set_nearest(gl: &glow::Context, target: u32) {
     // SAFETY: a texture is bound to the target.
     unsafe {
