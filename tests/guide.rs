@@ -1,8 +1,9 @@
 //! The guide: the commands of its pages are run, and their output is compared with the pages.
 //!
-//! A page is a Markdown file of `docs/guide/`. The info string of a fenced block says what the block
-//! is. `CONTRIBUTING.md` lists the forms, and [`block`] reads them. Each page is one shell session
-//! in an empty folder. `INSTA_UPDATE=always` writes the outputs that were found into the pages.
+//! A page is a Markdown file of `docs/guide/`, or the README of the repository. The info string of a
+//! fenced block says what the block is. `CONTRIBUTING.md` lists the forms, and [`block`] reads them.
+//! Each page is one shell session in an empty folder. `INSTA_UPDATE=always` writes the outputs that
+//! were found into the pages.
 
 mod block;
 mod compare;
@@ -23,6 +24,8 @@ pub fn trials() -> Vec<Trial> {
         .into_iter()
         .map(|path| Trial::test(format!("guide::{}", stem(&path)), move || page::check(&path)))
         .collect();
+    let readme = snapshot::root().join("README.md");
+    trials.push(Trial::test("guide::front_page", move || page::check(&readme)));
     trials.extend(compare::trials());
     trials.extend(mutated::trials());
     trials.extend(references::trials());

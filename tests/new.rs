@@ -164,17 +164,22 @@ fn target_version() -> Outcome {
 fn change() -> Outcome {
     let folder = tempfile::tempdir()?;
     let old = "# Changelog\n\n## Unreleased\n\n### One\n\n- First.\n\n### Two\n\n- Second.\n\n\
-        ## 0.1.0\n\n### Two\n\n- Old.\n";
+        ### Empty\n\n### Last\n\n## 0.1.0\n\n### Two\n\n- Old.\n";
     std::fs::write(folder.path().join("CHANGELOG.md"), old)?;
-    for (section, after) in [("One", "- First.\n"), ("Two", "- Second.\n")] {
+    for (section, after, line) in [
+        ("One", "- First.\n", "- New.\n"),
+        ("Two", "- Second.\n", "- New.\n"),
+        ("Empty", "### Empty\n", "\n- New.\n"),
+        ("Last", "### Last\n", "\n- New.\n"),
+    ] {
         let made = made::make(folder.path(), "change", section, &["New."])?;
-        let new = old.replace(after, &format!("{after}- New.\n"));
+        let new = old.replace(after, &format!("{after}{line}"));
         if made.files != [("CHANGELOG.md".to_owned(), new)] {
             return Err(format!("{section}: found {:?}", made.files).into());
         }
     }
     match made::make(folder.path(), "change", "Three", &["New."]) {
-        Err(said) if said.contains("One, Two") => Ok(()),
+        Err(said) if said.contains("One, Two, Empty, Last") => Ok(()),
         found => Err(format!("expected the known sections, found {found:?}").into()),
     }
 }

@@ -6,6 +6,8 @@
 
 #[path = "house/lengths.rs"]
 mod lengths;
+#[path = "house/links.rs"]
+mod links;
 #[path = "house/one_way.rs"]
 mod one_way;
 #[path = "house/packages.rs"]
@@ -34,6 +36,7 @@ fn rules() -> Vec<Trial> {
         Trial::test("house::published", published::is_complete),
         Trial::test("house::workflow_steps", workflows::run_known_steps),
         Trial::test("house::workflow_actions", workflows::are_pinned),
+        Trial::test("house::links", links::lead_somewhere),
         Trial::test("house::leftovers", nothing_is_left_behind),
         Trial::test("house::leftovers_are_seen", leftovers_are_seen),
         Trial::test("house::paths", paths_are_short),
