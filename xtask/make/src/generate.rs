@@ -14,11 +14,11 @@ use lamplight::generate::{
     Generated, Look, Observer, Progress, Request, RunWarnings, Summary, Tools, Trace, TracedRun,
     generate,
 };
-use lamplight::judge::{OutputOrigin, blame};
 use lamplight::permute::Manifest;
 use lamplight::project;
 use lamplight::resolve::Packages;
 use lamplight::source::SourceSet;
+use lamplight_validators::{OutputOrigin, blame};
 
 use crate::validate::{JudgedOutputs, judge};
 use xtask::process::root;

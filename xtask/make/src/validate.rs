@@ -5,7 +5,7 @@ use std::process::Command;
 
 use lamplight::bundle::{BlobFile, Target, blob_files};
 use lamplight::cache::Cache;
-use lamplight::judge::{MissingTool, Output, Refusal, Tint, missing, outputs, verdict};
+use lamplight_validators::{MissingTool, Output, Refusal, Tint, missing, outputs, verdict};
 
 use xtask::process::root;
 use xtask::{CommandFailure, CommandResult, machine};

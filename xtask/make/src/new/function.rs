@@ -119,10 +119,10 @@ fn steps(stem: &str, reference: &str, new: &Signature<'_>, is_new: bool) -> Vec<
         ),
         format!("{stem}.glsl: {in_glsl} (trial shaderlib::)"),
         format!(
-            "{reference}: the formula in f64, from the source and not from the shader, with the limits of guards as the shader has them (`f64::from(1e-4f32)`), and its first lines, which list the sources (`cargo run -- check`, below)"
+            "{reference}: the formula in f64, from the source and not from the shader, with the limits of guards as the shader has them (`f64::from(1e-4f32)`), and its first lines, which list the sources; then `cargo build`, since references are part of the command"
         ),
         format!(
-            "{stem}.toml: `tolerance` and `laws`, in one of the forms above them (trial new::forms), and inputs outside the domain, for which `Edges:` says the result; `cargo run -- check {folder}/{module}` measures the tolerance, and with `--spec` it lists what WGSL allows, which the tolerance should not be below; `shaderlib/tolerances.toml` needs no line"
+            "{stem}.toml: `tolerance` and `laws`, in one of the forms above them (trial new::forms), and inputs outside the domain, for which `Edges:` says the result; `cargo xtask check {folder}/{module}` measures the tolerance, and with `--spec` it lists what WGSL allows, which the tolerance should not be below; `shaderlib/tolerances.toml` needs no line"
         ),
         format!("tests/plain/{folder}/{module}.wesl: {plain} (trial plain::)"),
         format!("{stem}.plot.toml is complete, unless another parameter should be drawn"),
