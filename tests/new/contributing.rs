@@ -9,6 +9,9 @@ use crate::snapshot::root;
 /// The most lines of a task.
 const LINES: usize = 6;
 
+/// There are at least so many tasks.
+const TASKS: usize = 15;
+
 /// Each task is short, each command of the list can be run, each kind has a task, and each file that
 /// is named exists, or is written by a command of the list.
 pub fn is_true() -> Outcome {
@@ -16,11 +19,15 @@ pub fn is_true() -> Outcome {
     let (_, list) = text.split_once("## Common tasks").ok_or("no common tasks")?;
     let (list, _) = list.split_once("\n## ").ok_or("nothing follows the common tasks")?;
     let mut problems: Vec<String> = Vec::new();
-    for task in list.split("\n\n").filter(|task| task.trim_start().starts_with("**")) {
-        let lines = task.trim().lines().count();
-        if lines > LINES {
-            let first = task.trim().lines().next().unwrap_or_default();
-            problems.push(format!("`{first}` has {lines} lines, more than {LINES}"));
+    let tasks: Vec<&str> = list.split("\n### ").skip(1).collect();
+    if tasks.len() < TASKS {
+        problems.push(format!("{} tasks were found, less than {TASKS}", tasks.len()));
+    }
+    for task in tasks {
+        let (title, steps) = task.split_once('\n').unwrap_or((task, ""));
+        let lines = steps.trim().lines().count();
+        if lines > LINES || lines == 0 {
+            problems.push(format!("`{title}` has {lines} lines, allowed are 1 to {LINES}"));
         }
     }
     let (mut kinds, mut written) = (BTreeSet::new(), BTreeSet::new());
@@ -57,7 +64,7 @@ pub fn is_true() -> Outcome {
 
 /// Whether a quoted text is the path of one file or folder of the repository.
 fn is_path(text: &str) -> bool {
-    let folders = ["src/", "tests/", "shaderlib/", "docs/", "xtask/", "snapshots/"];
+    let folders = ["src/", "crates/", "tests/", "shaderlib/", "docs/", "xtask/", "snapshots/"];
     let is_literal = text.chars().all(|one| one.is_ascii_alphanumeric() || "/._-".contains(one));
     let has_place_holder = text.contains("CODE");
     folders.iter().any(|folder| text.starts_with(folder)) && is_literal && !has_place_holder
