@@ -1,8 +1,10 @@
-//! Reads the single file in place: only its header and META are parsed on opening.
+//! Reads the single file: only its header and META on opening, each table on first use, and
+//! compressed groups where a shader is asked for.
 
 mod bytes;
 mod verify;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -10,35 +12,40 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use serde::de::DeserializeOwned;
 
-use bytes::{BundleBytes, map_file};
+use bytes::BundleBytes;
 
 use super::contents::{Hash, checksum, refuse_control_characters, to_hex};
 use super::layout::*;
 use super::store::{Store, StoredArtifact, StoredProgram, StoredPrograms, StoredUnit};
 use super::{Axis, Error, Reflection, ShardOrigin, VERSION};
 use crate::packing;
+use lamplight_files::limits::MANIFEST_BYTES;
 
 /// How many decompressed groups are kept, and how many bytes: about what the shaders of one level
 /// of a game need.
 const KEPT_GROUPS: usize = 16;
 const KEPT_BYTES: usize = 32 << 20;
 
+/// The most bytes of a section that is read as a whole.
+const MOST_TABLE_BYTES: usize = MANIFEST_BYTES as usize;
+
 /// An open single-file bundle.
 pub struct Packed {
     bytes: BundleBytes,
     sections: [(usize, usize, Hash); SECTIONS.len()],
-    /// The result of each section's checksum, which is computed on first use.
-    checked: [OnceLock<Result<(), Error>>; SECTIONS.len()],
+    /// Each section but DATA, read and compared with its checksum on first use. `None` where the
+    /// bytes are in memory anyway.
+    tables: [OnceLock<Result<Option<Vec<u8>>, Error>>; SECTIONS.len()],
     meta: Meta,
     programs: StoredPrograms,
     entries: Vec<EntryMeta>,
     groups: Mutex<Vec<(u32, Arc<[u8]>)>>,
 }
 
-/// Maps the file. It must not be changed in place while it is open: replace it by renaming, as
-/// [`super::write_file`] does.
+/// Opens the file. To change it while it is open, replace it by renaming, as [`super::write_file`]
+/// does: then this reader keeps the old one. If it is changed in place, errors say so.
 pub fn open(path: &Path) -> Result<Packed, Error> {
-    parse_file(map_file(path)?)
+    parse_file(BundleBytes::open(path)?)
 }
 
 /// As [`open`], for bytes in memory.
@@ -49,12 +56,13 @@ pub fn from_bytes(bytes: Vec<u8>) -> Result<Packed, Error> {
 fn parse_file(bytes: BundleBytes) -> Result<Packed, Error> {
     let sections = read_header(&bytes)?;
     let (offset, length, expected) = sections[META];
-    let text = slice_at(&bytes, offset, length, "meta")?;
-    if checksum(text) != expected {
+    let text = bytes.read(offset, length, "meta")?;
+    if checksum(&text) != expected {
         return Err(Error::corrupt("meta", "the checksum does not match"));
     }
     let meta: Meta =
-        serde_json::from_slice(text).map_err(|error| Error::corrupt("meta", error.to_string()))?;
+        serde_json::from_slice(&text).map_err(|error| Error::corrupt("meta", error.to_string()))?;
+    drop(text);
     meta.targets.iter().try_for_each(|target| {
         refuse_control_characters("meta", [&target.name, &target.extension])
     })?;
@@ -77,7 +85,7 @@ fn parse_file(bytes: BundleBytes) -> Result<Packed, Error> {
     Ok(Packed {
         bytes,
         sections,
-        checked: Default::default(),
+        tables: Default::default(),
         meta,
         programs,
         entries,
@@ -86,8 +94,9 @@ fn parse_file(bytes: BundleBytes) -> Result<Packed, Error> {
 }
 
 /// The offset, length and checksum of each section, from a header whose own checksum is right.
-fn read_header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], Error> {
+fn read_header(file: &BundleBytes) -> Result<[(usize, usize, Hash); SECTIONS.len()], Error> {
     let part = "header";
+    let bytes: &[u8] = &file.read(0, HEADER_BYTES.min(file.len()), part)?;
     if slice_at(bytes, 0, 8, part)? != MAGIC {
         return Err(Error::corrupt(part, "this is not a Lamplight bundle"));
     }
@@ -101,11 +110,11 @@ fn read_header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], E
         return Err(Error::corrupt(part, "the checksum does not match"));
     }
     if u32_at(bytes, 12, part)? as usize != SECTIONS.len()
-        || u64_at(bytes, 16, part)? != bytes.len() as u64
+        || u64_at(bytes, 16, part)? != file.len() as u64
     {
         return Err(Error::corrupt(
             part,
-            format!("the file has {} bytes, not those it was written with", bytes.len()),
+            format!("the file has {} bytes, not those it was written with", file.len()),
         ));
     }
     let mut sections = [(0, 0, [0; 16]); SECTIONS.len()];
@@ -114,7 +123,9 @@ fn read_header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], E
         let at = 24 + index * 32;
         let (offset, length) =
             (u64_at(bytes, at, part)? as usize, u64_at(bytes, at + 8, part)? as usize);
-        slice_at(bytes, offset, length, SECTIONS[index])?;
+        if offset.checked_add(length).is_none_or(|end| end > file.len()) {
+            return Err(Error::corrupt(SECTIONS[index], "a position is out of range"));
+        }
         if offset != next {
             return Err(Error::corrupt(
                 SECTIONS[index],
@@ -124,7 +135,7 @@ fn read_header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], E
         next = offset + length;
         *section = (offset, length, hash_at(bytes, at + 16, part)?);
     }
-    if next == bytes.len() {
+    if next == file.len() {
         Ok(sections)
     } else {
         Err(Error::corrupt("data", "bytes follow the last section"))
@@ -132,23 +143,37 @@ fn read_header(bytes: &[u8]) -> Result<[(usize, usize, Hash); SECTIONS.len()], E
 }
 
 impl Packed {
-    /// The bytes of a section, whose checksum is verified once.
+    /// The bytes of a section other than DATA, whose checksum is verified once.
     fn section(&self, index: usize) -> Result<&[u8], Error> {
         let (offset, length, expected) = self.sections[index];
-        let section = slice_at(&self.bytes, offset, length, SECTIONS[index])?;
-        if index != DATA {
-            let check = || {
-                if checksum(section) == expected {
-                    Ok(())
-                } else {
-                    Err(Error::corrupt(SECTIONS[index], "the checksum does not match"))
-                }
-            };
-            if let Err(error) = self.checked[index].get_or_init(check) {
-                return Err(error.clone());
+        let read = || {
+            if length > MOST_TABLE_BYTES {
+                return Err(Error::corrupt(SECTIONS[index], "the section is too large"));
             }
+            let section = self.bytes.read(offset, length, SECTIONS[index])?;
+            if checksum(&section) != expected {
+                return Err(Error::corrupt(SECTIONS[index], "the checksum does not match"));
+            }
+            Ok(match section {
+                Cow::Owned(section) => Some(section),
+                Cow::Borrowed(_) => None,
+            })
+        };
+        match (self.tables[index].get_or_init(read), &self.bytes) {
+            (Err(error), _) => Err(error.clone()),
+            (Ok(Some(section)), _) => Ok(section),
+            (Ok(None), BundleBytes::Owned(all)) => slice_at(all, offset, length, SECTIONS[index]),
+            (Ok(None), BundleBytes::Stored { .. }) => Ok(&[]),
         }
-        Ok(section)
+    }
+
+    /// A part of DATA. Groups have checksums of their own.
+    fn data(&self, at: usize, length: usize, part: &str) -> Result<Cow<'_, [u8]>, Error> {
+        let (offset, all, _) = self.sections[DATA];
+        match at.checked_add(length) {
+            Some(end) if end <= all => self.bytes.read(offset + at, length, part),
+            _ => Err(Error::corrupt(part, "a position is out of range")),
+        }
     }
 
     fn entry(&self, entry: usize) -> Result<&EntryMeta, Error> {
@@ -246,11 +271,11 @@ impl Packed {
     fn decompress(&self, group: u32) -> Result<Vec<u8>, Error> {
         let part = format!("group {group}");
         let (offset, packed, raw, expected) = self.group_record(group)?;
-        let packed = slice_at(self.section(DATA)?, offset, packed, &part)?;
-        if checksum(packed) != expected {
+        let packed = self.data(offset, packed, &part)?;
+        if checksum(&packed) != expected {
             return Err(Error::corrupt(part, "the checksum does not match"));
         }
-        let bytes = packing::decompress(packed, raw).map_err(|error| match error.kind() {
+        let bytes = packing::decompress(&packed, raw).map_err(|error| match error.kind() {
             ErrorKind::Unsupported => error.into(),
             _ => Error::corrupt(part.as_str(), error.to_string()),
         })?;
@@ -266,12 +291,15 @@ impl Packed {
         let table = self.section(BLOBS)?;
         let at = self.meta.blobs as usize * BLOB_BYTES + group as usize * GROUP_BYTES;
         let raw = u32_at(table, at + 12, "blobs")? as usize;
-        if group >= self.meta.groups || raw > MOST_GROUP_BYTES {
+        let packed = u32_at(table, at + 8, "blobs")? as usize;
+        // Compressing makes nothing twice as large, but for some bytes around it.
+        let is_large = raw > MOST_GROUP_BYTES || packed > 2 * raw + 1024;
+        if group >= self.meta.groups || is_large {
             return Err(Error::corrupt("blobs", "a group is out of range"));
         }
         Ok((
             u64_at(table, at, "blobs")? as usize,
-            u32_at(table, at + 8, "blobs")? as usize,
+            packed,
             raw,
             hash_at(table, at + 16, "blobs")?,
         ))

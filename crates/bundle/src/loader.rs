@@ -80,8 +80,9 @@ pub struct Constant {
 impl Bundle {
     /// Opens a directory (its `manifest.json`) or a single file.
     ///
-    /// A file is mapped and must be replaced, not changed in place, while it is open. Checksums
-    /// are verified on first use of what they cover; [`Bundle::verify`] checks all.
+    /// To change a file while it is open, replace it by renaming: this reader then keeps the old
+    /// one. If it is changed in place, readers report an error. Checksums are verified on first use
+    /// of what they cover; [`Bundle::verify`] checks all.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         Ok(Self { store: store_of(path)?, recorder: None, path: Some(path.to_owned()) })

@@ -31,6 +31,40 @@ pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>> {
     }
 }
 
+/// So many bytes of a file from a position. The position of other readers does not change.
+///
+/// # Errors
+/// The file ends before, even if it was longer when it was opened.
+pub fn read_at(file: &File, at: u64, length: usize) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(length).map_err(|error| Error::new(ErrorKind::OutOfMemory, error))?;
+    bytes.resize(length, 0);
+    read_exactly(file, &mut bytes, at)?;
+    Ok(bytes)
+}
+
+#[cfg(unix)]
+fn read_exactly(file: &File, bytes: &mut [u8], at: u64) -> Result<()> {
+    std::os::unix::fs::FileExt::read_exact_at(file, bytes, at)
+}
+
+#[cfg(windows)]
+fn read_exactly(file: &File, mut bytes: &mut [u8], mut at: u64) -> Result<()> {
+    while !bytes.is_empty() {
+        match std::os::windows::fs::FileExt::seek_read(file, bytes, at)? {
+            0 => return Err(ErrorKind::UnexpectedEof.into()),
+            read => (bytes, at) = (&mut bytes[read..], at + read as u64),
+        }
+    }
+    Ok(())
+}
+
+/// Systems without files, such as WebAssembly.
+#[cfg(not(any(unix, windows)))]
+fn read_exactly(_: &File, _: &mut [u8], _: u64) -> Result<()> {
+    Err(ErrorKind::Unsupported.into())
+}
+
 fn check_is_file(found: &fs::Metadata) -> Result<()> {
     if found.is_file() {
         return Ok(());

@@ -147,6 +147,11 @@ limits! {
         "`limit-exceeded`";
     RESOLVE_FACTOR: u64 = 16, Count, "further such steps for each byte that was read", "time",
         "`limit-exceeded`";
+    LINT_WHOLE_FILES: u64 = 1 << 14, Count,
+        "files that `lint` reads, counted again for each module that reaches them", "time",
+        "no error: functions that are far from a module are then read without their bodies";
+    LINT_FILES: u64 = 1 << 20, Count, "files that `lint` reads after these", "time",
+        "`limit-exceeded`";
     COMPILED_BYTES: usize = 4 << 20, Bytes, "bytes of a composed text that naga compiles",
         "the stack and time of naga", "`limit-exceeded`";
     COMPILED_NESTING: usize = 256, Count, "depth of nested brackets in it", "the stack of naga",

@@ -7,10 +7,12 @@ mod settings;
 use std::collections::{BTreeMap, BTreeSet};
 
 use lamplight_bundle::Language;
+use lamplight_compose::resolve::wesl::{self, Reductions};
 use lamplight_compose::resolve::{self, Graph, Packages};
 use lamplight_compose::{self as compose, Composed, Keep, Options};
 use lamplight_diagnostic::source::SourceSet;
-use lamplight_diagnostic::{Diagnostic, Diagnostics};
+use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+use lamplight_files::limits::{LINT_FILES, LINT_WHOLE_FILES};
 use lamplight_permute::{Manifest, Settings};
 use lamplight_validate as validate;
 
@@ -48,28 +50,62 @@ pub fn language(path: &str) -> Option<Language> {
 pub const EXTENSIONS: &[&str] = &["wesl", "wgsl", "glsl", "vert", "frag", "comp"];
 
 /// Looks at modules of the root package.
+///
+/// Modules of a small package are checked with everything that they reach. If many reach much, the
+/// time would grow with the square of the package, so the rest are checked with reduced forms of
+/// what is far from them ([`Reductions`]).
 pub fn lint(sources: &mut SourceSet, request: &Request<'_>) -> Linted {
     let mut graphs = BTreeMap::new();
-    let (mut found, mut modules) = (Diagnostics::new(), 0);
+    let mut reductions = Reductions::default();
+    let mut linted = Linted::default();
     for path in request.paths {
         let Some(language) = language(path) else { continue };
-        modules += 1;
-        match resolve::load(sources, request.packages, path, language) {
+        if reductions.files_read() > LINT_WHOLE_FILES + LINT_FILES {
+            linted.diagnostics.push(too_many_files(path));
+            break;
+        }
+        linted.modules += 1;
+        match load(sources, request.packages, path, language, &mut reductions) {
             Ok(graph) => {
                 graphs.insert(path.clone(), graph);
             }
-            Err(errors) => found.extend(errors),
+            Err(errors) => linted.diagnostics.extend(reductions.visible(errors)),
         }
     }
     let included = included_files(sources, &graphs);
     for (path, graph) in &graphs {
-        found.extend(flags::undeclared_flags(graph, request));
+        linted.diagnostics.extend(reductions.visible(flags::undeclared_flags(graph, request)));
         // A GLSL file that others include is checked where it is included.
         if !included.contains(&request.packages.root.files.display(path)) {
-            found.extend(lint_module(graph, request, path));
+            let found = lint_module(graph, request, path);
+            linted.diagnostics.extend(reductions.visible(found));
         }
     }
-    Linted { diagnostics: distinct_in_order(sources, found), modules }
+    Linted { diagnostics: distinct_in_order(sources, linted.diagnostics), ..linted }
+}
+
+fn load(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    path: &str,
+    language: Language,
+    reductions: &mut Reductions,
+) -> Result<Graph, Diagnostics> {
+    match language {
+        Language::Wesl => {
+            reductions.begin(reductions.files_read() > LINT_WHOLE_FILES);
+            wesl::load_reduced(sources, packages, path, reductions).map(Graph::Wesl)
+        }
+        Language::Glsl => resolve::load(sources, packages, path, language),
+    }
+}
+
+fn too_many_files(path: &str) -> Diagnostic {
+    let most = LINT_WHOLE_FILES + LINT_FILES;
+    let message = format!("the modules of this package reach more than {most} files together");
+    Diagnostic::error(codes::LIMIT_EXCEEDED, message)
+        .note(format!("`{path}` and the modules after it were not checked"))
+        .note("help: name folders or modules, to check a part of the package at a time")
 }
 
 /// Names of the GLSL files that others of the package include.

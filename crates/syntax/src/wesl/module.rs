@@ -29,6 +29,13 @@ pub struct Module {
     pub(in crate::wesl) warnings: Vec<Diagnostic>,
 }
 
+impl Module {
+    /// Whether parts of the text could not be parsed.
+    pub fn has_errors(&self) -> bool {
+        !self.errors.is_empty()
+    }
+}
+
 /// A parsed text together with the file that it is used for. Several files, or several readings of
 /// one, may share a parsed text.
 #[derive(Debug)]

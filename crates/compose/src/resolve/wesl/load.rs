@@ -11,6 +11,7 @@ use super::graph::{
 };
 use super::kept::{KeptModules, ParsedModule};
 use super::lint;
+use super::reduce::Reductions;
 use super::replay::LoadNotes;
 use crate::resolve::Packages;
 use lamplight_diagnostic::source::{self, LIMITS, Package, SourceId, SourceSet, Span};
@@ -30,6 +31,8 @@ pub struct Loader<'a> {
     pub(super) failures: Vec<Diagnostic>,
     /// Parsed texts of earlier readings, for editors.
     pub(super) kept: Option<&'a mut KeptModules>,
+    /// Reduces the modules that are far from the root, for checks of whole packages.
+    reductions: Option<&'a mut Reductions>,
     /// By package and path: the node of a file, `None` if there is no such file, or why it cannot
     /// be read.
     known: HashMap<(usize, String), Result<Option<u32>, Diagnostic>>,
@@ -60,6 +63,7 @@ impl<'a> Loader<'a> {
             constant_places: FxHashMap::default(),
             failures: Vec::new(),
             kept: None,
+            reductions: None,
             known: HashMap::new(),
             listings: FxHashMap::default(),
             steps: Cell::new(Steps::new(RESOLVE_STEPS)),
@@ -78,6 +82,11 @@ impl<'a> Loader<'a> {
         self.kept = Some(kept);
         root.clone_into(&mut self.root);
         self
+    }
+
+    /// Reads as [`Reductions`] say.
+    pub fn with_reductions(self, reductions: &'a mut Reductions) -> Self {
+        Self { reductions: Some(reductions), ..self }
     }
 
     /// Reads the root module; false if there is no such file.
@@ -239,6 +248,10 @@ impl<'a> Loader<'a> {
         path: Vec<String>,
         asker: Option<Span>,
     ) -> u32 {
+        let source = match &mut self.reductions {
+            Some(reductions) => reductions.source(self.sources, source),
+            None => source,
+        };
         let text = self.sources.get(source).text.clone();
         let mut steps = self.steps.get();
         steps.grant(RESOLVE_FACTOR.saturating_mul(text.len() as u64));

@@ -6,11 +6,13 @@ mod kept;
 mod lint;
 mod load;
 mod locate;
+mod reduce;
 mod replay;
 
 pub use graph::{Candidate, ConstantUse, Graph, ModuleNode, PathTarget};
 pub use kept::KeptModules;
 pub use lint::{PLACES, flag_places, shown_at, undeclared_flags};
+pub use reduce::Reductions;
 
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
@@ -37,6 +39,16 @@ pub fn load_kept(
     kept: &mut KeptModules,
 ) -> Result<Graph, Diagnostics> {
     load_with(load::Loader::new(sources, packages).with_kept(kept, root), root)
+}
+
+/// As [`load`], with the modules far from the root as the reductions make them.
+pub fn load_reduced(
+    sources: &mut SourceSet,
+    packages: &Packages,
+    root: &str,
+    reductions: &mut Reductions,
+) -> Result<Graph, Diagnostics> {
+    load_with(load::Loader::new(sources, packages).with_reductions(reductions), root)
 }
 
 fn load_with(mut loader: load::Loader<'_>, root: &str) -> Result<Graph, Diagnostics> {
