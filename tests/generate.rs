@@ -24,7 +24,7 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 20] = [
+    let cases: [Case; 21] = [
         ("comments_and_layout_go_and_nothing_else", layout),
         ("a_second_run_does_nothing", nothing_to_do),
         ("an_edit_compiles_what_it_reaches", edits),
@@ -40,6 +40,7 @@ pub fn trials() -> Vec<Trial> {
         ("missing_and_foreign_shards_are_noticed", wrong_shards),
         ("shards_of_another_origin_are_refused", mixed_shards),
         ("a_newer_bundle_is_kept", newer),
+        ("another_run_is_waited_for_only_so_long", watched::stopped),
         ("a_key_and_a_target_can_be_chosen", choices),
         ("watch_follows_edits", watch),
         ("a_folder_can_be_shared", shared_folder),

@@ -20,11 +20,32 @@ type Outcome = Result<(), Failed>;
 type Run = fn() -> Outcome;
 
 const TRIALS: &[(&str, Run)] =
-    &[("text", text), ("same_modules", same_modules), ("mutants", mutants), ("beside", beside)];
+    &[
+        ("text", text),
+        ("same_modules", same_modules),
+        ("mutants", mutants),
+        ("beside", beside),
+        ("many_values_in_one_line", one_line),
+    ];
 
 pub fn trials() -> Vec<Trial> {
     let trial = |(name, run): &(&str, Run)| Trial::test(format!("migrate::{name}"), *run);
     TRIALS.iter().map(trial).collect()
+}
+
+/// Ten times the values in one line take ten times the steps.
+fn one_line() -> Outcome {
+    let steps = |count: usize| {
+        let before = lamplight::limits::steps_taken();
+        let text = format!("fn f() -> i32 {{ return {}0; }}\n", "#{A}+".repeat(count));
+        migrated(&[("a.wgsl".to_owned(), text)].into());
+        lamplight::limits::steps_taken() - before
+    };
+    let (one, ten) = (steps(1_000), steps(10_000));
+    match one >= 1_000 && ten <= 12 * one {
+        true => Ok(()),
+        false => Err(format!("{one} steps for 1,000 values, {ten} for 10,000").into()),
+    }
 }
 
 fn engine() -> Result<BTreeMap<String, String>, Failed> {

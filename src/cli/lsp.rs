@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 use std::io::{BufReader, stdin};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
@@ -34,8 +34,9 @@ pub fn run_lsp(_: Arguments) -> Result<(), Failure> {
     // analysed.
     thread::spawn(move || {
         let mut stream = BufReader::new(stdin().lock());
-        while let Ok(incoming) = wire::read_message(&mut stream) {
-            let is_end = matches!(incoming, Incoming::End);
+        loop {
+            let incoming = wire::read_message(&mut stream);
+            let is_end = matches!(incoming, Ok(Incoming::End) | Err(_));
             if sender.send(incoming).is_err() || is_end {
                 return;
             }
@@ -49,22 +50,60 @@ pub fn run_lsp(_: Arguments) -> Result<(), Failure> {
     }
 }
 
+/// How often to look whether the editor still runs.
+const ALIVE: Duration = Duration::from_secs(5);
+
+/// Waits for the next message as long as the editor runs. If its process has ended, another process
+/// may still hold the other end of the stream, and no message would come.
+fn receive_while_alive(
+    receiver: &Receiver<std::io::Result<Incoming>>,
+    editor: Option<u64>,
+) -> Result<Result<std::io::Result<Incoming>, RecvTimeoutError>, Failure> {
+    loop {
+        match receiver.recv_timeout(ALIVE) {
+            Err(RecvTimeoutError::Timeout) => {
+                if let Some(editor) = editor.filter(|editor| has_ended(*editor)) {
+                    let message = format!("the editor, process {editor}, has ended");
+                    return Err(Failure::input(message));
+                }
+            }
+            found => return Ok(found),
+        }
+    }
+}
+
+/// The number of the editor's process, which it gives when it begins.
+fn process_of_editor(message: &Value) -> Option<u64> {
+    let begins = message.get("method").and_then(Value::as_str) == Some("initialize");
+    message.pointer("/params/processId").filter(|_| begins).and_then(Value::as_u64)
+}
+
+/// Whether a process has ended, where the system shows processes as files.
+fn has_ended(process: u64) -> bool {
+    let processes = Path::new("/proc");
+    processes.join("self").exists() && !processes.join(process.to_string()).exists()
+}
+
 /// Answers until the editor leaves; returns the exit code that the protocol demands.
-fn serve_editor(receiver: &Receiver<Incoming>) -> Result<u8, Failure> {
+fn serve_editor(receiver: &Receiver<std::io::Result<Incoming>>) -> Result<u8, Failure> {
     let mut server = LanguageServer::new(library_copy(), LIBRARY_FILES);
-    let mut pause = PAUSE;
+    let (mut pause, mut editor) = (PAUSE, None);
     loop {
         let next = match server.is_idle() {
             false => receiver.recv_timeout(pause),
-            true => receiver.recv().map_err(|_| RecvTimeoutError::Disconnected),
+            true => receive_while_alive(receiver, editor)?,
         };
         let sent = match next {
-            Ok(Incoming::Message(message)) => {
+            Ok(Err(error)) => {
+                return Err(Failure::input(format!("what comes in is no conversation: {error}")));
+            }
+            Ok(Ok(Incoming::Message(message))) => {
                 pause = PAUSE;
+                editor = editor.or_else(|| process_of_editor(&message));
                 guard_request(&mut server, &message, |server| server.receive(&message))
             }
-            Ok(Incoming::Malformed(answer)) => vec![answer],
-            Ok(Incoming::End) | Err(RecvTimeoutError::Disconnected) => return Ok(0),
+            Ok(Ok(Incoming::Malformed(answer))) => vec![answer],
+            Ok(Ok(Incoming::End)) | Err(RecvTimeoutError::Disconnected) => return Ok(0),
             Err(RecvTimeoutError::Timeout) => {
                 pause = Duration::ZERO;
                 guard_request(&mut server, &Value::Null, LanguageServer::look)

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::failure::Failure;
-use super::overwrite::{Overwrite, tell_waiting, write_failure};
+use super::overwrite::{Overwrite, Patience, write_failure};
 use super::terminal::stdout;
 use super::work::is_file;
 use crate::bundle::{self, Bundle, DirectoryWriter, Error, Language, ShardMismatch, ShardOrigin};
@@ -30,6 +30,8 @@ pub struct Arguments {
     partial: bool,
     #[command(flatten)]
     overwrite: Overwrite,
+    #[command(flatten)]
+    patience: Patience,
 }
 
 pub fn run_merge(arguments: Arguments) -> Result<(), Failure> {
@@ -55,7 +57,10 @@ pub fn run_merge(arguments: Arguments) -> Result<(), Failure> {
             .and_then(|contents| bundle::replace_file(&contents, &arguments.out, replace))
             .map_err(failed)?;
     } else {
-        DirectoryWriter::take_over(&arguments.out, replace, &|| tell_waiting(&arguments.out))
+        let out = &arguments.out;
+        arguments
+            .patience
+            .with_turns(out, |turns| DirectoryWriter::take_over(out, replace, turns))
             .and_then(|writer| bundle::merge_into(&inputs, writer))
             .map_err(failed)?;
     }

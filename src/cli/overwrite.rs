@@ -2,13 +2,14 @@
 
 use std::io::{ErrorKind, Write};
 use std::path::Path;
+use std::time::Duration;
 
 use clap::Args;
 
 use super::failure::Failure;
 use super::terminal::stderr;
 use crate::bundle;
-use crate::output::{Error, Foreign, Replace};
+use crate::output::{Error, Foreign, Replace, Turns};
 
 /// What may be replaced.
 #[derive(Args, Clone)]
@@ -45,9 +46,24 @@ impl From<Error> for Failure {
     }
 }
 
-/// Says why nothing happens for the moment.
-pub fn tell_waiting(out: &Path) {
-    let _ = writeln!(stderr(), "waiting for another run that writes `{}`", out.display());
+/// How long to wait for another run.
+#[derive(Args, Clone, Copy)]
+pub struct Patience {
+    /// Wait at most so long for another run that writes the same bundle.
+    #[arg(long, value_name = "SECONDS", default_value_t = Turns::MOST.as_secs())]
+    wait: u64,
+}
+
+impl Patience {
+    /// Does something with the turns that this allows. If it has to wait, it says why.
+    pub fn with_turns<T>(self, out: &Path, work: impl FnOnce(&Turns<'_>) -> T) -> T {
+        let waiting = |process: Option<u32>| {
+            let process = process.map_or_else(String::new, |number| format!(" (process {number})"));
+            let out = out.display();
+            let _ = writeln!(stderr(), "waiting for another run{process} that writes `{out}`");
+        };
+        work(&Turns { waiting: &waiting, most: Duration::from_secs(self.wait) })
+    }
 }
 
 /// A bundle that could not be written.

@@ -9,7 +9,7 @@ use clap::Args;
 use super::cached::Cached;
 use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::judged::{Inputs, Judges};
-use super::overwrite::{Overwrite, tell_waiting, write_failure};
+use super::overwrite::{Overwrite, Patience, write_failure};
 use super::partial;
 use super::progress::Bar;
 use super::terminal::stderr;
@@ -41,6 +41,8 @@ pub struct PathArguments {
     store: Option<String>,
     #[command(flatten)]
     overwrite: Overwrite,
+    #[command(flatten)]
+    patience: Patience,
 }
 
 impl PathArguments {
@@ -65,6 +67,7 @@ pub struct Work {
     cache_folder: Option<PathBuf>,
     judges: Option<Judges>,
     replace: Replace,
+    patience: Patience,
     /// The texts that are read before the packages: the manifest, and the files that declare
     /// packages.
     declared: SourceSet,
@@ -90,6 +93,7 @@ impl Work {
             judges: None,
             path,
             replace: places.overwrite.replace(),
+            patience: places.patience,
         })
     }
 
@@ -186,8 +190,9 @@ impl Work {
 
     /// Generates into a bundle directory. Each unit is written as soon as it is made.
     fn streamed(&mut self, request: &Request, bar: &Bar) -> Result<Generated, Failure> {
-        let writer =
-            DirectoryWriter::take_over(&self.out, self.replace, &|| tell_waiting(&self.out));
+        let writer = self.patience.with_turns(&self.out, |turns| {
+            DirectoryWriter::take_over(&self.out, self.replace, turns)
+        });
         let writer = writer.map_err(|error| write_failure(&self.out, error))?;
         let mut generated = self.generate(request, &writer, bar)?;
         let (judges, inputs) = self.judges();

@@ -11,6 +11,7 @@ pub const CASES: &[Case] = &[
     ("entry_points_by_name", entry_points),
     ("reflection_of_a_shader", reflection),
     ("depfile", depfile),
+    ("depfile_names", depfile_names),
     ("standard_input", standard_input),
     ("pipes", pipes),
     #[cfg(unix)]
@@ -103,6 +104,75 @@ fn depfile() -> Outcome {
     equal(command.status()?.code(), Some(0))?;
     package.write("rule.d", "all: clean\n")?;
     equal(command.status()?.code(), Some(1))
+}
+
+/// Letters that mean something in a rule, or in a pattern of file names.
+const NAMES: [&str; 14] = [
+    "a b", "a:b", "a;b", "a%b", "a*b", "a?b", "a[b]c", "a#b", "a$b", "a\\b", "a\\ b", "a\\:b", "a~b", "a,b",
+];
+
+/// Make, and ninja where it is installed, read each name of `--depfile` as it is.
+fn depfile_names() -> Outcome {
+    for name in NAMES {
+        let file = format!("{name}.wesl");
+        let package = Package::new(&[
+            (&file, FRAGMENT_ONLY),
+            // What a pattern would find instead.
+            ("aXb.wesl", FRAGMENT_ONLY),
+            ("wesl.toml", "root = \".\"\n"),
+        ])?;
+        let mut command = package.command("", "compile");
+        command.args([&file, "--target", "wgsl", "-o", name, "--depfile", "rule.d"]);
+        let output = command.output()?;
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        if output.status.code() != Some(0) {
+            return Err(format!("`{name}`: {told}").into());
+        }
+        read_by_make(&package, name, &file)?;
+        read_by_ninja(&package, name)?;
+        // The rule of another output, in a file that this command wrote.
+        let mut other = package.command("", "compile");
+        other.args(["aXb.wesl", "--target", "wgsl", "-o", "other", "--depfile", "rule.d"]);
+        equal(other.status()?.code(), Some(0))?;
+    }
+    Ok(())
+}
+
+const FRAGMENT_ONLY: &str = "@fragment fn m() -> @location(0) vec4f { return vec4f(1.0); }\n";
+
+/// Make has a rule for the output, and finds exactly the files that were read.
+fn read_by_make(package: &Package, name: &str, file: &str) -> Outcome {
+    package.write("Makefile", ".SUFFIXES:\nfirst:\ninclude rule.d\n")?;
+    let output = format!("{name}/{name}.m.frag.wgsl");
+    let run = |folder: &std::path::Path, arguments: &[&str]| {
+        std::process::Command::new("make").args(arguments).current_dir(folder).output()
+    };
+    let folder = package.path("");
+    let made = run(&folder, &["-d", &output])?;
+    let told = String::from_utf8_lossy(&made.stdout).into_owned();
+    for expected in [&output, file, "wesl.toml"] {
+        let considered = told.contains(&format!("Considering target file '{expected}'"));
+        equal((name, expected, considered), (name, expected, true))?;
+    }
+    equal((name, told.contains("aXb")), (name, false))?;
+    equal((name, made.status.success()), (name, true))
+}
+
+/// Ninja has no form for some names; `docs/guide/package.md` says which.
+fn read_by_ninja(package: &Package, name: &str) -> Outcome {
+    let is_there = std::process::Command::new("ninja").arg("--version").output().is_ok();
+    if !is_there || name.contains([';', '?', '%', ':']) {
+        return Ok(());
+    }
+    let escaped = name.replace('$', "$$").replace(' ', "$ ");
+    let output = format!("{escaped}/{escaped}.m.frag.wgsl");
+    package.write(
+        "build.ninja",
+        &format!("rule keep\n  command = true\n  depfile = rule.d\nbuild {output}: keep\n"),
+    )?;
+    let ran = std::process::Command::new("ninja").current_dir(package.path("")).output()?;
+    let told = String::from_utf8_lossy(&ran.stdout).into_owned();
+    equal((name, ran.status.success(), told.contains("error")), (name, true, false))
 }
 
 /// `-` reads the shader from standard input. The language, and for GLSL the stage, must be given.

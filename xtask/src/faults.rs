@@ -58,11 +58,12 @@ const MANIFEST: &str = "[program.small]\nwesl = \"small.wesl\"\ntargets = [\"wgs
 
 /// Injects every fault. A bundle that is not complete afterwards gives exit code 3.
 pub fn run(arguments: &[String]) -> CommandResult {
-    let seed = seed(arguments)?;
+    let (seed, only) = parsed(arguments)?;
     let package = FaultPackage::new()?;
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     let mut findings = Vec::new();
-    for call in CALLS {
+    let wanted = |kind: &str| only.is_none_or(|only| only == kind);
+    for call in CALLS.iter().filter(|_| wanted("calls")) {
         for (fault, words) in FAULTS {
             for occurrence in 1..=MOST {
                 let inject = format!("inject={call}:{words}:when={occurrence}");
@@ -78,25 +79,40 @@ pub fn run(arguments: &[String]) -> CommandResult {
             }
         }
     }
-    findings.extend(stores::run(&package, seed, &mut counts)?);
-    findings.extend(bundles::run(&package, seed, &mut counts)?);
-    findings.extend(clocks::run(&package, &mut counts)?);
-    for (fault, count) in &counts {
-        println!("{fault:22} {count:6}");
+    if wanted("stores") {
+        findings.extend(stores::run(&package, seed, &mut counts)?);
     }
-    println!("{:22} {:6}, {} findings", "all", counts.values().sum::<usize>(), findings.len());
+    if wanted("bundles") {
+        findings.extend(bundles::run(&package, seed, &mut counts)?);
+    }
+    if wanted("clocks") {
+        findings.extend(clocks::run(&package, &mut counts)?);
+    }
+    for (fault, count) in &counts {
+        println!("{fault:32} {count:6}");
+    }
+    println!("{:32} {:6}, {} findings", "all", counts.values().sum::<usize>(), findings.len());
     match findings.is_empty() {
         true => Ok(()),
         false => Err(CommandFailure::check(format!("{} findings", findings.len()))),
     }
 }
 
-fn seed(arguments: &[String]) -> Result<u64, CommandFailure> {
-    const USAGE: &str = "usage: cargo xtask faults [--seed N]";
-    match arguments {
-        [] => Ok(1),
-        [name, seed] if name == "--seed" => seed.parse().map_err(|_| CommandFailure::usage(USAGE)),
-        _ => Err(CommandFailure::usage(USAGE)),
+/// The kinds of faults, each of which can be tried alone.
+const KINDS: [&str; 4] = ["calls", "stores", "bundles", "clocks"];
+
+/// The seed, and the kind of faults if only one is tried.
+fn parsed(arguments: &[String]) -> Result<(u64, Option<&str>), CommandFailure> {
+    const USAGE: &str = "usage: cargo xtask faults [--seed N] [calls|stores|bundles|clocks]";
+    let wrong = || CommandFailure::usage(USAGE);
+    let (seed, rest) = match arguments {
+        [name, seed, rest @ ..] if name == "--seed" => (seed.parse().map_err(|_| wrong())?, rest),
+        rest => (1, rest),
+    };
+    match rest {
+        [] => Ok((seed, None)),
+        [kind] if KINDS.contains(&kind.as_str()) => Ok((seed, Some(kind))),
+        _ => Err(wrong()),
     }
 }
 

@@ -16,6 +16,8 @@ mod packages;
 mod published;
 #[path = "house/workflows.rs"]
 mod workflows;
+#[path = "house/promises.rs"]
+mod promises;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -42,6 +44,7 @@ fn rules() -> Vec<Trial> {
         Trial::test("house::paths", paths_are_short),
         Trial::test("house::one_way_to_the_terminal", one_way::to_the_terminal),
         Trial::test("house::one_rename", one_way::to_rename),
+        Trial::test("house::promises_have_tests", promises::have_tests),
         Trial::test("house::lengths", lengths::are_kept),
         Trial::test("house::lengths_are_counted", lengths::are_counted),
     ]

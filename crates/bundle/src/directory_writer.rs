@@ -21,7 +21,7 @@ use super::manifest::{self, Before, Manifest, ManifestArtifact};
 use super::pack::newer_bundle;
 use super::staging::add_unit;
 use super::{Contents, Digest, Digester, Error, Unit};
-use lamplight_files::output::{self, Foreign, Replace, Scratch};
+use lamplight_files::output::{self, Foreign, Replace, Scratch, Turns};
 
 /// The file that lists the blobs that only the bundle before this one has, one on each line.
 const RETIRED: &str = ".lamplight-retired";
@@ -61,19 +61,19 @@ impl DirectoryWriter {
     /// # Errors
     /// [`Error::Foreign`] where `path` has files but no bundle of ours.
     pub fn create(path: impl AsRef<Path>) -> Result<Self, Error> {
-        Self::take_over(path, Replace::Ours, &|| ())
+        Self::take_over(path, Replace::Ours, &Turns::default())
     }
 
-    /// As [`Self::create`], but replaces what `replace` allows. `waiting` is called if another run
-    /// writes there.
+    /// As [`Self::create`], but replaces what `replace` allows, and waits for another run that
+    /// writes there as `turns` says.
     pub fn take_over(
         path: impl AsRef<Path>,
         replace: Replace,
-        waiting: &dyn Fn(),
+        turns: &Turns<'_>,
     ) -> Result<Self, Error> {
         let path = path.as_ref();
         output::make_folder(path)?;
-        let turn = output::wait_for_turn(path, waiting);
+        let turn = output::wait_for_turn(path, turns)?;
         let before = survey_manifest(path, replace)?;
         let is_ours = before.is_some();
         let live = before.unwrap_or_default();

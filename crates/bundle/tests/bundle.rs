@@ -2,6 +2,7 @@
 
 mod damage;
 mod digests;
+mod in_place;
 mod large;
 mod schema;
 
@@ -23,7 +24,7 @@ type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn trials() -> Vec<Trial> {
-    let cases: [Case; 14] = [
+    let cases: [Case; 16] = [
         ("recorded_keys_are_listed", recording),
         ("both_forms_give_back_what_was_written", round_trips),
         ("keys_come_in_any_order_with_defaults", keys_in_any_order),
@@ -37,6 +38,8 @@ pub fn trials() -> Vec<Trial> {
         ("diff_names_what_changed", differences),
         ("shards_merge", merging),
         ("manifests_follow_their_schema", schema),
+        ("rewriting_in_place_ends_no_reader", in_place::rewritten),
+        ("a_replaced_file_stays_readable", in_place::replaced),
         ("remembered_hashes_are_those_of_the_unit", remembered),
     ];
     let mut trials: Vec<Trial> = cases

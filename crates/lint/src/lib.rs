@@ -55,16 +55,23 @@ pub const EXTENSIONS: &[&str] = &["wesl", "wgsl", "glsl", "vert", "frag", "comp"
 /// time would grow with the square of the package, so the rest are checked with reduced forms of
 /// what is far from them ([`Reductions`]).
 pub fn lint(sources: &mut SourceSet, request: &Request<'_>) -> Linted {
+    lint_within(sources, request, LINT_WHOLE_FILES)
+}
+
+/// As [`lint`], with another number of files, counted at each reading, after which what is far from
+/// a module is reduced.
+pub fn lint_within(sources: &mut SourceSet, request: &Request<'_>, whole: u64) -> Linted {
     let mut graphs = BTreeMap::new();
     let mut reductions = Reductions::default();
     let mut linted = Linted::default();
     for path in request.paths {
         let Some(language) = language(path) else { continue };
-        if reductions.files_read() > LINT_WHOLE_FILES + LINT_FILES {
+        if reductions.files_read() > whole.saturating_add(LINT_FILES) {
             linted.diagnostics.push(too_many_files(path));
             break;
         }
         linted.modules += 1;
+        reductions.begin(reductions.files_read() >= whole);
         match load(sources, request.packages, path, language, &mut reductions) {
             Ok(graph) => {
                 graphs.insert(path.clone(), graph);
@@ -93,7 +100,6 @@ fn load(
 ) -> Result<Graph, Diagnostics> {
     match language {
         Language::Wesl => {
-            reductions.begin(reductions.files_read() > LINT_WHOLE_FILES);
             wesl::load_reduced(sources, packages, path, reductions).map(Graph::Wesl)
         }
         Language::Glsl => resolve::load(sources, packages, path, language),

@@ -6,7 +6,8 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::place::{self, Lines};
-use super::{LanguageServer, complete, format};
+use super::package::PackageModules;
+use super::{LanguageServer, complete, format, navigate};
 use lamplight_compose::project::MANIFEST;
 
 /// The most imports that are offered for one name.
@@ -42,13 +43,17 @@ pub fn code_actions(server: &mut LanguageServer, parameters: &Value) -> Result<V
                 }
             }
             Some("undeclared-flag" | "unknown-feature") => {
-                if let Some((file, edit)) = feature_declaration(&root, &name) {
+                if navigate::why_no_name(&name).is_none()
+                    && let Some((file, edit)) = feature_declaration(&root, &name) {
                     let title = format!("Declare the feature `{name}`");
                     found.push(action(title, &Value::String(file), edit));
                 }
             }
             _ => {
                 let Some(modules) = server.modules(&root) else { continue };
+                if is_declared(&modules, &path, &name) {
+                    continue;
+                }
                 let known = complete::importable_items(server, &modules, &path);
                 let fitting = known.into_iter().filter(|(_, found, _)| *found == name);
                 for (path, ..) in fitting.take(OFFERED) {
@@ -59,6 +64,15 @@ pub fn code_actions(server: &mut LanguageServer, parameters: &Value) -> Result<V
         }
     }
     Ok(Value::Array(found))
+}
+
+/// Whether a module declares or imports the name: then another import of it would be a clash.
+fn is_declared(modules: &PackageModules, path: &str, name: &str) -> bool {
+    let name = modules.graph.names.find(name);
+    let node = modules.node(path).map(|node| &modules.graph.nodes[node as usize]);
+    name.zip(node).is_some_and(|(name, node)| {
+        node.sets.contains_key(&name) || node.aliases.contains_key(&name)
+    })
 }
 
 /// The edit that adds an import after the existing ones, or else on the first line.
@@ -122,6 +136,11 @@ fn feature_declaration(root: &Path, name: &str) -> Option<(String, Value)> {
             let gap = if text.is_empty() || text.ends_with('\n') { "\n" } else { "\n\n" };
             (text.len(), format!("{gap}{TABLE}{name} = false\n"))
         }
+    };
+    let new = match name.is_ascii() {
+        true => new,
+        // A key of TOML without quotes has only letters of ASCII.
+        false => new.replace(&format!("{name} ="), &format!("\"{name}\" =")),
     };
     let edit = json!({ "range": Lines::new(&text).range(at..at), "newText": new });
     Some((place::file_address(&file), edit))

@@ -11,7 +11,7 @@ use super::place::Lines;
 use super::{LanguageServer, glsl, told};
 use lamplight_compose::project;
 use lamplight_diagnostic::source::Span;
-use lamplight_syntax::wesl::{ItemKind, Name, is_keyword};
+use lamplight_syntax::wesl::{ItemKind, Name, is_keyword, is_path_name};
 use lamplight_syntax::words::is_word;
 
 /// The most symbols in an answer to `workspace/symbol`.
@@ -137,8 +137,8 @@ pub fn rename_symbol(server: &mut LanguageServer, parameters: &Value) -> Result<
     if let Some(reason) = why_fixed(&modules, symbol) {
         return Err(reason.to_owned());
     }
-    if !is_word(&new) || is_keyword(&new) || new == "_" {
-        return Err(format!("`{new}` is not a name in WGSL"));
+    if let Some(reason) = why_no_name(&new) {
+        return Err(format!("`{new}` {reason}"));
     }
     let declared = modules.declarations(symbol);
     let old = declared.first().map(|span| modules.sources.text(*span).to_owned());
@@ -157,6 +157,23 @@ pub fn rename_symbol(server: &mut LanguageServer, parameters: &Value) -> Result<
         (modules.sources.text(name) == old).then(|| (uri(), text, name.range()))
     });
     told::rename_json(&new, places)
+}
+
+/// Why a word cannot be the name of a declaration, as the end of a sentence that begins with it.
+pub(super) fn why_no_name(word: &str) -> Option<&'static str> {
+    if !is_word(word) || word == "_" {
+        Some("is not a name in WGSL")
+    } else if word.starts_with("__") {
+        Some("begins with two underscores, which WGSL reserves")
+    } else if is_keyword(word) || !is_path_name(word) {
+        Some("is a word of WGSL or WESL")
+    } else if naga::keywords::wgsl::RESERVED.contains(&word) {
+        Some("is a reserved word of WGSL")
+    } else if naga::keywords::wgsl::BUILTIN_IDENTIFIERS.contains(&word) {
+        Some("has a meaning in WGSL, which the new name would hide")
+    } else {
+        None
+    }
 }
 
 /// A module that declares or uses the symbol and already has the new name.

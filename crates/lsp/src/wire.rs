@@ -21,31 +21,76 @@ pub enum Incoming {
     End,
 }
 
+/// The most bytes between two messages. A stream with more is no conversation, such as
+/// `/dev/zero`.
+const MOST_NOISE: usize = 1 << 20;
+
+const LENGTH: &str = "content-length:";
+
 /// Reads the next message.
 ///
+/// A header without a length, or with one that is no number, is answered with an error. Nobody
+/// knows where its message ends, so the next header is looked for, also within a line.
+///
 /// # Errors
-/// Those of the stream itself.
+/// Those of the stream itself, and too many bytes without a header.
 pub fn read_message(stream: &mut impl BufRead) -> io::Result<Incoming> {
-    let mut length: Option<u64> = None;
+    let mut header = Header::default();
+    let (mut noise, mut line) = (0, Vec::new());
     loop {
-        let mut line = Vec::new();
-        if stream.by_ref().take(HEADER_LINE).read_until(b'\n', &mut line)? == 0 {
+        let before = keep_end(&mut line);
+        let read = stream.by_ref().take(HEADER_LINE).read_until(b'\n', &mut line)?;
+        if read == 0 {
             return Ok(Incoming::End);
         }
-        let line = String::from_utf8_lossy(&line);
-        let line = line.trim();
-        if let Some((name, value)) = line.split_once(':')
-            && name.trim().eq_ignore_ascii_case("content-length")
-        {
-            length = value.trim().parse().ok();
-        } else if line.is_empty() {
-            match length {
-                Some(length) => return read_body(stream, length),
+        noise += read;
+        if noise > MOST_NOISE {
+            let words = format!("{MOST_NOISE} bytes have no header of a message");
+            return Err(io::Error::new(io::ErrorKind::InvalidData, words));
+        }
+        let text = String::from_utf8_lossy(&line).to_ascii_lowercase();
+        match text.rfind(LENGTH) {
+            Some(at) => header.note_length(text[at + LENGTH.len()..].trim()),
+            None if text.trim().is_empty() && before == 0 => match header {
+                Header { length: Some(Ok(length)), .. } => return read_body(stream, length),
+                Header { length: Some(Err(())), .. } => return Ok(malformed(WRONG_LENGTH)),
+                Header { is_begun: true, .. } => return Ok(malformed(NO_LENGTH)),
                 // Blank lines and other noise between messages.
-                None => continue,
-            }
+                Header { .. } => {}
+            },
+            None => header.is_begun |= text.starts_with("content-"),
         }
     }
+}
+
+const WRONG_LENGTH: &str = "the `Content-Length` of a header is not a number of bytes";
+const NO_LENGTH: &str = "a header has no `Content-Length`";
+
+/// The header that is being read.
+#[derive(Default)]
+struct Header {
+    /// The number of bytes, or that it cannot be read.
+    length: Option<Result<u64, ()>>,
+    is_begun: bool,
+}
+
+impl Header {
+    fn note_length(&mut self, written: &str) {
+        self.length = Some(written.parse().map_err(|_| ()));
+    }
+}
+
+/// Keeps the end of a line that goes on, since the next header may begin there. Returns how many
+/// bytes are kept.
+fn keep_end(line: &mut Vec<u8>) -> usize {
+    let goes_on = line.last().is_some_and(|last| *last != b'\n');
+    let kept = if goes_on { line.len().min(LENGTH.len()) } else { 0 };
+    line.drain(..line.len() - kept);
+    kept
+}
+
+fn malformed(words: &str) -> Incoming {
+    Incoming::Malformed(error_message(&Value::Null, PARSE_ERROR, words))
 }
 
 fn read_body(stream: &mut impl BufRead, length: u64) -> io::Result<Incoming> {

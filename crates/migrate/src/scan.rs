@@ -9,6 +9,7 @@ use super::tree::{
 };
 use lamplight_diagnostic::source::{LIMITS, SourceId, Span};
 use lamplight_diagnostic::{Diagnostic, codes};
+use lamplight_files::limits::count_steps;
 use lamplight_syntax::wesl::blank::{block_comment, comment_length, without_comments};
 use lamplight_syntax::words::{begins_word, continues_word, leading_word, number_end};
 
@@ -107,10 +108,18 @@ impl MigrateScanner<'_> {
         self.text[..self.at].rfind('\n').map_or(0, |newline| newline + 1)
     }
 
+    /// Whether only blanks are before this place in its line. Only these are looked at: a line may
+    /// have many marks.
+    fn begins_line(&self) -> bool {
+        let is_blank = |letter: char| letter != '\n' && letter.is_whitespace();
+        let before = self.text[..self.at].trim_end_matches(is_blank);
+        count_steps(1 + (self.at - before.len()) as u64);
+        before.is_empty() || before.ends_with('\n')
+    }
+
     /// The word of a directive, if one starts here.
     fn directive_word(&self) -> Option<String> {
-        if !self.rest().starts_with('#') || !self.text[self.line_start()..self.at].trim().is_empty()
-        {
+        if !self.rest().starts_with('#') || !self.begins_line() {
             return None;
         }
         let word = leading_word(self.rest()[1..].trim_start());

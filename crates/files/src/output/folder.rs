@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::file::{has_bytes, kind_of_entry};
 use super::scratch::sync_folder;
-use super::{Error, Foreign, Replace, Scratch, make_folder, rename_finished, wait_for_turn};
+use super::{Error, Foreign, Replace, Scratch, Turns, make_folder, rename_finished, wait_for_turn};
 
 /// The record's name, and how it begins.
 const RECORD: &str = ".lamplight-outputs";
@@ -55,7 +55,7 @@ impl OutputFolder {
     /// Makes the folder, or opens the one that is there.
     pub fn open(path: &Path, replace: Replace) -> Result<Self, Error> {
         make_folder(path)?;
-        let turn = wait_for_turn(path, &|| ());
+        let turn = wait_for_turn(path, &Turns::default())?;
         Ok(Self {
             path: path.to_owned(),
             replace,

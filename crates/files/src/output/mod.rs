@@ -55,13 +55,15 @@ mod error;
 mod file;
 mod folder;
 mod scratch;
+mod turn;
 
 pub use error::{Error, Foreign};
 pub use file::{HEAD_BYTES, write, write_file};
 pub use folder::{OutputFolder, write_folder};
 pub use scratch::{Scratch, sync_folder};
+pub use turn::{Turns, wait_for_turn};
 
-use std::fs::{self, File, TryLockError};
+use std::fs;
 use std::path::Path;
 
 /// Which of the files that are there may be replaced.
@@ -74,22 +76,6 @@ pub enum Replace {
     Any,
 }
 
-/// Waits until no other run writes into a folder. If it has to wait, it calls `waiting` once.
-///
-/// A turn ends at the latest with its process. Where folders cannot be locked, runs do not wait for
-/// each other.
-pub fn wait_for_turn(folder: &Path, waiting: &dyn Fn()) -> Option<File> {
-    let folder = File::open(folder).ok()?;
-    match folder.try_lock() {
-        Ok(()) => Some(folder),
-        Err(TryLockError::WouldBlock) => {
-            waiting();
-            folder.lock().ok()?;
-            Some(folder)
-        }
-        Err(TryLockError::Error(_)) => None,
-    }
-}
 
 /// Renames a finished file into its place. Every rename goes through here.
 pub fn rename_finished(finished: &Path, place: &Path) -> std::io::Result<()> {
