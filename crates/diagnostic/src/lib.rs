@@ -131,10 +131,39 @@ impl Diagnostic {
     /// Adds "did you mean" with the nearest of the known names, if one is near enough.
     pub fn suggest<'a>(self, wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Self {
         match nearest_name(wrong, known) {
-            Some(name) => self.note(format!("help: did you mean `{name}`?")),
+            Some(name) => {
+                let unlike = unlike_letters(wrong, name);
+                let named = self.note(format!("help: did you mean `{name}`?"));
+                unlike.into_iter().fold(named, Self::note)
+            }
             None => self,
         }
     }
+}
+
+/// How two names differ, if that may not be seen: `é` is one letter, or an `e` and an accent.
+fn unlike_letters(wrong: &str, known: &str) -> Option<String> {
+    let letters = |name: &str| name.chars().collect::<Vec<char>>();
+    let (wrong, known) = (letters(wrong), letters(known));
+    let same = |pair: &(&char, &char)| pair.0 == pair.1;
+    let start = wrong.iter().zip(&known).take_while(same).count();
+    let (wrong, known) = (&wrong[start..], &known[start..]);
+    let end = wrong.iter().rev().zip(known.iter().rev()).take_while(same).count();
+    let (wrong, known) = (&wrong[..wrong.len() - end], &known[..known.len() - end]);
+    if wrong.iter().chain(known).all(char::is_ascii) {
+        return None;
+    }
+    let points = |letters: &[char]| {
+        let all = letters.iter().map(|letter| format!("U+{:04X}", u32::from(*letter)));
+        Some(all.collect::<Vec<_>>().join(" ")).filter(|text| !text.is_empty())
+    };
+    let nothing = || "nothing".to_owned();
+    let (known, wrong) = (points(known), points(wrong));
+    Some(format!(
+        "it has {} where {} is written here",
+        known.unwrap_or_else(nothing),
+        wrong.unwrap_or_else(nothing)
+    ))
 }
 
 /// Longer names are not compared: they are hardly misspelt.

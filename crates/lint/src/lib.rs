@@ -1,6 +1,7 @@
 //! Checks a whole package, whether or not anything reaches a declaration: every module is composed
 //! with everything that it declares, and validated by naga.
 
+mod case;
 mod flags;
 mod settings;
 
@@ -79,8 +80,10 @@ pub fn lint_within(sources: &mut SourceSet, request: &Request<'_>, whole: u64) -
             Err(errors) => linted.diagnostics.extend(reductions.visible(errors)),
         }
     }
+    linted.diagnostics.extend(case::alike_modules(graphs.keys()));
     let included = included_files(sources, &graphs);
     for (path, graph) in &graphs {
+        linted.diagnostics.extend(case::alike_entry_points(graph));
         linted.diagnostics.extend(reductions.visible(flags::undeclared_flags(graph, request)));
         // A GLSL file that others include is checked where it is included.
         if !included.contains(&request.packages.root.files.display(path)) {

@@ -19,6 +19,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("lint::a_hub_is_linear", || grows_linearly(hub)),
         Trial::test("lint::a_chain_of_types_is_linear", || grows_linearly(types)),
         Trial::test("lint::each_module_of_a_chain_is_checked", mistakes_in_a_chain),
+        Trial::test("lint::modules_that_differ_in_case", alike),
         Trial::test("lint::reduced_modules_hide_no_mistake", random_packages),
     ]
 }
@@ -125,6 +126,17 @@ fn mistakes_in_a_chain() -> Outcome {
         }
     }
     Ok(())
+}
+
+/// Modules whose names differ only in case have a warning.
+fn alike() -> Outcome {
+    let names = ["a.wesl", "b.wesl", "A.wesl", "c/Ab.wesl", "C/aB.wesl"];
+    let files = names.iter().map(|name| ((*name).to_owned(), "const c = 1;\n".to_owned())).collect();
+    let found = told(&files, u64::MAX);
+    match found.len() == 2 && found.iter().all(|found| found.contains("differ only in case")) {
+        true => Ok(()),
+        false => Err(format!("{found:?}").into()),
+    }
 }
 
 /// What is wrong in a module, each for one kind of reader.

@@ -67,8 +67,13 @@ fn metadata_at(path: &Path) -> Result<Option<fs::Metadata>, Error> {
 fn put_file(path: &Path, bytes: &[u8], permissions: Option<fs::Permissions>) -> Result<(), Error> {
     let folder = parent_folder(path);
     make_folder(&folder)?;
-    let scratch = Scratch::new(&folder)?;
-    let written = scratch.write("file", bytes)?;
+    // The user knows the file, and not the folder beside it that the text is written to first.
+    let named = |error| match error {
+        Error::Io { kind, reason, .. } => Error::Io { path: path.to_owned(), kind, reason },
+        foreign => foreign,
+    };
+    let scratch = Scratch::new(&folder).map_err(named)?;
+    let written = scratch.write("file", bytes).map_err(named)?;
     if let Some(permissions) = permissions {
         fs::set_permissions(&written, permissions).map_err(|error| Error::io(path, &error))?;
     }

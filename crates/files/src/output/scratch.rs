@@ -129,7 +129,11 @@ fn make_mark(folder: &Path) -> std::io::Result<File> {
         return Err(ErrorKind::WouldBlock.into());
     }
     fs::symlink_metadata(&path)?;
-    mark.write_all(MARK)?;
+    if let Err(error) = mark.write_all(MARK) {
+        // Such as a full disk: nothing of this run stays.
+        remove_scratch(folder);
+        return Err(error);
+    }
     Ok(mark)
 }
 
