@@ -143,8 +143,8 @@ fn definition() -> Outcome {
 
 /// Words that no declaration can have as its name.
 const NO_NAMES: [&str; 15] = [
-    "fn", "__x", "_", "", "2x", "a b", "package", "super", "import", "self", "vec4f", "f32", "sampler",
-    "NULL", "async",
+    "fn", "__x", "_", "", "2x", "a b", "package", "super", "import", "self", "vec4f", "f32",
+    "sampler", "NULL", "async",
 ];
 
 fn references_and_rename() -> Outcome {

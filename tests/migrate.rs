@@ -19,14 +19,13 @@ type Outcome = Result<(), Failed>;
 
 type Run = fn() -> Outcome;
 
-const TRIALS: &[(&str, Run)] =
-    &[
-        ("text", text),
-        ("same_modules", same_modules),
-        ("mutants", mutants),
-        ("beside", beside),
-        ("many_values_in_one_line", one_line),
-    ];
+const TRIALS: &[(&str, Run)] = &[
+    ("text", text),
+    ("same_modules", same_modules),
+    ("mutants", mutants),
+    ("beside", beside),
+    ("many_values_in_one_line", one_line),
+];
 
 pub fn trials() -> Vec<Trial> {
     let trial = |(name, run): &(&str, Run)| Trial::test(format!("migrate::{name}"), *run);

@@ -108,7 +108,8 @@ fn depfile() -> Outcome {
 
 /// Letters that mean something in a rule, or in a pattern of file names.
 const NAMES: [&str; 14] = [
-    "a b", "a:b", "a;b", "a%b", "a*b", "a?b", "a[b]c", "a#b", "a$b", "a\\b", "a\\ b", "a\\:b", "a~b", "a,b",
+    "a b", "a:b", "a;b", "a%b", "a*b", "a?b", "a[b]c", "a#b", "a$b", "a\\b", "a\\ b", "a\\:b",
+    "a~b", "a,b",
 ];
 
 /// Make, and ninja where it is installed, read each name of `--depfile` as it is.
@@ -124,6 +125,11 @@ fn depfile_names() -> Outcome {
         let mut command = package.command("", "compile");
         command.args([&file, "--target", "wgsl", "-o", name, "--depfile", "rule.d"]);
         let output = command.output()?;
+        // Make has no form for an output with a semicolon.
+        if name.contains(';') {
+            equal((name, output.status.code()), (name, Some(1)))?;
+            continue;
+        }
         let told = String::from_utf8_lossy(&output.stderr).into_owned();
         if output.status.code() != Some(0) {
             return Err(format!("`{name}`: {told}").into());

@@ -297,12 +297,7 @@ impl Packed {
         if group >= self.meta.groups || is_large {
             return Err(Error::corrupt("blobs", "a group is out of range"));
         }
-        Ok((
-            u64_at(table, at, "blobs")? as usize,
-            packed,
-            raw,
-            hash_at(table, at + 16, "blobs")?,
-        ))
+        Ok((u64_at(table, at, "blobs")? as usize, packed, raw, hash_at(table, at + 16, "blobs")?))
     }
 }
 

@@ -102,9 +102,7 @@ fn load(
     reductions: &mut Reductions,
 ) -> Result<Graph, Diagnostics> {
     match language {
-        Language::Wesl => {
-            wesl::load_reduced(sources, packages, path, reductions).map(Graph::Wesl)
-        }
+        Language::Wesl => wesl::load_reduced(sources, packages, path, reductions).map(Graph::Wesl),
         Language::Glsl => resolve::load(sources, packages, path, language),
     }
 }

@@ -75,9 +75,8 @@ fn hub(count: usize) -> Files {
     let calls: String = (0..count).map(|index| format!("    g{index}();\n")).collect();
     let hub = (0..count).map(imports).collect::<String>() + &format!("fn all() {{\n{calls}}}\n");
     let one = |index: usize| {
-        let text = format!(
-            "import package::hub::all;\nfn g{index}() {{ }}\nfn h{index}() {{ all(); }}\n"
-        );
+        let text =
+            format!("import package::hub::all;\nfn g{index}() {{ }}\nfn h{index}() {{ all(); }}\n");
         (module(index), text)
     };
     (0..count).map(one).chain([("hub.wesl".to_owned(), hub)]).collect()
@@ -131,7 +130,8 @@ fn mistakes_in_a_chain() -> Outcome {
 /// Modules whose names differ only in case have a warning.
 fn alike() -> Outcome {
     let names = ["a.wesl", "b.wesl", "A.wesl", "c/Ab.wesl", "C/aB.wesl"];
-    let files = names.iter().map(|name| ((*name).to_owned(), "const c = 1;\n".to_owned())).collect();
+    let files =
+        names.iter().map(|name| ((*name).to_owned(), "const c = 1;\n".to_owned())).collect();
     let found = told(&files, u64::MAX);
     match found.len() == 2 && found.iter().all(|found| found.contains("differ only in case")) {
         true => Ok(()),
@@ -166,7 +166,9 @@ fn random_module(random: &mut Random, index: usize, count: usize) -> String {
             }
             1 => body += &format!("    sum += package::m{other:05}::g{other}(x);\n"),
             2 => {
-                imports += &format!("import super::m{other:05}::{{S{other} as T{used}, c{other} as d{used}}};\n");
+                imports += &format!(
+                    "import super::m{other:05}::{{S{other} as T{used}, c{other} as d{used}}};\n"
+                );
                 heads += &format!("fn u{used}(s: T{used}) -> T{used} {{ return s; }}\n");
                 body += &format!("    sum += u{used}(T{used}(x)).value + d{used};\n");
             }
@@ -199,8 +201,9 @@ fn random_packages() -> Outcome {
     let (mut many, mut found) = (0, 0);
     for round in 0..30 {
         let count = 20 + random.below(40);
-        let mut files: Files =
-            (0..count).map(|index| (module(index), random_module(&mut random, index, count))).collect();
+        let mut files: Files = (0..count)
+            .map(|index| (module(index), random_module(&mut random, index, count)))
+            .collect();
         let mistakes = random.below(4);
         for _ in 0..mistakes {
             let text = files.get_mut(&module(random.below(count))).ok_or("no such module")?;

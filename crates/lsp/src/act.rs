@@ -5,8 +5,8 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::place::{self, Lines};
 use super::package::PackageModules;
+use super::place::{self, Lines};
 use super::{LanguageServer, complete, format, navigate};
 use lamplight_compose::project::MANIFEST;
 
@@ -44,19 +44,16 @@ pub fn code_actions(server: &mut LanguageServer, parameters: &Value) -> Result<V
             }
             Some("undeclared-flag" | "unknown-feature") => {
                 if navigate::why_no_name(&name).is_none()
-                    && let Some((file, edit)) = feature_declaration(&root, &name) {
+                    && let Some((file, edit)) = feature_declaration(&root, &name)
+                {
                     let title = format!("Declare the feature `{name}`");
                     found.push(action(title, &Value::String(file), edit));
                 }
             }
             _ => {
                 let Some(modules) = server.modules(&root) else { continue };
-                if is_declared(&modules, &path, &name) {
-                    continue;
-                }
-                let known = complete::importable_items(server, &modules, &path);
-                let fitting = known.into_iter().filter(|(_, found, _)| *found == name);
-                for (path, ..) in fitting.take(OFFERED) {
+                let known = importable(server, &modules, &path, &name);
+                for path in known {
                     let edit = import_edit(&text, &lines, &path);
                     found.push(action(format!("Import `{path}`"), &uri, edit));
                 }
@@ -66,13 +63,25 @@ pub fn code_actions(server: &mut LanguageServer, parameters: &Value) -> Result<V
     Ok(Value::Array(found))
 }
 
-/// Whether a module declares or imports the name: then another import of it would be a clash.
-fn is_declared(modules: &PackageModules, path: &str, name: &str) -> bool {
-    let name = modules.graph.names.find(name);
+/// The paths by which a module may import a name; none if it declares or imports the name already,
+/// since another import would be a clash.
+fn importable(
+    server: &mut LanguageServer,
+    modules: &PackageModules,
+    path: &str,
+    name: &str,
+) -> Vec<String> {
+    let found = modules.graph.names.find(name);
     let node = modules.node(path).map(|node| &modules.graph.nodes[node as usize]);
-    name.zip(node).is_some_and(|(name, node)| {
+    let is_declared = found.zip(node).is_some_and(|(name, node)| {
         node.sets.contains_key(&name) || node.aliases.contains_key(&name)
-    })
+    });
+    if is_declared {
+        return Vec::new();
+    }
+    let known = complete::importable_items(server, modules, path).into_iter();
+    let fitting = known.filter(|(_, found, _)| *found == name);
+    fitting.map(|(path, ..)| path).take(OFFERED).collect()
 }
 
 /// The edit that adds an import after the existing ones, or else on the first line.

@@ -169,11 +169,20 @@ pub(super) fn why_no_name(word: &str) -> Option<&'static str> {
         Some("is a word of WGSL or WESL")
     } else if naga::keywords::wgsl::RESERVED.contains(&word) {
         Some("is a reserved word of WGSL")
-    } else if naga::keywords::wgsl::BUILTIN_IDENTIFIERS.contains(&word) {
+    } else if naga::keywords::wgsl::BUILTIN_IDENTIFIERS.contains(&word) || is_short_type(word) {
         Some("has a meaning in WGSL, which the new name would hide")
     } else {
         None
     }
+}
+
+/// Whether a word is the short name of a type, such as `vec4f` or `mat4x3h`.
+fn is_short_type(word: &str) -> bool {
+    let size = |text: &str| matches!(text, "2" | "3" | "4");
+    let vector = word.strip_prefix("vec").and_then(|rest| rest.strip_suffix(['f', 'h', 'i', 'u']));
+    let matrix = word.strip_prefix("mat").and_then(|rest| rest.strip_suffix(['f', 'h']));
+    vector.is_some_and(size)
+        || matrix.and_then(|rest| rest.split_once('x')).is_some_and(|(a, b)| size(a) && size(b))
 }
 
 /// A module that declares or uses the symbol and already has the new name.

@@ -29,8 +29,7 @@ pub fn write_depfile(
     // A file that is there may be replaced if it is a rule that this function wrote, for these or
     // for other outputs.
     let is_ours = |known: &[u8]| {
-        is_rule(known)
-            || outputs.first().is_some_and(|output| known.starts_with(output.as_bytes()))
+        is_rule(known) || outputs.first().is_some_and(|output| known.starts_with(output.as_bytes()))
     };
     Ok(output::write_file(path, rule.as_bytes(), is_ours, replace)?)
 }
@@ -62,8 +61,14 @@ fn escape_for_make(path: &str, as_target: bool) -> Result<String, Failure> {
             "the file name {path:?} has a line end, which a rule for make cannot hold"
         )));
     }
+    if as_target && path.contains(';') {
+        return Err(Failure::input(format!(
+            "the name {path:?} has a `;`, which a rule for make cannot hold before its colon"
+        )));
+    }
     let is_special = |letter: char| {
-        matches!(letter, ' ' | '\t' | '#' | ':' | ';' | '*' | '?' | '[') || as_target && letter == '%'
+        matches!(letter, ' ' | '\t' | '#' | ':' | ';' | '*' | '?' | '[')
+            || as_target && letter == '%'
     };
     let mut text = String::with_capacity(path.len());
     // Backslashes that were written since the last other letter. They are doubled before a

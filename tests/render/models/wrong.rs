@@ -8,9 +8,24 @@ use tempfile::TempDir;
 use super::{demand, glb, render, square};
 
 pub fn trials() -> impl Iterator<Item = Trial> {
-    WRONG.iter().map(|(name, file, words)| {
+    let wrong = WRONG.iter().map(|(name, file, words)| {
         Trial::test(format!("render/model/wrong/{name}"), || refused(&file(), words))
-    })
+    });
+    wrong.chain([Trial::test("render/model/wrong/far_away", far_away)])
+}
+
+/// A model or a viewer at places of which numbers of 32 bits cannot say the square: a note says why
+/// the picture may be empty.
+fn far_away() -> Result<(), Failed> {
+    let large = changed(|document| document["nodes"][0]["scale"] = json!([1e38, 1e38, 1e38]));
+    let far = ["--camera", "1e39,0,0,0,0,0"];
+    for (file, arguments) in [(large, &[][..]), (changed(|_| ()), &far[..])] {
+        let folder = TempDir::new()?;
+        let said = render(folder.path(), &file, arguments)?.stderr;
+        let said = String::from_utf8_lossy(&said);
+        demand(said.contains("the picture may be empty"), || format!("no note: {said}"))?;
+    }
+    Ok(())
 }
 
 /// A name, a file, and a part of the error.

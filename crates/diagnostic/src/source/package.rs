@@ -181,7 +181,9 @@ pub fn shown_path(path: &Path) -> String {
     } else {
         tidy
     };
-    short.to_string_lossy().replace('\\', "/")
+    let shown = short.to_string_lossy();
+    // Elsewhere, a backslash is a letter of a name.
+    if cfg!(windows) { shown.replace('\\', "/") } else { shown.into_owned() }
 }
 
 /// The name of a file from the current folder, if it is below that.

@@ -76,7 +76,6 @@ pub enum Replace {
     Any,
 }
 
-
 /// Renames a finished file into its place. Every rename goes through here.
 pub fn rename_finished(finished: &Path, place: &Path) -> std::io::Result<()> {
     fs::rename(finished, place)

@@ -172,6 +172,12 @@ fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String>
     }
     let bounds = nodes::bounding_ball(&objects);
     let eye = model_eye(&placed, &bounds, view)?;
+    if is_too_far(&bounds, &eye) {
+        reader.notes.insert(format!(
+            "it reaches further than {FARTHEST:e}, or is seen from further away: numbers of 32 bits \
+             overflow there, and the picture may be empty"
+        ));
+    }
     let lamps = nodes::model_lamps(&placed, &bounds, &eye);
     let mut layers = if reader.all_unlit { Vec::new() } else { layers::layer_axes(&objects) };
     let is_mapped = |name: &&str| !matches!(*name, "base_map" | "normal_map" | "occlusion_map");
@@ -186,6 +192,14 @@ fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String>
     scene.own_maps = sheet.maps.map(Arc::new);
     let notes = std::mem::take(&mut reader.notes);
     Ok(Model { scene, notes, axes, layers, textures: sheet.names, means })
+}
+
+/// The farthest distance for which the functions of the library give finite results.
+const FARTHEST: f64 = 1e9;
+
+fn is_too_far(bounds: &nodes::Ball, eye: &Eye) -> bool {
+    let reach = bounds.middle.length() + bounds.radius;
+    [reach, eye.position.length(), eye.target.length()].iter().any(|far| !(*far <= FARTHEST))
 }
 
 /// The materials of everything that is drawn.

@@ -116,8 +116,7 @@ fn reduced_text(source: SourceId, text: Arc<str>) -> (Option<Arc<str>>, usize) {
         reduced += &module.text[directive.range.start as usize..directive.range.end as usize];
         reduced.push('\n');
     }
-    needed_imports(&module, used)
-        .for_each(|import| reduced += &written_import(import, &names));
+    needed_imports(&module, used).for_each(|import| reduced += &written_import(import, &names));
     (Some((reduced + &items).into()), imports)
 }
 
