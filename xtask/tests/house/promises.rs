@@ -52,7 +52,7 @@ fn is_there(sources: &str, name: &str) -> bool {
 }
 
 fn sources_of_tests() -> Result<String, Failed> {
-    let paths = git(&["ls-files", "-z", "tests", "crates/*/tests"])?;
+    let paths = git(&["ls-files", "-z", "tests", "crates/*/tests/*"])?;
     let sources = paths.iter().filter(|path| path.ends_with(".rs"));
     Ok(sources
         .filter_map(|path| std::fs::read_to_string(Path::new(ROOT).join(path)).ok())
