@@ -23,7 +23,8 @@ pub fn run(arguments: &[String]) -> CommandResult {
         names.iter().map(|name| find_cases(&library, name)).collect::<Result<_, _>>()?;
     let mut command = Command::new(built_command()?);
     command.arg("check").args(cases).args(options).current_dir(root());
-    process::finish(&mut command, "lamplight check")
+    let status = command.status().map_err(|error| process::not_run("lamplight check", &error))?;
+    process::same_exit_code(status)
 }
 
 /// The file of cases, or the folder, that a name means: `brdf/fresnel`, `brdf::fresnel`,

@@ -1,7 +1,7 @@
 //! Commands that use the crate. They are a package of their own, `xtask/make/`, which is built when
 //! one of them is wanted.
 
-use xtask::{CommandFailure, CommandResult, process};
+use xtask::{CommandResult, process};
 
 /// Not incremental: a fresh clone builds this once, and should soon have its bundle.
 const RUN: [&str; 7] = [
@@ -19,10 +19,5 @@ pub fn run(name: &str, arguments: &[String]) -> CommandResult {
     let mut command = process::cargo_command();
     command.args(RUN).arg(name).args(arguments);
     let status = command.status().map_err(|error| process::not_run("cargo run", &error))?;
-    match status.code() {
-        Some(0) => Ok(()),
-        code => {
-            Err(CommandFailure::printed(code.and_then(|code| u8::try_from(code).ok()).unwrap_or(3)))
-        }
-    }
+    process::same_exit_code(status)
 }

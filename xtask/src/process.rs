@@ -53,6 +53,12 @@ pub fn succeeded(status: ExitStatus, name: &str) -> CommandResult {
     if status.success() { Ok(()) } else { Err(CommandFailure::check(format!("failed: {name}"))) }
 }
 
+/// The exit code of a command that has printed why it failed.
+pub fn same_exit_code(status: ExitStatus) -> CommandResult {
+    let code = status.code().and_then(|code| u8::try_from(code).ok());
+    if status.success() { Ok(()) } else { Err(CommandFailure::printed(code.unwrap_or(3))) }
+}
+
 /// Exit code 4, since a command did not start.
 pub fn not_run(name: &str, error: &std::io::Error) -> CommandFailure {
     CommandFailure::environment(format!("{name} could not be run: {error}"))
