@@ -24,3 +24,6 @@
 //!   `_ncl` or `_igl` reproduces a published form, including its flaws.
 
 include!(concat!(env!("OUT_DIR"), "/files.rs"));
+
+/// The version of the library.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");

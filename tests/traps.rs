@@ -75,6 +75,7 @@ const FILES: &[Writer] = &[
     writer("keys_c", &["keys", "--manifest", "lamplight.toml", "--lang", "c", "-o", "OUT"]),
     writer("variants", &["variants", "--cost", "--gpu", "navi21", "--record", "OUT"]),
     writer("cost", &["cost", "half.wesl", "--gpu", "navi21", "--record", "--baseline", "OUT"]),
+    writer("values", &["check", "half.toml", "--record", "OUT"]),
     writer("keys_ts", &["keys", "--manifest", "lamplight.toml", "--lang", "ts", "-o", "OUT"]),
 ];
 

@@ -10,6 +10,7 @@ use super::executor;
 use super::failure::Failure;
 use super::features;
 use super::input::{self, LanguageName};
+use super::values;
 use crate::LIBRARY_FILES;
 use crate::bundle::Language;
 use crate::cli::terminal::stdout;
@@ -47,8 +48,8 @@ pub struct Arguments {
     /// those that it has.
     #[arg(long)]
     bless: bool,
-    /// With `--bless`, also record errors that are higher. With `--report`, replace files that
-    /// Lamplight did not write.
+    /// With `--bless`, also record errors that are higher. With `--report` and `--record`, replace
+    /// files that Lamplight did not write.
     #[arg(long)]
     force: bool,
     /// Choose the value of a setting that your modules ask for.
@@ -59,6 +60,14 @@ pub struct Arguments {
     feature: Vec<(String, Setting)>,
     #[command(flatten)]
     features: features::Arguments,
+    /// Instead of the check, write the values of the functions into this file, for `--against` of
+    /// later versions.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["executor", "report", "bless", "spec"])]
+    record: Option<PathBuf>,
+    /// Instead of the check, compare the values of the functions with a file that `--record` has
+    /// written.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["record", "executor", "report", "bless", "spec"])]
+    against: Option<PathBuf>,
     /// List the cases whose tolerance is smaller than the error that WGSL allows.
     #[arg(long)]
     spec: bool,
@@ -68,18 +77,25 @@ pub struct Arguments {
 const UNTESTED: usize = 10;
 
 /// Case files of one package.
-struct Selection {
-    library: Library,
+pub(super) struct Selection {
+    pub library: Library,
     /// Its root folder, unless it is the embedded library.
-    root: Option<PathBuf>,
-    files: Vec<String>,
-    languages: Vec<Language>,
+    pub root: Option<PathBuf>,
+    pub files: Vec<String>,
+    pub languages: Vec<Language>,
 }
 
 pub fn run_check(arguments: Arguments) -> Result<(), Failure> {
     let selections = parse_selections(&arguments)?;
-    on_thread(|| check_selections(&selections, &arguments))
-        .unwrap_or_else(|| Err(Failure::environment(stopped_message("the check"))))
+    on_thread(|| match (&arguments.record, &arguments.against) {
+        (Some(file), _) => values::record_values(&selections, file, arguments.replace()),
+        (None, Some(file)) => {
+            let asked = |language| is_asked(&arguments, language);
+            values::compare_with_record(&selections, file, asked)
+        }
+        (None, None) => check_selections(&selections, &arguments),
+    })
+    .unwrap_or_else(|| Err(Failure::environment(stopped_message("the check"))))
 }
 
 impl Arguments {
@@ -306,7 +322,7 @@ fn add_own(
         .map(|(language, _)| *language)
         .collect();
     if languages.is_empty() {
-        return Err(Failure::input(format!("`{}` has no module beside it", file.display())));
+        return Err(no_module(file, arguments));
     }
     let same = |selection: &&mut Selection| {
         selection.root.as_ref() == Some(&root) && selection.languages == languages
@@ -321,6 +337,15 @@ fn add_own(
         }),
     }
     Ok(())
+}
+
+/// A case file without a module in the languages that are asked for.
+fn no_module(file: &Path, arguments: &Arguments) -> Failure {
+    let asked = LANGUAGES.iter().filter(|(language, _)| is_asked(arguments, *language));
+    let name = |extension: &&str| format!("`{}`", file.with_extension(extension).display());
+    let names: Vec<String> =
+        asked.filter_map(|(_, extensions)| extensions.first()).map(name).collect();
+    Failure::input(format!("there is no {} next to `{}`", names.join(" or "), file.display()))
 }
 
 fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Failure> {

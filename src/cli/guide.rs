@@ -89,7 +89,12 @@ const ENTRIES: &[HelpEntry] = &[
     guide_entry(
         "check",
         CASES,
-        &["lamplight check", "lamplight check shaders/falloff.toml --report report"],
+        &[
+            "lamplight check",
+            "lamplight check shaders/falloff.toml --report report",
+            "lamplight check --record shaders.values",
+            "lamplight check --against shaders.values",
+        ],
     ),
     guide_entry("catalogue", FIRST, &["lamplight catalogue -o catalogue"]),
     guide_entry(

@@ -39,6 +39,7 @@ mod show;
 mod stream;
 mod terminal;
 mod text;
+mod values;
 mod variants;
 mod watch;
 mod work;

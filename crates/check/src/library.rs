@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::cases::{self, CaseFile};
+use super::check::values::{MeasuredCase, ValueRecord, measure_values};
 use super::check::{self, CheckReport, OpenExecutor};
 use super::ratchet::{self, Ratchet};
 use super::untested;
@@ -13,6 +14,7 @@ use lamplight_compose::resolve::{self, Packages, ROOT, Scope};
 use lamplight_compose::{self as compose, Composed, Keep, Options};
 use lamplight_diagnostic::source::{self, Embedded, Files, Memory, Package, ReadError, SourceSet};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
+use lamplight_execute::Session;
 use lamplight_permute::Settings;
 use lamplight_validate::{self as validate, Validated};
 
@@ -161,6 +163,35 @@ impl Library {
             });
         }
         Ok(report)
+    }
+
+    /// What the functions of case files return: for the inputs of an older record, or else for inputs
+    /// that the cases have.
+    pub fn measure_values(
+        &self,
+        sources: &Mutex<SourceSet>,
+        paths: &[String],
+        languages: &[Language],
+        session: &mut dyn Session,
+        old: Option<&ValueRecord>,
+    ) -> Result<Vec<MeasuredCase>, Diagnostics> {
+        let files = self.read(sources, paths)?;
+        let subjects = |module: &str, language: Language, functions: &[String]| {
+            self.module(sources, module, language, functions)
+        };
+        let options = check::CheckOptions {
+            references: self.has_references(),
+            partners: false,
+            ..check::CheckOptions::default()
+        };
+        let (mut measured, mut errors) = (Vec::new(), Vec::new());
+        for (module, file) in &files {
+            match check::job::prepare_jobs(module, file, languages, &subjects, &options) {
+                Ok(jobs) => measured.extend(measure_values(&jobs, session, old)?),
+                Err(found) => errors.extend(found),
+            }
+        }
+        if errors.is_empty() { Ok(measured) } else { Err(errors) }
     }
 
     /// The case files of these paths, each with its module's path.

@@ -12,6 +12,7 @@ mod report;
 mod share;
 mod shrink;
 mod told;
+pub mod values;
 
 pub use judge::{CaseVerdict, Worst};
 pub use law::LawVerdict;

@@ -4,13 +4,15 @@ use std::collections::BTreeMap;
 
 use super::job::{BoundLaw, CaseJob};
 use super::judge;
-use super::law::LawVerdict;
+use super::law::{LawVerdict, amount_text};
+use super::profile::{components_text, parameters_text};
 use super::{Language, Session, Subjects};
 use crate::cases::{Rows, word_of};
 use crate::formula::{Formula, Scope};
 use crate::laws::{self, Albedo, Area, Equality, IntegralValue, Inverse, Law};
 use lamplight_diagnostic::{Diagnostic, Diagnostics};
 use lamplight_execute::kernel::{self, Kernel, word_value};
+use naga::ScalarKind;
 
 /// Another function that a law is about.
 pub struct Partner {
@@ -208,8 +210,9 @@ impl IntegralTarget<'_> {
                 verdict.broken += 1;
                 let most = if at_most { "at most " } else { "" };
                 verdict.example.get_or_insert_with(|| {
+                    let (given, off) = (parameters_text(job, inputs), amount_text(off));
                     format!(
-                        "{inputs:?}: the integral is {sum}, expected {most}{wanted}: off by {off:e}"
+                        "for {given} the integral is {sum}, expected {most}{wanted}: off by {off}"
                     )
                 });
             }
@@ -243,11 +246,18 @@ fn judge_equality(
             verdict.broken += 1;
             verdict.example.get_or_insert_with(|| {
                 let names = law.partners.join("` * `");
-                format!("{inputs:?} gives {own:?}, and `{names}` {other:?}: off by {worst:e}")
+                let (given, worst) = (parameters_text(job, inputs), amount_text(worst));
+                let (own, other) = (results_text(&own), results_text(other));
+                format!("for {given} it gives {own}, and `{names}` gives {other}: off by {worst}")
             });
         }
     }
     verdict
+}
+
+/// Results of a law's functions. They may be products, so they have the digits of `f64`.
+fn results_text(values: &[f64]) -> String {
+    components_text(values.iter().map(|value| (*value, ScalarKind::AbstractFloat)))
 }
 
 fn wanted_formula(
@@ -302,7 +312,9 @@ fn judge_inverse(
         if worst.is_nan() || worst > rule.within || found.len() != wanted.len() {
             verdict.broken += 1;
             verdict.example.get_or_insert_with(|| {
-                format!("{inputs:?}: `{}` leads back to {found:?}, off by {worst:e}", kernel.name)
+                let (given, name) = (parameters_text(job, inputs), &kernel.name);
+                let (found, worst) = (results_text(found), amount_text(worst));
+                format!("for {given} `{name}` leads back to {found}: off by {worst}")
             });
         }
     }

@@ -3,6 +3,7 @@
 use super::job::{CaseJob, Goal};
 use super::judge::{self, Worst};
 use lamplight_execute::kernel::TypeShape;
+use naga::ScalarKind;
 
 /// How many bins an axis is divided into.
 pub const BINS: usize = 48;
@@ -205,8 +206,41 @@ pub fn arguments_text(job: &CaseJob<'_>, row: &[f64]) -> String {
     named.map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>().join(", ")
 }
 
+/// The words of a row by parameters: `mu = 0.5, n = (0, 0.6, 0.8)`.
+pub fn parameters_text(job: &CaseJob<'_>, row: &[f64]) -> String {
+    let mut at = 0;
+    let parameters = job.kernel().words().map(|(name, shape)| {
+        let kinds = shape.kinds();
+        let values = row.iter().skip(at).zip(&kinds);
+        at += kinds.len();
+        format!("{name} = {}", components_text(values.map(|(value, kind)| (*value, *kind))))
+    });
+    parameters.collect::<Vec<_>>().join(", ")
+}
+
+/// A number, or the components of something else in parentheses.
+pub fn components_text(values: impl Iterator<Item = (f64, ScalarKind)>) -> String {
+    let texts: Vec<String> = values.map(|(value, kind)| value_text(value, kind)).collect();
+    match &texts[..] {
+        [one] => one.clone(),
+        several => format!("({})", several.join(", ")),
+    }
+}
+
+/// The shortest number that is this value: an `f32` has fewer digits than the same `f64`.
+pub fn value_text(value: f64, kind: ScalarKind) -> String {
+    match kind {
+        ScalarKind::Float => (value as f32).to_string(),
+        ScalarKind::Bool => (value != 0.0).to_string(),
+        ScalarKind::Sint
+        | ScalarKind::Uint
+        | ScalarKind::AbstractInt
+        | ScalarKind::AbstractFloat => value.to_string(),
+    }
+}
+
 /// The name of each word of a row.
-fn column_names(job: &CaseJob<'_>) -> Vec<String> {
+pub fn column_names(job: &CaseJob<'_>) -> Vec<String> {
     job.kernel().words().flat_map(|(name, shape)| part_names(name, shape)).collect()
 }
 

@@ -90,7 +90,9 @@ fn failure_reasons(outcome: &Outcome, verdict: &CaseVerdict) -> Vec<String> {
     {
         let (found, limit) = (worst.ulps(), worst.allowed_ulps() * recorded * SLACK);
         let (found, limit) = (short_number(found), short_number(limit));
-        reasons.push(format!("{found} ULP, but this driver was recorded to need at most {limit}"));
+        reasons.push(format!(
+            "error {found} ULP exceeds the recorded limit of this driver, {limit} ULP"
+        ));
     }
     if verdict.proves_nothing() {
         reasons.push(
