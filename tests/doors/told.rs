@@ -31,21 +31,25 @@ fn manifest_warnings() -> Outcome {
     Ok(())
 }
 
-/// A program without permutations gives a warning. Lints that only follow from its being empty are
+/// A program without permutations is an error. Lints that only follow from its being empty are
 /// not reported.
 fn empty_programs() -> Outcome {
     let never = manifest("") + "[[program.surface.constraint]]\nrequire = \"wrap && !wrap\"\n";
     let package = Package::new(&[("lamplight.toml", &never), ("main.wesl", MAIN)])?;
-    let run = package.run("gen --no-cache")?.ends(0)?;
-    run.says(&["warning[constraint-always-false]", "so the program ships empty"])?
+    for command in ["gen --no-cache", "variants", "lint"] {
+        let run = package.run(command)?.ends(1)?;
+        run.says(&["error[constraint-always-false]", "so the program has no permutation"])?;
+    }
+    let run = package.run("gen --no-cache")?.ends(1)?;
+    run.says(&["error[constraint-always-false]", "so the program has no permutation"])?
         .is_silent_of(&["unread-axis", "constant-condition"])?;
     package.write("lamplight.toml", &manifest("exclude = [{ wrap = \"*\" }]"))?;
-    let run = package.run("gen --no-cache --force")?.ends(0)?;
-    run.says(&["warning[no-permutation]", "ships empty", "surface: 0 permutations"])?
+    let run = package.run("gen --no-cache --force")?.ends(1)?;
+    run.says(&["error[no-permutation]", "ships empty", "this is excluded"])?
         .is_silent_of(&["unread-axis", "constant-condition"])?;
     package.write("asked.txt", "# none\n")?;
     package.write("lamplight.toml", &manifest("usage = \"asked.txt\""))?;
-    package.run("gen --no-cache --force")?.ends(0)?.says(&["warning[no-permutation]"])?;
+    package.run("gen --no-cache --force")?.ends(1)?.says(&["error[no-permutation]"])?;
     Ok(())
 }
 

@@ -62,8 +62,13 @@ pub fn narrow_to_list(
     program.space.undeclared = undeclared;
     program.space.features = features;
     let what = format!("program `{}`", program.name);
-    warnings.extend(lint::nothing_wanted(&program.space, &what, program.span));
-    Ok(warnings)
+    match lint::nothing_wanted(&program.space, &what, program.span) {
+        Some(error) => {
+            warnings.push(error.note("the usage list has no key of it that is still valid"));
+            Err(warnings)
+        }
+        None => Ok(warnings),
+    }
 }
 
 /// A warning for each program that a list names and the manifest does not declare, once.
