@@ -40,9 +40,10 @@ pub fn run_eval(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failur
 fn evaluate_all(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failure> {
     let mut session = executor::open_executor(executor::find_executor(&arguments.executor)?)?;
     let library = arguments.own.library()?;
-    let mut failed = false;
+    let (mut failed, mut all) = (0_usize, 0_usize);
     let mut one = |text: &str, session: &mut dyn Session| -> Result<(), Failure> {
-        failed |= !print_value(&library, text, arguments.lang, session, form)?;
+        all += 1;
+        failed += usize::from(!print_value(&library, text, arguments.lang, session, form)?);
         Ok(())
     };
     if arguments.expressions.is_empty() {
@@ -56,7 +57,12 @@ fn evaluate_all(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failu
     for expression in &arguments.expressions {
         one(expression, session.as_mut())?;
     }
-    if failed { Err(Failure::input("not every expression has a value")) } else { Ok(()) }
+    match (failed, all) {
+        (0, _) => Ok(()),
+        // Its diagnostics, which are printed, say everything.
+        (_, 1) => Err(Failure::Input(SourceSet::default(), Vec::new())),
+        _ => Err(Failure::input(format!("{failed} of {all} expressions failed"))),
+    }
 }
 
 /// Prints one line for each expression. An expression without a value gives an empty line, and

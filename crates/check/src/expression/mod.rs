@@ -4,6 +4,7 @@
 //! function of a root module; naga finds its type. For GLSL the same expression is translated
 //! token by token, and calls the GLSL modules.
 
+mod complete;
 mod rewrite;
 
 use std::collections::BTreeMap;
@@ -85,6 +86,7 @@ impl CompiledExpression {
         language: Language,
     ) -> Result<Self, Diagnostics> {
         let id = lock_sources(sources).add("<expression>", text);
+        complete::check_complete(text, id).map_err(|error| vec![error])?;
         let module =
             expression_module(library, sources, text, language).map_err(|(errors, wrapper)| {
                 errors
@@ -183,5 +185,20 @@ fn relocate_labels(
             label.span = Span::new(id, wrapper.original(label.span.range()));
         }
     }
+    // In one line, labels that overlap say the same as the first one.
+    let first = error.labels.first().map(|label| label.span);
+    let mut at = 0;
+    error.labels.retain(|label| {
+        at += 1;
+        at == 1 || first.is_none_or(|first| !overlaps(first, label.span))
+    });
+    error.notes.retain(|note| !note.contains(FUNCTION));
     error
+}
+
+fn overlaps(first: Span, second: Span) -> bool {
+    let (first_range, second_range) = (first.range(), second.range());
+    first.source == second.source
+        && first_range.start < second_range.end
+        && second_range.start < first_range.end
 }

@@ -254,7 +254,7 @@ fn type_name(module: &Module, ty: Handle<Type>) -> String {
 }
 
 /// The byte ranges of the tokens: words, numbers, `::`, blanks, and other characters one by one.
-fn expression_tokens(text: &str) -> Vec<Range<usize>> {
+pub fn expression_tokens(text: &str) -> Vec<Range<usize>> {
     let mut tokens = Vec::new();
     let mut at = 0;
     while let Some(piece) = piece_at(text, at) {
