@@ -1,5 +1,6 @@
 //! Code actions that mend what a diagnostic reports, and formatting.
 
+use crate::failure::RequestError;
 use std::ops::Range;
 use std::path::Path;
 
@@ -14,7 +15,10 @@ use lamplight_compose::project::MANIFEST;
 const OFFERED: usize = 8;
 
 /// `textDocument/codeAction`.
-pub fn code_actions(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn code_actions(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     let document = server.document(parameters)?;
     let (root, path, text) = (document.root.clone(), document.path.clone(), document.text.clone());
     let uri = parameters.pointer("/textDocument/uri").cloned().unwrap_or_default();
@@ -162,7 +166,10 @@ fn read_text(file: &Path) -> Option<String> {
 }
 
 /// `textDocument/formatting`.
-pub fn format_document(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn format_document(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     let document = server.document(parameters)?;
     let text = &document.text;
     match format::format_text(text).filter(|new| new != text) {

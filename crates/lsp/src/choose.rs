@@ -1,5 +1,6 @@
 //! The permutation that an editor shows.
 
+use crate::failure::RequestError;
 use serde_json::{Map, Value, json};
 
 use super::place::Lines;
@@ -17,14 +18,14 @@ pub const COMMANDS: &[&str] = &[CHOOSE, COMPOSED];
 pub fn choose_permutation(
     server: &mut LanguageServer,
     parameters: &Value,
-) -> Result<Value, String> {
+) -> Result<Value, RequestError> {
     let document = server.document(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
     if let Some(text) = parameters.get("set").and_then(Value::as_str) {
         server.choices.insert(root.clone(), read_choice(text)?);
         server.forget(None);
     }
-    let opened = server.opened(&root).ok_or("the package cannot be read")?;
+    let opened = server.opened(&root).ok_or(RequestError::Unreadable)?;
     let (settings, note) = look::module_settings(&opened, &path, &server.choice(&root));
     let programs = opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     let axes = programs.flat_map(|program| program.space.axes()).map(|axis| {
@@ -61,16 +62,22 @@ fn read_choice(text: &str) -> Result<look::ChosenValues, String> {
 }
 
 /// `workspace/executeCommand`: chooses a permutation, or returns the composed text.
-pub fn execute_command(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
-    let name = parameters.get("command").and_then(Value::as_str).ok_or_else(String::new)?;
+pub fn execute_command(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
+    let name = parameters
+        .get("command")
+        .and_then(Value::as_str)
+        .ok_or(RequestError::Parameter("command"))?;
     let argument = |index: usize| parameters.pointer(&format!("/arguments/{index}")).cloned();
-    let uri = argument(0).ok_or_else(String::new)?;
+    let uri = argument(0).ok_or(RequestError::Parameter("arguments"))?;
     match name {
         CHOOSE => choose_permutation(server, &json!({ "uri": uri, "set": argument(1) })),
         COMPOSED => {
             let document = server.document(&json!({ "uri": uri }))?;
             let (root, path) = (document.root.clone(), document.path.clone());
-            let mut opened = server.opened(&root).ok_or("the package cannot be read")?;
+            let mut opened = server.opened(&root).ok_or(RequestError::Unreadable)?;
             let (settings, _) = look::module_settings(&opened, &path, &server.choice(&root));
             let text = server
                 .graph(&mut opened, &path)
@@ -78,14 +85,14 @@ pub fn execute_command(server: &mut LanguageServer, parameters: &Value) -> Resul
             let first = |errors: Vec<lamplight_diagnostic::Diagnostic>| {
                 errors.first().map_or("no module".to_owned(), |error| error.message.clone())
             };
-            text.map(Value::String).map_err(first)
+            text.map(Value::String).map_err(|errors| RequestError::Refused(first(errors)))
         }
-        _ => Err(format!("there is no command `{name}`")),
+        _ => Err(RequestError::UnknownCommand(name.to_owned())),
     }
 }
 
 /// `textDocument/codeLens`: above each entry point its program's permutations.
-pub fn code_lenses(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn code_lenses(server: &mut LanguageServer, parameters: &Value) -> Result<Value, RequestError> {
     let document = server.document(parameters)?;
     let uri = parameters.pointer("/textDocument/uri").cloned().unwrap_or_default();
     let (root, path) = (document.root.clone(), document.path.clone());

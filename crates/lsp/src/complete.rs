@@ -1,5 +1,6 @@
 //! Completion: what may be written at a position.
 
+use crate::failure::RequestError;
 use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
@@ -23,7 +24,7 @@ pub const CONSTANT: u32 = 21;
 pub const STRUCT: u32 = 22;
 
 /// `textDocument/completion`.
-pub fn complete_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn complete_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, RequestError> {
     if glsl::is_asked(server, parameters) {
         return glsl::complete_at(server, parameters);
     }

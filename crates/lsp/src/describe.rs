@@ -1,5 +1,6 @@
 //! What a name is, in words: hover and signatures.
 
+use crate::failure::RequestError;
 use std::sync::Arc;
 
 use serde_json::{Value, json};
@@ -15,7 +16,7 @@ use lamplight_diagnostic::source::SourceSet;
 use lamplight_syntax::wesl::ItemKind;
 
 /// `textDocument/hover`.
-pub fn hover_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn hover_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, RequestError> {
     if glsl::is_asked(server, parameters) {
         return glsl::hover_at(server, parameters);
     }
@@ -52,7 +53,7 @@ pub fn hover_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value
 }
 
 /// Hover for a name after a dot: the members that it may mean, each with its struct.
-fn hover_member(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+fn hover_member(server: &mut LanguageServer, parameters: &Value) -> Result<Value, RequestError> {
     let Some((modules, node, byte)) = server.asked_module(parameters)? else {
         return Ok(Value::Null);
     };
@@ -151,7 +152,10 @@ pub fn describe_flag(
 }
 
 /// `textDocument/signatureHelp`: of the call that the position is in.
-pub fn signature_help(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn signature_help(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     if glsl::is_asked(server, parameters) {
         return glsl::signature_help(server, parameters);
     }

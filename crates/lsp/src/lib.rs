@@ -9,6 +9,7 @@ mod act;
 mod choose;
 mod complete;
 mod describe;
+mod failure;
 mod format;
 mod glsl;
 mod look;
@@ -29,6 +30,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
+use failure::RequestError;
 use lamplight_catalogue as catalogue;
 use lamplight_compose::project;
 use lamplight_compose::resolve::Graph;
@@ -38,9 +40,7 @@ use lamplight_diagnostic::source::{Embedded, SourceSet};
 use lamplight_files::limits::{EDIT_STEPS, Steps};
 use look::ChosenValues;
 use package::{OpenTexts, OpenedPackage, PackageModules};
-use wire::{
-    FAILED, NO_METHOD, WRONG_PARAMETERS, answer_message, error_message, notification_message,
-};
+use wire::{NO_METHOD, answer_message, error_message, notification_message};
 
 /// Where a file of the embedded library lies on the disk, for editors to show.
 pub type LibraryPaths = Box<dyn Fn(&str) -> Option<PathBuf>>;
@@ -76,7 +76,7 @@ pub struct LanguageServer {
     pub exit: Option<u8>,
 }
 
-type Handler = fn(&mut LanguageServer, &Value) -> Result<Value, String>;
+type Handler = fn(&mut LanguageServer, &Value) -> Result<Value, RequestError>;
 
 /// What editors ask for.
 const REQUESTS: &[(&str, Handler)] = &[
@@ -151,12 +151,7 @@ impl LanguageServer {
         };
         match handler(self, parameters) {
             Ok(result) => answer_message(id, result),
-            Err(words) if words.is_empty() => error_message(
-                id,
-                WRONG_PARAMETERS,
-                &format!("these are not parameters of `{method}`"),
-            ),
-            Err(words) => error_message(id, FAILED, &words),
+            Err(error) => error_message(id, error.number(), &error.to_string()),
         }
     }
 
@@ -359,19 +354,20 @@ impl LanguageServer {
     }
 
     /// The document that parameters name, and the byte of their position in it.
-    fn asked(&self, parameters: &Value) -> Result<(&Document, usize), String> {
+    fn asked(&self, parameters: &Value) -> Result<(&Document, usize), RequestError> {
         let document = self.document(parameters)?;
-        let position = parameters.get("position").ok_or_else(String::new)?;
-        let byte = place::byte_of_position(&document.text, position).ok_or_else(String::new)?;
-        Ok((document, byte))
+        let wrong = RequestError::Parameter("position");
+        let position = parameters.get("position");
+        let byte = position.and_then(|found| place::byte_of_position(&document.text, found));
+        Ok((document, byte.ok_or(wrong)?))
     }
 
-    fn document(&self, parameters: &Value) -> Result<&Document, String> {
+    fn document(&self, parameters: &Value) -> Result<&Document, RequestError> {
         let uri = parameters.get("textDocument").and_then(|found| found.get("uri"));
         let uri = uri.or_else(|| parameters.get("uri")).and_then(Value::as_str);
-        let path = uri.ok_or_else(String::new).map(place::path_of_address)?;
-        path.and_then(|path| self.documents.get(&path))
-            .ok_or_else(|| "the document is not open".to_owned())
+        let uri = uri.ok_or(RequestError::Parameter("textDocument"))?;
+        let open = place::path_of_address(uri).and_then(|path| self.documents.get(&path));
+        open.ok_or(RequestError::NotOpen)
     }
 }
 

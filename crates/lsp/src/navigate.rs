@@ -1,5 +1,6 @@
 //! Definitions, references, renaming and lists of symbols.
 
+use crate::failure::RequestError;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -22,7 +23,7 @@ impl LanguageServer {
     pub(super) fn symbol(
         &mut self,
         parameters: &Value,
-    ) -> Result<Option<(Arc<PackageModules>, WeslSymbol, Span)>, String> {
+    ) -> Result<Option<(Arc<PackageModules>, WeslSymbol, Span)>, RequestError> {
         let Some((modules, node, byte)) = self.asked_module(parameters)? else { return Ok(None) };
         let found = modules
             .symbol(node, byte as u32)
@@ -34,7 +35,7 @@ impl LanguageServer {
     pub(super) fn asked_module(
         &mut self,
         parameters: &Value,
-    ) -> Result<Option<(Arc<PackageModules>, u32, usize)>, String> {
+    ) -> Result<Option<(Arc<PackageModules>, u32, usize)>, RequestError> {
         let (document, byte) = self.asked(parameters)?;
         let (root, path) = (document.root.clone(), document.path.clone());
         let Some(modules) = self.modules(&root) else { return Ok(None) };
@@ -50,7 +51,10 @@ impl LanguageServer {
 }
 
 /// `textDocument/definition`.
-pub fn definition_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn definition_at(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     if glsl::is_asked(server, parameters) {
         return glsl::definition_at(server, parameters);
     }
@@ -67,7 +71,10 @@ pub fn definition_at(server: &mut LanguageServer, parameters: &Value) -> Result<
 }
 
 /// `textDocument/references`.
-pub fn references_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn references_at(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     if glsl::is_asked(server, parameters) {
         return glsl::references_at(server, parameters);
     }
@@ -93,15 +100,18 @@ fn why_fixed(modules: &PackageModules, symbol: WeslSymbol) -> Option<&'static st
 
 /// Fails for the copy of the library that editors show: edits there would be lost when it is
 /// written again.
-fn refuse_copy(server: &LanguageServer, parameters: &Value) -> Result<(), String> {
+fn refuse_copy(server: &LanguageServer, parameters: &Value) -> Result<(), RequestError> {
     let root = &server.document(parameters)?.root;
     let copy = (server.library)(project::MANIFEST);
     let is_copy = copy.and_then(|file| file.parent()?.canonicalize().ok()).as_ref() == Some(root);
-    if is_copy { Err("this is a copy of the library".to_owned()) } else { Ok(()) }
+    if is_copy { Err("this is a copy of the library".to_owned().into()) } else { Ok(()) }
 }
 
 /// `textDocument/prepareRename`.
-pub fn prepare_rename(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn prepare_rename(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     refuse_copy(server, parameters)?;
     if glsl::is_asked(server, parameters) {
         return glsl::prepare_rename(server, parameters);
@@ -110,7 +120,7 @@ pub fn prepare_rename(server: &mut LanguageServer, parameters: &Value) -> Result
         return Ok(Value::Null);
     };
     if let Some(reason) = why_fixed(&modules, symbol) {
-        return Err(reason.to_owned());
+        return Err(reason.to_owned().into());
     }
     let text = &modules.sources.get(span.source).text;
     Ok(Lines::new(text).range(last_name(text, span).range()))
@@ -125,30 +135,37 @@ fn last_name(text: &str, span: Span) -> Span {
 }
 
 /// `textDocument/rename`: each place that writes the name; those that write an alias stay.
-pub fn rename_symbol(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn rename_symbol(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     refuse_copy(server, parameters)?;
     if glsl::is_asked(server, parameters) {
         return glsl::rename_symbol(server, parameters);
     }
-    let new = parameters.get("newName").and_then(Value::as_str).ok_or_else(String::new)?.to_owned();
+    let new = parameters
+        .get("newName")
+        .and_then(Value::as_str)
+        .ok_or(RequestError::Parameter("newName"))?
+        .to_owned();
     let Some((modules, symbol, span)) = server.symbol(parameters)? else {
-        return Err("there is no name here".to_owned());
+        return Err(RequestError::NoName);
     };
     if let Some(reason) = why_fixed(&modules, symbol) {
-        return Err(reason.to_owned());
+        return Err(reason.to_owned().into());
     }
     if let Some(reason) = why_no_name(&new) {
-        return Err(format!("`{new}` {reason}"));
+        return Err(format!("`{new}` {reason}").into());
     }
     let declared = modules.declarations(symbol);
     let old = declared.first().map(|span| modules.sources.text(*span).to_owned());
-    let old = old.ok_or("its declaration is not known")?;
+    let old = old.ok_or_else(|| "its declaration is not known".to_owned())?;
     if let Some(taken) = name_taken_in(&modules, symbol, &new) {
-        return Err(format!("`{new}` is already declared in `{taken}`"));
+        return Err(format!("`{new}` is already declared in `{taken}`").into());
     }
     // The place that was asked about may write an alias, which is a name of its own.
     if modules.sources.text(last_name(&modules.sources.get(span.source).text, span)) != old {
-        return Err("this is another name for it: rename it in its import".to_owned());
+        return Err("this is another name for it: rename it in its import".to_owned().into());
     }
     let places = modules.references(symbol).into_iter().filter_map(|span| {
         let text: &str = &modules.sources.get(span.source).text;
@@ -212,7 +229,10 @@ pub(super) fn symbol_kind(kind: ItemKind) -> u32 {
 }
 
 /// `textDocument/documentSymbol`.
-pub fn document_symbols(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn document_symbols(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     if glsl::is_asked(server, parameters) {
         return glsl::document_symbols(server, parameters);
     }
@@ -240,7 +260,10 @@ pub fn document_symbols(server: &mut LanguageServer, parameters: &Value) -> Resu
 }
 
 /// `workspace/symbol`: of the packages of all open documents, and of the library.
-pub fn workspace_symbols(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn workspace_symbols(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     let query = parameters.get("query").and_then(Value::as_str).unwrap_or_default().to_lowercase();
     let roots: BTreeSet<_> = server.documents.values().map(|found| found.root.clone()).collect();
     let mut found = Vec::new();

@@ -1,5 +1,6 @@
 //! The inactive code of a document: what the permutation that the editor shows leaves out.
 
+use crate::failure::RequestError;
 use std::ops::Range;
 
 use serde_json::{Value, json};
@@ -11,7 +12,7 @@ use lamplight_permute::Settings;
 
 impl LanguageServer {
     /// The text that parameters name, and its inactive parts.
-    fn shaded(&self, parameters: &Value) -> Result<(&str, Vec<Range<u32>>), String> {
+    fn shaded(&self, parameters: &Value) -> Result<(&str, Vec<Range<u32>>), RequestError> {
         let document = self.document(parameters)?;
         let found = self.opened(&document.root).and_then(|mut opened| {
             let choice = self.choice(&document.root);
@@ -48,7 +49,10 @@ fn trimmed_range(text: &str, range: &Range<u32>) -> Range<usize> {
 }
 
 /// `textDocument/semanticTokens/full`: inactive code as comments, line by line.
-pub fn semantic_tokens(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn semantic_tokens(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     let (text, inactive) = server.shaded(parameters)?;
     let lines = Lines::new(text);
     let (mut data, mut last) = (Vec::new(), (0, 0));
@@ -75,7 +79,7 @@ pub fn semantic_tokens(server: &mut LanguageServer, parameters: &Value) -> Resul
 }
 
 /// `textDocument/inlayHint`: a hint at the end of the first line of each inactive part.
-pub fn inlay_hints(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn inlay_hints(server: &mut LanguageServer, parameters: &Value) -> Result<Value, RequestError> {
     let (text, inactive) = server.shaded(parameters)?;
     let lines = Lines::new(text);
     let hint = |range: Range<u32>| {

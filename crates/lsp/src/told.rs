@@ -1,5 +1,6 @@
 //! Diagnostics as editors show them.
 
+use crate::failure::RequestError;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -36,11 +37,14 @@ pub fn hover_json(words: &str, text: &str, range: Range<usize>) -> Value {
 pub fn rename_json<'t>(
     new: &str,
     places: impl Iterator<Item = (Option<String>, &'t str, Range<usize>)>,
-) -> Result<Value, String> {
+) -> Result<Value, RequestError> {
     let mut edits: BTreeMap<String, Vec<Value>> = BTreeMap::new();
     for (uri, text, range) in places {
         let edit = json!({ "range": Lines::new(text).range(range), "newText": new });
-        edits.entry(uri.ok_or("a place has no address")?).or_default().push(edit);
+        edits
+            .entry(uri.ok_or_else(|| "a place has no address".to_owned())?)
+            .or_default()
+            .push(edit);
     }
     Ok(json!({ "changes": edits }))
 }

@@ -1,5 +1,6 @@
 //! Completion in a GLSL file.
 
+use crate::failure::RequestError;
 use std::collections::BTreeSet;
 
 use serde_json::{Value, json};
@@ -47,7 +48,7 @@ const WORDS: &[&str] = &[
 ];
 
 /// `textDocument/completion`.
-pub fn complete_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn complete_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, RequestError> {
     let (document, byte) = server.asked(parameters)?;
     let text = document.text.clone();
     let word = place::word_at_byte(&text, byte).start.min(byte);

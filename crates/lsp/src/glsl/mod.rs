@@ -9,6 +9,7 @@ mod tokens;
 mod units;
 mod words;
 
+use crate::failure::RequestError;
 use std::ops::Range;
 
 use serde_json::{Value, json};
@@ -45,7 +46,10 @@ pub fn is_asked(server: &LanguageServer, parameters: &Value) -> bool {
     document.is_ok_and(|document| lint::language(&document.path) == Some(Language::Glsl))
 }
 
-fn read_names(server: &LanguageServer, parameters: &Value) -> Result<Option<OpenGlslFile>, String> {
+fn read_names(
+    server: &LanguageServer,
+    parameters: &Value,
+) -> Result<Option<OpenGlslFile>, RequestError> {
     let document = server.document(parameters)?;
     let path = document.path.clone();
     let Some(mut opened) = server.opened(&document.root) else { return Ok(None) };
@@ -119,7 +123,7 @@ fn comment_above(text: &str, byte: u32) -> String {
 }
 
 /// `textDocument/hover`.
-pub fn hover_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn hover_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, RequestError> {
     let (_, byte) = server.asked(parameters)?;
     let Some(asked) = read_names(server, parameters)? else { return Ok(Value::Null) };
     let Some((meaning, place)) = asked.names.meaning(byte as u32) else { return Ok(Value::Null) };
@@ -154,7 +158,10 @@ fn is_macro_of(axis: &Axis, name: &str) -> bool {
 }
 
 /// `textDocument/definition`.
-pub fn definition_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn definition_at(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     let (_, byte) = server.asked(parameters)?;
     let Some(asked) = read_names(server, parameters)? else { return Ok(Value::Null) };
     let Some((meaning, _)) = asked.names.meaning(byte as u32) else { return Ok(Value::Null) };
@@ -171,7 +178,10 @@ pub fn definition_at(server: &mut LanguageServer, parameters: &Value) -> Result<
 }
 
 /// `textDocument/documentSymbol`.
-pub fn document_symbols(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn document_symbols(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     let Some(asked) = read_names(server, parameters)? else { return Ok(json!([])) };
     let lines = Lines::new(&asked.names.graph.modules[0].text);
     let range = |range: &Range<u32>| lines.range(range.start as usize..range.end as usize);

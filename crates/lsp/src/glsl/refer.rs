@@ -1,5 +1,6 @@
 //! References, symbols and signatures in the GLSL files of a package.
 
+use crate::failure::RequestError;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -48,7 +49,7 @@ pub struct RequestedSymbol {
 pub fn asked_at(
     server: &mut LanguageServer,
     parameters: &Value,
-) -> Result<Option<RequestedSymbol>, String> {
+) -> Result<Option<RequestedSymbol>, RequestError> {
     let (document, byte) = server.asked(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
     let Some(whole) = server.whole(&root) else { return Ok(None) };
@@ -79,7 +80,10 @@ impl Whole {
 }
 
 /// `textDocument/references`.
-pub fn references_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn references_at(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     let declared = parameters.pointer("/context/includeDeclaration").and_then(Value::as_bool);
     if let Some(found) = including_places(server, parameters)? {
         return Ok(found);
@@ -95,7 +99,7 @@ pub fn references_at(server: &mut LanguageServer, parameters: &Value) -> Result<
 fn including_places(
     server: &mut LanguageServer,
     parameters: &Value,
-) -> Result<Option<Value>, String> {
+) -> Result<Option<Value>, RequestError> {
     let (document, byte) = server.asked(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
     let Some(whole) = server.whole(&root) else { return Ok(None) };
@@ -150,7 +154,10 @@ fn is_guard(units: &Units, file: usize, declaration: &GlslDeclaration) -> bool {
 }
 
 /// `textDocument/signatureHelp`: every form of the function or macro that is called.
-pub fn signature_help(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn signature_help(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     let (document, byte) = server.asked(parameters)?;
     let Some((name, argument)) = describe::call_around(&document.text, byte) else {
         return Ok(Value::Null);

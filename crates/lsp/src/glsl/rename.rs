@@ -1,5 +1,6 @@
 //! Renames symbols of GLSL, where no condition and no macro can make that wrong.
 
+use crate::failure::RequestError;
 use std::collections::BTreeSet;
 
 use serde_json::Value;
@@ -18,7 +19,10 @@ use lamplight_syntax::words::has_word;
 const SWIZZLES: [&str; 3] = ["xyzw", "rgba", "stpq"];
 
 /// `textDocument/prepareRename`.
-pub fn prepare_rename(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
+pub fn prepare_rename(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
     let Some(asked) = asked_at(server, parameters)? else { return Ok(Value::Null) };
     renamed_places(&asked)?;
     let lines = Lines::new(&asked.whole.units.module(asked.file).text);
@@ -26,9 +30,16 @@ pub fn prepare_rename(server: &mut LanguageServer, parameters: &Value) -> Result
 }
 
 /// `textDocument/rename`: in all files of the package.
-pub fn rename_symbol(server: &mut LanguageServer, parameters: &Value) -> Result<Value, String> {
-    let new = parameters.get("newName").and_then(Value::as_str).ok_or_else(String::new)?.to_owned();
-    let asked = asked_at(server, parameters)?.ok_or("there is no name here")?;
+pub fn rename_symbol(
+    server: &mut LanguageServer,
+    parameters: &Value,
+) -> Result<Value, RequestError> {
+    let new = parameters
+        .get("newName")
+        .and_then(Value::as_str)
+        .ok_or(RequestError::Parameter("newName"))?
+        .to_owned();
+    let asked = asked_at(server, parameters)?.ok_or(RequestError::NoName)?;
     let places = renamed_places(&asked)?;
     check_new(&asked, &places, &new)?;
     let places = places.iter().map(|place| {
