@@ -69,7 +69,7 @@ fn derivative_warning(
         return None;
     }
     let warning = place.into_iter().fold(warning, |warning, span| {
-        warning.at(span, "neighbouring fragments may not come here")
+        warning.at(span, "other fragments of the quad may skip this branch")
     });
     let cause = finding.cause.to_range().and_then(|range| composed.map.lookup(range));
     let warning = cause

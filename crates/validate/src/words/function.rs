@@ -38,7 +38,7 @@ pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> 
         FunctionError::MissingDefaultCase => "`switch` needs a `default`".to_owned(),
         FunctionError::MultipleDefaultCases => "`switch` has several `default`s".to_owned(),
         FunctionError::LastCaseFallTrough => "the last case does not end in `break`".to_owned(),
-        FunctionError::InvalidStorePointer(_) => "nothing can be written to this".to_owned(),
+        FunctionError::InvalidStorePointer(_) => "this expression is not assignable".to_owned(),
         FunctionError::InvalidStoreTexture { .. } => {
             "only storage textures can be written to".to_owned()
         }
@@ -58,10 +58,12 @@ pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> 
         }
         FunctionError::MissingCapability(capabilities) => return lacking_words(*capabilities),
         FunctionError::NonUniformControlFlow(..) => {
-            "neighbouring fragments may have taken different branches here".to_owned()
+            "control flow is not uniform here: fragments of one quad may take different branches"
+                .to_owned()
         }
         FunctionError::NonUniformWorkgroupUniformLoad(_) => {
-            "invocations may have taken different branches here".to_owned()
+            "control flow is not uniform here: invocations of one workgroup may take different branches"
+                .to_owned()
         }
         FunctionError::PipelineInputRegularFunction { name } => format!(
             "`{name}` has `@location` or `@builtin`, which only entry points' parameters have"
@@ -75,7 +77,8 @@ pub fn function_words(module: &Module, of: &Function, error: &FunctionError) -> 
         | FunctionError::WorkgroupUniformLoadInvalidPointer(_)
         | FunctionError::EmitResult(_)
         | FunctionError::UnvisitedExpression(_) => {
-            "naga's parser gave the function a form that naga's validator refuses".to_owned()
+            "internal error in naga: its parser made a function that its validator refuses; please report it"
+                .to_owned()
         }
         FunctionError::InvalidAtomic(_)
         | FunctionError::InvalidImageAtomicFunction(_)
@@ -137,12 +140,12 @@ fn local_words(
         LocalVariableError::InitializerType => {
             let declared = of.local_variables.iter().find(|(found, _)| *found == handle);
             let declared = declared.map_or(String::new(), |(_, variable)| {
-                format!(", which is {}", type_text(module, variable.ty))
+                format!(": expected {}", type_text(module, variable.ty))
             });
-            mismatch_words(format!("the first value of `{name}` does not fit its type{declared}"))
+            mismatch_words(format!("the initializer of `{name}` has the wrong type{declared}"))
         }
         LocalVariableError::NonConstOrOverrideInitializer => {
-            Sentence::plain(format!("the first value of `{name}` must be a constant"))
+            Sentence::plain(format!("the initializer of `{name}` must be a constant expression"))
         }
     }
 }
@@ -166,9 +169,9 @@ fn call_words(module: &Module, handle: Handle<Function>, error: &CallError) -> S
         CallError::Argument { source, .. } => return expression::expression_words(module, source),
         CallError::ResultAlreadyInScope(_)
         | CallError::ResultAlreadyPopulated(_)
-        | CallError::ExpressionMismatch(_) => {
-            Sentence::plain("naga's parser gave the call a form that naga's validator refuses")
-        }
+        | CallError::ExpressionMismatch(_) => Sentence::plain(
+            "internal error in naga: its parser made a call that its validator refuses; please report it",
+        ),
     };
     said.note(format!("declared: {}", signature_text(module, called)))
 }

@@ -1,9 +1,9 @@
 //! Variables of a module.
 
 use naga::valid::GlobalVariableError;
-use naga::{AddressSpace, Module};
+use naga::{AddressSpace, Expression, Handle, Module, TypeInner};
 
-use super::{Sentence, foreign_words, lacking_words, type_text};
+use super::{Sentence, foreign_words, inner_type_text, lacking_words, type_text};
 
 pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) -> Sentence {
     let text = match error {
@@ -34,13 +34,16 @@ pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) 
             .note(disalignment.to_string().to_lowercase());
         }
         GlobalVariableError::InitializerExprType => {
-            format!("the first value of `{name}` must be a constant")
+            format!("the initializer of `{name}` must be a constant expression")
         }
         GlobalVariableError::InitializerType => {
-            format!("the first value of `{name}` does not fit its type")
+            return initializer_words(module, name);
         }
         GlobalVariableError::InitializerNotAllowed(space) => {
-            format!("`{name}` is in {}, and has no first value there", space_name(*space))
+            format!(
+                "variables in {} cannot have an initializer, and `{name}` has one",
+                space_words(*space)
+            )
         }
         GlobalVariableError::StorageAddressSpaceWriteOnlyNotSupported => {
             format!("`{name}` must be readable: storage buffers are `read` or `read_write`")
@@ -54,6 +57,53 @@ pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) 
         }
     };
     Sentence::plain(text)
+}
+
+/// The error for an initializer of another type, with both types.
+fn initializer_words(module: &Module, name: &str) -> Sentence {
+    let found = module
+        .global_variables
+        .iter()
+        .find(|(_, variable)| variable.name.as_deref() == Some(name) && variable.init.is_some());
+    let types = found.map_or_else(String::new, |(_, variable)| {
+        let expected = type_text(module, variable.ty);
+        let found = variable.init.and_then(|init| constant_type(module, init));
+        let found = found.map_or(String::new(), |found| format!(", found {found}"));
+        format!(": expected {expected}{found}")
+    });
+    super::function::mismatch_words(format!(
+        "the initializer of `{name}` has the wrong type{types}"
+    ))
+}
+
+/// The type of a constant expression, where the expression itself names it.
+fn constant_type(module: &Module, handle: Handle<Expression>) -> Option<String> {
+    match &module.global_expressions[handle] {
+        Expression::Literal(literal) => {
+            Some(inner_type_text(module, &TypeInner::Scalar(literal.scalar())))
+        }
+        Expression::Compose { ty, components: _ } | Expression::ZeroValue(ty) => {
+            Some(type_text(module, *ty))
+        }
+        Expression::Constant(constant) => Some(type_text(module, module.constants[*constant].ty)),
+        _ => None,
+    }
+}
+
+/// An address space as WGSL names it, with its name for people where that is another one.
+fn space_words(space: AddressSpace) -> &'static str {
+    match space {
+        AddressSpace::Private => "`<private>`",
+        AddressSpace::WorkGroup => "`<workgroup>`",
+        AddressSpace::Uniform => "`<uniform>`",
+        AddressSpace::Storage { .. } => "`<storage>`",
+        AddressSpace::Function
+        | AddressSpace::Handle
+        | AddressSpace::Immediate
+        | AddressSpace::TaskPayload
+        | AddressSpace::RayPayload
+        | AddressSpace::IncomingRayPayload => space_name(space),
+    }
 }
 
 pub fn space_name(space: AddressSpace) -> &'static str {

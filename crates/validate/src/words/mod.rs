@@ -47,9 +47,9 @@ impl Sentence {
 /// The message for an error of naga's validator.
 pub fn validation_words(module: &Module, error: &ValidationError) -> Sentence {
     match error {
-        ValidationError::InvalidHandle(_) | ValidationError::Corrupted => {
-            Sentence::plain("naga's parser gave the text a form that naga's validator refuses")
-        }
+        ValidationError::InvalidHandle(_) | ValidationError::Corrupted => Sentence::plain(
+            "internal error in naga: its parser made a module that its validator refuses; please report it",
+        ),
         ValidationError::Layouter(_) => {
             Sentence::plain("a type has no layout in memory: its size is not known, or too large")
         }
