@@ -6,7 +6,44 @@
 //!
 //! [site]: https://lamplight-shaders.github.io/lamplight/
 //!
-//! # In an engine
+//! # Compose
+//!
+//! [`resolve`] finds what a module imports, and [`compose`] writes one text for the settings of one
+//! permutation.
+//!
+//! ```
+//! use lamplight::bundle::Language;
+//! use lamplight::{compose, permute::Settings, project, resolve, source::SourceSet};
+//!
+//! let text = "import lamplight::brdf::diffuse::lambert;
+//!     fn lit(n: vec3f, l: vec3f) -> f32 { return lambert(n, l); }";
+//! let mut packages = resolve::Packages::of_text("lit.wesl", text.to_owned());
+//! packages.add(project::library_package());
+//! let graph = resolve::load(&mut SourceSet::default(), &packages, "lit.wesl", Language::Wesl)?;
+//! let composed = compose::compose(&graph, &Settings::default(), &Default::default())?;
+//! assert!(composed.text.contains("fn lambert("));
+//! # Ok::<(), lamplight::diagnostic::Diagnostics>(())
+//! ```
+//!
+//! # Compile
+//!
+//! [`validate`] hands a composed text to naga, and [`emit`] writes one target.
+//!
+//! ```
+//! use lamplight::bundle::{Language, Target};
+//! use lamplight::{compose, emit, permute::Settings, resolve, source::SourceSet, validate};
+//!
+//! let text = "@fragment fn fs_main() -> @location(0) vec4f { return vec4f(0.5); }";
+//! let packages = resolve::Packages::of_text("grey.wesl", text.to_owned());
+//! let graph = resolve::load(&mut SourceSet::default(), &packages, "grey.wesl", Language::Wesl)?;
+//! let composed = compose::compose(&graph, &Settings::default(), &Default::default())?;
+//! let validated = validate::validate(&composed)?;
+//! let metal = emit::emit(&validated, "fs_main", Target::MSL).map_err(|error| vec![error])?;
+//! assert!(String::from_utf8_lossy(&metal.bytes).contains("fragment "));
+//! # Ok::<(), lamplight::diagnostic::Diagnostics>(())
+//! ```
+//!
+//! # Load, in an engine
 //!
 //! [`bundle`] opens what was generated and finds a permutation by its key. It needs no feature of
 //! the crate, and neither naga nor wgpu.
@@ -34,6 +71,24 @@
 //! assert!(std::str::from_utf8(&found.bytes)?.contains("fn fs_main("));
 //! # Ok(())
 //! # }
+//! ```
+//!
+//! # Diagnose, in an editor
+//!
+//! [`lint`] looks at all modules of a package. Each [`diagnostic`] has a code, a message and places in
+//! the author's text.
+//!
+//! ```
+//! use lamplight::{lint, permute::Settings, resolve::Packages, source::SourceSet};
+//!
+//! let text = "fn half(x: f32) -> f32 {\n    return 0.5 * y;\n}\n";
+//! let packages = Packages::of_text("half.wesl", text.to_owned());
+//! let (paths, settings) = (["half.wesl".to_owned()], Settings::default());
+//! let asked = lint::Request { packages: &packages, manifest: None, settings: &settings, paths: &paths };
+//! let mut sources = SourceSet::default();
+//! let found = lint::lint(&mut sources, &asked).diagnostics;
+//! let place = found[0].labels[0].span;
+//! assert_eq!(sources.position(place.source, place.start as usize), (2, 18));
 //! ```
 //!
 //! # In a build script
@@ -68,44 +123,8 @@
 //! # }
 //! ```
 //!
-//! # In a tool
-//!
-//! Each step is a function from one value to the next: [`source`] holds texts, [`resolve`] finds
-//! what they import, [`compose`] writes one text for the settings of one permutation, [`validate`]
-//! hands it to naga, and [`emit`] writes one target. [`permute`] knows the space of permutations,
-//! [`keys`] writes typed keys, [`cache`] and [`store`] keep results, [`eval`] runs functions on the
-//! CPU, and [`scene`] has the mathematics of the host.
-//!
-//! ```
-//! use lamplight::bundle::{Language, Target};
-//! use lamplight::diagnostic::Diagnostics;
-//! use lamplight::permute::Settings;
-//! use lamplight::resolve::{self, Packages};
-//! use lamplight::source::SourceSet;
-//! use lamplight::{compose, emit, project, validate};
-//!
-//! fn lit() -> Result<Vec<u8>, Diagnostics> {
-//!     let text = "
-//!         import lamplight::brdf::diffuse::lambert;
-//!         @fragment fn fs_main(@location(0) n: vec3f) -> @location(0) vec4f {
-//!             return vec4f(lambert(n, vec3f(0.0, 1.0, 0.0)));
-//!         }";
-//!     let mut packages = Packages::of_text("lit.wesl", text.to_owned());
-//!     packages.add(project::library_package());
-//!     let mut sources = SourceSet::default();
-//!     let graph = resolve::load(&mut sources, &packages, "lit.wesl", Language::Wesl)?;
-//!     let composed = compose::compose(&graph, &Settings::default(), &Default::default())?;
-//!     let validated = validate::validate(&composed)?;
-//!     let emitted = emit::emit(&validated, "fs_main", Target::MSL).map_err(|error| vec![error])?;
-//!     Ok(emitted.bytes)
-//! }
-//!
-//! # fn main() -> Result<(), String> {
-//! let metal = lit().map_err(|problems| format!("{problems:?}"))?;
-//! assert!(String::from_utf8_lossy(&metal).contains("float lambert("));
-//! # Ok(())
-//! # }
-//! ```
+//! [`permute`] knows the space of permutations, [`keys`] writes typed keys, [`cache`] and [`store`]
+//! keep results, [`eval`] runs functions on the CPU, and [`scene`] has the mathematics of the host.
 //!
 //! Modules that are not listed here serve the command line and may change with any version.
 
