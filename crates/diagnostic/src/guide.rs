@@ -36,6 +36,7 @@ pub const PAGES: &[GuidePage] = &[
     GuidePage { title: "From naga_oil", file: "migrate.md" },
     GuidePage { title: "Numeric cases", file: "cases.md" },
     GuidePage { title: "The report of a check", file: "report.md" },
+    GuidePage { title: "Values of older versions", file: "values.md" },
     GuidePage { title: "Bundles", file: "bundles.md" },
     GuidePage { title: "Conventions of each target", file: "targets.md" },
     GuidePage { title: "Limits and what each protects", file: "limits.md" },

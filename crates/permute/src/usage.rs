@@ -30,14 +30,7 @@ pub fn narrow_to_list(
         match parse(&program.space, &key) {
             Ok(point) if program.space.is_valid(&point) => include.push(point),
             Ok(_) => warnings.push(key_is_gone(&key, "a constraint excludes it")),
-            Err(problems) => warnings.push(key_is_gone(
-                &key,
-                &problems
-                    .iter()
-                    .map(|problem| problem.message.clone())
-                    .collect::<Vec<_>>()
-                    .join("; "),
-            )),
+            Err(problems) => warnings.push(key_is_gone(&key, &joined_messages(&problems))),
         }
     }
     include.sort();
@@ -62,13 +55,16 @@ pub fn narrow_to_list(
     program.space.undeclared = undeclared;
     program.space.features = features;
     let what = format!("program `{}`", program.name);
-    match lint::nothing_wanted(&program.space, &what, program.span) {
-        Some(error) => {
-            warnings.push(error.note("the usage list has no key of it that is still valid"));
-            Err(warnings)
-        }
-        None => Ok(warnings),
-    }
+    let Some(error) = lint::nothing_wanted(&program.space, &what, program.span) else {
+        return Ok(warnings);
+    };
+    warnings.push(error.note("the usage list has no key of it that is still valid"));
+    Err(warnings)
+}
+
+fn joined_messages(problems: &[Diagnostic]) -> String {
+    let messages: Vec<&str> = problems.iter().map(|problem| problem.message.as_str()).collect();
+    messages.join("; ")
 }
 
 /// A warning for each program that a list names and the manifest does not declare, once.

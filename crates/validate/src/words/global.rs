@@ -36,14 +36,10 @@ pub fn variable_words(module: &Module, name: &str, error: &GlobalVariableError) 
         GlobalVariableError::InitializerExprType => {
             format!("the initializer of `{name}` must be a constant expression")
         }
-        GlobalVariableError::InitializerType => {
-            return initializer_words(module, name);
-        }
+        GlobalVariableError::InitializerType => return initializer_words(module, name),
         GlobalVariableError::InitializerNotAllowed(space) => {
-            format!(
-                "variables in {} cannot have an initializer, and `{name}` has one",
-                space_words(*space)
-            )
+            let space = space_words(*space);
+            format!("variables in {space} cannot have an initializer, and `{name}` has one")
         }
         GlobalVariableError::StorageAddressSpaceWriteOnlyNotSupported => {
             format!("`{name}` must be readable: storage buffers are `read` or `read_write`")
