@@ -7,9 +7,10 @@ use clap::Args;
 
 use super::compile::{ConventionArguments, TargetChoice, wanted_one, wanted_targets};
 use super::failure::{DiagnosticForm, Failure};
+use super::judged::{ValidatedOutputs, refuse_missing};
 use super::terminal::stdout;
 use super::work::{PathArguments, Work};
-use crate::generate::{Look, Request, Shard, Summary};
+use crate::generate::{Look, Request, Shard};
 use crate::permute::Quoted;
 use crate::source::SourceSet;
 
@@ -35,10 +36,10 @@ pub struct Arguments {
     /// Write nothing; compare with the existing bundle, and end with exit code 3 if they differ.
     #[arg(long)]
     check: bool,
-    /// Check every output with an independent validator of its target before the bundle is
-    /// replaced.
-    #[arg(long)]
-    validate: bool,
+    /// Have independent validators of the targets check outputs before the bundle is replaced: all
+    /// of them, or so many that each distinct line is in one of them.
+    #[arg(long, value_enum, num_args = 0..=1, default_value = "none", default_missing_value = "all")]
+    validate: ValidatedOutputs,
     /// Print the summary as JSON.
     #[arg(long)]
     json: bool,
@@ -48,19 +49,18 @@ pub fn run_generate(arguments: Arguments, form: DiagnosticForm) -> Result<(), Fa
     let start = Instant::now();
     let mut work = Work::open(&arguments.places)?;
     let request = make_request(&arguments, &mut work.sources);
-    if arguments.validate {
-        work.judge(&request)?;
-    }
+    work.validate(arguments.validate.into());
     let look = if arguments.check { Look::Whole } else { Look::Cheap };
     let mut summary = match work.up_to_date(&request, look, form) {
-        Some(summary) => Summary { judged: work.judge_bundle()?, ..summary },
+        Some(trace) => work.validate_bundle(trace)?,
         None => work.run(&request, arguments.check, form)?,
     };
     summary.seconds = start.elapsed().as_secs_f64();
-    if arguments.json {
-        return Ok(writeln!(stdout(), "{:#}", serde_json::json!(summary))?);
+    match arguments.json {
+        true => writeln!(stdout(), "{:#}", serde_json::json!(summary))?,
+        false => write!(stdout(), "{summary}")?,
     }
-    Ok(write!(stdout(), "{summary}")?)
+    refuse_missing(summary.validated.as_ref())
 }
 
 fn make_request(arguments: &Arguments, sources: &mut SourceSet) -> Request {

@@ -1,23 +1,47 @@
-//! `gen --validate`: asks the judges of the targets about a run's outputs, before these replace the
-//! bundle that is there.
+//! `gen --validate`: asks the validators of the targets about a run's outputs, before these replace
+//! the bundle that is there.
 
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
+
 use super::failure::Failure;
 use super::progress::Bar;
-use crate::bundle::{BlobFile, Bundle, Contents, Error, Target, blob_files, stage_blobs};
+use crate::bundle::{BlobFile, Bundle, Contents, Error, blob_files, stage_blobs};
 use crate::cache::Cache;
-use crate::generate::{JudgedCount, Progress, Request};
-use crate::judge::{MissingTool, OutputOrigin, Tint, blame, missing, outputs, verdict};
+use crate::generate::{Progress, Summary, Validation};
+use crate::judge::{BundleRecord, Extent, OutputOrigin, Tint, blame, outputs, verdict};
 use crate::output::Scratch;
 use crate::permute::Manifest;
 use crate::project;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
 
-/// The judges of a run's targets. All of them are installed.
-pub struct Judges {
+/// [`Extent`] as an option's value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ValidatedOutputs {
+    /// So many outputs that each distinct line of each target is in one of them.
+    Lines,
+    /// Every output.
+    All,
+    /// No output.
+    None,
+}
+
+impl From<ValidatedOutputs> for Extent {
+    fn from(asked: ValidatedOutputs) -> Self {
+        match asked {
+            ValidatedOutputs::Lines => Self::Lines,
+            ValidatedOutputs::All => Self::All,
+            ValidatedOutputs::None => Self::Nothing,
+        }
+    }
+}
+
+/// The validators, and how much they are asked.
+pub struct Validators {
     tint: Tint,
+    extent: Extent,
 }
 
 /// What the outputs were made of.
@@ -28,48 +52,39 @@ pub struct Inputs<'a> {
     pub cache: Option<&'a Cache>,
 }
 
-impl Judges {
-    /// Checks that all judges are installed. Tint is looked for beside the cache folder.
-    pub fn open(
-        manifest: &Manifest,
-        request: &Request,
-        path: &Path,
-        cache: Option<PathBuf>,
-    ) -> Result<Self, Failure> {
+impl Validators {
+    /// The validators for a manifest. Tint is looked for beside the cache folder.
+    pub fn new(extent: Extent, path: &Path, cache: Option<PathBuf>) -> Self {
         let cache = cache.or_else(|| project::cache_folder(path));
         let tint = Tint::beside(&cache.unwrap_or_else(|| std::env::temp_dir().join("cache")));
-        let declared = manifest.programs.iter().flat_map(|program| program.targets.clone());
-        let mut targets: Vec<Target> = match request.targets.is_empty() {
-            true => declared.collect(),
-            false => request.targets.clone(),
-        };
-        targets.sort();
-        let lacking: Vec<String> =
-            missing(&targets, &tint).iter().map(MissingTool::to_string).collect();
-        match lacking.is_empty() {
-            true => Ok(Self { tint }),
-            false => Err(Failure::environment(format!("cannot judge: {}", lacking.join("\n")))),
-        }
+        Self { tint, extent }
     }
 
-    /// Judges files. A refusal is an error of the input.
+    /// The record of a bundle that was validated.
+    pub fn record(&self, bundle: &str, summary: &Summary) -> BundleRecord {
+        let targets: Vec<&str> =
+            summary.targets.iter().map(|target| target.target.as_str()).collect();
+        BundleRecord::new(bundle, &targets, self.extent, &self.tint)
+    }
+
+    /// Validates files. A refusal is an error of the input.
     pub fn files(
         &self,
         files: impl IntoIterator<Item = BlobFile>,
         contents: &dyn Fn() -> Result<Contents, Error>,
         inputs: Inputs<'_>,
         bar: &Bar,
-    ) -> Result<JudgedCount, Failure> {
+    ) -> Result<Validation, Failure> {
         let broken = |error: Error| Failure::input(error.to_string());
         let progress = |done, total| {
-            bar.show(Progress { stage: "judging".to_owned(), done, total });
+            bar.show(Progress { stage: "validating".to_owned(), done, total });
         };
         let Inputs { sources, packages, manifest, cache } = inputs;
         let outputs = outputs(files).map_err(broken)?;
-        let verdict = verdict(outputs, cache, &self.tint, &progress);
+        let verdict = verdict(outputs, self.extent, cache, &self.tint, &progress);
         let verdict = verdict.map_err(Failure::environment)?;
         if verdict.refusals.is_empty() {
-            return Ok(JudgedCount { now: verdict.judged, before: verdict.known });
+            return Ok(verdict.validation);
         }
         bar.clear();
         let made = OutputOrigin { packages, manifest, contents: &contents().map_err(broken)? };
@@ -77,31 +92,39 @@ impl Judges {
         Err(Failure::Input(sources.clone(), diagnostics))
     }
 
-    /// Judges a bundle in memory.
+    /// Validates a bundle in memory.
     pub fn contents(
         &self,
         contents: &Contents,
         inputs: Inputs<'_>,
         bar: &Bar,
-    ) -> Result<JudgedCount, Failure> {
+    ) -> Result<Validation, Failure> {
         let failed = |error: Error| Failure::environment(error.to_string());
         let scratch = Scratch::new(&std::env::temp_dir())?;
         let files = stage_blobs(contents, &scratch).map_err(failed)?;
         self.files(files, &|| Ok(contents.clone()), inputs, bar)
     }
 
-    /// Judges a bundle that is there.
-    pub fn bundle(
-        &self,
-        out: &Path,
-        inputs: Inputs<'_>,
-        bar: &Bar,
-    ) -> Result<JudgedCount, Failure> {
+    /// Validates a bundle that is there.
+    pub fn bundle(&self, out: &Path, inputs: Inputs<'_>, bar: &Bar) -> Result<Validation, Failure> {
         let broken = |error: Error| Failure::input(error.to_string());
         let contents = || Bundle::open(out)?.contents();
         match out.is_dir() {
             true => self.files(blob_files(out).map_err(broken)?, &contents, inputs, bar),
             false => self.contents(&contents().map_err(broken)?, inputs, bar),
+        }
+    }
+}
+
+/// Fails if a validator that was asked for is not installed. The run is over by then: what the others
+/// accepted is written.
+pub fn refuse_missing(validation: Option<&Validation>) -> Result<(), Failure> {
+    let missing = validation.map(Validation::missing).unwrap_or_default();
+    match missing.is_empty() {
+        true => Ok(()),
+        false => {
+            let missing = missing.join("\n");
+            Err(Failure::environment(format!("not all outputs are validated:\n{missing}")))
         }
     }
 }

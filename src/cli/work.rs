@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::cached::Cached;
 use super::failure::{DiagnosticForm, Failure, print_warnings};
-use super::judged::{Inputs, Judges};
+use super::judged::{Inputs, Validators};
 use super::overwrite::{Overwrite, Patience, write_failure};
 use super::partial;
 use super::progress::Bar;
@@ -16,9 +16,10 @@ use super::terminal::stderr;
 use crate::bundle::{self, Bundle, Contents, DirectoryWriter};
 use crate::cache::Cache;
 use crate::generate::{
-    Generated, JudgedCount, Look, MemorySink, Observer, Request, RunWarnings, Sink, Summary, Tools,
-    Trace, TracedRun, generate,
+    Generated, Look, MemorySink, Observer, Request, RunWarnings, Sink, Summary, Tools, Trace,
+    TracedRun, generate,
 };
+use crate::judge::Extent;
 use crate::output::Replace;
 use crate::permute::Manifest;
 use crate::project;
@@ -65,7 +66,7 @@ pub struct Work {
     cache: Option<Cache>,
     /// The cache folder, as it was asked for.
     cache_folder: Option<PathBuf>,
-    judges: Option<Judges>,
+    validators: Option<Validators>,
     replace: Replace,
     patience: Patience,
     /// The texts that are read before the packages: the manifest, and the files that declare
@@ -90,31 +91,42 @@ impl Work {
             observer,
             cache: open_cache(places, &path)?,
             cache_folder: places.cached.cache.clone(),
-            judges: None,
+            validators: None,
             path,
             replace: places.overwrite.replace(),
             patience: places.patience,
         })
     }
 
-    /// Opens the judges (validators) of the request's targets. Later runs let them check each
-    /// output.
-    pub fn judge(&mut self, request: &Request) -> Result<(), Failure> {
+    /// Lets the validators check the outputs of later runs, before these replace a bundle.
+    pub fn validate(&mut self, extent: Extent) {
         let cache = self.cache_folder.clone();
-        self.judges = Some(Judges::open(&self.manifest, request, &self.path, cache)?);
-        Ok(())
+        let asked = extent != Extent::Nothing;
+        self.validators = asked.then(|| Validators::new(extent, &self.path, cache));
     }
 
-    /// Lets the judges, if there are any, check the bundle on disk.
-    pub fn judge_bundle(&mut self) -> Result<Option<JudgedCount>, Failure> {
+    /// The summary of an earlier run, whose bundle is on disk. If validators are asked for, they
+    /// check it, unless they did so before.
+    pub fn validate_bundle(&mut self, trace: Trace) -> Result<Summary, Failure> {
         let (out, bar) = (self.out.clone(), Bar::new());
-        let (judges, inputs) = self.judges();
-        judges.map(|judges| judges.bundle(&out, inputs, &bar)).transpose()
+        let (validators, inputs) = self.validators();
+        let Some(validators) = validators else { return Ok(trace.summary) };
+        let record = validators.record(trace.bundle(), &trace.summary);
+        let known = inputs.cache.and_then(|cache| record.find(cache));
+        let validated = match known {
+            Some(known) => known,
+            None => {
+                let validated = validators.bundle(&out, inputs, &bar)?;
+                self.cache.iter().for_each(|cache| record.keep(cache, &validated));
+                validated
+            }
+        };
+        Ok(Summary { validated: Some(validated), ..trace.summary })
     }
 
-    fn judges(&mut self) -> (Option<&Judges>, Inputs<'_>) {
-        let Self { sources, packages, manifest, cache, judges, .. } = self;
-        (judges.as_ref(), Inputs { sources, packages, manifest, cache: cache.as_ref() })
+    fn validators(&mut self) -> (Option<&Validators>, Inputs<'_>) {
+        let Self { sources, packages, manifest, cache, validators, .. } = self;
+        (validators.as_ref(), Inputs { sources, packages, manifest, cache: cache.as_ref() })
     }
 
     /// Whether files are still as they were when they were read.
@@ -128,17 +140,12 @@ impl Work {
         declared && self.observer.is_current(&self.packages)
     }
 
-    /// The summary of an earlier run, if nothing changed since. Its warnings are printed again.
-    pub fn up_to_date(
-        &self,
-        request: &Request,
-        look: Look,
-        form: DiagnosticForm,
-    ) -> Option<Summary> {
-        let found = Trace::find(self.cache.as_ref()?, self.as_run(request), look)?;
-        let Trace { summary, told, .. } = found;
-        let _ = stderr().write_all(told.text(form.into()).as_bytes());
-        Some(Summary { up_to_date: true, judged: None, ..summary })
+    /// An earlier run, if nothing changed since. Its warnings are printed again.
+    pub fn up_to_date(&self, request: &Request, look: Look, form: DiagnosticForm) -> Option<Trace> {
+        let mut found = Trace::find(self.cache.as_ref()?, self.as_run(request), look)?;
+        let _ = stderr().write_all(found.told.text(form.into()).as_bytes());
+        (found.summary.up_to_date, found.summary.validated) = (true, None);
+        Some(found)
     }
 
     /// Generates, and writes the bundle or compares with it.
@@ -164,7 +171,13 @@ impl Work {
             told_failures(cache);
             let told = RunWarnings::new(&self.path, &self.sources, &warnings);
             let trace = Trace::new(&self.observer, &self.out, summary.clone(), told);
-            trace.into_iter().for_each(|trace| trace.keep(cache, self.as_run(request)));
+            if let Some(trace) = trace {
+                trace.keep(cache, self.as_run(request));
+                if let (Some(validators), Some(validated)) = (&self.validators, &summary.validated)
+                {
+                    validators.record(trace.bundle(), &summary).keep(cache, validated);
+                }
+            }
         }
         Ok(summary)
     }
@@ -195,13 +208,13 @@ impl Work {
         });
         let writer = writer.map_err(|error| write_failure(&self.out, error))?;
         let mut generated = self.generate(request, &writer, bar)?;
-        let (judges, inputs) = self.judges();
-        if let Some(judges) = judges {
+        let (validators, inputs) = self.validators();
+        if let Some(validators) = validators {
             let files = writer
                 .blob_files()
                 .map_err(|error: bundle::Error| Failure::environment(error.to_string()))?;
             let contents = || Ok(generated.contents.clone());
-            generated.summary.judged = Some(judges.files(files, &contents, inputs, bar)?);
+            generated.summary.validated = Some(validators.files(files, &contents, inputs, bar)?);
         }
         writer.finish(&generated.contents).map_err(|error| write_failure(&self.out, error))?;
         Ok(generated)
@@ -218,9 +231,10 @@ impl Work {
         let memory = MemorySink::default();
         let mut generated = self.generate(request, &memory, bar)?;
         memory.fill(&mut generated.contents);
-        let (judges, inputs) = self.judges();
-        if let Some(judges) = judges {
-            generated.summary.judged = Some(judges.contents(&generated.contents, inputs, bar)?);
+        let (validators, inputs) = self.validators();
+        if let Some(validators) = validators {
+            generated.summary.validated =
+                Some(validators.contents(&generated.contents, inputs, bar)?);
         }
         match check {
             true => compare_with_last(&generated.contents, &self.out)?,

@@ -22,7 +22,7 @@ use xtask::XtaskCommand;
 const COMMANDS: &[XtaskCommand] = &[
     (
         "gen",
-        "write the library's bundle to target/bundles/, once all its outputs are judged",
+        "write the library's bundle to target/bundles/, once each distinct line of its outputs is validated: [--validate lines|all|none]",
         |arguments| make::run("gen", arguments),
     ),
     ("test", "install what the tests need, then run every test", test::run),
@@ -42,7 +42,7 @@ const COMMANDS: &[XtaskCommand] = &[
         record::run,
     ),
     ("mutate", "put mistakes into the library and see whether its cases notice", mutate::run),
-    ("validate", "let the judges of all targets look at a bundle", |arguments| {
+    ("validate", "let the validators of all targets check every output of a bundle", |arguments| {
         make::run("validate", arguments)
     }),
     (

@@ -33,14 +33,16 @@ pub mod store;
 pub mod store;
 pub mod summary;
 mod trace;
+mod validation;
 
 pub use permutation::{Permutation, ShaderName, permutation};
 pub use shader::{CompiledShader, Root, entry_points};
 pub use shard::Shard;
 pub use sink::{Discard, MemorySink, Sink};
 pub use stamp::Look;
-pub use summary::{EntrySummary, JudgedCount, ProgramSummary, Summary, WholeSummary};
+pub use summary::{EntrySummary, ProgramSummary, Summary, WholeSummary};
 pub use trace::{Observer, RunWarnings, Trace, TracedRun};
+pub use validation::{TargetValidation, Validation};
 
 use std::collections::BTreeMap;
 use std::time::Instant;

@@ -31,6 +31,11 @@ pub struct BundleStamp {
 }
 
 impl BundleStamp {
+    /// The hash of what is in the bundle.
+    pub fn content(&self) -> &str {
+        &self.content
+    }
+
     /// The present stamp of a bundle; `None` where there is none.
     pub fn of(out: &Path) -> Option<Self> {
         if !out.is_dir() {

@@ -6,6 +6,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::EntryResult;
+use super::validation::Validation;
 use lamplight_bundle::{Hash, Language, Target};
 use lamplight_link::Reason;
 
@@ -22,23 +23,14 @@ pub struct Summary {
     /// once.
     #[serde(default)]
     pub whole: Vec<WholeSummary>,
-    /// How many outputs were judged, if any were.
+    /// What validators said of the outputs, if they were asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub judged: Option<JudgedCount>,
+    pub validated: Option<Validation>,
     /// Whether there was nothing to do, since neither the inputs nor the bundle changed since the
     /// last run.
     pub up_to_date: bool,
     /// Time of the whole run.
     pub seconds: f64,
-}
-
-/// How many outputs the judges of their targets accepted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct JudgedCount {
-    /// In this run.
-    pub now: usize,
-    /// In an earlier one.
-    pub before: usize,
 }
 
 /// One program.
@@ -169,9 +161,7 @@ impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.programs.iter().try_for_each(|program| write!(f, "{program}"))?;
         self.targets.iter().try_for_each(|target| write!(f, "{target}"))?;
-        if let Some(JudgedCount { now, before }) = self.judged {
-            writeln!(f, "{now} outputs judged, {before} known to pass")?;
-        }
+        self.validated.iter().try_for_each(|validated| write!(f, "{validated}"))?;
         if self.up_to_date {
             return writeln!(
                 f,

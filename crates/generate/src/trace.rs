@@ -132,6 +132,11 @@ impl Trace {
         Some(Self { reads: reads.collect(), output: BundleStamp::of(out)?, summary, told })
     }
 
+    /// A name for the content of the bundle that was written.
+    pub fn bundle(&self) -> &str {
+        self.output.content()
+    }
+
     /// Finds the trace of an equal run, if everything that it read is the same and the bundle is
     /// the one that it wrote. The look says whether blobs that seem unchanged are read.
     pub fn find(cache: &Cache, run: TracedRun<'_>, look: Look) -> Option<Self> {

@@ -5,10 +5,12 @@
 pub mod browser;
 pub mod metal;
 
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// A program and the Debian package that brings it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -38,10 +40,29 @@ impl Tool {
         format!("`{program}` is not installed\ninstall it with: apt-get install {package}")
     }
 
-    /// The version that it reports, in one line. Another version may judge differently.
+    /// The version that it reports, in one line. Another version may judge differently. Each program
+    /// is asked once.
     pub fn version(self) -> String {
-        let said = Command::new(self.program).arg("--version").stdin(Stdio::null()).output();
-        said.map_or(String::new(), |said| String::from_utf8_lossy(&said.stdout).replace('\n', " "))
+        static TOLD: Mutex<BTreeMap<&str, Arc<OnceLock<String>>>> = Mutex::new(BTreeMap::new());
+        let told = {
+            let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
+            told.entry(self.program).or_default().clone()
+        };
+        let ask = || {
+            let said = Command::new(self.program).arg("--version").stdin(Stdio::null()).output();
+            let words = |said: Output| String::from_utf8_lossy(&said.stdout).replace('\n', " ");
+            said.map_or(String::new(), words)
+        };
+        told.get_or_init(ask).clone()
+    }
+
+    /// Its name and the number of its version, for people.
+    pub fn described(self) -> String {
+        let version = self.version();
+        let mut words = version.split([' ', ',']).map(|word| word.trim_start_matches('v'));
+        let number = words
+            .find(|word| word.contains('.') && word.starts_with(|one: char| one.is_ascii_digit()));
+        number.map_or(self.program.to_owned(), |number| format!("{} {number}", self.program))
     }
 
     /// Runs it on bytes; returns what it wrote.

@@ -1,31 +1,40 @@
 //! Judges whether the outputs in a bundle are well formed, with the judge of each target.
 //!
 //! `files of a bundle -> outputs -> verdict -> blame (the author's places)`; the verdict skips
-//! outputs that are known to have passed before.
+//! outputs that are known to have passed before. An [`Extent`] says whether it takes all others, or
+//! only so many that each distinct line is validated once.
 //!
 //! Each file of `judges/` is a judge, and each target names one, so no target is without one.
 //! Programs are started for batches of outputs. If a batch is refused, its halves are judged, until
 //! the outputs at fault are found.
 
 mod blame;
+mod extent;
 mod known;
+mod lines;
 mod novel;
+mod record;
 mod tint;
+mod verdict;
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
 
 use rayon::prelude::*;
 
 pub use blame::{OutputOrigin, blame};
+pub use extent::Extent;
 pub use novel::{Novelty, SeenText};
+pub use record::BundleRecord;
 pub use tint::Tint;
+pub use verdict::{Verdict, verdict};
 
 use lamplight_bundle::{BlobFile, Error, Hash, Stage, Target};
 use lamplight_emit::{JudgeRules, targets};
 use lamplight_files::output::Scratch;
-use lamplight_generate::cache::Cache;
 use lamplight_tools::Tool;
 use lamplight_validate::on_large_stack;
 
@@ -39,6 +48,10 @@ pub struct JudgeEntry {
     pub lacks: fn(&Tint) -> Option<MissingTool>,
     /// What, beyond the versions of the programs, changes its verdicts.
     pub version: fn(&Tint) -> String,
+    /// The validators that it asks for some rules on this machine, each with its version.
+    pub validators: fn(&[&str], &Tint) -> Vec<String>,
+    /// Whether it says something although one of its tools is missing.
+    pub goes_on: bool,
     /// The work for a group of outputs.
     plan: JudgePlan,
 }
@@ -148,21 +161,15 @@ fn judge_of(target: Target) -> Option<(&'static JudgeEntry, JudgeRules)> {
     judges::find(judged.judge).map(|judge| (judge, judged))
 }
 
-/// What the judges of some targets need and this machine lacks, each once.
-pub fn missing(targets: &[Target], tint: &Tint) -> Vec<MissingTool> {
-    let one = |target: &Target| {
-        let (judge, _) = judge_of(*target)?;
-        let absent = judge.tools.iter().find(|tool| tool.path().is_none());
-        let absent = absent.map(|tool| MissingTool {
-            what: format!("`{}`", tool.program),
-            install: format!("apt-get install {}", tool.package),
-        });
-        absent.or_else(|| (judge.lacks)(tint))
-    };
-    let mut found: Vec<MissingTool> = targets.iter().filter_map(one).collect();
-    found.sort();
-    found.dedup();
-    found
+/// What the judge of a target needs and this machine lacks.
+pub fn missing(target: Target, tint: &Tint) -> Option<MissingTool> {
+    let (judge, _) = judge_of(target)?;
+    let absent = judge.tools.iter().find(|tool| tool.path().is_none());
+    let absent = absent.map(|tool| MissingTool {
+        what: format!("`{}`", tool.program),
+        install: format!("apt-get install {}", tool.package),
+    });
+    absent.or_else(|| (judge.lacks)(tint))
 }
 
 /// The versions of a target's judges. Outputs are judged again when they change.
@@ -170,57 +177,6 @@ fn judge_versions(target: Target, tint: &Tint) -> String {
     let Some((judge, judged)) = judge_of(target) else { return String::new() };
     let programs: String = judge.tools.iter().map(|tool| tool.version()).collect();
     format!("{} {:?} {programs} {}", judged.judge, judged.rules, (judge.version)(tint))
-}
-
-/// The result of judging outputs.
-#[derive(Debug, Default)]
-pub struct Verdict {
-    /// How many were judged now.
-    pub judged: usize,
-    /// How many passed before.
-    pub known: usize,
-    /// What was refused.
-    pub refusals: Vec<Refusal>,
-}
-
-/// Called with the number of judgements that are done and the number of all.
-pub type JudgeProgress<'a> = &'a (dyn Fn(usize, usize) + Sync);
-
-/// Judges the outputs that are not known to pass, on all cores. Those that pass are remembered in
-/// the cache by their content, and by the versions of their judges.
-///
-/// # Errors
-/// A message, if a judge cannot be run.
-pub fn verdict(
-    mut outputs: Vec<Output>,
-    cache: Option<&Cache>,
-    tint: &Tint,
-    progress: JudgeProgress<'_>,
-) -> Result<Verdict, String> {
-    outputs.sort();
-    outputs.dedup_by(|one, other| (&one.file, &one.target) == (&other.file, &other.target));
-    let mut verdict = Verdict::default();
-    let mut new: Vec<Output> = Vec::new();
-    let mut passed = Vec::new();
-    for alike in outputs.chunk_by(|one, other| one.target == other.target) {
-        let target = alike[0].target;
-        let mut known = known::KnownOutputs::load(cache, target, &judge_versions(target, tint));
-        let (old, fresh): (Vec<&Output>, Vec<&Output>) =
-            alike.iter().partition(|output| known.names.contains(&output.name()));
-        verdict.known += old.len();
-        known.names.extend(fresh.iter().map(|output| output.name()));
-        new.extend(fresh.into_iter().cloned());
-        passed.push(known);
-    }
-    verdict.judged = new.len();
-    verdict.refusals = judge(&new, Some(tint), progress)?;
-    for known in &mut passed {
-        verdict.refusals.iter().for_each(|refusal| {
-            known.names.remove(&refusal.output.name());
-        });
-        known.keep(cache);
-    }
-    Ok(verdict)
 }
 
 /// A piece of work for a judgement, and the number of outputs that it covers.
@@ -232,35 +188,57 @@ struct JudgeWork<'w> {
 /// Refusals, or why a judge could not be run.
 type JudgeResult = Result<Vec<Refusal>, String>;
 
+/// Called with the number of judgements that are done and the number of all.
+pub type JudgeProgress<'a> = &'a (dyn Fn(usize, usize) + Sync);
+
 /// Judges every output. Without Tint, WGSL is judged by naga alone.
 ///
 /// # Errors
 /// A message, if a judge cannot be run.
 pub fn judge(outputs: &[Output], tint: Option<&Tint>, progress: JudgeProgress<'_>) -> JudgeResult {
-    let mut sorted: Vec<&Output> = outputs.iter().collect();
+    let outputs: Vec<&Output> = outputs.iter().collect();
+    on_large_stack(|| Ok(judge_timed(&outputs, tint, progress)?.0))
+}
+
+/// Refusals, and the seconds that each target took, added over all cores.
+type TimedRefusals = (Vec<Refusal>, BTreeMap<Target, f64>);
+
+/// [`judge`] on the threads of the caller.
+fn judge_timed(
+    outputs: &[&Output],
+    tint: Option<&Tint>,
+    progress: JudgeProgress<'_>,
+) -> Result<TimedRefusals, String> {
+    let mut sorted = outputs.to_vec();
     sorted.sort();
     let scratch = Scratch::new(&std::env::temp_dir()).map_err(|error| error.to_string())?;
     let alike = |one: &&Output, other: &&Output| {
         (one.target, one.stage, &one.entry) == (other.target, other.stage, &other.entry)
     };
     let groups: Vec<&[&Output]> = sorted.chunk_by(alike).collect();
-    on_large_stack(|| {
-        let planned = groups.par_iter().map(|group| plan_group(group, tint, &scratch));
-        let works = planned.collect::<Result<Vec<Vec<JudgeWork<'_>>>, String>>()?;
-        let works: Vec<JudgeWork<'_>> = works.into_iter().flatten().collect();
-        let total = works.iter().map(|work| work.outputs).sum();
-        let done = AtomicUsize::new(0);
-        let found = works.par_iter().map(|work| {
-            let found = (work.run)();
-            progress(done.fetch_add(work.outputs, Ordering::Relaxed) + work.outputs, total);
-            found
-        });
-        let mut refusals: Vec<Refusal> = found.collect::<Result<Vec<_>, _>>()?.concat();
-        refusals.sort();
-        // One refusal for an output is enough, even if it breaks several rules.
-        refusals.dedup_by(|one, other| one.output == other.output);
-        Ok(refusals)
-    })
+    let planned = groups.par_iter().map(|group| {
+        let works = plan_group(group, tint, &scratch)?;
+        Ok(works.into_iter().map(|work| (group[0].target, work)).collect())
+    });
+    let works = planned.collect::<Result<Vec<Vec<(Target, JudgeWork<'_>)>>, String>>()?;
+    let works: Vec<(Target, JudgeWork<'_>)> = works.into_iter().flatten().collect();
+    let total = works.iter().map(|(_, work)| work.outputs).sum();
+    let done = AtomicUsize::new(0);
+    let found = works.par_iter().map(|(target, work)| {
+        let start = Instant::now();
+        let found = (work.run)()?;
+        progress(done.fetch_add(work.outputs, Ordering::Relaxed) + work.outputs, total);
+        Ok((*target, start.elapsed().as_secs_f64(), found))
+    });
+    let (mut refusals, mut seconds) = (Vec::new(), BTreeMap::new());
+    for (target, took, found) in found.collect::<Result<Vec<_>, String>>()? {
+        *seconds.entry(target).or_default() += took;
+        refusals.extend(found);
+    }
+    refusals.sort();
+    // One refusal for an output is enough, even if it breaks several rules.
+    refusals.dedup_by(|one, other| one.output == other.output);
+    Ok((refusals, seconds))
 }
 
 /// The work for outputs of one target, stage and name of the entry point.

@@ -70,7 +70,7 @@ impl SeenText {
 
 /// The line with 0 for the number of each generated name: digits at the end of a word, after `_` or
 /// `_e`. Names of types end otherwise: `vec3`, `float4x4`.
-fn without_numbers(line: &str) -> String {
+pub fn without_numbers(line: &str) -> String {
     let (mut to, mut done) = (String::with_capacity(line.len()), 0);
     for word in pieces(line).filter(|piece| piece.kind == LexemeKind::Word) {
         let stem = word.text.trim_end_matches(|last: char| last.is_ascii_digit());

@@ -1,10 +1,10 @@
-//! `cargo xtask gen`: writes the library's bundle, as `lamplight gen` does, once the judges of all
-//! targets accept it. `--unjudged` skips the judges, which take ten times as long as everything
-//! else.
+//! `cargo xtask gen`: writes the library's bundle, as `lamplight gen` does, once validators accept it.
+//! By default they see so many outputs that each distinct line of each target is in one of them.
+//! `--validate all` takes all outputs, and `--validate none` no output.
 
 use std::collections::BTreeSet;
-use std::io::{IsTerminal, Write, stderr};
 use std::path::PathBuf;
+use std::time::Instant;
 
 use lamplight::bundle::{self, BlobFile, Bundle, Contents, DirectoryWriter, blob_files};
 use lamplight::cache::{Cache, CacheFolder};
@@ -12,126 +12,204 @@ use lamplight::diagnostic::Diagnostics;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{
     Generated, Look, Observer, Progress, Request, RunWarnings, Summary, Tools, Trace, TracedRun,
-    generate,
+    Validation, generate,
 };
 use lamplight::permute::Manifest;
 use lamplight::project;
 use lamplight::resolve::Packages;
 use lamplight::source::SourceSet;
-use lamplight_validators::{OutputOrigin, blame};
+use lamplight_validators::{BundleRecord, Extent, OutputOrigin, Refusal, Tint, Verdict, blame};
 
-use crate::validate::{JudgedOutputs, judge};
+use crate::progress::show_progress;
+use crate::validate::{tint, tint_folder, validate};
 use xtask::process::root;
 use xtask::{CommandFailure, CommandResult};
+
+const USAGE: &str =
+    "usage: cargo xtask gen [--validate lines|all|none] (for other manifests: lamplight gen)";
 
 /// Where the library's bundle goes.
 pub fn bundle() -> PathBuf {
     root().join("target/bundles/lamplight")
 }
 
-/// Generates, judges what is new, writes the bundle and prints the summary. If an output is
-/// refused, the older bundle does not change.
-pub fn run(arguments: &[String]) -> CommandResult {
-    let is_judged = is_judged(arguments)?;
-    let start = std::time::Instant::now();
-    let path = root().join("shaderlib").join(project::MANIFEST);
-    let mut sources = SourceSet::default();
-    let input = |sources: &SourceSet, diagnostics: Diagnostics| {
-        CommandFailure::input(render(sources, &diagnostics, Form::Human))
-    };
-    let (manifest, packages) = project::declared(&path, &mut sources)
-        .map_err(|diagnostics| input(&sources, diagnostics))?;
-    let (declared, observer) = (sources.clone(), Observer::default());
-    let (packages, out, request) = (observer.observe(packages), bundle(), Request::default());
-    let folder = CacheFolder::new(root().join("target/lamplight-cache"))
-        .map_err(|foreign| CommandFailure::input(foreign.to_string()))?;
-    let cache = Cache::new(lamplight::BUILD, vec![Box::new(folder)]);
-    let as_run = || TracedRun {
-        manifest: &path,
-        declared: &declared,
-        request: &request,
-        packages: &packages,
-        out: &out,
-    };
-    if let Some(Trace { summary, told, .. }) = Trace::find(&cache, as_run(), Look::Cheap) {
-        eprint!("{}", told.text(Form::Human));
-        let judged = judged(is_judged, || blob_files(&out), &cache)?;
-        let summary =
-            Summary { up_to_date: true, seconds: start.elapsed().as_secs_f64(), ..summary };
-        let contents = || Bundle::open(&out).and_then(|bundle| bundle.contents());
-        refuse(&mut sources, &packages, &manifest, &judged, &contents)?;
-        return finish(&summary, &judged);
-    }
-    let writer = DirectoryWriter::create(&out).map_err(environment)?;
-    let tools =
-        Tools { sink: &writer, cache: Some(&cache), tool: lamplight::TOOL, progress: &show };
-    let generated = generate(&mut sources, &packages, &manifest, &request, &tools);
-    let Generated { contents, summary, warnings } =
-        generated.map_err(|diagnostics| input(&sources, diagnostics))?;
-    let judged = judged(is_judged, || writer.blob_files(), &cache)?;
-    refuse(&mut sources, &packages, &manifest, &judged, &|| Ok(contents.clone()))?;
-    writer.finish(&contents).map_err(environment)?;
-    eprint!("{}", render(&sources, &warnings, Form::Human));
-    let trace =
-        Trace::new(&observer, &out, summary.clone(), RunWarnings::new(&path, &sources, &warnings));
-    trace.into_iter().for_each(|trace| trace.keep(&cache, as_run()));
-    finish(&summary, &judged)
+/// What a run works with.
+struct Run {
+    start: Instant,
+    extent: Extent,
+    path: PathBuf,
+    out: PathBuf,
+    sources: SourceSet,
+    /// The texts that are read before the packages.
+    declared: SourceSet,
+    manifest: Manifest,
+    packages: Packages,
+    observer: Observer,
+    request: Request,
+    cache: Cache,
 }
 
-/// Whether the judges are to be asked.
-fn is_judged(arguments: &[String]) -> Result<bool, CommandFailure> {
-    match arguments {
-        [] => Ok(true),
-        [option] if option == "--unjudged" => Ok(false),
-        _ => {
-            let usage = "usage: cargo xtask gen [--unjudged] (for other manifests: lamplight gen)";
-            Err(CommandFailure::usage(usage))
+/// Generates, validates what is new, writes the bundle and prints the summary. If an output is
+/// refused, the older bundle does not change.
+pub fn run(arguments: &[String]) -> CommandResult {
+    let mut run = Run::open(wanted_extent(arguments)?)?;
+    let trace = Trace::find(&run.cache, run.traced(), Look::Cheap);
+    let summary = match trace {
+        Some(trace) => run.up_to_date(trace)?,
+        None => run.generate()?,
+    };
+    print!("{summary}");
+    if run.extent == Extent::Nothing {
+        println!("not validated");
+    }
+    println!("written to target/bundles/lamplight");
+    Ok(())
+}
+
+/// What the arguments say of the validators.
+fn wanted_extent(arguments: &[String]) -> Result<Extent, CommandFailure> {
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let name = match arguments.as_slice() {
+        [] => return Ok(Extent::Lines),
+        ["--unjudged"] => {
+            eprintln!("note: `--unjudged` is now called `--validate none`");
+            return Ok(Extent::Nothing);
+        }
+        ["--validate"] => return Ok(Extent::All),
+        ["--validate", name] => Some(*name),
+        [option] => option.strip_prefix("--validate="),
+        _ => None,
+    };
+    name.and_then(Extent::find).ok_or_else(|| CommandFailure::usage(USAGE))
+}
+
+impl Run {
+    fn open(extent: Extent) -> Result<Self, CommandFailure> {
+        let start = Instant::now();
+        let path = root().join("shaderlib").join(project::MANIFEST);
+        let mut sources = SourceSet::default();
+        let (manifest, packages) =
+            project::declared(&path, &mut sources).map_err(|errors| input(&sources, &errors))?;
+        let folder = CacheFolder::new(root().join("target/lamplight-cache"))
+            .map_err(|foreign| CommandFailure::input(foreign.to_string()))?;
+        let observer = Observer::default();
+        Ok(Self {
+            start,
+            extent,
+            path,
+            out: bundle(),
+            declared: sources.clone(),
+            sources,
+            manifest,
+            packages: observer.observe(packages),
+            observer,
+            request: Request::default(),
+            cache: Cache::new(lamplight::BUILD, vec![Box::new(folder)]),
+        })
+    }
+
+    fn traced(&self) -> TracedRun<'_> {
+        TracedRun {
+            manifest: &self.path,
+            declared: &self.declared,
+            request: &self.request,
+            packages: &self.packages,
+            out: &self.out,
+        }
+    }
+
+    /// The summary of an earlier run, whose bundle is validated if it was not before.
+    fn up_to_date(&mut self, trace: Trace) -> Result<Summary, CommandFailure> {
+        eprint!("{}", trace.told.text(Form::Human));
+        let validated = match self.record(&trace, &tint_folder()).find(&self.cache) {
+            Some(known) => Some(known),
+            None if self.extent == Extent::Nothing => None,
+            None => {
+                let (files, out) = (blob_files(&self.out).map_err(environment)?, self.out.clone());
+                let contents = || Bundle::open(&out).and_then(|bundle| bundle.contents());
+                let validated = self.validate(files, &contents)?;
+                self.keep(&trace, Some(&validated));
+                Some(validated)
+            }
+        };
+        let seconds = self.start.elapsed().as_secs_f64();
+        Ok(Summary { up_to_date: true, validated, seconds, ..trace.summary })
+    }
+
+    /// Generates and validates, and then writes the bundle.
+    fn generate(&mut self) -> Result<Summary, CommandFailure> {
+        let writer = DirectoryWriter::create(&self.out).map_err(environment)?;
+        let tools = Tools {
+            sink: &writer,
+            cache: Some(&self.cache),
+            tool: lamplight::TOOL,
+            progress: &|Progress { stage, done, total }| show_progress(&stage, done, total),
+        };
+        let generated =
+            generate(&mut self.sources, &self.packages, &self.manifest, &self.request, &tools);
+        let Generated { contents, mut summary, warnings } =
+            generated.map_err(|errors| input(&self.sources, &errors))?;
+        let validated = match self.extent {
+            Extent::Nothing => None,
+            Extent::Lines | Extent::All => {
+                let files = writer.blob_files().map_err(environment)?;
+                Some(self.validate(files, &|| Ok(contents.clone()))?)
+            }
+        };
+        writer.finish(&contents).map_err(environment)?;
+        eprint!("{}", render(&self.sources, &warnings, Form::Human));
+        let told = RunWarnings::new(&self.path, &self.sources, &warnings);
+        if let Some(trace) = Trace::new(&self.observer, &self.out, summary.clone(), told) {
+            trace.keep(&self.cache, self.traced());
+            self.keep(&trace, validated.as_ref());
+        }
+        (summary.validated, summary.seconds) = (validated, self.start.elapsed().as_secs_f64());
+        Ok(summary)
+    }
+
+    /// Fails if a validator refuses an output. The errors point to places in the author's sources.
+    fn validate(
+        &mut self,
+        files: BTreeSet<BlobFile>,
+        contents: &dyn Fn() -> Result<Contents, bundle::Error>,
+    ) -> Result<Validation, CommandFailure> {
+        let Verdict { validation, refusals } =
+            validate(files, self.extent, Some(&self.cache), &tint())?;
+        if refusals.is_empty() { Ok(validation) } else { Err(self.refused(contents, &refusals)) }
+    }
+
+    fn refused(
+        &mut self,
+        contents: &dyn Fn() -> Result<Contents, bundle::Error>,
+        refusals: &[Refusal],
+    ) -> CommandFailure {
+        let contents = match contents() {
+            Ok(contents) => contents,
+            Err(error) => return environment(error),
+        };
+        let (packages, manifest) = (&self.packages, &self.manifest);
+        let made = OutputOrigin { packages, manifest, contents: &contents };
+        let errors = blame(&mut self.sources, &made, refusals);
+        input(&self.sources, &errors)
+    }
+
+    fn record(&self, trace: &Trace, tint: &Tint) -> BundleRecord {
+        let targets: Vec<&str> =
+            trace.summary.targets.iter().map(|target| target.target.as_str()).collect();
+        BundleRecord::new(trace.bundle(), &targets, self.extent, tint)
+    }
+
+    fn keep(&self, trace: &Trace, validated: Option<&Validation>) {
+        if let Some(validated) = validated {
+            self.record(trace, &tint_folder()).keep(&self.cache, validated);
         }
     }
 }
 
-/// What the judges say about the files, if they are asked.
-fn judged(
-    is_judged: bool,
-    files: impl FnOnce() -> Result<BTreeSet<BlobFile>, bundle::Error>,
-    cache: &Cache,
-) -> Result<JudgedOutputs, CommandFailure> {
-    match is_judged {
-        true => judge(files().map_err(environment)?, Some(cache)),
-        false => Ok(JudgedOutputs::nothing()),
-    }
-}
-
-/// Fails if the judges refused an output. The errors point to places in the author's sources.
-fn refuse(
-    sources: &mut SourceSet,
-    packages: &Packages,
-    manifest: &Manifest,
-    judged: &JudgedOutputs,
-    contents: &dyn Fn() -> Result<Contents, bundle::Error>,
-) -> CommandResult {
-    if judged.refusals.is_empty() {
-        return Ok(());
-    }
-    let made = OutputOrigin { packages, manifest, contents: &contents().map_err(environment)? };
-    let refused = blame(sources, &made, &judged.refusals);
-    Err(CommandFailure::input(render(sources, &refused, Form::Human)))
-}
-
-fn finish(summary: &Summary, judged: &JudgedOutputs) -> CommandResult {
-    print!("{summary}");
-    println!("written to target/bundles/lamplight");
-    judged.complete()
+fn input(sources: &SourceSet, errors: &Diagnostics) -> CommandFailure {
+    CommandFailure::input(render(sources, errors, Form::Human))
 }
 
 fn environment(error: bundle::Error) -> CommandFailure {
     CommandFailure::environment(error.to_string())
-}
-
-fn show(progress: Progress) {
-    if stderr().is_terminal() {
-        let end = if progress.done == progress.total { "\n" } else { "" };
-        let _ =
-            write!(stderr(), "\r{}: {} of {}{end}", progress.stage, progress.done, progress.total);
-    }
 }

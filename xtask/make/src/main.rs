@@ -7,6 +7,7 @@ mod create;
 mod fuzz;
 mod generate;
 mod new;
+mod progress;
 mod validate;
 
 use std::process::ExitCode;
@@ -17,7 +18,7 @@ const COMMANDS: &[XtaskCommand] = &[
     ("gen", "write the library's bundle", generate::run),
     ("fuzz", "hostile inputs for every parser", fuzz::run),
     ("new", "write the files for a new entry", create::run),
-    ("validate", "let the judges look at a bundle", validate::run),
+    ("validate", "let the validators check a bundle", validate::run),
 ];
 
 fn main() -> ExitCode {

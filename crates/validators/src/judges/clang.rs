@@ -9,8 +9,15 @@ use lamplight_tools::metal::{Clang, judge_batch, shim_hash};
 use lamplight_tools::CLANG;
 
 /// The judge, for the table of all.
-pub const JUDGE: JudgeEntry =
-    JudgeEntry { name: "clang", tools: &[CLANG], lacks: |_| None, version: |_| shim_hash(), plan };
+pub const JUDGE: JudgeEntry = JudgeEntry {
+    name: "clang",
+    tools: &[CLANG],
+    lacks: |_| None,
+    version: |_| shim_hash(),
+    validators: |_, _| vec![CLANG.described()],
+    goes_on: false,
+    plan,
+};
 
 const BATCH: usize = 64;
 

@@ -19,7 +19,7 @@ use std::process::Output as Said;
 
 use crate::novel::novel_outputs;
 use crate::{
-    JudgeEntry, JudgeResult, JudgeWork, Output, OutputGroup, Refusal, divide_group,
+    JudgeEntry, JudgeResult, JudgeWork, Output, OutputGroup, Refusal, Tint, divide_group,
 };
 use lamplight_files::output::Scratch;
 use lamplight_tools::{GLSLANG, GLSLC, halve_refused, printed_words};
@@ -30,12 +30,20 @@ pub const JUDGE: JudgeEntry = JudgeEntry {
     tools: &[GLSLANG, GLSLC],
     lacks: |_| None,
     version: |_| String::new(),
+    validators,
+    goes_on: false,
     plan,
 };
 
 const BATCH: usize = 64;
 
 const NAME: &str = "glslangValidator";
+
+/// glslc compiles to SPIR-V.
+fn validators(rules: &[&str], _: &Tint) -> Vec<String> {
+    let compiles = rules.iter().any(|rule| ["vulkan", "hlsl"].contains(rule));
+    [GLSLANG.described()].into_iter().chain(compiles.then(|| GLSLC.described())).collect()
+}
 
 fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<JudgeWork<'w>>, String> {
     let Some(first) = group.outputs.first() else { return Ok(Vec::new()) };

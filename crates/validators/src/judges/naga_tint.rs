@@ -16,6 +16,9 @@ pub const JUDGE: JudgeEntry = JudgeEntry {
     tools: &[NODE],
     lacks: Tint::missing,
     version: |tint| format!("naga {} tint {}", env!("LAMPLIGHT_NAGA"), tint.version()),
+    validators,
+    // naga is a part of this program.
+    goes_on: true,
     plan,
 };
 
@@ -34,6 +37,13 @@ fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<JudgeWork<'w>>, String> {
         }));
     }
     Ok(works)
+}
+
+fn validators(_: &[&str], tint: &Tint) -> Vec<String> {
+    let naga = format!("naga {}", env!("LAMPLIGHT_NAGA"));
+    let is_tint_there = NODE.path().is_some() && tint.missing().is_none();
+    let tint = is_tint_there.then(|| format!("Tint {}", tint.version()));
+    [naga].into_iter().chain(tint).collect()
 }
 
 fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {

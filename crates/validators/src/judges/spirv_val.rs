@@ -12,6 +12,8 @@ pub const JUDGE: JudgeEntry = JudgeEntry {
     tools: &[SPIRV_VAL],
     lacks: |_| None,
     version: |_| String::new(),
+    validators: |_, _| vec![SPIRV_VAL.described()],
+    goes_on: false,
     plan,
 };
 
