@@ -255,7 +255,7 @@ fn difference_is_shown() -> Result<(), Failed> {
 }
 
 /// Every seventh output of each target is judged here, and each one with a new line. `cargo xtask
-/// gen` judges all.
+/// gen --validate all` takes all.
 const JUDGED: usize = 7;
 /// The fewest outputs of a target that must be judged.
 const LEAST_JUDGED: usize = 100;

@@ -117,6 +117,7 @@ impl Work {
             Some(known) => known,
             None => {
                 let validated = validators.bundle(&out, inputs, &bar)?;
+                bar.clear();
                 self.cache.iter().for_each(|cache| record.keep(cache, &validated));
                 validated
             }

@@ -29,7 +29,7 @@ pub fn refusals_are_placed() -> Outcome {
     for out in ["bundle", "one.lamplight"] {
         fs::write(package.path("one.wesl"), &sound)?;
         let arguments = ["gen", "--validate", "--no-cache", "-o", out];
-        expect(&run(&arguments)?, 0, &["4 outputs judged, 0 known to pass"])?;
+        expect(&run(&arguments)?, 0, &["4 outputs validated, 0 known to pass"])?;
         let before = Bundle::open(package.path(out))?.contents()?;
         fs::write(package.path("one.wesl"), &refused)?;
         let words = [

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use lamplight_bundle::{Hash, Stage, Target};
 use lamplight_generate::cache::hash_parts;
+use memchr::memmem;
 
 use crate::Output;
 use crate::novel::without_numbers;
@@ -16,8 +17,9 @@ pub struct SeenLines {
     pub hashes: BTreeSet<u64>,
     /// How many lines were new.
     pub new: usize,
-    /// The lines of one stage as they are. Most lines of a text also occur in other texts.
-    known: (Option<Stage>, HashSet<String>),
+    /// Hashes of the parts of all texts so far, with their stages. Most parts of a text also occur in
+    /// other texts, so few lines are looked at.
+    parts: HashSet<Hash>,
 }
 
 impl SeenLines {
@@ -28,22 +30,32 @@ impl SeenLines {
 
     /// Adds a text, and says whether it has a line that none before it had.
     fn add(&mut self, stage: Stage, text: &str) -> bool {
-        if self.known.0 != Some(stage) {
-            self.known = (Some(stage), HashSet::new());
-        }
         let before = self.new;
-        for line in text.lines().map(str::trim) {
-            if self.known.1.contains(line) {
+        for part in text_parts(text) {
+            if !self.parts.insert(hash_parts(&[stage.suffix(), part])) {
                 continue;
             }
-            self.known.1.insert(line.to_owned());
-            let [a, b, c, d, e, f, g, h, ..] =
-                hash_parts(&[stage.suffix(), &without_numbers(line)]);
-            let hash = u64::from_le_bytes([a, b, c, d, e, f, g, h]);
-            self.new += usize::from(self.hashes.insert(hash));
+            for line in part.lines().map(str::trim) {
+                let [a, b, c, d, e, f, g, h, ..] =
+                    hash_parts(&[stage.suffix(), &without_numbers(line)]);
+                let hash = u64::from_le_bytes([a, b, c, d, e, f, g, h]);
+                self.new += usize::from(self.hashes.insert(hash));
+            }
         }
         self.new > before
     }
+}
+
+/// A text, divided behind each function: behind the lines that consist of a closing brace.
+fn text_parts(text: &str) -> impl Iterator<Item = &str> {
+    const END: &[u8] = b"\n}\n";
+    let mut start = 0;
+    let ends = memmem::find_iter(text.as_bytes(), END).map(|at| at + END.len());
+    ends.chain([text.len()]).map(move |end| {
+        let part = &text[start..end];
+        start = end;
+        part
+    })
 }
 
 /// The texts that stand for outputs of SPIR-V, which have no lines: those of the same unit in a
