@@ -51,7 +51,8 @@ pub fn lines_of_few_permutations() -> Outcome {
         "error[output-refused]: glslangValidator refuses the output for `essl300`",
         "one.wesl:",
         "location = 40",
-        "last` of one fs_main (wesl)",
+        "last",
+        "of one fs_main (wesl)",
     ];
     expect(&package.run(&arguments)?, 1, &words)?;
     match fs::read(package.path("bundle/manifest.json"))? == before {
