@@ -298,7 +298,9 @@ fn missing_programs_are_told() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     for entry in targets::ALL {
         let install = install_command(entry.judged.judge)?;
-        let mut command = package.command(&["gen", "--validate", "--target", entry.target.name()]);
+        let target = entry.target.name();
+        let arguments = ["gen", "--validate", "--target", target, "-o", target];
+        let mut command = package.command(&arguments);
         let validated = "not all outputs are validated";
         expect(&command.env("PATH", nothing.path()).output()?, 4, &[install, validated])?;
     }
