@@ -1,6 +1,6 @@
 //! The layout of naga's types in slots, and in the bytes of buffers.
 
-use super::Error;
+use crate::error::Error;
 use naga::{ArraySize, Binding, Handle, Scalar, ScalarKind, Type, TypeInner, UniqueArena};
 
 /// The most slots of a program. The four lanes of a quad then take 64 MiB of `f64`.

@@ -1,12 +1,19 @@
-//! Runs the instructions that only read and write memory, for all lanes at once. Each lane gets
-//! the bits that [`crate::Machine`] would give it: the operations are the same functions.
+//! Runs instructions for all lanes at once: those that only read and write memory, functions of whole
+//! vectors and matrices, accesses to textures, and derivatives. Each lane gets the bits that
+//! [`crate::Machine`] would give it: the operations are the same functions.
+//!
+//! The memory of all lanes is [`Rows`]: a row of numbers for each slot, one number for each lane.
 
-use super::super::code::{Binary, Compare, Convert, Instruction, Operand, Ternary, Unary};
-use super::super::code::{Word1, Word2};
-use super::super::machine::{convert_slot, extract_bits, insert_bits, pack, word1, word2};
-use super::super::number::Number;
-use super::geometry::{geometry, matrix_product};
-use super::rows::{LANES, LaneRows, Row, each_lane, lanes_of};
+use crate::code::{
+    Binary, Compare, Convert, DerivativeDirection, Geometry, Instruction, Operand, Product,
+    Ternary, Unary, Word1, Word2,
+};
+use crate::machine;
+use crate::machine::{
+    Env, Slots, Watch, apply_access, convert_slot, coordinate_of, derivative_lanes, extract_bits,
+    gradient_of, insert_bits, pack, word1, word2,
+};
+use crate::number::Number;
 
 /// Runs one instruction.
 #[inline(always)]
@@ -65,7 +72,7 @@ fn moved(
     rows: &mut LaneRows<'_>,
     slot: u32,
     all: impl FnOnce(&mut LaneRows<'_>, u32),
-    one: impl Fn(&mut super::rows::LaneView<'_>, u32),
+    one: impl Fn(&mut LaneView<'_>, u32),
 ) {
     if let Some(word) = rows.common(slot) {
         return all(rows, word);
@@ -298,4 +305,362 @@ fn convert(rows: &mut LaneRows<'_>, op: Convert, n: u8, to: u32, a: Operand) {
         |OP| each1(rows, n, to, a, |x| convert_slot(OP, x, &mut false)),
         costly(rows, n, to, [a], |[x]| convert_slot(op, x, &mut false))
     );
+}
+
+/// How many lanes run together.
+pub const LANES: usize = 16;
+
+/// A slot of all lanes.
+pub type Row = [f32; LANES];
+
+/// A bit for each lane.
+pub type Mask = u32;
+
+/// All lanes.
+pub const ALL: Mask = (1 << LANES) - 1;
+
+/// A word for each lane: all bits set if the lane is in the mask, else 0.
+pub fn kept_lanes(mask: Mask) -> [u32; LANES] {
+    each_lane(|lane| 0u32.wrapping_sub(mask >> lane & 1))
+}
+
+/// The results of a function for each lane. It is a plain loop, which the compiler vectorizes.
+#[inline(always)]
+fn each_lane<T: Copy + Default>(f: impl Fn(usize) -> T) -> [T; LANES] {
+    let mut row = [T::default(); LANES];
+    for (lane, value) in row.iter_mut().enumerate() {
+        *value = f(lane);
+    }
+    row
+}
+
+/// The lanes of a mask.
+pub fn lanes_of(mask: Mask) -> impl Iterator<Item = usize> {
+    (0..LANES).filter(move |lane| mask >> lane & 1 != 0)
+}
+
+/// The memory, and the lanes that an instruction writes.
+pub struct LaneRows<'m> {
+    pub m: &'m mut [Row],
+    /// The active lanes. Writes leave the other lanes as they are, unless `whole` is set.
+    pub mask: Mask,
+    /// Set if no other lane has work left. Writes may then overwrite all lanes, which is faster.
+    pub whole: bool,
+    /// [`kept_lanes`] of the mask.
+    keep: &'m [u32; LANES],
+}
+
+impl<'m> LaneRows<'m> {
+    #[inline(always)]
+    pub fn new(m: &'m mut [Row], mask: Mask, whole: bool, keep: &'m [u32; LANES]) -> Self {
+        Self { m, mask, whole, keep }
+    }
+
+    #[inline(always)]
+    pub fn row(&self, slot: u32) -> Row {
+        self.m[slot as usize]
+    }
+
+    #[inline(always)]
+    pub fn words(&self, slot: u32) -> [u32; LANES] {
+        let row = &self.m[slot as usize];
+        each_lane(|lane| row[lane].to_bits())
+    }
+
+    #[inline(always)]
+    pub fn put(&mut self, slot: u32, row: Row) {
+        let to = &mut self.m[slot as usize];
+        if self.whole {
+            *to = row;
+        } else {
+            let (keep, old) = (self.keep, *to);
+            *to = each_lane(|lane| {
+                let (new, old) = (row[lane].to_bits(), old[lane].to_bits());
+                f32::from_bits(new & keep[lane] | old & !keep[lane])
+            });
+        }
+    }
+
+    #[inline(always)]
+    pub fn put_words(&mut self, slot: u32, words: [u32; LANES]) {
+        self.put(slot, each_lane(|lane| f32::from_bits(words[lane])));
+    }
+
+    /// The active lanes whose word in a slot is not 0.
+    #[inline(always)]
+    pub fn truth(&self, slot: u32) -> Mask {
+        if let Some(word) = self.common(slot) {
+            return if word == 0 { 0 } else { self.mask };
+        }
+        let words = self.words(slot);
+        let mut truth = 0;
+        for (lane, word) in words.iter().enumerate() {
+            truth |= u32::from(*word != 0) << lane;
+        }
+        truth & self.mask
+    }
+
+    /// The first active lane.
+    #[inline(always)]
+    pub fn first(&self) -> usize {
+        (self.mask.trailing_zeros() as usize).min(LANES - 1)
+    }
+
+    /// Whether all active lanes have the same bits in a row.
+    #[inline(always)]
+    pub fn is_same(&self, row: &Row) -> bool {
+        let first = row[self.first()].to_bits();
+        let mut other = 0;
+        for (value, keep) in row.iter().zip(self.keep) {
+            other |= (value.to_bits() ^ first) & keep;
+        }
+        other == 0
+    }
+
+    /// The word of a slot, if it is the same in all active lanes.
+    #[inline(always)]
+    pub fn common(&self, slot: u32) -> Option<u32> {
+        let row = &self.m[slot as usize];
+        self.is_same(row).then(|| row[self.first()].to_bits())
+    }
+
+    /// Copies slots; the ranges may overlap. If a range is not inside the memory, nothing is
+    /// copied, as for a single lane.
+    #[inline(always)]
+    pub fn copy(&mut self, to: u32, from: u32, n: u32) {
+        let (first, last) = (from as usize, from as usize + n as usize);
+        if last > self.m.len() || to as usize + n as usize > self.m.len() {
+            return;
+        }
+        if self.whole && n > 4 {
+            return self.m.copy_within(first..last, to as usize);
+        }
+        for i in 0..n {
+            let i = if to <= from { i } else { n - 1 - i };
+            self.put(to + i, self.row(from + i));
+        }
+    }
+
+    /// The memory of one lane.
+    pub fn lane(&mut self, lane: usize) -> LaneView<'_> {
+        LaneView { m: self.m, lane }
+    }
+}
+
+/// The memory of one lane.
+pub struct LaneView<'m> {
+    m: &'m mut [Row],
+    lane: usize,
+}
+
+impl LaneView<'_> {
+    /// Copies slots of this lane, as [`LaneRows::copy`].
+    pub fn copy(&mut self, to: u32, from: u32, n: u32) {
+        let (to, from, n) = (to as usize, from as usize, n as usize);
+        if from + n > self.m.len() || to + n > self.m.len() {
+            return;
+        }
+        let lane = self.lane;
+        let move_one = |i: usize, m: &mut [Row]| m[to + i][lane] = m[from + i][lane];
+        if to <= from {
+            (0..n).for_each(|i| move_one(i, self.m));
+        } else {
+            (0..n).rev().for_each(|i| move_one(i, self.m));
+        }
+    }
+}
+
+impl Slots<f32> for LaneView<'_> {
+    #[inline(always)]
+    fn get(&self, slot: u32) -> f32 {
+        self.m[slot as usize][self.lane]
+    }
+
+    #[inline(always)]
+    fn set(&mut self, slot: u32, value: f32) {
+        self.m[slot as usize][self.lane] = value;
+    }
+}
+
+/// A vector of up to four numbers, of all lanes.
+type LaneVector = [Row; 4];
+
+/// Runs one function on the slots `[to, a, b, c]`.
+fn geometry(rows: &mut LaneRows<'_>, op: Geometry, n: u32, [to, a, b, c]: [u32; 4]) {
+    let size = n as usize;
+    match op {
+        Geometry::Dot => rows.put(to, dot(&load(rows, a, n), &load(rows, b, n), size)),
+        Geometry::Cross => {
+            let (a, b) = (load(rows, a, 3), load(rows, b, 3));
+            let minor = |i: usize, j: usize| {
+                let (left, right) = (times(&a[i], &b[j]), times(&a[j], &b[i]));
+                zip(&left, &right, |x, y| x - y)
+            };
+            [minor(1, 2), minor(2, 0), minor(0, 1)].into_iter().zip(to..).for_each(
+                |(row, slot)| {
+                    rows.put(slot, row);
+                },
+            );
+        }
+        Geometry::Distance => {
+            let (a, b) = (load(rows, a, n), load(rows, b, n));
+            let between = std::array::from_fn(|i| zip(&a[i], &b[i], |x, y| x - y));
+            rows.put(to, length(&between, size));
+        }
+        Geometry::Length => rows.put(to, length(&load(rows, a, n), size)),
+        Geometry::Normalize => {
+            let vector = load(rows, a, n);
+            let length = length(&vector, size);
+            for (slot, row) in (to..to + n).zip(&vector) {
+                rows.put(slot, zip(row, &length, |x, y| x / y));
+            }
+        }
+        Geometry::Reflect => {
+            let (e1, e2) = (load(rows, a, n), load(rows, b, n));
+            let cosine = dot(&e2, &e1, size);
+            let twice = each_lane(|i| 2.0 * cosine[i]);
+            for (i, slot) in (0..size).zip(to..) {
+                let along = times(&e2[i], &twice);
+                rows.put(slot, zip(&e1[i], &along, |x, y| x - y));
+            }
+        }
+        _ => one_by_one(rows, op, n, [to, a, b, c]),
+    }
+}
+
+/// The functions that are seldom used, lane by lane.
+fn one_by_one(rows: &mut LaneRows<'_>, op: Geometry, n: u32, [to, a, b, c]: [u32; 4]) {
+    let (operands, results) = match op {
+        Geometry::Determinant => (vec![(a, n * n)], 1),
+        Geometry::Inverse => (vec![(a, n * n)], n * n),
+        Geometry::Modf | Geometry::Frexp => (vec![(a, n)], 2 * n),
+        Geometry::DotWord => (vec![(a, n), (b, n)], 1),
+        Geometry::Ldexp => (vec![(a, n), (b, n)], n),
+        Geometry::Refract => (vec![(a, n), (b, n), (c, 1)], n),
+        _ => (vec![(a, n), (b, n), (c, n)], n),
+    };
+    let after: usize = operands.iter().map(|(_, n)| *n as usize).sum();
+    let side = n as usize;
+    on_each_lane(rows, &operands, (to, results), |m| {
+        machine::geometry(m, op, side, [after, 0, side, 2 * side], &mut false);
+    });
+}
+
+#[inline(always)]
+fn load(rows: &LaneRows<'_>, from: u32, n: u32) -> LaneVector {
+    std::array::from_fn(|i| if (i as u32) < n { rows.row(from + i as u32) } else { [0.0; LANES] })
+}
+
+#[inline(always)]
+fn zip(a: &Row, b: &Row, f: impl Fn(f32, f32) -> f32) -> Row {
+    each_lane(|i| f(a[i], b[i]))
+}
+
+#[inline(always)]
+fn times(a: &Row, b: &Row) -> Row {
+    zip(a, b, |x, y| x * y)
+}
+
+/// The products are added in order, as for a single lane.
+#[inline(always)]
+fn dot(a: &LaneVector, b: &LaneVector, n: usize) -> Row {
+    let mut sum = times(&a[0], &b[0]);
+    for i in 1..n {
+        sum = zip(&sum, &times(&a[i], &b[i]), |x, y| x + y);
+    }
+    sum
+}
+
+#[inline(always)]
+fn length(vector: &LaneVector, n: usize) -> Row {
+    if n == 1 {
+        return each_lane(|i| vector[0][i].abs());
+    }
+    let square = dot(vector, vector, n);
+    each_lane(|i| square[i].sqrt())
+}
+
+/// Products of matrices and vectors, computed by columns of `b`.
+fn matrix_product(
+    rows: &mut LaneRows<'_>,
+    op: Product,
+    [inner, height, columns]: [u32; 3],
+    [to, a, b]: [u32; 3],
+) {
+    // The distance in slots between the elements of a row of `a`. A vector on the left of a matrix
+    // is a matrix of one row.
+    let stride = if op == Product::VectorMatrix { 1 } else { height };
+    for column in 0..columns {
+        let right = load(rows, b + column * inner, inner);
+        for row in 0..height {
+            let mut left = [[0.0; LANES]; 4];
+            for (k, part) in (0..inner).zip(&mut left) {
+                *part = rows.row(a + k * stride + row);
+            }
+            rows.put(to + column * height + row, dot(&left, &right, inner as usize));
+        }
+    }
+}
+
+/// Runs an access for each active lane, without the gradients of a quad. `None` if it fails.
+pub fn run_single(env: Env<'_>, index: u32, rows: &mut LaneRows<'_>, at: u32) -> Option<()> {
+    let access = env.program.access(index)?;
+    let mut watch = Watch::default();
+    for lane in lanes_of(rows.mask) {
+        apply_access(env, access, &mut rows.lane(lane), None, (at, &mut watch)).ok()?;
+    }
+    Some(())
+}
+
+/// Runs an access whose level of detail comes from the gradients within a quad, for the lanes of
+/// `mask`. `None` if it fails.
+pub fn run_quads(env: Env<'_>, index: u32, memory: &mut [Row], mask: Mask) -> Option<()> {
+    let access = env.program.access(index)?;
+    let mut watch = Watch::default();
+    let keep = kept_lanes(ALL);
+    let mut rows = LaneRows::new(memory, ALL, false, &keep);
+    for quad in 0..LANES / 4 {
+        let coordinates = std::array::from_fn(|place| {
+            let lane = 4 * quad + place;
+            (mask >> lane & 1 != 0).then(|| coordinate_of(access, &rows.lane(lane)))
+        });
+        for lane in lanes_of(mask & 0xf << (4 * quad)) {
+            let gradient = gradient_of(&coordinates, lane & 3);
+            apply_access(env, access, &mut rows.lane(lane), Some(gradient), (0, &mut watch))
+                .ok()?;
+        }
+    }
+    Some(())
+}
+
+/// Writes the derivative of a slot for the lanes of `mask`: the difference of two lanes of the
+/// quad, or 0 if one of these is not in `mask`.
+pub fn derivative(
+    memory: &mut [Row],
+    mask: Mask,
+    axis: DerivativeDirection,
+    coarse: bool,
+    (to, from): (u32, u32),
+) {
+    let values = memory[from as usize];
+    for lane in lanes_of(mask) {
+        let quad = lane & !3;
+        let along = |axis| {
+            let (low, high) = derivative_lanes(lane & 3, axis, coarse);
+            let (low, high) = (quad + low, quad + high);
+            let are_there = mask >> low & mask >> high & 1 != 0;
+            match are_there {
+                true => f32::binary(Binary::Subtract, values[high], values[low], &mut false),
+                false => 0.0,
+            }
+        };
+        memory[to as usize][lane] = match axis {
+            DerivativeDirection::Width => {
+                let [x, y] = [DerivativeDirection::X, DerivativeDirection::Y]
+                    .map(|axis| f32::unary(Unary::Abs, along(axis), &mut false));
+                f32::binary(Binary::Add, x, y, &mut false)
+            }
+            axis => along(axis),
+        };
+    }
 }

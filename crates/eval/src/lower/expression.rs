@@ -1,11 +1,14 @@
-//! Lowers expressions. Many of naga's expressions only select slots, and need no instruction.
+//! Lowers expressions, pointers, accesses to parts of values, and accesses to textures. Many of
+//! naga's expressions only select slots, and need no instruction.
 
-use super::{Loc, LoweredBody};
-use crate::code::{DerivativeDirection, Instruction, Operand, Slot};
+use crate::code::{Access, DerivativeDirection, Instruction, Lod, Operand, Slot, TextureOp};
 use crate::error::Error;
-use crate::program::InitialValue;
+use crate::layout::SlotKind;
+use crate::lower::{Loc, LoweredBody};
+use crate::program::{GlobalRole, InitialValue};
 use naga::{
-    DerivativeAxis, DerivativeControl, Expression, Handle, Literal, SwizzleComponent, TypeInner,
+    AddressSpace, DerivativeAxis, DerivativeControl, Expression, Handle, ImageClass, ImageQuery,
+    Literal, SampleLevel, SwizzleComponent, TypeInner,
 };
 
 impl LoweredBody<'_, '_> {
@@ -238,4 +241,239 @@ impl LoweredBody<'_, '_> {
 fn expression_name(expression: &Expression) -> String {
     let text = format!("{expression:?}");
     format!("the operation `{}`", text.split([' ', '(', '{']).next().unwrap_or("?"))
+}
+
+impl LoweredBody<'_, '_> {
+    pub(super) fn access_index(
+        &mut self,
+        base: Handle<Expression>,
+        index: u32,
+    ) -> Result<Loc, Error> {
+        let skip = self.build.layout.component(self.pointee(base), index)?;
+        Ok(match self.loc(base)? {
+            Loc::Value { operand, constant } => Loc::Value {
+                operand: Operand { slot: operand.slot + skip * operand.stride, ..operand },
+                constant,
+            },
+            Loc::Place(slot) => Loc::Place(slot + skip),
+            Loc::Through { slot, offset } => Loc::Through { slot, offset: offset + skip },
+        })
+    }
+
+    pub(super) fn access(
+        &mut self,
+        handle: Handle<Expression>,
+        base: Handle<Expression>,
+        index: Handle<Expression>,
+    ) -> Result<Loc, Error> {
+        let (size, count) = self.build.layout.element(self.pointee(base))?;
+        let index = self.operand(index)?.slot;
+        let loc = self.loc(base)?;
+        if let Loc::Value { .. } = loc {
+            let from = self.dense(base)?;
+            let (to, _) = self.fresh(handle)?;
+            self.emit(Instruction::Pick { to, from, index, size, count: count.unwrap_or(1) });
+            return Ok(Loc::dense(to, false));
+        }
+        let count = match count {
+            Some(count) => self.build.word(count)?,
+            None => self.runtime_count(base)?,
+        };
+        let (base, to) = (self.address(loc)?, self.build.alloc(1)?);
+        self.emit(Instruction::Index { to, base, index, size, count });
+        Ok(Loc::Through { slot: to, offset: 0 })
+    }
+
+    pub(super) fn load(
+        &mut self,
+        handle: Handle<Expression>,
+        pointer: Handle<Expression>,
+    ) -> Result<Loc, Error> {
+        let n = self.slots(handle)?;
+        let loc = self.loc(pointer)?;
+        // No statement can write to these address spaces, so no copy is needed.
+        if let (Loc::Place(slot), Some(AddressSpace::Uniform | AddressSpace::Immediate)) =
+            (loc, self.inner(pointer).pointer_space())
+        {
+            return Ok(Loc::dense(slot, false));
+        }
+        let to = self.build.alloc(n)?;
+        match loc {
+            Loc::Place(from) => self.emit(Instruction::Copy { to, from, n }),
+            Loc::Through { slot, offset } => {
+                self.emit(Instruction::Load { to, pointer: slot, offset, n })
+            }
+            Loc::Value { operand, .. } => {
+                self.emit(Instruction::Load { to, pointer: operand.slot, offset: 0, n })
+            }
+        }
+        Ok(Loc::dense(to, false))
+    }
+
+    pub(super) fn store(
+        &mut self,
+        pointer: Handle<Expression>,
+        value: Handle<Expression>,
+    ) -> Result<(), Error> {
+        let (operand, n) = (self.operand(value)?, self.slots(value)?);
+        match self.loc(pointer)? {
+            Loc::Place(to) if operand.stride == 0 => {
+                self.emit(Instruction::Fill { to, from: operand.slot, n })
+            }
+            Loc::Place(to) => self.emit(Instruction::Copy { to, from: operand.slot, n }),
+            Loc::Through { slot, offset } => {
+                let from = self.dense(value)?;
+                self.emit(Instruction::Store { pointer: slot, offset, from, n });
+            }
+            Loc::Value { operand, .. } => {
+                let from = self.dense(value)?;
+                self.emit(Instruction::Store { pointer: operand.slot, offset: 0, from, n });
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn array_length(&mut self, pointer: Handle<Expression>) -> Result<Loc, Error> {
+        Ok(Loc::dense(self.runtime_count(pointer)?, false))
+    }
+
+    /// The slot with the length of a buffer's runtime-sized array.
+    fn runtime_count(&mut self, pointer: Handle<Expression>) -> Result<Slot, Error> {
+        let variable = match self.expressions[pointer] {
+            Expression::GlobalVariable(variable) => variable,
+            Expression::AccessIndex { base, .. } => match self.expressions[base] {
+                Expression::GlobalVariable(variable) => variable,
+                _ => return Err(Error::unsupported("the length of this array")),
+            },
+            _ => return Err(Error::unsupported("the length of an array behind a parameter")),
+        };
+        let name = self.build.module.global_variables[variable].binding;
+        let binding = name.map(|binding| (binding.group, binding.binding));
+        match self
+            .build
+            .program
+            .globals
+            .iter()
+            .find(|global| global.binding == binding)
+            .map(|global| global.role)
+        {
+            Some(GlobalRole::Runtime { count, .. }) => Ok(count),
+            _ => Err(Error::unsupported("the length of this array")),
+        }
+    }
+
+    /// The type that a pointer points to, or the type of a value.
+    fn pointee(&self, handle: Handle<Expression>) -> &TypeInner {
+        match *self.inner(handle) {
+            TypeInner::Pointer { base, .. } => &self.build.module.types[base].inner,
+            ref inner => inner,
+        }
+    }
+}
+
+impl LoweredBody<'_, '_> {
+    pub(super) fn image(&mut self, handle: Handle<Expression>) -> Result<Loc, Error> {
+        let (to, n) = self.fresh(handle)?;
+        let words = self.kind(handle)? != SlotKind::Float;
+        let mut access = Access {
+            image: 0,
+            coordinate: 0,
+            dimensions: 0,
+            layer: None,
+            ask: TextureOp::Levels,
+            to,
+            n: n as u8,
+            words,
+            depth: false,
+        };
+        match self.expressions[handle] {
+            Expression::ImageSample {
+                image,
+                sampler,
+                gather,
+                coordinate,
+                array_index,
+                offset,
+                level,
+                depth_ref,
+                clamp_to_edge,
+            } => {
+                self.coordinates(&mut access, image, Some(coordinate), array_index)?;
+                let (sampler, offset, reference) =
+                    (self.operand(sampler)?.slot, self.maybe(offset)?, self.maybe(depth_ref)?);
+                let (level, gather) = (self.level(level)?, gather.map(|component| component as u8));
+                access.ask =
+                    TextureOp::Sample { sampler, gather, level, offset, reference, clamp_to_edge };
+            }
+            Expression::ImageLoad { image, coordinate, array_index, level, .. } => {
+                self.coordinates(&mut access, image, Some(coordinate), array_index)?;
+                access.ask = TextureOp::Load { level: self.maybe(level)? };
+            }
+            Expression::ImageQuery { image, query } => {
+                self.coordinates(&mut access, image, None, None)?;
+                access.ask = self.query(query)?;
+            }
+            _ => return Err(Error::unsupported("this access to a texture")),
+        }
+        let index = self.build.program.images.len() as u32;
+        self.build.program.images.push(access);
+        self.emit(Instruction::Image { access: index });
+        Ok(Loc::dense(to, false))
+    }
+
+    fn coordinates(
+        &mut self,
+        access: &mut Access,
+        image: Handle<Expression>,
+        coordinate: Option<Handle<Expression>>,
+        layer: Option<Handle<Expression>>,
+    ) -> Result<(), Error> {
+        let TypeInner::Image { class, .. } = *self.inner(image) else {
+            return Err(Error::unsupported("arrays of textures"));
+        };
+        if matches!(class, ImageClass::Storage { .. } | ImageClass::External) {
+            return Err(Error::unsupported("storage and external textures"));
+        }
+        access.depth = matches!(class, ImageClass::Depth { .. });
+        access.image = self.operand(image)?.slot;
+        if let Some(coordinate) = coordinate {
+            (access.coordinate, access.dimensions) =
+                (self.dense(coordinate)?, self.slots(coordinate)? as u8);
+        }
+        access.layer = self.maybe(layer)?;
+        Ok(())
+    }
+
+    fn maybe(&mut self, handle: Option<Handle<Expression>>) -> Result<Option<Slot>, Error> {
+        handle.map(|handle| self.dense(handle)).transpose()
+    }
+
+    fn level(&mut self, level: SampleLevel) -> Result<Lod, Error> {
+        Ok(match level {
+            SampleLevel::Auto => Lod::Auto,
+            SampleLevel::Zero => Lod::Zero,
+            // The level of a depth texture is an integer, which is converted to a float here.
+            SampleLevel::Exact(level) if self.kind(level)? != SlotKind::Float => {
+                Lod::Exact(self.float_of(level)?)
+            }
+            SampleLevel::Exact(level) => Lod::Exact(self.dense(level)?),
+            SampleLevel::Bias(bias) => Lod::Bias(self.dense(bias)?),
+            SampleLevel::Gradient { x, y } => Lod::Gradient(self.dense(x)?, self.dense(y)?),
+        })
+    }
+
+    fn float_of(&mut self, handle: Handle<Expression>) -> Result<Slot, Error> {
+        let (a, to) = (self.operand(handle)?, self.build.alloc(1)?);
+        self.emit(Instruction::Convert { op: crate::code::Convert::FloatFromS, n: 1, to, a });
+        Ok(to)
+    }
+
+    fn query(&mut self, query: ImageQuery) -> Result<TextureOp, Error> {
+        Ok(match query {
+            ImageQuery::Size { level } => TextureOp::Size { level: self.maybe(level)? },
+            ImageQuery::NumLevels => TextureOp::Levels,
+            ImageQuery::NumLayers => TextureOp::Layers,
+            ImageQuery::NumSamples => TextureOp::Samples,
+        })
+    }
 }

@@ -1,31 +1,28 @@
 //! The memory of a program, and calls of its functions.
+//!
+//! A lane is one thread of the shader: its memory, its position in the code, and the loop that runs
+//! it. A call has one lane. A quad has four, one for each fragment: each runs alone up to a
+//! derivative, where it waits for the others. A [`Watch`] collects what a run reports: coverage, and
+//! trouble with numbers.
+//!
+//! What instructions compute is in [`compute`], and what textures give in [`texture`].
 
 mod compute;
-mod filter;
-mod geometry;
-mod lane;
-mod packing;
-mod quad;
-mod quick;
 mod texture;
 mod watch;
-mod word;
 
-use super::error::{Error, Finding};
-use super::layout::{SlotKind, decode_buffer};
-use super::number::Number;
-use super::program::{Function, FunctionId, GlobalRole, InitialValue, Program};
-use super::resources::{BoundTextures, Resources};
-pub(crate) use compute::convert_slot;
-pub(crate) use geometry::geometry;
+use crate::code::{Binary, DerivativeDirection, Instruction, Unary};
+use crate::error::{Error, Finding, FindingKind};
+use crate::layout::{SlotKind, decode_buffer};
+use crate::number::Number;
+use crate::program::{Function, FunctionId, GlobalRole, InitialValue, Program};
+use crate::resources::{BoundTextures, Resources};
+use compute::compute;
+pub(crate) use compute::{convert_slot, extract_bits, geometry, insert_bits, pack, word1, word2};
 use lamplight_diagnostic::codes;
-pub(crate) use lane::{Env, jump_target};
-use lane::{Lane, LaneStop};
-pub(crate) use packing::pack;
-pub(crate) use quad::derivative_lanes;
+use lamplight_files::limits::EVAL_STEPS;
 pub(crate) use texture::{Slots, apply_access, coordinate_of, gradient_of};
 pub(crate) use watch::Watch;
-pub(crate) use word::{extract_bits, insert_bits, word1, word2};
 
 /// How many loop iterations one call may make unless set otherwise, all loops together.
 pub const LOOP_LIMIT: u64 = lamplight_files::limits::LOOP_TRIPS;
@@ -146,7 +143,7 @@ impl<'p, N: Number> Machine<'p, N> {
         element: u32,
     ) -> Result<(), Error> {
         let first = self.lane.memory.len();
-        if first + slots.len() > super::layout::MAX_SLOTS as usize {
+        if first + slots.len() > crate::layout::MAX_SLOTS as usize {
             return Err(Error::too_large("a buffer is too large for the CPU executor"));
         }
         // `least` is the size with one element, so `least - element` is the part before the array.
@@ -224,7 +221,7 @@ impl<'p, N: Number> Machine<'p, N> {
             loop_limit: self.loop_limit,
             quad: false,
         };
-        match lane::run_lane(env, &mut self.lane, &mut self.watch)? {
+        match run_lane(env, &mut self.lane, &mut self.watch)? {
             LaneStop::Done => Ok(()),
             LaneStop::Quad => Err(needs_quad(self.program, self.lane.pc)),
         }
@@ -342,7 +339,7 @@ fn needs_quad(program: &Program, pc: u32) -> Error {
 }
 
 /// A slot from the 32 bits of a scalar.
-pub(super) fn slot_from_word<N: Number>(kind: SlotKind, word: u32) -> N {
+fn slot_from_word<N: Number>(kind: SlotKind, word: u32) -> N {
     match kind {
         SlotKind::Float => N::from_f64(f64::from(f32::from_bits(word))),
         _ => N::from_word(word),
@@ -353,5 +350,296 @@ fn word_from_slot<N: Number>(kind: SlotKind, slot: N) -> u32 {
     match kind {
         SlotKind::Float => slot.bits(),
         _ => slot.word(),
+    }
+}
+
+/// The state of one thread.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Lane<N> {
+    pub memory: Vec<N>,
+    pub pc: u32,
+    /// The return addresses of the calls that the lane is in.
+    pub calls: Vec<u32>,
+    pub trips: u64,
+    /// Steps of this call so far. A copy counts by its length.
+    pub steps: u64,
+    pub killed: bool,
+}
+
+/// What all lanes share.
+#[derive(Clone, Copy)]
+pub struct Env<'e> {
+    pub program: &'e Program,
+    pub bound: &'e BoundTextures,
+    pub loop_limit: u64,
+    /// Whether the lane is part of a quad.
+    pub quad: bool,
+}
+
+impl Env<'_> {
+    /// The place of an instruction in the text that naga parsed.
+    pub fn span(&self, pc: u32) -> naga::Span {
+        self.program.spans.get(pc as usize).copied().unwrap_or_default()
+    }
+}
+
+/// Why a lane stopped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum LaneStop {
+    /// The function has returned.
+    Done,
+    /// The instruction at `pc` needs the other lanes of the quad.
+    Quad,
+}
+
+/// Runs until the function returns or needs its neighbours.
+fn run_lane<N: Number>(env: Env, lane: &mut Lane<N>, watch: &mut Watch) -> Result<LaneStop, Error> {
+    loop {
+        let at = lane.pc;
+        let instruction = lane.fetch(env)?;
+        match *instruction {
+            Instruction::Jump { to } => lane.pc = to,
+            Instruction::JumpUnless { condition, to } if lane.word(condition) == 0 => lane.pc = to,
+            Instruction::JumpUnless { .. } => {}
+            Instruction::Mark { point } => watch.hits[point as usize] += 1,
+            Instruction::Trip => {
+                lane.trips += 1;
+                if lane.trips > env.loop_limit {
+                    return Err(endless_loop(env, at));
+                }
+            }
+            Instruction::Switch { selector, table } => {
+                lane.pc = jump_target(env.program, table, lane.word(selector))
+            }
+            Instruction::Call { to } => {
+                lane.calls.push(lane.pc);
+                lane.pc = to;
+            }
+            Instruction::Return => match lane.calls.pop() {
+                Some(to) => lane.pc = to,
+                None => return Ok(LaneStop::Done),
+            },
+            Instruction::Kill => lane.killed = true,
+            Instruction::Derivative { .. } => {
+                lane.pc = at;
+                return Ok(LaneStop::Quad);
+            }
+            Instruction::Image { access }
+                if env.quad && env.program.images[access as usize].implicit() =>
+            {
+                lane.pc = at;
+                return Ok(LaneStop::Quad);
+            }
+            Instruction::Image { access } => {
+                let access = &env.program.images[access as usize];
+                texture::apply_access(env, access, &mut lane.memory[..], None, (at, watch))?
+            }
+            _ => lane.compute(instruction, at, watch),
+        }
+    }
+}
+
+impl<N: Number> Lane<N> {
+    /// Fetches the next instruction, advances `pc` and counts the steps.
+    #[inline(always)]
+    fn fetch<'e>(&mut self, env: Env<'e>) -> Result<&'e Instruction, Error> {
+        let at = self.pc;
+        let Some(instruction) = env.program.code.get(at as usize) else {
+            return Err(lost_place(env.program, at));
+        };
+        self.pc += 1;
+        self.steps += instruction.steps();
+        if self.steps > EVAL_STEPS {
+            return Err(too_many_steps(env, at));
+        }
+        Ok(instruction)
+    }
+
+    /// Runs an instruction that only reads and writes memory.
+    #[inline(always)]
+    fn compute(&mut self, instruction: &Instruction, at: u32, watch: &mut Watch) {
+        let mut doubt = false;
+        compute(instruction, &mut self.memory, &mut doubt);
+        if doubt {
+            watch.note(FindingKind::Ambiguous, at);
+        }
+        if watch.sanitize {
+            watch.inspect(instruction, &self.memory, at);
+        }
+    }
+
+    #[inline(always)]
+    pub fn word(&self, slot: u32) -> u32 {
+        self.memory[slot as usize].word()
+    }
+}
+
+pub fn jump_target(program: &Program, table: u32, selector: u32) -> u32 {
+    let table = &program.tables[table as usize];
+    table.cases.iter().find(|case| case.0 == selector).map_or(table.default, |case| case.1)
+}
+
+#[cold]
+fn endless_loop(env: Env, pc: u32) -> Error {
+    let message = format!("the loops of this call made more than {} trips", env.loop_limit);
+    Error::new(codes::EVAL_LOOP_LIMIT, message).or_at(env.span(pc))
+}
+
+#[cold]
+fn too_many_steps(env: Env, pc: u32) -> Error {
+    let message = format!("this call takes more than {EVAL_STEPS} steps");
+    Error::new(codes::EVAL_LOOP_LIMIT, message).or_at(env.span(pc))
+}
+
+#[cold]
+fn lost_place(program: &Program, pc: u32) -> Error {
+    Error::new(codes::EVAL_INTERNAL, format!("no instruction {pc} of {}", program.code.len()))
+}
+
+impl<N: Number> Machine<'_, N> {
+    /// Runs a function on the four fragments of a quad, in the order (0, 0), (1, 0), (0, 1),
+    /// (1, 1), and gives their flattened results.
+    ///
+    /// Where only some of the fragments reach a derivative, it is 0 for those whose neighbour is
+    /// missing, and it is reported.
+    ///
+    /// # Errors
+    /// Those of [`Self::call`].
+    pub fn quad(&mut self, id: FunctionId, arguments: [&[N]; 4]) -> Result<[Vec<N>; 4], Error> {
+        N::run_quad(self, id, arguments)
+    }
+
+    /// [`Self::quad`].
+    pub(crate) fn run_quad(
+        &mut self,
+        id: FunctionId,
+        arguments: [&[N]; 4],
+    ) -> Result<[Vec<N>; 4], Error> {
+        let program = self.program;
+        let mut lanes = std::mem::take(&mut self.quad);
+        lanes.resize_with(4, || self.lane.clone());
+        let mut entry = None;
+        for (lane, arguments) in lanes.iter_mut().zip(arguments) {
+            let function = callable_function(program, id, arguments.len())?;
+            self.check_buffers(function)?;
+            begin_lane(program, lane);
+            place_arguments(lane, function, arguments);
+            (lane.pc, lane.trips, lane.killed) = (function.entry, 0, false);
+            lane.steps = 0;
+            lane.calls.clear();
+            entry = Some(function);
+        }
+        let outcomes = self.together(&mut lanes);
+        self.killed = [0, 1, 2, 3].map(|index| lanes.get(index).is_some_and(|lane| lane.killed));
+        let results = std::array::from_fn(|index| {
+            entry
+                .zip(lanes.get(index))
+                .map_or(Vec::new(), |(function, lane)| result_slots(lane, function).to_vec())
+        });
+        self.quad = lanes;
+        outcomes.map(|()| results)
+    }
+
+    /// Whether each fragment of the last quad ran into `discard`.
+    pub fn quad_discarded(&self) -> [bool; 4] {
+        self.killed
+    }
+
+    fn together(&mut self, lanes: &mut [Lane<N>]) -> Result<(), Error> {
+        let env = Env {
+            program: self.program,
+            bound: &self.resolved,
+            loop_limit: self.loop_limit,
+            quad: true,
+        };
+        let mut running = [true; 4];
+        loop {
+            let mut waiting = Vec::new();
+            for index in (0..4).filter(|index| running[*index]).collect::<Vec<_>>() {
+                match run_lane(env, &mut lanes[index], &mut self.watch)? {
+                    LaneStop::Done => running[index] = false,
+                    LaneStop::Quad => waiting.push(index),
+                }
+            }
+            // The lanes that are furthest behind go first, since the others may wait at a place
+            // that those still reach.
+            let Some(&first) = waiting
+                .iter()
+                .min_by(|a, b| waiting_position(&lanes[**a]).cmp(waiting_position(&lanes[**b])))
+            else {
+                return Ok(());
+            };
+            let group: Vec<usize> = waiting
+                .into_iter()
+                .filter(|index| {
+                    waiting_position(&lanes[*index]).eq(waiting_position(&lanes[first]))
+                })
+                .collect();
+            let at = lanes[first].pc;
+            if group.len() < 4 {
+                self.watch.note(FindingKind::DivergentDerivative, at);
+            }
+            match self.program.code[at as usize] {
+                Instruction::Derivative { axis, coarse, n, to, a } => {
+                    for i in 0..u32::from(n) {
+                        derivative(lanes, &group, axis, coarse, (to + i) as usize, a.at(i));
+                    }
+                }
+                Instruction::Image { access } => {
+                    texture::run_quad(env, access, lanes, &group, &mut self.watch)?
+                }
+                _ => {}
+            }
+            group.iter().for_each(|index| lanes[*index].pc += 1);
+        }
+    }
+}
+
+/// Where a lane waits: the return addresses of its calls, then its instruction.
+fn waiting_position<N>(lane: &Lane<N>) -> impl Iterator<Item = u32> + '_ {
+    lane.calls.iter().copied().chain([lane.pc])
+}
+
+/// The two lanes whose difference is the derivative for a lane.
+pub fn derivative_lanes(
+    lane: usize,
+    axis: DerivativeDirection,
+    coarse: bool,
+) -> (usize, usize) {
+    let lane = if coarse { 0 } else { lane };
+    match axis {
+        DerivativeDirection::Y => (lane & 1, lane | 2),
+        _ => (lane & 2, lane | 1),
+    }
+}
+
+fn derivative<N: Number>(
+    lanes: &mut [Lane<N>],
+    group: &[usize],
+    axis: DerivativeDirection,
+    coarse: bool,
+    to: usize,
+    from: usize,
+) {
+    let values: [Option<N>; 4] =
+        std::array::from_fn(|index| group.contains(&index).then(|| lanes[index].memory[from]));
+    let mut doubt = false;
+    for &index in group {
+        let mut along = |axis| {
+            let (low, high) = derivative_lanes(index, axis, coarse);
+            match (values[low], values[high]) {
+                (Some(low), Some(high)) => N::binary(Binary::Subtract, high, low, &mut doubt),
+                _ => N::default(),
+            }
+        };
+        let result = match axis {
+            DerivativeDirection::Width => {
+                let [x, y] = [along(DerivativeDirection::X), along(DerivativeDirection::Y)]
+                    .map(|slope| N::unary(Unary::Abs, slope, &mut false));
+                N::binary(Binary::Add, x, y, &mut false)
+            }
+            axis => along(axis),
+        };
+        lanes[index].memory[to] = result;
     }
 }

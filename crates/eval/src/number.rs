@@ -1,13 +1,234 @@
-//! A value with a bound of its error: what the code means, and how far a conforming f32 computation
-//! may be from that.
+//! The numbers a program can run on.
 //!
-//! The value is computed in f64. The error is a first-order forward bound. It is the arguments'
-//! errors times the slope of the operation, plus the error that WGSL allows for the operation
-//! itself (section "Floating Point Accuracy" of its specification).
+//! `f64` is the value of the code as written. In `f32`, every operation is rounded to nearest.
+//! Transcendental functions are computed in f64, since libraries for f32 are less exact.
+//!
+//! [`Bounded`] is a value with a bound of its error: what the code means, and how far a conforming
+//! f32 computation may be from that. The value is computed in f64. The error is a first-order forward
+//! bound. It is the arguments' errors times the slope of the operation, plus the error that WGSL
+//! allows for the operation itself (section "Floating Point Accuracy" of its specification).
 
-use super::Number;
 use crate::code::{Binary, Compare, Ternary, Unary};
-use crate::{Error, FunctionId, Machine};
+use crate::error::Error;
+use crate::machine::Machine;
+use crate::program::FunctionId;
+
+/// Writes `run_call` and `run_quad` into the trait, and again into the implementations for which the
+/// machine is to be compiled with this crate. What only the trait has is compiled with each crate that
+/// calls it, which may be optimised less.
+macro_rules! machine_of_this_crate {
+    () => {
+        /// [`Machine::call`] without its result.
+        ///
+        /// # Errors
+        /// Those of [`Machine::call`].
+        fn run_call(
+            machine: &mut Machine<'_, Self>,
+            id: FunctionId,
+            arguments: &[Self],
+        ) -> Result<(), Error> {
+            machine.run_call(id, arguments)
+        }
+
+        /// [`Machine::quad`].
+        ///
+        /// # Errors
+        /// Those of [`Machine::quad`].
+        fn run_quad(
+            machine: &mut Machine<'_, Self>,
+            id: FunctionId,
+            arguments: [&[Self]; 4],
+        ) -> Result<[Vec<Self>; 4], Error> {
+            machine.run_quad(id, arguments)
+        }
+    };
+}
+
+/// A slot of the memory. It holds a number of the shader's type `f32`, or the 32-bit word of an
+/// integer or a boolean; the instructions know which.
+///
+/// `doubt` is set where the arguments of a discontinuous function are closer to a jump than their
+/// errors, so that the results on both sides of the jump are allowed.
+pub trait Number: Copy + Default + Send + Sync + std::fmt::Debug + 'static {
+    /// Whether numbers of this kind have errors.
+    const BOUNDED: bool;
+    /// A slot with a word. `from_word(0)` is the default.
+    fn from_word(word: u32) -> Self;
+    /// The word in the slot.
+    fn word(self) -> u32;
+    /// Nearest number, without error.
+    fn from_f64(value: f64) -> Self;
+    /// A number that is known to within `error`. Kinds without errors drop it.
+    fn with_error(value: f64, error: f64) -> Self;
+    /// The value.
+    fn value(self) -> f64;
+    /// The bound of the absolute error; 0 for kinds without errors.
+    fn error(self) -> f64;
+    /// Applies a function of one argument.
+    fn unary(op: Unary, x: Self, doubt: &mut bool) -> Self;
+    /// Applies a function of two arguments.
+    fn binary(op: Binary, a: Self, b: Self, doubt: &mut bool) -> Self;
+    /// Applies a function of three arguments.
+    fn ternary(op: Ternary, a: Self, b: Self, c: Self, doubt: &mut bool) -> Self;
+    /// Compares; false where a side is NaN, except for `!=`.
+    fn compare(op: Compare, a: Self, b: Self, doubt: &mut bool) -> bool;
+    /// The sum of products of two slices of the same length.
+    fn dot(a: &[Self], b: &[Self]) -> Self;
+
+    machine_of_this_crate!();
+
+    /// The bits as `f32`. All NaNs have the same bits.
+    fn bits(self) -> u32 {
+        let value = self.value() as f32;
+        if value.is_nan() { f32::NAN.to_bits() } else { value.to_bits() }
+    }
+
+    /// Truncated towards zero and clamped to the range of `i32`; 0 for NaN.
+    fn to_i32(self, doubt: &mut bool) -> i32 {
+        clamped(Self::unary(Unary::Trunc, self, doubt).value(), 2147483520.0) as i32
+    }
+
+    /// Truncated towards zero and clamped to the range of `u32`; 0 for NaN.
+    fn to_u32(self, doubt: &mut bool) -> u32 {
+        clamped(Self::unary(Unary::Trunc, self, doubt).value(), 4294967040.0) as u32
+    }
+}
+
+/// A number, or the largest one of `f32` that the integer type has. WGSL clamps to this, since the
+/// type's own largest number has no f32. NaN stays.
+fn clamped(value: f64, largest: f64) -> f64 {
+    if value > largest { largest } else { value }
+}
+
+macro_rules! native {
+    ($float:ident, $from_word:expr, $to_word:expr) => {
+        impl Number for $float {
+            const BOUNDED: bool = false;
+
+            #[inline(always)]
+            fn from_word(word: u32) -> Self {
+                $from_word(word)
+            }
+
+            #[inline(always)]
+            fn word(self) -> u32 {
+                $to_word(self)
+            }
+
+            #[inline(always)]
+            fn from_f64(value: f64) -> Self {
+                value as $float
+            }
+
+            #[inline(always)]
+            fn with_error(value: f64, _: f64) -> Self {
+                value as $float
+            }
+
+            #[inline(always)]
+            fn value(self) -> f64 {
+                f64::from(self)
+            }
+
+            #[inline(always)]
+            fn error(self) -> f64 {
+                0.0
+            }
+
+            #[inline]
+            fn unary(op: Unary, x: Self, _: &mut bool) -> Self {
+                match op {
+                    Unary::Negate => -x,
+                    Unary::Abs => x.abs(),
+                    Unary::Saturate => x.max(0.0).min(1.0),
+                    Unary::Cos => f64::from(x).cos() as $float,
+                    Unary::Cosh => f64::from(x).cosh() as $float,
+                    Unary::Sin => f64::from(x).sin() as $float,
+                    Unary::Sinh => f64::from(x).sinh() as $float,
+                    Unary::Tan => f64::from(x).tan() as $float,
+                    Unary::Tanh => f64::from(x).tanh() as $float,
+                    Unary::Acos => f64::from(x).acos() as $float,
+                    Unary::Asin => f64::from(x).asin() as $float,
+                    Unary::Atan => f64::from(x).atan() as $float,
+                    Unary::Asinh => f64::from(x).asinh() as $float,
+                    Unary::Acosh => f64::from(x).acosh() as $float,
+                    Unary::Atanh => f64::from(x).atanh() as $float,
+                    Unary::Radians => f64::from(x).to_radians() as $float,
+                    Unary::Degrees => f64::from(x).to_degrees() as $float,
+                    Unary::Ceil => x.ceil(),
+                    Unary::Floor => x.floor(),
+                    Unary::Round => x.round_ties_even(),
+                    Unary::Fract => x - x.floor(),
+                    Unary::Trunc => x.trunc(),
+                    Unary::Exp => f64::from(x).exp() as $float,
+                    Unary::Exp2 => f64::from(x).exp2() as $float,
+                    Unary::Log => f64::from(x).ln() as $float,
+                    Unary::Log2 => f64::from(x).log2() as $float,
+                    Unary::Sign => {
+                        [0.0, 1.0, -1.0][usize::from(x > 0.0) + 2 * usize::from(x < 0.0)]
+                    }
+                    Unary::Sqrt => x.sqrt(),
+                    Unary::InverseSqrt => (1.0 / f64::from(x).sqrt()) as $float,
+                    Unary::Quantize => half_to(half_from(f64::from(x))) as $float,
+                }
+            }
+
+            #[inline]
+            fn binary(op: Binary, a: Self, b: Self, _: &mut bool) -> Self {
+                match op {
+                    Binary::Add => a + b,
+                    Binary::Subtract => a - b,
+                    Binary::Multiply => a * b,
+                    Binary::Divide => a / b,
+                    Binary::Remainder => a % b,
+                    Binary::Min => a.min(b),
+                    Binary::Max => a.max(b),
+                    Binary::Atan2 => f64::from(a).atan2(f64::from(b)) as $float,
+                    // WGSL defines pow by the log2 of the base, which does not exist for a negative
+                    // base.
+                    Binary::Pow if a < 0.0 => $float::NAN,
+                    Binary::Pow => f64::from(a).powf(f64::from(b)) as $float,
+                    Binary::Step => [0.0, 1.0][usize::from(a <= b)],
+                }
+            }
+
+            #[inline]
+            fn ternary(op: Ternary, a: Self, b: Self, c: Self, _: &mut bool) -> Self {
+                match op {
+                    Ternary::Clamp => a.max(b).min(c),
+                    Ternary::Fma => a.mul_add(b, c),
+                    Ternary::Mix => a * (1.0 - c) + b * c,
+                    Ternary::SmoothStep => {
+                        let t = ((c - a) / (b - a)).max(0.0).min(1.0);
+                        t * t * (3.0 - 2.0 * t)
+                    }
+                }
+            }
+
+            #[inline]
+            fn compare(op: Compare, a: Self, b: Self, _: &mut bool) -> bool {
+                match op {
+                    Compare::Equal => a == b,
+                    Compare::NotEqual => a != b,
+                    Compare::Less => a < b,
+                    Compare::LessEqual => a <= b,
+                    Compare::Greater => a > b,
+                    Compare::GreaterEqual => a >= b,
+                }
+            }
+
+            #[inline]
+            fn dot(a: &[Self], b: &[Self]) -> Self {
+                a.iter().zip(b).map(|(a, b)| a * b).reduce(|sum, term| sum + term).unwrap_or(0.0)
+            }
+
+            machine_of_this_crate!();
+        }
+    };
+}
+
+native!(f64, |word: u32| f64::from_bits(u64::from(word)), |slot: f64| slot.to_bits() as u32);
+native!(f32, f32::from_bits, f32::to_bits);
 
 /// A value, and a bound of the absolute error that a computation of it in f32 may have.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -379,4 +600,33 @@ fn smooth_cubic(t: Bounded) -> Bounded {
         times(slope, t.error)
             + if t.error == 0.0 && value.fract() == 0.0 { 0.0 } else { 4.0 * ulp(value) },
     )
+}
+
+/// The bits of the nearest half, ties to even. A value that is too large becomes infinity.
+pub fn half_from(value: f64) -> u16 {
+    let sign = if value.is_sign_negative() { 0x8000 } else { 0 };
+    let size = value.abs();
+    if value.is_nan() {
+        return 0x7e00;
+    }
+    if size >= 65520.0 {
+        return sign | 0x7c00;
+    }
+    let exponent = (((size.to_bits() >> 52) as i32) - 1023).max(-14);
+    let mantissa = (size * f64::from(10 - exponent).exp2()).round_ties_even() as u16;
+    // The leading one of the mantissa's 11 bits is added to the exponent field.
+    sign | ((((exponent + 14) as u16) << 10) + mantissa)
+}
+
+/// The value of a half's bits.
+pub fn half_to(bits: u16) -> f64 {
+    let sign = if bits & 0x8000 == 0 { 1.0 } else { -1.0 };
+    let exponent = i32::from(bits >> 10 & 0x1f);
+    let mantissa = f64::from(bits & 0x3ff);
+    match exponent {
+        0 => sign * mantissa * (-24f64).exp2(),
+        31 if mantissa == 0.0 => sign * f64::INFINITY,
+        31 => f64::NAN,
+        _ => sign * (1024.0 + mantissa) * f64::from(exponent - 25).exp2(),
+    }
 }
