@@ -4,13 +4,12 @@
 
 mod directive;
 mod lexer;
-mod symbols;
 
 use std::ops::Range;
 use std::sync::Arc;
 
+pub use lexer::{Symbol, Symbols, known};
 pub use lexer::{Token, TokenKind, single_token, tokenize};
-pub use symbols::{Symbol, Symbols, known};
 
 use lamplight_diagnostic::source::{LIMITS, SourceId, SourceSet, Span};
 use lamplight_diagnostic::{Diagnostic, codes};

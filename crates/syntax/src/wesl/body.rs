@@ -1,21 +1,21 @@
 //! Marks in each item what the composer must look at: conditional nodes, and uses of globals.
+//!
+//! Statements are scanned for where each ends, what it declares, and how long that is in scope. A
+//! scope holds the local names while a function is scanned. Braces may stand under a condition. The
+//! specification flattens them: where the condition holds, their content takes the place of the whole
+//! block, without the braces and the condition.
 
-use std::collections::HashMap;
-use std::sync::Arc;
-
-use super::block;
-use super::condition::{self, Chain};
-use super::cursor::Tokens;
-use super::import::read_origin;
-use super::item::{ItemPlace, after_template};
-use super::module::{
-    ConditionId, Event, ItemKind, LocalUse, Module, Origin, Path, PathParts, UsedName,
+use crate::wesl::condition::{Attributes, Chain};
+use crate::wesl::item::{ItemPlace, after_template, read_origin};
+use crate::wesl::module::{
+    ConditionId, Event, Guard, ItemKind, LocalUse, Module, Origin, Path, PathParts, UsedName,
 };
-use super::name::{Name, Names};
-use super::scope::{IdentifierMeaning, Scopes};
-use super::token::{Token, TokenKind};
-use super::trivia;
-use lamplight_diagnostic::Diagnostic;
+use crate::wesl::token::{Name, Names, Token, TokenKind, Tokens};
+use crate::wesl::{condition, item};
+use lamplight_diagnostic::{Diagnostic, codes};
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Attributes whose arguments are expressions. Words in the arguments of any other attribute name
 /// nothing.
@@ -69,15 +69,15 @@ fn sorted_names(names: &mut Vec<Name>) -> Vec<Name> {
 
 /// Scans one item at a time. Every method takes the index of the first token and returns the one
 /// after the last. Recursion is as deep as brackets nest.
-pub(super) struct BodyScanner<'a, 'b> {
-    pub(super) module: &'a mut Module,
-    pub(super) tokens: Tokens<'b>,
-    pub(super) scopes: Scopes,
+struct BodyScanner<'a, 'b> {
+    module: &'a mut Module,
+    tokens: Tokens<'b>,
+    scopes: Scopes,
     /// By name: whether it is declared in the module's scope.
     global: Vec<bool>,
     named: HashMap<Name, u32>,
     paths: HashMap<(Origin, Vec<Name>), u32>,
-    pub(super) events: Vec<Event>,
+    events: Vec<Event>,
     locals: Vec<Name>,
     free: Vec<Name>,
     traced: bool,
@@ -104,7 +104,7 @@ impl BodyScanner<'_, '_> {
 
     /// Skips the `<storage, read>` of a `var`. Compilers treat these words as predeclared, whatever
     /// the module declares by their names.
-    pub(super) fn var_template(&mut self, at: usize) -> usize {
+    fn var_template(&mut self, at: usize) -> usize {
         let end = after_template(self.tokens, at);
         self.free.extend((at..end).filter_map(|at| self.tokens.word(at)));
         end
@@ -173,12 +173,12 @@ impl BodyScanner<'_, '_> {
     }
 
     /// The `{` that starts a body after `from`.
-    pub(super) fn brace(&self, from: usize, limit: usize) -> Result<usize, Diagnostic> {
+    fn brace(&self, from: usize, limit: usize) -> Result<usize, Diagnostic> {
         self.tokens.find(from, limit, b'{').ok_or_else(|| self.tokens.expected(limit, "`{`"))
     }
 
     /// Declares a parameter or a local, whose name is at a token.
-    pub(super) fn declare(
+    fn declare(
         &mut self,
         at: usize,
         condition: Option<ConditionId>,
@@ -199,17 +199,17 @@ impl BodyScanner<'_, '_> {
     }
 
     /// Begins a conditional node. What this returns is given to `close_node`.
-    pub(super) fn open_node(&mut self, condition: Option<ConditionId>) -> Option<usize> {
+    fn open_node(&mut self, condition: Option<ConditionId>) -> Option<usize> {
         let condition = condition?;
         self.events.push(Event::Node { condition, start: 0, end: 0, next: 0 });
         Some(self.events.len() - 1)
     }
 
     /// Ends a node, which has the tokens `start..end`.
-    pub(super) fn close_node(&mut self, node: Option<usize>, start: usize, end: usize) {
+    fn close_node(&mut self, node: Option<usize>, start: usize, end: usize) {
         let Some(index) = node else { return };
         let before = self.tokens.tokens[..start].last().map_or(0, |token| token.end);
-        let range = trivia::removed_lines(
+        let range = item::removed_lines(
             self.tokens.text,
             before,
             self.tokens.range(start, end),
@@ -223,7 +223,7 @@ impl BodyScanner<'_, '_> {
 
     /// Marks the attributes in `at..end`: cuts translate-time attributes, and looks into
     /// expressions.
-    pub(super) fn attributes(&mut self, mut at: usize, end: usize) -> Result<(), Diagnostic> {
+    fn attributes(&mut self, mut at: usize, end: usize) -> Result<(), Diagnostic> {
         while at < end {
             let arguments = self.tokens.is(at + 2, b'(').then_some(at + 2);
             let after = arguments.map_or(at + 2, |open| self.tokens.partner(open) + 1);
@@ -231,7 +231,7 @@ impl BodyScanner<'_, '_> {
                 let bytes = self.tokens.range(at, after);
                 self.events.push(Event::Cut {
                     start: bytes.start,
-                    end: trivia::skip_blank(self.tokens.text, bytes.end),
+                    end: item::skip_blank(self.tokens.text, bytes.end),
                 });
             } else if let Some(open) =
                 arguments.filter(|_| EXPRESSION_ATTRIBUTES.contains(&self.tokens.text(at + 1)))
@@ -244,7 +244,7 @@ impl BodyScanner<'_, '_> {
     }
 
     /// Marks the globals that the expression or type in `at..end` uses.
-    pub(super) fn uses(&mut self, mut at: usize, end: usize) -> Result<(), Diagnostic> {
+    fn uses(&mut self, mut at: usize, end: usize) -> Result<(), Diagnostic> {
         while at < end {
             at = match self.tokens.kind(at) {
                 Some(TokenKind::Word(name)) => self.word(at, name)?,
@@ -289,7 +289,7 @@ impl BodyScanner<'_, '_> {
 
     fn name(&mut self, at: usize, name: Name) {
         if self.scopes.is_behind_block(name) {
-            self.module.warnings.push(block::used_behind(self.tokens, at));
+            self.module.warnings.push(used_behind(self.tokens, at));
         }
         if self.traced {
             self.trace(at, name);
@@ -339,4 +339,364 @@ impl BodyScanner<'_, '_> {
         self.events.push(Event::Use { reference, guard: None, start: range.start, end: range.end });
         Ok(end)
     }
+}
+
+impl BodyScanner<'_, '_> {
+    /// The block whose `{` is at `open`.
+    fn block(&mut self, open: usize) -> Result<(), Diagnostic> {
+        let close = self.tokens.partner(open);
+        let scope = self.scopes.enter();
+        let mut chain = Chain::default();
+        let mut at = open + 1;
+        while at < close {
+            at = self.node(at, close, &mut chain)?;
+        }
+        self.scopes.leave(scope);
+        Ok(())
+    }
+
+    /// A statement with its attributes.
+    fn node(&mut self, at: usize, limit: usize, chain: &mut Chain) -> Result<usize, Diagnostic> {
+        let attributes = condition::read_attributes(self.module, self.tokens, at, chain);
+        let node = self.open_node(attributes.condition.filter(|_| attributes.conditional));
+        let end = if node.is_some() && self.tokens.is(attributes.end, b'{') {
+            self.flat_block(at, attributes)?
+        } else {
+            self.attributes(at, attributes.end)?;
+            self.statement(attributes.end, limit, attributes.condition)?
+        };
+        self.close_node(node, at, end);
+        Ok(end)
+    }
+
+    /// Statements in braces under a condition, which are not a scope of their own.
+    fn flat_block(&mut self, start: usize, attributes: Attributes) -> Result<usize, Diagnostic> {
+        let open = attributes.end;
+        check_attributes(self.tokens, start, attributes)?;
+        let head = removed_head(self.tokens, start, open);
+        self.events.push(Event::Cut { start: head.start, end: head.end });
+        let (close, mark) = (self.tokens.partner(open), self.scopes.enter());
+        let mut chain = Chain::within(attributes.condition);
+        let mut at = open + 1;
+        while at < close {
+            at = self.node(at, close, &mut chain)?;
+        }
+        self.scopes.end_block(mark);
+        let tail = removed_tail(self.tokens, close);
+        self.events.push(Event::Cut { start: tail.start.max(head.end), end: tail.end });
+        Ok(close + 1)
+    }
+
+    fn statement(
+        &mut self,
+        at: usize,
+        limit: usize,
+        condition: Option<ConditionId>,
+    ) -> Result<usize, Diagnostic> {
+        if at >= limit {
+            return Err(self.tokens.expected(at, "a statement"));
+        }
+        match self.tokens.word(at) {
+            Some(Name::IF) => self.if_chain(at, limit),
+            Some(Name::SWITCH) => self.switch(at, limit),
+            Some(Name::FOR) => self.for_loop(at, limit),
+            Some(Name::LOOP | Name::WHILE | Name::CONTINUING) => self.headed_block(at + 1, limit),
+            Some(Name::LET | Name::CONST | Name::VAR) => self.local(at, limit, condition),
+            Some(Name::ELSE) => Err(self.misplaced_else(at)),
+            _ if self.tokens.is(at, b'{') => self.headed_block(at, limit),
+            _ => {
+                let end = self.semicolon(at, limit)?;
+                self.uses(at, end)?;
+                Ok(end + 1)
+            }
+        }
+    }
+
+    fn misplaced_else(&self, at: usize) -> Diagnostic {
+        let conditional = at > 0 && !self.tokens.is(at - 1, b'}');
+        match conditional {
+            true => condition::illegal_attribute(
+                self.tokens,
+                at,
+                "an `else` clause cannot be conditional",
+                "belongs to the `if` before it",
+            )
+            .note("help: make the whole `if` statement conditional"),
+            false => self.tokens.expected(at, "a statement"),
+        }
+    }
+
+    /// An expression or nothing, and then a block.
+    fn headed_block(&mut self, at: usize, limit: usize) -> Result<usize, Diagnostic> {
+        let open = self.brace(at, limit)?;
+        self.uses(at, open)?;
+        self.block(open)?;
+        Ok(self.tokens.partner(open) + 1)
+    }
+
+    fn if_chain(&mut self, at: usize, limit: usize) -> Result<usize, Diagnostic> {
+        let mut end = self.headed_block(at + 1, limit)?;
+        while self.tokens.is_word(end, Name::ELSE) {
+            let head = if self.tokens.is_word(end + 1, Name::IF) { end + 2 } else { end + 1 };
+            end = self.headed_block(head, limit)?;
+        }
+        Ok(end)
+    }
+
+    fn switch(&mut self, at: usize, limit: usize) -> Result<usize, Diagnostic> {
+        let open = self.brace(at, limit)?;
+        self.uses(at + 1, open)?;
+        let close = self.tokens.partner(open);
+        let mut chain = Chain::default();
+        let mut clause = open + 1;
+        while clause < close {
+            let attributes =
+                condition::read_attributes(self.module, self.tokens, clause, &mut chain);
+            let node = self.open_node(attributes.condition);
+            self.attributes(clause, attributes.end)?;
+            if !matches!(self.tokens.word(attributes.end), Some(Name::CASE | Name::DEFAULT)) {
+                return Err(self.tokens.expected(attributes.end, "`case` or `default`"));
+            }
+            let end = self.headed_block(attributes.end + 1, close)?;
+            self.close_node(node, clause, end);
+            clause = end;
+        }
+        Ok(close + 1)
+    }
+
+    /// What the header of a `for` declares is in scope in the header and the body.
+    fn for_loop(&mut self, at: usize, limit: usize) -> Result<usize, Diagnostic> {
+        let open = self.tokens.expect(at + 1, b'(', "`(`")? - 1;
+        let close = self.tokens.partner(open);
+        let scope = self.scopes.enter();
+        let first = open + 1;
+        let rest = match self.tokens.word(first) {
+            Some(Name::LET | Name::CONST | Name::VAR) => self.local(first, close, None)?,
+            _ => first,
+        };
+        self.uses(rest, close)?;
+        let end = self.headed_block(close + 1, limit)?;
+        self.scopes.leave(scope);
+        Ok(end)
+    }
+
+    /// `let`, `const` or `var`: in scope after its semicolon.
+    fn local(
+        &mut self,
+        at: usize,
+        limit: usize,
+        condition: Option<ConditionId>,
+    ) -> Result<usize, Diagnostic> {
+        let name_at = self.var_template(at + 1);
+        self.tokens.identifier(name_at, "a name")?;
+        let end = self.semicolon(name_at, limit)?;
+        self.uses(name_at + 1, end)?;
+        self.declare(name_at, condition)?;
+        Ok(end + 1)
+    }
+
+    /// The index of the semicolon that ends the statement at `at`.
+    fn semicolon(&self, at: usize, limit: usize) -> Result<usize, Diagnostic> {
+        let mut end = at;
+        while end < limit && !self.tokens.is(end, b'{') {
+            if self.tokens.is(end, b';') {
+                return Ok(end);
+            }
+            end = self.tokens.partner(end).max(end) + 1;
+        }
+        Err(self.tokens.expected(end.min(limit), "`;`"))
+    }
+}
+
+/// What an identifier may mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum IdentifierMeaning {
+    /// A local, whatever the settings.
+    Local,
+    /// Something global, unless a guard in the chain holds.
+    Global(Option<u32>),
+}
+
+/// The declarations in scope. Looking a name up takes constant time.
+#[derive(Debug, Default)]
+struct Scopes {
+    declarations: Vec<ScopedName>,
+    /// By name: one more than the index of its innermost declaration.
+    innermost: Vec<u32>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct ScopedName {
+    name: Name,
+    meaning: IdentifierMeaning,
+    /// The value in `innermost` before this declaration.
+    outer: u32,
+    /// Whether it was declared in the braces of a condition that have ended. Its first use gets a
+    /// warning.
+    behind_block: bool,
+    /// First byte of the name.
+    place: u32,
+}
+
+impl Scopes {
+    /// No declarations. Names are below `names`.
+    pub fn new(names: usize) -> Self {
+        Self { declarations: Vec::new(), innermost: vec![0; names] }
+    }
+
+    /// Begins a scope. Calling `leave` with the returned mark ends it and removes its declarations.
+    pub fn enter(&self) -> usize {
+        self.declarations.len()
+    }
+
+    pub fn leave(&mut self, mark: usize) {
+        while self.declarations.len() > mark {
+            if let Some(declaration) = self.declarations.pop() {
+                self.innermost[declaration.name.0 as usize] = declaration.outer;
+            }
+        }
+    }
+
+    pub fn declare(
+        &mut self,
+        module: &mut Module,
+        (name, place): (Name, u32),
+        condition: Option<ConditionId>,
+    ) {
+        let meaning = match (condition, self.meaning(name)) {
+            (None, _) | (_, IdentifierMeaning::Local) => IdentifierMeaning::Local,
+            (Some(condition), IdentifierMeaning::Global(next)) => {
+                module.guards.push(Guard { condition, next });
+                IdentifierMeaning::Global(Some(module.guards.len() as u32 - 1))
+            }
+        };
+        let outer = std::mem::replace(
+            &mut self.innermost[name.0 as usize],
+            self.declarations.len() as u32 + 1,
+        );
+        self.declarations.push(ScopedName { name, meaning, outer, behind_block: false, place });
+    }
+
+    /// Ends the braces of a condition. What was declared in them stays in scope.
+    pub fn end_block(&mut self, mark: usize) {
+        self.declarations[mark..].iter_mut().for_each(|found| found.behind_block = true);
+    }
+
+    /// Whether a name means a local from a conditional block that has ended. It is true only once
+    /// for each declaration.
+    pub fn is_behind_block(&mut self, name: Name) -> bool {
+        let index = self.innermost[name.0 as usize].checked_sub(1);
+        let found = index.and_then(|index| self.declarations.get_mut(index as usize));
+        found.is_some_and(|found| std::mem::take(&mut found.behind_block))
+    }
+
+    /// Where the local of a name is declared.
+    pub fn place(&self, name: Name) -> Option<u32> {
+        let index = self.innermost[name.0 as usize].checked_sub(1)?;
+        Some(self.declarations[index as usize].place)
+    }
+
+    pub fn meaning(&self, name: Name) -> IdentifierMeaning {
+        match self.innermost[name.0 as usize] {
+            0 => IdentifierMeaning::Global(None),
+            index => self.declarations[index as usize - 1].meaning,
+        }
+    }
+}
+
+/// Checks the attributes of a block: only a condition is allowed.
+pub(crate) fn check_attributes(
+    tokens: Tokens<'_>,
+    start: usize,
+    attributes: Attributes,
+) -> Result<(), Diagnostic> {
+    let open = attributes.end;
+    let arguments = tokens.is(start + 2, b'(').then_some(start + 2);
+    let first = arguments.map_or(start + 2, |open| tokens.partner(open) + 1);
+    if start == open || (condition::is_conditional(tokens, start) && first == open) {
+        return Ok(());
+    }
+    let odd = if condition::is_conditional(tokens, start) { first } else { start };
+    let message = format!("a block of declarations has the attribute `@{}`", tokens.text(odd + 1));
+    Err(Diagnostic::error(codes::SYNTAX_ERROR, message)
+        .at(tokens.span(odd + 1), "only a condition may stand before a block"))
+}
+
+/// The warning about braces without a condition.
+pub(crate) fn unreachable_braces(tokens: Tokens<'_>, open: usize) -> Diagnostic {
+    let message = "a block of declarations without a condition";
+    Diagnostic::warning(codes::BLOCK_READING, message)
+        .at(tokens.span(open), "what is in these braces is in no permutation")
+        .note("help: write `@if(...)` before it, or remove the braces")
+}
+
+/// The warning about an import that other tools do not read.
+pub(crate) fn import_inside(tokens: Tokens<'_>, keyword: usize) -> Diagnostic {
+    Diagnostic::warning(codes::BLOCK_READING, "an `import` in a block")
+        .at(tokens.span(keyword), "other tools refuse it here")
+        .note("help: write the condition before each `import` at the top of the file")
+}
+
+/// The warning about a local that is used behind the block it is declared in.
+fn used_behind(tokens: Tokens<'_>, at: usize) -> Diagnostic {
+    let message = format!("`{}` is declared in a conditional block before this", tokens.text(at));
+    Diagnostic::warning(codes::BLOCK_READING, message)
+        .at(tokens.span(at), "in scope here, since the braces of `@if(...) { }` are not a scope")
+        .note("tools that are older than this rule end its scope at the `}`")
+}
+
+/// The text of a flattened block's head that is removed: from its first attribute to the brace, and
+/// whole lines if nothing else is on them.
+fn removed_head(tokens: Tokens<'_>, start: usize, open: usize) -> Range<u32> {
+    let text = tokens.text;
+    let bytes = tokens.range(start, open + 1);
+    let end = item::trailing_end(text, bytes.end, tokens.start(open + 1));
+    let start = line_start(text, bytes.start);
+    match line_end(text, end) {
+        Some(after) if at_line_start(text, start) => start..after,
+        _ => bytes.start..item::skip_blank(text, end),
+    }
+}
+
+/// The text that is removed with the closing brace of a flattened block: its whole line, if nothing
+/// else is on it.
+fn removed_tail(tokens: Tokens<'_>, close: usize) -> Range<u32> {
+    let text = tokens.text;
+    let bytes = tokens.range(close, close + 1);
+    let start = line_start(text, bytes.start);
+    let alone = at_line_start(text, start);
+    let end = item::trailing_end(text, bytes.end, tokens.start(close + 1));
+    match line_end(text, end) {
+        Some(after) if alone => start..after,
+        // `} @else {`: the line break before it is removed, and the one after it stays.
+        _ if alone => start - line_break(&text[..start as usize])..bytes.end,
+        _ => bytes.start - blanks_before(text, bytes.start)..bytes.end,
+    }
+}
+
+/// The start of the line, if only blanks stand before the byte; else the byte itself.
+pub(crate) fn line_start(text: &str, byte: u32) -> u32 {
+    let start = byte - blanks_before(text, byte);
+    if at_line_start(text, start) { start } else { byte }
+}
+
+fn blanks_before(text: &str, byte: u32) -> u32 {
+    let head = &text[..byte as usize];
+    (head.len() - head.trim_end_matches([' ', '\t']).len()) as u32
+}
+
+fn at_line_start(text: &str, byte: u32) -> bool {
+    byte == 0 || text[..byte as usize].ends_with('\n')
+}
+
+/// The end of the line, if only blanks stand before that.
+fn line_end(text: &str, byte: u32) -> Option<u32> {
+    let rest = &text[byte as usize..];
+    let blank = rest.len() - rest.trim_start_matches([' ', '\t', '\r']).len();
+    rest[blank..].starts_with('\n').then(|| byte + blank as u32 + 1)
+}
+
+/// Length of the line break at the end of the text.
+fn line_break(text: &str) -> u32 {
+    if text.ends_with("\r\n") { 2 } else { u32::from(text.ends_with('\n')) }
 }

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::cursor::Tokens;
+use crate::wesl::token::Tokens;
 use super::module::{
     ComparisonOperand, ComparisonOperator, Condition, ConditionId, Expression, ExpressionId, Module,
 };
-use super::name::Name;
+use crate::wesl::token::Name;
 use super::token::TokenKind;
 use lamplight_diagnostic::source::LIMITS;
 use lamplight_diagnostic::{Diagnostic, codes};

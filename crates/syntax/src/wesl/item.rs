@@ -1,14 +1,16 @@
-//! Splits a file into directives, imports and global declarations.
+//! Splits a file into directives, imports and global declarations. `import` statements are flattened
+//! to one entry for each name. The comments and blanks that belong to an item are kept, moved and
+//! removed together with it.
 
-use super::block;
-use super::condition::{self, Attributes, Chain};
-use super::cursor::Tokens;
-use super::import;
-use super::module::{Directive, Event, Item, ItemKind, Module};
-use super::name::{Name, Names};
-use super::token::Token;
-use super::trivia;
+use crate::wesl::blank::comment_length;
+use crate::wesl::condition::{Attributes, Chain};
+use crate::wesl::module::{
+    ConditionId, Directive, Event, Import, Item, ItemKind, Module, Origin, Path, PathParts,
+};
+use crate::wesl::token::{Name, Names, Token, TokenKind, Tokens};
+use crate::wesl::{body, condition};
 use lamplight_diagnostic::{Diagnostic, codes};
+use std::ops::Range;
 
 /// Where the parts of an item are among the tokens.
 #[derive(Debug, Clone, Copy)]
@@ -90,8 +92,7 @@ impl ItemSplitter<'_, '_> {
                 }
             };
             let tokens = self.tokens;
-            self.behind =
-                trivia::trailing_end(tokens.text, tokens.range(at, end).end, tokens.start(end));
+            self.behind = trailing_end(tokens.text, tokens.range(at, end).end, tokens.start(end));
             at = end;
         }
     }
@@ -121,21 +122,21 @@ impl ItemSplitter<'_, '_> {
     /// removed, and the comments above them stay with the first declaration.
     fn block(&mut self, start: usize, attributes: Attributes) -> Result<usize, Diagnostic> {
         let (tokens, open) = (self.tokens, attributes.end);
-        block::check_attributes(tokens, start, attributes)?;
+        body::check_attributes(tokens, start, attributes)?;
         let condition = match attributes.condition {
             Some(condition) if attributes.conditional => condition,
             _ => {
-                self.module.warnings.push(block::unreachable_braces(tokens, open));
+                self.module.warnings.push(body::unreachable_braces(tokens, open));
                 condition::literal_condition(self.module, false, &self.chain)
             }
         };
         let (close, first) = (tokens.partner(open), self.module.items.len());
         let head = tokens.range(start, open + 1);
-        let above = trivia::leading_start(tokens.text, self.behind, head.start);
+        let above = leading_start(tokens.text, self.behind, head.start);
         let chain = std::mem::replace(&mut self.chain, Chain::within(Some(condition)));
         let limit = std::mem::replace(&mut self.limit, close);
         let declared = std::mem::replace(&mut self.declared, false);
-        self.behind = trivia::trailing_end(tokens.text, head.end, tokens.start(open + 1));
+        self.behind = trailing_end(tokens.text, head.end, tokens.start(open + 1));
         self.nodes(open + 1);
         (self.chain, self.limit, self.declared) = (chain, limit, declared || self.declared);
         if let Some(item) = self.module.items.get_mut(first).filter(|_| above < head.start) {
@@ -147,7 +148,7 @@ impl ItemSplitter<'_, '_> {
 
     fn import(&mut self, keyword: usize, attributes: Attributes) -> Result<usize, Diagnostic> {
         if self.chain.within.is_some() {
-            self.module.warnings.push(block::import_inside(self.tokens, keyword));
+            self.module.warnings.push(body::import_inside(self.tokens, keyword));
         }
         if self.declared {
             let error = Diagnostic::error(codes::SYNTAX_ERROR, "an `import` after a declaration");
@@ -155,7 +156,7 @@ impl ItemSplitter<'_, '_> {
                 .errors
                 .push(error.at(self.tokens.span(keyword), "imports come first in a file"));
         }
-        import::read_import(self.module, self.tokens, keyword, attributes.condition)
+        read_import(self.module, self.tokens, keyword, attributes.condition)
     }
 
     fn directive(
@@ -196,13 +197,13 @@ impl ItemSplitter<'_, '_> {
         let end = self.end(keyword, kind)?;
         let text = self.tokens.text;
         let bytes = self.tokens.range(start, end);
-        let mut first = trivia::leading_start(text, self.behind, bytes.start);
+        let mut first = leading_start(text, self.behind, bytes.start);
         if self.chain.within.is_some() {
             // In a block every line keeps its indentation, the first one included.
-            first = block::line_start(text, first).max(self.behind);
+            first = body::line_start(text, first).max(self.behind);
         }
         self.declared = true;
-        let last = trivia::trailing_end(text, bytes.end, self.tokens.start(end));
+        let last = trailing_end(text, bytes.end, self.tokens.start(end));
         self.module.items.push(Item {
             kind,
             name,
@@ -281,4 +282,213 @@ pub fn after_template(tokens: Tokens<'_>, at: usize) -> usize {
         }
     }
     at
+}
+
+/// Reads the statement whose `import` is at `at`; returns the index past its semicolon.
+fn read_import(
+    module: &mut Module,
+    tokens: Tokens<'_>,
+    at: usize,
+    condition: Option<ConditionId>,
+) -> Result<usize, Diagnostic> {
+    let first = at + 1;
+    let (origin, after) = read_origin(tokens, first)?;
+    let nowhere = tokens.range(first, first);
+    let parts =
+        PathParts { first: nowhere.clone(), parents: nowhere.clone(), last: nowhere.clone() };
+    let path = Path { origin, segments: Vec::new(), range: nowhere, parts };
+    let mut reader = ImportReader { module, tokens, condition, at: after };
+    match reader.tokens.is(after, b'{') {
+        true => reader.collection(&path)?,
+        false => reader.path(path, Some(first))?,
+    }
+    let end = reader.at;
+    tokens.expect(end, b';', "`;` after the import")
+}
+
+/// `package ::`, repeated `super ::`, or nothing; and the index after it.
+pub fn read_origin(tokens: Tokens<'_>, at: usize) -> Result<(Origin, usize), Diagnostic> {
+    let word = tokens.word(at);
+    let mut end = at;
+    let mut ups = 0;
+    while (word == Some(Name::PACKAGE) && end == at)
+        || (word == Some(Name::SUPER) && tokens.is_word(end, Name::SUPER))
+    {
+        if tokens.kind(end + 1) != Some(TokenKind::Path) {
+            return Err(tokens.expected(end + 1, "`::`"));
+        }
+        end += 2;
+        ups += 1;
+    }
+    let origin = match word {
+        Some(Name::PACKAGE) => Origin::Package,
+        Some(Name::SUPER) => Origin::Super(ups),
+        _ => Origin::Scope,
+    };
+    Ok((origin, end))
+}
+
+/// The error for `as` in the place of a name in a path.
+fn misplaced_as(tokens: Tokens<'_>, at: usize) -> Diagnostic {
+    let is_path = |at: usize| tokens.kind(at) == Some(TokenKind::Path);
+    let error = Diagnostic::error(codes::SYNTAX_ERROR, "`as` cannot be a name in a path")
+        .at(tokens.span(at), "a keyword");
+    match at > 1 && is_path(at - 1) && is_path(at + 1) && tokens.word(at + 2).is_some() {
+        true => {
+            let (from, to) = (tokens.text(at - 2), tokens.text(at + 2));
+            error.note(format!("help: without `::` around it: `{from} as {to}`"))
+        }
+        false => error,
+    }
+}
+
+struct ImportReader<'a, 'b> {
+    module: &'a mut Module,
+    tokens: Tokens<'b>,
+    condition: Option<ConditionId>,
+    at: usize,
+}
+
+impl ImportReader<'_, '_> {
+    /// Reads `a::b::c`, `a::b as c` or `a::{...}`. This recursion is bounded, since the nesting of
+    /// brackets is.
+    ///
+    /// `start` is the path's first token, or `None` for a path in a collection.
+    fn path(&mut self, mut path: Path, start: Option<usize>) -> Result<(), Diagnostic> {
+        let own = start.unwrap_or(self.at);
+        loop {
+            if self.tokens.is_word(self.at, Name::AS) {
+                return Err(misplaced_as(self.tokens, self.at));
+            }
+            let name = self.tokens.identifier(self.at, "a name")?;
+            let place = self.tokens.range(self.at, self.at + 1);
+            if path.segments.is_empty() {
+                path.parts.first = place.clone();
+            } else if self.at > own {
+                path.parts.parents = self.tokens.range(own, self.at - 1);
+            }
+            path.parts.last = place;
+            path.segments.push(name);
+            self.at += 1;
+            if self.tokens.kind(self.at) != Some(TokenKind::Path) {
+                break;
+            }
+            self.at += 1;
+            if self.tokens.is(self.at, b'{') {
+                path.parts.parents = self.tokens.range(own, self.at - 1);
+                return self.collection(&path);
+            }
+        }
+        let last = self.at - 1;
+        // In a collection the place of a path is that of its last name, since the rest is shared.
+        path.range = self.tokens.range(start.unwrap_or(last), last + 1);
+        let mut alias_at = last;
+        if self.tokens.is_word(self.at, Name::AS) {
+            alias_at = self.at + 1;
+            self.at += 2;
+        }
+        let alias = self.tokens.identifier(alias_at, "a name after `as`")?;
+        let alias_range = self.tokens.range(alias_at, alias_at + 1);
+        self.module.imports.push(Import { condition: self.condition, path, alias, alias_range });
+        Ok(())
+    }
+
+    /// `{ path, path, }`, with at least one path.
+    fn collection(&mut self, prefix: &Path) -> Result<(), Diagnostic> {
+        let close = self.tokens.partner(self.at);
+        self.at += 1;
+        loop {
+            self.path(prefix.clone(), None)?;
+            if self.tokens.is(self.at, b',') {
+                self.at += 1;
+            } else if self.at != close {
+                return Err(self.tokens.expected(self.at, "`,` or `}`"));
+            }
+            if self.at == close {
+                self.at += 1;
+                return Ok(());
+            }
+        }
+    }
+}
+
+/// Where an item's text starts: at the comments above it, if no blank line stands between.
+///
+/// `from` is where the item before ended, its own trailing comment included.
+fn leading_start(text: &str, from: u32, start: u32) -> u32 {
+    let bytes = text.as_bytes();
+    let (mut at, end) = (from as usize, start as usize);
+    let mut attached = None;
+    let mut newlines = 0;
+    while at < end {
+        match bytes[at] {
+            b'/' => {
+                attached = if newlines > 1 { Some(at) } else { attached.or(Some(at)) };
+                newlines = 0;
+                at += comment_length(&text[at..end]).max(1);
+            }
+            byte => {
+                newlines += usize::from(byte == b'\n');
+                at += 1;
+            }
+        }
+    }
+    attached.filter(|_| newlines <= 1).map_or(start, |at| at as u32)
+}
+
+/// Where an item's text ends: after a comment on the same line, if nothing else follows there.
+pub(crate) fn trailing_end(text: &str, end: u32, limit: u32) -> u32 {
+    let rest = &text[end as usize..limit as usize];
+    let line = &rest[..rest.find(['\n', '\r']).unwrap_or(rest.len())];
+    let comment = line.trim_start_matches([' ', '\t']);
+    if comment.starts_with("//") { end + line.trim_end().len() as u32 } else { end }
+}
+
+/// The text that is removed with a node: its whole lines, if nothing else is on them, and the `//`
+/// lines above.
+///
+/// `before` is the end of the token before the node, and `after` is the start of the token behind
+/// it.
+pub(crate) fn removed_lines(text: &str, before: u32, node: Range<u32>, after: u32) -> Range<u32> {
+    let head = &text[before as usize..node.start as usize];
+    let end = trailing_end(text, node.end, after);
+    let tail = &text[end as usize..after as usize];
+    let indent = head.len() - head.trim_end_matches([' ', '\t']).len();
+    let starts_line = head[..head.len() - indent].ends_with('\n');
+    let blank = tail.len() - tail.trim_start_matches([' ', '\t', '\r']).len();
+    match (starts_line, tail[blank..].starts_with('\n')) {
+        (true, true) => {
+            let start = node.start - indent as u32;
+            comment_lines(text, before, start)..end + blank as u32 + 1
+        }
+        // At the end of a line the blanks before it are removed too; elsewhere those after it, as
+        // in `f(@if(a) x, y)`.
+        (false, true) => node.start - indent as u32..end,
+        (_, false) => {
+            node.start..end + (tail.len() - tail.trim_start_matches([' ', '\t']).len()) as u32
+        }
+    }
+}
+
+/// The index after the blanks that follow a removed attribute.
+pub(crate) fn skip_blank(text: &str, end: u32) -> u32 {
+    let rest = &text[end as usize..];
+    end + (rest.len() - rest.trim_start_matches([' ', '\t', '\r', '\n']).len()) as u32
+}
+
+/// The start of the `//` lines that are directly above the line starting at `start`.
+fn comment_lines(text: &str, before: u32, start: u32) -> u32 {
+    let head = &text[before as usize..start as usize];
+    if head.contains("/*") {
+        return start;
+    }
+    let mut at = head.len();
+    while let Some(line) = head[..at].strip_suffix('\n') {
+        let Some(newline) = line.rfind('\n') else { break };
+        if !line[newline + 1..].trim_start().starts_with("//") {
+            break;
+        }
+        at = newline + 1;
+    }
+    before + at as u32
 }

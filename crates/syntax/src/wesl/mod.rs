@@ -4,25 +4,18 @@
 //! composed text anyway.
 
 pub mod blank;
-mod block;
 mod body;
 mod condition;
-mod cursor;
-mod import;
 mod item;
 mod module;
-mod name;
-mod scope;
-mod statement;
 mod token;
-mod trivia;
 
 pub use module::{
     ComparisonOperand, ComparisonOperator, Condition, ConditionId, Directive, Event, Expression,
     ExpressionId, Guard, Import, Item, ItemKind, LocalUse, Module, Origin, Path, PathParts,
     PlacedModule, UsedName,
 };
-pub use name::{Name, Names, is_keyword, is_path_name, keywords};
+pub use token::{Name, Names, is_keyword, is_path_name, keywords};
 
 use std::sync::Arc;
 

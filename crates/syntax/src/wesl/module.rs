@@ -3,7 +3,7 @@
 use std::ops::{Deref, Range};
 use std::sync::Arc;
 
-use super::name::Name;
+use crate::wesl::token::Name;
 use lamplight_diagnostic::Diagnostic;
 use lamplight_diagnostic::source::{SourceId, Span};
 

@@ -1,10 +1,14 @@
-//! Splits text into words, numbers and punctuation. Every bracket knows its partner.
+//! Splits text into words, numbers and punctuation. Every bracket knows its partner. A cursor gives
+//! access to tokens by index. Identifiers become numbers, which are cheap to compare and can index
+//! tables.
 
-use super::blank::{block_comment, is_blank, line_comment};
-use super::name::{Name, Names};
-use crate::words::{begins_word, number_end, word_end};
+use crate::wesl::blank::{block_comment, is_blank, line_comment};
+use crate::words::{begins_word, number_end, same_bytes, word_end};
 use lamplight_diagnostic::source::{LIMITS, SourceId, Span};
 use lamplight_diagnostic::{Diagnostic, codes};
+use rustc_hash::FxHashMap;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// What a token is. `<` and `>` are always single tokens: `>>` and `>=` are two tokens each. So a
 /// `>` that ends a template list needs no special case.
@@ -234,5 +238,246 @@ impl TokenScanner<'_> {
     fn number(&mut self) -> TokenKind {
         self.at = number_end(self.text, self.at);
         TokenKind::Number
+    }
+}
+
+/// The tokens of a file, with what diagnostics about them need.
+#[derive(Clone, Copy)]
+pub struct Tokens<'a> {
+    pub tokens: &'a [Token],
+    pub text: &'a str,
+    pub names: &'a Names,
+    pub source: SourceId,
+}
+
+impl<'a> Tokens<'a> {
+    pub fn len(self) -> usize {
+        self.tokens.len()
+    }
+
+    pub fn kind(self, at: usize) -> Option<TokenKind> {
+        self.tokens.get(at).map(|token| token.kind)
+    }
+
+    pub fn is(self, at: usize, mark: u8) -> bool {
+        self.kind(at) == Some(TokenKind::Mark(mark))
+    }
+
+    pub fn is_word(self, at: usize, name: Name) -> bool {
+        self.kind(at) == Some(TokenKind::Word(name))
+    }
+
+    /// The word at a token, if it is one.
+    pub fn word(self, at: usize) -> Option<Name> {
+        match self.kind(at) {
+            Some(TokenKind::Word(name)) => Some(name),
+            _ => None,
+        }
+    }
+
+    /// The identifier at a token, or an error that says what was found instead.
+    pub fn identifier(self, at: usize, what: &str) -> Result<Name, Diagnostic> {
+        match self.word(at) {
+            Some(name) if !name.is_keyword() => Ok(name),
+            _ => Err(self.expected(at, what)),
+        }
+    }
+
+    /// The index of the bracket that closes the one at `at`.
+    pub fn partner(self, at: usize) -> usize {
+        self.tokens[at].partner as usize
+    }
+
+    /// The first `mark` in `from..limit` that is outside of brackets.
+    pub fn find(self, from: usize, limit: usize, mark: u8) -> Option<usize> {
+        let mut at = from;
+        while at < limit {
+            if self.is(at, mark) {
+                return Some(at);
+            }
+            at = self.partner(at).max(at) + 1;
+        }
+        None
+    }
+
+    /// The bytes of the tokens `from..to`; `to` is after the last one.
+    pub fn range(self, from: usize, to: usize) -> Range<u32> {
+        self.start(from)..self.tokens[..to].last().map_or(0, |token| token.end)
+    }
+
+    /// The first byte of a token, or the end of the text.
+    pub fn start(self, at: usize) -> u32 {
+        self.tokens.get(at).map_or(self.text.len() as u32, |token| token.start)
+    }
+
+    pub fn span(self, at: usize) -> Span {
+        match self.tokens.get(at) {
+            Some(token) => Span { source: self.source, start: token.start, end: token.end },
+            None => Span::new(self.source, self.text.len()..self.text.len()),
+        }
+    }
+
+    pub fn text(self, at: usize) -> &'a str {
+        self.tokens.get(at).map_or("", |token| &self.text[token.start as usize..token.end as usize])
+    }
+
+    /// A syntax error at a token.
+    pub fn expected(self, at: usize, what: &str) -> Diagnostic {
+        let found = if at < self.len() {
+            format!("`{}`", self.text(at))
+        } else {
+            "the end of the file".to_owned()
+        };
+        Diagnostic::error(codes::SYNTAX_ERROR, format!("expected {what}, found {found}"))
+            .at(self.span(at), format!("expected {what}"))
+    }
+
+    /// Steps over the token if it is `mark`; otherwise an error.
+    pub fn expect(self, at: usize, mark: u8, what: &str) -> Result<usize, Diagnostic> {
+        if self.is(at, mark) { Ok(at + 1) } else { Err(self.expected(at, what)) }
+    }
+}
+
+/// An interned identifier.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Name(pub u32);
+
+/// Words that begin or divide a statement or a declaration, which editors offer.
+pub fn keywords() -> impl Iterator<Item = &'static str> {
+    const NOT_OFFERED: [&str; 5] = ["_", "diagnostic", "false", "requires", "true"];
+    let words = WORDS[..=Name::IMPORT.0 as usize].iter().copied();
+    words.filter(|word| !NOT_OFFERED.contains(word))
+}
+
+/// Keywords of WGSL and the words WESL gives a meaning, interned first and in this order.
+const WORDS: &[&str] = &[
+    "_",
+    "alias",
+    "break",
+    "case",
+    "const",
+    "const_assert",
+    "continue",
+    "continuing",
+    "default",
+    "diagnostic",
+    "discard",
+    "else",
+    "enable",
+    "false",
+    "fn",
+    "for",
+    "if",
+    "let",
+    "loop",
+    "override",
+    "requires",
+    "return",
+    "struct",
+    "switch",
+    "true",
+    "var",
+    "while",
+    "import",
+    "package",
+    "super",
+    "as",
+    "elif",
+    "constants",
+];
+
+/// Whether the word is a keyword of WGSL. WESL's own words come after those.
+pub fn is_keyword(word: &str) -> bool {
+    WORDS[Name::ALIAS.0 as usize..=Name::WHILE.0 as usize].contains(&word)
+}
+
+/// Whether the word can be the first name of a path that leads into another package.
+pub fn is_path_name(word: &str) -> bool {
+    !WORDS.contains(&word) && word != "self"
+}
+
+macro_rules! words {
+    ($($constant:ident = $text:literal),* $(,)?) => {
+        impl Name { $(#[doc = concat!("`", $text, "`.")] pub const $constant: Name = Name(known_position($text));)* }
+    };
+}
+
+words! {
+    UNDERSCORE = "_", ALIAS = "alias", CASE = "case", CONST = "const", CONST_ASSERT = "const_assert", CONTINUING = "continuing",
+    DEFAULT = "default", DIAGNOSTIC = "diagnostic", ELSE = "else", ENABLE = "enable", FALSE = "false", FN = "fn", FOR = "for",
+    IF = "if", LET = "let", LOOP = "loop", OVERRIDE = "override", REQUIRES = "requires", STRUCT = "struct", SWITCH = "switch",
+    TRUE = "true", VAR = "var", WHILE = "while", IMPORT = "import", PACKAGE = "package", SUPER = "super", AS = "as", ELIF = "elif",
+    CONSTANTS = "constants",
+}
+
+const fn known_position(word: &str) -> u32 {
+    let mut index = 0;
+    while index < WORDS.len() {
+        if same_bytes(WORDS[index].as_bytes(), word.as_bytes()) {
+            return index as u32;
+        }
+        index += 1;
+    }
+    u32::MAX
+}
+
+impl Name {
+    /// Whether WGSL forbids the word as an identifier, or WESL does: `import`, `package` and
+    /// `super`.
+    pub fn is_keyword(self) -> bool {
+        self.0 <= Self::SUPER.0
+    }
+}
+
+/// The identifiers of a graph.
+#[derive(Debug, Clone)]
+pub struct Names {
+    texts: Vec<Arc<str>>,
+    // A fast hash without protection against collisions: limits bound the harm that a hostile file
+    // can do.
+    numbers: FxHashMap<Arc<str>, Name>,
+}
+
+impl Default for Names {
+    fn default() -> Self {
+        let mut names = Self { texts: Vec::new(), numbers: FxHashMap::default() };
+        for word in WORDS {
+            names.intern(word);
+        }
+        names
+    }
+}
+
+impl Names {
+    /// The number of an identifier; a new one gets the next number.
+    pub fn intern(&mut self, text: &str) -> Name {
+        if let Some(name) = self.numbers.get(text) {
+            return *name;
+        }
+        let name = Name(self.texts.len() as u32);
+        let text: Arc<str> = text.into();
+        self.texts.push(Arc::clone(&text));
+        self.numbers.insert(text, name);
+        name
+    }
+
+    /// The number of an identifier that occurs somewhere.
+    pub fn find(&self, text: &str) -> Option<Name> {
+        self.numbers.get(text).copied()
+    }
+
+    /// The identifier behind a number of this table.
+    pub fn text(&self, name: Name) -> &str {
+        &self.texts[name.0 as usize]
+    }
+
+    /// How many there are; every number is below.
+    pub fn len(&self) -> usize {
+        self.texts.len()
+    }
+
+    /// Always false, since the keywords are there from the start.
+    pub fn is_empty(&self) -> bool {
+        self.texts.is_empty()
     }
 }
