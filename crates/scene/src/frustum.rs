@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DVec3};
 
-use super::{Clip, Depth};
+use crate::projection::{Clip, Depth};
 
 /// A box in view space; `near` and `far` are distances along -z.
 #[derive(Debug, Clone, Copy, PartialEq)]

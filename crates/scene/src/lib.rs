@@ -12,7 +12,6 @@ mod mesh;
 mod probe;
 mod projection;
 pub mod quadrature;
-mod radiance;
 mod sky;
 mod view;
 
@@ -25,6 +24,6 @@ pub use projection::{
     Clip, Depth, cube_projection, orthographic, perspective, polygon_offset, shadow_matrix,
 };
 #[doc(hidden)]
-pub use radiance::DECODER;
+pub use sky::DECODER;
 pub use sky::{Equirect, Sky};
 pub use view::{FACES, cube_view, from_angles, look_along, look_at};

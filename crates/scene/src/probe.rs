@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_4, PI, TAU};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::Sky;
+use crate::sky::Sky;
 use super::view::FACES;
 use crate::quadrature::gauss_legendre;
 
