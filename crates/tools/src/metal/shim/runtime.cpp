@@ -12,7 +12,7 @@
 // and the answer, for each vertex or fragment: position (of a vertex), or depth, whether it was
 // discarded, 0, 0; then the words of its locations. `program.rs` is the other end.
 //
-// Textures are read as `crates/eval/src/machine/{texture,filter}.rs` read them; change both or none.
+// Textures are read as `crates/eval/src/machine/texture.rs` reads them; change both or none.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
