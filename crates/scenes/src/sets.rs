@@ -1,18 +1,14 @@
-//! The scenes of the pictures: shapes, lamps, materials and a viewer, all made by formulas.
+//! The scenes of the pictures: shapes, lamps, materials and a viewer, all made by formulas; the light
+//! probes that a scene asks for; and the numbers of its materials in the array of the programs.
 
-pub use super::maps::{Maps, TextureMap};
-pub use super::probing::Probes;
-
-use std::sync::Arc;
-
+use crate::layers::Layers;
+pub use crate::maps::{Maps, TextureMap};
+use crate::maps::{luminaire, window};
+use crate::shape::Shape;
+use crate::{maps, palette};
 use glam::{DMat4, DVec2, DVec3};
-
-use super::layers::Layers;
-use super::profiles::{luminaire, window};
-use super::shape::Shape;
-use super::{maps, palette};
-use lamplight_scene::look_at;
-use lamplight_scene::{Clip, Depth, perspective};
+use lamplight_scene::{Clip, Depth, look_at, perspective};
+use std::sync::Arc;
 
 /// Everything that is drawn, and the viewer.
 #[derive(Debug, Clone)]
@@ -336,5 +332,54 @@ fn base_scene(objects: Vec<Object>, eye: Eye, lamps: Vec<Lamp>) -> Scene {
         lamp_size: None,
         around: None,
         room: None,
+    }
+}
+
+/// How many entries the array of materials has in the library's programs.
+const MATERIALS: usize = 14;
+
+impl Scene {
+    /// Puts the materials of the objects into the array, each as front and back, and gives the
+    /// objects their indices. Materials from which a glTF surface reads the same share one entry.
+    ///
+    /// # Errors
+    /// The objects have more materials than the array.
+    pub fn number_materials(&mut self) -> Result<(), String> {
+        let mut found: Vec<Material> = Vec::new();
+        for object in &mut self.objects {
+            let known = found.iter().position(|one| is_same(one, &object.material));
+            object.material_index = known.unwrap_or(found.len()) as u32;
+            if known.is_none() {
+                found.push(object.material);
+            }
+        }
+        if found.len() > MATERIALS {
+            let count = found.len();
+            return Err(format!("the scene has {count} materials, and one array has {MATERIALS}"));
+        }
+        self.materials = found.into_iter().map(|material| [material; 2]).collect();
+        Ok(())
+    }
+}
+
+/// Whether a glTF surface reads the same from both materials. It reads everything else from the
+/// block `layers`.
+fn is_same(one: &Material, other: &Material) -> bool {
+    let read = |material: &Material| (material.emission, material.ambient, material.roughness);
+    read(one) == read(other)
+}
+
+/// The light probes of a scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Probes {
+    /// How many there are along each axis of the world.
+    pub counts: [u32; 3],
+    /// What they see where the scene ends.
+    pub beyond: DVec3,
+}
+
+impl Default for Probes {
+    fn default() -> Self {
+        Self { counts: [8, 5, 8], beyond: DVec3::new(0.12, 0.14, 0.18) }
     }
 }

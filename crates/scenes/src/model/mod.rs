@@ -5,12 +5,8 @@
 //! What the programs do not have is left out, and a note says so. What is broken is an error that
 //! names its place in the document. All memory is bounded by [`limits`](lamplight_files::limits).
 
-mod accessor;
-mod coordinates;
-mod layers;
 mod mesh;
 mod nodes;
-mod part;
 mod surface;
 mod texture;
 
@@ -179,7 +175,7 @@ fn model_scene(reader: &mut GltfReader<'_>, view: View) -> Result<Model, String>
         ));
     }
     let lamps = nodes::model_lamps(&placed, &bounds, &eye);
-    let mut layers = if reader.all_unlit { Vec::new() } else { layers::layer_axes(&objects) };
+    let mut layers = if reader.all_unlit { Vec::new() } else { surface::layer_axes(&objects) };
     let is_mapped = |name: &&str| !matches!(*name, "base_map" | "normal_map" | "occlusion_map");
     if sheet.names.iter().any(is_mapped) {
         layers.push("material_maps=true".to_owned());

@@ -9,12 +9,13 @@ use gltf::image::Source;
 use image::{DynamicImage, ImageDecoder as _, ImageError};
 
 use super::GltfReader;
-use super::coordinates::{Coordinates, Window};
+use crate::model::surface::{Coordinates, Window};
 use super::mesh::{has_triangles, mesh_coordinates};
 use super::nodes::PlacedNodes;
-use super::part::{ImageChannels, material_parts};
+use crate::model::surface::{ImageChannels, material_parts};
 use crate::sets::{Maps, TextureMap};
-use crate::{Shape, blank_texel};
+use crate::maps::blank_texel;
+use crate::shape::Shape;
 use lamplight_files::limits::{MODEL_CORNERS, MODEL_PIXELS, MODEL_TEXTURES};
 
 /// All textures of a model: each set of them, as a material has it, is in a cell.
