@@ -3,13 +3,10 @@
 mod draw;
 mod fixtures;
 mod heaps;
-mod hlsl;
-mod layouts;
 mod open;
 mod opengl;
 mod passthrough;
 mod pipeline;
-mod textures;
 
 pub use super::emitted;
 pub use open::{AdapterName, DeviceRequest, Shaders, open_gpu};
@@ -24,14 +21,14 @@ use super::frame::{Drawing, Frame};
 use super::kernel::{ECHO, INPUT_WIDTH, Kernel, SENTINEL, TARGET_WIDTH};
 use super::shipped::ColorFormat;
 use super::{Session, ShippedPair, draws_none, executor_failed};
+use fixtures::{TEXEL, color_attachment, copy_to_buffer, create_texture, write_level};
 use heaps::HeapGroups;
 use lamplight_bundle::Stage;
 use lamplight_diagnostic::Diagnostic;
 use lamplight_emit::Emitted;
-use layouts::GroupLayouts;
 use passthrough::SpirvBinary;
+use pipeline::GroupLayouts;
 use pipeline::PreparedKernel;
-use textures::{TEXEL, color_attachment, copy_to_buffer, create_texture, write_level};
 
 /// The longest wait for one draw: a hundred thousand times what one usually takes.
 const PATIENCE: Duration = Duration::from_secs(60);

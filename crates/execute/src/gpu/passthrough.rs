@@ -1,8 +1,16 @@
 //! Turns emitted files into SPIR-V that a Vulkan driver gets unchanged.
+//!
+//! glslangValidator compiles HLSL unchanged. Direct3D matches inputs by semantics, which become
+//! locations in the SPIR-V. Sampler heaps and their index buffers have registers of separate kinds
+//! there. Vulkan has no such kinds, so they become bindings of one group.
 
-use super::hlsl;
+use crate::gpu::heaps;
 use lamplight_bundle::{Native, SamplerHeap, Stage, Target};
-use lamplight_emit::spirv::words;
+use lamplight_emit::spirv;
+use lamplight_emit::spirv::{HEADER_WORDS, SpirvInstruction, instructions, op, string, words};
+use lamplight_syntax::words::words as text_words;
+use lamplight_tools::{GLSLANG, SPIRV_OPT};
+use std::collections::BTreeMap;
 
 /// One stage as SPIR-V.
 #[derive(Debug, Clone)]
@@ -28,7 +36,7 @@ impl SpirvBinary {
     ) -> Result<Self, String> {
         let words = match target {
             Target::SPIRV => words(bytes),
-            Target::HLSL => hlsl::compile_hlsl(bytes, stage, native, heaps)?,
+            Target::HLSL => compile_hlsl(bytes, stage, native, heaps)?,
             _ => return Err(format!("there is no SPIR-V of target `{target}`")),
         };
         let (entry, heaps) = (native.entry_name.clone(), native.sampler_heaps.clone());
@@ -56,4 +64,134 @@ impl SpirvBinary {
         // clamped in it, and the harness only uses indices that are within its own arrays.
         unsafe { device.create_shader_module_passthrough(descriptor) }
     }
+}
+
+/// Opcodes of the extension in which glslangValidator keeps the semantics of HLSL.
+const OP_DECORATE_STRING: u16 = 5632;
+const OP_MEMBER_DECORATE_STRING: u16 = 5633;
+const LOCATION: u32 = 30;
+const BINDING: u32 = 33;
+const DESCRIPTOR_SET: u32 = 34;
+const USER_SEMANTIC: u32 = 5635;
+
+/// What in the text has another meaning to glslangValidator than to a compiler for Direct3D, so
+/// that the text cannot be run this way.
+pub fn hlsl_lacks(text: &str) -> Option<&'static str> {
+    if is_misplaced(text) {
+        return Some(
+            "glslangValidator puts what follows a matrix of three rows or an array in a constant \
+             buffer 16 bytes further than Direct3D does",
+        );
+    }
+    let named = |name: &str| {
+        text_words(text).any(|word| word.text == name && text[word.at + name.len()..].starts_with('('))
+    };
+    if named("frexp") {
+        return Some("frexp of Direct3D drops the sign, and that of glslangValidator keeps it");
+    }
+    named("ldexp").then_some("glslangValidator takes no integer for the exponent of ldexp")
+}
+
+/// Whether glslangValidator gives members of a constant buffer other offsets than Direct3D does. In
+/// Direct3D the last row of a matrix, or the last element of an array, ends with its last number,
+/// and naga adds a member to fill the rest.
+fn is_misplaced(text: &str) -> bool {
+    let is_short = |line: &str| {
+        let is_matrix = line.contains("row_major float") && line.contains("x3 ");
+        is_matrix || line.trim_end().ends_with("];")
+    };
+    let is_filler = |line: &str| line.trim_start().starts_with("int _pad");
+    text.lines().zip(text.lines().skip(1)).any(|(line, next)| is_short(line) && is_filler(next))
+}
+
+/// Compiles the text to SPIR-V. Its sampler heaps go into bind group `group`.
+///
+/// # Errors
+/// The message of glslangValidator or spirv-opt, or which of them is not installed.
+fn compile_hlsl(
+    text: &[u8],
+    stage: Stage,
+    native: &Native,
+    group: u32,
+) -> Result<Vec<u32>, String> {
+    let compiled = GLSLANG.pipe(
+        &[
+            "--stdin",
+            "--quiet",
+            "-D",
+            "-V",
+            "--target-env",
+            "vulkan1.1",
+            "-fhlsl_functionality1",
+            "-S",
+            stage.suffix(),
+            "-e",
+            &native.entry_name,
+            "-o",
+            "/dev/stdout",
+        ],
+        text,
+    )?;
+    // The static samplers are still variables here, which Vulkan does not allow.
+    let legal = SPIRV_OPT
+        .pipe(&["--target-env=vulkan1.1", "--legalize-hlsl", "-o", "-", "-"], &compiled)?;
+    bind_words(&spirv::words(&legal), native, group)
+}
+
+/// Takes the locations from the semantics, sets the bindings of heaps, and removes the semantics.
+fn bind_words(words: &[u32], native: &Native, group: u32) -> Result<Vec<u32>, String> {
+    let places = heap_places(words, native);
+    let locations = semantic_locations(words)?;
+    let header = words.get(..HEADER_WORDS).ok_or("glslangValidator wrote no module")?;
+    let mut out = header.to_vec();
+    for SpirvInstruction { op, words } in instructions(words) {
+        match (op, words) {
+            (OP_DECORATE_STRING | OP_MEMBER_DECORATE_STRING, _) => {}
+            (op::EXTENSION, [_, name @ ..]) if string(name).starts_with("SPV_GOOGLE") => {}
+            (op::DECORATE, [head, id, decoration, value]) => {
+                let value = match (*decoration, places.get(id), locations.get(id)) {
+                    (LOCATION, _, Some(location)) => *location,
+                    (BINDING, Some(binding), _) => *binding,
+                    (DESCRIPTOR_SET, Some(_), _) => group,
+                    _ => *value,
+                };
+                out.extend([*head, *id, *decoration, value]);
+            }
+            _ => out.extend_from_slice(words),
+        }
+    }
+    Ok(out)
+}
+
+/// The binding of each variable that is a heap or an index buffer, found by its name.
+fn heap_places(words: &[u32], native: &Native) -> BTreeMap<u32, u32> {
+    let by_name: BTreeMap<String, u32> = heaps::heap_bindings(&native.sampler_heaps).collect();
+    let mut places = BTreeMap::new();
+    let mut variables = Vec::new();
+    for SpirvInstruction { op, words } in instructions(words) {
+        match (op, words) {
+            (op::NAME, [_, id, name @ ..]) => {
+                places.extend(by_name.get(&string(name)).map(|binding| (*id, *binding)));
+            }
+            (op::DECORATE, [_, id, DESCRIPTOR_SET, _]) => variables.push(*id),
+            _ => {}
+        }
+    }
+    // A struct may have the same name as its variable, but it has no descriptor set.
+    places.retain(|id, _| variables.contains(id));
+    places
+}
+
+/// The location of each variable, from the number in its semantic `LOCn`.
+fn semantic_locations(words: &[u32]) -> Result<BTreeMap<u32, u32>, String> {
+    let mut locations = BTreeMap::new();
+    for SpirvInstruction { op, words } in instructions(words) {
+        if let (OP_DECORATE_STRING, [_, id, USER_SEMANTIC, name @ ..]) = (op, words)
+            && let Some(number) = string(name).strip_prefix("LOC")
+        {
+            let number = number.parse().map_err(|_| format!("the semantic LOC{number}"))?;
+            locations.insert(*id, number);
+        }
+    }
+    Ok(locations)
 }

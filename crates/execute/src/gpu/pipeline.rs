@@ -1,9 +1,11 @@
 //! A kernel's pipeline, and the bindings that are the same for all its draws.
 
-use super::passthrough::SpirvBinary;
-use super::{TARGET_FORMAT, WgpuDevice, fixtures};
 use crate::fixture::{Fixture, FixtureSampler};
+use crate::gpu::passthrough::SpirvBinary;
+use crate::gpu::{TARGET_FORMAT, WgpuDevice, fixtures, lock_mutex};
 use crate::kernel::{ENTRY, Kernel, ResourceClass};
+use std::collections::HashMap;
+use std::sync::Mutex;
 
 /// What a device keeps for a kernel.
 pub struct PreparedKernel {
@@ -231,5 +233,27 @@ fn bound_fixture(device: &wgpu::Device, queue: &wgpu::Queue, fixture: &Fixture) 
         Fixture::Sampler(sampler) => {
             BoundResource::Sampler(fixtures::create_sampler(device, *sampler))
         }
+    }
+}
+
+/// Layouts by their entries.
+#[derive(Default)]
+pub struct GroupLayouts {
+    known: Mutex<HashMap<Vec<wgpu::BindGroupLayoutEntry>, wgpu::BindGroupLayout>>,
+}
+
+impl GroupLayouts {
+    /// The layout with these entries.
+    pub fn of(
+        &self,
+        device: &wgpu::Device,
+        entries: Vec<wgpu::BindGroupLayoutEntry>,
+    ) -> wgpu::BindGroupLayout {
+        let mut known = lock_mutex(&self.known);
+        let layout = known.entry(entries).or_insert_with_key(|entries| {
+            device
+                .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries })
+        });
+        layout.clone()
     }
 }

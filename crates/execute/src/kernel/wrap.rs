@@ -1,18 +1,22 @@
 //! Builds the fragment entry point around a function. It works on naga's modules, so it is the same
 //! for WESL and for GLSL.
+//!
+//! [`varying_modules`] builds a fragment stage whose inputs are interpolated and whose result is
+//! used, so that a driver cannot remove the call. The cost on real GPUs is measured with this. A
+//! [`Body`] writes the body of a function, and converts values to words and back.
 
-use naga::{
-    AddressSpace, BinaryOperator as Op, Binding, BuiltIn, EntryPoint, Expression, Function,
-    FunctionArgument, FunctionResult, GlobalVariable, Handle, ImageClass, ImageDimension, Literal,
-    LocalVariable, MathFunction, Module, ResourceBinding, ScalarKind, ShaderStage, Span, Statement,
-    SwizzleComponent, Type, TypeInner, VectorSize,
-};
-
-use super::body::{FunctionBody, KernelValue};
-use super::{
-    ECHO, ENTRY, INPUT_WIDTH, Kernel, Parameter, ParameterKind, TARGET_WIDTH, pointed_type,
+use crate::kernel::{
+    ECHO, ENTRY, INPUT_WIDTH, Kernel, Parameter, ParameterKind, TARGET_WIDTH, TypeShape,
+    find_function, pointed_type, resource_class, untestable_function,
 };
 use lamplight_diagnostic::{Diagnostic, codes};
+use naga::{
+    AddressSpace, BinaryOperator as Op, Binding, BuiltIn, EntryPoint, Expression, Function,
+    FunctionArgument, FunctionResult, GlobalVariable, Handle, ImageClass, ImageDimension,
+    Interpolation, Literal, LocalVariable, MathFunction, Module, Range, ResourceBinding, Sampling,
+    Scalar, ScalarKind, ShaderStage, Span, Statement, SwizzleComponent, Type, TypeInner,
+    VectorSize,
+};
 
 /// The module with its entry points replaced by the kernel's, and the function's handle in it.
 pub fn wrap_kernel(
@@ -26,7 +30,7 @@ pub fn wrap_kernel(
 
 /// The module with one fragment stage as its only entry point, and without anything that this does
 /// not reach.
-pub(super) fn with_entry(
+fn with_entry(
     module: &Module,
     write: impl FnOnce(&mut FunctionBody<'_>) -> Result<(), Diagnostic>,
 ) -> Result<Module, Diagnostic> {
@@ -63,7 +67,7 @@ fn lost_function(name: &str) -> Diagnostic {
 }
 
 /// Where an argument comes from.
-pub(super) enum ArgumentSource {
+enum ArgumentSource {
     /// A texture or a sampler, by its binding in group 0.
     Binding(u32),
     /// Words, of which this is the first.
@@ -315,4 +319,234 @@ impl FunctionBody<'_> {
 
 fn padded_words(words: &[KernelValue], zero: KernelValue) -> Vec<KernelValue> {
     words.iter().copied().chain(std::iter::repeat(zero)).take(4).collect()
+}
+
+/// The most vectors of four words that a stage can take: vertices have 32 attributes, and one of
+/// them is the position.
+const VECTORS: u32 = 31;
+
+/// Two modules with [`super::ENTRY`] as their only entry point: one that calls the function, and
+/// one that only takes its arguments.
+///
+/// Both take the words of the arguments as components of interpolated vectors, and write the
+/// exclusive-or of all of them. The first also includes the words of the result. So the difference
+/// between the two is what the function costs.
+///
+/// # Errors
+/// There is no such function, or it has a parameter that is not made of 32-bit values, or more of
+/// them than a stage can take.
+pub fn varying_modules(module: &Module, function: &str) -> Result<[Module; 2], Diagnostic> {
+    let handle = find_function(module, function)?;
+    let (mut sources, mut words, mut binding) = (Vec::new(), 0_u32, 0);
+    for (index, argument) in module.functions[handle].arguments.iter().enumerate() {
+        sources.push(if resource_class(module, argument.ty).is_some() {
+            binding += 1;
+            ArgumentSource::Binding(binding)
+        } else {
+            let named = || argument.name.clone().unwrap_or_else(|| format!("parameter {index}"));
+            let shape = TypeShape::of(module, pointed_type(module, argument.ty))
+                .ok_or_else(|| untestable_function(&named()))?;
+            let first = words;
+            words = words.saturating_add(shape.words());
+            ArgumentSource::Words(first)
+        });
+    }
+    if words > 4 * VECTORS {
+        return Err(Diagnostic::error(
+            codes::UNTESTABLE_FUNCTION,
+            format!(
+                "the parameters of `{function}` have {words} words, and a fragment stage takes {}",
+                4 * VECTORS
+            ),
+        ));
+    }
+    let called = with_entry(module, |body| {
+        let inputs = body.inputs_that_vary(words);
+        let results = body.call(function, handle, &sources, &inputs)?;
+        body.mix(&inputs, &results);
+        Ok(())
+    })?;
+    let empty = with_entry(module, |body| {
+        let inputs = body.inputs_that_vary(words);
+        body.mix(&inputs, &[]);
+        Ok(())
+    })?;
+    Ok([called, empty])
+}
+
+impl FunctionBody<'_> {
+    /// The stage's inputs, as words.
+    fn inputs_that_vary(&mut self, words: u32) -> Vec<KernelValue> {
+        let ty = self.vector(VectorSize::Quad, ScalarKind::Float);
+        let mut values = Vec::new();
+        for location in 0..words.div_ceil(4) {
+            let binding = Some(location_binding(location, Some(Interpolation::Perspective)));
+            self.function.arguments.push(FunctionArgument { name: None, ty, binding });
+            let vector = self.add(Expression::FunctionArgument(location));
+            let kind = ScalarKind::Uint;
+            let bits = self.add(Expression::As { expr: vector, kind, convert: None });
+            let count = (words - 4 * location).min(4);
+            values.extend((0..count).map(|index| self.component(bits, index)));
+        }
+        values
+    }
+
+    /// Returns four words that depend on all inputs and on all results.
+    fn mix(&mut self, inputs: &[KernelValue], results: &[KernelValue]) {
+        let ty = self.vector(VectorSize::Quad, ScalarKind::Uint);
+        let zero = self.add(Expression::Literal(naga::Literal::U32(0)));
+        let mixed =
+            inputs.iter().fold(zero, |mixed, word| self.binary(Op::ExclusiveOr, mixed, *word));
+        let mut components = vec![mixed; 4];
+        for (index, word) in results.iter().enumerate() {
+            let component = &mut components[index % 4];
+            *component = self.binary(Op::ExclusiveOr, *component, *word);
+        }
+        let value = Some(self.add(Expression::Compose { ty, components }));
+        let binding = location_binding(0, None);
+        self.function.result = Some(FunctionResult { ty, binding: Some(binding) });
+        self.function.body.push(Statement::Return { value }, Span::UNDEFINED);
+    }
+}
+
+fn location_binding(location: u32, interpolation: Option<Interpolation>) -> Binding {
+    Binding::Location {
+        location,
+        interpolation,
+        sampling: interpolation.map(|_| Sampling::Center),
+        blend_src: None,
+        per_primitive: false,
+    }
+}
+
+/// A value within the body.
+pub type KernelValue = Handle<Expression>;
+
+/// The function that is being built, and the module that it is for.
+pub struct FunctionBody<'a> {
+    pub module: &'a mut Module,
+    pub function: Function,
+}
+
+impl FunctionBody<'_> {
+    /// Adds an expression, and the statement that evaluates it if it needs one.
+    pub fn add(&mut self, expression: Expression) -> KernelValue {
+        let emitted = !expression.needs_pre_emit();
+        let value = self.function.expressions.append(expression, Span::UNDEFINED);
+        if emitted {
+            self.function
+                .body
+                .push(Statement::Emit(Range::new_from_bounds(value, value)), Span::UNDEFINED);
+        }
+        value
+    }
+
+    /// A type without a name.
+    pub fn ty(&mut self, inner: TypeInner) -> Handle<Type> {
+        self.module.types.insert(Type { name: None, inner }, Span::UNDEFINED)
+    }
+
+    pub fn scalar(&mut self, scalar: Scalar) -> Handle<Type> {
+        self.ty(TypeInner::Scalar(scalar))
+    }
+
+    pub fn vector(&mut self, size: VectorSize, kind: ScalarKind) -> Handle<Type> {
+        let width = if kind == ScalarKind::Bool { naga::BOOL_WIDTH } else { 4 };
+        self.ty(TypeInner::Vector { size, scalar: Scalar { kind, width } })
+    }
+
+    /// A literal of `u32`.
+    pub fn literal(&mut self, value: u32) -> KernelValue {
+        self.add(Expression::Literal(Literal::U32(value)))
+    }
+
+    /// A component of a vector, a matrix, an array or a struct.
+    pub fn component(&mut self, base: KernelValue, index: u32) -> KernelValue {
+        self.add(Expression::AccessIndex { base, index })
+    }
+
+    pub fn binary(&mut self, op: Op, left: KernelValue, right: KernelValue) -> KernelValue {
+        self.add(Expression::Binary { op, left, right })
+    }
+
+    /// A built-in function of two values.
+    pub fn math(
+        &mut self,
+        fun: MathFunction,
+        left: KernelValue,
+        right: KernelValue,
+    ) -> KernelValue {
+        self.add(Expression::Math { fun, arg: left, arg1: Some(right), arg2: None, arg3: None })
+    }
+
+    /// A value converted to 32 bits of a kind.
+    pub fn convert(&mut self, expr: KernelValue, kind: ScalarKind) -> KernelValue {
+        self.add(Expression::As { expr, kind, convert: Some(4) })
+    }
+
+    /// A value of the type from words; `None` if the type does not consist of words.
+    pub fn unflatten(
+        &mut self,
+        ty: Handle<Type>,
+        words: &mut dyn Iterator<Item = KernelValue>,
+    ) -> Option<KernelValue> {
+        if let TypeInner::Scalar(scalar) = self.module.types[ty].inner {
+            return words.next().map(|word| self.word_as(word, scalar.kind));
+        }
+        let components = self
+            .parts(ty)?
+            .into_iter()
+            .map(|part| self.unflatten(part, words))
+            .collect::<Option<_>>()?;
+        Some(self.add(Expression::Compose { ty, components }))
+    }
+
+    fn word_as(&mut self, word: KernelValue, kind: ScalarKind) -> KernelValue {
+        match kind {
+            ScalarKind::Uint => word,
+            ScalarKind::Bool => {
+                let zero = self.literal(0);
+                self.binary(Op::NotEqual, word, zero)
+            }
+            _ => self.add(Expression::As { expr: word, kind, convert: None }),
+        }
+    }
+
+    /// Appends the words of a value.
+    pub fn flatten(&mut self, value: KernelValue, ty: Handle<Type>, words: &mut Vec<KernelValue>) {
+        if let TypeInner::Scalar(scalar) = self.module.types[ty].inner {
+            let word = self.as_word(value, scalar.kind);
+            return words.push(word);
+        }
+        for (index, part) in self.parts(ty).into_iter().flatten().enumerate() {
+            let component = self.component(value, index as u32);
+            self.flatten(component, part, words);
+        }
+    }
+
+    /// The types of what a value is made of; `None` where it has no words.
+    fn parts(&mut self, ty: Handle<Type>) -> Option<Vec<Handle<Type>>> {
+        Some(match self.module.types[ty].inner.clone() {
+            TypeInner::Vector { size, scalar } => vec![self.scalar(scalar); size as usize],
+            TypeInner::Matrix { columns, rows, scalar } => {
+                vec![self.vector(rows, scalar.kind); columns as usize]
+            }
+            TypeInner::Array { base, size: naga::ArraySize::Constant(count), .. } => {
+                vec![base; count.get() as usize]
+            }
+            TypeInner::Struct { members, .. } => members.iter().map(|member| member.ty).collect(),
+            _ => return None,
+        })
+    }
+
+    fn as_word(&mut self, value: KernelValue, kind: ScalarKind) -> KernelValue {
+        match kind {
+            ScalarKind::Uint => value,
+            ScalarKind::Bool => {
+                let (accept, reject) = (self.literal(1), self.literal(0));
+                self.add(Expression::Select { condition: value, accept, reject })
+            }
+            _ => self.add(Expression::As { expr: value, kind: ScalarKind::Uint, convert: None }),
+        }
+    }
 }

@@ -3,10 +3,10 @@
 use naga::{Binding, BuiltIn};
 use rayon::prelude::*;
 
-use super::corners::{Corner, ScalarSource, scalar_sources, vertex_attribute};
 use super::{FragmentOutput, Quad, ShadedQuad, Shading};
 use crate::frame::{Buffers, Drawing, EntryPoint, Mesh};
 use crate::interpreter::eval_failed;
+use crate::raster::{Corner, ScalarSource, scalar_sources, vertex_attribute};
 use crate::{executor_failed, module_info};
 use lamplight_diagnostic::Diagnostic;
 use lamplight_eval::{Batch, Function, FunctionId, Machine, Number, Program, Resources, SlotKind};

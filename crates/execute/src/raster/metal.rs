@@ -4,13 +4,13 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use naga::BuiltIn;
 
-use super::corners::{Corner, ScalarSource, vertex_attribute};
 use super::{FragmentOutput, Quad, ShadedQuad, Shading};
 use crate::compiled::CompiledProgram;
 use crate::compiled::interface::{Interface, InterfaceMember, InterfaceRole};
 use crate::compiled::request::{FragmentInput, MetalResources, Transformed, VertexInput};
 use crate::executor_failed;
 use crate::frame::{Buffers, Drawing, Frame, Mesh};
+use crate::raster::{Corner, ScalarSource, vertex_attribute};
 use crate::shipped::Shipped;
 use lamplight_diagnostic::Diagnostic;
 use lamplight_eval::{Number, Resources};

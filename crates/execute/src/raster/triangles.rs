@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::corners::Corner;
 use crate::frame::{Face, Mesh, PipelineState};
+use crate::raster::Corner;
 
 /// A triangle on the frame.
 #[derive(Debug, Clone)]

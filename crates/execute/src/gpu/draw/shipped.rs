@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use super::super::passthrough::SpirvBinary;
-use super::super::{Shaders, WgpuDevice, executor_failed, hlsl, lock_mutex};
-use super::bindings::Bindings;
-use super::target::Targets;
+use super::super::passthrough::{SpirvBinary, hlsl_lacks};
+use super::super::{Shaders, WgpuDevice, executor_failed, lock_mutex};
 use super::{LAVAPIPE_BLOCKS, Meshes, StageModules};
 use crate::ShippedPair;
 use crate::frame::{BindingPlace, Drawing, Frame};
+use crate::gpu::draw::Bindings;
+use crate::gpu::draw::Targets;
 use crate::shipped::{ColorFormat, Shipped};
 use lamplight_bundle::{SamplerHeap, Stage, Target};
 use lamplight_diagnostic::{Diagnostic, codes};
@@ -57,7 +57,7 @@ impl WgpuDevice {
         pair: ShippedPair<'_>,
         drawing: &Drawing<'_>,
         formats: &[ColorFormat],
-    ) -> Result<Vec<super::target::Pending>, Diagnostic> {
+    ) -> Result<Vec<super::Pending>, Diagnostic> {
         let used = read_places(pair);
         let group = used.iter().map(|(group, _)| group + 1).max().unwrap_or(0);
         let vertex = self.loaded(pair.vertex, group)?;
@@ -140,7 +140,7 @@ impl WgpuDevice {
 fn stage_lacks(stage: &Shipped) -> Option<&'static str> {
     match stage.target {
         Target::WGSL if stage.reflection.stage == Stage::Fragment => stage.lacks_of_webgpu(),
-        Target::HLSL => hlsl::hlsl_lacks(&stage.text()),
+        Target::HLSL => hlsl_lacks(&stage.text()),
         _ => None,
     }
 }

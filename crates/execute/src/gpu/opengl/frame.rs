@@ -4,7 +4,10 @@ use std::collections::BTreeMap;
 
 use glow::HasContext as _;
 
-use super::{TextureUnit, plain_state, program, texture};
+use super::{
+    TextureUnit, check_error, create_sampler, link_program, plain_state, set_block, set_unit,
+    target_texture, upload_fixture,
+};
 use crate::ShippedPair;
 use crate::fixture::Fixture;
 use crate::frame::{
@@ -52,7 +55,7 @@ pub fn draw_frames(
             unit.sampler.into_iter().for_each(|sampler| gl.delete_sampler(sampler));
         }
     }
-    program::check_error(gl)?;
+    check_error(gl)?;
     frames
 }
 
@@ -61,7 +64,7 @@ fn prepare_frame(
     pair: ShippedPair<'_>,
     drawing: &Drawing<'_>,
 ) -> Result<FrameProgram, String> {
-    let program = program::link_program(gl, &pair.vertex.text(), &pair.fragment.text())?;
+    let program = link_program(gl, &pair.vertex.text(), &pair.fragment.text())?;
     let (mut blocks, mut units) = (BTreeMap::new(), Vec::new());
     for stage in [pair.vertex, pair.fragment] {
         for place in stage.blocks() {
@@ -69,7 +72,7 @@ fn prepare_frame(
             let next = blocks.len() as u32;
             let number = *blocks.entry(place).or_insert(slot.index.unwrap_or(next));
             if let (None, Some(name)) = (slot.index, &slot.name) {
-                program::set_block(gl, program, name, number);
+                set_block(gl, program, name, number);
             }
         }
         for combined in &stage.native.combined {
@@ -77,7 +80,7 @@ fn prepare_frame(
             units.push(texture_unit(gl, program, stage, combined, next, drawing)?);
         }
     }
-    program::check_error(gl)?;
+    check_error(gl)?;
     Ok(FrameProgram { program, units, blocks })
 }
 
@@ -104,12 +107,12 @@ fn texture_unit(
         return Err(format!("`{}` has no fixture", combined.name));
     };
     let index = find_slot(stage, (group, binding))?.index.unwrap_or_else(|| {
-        program::set_unit(gl, program, &combined.name, next);
+        set_unit(gl, program, &combined.name, next);
         next
     });
     let settings = combined.sampler.and_then(|place| drawing.sampler_at(place));
-    let sampler = settings.map(|settings| texture::create_sampler(gl, settings)).transpose()?;
-    let (target, texture) = texture::upload_fixture(gl, fixture)?;
+    let sampler = settings.map(|settings| create_sampler(gl, settings)).transpose()?;
+    let (target, texture) = upload_fixture(gl, fixture)?;
     Ok(TextureUnit { index, target, texture, sampler })
 }
 
@@ -122,7 +125,7 @@ fn draw_frame(
 ) -> Result<Frame, String> {
     let targets = formats
         .iter()
-        .map(|format| texture::target_texture(gl, drawing.size, *format == ColorFormat::Float))
+        .map(|format| target_texture(gl, drawing.size, *format == ColorFormat::Float))
         .collect::<Result<Vec<_>, _>>()?;
     let [width, height] = drawing.size.map(|size| size as i32);
     // SAFETY: the context is current, and every name is of it.
@@ -158,7 +161,7 @@ fn draw_frame(
         gl.bind_framebuffer(glow::FRAMEBUFFER, None);
         gl.delete_framebuffer(framebuffer);
         targets.into_iter().for_each(|target| gl.delete_texture(target));
-        program::check_error(gl)?;
+        check_error(gl)?;
         Ok(Frame { targets: words, depth: Vec::new(), detour: None })
     }
 }

@@ -3,27 +3,24 @@
 //! Why not through wgpu? Its GL backend accepts a shader's text unchanged. But it learns only from
 //! its own translation which sampler belongs to which texture, so shadow lookups would not work. It
 //! also opens only one kind of context.
+//!
+//! Programs are compiled and linked from two texts; fixtures and words become textures and samplers.
 
 mod context;
 mod frame;
-mod program;
-mod texture;
 
-pub use context::OpenGlApi;
-
-use std::collections::HashMap;
-
-use glow::HasContext as _;
-
-use super::{emitted, executor_failed};
-use crate::fixture::Fixture;
+use crate::fixture::{Address, Compare, Fixture, FixtureSampler, FixtureTexture};
 use crate::frame::{Drawing, Frame};
+use crate::gpu::{emitted, executor_failed};
 use crate::kernel::{INPUT_WIDTH, Kernel, SENTINEL, TARGET_WIDTH};
 use crate::{Session, ShippedPair};
+pub use context::OpenGlApi;
 use context::OpenGlContext;
+use glow::HasContext as _;
 use lamplight_bundle::{Combined, Target};
 use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_emit::Emitted;
+use std::collections::HashMap;
 
 /// Group and binding of a kernel's input texture.
 const INPUTS: [u32; 2] = [0, 0];
@@ -57,7 +54,7 @@ impl OpenGl {
     }
 
     fn has_extensions(&self, text: &[u8]) -> Result<(), Diagnostic> {
-        let missing = self.context.with(|gl| Ok(program::missing_extension(gl, text)));
+        let missing = self.context.with(|gl| Ok(missing_extension(gl, text)));
         match missing.map_err(executor_failed)? {
             None => Ok(()),
             Some(name) => {
@@ -71,7 +68,7 @@ impl OpenGl {
         if !self.kept.contains_key(&kernel.code) {
             let emitted = emitted::emit_kernel(kernel, self.target)?;
             self.has_extensions(&emitted.bytes)?;
-            let vertex = program::triangle_stage(self.context.api());
+            let vertex = triangle_stage(self.context.api());
             let kept = self.context.with(|gl| keep_kernel(gl, kernel, &vertex, &emitted));
             self.kept.insert(kernel.code, kept.map_err(executor_failed)?);
         }
@@ -95,7 +92,7 @@ impl Session for OpenGl {
     }
 
     fn run(&mut self, kernel: &Kernel, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
-        super::run_batches(kernel, inputs, |texels, rows| self.draw(kernel, texels, rows))
+        crate::gpu::run_batches(kernel, inputs, |texels, rows| self.draw(kernel, texels, rows))
     }
 
     fn draw_shipped(
@@ -121,7 +118,7 @@ fn keep_kernel(
     emitted: &Emitted,
 ) -> Result<OpenGlKernel, String> {
     let text = str::from_utf8(&emitted.bytes).map_err(|error| error.to_string())?;
-    let program = program::link_program(gl, vertex, text)?;
+    let program = link_program(gl, vertex, text)?;
     let (mut inputs, mut units) = (0, Vec::new());
     for (order, combined) in emitted.native.combined.iter().enumerate() {
         let index = texture_unit(gl, program, emitted, combined, order as u32);
@@ -133,11 +130,11 @@ fn keep_kernel(
             return Err(format!("`{}` has no fixture", combined.name));
         };
         let settings = combined.sampler.and_then(|place| kernel.fixture_at(place[1])?.sampler());
-        let sampler = settings.map(|settings| texture::create_sampler(gl, settings)).transpose()?;
-        let (target, texture) = texture::upload_fixture(gl, fixture)?;
+        let sampler = settings.map(|settings| create_sampler(gl, settings)).transpose()?;
+        let (target, texture) = upload_fixture(gl, fixture)?;
         units.push(TextureUnit { index, target, texture, sampler });
     }
-    program::check_error(gl)?;
+    check_error(gl)?;
     Ok(OpenGlKernel { program, inputs, units })
 }
 
@@ -153,7 +150,7 @@ fn texture_unit(
     let slot =
         emitted.native.slots.iter().find(|slot| [slot.group, slot.binding] == combined.texture);
     slot.and_then(|slot| slot.index).unwrap_or_else(|| {
-        program::set_unit(gl, program, &combined.name, order);
+        set_unit(gl, program, &combined.name, order);
         order
     })
 }
@@ -170,9 +167,9 @@ fn draw_kernel(
     let (width, height) = (TARGET_WIDTH as i32, rows as i32);
     // SAFETY: the context is current, every name is of it, and `pixels` holds the whole target.
     unsafe {
-        let target = texture::words_texture(gl, [TARGET_WIDTH, rows], None)?;
+        let target = words_texture(gl, [TARGET_WIDTH, rows], None)?;
         let height_of_inputs = texels.len() as u32 / 4 / INPUT_WIDTH;
-        let inputs = texture::words_texture(gl, [INPUT_WIDTH, height_of_inputs], Some(&bytes))?;
+        let inputs = words_texture(gl, [INPUT_WIDTH, height_of_inputs], Some(&bytes))?;
         let (frame, array) = (gl.create_framebuffer()?, gl.create_vertex_array()?);
         gl.bind_framebuffer(glow::FRAMEBUFFER, Some(frame));
         gl.framebuffer_texture_2d(
@@ -199,7 +196,7 @@ fn draw_kernel(
         gl.delete_texture(target);
         gl.delete_texture(inputs);
     }
-    program::check_error(gl)?;
+    check_error(gl)?;
     Ok(pixels.as_chunks::<4>().0.iter().map(|bytes| u32::from_ne_bytes(*bytes)).collect())
 }
 
@@ -230,5 +227,223 @@ fn bind_inputs(gl: &glow::Context, kept: &OpenGlKernel, inputs: glow::Texture) {
             gl.bind_texture(unit.target, Some(unit.texture));
             gl.bind_sampler(unit.index, unit.sampler);
         }
+    }
+}
+
+/// The full-screen triangle, without the `#version` line.
+const TRIANGLE: &str = "
+void main() {
+    vec2 corner = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2);
+    gl_Position = vec4(corner * 2.0 - 1.0, 0.0, 1.0);
+}
+";
+
+/// A vertex stage that draws one triangle over everything.
+fn triangle_stage(api: OpenGlApi) -> String {
+    let version = match api {
+        OpenGlApi::Core(major, minor) => format!("{major}{minor}0 core"),
+        OpenGlApi::Embedded(major, minor) => format!("{major}{minor}0 es"),
+    };
+    format!("#version {version}\n{TRIANGLE}")
+}
+
+/// The first extension that a text requires and that the driver lacks.
+fn missing_extension(gl: &glow::Context, text: &[u8]) -> Option<String> {
+    let text = String::from_utf8_lossy(text);
+    let required = text.lines().filter_map(|line| {
+        line.strip_prefix("#extension ")?.strip_suffix(": require").map(str::trim)
+    });
+    let known = gl.supported_extensions();
+    required.into_iter().find(|name| !known.contains(*name)).map(str::to_owned)
+}
+
+/// Compiles and links both stages.
+fn link_program(gl: &glow::Context, vertex: &str, fragment: &str) -> Result<glow::Program, String> {
+    // SAFETY: the context is current; every name is of this context.
+    unsafe {
+        let program = gl.create_program()?;
+        for (stage, text) in [(glow::VERTEX_SHADER, vertex), (glow::FRAGMENT_SHADER, fragment)] {
+            let shader = gl.create_shader(stage)?;
+            gl.shader_source(shader, text);
+            gl.compile_shader(shader);
+            if !gl.get_shader_compile_status(shader) {
+                let words = gl.get_shader_info_log(shader);
+                return Err(format!("the driver rejects the emitted text: {words}"));
+            }
+            gl.attach_shader(program, shader);
+            gl.delete_shader(shader);
+        }
+        gl.link_program(program);
+        if gl.get_program_link_status(program) {
+            Ok(program)
+        } else {
+            let words = gl.get_program_info_log(program);
+            Err(format!("the driver does not link the emitted texts: {words}"))
+        }
+    }
+}
+
+/// Assigns a combined sampler to a texture unit, unless the driver removed it.
+fn set_unit(gl: &glow::Context, program: glow::Program, name: &str, unit: u32) {
+    // SAFETY: the context is current and the program is of it.
+    unsafe {
+        gl.use_program(Some(program));
+        if let Some(location) = gl.get_uniform_location(program, name) {
+            gl.uniform_1_i32(Some(&location), unit as i32);
+        }
+    }
+}
+
+/// Assigns a uniform block to a binding, unless the driver removed it.
+fn set_block(gl: &glow::Context, program: glow::Program, name: &str, binding: u32) {
+    // SAFETY: the context is current and the program is of it.
+    unsafe {
+        if let Some(index) = gl.get_uniform_block_index(program, name) {
+            gl.uniform_block_binding(program, index, binding);
+        }
+    }
+}
+
+/// Returns the first OpenGL error since the last check, as a message.
+fn check_error(gl: &glow::Context) -> Result<(), String> {
+    // SAFETY: the context is current.
+    match unsafe { gl.get_error() } {
+        glow::NO_ERROR => Ok(()),
+        error => Err(format!("OpenGL reports error 0x{error:04x}")),
+    }
+}
+
+/// Uploads the fixture as a texture; also returns its target.
+fn upload_fixture(
+    gl: &glow::Context,
+    texture: &FixtureTexture,
+) -> Result<(u32, glow::Texture), String> {
+    let (internal, format) = if texture.kind.is_depth() {
+        (glow::DEPTH_COMPONENT32F, glow::DEPTH_COMPONENT)
+    } else {
+        (glow::RGBA32F, glow::RGBA)
+    };
+    let cube = texture.kind.layers() == 6;
+    let target = if cube { glow::TEXTURE_CUBE_MAP } else { glow::TEXTURE_2D };
+    let layer = texture.texels.len() / texture.kind.layers() as usize;
+    let bytes: Vec<u8> = texture.texels.iter().flat_map(|value| value.to_ne_bytes()).collect();
+    // SAFETY: the context is current. Each slice has the texels of one layer, with four bytes for
+    // each component.
+    unsafe {
+        let made = gl.create_texture()?;
+        gl.active_texture(glow::TEXTURE0);
+        gl.bind_texture(target, Some(made));
+        for (face, texels) in bytes.chunks(layer * 4).enumerate() {
+            let target =
+                if cube { glow::TEXTURE_CUBE_MAP_POSITIVE_X + face as u32 } else { target };
+            gl.tex_image_2d(
+                target,
+                0,
+                internal as i32,
+                texture.width as i32,
+                texture.height as i32,
+                0,
+                format,
+                glow::FLOAT,
+                glow::PixelUnpackData::Slice(Some(texels)),
+            );
+        }
+        set_nearest(gl, target);
+        Ok((target, made))
+    }
+}
+
+/// A texture of words, bound to unit 0.
+fn words_texture(
+    gl: &glow::Context,
+    size: [u32; 2],
+    texels: Option<&[u8]>,
+) -> Result<glow::Texture, String> {
+    make_texture(gl, size, (glow::RGBA32UI, glow::RGBA_INTEGER, glow::UNSIGNED_INT), texels)
+}
+
+/// A texture to draw into, with four floats or four words for each texel.
+fn target_texture(
+    gl: &glow::Context,
+    size: [u32; 2],
+    is_float: bool,
+) -> Result<glow::Texture, String> {
+    match is_float {
+        true => make_texture(gl, size, (glow::RGBA32F, glow::RGBA, glow::FLOAT), None),
+        false => words_texture(gl, size, None),
+    }
+}
+
+fn make_texture(
+    gl: &glow::Context,
+    [width, height]: [u32; 2],
+    (internal, format, ty): (u32, u32, u32),
+    texels: Option<&[u8]>,
+) -> Result<glow::Texture, String> {
+    // SAFETY: the context is current, and the slice has 16 bytes for each texel.
+    unsafe {
+        let made = gl.create_texture()?;
+        gl.active_texture(glow::TEXTURE0);
+        gl.bind_texture(glow::TEXTURE_2D, Some(made));
+        gl.tex_image_2d(
+            glow::TEXTURE_2D,
+            0,
+            internal as i32,
+            width as i32,
+            height as i32,
+            0,
+            format,
+            ty,
+            glow::PixelUnpackData::Slice(texels),
+        );
+        set_nearest(gl, glow::TEXTURE_2D);
+        Ok(made)
+    }
+}
+
+/// Sets what a texture with one level needs to be complete, where no sampler object is bound.
+///
+/// # Safety
+///
+/// The context is current, and a texture is bound to the target.
+unsafe fn set_nearest(gl: &glow::Context, target: u32) {
+    // SAFETY: a texture is bound to the target.
+    unsafe {
+        gl.tex_parameter_i32(target, glow::TEXTURE_MIN_FILTER, glow::NEAREST as i32);
+        gl.tex_parameter_i32(target, glow::TEXTURE_MAG_FILTER, glow::NEAREST as i32);
+        gl.tex_parameter_i32(target, glow::TEXTURE_MAX_LEVEL, 0);
+    }
+}
+
+/// A sampler object with these settings.
+fn create_sampler(gl: &glow::Context, settings: FixtureSampler) -> Result<glow::Sampler, String> {
+    let filter = if settings.linear { glow::LINEAR } else { glow::NEAREST };
+    let wrap = match settings.address {
+        Address::Clamp => glow::CLAMP_TO_EDGE,
+        Address::Repeat => glow::REPEAT,
+        Address::Mirror => glow::MIRRORED_REPEAT,
+    };
+    let compare = settings.compare.map(|compare| match compare {
+        Compare::Less => glow::LESS,
+        Compare::LessEqual => glow::LEQUAL,
+        Compare::Greater => glow::GREATER,
+        Compare::GreaterEqual => glow::GEQUAL,
+        Compare::Equal => glow::EQUAL,
+        Compare::NotEqual => glow::NOTEQUAL,
+    });
+    // SAFETY: the context is current.
+    unsafe {
+        let sampler = gl.create_sampler()?;
+        let set = |name: u32, value: u32| gl.sampler_parameter_i32(sampler, name, value as i32);
+        set(glow::TEXTURE_MIN_FILTER, filter);
+        set(glow::TEXTURE_MAG_FILTER, filter);
+        for axis in [glow::TEXTURE_WRAP_S, glow::TEXTURE_WRAP_T, glow::TEXTURE_WRAP_R] {
+            set(axis, wrap);
+        }
+        if let Some(compare) = compare {
+            set(glow::TEXTURE_COMPARE_MODE, glow::COMPARE_REF_TO_TEXTURE);
+            set(glow::TEXTURE_COMPARE_FUNC, compare);
+        }
+        Ok(sampler)
     }
 }
