@@ -1,6 +1,6 @@
 //! The values that a parameter takes in a case.
 
-use super::random::Random;
+use crate::cases::values::Random;
 use super::reader::{CaseNode, CaseValue};
 use super::values::{
     even_steps, neighbours_of, related_directions, special_values, specials, unit_vectors,

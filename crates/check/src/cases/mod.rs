@@ -51,14 +51,13 @@
 mod domain;
 mod fixtures;
 mod law;
-mod random;
 mod reader;
 mod rows;
 mod values;
 
 pub use domain::{Domain, word_of};
-pub use random::Random;
 pub use rows::{Rows, case_rows, spend_steps, words_to_numbers};
+pub use values::Random;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

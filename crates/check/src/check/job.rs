@@ -1,26 +1,27 @@
-//! Prepares a case: kernels, rows, expected values. No executor is needed for this.
+//! Prepares a case: kernels, rows, expected values. No executor is needed for this. The rows and the
+//! work of the cases of a file have limits, and the kernels of one function share their code.
 
-use std::collections::HashMap;
-use std::sync::Arc;
-
-use rayon::prelude::*;
-
-use super::code::share_code;
-use super::partner::{self, Partner};
-use super::share::{RowFormulas, Total, steps_of_case};
-use super::{CheckOptions, Subjects};
-use crate::cases::{self, Case, CaseFile, FormulaText, Oracle, Rows};
+use crate::cases::{Case, CaseFile, FormulaText, Oracle, Rows};
+use crate::check::partner::Partner;
+use crate::check::{CheckOptions, Subjects, partner};
 use crate::formula::{Formula, Scope};
-use crate::laws::{self, Law};
-use crate::references::{self, CallArguments, Expected, Reference};
-use crate::tolerance::{self, BoundTerm};
+use crate::laws::Law;
+use crate::references::{CallArguments, Expected, Reference};
+use crate::tolerance::BoundTerm;
+use crate::{cases, laws, references, tolerance};
 use lamplight_bundle::Language;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_eval::{Bounded, FindingKind, Number};
 use lamplight_execute::fixture::Fixture;
 use lamplight_execute::interpreter::{Interpreter, KernelCalls, slot_value};
-use lamplight_execute::kernel::{self, Kernel, TypeShape};
+use lamplight_execute::kernel;
+use lamplight_execute::kernel::{Kernel, TypeShape};
+use lamplight_files::limits::{CASE_ROWS, CASE_WORDS, CASE_WORK, Steps};
 use naga::ScalarKind;
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// One case of one module.
 pub struct CaseJob<'a> {
@@ -374,4 +375,92 @@ fn bounded_row(
     let doubtful =
         calls.machine.findings().iter().any(|finding| finding.kind == FindingKind::Ambiguous);
     Ok(Goal { expected, errors, doubtful })
+}
+
+/// Gives the kernels of one function with the same fixtures the same code, so that executors
+/// compile it once for all its cases and laws.
+fn share_code(jobs: &mut [CaseJob<'_>]) {
+    let mut known: Vec<(String, Vec<Arc<Fixture>>, Vec<u64>)> = Vec::new();
+    let mut share = |path: String, fixtures: &[Arc<Fixture>], kernels: &mut [(_, Kernel)]| {
+        let is_same =
+            |(other, others, _): &&(String, Vec<_>, _)| *other == path && others == fixtures;
+        match known.iter().find(is_same) {
+            Some((_, _, codes)) => {
+                kernels.iter_mut().zip(codes).for_each(|((_, kernel), code)| kernel.code = *code);
+            }
+            None => {
+                let codes = kernels.iter().map(|(_, kernel)| kernel.code).collect();
+                known.push((path, fixtures.to_vec(), codes));
+            }
+        }
+    };
+    for job in jobs {
+        let CaseJob { module, case, fixtures, kernels, laws, .. } = job;
+        share(format!("{module}::{}", case.function), fixtures, kernels);
+        for law in laws {
+            for (partner, name) in law.partners.iter_mut().zip(&law.law.partners) {
+                let is_path = name.contains("::");
+                let path = if is_path { name.clone() } else { format!("{module}::{name}") };
+                share(path, &[], &mut partner.kernels);
+            }
+        }
+    }
+}
+
+/// The steps that each case of a file may take: an equal share of the limit of the file. The order
+/// in which cases run therefore makes no difference.
+fn steps_of_case(file: &CaseFile) -> Steps {
+    Steps::new(CASE_WORK / file.cases.len().max(1) as u64)
+}
+
+/// The sums over all cases of a file. Cases are prepared in any order, but whether a sum exceeds
+/// its limit does not depend on the order.
+#[derive(Default)]
+struct Total {
+    rows: AtomicUsize,
+    words: AtomicUsize,
+}
+
+impl Total {
+    /// Counts the rows of a case; each of its laws may have as many.
+    pub fn add(&self, rows: &Rows, case: &Case) {
+        let words = rows.words.len().saturating_mul(1 + case.laws.len());
+        self.rows.fetch_add(rows.len(), Ordering::Relaxed);
+        self.words.fetch_add(words, Ordering::Relaxed);
+    }
+
+    pub fn check(&self, file: &CaseFile) -> Result<(), Diagnostic> {
+        let is_too_much = self.rows.load(Ordering::Relaxed) > CASE_ROWS
+            || self.words.load(Ordering::Relaxed) > CASE_WORDS;
+        let Some(first) = file.cases.first().filter(|_| is_too_much) else { return Ok(()) };
+        let message = format!(
+            "the cases of this file have more than {CASE_ROWS} rows together, or more than \
+             {CASE_WORDS} scalars with those of their laws"
+        );
+        Err(Diagnostic::error(codes::CASE_INVALID, message).at(first.span, "the first of them"))
+    }
+}
+
+/// What is evaluated for each row of a case.
+struct RowFormulas<'a> {
+    pub terms: &'a [BoundTerm],
+    pub near: &'a Option<(Formula, f64)>,
+    pub filter: &'a Option<Formula>,
+    pub oracle: &'a BoundOracle,
+}
+
+impl RowFormulas<'_> {
+    /// Subtracts the work of these parts from the steps, before any of it is done: for every row
+    /// once for the values and once for each law.
+    pub fn spend(&self, case: &Case, rows: &Rows, steps: &mut Steps) -> Result<(), Diagnostic> {
+        let near = self.near.as_ref().map_or(0, |(formula, _)| formula.parts());
+        let filter = self.filter.as_ref().map_or(0, Formula::parts);
+        let oracle = match self.oracle {
+            BoundOracle::Formula(formula) => formula.parts(),
+            _ => 1,
+        };
+        let terms: usize = self.terms.iter().map(BoundTerm::parts).sum();
+        let each = (1 + case.laws.len()).saturating_mul(rows.stride + near + filter + terms);
+        cases::spend_steps(case, rows.len(), each.saturating_add(oracle), steps)
+    }
 }

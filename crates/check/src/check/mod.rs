@@ -1,6 +1,5 @@
 //! Runs cases of modules in each language on each executor. Prints nothing: results are data.
 
-mod code;
 mod facts;
 pub mod job;
 pub mod judge;
@@ -9,7 +8,6 @@ mod partner;
 mod profile;
 mod proof;
 mod report;
-mod share;
 mod shrink;
 mod told;
 pub mod values;
