@@ -8,8 +8,8 @@ use super::super::cost::{AxisCost, Costs, FIGURES, SHOWN, SORTED_BY};
 use super::super::plot::draw_scatter;
 use super::super::quality::{Measured, QualityEntry, QualityRow};
 use super::super::{CatalogueItem, CatalogueModule};
-use super::markdown::table_cell;
 use super::page_of;
+use crate::pages::table_cell;
 
 const HEAD: &str = "\
 # Costs
