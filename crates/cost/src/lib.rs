@@ -13,8 +13,6 @@ pub mod baseline;
 pub mod counts;
 pub mod device;
 pub mod gpu;
-mod known;
-mod made;
 pub mod mali;
 pub mod permutations;
 pub mod pipeline;
@@ -138,7 +136,7 @@ pub fn measure_subjects(
         .collect();
     let (done, total) = (AtomicUsize::new(0), jobs.len());
     let one = |(device, pipeline, name): &(&Device, &Pipeline, &str)| {
-        let figures = known::known_figures(device, pipeline, cache);
+        let figures = baseline::known_figures(device, pipeline, cache);
         progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
         figures.map_err(|reason| format!("`{name}` on {}: {reason}", device.gpu.name))
     };
