@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use super::suite::{self, Subject, Suite};
-use super::words::author_span;
+use crate::site::author_span;
 use lamplight_check::library::Library;
 use lamplight_diagnostic::Diagnostics;
 use lamplight_diagnostic::source::SourceSet;

@@ -10,16 +10,10 @@
 //! not count. Mutants that no input can distinguish from the original, and those that survive for
 //! another reason, are listed in `survivors.toml` at the package's root.
 
-mod apply;
 mod coverage;
-mod listed;
-mod operators;
-mod order;
 mod report;
-mod runner;
 mod site;
 mod suite;
-mod words;
 
 pub use coverage::{Coverage, UncoveredBlock, measure_coverage};
 pub use report::{Fate, MutantOutcome, MutantReport};
@@ -32,7 +26,7 @@ use lamplight_check::library::Library;
 use lamplight_diagnostic::Diagnostics;
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_validate::on_large_stack;
-use listed::Listed;
+use report::Listed;
 use site::Site;
 use suite::{Subject, Suite};
 
@@ -45,7 +39,7 @@ pub fn run_mutants(
     sources: &Mutex<SourceSet>,
     modules: &[String],
 ) -> Result<MutantReport, Diagnostics> {
-    let listed = listed::read_list(library)?;
+    let listed = report::read_list(library)?;
     on_large_stack(|| {
         let files = suite::case_files(library, sources, modules)?;
         let suites = suite::make_suites(library, sources, &files)?;
@@ -87,7 +81,7 @@ fn mutant_outcome(
     site: &Site,
 ) -> Option<MutantOutcome> {
     let fate = suite.fate(subject, site)?;
-    let text = words::QuotedSource {
+    let text = site::QuotedSource {
         sources,
         map: &suite.map,
         function: &suite.whole.functions[subject.function],

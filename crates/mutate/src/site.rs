@@ -1,14 +1,20 @@
 //! The mistakes that can be put into a function, one at a time.
+//!
+//! The tables say what authors confuse: operators, built-in functions, and operands that may not be
+//! swapped. [`apply_mutation`] puts a mistake into a function, and [`QuotedSource`] describes it in
+//! the author's terms, with its place.
 
+use lamplight_compose::SourceMap;
+use lamplight_diagnostic::source;
+use lamplight_diagnostic::source::SourceSet;
+use lamplight_emit::blocks::{inner_blocks, inner_blocks_mut};
+use lamplight_syntax::words::is_word;
 use naga::valid::{FunctionInfo, ModuleInfo};
 use naga::{
     BinaryOperator as Op, Block, Expression, Function, Handle, Literal, MathFunction as Math,
-    Module, ScalarKind, Span, Statement, SwizzleComponent, Type, TypeInner, UnaryOperator,
+    Module, Range, ScalarKind, Span, Statement, SwizzleComponent, Type, TypeInner, UnaryOperator,
     VectorSize,
 };
-
-use super::operators::{BUILT_INS, OPERATORS, SIDED, SIDED_MATH};
-use lamplight_emit::blocks::inner_blocks;
 
 /// One mistake: its place in the composed text, and the change.
 #[derive(Debug, Clone)]
@@ -357,4 +363,285 @@ fn wrong_literal(literal: Literal) -> Option<(Expression, How)> {
         _ => return None,
     };
     Some((Expression::Literal(literal), how))
+}
+
+/// Operators that authors confuse. Swapped operands are a mistake of their own.
+const OPERATORS: &[(Op, &[(Op, &str)])] = &[
+    (Op::Add, &[(Op::Subtract, "-")]),
+    (Op::Subtract, &[(Op::Add, "+")]),
+    (Op::Multiply, &[(Op::Divide, "/")]),
+    (Op::Divide, &[(Op::Multiply, "*")]),
+    (Op::Modulo, &[(Op::Divide, "/")]),
+    (Op::Less, &[(Op::LessEqual, "<="), (Op::Greater, ">")]),
+    (Op::LessEqual, &[(Op::Less, "<"), (Op::Greater, ">")]),
+    (Op::Greater, &[(Op::GreaterEqual, ">="), (Op::Less, "<")]),
+    (Op::GreaterEqual, &[(Op::Greater, ">"), (Op::Less, "<")]),
+    (Op::Equal, &[(Op::NotEqual, "!=")]),
+    (Op::NotEqual, &[(Op::Equal, "==")]),
+    (Op::LogicalAnd, &[(Op::LogicalOr, "||")]),
+    (Op::LogicalOr, &[(Op::LogicalAnd, "&&")]),
+    (Op::And, &[(Op::InclusiveOr, "|")]),
+    (Op::InclusiveOr, &[(Op::And, "&")]),
+    (Op::ExclusiveOr, &[(Op::And, "&")]),
+    (Op::ShiftLeft, &[(Op::ShiftRight, ">>")]),
+    (Op::ShiftRight, &[(Op::ShiftLeft, "<<")]),
+];
+
+/// Operators whose operands cannot be swapped, apart from comparisons.
+const SIDED: &[Op] = &[Op::Subtract, Op::Divide, Op::Modulo, Op::ShiftLeft, Op::ShiftRight];
+
+/// Built-ins of two arguments that cannot be swapped.
+const SIDED_MATH: &[Math] =
+    &[Math::Pow, Math::Atan2, Math::Step, Math::Cross, Math::Reflect, Math::Mix, Math::SmoothStep];
+
+/// Built-ins that authors confuse; both take the same arguments.
+const BUILT_INS: &[(Math, Math, &str)] = &[
+    (Math::Min, Math::Max, "max"),
+    (Math::Max, Math::Min, "min"),
+    (Math::Sqrt, Math::InverseSqrt, "inverseSqrt"),
+    (Math::InverseSqrt, Math::Sqrt, "sqrt"),
+    (Math::Sin, Math::Cos, "cos"),
+    (Math::Cos, Math::Sin, "sin"),
+    (Math::Asin, Math::Acos, "acos"),
+    (Math::Acos, Math::Asin, "asin"),
+    (Math::Tan, Math::Atan, "atan"),
+    (Math::Atan, Math::Tan, "tan"),
+    (Math::Exp, Math::Exp2, "exp2"),
+    (Math::Exp2, Math::Exp, "exp"),
+    (Math::Log, Math::Log2, "log2"),
+    (Math::Log2, Math::Log, "log"),
+    (Math::Floor, Math::Ceil, "ceil"),
+    (Math::Ceil, Math::Floor, "floor"),
+    (Math::Round, Math::Floor, "floor"),
+    (Math::Trunc, Math::Floor, "floor"),
+    (Math::Fract, Math::Floor, "floor"),
+];
+
+/// The components of a vector.
+const COMPONENTS: [char; 4] = ['x', 'y', 'z', 'w'];
+
+/// Puts the mistake into the function; `false` if the function does not have its site.
+pub fn apply_mutation(
+    function: &mut Function,
+    site: &Site,
+    inner: impl Fn(Handle<Expression>) -> Option<TypeInner>,
+) -> bool {
+    match &site.edit {
+        Mutation::Expression { at, with, .. } => replace_expression(function, *at, with.clone()),
+        Mutation::Negated { statement, .. } => {
+            change_statement(&mut function.body, *statement, &mut |found| {
+                if let Statement::If { accept, reject, .. } = found {
+                    std::mem::swap(accept, reject);
+                }
+            })
+        }
+        Mutation::NoExit { statement, .. } => {
+            change_statement(&mut function.body, *statement, &mut |found| {
+                if let Statement::If { reject, .. } = found {
+                    *found = Statement::Block(std::mem::take(reject));
+                }
+            })
+        }
+        Mutation::Decided { statement, holds, .. } => {
+            change_statement(&mut function.body, *statement, &mut |found| {
+                keep_branch(found, *holds)
+            })
+        }
+        Mutation::Exchanged { statement, first, .. } => {
+            change_statement(&mut function.body, *statement, &mut |found| {
+                if let Statement::Call { arguments, .. } = found {
+                    arguments.swap(*first, *first + 1);
+                }
+            })
+        }
+        Mutation::NoStore { statement } => {
+            change_statement(&mut function.body, *statement, &mut remove_statement)
+        }
+        Mutation::Argument { statement, result, argument } => {
+            let Some(with) = inner(*argument).and_then(|inner| equal_value(&inner, *argument))
+            else {
+                return false;
+            };
+            let emit = Statement::Emit(Range::new_from_bounds(*result, *result));
+            replace_expression(function, *result, with)
+                && change_statement(&mut function.body, *statement, &mut |found| {
+                    *found = emit.clone()
+                })
+        }
+    }
+}
+
+fn remove_statement(found: &mut Statement) {
+    *found = Statement::Block(Block::new());
+}
+
+/// Only one branch of an `if` remains.
+fn keep_branch(found: &mut Statement, holds: bool) {
+    if let Statement::If { accept, reject, .. } = found {
+        let kept = if holds { accept } else { reject };
+        *found = Statement::Block(std::mem::take(kept));
+    }
+}
+
+fn replace_expression(function: &mut Function, at: Handle<Expression>, with: Expression) -> bool {
+    let there = at.index() < function.expressions.len();
+    if there {
+        function.expressions[at] = with;
+    }
+    there
+}
+
+/// Applies `edit` to the statement of the number `wanted`, in the order of the text; `false` if
+/// there is none.
+fn change_statement(
+    block: &mut Block,
+    wanted: usize,
+    edit: &mut dyn FnMut(&mut Statement),
+) -> bool {
+    let mut left = wanted;
+    walk_statements(block, &mut left, edit)
+}
+
+fn walk_statements(
+    block: &mut Block,
+    left: &mut usize,
+    edit: &mut dyn FnMut(&mut Statement),
+) -> bool {
+    for statement in block.iter_mut() {
+        if *left == 0 {
+            edit(statement);
+            return true;
+        }
+        *left -= 1;
+        if inner_blocks_mut(statement).into_iter().any(|inner| walk_statements(inner, left, edit)) {
+            return true;
+        }
+    }
+    false
+}
+
+/// The most characters of an excerpt.
+const LONGEST: usize = 80;
+
+/// What is needed to quote a composed function as its author wrote it.
+pub struct QuotedSource<'a> {
+    pub sources: &'a SourceSet,
+    pub map: &'a SourceMap,
+    pub function: &'a Function,
+}
+
+impl QuotedSource<'_> {
+    /// `file:line` and the trimmed line.
+    pub fn place(&self, span: Span) -> (String, String) {
+        let Some(found) = author_span(self.map, span) else {
+            return ("?".to_owned(), String::new());
+        };
+        let source = self.sources.get(found.source);
+        let (line, _) = self.sources.position(found.source, found.start as usize);
+        let text = source.text.lines().nth(line - 1).unwrap_or_default().trim();
+        (format!("{}:{line}", source.path), text.to_owned())
+    }
+
+    /// A description of the mistake.
+    pub fn words(&self, site: &Site) -> String {
+        let whole = self.excerpt(site.span);
+        match &site.edit {
+            Mutation::Expression { how, .. } => self.expression(*how, &whole),
+            Mutation::Negated { condition, .. } => {
+                format!("`{}` negated", self.operand(*condition))
+            }
+            Mutation::NoExit { condition, .. } => {
+                format!("no early exit at `{}`", self.operand(*condition))
+            }
+            Mutation::Decided { condition, holds, .. } => {
+                format!("`{holds}` instead of `{}`", self.operand(*condition))
+            }
+            Mutation::Exchanged { arguments: [one, other], .. } => {
+                self.exchange(*one, *other, &whole)
+            }
+            Mutation::NoStore { .. } => format!("no assignment `{whole}`"),
+            Mutation::Argument { argument, .. } => {
+                format!("`{}` instead of `{whole}`", self.operand(*argument))
+            }
+        }
+    }
+
+    fn expression(&self, how: How, whole: &str) -> String {
+        match how {
+            How::Swapped => format!("operands swapped in `{whole}`"),
+            How::Operator(operator) => format!("operator `{operator}` in `{whole}`"),
+            How::Kept(operand) => format!("`{}` instead of `{whole}`", self.operand(operand)),
+            How::NoLowerBound => format!("no lower bound in `{whole}`"),
+            How::NoUpperBound => format!("no upper bound in `{whole}`"),
+            How::Number(value) => format!("`{value}` instead of `{whole}`"),
+            How::Whole(value) => format!("`{value}` instead of `{whole}`"),
+            How::Flipped => format!("the opposite of `{whole}`"),
+            How::Function(name) => format!("`{name}` in `{whole}`"),
+            How::Exchanged(one, other) => self.exchange(one, other, whole),
+            How::Component(index) => {
+                let name = COMPONENTS.get(index).copied().unwrap_or('?');
+                format!("component `{name}` in `{whole}`")
+            }
+        }
+    }
+
+    fn exchange(&self, one: Handle<Expression>, other: Handle<Expression>, whole: &str) -> String {
+        let [one, other] = [one, other].map(|side| self.operand(side));
+        format!("`{one}` and `{other}` exchanged in `{whole}`")
+    }
+
+    fn operand(&self, handle: Handle<Expression>) -> String {
+        match self.function.expressions[handle] {
+            Expression::FunctionArgument(index) => self
+                .function
+                .arguments
+                .get(index as usize)
+                .and_then(|argument| argument.name.clone())
+                .unwrap_or_default(),
+            // naga gives the load of a variable no place.
+            Expression::Load { pointer } => self
+                .variable(pointer)
+                .unwrap_or_else(|| self.excerpt(self.function.expressions.get_span(handle))),
+            _ => self.excerpt(self.function.expressions.get_span(handle)),
+        }
+    }
+
+    fn variable(&self, pointer: Handle<Expression>) -> Option<String> {
+        match self.function.expressions[pointer] {
+            Expression::LocalVariable(variable) => {
+                self.function.local_variables[variable].name.clone()
+            }
+            _ => None,
+        }
+    }
+
+    /// The author's text, with white space replaced by single blanks.
+    fn excerpt(&self, span: Span) -> String {
+        let text = author_span(self.map, span).map_or("?", |found| self.whole_call(found));
+        let spaced = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        match spaced.char_indices().nth(LONGEST) {
+            Some((end, _)) => format!("{}...", &spaced[..end]),
+            None => spaced,
+        }
+    }
+
+    /// naga gives a call the place of the function's name, so its arguments are added.
+    fn whole_call(&self, span: source::Span) -> &str {
+        let text = &self.sources.get(span.source).text;
+        let (name, rest) = (self.sources.text(span), &text[span.end as usize..]);
+        if !is_word(name) || !rest.starts_with('(') {
+            return name;
+        }
+        let mut depth = 0;
+        let end = rest.bytes().position(|byte| {
+            depth += i32::from(byte == b'(') - i32::from(byte == b')');
+            depth == 0
+        });
+        &text[span.start as usize..span.end as usize + end.map_or(0, |end| end + 1)]
+    }
+}
+
+/// The author's span of a span of the composed text.
+pub fn author_span(map: &SourceMap, span: Span) -> Option<source::Span> {
+    map.lookup(span.to_range()?)
 }

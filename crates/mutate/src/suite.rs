@@ -1,31 +1,26 @@
-//! Prepares a module and its cases to be run many times.
+//! Prepares a module and its cases to be run many times, on the evaluator in f32, and orders the rows
+//! so that those that notice most are tried first.
 
-use std::sync::{Arc, Mutex};
-
-use naga::valid::ModuleInfo;
-use naga::{Expression, Function, Handle, Module, ScalarKind};
-use rayon::prelude::*;
-
-use super::apply::apply_mutation;
-use super::order::row_order;
-use super::report::Fate;
-use super::runner::RowRunner;
-use super::site::Site;
-use super::words::author_span;
+use crate::report::Fate;
+use crate::site::{Site, apply_mutation, author_span};
 use lamplight_bundle::Language;
 use lamplight_check::cases::{CaseFile, Rows};
-use lamplight_check::check::CheckOptions;
-use lamplight_check::check::job::{self, BoundOracle, CaseJob, Goal};
-use lamplight_check::check::judge;
-use lamplight_check::check::law::{self, RowResults};
+use lamplight_check::check::job::{BoundOracle, CaseJob, Goal};
+use lamplight_check::check::law::RowResults;
+use lamplight_check::check::{CheckOptions, job, judge, law};
 use lamplight_check::library::Library;
 use lamplight_check::tolerance;
 use lamplight_compose::SourceMap;
 use lamplight_diagnostic::source::SourceSet;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_eval::Machine;
-use lamplight_execute::interpreter::{Interpreter, KernelCalls, slot_value};
+use lamplight_execute::interpreter::{Interpreter, KernelCalls, slot_value, word_of};
+use lamplight_execute::kernel::Kernel;
 use lamplight_execute::module_info;
+use naga::valid::ModuleInfo;
+use naga::{Expression, Function, Handle, Module, ScalarKind};
+use rayon::prelude::*;
+use std::sync::{Arc, Mutex};
 
 /// The most loop iterations of one call: many times what any case needs, and few enough to stop a
 /// mutant soon that loops without end.
@@ -369,4 +364,67 @@ impl ReadyCase<'_> {
         seen(&runner.calls.machine);
         Ok(())
     }
+}
+
+/// Runs rows of a kernel in f32.
+struct RowRunner<'p> {
+    pub calls: KernelCalls<'p, f32>,
+    kinds: Vec<ScalarKind>,
+    stride: usize,
+}
+
+impl<'p> RowRunner<'p> {
+    pub fn new(kernel: &Kernel, interpreter: &'p Interpreter) -> Result<Self, Diagnostic> {
+        let mut calls = interpreter.calls::<f32>()?;
+        calls.machine.loop_limit = TRIPS;
+        Ok(Self { calls, kinds: kernel.result_kinds(), stride: kernel.input_words() as usize })
+    }
+
+    /// Runs the rows. A function without parameters has one row.
+    pub fn run(&mut self, inputs: &[u32]) -> Result<Vec<u32>, Diagnostic> {
+        let mut results = Vec::new();
+        let count = inputs.len().checked_div(self.stride).unwrap_or(1);
+        for row in 0..count {
+            let found = self.calls.call(&inputs[row * self.stride..(row + 1) * self.stride])?;
+            results.extend(found.iter().zip(&self.kinds).map(|(slot, kind)| word_of(*slot, *kind)));
+        }
+        Ok(results)
+    }
+}
+
+/// An order of the rows in which rows with simple values, or at the ends of their columns,
+/// alternate with rows from everywhere.
+fn row_order(rows: &Rows) -> Vec<usize> {
+    let column = |index: usize| (0..rows.len()).map(move |row| rows.row(row)[index]);
+    let ends: Vec<(f64, f64)> = (0..rows.stride.min(rows.row(0).len()))
+        .map(|index| {
+            (
+                column(index).fold(f64::INFINITY, f64::min),
+                column(index).fold(f64::NEG_INFINITY, f64::max),
+            )
+        })
+        .collect();
+    let is_edge = |(value, (low, high)): (&f64, &(f64, f64))| {
+        value == low || value == high || *value == 0.0 || value.abs() == 1.0
+    };
+    let edges = |row: usize| rows.row(row).iter().zip(&ends).filter(|pair| is_edge(*pair)).count();
+    // With a step near the golden section the rows are visited evenly.
+    let count = rows.len();
+    let step = (1..=count)
+        .rev()
+        .find(|step| *step as f64 <= count as f64 * 0.618 && gcd(*step, count) == 1)
+        .unwrap_or(1);
+    let spread = (0..count).map(|index| index * step % count);
+    let mut by_edges: Vec<usize> = spread.clone().collect();
+    by_edges.sort_by_key(|row| std::cmp::Reverse(edges(*row)));
+    let mut seen = vec![false; count];
+    spread
+        .zip(by_edges)
+        .flat_map(|(even, edge)| [even, edge])
+        .filter(|row| !std::mem::replace(&mut seen[*row], true))
+        .collect()
+}
+
+fn gcd(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { gcd(b, a % b) }
 }
