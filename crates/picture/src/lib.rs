@@ -37,7 +37,6 @@
 //! permutation, or an expression over the library's functions that is computed for every pixel
 //! (`crates/picture/src/strip/`).
 
-mod cascades;
 mod controls;
 pub mod figure;
 pub mod frame;
@@ -51,7 +50,6 @@ mod pixels;
 mod plan;
 mod prepared;
 mod probes;
-mod samples;
 pub mod sketch;
 pub mod strip;
 mod textures;

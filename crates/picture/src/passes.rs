@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use super::Shot;
-use super::cascades::{quartered_map, slices_of};
+use crate::light::{quartered_map, slices_of};
 use super::light::LightView;
 use super::mesh::{self, vertex_attributes};
 use super::pixels::Background;
