@@ -43,13 +43,11 @@ pub struct Costs {
     pub expressions: BTreeMap<String, [i64; FIGURES.len()]>,
 }
 
-/// A GPU.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Chip {
     /// What Mesa calls it.
     pub name: String,
-    /// Its architecture.
     pub generation: String,
 }
 

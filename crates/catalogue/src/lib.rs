@@ -26,7 +26,6 @@ use lamplight_permute::Manifest;
 /// The folder of the library that holds programs, which are not modules.
 const PROGRAMS: &str = "programs/";
 
-/// What an item is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CatalogueItemKind {
     Function,

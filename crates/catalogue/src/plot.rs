@@ -51,7 +51,6 @@ impl AxisUnit {
     }
 }
 
-/// One plot.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Plot {
@@ -525,7 +524,6 @@ struct PlotScale {
 }
 
 impl PlotScale {
-    /// The place of a value.
     pub fn place(&self, value: f64) -> f64 {
         self.start + (value - self.from) / (self.to - self.from) * (self.end - self.start)
     }

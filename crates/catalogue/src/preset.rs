@@ -100,7 +100,6 @@ pub enum PresetNumber {
 }
 
 impl PresetNumber {
-    /// Its components.
     pub fn to_vec(&self) -> Vec<f64> {
         match self {
             Self::Scalar(value) => vec![*value],

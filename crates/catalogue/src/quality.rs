@@ -98,7 +98,6 @@ pub struct Measured {
 /// An entry with its error and its figures.
 pub type QualityRow<'m> = (&'m QualityEntry, f64, &'m [i64; FIGURES.len()]);
 
-/// The groups of the library.
 pub fn library_groups(
     library: Embedded,
     sources: &mut SourceSet,

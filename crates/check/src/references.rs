@@ -7,7 +7,6 @@ use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 use lamplight_execute::fixture::{Fixture, FixtureSampler, FixtureTexture};
 
-/// The references of one module.
 pub struct ReferenceEntry {
     /// Module path below the package, `lighting::spot`.
     pub module: &'static str,

@@ -19,7 +19,6 @@ use lamplight_execute::kernel::TypeShape;
 
 const U: f64 = 1.0 / 8_388_608.0;
 
-/// A kind of term.
 pub struct TermKind {
     pub name: &'static str,
     /// Keys whose values are formulas.
@@ -60,7 +59,6 @@ impl std::fmt::Debug for TermKind {
     }
 }
 
-/// The kind of that name.
 pub fn find_kind(name: &str) -> Option<&'static TermKind> {
     TERMS.iter().find(|kind| kind.name == name)
 }

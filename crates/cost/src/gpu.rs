@@ -5,7 +5,6 @@
 pub struct Gpu {
     /// What Mesa calls the chip.
     pub name: &'static str,
-    /// The architecture.
     pub generation: &'static str,
     /// A card that has it.
     pub example: &'static str,
@@ -36,7 +35,6 @@ const fn make_gpu(
     Gpu { name, generation, example, is_default }
 }
 
-/// The GPU of that name.
 pub fn find_gpu(name: &str) -> Option<&'static Gpu> {
     GPUS.iter().find(|gpu| gpu.name == name)
 }

@@ -60,7 +60,6 @@ pub trait Number: Copy + Default + Send + Sync + std::fmt::Debug + 'static {
     fn from_f64(value: f64) -> Self;
     /// A number that is known to within `error`. Kinds without errors drop it.
     fn with_error(value: f64, error: f64) -> Self;
-    /// The value.
     fn value(self) -> f64;
     /// The bound of the absolute error; 0 for kinds without errors.
     fn error(self) -> f64;

@@ -39,7 +39,6 @@ impl BoundTextures {
     }
 }
 
-/// The dimensions of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TextureDimension {
     /// A row.

@@ -23,7 +23,6 @@ pub struct ExecutorEntry {
     pub shipping: Option<Shipping>,
 }
 
-/// Opens a session.
 pub type OpenSession = fn() -> Result<Box<dyn Session>, Unavailable>;
 
 /// A target, and what opens a session that draws the files of this target as they are. Every target
@@ -128,7 +127,6 @@ fn without_windows() {
     }
 }
 
-/// The executor of that name.
 pub fn find_executor(name: &str) -> Option<&'static ExecutorEntry> {
     ALL.iter().copied().find(|entry| entry.name == name)
 }

@@ -21,7 +21,6 @@ pub struct Mesh {
     pub indices: Vec<u32>,
 }
 
-/// One attribute of a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VertexAttribute {
     pub location: u32,
@@ -126,7 +125,6 @@ pub struct DrawItem<'a> {
     pub buffers: &'a Buffers,
 }
 
-/// The state of the pipeline.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct PipelineState {
     /// Whether nearer fragments (of smaller depth) hide others.

@@ -106,7 +106,6 @@ fn slot_from_word<N: Number>(word: u32, kind: ScalarKind) -> N {
     }
 }
 
-/// The number in a slot.
 pub fn slot_value<N: Number>(slot: N, kind: ScalarKind) -> f64 {
     match kind {
         ScalarKind::Float => slot.value(),

@@ -29,7 +29,6 @@ pub struct KeyLanguage {
 /// Every language, by name.
 pub const LANGUAGES: &[KeyLanguage] = &[c::LANGUAGE, rust::LANGUAGE, typescript::LANGUAGE];
 
-/// The language of that name.
 pub fn find(name: &str) -> Option<&'static KeyLanguage> {
     LANGUAGES.iter().find(|language| language.name == name)
 }

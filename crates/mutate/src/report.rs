@@ -124,7 +124,6 @@ impl MutantReport {
 /// Name of the file at the package's root.
 const FILE: &str = "survivors.toml";
 
-/// One entry.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Listed {
     function: String,

@@ -27,7 +27,6 @@ pub struct Controls {
     pub uniforms: Vec<Uniform>,
 }
 
-/// A lamp of the scene.
 #[derive(Debug, Clone, Copy)]
 pub struct LampControl {
     /// Its index in the scene.

@@ -405,7 +405,6 @@ pre { overflow: auto; padding: .6rem .8rem; border: 1px solid var(--edge); borde
 <p><code>lamplight render --all</code> draws every published example and every comparison. Each picture here is a link to its large form.</p>
 ";
 
-/// The page.
 pub fn html_page(cards: &[&Card], strips: &[StripCard]) -> String {
     let mut text = HEAD.to_owned();
     text.push_str("<nav>\n");

@@ -231,7 +231,6 @@ impl NeedsTable {
         shown.map(|(name, _)| name.as_str()).collect()
     }
 
-    /// What a permutation needs.
     pub fn needs(&self, program: &str, settings: &Settings) -> Needs {
         let mut needs = Needs { reach: 1.0, uniforms: self.uniforms.clone(), ..Needs::default() };
         let Some(found) = self.programs.get(program) else { return needs };

@@ -44,7 +44,6 @@ pub struct Changes {
     pub uniforms: BTreeMap<String, Vec<f64>>,
 }
 
-/// One permutation.
 #[derive(Debug, Clone)]
 pub struct Pass {
     pub program: String,

@@ -42,7 +42,6 @@ pub struct PreparedPass {
 }
 
 impl PreparedPass {
-    /// The buffers of a view.
     pub(super) fn view(&self, camera: &PassCamera) -> Result<Buffers, Diagnostic> {
         let buffer = |binding: &Binding| {
             let bytes = pack_buffer(binding, &|path| camera.number(path))?;

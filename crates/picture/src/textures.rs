@@ -35,7 +35,6 @@ pub struct Left {
 /// The names of the samplers that do not filter.
 const NEAREST: [&str; 4] = ["depth_sampler", "depths_smp", "surface_sampler", "open_sampler"];
 
-/// The sampler of a binding.
 pub fn binding_sampler(binding: &Binding) -> Fixture {
     let compare = (binding.kind == BindingKind::ComparisonSampler).then_some(Compare::LessEqual);
     let address = if binding.name == "map_sampler" { Address::Repeat } else { Address::Clamp };

@@ -28,7 +28,6 @@ pub struct UniformValues<'a> {
     pub probes: OnceCell<ProbeField>,
 }
 
-/// The camera of a pass.
 #[derive(Debug, Clone, Copy)]
 pub struct PassCamera {
     pub clip_from_world: DMat4,

@@ -17,7 +17,6 @@ pub enum MeshError {
     },
     /// An index is beyond the last vertex.
     Beyond {
-        /// The index.
         index: u32,
         /// How many vertices there are.
         vertices: usize,

@@ -17,7 +17,6 @@ pub const ENVIRONMENTS: &[(&str, &str, Environment)] = &[
     ("constant", "radiance 1 from everywhere", constant_sky),
 ];
 
-/// The environment of that name.
 pub fn environment(name: &str) -> Option<Environment> {
     ENVIRONMENTS.iter().find(|(known, _, _)| *known == name).map(|(_, _, environment)| *environment)
 }

@@ -11,7 +11,6 @@ pub const HIGH: DVec3 = DVec3::new(4.0, 4.4, 5.0);
 /// The point from which the environment is seen.
 pub const CENTRE: DVec3 = DVec3::new(0.0, 1.8, 0.0);
 
-/// Sides of the room.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RoomSide {
     Floor,
@@ -36,7 +35,6 @@ pub struct Panel {
 }
 
 impl RoomSide {
-    /// All sides.
     pub const ALL: [Self; 6] =
         [Self::Floor, Self::Ceiling, Self::Left, Self::Right, Self::Back, Self::Front];
 

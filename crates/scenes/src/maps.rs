@@ -80,7 +80,6 @@ impl TextureMap {
         Some(Self { width, height, texels: (0..width * height).map(mean).collect() })
     }
 
-    /// The mean of all texels.
     pub fn mean(&self) -> DVec4 {
         self.texels.iter().sum::<DVec4>() / self.texels.len().max(1) as f64
     }

@@ -13,7 +13,6 @@ use std::sync::Arc;
 /// Everything that is drawn, and the viewer.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// What is drawn.
     pub objects: Vec<Object>,
     /// Where it is seen from.
     pub eye: Eye,
@@ -67,7 +66,6 @@ pub struct Object {
     pub casts: bool,
 }
 
-/// The viewer.
 #[derive(Debug, Clone, Copy)]
 pub struct Eye {
     /// In world space.
@@ -98,7 +96,6 @@ pub struct Lamp {
     pub kind: LampKind,
 }
 
-/// What a lamp is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LampKind {
@@ -145,7 +142,6 @@ pub enum LampProfile {
 }
 
 impl LampProfile {
-    /// The texture of it.
     pub fn map(self) -> TextureMap {
         match self {
             Self::Ies => luminaire(),
@@ -296,13 +292,11 @@ pub struct Set {
     pub name: &'static str,
     /// One line.
     pub about: &'static str,
-    /// The scene.
     pub make: fn() -> Scene,
 }
 
 include!(concat!(env!("OUT_DIR"), "/sets.rs"));
 
-/// The scene of that name.
 pub fn scene(name: &str) -> Option<Scene> {
     ALL.iter().find(|set| set.name == name).map(|set| (set.make)())
 }

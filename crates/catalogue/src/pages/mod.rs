@@ -14,7 +14,6 @@ use lamplight_scenes::sets;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// A plot of a function.
 pub struct DrawnPlot {
     pub svg: String,
     /// What is drawn, as Markdown.
@@ -203,7 +202,6 @@ fn write_members(text: &mut String, item: &CatalogueItem) {
     }
 }
 
-/// The page.
 fn program_page(manifest: &Manifest, costs: &Costs) -> String {
     let mut text = "# Programs\n\nThe programs of the library have entry points in both languages. Axes multiply the permutations of a\n\
                     program, and constraints exclude some. `shaderlib/lamplight.toml` lists those that ship.\n"
@@ -369,7 +367,6 @@ pub fn table_cell(text: &str) -> String {
     escaped_prose(text).replace('|', "\\|")
 }
 
-/// A block of code.
 fn code_block(language: &str, code: &str) -> String {
     format!("```{language}\n{code}\n```\n")
 }

@@ -35,7 +35,6 @@ struct FixtureSettings {
     edge: f64,
 }
 
-/// The fixture of a table.
 pub fn read_fixture(node: &CaseNode) -> Result<Fixture, Diagnostics> {
     let kind = node.required("kind").map_err(one_error)?;
     if kind.text().map_err(one_error)? == "sampler" {

@@ -7,7 +7,6 @@ use crate::laws::{
 };
 use lamplight_diagnostic::{Diagnostic, codes};
 
-/// Reads one law.
 pub fn read_law(node: &CaseNode) -> Result<Law, Diagnostic> {
     let entries = node.entries()?;
     let found = entries
@@ -169,7 +168,6 @@ fn read_area(node: &CaseNode) -> Result<Area, Diagnostic> {
     })
 }
 
-/// Formulas by name.
 fn read_formulas(node: &CaseNode) -> Result<Formulas, Diagnostic> {
     let entries = node.entries()?.iter();
     entries.map(|(key, value)| Ok((key.name.clone(), read_formula(value)?))).collect()

@@ -158,7 +158,6 @@ pub struct TableRow {
     pub span: Span,
 }
 
-/// A formula as text.
 #[derive(Debug, Clone)]
 pub struct FormulaText {
     pub text: String,
@@ -195,7 +194,6 @@ impl FormulaText {
     }
 }
 
-/// Parses a case file.
 pub fn parse_cases(sources: &SourceSet, id: SourceId) -> Result<CaseFile, Diagnostics> {
     let root = reader::read_toml(&sources.get(id).text, id).map_err(|error| vec![error])?;
     root.only(&["case", "fixture"])?;

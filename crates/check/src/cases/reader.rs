@@ -13,7 +13,6 @@ pub struct CaseNode {
     pub span: Span,
 }
 
-/// A value.
 #[derive(Debug, Clone)]
 pub enum CaseValue {
     Bool(bool),
@@ -74,7 +73,6 @@ impl CaseNode {
         Diagnostic::error(codes::CASE_INVALID, message).at(self.span, "here")
     }
 
-    /// The entries of a table.
     pub fn entries(&self) -> Result<&[(CaseKey, CaseNode)], Diagnostic> {
         match &self.value {
             CaseValue::Table(entries) => Ok(entries),
@@ -82,7 +80,6 @@ impl CaseNode {
         }
     }
 
-    /// The elements of an array.
     pub fn elements(&self) -> Result<&[CaseNode], Diagnostic> {
         match &self.value {
             CaseValue::Array(elements) => Ok(elements),
@@ -98,7 +95,6 @@ impl CaseNode {
         }
     }
 
-    /// A text.
     pub fn text(&self) -> Result<&str, Diagnostic> {
         match &self.value {
             CaseValue::Text(text) => Ok(text),

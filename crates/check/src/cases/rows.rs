@@ -70,7 +70,6 @@ impl Rows {
         self.numbers.get(index * self.stride..(index + 1) * self.stride).unwrap_or(&[])
     }
 
-    /// One row as words.
     pub fn row_words(&self, index: usize) -> &[u32] {
         &self.words[index * self.stride..(index + 1) * self.stride]
     }

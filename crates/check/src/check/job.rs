@@ -23,7 +23,6 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// One case of one module.
 pub struct CaseJob<'a> {
     pub module: String,
     pub case: &'a Case,

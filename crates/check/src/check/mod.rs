@@ -38,7 +38,6 @@ use lamplight_validate::on_large_stack;
 pub type Subjects<'a> =
     dyn Fn(&str, Language, &[String]) -> Result<Arc<naga::Module>, Diagnostics> + Sync + 'a;
 
-/// An executor that is open.
 pub struct OpenExecutor {
     /// Name on the command line.
     pub executor: &'static str,
@@ -81,7 +80,6 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Path of the function.
     pub fn path(&self) -> String {
         format!("{}::{}", self.module, self.function)
     }
@@ -142,7 +140,6 @@ impl CheckReport {
     }
 }
 
-/// How to check.
 #[derive(Debug, Clone, Copy)]
 pub struct CheckOptions<'a> {
     /// Whether the references of `crates/check/src/references/` apply to modules of these paths.

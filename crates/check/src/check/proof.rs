@@ -95,7 +95,6 @@ impl Proof {
             .is_none_or(|parity| parity.as_ref().is_ok_and(|parity| parity.apart == 0))
     }
 
-    /// Path of the function.
     pub fn path(&self) -> String {
         format!("{}::{}", self.module, self.function)
     }

@@ -68,7 +68,6 @@ pub enum IntegralValue {
 
 type Vec3 = [f64; 3];
 
-/// The directions of one call.
 #[derive(Debug, Clone, Copy)]
 struct CallDirections {
     l: Vec3,

@@ -39,7 +39,6 @@ use lamplight_diagnostic::{Diagnostic, codes};
 use lamplight_execute::kernel::TypeShape;
 use naga::ScalarKind;
 
-/// A kind of law.
 pub struct LawKind {
     pub name: &'static str,
     pub takes: Takes,
@@ -103,7 +102,6 @@ impl Takes {
 /// for it.
 pub const FINITE: &str = "finite";
 
-/// Every kind.
 pub const KINDS: &[LawKind] = &[
     LawKind { name: "range", takes: Takes::Numbers },
     LawKind { name: "reaches", takes: Takes::Numbers },
@@ -211,7 +209,6 @@ impl Law {
     }
 }
 
-/// The kind of that name.
 pub fn find_kind(name: &str) -> Option<&'static LawKind> {
     KINDS.iter().find(|kind| kind.name == name)
 }

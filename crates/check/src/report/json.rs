@@ -6,7 +6,6 @@ use super::ReportOrigin;
 use crate::check::{CaseVerdict, CheckReport, Outcome, ProfiledInput, Proof, Worst};
 use lamplight_diagnostic::escape_obeyed;
 
-/// The report as indented JSON.
 pub fn json_report(report: &CheckReport, origin: &ReportOrigin<'_>) -> String {
     let value = json!({
         "format": 1,

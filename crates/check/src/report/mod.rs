@@ -15,14 +15,11 @@ use std::collections::BTreeMap;
 use crate::check::{CheckReport, Outcome};
 use lamplight_diagnostic::source::{SourceSet, Span};
 
-/// A form of a report.
 pub struct ReportForm {
-    /// File name.
     pub file: &'static str,
     pub text: fn(&CheckReport, &ReportOrigin<'_>) -> String,
 }
 
-/// What a report is of.
 pub struct ReportOrigin<'a> {
     /// The case files.
     pub sources: &'a SourceSet,
@@ -38,7 +35,6 @@ impl ReportOrigin<'_> {
     }
 }
 
-/// Every form.
 pub const ALL: &[ReportForm] = &[
     ReportForm { file: "index.html", text: html::html_report },
     ReportForm { file: "report.json", text: json::json_report },

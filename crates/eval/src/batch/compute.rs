@@ -316,7 +316,6 @@ pub type Row = [f32; LANES];
 /// A bit for each lane.
 pub type Mask = u32;
 
-/// All lanes.
 pub const ALL: Mask = (1 << LANES) - 1;
 
 /// A word for each lane: all bits set if the lane is in the mask, else 0.
@@ -334,7 +333,6 @@ fn each_lane<T: Copy + Default>(f: impl Fn(usize) -> T) -> [T; LANES] {
     row
 }
 
-/// The lanes of a mask.
 pub fn lanes_of(mask: Mask) -> impl Iterator<Item = usize> {
     (0..LANES).filter(move |lane| mask >> lane & 1 != 0)
 }

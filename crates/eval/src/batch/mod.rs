@@ -193,7 +193,6 @@ enum After {
     Split,
     /// It waits for other lanes of its quads.
     Waits,
-    /// It has ended.
     Ended,
 }
 

@@ -398,7 +398,6 @@ impl<'b, 'm> LoweredBody<'b, 'm> {
         }
     }
 
-    /// The type of an expression.
     pub(super) fn inner(&self, handle: Handle<Expression>) -> &'m TypeInner {
         self.types[handle.index()]
     }

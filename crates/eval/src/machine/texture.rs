@@ -62,7 +62,6 @@ pub(super) fn run_quad<N: Number>(
     Ok(())
 }
 
-/// The coordinate of an access.
 pub fn coordinate_of<N: Number>(access: &Access, m: &(impl Slots<N> + ?Sized)) -> [f64; 3] {
     values_at(m, access.coordinate, access.dimensions)
 }

@@ -91,7 +91,6 @@ fn token_texts<'t, const N: usize>(
     Ok(std::array::from_fn(|index| found[index].text))
 }
 
-/// The members of a struct.
 fn struct_members(tokens: &[Token<'_>], name: &str) -> Result<Vec<InterfaceMember>, String> {
     let declared =
         |at: &usize| token_texts(tokens, *at).is_ok_and(|found| found == ["struct", name, "{"]);

@@ -34,7 +34,6 @@ pub enum TexelFormat {
     Unsigned,
 }
 
-/// One level of a texture.
 #[derive(Debug, Clone)]
 pub struct ImageLevel {
     pub width: u32,
@@ -43,7 +42,6 @@ pub struct ImageLevel {
     pub words: RequestWords,
 }
 
-/// The inputs of a vertex.
 #[derive(Debug, Clone, Default)]
 pub struct VertexInput {
     pub index: u32,
@@ -59,7 +57,6 @@ pub struct Transformed {
     pub locations: Vec<[u32; 4]>,
 }
 
-/// The inputs of a fragment.
 #[derive(Debug, Clone, Default)]
 pub struct FragmentInput {
     /// x, y, depth, 1/w.

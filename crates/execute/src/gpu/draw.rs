@@ -381,7 +381,6 @@ impl Bindings {
         self
     }
 
-    /// The layouts of all groups.
     pub fn layouts(
         &self,
         gpu: &WgpuDevice,

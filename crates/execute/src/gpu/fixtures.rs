@@ -48,7 +48,6 @@ pub fn upload_levels(
     })
 }
 
-/// The sampler of a fixture.
 pub fn create_sampler(device: &wgpu::Device, sampler: FixtureSampler) -> wgpu::Sampler {
     let address = match sampler.address {
         Address::Clamp => wgpu::AddressMode::ClampToEdge,

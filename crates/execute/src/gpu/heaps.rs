@@ -122,7 +122,6 @@ fn layout_entries(heaps: &[SamplerHeap]) -> Vec<wgpu::BindGroupLayoutEntry> {
     (0..).zip(types).map(entry).collect()
 }
 
-/// The samplers of one heap.
 fn heap_samplers(
     device: &wgpu::Device,
     heaps: &[SamplerHeap],

@@ -121,7 +121,6 @@ pub fn open_gpu(wanted: DeviceRequest) -> Result<WgpuDevice, String> {
     })
 }
 
-/// The adapters of a backend.
 fn adapters_of(instance: &wgpu::Instance, backend: wgpu::Backends) -> Vec<wgpu::Adapter> {
     let of_opengl =
         if backend == wgpu::Backends::GL { filtering_adapters(instance) } else { Vec::new() };

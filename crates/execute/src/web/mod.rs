@@ -444,7 +444,6 @@ fn base64_of_words(words: &[u32]) -> String {
     base64_of_bytes(&all)
 }
 
-/// The words of an answer.
 fn words_of_answer(value: &Value) -> Result<Vec<u32>, String> {
     let text = value.as_str().ok_or_else(|| format!("no words: {value}"))?;
     let bytes = BASE64_STANDARD.decode(text).map_err(|error| error.to_string())?;

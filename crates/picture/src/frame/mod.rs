@@ -112,7 +112,6 @@ impl Programs {
         &self.pictures
     }
 
-    /// The manifest.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }

@@ -535,7 +535,6 @@ fn set_of(value: &Value, place: &str) -> Result<Option<u32>, String> {
     set.map(Some).ok_or_else(wrong)
 }
 
-/// The coordinates of one texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub struct Coordinates {
     /// The set: `TEXCOORD_0` and so on.

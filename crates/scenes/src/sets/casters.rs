@@ -17,7 +17,6 @@ pub const SET: Set = Set {
 /// Which of the objects is the floor.
 pub const FLOOR: usize = 0;
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let floor = tiles(10, 1.4, [CHALK, CHALK * 0.8], 2);
     let matt = Material::default().glossy(0.08).shiny(20.0);

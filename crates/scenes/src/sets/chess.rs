@@ -166,7 +166,6 @@ fn lamps() -> Vec<Lamp> {
     all
 }
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let polish = plain_material(0.3, 1.0, 1.0);
     let dark = |shape, color| Object::new(on_board(shape), DMat4::IDENTITY, color).of(polish, 3);

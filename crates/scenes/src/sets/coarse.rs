@@ -14,7 +14,6 @@ pub const SET: Set = Set {
     make: scene,
 };
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let glossy = Material::default().glossy(0.7).shiny(48.0);
     let ring = placed_at(1.9, -0.5, 0.3, -0.5) * DMat4::from_rotation_x(0.9);

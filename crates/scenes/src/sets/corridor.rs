@@ -111,7 +111,6 @@ fn garden() -> [Object; 2] {
     })
 }
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let matt = Material::default().glossy(0.05).shiny(20.0);
     let stone = CHALK * DVec3::new(0.95, 0.9, 0.82);

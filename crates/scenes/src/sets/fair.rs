@@ -29,7 +29,6 @@ fn place(index: usize) -> DVec3 {
     DVec3::new(x, 0.0, STEP * (row as f64 - 0.5 * (ROWS - 1) as f64))
 }
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let glossy = Material { roughness: 0.35, ..Material::default().glossy(0.2).shiny(50.0) };
     let floor = tiles(18, 1.0, [CHALK, SLATE * 1.4], 3);

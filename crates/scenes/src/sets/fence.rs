@@ -97,7 +97,6 @@ fn pot_shape() -> Shape {
     })
 }
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let matt = Material::default().glossy(0.08).shiny(20.0);
     let glossy = Material::default().glossy(0.7).shiny(24.0);

@@ -29,7 +29,6 @@ pub fn tiles(count: i32, side: f64, colors: [DVec3; 2], quads: u32) -> Shape {
 pub const SET: Set =
     Set { name: "floor", about: "a tessellated floor with a light above it", make: scene };
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let floor = tiles(TILES, 1.0, [CHALK, SLATE * 1.4], 5);
     let glossy = Material::default().glossy(0.3).shiny(60.0);

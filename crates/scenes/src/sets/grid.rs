@@ -17,7 +17,6 @@ pub const SET: Set = Set {
     make: scene,
 };
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let ball = Shape::sphere(0.62, (72, 36));
     let object = |index: usize| {

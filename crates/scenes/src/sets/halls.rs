@@ -19,7 +19,6 @@ pub const SET: Set = Set {
     make: scene,
 };
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let plaster = Material::default().glossy(0.03);
     let (x, y, z) = (DVec3::X * HALF.x, DVec3::Y * HALF.y, DVec3::Z * HALF.z);

@@ -26,7 +26,6 @@ fn hill_height(x: f64, z: f64) -> f64 {
     0.55 * (0.9 * x + 0.4).sin() * (0.8 * z - 0.3).cos() + 0.25 * (0.5 * x - 1.1 * z).sin()
 }
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let at = |u: f64, v: f64| {
         let (x, z) = (SIDE * (u - 0.5), SIDE * (0.5 - v));

@@ -24,7 +24,6 @@ pub const SET: Set = Set {
 const BALLS: (usize, f64, f64) = (4, 2.4, 0.7);
 /// Posts behind the balls, their distance from the post of the lamp, and half their height.
 const POSTS: (usize, f64, f64) = (4, 5.7, 0.55);
-/// The height of the lamp.
 const HEIGHT: f64 = 3.4;
 
 /// The lamp as it is drawn: a globe on a thin pole. Neither casts a shadow.
@@ -61,7 +60,6 @@ fn shapes_around() -> Vec<Object> {
     shapes.zip(COLORS).map(|(object, color)| Object { color, ..object }).collect()
 }
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let floor = tiles(14, 2.0, [CHALK, CHALK * 0.8], 4);
     let polished = Material::default().glossy(0.25).shiny(600.0);

@@ -21,7 +21,6 @@ pub const SET: Set = Set {
     make: scene,
 };
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let ball = Shape::sphere(0.66, (96, 48));
     let object = |(row, column): (usize, usize)| {

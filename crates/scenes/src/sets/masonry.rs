@@ -78,7 +78,6 @@ fn column_parts() -> [Object; 4] {
     .map(|part| part.of(stone(), 7))
 }
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let half = DVec3::new(8.0, 0.0, 6.0);
     let ground =

@@ -47,7 +47,6 @@ fn wall_panel((index, panel): (usize, &Panel)) -> Object {
     Object::new(shape, DMat4::IDENTITY, DVec3::ZERO).of(material, 7)
 }
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let floor = tiles(interior::TILES_ALONG, 1.0, [CHALK * 0.4, CHALK * 0.12], 2);
     let floor = floor.map(|vertex| vertex.position.x *= 0.8);

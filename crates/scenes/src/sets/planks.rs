@@ -13,7 +13,6 @@ pub const SET: Set = Set {
     make: scene,
 };
 
-/// The roughness of each plank.
 const ROUGHNESS: [f64; 4] = [0.1, 0.25, 0.45, 0.7];
 /// The width of a plank, and how far it reaches to the front and to the back.
 const WIDTH: f64 = 1.5;
@@ -29,7 +28,6 @@ const COLORS: [DVec3; 4] = [
 const BEHIND: f64 = 1.4;
 const HEIGHT: f64 = 0.62;
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let middle = |index: usize| WIDTH * (index as f64 - 1.5);
     let plank = |(index, roughness): (usize, &f64)| {

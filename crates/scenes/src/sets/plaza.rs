@@ -73,7 +73,6 @@ fn small_lamp(position: DVec3, target: DVec3, color: DVec3) -> Lamp {
     Lamp { color, position, target, half_angle: 0.9, kind: LampKind::Point }
 }
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let glossy = Material { roughness: 0.22, ..Material::default().glossy(0.5).shiny(90.0) };
     let floor = tiles(24, 1.0, [SLATE * 0.8, SLATE * 0.55], 2);

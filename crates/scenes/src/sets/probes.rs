@@ -15,7 +15,6 @@ pub const SET: Set = Set {
     make: scene,
 };
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let matt = Material::default().glossy(0.1).shiny(20.0);
     let box_place = placed_at(2.2, -0.25, -0.9, 0.7) * DMat4::from_rotation_x(0.25);

@@ -83,7 +83,6 @@ pub const SET: Set = Set {
     make: scene,
 };
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let plaster = Material::default().glossy(0.08);
     let mut objects: Vec<Object> = room_walls()

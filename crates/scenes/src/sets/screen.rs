@@ -12,7 +12,6 @@ pub const SET: Set = Set {
     make: scene,
 };
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let mut scene = casters::scene();
     scene.objects.remove(casters::FLOOR);

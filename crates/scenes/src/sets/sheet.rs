@@ -13,7 +13,6 @@ pub const SET: Set = Set {
     make: scene,
 };
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let curl = Shape::surface(96, 24, |u, v| {
         // A spiral whose outer end is behind.

@@ -16,7 +16,6 @@ pub const SET: Set = Set {
     make: scene,
 };
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let matt = Material::default().glossy(0.05).shiny(20.0);
     let turned = DMat4::from_rotation_z(-ANGLE);

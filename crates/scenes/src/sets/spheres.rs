@@ -16,7 +16,6 @@ pub const SET: Set = Set {
     make: scene,
 };
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let ball = Shape::sphere(0.95, (48, 24));
     let object = |(index, color): (usize, &DVec3)| {

@@ -11,7 +11,6 @@ use crate::shape::Shape;
 pub const SET: Set =
     Set { name: "stage", about: "a floor with two balls under lamps that are seen", make: scene };
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let floor = tiles(24, 1.0, [CHALK, SLATE * 1.4], 5);
     let glossy = Material::default().glossy(0.3).shiny(60.0);

@@ -25,7 +25,6 @@ pub fn height(x: f64, z: f64) -> f64 {
 pub const SET: Set =
     Set { name: "terrain", about: "a field of heights under a low sun", make: scene };
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let eye = Eye {
         position: DVec3::new(1.6, 3.3, 12.5),

@@ -13,13 +13,11 @@ pub const SET: Set = Set {
     make: scene,
 };
 
-/// The height of the lamps.
 const HEIGHT: f64 = 3.0;
 /// From a lamp to the next one, and from the lamps to the wall.
 const STEP: f64 = 2.5;
 const BEFORE: f64 = 1.5;
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let matt = Material::default().glossy(0.06).shiny(20.0);
     let plane = |corner: DVec3, along: DVec3, up: DVec3, color| {

@@ -24,7 +24,6 @@ pub struct Token {
     pub start: u32,
     /// One past the last byte.
     pub end: u32,
-    /// Class.
     pub kind: TokenKind,
     /// Whether white space or a comment stands before it.
     pub spaced: bool,

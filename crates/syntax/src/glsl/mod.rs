@@ -35,9 +35,7 @@ pub const DIRECTIVES: &[&str] = &[
 /// A tokenised file.
 #[derive(Debug)]
 pub struct Module {
-    /// The file.
     pub source: SourceId,
-    /// Its text.
     pub text: Arc<str>,
     /// All tokens, those of directives too.
     pub tokens: Vec<Token>,

@@ -139,7 +139,6 @@ impl ComparisonOperand {
     }
 }
 
-/// An operator of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ComparisonOperator {
     Equal,
@@ -183,11 +182,9 @@ pub struct Path {
 /// Places within a path. In a collection, `a::{b, c}`, the shared part is before `range`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct PathParts {
-    /// The first name.
     pub first: Range<u32>,
     /// All names but the last, as far as they are written in one piece.
     pub parents: Range<u32>,
-    /// The last name.
     pub last: Range<u32>,
 }
 

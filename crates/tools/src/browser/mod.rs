@@ -336,7 +336,6 @@ impl Drop for BrowserPage {
     }
 }
 
-/// The exception as one text.
 fn exception_text(details: &Value) -> String {
     let description = details["exception"]["description"].as_str();
     let value = || match &details["exception"]["value"] {

@@ -13,7 +13,6 @@ const PATIENCE: Duration = Duration::from_secs(10);
 /// The most bytes of a request.
 const QUESTION: u64 = 64 << 10;
 
-/// What is served.
 #[derive(Debug, Clone)]
 pub enum ServedFiles {
     /// Texts and other bytes, by their paths without a slash before them.

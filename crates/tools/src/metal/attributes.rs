@@ -9,9 +9,7 @@ enum AttributeValue {
     Nothing,
     /// A number up to this one.
     Number(u32),
-    /// One of these words.
     Word(&'static [&'static str]),
-    /// A name.
     Name,
 }
 
@@ -83,7 +81,6 @@ const KNOWN: &[(&str, AttributeValue, Behind)] = &[
     ("vertex_id", Nothing, Parameter),
 ];
 
-/// One attribute.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MslAttribute<'t> {
     pub name: &'t str,

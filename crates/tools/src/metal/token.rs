@@ -17,7 +17,6 @@ impl Token<'_> {
     }
 }
 
-/// The tokens in order.
 pub fn msl_tokens(text: &str) -> Vec<Token<'_>> {
     let mut found = Vec::new();
     let mut at = 0;

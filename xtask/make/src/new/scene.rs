@@ -70,7 +70,6 @@ use crate::scene::shape::Shape;
 /// The scene, for the table of all.
 pub const SET: Set = Set { name: "NAME", about: "", make: scene };
 
-/// The scene itself.
 pub fn scene() -> Scene {
     let glossy = Material::default().glossy(0.3).shiny(60.0);
     // A corner, and the two sides that begin there. Seen from the front, the second side is to the
