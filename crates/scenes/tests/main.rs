@@ -8,14 +8,8 @@
     clippy::print_stderr
 )]
 
-mod scene;
-
-/// The mathematics for the host, and what pictures show.
-mod both {
-    pub use lamplight_scene::*;
-    pub use lamplight_scenes::*;
-}
+mod scenes;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[scene::trials])
+    lamplight_testing::run_tests(&[scenes::trials])
 }

@@ -1,7 +1,7 @@
 //! Cascades of shadow maps: where they end, and the spheres that they fit around.
 
-use crate::both as scene;
 use glam::DVec3;
+use lamplight_scene as scene;
 
 use super::{Outcome, near};
 

@@ -1,0 +1,39 @@
+//! What pictures show is valid: shapes, scenes, environments, rays and fields of light probes.
+
+mod probes;
+mod sets;
+
+use glam::DVec3;
+use libtest_mimic::{Failed, Trial};
+
+type Outcome = Result<(), Failed>;
+type Case = (&'static str, fn() -> Outcome);
+
+pub fn trials() -> Vec<Trial> {
+    let cases: [Case; 7] = [
+        ("rays", probes::rays),
+        ("rays_of_scenes", probes::rays_of_scenes),
+        ("fields_of_probes", probes::fields),
+        ("volumes_of_shapes", sets::volumes),
+        ("normals_of_scenes", sets::scenes),
+        ("environments", sets::environments),
+        ("numbers_of_materials", sets::numbers),
+    ];
+    cases.into_iter().map(|(name, run)| Trial::test(format!("scenes::{name}"), run)).collect()
+}
+
+fn near(what: &str, found: f64, wanted: f64, error: f64) -> Outcome {
+    if (found - wanted).abs() <= error {
+        Ok(())
+    } else {
+        Err(format!("{what}: {found}, wanted {wanted} within {error:e}").into())
+    }
+}
+
+fn close(what: &str, found: DVec3, wanted: DVec3, error: f64) -> Outcome {
+    if (found - wanted).abs().max_element() <= error {
+        Ok(())
+    } else {
+        Err(format!("{what}: {found}, wanted {wanted} within {error:e}").into())
+    }
+}
