@@ -8,6 +8,7 @@ use lamplight_compose::{Keep, Options, wesl::compose};
 use lamplight_diagnostic::source::{Files as _, Package, SourceSet};
 use lamplight_eval::{Bounded, FindingKind, FunctionId, Machine, Number, Program, SlotKind};
 use lamplight_permute::Settings;
+use lamplight_testing::random::Random;
 use libtest_mimic::{Failed, Trial};
 
 /// The number of inputs for each function.
@@ -54,10 +55,10 @@ fn bounded(program: &Program, id: FunctionId) -> Result<(), Failed> {
     let function = program.signature(id).ok_or("no function")?;
     let (mut single, mut bound) =
         (Machine::<f32>::new(program)?, Machine::<Bounded>::new(program)?);
-    let mut seed = 1u32;
+    let mut random = Random(1);
     for _ in 0..INPUTS {
         let words: Vec<u32> =
-            function.arguments.iter().map(|kind| random_word(*kind, &mut seed)).collect();
+            function.arguments.iter().map(|kind| random_word(*kind, &mut random)).collect();
         let mut result = Vec::new();
         single.call_words(id, &words, &mut result)?;
         let slots: Vec<Bounded> =
@@ -89,12 +90,11 @@ fn bounded(program: &Program, id: FunctionId) -> Result<(), Failed> {
 }
 
 /// A number from -1 to 1, or a small integer.
-pub fn random_word(kind: SlotKind, seed: &mut u32) -> u32 {
-    *seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+pub fn random_word(kind: SlotKind, random: &mut Random) -> u32 {
     match kind {
-        SlotKind::Float => ((*seed >> 8) as f32 / 8_388_608.0 - 1.0).to_bits(),
-        SlotKind::Bool => *seed >> 31,
-        _ => *seed >> 30,
+        SlotKind::Float => (random.between(-1.0, 1.0) as f32).to_bits(),
+        SlotKind::Bool => random.below(2) as u32,
+        _ => random.below(4) as u32,
     }
 }
 

@@ -13,6 +13,7 @@ use lamplight_eval::{
     Address, Batch, Error, Filter, FunctionId, LOOP_LIMIT, Machine, Program, Resources, Sampler,
     SlotKind, Texture, TextureDimension,
 };
+use lamplight_testing::random::Random;
 use libtest_mimic::{Failed, Trial};
 
 /// How many random programs run.
@@ -175,10 +176,10 @@ fn library_functions() -> Result<(), Failed> {
 fn compare_calls(program: &Program, id: FunctionId) -> Result<(), String> {
     let said = |error: Error| error.to_string();
     let function = program.signature(id).ok_or("no function")?;
-    let mut seed = 5;
+    let mut random = Random(5);
     let lanes: Vec<Vec<f32>> = (0..3 * Batch::LANES + 5)
         .map(|_| {
-            let word = |kind: &SlotKind| f32::from_bits(random_word(*kind, &mut seed));
+            let word = |kind: &SlotKind| f32::from_bits(random_word(*kind, &mut random));
             function.arguments.iter().map(word).collect()
         })
         .collect();

@@ -3,6 +3,7 @@
 
 use super::program;
 use lamplight_eval::{Bounded, Branch, FindingKind, Machine, Number, Program};
+use lamplight_testing::random::Random;
 use libtest_mimic::{Failed, Trial};
 
 pub fn trials() -> Vec<Trial> {
@@ -113,11 +114,8 @@ fn powers_near_zero() -> Result<(), Failed> {
     let program = program("fn f(x: f32, s: f32) -> f32 { return pow(x, s); }")?;
     let mut machine = Machine::<Bounded>::new(&program)?;
     let f = program.function("f").ok_or("f")?;
-    let mut state = 1_u32;
-    let mut share = || {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        f64::from(state >> 8) / f64::from(1 << 24)
-    };
+    let mut random = Random(1);
+    let mut share = || random.fraction();
     for _ in 0..2000 {
         let base = (-40.0 * share()).exp2();
         let error = base * (18.0 * share() - 16.0).exp2();
