@@ -212,11 +212,13 @@ impl BatchRun<'_> {
                 After::Moved if group.alone => continue,
                 After::Next | After::Moved => self.lanes.leave(&group, began),
                 After::Split => {
+                    // `leave` gives all lanes the group's program counter, but each has its own now.
                     let pc = self.lanes.pc;
                     self.lanes.leave(&group, began);
                     self.lanes.pc = pc;
                 }
                 After::Waits => {
+                    // The instruction runs when the quad is complete, so the lanes stay at it.
                     group.pc = at;
                     self.lanes.leave(&group, began);
                     self.lanes.waiting |= group.mask;
@@ -407,6 +409,9 @@ impl Lanes {
 
     /// The lanes that run next. `None` if no lane is runnable.
     pub fn next_group(&self, loop_limit: u64) -> Option<LaneGroup> {
+        // Code is laid out so that branches that diverge meet at a higher program counter. So the lanes
+        // with the lowest one are behind, and run until they reach the others. That holds within one
+        // call only: a called function may have any place in the code, so calls are finished first.
         let deepest = lanes_of(self.runnable).map(|lane| self.depth[lane]).max()?;
         let as_deep = || lanes_of(self.runnable).filter(|lane| self.depth[*lane] == deepest);
         let pc = as_deep().map(|lane| self.pc[lane]).min()?;
@@ -420,6 +425,8 @@ impl Lanes {
             depth: deepest,
             next: ahead.unwrap_or(u32::MAX),
             alone: (self.runnable | self.waiting) & !mask == 0,
+            // Lanes that diverged have made different numbers of steps. The group stops at the limit
+            // of the one with the most, so no lane passes a limit that it would hit alone.
             steps_left: EVAL_STEPS.saturating_sub(most(&self.steps)?),
             trips_left: loop_limit.saturating_sub(most(&self.trips)?),
         })
@@ -443,6 +450,8 @@ impl Lanes {
         if self.returns.len() <= depth {
             self.returns.resize(depth + 1, [0; LANES]);
         }
+        // If no other lane has anything left to do, the whole row is written, which is one store of a
+        // vector instead of sixteen.
         if group.alone || group.mask == ALL {
             self.returns[depth] = [to; LANES];
         } else {
@@ -465,6 +474,7 @@ impl Lanes {
     /// and their instruction. They go first, since they may still reach the place where the others
     /// wait.
     pub fn furthest_behind(&self, quad: usize) -> Option<(u32, Mask)> {
+        // Positions compare like the order of execution: the outermost call decides first.
         let waiting = || lanes_of(self.waiting & 0xf << (4 * quad));
         let first = waiting().min_by(|a, b| self.position(*a).cmp(self.position(*b)))?;
         let with = waiting().filter(|lane| self.position(*lane).eq(self.position(first)));

@@ -67,7 +67,7 @@ fn lost_function(name: &str) -> Diagnostic {
 }
 
 /// Where an argument comes from.
-enum ArgumentSource {
+pub enum ArgumentSource {
     /// A texture or a sampler, by its binding in group 0.
     Binding(u32),
     /// Words, of which this is the first.
@@ -115,6 +115,8 @@ impl FunctionBody<'_> {
         let words = self.arguments(inputs, &place, kernel);
         let sources: Vec<ArgumentSource> =
             kernel.parameters.iter().map(ArgumentSource::of).collect();
+        // The call is outside of any branch: all fragments of a quad make it together, as derivatives
+        // within the function need.
         let results = self.call(&kernel.name, kernel.function, &sources, &words)?;
         let chosen = self.choose(&results, place.part);
         let value = self.echo(&place, chosen);
@@ -155,16 +157,21 @@ impl FunctionBody<'_> {
         let zero = self.literal(0);
         let header = self.load(inputs, zero);
 
+        // Pixel 0 is the echo, so the results begin at pixel 1. The subtraction is of min(index, 1):
+        // pixel 0 must not wrap to the largest index, although its result is not used.
         let one = self.literal(1);
         let echoed = self.math(MathFunction::Min, index, one);
         let pixel = self.binary(Op::Subtract, index, echoed);
         let pixels = self.literal(kernel.result_texels());
         let wanted = self.binary(Op::Divide, pixel, pixels);
         let part = self.binary(Op::Modulo, pixel, pixels);
+        // What is beyond the last invocation repeats it: a fragment that returned early would take the
+        // derivatives of its neighbours with it.
         let count = self.component(header, 0);
         let last = self.binary(Op::Subtract, count, one);
         let invocation = self.math(MathFunction::Min, wanted, last);
         let texels = self.literal(kernel.input_texels());
+        // Texel 0 of the input is the header.
         let skipped = self.binary(Op::Multiply, invocation, texels);
         let first = self.binary(Op::Add, skipped, one);
         FragmentPlace { index, header, first, part }

@@ -68,7 +68,9 @@ pub fn assemble_triangles(
 /// The part of a triangle that is between the near and the far plane and has a positive w, as the
 /// vertices of a polygon in order.
 fn clip_triangle(three: &[u32; 3], corners: &mut Vec<Corner>) -> Vec<u32> {
-    // Distances to the planes, negative outside.
+    // Distances to the planes, negative outside. A corner with w = 0 has no place on the frame, so the
+    // last plane keeps away from it; clip spaces with a near plane in front of the eye never reach it.
+    // The sides of the frame need no clipping: only its pixels are visited.
     const PLANES: [fn(&[f64; 4]) -> f64; 3] =
         [|clip| clip[2], |clip| clip[3] - clip[2], |clip| clip[3] - 1e-9];
     let mut polygon = three.to_vec();
