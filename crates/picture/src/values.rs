@@ -52,6 +52,24 @@ const GROUPS: &[(&str, &str)] = &[
     ("horizon", "horizon"),
 ];
 
+/// How much of its surroundings a scene with lamps is lit by: enough to see into shadows, and little
+/// enough that they stay shadows. Without lamps, the surroundings are all the light there is.
+const SURROUNDINGS_BESIDE_LAMPS: f64 = 0.35;
+
+/// The constant ambient light where there is no lamp, a grey that is slightly blue. It lights the scene
+/// alone, which the scene's own ambient light does not: that is chosen to fill the shadows of lamps.
+const AMBIENT_ALONE: DVec3 = DVec3::new(0.44, 0.45, 0.48);
+
+/// The share of the mirrored surroundings in a surface whose layers have no reflectance of their own:
+/// beside lamps, and without them.
+const MIRRORED: [f64; 2] = [0.25, 0.4];
+
+/// Against acne, a point is moved by this many texels along its normal, and depths by this many of the
+/// smallest steps of their format. A filter that reads farther texels needs more of the first, and a
+/// steeper factor of the slope.
+const TEXELS_ASIDE: f64 = 1.0;
+const DEPTH_STEPS: f32 = 4.0;
+
 /// The path of a uniform: `lamps.lights[2].color` is the field `color` of the third light in the
 /// block `lamps`.
 struct UniformPath<'p> {
@@ -199,20 +217,18 @@ impl UniformValues<'_> {
 
     fn surroundings(&self, path: &UniformPath<'_>) -> Option<Vec<f64>> {
         let lit = !self.lit.needs.unlit;
-        let dimmed = if lit { 0.35 } else { 1.0 };
+        let dimmed = if lit { SURROUNDINGS_BESIDE_LAMPS } else { 1.0 };
         Some(match path.field {
-            "color" => {
-                vector_values(if lit { self.scene.ambient } else { DVec3::new(0.44, 0.45, 0.48) })
-            }
+            "color" => vector_values(if lit { self.scene.ambient } else { AMBIENT_ALONE }),
             // Published coefficients are used as the book uses them.
             "scale" => vec![dimmed * if self.plan.probe.is_some() { 1.0 } else { 1.0 / PI }],
             "sky" => vector_values(self.scene.sky * dimmed),
             "ground" => vector_values(self.scene.ground * dimmed),
             "up" => vector_values(DVec3::Y),
-            "diffuse_share" => vec![if lit { 0.35 } else { 1.0 }],
+            "diffuse_share" => vec![dimmed],
             // Layers have a reflectance of their own for the surroundings.
             "specular_share" if self.lit.needs.levels => vec![1.0],
-            "specular_share" => vec![if lit { 0.25 } else { 0.4 }],
+            "specular_share" => vec![if lit { MIRRORED[0] } else { MIRRORED[1] }],
             "sh" => self.probe().get(path.index)?.to_vec(),
             _ => return None,
         })
@@ -285,8 +301,11 @@ impl UniformValues<'_> {
 
     fn caster(&self, field: &str) -> Option<Vec<f64>> {
         // If the source avoids acne in its own way, no offset is added.
-        let offset =
-            if self.is_biased_by_source() { 0.0 } else { 1.0 + 0.5 * self.lit.needs.reach };
+        let offset = if self.is_biased_by_source() {
+            0.0
+        } else {
+            TEXELS_ASIDE + 0.5 * self.lit.needs.reach
+        };
         Some(match field {
             // A point light has a matrix for each face, and its stage reads none.
             "clip_from_world" => matrix_columns(*self.light.clip_from_world.first()?),
@@ -313,7 +332,7 @@ impl UniformValues<'_> {
     /// The polygon offset of the depth pass: the source's, or as much as the filter needs.
     pub fn offset(&self) -> [f32; 2] {
         if !self.is_biased_by_source() {
-            return [1.0 + self.lit.needs.reach as f32, 4.0];
+            return [1.0 + self.lit.needs.reach as f32, DEPTH_STEPS];
         }
         let published = self.plan.number("depth_pass", "polygon_offset").unwrap_or_default();
         [0, 1].map(|index| published.get(index).map_or(0.0, |value| *value as f32))
