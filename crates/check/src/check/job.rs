@@ -187,12 +187,7 @@ fn make_job<'a>(
     kernels.iter_mut().for_each(|(_, kernel)| kernel.steps = steps.most());
     let first = &kernels[0].1;
     let scope = Scope(first.words().collect());
-    let rows = cases::case_rows(case, &scope, &mut steps)?;
-    total.add(&rows, case);
-    total.check(file)?;
-    if rows.is_empty() {
-        return Err(placed(Diagnostic::error(codes::CASE_INVALID, "no row is left to try")));
-    }
+    let rows = counted_rows(file, case, &scope, total, &mut steps)?;
     let terms = tolerance::bind_terms(&case.tolerance, &scope, &first.results).map_err(placed)?;
     let languages: Vec<Language> = modules.iter().map(|(language, _)| *language).collect();
     let near = bind_margin(case, &scope)?;
@@ -227,6 +222,24 @@ fn make_job<'a>(
     };
     job.expected = expected_goals(&job)?;
     Ok(job)
+}
+
+/// The rows of a case, counted among those of its file.
+fn counted_rows(
+    file: &CaseFile,
+    case: &Case,
+    scope: &Scope,
+    total: &Total,
+    steps: &mut Steps,
+) -> Result<Rows, Diagnostic> {
+    let rows = cases::case_rows(case, scope, steps)?;
+    total.add(&rows, case);
+    total.check(file)?;
+    if rows.is_empty() {
+        let error = Diagnostic::error(codes::CASE_INVALID, "no row is left to try");
+        return Err(placed_at(error, case));
+    }
+    Ok(rows)
 }
 
 /// The quantity whose closeness to a jump excuses a row, and how close that is.
