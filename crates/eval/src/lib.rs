@@ -7,7 +7,7 @@
 //!
 //! ```
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! use lamplight::eval::{Machine, Program};
+//! use lamplight_eval::{Machine, Program};
 //! let module = naga::front::wgsl::parse_str("fn half(x: f32) -> f32 { return 0.5 * x; }")?;
 //! let info = naga::valid::Validator::new(Default::default(), Default::default()).validate(&module)?;
 //! let program = Program::new(&module, &info)?;
