@@ -12,12 +12,12 @@ mod links;
 mod one_way;
 #[path = "house/packages.rs"]
 mod packages;
+#[path = "house/promises.rs"]
+mod promises;
 #[path = "house/published.rs"]
 mod published;
 #[path = "house/workflows.rs"]
 mod workflows;
-#[path = "house/promises.rs"]
-mod promises;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};

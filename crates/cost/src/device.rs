@@ -63,9 +63,10 @@ impl Device {
         }
         let opened = Self::create(gpu);
         for (name, value) in before {
-            // SAFETY: as above.
             match value {
+                // SAFETY: as above.
                 Some(value) => unsafe { std::env::set_var(name, value) },
+                // SAFETY: as above.
                 None => unsafe { std::env::remove_var(name) },
             }
         }

@@ -8,8 +8,8 @@ use glam::DVec3;
 
 use super::pixels::{Linear, Picture};
 use super::prepared::sample_shift;
-use crate::textures::{columns, fence, image};
 use crate::strip::place_words;
+use crate::textures::{columns, fence, image};
 use lamplight_bundle::Language;
 use lamplight_catalogue::figure::{Figure, FigureKind, Figures, Kinds, Textures};
 use lamplight_check::library::Library;

@@ -7,7 +7,6 @@ use std::sync::Arc;
 use glam::DMat4;
 
 use super::Shot;
-use crate::light::{quartered_map, slices_of};
 use super::light::LightView;
 use super::mesh::{self, vertex_attributes};
 use super::pixels::Background;
@@ -16,6 +15,7 @@ use super::prepared::{PreparedPass, no_frame, pixel_color};
 use super::textures::{Left, TextureLibrary, binding_sampler};
 use super::values::{PassCamera, UniformValues, eye_projection};
 use crate::frame::{Programs, ReadyStage, Stages, pack_buffer};
+use crate::light::{quartered_map, slices_of};
 use lamplight_bundle::{Binding, BindingKind};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_execute::Session;

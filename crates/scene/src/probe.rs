@@ -5,9 +5,9 @@ use std::f64::consts::{FRAC_PI_4, PI, TAU};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::sky::Sky;
 use super::view::FACES;
 use crate::quadrature::gauss_legendre;
+use crate::sky::Sky;
 
 /// The nine real spherical harmonics of bands 0 to 2, in the library's order: L00, L1m1, L10, L11,
 /// L2m2, L2m1, L20, L21, L22.

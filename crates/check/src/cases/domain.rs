@@ -1,11 +1,11 @@
 //! The values that a parameter takes in a case.
 
-use crate::cases::values::Random;
 use super::reader::{CaseNode, CaseValue};
 use super::values::{
     even_steps, neighbours_of, related_directions, special_values, specials, unit_vectors,
     value_grid,
 };
+use crate::cases::values::Random;
 use lamplight_diagnostic::{Diagnostic, Diagnostics};
 use lamplight_execute::kernel::TypeShape;
 use lamplight_files::limits::CASE_ROWS;

@@ -601,11 +601,7 @@ fn waiting_position<N>(lane: &Lane<N>) -> impl Iterator<Item = u32> + '_ {
 }
 
 /// The two lanes whose difference is the derivative for a lane.
-pub fn derivative_lanes(
-    lane: usize,
-    axis: DerivativeDirection,
-    coarse: bool,
-) -> (usize, usize) {
+pub fn derivative_lanes(lane: usize, axis: DerivativeDirection, coarse: bool) -> (usize, usize) {
     let lane = if coarse { 0 } else { lane };
     match axis {
         DerivativeDirection::Y => (lane & 1, lane | 2),

@@ -84,7 +84,8 @@ pub fn hlsl_lacks(text: &str) -> Option<&'static str> {
         );
     }
     let named = |name: &str| {
-        text_words(text).any(|word| word.text == name && text[word.at + name.len()..].starts_with('('))
+        text_words(text)
+            .any(|word| word.text == name && text[word.at + name.len()..].starts_with('('))
     };
     if named("frexp") {
         return Some("frexp of Direct3D drops the sign, and that of glslangValidator keeps it");

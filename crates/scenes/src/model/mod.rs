@@ -195,7 +195,9 @@ const FARTHEST: f64 = 1e9;
 
 fn is_too_far(bounds: &nodes::Ball, eye: &Eye) -> bool {
     let reach = bounds.middle.length() + bounds.radius;
-    [reach, eye.position.length(), eye.target.length()].iter().any(|far| !(*far <= FARTHEST))
+    [reach, eye.position.length(), eye.target.length()]
+        .iter()
+        .any(|far| far.is_nan() || *far > FARTHEST)
 }
 
 /// The materials of everything that is drawn.

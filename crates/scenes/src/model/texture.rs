@@ -9,12 +9,12 @@ use gltf::image::Source;
 use image::{DynamicImage, ImageDecoder as _, ImageError};
 
 use super::GltfReader;
-use crate::model::surface::{Coordinates, Window};
 use super::mesh::{has_triangles, mesh_coordinates};
 use super::nodes::PlacedNodes;
+use crate::maps::blank_texel;
+use crate::model::surface::{Coordinates, Window};
 use crate::model::surface::{ImageChannels, material_parts};
 use crate::sets::{Maps, TextureMap};
-use crate::maps::blank_texel;
 use crate::shape::Shape;
 use lamplight_files::limits::{MODEL_CORNERS, MODEL_PIXELS, MODEL_TEXTURES};
 

@@ -178,11 +178,7 @@ impl BodyScanner<'_, '_> {
     }
 
     /// Declares a parameter or a local, whose name is at a token.
-    fn declare(
-        &mut self,
-        at: usize,
-        condition: Option<ConditionId>,
-    ) -> Result<(), Diagnostic> {
+    fn declare(&mut self, at: usize, condition: Option<ConditionId>) -> Result<(), Diagnostic> {
         let name = self.tokens.identifier(at, "a name")?;
         self.locals.push(name);
         self.scopes.declare(self.module, (name, self.tokens.start(at)), condition);

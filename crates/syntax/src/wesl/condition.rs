@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use crate::wesl::token::Tokens;
 use super::module::{
     ComparisonOperand, ComparisonOperator, Condition, ConditionId, Expression, ExpressionId, Module,
 };
-use crate::wesl::token::Name;
 use super::token::TokenKind;
+use crate::wesl::token::Name;
+use crate::wesl::token::Tokens;
 use lamplight_diagnostic::source::LIMITS;
 use lamplight_diagnostic::{Diagnostic, codes};
 
