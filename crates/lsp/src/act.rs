@@ -26,8 +26,8 @@ pub fn code_actions(
     let mut found = Vec::new();
     let told = parameters.pointer("/context/diagnostics").and_then(Value::as_array);
     for diagnostic in told.into_iter().flatten() {
-        let start =
-            diagnostic.pointer("/range/start").and_then(|at| place::byte_of_position(&text, at));
+        let start = diagnostic.pointer("/range/start");
+        let start = start.and_then(|at| place::byte_of_position(&text, at));
         let Some(start) = start else { continue };
         let word = place::word_at_byte(&text, start);
         let name = text[word.clone()].to_owned();
@@ -56,8 +56,7 @@ pub fn code_actions(
             }
             _ => {
                 let Some(modules) = server.modules(&root) else { continue };
-                let known = importable(server, &modules, &path, &name);
-                for path in known {
+                for path in importable(server, &modules, &path, &name) {
                     let edit = import_edit(&text, &lines, &path);
                     found.push(action(format!("Import `{path}`"), &uri, edit));
                 }
