@@ -219,10 +219,12 @@ async function curves(live: HTMLElement, item: ItemInfo) {
     );
     await draw();
     let width = live.clientWidth;
-    // The letters have the same size on a screen that was turned.
+    // The letters have the same size on a screen that was turned. They are drawn in the next frame:
+    // drawing changes heights, which this observer must not do while it is told of them.
     const turned = new ResizeObserver(() => {
+        const again = last;
         if (!live.isConnected) turned.disconnect();
-        else if (last && live.clientWidth !== width) show(last);
+        else if (again && live.clientWidth !== width) requestAnimationFrame(() => show(again));
         width = live.clientWidth;
     });
     turned.observe(live);
