@@ -39,19 +39,23 @@ pub struct Kind {
 pub const KINDS: &[Kind] = &[
     Kind {
         name: "wesl",
-        corpus: &[("tests/compose_wesl", ".wesl"), ("tests/emit", ".wgsl"), ("shaderlib", ".wesl")],
+        corpus: &[
+            ("crates/compose/tests/compose_wesl", ".wesl"),
+            ("tests/emit", ".wgsl"),
+            ("shaderlib", ".wesl"),
+        ],
         words: WESL,
         run: wesl,
     },
     Kind {
         name: "glsl",
-        corpus: &[("tests/compose_glsl", ".glsl"), ("shaderlib", ".glsl")],
+        corpus: &[("crates/compose/tests/compose_glsl", ".glsl"), ("shaderlib", ".glsl")],
         words: GLSL,
         run: glsl,
     },
     Kind {
         name: "manifest",
-        corpus: &[("tests/permute", ".toml"), ("shaderlib", "lamplight.toml")],
+        corpus: &[("crates/permute/tests/permute", ".toml"), ("shaderlib", "lamplight.toml")],
         words: MANIFEST,
         run: manifest,
     },

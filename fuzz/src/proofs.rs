@@ -45,9 +45,9 @@ pub const KINDS: &[Kind] = &[
         name: "lsp",
         corpus: &[
             ("tests/regressions/lsp", ""),
-            ("tests/compose_wesl", ".wesl"),
+            ("crates/compose/tests/compose_wesl", ".wesl"),
             ("shaderlib", ".wesl"),
-            ("tests/compose_glsl", ".glsl"),
+            ("crates/compose/tests/compose_glsl", ".glsl"),
             ("shaderlib", ".glsl"),
         ],
         words: "{\"jsonrpc\":\"2.0\",\"id\":1,\"method\":\"textDocument/hover\",\"params\":{}} position line \

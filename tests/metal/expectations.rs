@@ -1,4 +1,4 @@
-//! Runs the cases of `tests/eval/*.wgsl`, such as `// expect: f(1, 2.5) = 3`, as emitted MSL on the
+//! Runs the cases of `crates/eval/tests/eval/*.wgsl`, such as `// expect: f(1, 2.5) = 3`, as emitted MSL on the
 //! CPU.
 
 use std::collections::BTreeMap;
@@ -56,7 +56,8 @@ pub fn hold() -> Outcome {
 }
 
 fn read(name: &str, cases: &mut Vec<Case>, wrong: &mut Vec<String>) -> Result<(), String> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/eval/{name}.wgsl"));
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("crates/eval/tests/eval/{name}.wgsl"));
     let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
     let module = naga::front::wgsl::parse_str(&text).map_err(|error| error.to_string())?;
     for line in text.lines() {
