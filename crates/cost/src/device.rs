@@ -122,7 +122,7 @@ impl Device {
             let info = vk::PipelineExecutableInfoKHR::default()
                 .pipeline(pipeline)
                 .executable_index(index as u32);
-            // SAFETY: as above; the index is one of those just told.
+            // SAFETY: as above; the index is one of those that the driver listed.
             let named = unsafe { self.executables.get_pipeline_executable_statistics(&info) };
             let named = named.map_err(refusal_text)?;
             let named = named.iter().filter_map(|named| {

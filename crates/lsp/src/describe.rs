@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::members::members_at;
 use super::package::{OpenedPackage, PackageModules, WeslSymbol};
 use super::place;
-use super::told::hover_json;
+use super::report::hover_json;
 use super::{LanguageServer, glsl, look};
 use lamplight_catalogue::{self as catalogue, CatalogueItem, cost, pages};
 use lamplight_compose::project::LIBRARY;

@@ -18,8 +18,8 @@ mod navigate;
 mod offers;
 mod package;
 mod place;
+mod report;
 mod shade;
-mod told;
 mod unchanged;
 pub mod wire;
 
@@ -270,9 +270,10 @@ impl LanguageServer {
             let here = found.iter().filter(|found: &&lamplight_diagnostic::Diagnostic| {
                 let place = found.labels.first().map(|label| label.span.source);
                 let library = &*self.library;
-                place.and_then(|id| told::address_of(sources, id, library)).as_deref() == Some(uri)
+                place.and_then(|id| report::address_of(sources, id, library)).as_deref()
+                    == Some(uri)
             });
-            let told = |found| told::diagnostic_json(sources, found, note, &*self.library);
+            let told = |found| report::diagnostic_json(sources, found, note, &*self.library);
             here.filter_map(told).collect::<Vec<_>>()
         };
         let mut opened = match self.open_package(&document.root) {

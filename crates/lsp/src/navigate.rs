@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::members::members_at;
 use super::package::{PackageModules, WeslSymbol};
 use super::place::Lines;
-use super::{LanguageServer, glsl, told};
+use super::{LanguageServer, glsl, report};
 use lamplight_compose::project;
 use lamplight_diagnostic::source::Span;
 use lamplight_syntax::wesl::{ItemKind, Name, is_keyword, is_path_name};
@@ -44,7 +44,7 @@ impl LanguageServer {
     }
 
     fn location(&self, modules: &PackageModules, span: Span) -> Option<Value> {
-        let uri = told::address_of(&modules.sources, span.source, &*self.library)?;
+        let uri = report::address_of(&modules.sources, span.source, &*self.library)?;
         let lines = Lines::new(&modules.sources.get(span.source).text);
         Some(json!({ "uri": uri, "range": lines.range(span.range()) }))
     }
@@ -170,10 +170,10 @@ pub fn rename_symbol(
     let places = modules.references(symbol).into_iter().filter_map(|span| {
         let text: &str = &modules.sources.get(span.source).text;
         let name = last_name(text, span);
-        let uri = || told::address_of(&modules.sources, span.source, &*server.library);
+        let uri = || report::address_of(&modules.sources, span.source, &*server.library);
         (modules.sources.text(name) == old).then(|| (uri(), text, name.range()))
     });
-    told::rename_json(&new, places)
+    report::rename_json(&new, places)
 }
 
 /// Why a word cannot be the name of a declaration, as the end of a sentence that begins with it.

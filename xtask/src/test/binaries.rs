@@ -172,8 +172,8 @@ pub fn build(
 fn executable(messages: &[Value], binary: &TestBinary) -> Result<PathBuf, CommandFailure> {
     let TestBinary { package, target, groups: _ } = binary;
     let is_its = |message: &&Value| {
-        // Such as `path+file:///work/crates/eval#lamplight-eval@0.1.0`, or without the name where
-        // the folder has it.
+        // An address, `#`, and `lamplight-eval@0.1.0`; or only the version, if the last folder of
+        // the address has the package's name.
         let id = message["package_id"].as_str().unwrap_or_default();
         let (folder, version) = id.rsplit_once('#').unwrap_or((id, ""));
         let name = match version.split_once('@') {

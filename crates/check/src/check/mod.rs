@@ -1,6 +1,7 @@
 //! Runs cases of modules in each language on each executor. Prints nothing: results are data.
 
 mod facts;
+mod failures;
 pub mod job;
 pub mod judge;
 pub mod law;
@@ -9,15 +10,14 @@ mod profile;
 mod proof;
 mod report;
 mod shrink;
-mod told;
 pub mod values;
 
+pub use failures::{failures_as_text, of_outcome, of_proof, report_failures};
 pub use judge::{CaseVerdict, Worst};
 pub use law::LawVerdict;
 pub use profile::{BINS, Bin, CELLS, ErrorMap, Profile, ProfileAxis, ProfileScale, ProfiledInput};
 pub use proof::{Parity, Proof, Spec, ValueProof};
 pub use report::{headroom_text, lacking_text, report_table, short_number, stricter_cases};
-pub use told::{failures_as_text, of_outcome, of_proof, report_failures};
 
 use std::sync::Arc;
 

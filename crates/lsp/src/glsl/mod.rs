@@ -22,7 +22,7 @@ pub use rename::{prepare_rename, rename_symbol};
 
 use super::package::OpenedPackage;
 use super::place::Lines;
-use super::{LanguageServer, describe, navigate, told};
+use super::{LanguageServer, describe, navigate, report};
 use lamplight_bundle::Language;
 use lamplight_compose::project::LIBRARY;
 use lamplight_compose::resolve::{Graph, ROOT, glsl};
@@ -65,7 +65,7 @@ impl OpenGlslFile {
 
     fn location(&self, server: &LanguageServer, file: usize, range: &Range<u32>) -> Option<Value> {
         let module = &self.names.graph.modules[file];
-        let uri = told::address_of(&self.opened.sources, module.source, &*server.library)?;
+        let uri = report::address_of(&self.opened.sources, module.source, &*server.library)?;
         let range = Lines::new(&module.text).range(range.start as usize..range.end as usize);
         Some(json!({ "uri": uri, "range": range }))
     }
@@ -137,7 +137,7 @@ pub fn hover_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value
         NameMeaning::Macro(name) => describe_macro(server, &asked, name),
     };
     let Some(text) = text else { return Ok(Value::Null) };
-    Ok(told::hover_json(&text, &module.text, place.start as usize..place.end as usize))
+    Ok(report::hover_json(&text, &module.text, place.start as usize..place.end as usize))
 }
 
 /// The axis that a macro is, or that it names a value of.

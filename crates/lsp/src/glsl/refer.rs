@@ -12,7 +12,7 @@ use super::units::{Meant, NamePlace, Units};
 use super::{read_names, symbol_kind, text_of};
 use crate::package::OpenedPackage;
 use crate::place::Lines;
-use crate::{LanguageServer, describe, told};
+use crate::{LanguageServer, describe, report};
 use lamplight_catalogue as catalogue;
 use lamplight_compose::project::LIBRARY;
 use lamplight_compose::resolve::{ROOT, glsl};
@@ -68,7 +68,7 @@ impl Whole {
 
     pub fn location(&self, server: &LanguageServer, place: &NamePlace) -> Option<Value> {
         let module = self.units.module(place.file);
-        let uri = told::address_of(&self.opened.sources, module.source, &*server.library)?;
+        let uri = report::address_of(&self.opened.sources, module.source, &*server.library)?;
         let range = Lines::new(&module.text).range(place.start as usize..place.end as usize);
         Some(json!({ "uri": uri, "range": range }))
     }

@@ -10,7 +10,7 @@ use super::text_of;
 use super::units::{Meant, NamePlace, Units, Use};
 use super::words::is_reserved;
 use crate::place::Lines;
-use crate::{LanguageServer, told};
+use crate::{LanguageServer, report};
 use lamplight_compose::resolve::glsl::IncludeTarget;
 use lamplight_syntax::glsl::{Directive, FilePart, Symbol};
 use lamplight_syntax::words::has_word;
@@ -44,10 +44,10 @@ pub fn rename_symbol(
     check_new(&asked, &places, &new)?;
     let places = places.iter().map(|place| {
         let module = asked.whole.units.module(place.file);
-        let uri = told::address_of(&asked.whole.opened.sources, module.source, &*server.library);
+        let uri = report::address_of(&asked.whole.opened.sources, module.source, &*server.library);
         (uri, &*module.text, place.start as usize..place.end as usize)
     });
-    told::rename_json(&new, places)
+    report::rename_json(&new, places)
 }
 
 /// Every place that writes the name.
