@@ -10,7 +10,6 @@
 //!   pass to the window flips them, and front faces wind the other way round for `glFrontFace`.
 //! - `msl`, `hlsl`, `wgsl`: the same conventions are native.
 
-pub mod blocks;
 pub mod clip;
 mod columns;
 mod filters;

@@ -3,7 +3,7 @@
 
 use naga::{Arena, Block, Expression, Function, Handle, Range, Span, Statement};
 
-use super::blocks::inner_blocks_mut;
+use lamplight_validate::inner_blocks_mut;
 use lamplight_validate::{change_operands, change_used, result_mut};
 
 /// Appends what stands for an expression, and returns its value. It gets the old handle, and the

@@ -13,8 +13,8 @@ use naga::{
     Module, Range, Scalar, ScalarKind, Span, Statement, Type, TypeInner, VectorSize,
 };
 
-use super::blocks::inner_blocks_mut;
 use lamplight_validate::info_unchecked;
+use lamplight_validate::inner_blocks_mut;
 
 /// The name of the functions, as naga has it in other languages.
 const NAME: &str = "naga_mod";

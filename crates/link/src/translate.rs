@@ -89,7 +89,7 @@ fn translate_inner(
     if !is_bounded(&module) {
         return Err(Reason::Refused);
     }
-    store_loop_values(&mut module);
+    store_loop_values(&mut module).map_err(|_| Reason::Refused)?;
     show_stubs(outline, recipe, &mut module)?;
     call_function(outline, recipe, &mut module)?;
     let info = info_of(&module).map_err(|_| Reason::Refused)?;

@@ -7,8 +7,8 @@
 use lamplight_compose::SourceMap;
 use lamplight_diagnostic::source;
 use lamplight_diagnostic::source::SourceSet;
-use lamplight_emit::blocks::{inner_blocks, inner_blocks_mut};
 use lamplight_syntax::words::is_word;
+use lamplight_validate::{inner_blocks, inner_blocks_mut};
 use naga::valid::{FunctionInfo, ModuleInfo};
 use naga::{
     BinaryOperator as Op, Block, Expression, Function, Handle, Literal, MathFunction as Math,

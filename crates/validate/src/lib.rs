@@ -26,7 +26,9 @@ pub use guard::{catch_panics, guard, on_large_stack};
 pub use hints::glsl_words;
 pub use limits::{LIMITS, NagaLimits};
 pub use loops::store_loop_values;
-pub use operands::{change_operands, change_used, operands, result_mut};
+pub use operands::{
+    change_operands, change_used, inner_blocks, inner_blocks_mut, operands, result_mut,
+};
 #[doc(hidden)]
 pub use rehearsal::{RehearsalJob, RehearsalOutputs, STAGE, rehearse};
 pub use uniformity::{has_lints, lint};
@@ -130,7 +132,7 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
     if let Some(name) = compute_with_inputs(&module) {
         return Err(vec![inputs_of_compute(composed, name)]);
     }
-    store_loop_values(&mut module);
+    store_loop_values(&mut module).map_err(|span| vec![not_carried(composed, span)])?;
     let info = info_of(&module)
         .map_err(|error| vec![report::validation_error(composed, &module, &error)])?;
     if composed.language == Language::Glsl {
@@ -138,6 +140,18 @@ fn analyse_module(composed: &Composed, mut module: naga::Module) -> Result<Valid
     }
     alias::refuse_aliases(composed, &module).map_err(|error| vec![error])?;
     Ok(Validated { language: composed.language, module, info })
+}
+
+/// The error about a value that a `continuing` block cannot have.
+fn not_carried(composed: &Composed, span: naga::Span) -> Diagnostic {
+    let message = "what `atomicCompareExchangeWeak` returns cannot be used in `continuing`: some \
+        targets would call it again";
+    let error = Diagnostic::error(codes::NOT_PORTABLE, message)
+        .note("help: give its members names in the body: `let old = result.old_value;`");
+    match span.to_range().and_then(|range| composed.map.lookup(range)) {
+        Some(span) => error.at(span, "this value"),
+        None => error,
+    }
 }
 
 /// naga's error about a module.

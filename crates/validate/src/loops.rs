@@ -14,30 +14,40 @@ use naga::{
     Type, TypeInner,
 };
 
-use super::operands::inner_blocks;
-use super::operands::{change_operands, change_used, computed, operands, result_mut, used};
+use super::operands::{
+    change_operands, change_used, computed, inner_blocks, inner_blocks_mut, operands, result_mut,
+    used,
+};
 
 type Value = Handle<Expression>;
 
 /// Stores the values of loops' bodies that their `continuing` blocks use.
-pub fn store_loop_values(module: &mut Module) {
+///
+/// # Errors
+/// The place of a value that can be neither stored nor computed again: what
+/// `atomicCompareExchangeWeak` returns, whose type has no name.
+pub fn store_loop_values(module: &mut Module) -> Result<(), Span> {
     let functions: Vec<Handle<Function>> =
         module.functions.iter().map(|(handle, _)| handle).collect();
     for handle in functions {
-        let changed = changed_function(&module.functions[handle], module);
+        let changed = changed_function(&module.functions[handle], module)?;
         if let Some((function, types)) = changed {
             module.types = types;
             module.functions[handle] = function;
         }
     }
     for index in 0..module.entry_points.len() {
-        let changed = changed_function(&module.entry_points[index].function, module);
+        let changed = changed_function(&module.entry_points[index].function, module)?;
         if let Some((function, types)) = changed {
             module.types = types;
             module.entry_points[index].function = function;
         }
     }
+    Ok(())
 }
+
+/// A function with stored values, and the types that it needs.
+type ChangedFunction = (Function, naga::UniqueArena<Type>);
 
 /// What a loop needs of its body.
 #[derive(Default)]
@@ -57,24 +67,23 @@ enum Carried {
     Repeated,
 }
 
-/// The function with stored values, and the types that it needs; `None` where it needs none.
-fn changed_function(
-    function: &Function,
-    module: &Module,
-) -> Option<(Function, naga::UniqueArena<Type>)> {
+/// The function with stored values; `None` where it needs none.
+fn changed_function(function: &Function, module: &Module) -> Result<Option<ChangedFunction>, Span> {
     let mut loops = Vec::new();
     find_loops(&function.body, &mut loops);
     let mut needs: Vec<LoopNeeds> =
         loops.iter().map(|(body, rest)| needs_of(body, rest, function)).collect();
     if needs.iter().all(|needs| needs.values.is_empty()) {
-        return None;
+        return Ok(None);
     }
     let mut typifier = Typifier::new();
     let context =
         ResolveContext::with_locals(module, &function.local_variables, &function.arguments);
     // naga's validator reports what has no type.
-    let (last, _) = function.expressions.iter().next_back()?;
-    typifier.grow(last, &function.expressions, &context).ok()?;
+    let Some((last, _)) = function.expressions.iter().next_back() else { return Ok(None) };
+    if typifier.grow(last, &function.expressions, &context).is_err() {
+        return Ok(None);
+    }
     let mut types = module.types.clone();
     let mut carried = BTreeMap::new();
     for (needs, (body, _)) in needs.iter_mut().zip(&loops) {
@@ -90,14 +99,14 @@ fn changed_function(
                     Carried::Repeated
                 }
                 Some(false) => Carried::Stored(ty),
-                None => return None,
+                None => return Err(function.expressions.get_span(value)),
             };
             carried.insert(value, how);
         }
     }
     let mut function = function.clone();
     LoopRewrite::new(&needs, carried).rewrite(&mut function);
-    Some((function, types))
+    Ok(Some((function, types)))
 }
 
 /// The bodies of all loops, each with its statement, in the order in which a walk meets them.
@@ -302,16 +311,5 @@ impl<'n> LoopRewrite<'n> {
 fn write_run(run: Option<(Value, Value)>, span: Span, block: &mut Block) {
     if let Some((first, last)) = run {
         block.push(Statement::Emit(Range::new_from_bounds(first, last)), span);
-    }
-}
-
-fn inner_blocks_mut(statement: &mut Statement) -> Vec<&mut Block> {
-    match statement {
-        Statement::Block(block) => vec![block],
-        Statement::If { condition: _, accept, reject } => vec![accept, reject],
-        Statement::Switch { selector: _, cases } => {
-            cases.iter_mut().map(|case| &mut case.body).collect()
-        }
-        _ => Vec::new(),
     }
 }

@@ -251,12 +251,25 @@ pub fn computed(block: &naga::Block) -> Vec<Handle<Expression>> {
     found
 }
 
-/// The blocks within a statement.
+/// The blocks within a statement, in order.
 pub fn inner_blocks(statement: &Statement) -> Vec<&naga::Block> {
     match statement {
         Statement::Block(block) => vec![block],
         Statement::If { condition: _, accept, reject } => vec![accept, reject],
         Statement::Switch { selector: _, cases } => cases.iter().map(|case| &case.body).collect(),
+        Statement::Loop { body, continuing, break_if: _ } => vec![body, continuing],
+        _ => Vec::new(),
+    }
+}
+
+/// As [`inner_blocks`], to be changed.
+pub fn inner_blocks_mut(statement: &mut Statement) -> Vec<&mut naga::Block> {
+    match statement {
+        Statement::Block(block) => vec![block],
+        Statement::If { condition: _, accept, reject } => vec![accept, reject],
+        Statement::Switch { selector: _, cases } => {
+            cases.iter_mut().map(|case| &mut case.body).collect()
+        }
         Statement::Loop { body, continuing, break_if: _ } => vec![body, continuing],
         _ => Vec::new(),
     }

@@ -19,11 +19,11 @@ use lamplight_compose::resolve::Graph;
 use lamplight_compose::{Options, PartKind, project, resolve};
 use lamplight_diagnostic::source::{Embedded, SourceSet};
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
-use lamplight_emit::blocks::{inner_blocks, inner_blocks_mut};
 use lamplight_emit::reflect;
 use lamplight_permute::manifest::{ManifestFile, Program};
 use lamplight_permute::{Manifest, Settings};
 use lamplight_validate::{Validated, validate};
+use lamplight_validate::{inner_blocks, inner_blocks_mut};
 use naga::{
     AddressSpace, Arena, BinaryOperator, Block, Expression, Function, GlobalVariable, Handle,
     Literal, LocalVariable, MemoryDecorations, Module, Range, Scalar, Span, Statement, Type,
