@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, PI};
 
 use glam::{DMat3, DMat4, DVec3, Vec4Swizzles};
 use lamplight_scene::{self as scene, Bounds, Clip, CubeMap, Depth, Equirect, MeshError};
-
+use lamplight_testing::numbers::{near, near_vector};
 use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
@@ -39,35 +39,24 @@ pub fn trials() -> Vec<Trial> {
     cases.into_iter().map(|(name, run)| Trial::test(format!("scene::{name}"), run)).collect()
 }
 
-fn near(what: &str, found: f64, wanted: f64, error: f64) -> Outcome {
-    if (found - wanted).abs() <= error {
-        Ok(())
-    } else {
-        Err(format!("{what}: {found}, wanted {wanted} within {error:e}").into())
-    }
-}
-
-fn close(what: &str, found: DVec3, wanted: DVec3, error: f64) -> Outcome {
-    if (found - wanted).abs().max_element() <= error {
-        Ok(())
-    } else {
-        Err(format!("{what}: {found}, wanted {wanted} within {error:e}").into())
-    }
-}
-
 /// A view matrix maps the eye to the origin and the target to -z, also for views along `up`.
 fn views() -> Outcome {
     let (eye, target) = (DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, -2.0, 3.0));
     let view = scene::look_at(eye, target, DVec3::Z);
-    close("the eye", view.transform_point3(eye), DVec3::ZERO, 1e-12)?;
-    close("the target", view.transform_point3(target), DVec3::new(0.0, 0.0, -5.0), 1e-12)?;
-    close("up", view.transform_vector3(DVec3::Z), DVec3::Y, 1e-12)?;
+    near_vector("the eye", view.transform_point3(eye), DVec3::ZERO, 1e-12)?;
+    near_vector("the target", view.transform_point3(target), DVec3::new(0.0, 0.0, -5.0), 1e-12)?;
+    near_vector("up", view.transform_vector3(DVec3::Z), DVec3::Y, 1e-12)?;
     for direction in [DVec3::Y, DVec3::NEG_Y, DVec3::X, DVec3::new(1e-9, 1.0, 0.0)] {
         let view = scene::look_along(DVec3::ZERO, direction, DVec3::Y);
-        close("straight up", view.transform_vector3(direction.normalize()), DVec3::NEG_Z, 1e-12)?;
+        near_vector(
+            "straight up",
+            view.transform_vector3(direction.normalize()),
+            DVec3::NEG_Z,
+            1e-12,
+        )?;
         near("a rotation", DMat3::from_mat4(view).determinant(), 1.0, 1e-12)?;
     }
-    close(
+    near_vector(
         "no direction",
         scene::look_at(eye, eye, DVec3::Y).transform_point3(DVec3::ZERO),
         -eye,
@@ -84,11 +73,11 @@ fn angles() -> Outcome {
         * DMat4::from_rotation_x(turn.x);
     let product = scene::from_angles(origin, turn) * place;
     for (column, wanted) in [DVec3::X, DVec3::Y, DVec3::Z].into_iter().enumerate() {
-        close("a column", product.col(column).xyz(), wanted, 1e-12)?;
+        near_vector("a column", product.col(column).xyz(), wanted, 1e-12)?;
     }
     // A quarter turn about x looks up.
     let up = scene::from_angles(DVec3::ZERO, DVec3::new(FRAC_PI_2, 0.0, 0.0));
-    close("up", up.transform_vector3(DVec3::Y), DVec3::NEG_Z, 1e-12)
+    near_vector("up", up.transform_vector3(DVec3::Y), DVec3::NEG_Z, 1e-12)
 }
 
 fn depth_of(clip: Clip, depth: Depth) -> (f64, f64) {
@@ -129,7 +118,7 @@ fn frusta() -> Outcome {
             let away = if index < 4 { 1.0 } else { 10.0 };
             let y = if (index & 2 == 0) == (clip != Clip::Vulkan) { -away } else { away };
             let wanted = DVec3::new(if index & 1 == 0 { -away } else { away }, y, -away);
-            close("a corner", view.transform_point3(corner), wanted, 1e-9)?;
+            near_vector("a corner", view.transform_point3(corner), wanted, 1e-9)?;
         }
         let (first, last) = scene::depth_range(view, &corners).ok_or("no range")?;
         near("near", first, 1.0, 1e-9)?;
@@ -154,8 +143,8 @@ fn tight() -> Outcome {
             seen.iter().copied().reduce(DVec3::max).ok_or("none")?,
         );
         let (first, last) = depth_of(clip, depth);
-        close("low", low, DVec3::new(-1.0, -1.0, first.min(last)), 1e-12)?;
-        close("high", high, DVec3::new(1.0, 1.0, first.max(last)), 1e-12)?;
+        near_vector("low", low, DVec3::new(-1.0, -1.0, first.min(last)), 1e-12)?;
+        near_vector("high", high, DVec3::new(1.0, 1.0, first.max(last)), 1e-12)?;
         let nearest = points
             .iter()
             .min_by(|a, b| view.transform_point3(**b).z.total_cmp(&view.transform_point3(**a).z))
@@ -194,8 +183,18 @@ fn faces() -> Outcome {
         }
     }
     // Graphics APIs define that on the face +x columns run to -z and rows to -y.
-    close("+x", CubeMap::direction(2, 0, 1, 1), DVec3::new(1.0, -0.5, -0.5).normalize(), 1e-12)?;
-    close("-y", CubeMap::direction(2, 3, 1, 1), DVec3::new(0.5, -1.0, -0.5).normalize(), 1e-12)
+    near_vector(
+        "+x",
+        CubeMap::direction(2, 0, 1, 1),
+        DVec3::new(1.0, -0.5, -0.5).normalize(),
+        1e-12,
+    )?;
+    near_vector(
+        "-y",
+        CubeMap::direction(2, 3, 1, 1),
+        DVec3::new(0.5, -1.0, -0.5).normalize(),
+        1e-12,
+    )
 }
 
 fn shadow_matrices() -> Outcome {
@@ -208,7 +207,7 @@ fn shadow_matrices() -> Outcome {
         // The point is a quarter from the left, an eighth from the top, and halfway in depth.
         let point = back.transform_point3(DVec3::new(-2.0, 1.5, -5.0));
         let v = if clip == Clip::OpenGl { 0.875 } else { 0.125 };
-        close("a place", matrix.project_point3(point), DVec3::new(0.25, v, 0.5), 1e-12)?;
+        near_vector("a place", matrix.project_point3(point), DVec3::new(0.25, v, 0.5), 1e-12)?;
         let reversed =
             scene::shadow_matrix(scene::orthographic(&bounds, clip, Depth::Reversed), view, clip);
         near(
@@ -233,17 +232,17 @@ fn normals() -> Outcome {
     let indices = [0, 1, 2, 0, 3, 1, 0, 0, 1];
     let faces = scene::face_normals(&positions, Some(&indices))?;
     let slope = 0.5_f64.sqrt();
-    close("left", faces[0], DVec3::new(-slope, slope, 0.0), 1e-12)?;
-    close("right", faces[1], DVec3::new(slope, slope, 0.0), 1e-12)?;
-    close("degenerate", faces[2], DVec3::ZERO, 0.0)?;
+    near_vector("left", faces[0], DVec3::new(-slope, slope, 0.0), 1e-12)?;
+    near_vector("right", faces[1], DVec3::new(slope, slope, 0.0), 1e-12)?;
+    near_vector("degenerate", faces[2], DVec3::ZERO, 0.0)?;
     let smooth = scene::smooth_normals(&positions, Some(&indices))?;
-    close("the ridge", smooth[0], DVec3::Y, 1e-12)?;
-    close("the eaves", smooth[2], faces[0], 1e-12)?;
-    close("unused", smooth[4], scene::UNUSED_NORMAL, 0.0)?;
+    near_vector("the ridge", smooth[0], DVec3::Y, 1e-12)?;
+    near_vector("the eaves", smooth[2], faces[0], 1e-12)?;
+    near_vector("unused", smooth[4], scene::UNUSED_NORMAL, 0.0)?;
     let loose: Vec<DVec3> = indices[..6].iter().map(|index| positions[*index as usize]).collect();
     let welded = scene::smooth_normals(&loose, None)?;
-    close("welded", welded[0], DVec3::Y, 1e-12)?;
-    close("welded again", welded[3], DVec3::Y, 1e-12)?;
+    near_vector("welded", welded[0], DVec3::Y, 1e-12)?;
+    near_vector("welded again", welded[3], DVec3::Y, 1e-12)?;
     match (
         scene::face_normals(&positions, Some(&[0, 1])),
         scene::smooth_normals(&positions, Some(&[0, 1, 5])),
@@ -267,7 +266,7 @@ fn normal_matrix() -> Outcome {
     near("along", normal.dot(model.transform_vector3(along)), 0.0, 1e-12)?;
     near("across", normal.dot(model.transform_vector3(across)), 0.0, 1e-12)?;
     let flat = scene::normal_matrix(DMat4::from_scale(DVec3::new(1.0, 0.0, 1.0)));
-    close("flattened", flat * DVec3::new(0.3, 1.0, 0.2), DVec3::Y, 0.0)
+    near_vector("flattened", flat * DVec3::new(0.3, 1.0, 0.2), DVec3::Y, 0.0)
 }
 
 /// The kernel adds up to 1, is symmetric, and has the published weights.
@@ -298,16 +297,16 @@ fn harmonics() -> Outcome {
     near("L00", constant[0].x, 2.0 * PI.sqrt(), 1e-12)?;
     constant[1..]
         .iter()
-        .try_for_each(|coefficient| close("the others", *coefficient, DVec3::ZERO, 1e-12))?;
-    close("irradiance", scene::irradiance_sh9(DVec3::Y, &constant), DVec3::splat(PI), 1e-12)?;
+        .try_for_each(|coefficient| near_vector("the others", *coefficient, DVec3::ZERO, 1e-12))?;
+    near_vector("irradiance", scene::irradiance_sh9(DVec3::Y, &constant), DVec3::splat(PI), 1e-12)?;
     let linear = of(&|d| DVec3::splat(1.0 + d.y));
-    close(
+    near_vector(
         "of 1 + y",
         scene::irradiance_sh9(DVec3::Y, &linear),
         DVec3::splat(PI + 2.0 * PI / 3.0),
         1e-12,
     )?;
-    close(
+    near_vector(
         "of 1 + y, below",
         scene::irradiance_sh9(DVec3::NEG_Y, &linear),
         DVec3::splat(PI / 3.0),
@@ -334,7 +333,7 @@ fn images() -> Outcome {
     let constant = Equirect::of(&|_| DVec3::new(1.0, 2.0, 3.0), 64, 32).ok_or("no image")?;
     near("the whole sphere", constant.samples().map(|(_, angle, _)| angle).sum(), 4.0 * PI, 1e-12)?;
     let coefficients = scene::sh9_project(constant.samples());
-    close(
+    near_vector(
         "irradiance",
         scene::irradiance_sh9(DVec3::X, &coefficients),
         DVec3::new(1.0, 2.0, 3.0) * PI,
@@ -344,15 +343,20 @@ fn images() -> Outcome {
     let image = Equirect::of(&sky, 256, 128).ok_or("no image")?;
     let found = scene::sh9_project(image.samples());
     for n in [DVec3::X, DVec3::NEG_Y, DVec3::Z, DVec3::new(0.6, 0.0, -0.8)] {
-        close(
+        near_vector(
             "a linear sky",
             scene::irradiance_sh9(n, &found),
             DVec3::splat(PI) + n * (2.0 * PI / 3.0),
             2e-3,
         )?;
-        close("read back", image.radiance(n), sky(n), 1e-3)?;
+        near_vector("read back", image.radiance(n), sky(n), 1e-3)?;
     }
-    close("at the seam", image.radiance(DVec3::new(-1.0, 0.0, 1e-9)), sky(DVec3::NEG_X), 1e-3)?;
+    near_vector(
+        "at the seam",
+        image.radiance(DVec3::new(-1.0, 0.0, 1e-9)),
+        sky(DVec3::NEG_X),
+        1e-3,
+    )?;
     if Equirect::new(2, 2, vec![DVec3::ZERO; 3]).is_none() {
         Ok(())
     } else {
@@ -366,7 +370,7 @@ fn filtered() -> Outcome {
     for exponent in [1.0, 50.0] {
         let constant = scene::prefilter(&|_| DVec3::new(0.5, 1.0, 2.0), exponent, 4, 24);
         for texel in &constant.texels {
-            close("a constant", *texel, DVec3::new(0.5, 1.0, 2.0), 1e-12)?;
+            near_vector("a constant", *texel, DVec3::new(0.5, 1.0, 2.0), 1e-12)?;
         }
         let linear = scene::prefilter(&|d| DVec3::splat(1.0 + d.y), exponent, 4, 64);
         for (index, texel) in linear.texels.iter().enumerate() {

@@ -3,7 +3,6 @@
 mod probes;
 mod sets;
 
-use glam::DVec3;
 use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
@@ -20,20 +19,4 @@ pub fn trials() -> Vec<Trial> {
         ("numbers_of_materials", sets::numbers),
     ];
     cases.into_iter().map(|(name, run)| Trial::test(format!("scenes::{name}"), run)).collect()
-}
-
-fn near(what: &str, found: f64, wanted: f64, error: f64) -> Outcome {
-    if (found - wanted).abs() <= error {
-        Ok(())
-    } else {
-        Err(format!("{what}: {found}, wanted {wanted} within {error:e}").into())
-    }
-}
-
-fn close(what: &str, found: DVec3, wanted: DVec3, error: f64) -> Outcome {
-    if (found - wanted).abs().max_element() <= error {
-        Ok(())
-    } else {
-        Err(format!("{what}: {found}, wanted {wanted} within {error:e}").into())
-    }
 }

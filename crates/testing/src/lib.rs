@@ -4,6 +4,7 @@
 
 pub mod commands;
 pub mod folders;
+pub mod numbers;
 pub mod random;
 pub mod snapshot;
 pub mod text;

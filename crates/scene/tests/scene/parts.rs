@@ -3,7 +3,8 @@
 use glam::DVec3;
 use lamplight_scene as scene;
 
-use super::{Outcome, near};
+use super::Outcome;
+use lamplight_testing::numbers::near;
 
 /// Cascades are split evenly, logarithmically, or by a mix of both.
 pub fn cascades() -> Outcome {

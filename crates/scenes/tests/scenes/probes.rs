@@ -4,7 +4,8 @@ use glam::{DMat3, DMat4, DVec3};
 use lamplight_scenes::sets::{self, Eye, Material, Object, Scene};
 use lamplight_scenes::{ProbeField, ProbeGrid, Shape, Surfaces};
 
-use super::{Outcome, close, near};
+use super::Outcome;
+use lamplight_testing::numbers::{near, near_vector};
 use lamplight_testing::random::Random;
 
 /// A box seen from inside, with walls that are diffuse and emissive.
@@ -34,7 +35,7 @@ pub fn rays() -> Outcome {
     for (towards, distance, normal) in cases {
         let hit = surfaces.hit(from, towards).ok_or("no wall")?;
         near("distance", hit.distance, distance, 1e-12)?;
-        close("normal", hit.normal, normal, 1e-12)?;
+        near_vector("normal", hit.normal, normal, 1e-12)?;
     }
     let outside = surfaces.hit(DVec3::new(5.0, 0.1, 0.1), DVec3::NEG_X).ok_or("no wall")?;
     near("from outside", outside.distance, 3.0, 1e-12)?;
@@ -125,8 +126,8 @@ pub fn fields() -> Outcome {
     let open = ProbeField::new(grid(), &Surfaces::default(), &|_, _| DVec3::ZERO, DVec3::X);
     let places = [DVec3::ZERO, DVec3::new(1.9, -0.9, 1.4), DVec3::new(-1.99, 0.3, -0.2)];
     for (at, normal) in places.into_iter().zip([DVec3::Y, DVec3::NEG_X, DVec3::X]) {
-        close("glowing box", glowing.light_at(at, normal), DVec3::splat(sum), 1e-9)?;
-        close("nothing", open.light_at(at, normal), DVec3::X, 1e-9)?;
+        near_vector("glowing box", glowing.light_at(at, normal), DVec3::splat(sum), 1e-9)?;
+        near_vector("nothing", open.light_at(at, normal), DVec3::X, 1e-9)?;
     }
     Ok(())
 }

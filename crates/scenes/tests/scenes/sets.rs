@@ -6,7 +6,8 @@ use glam::{DMat4, DVec2, DVec3};
 use lamplight_scene as scene;
 use lamplight_scenes::{ENVIRONMENTS, Shape, environment, sets};
 
-use super::{Outcome, close, near};
+use super::Outcome;
+use lamplight_testing::numbers::{near, near_vector};
 
 /// Shapes have the volumes of their formulas. The volume would be negative if faces were inside out.
 pub fn volumes() -> Outcome {
@@ -87,7 +88,7 @@ pub fn environments() -> Outcome {
     let samples = scene::directions(8)
         .into_iter()
         .map(|(direction, angle)| (direction, angle, constant(direction)));
-    close(
+    near_vector(
         "irradiance",
         scene::irradiance_sh9(DVec3::Y, &scene::sh9_project(samples)),
         DVec3::splat(PI),
