@@ -9,8 +9,8 @@ use crate::Extent;
 
 pub const KIND: &str = "judged";
 
-/// If more names than this are stored, all are forgotten, and their outputs are judged again.
-/// Otherwise a bundle that changes often would collect names for ever.
+/// If more names or lines than this are stored, all are forgotten, and their outputs are judged
+/// again. Otherwise a bundle that changes often would collect them for ever.
 const MOST: usize = 200_000;
 
 /// What stands before the hash of a line, where names of outputs and hashes are listed.
@@ -42,16 +42,14 @@ impl KnownOutputs {
                 None => _ = names.insert(entry.to_owned()),
             }
         }
-        if names.len() > MOST {
-            names.clear();
+        if names.len().max(lines.len()) > MOST {
+            (names, lines) = (BTreeSet::new(), BTreeSet::new());
         }
-        let mut known = Self { key, before: names.len(), names, lines };
         // Outputs that passed as a whole need no second look at their lines.
         if extent == Extent::Lines {
-            let whole = Self::load(cache, target, Extent::All, versions).names;
-            known.names.extend(whole);
+            names.extend(Self::load(cache, target, Extent::All, versions).names);
         }
-        known
+        Self { key, before: names.len(), names, lines }
     }
 
     /// Stores them, if there are new ones.
