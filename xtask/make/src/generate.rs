@@ -1,5 +1,5 @@
 //! `cargo xtask gen`: writes the library's bundle, as `lamplight gen` does, once validators accept it.
-//! By default they see so many outputs that each distinct line of each target is in one of them.
+//! By default they see a selection of outputs that has each distinct line of each target.
 //! `--validate all` takes all outputs, and `--validate none` no output.
 
 use std::collections::BTreeSet;

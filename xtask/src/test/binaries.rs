@@ -192,19 +192,44 @@ fn executable(messages: &[Value], binary: &TestBinary) -> Result<PathBuf, Comman
 const LARGE_PAGES: &str = "glibc.malloc.hugetlb=1:glibc.malloc.top_pad=16777216:\
     glibc.malloc.mmap_threshold=1073741824:glibc.malloc.trim_threshold=1073741824";
 
-/// Runs binaries one after the other, each once for each name, or once without a name. All of them
-/// run, even after one that fails.
-pub fn run_all(paths: &[PathBuf], names: &[String], options: &[String]) -> CommandResult {
-    let without = [Vec::new()];
-    let with: Vec<Vec<String>> = names.iter().map(|name| vec![name.clone()]).collect();
-    let runs = if names.is_empty() { &without[..] } else { &with[..] };
+/// Runs binaries one after the other, even after one that fails.
+pub fn run_all(paths: &[PathBuf], options: &[String]) -> CommandResult {
     let mut outcome = Ok(());
     for path in paths {
-        for name in runs {
-            outcome = outcome.and(run_binary(path, &[name, options].concat()));
+        outcome = outcome.and(run_binary(path, options));
+    }
+    outcome
+}
+
+/// Runs the tests that have one of the names in theirs, even after one that fails. A name that no
+/// test has is an error, since nothing would be tested.
+pub fn run_named(paths: &[PathBuf], names: &[String], options: &[String]) -> CommandResult {
+    let mut outcome = Ok(());
+    for name in names {
+        let arguments = [std::slice::from_ref(name), options].concat();
+        let mut is_known = false;
+        for path in paths {
+            if has_tests(path, &arguments)? {
+                is_known = true;
+                outcome = outcome.and(run_binary(path, &arguments));
+            }
+        }
+        if !is_known {
+            let message = format!("no test has `{name}` in its name");
+            outcome = outcome.and(Err(CommandFailure::check(message)));
         }
     }
     outcome
+}
+
+/// Whether a test binary would run any test with these arguments.
+fn has_tests(path: &Path, arguments: &[String]) -> Result<bool, CommandFailure> {
+    let mut command = Command::new(path);
+    command.arg("--list").args(arguments).current_dir(root());
+    let listed = command.stderr(Stdio::inherit()).output();
+    let listed = listed.map_err(|error| process::not_run(&path.to_string_lossy(), &error))?;
+    process::succeeded(listed.status, "listing the tests")?;
+    Ok(!listed.stdout.trim_ascii().is_empty())
 }
 
 /// Runs a test binary as `cargo test` does.

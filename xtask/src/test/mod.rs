@@ -33,7 +33,7 @@ pub fn run(arguments: &[String]) -> CommandResult {
         for_node_and_browser()?;
     }
     let paths = binaries::build(&chosen, &[])?;
-    binaries::run_all(&paths, &names, &options)
+    binaries::run_named(&paths, &names, &options)
 }
 
 /// Builds and runs every test, those of the documentation too.
@@ -49,7 +49,7 @@ fn everything(chosen: &[binaries::TestBinary], options: &[String]) -> CommandRes
     let examples = binaries::documentation_command();
     let examples: Vec<&str> = examples.iter().map(String::as_str).collect();
     process::cargo_with(&examples, &[], &incremental)?;
-    binaries::run_all(&paths?, &[], options)
+    binaries::run_all(&paths?, options)
 }
 
 /// Options of a test binary whose value is the next argument.
