@@ -37,7 +37,7 @@ pub struct Arguments {
     #[arg(long)]
     check: bool,
     /// Have independent validators of the targets check outputs before the bundle is replaced: all
-    /// of them, or so many that each distinct line is in one of them.
+    /// of them, or a selection that has each distinct line.
     #[arg(long, value_enum, num_args = 0..=1, default_value = "none", default_missing_value = "all")]
     validate: ValidatedOutputs,
     /// Print the summary as JSON.

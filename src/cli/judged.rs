@@ -20,7 +20,7 @@ use crate::source::SourceSet;
 /// [`Extent`] as an option's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum ValidatedOutputs {
-    /// So many outputs that each distinct line of each target is in one of them.
+    /// A selection of outputs that has each distinct line of each target.
     Lines,
     /// Every output.
     All,

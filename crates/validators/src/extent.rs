@@ -3,7 +3,7 @@
 /// How many of a bundle's outputs are validated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
-    /// So many that each distinct line of each target and stage is in one of them. Lines that differ
+    /// A selection that has each distinct line of each target and stage. Lines that differ
     /// only in the numbers of generated names count as the same.
     Lines,
     /// All of them.

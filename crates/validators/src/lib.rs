@@ -2,7 +2,7 @@
 //!
 //! `files of a bundle -> outputs -> verdict -> blame (the author's places)`; the verdict skips
 //! outputs that are known to have passed before. An [`Extent`] says whether it takes all others, or
-//! only so many that each distinct line is validated once.
+//! only a selection that has each distinct line.
 //!
 //! Each file of `judges/` is a judge, and each target names one, so no target is without one.
 //! Programs are started for batches of outputs. If a batch is refused, its halves are judged, until
