@@ -12,14 +12,14 @@ use crate::judges::{Package, expect};
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 3] = [
         ("checks_by_target", checks_by_target),
         ("checks_are_measured", checks_are_measured),
         ("checks_are_those_of_the_manifest", checks_are_those_of_the_manifest),
     ];
-    let trial = |(name, case): Case| Trial::test(format!("bounds::{name}"), case);
-    cases.map(trial).into()
+    let test = |(name, case): Case| Trial::test(format!("bounds::{name}"), case);
+    cases.map(test).into()
 }
 
 /// An index into a uniform and into an array of its own, a texture load, and a loop.

@@ -1,4 +1,4 @@
-//! The browser that trials and executors drive. A page can be evaluated, its errors read, and a
+//! The browser that tests and executors drive. A page can be evaluated, its errors read, and a
 //! picture taken of it. A page that hangs or crashes, and a missing browser, each give an error.
 
 mod executors;
@@ -13,7 +13,7 @@ use libtest_mimic::{Failed, Trial};
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 7] = [
         ("pages", pages),
         ("nothing_is_hidden", nothing_is_hidden),
@@ -24,7 +24,7 @@ pub fn trials() -> Vec<Trial> {
         ("missing", missing),
     ];
     let own = cases.into_iter().map(|(name, case)| Trial::test(format!("browser::{name}"), case));
-    own.chain(executors::trials()).collect()
+    own.chain(executors::tests()).collect()
 }
 
 /// Long enough for a page to answer, and short enough to wait for an answer that never comes.
@@ -36,7 +36,7 @@ fn served(files: &[(&str, &str)]) -> std::io::Result<HttpServer> {
 }
 
 /// A page evaluates scripts, has WebGPU and WebGL2, and its picture has the width that was asked
-/// for. Without this, executors and trials of the site could not use the browser at all.
+/// for. Without this, executors and tests of the site could not use the browser at all.
 fn pages() -> Outcome {
     let server = served(&[(
         "index.html",
@@ -78,7 +78,7 @@ fn nothing_is_hidden() -> Outcome {
 }
 
 /// The caller can read every error of a page: of the console, of exceptions that nobody caught, and
-/// of files that could not be loaded. If one were lost, a broken page could pass its trial.
+/// of files that could not be loaded. If one were lost, a broken page could pass its test.
 fn errors_are_read() -> Outcome {
     let server = served(&[(
         "index.html",

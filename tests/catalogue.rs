@@ -19,8 +19,8 @@ use crate::snapshot::root;
 
 const MEND: &str = "run: cargo xtask docs";
 
-pub fn trials() -> Vec<Trial> {
-    let mut trials = vec![
+pub fn tests() -> Vec<Trial> {
+    let mut tests = vec![
         Trial::test("catalogue::pages_are_up_to_date", pages_are_up_to_date),
         Trial::test("catalogue::modules_are_up_to_date", modules_are_up_to_date),
         Trial::test("catalogue::same_bytes_twice", same_bytes_twice),
@@ -32,9 +32,9 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("catalogue::preset_fields", preset_numbers_name_fields),
         Trial::test("catalogue::probe_forms_agree", probe_forms_agree),
     ];
-    trials.extend(figures::trials());
-    trials.extend(plots::trials());
-    trials
+    tests.extend(figures::tests());
+    tests.extend(plots::tests());
+    tests
 }
 
 /// `docs/catalogue` has exactly the pages that `cargo xtask docs` would write now.

@@ -16,7 +16,7 @@ use crate::judges::{Package, expect};
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 5] = [
         ("clip_spaces", clip_spaces),
         ("clip_in_manifest_and_cache", clip_in_manifest_and_cache),
@@ -24,8 +24,8 @@ pub fn trials() -> Vec<Trial> {
         ("slots", slots),
         ("guide", guide),
     ];
-    let trial = |(name, case): Case| Trial::test(format!("conventions::{name}"), case);
-    cases.map(trial).into()
+    let test = |(name, case): Case| Trial::test(format!("conventions::{name}"), case);
+    cases.map(test).into()
 }
 
 const SHADER: &str = "

@@ -12,7 +12,7 @@ use serde_json::Value;
 
 type Outcome = Result<(), Failed>;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("cost::more_work_costs_more", more_work),
         Trial::test("cost::every_function_on_every_generation", every_function),

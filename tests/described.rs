@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use lamplight_testing::snapshot::root;
 use libtest_mimic::{Failed, Trial};
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("described::needs", needs_are_installed),
         Trial::test("described::entries", entries_are_described),

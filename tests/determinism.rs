@@ -125,7 +125,7 @@ const COMPOSE: [&[&str]; 3] = [
     ],
 ];
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("determinism::folders", || alike(&GENERATE, "bundle")),
         Trial::test("determinism::single_files", || alike(&GENERATE, "bundle.lamplight")),

@@ -21,17 +21,17 @@ use crate::snapshot;
 /// The command.
 const LAMPLIGHT: &str = env!("CARGO_BIN_EXE_lamplight");
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let case = |(name, path): (String, PathBuf)| {
         Trial::test(format!("diagnostics::{name}"), move || check(&name, &path))
     };
-    let mut trials: Vec<Trial> = snapshot::cases("diagnostics").into_iter().map(case).collect();
-    trials.push(Trial::test("diagnostics every code has a case", every_code));
-    trials.push(Trial::test("diagnostics every code is explained", explained));
-    trials.push(Trial::test("diagnostics limits have codes", limits));
-    trials.push(Trial::test("diagnostics links and odd bytes", odd_files));
-    trials.extend(hostile::trials());
-    trials
+    let mut tests: Vec<Trial> = snapshot::cases("diagnostics").into_iter().map(case).collect();
+    tests.push(Trial::test("diagnostics every code has a case", every_code));
+    tests.push(Trial::test("diagnostics every code is explained", explained));
+    tests.push(Trial::test("diagnostics limits have codes", limits));
+    tests.push(Trial::test("diagnostics links and odd bytes", odd_files));
+    tests.extend(hostile::tests());
+    tests
 }
 
 fn check(name: &str, case: &Path) -> Result<(), Failed> {

@@ -17,8 +17,8 @@ use peer::{Files, Flags, Peer};
 
 /// The number of generated module trees.
 const TREES: u64 = 240;
-/// The number of trials that share them, so that they run in parallel.
-const TRIALS: u64 = 8;
+/// The number of tests that share them, so that they run in parallel.
+const TESTS: u64 = 8;
 
 /// Differences that are accepted: a part of the message that shows one, and why our side is right.
 const ACCEPTED: &[(&str, &str)] = &[(
@@ -33,13 +33,13 @@ struct Tally {
     composed: usize,
 }
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let part = |part: u64| {
         Trial::test(format!("differential::trees_{part}"), move || {
-            trees((part..TREES).step_by(TRIALS as usize))
+            trees((part..TREES).step_by(TESTS as usize))
         })
     };
-    (0..TRIALS).map(part).chain(library::trials()).collect()
+    (0..TESTS).map(part).chain(library::tests()).collect()
 }
 
 fn trees(seeds: impl Iterator<Item = u64>) -> Result<(), Failed> {

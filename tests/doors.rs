@@ -1,4 +1,4 @@
-//! The command line as users meet it. Each trial is named after what a user would expect of it.
+//! The command line as users meet it. Each test is named after what a user would expect of it.
 
 mod checks;
 mod command_line;
@@ -14,10 +14,10 @@ use libtest_mimic::Trial;
 
 type Outcome = Result<(), libtest_mimic::Failed>;
 
-/// The name of a trial, and its function.
+/// The name of a test, and its function.
 type Case = (&'static str, fn() -> Outcome);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases = [
         checks::CASES,
         command_line::CASES,

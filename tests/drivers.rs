@@ -166,7 +166,7 @@ const LACKING: &[(&str, &str, &str)] =
     &[("quantizeToF16(x)", "msl", HALF), ("unpack2x16float(pack2x16float", "msl", HALF)];
 const HALF: &str = "16-bit floats are not a capability of modules that ship";
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let drivers = executors::ALL
         .iter()
         .filter(|executor| executor.samples.is_some() && executor.name != "eval");

@@ -18,8 +18,8 @@ use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
 
-pub fn trials() -> Vec<Trial> {
-    let mut trials = vec![
+pub fn tests() -> Vec<Trial> {
+    let mut tests = vec![
         Trial::test("emit::hostile_texts_are_refused", hostile_texts),
         Trial::test("emit::accepted_depths_fit_the_stack", accepted_depths),
         Trial::test("emit::panics_become_diagnostics", panics),
@@ -27,10 +27,10 @@ pub fn trials() -> Vec<Trial> {
     for (folder, check) in [("valid", valid as fn(&Path) -> Outcome), ("invalid", invalid)] {
         for path in cases(folder) {
             let name = format!("emit::{folder}::{}", path.file_name().unwrap().to_string_lossy());
-            trials.push(Trial::test(name, move || check(&path)));
+            tests.push(Trial::test(name, move || check(&path)));
         }
     }
-    trials
+    tests
 }
 
 /// The shader is emitted for every target, gives the same bytes twice, and the external validators
@@ -166,7 +166,7 @@ fn accepted_depths() -> Outcome {
     ];
     for text in texts {
         let (_, composed) = wrap("deep", text, Language::Wesl, None);
-        // Both results are right. The trial fails by ending the process if the stack overflows.
+        // Both results are right. The test fails by ending the process if the stack overflows.
         let _ = validate(&composed);
     }
     let glsl = [

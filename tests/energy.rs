@@ -5,7 +5,7 @@
 //! The evaluator runs the fragment stage once for each direction of the light. The directions are
 //! those of several strategies, weighted by the balance heuristic (Veach, *Robust Monte Carlo
 //! Methods for Light Transport Simulation*, 1997, chapter 9), at points of a lattice.
-//! `docs/energy.md` has all results. The trial computes some of them again, and all with
+//! `docs/energy.md` has all results. The test computes some of them again, and all with
 //! `UPDATE_EXPECT=1`.
 
 mod page;
@@ -108,7 +108,7 @@ pub struct Cell {
     ambient: f64,
 }
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![Trial::test("energy::white_furnace", white_furnace)]
 }
 

@@ -23,7 +23,7 @@ use libtest_mimic::{Failed, Trial};
 use crate::guide;
 use crate::snapshot::root;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("examples::load_bundle", loads_a_bundle),
         Trial::test("examples::hot_reload", swaps_while_it_draws),

@@ -1,5 +1,5 @@
 //! Draws permutations of `forward`, and of programs that are drawn over the screen, on each driver,
-//! and computes a sample of the fragments again with the evaluator. Trials named `shipped` draw the
+//! and computes a sample of the fragments again with the evaluator. Tests named `shipped` draw the
 //! WGSL of a bundle, which was linked from functions of many permutations. Their fragments too are
 //! computed from the composed text.
 
@@ -58,7 +58,7 @@ type Place = (u32, u32);
 pub const PROGRAMS: [&str; 6] =
     ["forward", "tonemap", "prefilter", "gbuffer", "deferred", "contact_shadows"];
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let on = |program: &'static str| {
         LANGUAGES.iter().flat_map(move |language| {
             BACKENDS.iter().map(move |backend| {
@@ -68,7 +68,7 @@ pub fn trials() -> Vec<Trial> {
             })
         })
     };
-    PROGRAMS.into_iter().flat_map(on).chain(shipped::trials()).chain(whole::trials()).collect()
+    PROGRAMS.into_iter().flat_map(on).chain(shipped::tests()).chain(whole::tests()).collect()
 }
 
 fn run(

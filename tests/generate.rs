@@ -23,7 +23,7 @@ use watched::watch;
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 21] = [
         ("comments_and_layout_go_and_nothing_else", layout),
         ("a_second_run_does_nothing", nothing_to_do),

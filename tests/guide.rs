@@ -19,17 +19,17 @@ use libtest_mimic::{Failed, Trial};
 
 use crate::snapshot;
 
-pub fn trials() -> Vec<Trial> {
-    let mut trials: Vec<Trial> = pages()
+pub fn tests() -> Vec<Trial> {
+    let mut tests: Vec<Trial> = pages()
         .into_iter()
         .map(|path| Trial::test(format!("guide::{}", stem(&path)), move || page::check(&path)))
         .collect();
     let readme = snapshot::root().join("README.md");
-    trials.push(Trial::test("guide::front_page", move || page::check(&readme)));
-    trials.extend(compare::trials());
-    trials.extend(mutated::trials());
-    trials.extend(references::trials());
-    trials
+    tests.push(Trial::test("guide::front_page", move || page::check(&readme)));
+    tests.extend(compare::tests());
+    tests.extend(mutated::tests());
+    tests.extend(references::tests());
+    tests
 }
 
 /// The folder of the pages.

@@ -20,8 +20,8 @@ use refused::{case_errors, expression_errors, wrong_function};
 
 type Run = fn() -> Result<(), Failed>;
 
-/// One trial for each property of the harness and each executor.
-pub fn trials() -> Vec<Trial> {
+/// One test for each property of the harness and each executor.
+pub fn tests() -> Vec<Trial> {
     let executors = executors::ALL.iter().map(|executor| {
         Trial::test(format!("harness::executor::{}", executor.name), move || {
             execute::on_thread(|| {
@@ -55,7 +55,7 @@ const BROWSERS: [&str; 2] = ["webgl2", "webgpu"];
 /// They run the cases of every fourth file.
 const PART: usize = 4;
 
-/// Runs a function with every executor open, on a thread that ends before the trial does.
+/// Runs a function with every executor open, on a thread that ends before the test does.
 fn opened<T: Send>(
     run: impl FnOnce(&mut [check::OpenExecutor]) -> Result<T, Failed> + Send,
 ) -> Result<T, Failed> {
@@ -104,7 +104,7 @@ fn library_on(wanted: fn(&str) -> bool, part: usize) -> Result<(), Failed> {
         if std::env::var_os("LAMPLIGHT_TABLE").is_some() {
             println!("{}", check::report_table(&report));
         }
-        // If the environment's filter matches no file, the trial must fail, since it proved nothing.
+        // If the environment's filter matches no file, the test must fail, since it proved nothing.
         if report.outcomes.is_empty() {
             return Err(format!("no case file has `{only}` in its path").into());
         }

@@ -24,20 +24,20 @@ pub type Outcome = Result<(), Failed>;
 /// The address space that a command may use, in KiB. The large stacks of idle threads count too.
 const MEMORY_KIB: u64 = 4 << 20;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let tables = [cases::CASES, manifests::CASES, pictures::CASES, shaders::CASES];
     let rows = tables
         .into_iter()
         .flatten()
         .map(|case| Trial::test(format!("hostile::{}", case.name), move || case.check()));
     let others = [
-        beside::trials(),
-        bundles::trials(),
-        edits::trials(),
-        isolated::trials(),
-        linear::trials(),
-        printed::trials(),
-        stores::trials(),
+        beside::tests(),
+        bundles::tests(),
+        edits::tests(),
+        isolated::tests(),
+        linear::tests(),
+        printed::tests(),
+        stores::tests(),
     ];
     rows.chain(others.into_iter().flatten()).collect()
 }

@@ -20,7 +20,7 @@ use placed::{glsl_means_something_else, refusals_are_placed, writers_are_placed}
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 14] = [
         ("every_judge_refuses", every_judge_refuses),
         ("one_of_many_is_found", one_of_many_is_found),

@@ -19,7 +19,7 @@ use programs::{c_main, rust_main, typescript_main};
 
 type Outcome = Result<(), Failed>;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("keys::rust", || in_language(&RUST)),
         Trial::test("keys::c", || in_language(&C)),
@@ -99,7 +99,7 @@ const C: Harness = Harness {
     edit: |text| text,
 };
 
-/// The trial strips the types, because node does so itself only since version 22.
+/// The test strips the types, because node does so itself only since version 22.
 const TYPESCRIPT: Harness = Harness {
     language: "ts",
     file: "keys.mjs",

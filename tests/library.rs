@@ -48,10 +48,10 @@ const REVIEWED: &[(&str, &str)] = &[
     ),
 ];
 
-/// The name of a trial, and what it does.
+/// The name of a test, and what it does.
 type NamedTrial = (&'static str, fn() -> Result<(), Failed>);
 
-/// The trials that ask for [`contents`], each once.
+/// The tests that ask for [`contents`], each once.
 const OF_CONTENTS: [NamedTrial; 4] = [
     ("library::hashes", hashes),
     ("library::difference_is_shown", difference_is_shown),
@@ -59,7 +59,7 @@ const OF_CONTENTS: [NamedTrial; 4] = [
     ("library::judges", judges),
 ];
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let reviewed = REVIEWED
         .iter()
         .map(|(name, key)| Trial::test(format!("library::reviewed::{name}"), || review(name, key)));
@@ -160,10 +160,10 @@ fn readable(target: Target, bytes: &[u8]) -> Result<String, Failed> {
     }
 }
 
-/// A bundle that trials share, or why it could not be made.
+/// A bundle that tests share, or why it could not be made.
 type SharedContents = Result<Arc<Contents>, String>;
 
-/// The bundle of the library's whole manifest. It is made once for all trials, and dropped with the
+/// The bundle of the library's whole manifest. It is made once for all tests, and dropped with the
 /// last of them, since it takes several gigabytes.
 fn contents() -> Result<Arc<Contents>, Failed> {
     static MADE: Mutex<(usize, Option<SharedContents>)> = Mutex::new((0, None));

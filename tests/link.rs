@@ -39,7 +39,7 @@ type Case = (&'static str, fn() -> Outcome);
 /// Every 23rd permutation of `forward` is also compiled alone, or as a whole.
 const STEP: usize = 23;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 23] = [
         ("marks_are_found_in_longer_names", parts::marks_are_found_in_longer_names),
         ("sets_hold_what_was_put_in", parts::sets_hold_what_was_put_in),
@@ -128,7 +128,7 @@ fn all_linked(generated: &Generated) -> Outcome {
 }
 
 /// A linked output has the declarations that naga writes for the whole text, except for their names
-/// and their order. It has all functions, and those other declarations that are used. This trial
+/// and their order. It has all functions, and those other declarations that are used. This test
 /// fails if a version of naga writes a function in a way that depends on the rest of its module,
 /// which the linker assumes it does not.
 fn whole_and_linked() -> Outcome {

@@ -3,7 +3,7 @@
 //!
 //! `seed -> program -> outputs, made in several ways and compared -> judges -> executors`
 //!
-//! `cargo xtask fuzz link` runs the trial `link::random` with another seed and more programs.
+//! `cargo xtask fuzz link` runs the test `link::random` with another seed and more programs.
 
 mod body;
 mod draft;
@@ -49,7 +49,7 @@ const REFUSED: usize = 10;
 /// kind occurs about once in several thousand programs.
 const EXCUSED: usize = 1;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![Trial::test("link::random", || {
         on_thread(|| random_programs().map_err(|failed| failed.message().unwrap_or("").to_owned()))
             .ok_or("panicked")?

@@ -26,7 +26,7 @@ type Outcome = Result<(), Failed>;
 
 type Run = fn() -> Outcome;
 
-const TRIALS: &[(&str, Run)] = &[
+const TESTS: &[(&str, Run)] = &[
     ("diagnostics", diagnostics),
     ("hover", hover),
     ("definition", definition),
@@ -66,9 +66,9 @@ const TRIALS: &[(&str, Run)] = &[
     ("editors::zed", editors::zed),
 ];
 
-pub fn trials() -> Vec<Trial> {
-    let trial = |(name, run): &(&str, Run)| Trial::test(format!("lsp::{name}"), *run);
-    TRIALS.iter().map(trial).collect()
+pub fn tests() -> Vec<Trial> {
+    let test = |(name, run): &(&str, Run)| Trial::test(format!("lsp::{name}"), *run);
+    TESTS.iter().map(test).collect()
 }
 
 /// Fails unless a condition holds, with the place of the call and what the server answered.

@@ -1,4 +1,4 @@
-//! The test binary. Each module lists its trials, most of which are found by their files.
+//! The test binary. Each module lists its tests, most of which are found by their files.
 
 #![allow(
     clippy::unwrap_used,
@@ -10,7 +10,7 @@
 )]
 
 /// The allocator of the command. It gives memory back that is no longer used, where the C library
-/// would keep gigabytes until the last trial.
+/// would keep gigabytes until the last test.
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
@@ -70,57 +70,57 @@ use libtest_mimic::{Arguments, Trial};
 /// Those come first of which some take long on one core, so that the other cores do not wait for
 /// them at the end.
 const KINDS: &[fn() -> Vec<Trial>] = &[
-    toolchain::trials,
-    site::trials,
-    browser::trials,
-    catalogue::trials,
-    bounds::trials,
-    conventions::trials,
-    cost::trials,
-    described::trials,
-    determinism::trials,
-    doors::trials,
-    drivers::trials,
-    emit::trials,
-    energy::trials,
-    examples::trials,
-    frames::trials,
-    generate::trials,
-    guide::trials,
-    harness::trials,
-    hostile::trials,
-    judges::trials,
-    keys::trials,
-    library::trials,
-    link::trials,
-    link_random::trials,
-    lsp::trials,
-    metal::trials,
-    migrate::trials,
-    new::trials,
-    oracles::trials,
-    outputs::trials,
-    packages::trials,
-    pipelines::trials,
-    plain::trials,
-    programs::trials,
-    published::trials,
-    regressions::trials,
-    render::trials,
-    report::trials,
-    shaderlib::trials,
-    shadow::trials,
-    sketch::trials,
-    specialise::trials,
-    tables::trials,
-    traps::trials,
+    toolchain::tests,
+    site::tests,
+    browser::tests,
+    catalogue::tests,
+    bounds::tests,
+    conventions::tests,
+    cost::tests,
+    described::tests,
+    determinism::tests,
+    doors::tests,
+    drivers::tests,
+    emit::tests,
+    energy::tests,
+    examples::tests,
+    frames::tests,
+    generate::tests,
+    guide::tests,
+    harness::tests,
+    hostile::tests,
+    judges::tests,
+    keys::tests,
+    library::tests,
+    link::tests,
+    link_random::tests,
+    lsp::tests,
+    metal::tests,
+    migrate::tests,
+    new::tests,
+    oracles::tests,
+    outputs::tests,
+    packages::tests,
+    pipelines::tests,
+    plain::tests,
+    programs::tests,
+    published::tests,
+    regressions::tests,
+    render::tests,
+    report::tests,
+    shaderlib::tests,
+    shadow::tests,
+    sketch::tests,
+    specialise::tests,
+    tables::tests,
+    traps::tests,
 ];
 
 fn main() -> ExitCode {
     // This changes environment variables, so it must be done while there is one thread. If something
-    // is missing, the trials that need it say so.
+    // is missing, the tests that need it say so.
     lamplight::execute::executors::prepare_process(lamplight::execute::executors::ALL);
     lamplight::browser::Browser::keep_shared();
-    let trials = KINDS.iter().flat_map(|kind| kind()).collect();
-    libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
+    let tests = KINDS.iter().flat_map(|kind| kind()).collect();
+    libtest_mimic::run(&Arguments::from_args(), tests).exit_code()
 }

@@ -25,9 +25,9 @@ use references::{REFERENCES, Reference};
 
 type Outcome = Result<(), Failed>;
 
-pub fn trials() -> Vec<Trial> {
-    let mut trials = frames::trials();
-    trials.extend([
+pub fn tests() -> Vec<Trial> {
+    let mut tests = frames::tests();
+    tests.extend([
         Trial::test("metal::mistakes_are_refused", mistakes),
         Trial::test("metal::outputs_are_accepted", accepted::outputs),
         Trial::test("metal::expectations", expectations::hold),
@@ -35,7 +35,7 @@ pub fn trials() -> Vec<Trial> {
         Trial::test("metal::lookups", || lookups::compare(&files("lookups"))),
         Trial::test("metal::crashes_are_told", crashes),
     ]);
-    trials
+    tests
 }
 
 fn files(folder: &str) -> Vec<PathBuf> {

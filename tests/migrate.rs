@@ -19,7 +19,7 @@ type Outcome = Result<(), Failed>;
 
 type Run = fn() -> Outcome;
 
-const TRIALS: &[(&str, Run)] = &[
+const TESTS: &[(&str, Run)] = &[
     ("text", text),
     ("same_modules", same_modules),
     ("mutants", mutants),
@@ -27,9 +27,9 @@ const TRIALS: &[(&str, Run)] = &[
     ("many_values_in_one_line", one_line),
 ];
 
-pub fn trials() -> Vec<Trial> {
-    let trial = |(name, run): &(&str, Run)| Trial::test(format!("migrate::{name}"), *run);
-    TRIALS.iter().map(trial).collect()
+pub fn tests() -> Vec<Trial> {
+    let test = |(name, run): &(&str, Run)| Trial::test(format!("migrate::{name}"), *run);
+    TESTS.iter().map(test).collect()
 }
 
 /// Ten times the values in one line take ten times the steps.

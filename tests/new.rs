@@ -1,4 +1,4 @@
-//! `cargo xtask new`: the crate's own parsers read the files that it writes, and trials fail until
+//! `cargo xtask new`: the crate's own parsers read the files that it writes, and tests fail until
 //! the parts that it leaves empty are written.
 
 mod axis_values;
@@ -21,7 +21,7 @@ use crate::snapshot::root;
 type Outcome = Result<(), Failed>;
 type Run = fn() -> Outcome;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let all: [(&str, Run); 19] = [
         ("function", functions::in_modules),
         ("function_types", functions::of_types),
@@ -70,7 +70,7 @@ fn parsed<T>(
     parse(&sources, id).map_err(|problems| render(&sources, &problems, Form::Human).into())
 }
 
-/// A new diagnostic has an empty title and page, which trials then demand.
+/// A new diagnostic has an empty title and page, which tests then demand.
 fn diagnostic() -> Outcome {
     let files = make("diagnostic", "unknown-swizzle", &[])?;
     let text = text(&files, "crates/diagnostic/src/codes/unknown-swizzle.md")?;
@@ -206,7 +206,7 @@ fn own_executor() -> Outcome {
 }
 
 /// A new executor opens a device of wgpu, or is a copy of another one with comments that explain its
-/// fields. Its description is empty, which trials notice.
+/// fields. Its description is empty, which tests notice.
 fn executor() -> Outcome {
     rust("executor", "crates/execute/src/executors/fresh.rs")?;
     let copy = make("executor", "other", &["vulkan"])?;
@@ -274,7 +274,7 @@ fn interface() -> Outcome {
     Ok(())
 }
 
-/// A new entry is a Rust file with the entry's name. Its description is empty, which trials notice.
+/// A new entry is a Rust file with the entry's name. Its description is empty, which tests notice.
 fn rust(kind: &str, path: &str) -> Outcome {
     let files = make(kind, "fresh", &[])?;
     let text = text(&files, path)?;

@@ -13,7 +13,7 @@ use tempfile::TempDir;
 
 type Outcome = Result<(), Failed>;
 
-/// A trial and its name.
+/// A test and its name.
 type Case = (&'static str, fn() -> Outcome);
 
 /// The longest wait for `watch`.
@@ -63,7 +63,7 @@ void main() {
 }
 ";
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 5] = [
         ("one_permutation", one_permutation),
         ("one_target", one_target),

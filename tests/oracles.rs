@@ -29,12 +29,12 @@ const PROPERTIES: &[(&str, Property)] = &[
     ("moments_of_three_depths", depths::three_depths),
 ];
 
-pub fn trials() -> Vec<Trial> {
-    let trial = |(name, property): &(&str, Property)| {
+pub fn tests() -> Vec<Trial> {
+    let test = |(name, property): &(&str, Property)| {
         let property = *property;
         Trial::test(format!("oracles::{name}"), move || in_both_languages(property))
     };
-    PROPERTIES.iter().map(trial).collect()
+    PROPERTIES.iter().map(test).collect()
 }
 
 /// The evaluator and a language.

@@ -14,7 +14,7 @@ use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let executors = executors::ALL.iter().filter(|one| !OTHERS.contains(&one.name));
     executors
         .map(|executor| {

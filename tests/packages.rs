@@ -20,7 +20,7 @@ use crate::examples::{cargo, run};
 use crate::shaderlib::{entry_wesl, modules};
 use crate::snapshot::{self, root};
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let case = |(name, path): (String, PathBuf)| {
         let check = move |name: &str| {
             snapshot::check(

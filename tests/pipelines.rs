@@ -33,7 +33,7 @@ const A_DEVICE: usize = 128;
 /// A mistake in a reflection: its description, the pair of stages, and the change.
 type Change<'a> = (&'static str, &'a Pair, &'a dyn Fn(&mut Reflection));
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("pipelines::from_the_reflection_alone", pipelines),
         Trial::test("pipelines::a_wrong_reflection_is_noticed", wrong_reflections),
@@ -75,7 +75,7 @@ fn pipelines() -> Result<(), Failed> {
     Ok(())
 }
 
-/// wgpu refuses pipelines whose reflection is wrong. The first trial relies on that.
+/// wgpu refuses pipelines whose reflection is wrong. The first test relies on that.
 fn wrong_reflections() -> Result<(), Failed> {
     let bundle = bundle(false)?;
     let device = Device::open(wgpu::Backends::VULKAN)?;
@@ -214,7 +214,7 @@ impl Device {
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
         let mut adapters = block_on(instance.enumerate_adapters(backend));
-        // Other trials of this process add SwiftShader to the Vulkan loader's drivers.
+        // Other tests of this process add SwiftShader to the Vulkan loader's drivers.
         adapters.retain(|adapter| !adapter.get_info().name.contains("SwiftShader"));
         adapters.sort_by_key(|adapter| adapter.get_info().device_type != wgpu::DeviceType::Cpu);
         let adapter = adapters

@@ -23,7 +23,7 @@ use crate::snapshot;
 
 type Outcome = Result<(), Failed>;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("plain::every_function_has_one", every_function),
         Trial::test("plain::texts_are_valid", texts_are_valid),
@@ -254,7 +254,7 @@ fn is_dear((throughput, instructions): Figures, plain: Figures) -> bool {
 
 /// A function whose guards cost more than a little says why, and no other does. `docs/costs.md` is
 /// what is measured now; `UPDATE_EXPECT=1` writes it. Another version of Mesa is not compared, and
-/// the trial says so.
+/// the test says so.
 fn what_guards_cost() -> Outcome {
     let page = snapshot::root().join("docs/costs.md");
     let is_updated = std::env::var_os("UPDATE_EXPECT").is_some();

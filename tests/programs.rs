@@ -23,18 +23,18 @@ use rayon::prelude::*;
 
 use accepted::{glslc_takes_sources, validators};
 
-/// How many failures of a trial are printed.
+/// How many failures of a test are printed.
 const SHOWN: usize = 3;
 
 /// The stages: name, entry point in WESL, and name for glslangValidator and glslc.
 const STAGES: [(&str, &str, &str); 2] =
     [("vertex", "vs_main", "vert"), ("fragment", "fs_main", "frag")];
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let Ok(programs) = programs() else {
         return vec![Trial::test("programs::manifest", || programs().map(|_| ()))];
     };
-    let mut trials = Vec::new();
+    let mut tests = Vec::new();
     for program in programs {
         for stage in STAGES.iter().filter(|(stage, ..)| has(&program, stage)) {
             let (name, shipped, covered) = (
@@ -42,26 +42,26 @@ pub fn trials() -> Vec<Trial> {
                 program.clone(),
                 program.clone(),
             );
-            trials.push(Trial::test(format!("{name}::shipped"), move || {
+            tests.push(Trial::test(format!("{name}::shipped"), move || {
                 every(&shipped, stage, &shipped.space.enumerate(), &[])
             }));
-            trials.push(Trial::test(format!("{name}::pairs"), move || {
+            tests.push(Trial::test(format!("{name}::pairs"), move || {
                 let points = cover::pairwise(&covered.space).points;
                 every(&covered, stage, &points, &covered.targets)
             }));
             let (sampled, whole) = (program.clone(), program.clone());
-            trials.push(Trial::test(format!("{name}::glslc"), move || {
+            tests.push(Trial::test(format!("{name}::glslc"), move || {
                 glslc_takes_sources(&whole, stage)
             }));
-            trials.push(Trial::test(format!("{name}::validators"), move || {
+            tests.push(Trial::test(format!("{name}::validators"), move || {
                 validators(&sampled, stage)
             }));
         }
-        trials.push(Trial::test(format!("programs::{}::distinct", program.name), move || {
+        tests.push(Trial::test(format!("programs::{}::distinct", program.name), move || {
             distinct(&program)
         }));
     }
-    trials
+    tests
 }
 
 fn programs() -> Result<Vec<Program>, Failed> {

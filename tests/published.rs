@@ -79,7 +79,7 @@ const FORMS: &[(&str, f64, &str, f64)] = &[
     ),
 ];
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     ["wesl", "glsl"]
         .into_iter()
         .map(|language| {

@@ -19,10 +19,10 @@ use lamplight_testing::{random, snapshot};
 
 fn main() -> std::process::ExitCode {
     lamplight_testing::run_tests(&[
-        diagnostics::trials,
-        differential::trials,
-        one_meaning::trials,
-        robust::trials,
-        scale::trials,
+        diagnostics::tests,
+        differential::tests,
+        one_meaning::tests,
+        robust::tests,
+        scale::tests,
     ])
 }

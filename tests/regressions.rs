@@ -23,7 +23,7 @@ use libtest_mimic::{Failed, Trial};
 /// be busy.
 const LONGEST: Duration = Duration::from_secs(10);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let seeds =
         all().map(|kind| Trial::test(format!("regressions::{}", kind.name), || seeded(kind)));
     let mutants = all()
@@ -31,7 +31,7 @@ pub fn trials() -> Vec<Trial> {
     seeds
         .chain(mutants)
         .chain([Trial::test("regressions::workers_that_fail", failed_workers)])
-        .chain(all().flat_map(|kind| files(kind).into_iter().map(move |file| trial(kind, file))))
+        .chain(all().flat_map(|kind| files(kind).into_iter().map(move |file| test(kind, file))))
         .collect()
 }
 
@@ -123,7 +123,7 @@ fn files(kind: &Kind) -> Vec<PathBuf> {
     found
 }
 
-fn trial(kind: &'static Kind, file: PathBuf) -> Trial {
+fn test(kind: &'static Kind, file: PathBuf) -> Trial {
     let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     Trial::test(format!("regressions::{}::{name}", kind.name), move || replay(kind, &file))
 }
@@ -133,7 +133,7 @@ fn replay(kind: &Kind, file: &Path) -> Result<(), Failed> {
 }
 
 /// Fails unless an input gives the same answer twice, and soon. The shorter of the two times counts,
-/// since other trials can take the machine for seconds.
+/// since other tests can take the machine for seconds.
 fn judge(kind: &Kind, input: &[u8]) -> Result<(), Failed> {
     let (answer, first) = timed(kind, input);
     let (again, second) = timed(kind, input);
@@ -148,7 +148,7 @@ fn judge(kind: &Kind, input: &[u8]) -> Result<(), Failed> {
 }
 
 /// The answer to an input, and how long it took. The clock starts on a thread that may call naga,
-/// since all trials share these threads and wait for one.
+/// since all tests share these threads and wait for one.
 fn timed(kind: &Kind, input: &[u8]) -> (String, Duration) {
     on_large_stack(|| {
         let started = Instant::now();

@@ -52,7 +52,7 @@ const LEAST: usize = 500;
 /// The largest share of fragments that may be open (see [`crate::fragments`]).
 const OPEN: f64 = 0.05;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let library = library();
     let on_each = |preset: &'static Preset| {
         BACKENDS.map(|(backend, language)| {
@@ -76,16 +76,16 @@ pub fn trials() -> Vec<Trial> {
     });
     presets
         .chain(forms)
-        .chain(accounted::trials())
-        .chain(clustered::trials())
-        .chain(compared::trials())
-        .chain(deferred::trials())
-        .chain(occlusion::trials())
-        .chain(prefiltered::trials())
-        .chain(pages::trials())
-        .chain(command::trials())
-        .chain(models::trials())
-        .chain(needs::trials())
+        .chain(accounted::tests())
+        .chain(clustered::tests())
+        .chain(compared::tests())
+        .chain(deferred::tests())
+        .chain(occlusion::tests())
+        .chain(prefiltered::tests())
+        .chain(pages::tests())
+        .chain(command::tests())
+        .chain(models::tests())
+        .chain(needs::tests())
         .collect()
 }
 
@@ -113,7 +113,7 @@ pub fn library() -> &'static Library {
     })
 }
 
-/// Runs a trial with an executor, on a thread of its own. Drivers drop their state when it ends.
+/// Runs a test with an executor, on a thread of its own. Drivers drop their state when it ends.
 pub fn on_device(
     name: &str,
     run: impl FnOnce(&dyn Session) -> Result<(), String> + Send,

@@ -11,7 +11,7 @@ use tempfile::TempDir;
 type Outcome = Result<(), Failed>;
 type Case = fn() -> Outcome;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [(&str, Case); 7] = [
         ("forms_list_the_failure", forms_list_the_failure),
         ("pasted_case_fails_alike", pasted_case_fails_alike),

@@ -17,7 +17,7 @@ const LAMPLIGHT: &str = env!("CARGO_BIN_EXE_lamplight");
 /// The number of runs that must have been killed.
 const KILLS: u32 = 50;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 6] = [
         ("killed_at_any_point", killed),
         ("two_runs_at_once", at_once),

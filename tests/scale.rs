@@ -10,7 +10,7 @@ use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("scale::memory_is_flat", flat),
         // This takes half a minute, and ten times as long in the development profile.

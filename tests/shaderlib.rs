@@ -43,9 +43,9 @@ const CHECKS: &[(&str, Check)] = &[
     ("doc", functions_are_documented),
 ];
 
-/// One trial for each module and check, and trials for the whole library.
-pub fn trials() -> Vec<Trial> {
-    let mut trials = vec![
+/// One test for each module and check, and tests for the whole library.
+pub fn tests() -> Vec<Trial> {
+    let mut tests = vec![
         Trial::test("shaderlib::pairs", every_module_has_its_twin),
         Trial::test("shaderlib::names", names_are_unique),
         Trial::test("shaderlib::edges", documented::silent_parameters_are_found),
@@ -58,10 +58,10 @@ pub fn trials() -> Vec<Trial> {
         for (name, check) in CHECKS {
             let module = module.clone();
             let title = format!("shaderlib::{}::{name}", module.replace('/', "::"));
-            trials.push(Trial::test(title, move || check(&module)));
+            tests.push(Trial::test(title, move || check(&module)));
         }
     }
-    trials
+    tests
 }
 
 /// The paths of the modules, without extension.

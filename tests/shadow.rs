@@ -52,8 +52,8 @@ const PROPERTIES: &[(&str, Property)] = &[
     ("kernel_adds_up", kernel_adds_up),
 ];
 
-/// One trial for each property.
-pub fn trials() -> Vec<Trial> {
+/// One test for each property.
+pub fn tests() -> Vec<Trial> {
     PROPERTIES
         .iter()
         .map(|(name, property)| {

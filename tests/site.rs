@@ -26,11 +26,11 @@ use serde_json::{Value, json};
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
-/// The longest wait for a page. It is large, since software draws and other trials run at the same
+/// The longest wait for a page. It is large, since software draws and other tests run at the same
 /// time.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 9] = [
         ("catalogue", catalogue),
         ("pictures", pictures::pictures),

@@ -19,7 +19,7 @@ use libtest_mimic::{Failed, Trial};
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 4] = [
         ("inputs", inputs),
         ("uniforms", uniforms),

@@ -40,7 +40,7 @@ fn weight(i: i32) -> f32 {
     @else { return vec4f(0.0, sum, x, 1.0); }
 }";
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 8] = [
         ("values_arrive", values),
         ("one_shader_for_all_values", shared),

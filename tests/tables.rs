@@ -13,7 +13,7 @@ type Direction = [f64; 3];
 
 const SIDE: usize = 64;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("tables::files_agree", files_agree),
         Trial::test("tables::dfg", dfg),

@@ -29,7 +29,7 @@ use serde_json::{Value, json};
 /// set, so each has pairs of values that none before it has.
 const PERMUTATIONS: usize = 64;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![Trial::test("toolchain::same_bytes", same_bytes)]
 }
 

@@ -3,7 +3,7 @@
 //! wrote nothing. A pipe or a device is written to. Nothing is ever deleted.
 //!
 //! A new command that writes is one line in [`FOLDERS`] or [`FILES`]. If it is a top-level command
-//! with `--force`, a trial fails until it is there. A new trap is one line in [`FOLDER_TRAPS`] or
+//! with `--force`, a test fails until it is there. A new trap is one line in [`FOLDER_TRAPS`] or
 //! [`FILE_TRAPS`].
 
 mod file;
@@ -79,9 +79,9 @@ const FILES: &[Writer] = &[
     writer("keys_ts", &["keys", "--manifest", "lamplight.toml", "--lang", "ts", "-o", "OUT"]),
 ];
 
-/// The name of a trap, and a trial of it with a command and a file that the command writes.
+/// The name of a trap, and a test of it with a command and a file that the command writes.
 type FolderTrap = (&'static str, fn(&Writer, &str) -> Outcome);
-/// The name of a trap, and a trial of it with a command.
+/// The name of a trap, and a test of it with a command.
 type FileTrap = (&'static str, fn(&Writer) -> Outcome);
 
 /// Things that are in the place of a file that a command writes into its folder.
@@ -105,30 +105,30 @@ const FILE_TRAPS: &[FileTrap] = &[
     ("folder", file::folder),
 ];
 
-pub fn trials() -> Vec<Trial> {
-    let mut trials = Vec::new();
+pub fn tests() -> Vec<Trial> {
+    let mut tests = Vec::new();
     for writer in FOLDERS {
         for (trap, run) in FOLDER_TRAPS {
             let name = format!("traps::folder::{}::{trap}", writer.name);
-            trials.push(Trial::test(name, move || each_place(writer, *run)));
+            tests.push(Trial::test(name, move || each_place(writer, *run)));
         }
         if writer.files.is_empty() {
             let name = format!("traps::folder::{}::neighbours", writer.name);
-            trials.push(Trial::test(name, move || folder::neighbours(writer)));
+            tests.push(Trial::test(name, move || folder::neighbours(writer)));
         }
     }
     for writer in FILES {
         for (trap, run) in FILE_TRAPS {
             let name = format!("traps::file::{}::{trap}", writer.name);
-            trials.push(Trial::test(name, move || run(writer)));
+            tests.push(Trial::test(name, move || run(writer)));
         }
     }
-    trials.push(Trial::test("traps::every_writer_is_listed", every_writer_is_listed));
-    trials.push(Trial::test("traps::standard_output", standard_output));
-    trials.push(Trial::test("traps::blobs_of_a_foreign_folder", foreign_blobs));
-    trials.push(Trial::test("traps::parts_of_a_bundle", parts));
-    trials.push(Trial::test("traps::incomplete_merge", incomplete_merge));
-    trials
+    tests.push(Trial::test("traps::every_writer_is_listed", every_writer_is_listed));
+    tests.push(Trial::test("traps::standard_output", standard_output));
+    tests.push(Trial::test("traps::blobs_of_a_foreign_folder", foreign_blobs));
+    tests.push(Trial::test("traps::parts_of_a_bundle", parts));
+    tests.push(Trial::test("traps::incomplete_merge", incomplete_merge));
+    tests
 }
 
 const MANIFEST: &str = "[program.small]\nwesl = \"main.wesl\"\ntargets = [\"wgsl\", \"glsl330\"]\n\

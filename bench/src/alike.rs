@@ -1,5 +1,5 @@
 //! Composes a migrated root with Lamplight, and normalises modules so that those of two composers
-//! can be compared. The trials of `lamplight migrate` use this file too.
+//! can be compared. The tests of `lamplight migrate` use this file too.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 

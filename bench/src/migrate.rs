@@ -2,7 +2,7 @@
 //! root for the same shader defs, and naga says whether the modules are the same.
 //!
 //! `cargo xtask bench migrate DIR`, where DIR has the `.wgsl` files of the packages side by side.
-//! With `FILE` behind it, what `naga_oil` makes of `main.wgsl` is recorded for the trials.
+//! With `FILE` behind it, what `naga_oil` makes of `main.wgsl` is recorded for the tests.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::error::Error;
@@ -223,7 +223,7 @@ fn original(
     Some(module)
 }
 
-/// What `naga_oil` makes of `main.wgsl` for every choice, which the trials compare with.
+/// What `naga_oil` makes of `main.wgsl` for every choice, which the tests compare with.
 fn record(files: &BTreeMap<String, String>, migrated: &Migrated, file: &str) -> Outcome {
     let (mut composer, prefixes) = (modules(files), prefixes(migrated));
     let mut lines = String::new();

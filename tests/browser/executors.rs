@@ -19,7 +19,7 @@ const APIS: [WebApi; 2] = [WebApi::WebGpu, WebApi::WebGl2];
 /// Long enough for a draw, and short enough to wait for a draw that never ends.
 const SHORT: Duration = Duration::from_secs(4);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let threaded = |run: fn() -> Outcome| {
         move || {
             let words = |failed: Failed| failed.message().unwrap_or_default().to_owned();

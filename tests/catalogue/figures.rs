@@ -10,7 +10,7 @@ use libtest_mimic::{Failed, Trial};
 
 use crate::snapshot::root;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("catalogue::every_function_is_drawn", every_function_is_drawn),
         Trial::test("catalogue::figures_are_up_to_date", figures_are_up_to_date),

@@ -14,7 +14,7 @@ use libtest_mimic::{Failed, Trial};
 /// width of two lines.
 const APART: f64 = 0.02;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("catalogue::plots_show_their_parameter", curves_are_apart),
         Trial::test("catalogue::plots_have_units", angles_are_in_degrees),

@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::{Outcome, lamplight, objects, said};
 
 /// No function of the library became more expensive by more than 2 %. `cargo xtask record _budget`
-/// records the costs again. With another version of Mesa nothing is compared, and the trial says so.
+/// records the costs again. With another version of Mesa nothing is compared, and the test says so.
 pub fn functions() -> Outcome {
     keep_budget("functions", &["--gpu", "navi21,gfx1100"])
 }

@@ -11,7 +11,7 @@ use super::run;
 /// Name, file and text.
 type Case = (&'static str, &'static str, String);
 
-pub fn trials() -> impl Iterator<Item = Trial> {
+pub fn tests() -> impl Iterator<Item = Trial> {
     let kinds = [nesting, conditions, imports, floods, glsl, manifests, packages];
     kinds.into_iter().flat_map(|cases| cases()).map(|(name, file, text)| {
         Trial::test(format!("diagnostics::hostile::{name}"), move || survives(file, &text))

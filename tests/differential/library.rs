@@ -22,7 +22,7 @@ const POINTS: usize = 48;
 /// `constants`, and the crate finds that of the root package alone.
 const UNCOMPARED: [&str; 1] = ["deferred"];
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let modules =
         LIBRARY_FILES.list(&["wesl"]).into_iter().filter(|path| !path.starts_with("programs/"));
     let modules = modules

@@ -173,7 +173,7 @@ fn examples() -> Outcome {
     Ok(())
 }
 
-/// Whether an example does not end, takes too long for this trial, or needs a driver.
+/// Whether an example does not end, takes too long for this test, or needs a driver.
 fn is_slow(example: &str) -> bool {
     ["watch", "catalogue", "render", "cost"].iter().any(|slow| example.contains(slow))
 }

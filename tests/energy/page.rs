@@ -12,7 +12,7 @@ Light of radiance 1 comes from everywhere, and the base colour is white. A surfa
 nor makes light then has the colour 1. The first number of a cell is for light of lamps, summed up
 over all directions. The second one is for ambient light. Angles are those of the viewer to the
 normal. The evaluator ran the fragment stage of `forward` once for each direction of the light. The
-trial `energy::white_furnace` computes a part of the cells again, and explains how. With four times as
+test `energy::white_furnace` computes a part of the cells again, and explains how. With four times as
 many directions, no cell changed by more than 0.004.
 
 Ambient light is conserved, since each layer takes from those below it what it reflects on average.

@@ -37,7 +37,7 @@ const LEAST: usize = 80;
 /// How many failures of a driver are printed.
 const MOST_FAILURES: usize = 20;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let languages = [("wesl", Language::Wesl), ("glsl", Language::Glsl)];
     let drawn = PROGRAMS.into_iter().flat_map(|program| {
         languages.map(|(name, language)| {

@@ -24,14 +24,14 @@ const BEYOND: f64 = 0.02;
 /// The least and the largest value of a frame differ by this, or the comparison would prove little.
 const SPREAD: f32 = 0.2;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let languages = [("wesl", Language::Wesl), ("glsl", Language::Glsl)];
-    let trial = |(name, language): (&str, Language)| {
+    let test = |(name, language): (&str, Language)| {
         Trial::test(format!("frames/shipped/{PROGRAM}/{name}"), move || {
             on_thread(|| drawn(language)).ok_or("panicked")?.map_err(Failed::from)
         })
     };
-    languages.map(trial).into()
+    languages.map(test).into()
 }
 
 fn drawn(language: Language) -> Result<(), String> {

@@ -5,7 +5,7 @@ use libtest_mimic::{Failed, Trial};
 
 const ANY: &str = "...";
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![Trial::test("guide compares outputs", compares)]
 }
 
@@ -100,7 +100,7 @@ fn settled(line: &str) -> String {
 }
 
 /// Differences are found, `...` is kept in a page that is updated, and times become `...`. Without
-/// this trial, a comparison that accepts everything would make all trials of pages pass.
+/// this test, a comparison that accepts everything would make all tests of pages pass.
 fn compares() -> Result<(), Failed> {
     let output = ["one", "two 2", "three", "done in 0.25 s, 12 a second"];
     let cases: [(&[&str], bool); 7] = [

@@ -16,7 +16,7 @@ const MISTAKES: u64 = 4;
 /// The longest time that one command may take, on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![Trial::test("guide files with mistakes are answered", answered)]
 }
 

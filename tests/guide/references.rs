@@ -11,7 +11,7 @@ use libtest_mimic::{Failed, Trial};
 
 use super::{folder, generated, pages, stem, title};
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("guide contents list every page", contents),
         Trial::test("guide links lead somewhere", links),

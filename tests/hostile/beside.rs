@@ -13,10 +13,10 @@ use super::{Outcome, fails, run};
 
 type Case = (&'static str, fn() -> Outcome);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 2] = [("waiting_is_told", told), ("verified_while_it_is_written", verified)];
-    let trial = |(name, case): Case| Trial::test(format!("hostile::{name}"), case);
-    cases.into_iter().map(trial).collect()
+    let test = |(name, case): Case| Trial::test(format!("hostile::{name}"), case);
+    cases.into_iter().map(test).collect()
 }
 
 /// How often the bundle is written while it is verified.

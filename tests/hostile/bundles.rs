@@ -15,7 +15,7 @@ use crate::regressions::kinds::seal;
 
 type Case = (&'static str, fn() -> Outcome);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 8] = [
         ("bundle_that_is_no_file", no_file),
         ("bundle_with_a_pipe_for_a_blob", pipe_for_a_blob),
@@ -26,8 +26,8 @@ pub fn trials() -> Vec<Trial> {
         ("cache_with_records_that_grow", growing),
         ("cache_with_pipes", pipes),
     ];
-    let trial = |(name, case): Case| Trial::test(format!("hostile::{name}"), case);
-    cases.into_iter().map(trial).collect()
+    let test = |(name, case): Case| Trial::test(format!("hostile::{name}"), case);
+    cases.into_iter().map(test).collect()
 }
 
 /// Every command that reads bundles.

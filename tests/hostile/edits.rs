@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::Outcome;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![Trial::test("hostile::edits_of_a_large_document", many)]
 }
 

@@ -17,15 +17,15 @@ const CALM: &str = "@fragment fn calm() -> @location(0) vec4f { return vec4f(); 
 /// An address space in which naga has too little memory for an array of many values, in KiB.
 const LITTLE_KIB: u64 = 700 << 10;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 4] = [
         ("naga_takes_too_long", too_long),
         ("naga_takes_too_much_memory", too_much),
         ("large_shaders_are_compiled", large),
         ("naga_keeps_its_stack", nested),
     ];
-    let trial = |(name, case): Case| Trial::test(format!("hostile::{name}"), case);
-    cases.into_iter().map(trial).collect()
+    let test = |(name, case): Case| Trial::test(format!("hostile::{name}"), case);
+    cases.into_iter().map(test).collect()
 }
 
 /// Functions with thousands of statements. Each has an index for which naga's writers add a check.

@@ -30,7 +30,7 @@ const GLSL: &str = "m.frag.glsl";
 const MANIFEST: &str = "lamplight.toml";
 const POINT: &str = "@fragment fn m() -> @location(0) vec4f { return vec4f(1.0); }\n";
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let rows = CASES
         .iter()
         .map(|case| Trial::test(format!("hostile::linear_{}", case.name), || is_linear(case)));

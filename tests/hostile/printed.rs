@@ -12,7 +12,7 @@ const EVIL: &str = "a\u{1b}[2J\u{9b}2J\u{202e}b";
 
 type Case = (&'static str, fn() -> Outcome);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 5] = [
         ("arguments", arguments),
         ("messages", messages),
@@ -20,8 +20,8 @@ pub fn trials() -> Vec<Trial> {
         ("reports", reports),
         ("rules_for_make", rules_for_make),
     ];
-    let trial = |(name, case): Case| Trial::test(format!("hostile::printed_{name}"), case);
-    cases.into_iter().map(trial).collect()
+    let test = |(name, case): Case| Trial::test(format!("hostile::printed_{name}"), case);
+    cases.into_iter().map(test).collect()
 }
 
 /// Whether a terminal or a browser obeys a letter of these texts instead of showing it.

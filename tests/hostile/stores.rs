@@ -45,7 +45,7 @@ const SOON: Duration = Duration::from_secs(30);
 /// The address space of a run, in KiB.
 const LITTLE_KIB: u64 = 1 << 20;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let manners: [(&str, Manner, bool); 8] = [
         ("honest", Manner::Honest, false),
         ("late", Manner::Late, false),
@@ -63,8 +63,8 @@ pub fn trials() -> Vec<Trial> {
     let dead = Trial::test("hostile::store_that_is_dead", dead);
     let mute = Trial::test("hostile::store_that_never_answers", mute);
     let all = served.into_iter().chain([dead, mute]);
-    // Without the feature `store` the command cannot use servers, so these trials are ignored.
-    all.map(|trial| trial.with_ignored_flag(cfg!(not(feature = "store")))).collect()
+    // Without the feature `store` the command cannot use servers, so these tests are ignored.
+    all.map(|test| test.with_ignored_flag(cfg!(not(feature = "store")))).collect()
 }
 
 fn package() -> Result<TempDir, Failed> {

@@ -42,7 +42,7 @@ pub fn check(contents: &Contents) -> Result<(), Failed> {
         Some(accepted) => difference(&accepted, contents)?,
         None => format!(
             "The recorded outputs are not available, since not only `shaderlib/` has changed. To see \
-             the differences, run this trial at the commit that recorded them: it keeps them in `{}`.",
+             the differences, run this test at the commit that recorded them: it keeps them in `{}`.",
             folder().display()
         ),
     };

@@ -84,7 +84,7 @@ impl Editor {
 }
 
 /// A package, a server that has been asked about it all the time, and the texts of the editor.
-struct Trial {
+struct Editing {
     folder: TempDir,
     editor: Editor,
     open: BTreeMap<usize, String>,
@@ -94,7 +94,7 @@ struct Trial {
     answered: BTreeSet<&'static str>,
 }
 
-impl Trial {
+impl Editing {
     fn new(seed: u64) -> Result<Self, Failed> {
         let folder = tempfile::tempdir()?;
         fs::write(folder.path().join("lamplight.toml"), MANIFEST)?;
@@ -102,7 +102,7 @@ impl Trial {
             fs::write(folder.path().join(file_name(index)), source(index))?;
         }
         let random = Random(seed);
-        let mut trial = Self {
+        let mut editing = Self {
             folder,
             editor: Editor::new(),
             open: BTreeMap::new(),
@@ -111,11 +111,11 @@ impl Trial {
             answered: BTreeSet::new(),
         };
         for index in [5, 3, FILES - 1] {
-            trial.open.insert(index, source(index));
-            let uri = trial.uri(index)?;
-            trial.editor.open(&uri, &source(index));
+            editing.open.insert(index, source(index));
+            let uri = editing.uri(index)?;
+            editing.editor.open(&uri, &source(index));
         }
-        Ok(trial)
+        Ok(editing)
     }
 
     fn path(&self, index: usize) -> Result<PathBuf, Failed> {
@@ -285,13 +285,14 @@ fn number(name: &str) -> Result<Option<u64>, Failed> {
 pub fn as_fresh() -> Outcome {
     let edits = number("LAMPLIGHT_LSP_EDITS")?.map_or(EDITS, |edits| edits as usize);
     let seed = number("LAMPLIGHT_LSP_SEED")?.unwrap_or(16);
-    let mut trial = Trial::new(seed)?;
+    let mut editing = Editing::new(seed)?;
     for step in 0..edits {
-        trial.step()?;
-        trial.compare(step)?;
+        editing.step()?;
+        editing.compare(step)?;
     }
     let asked = QUESTIONS.iter().chain(OF_FILES).chain(&["diagnostics", "workspace/symbol"]);
-    let unanswered: Vec<_> = asked.filter(|question| !trial.answered.contains(*question)).collect();
+    let unanswered: Vec<_> =
+        asked.filter(|question| !editing.answered.contains(*question)).collect();
     if edits >= EDITS && !unanswered.is_empty() {
         return Err(format!("only empty answers to {unanswered:?} in {edits} edits").into());
     }

@@ -11,7 +11,7 @@ use tempfile::TempDir;
 
 use super::Outcome;
 
-/// The module that most trials ask about.
+/// The module that most tests ask about.
 pub const MAIN: &str = "import package::util::half;
 import lamplight::brdf::diffuse::lambert;
 

@@ -29,7 +29,7 @@ const LEAST: usize = 200;
 /// The number of permutations whose stages are compiled together.
 const BATCH: usize = 64;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let languages = [("wesl", Language::Wesl), ("glsl", Language::Glsl)];
     let of = |program: &'static str| {
         languages.map(|(name, language)| {

@@ -38,7 +38,7 @@ const FRUSTUM: &[&str] = &["fov", "near", "far"];
 /// The numbers that avoid shadow acne when the map is drawn.
 const BIAS: &[&str] = &["polygon_offset", "cull_front"];
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("render/numbers_are_accounted_for", all_accounted),
         Trial::test("render/a_missing_number_is_noticed", missing_is_noticed),

@@ -30,7 +30,7 @@ const TOLERANCE: f64 = 1e-5;
 /// The least share of the pixels that show a surface.
 const SEEN: f64 = 0.3;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let on = |(backend, language): (&'static str, Language)| {
         KEYS.map(|(name, program, key)| {
             Trial::test(format!("render/clustered_is_all/{name}/{backend}"), move || {

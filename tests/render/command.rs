@@ -25,7 +25,7 @@ const WRONG: &[(&[&str], i32, &str)] = &[
     (&["hpg_4_spot", "--all"], 2, "--all"),
 ];
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("render/command/wrong", wrong),
         Trial::test("render/command/missing_driver", missing_driver),

@@ -13,17 +13,17 @@ const SIZE: [u32; 2] = [320, 240];
 /// A distance in CIELAB that is visible: twice the one that is just noticeable.
 const VISIBLE: f64 = 4.0;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let comparisons = library()
         .programs
         .with_texts(|texts| strip::library_comparisons(lamplight::LIBRARY_FILES, texts))
         .unwrap();
-    let trial = |comparison: Comparison| {
+    let test = |comparison: Comparison| {
         Trial::test(format!("render/compared/{}", comparison.name), move || {
             on_device("vulkan", |_| neighbours_differ(&comparison))
         })
     };
-    comparisons.into_iter().map(trial).collect()
+    comparisons.into_iter().map(test).collect()
 }
 
 fn neighbours_differ(comparison: &Comparison) -> Result<(), String> {

@@ -65,21 +65,21 @@ const SEEN: f64 = 0.3;
 /// The plans of `deferred` and of `forward` for the same picture.
 type Both = Result<[Plan; 2], String>;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let on = |(backend, language): (&'static str, Language)| {
-        let trial = move |name: &str, both: Box<dyn FnOnce() -> Both + Send>| {
+        let test = move |name: &str, both: Box<dyn FnOnce() -> Both + Send>| {
             Trial::test(format!("render/deferred_is_forward/{name}/{backend}"), move || {
                 on_device(backend, |painter| same(painter, language, &both()?))
             })
         };
         let classic = KEYS.iter().map(move |(name, deferred, forward)| {
-            trial(
+            test(
                 name,
                 Box::new(|| Ok([plan_of("deferred", deferred)?, plan_of("forward", forward)?])),
             )
         });
-        let gltf = GLTF.iter().map(move |(name, key)| trial(name, Box::new(|| of_gltf(key))));
-        classic.chain(gltf).chain([trial("gltf_maps", Box::new(with_map))])
+        let gltf = GLTF.iter().map(move |(name, key)| test(name, Box::new(|| of_gltf(key))));
+        classic.chain(gltf).chain([test("gltf_maps", Box::new(with_map))])
     };
     BACKENDS.into_iter().flat_map(on).collect()
 }

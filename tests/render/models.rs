@@ -1,4 +1,4 @@
-//! Models of users. The trials write binary glTF files, and `lamplight render --model` draws them.
+//! Models of users. The tests write binary glTF files, and `lamplight render --model` draws them.
 
 mod coordinates;
 mod layers;
@@ -14,7 +14,7 @@ use libtest_mimic::{Failed, Trial};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let drawn = [
         Trial::test("render/model/unlit_colour_is_exact", unlit_color_is_exact),
         Trial::test("render/model/unlit_colours_are_multiplied", unlit_colors_are_multiplied),
@@ -29,10 +29,10 @@ pub fn trials() -> Vec<Trial> {
     ];
     drawn
         .into_iter()
-        .chain(coordinates::trials())
-        .chain(layers::trials())
-        .chain(maps::trials())
-        .chain(wrong::trials())
+        .chain(coordinates::tests())
+        .chain(layers::tests())
+        .chain(maps::tests())
+        .chain(wrong::tests())
         .collect()
 }
 

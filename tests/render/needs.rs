@@ -20,7 +20,7 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     ("unlit = true", "unlit = true, lit = false", "unknown field `lit`"),
 ];
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("render/needs/rows_are_demanded", rows_are_demanded),
         Trial::test("render/needs/numbers_are_demanded", numbers_are_demanded),

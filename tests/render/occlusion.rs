@@ -27,7 +27,7 @@ const OPEN: f64 = 0.97;
 /// above.
 const CLOSED: f64 = 0.6;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let on = |(backend, language): (&'static str, Language)| {
         let each = KEYS.iter().map(move |key| {
             Trial::test(format!("render/gtao/{key}/{backend}"), move || {

@@ -25,7 +25,7 @@ const DRAWN: &[&str] = &[
     "oglpg_7_13",
 ];
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let drawn = DRAWN
         .iter()
         .map(|name| Trial::test(format!("render/{name}/eval"), move || without_driver(name)));

@@ -30,7 +30,7 @@ const STEPS: usize = 200;
 
 type Check = fn(&dyn Session, Language) -> Result<(), String>;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let checks: [(&str, Check); 4] =
         [("specular", specular), ("diffuse", diffuse), ("sh9", harmonics), ("dfg", split_sum)];
     let on = |(backend, language): (&'static str, Language)| {

@@ -189,7 +189,7 @@ fn octants(bench: &Bench<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// The direction to the light in the trials below. The ball's shadow then falls only on the floor.
+/// The direction to the light in the tests below. The ball's shadow then falls only on the floor.
 pub const TOWARDS: DVec3 = DVec3::new(-0.3, 0.8, 0.25);
 
 /// The fragments of the floor that only the ball can shadow, each with its distance from the border

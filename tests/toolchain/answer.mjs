@@ -1,4 +1,4 @@
-// Answers the requests of the trial `toolchain::same_bytes` with the npm package and writes each
+// Answers the requests of the test `toolchain::same_bytes` with the npm package and writes each
 // answer after its length: `node answer.mjs PACKAGE REQUESTS ANSWERS`.
 import { readFileSync, writeFileSync } from "node:fs";
 import { pathToFileURL } from "node:url";

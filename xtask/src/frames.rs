@@ -1,5 +1,5 @@
 //! `cargo xtask frames`: permutations of programs, drawn from the bytes that a bundle holds of
-//! each target, by the trials `frames/shipped` and `metal::frames` of the tests.
+//! each target, by the tests `frames/shipped` and `metal::frames`.
 
 use xtask::process::{self, root};
 use xtask::{CommandFailure, CommandResult};
@@ -25,7 +25,7 @@ fn targets() -> Vec<String> {
     targets
 }
 
-/// Runs the trials. A wrong picture gives exit code 3.
+/// Runs the tests. A wrong picture gives exit code 3.
 pub fn run(arguments: &[String]) -> CommandResult {
     let (mut permutations, mut targets) = ("100000".to_owned(), Vec::new());
     let mut rest = arguments.iter();
@@ -37,7 +37,7 @@ pub fn run(arguments: &[String]) -> CommandResult {
             _ => return Err(usage()),
         }
     }
-    // MSL has a trial of its own, which compiles many stages at once.
+    // MSL has a test of its own, which compiles many stages at once.
     let msl = targets.is_empty() || targets.iter().any(|target| target == "msl");
     let is_other = |target: &String| target != "msl";
     let mut variables = vec![("LAMPLIGHT_FRAMES_PERMUTATIONS".to_owned(), permutations)];
@@ -46,12 +46,12 @@ pub fn run(arguments: &[String]) -> CommandResult {
         variables.push(("LAMPLIGHT_FRAMES_TARGETS".to_owned(), others.join(",")));
     }
     if targets.is_empty() || !others.is_empty() {
-        trials("frames/shipped", &variables)?;
+        tests("frames/shipped", &variables)?;
     }
-    if msl { trials("metal::frames", &variables) } else { Ok(()) }
+    if msl { tests("metal::frames", &variables) } else { Ok(()) }
 }
 
-fn trials(name: &str, variables: &[(String, String)]) -> CommandResult {
+fn tests(name: &str, variables: &[(String, String)]) -> CommandResult {
     let command =
         ["test", "--quiet", "--package", "lamplight", "--features", "store", "--test", "all"];
     process::cargo_with(&command, &[name.to_owned(), "--nocapture".to_owned()], variables)

@@ -23,7 +23,7 @@ use schema::schema;
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 16] = [
         ("recorded_keys_are_listed", recording),
         ("both_forms_give_back_what_was_written", round_trips),
@@ -42,12 +42,12 @@ pub fn trials() -> Vec<Trial> {
         ("a_replaced_file_stays_readable", in_place::replaced),
         ("remembered_hashes_are_those_of_the_unit", remembered),
     ];
-    let mut trials: Vec<Trial> = cases
+    let mut tests: Vec<Trial> = cases
         .into_iter()
         .map(|(name, case)| Trial::test(format!("bundle::{name}"), case))
         .collect();
-    trials.push(Trial::test("bundle::one_hundred_thousand_keys", large));
-    trials
+    tests.push(Trial::test("bundle::one_hundred_thousand_keys", large));
+    tests
 }
 
 const VALUES: [&[&str]; 4] =

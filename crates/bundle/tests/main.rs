@@ -11,5 +11,5 @@
 mod bundle;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[bundle::trials])
+    lamplight_testing::run_tests(&[bundle::tests])
 }

@@ -3,5 +3,5 @@
 mod plots;
 
 fn main() -> std::process::ExitCode {
-    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), plots::trials()).exit_code()
+    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), plots::tests()).exit_code()
 }

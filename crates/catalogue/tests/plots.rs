@@ -6,7 +6,7 @@ use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("plots::inputs_have_both_ends", inputs_have_both_ends),
         Trial::test("plots::lines_need_two_points", lines_need_two_points),

@@ -26,7 +26,7 @@ use lamplight_testing::folders::packages_in;
 /// How a failing case is accepted.
 const ACCEPT: &str = "\n(`cargo xtask record compose_` accepts this)";
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compose_glsl");
     let mut cases: Vec<PathBuf> =
         fs::read_dir(root).unwrap().map(|entry| entry.unwrap().path()).collect();

@@ -25,7 +25,7 @@ use lamplight_testing::folders::packages_in;
 /// How a failing case is accepted.
 const ACCEPT: &str = "\n(`cargo xtask record compose_` accepts this)";
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compose_wesl");
     let mut cases: Vec<PathBuf> = fs::read_dir(folder)
         .unwrap()
@@ -37,11 +37,11 @@ pub fn trials() -> Vec<Trial> {
         let name = case.file_name().unwrap().to_string_lossy().into_owned();
         Trial::test(format!("compose_wesl::{name}"), move || check(&case))
     };
-    let mut trials: Vec<Trial> = cases.into_iter().map(named).collect();
-    trials.push(Trial::test("compose_wesl permutations are deterministic", permutations));
-    trials.push(Trial::test("compose_wesl names unreadable files", unreadable));
-    trials.push(Trial::test("compose_wesl survives mutilated text", mutilated));
-    trials
+    let mut tests: Vec<Trial> = cases.into_iter().map(named).collect();
+    tests.push(Trial::test("compose_wesl permutations are deterministic", permutations));
+    tests.push(Trial::test("compose_wesl names unreadable files", unreadable));
+    tests.push(Trial::test("compose_wesl survives mutilated text", mutilated));
+    tests
 }
 
 /// `settings.txt`: `set NAME = VALUE`, `constant NAME = LITERAL`, `enum NAME = A, B`, `integer

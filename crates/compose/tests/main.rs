@@ -13,5 +13,5 @@ mod compose_wesl;
 mod texts;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[compose_glsl::trials, compose_wesl::trials, texts::trials])
+    lamplight_testing::run_tests(&[compose_glsl::tests, compose_wesl::tests, texts::tests])
 }

@@ -6,7 +6,7 @@ use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("texts::pieces_are_all_of_the_text", pieces_are_all_of_the_text),
         Trial::test("texts::words_are_whole", words_are_whole),

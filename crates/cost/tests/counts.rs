@@ -6,7 +6,7 @@ use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("counts::kinds_of_instructions", kinds_of_instructions),
         Trial::test("counts::declarations_do_not_count", declarations_do_not_count),

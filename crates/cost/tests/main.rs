@@ -3,5 +3,5 @@
 mod counts;
 
 fn main() -> std::process::ExitCode {
-    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), counts::trials()).exit_code()
+    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), counts::tests()).exit_code()
 }

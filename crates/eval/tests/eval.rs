@@ -23,8 +23,8 @@ use lamplight_eval::{Bounded, Function, FunctionId, Machine, Number, Program, Sl
 use lamplight_validate::validate;
 use libtest_mimic::{Failed, Trial};
 
-pub fn trials() -> Vec<Trial> {
-    let mut trials = Vec::new();
+pub fn tests() -> Vec<Trial> {
+    let mut tests = Vec::new();
     let mut files: Vec<_> = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/eval"))
         .unwrap()
         .map(|entry| entry.unwrap().path())
@@ -37,19 +37,19 @@ pub fn trials() -> Vec<Trial> {
         let name = format!("eval/{}", path.file_stem().unwrap().to_string_lossy());
         let is_glsl = path.extension().is_some_and(|extension| extension == "glsl");
         let program = if is_glsl { program_of_glsl } else { program };
-        trials.push(Trial::test(name, move || {
+        tests.push(Trial::test(name, move || {
             check(&std::fs::read_to_string(&path).unwrap(), program)
         }));
     }
-    trials.extend(constants::trials());
-    trials.extend(filters::trials());
-    trials.extend(library::trials());
-    trials.extend(lockstep::trials());
-    trials.extend(machine::trials());
-    trials.extend(speed::trials());
-    trials.extend(sweeps::trials());
-    trials.extend(textures::trials());
-    trials
+    tests.extend(constants::tests());
+    tests.extend(filters::tests());
+    tests.extend(library::tests());
+    tests.extend(lockstep::tests());
+    tests.extend(machine::tests());
+    tests.extend(speed::tests());
+    tests.extend(sweeps::tests());
+    tests.extend(textures::tests());
+    tests
 }
 
 /// Parses and validates a text, and lowers it to the evaluator's program.

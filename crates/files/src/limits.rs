@@ -1,7 +1,7 @@
 //! Every bound on what comes from outside, in one table.
 //!
 //! A stage that loops or allocates takes its bound from here, so that every bound exists exactly
-//! once. `docs/guide/limits.md` has the same table, and a trial compares the two. Bounds on work
+//! once. `docs/guide/limits.md` has the same table, and a test compares the two. Bounds on work
 //! are counted in steps and never in seconds: the same input has the same answer on every machine.
 
 use std::cell::Cell;
@@ -57,7 +57,7 @@ pub struct Steps {
 }
 
 thread_local! {
-    /// Steps that stages took on this thread. Trials compare these counts, since times vary.
+    /// Steps that stages took on this thread. Tests compare these counts, since times vary.
     static TAKEN: Cell<u64> = const { Cell::new(0) };
 }
 

@@ -7,7 +7,7 @@ use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("identifiers::follow_each_language", follow_each_language),
         Trial::test("identifiers::are_given_once", are_given_once),

@@ -3,5 +3,5 @@
 mod identifiers;
 
 fn main() -> std::process::ExitCode {
-    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), identifiers::trials()).exit_code()
+    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), identifiers::tests()).exit_code()
 }

@@ -13,7 +13,7 @@ use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("lint::a_chain_is_linear", || grows_linearly(chain)),
         Trial::test("lint::a_hub_is_linear", || grows_linearly(hub)),

@@ -11,5 +11,5 @@
 mod large;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[large::trials])
+    lamplight_testing::run_tests(&[large::tests])
 }

@@ -17,5 +17,5 @@ const LIBRARY_FILES: Embedded =
     Embedded { texts: lamplight_shaderlib::FILES, tables: lamplight_shaderlib::TABLES };
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[mutate::trials])
+    lamplight_testing::run_tests(&[mutate::tests])
 }

@@ -15,7 +15,7 @@ use toml::Table;
 type Outcome = Result<(), Failed>;
 type Case = fn() -> Outcome;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [(&str, Case); 7] = [
         ("library_kills", library_kills),
         ("list_is_sound", list_is_sound),

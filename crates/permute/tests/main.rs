@@ -11,5 +11,5 @@
 mod permute;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[permute::trials])
+    lamplight_testing::run_tests(&[permute::tests])
 }

@@ -17,18 +17,18 @@ use lamplight_diagnostic::source::SourceSet;
 use lamplight_permute::{Manifest, Program, Quoted, key, lock, manifest, report};
 use libtest_mimic::{Failed, Trial};
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/permute");
     let entries = fs::read_dir(folder).expect("the folder of cases");
     let mut cases: Vec<PathBuf> =
         entries.map(|entry| entry.expect("a case").path()).filter(|path| path.is_dir()).collect();
     cases.sort();
-    let mut trials: Vec<Trial> = cases.into_iter().map(trial).collect();
-    trials.extend(laws::trials());
-    trials
+    let mut tests: Vec<Trial> = cases.into_iter().map(test).collect();
+    tests.extend(laws::tests());
+    tests
 }
 
-fn trial(case: PathBuf) -> Trial {
+fn test(case: PathBuf) -> Trial {
     let name = case.file_name().unwrap_or_default().to_string_lossy().into_owned();
     Trial::test(format!("permute::{name}"), move || check(&case))
 }

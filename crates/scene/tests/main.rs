@@ -3,5 +3,5 @@
 mod scene;
 
 fn main() -> std::process::ExitCode {
-    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), scene::trials()).exit_code()
+    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), scene::tests()).exit_code()
 }

@@ -17,7 +17,7 @@ type Case = (&'static str, fn() -> Outcome);
 const CLIPS: [Clip; 3] = [Clip::Wgpu, Clip::Vulkan, Clip::OpenGl];
 const DEPTHS: [Depth; 2] = [Depth::Normal, Depth::Reversed];
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 16] = [
         ("views", views),
         ("views_by_angles", angles),

@@ -11,5 +11,5 @@
 mod scenes;
 
 fn main() -> std::process::ExitCode {
-    lamplight_testing::run_tests(&[scenes::trials])
+    lamplight_testing::run_tests(&[scenes::tests])
 }

@@ -8,7 +8,7 @@ use libtest_mimic::{Failed, Trial};
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 7] = [
         ("rays", probes::rays),
         ("rays_of_scenes", probes::rays_of_scenes),

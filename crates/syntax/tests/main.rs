@@ -3,5 +3,5 @@
 mod tokens;
 
 fn main() -> std::process::ExitCode {
-    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), tokens::trials()).exit_code()
+    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), tokens::tests()).exit_code()
 }

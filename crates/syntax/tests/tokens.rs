@@ -11,7 +11,7 @@ use libtest_mimic::{Failed, Trial};
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases: [Case; 7] = [
         ("pieces_give_the_text_again", pieces_give_the_text_again),
         ("numbers_keep_their_exponents", numbers_keep_their_exponents),

@@ -1,4 +1,4 @@
-//! Packages whose files are in a folder of a trial: those of the root package, and in `deps/` those
+//! Packages whose files are in a folder of a test: those of the root package, and in `deps/` those
 //! of the packages that it depends on.
 
 use std::collections::BTreeMap;

@@ -6,12 +6,12 @@ use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
 
-pub fn trials() -> Vec<Trial> {
-    let mut trials = vec![Trial::test("attributes::lists", lists)];
-    trials.extend(TEXTS.iter().map(|(name, text, wanted)| {
+pub fn tests() -> Vec<Trial> {
+    let mut tests = vec![Trial::test("attributes::lists", lists)];
+    tests.extend(TEXTS.iter().map(|(name, text, wanted)| {
         Trial::test(format!("attributes::{name}"), || judged(text, *wanted))
     }));
-    trials
+    tests
 }
 
 /// A name, a text, and the mistake that it has.

@@ -3,5 +3,5 @@
 mod attributes;
 
 fn main() -> std::process::ExitCode {
-    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), attributes::trials()).exit_code()
+    libtest_mimic::run(&libtest_mimic::Arguments::from_args(), attributes::tests()).exit_code()
 }

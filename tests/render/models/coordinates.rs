@@ -9,7 +9,7 @@ use super::{
     is_near, pixel, square,
 };
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("render/model/coordinates/turned", turned_quarter),
         Trial::test("render/model/coordinates/each_its_own", each_its_own),

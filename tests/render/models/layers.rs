@@ -40,7 +40,7 @@ const LAYERS: [Layer; 8] = [
     }),
 ];
 
-pub fn trials() -> impl Iterator<Item = Trial> {
+pub fn tests() -> impl Iterator<Item = Trial> {
     let each = LAYERS
         .iter()
         .map(|layer| Trial::test(format!("render/model/layer/{}", layer.0), || is_drawn(layer)));

@@ -178,7 +178,7 @@ struct Texture {
     index: u32,
 }
 
-pub fn trials() -> impl Iterator<Item = Trial> {
+pub fn tests() -> impl Iterator<Item = Trial> {
     let each = ROWS
         .iter()
         .map(|row| Trial::test(format!("render/model/map/{}", row.name), || agrees(row)));

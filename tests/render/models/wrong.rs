@@ -7,7 +7,7 @@ use tempfile::TempDir;
 
 use super::{demand, glb, render, square};
 
-pub fn trials() -> impl Iterator<Item = Trial> {
+pub fn tests() -> impl Iterator<Item = Trial> {
     let wrong = WRONG.iter().map(|(name, file, words)| {
         Trial::test(format!("render/model/wrong/{name}"), || refused(&file(), words))
     });

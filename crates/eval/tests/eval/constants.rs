@@ -57,7 +57,7 @@ const CASES: &[(&str, &str, &str, &[&str])] = &[
     ("i32", "x: i32", "(x << 3u) - (x >> 1u) * (x % 5) / 3", &["-17i", "1000i"]),
 ];
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     CASES
         .iter()
         .map(|case| Trial::test(format!("eval/constants/{}", case.2), || check(case)))

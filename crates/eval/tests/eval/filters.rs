@@ -34,7 +34,7 @@ fn of_depths(p: vec3f, i: i32) -> vec4f { return vec4f(textureSampleCompareLevel
 fn gathered(p: vec3f, i: i32) -> vec4f { return textureGather(1, flat, smp, p.xy); }
 ";
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![Trial::test("eval/filters", compare_ways)]
 }
 

@@ -14,7 +14,7 @@ use libtest_mimic::{Failed, Trial};
 /// The number of inputs for each function.
 const INPUTS: u32 = 200;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let modules = LIBRARY_FILES
         .list(&["wesl"])
         .into_iter()

@@ -21,7 +21,7 @@ const PROGRAMS: u32 = 300;
 /// Quads of each run: more than fit in a batch, and not a whole number of batches.
 const QUADS: usize = 6;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("eval/lockstep/random", random_programs),
         Trial::test("eval/lockstep/library", library_functions),

@@ -6,7 +6,7 @@ use lamplight_eval::{Bounded, Branch, FindingKind, Machine, Number, Program};
 use lamplight_testing::random::Random;
 use libtest_mimic::{Failed, Trial};
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![
         Trial::test("eval/machine/coverage", coverage),
         Trial::test("eval/machine/places", places),

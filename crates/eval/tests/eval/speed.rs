@@ -8,7 +8,7 @@ use std::time::Instant;
 
 const CALLS: u32 = 1_000_000;
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     vec![Trial::test("eval/speed", measure).with_ignored_flag(true)]
 }
 

@@ -6,7 +6,7 @@ use super::program;
 use lamplight_eval::{Bounded, Machine, Number};
 use libtest_mimic::{Failed, Trial};
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     ONE.iter().map(|case| Trial::test(format!("eval/sweep/{}", case.0), || sweep(case))).collect()
 }
 

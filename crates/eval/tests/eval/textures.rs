@@ -88,7 +88,7 @@ const CASES: &[Case] = &[
     ("grad", true, false, &[0.5, 0.5, 0.25], &[10.0]),
 ];
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     let cases = CASES.iter().map(|case| {
         let name = format!(
             "eval/textures/{}({:?}){}{}",

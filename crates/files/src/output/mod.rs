@@ -31,7 +31,7 @@
 //!
 //! A command flattens `Overwrite` of `src/cli/overwrite.rs`, which adds `--force`, and passes
 //! `overwrite.replace()`; `src/cli/export/mod.rs` is an example. A command that writes has one line
-//! in `FILES` or `FOLDERS` of `tests/traps.rs`, which set a trap at each of its files. A trial finds
+//! in `FILES` or `FOLDERS` of `tests/traps.rs`, which set a trap at each of its files. A test finds
 //! top-level commands with `--force` that have none; it does not see subcommands, further forms of
 //! a command, and commands that write without this module.
 //!

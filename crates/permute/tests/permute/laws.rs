@@ -39,7 +39,7 @@ const LAWS: &[(&str, Law)] = &[
     ("report_is_data", report_is_data),
 ];
 
-pub fn trials() -> Vec<Trial> {
+pub fn tests() -> Vec<Trial> {
     LAWS.iter().map(|(name, law)| Trial::test(format!("permute::laws::{name}"), law)).collect()
 }
 

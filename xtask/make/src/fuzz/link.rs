@@ -1,4 +1,4 @@
-//! `cargo xtask fuzz link`: random programs, which the trial `link::random` of the tests makes,
+//! `cargo xtask fuzz link`: random programs, which the test `link::random` makes,
 //! judges, runs and compares.
 
 use xtask::{CommandFailure, CommandResult, process};
@@ -13,7 +13,7 @@ const USAGE: &str =
   --run N       the outputs of one program in N are run, 0 for none (8)
   --shrink      make the first finding of each kind small";
 
-/// Runs the trial. Findings are left in `target/fuzz/link/` and give exit code 3.
+/// Runs the test. Findings are left in `target/fuzz/link/` and give exit code 3.
 pub fn run(arguments: &[String]) -> CommandResult {
     let mut settings = vec![("PROGRAMS", "20000".to_owned()), ("JUDGED", "1".to_owned())];
     settings.extend([("MOST", "2".to_owned()), ("RUN", "8".to_owned())]);

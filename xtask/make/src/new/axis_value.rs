@@ -125,12 +125,12 @@ impl AxisPlaces {
     fn steps(&self, NamedValue { axis, value, .. }: &NamedValue<'_>) -> Vec<String> {
         let (name, constant) = (axis.to_uppercase(), format!("{axis}_{value}").to_uppercase());
         let mut steps = vec![format!(
-            "the effect, `@if({axis} == {value})` in WESL and `#if {name} == {constant}` in GLSL, with an import in WESL and an `#include` in GLSL of what it calls (trial library::values_have_effect); what a branch uses may have a condition of its own, and a function of WESL must return for `{value}` too; these lines test the axis:"
+            "the effect, `@if({axis} == {value})` in WESL and `#if {name} == {constant}` in GLSL, with an import in WESL and an `#include` in GLSL of what it calls (test library::values_have_effect); what a branch uses may have a condition of its own, and a function of WESL must return for `{value}` too; these lines test the axis:"
         )];
         steps.extend(self.lines.iter().map(|line| format!("  {line}")));
         if !self.changed.is_empty() {
             steps.push(format!(
-                "replace each `#error` for `{axis}={value}`, or delete it with its `#elif` where `#else` is right (trial library::)"
+                "replace each `#error` for `{axis}={value}`, or delete it with its `#elif` where `#else` is right (test library::)"
             ));
         }
         steps.push("comments of uniform fields that list values, in both languages".to_owned());

@@ -13,11 +13,11 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFil
     let constant = name.replace('-', "_").to_uppercase();
     let next = vec![
         format!(
-            "{file}: a title, `Page: ` with a page of crates/diagnostic/src/guide.rs, and when it happens and how to mend it (trials diagnostics, guide)"
+            "{file}: a title, `Page: ` with a page of crates/diagnostic/src/guide.rs, and when it happens and how to mend it (tests diagnostics, guide)"
         ),
         format!("`Diagnostic::error(codes::{constant}, message).at(span, words)` where it happens"),
         format!(
-            "a case in tests/diagnostics/ that shows `[{name}]` (trial diagnostics every code has a case)"
+            "a case in tests/diagnostics/ that shows `[{name}]` (test diagnostics every code has a case)"
         ),
         "cargo xtask record guide; read the difference".to_owned(),
     ];

@@ -50,18 +50,18 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFil
 fn steps(file: &str, name: &str, is_vulkan: bool, is_own: bool) -> Vec<String> {
     let mut next = vec![
         format!(
-            "{file}: `about`, and what opens it, as its comments say, which you delete; imports that are not used any more (trials house::described, harness::executor::{name})"
+            "{file}: `about`, and what opens it, as its comments say, which you delete; imports that are not used any more (tests house::described, harness::executor::{name})"
         ),
         format!(
-            "{file}: `needs`; for each package that xtask/src/machine.rs lacks, add to `NEEDS` there one like `Need {{ package: \"libegl1\", what: \"EGL\", found: || library(\"libEGL.so.1\") }}`, or with `installed` or `program` (trial house::needs)"
+            "{file}: `needs`; for each package that xtask/src/machine.rs lacks, add to `NEEDS` there one like `Need {{ package: \"libegl1\", what: \"EGL\", found: || library(\"libEGL.so.1\") }}`, or with `installed` or `program` (test house::needs)"
         ),
         format!(
-            "{file}: `samples: None` where it draws no frames, and `shipping` where it takes a target's files as they are (trials harness::executor::{name}, frames/shipped)"
+            "{file}: `samples: None` where it draws no frames, and `shipping` where it takes a target's files as they are (tests harness::executor::{name}, frames/shipped)"
         ),
         format!(
             "{file}: `Runs on:` has `every system`, `every system but WebAssembly`, or names in its place as `linux, windows, macos`; other systems are built without the executor and do not know its name"
         ),
-        "trials that open all executors fail where one is not available: have its packages installed by xtask/src/machine.rs, or narrow `Runs on:`".to_owned(),
+        "tests that open all executors fail where one is not available: have its packages installed by xtask/src/machine.rs, or narrow `Runs on:`".to_owned(),
         format!("cargo run -- list executors; cargo run -- check --executor {name} brdf::diffuse"),
         "cargo xtask record diagnostics; cargo xtask record guide; read the difference".to_owned(),
     ];

@@ -115,16 +115,16 @@ fn steps(stem: &str, reference: &str, new: &Signature<'_>, is_new: bool) -> Vec<
     };
     let mut steps = vec![
         format!(
-            "{stem}.wesl: the formula, and each line of its comment (trial shaderlib::); `Edges:` says, by the name of each parameter, what it returns for zero vectors and outside the domain, `Error model:` the bound that `tolerance` states; for guards, `max(x, 1e-4)` with a bound that `Edges:` names, or from `super::super::math::safe` `safe_pow(x, e)` (1 for `e` = 0, else 0 for `x` at or below 0) and `safe_normalize(v, fallback)`, in GLSL with `#include \"../math/safe.glsl\"`; the module's first lines, if they list its functions"
+            "{stem}.wesl: the formula, and each line of its comment (test shaderlib::); `Edges:` says, by the name of each parameter, what it returns for zero vectors and outside the domain, `Error model:` the bound that `tolerance` states; for guards, `max(x, 1e-4)` with a bound that `Edges:` names, or from `super::super::math::safe` `safe_pow(x, e)` (1 for `e` = 0, else 0 for `x` at or below 0) and `safe_normalize(v, fallback)`, in GLSL with `#include \"../math/safe.glsl\"`; the module's first lines, if they list its functions"
         ),
-        format!("{stem}.glsl: {in_glsl} (trial shaderlib::)"),
+        format!("{stem}.glsl: {in_glsl} (test shaderlib::)"),
         format!(
             "{reference}: the formula in f64, from the source and not from the shader, with the limits of guards as the shader has them (`f64::from(1e-4f32)`), and its first lines, which list the sources; then `cargo build`, since references are part of the command"
         ),
         format!(
-            "{stem}.toml: `tolerance` and `laws`, in one of the forms above them (trial new::forms), and inputs outside the domain, for which `Edges:` says the result; `cargo xtask check {folder}/{module}` measures the tolerance, and with `--spec` it lists what WGSL allows, which the tolerance should not be below; `shaderlib/tolerances.toml` needs no line"
+            "{stem}.toml: `tolerance` and `laws`, in one of the forms above them (test new::forms), and inputs outside the domain, for which `Edges:` says the result; `cargo xtask check {folder}/{module}` measures the tolerance, and with `--spec` it lists what WGSL allows, which the tolerance should not be below; `shaderlib/tolerances.toml` needs no line"
         ),
-        format!("tests/plain/{folder}/{module}.wesl: {plain} (trial plain::)"),
+        format!("tests/plain/{folder}/{module}.wesl: {plain} (test plain::)"),
         format!("{stem}.plot.toml is complete, unless another parameter should be drawn"),
         format!(
             "when the check passes: cargo xtask docs --costs; cargo xtask record plain:: _budget; if that fails for a missing `Reason:`, `cargo xtask new reason {path} 'what the guards are for'` and the same again"

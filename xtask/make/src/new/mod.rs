@@ -1,6 +1,6 @@
 //! What `cargo xtask new` writes: one file of this folder for each kind of thing.
 //!
-//! The files are incomplete on purpose. A trial fails until they are completed, and
+//! The files are incomplete on purpose. A test fails until they are completed, and
 //! [`NewFiles::next`] names it.
 
 mod axis_places;
@@ -51,7 +51,7 @@ pub const KINDS: &[TaskKind] = &[
 pub struct NewFiles {
     /// Paths below the repository's root, each with the file's whole new text.
     pub files: Vec<(String, String)>,
-    /// Steps that complete the work, each with the trial that demands it.
+    /// Steps that complete the work, each with the test that demands it.
     pub next: Vec<String>,
 }
 

@@ -22,14 +22,14 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFil
     let picture = format!("target/tech_{name}.png");
     let next = vec![
         format!(
-            "{file}: `about`, objects, the viewer and the lamp (trials house::described, scene)"
+            "{file}: `about`, objects, the viewer and the lamp (tests house::described, scene)"
         ),
         format!(
             "  shapes (a `cuboid`, a `sphere` and a `torus` lie around the origin; `placed_at(x, y, z, turn)` puts one elsewhere): {shapes}"
         ),
         format!("  colours: {colors}"),
         format!("  materials of `material=array`: {}", materials(&palette)?),
-        format!("{PRESETS}: `doc`, `look` and `source` of `tech_{name}` (trial catalogue)"),
+        format!("{PRESETS}: `doc`, `look` and `source` of `tech_{name}` (test catalogue)"),
         format!("cargo run --release -- render tech_{name} -o {picture}; look at it"),
         "cargo xtask record render/; cargo run --release -- render --all --force -o docs/gallery"
             .to_owned(),

@@ -36,11 +36,11 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFil
     let lacking = lacking_of(&repository.read(LACKS)?, name);
     let next = vec![
         format!(
-            "{file}: its head comment and the version, `about` and the judge's rules, where they are still those of `{like}`; glslang knows `own` (the output's own version), `vulkan`, `hlsl`, or a version such as `320 es` (trials house::described, emit, judges)"
+            "{file}: its head comment and the version, `about` and the judge's rules, where they are still those of `{like}`; glslang knows `own` (the output's own version), `vulkan`, `hlsl`, or a version such as `320 es` (tests house::described, emit, judges)"
         ),
-        format!("{own_executor}: likewise (trials harness::executor::{name}, frames/shipped)"),
+        format!("{own_executor}: likewise (tests harness::executor::{name}, frames/shipped)"),
         format!(
-            "{GUIDE}: what `{name}` does unlike `{like}`, in each row that `git diff` shows, that of the judge included; the first table has it beside `{numbered_alike}`, whose bindings are like its own (trials conventions::guide, guide lists are whole)"
+            "{GUIDE}: what `{name}` does unlike `{like}`, in each row that `git diff` shows, that of the judge included; the first table has it beside `{numbered_alike}`, whose bindings are like its own (tests conventions::guide, guide lists are whole)"
         ),
         format!(
             "{GUIDE}, \"{}\": rows that hold for `{name}`: {lacking}",
