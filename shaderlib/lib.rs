@@ -17,7 +17,7 @@
 //! - Results are finite for finite arguments up to 1e9 in magnitude, whether they have a meaning or
 //!   not: zero vectors, negative parameters, cosines above 1. The line `Edges:` says what they are,
 //!   for each parameter whose description does not allow any value
-//!   (`tests/shaderlib/documented.rs`). `lamplight check` judges every function by this law
+//!   (`tests/shaderlib/documented.rs`). `lamplight check` checks every function by this law
 //!   (`finite`). A case that narrows it gives a reason: forms that reproduce a published flaw, and
 //!   parts of other functions. NaN is left open, as WGSL leaves it.
 //! - A name without a suffix is the numerically safe form. A name with the suffix `_oglpg`, `_hpg`,

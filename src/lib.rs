@@ -75,8 +75,8 @@
 //!
 //! # Diagnose, in an editor
 //!
-//! [`lint`] looks at all modules of a package. Each [`diagnostic`] has a code, a message and places in
-//! the author's text.
+//! [`lint`] looks at all modules of a package. Each [`diagnostic`] has a code, a message and places
+//! in the author's text.
 //!
 //! ```
 //! use lamplight::{lint, permute::Settings, resolve::Packages, source::SourceSet};
@@ -153,8 +153,8 @@ pub use lamplight_syntax as parse;
 pub use lamplight_validate as validate;
 
 /// The identity of this build, for [`cache::Cache::new`]. It changes with the sources of this crate
-/// and of those that it is made of, with the versions of their dependencies, and with the system that
-/// it is built for.
+/// and of those that it is made of, with the versions of their dependencies, and with the system
+/// that it is built for.
 pub const BUILD: &str = env!("LAMPLIGHT_BUILD");
 
 /// The same for every system that this crate is built for, with the version in front. Parts of one
@@ -185,7 +185,7 @@ mod whole {
     pub use lamplight_scenes::model;
     pub use lamplight_tools as tools;
     pub use lamplight_tools::{browser, metal};
-    pub use lamplight_validators as judge;
+    pub use lamplight_validators as validators;
 }
 
 /// The mathematics of lighting for the host, and what pictures show.

@@ -4,10 +4,10 @@ use std::fs;
 
 use lamplight::bundle::{Bundle, Target, blob_files};
 use lamplight::emit::spirv::{SpirvInstruction, instructions, words};
-use lamplight::judge;
+use lamplight::validators;
 use libtest_mimic::{Failed, Trial};
 
-use crate::judges::{Package, expect};
+use crate::validators::{Package, expect};
 
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
@@ -70,15 +70,15 @@ fn output(package: &Package, out: &str, target: Target) -> Result<Vec<u8>, Faile
     Ok(bundle.program("one")?.shader("fs_main")?.get("default", target)?.bytes.clone())
 }
 
-/// Outputs have the checks of their target if they are asked for, and none otherwise. The judges
-/// accept both.
+/// Outputs have the checks of their target if they are asked for, and none otherwise. The
+/// validators accept both.
 fn checks_by_target() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     for bounds in ["unchecked", "restrict"] {
         let run = ["gen", "--no-cache", "--bounds", bounds, "-o", bounds];
         expect(&package.run(&run)?, 0, &[])?;
-        let outputs = judge::outputs(blob_files(package.path(bounds))?)?;
-        if let Some(refusal) = judge::judge(&outputs, None, &|_, _| ())?.first() {
+        let outputs = validators::outputs(blob_files(package.path(bounds))?)?;
+        if let Some(refusal) = validators::validate_outputs(&outputs, None, &|_, _| ())?.first() {
             return Err(format!("{bounds}: {refusal:?}").into());
         }
     }

@@ -8,10 +8,10 @@ use lamplight::bundle::{
     Viewport, YAxis, blob_files, pack,
 };
 use lamplight::emit::targets;
-use lamplight::judge;
+use lamplight::validators;
 use libtest_mimic::{Failed, Trial};
 
-use crate::judges::{Package, expect};
+use crate::validators::{Package, expect};
 
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
@@ -68,13 +68,13 @@ fn text(found: &Found) -> Result<String, Failed> {
 }
 
 /// Vertex stages for the two clip spaces differ by one line, in GLSL only, and the reflection says
-/// which clip space they have. Fragment stages do not differ. The judges accept all outputs.
+/// which clip space they have. Fragment stages do not differ. The validators accept all outputs.
 fn clip_spaces() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     for clip in ["wgpu", "native"] {
         expect(&package.run(&["gen", "--no-cache", "--clip", clip, "-o", clip])?, 0, &[])?;
-        let outputs = judge::outputs(blob_files(package.path(clip))?)?;
-        if let Some(refusal) = judge::judge(&outputs, None, &|_, _| ())?.first() {
+        let outputs = validators::outputs(blob_files(package.path(clip))?)?;
+        if let Some(refusal) = validators::validate_outputs(&outputs, None, &|_, _| ())?.first() {
             return Err(format!("clip space {clip}: {refusal:?}").into());
         }
     }
@@ -159,8 +159,8 @@ fn after<'t>(text: &'t str, word: &str, until: &[char]) -> Option<&'t str> {
 /// A name, a register such as `t3`, and its space.
 type Register = (String, String, u32);
 
-/// HLSL: the reflection has the text's registers and spaces, sampler heaps with their index buffers,
-/// and semantics.
+/// HLSL: the reflection has the text's registers and spaces, sampler heaps with their index
+/// buffers, and semantics.
 fn registers() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     expect(&package.run(&["gen", "--no-cache"])?, 0, &[])?;
@@ -303,8 +303,8 @@ fn first_instance() -> Outcome {
     for (shader, is_there) in [(shader, true), (SHADER, false)] {
         let package = Package::new(MANIFEST, shader)?;
         expect(&package.run(&["gen", "--no-cache"])?, 0, &[])?;
-        let outputs = judge::outputs(blob_files(package.path("bundle"))?)?;
-        if let Some(refusal) = judge::judge(&outputs, None, &|_, _| ())?.first() {
+        let outputs = validators::outputs(blob_files(package.path("bundle"))?)?;
+        if let Some(refusal) = validators::validate_outputs(&outputs, None, &|_, _| ())?.first() {
             return Err(format!("{refusal:?}").into());
         }
         for target in glsl_targets() {

@@ -12,18 +12,18 @@ pub fn tests() -> Vec<Trial> {
     ]
 }
 
-/// `cargo xtask test` installs what executors and judges need.
+/// `cargo xtask test` installs what executors and validators need.
 fn needs_are_installed() -> Result<(), Failed> {
     let machine = std::fs::read_to_string(root().join("xtask/src/machine.rs"))?;
     let of_executors = lamplight::execute::executors::ALL
         .iter()
         .flat_map(|entry| entry.needs.iter().map(|need| (*need, "executor", entry.name)));
-    let of_judges = lamplight::judge::judges::ALL
+    let of_validators = lamplight::validators::programs::ALL
         .iter()
-        .flat_map(|entry| entry.tools.iter().map(|tool| (tool.package, "judge", entry.name)));
+        .flat_map(|entry| entry.tools.iter().map(|tool| (tool.package, "validator", entry.name)));
     let is_missing =
         |need: &(&str, &str, &str)| !machine.contains(&format!("package: \"{}\"", need.0));
-    if let Some((need, kind, name)) = of_executors.chain(of_judges).find(is_missing) {
+    if let Some((need, kind, name)) = of_executors.chain(of_validators).find(is_missing) {
         let what = format!("which the {kind} `{name}` needs");
         return Err(format!("xtask/src/machine.rs does not install `{need}`, {what}").into());
     }

@@ -1,8 +1,8 @@
-//! Validates shaders, emits them for every target, and has the targets' own validators judge them.
+//! Validates shaders, emits them for every target, and has the targets' own validators read them.
 //!
-//! Shaders of `emit/valid/` must pass for every target, and a snapshot holds their reflection. Those
-//! of `emit/invalid/` must be refused, and a snapshot holds the diagnostics. Their names end in
-//! `.wgsl`, `.vert.glsl` or `.frag.glsl`.
+//! Shaders of `emit/valid/` must pass for every target, and a snapshot holds their reflection.
+//! Those of `emit/invalid/` must be refused, and a snapshot holds the diagnostics. Their names end
+//! in `.wgsl`, `.vert.glsl` or `.frag.glsl`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -48,7 +48,7 @@ fn valid(path: &Path) -> Outcome {
             let emitted = emit::emit(&alone, &point.name, *target)
                 .map_err(|error| render(&sources, &[error], Form::Human))?;
             same_from_the_whole(&validated, &point.name, *target, &emitted)?;
-            judge(&point.name, point.stage, *target, &emitted)?;
+            accepted(&point.name, point.stage, *target, &emitted)?;
             summary +=
                 &format!("{} {target}: {}\n", point.name, serde_json::to_string(&emitted.native)?);
         }
@@ -66,8 +66,8 @@ fn invalid(path: &Path) -> Outcome {
     Ok(())
 }
 
-/// `isolate` derives the analysis of one entry point from that of the module, which is cheap. A full
-/// validation of the isolated module must give the same output.
+/// `isolate` derives the analysis of one entry point from that of the module, which is cheap. A
+/// full validation of the isolated module must give the same output.
 fn same_from_the_whole(
     validated: &Validated,
     entry: &str,
@@ -90,13 +90,13 @@ fn naga_info(validated: &Validated) -> naga::valid::ModuleInfo {
         .unwrap()
 }
 
-fn judge(entry: &str, stage: naga::ShaderStage, target: Target, emitted: &Emitted) -> Outcome {
+fn accepted(entry: &str, stage: naga::ShaderStage, target: Target, emitted: &Emitted) -> Outcome {
     let folder = tempfile::tempdir()?;
     let extension = if stage == naga::ShaderStage::Vertex { "vert" } else { "frag" };
     let file = folder.path().join(format!("out.{extension}"));
     std::fs::write(&file, &emitted.bytes)?;
     let found = emit::targets::find(target).ok_or("the target has no file")?;
-    match found.judged.judge {
+    match found.validation.validator {
         "spirv_val" => {
             run(Command::new("spirv-val").args(["--target-env", "vulkan1.1"]).arg(&file))
         }

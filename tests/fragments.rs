@@ -2,8 +2,9 @@
 //! gave them.
 //!
 //! A fragment agrees if each component of its colour lies within the evaluator's error bound. It is
-//! open, which means neither right nor wrong, in two cases: the specification gives no bound; or the
-//! fragment does not agree, and a comparison in the shader was within the error of either result.
+//! open, which means neither right nor wrong, in two cases: the specification gives no bound; or
+//! the fragment does not agree, and a comparison in the shader was within the error of either
+//! result.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -44,7 +45,7 @@ impl Tally {
 
 impl Tally {
     /// The counts, if enough fragments were compared, and at most a share `most` of them is open.
-    pub fn judged(self, least: usize, most: f64) -> Result<Self, String> {
+    pub fn checked(self, least: usize, most: f64) -> Result<Self, String> {
         match self {
             Self { tried, .. } if tried < least => {
                 Err(format!("{tried} fragments were compared, expected at least {least}"))
@@ -83,8 +84,8 @@ impl Watched<'_> {
         self.quads().count()
     }
 
-    /// The quads of the frame with all four fragments covered. The pixels of each are in the order of
-    /// the evaluator's lanes.
+    /// The quads of the frame with all four fragments covered. The pixels of each are in the order
+    /// of the evaluator's lanes.
     fn quads(&self) -> impl Iterator<Item = [usize; 4]> + '_ {
         let [width, height] = self.size;
         let quads = (0..height / 2).flat_map(move |y| (0..width / 2).map(move |x| (2 * x, 2 * y)));
@@ -175,7 +176,7 @@ pub fn recompute_each(
                     entry.insert(Wanted { results, discarded, doubt })
                 }
             };
-            tally = tally.and_then(|tally| judge(watched, quad, wanted, tally));
+            tally = tally.and_then(|tally| check_quad(watched, quad, wanted, tally));
         }
         tallies.push(tally);
     }
@@ -190,7 +191,7 @@ struct Wanted {
     doubt: bool,
 }
 
-fn judge(
+fn check_quad(
     watched: &Watched<'_>,
     quad: [usize; 4],
     wanted: &Wanted,
@@ -210,13 +211,13 @@ fn judge(
         } else if is_discarded {
             tally.tried += 1;
         } else {
-            judge_color(watched, pixel, &wanted.results[lane], wanted.doubt, &mut tally)?;
+            check_color(watched, pixel, &wanted.results[lane], wanted.doubt, &mut tally)?;
         }
     }
     Ok(tally)
 }
 
-fn judge_color(
+fn check_color(
     watched: &Watched<'_>,
     pixel: usize,
     wanted: &[Bounded],

@@ -331,5 +331,5 @@ fn agrees(renderer: &dyn Session, scene: &Scene, most: f64) -> Result<Tally, Str
     let resources = fragments::resources(buffers.clone(), &scene.fixtures, &BTreeMap::new());
     let watched = Watched { size: [WIDTH, HEIGHT], targets: &frame.targets };
     fragments::recompute(fragment, resources, &watched, STEP, &mut tally)?;
-    tally.judged(LEAST, most)
+    tally.checked(LEAST, most)
 }

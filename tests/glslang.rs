@@ -13,19 +13,19 @@ use crate::examples;
 /// The number of files in one run.
 pub const BATCH: usize = 64;
 
-/// The files that are refused, each with the compiler's words. A batch is halved until those at fault
-/// are found.
+/// The files that are refused, each with the compiler's words. A batch is halved until those at
+/// fault are found.
 fn refused<K: Copy>(
     batch: &[(K, String)],
     accepts_all: impl Fn(&[&str]) -> bool,
-    judge: impl Fn(&str) -> Result<(), String>,
+    compile: impl Fn(&str) -> Result<(), String>,
 ) -> Vec<(K, String)> {
     let together = |files: &[(K, String)]| {
         let paths: Vec<&str> = files.iter().map(|(_, path)| path.as_str()).collect();
         Ok::<_, Infallible>(accepts_all(&paths).then(Vec::new))
     };
     let alone = |(key, path): &(K, String)| {
-        Ok(judge(path).err().map(|words| (*key, words)).into_iter().collect())
+        Ok(compile(path).err().map(|words| (*key, words)).into_iter().collect())
     };
     let Ok(refused) = halve_refused(batch, &together, &alone);
     refused
@@ -37,8 +37,8 @@ pub fn refused_by_glslc<K: Copy>(
     options: &[&str],
     batch: &[(K, String)],
 ) -> Vec<(K, String)> {
-    let judge = |paths: &[&str]| run(folder, "glslc", &[options, &["-c"], paths].concat());
-    refused(batch, |paths| judge(paths).is_ok(), |path| judge(&[path]))
+    let compile = |paths: &[&str]| run(folder, "glslc", &[options, &["-c"], paths].concat());
+    refused(batch, |paths| compile(paths).is_ok(), |path| compile(&[path]))
 }
 
 /// The files that glslangValidator refuses, all of a stage, by the rules of the version that each
@@ -48,8 +48,9 @@ pub fn refused_by_version<K: Copy>(
     stage: &str,
     batch: &[(K, String)],
 ) -> Vec<(K, String)> {
-    let judge = |paths: &[&str]| run(folder, "glslangValidator", &[&["-S", stage], paths].concat());
-    refused(batch, |paths| judge(paths).is_ok(), |path| judge(&[path]))
+    let compile =
+        |paths: &[&str]| run(folder, "glslangValidator", &[&["-S", stage], paths].concat());
+    refused(batch, |paths| compile(paths).is_ok(), |path| compile(&[path]))
 }
 
 /// Options of glslangValidator for GLSL by the rules of Vulkan, which it compiles to SPIR-V.

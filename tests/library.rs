@@ -1,5 +1,5 @@
-//! The library's own programs. Some permutations are recorded as texts, which people review; all are
-//! recorded by hashes; and the judge of each target judges a part of the outputs.
+//! The library's own programs. Some permutations are recorded as texts, which people review; all
+//! are recorded by hashes; and the validator of each target reads a part of the outputs.
 
 mod recorded;
 
@@ -11,10 +11,10 @@ use lamplight::bundle::{Artifact, Contents, EntryContents, Hash, Language, Targe
 use lamplight::compose::{Keep, Options, compose};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{Request, in_memory};
-use lamplight::judge;
 use lamplight::permute::{Program, Quoted, Settings, key};
 use lamplight::source::SourceSet;
 use lamplight::validate::on_large_stack;
+use lamplight::validators;
 use lamplight::{project, resolve};
 use libtest_mimic::{Failed, Trial};
 
@@ -56,7 +56,7 @@ const OF_CONTENTS: [NamedTrial; 4] = [
     ("library::hashes", hashes),
     ("library::difference_is_shown", difference_is_shown),
     ("library::values_have_effect", values_have_effect),
-    ("library::judges", judges),
+    ("library::validators", validators_accept),
 ];
 
 pub fn tests() -> Vec<Trial> {
@@ -223,8 +223,8 @@ fn differs_by(entry: &EntryContents, axis: &str, value: &str) -> bool {
     })
 }
 
-/// If the output of one key changes, the message has the key and the difference. An equal bundle has
-/// no differences.
+/// If the output of one key changes, the message has the key and the difference. An equal bundle
+/// has no differences.
 fn difference_is_shown() -> Result<(), Failed> {
     let old = contents()?;
     let mut new = Contents::clone(&old);
@@ -254,33 +254,33 @@ fn difference_is_shown() -> Result<(), Failed> {
     }
 }
 
-/// Every seventh output of each target is judged here, and each one with a new line. `cargo xtask
-/// gen --validate all` takes all.
-const JUDGED: usize = 7;
-/// The fewest outputs of a target that must be judged.
-const LEAST_JUDGED: usize = 100;
+/// Every seventh output of each target is validated here, and each one with a new line. `cargo
+/// xtask gen --validate all` takes all.
+const VALIDATED: usize = 7;
+/// The fewest outputs of a target that must be validated.
+const LEAST_VALIDATED: usize = 100;
 
-/// The judge of each target accepts a part of its outputs, in which every line of all outputs occurs,
-/// but for the numbers of generated names. Tint is not asked here, since its package comes from npm;
-/// `cargo xtask gen` asks it.
-fn judges() -> Result<(), Failed> {
+/// The validator of each target accepts a part of its outputs, in which every line of all outputs
+/// occurs, but for the numbers of generated names. Tint is not asked here, since its package comes
+/// from npm; `cargo xtask gen` asks it.
+fn validators_accept() -> Result<(), Failed> {
     let (folder, contents) = (tempfile::tempdir()?, contents()?);
-    let mut some: Vec<judge::Output> = Vec::new();
+    let mut some: Vec<validators::Output> = Vec::new();
     for target in Target::ALL {
         let before = some.len();
-        for (hash, unit, artifact) in judged_outputs(&contents, *target)? {
+        for (hash, unit, artifact) in chosen_outputs(&contents, *target)? {
             let file = folder.path().join(format!("{}.{}", some.len(), artifact.extension));
             std::fs::write(&file, &artifact.bytes)?;
             let (stage, entry) = (unit.reflection.stage, artifact.native.entry_name.clone());
-            some.push(judge::Output { target: *target, stage, entry, file, unit: hash });
+            some.push(validators::Output { target: *target, stage, entry, file, unit: hash });
         }
         let found = some.len() - before;
-        if found < LEAST_JUDGED {
-            let expected = format!("expected {LEAST_JUDGED}");
-            return Err(format!("{target}: {found} outputs to judge, {expected}").into());
+        if found < LEAST_VALIDATED {
+            let expected = format!("expected {LEAST_VALIDATED}");
+            return Err(format!("{target}: {found} outputs to validate, {expected}").into());
         }
     }
-    let refusals = judge::judge(&some, None, &|_, _| ())?;
+    let refusals = validators::validate_outputs(&some, None, &|_, _| ())?;
     if refusals.is_empty() {
         return Ok(());
     }
@@ -290,12 +290,12 @@ fn judges() -> Result<(), Failed> {
 
 /// Every seventh output of a target, and those with a line that no output before them has. SPIR-V
 /// has no lines, so the lines of GLSL 4.50 choose its outputs.
-fn judged_outputs(
+fn chosen_outputs(
     contents: &Contents,
     target: Target,
 ) -> Result<Vec<(Hash, &Unit, &Artifact)>, Failed> {
     let with_lines = if target == Target::SPIRV { Target::GLSL450 } else { target };
-    let (mut seen, mut found) = (judge::SeenText::default(), Vec::new());
+    let (mut seen, mut found) = (validators::SeenText::default(), Vec::new());
     let languages = contents.programs.values().flat_map(|program| program.languages.values());
     let units = languages.flat_map(|entries| entries.values()).flat_map(|one| &one.units);
     for (index, (hash, unit)) in units.enumerate() {
@@ -304,7 +304,7 @@ fn judged_outputs(
             return Err(format!("a unit has no output for {target}").into());
         };
         let is_new = seen.add(std::str::from_utf8(&text.bytes)?).line;
-        if is_new || index.is_multiple_of(JUDGED) {
+        if is_new || index.is_multiple_of(VALIDATED) {
             found.push((*hash, unit, output));
         }
     }

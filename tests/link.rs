@@ -1,6 +1,6 @@
 //! The linker, which translates each function once. A text has the same bytes whether its functions
-//! were translated for it or taken from other texts. A text that cannot be divided into functions is
-//! compiled as a whole, with a reason.
+//! were translated for it or taken from other texts. A text that cannot be divided into functions
+//! is compiled as a whole, with a reason.
 
 mod alone;
 mod glsl;
@@ -14,12 +14,12 @@ use std::path::Path;
 use lamplight::bundle::{Hash, Language, Unit, write_directory};
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::generate::{Generated, Request, in_memory};
-use lamplight::judge;
 use lamplight::link::Reason;
 use lamplight::permute::{Manifest, Quoted};
 use lamplight::project;
 use lamplight::resolve::Packages;
 use lamplight::source::SourceSet;
+use lamplight::validators;
 use libtest_mimic::{Failed, Trial};
 
 use crate::link_compare as compare;
@@ -170,7 +170,8 @@ fn package(
     Ok((sources, packages, manifest))
 }
 
-/// Texts with much that naga's writers number, rename or add have the same bytes alone and together.
+/// Texts with much that naga's writers number, rename or add have the same bytes alone and
+/// together.
 fn traps() -> Outcome {
     alone_and_together("traps", TRAPS_MANIFEST, TRAPS)?;
     alone_and_together("rows", ROWS_MANIFEST, ROWS)
@@ -189,16 +190,16 @@ fn alone_and_together(name: &str, manifest: &str, text: &str) -> Outcome {
     let contents = std::mem::take(&mut together.contents);
     let out = folder.path().join("out");
     write_directory(&contents, &out)?;
-    judge_all(&out)
+    validate_all(&out)
 }
 
-/// The judges accept every output of a bundle.
-fn judge_all(out: &Path) -> Outcome {
-    let outputs = judge::outputs(lamplight::bundle::blob_files(out)?)?;
-    match judge::judge(&outputs, None, &|_, _| ())?.first() {
+/// The validators accept every output of a bundle.
+fn validate_all(out: &Path) -> Outcome {
+    let outputs = validators::outputs(lamplight::bundle::blob_files(out)?)?;
+    match validators::validate_outputs(&outputs, None, &|_, _| ())?.first() {
         None if !outputs.is_empty() => Ok(()),
         Some(refusal) => Err(format!("an output is refused: {refusal:?}").into()),
-        None => Err(format!("{} has no outputs to judge", out.display()).into()),
+        None => Err(format!("{} has no outputs to validate", out.display()).into()),
     }
 }
 

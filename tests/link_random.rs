@@ -1,18 +1,18 @@
 //! Random programs. Their outputs depend on the sources, the settings and the target only, every
-//! judge accepts them, and they compute what the evaluator computes.
+//! validator accepts them, and they compute what the evaluator computes.
 //!
-//! `seed -> program -> outputs, made in several ways and compared -> judges -> executors`
+//! `seed -> program -> outputs, made in several ways and compared -> validators -> executors`
 //!
 //! `cargo xtask fuzz link` runs the test `link::random` with another seed and more programs.
 
 mod body;
 mod draft;
-mod judge;
 mod names;
 mod numbers;
 mod outside;
 mod program;
 mod run;
+mod same;
 mod shrink;
 mod stages;
 mod statements;
@@ -25,22 +25,22 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::random::Random;
-use judge::{Finding, Output, Verdict};
 use lamplight::bundle::Target;
 use lamplight::execute::on_thread;
 use libtest_mimic::{Failed, Trial};
 use program::Program;
 use run::{Ran, Runnable, Runner};
+use same::{Finding, Output, Verdict};
 
 /// How many programs the tests make.
 const PROGRAMS: u64 = 200;
 /// The seed of the first program.
 const SEED: u64 = 1;
-/// The external judges are given every 20th program.
-const JUDGED: u64 = 20;
+/// The external validators are given every 20th program.
+const VALIDATED: u64 = 20;
 /// The outputs of every second program are run.
 const RUN: u64 = 2;
-/// The number of programs whose outputs are judged together.
+/// The number of programs whose outputs are validated together.
 const BATCH: u64 = 64;
 /// How many percent of the programs the crate may refuse. The generator does not know every rule.
 const REFUSED: usize = 10;
@@ -72,7 +72,7 @@ fn random_programs() -> Result<(), Failed> {
         let program = program(seed);
         println!("{}\n{}", program.manifest, program.text);
     }
-    let every = number("LAMPLIGHT_LINK_JUDGED", JUDGED)?.max(1);
+    let every = number("LAMPLIGHT_LINK_VALIDATED", VALIDATED)?.max(1);
     let often = number("LAMPLIGHT_LINK_RUN", RUN)?;
     let mut tally = Tally::default();
     let runner = if often > 0 { Some(Runner::open()?) } else { None };
@@ -112,9 +112,9 @@ fn random_programs() -> Result<(), Failed> {
     }
 }
 
-/// How many of the programs are judged and run.
+/// How many of the programs are validated and run.
 struct How {
-    /// The external judges are given every `every`-th program.
+    /// The external validators are given every `every`-th program.
     every: u64,
     /// They are given at most this many outputs of a program in each target.
     most: usize,
@@ -128,7 +128,7 @@ struct How {
 struct Tally {
     programs: usize,
     outputs: usize,
-    judged: usize,
+    validated: usize,
     /// How many programs were refused, for each first error.
     refused: BTreeMap<String, usize>,
     /// How many entry points have texts that were compiled as a whole, for each reason and target,
@@ -138,8 +138,8 @@ struct Tally {
     ran: BTreeMap<&'static str, Ran>,
     /// How many vertex stages were not run because their positions are random.
     elsewhere: usize,
-    /// How many programs were not run because naga refuses a function that nothing calls. The outputs
-    /// lack this function, but the evaluator reads the whole text.
+    /// How many programs were not run because naga refuses a function that nothing calls. The
+    /// outputs lack this function, but the evaluator reads the whole text.
     refused_whole: usize,
     /// The findings, by kind.
     findings: BTreeMap<String, Found>,
@@ -177,8 +177,8 @@ impl Tally {
 
 impl std::fmt::Display for Tally {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { programs, outputs, judged, .. } = self;
-        write!(f, "{programs} programs, {outputs} outputs, {judged} judged by others")?;
+        let Self { programs, outputs, validated, .. } = self;
+        write!(f, "{programs} programs, {outputs} outputs, {validated} validated by others")?;
         let refused: usize = self.refused.values().sum();
         write!(f, "; {refused} refused; as a whole: {:?}", self.whole)?;
         self.ran.iter().try_for_each(|(name, ran)| write!(f, "\n  {name}: {ran}"))?;
@@ -202,7 +202,7 @@ fn batch(seeds: std::ops::Range<u64>, how: &How, tally: &mut Tally) -> Result<()
     let mut runnables: Vec<Runnable> = Vec::new();
     for seed in seeds {
         tally.programs += 1;
-        match judged(seed) {
+        match verdict_on(seed) {
             Err(finding) => tally.find(seed, finding),
             Ok(Verdict::Refused(words)) => {
                 if std::env::var_os("LAMPLIGHT_LINK_REFUSED").is_some() {
@@ -233,7 +233,7 @@ fn batch(seeds: std::ops::Range<u64>, how: &How, tally: &mut Tally) -> Result<()
             }
         }
     }
-    tally.judged += outputs.len();
+    tally.validated += outputs.len();
     let views: Vec<&Output> = outputs.iter().collect();
     for (index, words) in outside::refused(&views)? {
         tally.find(owners[index], refusal(&outputs[index], &words));
@@ -279,12 +279,12 @@ fn first_words(words: &str) -> String {
 }
 
 /// The verdict on the program of a seed. A panic is a finding too.
-fn judged(seed: u64) -> Result<Verdict, Finding> {
+fn verdict_on(seed: u64) -> Result<Verdict, Finding> {
     guarded(&program(seed), seed)
 }
 
-/// The program of a seed. The environment may name a file with another text for it, such as one that
-/// somebody made smaller.
+/// The program of a seed. The environment may name a file with another text for it, such as one
+/// that somebody made smaller.
 fn program(seed: u64) -> Program {
     let program = Program::new(seed);
     let Some(file) = std::env::var_os("LAMPLIGHT_LINK_TEXT") else { return program };
@@ -295,12 +295,13 @@ fn program(seed: u64) -> Program {
 }
 
 fn guarded(program: &Program, seed: u64) -> Result<Verdict, Finding> {
-    let judged = || judge::judge(program, &mut Random(seed ^ 0x5eed));
-    catch_unwind(AssertUnwindSafe(judged))
+    let compared = || same::compare_outputs(program, &mut Random(seed ^ 0x5eed));
+    catch_unwind(AssertUnwindSafe(compared))
         .unwrap_or_else(|_| Err(Finding::new("panic", program.text.clone())))
 }
 
-/// Writes the first program of a kind of finding to a file. It is made smaller if that is asked for.
+/// Writes the first program of a kind of finding to a file. It is made smaller if that is asked
+/// for.
 fn tell(kind: &str, found: &Found, runner: Option<&Runner>) -> Result<(), Failed> {
     let folder = findings();
     std::fs::create_dir_all(&folder)?;

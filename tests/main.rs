@@ -33,7 +33,6 @@ mod glslang;
 mod guide;
 mod harness;
 mod hostile;
-mod judges;
 mod keys;
 mod library;
 mod link;
@@ -61,6 +60,7 @@ mod specialise;
 mod tables;
 mod toolchain;
 mod traps;
+mod validators;
 
 use std::process::ExitCode;
 
@@ -89,7 +89,6 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     guide::tests,
     harness::tests,
     hostile::tests,
-    judges::tests,
     keys::tests,
     library::tests,
     link::tests,
@@ -114,11 +113,12 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     specialise::tests,
     tables::tests,
     traps::tests,
+    validators::tests,
 ];
 
 fn main() -> ExitCode {
-    // This changes environment variables, so it must be done while there is one thread. If something
-    // is missing, the tests that need it say so.
+    // This changes environment variables, so it must be done while there is one thread. If
+    // something is missing, the tests that need it say so.
     lamplight::execute::executors::prepare_process(lamplight::execute::executors::ALL);
     lamplight::browser::Browser::keep_shared();
     let tests = KINDS.iter().flat_map(|kind| kind()).collect();

@@ -1,10 +1,10 @@
-//! Metal's language on the CPU, with clang and our own header for it: what the judge refuses and
-//! accepts, and whether functions and textures give the right results.
+//! Metal's language on the CPU, with clang and our own header for it: what the validator refuses
+//! and accepts, and whether functions and textures give the right results.
 //!
 //! - `metal/refused/*.metal` begin with the line and the message of their mistake.
 //! - `metal/functions/*.metal` are compared with `metal/references.rs`.
 //! - `metal/lookups/*.wgsl` are compared with the evaluator.
-//! - `metal/accepted/*.wgsl` are emitted as MSL, which the judge must accept.
+//! - `metal/accepted/*.wgsl` are emitted as MSL, which the validator must accept.
 //! - `frames` draws permutations of `forward` from the MSL of a bundle.
 
 mod accepted;
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 use lamplight::execute::compiled::CompiledProgram;
 use lamplight::execute::compiled::request::{FragmentInput, MetalResources};
-use lamplight::metal::{Clang, ClangMissing, MslRefusal, judge_batch};
+use lamplight::metal::{Clang, ClangMissing, MslRefusal, validate_batch};
 use libtest_mimic::{Failed, Trial};
 use rayon::prelude::*;
 use references::{REFERENCES, Reference};
@@ -50,20 +50,20 @@ fn told(wrong: &[String]) -> Outcome {
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n").into()) }
 }
 
-/// What the judge refuses. Each refusal has the index of its text.
-fn judge_texts(texts: &[String]) -> Result<Vec<MslRefusal>, String> {
+/// What the validator refuses. Each refusal has the index of its text.
+fn refusals_of(texts: &[String]) -> Result<Vec<MslRefusal>, String> {
     let reason = |missing: ClangMissing| missing.reason;
     let clang = Clang::open().map_err(reason)?;
     let views: Vec<(usize, &str)> = texts.iter().map(String::as_str).enumerate().collect();
-    let judged = views.par_chunks(64).map(|batch| judge_batch(&clang, batch));
-    Ok(judged.collect::<Result<Vec<_>, _>>().map_err(reason)?.concat())
+    let refused = views.par_chunks(64).map(|batch| validate_batch(&clang, batch));
+    Ok(refused.collect::<Result<Vec<_>, _>>().map_err(reason)?.concat())
 }
 
-/// The judge refuses every text with a mistake, at its line and with its message.
+/// The validator refuses every text with a mistake, at its line and with its message.
 fn mistakes() -> Outcome {
     let files = files("refused");
     let texts: Vec<String> = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
-    let refusals = judge_texts(&texts)?;
+    let refusals = refusals_of(&texts)?;
     let mut wrong = Vec::new();
     for (index, text) in texts.iter().enumerate() {
         let expected = text.lines().next().unwrap().strip_prefix("// mistake in line ").unwrap();

@@ -9,7 +9,7 @@ use std::process::Command;
 
 use lamplight::bundle::{Bundle, Found, Stage, Target, blob_files};
 use lamplight::execute::executors;
-use lamplight::judge;
+use lamplight::validators;
 use libtest_mimic::{Failed, Trial};
 
 type Outcome = Result<(), Failed>;
@@ -66,14 +66,14 @@ fn shaders() -> Outcome {
     })
 }
 
-/// The validators of all targets accept what `gen` writes. Tint is not asked: its package comes from
-/// npm.
+/// The validators of all targets accept what `gen` writes. Tint is not asked: its package comes
+/// from npm.
 fn validated(folder: &Path) -> Outcome {
     let out = tempfile::tempdir()?;
     let bundle = out.path().join("bundle");
     lamplight(&["gen", "--no-cache", "-o", &bundle.to_string_lossy()], folder)?;
-    let outputs = judge::outputs(blob_files(&bundle)?)?;
-    match judge::judge(&outputs, None, &|_, _| ())?.first() {
+    let outputs = validators::outputs(blob_files(&bundle)?)?;
+    match validators::validate_outputs(&outputs, None, &|_, _| ())?.first() {
         None => Ok(()),
         Some(refusal) => Err(format!("{refusal:?}").into()),
     }
@@ -145,8 +145,8 @@ fn same_reflection(text: &str, found: &Found) -> Result<(), String> {
     }
 }
 
-/// What the outputs of `sizes.wesl` say about the size of a workgroup and the lengths of arrays: 8 is
-/// twice the default of `count`, and 4 the larger of `count` and 2.
+/// What the outputs of `sizes.wesl` say about the size of a workgroup and the lengths of arrays: 8
+/// is twice the default of `count`, and 4 the larger of `count` and 2.
 fn sizes() -> Outcome {
     let bundle = generated(&folder("shaders"), &["--program", "sizes"])?;
     let shader = bundle.program("sizes")?.shader("cs_main")?;

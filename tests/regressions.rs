@@ -98,8 +98,8 @@ fn mutants(kind: &Kind) -> Result<(), Failed> {
     let words: Vec<&str> = kind.words.split_whitespace().collect();
     for index in 0..count {
         let input = mutate::mutated(&mut random, &corpus, &words);
-        let judged = catch_unwind(|| judge(kind, &input));
-        let failed = judged.unwrap_or_else(|_| Err("it panicked".into()));
+        let outcome = catch_unwind(|| answer(kind, &input));
+        let failed = outcome.unwrap_or_else(|_| Err("it panicked".into()));
         failed.map_err(|failed| {
             let path =
                 Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}.{index}", kind.name));
@@ -129,12 +129,12 @@ fn test(kind: &'static Kind, file: PathBuf) -> Trial {
 }
 
 fn replay(kind: &Kind, file: &Path) -> Result<(), Failed> {
-    judge(kind, &std::fs::read(file)?)
+    answer(kind, &std::fs::read(file)?)
 }
 
 /// Fails unless an input gives the same answer twice, and soon. The shorter of the two times counts,
 /// since other tests can take the machine for seconds.
-fn judge(kind: &Kind, input: &[u8]) -> Result<(), Failed> {
+fn answer(kind: &Kind, input: &[u8]) -> Result<(), Failed> {
     let (answer, first) = timed(kind, input);
     let (again, second) = timed(kind, input);
     let took = first.min(second);

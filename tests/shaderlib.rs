@@ -1,5 +1,5 @@
-//! Every module of the shader library is valid in both languages, has the same functions in both, and
-//! is documented.
+//! Every module of the shader library is valid in both languages, has the same functions in both,
+//! and is documented.
 
 mod compilers;
 mod documented;
@@ -85,7 +85,8 @@ fn every_module_has_its_twin() -> Result<(), Failed> {
     same("modules", &modules(), &glsl)
 }
 
-/// No two modules declare a function of the same name, since GLSL has no modules to keep them apart.
+/// No two modules declare a function of the same name, since GLSL has no modules to keep them
+/// apart.
 fn names_are_unique() -> Result<(), Failed> {
     let mut owners = BTreeMap::new();
     for module in modules() {
@@ -108,8 +109,8 @@ fn modules_go_together() -> Result<(), Failed> {
     Ok(())
 }
 
-/// With `LAMPLIGHT_PREFIX`, all modules compile in a shader that declares a function of each of their
-/// names itself.
+/// With `LAMPLIGHT_PREFIX`, all modules compile in a shader that declares a function of each of
+/// their names itself.
 fn modules_go_beside_names() -> Result<(), Failed> {
     let includes = modules().iter().map(|module| include(module)).collect::<String>();
     let all = format!("#define LAMPLIGHT_PREFIX\n{includes}{}", of_the_host()?);
@@ -160,7 +161,7 @@ fn wesl_is_valid(module: &str) -> Result<(), Failed> {
 }
 
 /// naga accepts the module in GLSL 4.50. It refuses versions other than 440, 450 and 460. For other
-/// versions, glslangValidator judges the modules and what naga writes.
+/// versions, glslangValidator reads the modules and what naga writes.
 fn glsl_is_valid(module: &str) -> Result<(), Failed> {
     parse_glsl(module).map(|_| ())
 }

@@ -1,4 +1,4 @@
-//! Lists the files of `src/judges/`, and passes on the version of naga, which is one of them.
+//! Lists the files of `src/programs/`, and passes on the version of naga, which is one of them.
 
 #![allow(clippy::print_stdout)]
 
@@ -6,5 +6,5 @@ use lamplight_build::{every_file, locked_version, modules, write_table};
 
 fn main() -> std::io::Result<()> {
     println!("cargo::rustc-env=LAMPLIGHT_NAGA={}", locked_version("naga")?);
-    write_table("judges.rs", &modules("src/judges", "JUDGE", "JudgeEntry", every_file)?)
+    write_table("programs.rs", &modules("src/programs", "VALIDATOR", "ValidatorEntry", every_file)?)
 }

@@ -7,8 +7,8 @@ use clap::Args;
 
 use super::compile::{ConventionArguments, TargetChoice, wanted_one, wanted_targets};
 use super::failure::{DiagnosticForm, Failure};
-use super::judged::{ValidatedOutputs, refuse_missing};
 use super::terminal::stdout;
+use super::validated::{ValidatedOutputs, refuse_missing};
 use super::work::{PathArguments, Work};
 use crate::generate::{Look, Request, Shard};
 use crate::permute::Quoted;

@@ -103,7 +103,7 @@ fn in_a_child(stage: &str, job: &[u8]) -> Result<(), RehearsalFailure> {
             String::from_utf8_lossy(&words).into_owned()
         });
         let status = exit_status(&mut child);
-        judge_exit(status, &words.join().unwrap_or_default())
+        failure_of(status, &words.join().unwrap_or_default())
     })
 }
 
@@ -122,7 +122,7 @@ fn exit_status(child: &mut Child) -> Option<ExitStatus> {
     None
 }
 
-fn judge_exit(status: Option<ExitStatus>, words: &str) -> Result<(), RehearsalFailure> {
+fn failure_of(status: Option<ExitStatus>, words: &str) -> Result<(), RehearsalFailure> {
     match status {
         Some(status) if status.success() => Ok(()),
         None => Err(RehearsalFailure::Time),

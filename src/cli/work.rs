@@ -8,24 +8,24 @@ use clap::Args;
 
 use super::cached::Cached;
 use super::failure::{DiagnosticForm, Failure, print_warnings};
-use super::judged::{Inputs, Validators};
 use super::overwrite::{Overwrite, Patience, write_failure};
 use super::partial;
 use super::progress::Bar;
 use super::terminal::stderr;
+use super::validated::{Inputs, Validators};
 use crate::bundle::{self, Bundle, Contents, DirectoryWriter};
 use crate::cache::Cache;
 use crate::generate::{
     Generated, Look, MemorySink, Observer, Request, RunWarnings, Sink, Summary, Tools, Trace,
     TracedRun, generate,
 };
-use crate::judge::Extent;
 use crate::output::Replace;
 use crate::permute::Manifest;
 use crate::project;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
 use crate::store;
+use crate::validators::Extent;
 
 /// Where things are.
 #[derive(Args)]

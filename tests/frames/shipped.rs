@@ -130,7 +130,7 @@ fn others_are_noticed() -> Result<(), String> {
         let found = fragments::recompute_each(&scene.fragment, resources, &watched, STEP)?;
         if found.iter().any(|found| found.is_ok() != is_right) {
             let [found, expected] = if is_right { ["wrong", "right"] } else { ["right", "wrong"] };
-            return Err(format!("[{key}] is judged {found}, expected {expected}"));
+            return Err(format!("[{key}] gives {found}, expected {expected}"));
         }
     }
     Ok(())
@@ -175,7 +175,8 @@ impl Driver {
     ) -> Result<Vec<Vec<u32>>, Diagnostic> {
         let stages = ["vertex", "fragment"].map(|stage| {
             let entry = match (of.1, stage) {
-                // Entry points of GLSL are all called `main`, so a bundle names them by their stage.
+                // Entry points of GLSL are all called `main`, so a bundle names them by their
+                // stage.
                 (Language::Glsl, _) => stage,
                 (_, "vertex") => scene.vertex.entry,
                 _ => scene.fragment.entry,
@@ -249,8 +250,8 @@ impl std::fmt::Display for Driver {
     }
 }
 
-/// Draws one permutation on every driver. The evaluator computes quads with the same inputs once for
-/// all drivers.
+/// Draws one permutation on every driver. The evaluator computes quads with the same inputs once
+/// for all drivers.
 fn permutation(
     bundle: &Bundle,
     of: (&str, Language),

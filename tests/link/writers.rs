@@ -1,14 +1,14 @@
-//! Names and functions that naga's writers change. The judges must accept the outputs, and some are
-//! searched for a certain text.
+//! Names and functions that naga's writers change. The validators must accept the outputs, and some
+//! are searched for a certain text.
 
 use lamplight::bundle::write_directory;
 use lamplight::generate::Generated;
 use libtest_mimic::Failed;
 
-use super::{Outcome, judge_all, made, package, units};
+use super::{Outcome, made, package, units, validate_all};
 
-/// Makes a program of one file in some targets, and fails if a judge refuses an output.
-fn judged(text: &str, targets: &str) -> Result<Generated, Failed> {
+/// Makes a program of one file in some targets, and fails if a validator refuses an output.
+fn accepted(text: &str, targets: &str) -> Result<Generated, Failed> {
     let folder = tempfile::tempdir()?;
     let manifest = format!("[program.one]\nwesl = \"one.wesl\"\n{targets}\n");
     let (mut sources, packages, manifest) = package(folder.path(), "one", &manifest, text)?;
@@ -16,13 +16,14 @@ fn judged(text: &str, targets: &str) -> Result<Generated, Failed> {
     let contents = std::mem::take(&mut made.contents);
     let out = folder.path().join("out");
     write_directory(&contents, &out)?;
-    judge_all(&out)?;
+    validate_all(&out)?;
     made.contents = contents;
     Ok(made)
 }
 
-/// naga changes the name of an entry point that ends with a digit, and the reflection has the name in
-/// the output. A variable and a parameter whose changed names would be equal get different names.
+/// naga changes the name of an entry point that ends with a digit, and the reflection has the name
+/// in the output. A variable and a parameter whose changed names would be equal get different
+/// names.
 pub fn entry_points() -> Outcome {
     let text = "
 @group(0) @binding(0) var<uniform> metal_2: vec4f;
@@ -30,7 +31,7 @@ fn read() -> vec4f { return metal_2; }
 @fragment fn metal_2_(@location(0) metal_2: vec2f) -> @location(0) vec4f { return read() + metal_2.xyxy; }
 @vertex fn main_1() -> @builtin(position) vec4f { return vec4f(); }
 ";
-    let made = judged(text, "")?;
+    let made = accepted(text, "")?;
     for ((_, entry, _), unit) in units(&made) {
         let wgsl = &unit.targets["wgsl"];
         let (text, name) = (String::from_utf8_lossy(&wgsl.bytes), &wgsl.native.entry_name);
@@ -50,7 +51,7 @@ fn read() -> vec4f { return metal_2; }
 }
 
 /// Names of the author's that are also names of naga's helpers, or keywords that naga's lists lack,
-/// give outputs that the judges accept.
+/// give outputs that the validators accept.
 pub fn kept_names() -> Outcome {
     let text = "
 struct Pair { sampler2D: f32, turn: mat2x2f, kind: vec3f }
@@ -77,7 +78,7 @@ fn gl_1(x: f32) -> f32 { let gl = x; return gl; }
 }
 @vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
 ";
-    judged(text, "").map(|_| ())
+    accepted(text, "").map(|_| ())
 }
 
 /// In HLSL, an array of matrices of two rows within a structure has a structure of columns as its
@@ -92,7 +93,7 @@ var<private> turns: Turns;
 }
 @vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
 ";
-    let made = judged(text, "")?;
+    let made = accepted(text, "")?;
     let whole = units(&made).into_values().filter_map(|unit| unit.targets.get("hlsl"));
     let texts: Vec<String> =
         whole.map(|artifact| String::from_utf8_lossy(&artifact.bytes).into_owned()).collect();
@@ -130,7 +131,7 @@ fn changed(given: array<mat3x2f, 4>, i: u32) -> array<mat3x2f, 4> {
 }
 @vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
 ";
-    let made = judged(text, "")?;
+    let made = accepted(text, "")?;
     let whole = units(&made).into_values().filter_map(|unit| unit.targets.get("hlsl"));
     let texts: Vec<String> =
         whole.map(|artifact| String::from_utf8_lossy(&artifact.bytes).into_owned()).collect();
@@ -154,8 +155,8 @@ fn made(at: vec2f) -> Turns { var turns: Turns; turns.all[1][0] = at; return tur
 }
 @vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
 ";
-    judged(text, r#"targets = ["spirv", "glsl450", "msl", "wgsl"]"#)?;
-    let Err(refused) = judged(text, r#"targets = ["hlsl"]"#) else {
+    accepted(text, r#"targets = ["spirv", "glsl450", "msl", "wgsl"]"#)?;
+    let Err(refused) = accepted(text, r#"targets = ["hlsl"]"#) else {
         return Err("HLSL should refuse a matrix of two rows in a function's result".into());
     };
     let words = refused.message().unwrap_or_default().to_owned();
@@ -184,7 +185,7 @@ fn pairs(x: f32) -> array<array<f32, 2>, 3> {
 ";
     // GLSL 3.30 and GLSL ES 3.00 have no arrays of arrays.
     let targets = r#"targets = ["spirv", "glsl450", "hlsl", "msl", "wgsl"]"#;
-    let made = judged(text, targets)?;
+    let made = accepted(text, targets)?;
     match made.summary.whole.first() {
         None => Ok(()),
         Some(whole) => {
@@ -193,7 +194,8 @@ fn pairs(x: f32) -> array<array<f32, 2>, 3> {
     }
 }
 
-/// Functions that GLSL 3.30 and GLSL ES 3.00 lack are refused at their line, for those targets only.
+/// Functions that GLSL 3.30 and GLSL ES 3.00 lack are refused at their line, for those targets
+/// only.
 pub fn lacking() -> Outcome {
     let text = "
 @fragment fn fs_main(@location(0) at: vec2f) -> @location(0) vec4f {
@@ -201,10 +203,10 @@ pub fn lacking() -> Outcome {
 }
 @vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
 ";
-    judged(text, r#"targets = ["spirv", "glsl450", "hlsl", "msl", "wgsl"]"#)?;
+    accepted(text, r#"targets = ["spirv", "glsl450", "hlsl", "msl", "wgsl"]"#)?;
     for target in ["glsl330", "essl300"] {
         let targets = format!("targets = [\"{target}\"]");
-        let Err(refused) = judged(text, &targets) else {
+        let Err(refused) = accepted(text, &targets) else {
             let what = "should refuse `ldexp` and `bitCount`, and compiles them";
             return Err(format!("{target} {what}").into());
         };
@@ -219,7 +221,7 @@ pub fn lacking() -> Outcome {
 }
 
 /// naga calls the block of a uniform that is no structure `type_block_0Fragment`, also where the
-/// author has a structure of that name. The judges must accept the outputs.
+/// author has a structure of that name. The validators must accept the outputs.
 pub fn blocks_beside_structures() -> Outcome {
     let text = "
 struct type_block_0Fragment { half: vec4f }
@@ -230,14 +232,14 @@ fn Zqbqz(x: vec4f) -> vec4f { return x; }
 @fragment fn fs_main() -> @location(0) vec4f { return Zqbqz(own.half) + plain; }
 @vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
 ";
-    match judged(text, "")?.summary.whole.is_empty() {
+    match accepted(text, "")?.summary.whole.is_empty() {
         true => Err("the text should be compiled as a whole".into()),
         false => Ok(()),
     }
 }
 
-/// Within a structure, C++ takes the name of a member for the member, so that a structure of that name
-/// cannot be the type of another member.
+/// Within a structure, C++ takes the name of a member for the member, so that a structure of that
+/// name cannot be the type of another member.
 pub fn types_like_members() -> Outcome {
     let text = "
 struct size { width: vec4f, height: f32 }
@@ -251,7 +253,7 @@ fn Zqbqz(x: vec4f) -> vec4f { return x; }
 }
 @vertex fn vs_main() -> @builtin(position) vec4f { return vec4f(); }
 ";
-    match judged(text, "")?.summary.whole.is_empty() {
+    match accepted(text, "")?.summary.whole.is_empty() {
         true => Err("the text should be compiled as a whole".into()),
         false => Ok(()),
     }
@@ -268,5 +270,5 @@ fn shaded(number: u32) -> color { return color(vec4f(), f32(number)); }
 }
 @fragment fn fs_main() -> @location(0) vec4f { return vec4f(); }
 ";
-    judged(text, "").map(|_| ())
+    accepted(text, "").map(|_| ())
 }

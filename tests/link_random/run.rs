@@ -28,7 +28,7 @@ use lamplight::execute::{Session, ShippedPair};
 use lamplight::picture::frame::{pack_buffer, probe};
 use lamplight::validate::{Validated, validate};
 
-use super::judge::Finding;
+use super::same::Finding;
 use crate::frames::fixture;
 use crate::random::Random;
 
@@ -54,8 +54,8 @@ impl Runnable {
         self.unit.reflection.stage == Stage::Fragment
     }
 
-    /// Whether naga accepts all of its text, with functions that the entry point does not need. WGSL
-    /// was validated with all of them before.
+    /// Whether naga accepts all of its text, with functions that the entry point does not need.
+    /// WGSL was validated with all of them before.
     pub fn is_valid_as_a_whole(&self) -> bool {
         self.composed.language == Language::Wesl || validate(&lean(&self.composed)).is_ok()
     }
@@ -69,7 +69,8 @@ pub struct Ran {
     /// How many numbers are neither right nor wrong: the evaluator has no bound for them, or a
     /// comparison in the stage was within the error of either result.
     pub open: usize,
-    /// How many stages the driver drew differently until the ids of the same module were renumbered.
+    /// How many stages the driver drew differently until the ids of the same module were
+    /// renumbered.
     pub by_numbers: usize,
     /// How many stages were not run, for each reason.
     pub lacks: BTreeMap<String, usize>,
@@ -145,7 +146,7 @@ struct Drawn {
 type Targets = Vec<Vec<u32>>;
 
 /// Fails if a frame differs from what the evaluator computes.
-type Judge<'p> = dyn FnMut(&Drawn, &mut Ran) -> Result<(), String> + 'p;
+type FrameCheck<'p> = dyn FnMut(&Drawn, &mut Ran) -> Result<(), String> + 'p;
 
 impl Runner {
     /// Opens every driver and browser that runs a target.
@@ -317,15 +318,15 @@ impl<'r> Ready<'r> {
         ran: &mut BTreeMap<&'static str, Ran>,
     ) -> Vec<(Target, Finding)> {
         let made = match self.runnable.is_fragment() {
-            true => Evaluator::new(self).map(|mut made| -> Box<Judge<'_>> {
+            true => Evaluator::new(self).map(|mut made| -> Box<FrameCheck<'_>> {
                 Box::new(move |frame, tally| made.frame(frame, tally))
             }),
-            false => vertex::Corners::new(self).map(|made| -> Box<Judge<'_>> {
+            false => vertex::Corners::new(self).map(|made| -> Box<FrameCheck<'_>> {
                 Box::new(move |frame, tally| made.frame(frame, tally))
             }),
         };
-        let mut judge = match made {
-            Ok(judge) => judge,
+        let mut check = match made {
+            Ok(check) => check,
             Err(error) => {
                 let finding = Finding::new(format!("evaluator: {error}"), error);
                 // The finding is one of the evaluator, not of a target. WGSL is never excused by
@@ -337,7 +338,7 @@ impl<'r> Ready<'r> {
         let mut findings = Vec::new();
         for frame in frames {
             let tally = ran.entry(frame.name).or_default();
-            if let Err(error) = judge(frame, tally) {
+            if let Err(error) = check(frame, tally) {
                 let kind = format!("{} computes something else on {}", frame.target, frame.name);
                 findings.push((frame.target, self.finding(kind, frame.target, &error)));
             }

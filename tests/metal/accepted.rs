@@ -1,5 +1,5 @@
-//! Emitted MSL that the judge must accept: stages of every kind, and the shaders of `tests/emit`.
-//! Each is emitted as a whole and as it ships, which is linked from functions.
+//! Emitted MSL that the validator must accept: stages of every kind, and the shaders of
+//! `tests/emit`. Each is emitted as a whole and as it ships, which is linked from functions.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use lamplight::link::Linker;
 use lamplight::validate::{Validated, validate};
 use lamplight::{emit, link};
 
-use super::{Outcome, files, judge_texts, told};
+use super::{Outcome, files, refusals_of, told};
 
 pub fn outputs() -> Outcome {
     let mut paths = files("accepted");
@@ -36,7 +36,7 @@ pub fn outputs() -> Outcome {
             names.push(format!("{name}, as it ships"));
         }
     }
-    let refusals = judge_texts(&texts)?;
+    let refusals = refusals_of(&texts)?;
     let wrong: Vec<String> = refusals
         .iter()
         .map(|refusal| {

@@ -1,5 +1,5 @@
-//! Draws permutations of programs on the CPU from the MSL that a bundle holds, and computes a sample
-//! of the fragments again with the evaluator, from the composed text.
+//! Draws permutations of programs on the CPU from the MSL that a bundle holds, and computes a
+//! sample of the fragments again with the evaluator, from the composed text.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,8 @@ use crate::frames::{PROGRAMS, Scene, Sources, bundle, most_open, most_points, po
 /// The number of permutations of `forward` in each language. All pairs of values are among them, as
 /// they are of the other programs.
 const LEAST_POINTS: usize = 200;
-/// How many permutations of each program and language the tests draw. `cargo xtask frames` draws all.
+/// How many permutations of each program and language the tests draw. `cargo xtask frames` draws
+/// all.
 const DRAWN_POINTS: usize = 64;
 /// The size of a frame in pixels.
 const SIZE: [u32; 2] = [128, 64];
@@ -123,7 +124,7 @@ fn agrees(
     let watched = Watched { size: SIZE, targets: &targets };
     let mut tally = Tally::default();
     fragments::recompute(fragment, resources, &watched, STEP, &mut tally)?;
-    tally.judged(LEAST, most)
+    tally.checked(LEAST, most)
 }
 
 fn stage(composed: &ReadyStage) -> EntryPoint<'_> {

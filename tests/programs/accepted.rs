@@ -81,8 +81,8 @@ pub fn validators(
 /// The name of the GLSL sources among the rules.
 const SOURCES: &str = "sources";
 
-/// Writes the outputs of a text, has spirv-val judge the SPIR-V, and returns the files of GLSL, each
-/// with a name for the rules by which it is judged.
+/// Writes the outputs of a text, has spirv-val validate the SPIR-V, and returns the files of GLSL,
+/// each with a name for the rules by which it is validated.
 fn write_outputs(
     composed: &Composed,
     entry: &str,
@@ -105,9 +105,10 @@ fn write_outputs(
     for entry in targets::ALL.iter().filter(|entry| entry.glsl.is_some()) {
         let path = write(entry.target, extension)?;
         files.push((entry.target.to_string(), path.clone()));
-        // Engines use the text for ES 3.00 with later versions of ES too, so it must be valid there.
+        // Engines use the text for ES 3.00 with later versions of ES too, so it must be valid
+        // there.
         let is_version = |rule: &&&str| rule.starts_with(|first: char| first.is_ascii_digit());
-        for version in entry.judged.rules.iter().filter(is_version) {
+        for version in entry.validation.rules.iter().filter(is_version) {
             let text = std::fs::read_to_string(&path).map_err(|error| error.to_string())?;
             let (_, rest) = text.split_once('\n').ok_or("the text has one line")?;
             let text = format!("#version {version}\n{rest}");

@@ -18,9 +18,9 @@ pub const FORMS: &[(&str, Form)] = &[
 /// The width and the height of a frame, in pixels.
 const SIZE: u32 = 128;
 
-/// With cascades, each part of the viewer's depth has a map of its own, and the nearest is finer than
-/// one map of the whole scene. In each part, every fragment is lit or dark as its ray says. Together
-/// the parts give the picture.
+/// With cascades, each part of the viewer's depth has a map of its own, and the nearest is finer
+/// than one map of the whole scene. In each part, every fragment is lit or dark as its ray says.
+/// Together the parts give the picture.
 fn cascades(bench: &Bench<'_>) -> Result<(), String> {
     let (casters, towards) = (casters()?, TOWARDS.normalize());
     let axis = (-towards).to_array();
@@ -34,7 +34,7 @@ fn cascades(bench: &Bench<'_>) -> Result<(), String> {
         let margin = 3.0 * texel(slice)?;
         let seen = bench.fragments_of(slice, SIZE)?;
         fragments += seen.len();
-        judge_slice(&casters, &seen, towards, |_| margin)?;
+        check_slice(&casters, &seen, towards, |_| margin)?;
     }
     let (fine, coarse, whole) =
         (texel(&nearest)?, texel(&single)?, bench.fragments_of(&single, SIZE)?.len());
@@ -53,7 +53,7 @@ fn texel(prepared: &PreparedPass) -> Result<f64, &'static str> {
 }
 
 /// Fails unless fragments that face the light are lit exactly if the ray to the light is clear.
-fn judge_slice(
+fn check_slice(
     casters: &Casters,
     seen: &[Fragment],
     towards: DVec3,
@@ -100,7 +100,8 @@ fn compare_pictures(
 }
 
 /// With a map in four parts, every fragment is lit or dark as its ray says, also where a part fades
-/// into the next one. Nearby the map is finer than one of the whole scene, and several parts are seen.
+/// into the next one. Nearby the map is finer than one of the whole scene, and several parts are
+/// seen.
 fn parts_of_a_map(bench: &Bench<'_>) -> Result<(), String> {
     let (casters, towards) = (casters()?, TOWARDS.normalize());
     let axis = (-towards).to_array();
@@ -118,7 +119,7 @@ fn parts_of_a_map(bench: &Bench<'_>) -> Result<(), String> {
         splits.iter().take(3).filter(|split| depth >= **split).count()
     };
     let seen = bench.fragments_of(&parted, SIZE)?;
-    judge_slice(&casters, &seen, towards, |fragment| 3.0 * texels[(part(fragment) + 1).min(3)])?;
+    check_slice(&casters, &seen, towards, |fragment| 3.0 * texels[(part(fragment) + 1).min(3)])?;
     let counts = [0, 1, 2, 3].map(|index| seen.iter().filter(|one| part(one) == index).count());
     let coarse = texel(&single)?;
     let parts_seen = counts.iter().filter(|count| **count > 500).count();

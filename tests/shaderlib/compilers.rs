@@ -1,6 +1,6 @@
-//! Compilers of GLSL judge the modules: glslc compiles to SPIR-V, and glslangValidator reads the
-//! texts that no SPIR-V is made from. One run judges the texts of all modules, since most of a run
-//! with one text is its start.
+//! Compilers of GLSL read the modules: glslc compiles to SPIR-V, and glslangValidator reads the
+//! texts that no SPIR-V is made from. One run compiles the texts of all modules, since most of a
+//! run with one text is its start.
 
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -67,7 +67,7 @@ pub fn in_dialect(module: &str, index: usize) -> Result<(), Failed> {
     let dialect = &DIALECTS[index];
     let verdicts = VERDICTS[index].get_or_init(|| {
         let text = |module: &str| Ok([fragment(&include(module), dialect)?]);
-        judge(&text, [dialect.compiler])
+        verdicts_of(&text, [dialect.compiler])
     });
     look_up(verdicts, module)
 }
@@ -83,7 +83,7 @@ pub fn with_include_path(module: &str) -> Result<(), Failed> {
              {output}void main() {{\n    colour = vec4(1.0);\n}}\n"
         )])
     };
-    look_up(VERDICTS.get_or_init(|| judge(&text, [Compiler::Glslc(Some(PATH))])), module)
+    look_up(VERDICTS.get_or_init(|| verdicts_of(&text, [Compiler::Glslc(Some(PATH))])), module)
 }
 
 /// What naga writes for the module compiles, for every kind of target with such a compiler.
@@ -91,7 +91,7 @@ pub fn in_every_target(module: &str) -> Result<(), Failed> {
     static VERDICTS: OnceLock<Verdicts> = OnceLock::new();
     let texts = |module: &str| emits::emits(&called_wesl(module)?);
     let verdicts =
-        VERDICTS.get_or_init(|| judge(&texts, [Compiler::GlslangValidator; VERSIONS.len()]));
+        VERDICTS.get_or_init(|| verdicts_of(&texts, [Compiler::GlslangValidator; VERSIONS.len()]));
     look_up(verdicts, module)
 }
 
@@ -111,12 +111,12 @@ pub fn see_mistakes() -> Result<(), Failed> {
 }
 
 fn look_up(verdicts: &Verdicts, module: &str) -> Result<(), Failed> {
-    let verdict = verdicts.get(module).ok_or_else(|| format!("`{module}` was not judged"))?;
+    let verdict = verdicts.get(module).ok_or_else(|| format!("`{module}` was not compiled"))?;
     Ok(verdict.clone()?)
 }
 
-/// Judges the texts of all modules. The compiler at an index judges the text at this index.
-fn judge<const N: usize>(
+/// Compiles the texts of all modules. The compiler at an index reads the text at this index.
+fn verdicts_of<const N: usize>(
     texts: &(dyn Fn(&str) -> Result<[String; N], Failed> + Sync),
     compilers: [Compiler; N],
 ) -> Verdicts {
@@ -143,7 +143,7 @@ fn judge<const N: usize>(
 
 /// The modules whose texts are refused, with the compiler's words and the text.
 fn refused_texts<'m>(compiler: Compiler, texts: Vec<(&'m str, &str)>) -> Vec<(&'m str, String)> {
-    let judged = || -> std::io::Result<Vec<(usize, String)>> {
+    let compiled = || -> std::io::Result<Vec<(usize, String)>> {
         let folder = tempfile::tempdir()?;
         let mut files = Vec::new();
         for (index, (_, text)) in texts.iter().enumerate() {
@@ -156,7 +156,7 @@ fn refused_texts<'m>(compiler: Compiler, texts: Vec<(&'m str, &str)>) -> Vec<(&'
             Compiler::GlslangValidator => refused_by_version(folder.path(), "frag", &files),
         })
     };
-    match judged() {
+    match compiled() {
         Ok(refused) => refused
             .into_iter()
             .map(|(index, words)| (texts[index].0, format!("{words}\n{}", texts[index].1)))

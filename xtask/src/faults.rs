@@ -186,11 +186,11 @@ impl FaultPackage {
         if !is_killed && !was_injected(&trace) {
             return Ok(Injected::No);
         }
-        Ok(self.judged(&output).map_or(Injected::Whole, Injected::Wrong))
+        Ok(self.problem_after(&output).map_or(Injected::Whole, Injected::Wrong))
     }
 
     /// What is wrong after a run, if anything is.
-    fn judged(&self, output: &Output) -> Option<String> {
+    fn problem_after(&self, output: &Output) -> Option<String> {
         let said = String::from_utf8_lossy(&output.stderr);
         if said.contains("panicked") || said.contains("internal error") {
             return Some(format!("the run panics: {said}"));

@@ -2,7 +2,7 @@
 //! was measured to need. It is kept in a file that may only become stricter.
 //!
 //! ```toml
-//! [adapter]                            # what was measured on; another driver is not judged
+//! [adapter]                            # what was measured on; another driver is not compared
 //! vulkan = "llvmpipe, llvmpipe, Mesa 22.3.6"
 //!
 //! [share."lighting::spot::cone_hard"]  # error over stated tolerance, worst of all inputs

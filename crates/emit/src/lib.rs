@@ -1,8 +1,8 @@
 //! Writes a valid module in each output language, one file a language.
 //!
-//! Unless [`ClipConvention::Native`](lamplight_bundle::ClipConvention) is asked for, all targets keep
-//! WebGPU's conventions, so that one host-side path serves them: NDC depth is [0, 1], NDC y points
-//! up, texture and framebuffer rows start at the top.
+//! Unless [`ClipConvention::Native`](lamplight_bundle::ClipConvention) is asked for, all targets
+//! keep WebGPU's conventions, so that one host-side path serves them: NDC depth is [0, 1], NDC y
+//! points up, texture and framebuffer rows start at the top.
 //! - `spirv`: as written; the host gives a viewport of negative height, as wgpu does.
 //! - GLSL in every version: a vertex stage ends with `y = -y, z = 2z - w`, so that under
 //!   GL's own clip space (leave `glClipControl` alone) depth values, shadow lookups, derivatives
@@ -65,8 +65,8 @@ pub struct TargetEntry {
     pub header: &'static [&'static str],
     /// What the language has for overrides.
     pub overrides: Overrides,
-    /// What judges whether its outputs are well formed.
-    pub judged: JudgeRules,
+    /// What validates its outputs.
+    pub validation: ValidatorRules,
     /// The clip spaces of its vertex stages.
     pub clip: &'static clip::Spaces,
     /// Writes the entry point of a module without overrides; only [`emit`] calls it.
@@ -86,13 +86,13 @@ pub enum Overrides {
     Macros,
 }
 
-/// What judges the outputs of a target, from their bytes. Every target has a judge, and the module
-/// `judge` runs it.
+/// What validates the outputs of a target, from their bytes. Every target has a validator, and the
+/// package `validators` runs it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct JudgeRules {
-    /// The name of a file of `crates/validators/src/judges/`.
-    pub judge: &'static str,
-    /// The rules that outputs must keep. They are those of the judge, whose file explains them.
+pub struct ValidatorRules {
+    /// The name of a file of `crates/validators/src/programs/`.
+    pub validator: &'static str,
+    /// The rules that outputs must keep. They are those of the validator, whose file explains them.
     pub rules: &'static [&'static str],
 }
 

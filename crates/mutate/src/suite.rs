@@ -1,5 +1,5 @@
-//! Prepares a module and its cases to be run many times, on the evaluator in f32, and orders the rows
-//! so that those that notice most are tried first.
+//! Prepares a module and its cases to be run many times, on the evaluator in f32, and orders the
+//! rows so that those that notice most are tried first.
 
 use crate::report::Fate;
 use crate::site::{Site, apply_mutation, author_span};
@@ -7,7 +7,7 @@ use lamplight_bundle::Language;
 use lamplight_check::cases::{CaseFile, Rows};
 use lamplight_check::check::job::{BoundOracle, CaseJob, Goal};
 use lamplight_check::check::law::RowResults;
-use lamplight_check::check::{CheckOptions, job, judge, law};
+use lamplight_check::check::{CheckOptions, job, law, verdict};
 use lamplight_check::library::Library;
 use lamplight_check::tolerance;
 use lamplight_compose::SourceMap;
@@ -26,8 +26,8 @@ use std::sync::{Arc, Mutex};
 /// mutant soon that loops without end.
 pub const TRIPS: u64 = 20_000;
 
-/// How many rows are run before the results are judged for the first time. Each later batch is four
-/// times as large.
+/// How many rows are run before the results are checked for the first time. Each later batch is
+/// four times as large.
 const FIRST_BATCH: usize = 48;
 
 /// Two parts of the allowed error in f64: a share of the value, and a share of the error that the
@@ -191,7 +191,7 @@ fn row_slack(
         let found = exact_result(calls, rows.row_words(index), &kinds)?;
         let values = tolerance::formula_values(&job.terms, rows.row(index));
         let is_known =
-            !matches!(job.oracle, BoundOracle::Eval(_)) && !judge::is_indeterminate(goal);
+            !matches!(job.oracle, BoundOracle::Eval(_)) && !verdict::is_indeterminate(goal);
         slack.extend((0..kinds.len()).map(|word| {
             let value = goal.expected.value[word];
             let stated = tolerance::allowed_error(&job.terms, &values, word, value);
@@ -283,8 +283,9 @@ fn find_function(module: &Module, name: &str) -> Option<Handle<Function>> {
 }
 
 impl ReadyCase<'_> {
-    /// An interpreter for the kernel's module, or for a changed copy of it. All rows run twice, in f64 and in
-    /// f32, and once more for each law with rows of its own. Each time may take the steps of a case.
+    /// An interpreter for the kernel's module, or for a changed copy of it. All rows run twice, in
+    /// f64 and in f32, and once more for each law with rows of its own. Each time may take the
+    /// steps of a case.
     fn interpreter(&self, module: &Module) -> Result<Interpreter, Diagnostic> {
         let with_rows = self.job.laws.iter().filter(|law| law.rows.is_some()).count();
         let times = 2 + with_rows as u64;
@@ -315,7 +316,7 @@ impl ReadyCase<'_> {
         Ok(false)
     }
 
-    /// Whether a row in f32, or a law, fails as `lamplight check` judges them.
+    /// Whether a row in f32, or a law, fails as `lamplight check` checks them.
     fn fails(&self, interpreter: &Interpreter) -> Result<bool, Diagnostic> {
         let mut runner = RowRunner::new(self.job.kernel(), interpreter)?;
         let words = self.job.kernel().result_words() as usize;
@@ -323,7 +324,7 @@ impl ReadyCase<'_> {
         let mut order = self.order.iter();
         for RowBatch { rows, expected, .. } in &self.batches {
             let found = runner.run(&rows.words)?;
-            if !judge::judge_rows(&self.job, rows, expected, &found).failing.is_empty() {
+            if !verdict::check_rows(&self.job, rows, expected, &found).failing.is_empty() {
                 return Ok(true);
             }
             found.chunks(words).zip(&mut order).for_each(|(found, row)| {
@@ -333,7 +334,8 @@ impl ReadyCase<'_> {
         if self.batches.is_empty() {
             results = runner.run(&self.job.rows.words)?;
         }
-        if judge::judge_rows(&self.job, &self.job.rows, &self.job.expected, &results).too_ambiguous
+        if verdict::check_rows(&self.job, &self.job.rows, &self.job.expected, &results)
+            .too_ambiguous
         {
             return Ok(true);
         }
@@ -346,7 +348,7 @@ impl ReadyCase<'_> {
                 results: &results,
                 transformed,
             };
-            if law::judge_law(&self.job, law.law, &given).broken > 0 {
+            if law::check_law(&self.job, law.law, &given).broken > 0 {
                 return Ok(true);
             }
         }

@@ -192,7 +192,7 @@ impl Panels {
         Ok(picture)
     }
 
-    /// Whether a picture shows the figure, judged by some of its pixels.
+    /// Whether a picture shows the figure, by some of its pixels.
     fn shows(&self, png: &[u8]) -> bool {
         let Ok(picture) = Picture::from_png(png) else { return false };
         let count = self.values.len() as u32;

@@ -1,4 +1,4 @@
-//! External programs that judge outputs or make them ready to run: validators, compilers, clang
+//! External programs that validate outputs or make them ready to run: validators, compilers, clang
 //! with headers of ours for Metal ([`metal`]), and Chromium ([`browser`]).
 
 #[cfg(not(target_family = "wasm"))]
@@ -40,8 +40,8 @@ impl Tool {
         format!("`{program}` is not installed\ninstall it with: apt-get install {package}")
     }
 
-    /// The version that it reports, in one line. Another version may judge differently. Each program
-    /// is asked once.
+    /// The version that it reports, in one line. Another version may accept other outputs. Each
+    /// program is asked once.
     pub fn version(self) -> String {
         static TOLD: Mutex<BTreeMap<&str, Arc<OnceLock<String>>>> = Mutex::new(BTreeMap::new());
         let told = {
@@ -119,11 +119,12 @@ pub fn printed_words(said: &Output) -> String {
     String::from_utf8_lossy(&all).trim().to_owned()
 }
 
-/// Runs a program on a batch, and returns what was found, or `None` if the program refuses the batch.
+/// Runs a program on a batch, and returns what was found, or `None` if the program refuses the
+/// batch.
 pub type RunBatch<'r, T, F, E> = dyn Fn(&[T]) -> Result<Option<Vec<F>>, E> + 'r;
 
-/// Runs a program on a batch. If it refuses the batch, it runs on each half, until those at fault are
-/// found.
+/// Runs a program on a batch. If it refuses the batch, it runs on each half, until those at fault
+/// are found.
 ///
 /// Parameter: `alone` returns what was found for a single one.
 ///

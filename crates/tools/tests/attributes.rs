@@ -9,7 +9,7 @@ type Outcome = Result<(), Failed>;
 pub fn tests() -> Vec<Trial> {
     let mut tests = vec![Trial::test("attributes::lists", lists)];
     tests.extend(TEXTS.iter().map(|(name, text, wanted)| {
-        Trial::test(format!("attributes::{name}"), || judged(text, *wanted))
+        Trial::test(format!("attributes::{name}"), || checked(text, *wanted))
     }));
     tests
 }
@@ -58,7 +58,7 @@ const TEXTS: &[(&str, &str, Option<&str>)] = &[
     ("of_an_array", "int f(int a[2]) { return a[a[0]]; }\n", None),
 ];
 
-fn judged(text: &str, wanted: Option<&str>) -> Outcome {
+fn checked(text: &str, wanted: Option<&str>) -> Outcome {
     let found = first_mistake(text);
     match found.as_deref() == wanted {
         true => Ok(()),

@@ -16,7 +16,7 @@ use lamplight_syntax::words::{begins_word, has_word, words};
 /// How many refusals are reported.
 const REPORTED: usize = 20;
 
-/// How many lines of a judge's message are shown.
+/// How many lines of a validator's message are shown.
 const LINES: usize = 6;
 
 /// What the outputs were made from.
@@ -63,7 +63,7 @@ pub fn blame(
 fn blame_one(sources: &mut SourceSet, made: &OutputOrigin<'_>, refusal: &Refusal) -> Diagnostics {
     let error = Diagnostic::error(
         codes::OUTPUT_REFUSED,
-        format!("{} refuses the output for `{}`", refusal.judge, refusal.output.target),
+        format!("{} refuses the output for `{}`", refusal.validator, refusal.output.target),
     );
     let line = refused_line(refusal);
     let words: Vec<&str> = refusal.words.lines().take(LINES).collect();

@@ -7,9 +7,9 @@ use lamplight_generate::cache::{Cache, hash_parts};
 
 use crate::Extent;
 
-pub const KIND: &str = "judged";
+pub const KIND: &str = "validated";
 
-/// If more names or lines than this are stored, all are forgotten, and their outputs are judged
+/// If more names or lines than this are stored, all are forgotten, and their outputs are validated
 /// again. Otherwise a bundle that changes often would collect them for ever.
 const MOST: usize = 200_000;
 
@@ -26,7 +26,7 @@ pub struct KnownOutputs {
 }
 
 impl KnownOutputs {
-    /// What judges of these versions accepted.
+    /// What validators of these versions accepted.
     pub fn load(cache: Option<&Cache>, target: Target, extent: Extent, versions: &str) -> Self {
         let whole = [KIND, target.name(), versions];
         let key = match extent {

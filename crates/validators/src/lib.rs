@@ -1,12 +1,12 @@
-//! Judges whether the outputs in a bundle are well formed, with the judge of each target.
+//! Validates the outputs in a bundle with the validator of each target.
 //!
 //! `files of a bundle -> outputs -> verdict -> blame (the author's places)`; the verdict skips
 //! outputs that are known to have passed before. An [`Extent`] says whether it takes all others, or
 //! only a selection that has each distinct line.
 //!
-//! Each file of `judges/` is a judge, and each target names one, so no target is without one.
-//! Programs are started for batches of outputs. If a batch is refused, its halves are judged, until
-//! the outputs at fault are found.
+//! Each file of `programs/` is a validator, and each target names one, so no target is without one.
+//! Programs are started for batches of outputs. If a batch is refused, its halves are validated,
+//! until the outputs at fault are found.
 
 mod blame;
 mod extent;
@@ -33,13 +33,13 @@ pub use tint::Tint;
 pub use verdict::{Verdict, verdict};
 
 use lamplight_bundle::{BlobFile, Error, Hash, Stage, Target};
-use lamplight_emit::{JudgeRules, targets};
+use lamplight_emit::{ValidatorRules, targets};
 use lamplight_files::output::Scratch;
 use lamplight_tools::Tool;
 use lamplight_validate::on_large_stack;
 
-/// A judge, which a target names.
-pub struct JudgeEntry {
+/// A validator, which a target names.
+pub struct ValidatorEntry {
     /// The name of its file.
     pub name: &'static str,
     /// The programs that it runs.
@@ -53,30 +53,30 @@ pub struct JudgeEntry {
     /// Whether it says something although one of its tools is missing.
     pub goes_on: bool,
     /// The work for a group of outputs.
-    plan: JudgePlan,
+    plan: ValidatorPlan,
 }
 
-/// Divides a group of outputs into works. The error is a message, if the judge cannot be run.
-type JudgePlan = for<'w> fn(&OutputGroup<'w>) -> Result<Vec<JudgeWork<'w>>, String>;
+/// Divides a group of outputs into works. The error is a message, if the validator cannot be run.
+type ValidatorPlan = for<'w> fn(&OutputGroup<'w>) -> Result<Vec<ValidatorWork<'w>>, String>;
 
-/// Outputs of one target, stage and name of the entry point, and what judges them.
+/// Outputs of one target, stage and name of the entry point, and what validates them.
 struct OutputGroup<'w> {
     outputs: &'w [&'w Output],
-    /// The rules that the target names. The judge's file explains them.
+    /// The rules that the target names. The validator's file explains them.
     rules: &'static [&'static str],
-    /// Without Tint, WGSL is judged by naga alone.
+    /// Without Tint, WGSL is validated by naga alone.
     tint: Option<&'w Tint>,
     /// Where texts are written that are not the outputs themselves.
     scratch: &'w Scratch,
 }
 
-/// One file for each judge.
-pub mod judges {
-    use super::JudgeEntry;
-    include!(concat!(env!("OUT_DIR"), "/judges.rs"));
+/// One file for each validator.
+pub mod programs {
+    use super::ValidatorEntry;
+    include!(concat!(env!("OUT_DIR"), "/programs.rs"));
 
-    /// The judge of that name.
-    pub fn find(name: &str) -> Option<&'static JudgeEntry> {
+    /// The validator of that name.
+    pub fn find(name: &str) -> Option<&'static ValidatorEntry> {
         ALL.iter().copied().find(|entry| entry.name == name)
     }
 }
@@ -97,7 +97,7 @@ pub struct Output {
 }
 
 impl Output {
-    /// A name for its content, so that an output which passed once is not judged again.
+    /// A name for its content, so that an output which passed once is not validated again.
     fn name(&self) -> String {
         self.file.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
@@ -127,20 +127,20 @@ pub fn outputs(files: impl IntoIterator<Item = BlobFile>) -> Result<Vec<Output>,
     files.into_iter().map(one).collect()
 }
 
-/// An output that its judge refuses.
+/// An output that its validator refuses.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Refusal {
     /// The output.
     pub output: Output,
-    /// The judge that refuses it.
-    pub judge: &'static str,
-    /// The first line at fault, if the judge gives a line.
+    /// The validator that refuses it.
+    pub validator: &'static str,
+    /// The first line at fault, if the validator gives a line.
     pub line: Option<u32>,
-    /// The judge's message.
+    /// The validator's message.
     pub words: String,
 }
 
-/// Something that a judge needs and the machine lacks.
+/// Something that a validator needs and the machine lacks.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct MissingTool {
     /// What it is.
@@ -155,59 +155,63 @@ impl fmt::Display for MissingTool {
     }
 }
 
-/// The judge of a target, and the rules that the target names for it.
-fn judge_of(target: Target) -> Option<(&'static JudgeEntry, JudgeRules)> {
-    let judged = targets::find(target)?.judged;
-    judges::find(judged.judge).map(|judge| (judge, judged))
+/// The validator of a target, and the rules that the target names for it.
+fn validator_of(target: Target) -> Option<(&'static ValidatorEntry, ValidatorRules)> {
+    let named = targets::find(target)?.validation;
+    programs::find(named.validator).map(|validator| (validator, named))
 }
 
-/// What the judge of a target needs and this machine lacks.
+/// What the validator of a target needs and this machine lacks.
 pub fn missing(target: Target, tint: &Tint) -> Option<MissingTool> {
-    let (judge, _) = judge_of(target)?;
-    let absent = judge.tools.iter().find(|tool| tool.path().is_none());
+    let (validator, _) = validator_of(target)?;
+    let absent = validator.tools.iter().find(|tool| tool.path().is_none());
     let absent = absent.map(|tool| MissingTool {
         what: format!("`{}`", tool.program),
         install: format!("apt-get install {}", tool.package),
     });
-    absent.or_else(|| (judge.lacks)(tint))
+    absent.or_else(|| (validator.lacks)(tint))
 }
 
-/// The versions of a target's judges. Outputs are judged again when they change.
-fn judge_versions(target: Target, tint: &Tint) -> String {
-    let Some((judge, judged)) = judge_of(target) else { return String::new() };
-    let programs: String = judge.tools.iter().map(|tool| tool.version()).collect();
-    format!("{} {:?} {programs} {}", judged.judge, judged.rules, (judge.version)(tint))
+/// The versions of a target's validators. Outputs are validated again when they change.
+fn validator_versions(target: Target, tint: &Tint) -> String {
+    let Some((validator, named)) = validator_of(target) else { return String::new() };
+    let programs: String = validator.tools.iter().map(|tool| tool.version()).collect();
+    format!("{} {:?} {programs} {}", named.validator, named.rules, (validator.version)(tint))
 }
 
-/// A piece of work for a judgement, and the number of outputs that it covers.
-struct JudgeWork<'w> {
+/// A piece of work for the validators, and the number of outputs that it covers.
+struct ValidatorWork<'w> {
     outputs: usize,
-    run: Box<dyn Fn() -> JudgeResult + Send + Sync + 'w>,
+    run: Box<dyn Fn() -> ValidatorResult + Send + Sync + 'w>,
 }
 
-/// Refusals, or why a judge could not be run.
-type JudgeResult = Result<Vec<Refusal>, String>;
+/// Refusals, or why a validator could not be run.
+type ValidatorResult = Result<Vec<Refusal>, String>;
 
-/// Called with the number of judgements that are done and the number of all.
-pub type JudgeProgress<'a> = &'a (dyn Fn(usize, usize) + Sync);
+/// Called with the number of outputs that are validated and the number of all.
+pub type ValidatorProgress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
-/// Judges every output. Without Tint, WGSL is judged by naga alone.
+/// Validates every output. Without Tint, WGSL is validated by naga alone.
 ///
 /// # Errors
-/// A message, if a judge cannot be run.
-pub fn judge(outputs: &[Output], tint: Option<&Tint>, progress: JudgeProgress<'_>) -> JudgeResult {
+/// A message, if a validator cannot be run.
+pub fn validate_outputs(
+    outputs: &[Output],
+    tint: Option<&Tint>,
+    progress: ValidatorProgress<'_>,
+) -> ValidatorResult {
     let outputs: Vec<&Output> = outputs.iter().collect();
-    on_large_stack(|| Ok(judge_timed(&outputs, tint, progress)?.0))
+    on_large_stack(|| Ok(validate_timed(&outputs, tint, progress)?.0))
 }
 
 /// Refusals, and the seconds that each target took, added over all cores.
 type TimedRefusals = (Vec<Refusal>, BTreeMap<Target, f64>);
 
-/// [`judge`] on the threads of the caller.
-fn judge_timed(
+/// [`validate_outputs`] on the threads of the caller.
+fn validate_timed(
     outputs: &[&Output],
     tint: Option<&Tint>,
-    progress: JudgeProgress<'_>,
+    progress: ValidatorProgress<'_>,
 ) -> Result<TimedRefusals, String> {
     let mut sorted = outputs.to_vec();
     sorted.sort();
@@ -220,8 +224,8 @@ fn judge_timed(
         let works = plan_group(group, tint, &scratch)?;
         Ok(works.into_iter().map(|work| (group[0].target, work)).collect())
     });
-    let works = planned.collect::<Result<Vec<Vec<(Target, JudgeWork<'_>)>>, String>>()?;
-    let works: Vec<(Target, JudgeWork<'_>)> = works.into_iter().flatten().collect();
+    let works = planned.collect::<Result<Vec<Vec<(Target, ValidatorWork<'_>)>>, String>>()?;
+    let works: Vec<(Target, ValidatorWork<'_>)> = works.into_iter().flatten().collect();
     let total = works.iter().map(|(_, work)| work.outputs).sum();
     let done = AtomicUsize::new(0);
     let found = works.par_iter().map(|(target, work)| {
@@ -246,22 +250,22 @@ fn plan_group<'w>(
     outputs: &'w [&'w Output],
     tint: Option<&'w Tint>,
     scratch: &'w Scratch,
-) -> Result<Vec<JudgeWork<'w>>, String> {
+) -> Result<Vec<ValidatorWork<'w>>, String> {
     let Some(first) = outputs.first() else { return Ok(Vec::new()) };
-    let found = judge_of(first.target);
-    let (judge, judged) = found.ok_or_else(|| format!("no judge of `{}`", first.target))?;
-    (judge.plan)(&OutputGroup { outputs, rules: judged.rules, tint, scratch })
+    let found = validator_of(first.target);
+    let (validator, named) = found.ok_or_else(|| format!("no validator of `{}`", first.target))?;
+    (validator.plan)(&OutputGroup { outputs, rules: named.rules, tint, scratch })
 }
 
 /// Divides a group into works of at most `size` outputs each, which call `run`.
 fn divide_group<'w>(
     group: &'w [&'w Output],
     size: usize,
-    run: impl Fn(&[&Output]) -> JudgeResult + Clone + Send + Sync + 'w,
-) -> Vec<JudgeWork<'w>> {
+    run: impl Fn(&[&Output]) -> ValidatorResult + Clone + Send + Sync + 'w,
+) -> Vec<ValidatorWork<'w>> {
     let part = |part: &'w [&'w Output]| {
         let run = run.clone();
-        JudgeWork { outputs: part.len(), run: Box::new(move || run(part)) }
+        ValidatorWork { outputs: part.len(), run: Box::new(move || run(part)) }
     };
     group.chunks(size).map(part).collect()
 }

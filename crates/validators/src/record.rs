@@ -6,10 +6,10 @@ use lamplight_generate::cache::{Cache, hash_parts};
 use rayon::prelude::*;
 
 use crate::known::KIND;
-use crate::{Extent, Tint, judge_versions};
+use crate::{Extent, Tint, validator_versions};
 
-/// The record of one bundle, for validators of the versions that are installed now. A validator that
-/// is missing has no version, so the bundle is validated again once it is there.
+/// The record of one bundle, for validators of the versions that are installed now. A validator
+/// that is missing has no version, so the bundle is validated again once it is there.
 pub struct BundleRecord {
     keys: Vec<Hash>,
 }
@@ -20,7 +20,7 @@ impl BundleRecord {
         let known = targets.iter().filter_map(|name| Target::find(name));
         let targets: Vec<Target> = known.collect();
         let versions: Vec<String> =
-            targets.par_iter().map(|target| judge_versions(*target, tint)).collect();
+            targets.par_iter().map(|target| validator_versions(*target, tint)).collect();
         let versions: String = versions.join("\n");
         let key = |extent: Extent| hash_parts(&[KIND, "bundle", bundle, extent.name(), &versions]);
         // All outputs have all lines.

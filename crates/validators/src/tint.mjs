@@ -1,5 +1,5 @@
-// Judges WGSL: one path of a file for each line of standard input. Writes a line of JSON for each
-// text that is refused, with its first mistake, and one that says how many were judged.
+// Validates WGSL: one path of a file for each line of standard input. Writes a line of JSON for each
+// text that is refused, with its first mistake, and one that says how many were validated.
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { pathToFileURL } from "node:url";
@@ -8,7 +8,7 @@ const folder = process.argv[process.argv.length - 1];
 const found = createRequire(folder + "/").resolve("webgpu");
 const { create } = await import(pathToFileURL(found).href);
 
-// No device is needed to judge a text. It must live as long as its objects do.
+// No device is needed to validate a text. It must live as long as its objects do.
 const gpu = create(["backend=null"]);
 const adapter = await gpu.requestAdapter();
 const device = await adapter.requestDevice();
@@ -29,5 +29,5 @@ for (const [index, file] of files.entries()) {
     lines.push({ index, line: 1, column: 1, message: error.message });
   }
 }
-lines.push({ judged: files.length });
+lines.push({ validated: files.length });
 process.stdout.write(lines.map((line) => JSON.stringify(line) + "\n").join(""), () => process.exit(0));

@@ -30,10 +30,10 @@ pub struct TintMistake {
     pub message: String,
 }
 
-/// The last line that the script prints: how many texts it judged.
+/// The last line that the script prints: how many texts it validated.
 #[derive(Deserialize)]
 struct Done {
-    judged: usize,
+    validated: usize,
 }
 
 #[derive(Deserialize)]
@@ -79,7 +79,7 @@ impl Tint {
     ///
     /// # Errors
     /// A message, if it cannot be run.
-    pub(super) fn judge(&self, files: &[&Path]) -> Result<Vec<TintMistake>, String> {
+    pub(super) fn validate(&self, files: &[&Path]) -> Result<Vec<TintMistake>, String> {
         if let Some(missing) = self.missing() {
             return Err(missing.to_string());
         }
@@ -91,8 +91,8 @@ impl Tint {
         let said = String::from_utf8_lossy(&said);
         let mut lines: Vec<&str> = said.lines().collect();
         let done = lines.pop().and_then(|line| serde_json::from_str::<Done>(line).ok());
-        if done.is_none_or(|done| done.judged != files.len()) {
-            return Err(format!("Tint judged not all of {} texts", files.len()));
+        if done.is_none_or(|done| done.validated != files.len()) {
+            return Err(format!("Tint validated not all of {} texts", files.len()));
         }
         let one = |line: &str| serde_json::from_str(line).map_err(|error| error.to_string());
         lines.into_iter().map(one).collect()

@@ -11,10 +11,11 @@ use rayon::prelude::*;
 use crate::known::KnownOutputs;
 use crate::lines::{SeenLines, texts_of_units, with_new_lines};
 use crate::{
-    Extent, JudgeProgress, Output, Refusal, Tint, judge_of, judge_timed, judge_versions, missing,
+    Extent, Output, Refusal, Tint, ValidatorProgress, missing, validate_timed, validator_of,
+    validator_versions,
 };
 
-/// The result of judging outputs.
+/// The result of validating outputs.
 #[derive(Debug, Default)]
 pub struct Verdict {
     /// What was validated, and what is missing.
@@ -32,18 +33,18 @@ struct TargetPlan<'o> {
     report: TargetValidation,
 }
 
-/// Judges outputs that are not known to pass, on all cores. Those that pass are remembered in the
-/// cache by their content, and by the versions of their judges. If a judge is missing, the verdict
-/// says so, and the others are asked.
+/// Validates outputs that are not known to pass, on all cores. Those that pass are remembered in
+/// the cache by their content, and by the versions of their validators. If a validator is missing,
+/// the verdict says so, and the others are asked.
 ///
 /// # Errors
-/// A message, if a judge cannot be run.
+/// A message, if a validator cannot be run.
 pub fn verdict(
     mut outputs: Vec<Output>,
     extent: Extent,
     cache: Option<&Cache>,
     tint: &Tint,
-    progress: JudgeProgress<'_>,
+    progress: ValidatorProgress<'_>,
 ) -> Result<Verdict, String> {
     let extent_name = extent.name().to_owned();
     let validation = Validation { extent: extent_name, targets: Vec::new() };
@@ -65,8 +66,8 @@ pub fn verdict(
         let chosen: Vec<&Output> = plans.iter().flat_map(|plan| plan.chosen.clone()).collect();
         // A part of the validators of WGSL can go on without Tint.
         let is_tint_there = missing(Target::WGSL, tint).is_none();
-        let judged = judge_timed(&chosen, is_tint_there.then_some(tint), progress)?;
-        Ok::<_, String>((plans, judged))
+        let validated = validate_timed(&chosen, is_tint_there.then_some(tint), progress)?;
+        Ok::<_, String>((plans, validated))
     });
     let (plans, (refusals, seconds)) = found?;
     for mut plan in plans {
@@ -87,9 +88,10 @@ fn plan_target<'o>(
     tint: &Tint,
 ) -> Result<TargetPlan<'o>, String> {
     let target = all[0].target;
-    let versions = judge_versions(target, tint);
+    let versions = validator_versions(target, tint);
     let mut known = KnownOutputs::load(cache, target, extent, &versions);
-    let (judge, judged) = judge_of(target).ok_or_else(|| format!("no judge of `{target}`"))?;
+    let (validator, named) =
+        validator_of(target).ok_or_else(|| format!("no validator of `{target}`"))?;
     let lacks = missing(target, tint);
     let mut report = TargetValidation {
         target: target.name().to_owned(),
@@ -97,10 +99,10 @@ fn plan_target<'o>(
         outputs: all.len(),
         ..TargetValidation::default()
     };
-    if lacks.is_some() && !judge.goes_on {
+    if lacks.is_some() && !validator.goes_on {
         return Ok(TargetPlan { target, chosen: Vec::new(), all: &[], known, report });
     }
-    report.validators = (judge.validators)(judged.rules, tint);
+    report.validators = (validator.validators)(named.rules, tint);
     let (old, fresh): (Vec<&Output>, Vec<&Output>) =
         all.iter().partition(|output| known.names.contains(&output.name()));
     report.before = old.len();

@@ -1,12 +1,12 @@
 //! `cargo xtask fuzz`: tries hostile inputs on everything that reads files from others.
 //!
-//! A worker process mutates inputs and judges the answers. This process watches it, so that an
+//! A worker process mutates inputs and checks the answers. This process watches it, so that an
 //! abort or an endless loop is a finding too. Findings are made smaller and kept in
 //! `tests/regressions/KIND/`.
 
+mod answer;
 mod commands;
 mod ending;
-mod judge;
 #[path = "../../../fuzz/src/kinds.rs"]
 mod kinds;
 mod link;
@@ -41,7 +41,7 @@ struct FuzzRequest {
 pub fn run(arguments: &[String]) -> CommandResult {
     match arguments {
         [kind, rest @ ..] if kind == "link" => link::run(rest),
-        [mode, kind, file] if mode == "--judge" => judge_file(find(kind)?, Path::new(file)),
+        [mode, kind, file] if mode == "--check" => check_file(find(kind)?, Path::new(file)),
         [mode, kind, seed, seconds] if mode == "--work" => {
             work(find(kind)?, number(seed)?, number(seconds)?)
         }
@@ -127,7 +127,7 @@ fn fuzz(kind: &Kind, seed: u64, seconds: u64) -> Result<usize, CommandFailure> {
     Ok(told.len())
 }
 
-/// The file in which a worker leaves the input that it is about to judge.
+/// The file in which a worker leaves the input that it is about to check.
 fn current(kind: &Kind) -> PathBuf {
     root().join("target/fuzz").join(kind.name)
 }
@@ -162,7 +162,7 @@ fn outcome(mut worker: Child, sign: Option<&Path>) -> Result<Option<String>, Com
     }
 }
 
-/// The worker: mutates inputs and judges the answers, until the time is over or something is wrong.
+/// The worker: mutates inputs and checks the answers, until the time is over or something is wrong.
 fn work(kind: &Kind, seed: u64, seconds: u64) -> CommandResult {
     let place = current(kind);
     fs::create_dir_all(place.parent().unwrap_or(Path::new("."))).map_err(environment)?;
@@ -171,12 +171,12 @@ fn work(kind: &Kind, seed: u64, seconds: u64) -> CommandResult {
         kind.words.split(' ').filter(|word| !word.is_empty()).collect(),
     );
     let (mut random, started, mut inputs) = (FuzzRandom(seed), Instant::now(), 0u64);
-    judge::quiet();
+    answer::quiet();
     while started.elapsed().as_secs() < seconds {
         let input = mutate::mutated(&mut random, &corpus, &words);
         fs::write(&place, &input).map_err(environment)?;
         inputs += 1;
-        if let Some(reason) = judge::judge(kind, &input) {
+        if let Some(reason) = answer::problem_with(kind, &input) {
             return Err(CommandFailure::check(reason));
         }
     }
@@ -184,10 +184,10 @@ fn work(kind: &Kind, seed: u64, seconds: u64) -> CommandResult {
     Ok(())
 }
 
-fn judge_file(kind: &Kind, file: &Path) -> CommandResult {
+fn check_file(kind: &Kind, file: &Path) -> CommandResult {
     let input = fs::read(file).map_err(environment)?;
-    judge::quiet();
-    judge::judge(kind, &input).map_or(Ok(()), |reason| Err(CommandFailure::check(reason)))
+    answer::quiet();
+    answer::problem_with(kind, &input).map_or(Ok(()), |reason| Err(CommandFailure::check(reason)))
 }
 
 /// Saves a finding, shrunk as far as it still fails for the same reason.
@@ -217,7 +217,7 @@ fn shrunk(kind: &Kind, mut input: Vec<u8>, reason: &str) -> Result<Vec<u8>, Comm
         let smaller = [&input[..at], &input[end..]].concat();
         fs::write(&file, &smaller).map_err(environment)?;
         tries += 1;
-        let worker = spawn(&["--judge", kind.name, &file.to_string_lossy()])?;
+        let worker = spawn(&["--check", kind.name, &file.to_string_lossy()])?;
         match outcome(worker, None)? {
             Some(same) if same == reason => input = smaller,
             _ => at = end,

@@ -1,4 +1,5 @@
-//! `cargo xtask validate [BUNDLE]`: lets the validators of all targets check every output of a bundle.
+//! `cargo xtask validate [BUNDLE]`: lets the validators of all targets check every output of a
+//! bundle.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -24,8 +25,8 @@ pub fn run(arguments: &[String]) -> CommandResult {
     let Verdict { validation, refusals } = validate(files, Extent::All, None, &tint())?;
     print!("{validation}");
     let line = |refusal: &Refusal| {
-        let Refusal { output: Output { target, file, .. }, judge, words, .. } = refusal;
-        format!("{} ({target}): {judge}: {words}", file.display())
+        let Refusal { output: Output { target, file, .. }, validator, words, .. } = refusal;
+        format!("{} ({target}): {validator}: {words}", file.display())
     };
     if !refusals.is_empty() {
         let lines: Vec<String> = refusals.iter().take(TOLD).map(line).collect();

@@ -100,7 +100,7 @@ impl FaultPackage {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         Ok(match output.status.success() {
             false => Some(format!("the run fails: {said}")),
-            true => self.judged(output).or(self.lacks(&self.folder.join("bundle"), number)?),
+            true => self.problem_after(output).or(self.lacks(&self.folder.join("bundle"), number)?),
         })
     }
 

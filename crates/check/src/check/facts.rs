@@ -1,8 +1,8 @@
-//! What a case's formulas say about its rows. It is computed once, since every executor is judged by
-//! it, in both languages. Rows belong to one case.
+//! What a case's formulas say about its rows. It is computed once, since every executor is compared
+//! with it, in both languages. Rows belong to one case.
 
 use super::job::CaseJob;
-use super::judge;
+use super::verdict;
 use crate::cases::Rows;
 use crate::tolerance;
 
@@ -17,10 +17,10 @@ pub fn term_values<'r>(job: &CaseJob<'_>, rows: &'r Rows, index: usize) -> &'r [
     &all[index * count..(index + 1) * count]
 }
 
-/// [`judge::is_ambiguous`] of one row.
+/// [`verdict::is_ambiguous`] of one row.
 pub fn is_ambiguous(job: &CaseJob<'_>, rows: &Rows, index: usize) -> bool {
     let all = rows.facts.near.get_or_init(|| {
-        (0..rows.len()).map(|index| judge::is_ambiguous(job, rows.row(index))).collect()
+        (0..rows.len()).map(|index| verdict::is_ambiguous(job, rows.row(index))).collect()
     });
     all[index]
 }

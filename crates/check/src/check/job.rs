@@ -1,5 +1,5 @@
-//! Prepares a case: kernels, rows, expected values. No executor is needed for this. The rows and the
-//! work of the cases of a file have limits, and the kernels of one function share their code.
+//! Prepares a case: kernels, rows, expected values. No executor is needed for this. The rows and
+//! the work of the cases of a file have limits, and the kernels of one function share their code.
 
 use crate::cases::{Case, CaseFile, FormulaText, Oracle, Rows};
 use crate::check::partner::Partner;
@@ -192,7 +192,7 @@ fn make_job<'a>(
     let languages: Vec<Language> = modules.iter().map(|(language, _)| *language).collect();
     let near = bind_margin(case, &scope)?;
     let filter = case.filter().map(|text| text.bind(&scope)).transpose()?;
-    let oracle = judge_case(module, case, &scope, first, options)?;
+    let oracle = bound_oracle(module, case, &scope, first, options)?;
     let parts = RowFormulas { terms: &terms, near: &near, filter: &filter, oracle: &oracle };
     parts.spend(case, &rows, &mut steps)?;
     let steps = steps.most();
@@ -297,7 +297,7 @@ fn check_agreement(kernels: &[(Language, Kernel)]) -> Result<(), Diagnostic> {
     }
 }
 
-fn judge_case(
+fn bound_oracle(
     module: &str,
     case: &Case,
     scope: &Scope<'_>,

@@ -1,7 +1,7 @@
-//! Judges the laws of a case.
+//! Checks the laws of a case.
 
 use super::job::{CaseJob, Goal};
-use super::{facts, judge, profile};
+use super::{facts, profile, verdict};
 use crate::cases::Rows;
 use crate::laws::{self, Integral, Law};
 use crate::tolerance;
@@ -39,21 +39,21 @@ impl LawVerdict {
     }
 }
 
-/// Judges one law over all rows.
-pub fn judge_law(job: &CaseJob<'_>, law: &Law, given: &RowResults<'_>) -> LawVerdict {
+/// Checks one law over all rows.
+pub fn check_law(job: &CaseJob<'_>, law: &Law, given: &RowResults<'_>) -> LawVerdict {
     let kinds = job.kernel().result_kinds();
     match (law.kind.name, &law.integral, given.transformed) {
-        ("reaches", ..) => judge_reaches(law, given.results, &kinds),
-        (laws::FINITE, ..) => judge_finite(job, law, given, &kinds),
+        ("reaches", ..) => check_reaches(law, given.results, &kinds),
+        (laws::FINITE, ..) => check_finite(job, law, given, &kinds),
         (_, Some(rule), Some((rows, found))) => {
-            judge_integral(job, law, rule, (rows, found), &kinds)
+            check_integral(job, law, rule, (rows, found), &kinds)
         }
-        _ => judge_each(job, law, given, &kinds),
+        _ => check_each(job, law, given, &kinds),
     }
 }
 
-/// Judges a law about single rows, or about a row and its transformed row.
-fn judge_each(
+/// Checks a law about single rows, or about a row and its transformed row.
+fn check_each(
     job: &CaseJob<'_>,
     law: &Law,
     given: &RowResults<'_>,
@@ -106,7 +106,7 @@ fn judge_each(
 /// every result is accepted, or rounding may decide a comparison.
 fn is_left_out(job: &CaseJob<'_>, given: &RowResults<'_>, index: usize) -> bool {
     given.transformed.is_some_and(|(rows, _)| !facts::is_inside(job, rows, index))
-        || given.expected.get(index).is_some_and(judge::is_indeterminate)
+        || given.expected.get(index).is_some_and(verdict::is_indeterminate)
         || facts::is_ambiguous(job, given.rows, index)
 }
 
@@ -120,7 +120,7 @@ fn input_distance(row: &[f64], other: &[f64]) -> f64 {
     row.iter().zip(other).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-fn judge_integral(
+fn check_integral(
     job: &CaseJob<'_>,
     law: &Law,
     rule: &Integral,
@@ -156,16 +156,16 @@ fn judge_integral(
     verdict
 }
 
-/// Judges the law `finite` for its own rows and, unless it has a `where`, for the case's rows. Rows
+/// Checks the law `finite` for its own rows and, unless it has a `where`, for the case's rows. Rows
 /// with arguments above the law's magnitude are skipped.
-fn judge_finite(
+fn check_finite(
     job: &CaseJob<'_>,
     law: &Law,
     given: &RowResults<'_>,
     kinds: &[ScalarKind],
 ) -> LawVerdict {
     let mut verdict = LawVerdict::new(law);
-    let mut judge = |rows: &Rows, found: &[u32]| {
+    let mut check = |rows: &Rows, found: &[u32]| {
         for (index, words) in found.chunks(kinds.len().max(1)).enumerate() {
             let values = words.iter().zip(kinds).map(|(word, kind)| word_value(*word, *kind));
             let row = rows.row(index);
@@ -182,15 +182,15 @@ fn judge_finite(
         }
     };
     if let Some((rows, found)) = given.transformed {
-        judge(rows, found);
+        check(rows, found);
     }
     if law.filter.is_none() {
-        judge(given.rows, given.results);
+        check(given.rows, given.results);
     }
     verdict
 }
 
-fn judge_reaches(law: &Law, results: &[u32], kinds: &[ScalarKind]) -> LawVerdict {
+fn check_reaches(law: &Law, results: &[u32], kinds: &[ScalarKind]) -> LawVerdict {
     let mut verdict = LawVerdict::new(law);
     let values =
         || results.iter().zip(kinds.iter().cycle()).map(|(word, kind)| word_value(*word, *kind));

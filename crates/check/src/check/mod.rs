@@ -3,7 +3,6 @@
 mod facts;
 mod failures;
 pub mod job;
-pub mod judge;
 pub mod law;
 mod partner;
 mod profile;
@@ -11,13 +10,14 @@ mod proof;
 mod report;
 mod shrink;
 pub mod values;
+pub mod verdict;
 
 pub use failures::{failures_as_text, of_outcome, of_proof, report_failures};
-pub use judge::{CaseVerdict, Worst};
 pub use law::LawVerdict;
 pub use profile::{BINS, Bin, CELLS, ErrorMap, Profile, ProfileAxis, ProfileScale, ProfiledInput};
 pub use proof::{Parity, Proof, Spec, ValueProof};
 pub use report::{headroom_text, lacking_text, report_table, short_number, stricter_cases};
+pub use verdict::{CaseVerdict, Worst};
 
 use std::sync::Arc;
 
@@ -149,9 +149,9 @@ pub struct CheckOptions<'a> {
     /// Whether to compare tolerances with what WGSL allows, and the languages with each other in
     /// f64.
     pub prove: bool,
-    /// Whether to judge laws about several functions.
+    /// Whether to check laws about several functions.
     pub partners: bool,
-    /// What drivers were measured to need, if they are judged by that.
+    /// What drivers were measured to need, if results are compared with that.
     pub ratchet: Option<&'a Ratchet>,
 }
 
@@ -280,16 +280,16 @@ fn run_case(
     options: &CheckOptions<'_>,
 ) -> Result<CaseVerdict, Diagnostic> {
     let results = session.run(kernel, &job.rows.words)?;
-    let mut verdict = judge::judge_rows(job, &job.rows, &job.expected, &results);
+    let mut verdict = verdict::check_rows(job, &job.rows, &job.expected, &results);
     for law in &job.laws {
-        if let Some(found) = partner::judge_partners(job, law, language, &results, session)? {
+        if let Some(found) = partner::check_partners(job, law, language, &results, session)? {
             verdict.laws.push(found);
             continue;
         }
         let transformed =
             law.rows.as_ref().map(|rows| session.run(kernel, &rows.words)).transpose()?;
         let transformed = law.rows.as_ref().zip(transformed.as_deref());
-        let mut found = law::judge_law(
+        let mut found = law::check_law(
             job,
             law.law,
             &law::RowResults {
@@ -308,7 +308,7 @@ fn run_case(
         verdict.smallest = Some(shrink::shrink_row(job, kernel, session, *row)?);
     }
     verdict.profile = options.profile.then(|| Box::new(profile::make_profile(job, &results)));
-    verdict.parity = first.as_ref().map(|first| judge::language_parity(job, first, &results));
+    verdict.parity = first.as_ref().map(|first| verdict::language_parity(job, first, &results));
     first.get_or_insert(results);
     Ok(verdict)
 }

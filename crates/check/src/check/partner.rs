@@ -1,11 +1,11 @@
-//! Judges laws about several functions, with kernels of the other functions.
+//! Checks laws about several functions, with kernels of the other functions.
 
 use std::collections::BTreeMap;
 
 use super::job::{BoundLaw, CaseJob};
-use super::judge;
 use super::law::{LawVerdict, amount_text};
 use super::profile::{components_text, parameters_text};
+use super::verdict;
 use super::{Language, Session, Subjects};
 use crate::cases::{Rows, word_of};
 use crate::formula::{Formula, Scope};
@@ -58,9 +58,9 @@ fn first_error(errors: Diagnostics, law: &Law, name: &str) -> Diagnostic {
     if error.labels.is_empty() { error.at(law.span, "named here") } else { error }
 }
 
-/// Judges a law that has partners; `None` for other laws. `results` are those of the case's own
+/// Checks a law that has partners; `None` for other laws. `results` are those of the case's own
 /// rows.
-pub fn judge_partners(
+pub fn check_partners(
     job: &CaseJob<'_>,
     bound: &BoundLaw<'_>,
     language: Language,
@@ -69,7 +69,7 @@ pub fn judge_partners(
 ) -> Result<Option<LawVerdict>, Diagnostic> {
     let law = bound.law;
     if let Some((rule, partner)) = law.inverse.as_ref().zip(bound.partners.first()) {
-        return judge_inverse(job, (law, rule, partner), language, results, session).map(Some);
+        return check_inverse(job, (law, rule, partner), language, results, session).map(Some);
     }
     if bound.partners.is_empty() {
         return Ok(None);
@@ -80,9 +80,9 @@ pub fn judge_partners(
         return Ok(Some(LawVerdict { broken: 1, example, ..LawVerdict::new(law) }));
     }
     let verdict = match (&law.albedo, &law.area, &law.equality) {
-        (Some(rule), ..) => judge_albedo(job, law, rule, &values, results)?,
-        (_, Some(rule), _) => judge_area(job, law, rule, &values, results)?,
-        (_, _, Some(rule)) => judge_equality(job, law, rule, &values, results),
+        (Some(rule), ..) => check_albedo(job, law, rule, &values, results)?,
+        (_, Some(rule), _) => check_area(job, law, rule, &values, results)?,
+        (_, _, Some(rule)) => check_equality(job, law, rule, &values, results),
         _ => return Ok(None),
     };
     Ok(Some(verdict))
@@ -132,7 +132,7 @@ fn partner_product(
     Ok(values.unwrap_or_default())
 }
 
-fn judge_albedo(
+fn check_albedo(
     job: &CaseJob<'_>,
     law: &Law,
     rule: &Albedo,
@@ -153,12 +153,12 @@ fn judge_albedo(
     for component in components {
         let column: Vec<f64> = values.iter().map(|call| component_of(call, component)).collect();
         let sums = rule.sums(&job.rows, &scope, &column)?;
-        target.judge(job, results, (component, &sums), &mut verdict)?;
+        target.check(job, results, (component, &sums), &mut verdict)?;
     }
     Ok(verdict)
 }
 
-fn judge_area(
+fn check_area(
     job: &CaseJob<'_>,
     law: &Law,
     rule: &Area,
@@ -175,7 +175,7 @@ fn judge_area(
     for component in 0..values.first().map_or(0, Vec::len) {
         let column: Vec<f64> = values.iter().map(|call| component_of(call, component)).collect();
         let sums = rule.sums(&job.rows, &scope, &column)?;
-        target.judge(job, results, (component, &sums), &mut verdict)?;
+        target.check(job, results, (component, &sums), &mut verdict)?;
     }
     Ok(verdict)
 }
@@ -188,8 +188,8 @@ struct IntegralTarget<'a> {
 }
 
 impl IntegralTarget<'_> {
-    /// Judges the integrals of one component.
-    fn judge(
+    /// Checks the integrals of one component.
+    fn check(
         &self,
         job: &CaseJob<'_>,
         results: &[u32],
@@ -221,7 +221,7 @@ impl IntegralTarget<'_> {
     }
 }
 
-fn judge_equality(
+fn check_equality(
     job: &CaseJob<'_>,
     law: &Law,
     rule: &Equality,
@@ -231,8 +231,8 @@ fn judge_equality(
     let (mut verdict, count) = (LawVerdict::new(law), job.kernel().result_words() as usize);
     for (row, other) in values.iter().enumerate() {
         let inputs = job.rows.row(row);
-        let unknown = job.expected.get(row).is_some_and(judge::is_indeterminate);
-        if unknown || judge::is_ambiguous(job, inputs) {
+        let unknown = job.expected.get(row).is_some_and(verdict::is_indeterminate);
+        if unknown || verdict::is_ambiguous(job, inputs) {
             continue;
         }
         let own: Vec<f64> =
@@ -285,7 +285,7 @@ fn own_component(job: &CaseJob<'_>, results: &[u32], row: usize, component: usiz
         .map_or(f64::NAN, |word| word_value(*word, kinds[component]))
 }
 
-fn judge_inverse(
+fn check_inverse(
     job: &CaseJob<'_>,
     (law, rule, partner): (&Law, &Inverse, &Partner),
     language: Language,
@@ -302,8 +302,8 @@ fn judge_inverse(
     let found = run_partner(partner, language, &rows, session)?;
     for (row, found) in found.iter().enumerate() {
         let inputs = job.rows.row(row);
-        let unknown = job.expected.get(row).is_some_and(judge::is_indeterminate);
-        if unknown || judge::is_ambiguous(job, inputs) {
+        let unknown = job.expected.get(row).is_some_and(verdict::is_indeterminate);
+        if unknown || verdict::is_ambiguous(job, inputs) {
             continue;
         }
         let wanted = &inputs[first..first + shape.words() as usize];

@@ -1,7 +1,7 @@
 //! How the error of a case depends on its inputs, for the plots of a report.
 
 use super::job::{CaseJob, Goal};
-use super::judge::{self, Worst};
+use super::verdict::{self, Worst};
 use lamplight_execute::kernel::TypeShape;
 use naga::ScalarKind;
 
@@ -124,13 +124,13 @@ pub fn make_profile(job: &CaseJob<'_>, results: &[u32]) -> Profile {
         .iter()
         .zip(results.chunks(kinds.len().max(1)))
         .enumerate()
-        .filter(|(_, (goal, _))| !judge::is_indeterminate(goal))
+        .filter(|(_, (goal, _))| !verdict::is_indeterminate(goal))
         .filter_map(|(index, (goal, found)): (usize, (&Goal, &[u32]))| {
-            judge::compare_goal(job, &job.rows, goal, found, &kinds, index)
+            verdict::compare_goal(job, &job.rows, goal, found, &kinds, index)
         })
         .collect();
     let is_doubtful =
-        |row: usize| job.expected[row].doubtful || judge::is_ambiguous(job, job.rows.row(row));
+        |row: usize| job.expected[row].doubtful || verdict::is_ambiguous(job, job.rows.row(row));
     let found: Vec<Worst> =
         found.into_iter().filter(|worst| worst.share() <= 1.0 || !is_doubtful(worst.row)).collect();
     let names = column_names(job);

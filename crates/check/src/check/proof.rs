@@ -5,7 +5,7 @@
 use rayon::prelude::*;
 
 use super::job::{self, BoundOracle, CaseJob, Goal};
-use super::{judge, profile};
+use super::{profile, verdict};
 use crate::cases::Oracle;
 use crate::tolerance;
 use lamplight_diagnostic::Diagnostic;
@@ -151,7 +151,7 @@ fn prove_one(job: &CaseJob<'_>) -> Proof {
 fn spec_proof(job: &CaseJob<'_>, bounds: &[Goal], kinds: &[ScalarKind]) -> Spec {
     let mut spec = Spec::default();
     for (index, (bound, goal)) in bounds.iter().zip(&job.expected).enumerate() {
-        if bound.doubtful || judge::is_indeterminate(bound) || judge::is_indeterminate(goal) {
+        if bound.doubtful || verdict::is_indeterminate(bound) || verdict::is_indeterminate(goal) {
             continue;
         }
         spec.rows += 1;
@@ -195,7 +195,7 @@ fn value_proof(job: &CaseJob<'_>, found: &[Goal]) -> Option<ValueProof> {
     let mut value = ValueProof::default();
     for (row, (found, goal)) in found.iter().zip(&job.expected).enumerate() {
         let inputs = job.rows.row(row);
-        if found.doubtful || judge::is_indeterminate(goal) || judge::is_ambiguous(job, inputs) {
+        if found.doubtful || verdict::is_indeterminate(goal) || verdict::is_ambiguous(job, inputs) {
             continue;
         }
         value.rows += 1;
@@ -214,7 +214,7 @@ fn error_share(job: &CaseJob<'_>, inputs: &[f64], found: &Goal, goal: &Goal) -> 
     let values = tolerance::formula_values(&job.terms, inputs);
     let of = |expected: &Vec<f64>| {
         let component = |(word, (found, expected)): (usize, (&f64, &f64))| {
-            let off = judge::component_distance(*found, *expected, false);
+            let off = verdict::component_distance(*found, *expected, false);
             if off == 0.0 {
                 0.0
             } else {
@@ -232,7 +232,8 @@ fn error_share(job: &CaseJob<'_>, inputs: &[f64], found: &Goal, goal: &Goal) -> 
 fn parity_of(first: &[Goal], second: &[Goal], kinds: &[ScalarKind]) -> Parity {
     let mut parity = Parity::default();
     for (row, (a, b)) in first.iter().zip(second).enumerate() {
-        if a.doubtful || b.doubtful || judge::is_indeterminate(a) || judge::is_indeterminate(b) {
+        if a.doubtful || b.doubtful || verdict::is_indeterminate(a) || verdict::is_indeterminate(b)
+        {
             continue;
         }
         parity.rows += 1;

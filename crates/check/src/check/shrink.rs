@@ -2,8 +2,8 @@
 //! each draw.
 
 use super::job::{CaseJob, Goal};
-use super::judge;
 use super::law::{self, RowResults};
+use super::verdict;
 use crate::cases::Rows;
 use crate::formula::Scope;
 use crate::laws::{self, Law};
@@ -27,7 +27,7 @@ pub fn shrink_row(
     let best = smallest_input(job, failing, &mut |rows| {
         let Some(expected) = job.goals(rows)? else { return Ok(None) };
         let results = session.run(kernel, &rows.words)?;
-        Ok(judge::judge_rows(job, rows, &expected, &results).failing.first().copied())
+        Ok(verdict::check_rows(job, rows, &expected, &results).failing.first().copied())
     })?;
     let found = session.run(kernel, &best)?;
     let goal = if best == job.rows.row_words(failing) {
@@ -57,7 +57,7 @@ pub fn shrink_law(
         let transformed =
             others.as_ref().map(|rows| session.run(kernel, &rows.words)).transpose()?;
         let transformed = others.as_ref().zip(transformed.as_deref());
-        Ok(law::judge_law(
+        Ok(law::check_law(
             job,
             law,
             &RowResults { rows, expected: &expected, results: &results, transformed },
@@ -210,7 +210,7 @@ impl ShrunkInput {
 /// The input in decimal and hexadecimal, then a case to paste that fails in the same way.
 fn describe_input(job: &CaseJob<'_>, words: &[u32], goal: &Goal, found: &[u32]) -> String {
     let input = ShrunkInput::new(job, words);
-    let worst = judge::judge_rows(
+    let worst = verdict::check_rows(
         job,
         &job.rows.with_words(words.to_vec()),
         std::slice::from_ref(goal),

@@ -1,8 +1,8 @@
 //! Source: OpenGL: Build High Performance Graphics, recipe 7: exp(-i*i/16) over its sum, 21 taps.
 
 use super::{CallArguments, Expected, ReferenceEntry};
-use lamplight_execute::sampling;
 use glam::DVec2;
+use lamplight_execute::sampling;
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "filter::gaussian",

@@ -5,9 +5,9 @@
 
 use super::math_noise::{hash, pixel_seed, random_hpg, unit, vogel_disk};
 use super::{CallArguments, Expected, ReferenceEntry};
+use glam::{DVec2, DVec4};
 use lamplight_execute::fixture::{FixtureSampler, FixtureTexture};
 use lamplight_execute::sampling;
-use glam::{DVec2, DVec4};
 
 pub const REFERENCES: ReferenceEntry = ReferenceEntry {
     module: "shadow::compare",

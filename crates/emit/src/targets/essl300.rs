@@ -6,10 +6,10 @@
 use naga::back::glsl::Version;
 use naga::{Handle, ImageDimension, Type, TypeInner};
 
-use lamplight_bundle::Target;
 use crate::glsl;
 use crate::slots::Numbering;
-use crate::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip};
+use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip};
+use lamplight_bundle::Target;
 
 const VERSION: Version = Version::new_gles(300);
 
@@ -22,7 +22,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     glsl: Some(VERSION),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
-    judged: JudgeRules { judge: "glslang", rules: &["own", "310 es"] },
+    validation: ValidatorRules { validator: "glslang", rules: &["own", "310 es"] },
     clip: &clip::OPENGL,
     write,
 };

@@ -5,10 +5,10 @@
 
 use naga::back::glsl::Version;
 
-use lamplight_bundle::Target;
 use crate::glsl;
 use crate::slots::Numbering;
-use crate::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip};
+use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip};
+use lamplight_bundle::Target;
 
 const VERSION: Version = Version::Desktop(330);
 
@@ -21,7 +21,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     glsl: Some(VERSION),
     header: glsl::HEADER,
     overrides: Overrides::Macros,
-    judged: JudgeRules { judge: "glslang", rules: &["own"] },
+    validation: ValidatorRules { validator: "glslang", rules: &["own"] },
     clip: &clip::OPENGL,
     write,
 };

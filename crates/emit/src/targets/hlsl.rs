@@ -12,14 +12,14 @@ use naga::back::hlsl::{
     ShaderModel, Writer,
 };
 
-use lamplight_bundle::{BindingKind, HeapSampler, Native, Place, SamplerHeap, Semantic, Target};
 use crate::names::first_entry_name;
 use crate::plain::{self, Needs};
 use crate::reflect::{binding_kind, entry_inputs};
 use crate::slots::{Numbering, assign_slots, native_reflection};
 use crate::text::BoundedText;
-use crate::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip, setters, zeros};
+use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, setters, zeros};
 use crate::{columns, lists, rename};
+use lamplight_bundle::{BindingKind, HeapSampler, Native, Place, SamplerHeap, Semantic, Target};
 
 /// The target, for the table of all.
 pub const TARGET: TargetEntry = TargetEntry {
@@ -30,7 +30,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     glsl: None,
     header: &[],
     overrides: Overrides::Macros,
-    judged: JudgeRules { judge: "glslang", rules: &["hlsl"] },
+    validation: ValidatorRules { validator: "glslang", rules: &["hlsl"] },
     clip: &clip::SHARED,
     write,
 };

@@ -9,11 +9,11 @@ use naga::back::msl::{
     BindSamplerTarget, BindTarget, EntryPointResources, Options, PipelineOptions, Writer,
 };
 
-use lamplight_bundle::{BindingKind, BufferSizes, Target};
 use crate::names::first_entry_name;
 use crate::slots::{Numbering, assign_slots, native_reflection};
 use crate::text::BoundedText;
-use crate::{EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip, gradients, rename};
+use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, gradients, rename};
+use lamplight_bundle::{BindingKind, BufferSizes, Target};
 
 /// The target, for the table of all.
 pub const TARGET: TargetEntry = TargetEntry {
@@ -24,7 +24,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     glsl: None,
     header: &["#", "using "],
     overrides: Overrides::FunctionConstants,
-    judged: JudgeRules { judge: "clang", rules: &[] },
+    validation: ValidatorRules { validator: "clang", rules: &[] },
     clip: &clip::SHARED,
     write,
 };

@@ -6,12 +6,10 @@
 
 use naga::back::spv::{Options, PipelineOptions, WriterFlags, write_vec};
 
-use lamplight_bundle::Target;
 use crate::slots::{Numbering, native_reflection};
 use crate::spirv::{HEADER_WORDS, SpirvInstruction, bytes, instructions, op};
-use crate::{
-    EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip, sample_mask,
-};
+use crate::{EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, sample_mask};
+use lamplight_bundle::Target;
 
 /// The target, for the table of all.
 pub const TARGET: TargetEntry = TargetEntry {
@@ -22,7 +20,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     glsl: None,
     header: &[],
     overrides: Overrides::Specialised,
-    judged: JudgeRules { judge: "spirv_val", rules: &["vulkan1.0", "vulkan1.1"] },
+    validation: ValidatorRules { validator: "spirv_val", rules: &["vulkan1.0", "vulkan1.1"] },
     clip: &clip::VULKAN,
     write,
 };

@@ -4,12 +4,12 @@
 
 use naga::back::wgsl::{Writer, WriterFlags};
 
-use lamplight_bundle::{OverrideChoice, Target};
 use crate::slots::{Numbering, native_reflection};
 use crate::text::BoundedText;
 use crate::{
-    EmitSource, Emitted, JudgeRules, Overrides, TargetEntry, clip, filters, specialise,
+    EmitSource, Emitted, Overrides, TargetEntry, ValidatorRules, clip, filters, specialise,
 };
+use lamplight_bundle::{OverrideChoice, Target};
 
 /// The target, for the table of all.
 pub const TARGET: TargetEntry = TargetEntry {
@@ -20,7 +20,7 @@ pub const TARGET: TargetEntry = TargetEntry {
     glsl: None,
     header: &["enable ", "requires ", "diagnostic("],
     overrides: Overrides::Kept,
-    judged: JudgeRules { judge: "naga_tint", rules: &[] },
+    validation: ValidatorRules { validator: "naga_tint", rules: &[] },
     clip: &clip::SHARED,
     write,
 };
@@ -32,8 +32,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
     let done = Writer::new(&mut text, WriterFlags::empty()).write(module, source.info);
     done.map_err(|error| text.explain(error))?;
     let text = with_largest_numbers(text.0);
-    let names: Vec<String> =
-        declared_names(&text, "override", None).map(str::to_owned).collect();
+    let names: Vec<String> = declared_names(&text, "override", None).map(str::to_owned).collect();
     let text = match written {
         Some(_) => specialise::with_expressions(&text, source.module, &names)?,
         None => text,
@@ -45,10 +44,8 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
         declared_names(&text, "fn", Some("@")).next().ok_or("no entry point was written")?;
     let mut native = native_reflection(source, entry, Numbering::Author);
     let overrides = source.module.overrides.iter().map(|(_, constant)| constant);
-    native.choices = overrides
-        .zip(names.iter().map(String::as_str))
-        .filter_map(override_choice)
-        .collect();
+    native.choices =
+        overrides.zip(names.iter().map(String::as_str)).filter_map(override_choice).collect();
     Ok(Emitted { bytes: text.into_bytes(), native })
 }
 

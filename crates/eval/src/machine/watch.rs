@@ -55,15 +55,16 @@ impl Watch {
         match *instruction {
             Instruction::Float1 { op, n, to, a } => {
                 let outside = (0..n).any(|i| outside1(op, memory[a.at(u32::from(i))].value()));
-                self.judge(outside.then_some(FindingKind::Domain), memory, &[(a, n)], (to, n), pc);
+                let trouble = outside.then_some(FindingKind::Domain);
+                self.note_result(trouble, memory, &[(a, n)], (to, n), pc);
             }
             Instruction::Float2 { op, n, to, a, b } => {
                 let trouble = (0..u32::from(n))
                     .find_map(|i| outside2(op, memory[a.at(i)].value(), memory[b.at(i)].value()));
-                self.judge(trouble, memory, &[(a, n), (b, n)], (to, n), pc);
+                self.note_result(trouble, memory, &[(a, n), (b, n)], (to, n), pc);
             }
             Instruction::Float3 { n, to, a, b, c, .. } => {
-                self.judge(None, memory, &[(a, n), (b, n), (c, n)], (to, n), pc)
+                self.note_result(None, memory, &[(a, n), (b, n), (c, n)], (to, n), pc)
             }
             Instruction::Convert { op, n, a, .. } => {
                 let wild = (0..u32::from(n)).any(|i| does_not_fit(op, memory[a.at(i)].value()));
@@ -83,11 +84,11 @@ impl Watch {
                 self.note_if(zero, FindingKind::Domain, pc);
             }
             Instruction::Geometry { op: Geometry::Length, n, to, a, .. } => {
-                self.judge(None, memory, &[(Operand { slot: a, stride: 1 }, n)], (to, 1), pc);
+                self.note_result(None, memory, &[(Operand { slot: a, stride: 1 }, n)], (to, 1), pc);
             }
             Instruction::Geometry { op: Geometry::Dot, n, to, a, b, .. } => {
                 let operands = [a, b].map(|slot| (Operand { slot, stride: 1 }, n));
-                self.judge(None, memory, &operands, (to, 1), pc);
+                self.note_result(None, memory, &operands, (to, 1), pc);
             }
             Instruction::Index { index, count, .. } => {
                 let outside = memory[index as usize].word() >= memory[count as usize].word();
@@ -108,7 +109,7 @@ impl Watch {
 
     /// Reports `trouble` if there is any. Otherwise reports a result that is not finite, if all
     /// operands are finite.
-    fn judge<N: Number>(
+    fn note_result<N: Number>(
         &mut self,
         trouble: Option<FindingKind>,
         memory: &[N],

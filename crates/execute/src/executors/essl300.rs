@@ -3,8 +3,8 @@
 //! Runs on: every system but WebAssembly
 
 use super::{ExecutorEntry, Shipping, Unavailable};
-use lamplight_bundle::Target;
 use crate::Session;
+use lamplight_bundle::Target;
 
 pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "essl300",

@@ -4,11 +4,11 @@
 //! Runs on: every system
 
 use super::{ExecutorEntry, Unavailable};
-use lamplight_diagnostic::{Diagnostic, codes};
 use crate::frame::{Drawing, Frame};
 use crate::interpreter::{Interpreter, word_of};
 use crate::kernel::Kernel;
 use crate::{Session, raster};
+use lamplight_diagnostic::{Diagnostic, codes};
 
 pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "eval",

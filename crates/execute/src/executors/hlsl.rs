@@ -4,9 +4,9 @@
 //! Runs on: every system but WebAssembly
 
 use super::{ExecutorEntry, Shipping, Unavailable, swiftshader};
-use lamplight_bundle::Target;
 use crate::Session;
 use crate::gpu::{AdapterName, Shaders};
+use lamplight_bundle::Target;
 use lamplight_tools::{GLSLANG, SPIRV_OPT};
 
 pub const EXECUTOR: ExecutorEntry = ExecutorEntry {

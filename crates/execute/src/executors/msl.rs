@@ -3,9 +3,9 @@
 //! Runs on: every system but WebAssembly
 
 use super::{ExecutorEntry, Shipping, Unavailable};
-use lamplight_bundle::Target;
 use crate::Session;
 use crate::metal::Metal;
+use lamplight_bundle::Target;
 use lamplight_tools::CLANG;
 
 pub const EXECUTOR: ExecutorEntry = ExecutorEntry {

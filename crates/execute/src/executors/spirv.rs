@@ -4,8 +4,8 @@
 //! Runs on: every system but WebAssembly
 
 use super::{ExecutorEntry, Shipping, swiftshader};
-use lamplight_bundle::Target;
 use crate::gpu::{AdapterName, Shaders};
+use lamplight_bundle::Target;
 
 pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "spirv",

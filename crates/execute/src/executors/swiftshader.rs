@@ -7,9 +7,9 @@ use std::path::Path;
 use std::sync::Once;
 
 use super::{DEVICE_SAMPLES, ExecutorEntry, Shipping, Unavailable};
-use lamplight_bundle::Target;
 use crate::Session;
 use crate::gpu::{AdapterName, Shaders};
+use lamplight_bundle::Target;
 
 pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "swiftshader",

@@ -4,10 +4,10 @@
 //! Runs on: every system but WebAssembly
 
 use super::{ExecutorEntry, Shipping, Unavailable};
-use lamplight_tools::browser::PACKAGE;
-use lamplight_bundle::Target;
 use crate::Session;
 use crate::web::WebApi;
+use lamplight_bundle::Target;
+use lamplight_tools::browser::PACKAGE;
 
 pub const EXECUTOR: ExecutorEntry = ExecutorEntry {
     name: "webgpu",

@@ -2,9 +2,10 @@
 //! asks for it and whenever.
 //!
 //! A key covers everything that a result depends on: the composed text (its comments aside), the
-//! entry point, the options, the targets, and the identity of the program ([`Cache::new`]). No time, path or machine enters it. Records are verified when they are read, and a
-//! damaged one, or one of another version, counts as absent. A cache that cannot be read or written
-//! costs time and nothing else.
+//! entry point, the options, the targets, and the identity of the program ([`Cache::new`]). No
+//! time, path or machine enters it. Records are verified when they are read, and a damaged one, or
+//! one of another version, counts as absent. A cache that cannot be read or written costs time and
+//! nothing else.
 
 mod folder;
 mod record;
@@ -45,7 +46,7 @@ struct Counted {
 }
 
 /// The first words of the names of records.
-const KINDS: [&str; 6] = ["costs", "errors", "judged", "runs", "units", "warnings"];
+const KINDS: [&str; 6] = ["costs", "errors", "runs", "units", "validated", "warnings"];
 
 const MOST_FAILURES: usize = 8;
 

@@ -1,5 +1,5 @@
-//! Metal's language without a Mac: clang, with headers of our own in the place of Apple's, validates
-//! the MSL that the crate emits. `execute::compiled` runs it on the CPU.
+//! Metal's language without a Mac: clang, with headers of our own in the place of Apple's,
+//! validates the MSL that the crate emits. `execute::compiled` runs it on the CPU.
 //!
 //! `texts -> attributes (by a table), then clang -> refusals`
 //!
@@ -31,11 +31,11 @@ pub struct MslRefusal {
 
 type Refusals = Result<Vec<MslRefusal>, ClangMissing>;
 
-/// Judges some texts. Each has a number, by which refusals name it.
+/// Validates some texts. Each has a number, by which refusals name it.
 ///
 /// # Errors
 /// clang cannot be run.
-pub fn judge_batch(clang: &Clang, batch: &[IndexedText<'_>]) -> Refusals {
+pub fn validate_batch(clang: &Clang, batch: &[IndexedText<'_>]) -> Refusals {
     let (mut refusals, mut sound) = (Vec::new(), Vec::new());
     for (index, text) in batch {
         match before_clang(text) {
@@ -43,7 +43,7 @@ pub fn judge_batch(clang: &Clang, batch: &[IndexedText<'_>]) -> Refusals {
             None => sound.push((*index, *text)),
         }
     }
-    refusals.extend(judge_sound(clang, &sound)?);
+    refusals.extend(validate_sound(clang, &sound)?);
     Ok(refusals)
 }
 
@@ -62,13 +62,13 @@ fn before_clang(text: &str) -> Option<String> {
 
 type IndexedText<'t> = (usize, &'t str);
 
-/// Judges a batch. Its halves are judged if it is refused, since a mistake in one text may make
-/// others look wrong.
-fn judge_sound(clang: &Clang, batch: &[IndexedText<'_>]) -> Refusals {
-    let judged = |batch: &[IndexedText<'_>]| clang.compile(&unit_text(batch), &["-fsyntax-only"]);
-    let together = |batch: &[IndexedText<'_>]| Ok(judged(batch)?.status.success().then(Vec::new));
+/// Validates a batch. Its halves are validated if it is refused, since a mistake in one text may
+/// make others look wrong.
+fn validate_sound(clang: &Clang, batch: &[IndexedText<'_>]) -> Refusals {
+    let compiled = |batch: &[IndexedText<'_>]| clang.compile(&unit_text(batch), &["-fsyntax-only"]);
+    let together = |batch: &[IndexedText<'_>]| Ok(compiled(batch)?.status.success().then(Vec::new));
     let alone = |one: &IndexedText<'_>| {
-        let output = judged(&[*one])?;
+        let output = compiled(&[*one])?;
         let refusal = || MslRefusal { index: one.0, errors: clang_errors(&output.stderr) };
         Ok((!output.status.success()).then(refusal).into_iter().collect())
     };
@@ -166,7 +166,7 @@ pub struct Clang {
     folder: PathBuf,
 }
 
-/// A hash of the headers and of how they are read, since other headers judge differently.
+/// A hash of the headers and of how they are read, since other headers accept other texts.
 pub fn shim_hash() -> String {
     let mut hasher = blake3::Hasher::new();
     let texts = SHIM.iter().flat_map(|(name, text)| [*name, *text]).chain(FLAGS.iter().copied());

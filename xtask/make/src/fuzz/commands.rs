@@ -91,7 +91,7 @@ pub fn fuzz(surface: &Surface, seed: u64, seconds: u64) -> Result<usize, Command
         let input = mutate::mutated(&mut random, &corpus, &words);
         fs::write(folder.join(surface.file), &input).map_err(environment)?;
         inputs += 1;
-        if let Some(reason) = judge(&program, &folder, surface.arguments)? {
+        if let Some(reason) = problem_with(&program, &folder, surface.arguments)? {
             findings += 1;
             keep(surface, &input, &reason)?;
         }
@@ -101,7 +101,7 @@ pub fn fuzz(surface: &Surface, seed: u64, seconds: u64) -> Result<usize, Command
 }
 
 /// What is wrong with a run.
-fn judge(
+fn problem_with(
     program: &Path,
     folder: &Path,
     arguments: &[&str],

@@ -1,5 +1,5 @@
 //! `cargo xtask fuzz link`: random programs, which the test `link::random` makes,
-//! judges, runs and compares.
+//! validates, runs and compares.
 
 use xtask::{CommandFailure, CommandResult, process};
 
@@ -8,21 +8,21 @@ const USAGE: &str =
 
   --programs N  how many (20000)
   --seed N      the seed of the first (1)
-  --every N     the judges beside the crate see one program in N (1)
+  --every N     the external validators see one program in N (1)
   --most N      so many outputs of such a program, in each target (2)
   --run N       the outputs of one program in N are run, 0 for none (8)
   --shrink      make the first finding of each kind small";
 
 /// Runs the test. Findings are left in `target/fuzz/link/` and give exit code 3.
 pub fn run(arguments: &[String]) -> CommandResult {
-    let mut settings = vec![("PROGRAMS", "20000".to_owned()), ("JUDGED", "1".to_owned())];
+    let mut settings = vec![("PROGRAMS", "20000".to_owned()), ("VALIDATED", "1".to_owned())];
     settings.extend([("MOST", "2".to_owned()), ("RUN", "8".to_owned())]);
     let mut rest = arguments.iter();
     while let Some(argument) = rest.next() {
         let name = match argument.as_str() {
             "--programs" => "PROGRAMS",
             "--seed" => "SEED",
-            "--every" => "JUDGED",
+            "--every" => "VALIDATED",
             "--most" => "MOST",
             "--run" => "RUN",
             "--shrink" => {

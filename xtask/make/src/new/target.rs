@@ -36,11 +36,11 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFil
     let lacking = lacking_of(&repository.read(LACKS)?, name);
     let next = vec![
         format!(
-            "{file}: its head comment and the version, `about` and the judge's rules, where they are still those of `{like}`; glslang knows `own` (the output's own version), `vulkan`, `hlsl`, or a version such as `320 es` (tests house::described, emit, judges)"
+            "{file}: its head comment and the version, `about` and the validator's rules, where they are still those of `{like}`; glslang knows `own` (the output's own version), `vulkan`, `hlsl`, or a version such as `320 es` (tests house::described, emit, validators)"
         ),
         format!("{own_executor}: likewise (tests harness::executor::{name}, frames/shipped)"),
         format!(
-            "{GUIDE}: what `{name}` does unlike `{like}`, in each row that `git diff` shows, that of the judge included; the first table has it beside `{numbered_alike}`, whose bindings are like its own (tests conventions::guide, guide lists are whole)"
+            "{GUIDE}: what `{name}` does unlike `{like}`, in each row that `git diff` shows, that of the validator included; the first table has it beside `{numbered_alike}`, whose bindings are like its own (tests conventions::guide, guide lists are whole)"
         ),
         format!(
             "{GUIDE}, \"{}\": rows that hold for `{name}`: {lacking}",
@@ -91,7 +91,7 @@ fn own_ending(text: &str, name: &str) -> String {
     }
 }
 
-/// The target's text without the judge's rules that name a version, such as `310 es`, if the
+/// The target's text without the validator's rules that name a version, such as `310 es`, if the
 /// target's own version is at least that one.
 fn without_older_rules(text: String, name: &str) -> String {
     let number = |text: &str| -> Option<u32> {

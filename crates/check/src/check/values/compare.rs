@@ -6,7 +6,7 @@ use naga::ScalarKind;
 
 use super::{MeasuredCase, RecordedCase, RecordedRow, ValueRecord};
 use crate::check::profile::value_text;
-use crate::check::{judge, short_number};
+use crate::check::{short_number, verdict};
 use crate::tolerance;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 use lamplight_execute::kernel::word_value;
@@ -205,7 +205,7 @@ fn differences(old: &RecordedRow, new: &[u32], kinds: &[ScalarKind]) -> Vec<Diff
             if old == new || (old.is_nan() && new.is_nan()) {
                 return None;
             }
-            let error = judge::component_distance(new, old, is_float);
+            let error = verdict::component_distance(new, old, is_float);
             let smallest = f64::from(f32::MIN_POSITIVE);
             Some(Difference {
                 kind: *kind,

@@ -2,8 +2,8 @@
 //!
 //! `cases -> jobs -> measured values -> a record`, or `-> a comparison with a record`
 //!
-//! A record has the inputs, so a comparison calls the functions of today with the inputs of then. It
-//! does not matter whether the domains of a case have changed meanwhile.
+//! A record has the inputs, so a comparison calls the functions of today with the inputs of then.
+//! It does not matter whether the domains of a case have changed meanwhile.
 
 mod compare;
 mod form;
@@ -14,7 +14,7 @@ pub use form::{is_record, parse_record, record_text};
 use naga::ScalarKind;
 
 use super::job::{CaseJob, Goal};
-use super::{facts, judge, profile};
+use super::{facts, profile, verdict};
 use crate::tolerance;
 use lamplight_bundle::Language;
 use lamplight_diagnostic::source::Span;
@@ -150,8 +150,8 @@ impl ValueRecord {
     }
 }
 
-/// The results of all rows of a case. Inputs of another length, which a damaged record has, are left
-/// without results, which the comparison reports.
+/// The results of all rows of a case. Inputs of another length, which a damaged record has, are
+/// left without results, which the comparison reports.
 fn run_rows(
     case: &mut RecordedCase,
     kernel: &Kernel,
@@ -191,7 +191,7 @@ fn chosen_rows(job: &CaseJob<'_>) -> Vec<usize> {
 }
 
 fn is_certain(job: &CaseJob<'_>, row: usize) -> bool {
-    let is_open = |goal: &Goal| goal.doubtful || judge::is_indeterminate(goal);
+    let is_open = |goal: &Goal| goal.doubtful || verdict::is_indeterminate(goal);
     !job.expected.get(row).is_some_and(is_open) && !facts::is_ambiguous(job, &job.rows, row)
 }
 

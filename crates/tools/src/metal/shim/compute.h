@@ -1,5 +1,5 @@
 // What kernels use beside: atomics, barriers, functions over a simdgroup. They are declared for
-// the judge; nothing runs them here.
+// the validator; nothing runs them here.
 #pragma once
 
 #include "types.h"

@@ -1,5 +1,5 @@
 // What the headers ask of the program that runs shaders, lookups in textures and the other
-// fragments of a quad, and what it asks of an entry point. `runtime.cpp` answers; a judge needs
+// fragments of a quad, and what it asks of an entry point. `runtime.cpp` answers; a validator needs
 // the declarations only.
 #pragma once
 

@@ -10,12 +10,12 @@ use super::progress::Bar;
 use crate::bundle::{BlobFile, Bundle, Contents, Error, blob_files, stage_blobs};
 use crate::cache::Cache;
 use crate::generate::{Progress, Summary, Validation};
-use crate::judge::{BundleRecord, Extent, OutputOrigin, Tint, blame, outputs, verdict};
 use crate::output::Scratch;
 use crate::permute::Manifest;
 use crate::project;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
+use crate::validators::{BundleRecord, Extent, OutputOrigin, Tint, blame, outputs, verdict};
 
 /// [`Extent`] as an option's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -116,8 +116,8 @@ impl Validators {
     }
 }
 
-/// Fails if a validator that was asked for is not installed. The run is over by then: what the others
-/// accepted is written.
+/// Fails if a validator that was asked for is not installed. The run is over by then: what the
+/// others accepted is written.
 pub fn refuse_missing(validation: Option<&Validation>) -> Result<(), Failure> {
     let missing = validation.map(Validation::missing).unwrap_or_default();
     match missing.is_empty() {

@@ -1,17 +1,18 @@
-//! WGSL: naga, which is part of this program, and Tint, the compiler of Chromium and Dawn. There are
-//! no rules.
+//! WGSL: naga, which is part of this program, and Tint, the compiler of Chromium and Dawn. There
+//! are no rules.
 
 use naga::front::wgsl;
 
 use crate::tint::TintMistake;
 use crate::{
-    JudgeEntry, JudgeResult, JudgeWork, Output, OutputGroup, Refusal, Tint, divide_group,
+    Output, OutputGroup, Refusal, Tint, ValidatorEntry, ValidatorResult, ValidatorWork,
+    divide_group,
 };
 use lamplight_tools::NODE;
 use lamplight_validate::{guard, info_of};
 
-/// The judge, for the table of all.
-pub const JUDGE: JudgeEntry = JudgeEntry {
+/// The validator, for the table of all.
+pub const VALIDATOR: ValidatorEntry = ValidatorEntry {
     name: "naga_tint",
     tools: &[NODE],
     lacks: Tint::missing,
@@ -26,7 +27,7 @@ pub const JUDGE: JudgeEntry = JudgeEntry {
 const BATCH: usize = 64;
 const TINT_BATCH: usize = 512;
 
-fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<JudgeWork<'w>>, String> {
+fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<ValidatorWork<'w>>, String> {
     let mut works = divide_group(group.outputs, BATCH, |outputs: &[&Output]| {
         let found = outputs.iter().map(|output| by_naga(output));
         Ok(found.collect::<Result<Vec<_>, String>>()?.into_iter().flatten().collect())
@@ -48,7 +49,7 @@ fn validators(_: &[&str], tint: &Tint) -> Vec<String> {
 
 fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {
     let text = output.text()?;
-    let judged = guard(&text, || {
+    let validated = guard(&text, || {
         let told = |line: Option<u32>, words: String| (line, words);
         let module = wgsl::parse_str(&text).map_err(|error| {
             let line = error.location(&text).map(|place| place.line_number);
@@ -59,18 +60,20 @@ fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {
             told(line, error.emit_to_string(&text))
         })
     });
-    let judged = judged.unwrap_or_else(|error| Err((None, error.message)));
-    let refusal = |(line, words)| Refusal { output: output.clone(), judge: "naga", line, words };
-    Ok(judged.err().map(refusal))
+    let validated = validated.unwrap_or_else(|error| Err((None, error.message)));
+    let refusal =
+        |(line, words)| Refusal { output: output.clone(), validator: "naga", line, words };
+    Ok(validated.err().map(refusal))
 }
 
-fn by_tint(outputs: &[&Output], tint: &Tint) -> JudgeResult {
+fn by_tint(outputs: &[&Output], tint: &Tint) -> ValidatorResult {
     let files: Vec<_> = outputs.iter().map(|output| &*output.file).collect();
-    let said = tint.judge(&files)?;
+    let said = tint.validate(&files)?;
     let one = |said: TintMistake| {
-        let output = outputs.get(said.index).ok_or("Tint judged a text that it was not given")?;
+        let output =
+            outputs.get(said.index).ok_or("Tint validated a text that it was not given")?;
         let words = format!("{}:{}: error: {}", said.line, said.column, said.message);
-        Ok(Refusal { output: (*output).clone(), judge: "Tint", line: Some(said.line), words })
+        Ok(Refusal { output: (*output).clone(), validator: "Tint", line: Some(said.line), words })
     };
     said.into_iter().map(one).collect()
 }

@@ -3,13 +3,13 @@
 use std::sync::Arc;
 
 use crate::{
-    JudgeEntry, JudgeResult, JudgeWork, Output, OutputGroup, Refusal, divide_group,
+    Output, OutputGroup, Refusal, ValidatorEntry, ValidatorResult, ValidatorWork, divide_group,
 };
-use lamplight_tools::metal::{Clang, judge_batch, shim_hash};
 use lamplight_tools::CLANG;
+use lamplight_tools::metal::{Clang, shim_hash, validate_batch};
 
-/// The judge, for the table of all.
-pub const JUDGE: JudgeEntry = JudgeEntry {
+/// The validator, for the table of all.
+pub const VALIDATOR: ValidatorEntry = ValidatorEntry {
     name: "clang",
     tools: &[CLANG],
     lacks: |_| None,
@@ -21,18 +21,18 @@ pub const JUDGE: JudgeEntry = JudgeEntry {
 
 const BATCH: usize = 64;
 
-fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<JudgeWork<'w>>, String> {
+fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<ValidatorWork<'w>>, String> {
     let clang = Arc::new(Clang::open().map_err(|missing| missing.reason)?);
-    Ok(divide_group(group.outputs, BATCH, move |outputs| judge_msl(&clang, outputs)))
+    Ok(divide_group(group.outputs, BATCH, move |outputs| validate_msl(&clang, outputs)))
 }
 
-fn judge_msl(clang: &Clang, outputs: &[&Output]) -> JudgeResult {
+fn validate_msl(clang: &Clang, outputs: &[&Output]) -> ValidatorResult {
     let texts = outputs.iter().map(|output| output.text()).collect::<Result<Vec<_>, _>>()?;
     let texts: Vec<(usize, &str)> = texts.iter().map(String::as_str).enumerate().collect();
-    let refused = judge_batch(clang, &texts).map_err(|missing| missing.reason)?;
+    let refused = validate_batch(clang, &texts).map_err(|missing| missing.reason)?;
     let one = |refused: lamplight_tools::metal::MslRefusal| Refusal {
         output: outputs[refused.index].clone(),
-        judge: "clang",
+        validator: "clang",
         line: refused.errors.split(':').next().and_then(|line| line.parse().ok()),
         words: refused.errors,
     };

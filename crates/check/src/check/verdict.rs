@@ -81,8 +81,8 @@ impl Worst {
     }
 }
 
-/// Judges every row.
-pub fn judge_rows(
+/// Compares every row.
+pub fn check_rows(
     job: &CaseJob<'_>,
     rows: &Rows,
     expected: &[Goal],

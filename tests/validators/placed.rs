@@ -6,8 +6,9 @@ use lamplight::bundle::Bundle;
 
 use super::{COUNTED, COUNTED_MANIFEST, Outcome, Package, expect};
 
-/// A judge's refusal is told at the author's line, with the permutation and the target. The older
-/// bundle stays as it was, as a folder and as a file. Nothing is left among the temporary files.
+/// A validator's refusal is shown at the author's line, with the permutation and the target. The
+/// older bundle stays as it was, as a folder and as a file. Nothing is left among the temporary
+/// files.
 pub fn refusals_are_placed() -> Outcome {
     // No stage of GLSL has so many outputs.
     let many = "struct Colors {
@@ -46,7 +47,7 @@ pub fn refusals_are_placed() -> Outcome {
         }
         let left: Vec<_> = fs::read_dir(&temporary)?.flatten().map(|left| left.path()).collect();
         if !left.is_empty() {
-            return Err(format!("after judging {out}, these are left: {left:?}").into());
+            return Err(format!("after validating {out}, these are left: {left:?}").into());
         }
     }
     Ok(())

@@ -6,7 +6,7 @@
 //! HLSL takes twice as long as reading it, so only outputs with something new in them
 //! ([`novel_outputs`]) are compiled. If glslc refuses a text, glslangValidator decides.
 //!
-//! | rule | judged are |
+//! | rule | validated are |
 //! |---|---|
 //! | `own` | texts of GLSL or GLSL ES, of the version that they name |
 //! | `310 es`, `330 core` | the same, with this later version in the place of their own |
@@ -19,13 +19,14 @@ use std::process::Output as Said;
 
 use crate::novel::novel_outputs;
 use crate::{
-    JudgeEntry, JudgeResult, JudgeWork, Output, OutputGroup, Refusal, Tint, divide_group,
+    Output, OutputGroup, Refusal, Tint, ValidatorEntry, ValidatorResult, ValidatorWork,
+    divide_group,
 };
 use lamplight_files::output::Scratch;
 use lamplight_tools::{GLSLANG, GLSLC, halve_refused, printed_words};
 
-/// The judge, for the table of all.
-pub const JUDGE: JudgeEntry = JudgeEntry {
+/// The validator, for the table of all.
+pub const VALIDATOR: ValidatorEntry = ValidatorEntry {
     name: "glslang",
     tools: &[GLSLANG, GLSLC],
     lacks: |_| None,
@@ -45,7 +46,7 @@ fn validators(rules: &[&str], _: &Tint) -> Vec<String> {
     [GLSLANG.described()].into_iter().chain(compiles.then(|| GLSLC.described())).collect()
 }
 
-fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<JudgeWork<'w>>, String> {
+fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<ValidatorWork<'w>>, String> {
     let Some(first) = group.outputs.first() else { return Ok(Vec::new()) };
     let mut works = Vec::new();
     for rule in group.rules {
@@ -59,19 +60,19 @@ fn plan_rule<'w>(
     group: &OutputGroup<'w>,
     first: &'w Output,
     rule: &'static str,
-) -> Result<Vec<JudgeWork<'w>>, String> {
+) -> Result<Vec<ValidatorWork<'w>>, String> {
     let (outputs, scratch) = (group.outputs, group.scratch);
     let own = vec!["-S", first.stage.suffix()];
     let stage = format!("-fshader-stage={}", first.stage.suffix());
     match rule {
-        "own" => Ok(divide_group(outputs, BATCH, move |outputs| judge_together(&own, outputs))),
+        "own" => Ok(divide_group(outputs, BATCH, move |outputs| validate_together(&own, outputs))),
         // The relaxed rules accept OpenGL's names of built-in variables. They also accept uniforms
         // outside of blocks, which get bindings. glslc has no such option, but few texts need them.
         "vulkan" => {
             let options = vec![stage, "-fauto-bind-uniforms".into(), "-fauto-map-locations".into()];
             let alone = [&own[..], &["-V", "-R", "--amb", "-o", "/dev/null"]].concat();
             Ok(divide_group(outputs, BATCH, move |outputs| {
-                judge_compiled(&options, &alone, outputs)
+                validate_compiled(&options, &alone, outputs)
             }))
         }
         "hlsl" => {
@@ -82,7 +83,7 @@ fn plan_rule<'w>(
         }
         version if version.starts_with(|first: char| first.is_ascii_digit()) => {
             Ok(divide_group(outputs, BATCH, move |outputs| {
-                judge_later_version(&own, outputs, version, scratch)
+                validate_later_version(&own, outputs, version, scratch)
             }))
         }
         _ => Err(format!("glslangValidator has no rule `{rule}`")),
@@ -94,22 +95,23 @@ fn plan_hlsl<'w>(
     group: &'w [&'w Output],
     options: Vec<String>,
     alone: Vec<&'w str>,
-) -> Result<Vec<JudgeWork<'w>>, String> {
+) -> Result<Vec<ValidatorWork<'w>>, String> {
     let read = alone.clone();
-    let mut works = divide_group(group, BATCH, move |outputs| judge_parse(&read, outputs));
+    let mut works = divide_group(group, BATCH, move |outputs| validate_parse(&read, outputs));
     let novel = novel_outputs(group)?;
     works.extend(novel.chunks(BATCH).map(|part| {
         let outputs = part.len();
         let (part, options, alone) = (part.to_vec(), options.clone(), alone.clone());
-        JudgeWork { outputs, run: Box::new(move || judge_compiled(&options, &alone, &part)) }
+        ValidatorWork { outputs, run: Box::new(move || validate_compiled(&options, &alone, &part)) }
     }));
     Ok(works)
 }
 
-/// Has glslc compile texts to SPIR-V in one run. glslangValidator judges each text that glslc refuses.
+/// Has glslc compile texts to SPIR-V in one run. glslangValidator validates each text that glslc
+/// refuses.
 ///
 /// Parameters: `options` of glslc; those of glslangValidator, `alone`.
-fn judge_compiled(options: &[String], alone: &[&str], outputs: &[&Output]) -> JudgeResult {
+fn validate_compiled(options: &[String], alone: &[&str], outputs: &[&Output]) -> ValidatorResult {
     // glslc writes the SPIR-V to the current folder. It is removed after each batch, since that of
     // a whole bundle takes hundreds of megabytes.
     let scratch = Scratch::new(&std::env::temp_dir()).map_err(|error| error.to_string())?;
@@ -121,31 +123,31 @@ fn judge_compiled(options: &[String], alone: &[&str], outputs: &[&Output]) -> Ju
         let said = files.and_then(|files| GLSLC.run_in(&scratch.path(""), &options, files));
         Ok(said.map_err(|error| error.to_string())?.status.success().then(Vec::new))
     };
-    halve_refused(outputs, &together, &|output| judge_one(alone, output))
+    halve_refused(outputs, &together, &|output| validate_one(alone, output))
 }
 
-/// Judges texts in one run if it accepts them all.
-fn judge_together(arguments: &[&str], outputs: &[&Output]) -> JudgeResult {
+/// Validates texts in one run if it accepts them all.
+fn validate_together(arguments: &[&str], outputs: &[&Output]) -> ValidatorResult {
     let together = |outputs: &[&Output]| {
         let said = run_glslang(arguments, outputs.iter().map(|output| &*output.file))?;
         Ok(said.status.success().then(Vec::new))
     };
-    halve_refused(outputs, &together, &|output| judge_one(arguments, output))
+    halve_refused(outputs, &together, &|output| validate_one(arguments, output))
 }
 
-fn judge_one(arguments: &[&str], output: &Output) -> JudgeResult {
+fn validate_one(arguments: &[&str], output: &Output) -> ValidatorResult {
     Ok(make_refusal(output, &output.file, &run_glslang(arguments, [&*output.file])?)
         .into_iter()
         .collect())
 }
 
-/// Judges texts with another version in their first line.
-fn judge_later_version(
+/// Validates texts with another version in their first line.
+fn validate_later_version(
     arguments: &[&str],
     outputs: &[&Output],
     version: &str,
     scratch: &Scratch,
-) -> JudgeResult {
+) -> ValidatorResult {
     let mut files = Vec::new();
     for output in outputs {
         let text = output.text()?;
@@ -172,14 +174,14 @@ fn judge_later_version(
 
 /// Parses texts in one run, which also tries to link them. Linking always fails, and that is
 /// ignored.
-fn judge_parse(arguments: &[&str], outputs: &[&Output]) -> JudgeResult {
+fn validate_parse(arguments: &[&str], outputs: &[&Output]) -> ValidatorResult {
     let together = |outputs: &[&Output]| {
         let said = run_glslang(arguments, outputs.iter().map(|output| &*output.file))?;
         let of_a_text = |line: &str| line.starts_with("ERROR: ") && !line.contains(" Linking ");
         let accepts = said.status.code().is_some() && !printed_words(&said).lines().any(of_a_text);
         Ok(accepts.then(Vec::new))
     };
-    halve_refused(outputs, &together, &|output| judge_one(arguments, output))
+    halve_refused(outputs, &together, &|output| validate_one(arguments, output))
 }
 
 fn run_glslang<'f>(
@@ -195,7 +197,7 @@ fn make_refusal(output: &Output, file: &Path, said: &Said) -> Option<Refusal> {
     let lines = said.lines().map(str::trim).filter(|line| !line.is_empty() && *line != path);
     let words = lines.collect::<Vec<_>>().join("\n").replace(&path, "0");
     let line = words.lines().find_map(line_of);
-    Some(Refusal { output: output.clone(), judge: NAME, line, words })
+    Some(Refusal { output: output.clone(), validator: NAME, line, words })
 }
 
 /// The number in `ERROR: 0:12: ...`.

@@ -1,4 +1,4 @@
-//! Judges the answer to one input: a panic, too much time or memory, or two different answers.
+//! Checks the answer to one input: a panic, too much time or memory, or two different answers.
 
 use std::panic;
 use std::sync::Mutex;
@@ -14,7 +14,7 @@ const MOST_KIB: u64 = 1 << 20;
 
 static PLACE: Mutex<Option<String>> = Mutex::new(None);
 
-/// Silences panics, which [`judge`] reports.
+/// Silences panics, which [`problem_with`] reports.
 pub fn quiet() {
     panic::set_hook(Box::new(|info| {
         let place = info.location().map(|place| format!("{}:{}", place.file(), place.line()));
@@ -25,7 +25,7 @@ pub fn quiet() {
 }
 
 /// What is wrong with the answer to an input.
-pub fn judge(kind: &Kind, input: &[u8]) -> Option<String> {
+pub fn problem_with(kind: &Kind, input: &[u8]) -> Option<String> {
     let started = Instant::now();
     let answer = panic::catch_unwind(|| (kind.run)(input));
     let Ok(answer) = answer else {

@@ -1,5 +1,5 @@
-//! Finds out whether the outputs of a program depend on anything else than its sources, its settings
-//! and the target, and whether the crate accepts its own WGSL.
+//! Finds out whether the outputs of a program depend on anything else than its sources, its
+//! settings and the target, and whether the crate accepts its own WGSL.
 
 use std::collections::BTreeMap;
 
@@ -69,12 +69,12 @@ struct Case {
 /// Units by entry point and key.
 type Units = BTreeMap<(String, String), Unit>;
 
-/// Makes the outputs of a program in several ways and compares them: all permutations together, then
-/// one alone, or a shard, or fewer targets, and then all in a random order.
+/// Makes the outputs of a program in several ways and compares them: all permutations together,
+/// then one alone, or a shard, or fewer targets, and then all in a random order.
 ///
 /// # Errors
 /// The first finding.
-pub fn judge(program: &Program, random: &mut Random) -> Result<Verdict, Finding> {
+pub fn compare_outputs(program: &Program, random: &mut Random) -> Result<Verdict, Finding> {
     let mut case = Case::new(program)?;
     let together = match case.made(&Request::default()) {
         Ok(made) => made,

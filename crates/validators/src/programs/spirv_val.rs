@@ -2,12 +2,12 @@
 //! `vulkan1.0`.
 
 use crate::{
-    JudgeEntry, JudgeResult, JudgeWork, Output, OutputGroup, Refusal, divide_group,
+    Output, OutputGroup, Refusal, ValidatorEntry, ValidatorResult, ValidatorWork, divide_group,
 };
 use lamplight_tools::{SPIRV_VAL, printed_words};
 
-/// The judge, for the table of all.
-pub const JUDGE: JudgeEntry = JudgeEntry {
+/// The validator, for the table of all.
+pub const VALIDATOR: ValidatorEntry = ValidatorEntry {
     name: "spirv_val",
     tools: &[SPIRV_VAL],
     lacks: |_| None,
@@ -19,7 +19,7 @@ pub const JUDGE: JudgeEntry = JudgeEntry {
 
 const BATCH: usize = 16;
 
-fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<JudgeWork<'w>>, String> {
+fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<ValidatorWork<'w>>, String> {
     let environments = group.rules;
     Ok(divide_group(group.outputs, BATCH, move |outputs| {
         let mut refusals = Vec::new();
@@ -31,7 +31,7 @@ fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<JudgeWork<'w>>, String> {
 }
 
 /// The refusal of the first environment that does not accept it.
-fn first_refusal(output: &Output, environments: &[&str]) -> JudgeResult {
+fn first_refusal(output: &Output, environments: &[&str]) -> ValidatorResult {
     for environment in environments {
         let said = SPIRV_VAL.run(&["--target-env", environment], [&output.file]);
         let said = said.map_err(|error| error.to_string())?;
@@ -40,7 +40,7 @@ fn first_refusal(output: &Output, environments: &[&str]) -> JudgeResult {
             // Its line numbers count instructions, so they say nothing about the author's text.
             return Ok(vec![Refusal {
                 output: output.clone(),
-                judge: "spirv-val",
+                validator: "spirv-val",
                 line: None,
                 words,
             }]);

@@ -1,4 +1,4 @@
-//! The judges of the targets: what they refuse, what the user is told, and that refused outputs do
+//! The validators of the targets: what they refuse, what the user sees, and that refused outputs do
 //! not replace a bundle.
 
 mod lines;
@@ -11,7 +11,7 @@ use std::process::{Command, Output as Said};
 
 use lamplight::bundle::{Target, blob_files};
 use lamplight::emit::targets;
-use lamplight::judge::{self, Novelty, Output, SeenText};
+use lamplight::validators::{self, Novelty, Output, SeenText};
 use libtest_mimic::{Failed, Trial};
 
 use lines::{lines_of_few_permutations, others_go_on, validated_once};
@@ -22,7 +22,7 @@ type Case = (&'static str, fn() -> Outcome);
 
 pub fn tests() -> Vec<Trial> {
     let cases: [Case; 14] = [
-        ("every_judge_refuses", every_judge_refuses),
+        ("every_validator_refuses", every_validator_refuses),
         ("one_of_many_is_found", one_of_many_is_found),
         ("numbers_of_names_are_not_new", numbers_of_names_are_not_new),
         ("later_versions", later_versions),
@@ -37,7 +37,7 @@ pub fn tests() -> Vec<Trial> {
         ("tint", tint),
         ("arrays_of_zeros", arrays_of_zeros),
     ];
-    cases.into_iter().map(|(name, case)| Trial::test(format!("judges::{name}"), case)).collect()
+    cases.into_iter().map(|(name, case)| Trial::test(format!("validators::{name}"), case)).collect()
 }
 
 /// A shader with many kinds of declarations. Outputs keep the names of its functions.
@@ -95,7 +95,7 @@ impl Package {
         if !said.status.success() {
             return Err(told(&said).into());
         }
-        Ok(judge::outputs(blob_files(self.path("bundle"))?)?)
+        Ok(validators::outputs(blob_files(self.path("bundle"))?)?)
     }
 }
 
@@ -119,8 +119,8 @@ pub fn expect(said: &Said, code: i32, words: &[&str]) -> Outcome {
     }
 }
 
-fn judged(outputs: &[Output]) -> Result<Vec<judge::Refusal>, Failed> {
-    Ok(judge::judge(outputs, None, &|_, _| ())?)
+fn refusals_of(outputs: &[Output]) -> Result<Vec<validators::Refusal>, Failed> {
+    Ok(validators::validate_outputs(outputs, None, &|_, _| ())?)
 }
 
 /// Breaks an output: a text uses a name in one line that is not declared, and SPIR-V has a wrong
@@ -140,11 +140,11 @@ fn broken(output: &Output) -> Result<Option<u32>, Failed> {
     Ok(Some(line))
 }
 
-/// The judge of each target accepts its sound output, and refuses the broken one at its line.
-fn every_judge_refuses() -> Outcome {
+/// The validator of each target accepts its sound output, and refuses the broken one at its line.
+fn every_validator_refuses() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     let outputs = package.outputs()?;
-    if let Some(refusal) = judged(&outputs)?.first() {
+    if let Some(refusal) = refusals_of(&outputs)?.first() {
         return Err(format!("a sound output is refused: {refusal:?}").into());
     }
     let mut lines = Vec::new();
@@ -153,7 +153,7 @@ fn every_judge_refuses() -> Outcome {
         let output = output.ok_or_else(|| format!("no output for {target}"))?;
         lines.push((*target, broken(output)?));
     }
-    let refusals = judged(&outputs)?;
+    let refusals = refusals_of(&outputs)?;
     let mut found: Vec<(Target, Option<u32>)> =
         refusals.iter().map(|refusal| (refusal.output.target, refusal.line)).collect();
     found.sort();
@@ -163,8 +163,9 @@ fn every_judge_refuses() -> Outcome {
     Err(format!("refused at {found:?}, expected {lines:?}: {refusals:?}").into())
 }
 
-/// A wrong output is found among a hundred that are judged in one batch. Judges compile only texts
-/// with new pairs of tokens one by one, and this one has no new pair, so only the batch can find it.
+/// A wrong output is found among a hundred that are validated in one batch. Validators compile only
+/// texts with new pairs of tokens one by one, and this one has no new pair, so only the batch can
+/// find it.
 fn one_of_many_is_found() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     let outputs = package.outputs()?;
@@ -186,7 +187,7 @@ fn one_of_many_is_found() -> Outcome {
             }
         }
     }
-    let refusals = judged(&many)?;
+    let refusals = refusals_of(&many)?;
     let found: BTreeSet<PathBuf> =
         refusals.iter().map(|refusal| refusal.output.file.clone()).collect();
     match found == wrong {
@@ -232,7 +233,7 @@ fn numbers_of_names_are_not_new() -> Outcome {
     }
 }
 
-/// GLSL ES is judged as version 3.10 too, and SPIR-V for Vulkan 1.0 too.
+/// GLSL ES is validated as version 3.10 too, and SPIR-V for Vulkan 1.0 too.
 fn later_versions() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;
     let outputs = package.outputs()?;
@@ -245,7 +246,7 @@ fn later_versions() -> Outcome {
     let mut bytes = fs::read(&spirv.file)?;
     bytes[4..8].copy_from_slice(&0x0001_0300_u32.to_le_bytes());
     fs::write(&spirv.file, bytes)?;
-    let refusals = judged(&[es.clone(), spirv.clone()])?;
+    let refusals = refusals_of(&[es.clone(), spirv.clone()])?;
     match refusals.as_slice() {
         [es, spirv] if es.words.contains("BUFFER") && spirv.words.contains("vulkan1.0") => Ok(()),
         _ => Err(format!("expected BUFFER in GLSL ES, and vulkan1.0: {refusals:?}").into()),
@@ -268,7 +269,7 @@ fn counted(value: u32) -> u32 {
 
 const COUNTED_MANIFEST: &str = "[program.one]\nwesl = \"one.wesl\"\ntargets = [\"essl300\", \"hlsl\"]\naxis.bits = { values = [false, true] }\n";
 
-/// An output that passed is not judged again. One that was refused is.
+/// An output that passed is not validated again. One that was refused is.
 fn what_passed_is_known() -> Outcome {
     let manifest = COUNTED_MANIFEST.replace("\"essl300\", ", "");
     let package = Package::new(&manifest, COUNTED)?;
@@ -284,11 +285,11 @@ fn what_passed_is_known() -> Outcome {
     Ok(())
 }
 
-/// If a judge is not installed, the run writes the bundle, and ends with exit code 4 and the command
-/// that installs the judge.
+/// If a validator is not installed, the run writes the bundle, and ends with exit code 4 and the
+/// command that installs the validator.
 fn missing_programs_are_told() -> Outcome {
     let nothing = tempfile::tempdir()?;
-    let install_command = |judge: &str| match judge {
+    let install_command = |name: &str| match name {
         "spirv_val" => Ok("apt-get install spirv-tools"),
         "glslang" => Ok("apt-get install glslang-tools"),
         "clang" => Ok("apt-get install clang"),
@@ -297,7 +298,7 @@ fn missing_programs_are_told() -> Outcome {
     };
     let package = Package::new(MANIFEST, SHADER)?;
     for entry in targets::ALL {
-        let install = install_command(entry.judged.judge)?;
+        let install = install_command(entry.validation.validator)?;
         let target = entry.target.name();
         let arguments = ["gen", "--validate", "--target", target, "-o", target];
         let mut command = package.command(&arguments);
@@ -309,7 +310,7 @@ fn missing_programs_are_told() -> Outcome {
     expect(&package.run(&arguments)?, 4, &words)?;
     match package.path("bundle/manifest.json").exists() {
         true => Ok(()),
-        false => Err("no bundle was written although no judge refused an output".into()),
+        false => Err("no bundle was written although no validator refused an output".into()),
     }
 }
 
@@ -344,13 +345,13 @@ export const create = () => ({{ requestAdapter: async () => ({{ requestDevice: a
         ["Tint refuses the output for `wgsl`", "11:5: error: not like this", "`number=two`"];
     expect(&package.run(&arguments)?, 1, &words)?;
     write("process.exit(0)")?;
-    expect(&package.run(&arguments)?, 4, &["Tint judged not all of 1 texts"])?;
+    expect(&package.run(&arguments)?, 4, &["Tint validated not all of 1 texts"])?;
     write("[]")?;
     expect(&package.run(&arguments)?, 0, &["1 output validated, 2 known to pass"])
 }
 
 /// HLSL initialises arrays of zeros with a cast of a number, which glslang does not accept for all
-/// types. Arrays of every type and depth must pass their judges.
+/// types. Arrays of every type and depth must pass their validators.
 fn arrays_of_zeros() -> Outcome {
     let shader = "
 struct Lamp { color: vec3f, weights: array<f32, 4> }
@@ -373,7 +374,7 @@ fn long(index: u32) -> f32 { var found: array<i32, 3000>; found[index] = 1; wide
     let manifest = format!("[program.one]\nwesl = \"one.wesl\"\ntargets = {targets:?}\n");
     let package = Package::new(&manifest, shader)?;
     let outputs = package.outputs()?;
-    match judged(&outputs)?.first() {
+    match refusals_of(&outputs)?.first() {
         Some(refusal) => Err(format!("{refusal:?}\n{}", text(&refusal.output.file)).into()),
         None if outputs.len() == targets.len() => Ok(()),
         None => {
