@@ -140,7 +140,7 @@ pub use lamplight_diagnostic::source;
 pub use lamplight_emit as emit;
 pub use lamplight_eval as eval;
 #[doc(hidden)]
-pub use lamplight_files::{input, limits, output, rehearse};
+pub use lamplight_files::{input, limits, output, sandbox};
 pub use lamplight_generate as generate;
 pub use lamplight_generate::{cache, store};
 pub use lamplight_keys as keys;

@@ -32,8 +32,8 @@ mod overwrite;
 mod own;
 mod partial;
 mod progress;
-mod rehearse;
 mod render;
+mod sandbox;
 mod show;
 mod stream;
 mod terminal;
@@ -90,7 +90,7 @@ enum Command {
     #[command(hide = true)]
     Mutate(mutate::Arguments),
     #[command(hide = true)]
-    Rehearse(rehearse::Arguments),
+    Sandbox(sandbox::Arguments),
     Export(export::Arguments),
     Explain(explain::Arguments),
     Lsp(lsp::Arguments),
@@ -155,8 +155,8 @@ pub fn main() -> ExitCode {
     executors::prepare_process(&cli.command.executors());
     let gpus = cli.command.gpus();
     let form = cli.color.of(cli.diagnostics);
-    if !matches!(cli.command, Command::Rehearse(_)) {
-        rehearse::install_rehearsal();
+    if !matches!(cli.command, Command::Sandbox(_)) {
+        sandbox::install_sandbox();
     }
     match dispatch_command(cli.command, gpus, form) {
         Ok(()) => ExitCode::SUCCESS,
@@ -210,7 +210,7 @@ fn dispatch_command(
         Command::Render(arguments) => render::run_render(arguments, form),
         Command::Cost(arguments) => cost::run_cost(arguments, gpus, form),
         Command::Mutate(arguments) => mutate::run_mutate(arguments),
-        Command::Rehearse(arguments) => rehearse::run_rehearsal(arguments),
+        Command::Sandbox(arguments) => sandbox::run_in_sandbox(arguments),
         Command::Export(arguments) => export::run_export(arguments),
         Command::Explain(arguments) => explain::run_explain(arguments),
         Command::Lsp(arguments) => lsp::run_lsp(arguments),

@@ -98,7 +98,7 @@ fn nested() -> Outcome {
     for (language, text) in texts {
         let stage = (language == "glsl").then_some("fragment");
         let job = json!({ "language": language, "stage": stage, "text": text, "outputs": null });
-        let output = rehearsed(&job.to_string())?;
+        let output = sandboxed(&job.to_string())?;
         if !output.status.success() || !output.stderr.is_empty() {
             let words = String::from_utf8_lossy(&output.stderr);
             let start = &text[..60];
@@ -112,20 +112,20 @@ fn nested() -> Outcome {
 
 /// Runs the process in which naga is tried, with a job on its standard input. It is started as the
 /// program starts it: its allocator reserves no address space in advance.
-fn rehearsed(job: &str) -> Result<Output, Failed> {
-    let mut rehearsal = Command::new(env!("CARGO_BIN_EXE_lamplight"))
-        .args(["rehearse", "naga"])
+fn sandboxed(job: &str) -> Result<Output, Failed> {
+    let mut sandbox = Command::new(env!("CARGO_BIN_EXE_lamplight"))
+        .args(["sandbox", "naga"])
         .env("RAYON_NUM_THREADS", "1")
         .env("MIMALLOC_ARENA_RESERVE", "0")
         .stdin(Stdio::piped())
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
         .spawn()?;
-    if let Some(mut input) = rehearsal.stdin.take() {
+    if let Some(mut input) = sandbox.stdin.take() {
         // A process that ends before it has read everything tells why by its status.
         let _ = input.write_all(job.as_bytes());
     }
-    Ok(rehearsal.wait_with_output()?)
+    Ok(sandbox.wait_with_output()?)
 }
 
 /// A large text that is tried in another process first, and that naga can compile, is compiled each

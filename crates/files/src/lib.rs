@@ -4,7 +4,7 @@
 pub mod input;
 pub mod limits;
 pub mod output;
-pub mod rehearse;
+pub mod sandbox;
 #[cfg(target_os = "linux")]
 #[path = "syncing/system.rs"]
 mod syncing;

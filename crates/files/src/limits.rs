@@ -187,8 +187,8 @@ limits! {
     CALM_PART: usize = 8, Count,
         "divisor of the limits on composed texts: a text beyond this part of one is first \
          compiled in another process", "the run, if naga would end its process", "`naga-exhausted`";
-    REHEARSAL_BYTES: u64 = 1 << 30, Bytes, "memory of that process", "memory", "`naga-exhausted`";
-    REHEARSAL_SECONDS: u64 = 5, Seconds, "processor time of that process", "time",
+    SANDBOX_BYTES: u64 = 1 << 30, Bytes, "memory of that process", "memory", "`naga-exhausted`";
+    SANDBOX_SECONDS: u64 = 5, Seconds, "processor time of that process", "time",
         "`naga-exhausted`";
     AXES: usize = 128, Count, "axes of a program, values of an axis",
         "time and memory to count permutations", "`axis-limit`";

@@ -12,7 +12,7 @@ use lamplight_diagnostic::{Diagnostic, Diagnostics, Severity, codes};
 use lamplight_emit::{self as emit, targets};
 use lamplight_files::limits::GROUP_BYTES;
 use lamplight_validate::{
-    self as validate, Validated, check_glsl, on_large_stack, validate, validate_rehearsed,
+    self as validate, Validated, check_glsl, on_large_stack, validate, validate_unguarded,
 };
 
 /// One text in two forms: as its author reads it, for errors; and without comments and layout,
@@ -71,9 +71,9 @@ pub fn compile(
     Ok(CompiledUnit { unit, warnings, whole })
 }
 
-/// Validates a text after a rehearsal: a large text first goes through everything that is asked for
+/// Validates a text after the sandbox: a large text first goes through everything that is asked for
 /// in another process, which shows that naga survives it.
-fn rehearse_and_validate(
+fn try_and_validate(
     text: &TextForms<'_>,
     entry: &str,
     targets: &[Target],
@@ -83,24 +83,24 @@ fn rehearse_and_validate(
         let targets = targets.iter().map(|target| target.name().to_owned()).collect();
         let Conventions { clip, bounds } = linker.conventions;
         let [clip, bounds] = [clip.name(), bounds.name()].map(str::to_owned);
-        Some(validate::RehearsalOutputs { entry: entry.to_owned(), targets, clip, bounds })
+        Some(validate::SandboxOutputs { entry: entry.to_owned(), targets, clip, bounds })
     };
-    match validate::rehearse(text.lean, text.composed, outputs) {
+    match validate::try_in_sandbox(text.lean, text.composed, outputs) {
         // The lean text is validated faster. Only the author's text has places for errors.
-        Ok(()) => validate_rehearsed(text.lean).or_else(|_| validate(text.composed)),
+        Ok(()) => validate_unguarded(text.lean).or_else(|_| validate(text.composed)),
         Err(error) if error.code == codes::NAGA_EXHAUSTED => Err(vec![error]),
         // Expanded aliases can make the lean text too large where the author's text is not.
         Err(_) => {
-            let tried = validate::rehearse(text.composed, text.composed, outputs);
+            let tried = validate::try_in_sandbox(text.composed, text.composed, outputs);
             tried.map_err(|error| vec![error])?;
-            validate_rehearsed(text.composed)
+            validate_unguarded(text.composed)
         }
     }
 }
 
 /// Does what [`compile`] and [`validate()`] would do with a large text. It is called in a process
 /// of its own, and its result does not matter: only that the process survives.
-pub fn perform_job(job: &validate::RehearsalJob) {
+pub fn perform_job(job: &validate::SandboxJob) {
     let composed = Composed::of_text(job.language, job.stage, job.text.clone());
     let Some(outputs) = &job.outputs else {
         let _ = validate(&composed);
@@ -154,7 +154,7 @@ fn compile_whole(
     linker: &Linker<'_>,
 ) -> Result<(Unit, Diagnostics), Diagnostics> {
     let whole = || validate(text.composed);
-    let validated = rehearse_and_validate(text, entry, targets, linker)?;
+    let validated = try_and_validate(text, entry, targets, linker)?;
     emit::check_targets(text.lean, &validated, targets)
         .or_else(|_| emit::check_targets(text.composed, &whole()?, targets))?;
     let unit = compile_unit(text, &validated, entry, targets, linker)

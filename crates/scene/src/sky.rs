@@ -5,7 +5,7 @@ use glam::DVec3;
 use image::ImageDecoder as _;
 use image::codecs::hdr::HdrDecoder;
 use lamplight_files::limits::ENVIRONMENT_PIXELS;
-use lamplight_files::rehearse::rehearse;
+use lamplight_files::sandbox::try_in_sandbox;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Radiance by direction, linear RGB. The direction is of unit length, world space.
@@ -85,7 +85,7 @@ impl Equirect {
     }
 }
 
-/// The stage of [`rehearse`] that runs the decoder.
+/// The stage of [`try_in_sandbox`] that runs the decoder.
 pub const DECODER: &str = "picture";
 
 impl Equirect {
@@ -102,9 +102,9 @@ impl Equirect {
         if u64::from(width) * u64::from(height) > ENVIRONMENT_PIXELS {
             return Err(format!("{width} x {height} pixels are more than {ENVIRONMENT_PIXELS}"));
         }
-        // Images up to 4096 x 2048 are decoded without a rehearsal.
+        // Images up to 4096 x 2048 are decoded without the sandbox.
         if u64::from(width) * u64::from(height) > ENVIRONMENT_PIXELS / 2 {
-            rehearse(DECODER, bytes).map_err(|how| format!("its decoder {how}"))?;
+            try_in_sandbox(DECODER, bytes).map_err(|how| format!("its decoder {how}"))?;
         }
         let mut read =
             vec![0; usize::try_from(decoder.total_bytes()).map_err(|error| error.to_string())?];

@@ -13,8 +13,8 @@ mod hints;
 mod limits;
 mod loops;
 mod operands;
-mod rehearsal;
 mod report;
+mod sandbox;
 mod sizes;
 mod uniformity;
 mod words;
@@ -30,7 +30,7 @@ pub use operands::{
     change_operands, change_used, inner_blocks, inner_blocks_mut, operands, result_mut,
 };
 #[doc(hidden)]
-pub use rehearsal::{RehearsalJob, RehearsalOutputs, STAGE, rehearse};
+pub use sandbox::{STAGE, SandboxJob, SandboxOutputs, try_in_sandbox};
 pub use uniformity::{has_lints, lint};
 
 use naga::front::wgsl;
@@ -67,12 +67,12 @@ pub const CAPABILITIES: Capabilities = Capabilities::MULTISAMPLED_SHADING
 /// `naga-internal` where it panicked, `naga-exhausted` where it
 /// would have ended the process.
 pub fn validate(composed: &Composed) -> Result<Validated, Diagnostics> {
-    rehearse(composed, composed, || None).map_err(|error| vec![error])?;
+    try_in_sandbox(composed, composed, || None).map_err(|error| vec![error])?;
     read_text(composed)
 }
 
-/// As [`validate`], for a text that was rehearsed together with what is done to it afterwards.
-pub fn validate_rehearsed(composed: &Composed) -> Result<Validated, Diagnostics> {
+/// As [`validate`], for a text that went through the sandbox together with what is done to it afterwards.
+pub fn validate_unguarded(composed: &Composed) -> Result<Validated, Diagnostics> {
     limits::check_limits(composed).map_err(|error| vec![error])?;
     read_text(composed)
 }

@@ -1,9 +1,9 @@
-//! Rehearses work of other people's code that could crash the process: it is done in a separate
-//! process first.
+//! A sandbox for work of other people's code that could crash the process: the work is done in a
+//! separate process first.
 //!
 //! Running out of stack or memory cannot be caught. [`crate::limits`] bound the input of such code.
 //! No input below a part of each bound was ever seen to exhaust anything. Input between that part
-//! and the bound is *rehearsed*: a child process with little memory and time does the same work,
+//! and the bound goes through the *sandbox*: a child process with little memory and time does the same work,
 //! and if it crashes, its input is an error. Ordinary input never starts a process.
 //!
 //! As a library the crate never starts a process either: a program must say how with [`run_by`], as
@@ -13,57 +13,57 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use crate::limits::REHEARSAL_SECONDS;
+use crate::limits::SANDBOX_SECONDS;
 
-/// Why a rehearsal failed.
+/// Why a job failed in the sandbox.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum RehearsalFailure {
-    /// More memory than a rehearsal may have.
+pub enum SandboxFailure {
+    /// More memory than the sandbox may have.
     Memory,
     /// The stack.
     Stack,
-    /// More time than a rehearsal may take.
+    /// More time than the sandbox may take.
     Time,
     /// It stopped for another reason, which its last output tells.
     Stopped(String),
 }
 
-impl fmt::Display for RehearsalFailure {
+impl fmt::Display for SandboxFailure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Memory => f.write_str("takes more memory than it may have"),
             Self::Stack => f.write_str("exhausts its stack"),
-            Self::Time => write!(f, "takes more than {REHEARSAL_SECONDS} seconds"),
+            Self::Time => write!(f, "takes more than {SANDBOX_SECONDS} seconds"),
             Self::Stopped(words) => write!(f, "ends its process: {words}"),
         }
     }
 }
 
 /// Does a stage's job in a separate process.
-pub type RehearsalRunner = fn(stage: &str, job: &[u8]) -> Result<(), RehearsalFailure>;
+pub type SandboxRunner = fn(stage: &str, job: &[u8]) -> Result<(), SandboxFailure>;
 
 /// The result of each job, by the hash of its stage and bytes.
-type KnownResults = BTreeMap<[u8; 32], Result<(), RehearsalFailure>>;
+type KnownResults = BTreeMap<[u8; 32], Result<(), SandboxFailure>>;
 
-/// How many results are remembered. One job may be rehearsed several times before its error is
+/// How many results are remembered. One job may be asked for several times before its error is
 /// reported.
 const REMEMBERED: usize = 1024;
 
-static RUNNER: OnceLock<RehearsalRunner> = OnceLock::new();
+static RUNNER: OnceLock<SandboxRunner> = OnceLock::new();
 static KNOWN: Mutex<KnownResults> = Mutex::new(BTreeMap::new());
 
-/// From now on, `runner` does the rehearsals of this process.
-pub fn run_by(runner: RehearsalRunner) {
+/// From now on, `runner` is the sandbox of this process.
+pub fn run_by(runner: SandboxRunner) {
     // If one was set before, that one stays.
     let _ = RUNNER.set(runner);
 }
 
-/// Rehearses a job, unless that was done before. Only one job runs at a time. Without a runner
+/// Does a job in the sandbox, unless that was done before. Only one job runs at a time. Without a runner
 /// nothing happens.
 ///
 /// # Errors
 /// What the job exhausted: it must not be done in this process.
-pub fn rehearse(stage: &str, job: &[u8]) -> Result<(), RehearsalFailure> {
+pub fn try_in_sandbox(stage: &str, job: &[u8]) -> Result<(), SandboxFailure> {
     let Some(runner) = RUNNER.get() else { return Ok(()) };
     let mut hasher = blake3::Hasher::new();
     hasher.update(stage.as_bytes()).update(&[0]).update(job);

@@ -1,4 +1,4 @@
-//! Rehearses large texts: naga could exhaust the memory or stack of the process on them, so they
+//! A sandbox for large texts: naga could exhaust the memory or stack of the process on them, so they
 //! are tried in another process first.
 
 use serde::{Deserialize, Serialize};
@@ -7,15 +7,15 @@ use super::limits;
 use lamplight_bundle::{Language, Stage};
 use lamplight_compose::{Composed, lean};
 use lamplight_diagnostic::{Diagnostic, codes};
-use lamplight_files::rehearse;
+use lamplight_files::sandbox;
 
-/// The stage of [`rehearse::rehearse`] that runs naga.
+/// The stage of [`sandbox::try_in_sandbox`] that runs naga.
 pub const STAGE: &str = "naga";
 
 /// What the other process does: it validates a text and, if asked to, writes it.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename = "Job")]
-pub struct RehearsalJob {
+pub struct SandboxJob {
     /// Language of the text.
     pub language: Language,
     /// Stage of a text in GLSL.
@@ -23,13 +23,13 @@ pub struct RehearsalJob {
     /// The text, without comments and layout.
     pub text: String,
     /// What is written from it.
-    pub outputs: Option<RehearsalOutputs>,
+    pub outputs: Option<SandboxOutputs>,
 }
 
 /// An entry point, the targets to write it for, and conventions, by their names.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(rename = "Outputs")]
-pub struct RehearsalOutputs {
+pub struct SandboxOutputs {
     /// Name of the entry point.
     pub entry: String,
     /// Names of the targets.
@@ -45,23 +45,23 @@ pub struct RehearsalOutputs {
 ///
 /// # Errors
 /// `limit-exceeded` where it exceeds a limit, `naga-exhausted` where the other process died.
-pub fn rehearse(
+pub fn try_in_sandbox(
     composed: &Composed,
     placed: &Composed,
-    outputs: impl FnOnce() -> Option<RehearsalOutputs>,
+    outputs: impl FnOnce() -> Option<SandboxOutputs>,
 ) -> Result<(), Diagnostic> {
     if limits::check_limits(composed)?.is_none() {
         return Ok(());
     }
-    // A text and its lean form share one rehearsal.
+    // A text and its lean form share one run in the sandbox.
     let text = lean(composed).text;
     let (language, stage) = (composed.language, composed.stage);
-    let job = RehearsalJob { language, stage, text, outputs: outputs() };
+    let job = SandboxJob { language, stage, text, outputs: outputs() };
     let Ok(job) = serde_json::to_vec(&job) else { return Ok(()) };
-    rehearse::rehearse(STAGE, &job).map_err(|how| exhausted_process(placed, &how))
+    sandbox::try_in_sandbox(STAGE, &job).map_err(|how| exhausted_process(placed, &how))
 }
 
-fn exhausted_process(composed: &Composed, how: &rehearse::RehearsalFailure) -> Diagnostic {
+fn exhausted_process(composed: &Composed, how: &sandbox::SandboxFailure) -> Diagnostic {
     let error = Diagnostic::error(codes::NAGA_EXHAUSTED, format!("naga {how} over this shader"));
     let error = match limits::check_limits(composed) {
         Ok(Some(large)) => {

@@ -1,4 +1,4 @@
-//! `lamplight rehearse`: does work that might crash its process, in a process with limits on memory
+//! `lamplight sandbox`: does work that might crash its process, in a process with limits on memory
 //! and time. This program calls itself in this way when input is near a limit; nobody else does.
 
 use std::io::{Read, Write};
@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 use clap::Args;
 
 use super::failure::Failure;
-use crate::limits::REHEARSAL_SECONDS;
-use crate::rehearse::{RehearsalFailure, run_by};
+use crate::limits::SANDBOX_SECONDS;
+use crate::sandbox::{SandboxFailure, run_by};
 use crate::scene::{self, Equirect};
 use crate::{link, validate};
 
@@ -22,17 +22,17 @@ pub struct Arguments {
 
 /// The limit in wall-clock time. The main limit is in processor time, which does not advance while
 /// a process waits.
-const LONGEST: Duration = Duration::from_secs(12 * REHEARSAL_SECONDS);
+const LONGEST: Duration = Duration::from_secs(12 * SANDBOX_SECONDS);
 /// How many bytes of a process's error output are read.
 const WORDS: u64 = 64 << 10;
 
-/// Makes [`run_rehearsal`] in another process do the rehearsals of this one.
-pub fn install_rehearsal() {
+/// Makes [`run_in_sandbox`] in another process the sandbox of this one.
+pub fn install_sandbox() {
     run_by(in_a_child);
 }
 
 /// Runs in the other process: the job is on standard input.
-pub fn run_rehearsal(arguments: Arguments) -> Result<(), Failure> {
+pub fn run_in_sandbox(arguments: Arguments) -> Result<(), Failure> {
     limit_process()?;
     let mut job = Vec::new();
     std::io::stdin().lock().read_to_end(&mut job)?;
@@ -56,8 +56,8 @@ fn limit_process() -> Result<(), Failure> {
     // No limit is raised above what the user allows. The job gets at most half of the memory that
     // the user allows, since the process that starts it has threads and files of its own.
     let limits = [
-        (Resource::As, crate::limits::REHEARSAL_BYTES, 2),
-        (Resource::Cpu, REHEARSAL_SECONDS, 1),
+        (Resource::As, crate::limits::SANDBOX_BYTES, 2),
+        (Resource::Cpu, SANDBOX_SECONDS, 1),
         (Resource::Core, 0, 1),
     ];
     for (resource, most, part) in limits {
@@ -75,11 +75,11 @@ fn limit_process() -> Result<(), Failure> {
 }
 
 /// Runs a job in a child process. Where no process can be started, the job is done here without a
-/// rehearsal, as a library does.
-fn in_a_child(stage: &str, job: &[u8]) -> Result<(), RehearsalFailure> {
+/// sandbox, as a library does.
+fn in_a_child(stage: &str, job: &[u8]) -> Result<(), SandboxFailure> {
     let Ok(program) = std::env::current_exe() else { return Ok(()) };
     let child = Command::new(program)
-        .args(["rehearse", stage])
+        .args(["sandbox", stage])
         // One thread, since each would reserve a large stack.
         .env("RAYON_NUM_THREADS", "1")
         // The allocator must not reserve address space in advance: it would take so much that
@@ -122,16 +122,16 @@ fn exit_status(child: &mut Child) -> Option<ExitStatus> {
     None
 }
 
-fn failure_of(status: Option<ExitStatus>, words: &str) -> Result<(), RehearsalFailure> {
+fn failure_of(status: Option<ExitStatus>, words: &str) -> Result<(), SandboxFailure> {
     match status {
         Some(status) if status.success() => Ok(()),
-        None => Err(RehearsalFailure::Time),
-        Some(status) if is_out_of_time(status) => Err(RehearsalFailure::Time),
-        Some(_) if words.contains("overflowed its stack") => Err(RehearsalFailure::Stack),
-        Some(_) if words.contains("memory allocation") => Err(RehearsalFailure::Memory),
+        None => Err(SandboxFailure::Time),
+        Some(status) if is_out_of_time(status) => Err(SandboxFailure::Time),
+        Some(_) if words.contains("overflowed its stack") => Err(SandboxFailure::Stack),
+        Some(_) if words.contains("memory allocation") => Err(SandboxFailure::Memory),
         Some(status) => {
             let last = words.lines().next().unwrap_or_default();
-            Err(RehearsalFailure::Stopped(format!("{status} {last}").trim().to_owned()))
+            Err(SandboxFailure::Stopped(format!("{status} {last}").trim().to_owned()))
         }
     }
 }
