@@ -36,6 +36,7 @@ use lamplight::picture::{Linear, Picture, Plan, PreparedPass, Shot, Surroundings
 use libtest_mimic::{Failed, Trial};
 
 use crate::fragments::{self, Tally, Watched};
+pub use pages::gallery_cards;
 
 /// The drivers. Each draws in another language, so that both languages are drawn.
 const BACKENDS: [(&str, Language); 2] = [("vulkan", Language::Wesl), ("gl", Language::Glsl)];

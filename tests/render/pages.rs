@@ -10,7 +10,7 @@ use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 
 use super::difference::{Difference, is_recorded};
-use super::{library, on_device, plan, read, reviewed_path, said, shot, start};
+use super::{library, on_device, plan, said, shot, start};
 
 /// Presets that the evaluator draws too. They have shading at vertices and at fragments, textures,
 /// cube maps, flat and cube shadow maps, blurred moments, and surfaces with two sides.
@@ -59,107 +59,97 @@ fn without_driver(name: &str) -> Result<(), Failed> {
     })
 }
 
-/// The folder of the large pictures.
+/// The page of the repository, and the comparisons that it shows.
 const GALLERY: &str = "docs/gallery";
-/// The smaller form of a large picture is three times as wide as the reviewed picture.
-const TIMES: u32 = 3;
-/// The largest mean distance, and the largest distance of 99 % of the pixels. They are larger than
-/// for reviewed pictures, since large pictures have finer edges and some have finer shadows.
-const FINER: (f64, f64) = (2.0, 14.0);
-/// A picture with bounds of its own: its bricks are smooth to their edges, so that highlights are
-/// smaller than a pixel of the small picture.
-const HARD: [(&str, (f64, f64)); 1] = [("tech_gltf_maps", (4.0, 16.0))];
 
-/// The gallery is current: its pages have the presets and their composed texts, and every large
-/// picture was drawn from the present settings and texts and looks like the reviewed small one.
-/// `INSTA_UPDATE=always` writes the pages, but no picture.
+/// The gallery is current: the page of the repository has the presets, every picture that it shows is
+/// there, and every comparison was drawn from the present settings and texts. The page that
+/// `render --all` writes links what is written beside it. `INSTA_UPDATE=always` writes the page, but
+/// no picture.
 fn gallery_is_current() -> Result<(), Failed> {
-    let cards = library()
-        .presets
-        .iter()
-        .map(|preset| gallery::Card::new(&library().programs, preset, Language::Wesl));
-    let cards: Vec<gallery::Card> = cards.collect::<Result<_, _>>().map_err(said)?;
+    let (cards, strips) = gallery_cards()?;
     let cards: Vec<&gallery::Card> = cards.iter().collect();
-    let strips = library().programs.with_texts(comparisons).map_err(said)?;
-    let strips = strips
-        .into_iter()
-        .map(|one| gallery::StripCard::new(&library().programs, one, Language::Wesl));
-    let strips: Vec<gallery::StripCard> = strips.collect::<Result<_, _>>().map_err(said)?;
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(GALLERY);
-    let mut files = gallery::composed(&cards);
-    files.push(("README.md".to_owned(), gallery::markdown_page(&cards, &strips)));
-    files.push(("index.html".to_owned(), gallery::html_page(&cards, &strips)));
-    let mut stale = unlinked_texts(&folder, &files)?;
-    for (path, wanted) in files {
-        let found = std::fs::read_to_string(folder.join(&path)).unwrap_or_default();
-        if found != wanted && is_recorded() {
-            lamplight::output::write(&folder.join(&path), wanted.as_bytes())?;
-        } else if found != wanted {
-            stale.push(format!("{path} should have another text"));
-        }
-    }
-    let adapters = std::fs::read_to_string(folder.join("adapters.txt"))?;
-    let shot = shot(gallery::SIZE, gallery::SAMPLES, Language::Wesl);
-    for card in cards {
-        let (name, current) = (&card.preset.name, card.current(&shot));
-        if !adapters.lines().any(|line| line.starts_with(&current)) {
-            stale.push(format!("{name}.png was drawn from other settings or texts"));
-        }
-        match folder.join(format!("{name}.png")).exists() {
-            true => stale.extend(changed(&folder, name)?),
-            false => stale.push(format!("{name}.png is not there")),
-        }
-    }
-    for card in &strips {
-        if !adapters.lines().any(|line| line.starts_with(&card.current(&shot))) {
-            stale.push(format!("{} was drawn from other settings or texts", card.comparison.name));
-        }
-        read(&folder.join(gallery::strip_file(&card.comparison.name)))?;
-    }
+    let page = gallery::markdown_page(&cards, &strips);
+    let mut stale = stale_page(&folder.join("README.md"), &page)?;
+    stale.extend(missing_pictures(&folder, &page));
+    stale.extend(stale_strips(&folder, &strips)?);
+    stale.extend(full_page(&cards, &strips));
     if stale.is_empty() {
         return Ok(());
     }
-    let command = "lamplight render --all --force -o docs/gallery";
+    let command = "lamplight render --comparisons --force -o docs/gallery";
     Err(format!("the gallery is not current, run `{command}`:\n{}", stale.join("\n")).into())
+}
+
+/// What is wrong with the page of the repository.
+fn stale_page(page: &Path, wanted: &str) -> Result<Vec<String>, Failed> {
+    let found = std::fs::read_to_string(page).unwrap_or_default();
+    if found != wanted && is_recorded() {
+        lamplight::output::write(page, wanted.as_bytes())?;
+    } else if found != wanted {
+        return Ok(vec!["README.md should have another text".to_owned()]);
+    }
+    Ok(Vec::new())
+}
+
+/// Pictures that a page of Markdown shows and that are not there.
+fn missing_pictures(folder: &Path, page: &str) -> Vec<String> {
+    let shown = page.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let pictures = shown.filter(|path| path.ends_with(".png"));
+    let missing = pictures.filter(|path| !folder.join(path).is_file());
+    missing.map(|path| format!("{path} is not there")).collect()
+}
+
+/// Comparisons that were drawn from something else.
+fn stale_strips(folder: &Path, strips: &[gallery::StripCard]) -> Result<Vec<String>, Failed> {
+    let adapters = std::fs::read_to_string(folder.join("adapters.txt"))?;
+    let shot = shot(gallery::SIZE, gallery::SAMPLES, Language::Wesl);
+    let mut stale = Vec::new();
+    for card in strips {
+        let (name, start) = (&card.comparison.name, card.current(&shot));
+        if !adapters.lines().any(|line| line.starts_with(&start)) {
+            stale.push(format!("{name} was drawn from other settings or texts"));
+        }
+        let bytes = std::fs::read(folder.join(gallery::strip_file(name)))?;
+        if !is_own_png(&bytes) {
+            stale.push(format!("{name} is no picture of `render`"));
+        }
+    }
+    Ok(stale)
+}
+
+/// Files beside the full page that it does not link, and links to files that are not written.
+fn full_page(cards: &[&gallery::Card], strips: &[gallery::StripCard]) -> Vec<String> {
+    let page = gallery::html_page(cards, strips);
+    let pictures = cards.iter().map(|card| gallery::picture_file(&card.preset.name));
+    let strips = strips.iter().map(|card| gallery::strip_file(&card.comparison.name));
+    let texts = gallery::composed(cards).into_iter().map(|(path, _)| path);
+    let written: Vec<String> = pictures.chain(strips).chain(texts).collect();
+    let is_linked = |path: &str| page.contains(&format!("href=\"{path}\""));
+    let unlinked = written.iter().filter(|path| !is_linked(path));
+    let links = page.split("href=\"").skip(1).filter_map(|rest| rest.split('"').next());
+    let own = links.filter(|link| !link.starts_with('#') && !link.starts_with("https:"));
+    let missing = own.filter(|link| !written.iter().any(|path| path == link));
+    unlinked
+        .map(|path| format!("index.html does not link {path}"))
+        .chain(missing.map(|link| format!("index.html links {link}, which is not written")))
+        .collect()
+}
+
+/// What the pages say about all presets and comparisons.
+pub fn gallery_cards() -> Result<(Vec<gallery::Card>, Vec<gallery::StripCard>), Failed> {
+    let programs = &library().programs;
+    let cards = library().presets.iter();
+    let cards = cards.map(|preset| gallery::Card::new(programs, preset, Language::Wesl));
+    let strips = programs.with_texts(comparisons).map_err(said)?.into_iter();
+    let strips = strips.map(|one| gallery::StripCard::new(programs, one, Language::Wesl));
+    let cards = cards.collect::<Result<_, _>>().map_err(said)?;
+    Ok((cards, strips.collect::<Result<_, _>>().map_err(said)?))
 }
 
 fn comparisons(texts: &mut SourceSet) -> Result<Vec<strip::Comparison>, Diagnostics> {
     strip::library_comparisons(lamplight::LIBRARY_FILES, texts)
-}
-
-/// Composed texts that no page links, such as those of a preset that has another's text now.
-fn unlinked_texts(folder: &Path, files: &[(String, String)]) -> Result<Vec<String>, Failed> {
-    let mut unlinked = Vec::new();
-    for entry in std::fs::read_dir(folder.join("composed"))? {
-        let path = format!("composed/{}", entry?.file_name().to_string_lossy());
-        if !files.iter().any(|(linked, _)| *linked == path) {
-            unlinked.push(format!("{path} is linked by no page: delete it"));
-        }
-    }
-    Ok(unlinked)
-}
-
-/// The difference of a large picture and its smaller form from the reviewed picture, if it is too
-/// large.
-fn changed(folder: &Path, name: &str) -> Result<Option<String>, String> {
-    let [large, thumb] = gallery::picture_files(name).map(|file| folder.join(file));
-    let head = std::fs::read(&large).map_err(|error| format!("{}: {error}", large.display()))?;
-    // Width and height are the first numbers of the header.
-    let number = |at: usize| head.get(at..at + 4).and_then(|bytes| bytes.try_into().ok());
-    let size = [16, 20].map(|at| number(at).map_or(0, u32::from_be_bytes));
-    if size != gallery::SIZE || !is_own_png(&head) {
-        let expected = gallery::SIZE;
-        let what = format!("expected {expected:?} and a picture of `render`");
-        return Ok(Some(format!("{name}.png has {size:?} pixels, {what}")));
-    }
-    let wanted = read(&reviewed_path(name))?;
-    let difference = Difference::new(&wanted, &read(&thumb)?.shrunk(TIMES))?;
-    let (mean, most) = (difference.mean(), difference.most());
-    let bounds = HARD.iter().find(|(hard, _)| *hard == name).map_or(FINER, |(_, own)| *own);
-    let is_other = mean > bounds.0 || most > bounds.1;
-    Ok(is_other.then(|| {
-        format!("{name}.png looks different: {mean:.2} on average, {most:.1} for all but 1 %")
-    }))
 }
 
 fn png_round_trip() -> Result<(), Failed> {

@@ -1,14 +1,16 @@
 //! What a browser may load and run for a page: its content security policy.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use lamplight::browser::serve::{HttpServer, ServedFiles};
 use lamplight::browser::{Browser, BrowserPage};
+use lamplight::picture::gallery::{html_page, strip_file};
 use libtest_mimic::Failed;
 use serde_json::json;
 
 use super::{Outcome, PATIENCE, site, text, wait, without_errors};
+use crate::render;
 
 /// Pages of the site, each with what is there once it is complete.
 const PAGES: [(&str, &str); 8] = [
@@ -76,7 +78,7 @@ pub fn policy() -> Outcome {
         PATIENCE,
     )?;
     kept(&mut page, "the report")?;
-    let gallery = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/gallery/index.html");
+    let gallery = gallery(folder.path())?;
     let mut page = watched(&format!("file://{}", gallery.display()))?;
     page.until("document.querySelector('img')?.naturalWidth > 0", PATIENCE)?;
     kept(&mut page, "the gallery")
@@ -100,8 +102,23 @@ fn kept(page: &mut BrowserPage, name: &str) -> Outcome {
     Ok(())
 }
 
+/// The page of the gallery, beside the comparisons.
+fn gallery(folder: &Path) -> Result<PathBuf, Failed> {
+    let (cards, strips) = render::gallery_cards()?;
+    let cards: Vec<_> = cards.iter().collect();
+    let compared = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/gallery");
+    std::fs::create_dir(folder.join("compared"))?;
+    for card in &strips {
+        let file = strip_file(&card.comparison.name);
+        std::fs::copy(compared.join(&file), folder.join(&file))?;
+    }
+    let page = folder.join("index.html");
+    std::fs::write(&page, html_page(&cards, &strips))?;
+    Ok(page)
+}
+
 /// The page of a check of a module whose name is markup, with lines and a map.
-fn report(folder: &Path) -> Result<std::path::PathBuf, Failed> {
+fn report(folder: &Path) -> Result<PathBuf, Failed> {
     let name = "<img src=http://127.0.0.1:9>";
     let name = name.replace('/', "&");
     std::fs::write(

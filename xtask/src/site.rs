@@ -53,7 +53,7 @@ impl SiteBuild {
     }
 }
 
-/// Makes the npm package in `target/toolchain/`, then the site in `target/site/`.
+/// Makes the npm package in `target/toolchain/`, then the site in `target/site/`, with the gallery.
 pub fn run(arguments: &[String]) -> CommandResult {
     let (mut build, mut only) = (SiteBuild::Small, false);
     for argument in arguments {
@@ -68,11 +68,35 @@ pub fn run(arguments: &[String]) -> CommandResult {
         }
     }
     toolchain(build)?;
-    if only { Ok(()) } else { pages() }
+    if only {
+        return Ok(());
+    }
+    match build {
+        SiteBuild::Quick => pages(),
+        SiteBuild::Small => build_pages(Some(GALLERY)).and_then(|()| draw_gallery()),
+    }
 }
 
-/// Builds the site in `target/site/`, around the npm package that was built before.
+/// The page of the large pictures, from the site's folder.
+const GALLERY: &str = "gallery/index.html";
+
+/// Draws the gallery's large pictures into the site, with the software driver where there is no GPU.
+fn draw_gallery() -> CommandResult {
+    machine::prepare(&Some(vec!["mesa-vulkan-drivers"]))?;
+    let mut draw = cargo_command();
+    draw.args(["run", "--quiet", "--release", "--package", "lamplight", "--"]);
+    draw.args(["render", "--all", "--force", "--out", "target/site/gallery"]);
+    finish(&mut draw, "lamplight render --all")
+}
+
+/// Builds the site in `target/site/`, around the npm package that was built before, without large
+/// pictures.
 pub fn pages() -> CommandResult {
+    build_pages(None)
+}
+
+/// Builds the site. Its page of the gallery links the large pictures if there are any.
+fn build_pages(gallery: Option<&str>) -> CommandResult {
     let folder = root().join("site");
     if !machine::program("npm") {
         machine::install(&["npm"])?;
@@ -80,6 +104,8 @@ pub fn pages() -> CommandResult {
     let npm = |arguments: &[&str]| {
         let mut command = Command::new("npm");
         command.args(arguments).current_dir(&folder).stdout(Stdio::null());
+        command.env_remove("VITE_LARGE_PICTURES");
+        command.envs(gallery.map(|page| ("VITE_LARGE_PICTURES", page)));
         finish(&mut command, &format!("npm {}", arguments.join(" ")))
     };
     npm(&["ci", "--no-audit", "--no-fund", "--loglevel=error"])?;

@@ -41,6 +41,7 @@ fn rules() -> Vec<Trial> {
         Trial::test("house::links", links::lead_somewhere),
         Trial::test("house::leftovers", nothing_is_left_behind),
         Trial::test("house::leftovers_are_seen", leftovers_are_seen),
+        Trial::test("house::pictures", pictures_are_small),
         Trial::test("house::paths", paths_are_short),
         Trial::test("house::one_way_to_the_terminal", one_way::to_the_terminal),
         Trial::test("house::one_rename", one_way::to_rename),
@@ -90,6 +91,10 @@ const BINARIES: [&str; 13] = [
     "tests/regressions/record/valid",
 ];
 
+/// The largest size of all pictures of the documentation, in bytes. Large pictures are drawn by the
+/// build of the site.
+const PICTURES: u64 = 8_000_000;
+
 /// A path must have fewer characters. Windows allows 260, with the folder that holds the repository.
 const LONGEST: usize = 120;
 
@@ -107,6 +112,18 @@ fn nothing_is_left_behind() -> Result<(), Failed> {
     match found.is_empty() {
         true => Ok(()),
         false => Err(found.join("\n").into()),
+    }
+}
+
+/// The pictures of the documentation are small together.
+fn pictures_are_small() -> Result<(), Failed> {
+    let files = git(&["ls-files", "-z", "docs/*.png", "docs/*.svg"])?;
+    let sizes = files.iter().filter_map(|path| Path::new(ROOT).join(path).metadata().ok());
+    let size: u64 = sizes.map(|metadata| metadata.len()).sum();
+    match size {
+        0 => Err("no picture was found in docs".into()),
+        1..=PICTURES => Ok(()),
+        _ => Err(format!("the pictures in docs have {size} bytes, more than {PICTURES}").into()),
     }
 }
 

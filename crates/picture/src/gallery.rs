@@ -1,7 +1,7 @@
 //! The gallery: every preset as a picture, with everything that it was made from.
 //!
-//! It is written as Markdown, beside its pictures, and as HTML, in light or dark colours as the reader
-//! prefers.
+//! The gallery is a page of HTML beside large pictures and composed texts. The repository has another
+//! page, in Markdown, which shows the small pictures that the tests compare.
 
 use crate::frame::{Programs, Stages};
 use crate::passes::prepare_passes;
@@ -21,8 +21,6 @@ use std::sync::Arc;
 /// The size of the gallery's pictures in pixels, and the samples for each pixel.
 pub const SIZE: [u32; 2] = [960, 720];
 pub const SAMPLES: u32 = 16;
-/// The pictures on the pages are smaller by this factor.
-pub const THUMB: u32 = 2;
 
 /// One preset with its picture.
 pub struct Exhibit {
@@ -108,17 +106,17 @@ impl Card {
         render_command(&self.preset.name)
     }
 
-    /// Each function of the library that its text has: the path, and its page of the catalogue.
-    fn functions(&self) -> impl Iterator<Item = (&str, String)> {
-        self.functions.iter().filter_map(|path| {
+    /// Each function of the library that its text has: the path, and its page below `docs`.
+    fn functions(&self, docs: &str) -> impl Iterator<Item = (&str, String)> {
+        self.functions.iter().filter_map(move |path| {
             let (module, name) = path.rsplit_once("::")?;
-            Some((name, format!("../catalogue/{}.md#{name}", module.replace("::", "/"))))
+            Some((name, format!("{docs}/catalogue/{}.md#{name}", module.replace("::", "/"))))
         })
     }
 
     /// How the line of [`adapter_lines`] begins if the picture is up to date.
     pub fn current(&self, shot: &Shot) -> String {
-        current_line(&format!("{}.png", self.preset.name), shot, &self.fingerprint)
+        current_line(&picture_file(&self.preset.name), shot, &self.fingerprint)
     }
 }
 
@@ -248,9 +246,14 @@ fn named_functions(stages: &Stages) -> Vec<String> {
     all.collect::<std::collections::BTreeSet<_>>().into_iter().collect()
 }
 
-/// The path of a picture beside the page, and that of its small form, which the page shows.
-pub fn picture_files(name: &str) -> [String; 2] {
-    [format!("{name}.png"), format!("thumbs/{name}.png")]
+/// The path of a picture beside the page of HTML.
+pub fn picture_file(name: &str) -> String {
+    format!("{name}.png")
+}
+
+/// The path of a small picture from the page of Markdown.
+fn thumb_file(name: &str) -> String {
+    format!("../../tests/render/reviewed/{name}.png")
 }
 
 /// The composed texts, by path beside the page. Cards with the same texts share those of the first.
@@ -267,7 +270,7 @@ fn first_alike(cards: &[&Card]) -> Vec<usize> {
     cards.iter().map(first).collect()
 }
 
-/// Which driver drew which picture from what: a line for each picture, for people and for tests.
+/// Which driver drew which picture from what: a line for each picture.
 pub fn adapter_lines(exhibits: &[Exhibit], shot: &Shot) -> String {
     let line = |exhibit: &Exhibit| format!("{}, {}\n", exhibit.card.current(shot), exhibit.adapter);
     exhibits.iter().map(line).collect()
@@ -276,23 +279,19 @@ pub fn adapter_lines(exhibits: &[Exhibit], shot: &Shot) -> String {
 /// Pictures in one row of the overview.
 const COLUMNS: usize = 4;
 
-/// The page. Pictures and their smaller forms are beside it.
+/// The page of the repository, `docs/gallery/README.md`. Small pictures are those of the tests.
 pub fn markdown_page(cards: &[&Card], strips: &[StripCard]) -> String {
-    let mut text = "# Gallery\n\n`lamplight render --all` draws every published example and every \
-                    comparison. Each picture here is a link to\nits large form. \
-                    [adapters.txt](adapters.txt) says which driver drew which picture.\n"
-        .to_owned();
+    let mut text =
+        "# Gallery\n\nEvery published example and every comparison. `lamplight render --all` \
+                    draws them large, beside a page that has the\ncomposed texts too. The site has \
+                    that page under `gallery/`.\n"
+            .to_owned();
     text.push_str("\n## Comparisons\n");
     strips.iter().for_each(|card| write_strip(&mut text, card));
-    let firsts = first_alike(cards);
-    let mut at = 0;
     for group in cards.chunk_by(|a, b| a.preset.work() == b.preset.work()) {
         let _ = write!(text, "\n## {}\n\n", group[0].preset.work());
         write_overview(&mut text, group);
-        for card in group {
-            write_section(&mut text, card, cards[firsts[at]]);
-            at += 1;
-        }
+        group.iter().for_each(|card| write_section(&mut text, card));
     }
     text
 }
@@ -303,7 +302,7 @@ fn write_strip(text: &mut String, card: &StripCard) {
     let (doc, look) = (&card.comparison.doc, &card.comparison.look);
     let _ = write!(
         text,
-        "\n### {name}\n\n[![{name}]({file})]({file})\n\n{doc} **Look for:** {look}\n\n\
+        "\n### {name}\n\n![{name}]({file})\n\n{doc} **Look for:** {look}\n\n\
          ```sh\n{}\n```\n\n",
         card.command()
     );
@@ -328,21 +327,21 @@ fn write_overview(text: &mut String, cards: &[&Card]) {
     for row in cards.chunks(columns) {
         let cell = |card: &&Card| {
             let name = &card.preset.name;
-            let [_, thumb] = picture_files(name);
-            format!(" [![{name}]({thumb})](#{name})<br>`{name}` |")
+            format!(" [![{name}]({})](#{name})<br>`{name}` |", thumb_file(name))
         };
         let _ = writeln!(text, "|{}", row.iter().map(cell).collect::<String>());
     }
 }
 
-fn write_section(text: &mut String, card: &Card, first: &Card) {
+fn write_section(text: &mut String, card: &Card) {
     let preset = &card.preset;
     let name = &preset.name;
-    let [picture, thumb] = picture_files(name);
     let _ = write!(
         text,
-        "\n### {name}\n\n[![{name}]({thumb})]({picture})\n\n{} **Look for:** {}\n\n",
-        preset.doc, preset.look
+        "\n### {name}\n\n![{name}]({})\n\n{} **Look for:** {}\n\n",
+        thumb_file(name),
+        preset.doc,
+        preset.look
     );
     let _ = write!(text, "```sh\n{}\n```\n\n", card.command());
     for deviation in &preset.deviations {
@@ -354,7 +353,7 @@ fn write_section(text: &mut String, card: &Card, first: &Card) {
         let _ = writeln!(text, "- [{program}](../catalogue/programs.md#{anchor}): `{key}`");
     }
     let functions: Vec<String> =
-        card.functions().map(|(name, page)| format!("[{name}]({page})")).collect();
+        card.functions("..").map(|(name, page)| format!("[{name}]({page})")).collect();
     if !functions.is_empty() {
         let _ = writeln!(text, "- functions: {}", functions.join(", "));
     }
@@ -366,9 +365,6 @@ fn write_section(text: &mut String, card: &Card, first: &Card) {
     }
     if let Some(probe) = &preset.probe {
         let _ = writeln!(text, "- light probe: {probe}");
-    }
-    for file in first.files() {
-        let _ = writeln!(text, "- composed text: [{file}]({file})");
     }
 }
 
@@ -402,9 +398,15 @@ pre { overflow: auto; padding: .6rem .8rem; border: 1px solid var(--edge); borde
 </head>
 <body>
 <h1>Gallery</h1>
-<p><code>lamplight render --all</code> draws every published example and every comparison. Each picture here is a link to its large form.</p>
+<p><code>lamplight render --all</code> draws every published example and every comparison. Each picture is a link to its large form.</p>
 ";
 
+/// Where the page of HTML finds the documentation, since it can be anywhere.
+const DOCS: &str = concat!(env!("CARGO_PKG_REPOSITORY"), "/blob/main/docs");
+/// The page shows pictures smaller by this factor.
+const SHOWN: u32 = 2;
+
+/// The page beside the large pictures.
 pub fn html_page(cards: &[&Card], strips: &[StripCard]) -> String {
     let mut text = HEAD.to_owned();
     text.push_str("<nav>\n");
@@ -445,11 +447,11 @@ fn write_html_strip(text: &mut String, card: &StripCard) {
 fn write_article(text: &mut String, card: &Card, first: &Card) {
     let preset = &card.preset;
     let name = escape_markup(&preset.name);
-    let [picture, thumb] = picture_files(&name);
-    let [width, height] = SIZE.map(|side| side / THUMB);
+    let picture = picture_file(&name);
+    let [width, height] = SIZE.map(|side| side / SHOWN);
     let _ = writeln!(
         text,
-        "<article id=\"{name}\">\n<a href=\"{picture}\"><img alt=\"{name}\" src=\"{thumb}\" \
+        "<article id=\"{name}\">\n<a href=\"{picture}\"><img alt=\"{name}\" src=\"{picture}\" \
          width=\"{width}\" height=\"{height}\" loading=\"lazy\"></a>\n<div>\n<h3>{name}</h3>\n\
          <p>{}</p>\n<p class=\"look\">{}</p>\n<pre>{}</pre>\n<ul>",
         html_prose(&preset.doc),
@@ -461,12 +463,12 @@ fn write_article(text: &mut String, card: &Card, first: &Card) {
     }
     let _ = writeln!(text, "<li>{}</li>", escape_markup(&preset.source));
     for (program, key) in card.passes() {
-        let page =
-            html_link(&format!("../catalogue/programs.md#{}", program.replace('_', "-")), program);
+        let page = format!("{DOCS}/catalogue/programs.md#{}", program.replace('_', "-"));
+        let page = html_link(&page, program);
         let _ = writeln!(text, "<li>{page}: <code>{}</code></li>", escape_markup(&key));
     }
     let functions: Vec<String> =
-        card.functions().map(|(name, page)| html_link(&page, name)).collect();
+        card.functions(DOCS).map(|(name, page)| html_link(&page, name)).collect();
     if !functions.is_empty() {
         let _ = writeln!(text, "<li>functions: {}</li>", functions.join(", "));
     }

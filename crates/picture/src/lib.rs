@@ -27,11 +27,10 @@
 //!   the scene, and three bounces between its objects.
 //!
 //! The small pictures in `tests/render/reviewed/` were reviewed by eye. `tests/render.rs` draws and
-//! compares them, and leaves a picture of each difference in `target/tmp/render/`. No test draws
-//! the large pictures in `docs/gallery/`. Instead, a test compares two things. For each picture,
-//! `adapters.txt` has a hash of the settings and composed texts that it was drawn from, which must
-//! be those of now. And its thumbnail must look like the small picture. CONTRIBUTING.md says how
-//! both are recorded.
+//! compares them, and leaves a picture of each difference in `target/tmp/render/`. The repository's
+//! page of the gallery shows them too. The large pictures are drawn by the site's build. The
+//! comparisons in `docs/gallery/compared/` are kept as they are drawn. `adapters.txt` has a hash of the
+//! settings and composed texts of each, and a test compares it with that of now.
 //!
 //! A comparison (`shaderlib/comparisons.toml`) has several panels side by side. A panel shows a
 //! permutation, or an expression over the library's functions that is computed for every pixel

@@ -13,6 +13,9 @@ function distance(element: Element): number {
 const nearest = (some: Set<HTMLCanvasElement>): HTMLCanvasElement | undefined =>
     [...some].sort((a, b) => distance(a) - distance(b))[0];
 
+/** Where the build of the published site draws the large pictures. A quick build has none. */
+const LARGE = import.meta.env.VITE_LARGE_PICTURES as string | undefined;
+
 /** Every published example, drawn where it is seen. */
 export async function page(into: HTMLElement): Promise<(() => void) | void> {
     const { presets } = await toolchain.call(OWN, "studio");
@@ -22,9 +25,9 @@ export async function page(into: HTMLElement): Promise<(() => void) | void> {
             h("a", { href: `#/programs/${preset.program}?preset=${preset.name}`, "aria-label": preset.name }, canvas, h("h2", {}, preset.name)),
             h("p", {}, preset.doc), h("p", { class: "note" }, preset.source));
     });
-    into.replaceChildren(h("h1", {}, "Gallery"),
-        h("p", {}, "The examples that the library’s functions were published with, drawn by your browser."),
-        h("div", { class: "cards" }, ...cards));
+    const large = LARGE ? [" ", h("a", { href: LARGE }, "Large pictures, with the composed texts.")] : [];
+    const about = h("p", {}, "The examples that the library’s functions were published with, drawn by your browser.", ...large);
+    into.replaceChildren(h("h1", {}, "Gallery"), about, h("div", { class: "cards" }, ...cards));
     if (!await device()) return into.querySelector(".cards")!.before(h("p", { class: "wrong", role: "status" }, NO_DEVICE));
     // One after another, from the middle of the window outwards, and only what is still in view.
     const waiting = new Set<HTMLCanvasElement>();

@@ -1,4 +1,4 @@
-//! `lamplight render --all`: every preset, and the pages that show them.
+//! `lamplight render --all` and `lamplight render --comparisons`: every preset and every comparison.
 
 use std::io::Write;
 use std::time::Instant;
@@ -15,10 +15,12 @@ use crate::picture::gallery::{self, Card, Exhibit, StripCard};
 use crate::picture::strip::{self, Comparison};
 use crate::picture::{Picture, Plan, Shot};
 
-/// Files of the gallery that are not named after a preset.
-const PAGES: [&str; 3] = ["README.md", "index.html", "adapters.txt"];
+/// Which driver drew which picture.
+const ADAPTERS: &str = "adapters.txt";
+/// The page that shows all pictures.
+const PAGE: &str = "index.html";
 
-/// Draws all presets into a folder, with a page in Markdown and one in HTML.
+/// Draws all presets and comparisons into a folder, with a page that shows them.
 pub fn draw_gallery(
     entry: &ExecutorEntry,
     programs: &Programs,
@@ -28,7 +30,8 @@ pub fn draw_gallery(
     let start = Instant::now();
     let (presets, probes) = library_examples(programs)?;
     let compared = library_comparisons(programs)?;
-    check_folder(&folder, &presets, &compared)?;
+    let pictures = presets.iter().map(|preset| gallery::picture_file(&preset.name));
+    check_files(&folder, pictures.chain(strip_files(&compared)).chain([PAGE.to_owned()]))?;
     let plans = presets
         .iter()
         .map(|preset| Ok((preset, Plan::of_preset(programs, preset, &probes)?)))
@@ -37,11 +40,42 @@ pub fn draw_gallery(
     let draw_exhibit = |painter: &mut dyn Session, (preset, plan): &(&Preset, Plan)| {
         let exhibit = Exhibit::new(painter, programs, preset, plan, shot)
             .map_err(|problems| input_failure(programs, problems))?;
-        let [picture, thumb] = gallery::picture_files(&preset.name);
-        let small = exhibit.picture.shrunk(gallery::THUMB);
-        Ok((vec![(picture, png_of(&exhibit.picture)?), (thumb, png_of(&small)?)], exhibit))
+        let file = gallery::picture_file(&preset.name);
+        Ok((vec![(file, png_of(&exhibit.picture)?)], exhibit))
     };
     let exhibits = draw_all(entry, &plans, draw_exhibit, &mut folder)?;
+    let (strips, lines) = draw_strips(entry, programs, shot, &compared, &mut folder)?;
+    let cards: Vec<&Card> = exhibits.iter().map(|exhibit| &exhibit.card).collect();
+    for (path, text) in gallery::composed(&cards) {
+        folder.write(&path, text.as_bytes())?;
+    }
+    folder.write(PAGE, gallery::html_page(&cards, &strips).as_bytes())?;
+    let lines = gallery::adapter_lines(&exhibits, shot) + &lines;
+    finish_folder(folder, &lines, exhibits.len() + strips.len(), start)
+}
+
+/// Draws all comparisons into a folder.
+pub fn draw_comparisons(
+    entry: &ExecutorEntry,
+    programs: &Programs,
+    shot: &Shot,
+    mut folder: OutputFolder,
+) -> Result<(), Failure> {
+    let start = Instant::now();
+    let compared = library_comparisons(programs)?;
+    check_files(&folder, strip_files(&compared))?;
+    let (strips, lines) = draw_strips(entry, programs, shot, &compared, &mut folder)?;
+    finish_folder(folder, &lines, strips.len(), start)
+}
+
+/// Draws comparisons, and returns their lines for [`ADAPTERS`].
+fn draw_strips(
+    entry: &ExecutorEntry,
+    programs: &Programs,
+    shot: &Shot,
+    compared: &[Comparison],
+    folder: &mut OutputFolder,
+) -> Result<(Vec<StripCard>, String), Failure> {
     let draw_strip = |painter: &mut dyn Session, comparison: &Comparison| {
         let picture = strip::draw_strip(painter, programs, comparison, shot)
             .map_err(|problems| input_failure(programs, problems))?;
@@ -50,38 +84,33 @@ pub fn draw_gallery(
         let line = format!("{}, {}\n", card.current(shot), painter.adapter());
         Ok((vec![(gallery::strip_file(&comparison.name), png_of(&picture)?)], (card, line)))
     };
-    let (strips, drawn): (Vec<_>, Vec<_>) =
-        draw_all(entry, &compared, draw_strip, &mut folder)?.into_iter().unzip();
-    let lines = gallery::adapter_lines(&exhibits, shot) + &drawn.concat();
-    let cards: Vec<&Card> = exhibits.iter().map(|exhibit| &exhibit.card).collect();
-    folder.write("README.md", gallery::markdown_page(&cards, &strips).as_bytes())?;
-    for (path, text) in gallery::composed(&cards) {
-        folder.write(&path, text.as_bytes())?;
-    }
-    folder.write("index.html", gallery::html_page(&cards, &strips).as_bytes())?;
-    folder.write("adapters.txt", lines.as_bytes())?;
-    let shown = folder.path().display().to_string();
-    folder.finish()?;
-    let seconds = start.elapsed().as_secs_f64();
-    let adapter = exhibits.first().map_or("", |exhibit| exhibit.adapter.as_str());
-    let count = exhibits.len() + strips.len();
-    Ok(writeln!(stdout(), "{shown}: {count} pictures in {seconds:.1} s, {adapter}")?)
+    Ok(draw_all(entry, compared, draw_strip, folder)?.into_iter().unzip())
+}
+
+fn strip_files(compared: &[Comparison]) -> impl Iterator<Item = String> {
+    compared.iter().map(|comparison| gallery::strip_file(&comparison.name))
 }
 
 /// Fails if a file that would be replaced is not ours. This is checked first, since drawing takes
 /// minutes.
-fn check_folder(
-    folder: &OutputFolder,
-    presets: &[Preset],
-    compared: &[Comparison],
-) -> Result<(), Failure> {
-    let drawn = presets.iter().flat_map(|preset| gallery::picture_files(&preset.name));
-    let strips = compared.iter().map(|comparison| gallery::strip_file(&comparison.name));
-    let pages = PAGES.iter().map(ToString::to_string);
-    for file in pages.chain(drawn).chain(strips) {
+fn check_files(folder: &OutputFolder, files: impl Iterator<Item = String>) -> Result<(), Failure> {
+    for file in files.chain([ADAPTERS.to_owned()]) {
         folder.check(&file, None)?;
     }
     Ok(())
+}
+
+fn finish_folder(
+    mut folder: OutputFolder,
+    lines: &str,
+    count: usize,
+    start: Instant,
+) -> Result<(), Failure> {
+    folder.write(ADAPTERS, lines.as_bytes())?;
+    let shown = folder.path().display().to_string();
+    folder.finish()?;
+    let seconds = start.elapsed().as_secs_f64();
+    Ok(writeln!(stdout(), "{shown}: {count} pictures in {seconds:.1} s")?)
 }
 
 fn png_of(picture: &Picture) -> Result<Vec<u8>, Failure> {

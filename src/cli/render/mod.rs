@@ -60,14 +60,17 @@ pub struct Arguments {
     /// Draw every preset, with pages that show them.
     #[arg(long, conflicts_with_all = ["preset", "set", "program", "scene", "cascades"])]
     all: bool,
-    /// The file of the picture [default: the name of the preset, or `render.png`]; with `--all`, a
-    /// folder [default: `gallery`].
+    /// Draw every comparison.
+    #[arg(long, conflicts_with_all = ["preset", "set", "program", "scene", "cascades", "all"])]
+    comparisons: bool,
+    /// The file of the picture [default: the name of the preset, or `render.png`]; with `--all` and
+    /// `--comparisons`, a folder [default: `gallery`].
     #[arg(short, long = "out", alias = "output", value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Width and height in pixels [default: 512x512; 960x720 with `--all`].
+    /// Width and height in pixels [default: 512x512; 960x720 with `--all` or `--comparisons`].
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<[u32; 2]>,
-    /// Samples of each pixel, which are averaged [default: 4; 16 with `--all`; 1 on `eval`]. A
+    /// Samples of each pixel, which are averaged [default: 4; 16 with `--all` or `--comparisons`; 1 on `eval`]. A
     /// picture that reads earlier passes of the viewer has at most nine: all passes are drawn finer.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     samples: Option<u32>,
@@ -119,10 +122,13 @@ fn draw_picture(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(|(sources, problems)| Failure::Input(sources, problems))?;
     let entry = executor::find_drawing(&arguments.executor)?;
     let shot = make_shot(arguments, entry)?;
-    if arguments.all {
+    if arguments.all || arguments.comparisons {
         let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from("gallery"));
         let folder = output::OutputFolder::open(&folder, arguments.overwrite.replace())?;
-        return gallery::draw_gallery(entry, &programs, &shot, folder);
+        return match arguments.all {
+            true => gallery::draw_gallery(entry, &programs, &shot, folder),
+            false => gallery::draw_comparisons(entry, &programs, &shot, folder),
+        };
     }
     if let Some(comparison) = named_comparison(&programs, arguments)? {
         return draw_comparison(&programs, arguments, &comparison, &shot, entry);

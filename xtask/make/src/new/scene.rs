@@ -31,8 +31,7 @@ fn make(repository: &Repository<'_>, name: &str, rest: &[&str]) -> Result<NewFil
         format!("  materials of `material=array`: {}", materials(&palette)?),
         format!("{PRESETS}: `doc`, `look` and `source` of `tech_{name}` (test catalogue)"),
         format!("cargo run --release -- render tech_{name} -o {picture}; look at it"),
-        "cargo xtask record render/; cargo run --release -- render --all --force -o docs/gallery"
-            .to_owned(),
+        "cargo xtask record render/".to_owned(),
         "cargo xtask docs; cargo xtask record guide".to_owned(),
     ];
     let preset = format!("{}\n\n{}", presets.trim_end(), PRESET.replace("NAME", name));
