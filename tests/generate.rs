@@ -2,6 +2,7 @@
 //! do not change a byte, and errors from a cache are those of a fresh run.
 
 mod damaged;
+mod server;
 mod shards;
 mod shared;
 mod watched;
@@ -16,15 +17,16 @@ use libtest_mimic::{Failed, Trial};
 use serde_json::Value;
 use tempfile::TempDir;
 
+use server::{killed_server, shared_server, stopped_server};
 use shards::{mixed_shards, newer, parallel, shards, wrong_shards};
-use shared::{foreign_folder, shared_folder, shared_server};
+use shared::{foreign_folder, shared_folder};
 use watched::watch;
 
 type Outcome = Result<(), Failed>;
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [Case; 21] = [
+    let cases: [Case; 23] = [
         ("comments_and_layout_go_and_nothing_else", layout),
         ("a_second_run_does_nothing", nothing_to_do),
         ("an_edit_compiles_what_it_reaches", edits),
@@ -46,6 +48,8 @@ pub fn tests() -> Vec<Trial> {
         ("a_folder_can_be_shared", shared_folder),
         ("a_foreign_folder_is_no_store", foreign_folder),
         ("a_redis_server_can_be_shared", shared_server),
+        ("a_redis_server_that_is_killed_changes_nothing", killed_server),
+        ("a_redis_server_that_is_stopped_changes_nothing", stopped_server),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("generate::{name}"), case)).collect()
 }

@@ -11,6 +11,7 @@ mod manifests;
 mod pictures;
 mod printed;
 mod shaders;
+mod starved;
 mod stores;
 
 use std::fs;
@@ -37,6 +38,7 @@ pub fn tests() -> Vec<Trial> {
         isolated::tests(),
         linear::tests(),
         printed::tests(),
+        starved::tests(),
         stores::tests(),
     ];
     rows.chain(others.into_iter().flatten()).collect()

@@ -110,7 +110,7 @@ impl Command {
         names.iter().filter_map(|name| executors::find_executor(name)).collect()
     }
 
-    /// The GPUs that the command names. They are opened here, while the process has one thread.
+    /// The GPUs that the command names. They are opened here, before other threads have work.
     fn gpus(&self) -> cost::OpenedGpus {
         match self {
             Self::Cost(arguments) => arguments.open_gpus(),
@@ -147,11 +147,27 @@ fn asked_for_color() -> clap::ColorChoice {
     }
 }
 
+/// The stack of the command line in bytes. That of the main thread is what the user's shell allows, which
+/// may be too little to read the arguments.
+const STACK: usize = 8 << 20;
+
 /// Runs the command line of this process.
 pub fn main() -> ExitCode {
+    let worker = std::thread::Builder::new().stack_size(STACK).spawn(run_arguments);
+    match worker.map(std::thread::JoinHandle::join) {
+        Ok(Ok(code)) => code,
+        Ok(Err(panic)) => std::panic::resume_unwind(panic),
+        Err(error) => {
+            let reason = format!("no memory for a stack of {} MiB: {error}", STACK >> 20);
+            Failure::environment(reason).report(failure::DiagnosticForm::default())
+        }
+    }
+}
+
+fn run_arguments() -> ExitCode {
     let matches = described_command().try_get_matches().unwrap_or_else(wrong_usage);
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(wrong_usage);
-    // Done while there is only one thread.
+    // Done before other threads have work: the main thread only waits for this one.
     executors::prepare_process(&cli.command.executors());
     let gpus = cli.command.gpus();
     let form = cli.color.of(cli.diagnostics);

@@ -1,8 +1,6 @@
-//! Caches that several machines share: a folder, and a Redis server.
+//! Caches that several machines share: a folder, and the rules for every kind.
 
 use std::fs;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
 
 use super::{Outcome, Package, compiled, equal};
 
@@ -22,7 +20,7 @@ pub fn foreign_folder() -> Outcome {
 }
 
 /// Another machine, which has an empty cache, takes everything from the store and compiles nothing.
-fn shared(store: &str) -> Outcome {
+pub fn shared(store: &str) -> Outcome {
     let package = Package::new()?;
     package.generate(&["--store", store, "-o", "one"])?;
     fs::rename(package.path().join("cache"), package.path().join("cache of another machine"))?;
@@ -30,36 +28,4 @@ fn shared(store: &str) -> Outcome {
     equal(package.files("one")?, package.files("two")?)?;
     // Records that came from the store are now in the machine's own cache.
     equal(compiled(&package.generate(&["-o", "three"])?), 0)
-}
-
-/// Starts a Redis server and shares it. Without the feature `store`, the command must say that the
-/// feature is missing, and no server is started.
-pub fn shared_server() -> Outcome {
-    let package = Package::new()?;
-    let port = std::net::TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
-    let address = format!("redis://127.0.0.1:{port}");
-    let unanswered = package.run(&["gen", "--store", &address])?;
-    equal(unanswered.status.code(), Some(4))?;
-    if String::from_utf8_lossy(&unanswered.stderr).contains("--features store") {
-        return Ok(());
-    }
-    let folder = tempfile::tempdir()?;
-    let server = Command::new("redis-server")
-        .args(["--bind", "127.0.0.1", "--port", &port.to_string(), "--save", "", "--dir"])
-        .arg(folder.path())
-        .stdout(Stdio::null())
-        .spawn();
-    let mut server = server.map_err(|error| {
-        format!("redis-server: {error}; install it with `apt-get install redis-server`")
-    })?;
-    let start = Instant::now();
-    while std::net::TcpStream::connect(("127.0.0.1", port)).is_err()
-        && start.elapsed() < Duration::from_secs(10)
-    {
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    let outcome = shared(&address);
-    server.kill()?;
-    server.wait()?;
-    outcome
 }

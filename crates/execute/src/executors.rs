@@ -122,7 +122,7 @@ fn without_windows() {
         std::env::var_os(name).is_some_and(|value| std::path::Path::new(&value).is_absolute())
     };
     if !is_absolute("XDG_RUNTIME_DIR") && !is_absolute("WAYLAND_DISPLAY") {
-        // SAFETY: Rust's own accesses are locked, and the process has one thread.
+        // SAFETY: Rust's own accesses are locked, and the only other thread waits for this one.
         unsafe { std::env::set_var("WAYLAND_DISPLAY", "/nonexistent") };
     }
 }
