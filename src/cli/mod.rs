@@ -165,8 +165,11 @@ pub fn main() -> ExitCode {
 }
 
 fn run_arguments() -> ExitCode {
-    let matches = described_command().try_get_matches().unwrap_or_else(wrong_usage);
-    let cli = Cli::from_arg_matches(&matches).unwrap_or_else(wrong_usage);
+    let matches = described_command().try_get_matches();
+    let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
+        Ok(cli) => cli,
+        Err(error) => return print_usage(&error),
+    };
     // Done before other threads have work: the main thread only waits for this one.
     executors::prepare_process(&cli.command.executors());
     let gpus = cli.command.gpus();
@@ -180,11 +183,14 @@ fn run_arguments() -> ExitCode {
     }
 }
 
-/// Prints what is wrong with the arguments. They are quoted and may contain anything, so they are
-/// escaped; help is not.
-fn wrong_usage<T>(error: clap::Error) -> T {
+/// Prints help, or what is wrong with the arguments. They are quoted and may contain anything, so they
+/// are escaped; help is not.
+fn print_usage(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() {
-        error.exit();
+        return match error.print().and_then(|()| terminal::flush_stdout()) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => Failure::from(error).report(failure::DiagnosticForm::default()),
+        };
     }
     let in_color = match asked_for_color() {
         clap::ColorChoice::Always => true,
@@ -198,7 +204,7 @@ fn wrong_usage<T>(error: clap::Error) -> T {
         true => write!(terminal::colored_stderr(), "{}", text.ansi()),
         false => write!(terminal::stderr(), "{text}"),
     };
-    std::process::exit(error.exit_code())
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
 }
 
 fn dispatch_command(

@@ -14,6 +14,8 @@ pub const CASES: &[Case] = &[
     ("depfile_names", depfile_names),
     ("standard_input", standard_input),
     ("pipes", pipes),
+    #[cfg(target_os = "linux")]
+    ("a_full_disk_is_an_error", full),
     #[cfg(unix)]
     ("arguments_of_any_bytes", bytes),
     ("features_default", features_default),
@@ -42,6 +44,22 @@ fn stages() -> Outcome {
 
 fn is_output(entry: &fs::DirEntry) -> bool {
     entry.file_name().to_string_lossy().starts_with("lit.")
+}
+
+/// What cannot be printed is an error, also if it is help.
+#[cfg(target_os = "linux")]
+fn full() -> Outcome {
+    let package = Package::new(&[("lit.frag", FRAG)])?;
+    for arguments in
+        ["--help", "--version", "compile --help", "list", "compile lit.frag --target wgsl"]
+    {
+        let mut command = package.command("", arguments);
+        let output = command.stdout(fs::File::create("/dev/full")?).output()?;
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        equal((arguments, output.status.code()), (arguments, Some(4)))?;
+        equal(message.contains("No space left on device"), true)?;
+    }
+    Ok(())
 }
 
 /// Several files are compiled in one run. Errors in one do not hide those in the next, and then
