@@ -77,7 +77,7 @@ const WRONG: &[Wrong] = &[
     (
         "loop_of_nodes",
         || changed(|document| document["nodes"][0]["children"] = json!([0])),
-        "nodes[0]",
+        "nodes[0]: the node is its own descendant",
     ),
     ("tower_of_nodes", tower, "more than 100000 nodes"),
     ("no_number", || with_first(f32::NAN), "not finite"),

@@ -45,11 +45,15 @@ pub fn walk_scene(reader: &mut GltfReader<'_>) -> Result<PlacedNodes, String> {
     let mut placed = PlacedNodes::default();
     let mut open: Vec<_> = scene.nodes().map(|node| (node, DMat4::IDENTITY, 0)).collect();
     open.reverse();
-    let mut seen = 0;
+    let (mut seen, mut ancestors) = (0, Vec::new());
     while let Some((node, parent, depth)) = open.pop() {
         seen += 1;
         let place = format!("nodes[{}]", node.index());
-        // A node that is its own descendant would be walked without end.
+        ancestors.truncate(depth);
+        if ancestors.contains(&node.index()) {
+            return Err(format!("{place}: the node is its own descendant"));
+        }
+        ancestors.push(node.index());
         if seen > MODEL_NODES || depth > MODEL_NESTING {
             return Err(format!(
                 "{place}: more than {MODEL_NODES} nodes, or nesting deeper than {MODEL_NESTING}"
