@@ -45,8 +45,8 @@ pub fn main() -> Outcome<()> {
     draw(Path::new(&path), swaps, &mut |line| println!("{line}"))
 }
 
-/// Draws frames until the pipeline was swapped `swaps` times. Each event is reported to `tell`.
-pub fn draw(path: &Path, swaps: usize, tell: &mut dyn FnMut(String)) -> Outcome<()> {
+/// Draws frames until the pipeline was swapped `swaps` times. Each event is reported to `report`.
+pub fn draw(path: &Path, swaps: usize, report: &mut dyn FnMut(String)) -> Outcome<()> {
     let gpu = Gpu::open()?;
     // The time of the file is read before its contents. A change between the two is then noticed
     // after the next frame.
@@ -57,19 +57,19 @@ pub fn draw(path: &Path, swaps: usize, tell: &mut dyn FnMut(String)) -> Outcome<
     for frame in 0u64.. {
         let color = gpu.frame(&pipeline)?;
         if shown.replace(color) != Some(color) {
-            tell(format!("frame {frame}: {color:?}"));
+            report(format!("frame {frame}: {color:?}"));
         }
         if swapped == swaps {
             break;
         }
         thread::sleep(FRAME);
         let now = modified(path)?;
-        if std::mem::replace(&mut written, now) == now || !is_changed(&mut bundle, tell) {
+        if std::mem::replace(&mut written, now) == now || !is_changed(&mut bundle, report) {
             continue;
         }
         match gpu.pipeline(&bundle) {
             Ok(next) => (pipeline, swapped) = (next, swapped + 1),
-            Err(error) => tell(format!("the older pipeline stays: {error}")),
+            Err(error) => report(format!("the older pipeline stays: {error}")),
         }
     }
     Ok(())
@@ -80,17 +80,17 @@ fn modified(path: &Path) -> std::io::Result<SystemTime> {
 }
 
 /// Reads the bundle again. Returns whether the permutation that is drawn has changed.
-fn is_changed(bundle: &mut Bundle, tell: &mut dyn FnMut(String)) -> bool {
+fn is_changed(bundle: &mut Bundle, report: &mut dyn FnMut(String)) -> bool {
     let difference = match bundle.reload() {
         Ok(difference) => difference,
         Err(error) => {
-            tell(format!("the older bundle stays: {error}"));
+            report(format!("the older bundle stays: {error}"));
             return false;
         }
     };
     for change in &difference.permutations {
         let (entry, key, kind) = (&change.entry, &change.key, change.kind);
-        tell(format!("{} {entry} {key}: {kind} {}", change.program, change.parts.join(", ")));
+        report(format!("{} {entry} {key}: {kind} {}", change.program, change.parts.join(", ")));
     }
     difference.permutations.iter().any(|change| {
         (&*change.program, &*change.entry, &*change.key) == (PROGRAM, ENTRY, KEY)

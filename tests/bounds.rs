@@ -134,16 +134,16 @@ fn checks_are_those_of_the_manifest() -> Outcome {
         expect(&package.run(&all)?, 0, &[])?;
         let made = output(&package, "out", Target::MSL)?;
         let compile = [&["compile", "one.wesl", "--target", "msl"], arguments].concat();
-        let said = package.run(&compile)?;
-        expect(&said, 0, &[])?;
+        let output = package.run(&compile)?;
+        expect(&output, 0, &[])?;
         let is_checked = String::from_utf8_lossy(&made).contains("loop_bound");
-        if is_checked != expected || said.stdout != made {
-            let found = String::from_utf8_lossy(&said.stdout);
+        if is_checked != expected || output.stdout != made {
+            let found = String::from_utf8_lossy(&output.stdout);
             return Err(format!("{arguments:?}: expected checks: {expected}\n{found}").into());
         }
     }
-    let said = package.run(&["gen", "--bounds", "clamp"])?;
-    expect(&said, 2, &["expected one of: unchecked, restrict"])?;
+    let output = package.run(&["gen", "--bounds", "clamp"])?;
+    expect(&output, 2, &["expected one of: unchecked, restrict"])?;
     fs::write(package.path("lamplight.toml"), format!("{MANIFEST}bounds = \"restict\"\n"))?;
     let words = ["error[unknown-bounds]", "lamplight.toml:3:10", "did you mean `restrict`?"];
     expect(&package.run(&["gen"])?, 1, &words)
@@ -157,9 +157,9 @@ fn checks_are_measured() -> Outcome {
     fs::write(package.path("module.wesl"), function)?;
     for file in ["module.wesl", "one.wesl"] {
         let count = |bounds: &str| -> Result<String, Failed> {
-            let said = package.run(&["cost", file, "--spirv", "--bounds", bounds])?;
-            expect(&said, 0, &[])?;
-            Ok(String::from_utf8_lossy(&said.stdout).into_owned())
+            let output = package.run(&["cost", file, "--spirv", "--bounds", bounds])?;
+            expect(&output, 0, &[])?;
+            Ok(String::from_utf8_lossy(&output.stdout).into_owned())
         };
         let counts = [count("unchecked")?, count("restrict")?];
         if counts[0] == counts[1] {

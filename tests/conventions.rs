@@ -115,10 +115,12 @@ fn clip_in_manifest_and_cache() -> Outcome {
     let package = Package::new(&format!("{MANIFEST}clip = \"native\"\n"), SHADER)?;
     let is_converted = |out: &str| -> Result<bool, Failed> {
         let found = found(&package, out, "vs_main", Target::GLSL330)?;
-        let told = found.native.clip.ok_or("no clip space")?.is_converted;
-        match text(&found)?.contains(CONVERTS) == told {
-            true => Ok(told),
-            false => Err(format!("{out}: `is_converted` is {told}, the text differs").into()),
+        let is_converted = found.native.clip.ok_or("no clip space")?.is_converted;
+        match text(&found)?.contains(CONVERTS) == is_converted {
+            true => Ok(is_converted),
+            false => {
+                Err(format!("{out}: `is_converted` is {is_converted}, the text differs").into())
+            }
         }
     };
     let runs: [(&[&str], bool); 4] =
@@ -132,9 +134,9 @@ fn clip_in_manifest_and_cache() -> Outcome {
     }
     for (arguments, expected) in [(&[][..], false), (&["--clip", "wgpu"], true)] {
         let compile = ["compile", "one.wesl", "--target", "glsl330", "--entry", "vs_main"];
-        let said = package.run(&[&compile, arguments].concat())?;
-        expect(&said, 0, &["gl_Position = "])?;
-        if String::from_utf8_lossy(&said.stdout).contains(CONVERTS) != expected {
+        let output = package.run(&[&compile, arguments].concat())?;
+        expect(&output, 0, &["gl_Position = "])?;
+        if String::from_utf8_lossy(&output.stdout).contains(CONVERTS) != expected {
             return Err(format!("compile {arguments:?}: expected converted: {expected}").into());
         }
     }
@@ -143,8 +145,8 @@ fn clip_in_manifest_and_cache() -> Outcome {
     if is_converted("one.lamplight")? {
         return Err("the single file has another clip space".into());
     }
-    let said = package.run(&["gen", "--clip", "opengl"])?;
-    expect(&said, 2, &["expected one of: wgpu, native"])?;
+    let output = package.run(&["gen", "--clip", "opengl"])?;
+    expect(&output, 2, &["expected one of: wgpu, native"])?;
     fs::write(package.path("lamplight.toml"), format!("{MANIFEST}clip = \"natve\"\n"))?;
     let words = ["error[unknown-clip]", "lamplight.toml:3:8", "did you mean `native`?"];
     expect(&package.run(&["gen"])?, 1, &words)
@@ -167,20 +169,22 @@ fn registers() -> Outcome {
     for (entry, semantics) in [("vs_main", &["LOC0", "LOC4"][..]), ("fs_main", &[])] {
         let found = found(&package, "bundle", entry, Target::HLSL)?;
         let text = text(&found)?;
-        let (mut said, told) = (registers_in(&text)?, registers_told(&found, &text)?);
+        let (mut written, reflected) = (registers_in(&text)?, reflected_registers(&found, &text)?);
         // naga declares both heaps, even if only one is used.
-        let heaps = told.iter().any(|(name, ..)| name.starts_with("naga"));
-        said.retain(|(name, ..)| !name.starts_with("naga") || heaps);
-        if said != told {
-            let what = format!("the text has {said:?}, the reflection {told:?}");
+        let heaps = reflected.iter().any(|(name, ..)| name.starts_with("naga"));
+        written.retain(|(name, ..)| !name.starts_with("naga") || heaps);
+        if written != reflected {
+            let what = format!("the text has {written:?}, the reflection {reflected:?}");
             return Err(format!("{entry}: {what}:\n{text}").into());
         }
         let native = &found.native.semantics;
-        let told: Vec<String> =
+        let reflected_semantics: Vec<String> =
             native.iter().map(|one| format!("{}{}", one.name, one.index)).collect();
-        let lost = told.iter().find(|semantic| !text.contains(&format!(": {semantic}")));
-        if told != semantics || lost.is_some() {
-            let what = format!("the reflection has {told:?}, expected {semantics:?}");
+        let lost =
+            reflected_semantics.iter().find(|semantic| !text.contains(&format!(": {semantic}")));
+        if reflected_semantics != semantics || lost.is_some() {
+            let what =
+                format!("the reflection has {reflected_semantics:?}, expected {semantics:?}");
             return Err(format!("{entry}: semantics: {what}; not in the text: {lost:?}").into());
         }
     }
@@ -189,7 +193,7 @@ fn registers() -> Outcome {
 
 /// The registers that the text declares.
 fn registers_in(text: &str) -> Result<BTreeSet<Register>, Failed> {
-    let mut said = BTreeSet::new();
+    let mut written = BTreeSet::new();
     for line in text.lines() {
         let head = line.split_once(':').map(|(head, _)| head);
         let (Some(register), Some(head)) = (after(line, "register(", &[')']), head) else {
@@ -197,15 +201,15 @@ fn registers_in(text: &str) -> Result<BTreeSet<Register>, Failed> {
         };
         let name = head.split_whitespace().last().unwrap_or_default().to_owned();
         let (register, space) = register.split_once(", space").unwrap_or((register, "0"));
-        said.insert((name, register.to_owned(), space.parse()?));
+        written.insert((name, register.to_owned(), space.parse()?));
     }
-    Ok(said)
+    Ok(written)
 }
 
 /// The registers of the reflection. The text must use each sampler at the place in its heap that
 /// the reflection says.
-fn registers_told(found: &Found, text: &str) -> Result<BTreeSet<Register>, Failed> {
-    let mut told = BTreeSet::new();
+fn reflected_registers(found: &Found, text: &str) -> Result<BTreeSet<Register>, Failed> {
+    let mut registers = BTreeSet::new();
     for slot in &found.native.slots {
         let is_it =
             |binding: &&Binding| (binding.group, binding.binding) == (slot.group, slot.binding);
@@ -213,21 +217,25 @@ fn registers_told(found: &Found, text: &str) -> Result<BTreeSet<Register>, Faile
         let class = slot.register.clone().ok_or("no class of register")?;
         let number = slot.index.ok_or("no number")?;
         let space = slot.space.ok_or("no space")?;
-        told.insert((binding.name.clone(), format!("{class}{number}"), space));
+        registers.insert((binding.name.clone(), format!("{class}{number}"), space));
     }
     for heap in &found.native.sampler_heaps {
         let name = format!("{}[{}]", heap.name, heap.size);
-        told.insert((name, format!("s{}", heap.register), heap.space));
+        registers.insert((name, format!("s{}", heap.register), heap.space));
         for sampler in &heap.samplers {
             let array = format!("nagaGroup{}SamplerIndexArray", sampler.group);
             let place = format!("{}[{array}[{}]]", heap.name, sampler.element);
             if !text.contains(&place) {
                 return Err(format!("the text has no {place}").into());
             }
-            told.insert((array, format!("t{}", sampler.buffer_register), sampler.buffer_space));
+            registers.insert((
+                array,
+                format!("t{}", sampler.buffer_register),
+                sampler.buffer_space,
+            ));
         }
     }
-    Ok(told)
+    Ok(registers)
 }
 
 /// The name and the number of everything that a text in MSL or GLSL binds.
@@ -265,8 +273,8 @@ fn slots() -> Outcome {
     for target in [&[Target::MSL][..], &glsl_targets()].concat() {
         for entry in ["vs_main", "fs_main"] {
             let found = found(&package, "bundle", entry, target)?;
-            let said = bound(target, &text(&found)?);
-            let mut told = BTreeMap::new();
+            let written = bound(target, &text(&found)?);
+            let mut reflected = BTreeMap::new();
             for slot in &found.native.slots {
                 let is_it = |one: &&Binding| (one.group, one.binding) == (slot.group, slot.binding);
                 let binding = found.reflection.bindings.iter().find(is_it).ok_or("no binding")?;
@@ -277,12 +285,14 @@ fn slots() -> Outcome {
                 };
                 let number = slot.index.map_or("none".to_owned(), |index| index.to_string());
                 match target.name() {
-                    "msl" => told.insert(binding.name.clone(), format!("{kind}{number}")),
-                    _ => told.insert(slot.name.clone().ok_or("no name")?, number),
+                    "msl" => reflected.insert(binding.name.clone(), format!("{kind}{number}")),
+                    _ => reflected.insert(slot.name.clone().ok_or("no name")?, number),
                 };
             }
-            if said != told {
-                return Err(format!("{target} {entry}: text {said:?}, told {told:?}").into());
+            if written != reflected {
+                return Err(
+                    format!("{target} {entry}: text {written:?}, reflected {reflected:?}").into()
+                );
             }
             let combined: BTreeSet<_> =
                 found.native.combined.iter().map(|one| (one.texture, one.sampler)).collect();
@@ -314,7 +324,7 @@ fn first_instance() -> Outcome {
                 || name.is_empty() == is_there
                 || !text(&found)?.contains(&name)
             {
-                let what = format!("first instance: told `{name}`, expected one: {is_there}");
+                let what = format!("first instance: found `{name}`, expected one: {is_there}");
                 return Err(format!("{target}: {what}").into());
             }
         }
@@ -363,10 +373,14 @@ fn guide() -> Outcome {
         let column = columns.iter().position(|names| names.contains(&target.name()));
         let column = column.ok_or_else(|| format!("no column for {target}"))? + 1;
         let spaces = targets::find(*target).ok_or("no such target")?.clip;
-        let told: Vec<String> = [spaces.wgpu, spaces.native].iter().flat_map(in_words).collect();
-        let said: Vec<&str> = rows[2..].iter().map(|row| row[column]).collect();
-        if told != said {
-            return Err(format!("{target}: the guide says {said:?}, the target {told:?}").into());
+        let expected: Vec<String> =
+            [spaces.wgpu, spaces.native].iter().flat_map(in_words).collect();
+        let documented: Vec<&str> = rows[2..].iter().map(|row| row[column]).collect();
+        if expected != documented {
+            return Err(format!(
+                "{target}: the guide says {documented:?}, the target {expected:?}"
+            )
+            .into());
         }
     }
     Ok(())

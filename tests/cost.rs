@@ -7,6 +7,7 @@ mod offline;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use lamplight_testing::commands::stderr_text;
 use libtest_mimic::{Failed, Trial};
 use serde_json::Value;
 
@@ -42,15 +43,11 @@ fn lamplight(arguments: &[&str]) -> Result<Output, Failed> {
     command.args(["cost", "--no-cache"]).args(arguments).output().map_err(Failed::from)
 }
 
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
 /// The objects of `--json`.
 fn objects(arguments: &[&str]) -> Result<Vec<Value>, Failed> {
     let output = lamplight(&[arguments, &["--json"]].concat())?;
     if output.status.code() != Some(0) {
-        return Err(said(&output).into());
+        return Err(stderr_text(&output).into());
     }
     Ok(serde_json::from_slice(&output.stdout)?)
 }
@@ -147,7 +144,7 @@ const OWN_SHADER: &str = "@fragment fn fs(@location(0) at: vec4f) -> @location(0
 }
 ";
 
-/// `variants --cost` tells what an axis adds, for a boolean axis and for one that a specialisation
+/// `variants --cost` shows what an axis adds, for a boolean axis and for one that a specialisation
 /// constant chooses. `cost` of single permutations agrees with it. `cost` takes `warm` and `default`
 /// for keys, although a path of the library could be written the same way.
 fn axes() -> Outcome {
@@ -159,13 +156,13 @@ fn axes() -> Outcome {
         let command = command.args(arguments).args(["--manifest", "lamplight.toml", "--json"]);
         let output = command.current_dir(folder.path()).output()?;
         let value = serde_json::from_slice(&output.stdout);
-        value.map_err(|_| said(&output).into())
+        value.map_err(|_| stderr_text(&output).into())
     };
-    let told = run(&["variants", "--cost", "--gpu", "navi21"])?;
-    let changes = told[0]["changes"].as_array().cloned().unwrap_or_default();
+    let variants = run(&["variants", "--cost", "--gpu", "navi21"])?;
+    let changes = variants[0]["changes"].as_array().cloned().unwrap_or_default();
     let of = |axis: &str| -> Result<[i64; 3], Failed> {
         let found = changes.iter().find(|change| change["axis"] == axis);
-        let found = found.ok_or_else(|| format!("no changes of `{axis}`: {told}"))?;
+        let found = found.ok_or_else(|| format!("no changes of `{axis}`: {variants}"))?;
         let instructions = &found["figures"]["instructions"];
         let numbers = [&found["pairs"], &instructions["least"], &instructions["most"]];
         let numbers = numbers.map(|number| number.as_i64().unwrap_or(-1));
@@ -184,7 +181,7 @@ fn axes() -> Outcome {
     let rises = [counts[1] - counts[0], counts[2] - counts[0]];
     if rises[0] < warm[1] || rises[0] > warm[2] || rises[1] < loops[1] || rises[1] > loops[2] {
         let what = format!("`cost` counts {counts:?} for {keys:?}");
-        return Err(format!("{what}, `variants` tells warm {warm:?}, loops {loops:?}").into());
+        return Err(format!("{what}, `variants` shows warm {warm:?}, loops {loops:?}").into());
     }
     let unused = Command::new(env!("CARGO_BIN_EXE_lamplight"))
         .args(["variants", "--gpu", "navi21"])
@@ -248,9 +245,9 @@ struct Out { @builtin(position) p: vec4f, @location(0) n: vec3f, @location(1) @i
     };
     let (alone, counting) = (instructions(&alone, "")?, instructions(&counting, "")?);
     let (without, with) = (instructions(&both, "more=false")?, instructions(&both, "more")?);
-    let told = [stages(&alone), stages(&counting), stages(&without)];
-    if told != ["vertex", "compute", "vertex fragment"] {
-        return Err(format!("found the stages {told:?}").into());
+    let found = [stages(&alone), stages(&counting), stages(&without)];
+    if found != ["vertex", "compute", "vertex fragment"] {
+        return Err(format!("found the stages {found:?}").into());
     }
     if alone[0].1 < 5 || counting[0].1 < 3 || with[1].1 < without[1].1 + 5 {
         return Err(format!("too few: {alone:?} {counting:?} {without:?} {with:?}").into());
@@ -268,10 +265,10 @@ fn a_rise_fails() -> Outcome {
         lamplight(&[&["lighting::spot", "--gpu", "navi21", "--baseline", &path], more].concat())
     };
     let codes = |wanted: i32, output: Output| match output.status.code() {
-        Some(code) if code == wanted => Ok(said(&output)),
+        Some(code) if code == wanted => Ok(stderr_text(&output)),
         code => {
             let what = format!("exit code {code:?}, expected {wanted}");
-            Err(Failed::from(format!("{what}: {}", said(&output))))
+            Err(Failed::from(format!("{what}: {}", stderr_text(&output))))
         }
     };
     codes(0, compare(&[])?)?;
@@ -279,9 +276,9 @@ fn a_rise_fails() -> Outcome {
     let recorded = std::fs::read_to_string(&file)?;
     let lower = edit(&recorded, |driver, instructions| (driver, instructions - 1))?;
     std::fs::write(&file, &lower)?;
-    let told = codes(3, compare(&[])?)?;
-    if !told.contains("cone_smooth navi21 fragment: instructions") {
-        return Err(format!("the message does not name the figure that rose: {told}").into());
+    let message = codes(3, compare(&[])?)?;
+    if !message.contains("cone_smooth navi21 fragment: instructions") {
+        return Err(format!("the message does not name the figure that rose: {message}").into());
     }
     codes(0, compare(&["--rise", "2"])?)?;
     let other = edit(&recorded, |_, instructions| ("Mesa 1.2.3".to_owned(), instructions))?;
@@ -321,8 +318,8 @@ fn wrong_names() -> Outcome {
     ];
     for (arguments, code, text) in cases {
         let output = lamplight(arguments)?;
-        if output.status.code() != Some(code) || !said(&output).contains(text) {
-            let found = format!("{:?}: {}", output.status, said(&output));
+        if output.status.code() != Some(code) || !stderr_text(&output).contains(text) {
+            let found = format!("{:?}: {}", output.status, stderr_text(&output));
             let expected = format!("expected exit code {code} and `{text}`");
             return Err(format!("{arguments:?}: {expected}, found {found}").into());
         }
@@ -338,7 +335,7 @@ fn without_a_driver() -> Outcome {
         .env("LAMPLIGHT_RADV_MANIFEST", Path::new("/nowhere/radeon.json"))
         .output()?;
     match output.status.code() {
-        Some(4) if said(&output).contains("apt-get install mesa-vulkan-drivers") => Ok(()),
-        code => Err(format!("exit code {code:?}: {}", said(&output)).into()),
+        Some(4) if stderr_text(&output).contains("apt-get install mesa-vulkan-drivers") => Ok(()),
+        code => Err(format!("exit code {code:?}: {}", stderr_text(&output)).into()),
     }
 }

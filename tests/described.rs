@@ -63,10 +63,10 @@ pub fn same_twice<'a>(
     all: impl Iterator<Item = (&'a str, String)>,
 ) -> Vec<String> {
     let (mut known, mut problems) = (BTreeMap::new(), Vec::new());
-    for (name, said) in all {
-        if let Some(other) = known.insert(said.clone(), name) {
+    for (name, description) in all {
+        if let Some(other) = known.insert(description.clone(), name) {
             problems.push(format!(
-                "{folder}/{other}.rs and {name}.rs have the same {what} {said:?}: change the new one's"
+                "{folder}/{other}.rs and {name}.rs have the same {what} {description:?}: change the new one's"
             ));
         }
     }

@@ -107,21 +107,21 @@ fn limits() -> Result<(), Failed> {
         ("many.wesl", "not-shown"),
         ("output.wesl", "output-too-large"),
     ] {
-        let told =
-            told(folder.path(), &format!("compose {line} --feature a,b --diagnostics short"))?;
-        if !told.contains(&format!("error[{code}]")) || !told.ends_with("=> 1\n\n") {
-            return Err(format!("{line}: expected `{code}` and exit code 1, found {told}").into());
+        let found =
+            run_case(folder.path(), &format!("compose {line} --feature a,b --diagnostics short"))?;
+        if !found.contains(&format!("error[{code}]")) || !found.ends_with("=> 1\n\n") {
+            return Err(format!("{line}: expected `{code}` and exit code 1, found {found}").into());
         }
     }
-    let told =
-        told(folder.path(), "compile functions.wesl --target wgsl -o out --diagnostics short")?;
-    if told.lines().nth(1)
+    let found =
+        run_case(folder.path(), "compile functions.wesl --target wgsl -o out --diagnostics short")?;
+    if found.lines().nth(1)
         != Some(
             "functions.wesl:4097:12: error[limit-exceeded]: more than 4096 functions and structures",
         )
     {
         return Err(
-            format!("expected `limit-exceeded` at functions.wesl:4097, found {told}").into()
+            format!("expected `limit-exceeded` at functions.wesl:4097, found {found}").into()
         );
     }
     too_many_files()?;
@@ -214,17 +214,17 @@ fn odd_files() -> Result<(), Failed> {
     }
     let mut text = String::new();
     for line in lines {
-        text += &told(folder.path(), line)?;
+        text += &run_case(folder.path(), line)?;
     }
     for name in ["wesl.toml", "lamplight.toml"] {
         write(name, &[0xff, 0, b'[', 0x80, b'\n'])?;
-        text += &told(folder.path(), "compose fine.wesl")?;
+        text += &run_case(folder.path(), "compose fine.wesl")?;
         fs::remove_file(folder.path().join(name))?;
     }
     if cfg!(unix) { snapshot::check("diagnostics", "odd_files", text.trim_end()) } else { Ok(()) }
 }
 
-fn told(folder: &Path, line: &str) -> Result<String, Failed> {
+fn run_case(folder: &Path, line: &str) -> Result<String, Failed> {
     let output = run(folder, line)?;
     Ok(format!(
         "{line}\n{}=> {}\n\n",

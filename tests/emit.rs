@@ -187,10 +187,10 @@ fn panics() -> Outcome {
     let result: Result<(), _> =
         validate::on_large_stack(|| validate::guard("the text", || panic!("on purpose")));
     let error = result.err().ok_or("a panic was lost")?;
-    let told = error.code.name == "naga-internal"
+    let is_reported = error.code.name == "naga-internal"
         && error.message.contains("on purpose")
         && error.notes[0].contains("the text");
-    match told {
+    match is_reported {
         true => Ok(()),
         false => Err(format!("expected `naga-internal` with `on purpose`, found {error:?}").into()),
     }

@@ -80,18 +80,18 @@ fn swaps_while_it_draws() -> Result<(), Failed> {
         .spawn()?;
     let bundle = folder.path().join("live.lamplight");
     let started = guide::waits_for(|| bundle.is_file());
-    let mut told = Vec::new();
+    let mut lines = Vec::new();
     // The shader is edited after the first frame, so that the shader is replaced while frames are
     // drawn.
     let drawn = lamplight::execute::on_thread(|| {
-        let mut tell = |line: String| {
-            if told.is_empty() {
+        let mut report = |line: String| {
+            if lines.is_empty() {
                 let text = std::fs::read_to_string(&shader).unwrap_or_default();
                 let _ = std::fs::write(&shader, text.replace("0.5", "0.25"));
             }
-            told.push(line);
+            lines.push(line);
         };
-        hot_reload::draw(&bundle, 1, &mut tell).map_err(|error| error.to_string())
+        hot_reload::draw(&bundle, 1, &mut report).map_err(|error| error.to_string())
     });
     watch.kill()?;
     watch.wait()?;
@@ -99,7 +99,7 @@ fn swaps_while_it_draws() -> Result<(), Failed> {
         return Err("`watch` wrote nothing".into());
     }
     drawn.ok_or("the example panicked")??;
-    guide::shows_output(&page, "--example hot_reload", &told)
+    guide::shows_output(&page, "--example hot_reload", &lines)
 }
 
 /// The GLSL example of README compiles with glslc alone, from exported files.
@@ -138,11 +138,12 @@ fn wesl_crate_links() -> Result<(), Failed> {
 
 /// The build script compiles all permutations, and the example's program finds each of them.
 fn build_script_compiles() -> Result<(), Failed> {
-    let said = cargo(
+    let printed = cargo(
         &root(),
         &["run", "--quiet", "--frozen", "--package", "lamplight-build-script-example"],
     )?;
-    let keys: Vec<&str> = said.lines().filter_map(|line| Some(line.split_once(": ")?.0)).collect();
+    let keys: Vec<&str> =
+        printed.lines().filter_map(|line| Some(line.split_once(": ")?.0)).collect();
     let expected = ["cone=exponent", "cone=exponent,specular", "default", "specular"];
     match keys == expected {
         true => Ok(()),

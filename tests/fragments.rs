@@ -97,8 +97,8 @@ impl Watched<'_> {
 
     /// Whether the driver ran the fragment, even if the fragment was then discarded.
     fn is_covered(&self, pixel: usize) -> bool {
-        let told = self.targets.get(1).unwrap_or(&self.targets[0]);
-        four(told, pixel) != [SENTINEL; 4]
+        let target = self.targets.get(1).unwrap_or(&self.targets[0]);
+        four(target, pixel) != [SENTINEL; 4]
     }
 
     pub fn is_drawn(&self, pixel: usize) -> bool {

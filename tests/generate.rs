@@ -13,6 +13,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use lamplight::compose::lean;
+use lamplight_testing::commands::stderr_text;
 use libtest_mimic::{Failed, Trial};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -248,8 +249,7 @@ fn nothing_to_do() -> Outcome {
     let second = package.generate(&[])?;
     equal(&second["up_to_date"], &Value::Bool(true))?;
     // The run prints the warnings about texts that it did not compose again.
-    let told = |output: Output| String::from_utf8_lossy(&output.stderr).into_owned();
-    let again = told(package.run(&["gen", "--cache", "cache"])?);
+    let again = stderr_text(&package.run(&["gen", "--cache", "cache"])?);
     ensure(
         again.contains("unused-import") && again.contains("small.wesl:2:32"),
         format!("the second run does not print `unused-import` at small.wesl:2:32: {again}"),
@@ -352,11 +352,11 @@ fn mistakes() -> Outcome {
     package.write("tint.wesl", &wrong)?;
     let run = |place: &str| -> Result<String, Failed> {
         let output = package.run(&["--diagnostics", "short", "gen", "--cache", "cache"])?;
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
         equal(output.status.code(), Some(1))?;
-        equal(told.matches(place).count(), 1)
-            .map_err(|_| Failed::from(format!("expected one error at {place}: {told}")))?;
-        Ok(told)
+        equal(stderr.matches(place).count(), 1)
+            .map_err(|_| Failed::from(format!("expected one error at {place}: {stderr}")))?;
+        Ok(stderr)
     };
     let first = run("tint.wesl:3:")?;
     ensure(

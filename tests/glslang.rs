@@ -69,6 +69,6 @@ pub fn accepts_text(text: &str, stage: &str, options: &[&str]) -> Result<(), Fai
 pub fn run(folder: &Path, tool: &str, arguments: &[&str]) -> Result<(), String> {
     let mut command = Command::new(tool);
     command.current_dir(folder).args(arguments).stdin(Stdio::null());
-    let said = examples::run(&mut command).map(|_| ());
-    said.map_err(|error| format!("{tool}: {}", error.message().unwrap_or_default()))
+    let outcome = examples::run(&mut command).map(|_| ());
+    outcome.map_err(|error| format!("{tool}: {}", error.message().unwrap_or_default()))
 }

@@ -164,16 +164,16 @@ fn lacking() -> Result<(), Failed> {
             .check(&sources, &["mine.toml".to_owned()], &[Language::Wesl], open)
             .map_err(|errors| render(&sources, &errors))?;
         let lacking = check::lacking_text(&report);
-        let told = ["essl300", "webgl2"]
+        let prefixes = ["essl300", "webgl2"]
             .map(|one| format!("mine::pick (case 1, wesl on {one}): target `essl300`: "));
         let ran = |outcome: &&check::Outcome| outcome.passed();
         let counted = report.outcomes.iter().filter(ran).count() + lacking.lines().count();
         // Versions of GLSL before 4.30 lack them too.
-        let is_essl = |line: &&str| told.iter().any(|told| line.starts_with(told));
+        let is_essl = |line: &&str| prefixes.iter().any(|prefix| line.starts_with(prefix));
         let mut rest = lacking.lines().filter(|line| !is_essl(line));
         let is_alike = rest.all(|line| line.contains("array of arrays"));
-        let is_told = lacking.lines().filter(is_essl).count() == told.len() && is_alike;
-        if report.passed() && is_told && counted == report.outcomes.len() {
+        let is_listed = lacking.lines().filter(is_essl).count() == prefixes.len() && is_alike;
+        if report.passed() && is_listed && counted == report.outcomes.len() {
             Ok(())
         } else {
             let what = "expected essl300 and webgl2 to lack arrays of arrays, and no failure";

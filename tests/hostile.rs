@@ -87,12 +87,13 @@ pub fn run_within(kib: u64, folder: &TempDir, arguments: &[&str]) -> Result<Outp
 /// panicked nor reported an internal error.
 #[track_caller]
 pub fn fails(output: &Output, code: i32, words: &str) -> Outcome {
-    let told = String::from_utf8_lossy(&output.stderr) + String::from_utf8_lossy(&output.stdout);
-    let is_calm = !told.contains("panicked") && !told.contains("internal error");
-    if output.status.code() == Some(code) && told.contains(words) && is_calm {
+    let output_text =
+        String::from_utf8_lossy(&output.stderr) + String::from_utf8_lossy(&output.stdout);
+    let is_calm = !output_text.contains("panicked") && !output_text.contains("internal error");
+    if output.status.code() == Some(code) && output_text.contains(words) && is_calm {
         return Ok(());
     }
-    let start: String = told.chars().take(2000).collect();
+    let start: String = output_text.chars().take(2000).collect();
     let place = std::panic::Location::caller();
     let expected = format!("expected exit code {code} and `{words}`");
     Err(format!("{place}: {expected}, found {:?}: {start}", output.status).into())

@@ -238,18 +238,18 @@ fn difference_is_shown() -> Result<(), Failed> {
         .into_bytes()
         .into();
     let same = recorded::difference(&old, &old)?;
-    let said = recorded::difference(&old, &new)?;
+    let difference = recorded::difference(&old, &new)?;
     let parts = [
         "blur wesl fs_main: 1 of 2 keys",
         "blur [direction=across] wesl fs_main: glsl330 differ",
         "-#version 330 core",
         "+#version 440 core",
     ];
-    match same.is_empty() && parts.iter().all(|part| said.contains(part)) {
+    match same.is_empty() && parts.iter().all(|part| difference.contains(part)) {
         true => Ok(()),
         false => {
             let what = format!("expected no difference, found:\n{same}");
-            Err(format!("{what}\n---\nexpected {parts:?}, found:\n{said}").into())
+            Err(format!("{what}\n---\nexpected {parts:?}, found:\n{difference}").into())
         }
     }
 }
@@ -284,8 +284,9 @@ fn validators_accept() -> Result<(), Failed> {
     if refusals.is_empty() {
         return Ok(());
     }
-    let told: Vec<String> = refusals.iter().take(5).map(|refusal| format!("{refusal:?}")).collect();
-    Err(format!("{} of {} refused:\n{}", refusals.len(), some.len(), told.join("\n")).into())
+    let listed: Vec<String> =
+        refusals.iter().take(5).map(|refusal| format!("{refusal:?}")).collect();
+    Err(format!("{} of {} refused:\n{}", refusals.len(), some.len(), listed.join("\n")).into())
 }
 
 /// Every seventh output of a target, and those with a line that no output before them has. SPIR-V

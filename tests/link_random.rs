@@ -79,15 +79,15 @@ fn random_programs() -> Result<(), Failed> {
     let most = number("LAMPLIGHT_LINK_MOST", u64::MAX)?.try_into().unwrap_or(usize::MAX);
     let how = How { every, most, often, runner };
     let (mut next, started) = (seed, Instant::now());
-    let mut told = BTreeSet::new();
+    let mut reported = BTreeSet::new();
     while next < seed + programs {
         let end = (next + BATCH).min(seed + programs);
         batch(next..end, &how, &mut tally)?;
         next = end;
         for (kind, found) in &tally.findings {
             // A finding is written at once, so that it is kept if the run is ended.
-            if told.insert(kind.clone()) {
-                tell(kind, found, how.runner.as_ref())?;
+            if reported.insert(kind.clone()) {
+                report_finding(kind, found, how.runner.as_ref())?;
             }
         }
         if programs > PROGRAMS {
@@ -266,8 +266,9 @@ fn refusal(output: &Output, words: &str) -> Finding {
     // The author's names are between quotes. They and the places are left out, so that the same
     // mistake has the same kind in all programs.
     let unnamed = line.unwrap_or_default().split('\'').step_by(2);
-    let said: String = unnamed.flat_map(str::chars).filter(|one| !one.is_ascii_digit()).collect();
-    let kind = format!("{} is refused: {said}", output.target);
+    let message: String =
+        unnamed.flat_map(str::chars).filter(|one| !one.is_ascii_digit()).collect();
+    let kind = format!("{} is refused: {message}", output.target);
     Finding::new(kind, format!("{words}\n{text}"))
 }
 
@@ -302,7 +303,7 @@ fn guarded(program: &Program, seed: u64) -> Result<Verdict, Finding> {
 
 /// Writes the first program of a kind of finding to a file. It is made smaller if that is asked
 /// for.
-fn tell(kind: &str, found: &Found, runner: Option<&Runner>) -> Result<(), Failed> {
+fn report_finding(kind: &str, found: &Found, runner: Option<&Runner>) -> Result<(), Failed> {
     let folder = findings();
     std::fs::create_dir_all(&folder)?;
     let program = program(found.seed);

@@ -82,14 +82,14 @@ fn codes(found: &[Value]) -> Vec<&str> {
     found.iter().filter_map(|found| found["code"].as_str()).collect()
 }
 
-/// Errors of syntax, names and types are told at the author's places, for the permutation that is
+/// Errors of syntax, names and types are reported at the author's places, for the permutation that is
 /// shown. A file that is closed has none.
 fn diagnostics() -> Outcome {
     let mut session = Session::new(MAIN)?;
-    let first = session.told("main.wesl")?;
+    let first = session.diagnostics("main.wesl")?;
     expect(codes(&first).iter().all(|code| *code == "inactive"), &first)?;
     session.change(&MAIN.replace("vec4f(sum)", "vec4f(summ)"))?;
-    let unknown = session.told("main.wesl")?;
+    let unknown = session.diagnostics("main.wesl")?;
     let error = unknown.iter().find(|found| found["severity"] == 1).ok_or("no error")?;
     expect(error["range"]["start"] == json!({ "line": 17, "character": 17 }), error)?;
     expect(
@@ -97,16 +97,16 @@ fn diagnostics() -> Outcome {
         error,
     )?;
     session.change(&MAIN.replace("let up =", "let up"))?;
-    session.told("main.wesl")?;
+    session.diagnostics("main.wesl")?;
     session.change(&MAIN.replace("fs_main(", "fs_main"))?;
-    let syntax = session.told("main.wesl")?;
+    let syntax = session.diagnostics("main.wesl")?;
     expect(codes(&syntax).contains(&"unbalanced-bracket"), &syntax)?;
     session.change(&format!("import package::util::nothing;\n{MAIN}"))?;
-    let missing = session.told("main.wesl")?;
+    let missing = session.diagnostics("main.wesl")?;
     expect(codes(&missing).contains(&"missing-item"), &missing)?;
     let uri = session.uri("main.wesl")?;
-    session.tell("textDocument/didClose", json!({ "textDocument": { "uri": uri } }))?;
-    let closed = session.told("main.wesl")?;
+    session.notify("textDocument/didClose", json!({ "textDocument": { "uri": uri } }))?;
+    let closed = session.diagnostics("main.wesl")?;
     expect(closed.is_empty(), &closed)
 }
 
@@ -212,11 +212,11 @@ fn actions() -> Outcome {
         .replace("    return vec4f(sum);", calls)
         .replace("diffuse::lambert;", "diffuse::{lambert, oren_nayar};");
     let mut session = Session::new(&text)?;
-    let told = session.told("main.wesl")?;
+    let published = session.diagnostics("main.wesl")?;
     let parameters = json!({
         "textDocument": { "uri": session.uri("main.wesl")? },
         "range": { "start": { "line": 0, "character": 0 }, "end": { "line": 0, "character": 0 } },
-        "context": { "diagnostics": told },
+        "context": { "diagnostics": published },
     });
     let found = session.ask("textDocument/codeAction", parameters)?;
     let edit = |title: &str| {
@@ -226,17 +226,17 @@ fn actions() -> Outcome {
     expect(edit("Declare the feature `MISTY`") == Some(json!("MISTY = false\n")), &found)?;
     let import = "import lamplight::brdf::specular::phong;\n";
     let title = "Import `lamplight::brdf::specular::phong`";
-    expect(edit(title) == Some(json!(import)), &(&found, &told))?;
+    expect(edit(title) == Some(json!(import)), &(&found, &published))?;
     // The server warns of an unused import, and offers to remove it.
     session.change(&MAIN.replace("diffuse::lambert;", "diffuse::{lambert, oren_nayar};"))?;
-    let told = session.told("main.wesl")?;
+    let published = session.diagnostics("main.wesl")?;
     let parameters = json!({
         "textDocument": { "uri": session.uri("main.wesl")? },
-        "context": { "diagnostics": told },
+        "context": { "diagnostics": published },
     });
     let found = session.ask("textDocument/codeAction", parameters)?;
     let edit = &found[0]["edit"]["changes"][session.uri("main.wesl")?][0];
-    expect(found[0]["title"] == "Remove the import of `oren_nayar`", &(&found, &told))?;
+    expect(found[0]["title"] == "Remove the import of `oren_nayar`", &(&found, &published))?;
     let range = json!({
         "start": { "line": 1, "character": 41 },
         "end": { "line": 1, "character": 53 },
@@ -246,13 +246,13 @@ fn actions() -> Outcome {
 
 fn inactive() -> Outcome {
     let mut session = Session::new(MAIN)?;
-    let told = session.told("main.wesl")?;
-    let lines: Vec<u64> = told
+    let published = session.diagnostics("main.wesl")?;
+    let lines: Vec<u64> = published
         .iter()
         .filter(|found| found["code"] == "inactive" && found["tags"] == json!([1]))
         .filter_map(|found| found["range"]["start"]["line"].as_u64())
         .collect();
-    expect(lines == [3, 12, 15, 16], &told)?;
+    expect(lines == [3, 12, 15, 16], &published)?;
     let document = json!({ "textDocument": { "uri": session.uri("main.wesl")? } });
     let tokens = session.ask("textDocument/semanticTokens/full", document.clone())?;
     // The inactive lines are four of a function, three of a block and two statements. Each token has
@@ -264,7 +264,7 @@ fn inactive() -> Outcome {
 
 fn permutation() -> Outcome {
     let mut session = Session::new(MAIN)?;
-    session.told("main.wesl")?;
+    session.diagnostics("main.wesl")?;
     let uri = session.uri("main.wesl")?;
     let wrong = json!({ "uri": uri, "set": "fog,,cone" });
     expect(session.answer("lamplight/permutation", wrong)?.is_err(), &"a part without an axis")?;
@@ -274,8 +274,8 @@ fn permutation() -> Outcome {
         chosen["values"]["fog"] == "true" && chosen["axes"]["cone"]["values"][1] == "soft",
         &chosen,
     )?;
-    let told = session.told("main.wesl")?;
-    expect(told.iter().filter(|found| found["code"] == "inactive").count() == 1, &told)?;
+    let published = session.diagnostics("main.wesl")?;
+    expect(published.iter().filter(|found| found["code"] == "inactive").count() == 1, &published)?;
     let command = json!({ "command": "lamplight.composed", "arguments": [uri] });
     let text = session.ask("workspace/executeCommand", command)?;
     expect(text.as_str().is_some_and(|text| text.contains("sum = fade(sum);")), &text)?;
@@ -306,7 +306,7 @@ fn symbols_and_signature() -> Outcome {
 /// After any wrong message and any broken text, the server answers the next request.
 fn survives() -> Outcome {
     let mut session = Session::new(MAIN)?;
-    session.told("main.wesl")?;
+    session.diagnostics("main.wesl")?;
     send_garbage(&mut session)?;
     let deep = "(".repeat(100_000);
     let halves: Vec<String> = (0..MAIN.len()).step_by(37).map(|at| MAIN[..at].to_owned()).collect();
@@ -324,7 +324,7 @@ fn survives() -> Outcome {
     let hover = session.at("textDocument/hover", MAIN, "half(sum)", json!({}))?;
     expect(hover["contents"]["value"].is_string(), &hover)?;
     session.ask("shutdown", Value::Null)?;
-    session.tell("exit", Value::Null)?;
+    session.notify("exit", Value::Null)?;
     let status = session.child.wait()?;
     expect(status.success(), &status)
 }
@@ -375,7 +375,7 @@ fn ask_beyond_the_end(session: &mut Session, text: &str) -> Outcome {
 
 /// What Neovim prints, run without a screen in a package with a mistake in `main.wesl`.
 /// `cargo xtask test` installs it.
-fn said_by_neovim(arguments: impl FnOnce(&mut Command)) -> Result<String, Failed> {
+fn neovim_output(arguments: impl FnOnce(&mut Command)) -> Result<String, Failed> {
     let folder = tempfile::tempdir()?;
     let root = folder.path().canonicalize()?;
     fs::write(root.join("lamplight.toml"), MANIFEST)?;
@@ -397,7 +397,7 @@ fn said_by_neovim(arguments: impl FnOnce(&mut Command)) -> Result<String, Failed
 /// Neovim uses the server.
 fn neovim() -> Outcome {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/lsp/neovim.lua");
-    let said = said_by_neovim(|command| {
+    let printed = neovim_output(|command| {
         command
             .args(["NONE", "-c"])
             .arg(format!("luafile {}", script.display()))
@@ -406,5 +406,5 @@ fn neovim() -> Outcome {
     })?;
     let expected =
         ["diagnostics: ok", "hover: ok", "definition: ok", "rename: ok", "completion: ok"];
-    expect(expected.iter().all(|line| said.contains(line)), &said)
+    expect(expected.iter().all(|line| printed.contains(line)), &printed)
 }

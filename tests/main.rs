@@ -17,11 +17,11 @@ static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 mod bounds;
 mod browser;
 mod catalogue;
+mod command_line;
 mod conventions;
 mod cost;
 mod described;
 mod determinism;
-mod doors;
 mod drivers;
 mod emit;
 mod energy;
@@ -79,7 +79,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     cost::tests,
     described::tests,
     determinism::tests,
-    doors::tests,
+    command_line::tests,
     drivers::tests,
     emit::tests,
     energy::tests,

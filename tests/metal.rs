@@ -33,7 +33,7 @@ pub fn tests() -> Vec<Trial> {
         Trial::test("metal::expectations", expectations::hold),
         Trial::test("metal::functions", functions),
         Trial::test("metal::lookups", || lookups::compare(&files("lookups"))),
-        Trial::test("metal::crashes_are_told", crashes),
+        Trial::test("metal::crashes_are_reported", crashes),
     ]);
     tests
 }
@@ -46,7 +46,7 @@ fn files(folder: &str) -> Vec<PathBuf> {
     files
 }
 
-fn told(wrong: &[String]) -> Outcome {
+fn fail_with(wrong: &[String]) -> Outcome {
     if wrong.is_empty() { Ok(()) } else { Err(wrong.join("\n").into()) }
 }
 
@@ -75,7 +75,7 @@ fn mistakes() -> Outcome {
             wrong.push(format!("{}: {expected}, found {errors}", files[index].display()));
         }
     }
-    told(&wrong)
+    fail_with(&wrong)
 }
 
 /// The number of quads for each text.
@@ -101,7 +101,7 @@ fn functions() -> Outcome {
         let counts = format!("{} texts, {} references", files.len(), REFERENCES.len());
         wrong.push(format!("each text needs one reference: {counts}"));
     }
-    told(&wrong)
+    fail_with(&wrong)
 }
 
 fn tried(program: &mut CompiledProgram, text: usize, reference: &Reference) -> Result<(), String> {

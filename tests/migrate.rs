@@ -70,7 +70,7 @@ fn text() -> Outcome {
     let found = migrated(&engine()?);
     let messages: Vec<&str> = found.diagnostics.iter().map(|one| one.message.as_str()).collect();
     let mut text = format!(
-        "features {:?}\nnumbers {:?}\nconstants {:?}\ntold {messages:?}\n",
+        "features {:?}\nnumbers {:?}\nconstants {:?}\ndiagnostics {messages:?}\n",
         found.features, found.numbers, found.constants
     );
     for (path, file) in &found.files {
@@ -132,12 +132,13 @@ fn mutants() -> Outcome {
         }
         mutant.insert(path.clone(), lines.join("\n"));
         let found = migrated(&mutant);
-        let told = found.diagnostics.iter().filter(|one| one.code.name == "not-migrated").count();
-        if found.files.len() + told < files.len() {
+        let refused =
+            found.diagnostics.iter().filter(|one| one.code.name == "not-migrated").count();
+        if found.files.len() + refused < files.len() {
             let what = "has neither a rewritten file nor a diagnostic";
             return Err(format!("a file {what}, with this {path}:\n{}", mutant[path]).into());
         }
-        whole += usize::from(told == 0);
+        whole += usize::from(refused == 0);
     }
     match whole {
         100..=390 => Ok(()),
@@ -188,13 +189,13 @@ fn lamplight(folder: &Path, arguments: &[&str]) -> Result<Output, Failed> {
 
 /// Fails, with the place of the call, unless a command ended with a code and printed some words.
 #[track_caller]
-fn expect(output: &Output, code: i32, said: &str) -> Outcome {
+fn expect(output: &Output, code: i32, expected: &str) -> Outcome {
     let place = std::panic::Location::caller();
     let out = String::from_utf8_lossy(&output.stdout);
-    match output.status.code() == Some(code) && out.contains(said) {
+    match output.status.code() == Some(code) && out.contains(expected) {
         true => Ok(()),
         false => {
-            let expected = format!("{place}: expected exit code {code} and `{said}`");
+            let expected = format!("{place}: expected exit code {code} and `{expected}`");
             let found = format!("{:?}: {out}", output.status);
             Err(format!("{expected}, found {found}{}", String::from_utf8_lossy(&output.stderr))
                 .into())

@@ -123,7 +123,7 @@ fn target() -> Outcome {
     Ok(())
 }
 
-/// A new version of GLSL numbers its bindings if it can, and is told what it lacks by the table that
+/// A new version of GLSL numbers its bindings if it can, and gets what it lacks from the table that
 /// refuses it. Rules of a later version are none of its own.
 fn target_version() -> Outcome {
     for (name, numbering, lacks, lacks_not) in [
@@ -179,7 +179,7 @@ fn change() -> Outcome {
         }
     }
     match made::make(folder.path(), "change", "Three", &["New."]) {
-        Err(said) if said.contains("One, Two, Empty, Last") => Ok(()),
+        Err(message) if message.contains("One, Two, Empty, Last") => Ok(()),
         found => Err(format!("expected the known sections, found {found:?}").into()),
     }
 }
@@ -222,9 +222,9 @@ fn executor() -> Outcome {
     if code(text) != expected {
         return Err(format!("expected the code\n{expected}\nfound:\n{text}").into());
     }
-    let told =
+    let lines =
         ["//! other, as `vulkan` is. TODO", "//! Runs on: every system", "    // One line for"];
-    if let Some(lost) = told.iter().find(|told| !text.contains(**told)) {
+    if let Some(lost) = lines.iter().find(|lines| !text.contains(**lines)) {
         return Err(format!("a copy has no `{lost}`:\n{text}").into());
     }
     match described::same_twice(
@@ -355,16 +355,16 @@ fn mistakes() -> Outcome {
         ("x: f32", "Light", "`Light` is not one of the types"),
     ] {
         let made = made::make(&root(), "function", "brdf::fresh::f", &[parameters, result]);
-        if !made.as_ref().is_err_and(|said| said.contains(expected)) {
+        if !made.as_ref().is_err_and(|message| message.contains(expected)) {
             return Err(format!("{parameters}: expected `{expected}`, found {made:?}").into());
         }
     }
     for (kind, name, expected) in wrong {
         let rest: &[&str] = if kind == "function" { &["x: f32", "f32"] } else { &[] };
         match made::make(Path::new(&root()), kind, name, rest) {
-            Err(said) if said.contains(expected) => {}
-            Err(said) => {
-                let what = format!("expected `{expected}`, found `{said}`");
+            Err(message) if message.contains(expected) => {}
+            Err(message) => {
+                let what = format!("expected `{expected}`, found `{message}`");
                 return Err(format!("{kind} {name}: {what}").into());
             }
             Ok(_) => return Err(format!("{kind} {name}: expected `{expected}`, it is made").into()),

@@ -10,11 +10,11 @@ use std::sync::Mutex;
 
 use lamplight::LIBRARY_FILES;
 use lamplight::bundle::Language;
-use lamplight::diagnostic::Diagnostic;
 use lamplight::execute::kernel::Kernel;
 use lamplight::execute::{Session, executors, kernel, on_thread};
 use lamplight::proof::library::Library;
 use lamplight::source::SourceSet;
+use lamplight_testing::joined_messages;
 use libtest_mimic::{Failed, Trial};
 
 /// A property of functions that are called in one language.
@@ -62,19 +62,17 @@ impl Calls<'_> {
         let sources = Mutex::new(SourceSet::default());
         let library = Library::shipped(LIBRARY_FILES);
         let naga = library.module(&sources, module, self.language, &[function.to_owned()]);
-        let naga = naga.map_err(|errors| said(&errors))?;
-        kernel::build_kernel(&naga, function, &BTreeMap::new()).map_err(|error| said(&[error]))
+        let naga = naga.map_err(|errors| joined_messages(&errors))?;
+        kernel::build_kernel(&naga, function, &BTreeMap::new())
+            .map_err(|error| joined_messages(&[error]))
     }
 
     /// The results for rows of f32 arguments, one after another.
     fn run(&mut self, kernel: &Kernel, rows: &[Vec<f64>]) -> Result<Vec<f64>, String> {
         let words: Vec<u32> =
             rows.iter().flatten().map(|value| (*value as f32).to_bits()).collect();
-        let results = self.session.run(kernel, &words).map_err(|error| said(&[error]))?;
+        let results =
+            self.session.run(kernel, &words).map_err(|error| joined_messages(&[error]))?;
         Ok(results.into_iter().map(|word| f64::from(f32::from_bits(word))).collect())
     }
-}
-
-fn said(errors: &[Diagnostic]) -> String {
-    errors.iter().map(|error| error.message.clone()).collect::<Vec<_>>().join("; ")
 }

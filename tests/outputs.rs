@@ -44,8 +44,8 @@ fn lamplight(arguments: &[&str], folder: &Path) -> Outcome {
     match output.status.success() {
         true => Ok(()),
         false => {
-            let said = [output.stdout, output.stderr].concat();
-            Err(format!("{arguments:?}: {}", String::from_utf8_lossy(&said)).into())
+            let printed = [output.stdout, output.stderr].concat();
+            Err(format!("{arguments:?}: {}", String::from_utf8_lossy(&printed)).into())
         }
     }
 }
@@ -137,11 +137,11 @@ fn same_reflection(text: &str, found: &Found) -> Result<(), String> {
         .filter_map(|(_, one)| one.binding.map(|place| [place.group, place.binding]))
         .collect();
     places.sort_unstable();
-    let told: Vec<[u32; 2]> =
+    let reflected: Vec<[u32; 2]> =
         reflection.bindings.iter().map(|one| [one.group, one.binding]).collect();
-    match places == told {
+    match places == reflected {
         true => Ok(()),
-        false => Err(format!("the text binds {places:?}, the reflection {told:?}")),
+        false => Err(format!("the text binds {places:?}, the reflection {reflected:?}")),
     }
 }
 

@@ -64,7 +64,7 @@ fn library_functions() -> BTreeMap<String, CatalogueItem> {
 }
 
 /// What a line of a function's comment says after this word.
-fn told<'i>(item: &'i CatalogueItem, word: &str) -> Option<&'i str> {
+fn comment_value<'i>(item: &'i CatalogueItem, word: &str) -> Option<&'i str> {
     item.doc.iter().find_map(|line| line.trim().strip_prefix(word)).map(str::trim)
 }
 
@@ -158,7 +158,7 @@ const UNIT: [(&str, &str); 3] = [
 
 /// A call's arguments inside the domain.
 fn arguments_of(item: &CatalogueItem) -> Result<String, Failed> {
-    if let Some(given) = told(item, "At:") {
+    if let Some(given) = comment_value(item, "At:") {
         return Ok(given.to_owned());
     }
     let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
@@ -270,7 +270,7 @@ fn what_guards_cost() -> Outcome {
         let (with, without) = (library.get(&path), plain.get(&path));
         let (with, without) =
             with.zip(without).ok_or_else(|| format!("`{path}` has no figures"))?;
-        let reason = told(&item, "Reason:");
+        let reason = comment_value(&item, "Reason:");
         match (is_dear(*with, *without), reason) {
             (true, None) => wrong.push(format!("`{path}` is dear, and has no `Reason:`")),
             (false, Some(_)) => wrong.push(format!("`{path}` is cheap, and has a `Reason:`")),

@@ -64,13 +64,13 @@ fn seeded(kind: &Kind) -> Result<(), Failed> {
 fn failed_workers() -> Result<(), Failed> {
     let ended = |script: &str| {
         let status = Command::new("sh").args(["-c", script]).status()?;
-        Ok::<_, Failed>(ending::read_ending(status, "said"))
+        Ok::<_, Failed>(ending::read_ending(status, "message"))
     };
     for (script, expected) in [
         ("exit 0", Ok(None)),
-        ("exit 3", Ok(Some("said"))),
-        ("exit 4", Err("a worker ended with code 4: said")),
-        ("exit 101", Err("a worker ended with code 101: said")),
+        ("exit 3", Ok(Some("message"))),
+        ("exit 4", Err("a worker ended with code 4: message")),
+        ("exit 101", Err("a worker ended with code 101: message")),
         ("kill -9 $$", Ok(Some("aborts (signal: 9 (SIGKILL))"))),
     ] {
         let found = ended(script)?;

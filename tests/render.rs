@@ -154,7 +154,7 @@ fn linear_picture(
     scene: &str,
     size: [u32; 2],
 ) -> Result<Linear, String> {
-    let mut plan = Plan::of_key(&library().programs, program, key).map_err(said)?;
+    let mut plan = Plan::of_key(&library().programs, program, key).map_err(rendered)?;
     plan.scene = scene.to_owned();
     linear_plan(painter, language, &plan, size)
 }
@@ -167,20 +167,20 @@ fn linear_plan(
     size: [u32; 2],
 ) -> Result<Linear, String> {
     let shot = shot(size, 1, language);
-    let prepared = prepare_passes(painter, &library().programs, plan, &shot).map_err(said)?;
-    prepared.photograph(painter, &shot).map_err(said)
+    let prepared = prepare_passes(painter, &library().programs, plan, &shot).map_err(rendered)?;
+    prepared.photograph(painter, &shot).map_err(rendered)
 }
 
 pub fn shot(size: [u32; 2], samples: u32, language: Language) -> Shot {
     Shot { size, samples, exposure: 0.0, cascades: 1, language, surroundings: Surroundings::Usual }
 }
 
-pub fn said(problems: Diagnostics) -> String {
+pub fn rendered(problems: Diagnostics) -> String {
     render(&library().programs.texts(), &problems, Form::Short)
 }
 
 pub fn plan(preset: &Preset) -> Result<Plan, String> {
-    Plan::of_preset(&library().programs, preset, &library().probes).map_err(said)
+    Plan::of_preset(&library().programs, preset, &library().probes).map_err(rendered)
 }
 
 /// A preset looks like its reviewed picture, and its fragments have the evaluator's colours.
@@ -193,7 +193,7 @@ fn shown(
     let plan = plan(preset)?;
     let shot = shot(SIZE, SAMPLES, language);
     let picture = lamplight::picture::render_plan(painter, &library().programs, &plan, &shot)
-        .map_err(said)?;
+        .map_err(rendered)?;
     difference::reviewed(&picture, &preset.name, backend)?;
     // WGSL promises no accuracy for the angles of `gtao`. `frames/shipped/gtao` compares whole frames.
     if preset.program == "gtao" {
@@ -209,7 +209,8 @@ fn shown(
 /// there are enough.
 fn recomputed(painter: &dyn Session, plan: &Plan, language: Language) -> Result<Tally, String> {
     let small = shot(SMALL, 1, language);
-    let mut prepared = prepare_passes(painter, &library().programs, plan, &small).map_err(said)?;
+    let mut prepared =
+        prepare_passes(painter, &library().programs, plan, &small).map_err(rendered)?;
     // Drivers may choose how they blend two mip levels, so the textures have only one here.
     prepared.levels.clear();
     let (items, own) = (prepared.items.clone(), fragment_buffers(&prepared));
@@ -276,8 +277,9 @@ pub fn watched(
     let watched = watch::watch_entry(&stage.validated.module, stage.entry).ok_or("no colour")?;
     let views = [prepared.eye_view([0.0; 2], size).map_err(|problem| problem.message)?];
     let fragment = EntryPoint { module: &watched.module, entry: stage.entry };
-    let frames =
-        prepared.draw(painter, &views, size, Some((fragment, watched.targets))).map_err(said)?;
+    let frames = prepared
+        .draw(painter, &views, size, Some((fragment, watched.targets)))
+        .map_err(rendered)?;
     Ok(frames.into_iter().next().ok_or("no frame")?.targets)
 }
 

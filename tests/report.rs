@@ -215,20 +215,20 @@ const BROKEN: &[(&str, &str, &str, bool)] = &[
 fn broken_laws() -> Outcome {
     for (function, law, inputs, is_of_one_input) in BROKEN {
         let name = law.trim_start_matches("{ ").split(' ').next().unwrap_or_default();
-        let said = format!("the law `{name}` is broken");
+        let message = format!("the law `{name}` is broken");
         let case = format!(
             "[[case]]\nfunction = \"{function}\"\noracle = \"none\"\nlaws = [{law}]\ninputs = {inputs}\n"
         );
         let checked = Checked::new(MODULE, &case)?;
         checked.exits(3)?;
         let errors = checked.errors();
-        contains(&errors, &[&said])?;
+        contains(&errors, &[&message])?;
         match errors.find("[[case]]") {
             Some(start) if *is_of_one_input => {
                 let again =
                     Checked::new(MODULE, errors[start..].split("\n\n").next().unwrap_or_default())?;
                 again.exits(3)?;
-                contains(&again.errors(), &[&said])?;
+                contains(&again.errors(), &[&message])?;
             }
             None if !is_of_one_input => {}
             _ => {

@@ -87,7 +87,7 @@ impl Package {
 
     fn generate(&self) -> Outcome {
         let output = self.command(&self.bundle()).output()?;
-        if output.status.success() { Ok(()) } else { Err(said(&output).into()) }
+        if output.status.success() { Ok(()) } else { Err(code_and_stderr(&output).into()) }
     }
 
     /// Fails unless the bundle can be opened, has every permutation, and all checksums are right.
@@ -102,7 +102,7 @@ impl Package {
     }
 }
 
-fn said(output: &Output) -> String {
+fn code_and_stderr(output: &Output) -> String {
     format!("{:?}: {}", output.status.code(), String::from_utf8_lossy(&output.stderr))
 }
 
@@ -112,13 +112,13 @@ fn said(output: &Output) -> String {
 fn fails(output: &Output, code: i32, words: &str) -> Outcome {
     let place = std::panic::Location::caller();
     let error = String::from_utf8_lossy(&output.stderr);
-    let as_told =
+    let is_as_expected =
         output.status.code() == Some(code) && error.contains(words) && !error.contains("panicked");
-    if as_told {
+    if is_as_expected {
         Ok(())
     } else {
         let expected = format!("expected exit code {code} and `{words}`");
-        Err(format!("{place}: {expected}, found {}", said(output)).into())
+        Err(format!("{place}: {expected}, found {}", code_and_stderr(output)).into())
     }
 }
 
@@ -179,7 +179,7 @@ fn at_once() -> Outcome {
         for child in children {
             let output = child.wait_with_output()?;
             if !output.status.success() {
-                return Err(said(&output).into());
+                return Err(code_and_stderr(&output).into());
             }
         }
         packages[0].check().map_err(|failed| format!("round {round}: {failed:?}"))?;
@@ -237,7 +237,7 @@ fn damaged() -> Outcome {
     let file = package.folder.path().join("small.lamplight");
     let made = package.command(&file).output()?;
     if !made.status.success() {
-        return Err(said(&made).into());
+        return Err(code_and_stderr(&made).into());
     }
     let whole = std::fs::read(&file)?;
     for length in [0, 7, 100, 300, whole.len() / 2, whole.len() - 1] {
@@ -253,7 +253,7 @@ fn damaged() -> Outcome {
     fails(&inspect("verify", &file)?, 3, "damaged")?;
     std::fs::write(&file, whole)?;
     let output = inspect("verify", &file)?;
-    if output.status.success() { Ok(()) } else { Err(said(&output).into()) }
+    if output.status.success() { Ok(()) } else { Err(code_and_stderr(&output).into()) }
 }
 
 /// A bundle of another version is refused, and the next run replaces it.
@@ -264,11 +264,11 @@ fn versions() -> Outcome {
     let text = std::fs::read_to_string(&manifest)?;
     std::fs::write(&manifest, text.replacen("\"version\": 1", "\"version\": 99", 1))?;
     fails(&inspect("list", &package.bundle())?, 1, "version 99")?;
-    // The next run would lose what a newer version wrote, so it must be told to.
+    // The next run would lose what a newer version wrote, so it needs `--force`.
     fails(&package.command(&package.bundle()).output()?, 1, "newer than version 1")?;
     let forced = package.command(&package.bundle()).arg("--force").output()?;
     if !forced.status.success() {
-        return Err(said(&forced).into());
+        return Err(code_and_stderr(&forced).into());
     }
     package.check()
 }

@@ -12,13 +12,13 @@ use std::sync::{Arc, Mutex};
 use glam::{DMat4, DVec4};
 use lamplight::LIBRARY_FILES;
 use lamplight::bundle::Language;
-use lamplight::diagnostic::Diagnostic;
 use lamplight::execute::fixture::{
     Address, Compare, Fixture, FixtureSampler, FixtureTexture, TextureKind,
 };
 use lamplight::execute::{Session, executors, kernel, on_thread};
 use lamplight::proof::library::Library;
 use lamplight::source::{Memory, SourceSet};
+use lamplight_testing::joined_messages;
 use libtest_mimic::{Failed, Trial};
 
 use bias::{
@@ -230,21 +230,18 @@ impl Run<'_> {
         let module = self
             .library
             .module(&sources, "scene", self.language, &[function.to_owned()])
-            .map_err(|errors| said(&errors))?;
+            .map_err(|errors| joined_messages(&errors))?;
         let fixtures: BTreeMap<_, _> = map
             .into_iter()
             .flat_map(|(map, smp)| [("map", Fixture::Texture(map)), ("smp", Fixture::Sampler(smp))])
             .map(|(name, fixture)| (name.to_owned(), Arc::new(fixture)))
             .collect();
-        let kernel =
-            kernel::build_kernel(&module, function, &fixtures).map_err(|error| said(&[error]))?;
-        let results = self.session.run(&kernel, words).map_err(|error| said(&[error]))?;
+        let kernel = kernel::build_kernel(&module, function, &fixtures)
+            .map_err(|error| joined_messages(&[error]))?;
+        let results =
+            self.session.run(&kernel, words).map_err(|error| joined_messages(&[error]))?;
         Ok(results.into_iter().map(|word| f64::from(f32::from_bits(word))).collect())
     }
-}
-
-fn said(errors: &[Diagnostic]) -> String {
-    errors.iter().map(|error| error.message.clone()).collect::<Vec<_>>().join("; ")
 }
 
 /// A square depth map. The depth of a texel is a function of its centre.

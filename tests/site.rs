@@ -75,9 +75,9 @@ impl Opened {
 
 /// Waits for something. The error has the words that the page says meanwhile.
 fn wait(page: &BrowserPage, expression: &str) -> Outcome {
-    let said = "[document.visibilityState, ...[...document.querySelectorAll('#notice, .status, .wrong, .problems, .eval output')]
+    let messages = "[document.visibilityState, ...[...document.querySelectorAll('#notice, .status, .wrong, .problems, .eval output')]
         .map((it) => it.textContent)].join('; ')";
-    page.until(expression, PATIENCE).map_err(|problem| match text(page, said) {
+    page.until(expression, PATIENCE).map_err(|problem| match text(page, messages) {
         Ok(words) => format!("{problem}; the page says: {words}").into(),
         Err(_) => problem.into(),
     })

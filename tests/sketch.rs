@@ -153,11 +153,11 @@ fn refused() -> Outcome {
         ),
     ];
     for (text, expected) in cases {
-        let said = match drawn(text, &SketchOptions::default()) {
+        let message = match drawn(text, &SketchOptions::default()) {
             Ok(_) => "nothing".to_owned(),
             Err(error) => error.message().unwrap_or_default().to_owned(),
         };
-        assert!(said.contains(expected), "{text}: expected `{expected}`, found {said}");
+        assert!(message.contains(expected), "{text}: expected `{expected}`, found {message}");
     }
     Ok(())
 }

@@ -114,8 +114,8 @@ fn shared() -> Outcome {
 fn run(tool: &str, arguments: &[&str]) -> Result<String, Failed> {
     let output =
         Command::new(tool).args(arguments).output().map_err(|error| format!("{tool}: {error}"))?;
-    let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
-    if output.status.success() { Ok(said) } else { Err(format!("{tool}: {said}").into()) }
+    let printed = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+    if output.status.success() { Ok(printed) } else { Err(format!("{tool}: {printed}").into()) }
 }
 
 /// The id of the specialisation constant of an axis.
@@ -234,9 +234,9 @@ fn static_in_glsl() -> Outcome {
         )?;
     }
     let manifest = folder.path().join("lamplight.toml").to_string_lossy().into_owned();
-    let said = run(env!("CARGO_BIN_EXE_lamplight"), &["variants", "--manifest", &manifest])?;
+    let printed = run(env!("CARGO_BIN_EXE_lamplight"), &["variants", "--manifest", &manifest])?;
     let words = "static in GLSL, which is composed for each value: negative, taps";
-    check(said.contains(words), &format!("expected `{words}` in\n{said}"))
+    check(printed.contains(words), &format!("expected `{words}` in\n{printed}"))
 }
 
 /// A function of GLSL may use a specialisation constant: the outputs declare it, and Metal passes it
@@ -281,9 +281,10 @@ fn usage() -> Outcome {
     let mut sources = SourceSet::default();
     let manifest = project::read_manifest(&folder.path().join("lamplight.toml"), &mut sources)
         .map_err(|_| "no manifest")?;
-    let told: Vec<&str> =
+    let warnings: Vec<&str> =
         manifest.warnings.iter().map(|warning| warning.message.as_str()).collect();
     let names = ["`gone=1`", "`tint=mauve`", "no program `other`"];
-    let all = told.len() == 3 && told.iter().zip(names).all(|(told, name)| told.contains(name));
-    check(all, &format!("expected a warning for each of {names:?}, found {told:?}"))
+    let all = warnings.len() == 3
+        && warnings.iter().zip(names).all(|(warnings, name)| warnings.contains(name));
+    check(all, &format!("expected a warning for each of {names:?}, found {warnings:?}"))
 }

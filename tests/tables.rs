@@ -61,13 +61,15 @@ fn files_agree() -> Outcome {
             return Err(format!("{name}.ktx2 differs from {name}.bin: {head:?}").into());
         }
         let text = fs::read_to_string(folder().join(format!("{name}.toml")))?;
-        let told: toml::Table = text.parse()?;
-        let listed = told.get("channels").and_then(|channels| channels.as_array()).map(Vec::len);
-        let hash = told.get("blake3").and_then(|hash| hash.as_str());
+        let description: toml::Table = text.parse()?;
+        let listed =
+            description.get("channels").and_then(|channels| channels.as_array()).map(Vec::len);
+        let hash = description.get("blake3").and_then(|hash| hash.as_str());
         if hash != Some(&*sample::hash_of(name)?.to_hex()) {
             return Err(format!("{name}.toml describes another {name}.bin").into());
         }
-        if listed != Some(channels) || told.get("error").is_none_or(|error| !error.is_str()) {
+        if listed != Some(channels) || description.get("error").is_none_or(|error| !error.is_str())
+        {
             return Err(format!("{name}.toml does not describe the table: {text}").into());
         }
     }

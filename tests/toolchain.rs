@@ -132,7 +132,7 @@ fn permutations(asked: &mut Asked) -> Result<(), Failed> {
         }
     }
     let (presets, _) =
-        catalogue::library_examples(LIBRARY_FILES, &mut sources, &manifest).map_err(told)?;
+        catalogue::library_examples(LIBRARY_FILES, &mut sources, &manifest).map_err(message_of)?;
     let mut seen = BTreeSet::new();
     for preset in &presets {
         let missing = || format!("an example names the unknown program `{}`", preset.program);
@@ -153,7 +153,7 @@ fn permutation(
 ) -> Result<(), Failed> {
     let mut sources = SourceSet::default();
     let id = sources.add("key", text.to_owned());
-    let point = key::parse(&program.space, &Quoted::whole(&sources, id)).map_err(told)?;
+    let point = key::parse(&program.space, &Quoted::whole(&sources, id)).map_err(message_of)?;
     let glsl = program.glsl.iter().flat_map(|glsl| [&glsl.vertex, &glsl.fragment]).flatten();
     let roots: Vec<_> = if is_glsl { glsl.collect() } else { program.wesl.iter().collect() };
     let axes = program.space.axes().iter().enumerate();
@@ -194,12 +194,12 @@ fn shader(
 ) -> Result<(), Failed> {
     let language = lint::language(root).unwrap_or(Language::Wesl);
     let mut sources = SourceSet::default();
-    let graph = resolve::load(&mut sources, packages, root, language).map_err(told)?;
+    let graph = resolve::load(&mut sources, packages, root, language).map_err(message_of)?;
     let options = Options::default();
-    let composed = compose(&graph, settings, &options).map_err(told)?;
+    let composed = compose(&graph, settings, &options).map_err(message_of)?;
     let root = Root { graph: &graph, settings, options: &options, conventions: Default::default() };
-    let entries = entry_points(&composed).map_err(told)?;
-    let shaders = root.compile_with(&entries, &asked.linker).map_err(told)?;
+    let entries = entry_points(&composed).map_err(message_of)?;
+    let shaders = root.compile_with(&entries, &asked.linker).map_err(message_of)?;
     let mut expect = |what: String, bytes: Vec<u8>| {
         asked.expected.push((format!("{name}, {what}"), bytes));
     };
@@ -234,7 +234,7 @@ fn examples(asked: &mut Asked) -> Result<(), Failed> {
     let files = declared.into_iter().collect::<std::io::Result<BTreeMap<_, _>>>()?;
     let mut sources = SourceSet::default();
     let id = sources.add(project::MANIFEST, files[project::MANIFEST].clone());
-    let manifest = lamplight::permute::manifest::parse(&sources, id).map_err(told)?;
+    let manifest = lamplight::permute::manifest::parse(&sources, id).map_err(message_of)?;
     let program = manifest.program("lamp").ok_or("the example has no `lamp`")?;
     for point in program.space.enumerate() {
         let settings = program.space.settings(&point);
@@ -270,7 +270,7 @@ fn expressions(asked: &mut Asked) -> Result<(), Failed> {
         let Some(text) = LIBRARY_FILES.read(&path).ok().flatten() else { continue };
         let mut sources = SourceSet::default();
         let id = sources.add(path, text);
-        for (name, plot) in catalogue::plot::parse_plots(&sources, id).map_err(told)? {
+        for (name, plot) in catalogue::plot::parse_plots(&sources, id).map_err(message_of)? {
             let second = plot.curves.as_ref().and_then(|curves| curves.values.first().copied());
             let parameter = plot.curves.as_ref().map_or("unused", |curves| &curves.name);
             for (index, share) in [0.25, 0.6, 0.85].into_iter().enumerate() {
@@ -340,11 +340,11 @@ fn mistakes(asked: &mut Asked) -> Result<(), Failed> {
         if !found.iter().any(|one| one.severity == Severity::Error) {
             return Err(format!("the native tool finds no error in\n{text}").into());
         }
-        let told: String = found
+        let rendered: String = found
             .iter()
             .map(|one| render(&sources, std::slice::from_ref(one), Form::Human))
             .collect();
-        asked.expected.push((text.to_owned(), told.into_bytes()));
+        asked.expected.push((text.to_owned(), rendered.into_bytes()));
     }
     Ok(())
 }
@@ -385,13 +385,13 @@ fn formulas(asked: &mut Asked) -> Result<(), Failed> {
         let mut call = vec![json!(path)];
         call.extend(words.iter().map(|word| json!(word)));
         asked.references.push(Value::from(call));
-        let told: Vec<String> = value.iter().map(f64::to_string).collect();
-        asked.expected.push((path, told.join(" ").into_bytes()));
+        let numbers: Vec<String> = value.iter().map(f64::to_string).collect();
+        asked.expected.push((path, numbers.join(" ").into_bytes()));
     }
     Ok(())
 }
 
 /// The first message as a failure.
-fn told(problems: Diagnostics) -> Failed {
+fn message_of(problems: Diagnostics) -> Failed {
     format!("{:?}", problems.first().map(|one| &one.message)).into()
 }

@@ -176,15 +176,15 @@ impl Place {
         words.chain(force.then(|| "--force".to_owned())).collect()
     }
 
-    /// The exit code of a command and what it said on standard error. An endless command is stopped
+    /// The exit code of a command and what it stderr on standard error. An endless command is stopped
     /// after its first line on standard output.
     fn run(&self, words: &[String], endless: bool) -> Result<(i32, String), Failed> {
         let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
         command.args(words).current_dir(self.0.path()).stdin(Stdio::null());
         if !endless {
             let output = command.output()?;
-            let said = String::from_utf8_lossy(&output.stderr).into_owned();
-            return Ok((output.status.code().unwrap_or(-1), said));
+            let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+            return Ok((output.status.code().unwrap_or(-1), stderr));
         }
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn()?;
         let mut line = String::new();
@@ -195,23 +195,25 @@ impl Place {
             return Ok((0, line));
         }
         let output = child.wait_with_output()?;
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        Ok((output.status.code().unwrap_or(-1), said))
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+        Ok((output.status.code().unwrap_or(-1), stderr))
     }
 
     /// Fails unless the command ends with exit code 0.
     fn succeeds(&self, words: &[String], endless: bool) -> Outcome {
         match self.run(words, endless)? {
             (0, _) => Ok(()),
-            (code, said) => Err(format!("{words:?} should succeed: exit {code}: {said}").into()),
+            (code, stderr) => {
+                Err(format!("{words:?} should succeed: exit {code}: {stderr}").into())
+            }
         }
     }
 
     /// Fails unless the command ends with exit code 1, says that it cannot write, and gives help.
     fn refuses(&self, words: &[String], endless: bool) -> Outcome {
         match self.run(words, endless)? {
-            (1, said) if said.contains("cannot write") && said.contains("help: ") => Ok(()),
-            (code, said) => Err(format!("{words:?} should refuse: exit {code}: {said}").into()),
+            (1, stderr) if stderr.contains("cannot write") && stderr.contains("help: ") => Ok(()),
+            (code, stderr) => Err(format!("{words:?} should refuse: exit {code}: {stderr}").into()),
         }
     }
 }
@@ -330,9 +332,9 @@ fn standard_output() -> Outcome {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
     command.args(&words).current_dir(place.0.path());
     let piped = command.output()?;
-    let said = String::from_utf8_lossy(&piped.stderr);
+    let stderr = String::from_utf8_lossy(&piped.stderr);
     let wrote = piped.status.success() && !piped.stdout.is_empty();
-    ensure(wrote, format!("nothing came through standard output: {said}"))?;
+    ensure(wrote, format!("nothing came through standard output: {stderr}"))?;
     let file = place.at("redirected");
     fs::write(&file, "before\n")?;
     let status = command.stdout(fs::OpenOptions::new().append(true).open(&file)?).status()?;
@@ -367,9 +369,10 @@ fn parts() -> Outcome {
             words.extend(part.iter().map(|word| (*word).to_owned()));
             words
         };
-        let (code, said) = place.run(&words(false), false)?;
-        let told = format!("{part:?} should refuse with `this run would`: exit {code}: {said}");
-        ensure(code == 1 && said.contains("this run would"), told)?;
+        let (code, stderr) = place.run(&words(false), false)?;
+        let message =
+            format!("{part:?} should refuse with `this run would`: exit {code}: {stderr}");
+        ensure(code == 1 && stderr.contains("this run would"), message)?;
         ensure(listed(&place.at("out"))? == before, format!("{part:?} changed the bundle"))?;
     }
     Ok(())
@@ -383,8 +386,8 @@ fn incomplete_merge() -> Outcome {
     place.succeeds(&shard, false)?;
     let before = listed(&place.at("whole"))?;
     let merge = ["merge", "whole", "part", "--manifest", "lamplight.toml"].map(str::to_owned);
-    let (code, said) = place.run(&merge, false)?;
-    let told = format!("expected exit 3 and `parts are missing`, found {code}: {said}");
-    ensure(code == 3 && said.contains("parts are missing"), told)?;
+    let (code, stderr) = place.run(&merge, false)?;
+    let message = format!("expected exit 3 and `parts are missing`, found {code}: {stderr}");
+    ensure(code == 3 && stderr.contains("parts are missing"), message)?;
     ensure(listed(&place.at("whole"))? == before, "the failing merge changed the folder `whole`")
 }

@@ -7,7 +7,7 @@ mod placed;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output as Said};
+use std::process::{Command, Output as ProcessOutput};
 
 use lamplight::bundle::{Target, blob_files};
 use lamplight::emit::targets;
@@ -30,7 +30,7 @@ pub fn tests() -> Vec<Trial> {
         ("writers_are_placed", writers_are_placed),
         ("glsl_means_something_else", glsl_means_something_else),
         ("what_passed_is_known", what_passed_is_known),
-        ("missing_programs_are_told", missing_programs_are_told),
+        ("missing_programs_are_reported", missing_programs_are_reported),
         ("lines_of_few_permutations", lines_of_few_permutations),
         ("others_go_on", others_go_on),
         ("validated_once", validated_once),
@@ -85,32 +85,32 @@ impl Package {
         command
     }
 
-    pub fn run(&self, arguments: &[&str]) -> Result<Said, Failed> {
+    pub fn run(&self, arguments: &[&str]) -> Result<ProcessOutput, Failed> {
         Ok(self.command(arguments).output()?)
     }
 
     /// Makes the package's bundle and gives its outputs.
     fn outputs(&self) -> Result<Vec<Output>, Failed> {
-        let said = self.run(&["gen", "--no-cache"])?;
-        if !said.status.success() {
-            return Err(told(&said).into());
+        let output = self.run(&["gen", "--no-cache"])?;
+        if !output.status.success() {
+            return Err(output_text(&output).into());
         }
         Ok(validators::outputs(blob_files(self.path("bundle"))?)?)
     }
 }
 
-fn told(said: &Said) -> String {
-    let all = [said.stdout.as_slice(), said.stderr.as_slice()].concat();
+fn output_text(output: &ProcessOutput) -> String {
+    let all = [output.stdout.as_slice(), output.stderr.as_slice()].concat();
     String::from_utf8_lossy(&all).into_owned()
 }
 
 /// Fails, with the place of the call, unless a command ended with a code and printed all words.
 #[track_caller]
-pub fn expect(said: &Said, code: i32, words: &[&str]) -> Outcome {
+pub fn expect(output: &ProcessOutput, code: i32, words: &[&str]) -> Outcome {
     let place = std::panic::Location::caller();
-    let text = told(said);
+    let text = output_text(output);
     let lost = words.iter().find(|word| !text.contains(**word));
-    match (said.status.code(), lost) {
+    match (output.status.code(), lost) {
         (Some(found), None) if found == code => Ok(()),
         (found, lost) => {
             let what = format!("exit code {found:?}, expected {code}; words not found: {lost:?}");
@@ -287,7 +287,7 @@ fn what_passed_is_known() -> Outcome {
 
 /// If a validator is not installed, the run writes the bundle, and ends with exit code 4 and the
 /// command that installs the validator.
-fn missing_programs_are_told() -> Outcome {
+fn missing_programs_are_reported() -> Outcome {
     let nothing = tempfile::tempdir()?;
     let install_command = |name: &str| match name {
         "spirv_val" => Ok("apt-get install spirv-tools"),
@@ -314,7 +314,7 @@ fn missing_programs_are_told() -> Outcome {
     }
 }
 
-/// Tint is run with a package that stands in for Dawn's. A refusal is told with its place. A text
+/// Tint is run with a package that stands in for Dawn's. A refusal is reported with its place. A text
 /// for which the package gives no verdict does not count as passed.
 fn tint() -> Outcome {
     let package = Package::new(MANIFEST, SHADER)?;

@@ -30,10 +30,10 @@ pub fn ours(
     let given: BTreeSet<&str> = given.map(str::trim).collect();
     let mut sources = SourceSet::default();
     let path = path.replace(".wgsl", ".wesl");
-    let told = |found: lamplight::diagnostic::Diagnostics| {
+    let messages_of = |found: lamplight::diagnostic::Diagnostics| {
         found.iter().map(|one| one.message.clone()).collect::<Vec<_>>().join("; ")
     };
-    let graph = resolve::wesl::load(&mut sources, packages, &path).map_err(told)?;
+    let graph = resolve::wesl::load(&mut sources, packages, &path).map_err(messages_of)?;
     let flags = defs
         .iter()
         .map(|(name, on)| (name.clone(), Setting::Bool(*on || given.contains(name.as_str()))));
@@ -46,7 +46,8 @@ pub fn ours(
         constants: migrated.constants.iter().map(values).collect(),
         ..Settings::default()
     };
-    let composed = composer::compose(&graph, &settings, &Options::default()).map_err(told)?;
+    let composed =
+        composer::compose(&graph, &settings, &Options::default()).map_err(messages_of)?;
     let module = naga::front::wgsl::parse_str(&composed.text)
         .map_err(|error| error.emit_to_string(&composed.text))?;
     validator().validate(&module).map_err(|error| format!("{:?}", error.as_inner()))?;

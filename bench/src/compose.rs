@@ -118,7 +118,7 @@ fn loading(files: &BTreeMap<String, String>) -> Result<Duration, String> {
     for _ in 0..5 {
         let loaded =
             timed(|| resolve::wesl::load(&mut SourceSet::default(), &packages, "everything.wesl"));
-        loaded.value.map_err(told)?;
+        loaded.value.map_err(message_of)?;
         best = best.min(loaded.elapsed);
     }
     Ok(best)
@@ -128,12 +128,12 @@ fn load(files: &BTreeMap<String, String>) -> Result<Vec<Graph>, String> {
     let packages = packages(files);
     let load = |root| {
         resolve::wesl::load(&mut SourceSet::default(), &packages, &format!("root_{root}.wesl"))
-            .map_err(told)
+            .map_err(message_of)
     };
     (0..ROOTS).map(load).collect()
 }
 
-fn told(diagnostics: Diagnostics) -> String {
+fn message_of(diagnostics: Diagnostics) -> String {
     format!("{diagnostics:?}")
 }
 
@@ -156,7 +156,7 @@ fn compose(graphs: &[Graph]) -> Result<Timed<Vec<String>>, String> {
         let next = timed(run);
         texts = Timed { elapsed: texts.elapsed + next.elapsed, ..next };
     }
-    Ok(Timed { value: texts.value.map_err(told)?, elapsed: texts.elapsed / RUNS, jobs: JOBS })
+    Ok(Timed { value: texts.value.map_err(message_of)?, elapsed: texts.elapsed / RUNS, jobs: JOBS })
 }
 
 fn settings(permutation: usize) -> Settings {

@@ -29,16 +29,16 @@ pub fn run() -> Outcome {
 }
 
 fn program() -> Result<Program, Box<dyn Error>> {
-    let told = |problems: Diagnostics| format!("{problems:?}");
+    let message_of = |problems: Diagnostics| format!("{problems:?}");
     let graph = resolve::wesl::load(
         &mut SourceSet::default(),
         &lamplight::project::library_packages(),
         MODULE,
     )
-    .map_err(told)?;
+    .map_err(message_of)?;
     let options = Options { keep: Keep::Items(vec![FUNCTION.to_owned()]), ..Options::default() };
-    let composed = composer::compose(&graph, &Settings::default(), &options).map_err(told)?;
-    let validated = validate(&composed).map_err(told)?;
+    let composed = composer::compose(&graph, &Settings::default(), &options).map_err(message_of)?;
+    let validated = validate(&composed).map_err(message_of)?;
     Ok(Program::new(&validated.module, &validated.info)?)
 }
 

@@ -58,8 +58,8 @@ pub fn run() -> Outcome {
         }
     }
     for (index, language) in LANGUAGES.into_iter().enumerate() {
-        println!("lamplight, {language:?}: {}", ours[index].told(points.len()));
-        println!("plain loop over naga, {language:?}: {}", theirs[index].told(points.len()));
+        println!("lamplight, {language:?}: {}", ours[index].summary(points.len()));
+        println!("plain loop over naga, {language:?}: {}", theirs[index].summary(points.len()));
         println!("{language:?}: {:.1}x plain naga loop", theirs[index].wall_over(ours[index]));
     }
     let (ours, theirs) = (ours[0].and(ours[1]), theirs[0].and(theirs[1]));
@@ -99,7 +99,7 @@ impl Spent {
         self.wall.as_secs_f64() / other.wall.as_secs_f64()
     }
 
-    fn told(self, permutations: usize) -> String {
+    fn summary(self, permutations: usize) -> String {
         let rate = |elapsed: Duration| permutations as f64 / elapsed.as_secs_f64();
         format!(
             "{:.2} s, {:.0} permutations/s; {:.2} s of processor time, {:.0} permutations/s a core",

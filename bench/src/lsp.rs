@@ -28,13 +28,13 @@ pub fn run() -> Outcome {
     let path = folder.join(&name);
     let text = fs::read_to_string(&path)?;
     let uri = format!("file://{}", path.display());
-    server.tell(
+    server.notify(
         "textDocument/didOpen",
         json!({
             "textDocument": { "uri": uri, "languageId": "wesl", "version": 0, "text": text }
         }),
     )?;
-    let first = server.told()?;
+    let first = server.time_to_diagnostics()?;
     println!("lsp: {FILES} files, {lines} lines, {FEATURES} features; opened in {first:.1?}");
     time_keystrokes(&mut server, &uri, &text)?;
     for (what, method) in [
@@ -182,7 +182,7 @@ impl Server {
         self.to.flush()
     }
 
-    fn tell(&mut self, method: &str, parameters: Value) -> std::io::Result<()> {
+    fn notify(&mut self, method: &str, parameters: Value) -> std::io::Result<()> {
         self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": parameters }))
     }
 
@@ -193,18 +193,18 @@ impl Server {
         version: usize,
         text: &str,
     ) -> Result<Duration, Box<dyn std::error::Error>> {
-        self.tell(
+        self.notify(
             "textDocument/didChange",
             json!({
                 "textDocument": { "uri": uri, "version": version },
                 "contentChanges": [{ "text": text }],
             }),
         )?;
-        self.told()
+        self.time_to_diagnostics()
     }
 
     /// The time until diagnostics are published.
-    fn told(&mut self) -> Result<Duration, Box<dyn std::error::Error>> {
+    fn time_to_diagnostics(&mut self) -> Result<Duration, Box<dyn std::error::Error>> {
         let start = Instant::now();
         while self.receive()?["method"] != "textDocument/publishDiagnostics" {}
         Ok(start.elapsed())

@@ -36,7 +36,7 @@ pub fn run() -> Outcome {
         return record(&files, &migrated, &file);
     }
     let packages = packages(&migrated);
-    let (mut counts, mut told) = (Counts::default(), BTreeMap::new());
+    let (mut counts, mut reasons) = (Counts::default(), BTreeMap::new());
     let mut composer = modules(&files);
     let roots = files.iter().filter(|(_, text)| has_entry(text));
     for (path, text) in roots {
@@ -45,7 +45,7 @@ pub fn run() -> Outcome {
             let defs = defs(&migrated, text, choice);
             let outcome = one(&mut composer, &packages, path, text, &migrated, &defs);
             if let Outcomes::Other(why) | Outcomes::NotComposed(why) = &outcome {
-                told.entry(path.clone()).or_insert_with(|| why.clone());
+                reasons.entry(path.clone()).or_insert_with(|| why.clone());
             }
             same.add(&outcome);
         }
@@ -57,7 +57,7 @@ pub fn run() -> Outcome {
         counts.failed += same.failed;
         counts.refused += same.refused;
     }
-    for (path, why) in &told {
+    for (path, why) in &reasons {
         println!("{path}: {why}");
     }
     println!("{counts:#?}");

@@ -45,12 +45,12 @@ pub fn run() -> Outcome {
 
 /// Draws each preset once.
 fn time_presets(painter: &dyn Session, samples: u32) -> Result<Vec<Timed>, Box<dyn Error>> {
-    let told = |problems: Diagnostics| format!("{problems:?}");
-    let programs = Programs::load(LIBRARY_FILES).map_err(|(_, problems)| told(problems))?;
+    let message_of = |problems: Diagnostics| format!("{problems:?}");
+    let programs = Programs::load(LIBRARY_FILES).map_err(|(_, problems)| message_of(problems))?;
     let (presets, probes) = programs.with_texts(|texts| {
-        let probes = probe::library_probes(LIBRARY_FILES, texts).map_err(told)?;
+        let probes = probe::library_probes(LIBRARY_FILES, texts).map_err(message_of)?;
         let presets = preset::library_presets(LIBRARY_FILES, texts, programs.manifest(), &probes);
-        presets.map(|presets| (presets, probes)).map_err(told)
+        presets.map(|presets| (presets, probes)).map_err(message_of)
     })?;
     let shot = Shot {
         size: SIZE,
@@ -62,9 +62,9 @@ fn time_presets(painter: &dyn Session, samples: u32) -> Result<Vec<Timed>, Box<d
     };
     let mut timed = Vec::new();
     for preset in &presets {
-        let plan = Plan::of_preset(&programs, preset, &probes).map_err(told)?;
+        let plan = Plan::of_preset(&programs, preset, &probes).map_err(message_of)?;
         let start = Instant::now();
-        render_plan(painter, &programs, &plan, &shot).map_err(told)?;
+        render_plan(painter, &programs, &plan, &shot).map_err(message_of)?;
         timed.push((preset.name.clone(), start.elapsed()));
     }
     Ok(timed)

@@ -132,7 +132,7 @@ fn composed(bytes: &[u8], root: &str, language: Language) -> String {
     let mut sources = SourceSet::default();
     let graph = match resolve::load(&mut sources, &packages, root, language) {
         Ok(graph) => graph,
-        Err(problems) => return told(&sources, &problems),
+        Err(problems) => return render_all(&sources, &problems),
     };
     let settings = settings(&text);
     let mut answer = String::new();
@@ -140,8 +140,8 @@ fn composed(bytes: &[u8], root: &str, language: Language) -> String {
         let options = Options { keep, ..Options::default() };
         let composed = compose::compose(&graph, &settings, &options);
         answer += &match composed.and_then(|composed| validate(&composed).map(|_| composed)) {
-            Ok(composed) => composed.text + &told(&sources, &composed.warnings),
-            Err(problems) => told(&sources, &problems),
+            Ok(composed) => composed.text + &render_all(&sources, &composed.warnings),
+            Err(problems) => render_all(&sources, &problems),
         };
     }
     answer
@@ -156,13 +156,13 @@ fn compile(bytes: &[u8]) -> String {
     let mut sources = SourceSet::default();
     let graph = match resolve::load(&mut sources, &packages, "main.wesl", Language::Wesl) {
         Ok(graph) => graph,
-        Err(problems) => return told(&sources, &problems),
+        Err(problems) => return render_all(&sources, &problems),
     };
     let settings = settings(&text);
     let whole = compose::compose(&graph, &settings, &Options::default());
     let whole = match whole.and_then(|composed| validate(&composed)) {
         Ok(validated) => validated,
-        Err(problems) => return told(&sources, &problems),
+        Err(problems) => return render_all(&sources, &problems),
     };
     let mut answer = String::new();
     for point in whole.module.entry_points.iter().take(2) {
@@ -174,8 +174,8 @@ fn compile(bytes: &[u8]) -> String {
             link::compile(&text, &point.name, Target::ALL, &Linker::new(Target::ALL))
         });
         answer += &match made {
-            Ok(made) => format!("{:?}", made.unit.hash()) + &told(&sources, &made.warnings),
-            Err(problems) => told(&sources, &problems),
+            Ok(made) => format!("{:?}", made.unit.hash()) + &render_all(&sources, &made.warnings),
+            Err(problems) => render_all(&sources, &problems),
         };
     }
     assert!(!answer.contains("[naga-internal]"), "an internal error of naga: {answer}");
@@ -207,12 +207,12 @@ fn manifest(bytes: &[u8]) -> String {
     let mut sources = SourceSet::default();
     let id = sources.add("lamplight.toml", String::from_utf8_lossy(bytes).into_owned());
     match manifest::parse(&sources, id) {
-        Err(problems) => told(&sources, &problems),
+        Err(problems) => render_all(&sources, &problems),
         Ok(Manifest { programs, warnings, .. }) => {
             let spaces = programs
                 .iter()
                 .map(|program| format!("{}: {}\n", program.name, space(&program.space)));
-            spaces.collect::<String>() + &told(&sources, &warnings)
+            spaces.collect::<String>() + &render_all(&sources, &warnings)
         }
     }
 }
@@ -245,7 +245,7 @@ fn key(bytes: &[u8]) -> String {
     let id = sources.add("key", String::from_utf8_lossy(bytes).into_owned());
     let text = match key::parse(space, &Quoted::whole(&sources, id)) {
         Ok(point) => space.key(&point).to_string(),
-        Err(problems) => told(&sources, &problems),
+        Err(problems) => render_all(&sources, &problems),
     };
     let axes: Vec<lamplight::bundle::Axis> = space.axes().iter().map(shipped).collect();
     format!("{text}\n{:?}", lamplight::bundle::canonical(&axes, &sources.get(id).text))
@@ -270,7 +270,7 @@ fn lock(bytes: &[u8]) -> String {
     let id = sources.add("lock", String::from_utf8_lossy(bytes).into_owned());
     let lock = match lock::parse(&sources, id) {
         Ok(lock) => lock.extended("forward", space),
-        Err(problems) => return told(&sources, &problems),
+        Err(problems) => return render_all(&sources, &problems),
     };
     let dense = lock.dense("forward", space, &space.default_assignment());
     let points: Vec<_> = [0, 1, 7, u128::MAX]
@@ -309,6 +309,6 @@ fn bundle(bytes: &[u8]) -> String {
 }
 
 /// The diagnostics in every form, since each form reads the spans in its own way.
-fn told(sources: &SourceSet, problems: &Diagnostics) -> String {
+fn render_all(sources: &SourceSet, problems: &Diagnostics) -> String {
     [Form::Human, Form::Short, Form::Json].map(|form| render(sources, problems, form)).concat()
 }

@@ -69,10 +69,10 @@ pub fn record(bytes: &[u8]) -> String {
         targets: &[Target::WGSL],
         conventions: Conventions::default(),
     });
-    let told = match &found {
+    let answer = match &found {
         Some(Ok(made)) => format!("{} {:?}", made.unit.targets.len(), made.warnings),
         Some(Err(errors)) => render(&SourceSet::default(), errors, Form::Human),
         None => "none".to_owned(),
     };
-    told + &asked.lock().map(|asked| asked.join(" ")).unwrap_or_default()
+    answer + &asked.lock().map(|asked| asked.join(" ")).unwrap_or_default()
 }

@@ -269,7 +269,7 @@ impl InputArguments {
             (None, "wesl" | "wgsl") => Ok(Language::Wesl),
             (None, _) if file.is_dir() => Ok(Language::Wesl),
             (None, _) => Err(Failure::usage(format!(
-                "the name of `{}` does not tell its language: add `--lang`",
+                "cannot tell the language of `{}` from its name: add `--lang`",
                 file.display()
             ))),
         }

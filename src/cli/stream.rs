@@ -54,7 +54,7 @@ pub fn read_stream(path: &Path) -> Result<String, Failure> {
     })
 }
 
-/// The name of a stream's module in its package, which tells the composer the stage of GLSL.
+/// The name of a stream's module in its package, from which the composer takes the stage of GLSL.
 pub fn stream_name(language: Language, stage: Option<Stage>) -> String {
     let stage = match stage {
         Some(Stage::Vertex) => ".vert",

@@ -86,7 +86,7 @@ pub fn run_variants(
     let record =
         record.map(|file| record_path(file.as_deref(), path, &packages, &devices)).transpose()?;
     let cache = if devices.is_empty() { None } else { arguments.cached.open(path)? };
-    let tell = |program: &Program| {
+    let report_of = |program: &Program| {
         let mut report = counted_report(program);
         if arguments.compose || arguments.compile {
             let bar = Bar::new();
@@ -100,7 +100,7 @@ pub fn run_variants(
         Ok(ProgramReport { report, changes })
     };
     let reports =
-        manifest.programs.iter().map(tell).collect::<Result<Vec<ProgramReport>, Failure>>()?;
+        manifest.programs.iter().map(report_of).collect::<Result<Vec<ProgramReport>, Failure>>()?;
     if let Some(path) = &record {
         write_record(&arguments, path, &devices, &reports)?;
     }
@@ -165,7 +165,8 @@ fn write_record(
     devices: &[Device],
     reports: &[ProgramReport],
 ) -> Result<(), Failure> {
-    let changes = reports.iter().map(|told| (told.report.program.as_str(), &*told.changes));
+    let changes =
+        reports.iter().map(|program| (program.report.program.as_str(), &*program.changes));
     let Some(costs) = cost::axis_record(devices, changes) else { return Ok(()) };
     let text = costs.text("lamplight variants --cost --record");
     Ok(output::write_file(path, text.as_bytes(), is_record, arguments.overwrite.replace())?)

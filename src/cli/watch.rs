@@ -37,7 +37,7 @@ pub fn run_watch(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failu
     loop {
         match Work::open(&arguments.places) {
             Ok(mut work) => {
-                tell_outcome(update_bundle(&arguments, &mut work, form), form)?;
+                report_outcome(update_bundle(&arguments, &mut work, form), form)?;
                 while work.is_current() {
                     sleep(PAUSE);
                 }
@@ -45,7 +45,7 @@ pub fn run_watch(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failu
             Err(failure) => {
                 let manifest = arguments.places.manifest();
                 let before = file_bytes(&manifest);
-                tell_outcome(Err(failure), form)?;
+                report_outcome(Err(failure), form)?;
                 while file_bytes(&manifest) == before {
                     sleep(PAUSE);
                 }
@@ -56,7 +56,7 @@ pub fn run_watch(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failu
 
 /// An error in the input is printed, and the command waits for the next change. Any other error
 /// ends it.
-fn tell_outcome(outcome: Result<(), Failure>, form: DiagnosticForm) -> Result<(), Failure> {
+fn report_outcome(outcome: Result<(), Failure>, form: DiagnosticForm) -> Result<(), Failure> {
     match outcome {
         Err(failure @ Failure::Input(..)) => {
             let _ = failure.report(form);

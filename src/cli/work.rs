@@ -144,7 +144,7 @@ impl Work {
     /// An earlier run, if nothing changed since. Its warnings are printed again.
     pub fn up_to_date(&self, request: &Request, look: Look, form: DiagnosticForm) -> Option<Trace> {
         let mut found = Trace::find(self.cache.as_ref()?, self.as_run(request), look)?;
-        let _ = stderr().write_all(found.told.text(form.into()).as_bytes());
+        let _ = stderr().write_all(found.warnings.text(form.into()).as_bytes());
         (found.summary.up_to_date, found.summary.validated) = (true, None);
         Some(found)
     }
@@ -169,9 +169,9 @@ impl Work {
         let Generated { summary, warnings, .. } = outcome?;
         print_warnings(&self.sources, &warnings, form);
         if let Some(cache) = &self.cache {
-            told_failures(cache);
-            let told = RunWarnings::new(&self.path, &self.sources, &warnings);
-            let trace = Trace::new(&self.observer, &self.out, summary.clone(), told);
+            warn_of_failures(cache);
+            let warnings = RunWarnings::new(&self.path, &self.sources, &warnings);
+            let trace = Trace::new(&self.observer, &self.out, summary.clone(), warnings);
             if let Some(trace) = trace {
                 trace.keep(cache, self.as_run(request));
                 if let (Some(validators), Some(validated)) = (&self.validators, &summary.validated)
@@ -275,7 +275,7 @@ fn open_cache(places: &PathArguments, manifest: &Path) -> Result<Option<Cache>, 
 }
 
 /// Warns if the cache failed. The run does not fail because of that.
-fn told_failures(cache: &Cache) {
+fn warn_of_failures(cache: &Cache) {
     if cache.failures() > 0 {
         let _ = writeln!(
             stderr(),

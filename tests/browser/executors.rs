@@ -143,9 +143,9 @@ fn no_browser() -> Outcome {
     let nothing = tempfile::tempdir()?;
     for executor in ["webgpu", "webgl2"] {
         let mut command = lamplight(&["check", "lighting/spot", "--executor", executor]);
-        let said = command.env("PATH", nothing.path()).output()?;
-        let words = String::from_utf8_lossy(&said.stderr);
-        assert_eq!(said.status.code(), Some(4), "{words}");
+        let output = command.env("PATH", nothing.path()).output()?;
+        let words = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(4), "{words}");
         for expected in ["`chromium` is not installed", "apt-get install chromium"] {
             assert!(words.contains(expected), "{executor}: expected `{expected}` in:\n{words}");
         }

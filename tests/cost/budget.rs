@@ -6,9 +6,10 @@ use lamplight::LIBRARY_FILES;
 use lamplight::catalogue::cost;
 use lamplight::project;
 use lamplight::source::SourceSet;
+use lamplight_testing::commands::stderr_text;
 use serde_json::Value;
 
-use super::{Outcome, lamplight, objects, said};
+use super::{Outcome, lamplight, objects};
 
 /// No function of the library became more expensive by more than 2 %. `cargo xtask record _budget`
 /// records the costs again. With another version of Mesa nothing is compared, and the test says so.
@@ -34,11 +35,11 @@ fn keep_budget(name: &str, subjects: &[&str]) -> Outcome {
     let output = lamplight(&[subjects, &common[..], record].concat())?;
     match output.status.code() {
         Some(0) => all_are_recorded(&output.stdout, &std::fs::read(&recorded)?),
-        Some(4) if said(&output).contains("not comparable") => {
-            eprintln!("not compared: {}", said(&output));
+        Some(4) if stderr_text(&output).contains("not comparable") => {
+            eprintln!("not compared: {}", stderr_text(&output));
             Ok(())
         }
-        code => Err(format!("exit code {code:?}: {}", said(&output)).into()),
+        code => Err(format!("exit code {code:?}: {}", stderr_text(&output)).into()),
     }
 }
 

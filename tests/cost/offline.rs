@@ -5,10 +5,11 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use lamplight_testing::commands::stderr_text;
 use libtest_mimic::Failed;
 use serde_json::Value;
 
-use super::{OWN_MANIFEST, OWN_SHADER, Outcome, lamplight, objects, said};
+use super::{OWN_MANIFEST, OWN_SHADER, Outcome, lamplight, objects};
 
 fn count(object: &Value, form: &str, kind: &str) -> Result<i64, Failed> {
     let number = object[form][kind].as_i64();
@@ -25,7 +26,7 @@ pub fn taps_are_counted() -> Outcome {
         let found = objects(&[&format!("shadow::compare::{name}"), "--spirv"])?;
         let object = found.first().ok_or("there is nothing")?;
         if !object["optimiser"].as_str().is_some_and(|version| version.contains("SPIRV-Tools")) {
-            return Err(format!("the version of the optimiser is not told: {object}").into());
+            return Err(format!("the version of the optimiser is not reported: {object}").into());
         }
         if count(object, "net", "textures")? != textures {
             return Err(format!("{name}: expected {textures} of textures: {object}").into());
@@ -52,7 +53,8 @@ pub fn constants_are_settled() -> Outcome {
     let options = ["--spirv", "--json", "--manifest", "lamplight.toml"];
     let command = command.args(["cost", "default", "loops=9", "warm"]).args(options);
     let output = command.current_dir(folder.path()).output()?;
-    let found: Vec<Value> = serde_json::from_slice(&output.stdout).map_err(|_| said(&output))?;
+    let found: Vec<Value> =
+        serde_json::from_slice(&output.stdout).map_err(|_| stderr_text(&output))?;
     let of = |index: usize, kind: &str| count(&found[index], "counts", kind);
     // The loop has a sine and a root. With no iterations, the optimiser removes it.
     if of(0, "functions")? != 0 || of(1, "functions")? < 2 {
@@ -74,8 +76,8 @@ pub fn missing_programs() -> Outcome {
         let mut command = Command::new(env!("CARGO_BIN_EXE_lamplight"));
         let command = command.args(["cost", "lighting::spot"]).args(options);
         let output = command.env("PATH", "/nowhere").output()?;
-        if output.status.code() != Some(4) || !said(&output).contains(hint) {
-            let found = format!("{:?}: {}", output.status, said(&output));
+        if output.status.code() != Some(4) || !stderr_text(&output).contains(hint) {
+            let found = format!("{:?}: {}", output.status, stderr_text(&output));
             return Err(format!("{options:?}: expected exit code 4 and `{hint}`, {found}").into());
         }
     }
@@ -141,9 +143,9 @@ pub fn mali_is_asked() -> Outcome {
     let folder = tempfile::tempdir()?;
     stand_in(folder.path(), REPORT)?;
     let output = ask_mali(folder.path(), &["--json"])?;
-    let found: Value = serde_json::from_slice(&output.stdout).map_err(|_| said(&output))?;
+    let found: Value = serde_json::from_slice(&output.stdout).map_err(|_| stderr_text(&output))?;
     let variant = &found[0]["variants"][0];
-    let told = [
+    let found = [
         (&variant["core"], Value::from("Mali-G78")),
         (&variant["total"]["cycles"][4], Value::from(1.5)),
         (&variant["total"]["bound"][0], Value::from("texture")),
@@ -151,8 +153,8 @@ pub fn mali_is_asked() -> Outcome {
         (&variant["work_registers"], Value::from(19.0)),
         (&variant["spilled_bytes"], Value::Null),
     ];
-    if let Some((told, expected)) = told.iter().find(|(told, expected)| *told != expected) {
-        return Err(format!("expected {expected}, found {told} in {found:#}").into());
+    if let Some((found, expected)) = found.iter().find(|(found, expected)| *found != expected) {
+        return Err(format!("expected {expected}, found {found} in {found:#}").into());
     }
     let calls = fs::read_to_string(folder.path().join("calls"))?;
     let call = calls.lines().next().unwrap_or_default();
@@ -172,7 +174,7 @@ pub fn mali_is_asked() -> Outcome {
     }
 }
 
-/// What is wrong with a report is told, and so are the compiler's errors about a shader.
+/// Errors of a report's form are reported, and so are the compiler's errors about a shader.
 pub fn bad_reports() -> Outcome {
     let refused = r#"{ "schema": { "name": "error", "version": 0 },
         "shaders": [{ "filename": "a", "errors": ["no such core"], "warnings": [] }] }"#;
@@ -187,8 +189,8 @@ pub fn bad_reports() -> Outcome {
         let folder = tempfile::tempdir()?;
         stand_in(folder.path(), report)?;
         let output = ask_mali(folder.path(), &[])?;
-        if output.status.code() != Some(1) || !said(&output).contains(expected) {
-            let found = format!("{:?}: {}", output.status, said(&output));
+        if output.status.code() != Some(1) || !stderr_text(&output).contains(expected) {
+            let found = format!("{:?}: {}", output.status, stderr_text(&output));
             return Err(format!("expected exit code 1 and `{expected}`, found {found}").into());
         }
     }

@@ -21,7 +21,7 @@ pub fn tests() -> impl Iterator<Item = Trial> {
 /// The longest time that a hostile input may take, with room for a slow machine.
 const PATIENCE: Duration = Duration::from_secs(20);
 /// The most bytes that the command may print about it.
-const SAID: usize = 64 << 10;
+const MOST_BYTES: usize = 64 << 10;
 
 /// The command accepts or refuses the input. It does not panic, and is neither slow nor verbose.
 fn survives(file: &str, text: &str) -> Result<(), Failed> {
@@ -36,17 +36,17 @@ fn survives(file: &str, text: &str) -> Result<(), Failed> {
     let start = Instant::now();
     let output = run(folder.path(), &line)?;
     let code = output.status.code().ok_or("killed by a signal")?;
-    let said = String::from_utf8_lossy(&output.stderr);
-    if code > 1 || said.contains("panicked") {
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    if code > 1 || stderr.contains("panicked") {
         return Err(format!(
             "{line}: exit code {code}: {}",
-            said.chars().take(2000).collect::<String>()
+            stderr.chars().take(2000).collect::<String>()
         )
         .into());
     }
-    if said.len() > SAID || start.elapsed() > PATIENCE {
-        let (bytes, took) = (said.len(), start.elapsed());
-        let bounds = format!("at most {SAID} bytes in {PATIENCE:?}");
+    if stderr.len() > MOST_BYTES || start.elapsed() > PATIENCE {
+        let (bytes, took) = (stderr.len(), start.elapsed());
+        let bounds = format!("at most {MOST_BYTES} bytes in {PATIENCE:?}");
         return Err(format!("{line}: printed {bytes} bytes in {took:?}, expected {bounds}").into());
     }
     Ok(())

@@ -61,8 +61,8 @@ fn table(metal: bool, cells: &BTreeMap<&Place, &Cell>) -> String {
     }
     let lamps: Vec<f64> = cells.values().map(|cell| cell.lamps).collect();
     let ambient: Vec<f64> = cells.values().map(|cell| cell.ambient).collect();
-    let said = [verdict("lamps", &lamps), verdict("ambient light", &ambient)];
-    format!("{text}\nLight of {}; {}.\n\n", said[0], said[1])
+    let verdicts = [verdict("lamps", &lamps), verdict("ambient light", &ambient)];
+    format!("{text}\nLight of {}; {}.\n\n", verdicts[0], verdicts[1])
 }
 
 /// In how many cells the reflected radiance is 1 within 1 %, and the range of all cells if it is

@@ -148,7 +148,7 @@ pub struct Driver {
     /// How many permutations could not be drawn, for each reason.
     lacks: BTreeMap<String, usize>,
     /// Fragment stages that write their inputs, by these inputs. Most permutations share one.
-    telling: BTreeMap<String, Shipped>,
+    input_stages: BTreeMap<String, Shipped>,
     time: Duration,
 }
 
@@ -156,12 +156,12 @@ impl Driver {
     fn open(entry: &'static ExecutorEntry, shipping: &'static Shipping) -> Result<Self, String> {
         let session = (shipping.open)().map_err(|missing| entry.missing(&missing))?;
         let (name, target) = (entry.name, shipping.target);
-        let (tally, failures, lacks, telling, time) = Default::default();
-        Ok(Self { name, target, session, drawn: 0, tally, failures, lacks, telling, time })
+        let (tally, failures, lacks, input_stages, time) = Default::default();
+        Ok(Self { name, target, session, drawn: 0, tally, failures, lacks, input_stages, time })
     }
 
     /// What is drawn on what.
-    pub fn told(&self) -> String {
+    pub fn heading(&self) -> String {
         format!("as {} on {}", self.target, self.session.adapter())
     }
 
@@ -185,26 +185,26 @@ impl Driver {
         });
         let [vertex, fragment] = stages;
         let (vertex, fragment) = (vertex.map_err(lost)?, fragment.map_err(lost)?);
-        let tells = self.tells(scene)?;
+        let input_stage = self.input_stage(scene)?;
         let mut targets = self.draw(&vertex, &fragment, scene)?;
         // Of several colour targets, the first one is compared.
         targets.truncate(1);
-        targets.extend(self.draw(&vertex, &tells, scene)?);
+        targets.extend(self.draw(&vertex, &input_stage, scene)?);
         Ok(targets)
     }
 
     /// The fragment stage that writes its inputs.
-    fn tells(&mut self, scene: &Scene) -> Result<Shipped, Diagnostic> {
+    fn input_stage(&mut self, scene: &Scene) -> Result<Shipped, Diagnostic> {
         let stage = &scene.fragment;
         let inputs = format!("{:?}", stage.reflection.inputs);
-        if let Some(known) = self.telling.get(&inputs) {
+        if let Some(known) = self.input_stages.get(&inputs) {
             return Ok(known.clone());
         }
-        let told = probe::told_inputs(&stage.validated.module, stage.entry)
+        let watched = probe::inputs_module(&stage.validated.module, stage.entry)
             .ok_or_else(|| lost(format!("`{}` is not a fragment stage", stage.entry)))?;
-        let point = EntryPoint { module: &told.module, entry: probe::TELLS };
+        let point = EntryPoint { module: &watched.module, entry: probe::INPUTS_ENTRY };
         let made = Shipped::of(point, self.target)?;
-        self.telling.insert(inputs, made.clone());
+        self.input_stages.insert(inputs, made.clone());
         Ok(made)
     }
 
@@ -244,8 +244,8 @@ impl Driver {
 impl std::fmt::Display for Driver {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { drawn, tally, lacks, .. } = self;
-        let (told, seconds) = (self.told(), self.time.as_secs_f64());
-        write!(f, "{told}: {drawn} permutations in {seconds:.1} s, {tally}")?;
+        let (heading, seconds) = (self.heading(), self.time.as_secs_f64());
+        write!(f, "{heading}: {drawn} permutations in {seconds:.1} s, {tally}")?;
         lacks.iter().try_for_each(|(reason, count)| write!(f, "; {count} not drawn: {reason}"))
     }
 }

@@ -51,7 +51,7 @@ fn drawn(language: Language) -> Result<(), String> {
         }
         for driver in &mut drivers {
             let far = differing(driver, &bundle, (language, &key), &scene, &wanted)?;
-            let name = driver.told();
+            let name = driver.heading();
             println!("{name} [{key}]: {far} of {} pixels differ", wanted.len());
             if far as f64 > BEYOND * wanted.len() as f64 {
                 failures.push(format!("{name} [{key}]: {far} pixels differ"));

@@ -65,10 +65,10 @@ fn damage_each(out: &str, ways: &[(&str, Damage)]) -> Outcome {
             &["merge", "merged", out],
         ] {
             let output = package.run(command)?;
-            let told = String::from_utf8_lossy(&output.stderr).into_owned();
+            let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
             ensure(
-                matches!(output.status.code(), Some(1 | 3)) && told.contains("error: "),
-                format!("`{}` of a bundle, where {what}: {told}", command.join(" ")),
+                matches!(output.status.code(), Some(1 | 3)) && stderr.contains("error: "),
+                format!("`{}` of a bundle, where {what}: {stderr}", command.join(" ")),
             )?;
             ensure(!package.path().join("merged").exists(), format!("merged, where {what}"))?;
         }

@@ -110,17 +110,18 @@ pub fn mixed_shards() -> Outcome {
     ] {
         for out in ["merged", "merged.lamplight"] {
             let output = package.run(&["merge", out, "one", other, "three"])?;
-            let told = String::from_utf8_lossy(&output.stderr).into_owned();
+            let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
             equal(output.status.code(), Some(3))?;
-            let is_told = told.contains(reason) && told.contains("`one`") && told.contains(other);
-            ensure(is_told, format!("{other}: {told}"))?;
+            let is_reported =
+                stderr.contains(reason) && stderr.contains("`one`") && stderr.contains(other);
+            ensure(is_reported, format!("{other}: {stderr}"))?;
             ensure(!package.path().join(out).exists(), format!("`{out}` was written"))?;
         }
     }
     let missing = package.run(&["merge", "merged", "one", "three"])?;
     equal(missing.status.code(), Some(3))?;
-    let told = String::from_utf8_lossy(&missing.stderr).into_owned();
-    ensure(told.contains("part 2 of 3 is missing"), told)?;
+    let stderr = String::from_utf8_lossy(&missing.stderr).into_owned();
+    ensure(stderr.contains("part 2 of 3 is missing"), stderr)?;
     equal(package.run(&["merge", "part", "one", "three", "--partial"])?.status.code(), Some(0))?;
     equal(package.run(&["merge", "merged", "part", "two.lamplight"])?.status.code(), Some(0))?;
     equal(package.files("merged")?, package.files("whole")?)
@@ -148,9 +149,9 @@ pub fn newer() -> Outcome {
     fs::write(&path, &bytes)?;
     for out in ["bundle", "bundle.lamplight"] {
         let output = package.run(&["gen", "--cache", "cache", "-o", out])?;
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
         equal(output.status.code(), Some(1))?;
-        ensure(told.contains("format version 2") && told.contains("--force"), told)?;
+        ensure(stderr.contains("format version 2") && stderr.contains("--force"), stderr)?;
     }
     equal(fs::read_to_string(package.path().join("bundle/manifest.json"))?, manifest)?;
     equal(fs::read(&path)?, bytes)?;

@@ -42,7 +42,7 @@ fn followed(package: &Package) -> Outcome {
     Ok(())
 }
 
-/// A run that was stopped never ends its turn. Others wait as long as they were told, and name its
+/// A run that was stopped never ends its turn. Others wait as long as `--wait` says, and name its
 /// process.
 pub fn stopped() -> Outcome {
     let package = Package::new()?;
@@ -52,14 +52,14 @@ pub fn stopped() -> Outcome {
     package.write("tint.wesl", &TINT.replace("0.0, 1.0, 0.0", "0.0, 0.75, 0.0"))?;
     let start = Instant::now();
     let output = package.run(&["gen", "--wait", "1"])?;
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
     equal(output.status.code(), Some(4))?;
     ensure(start.elapsed() < Duration::from_secs(30), "the run waited too long")?;
     let who = match cfg!(target_os = "linux") {
         true => format!("process {} writes there", std::process::id()),
         false => "another process writes there".to_owned(),
     };
-    ensure(told.contains(&who) && told.contains("within 1 s"), &told)?;
+    ensure(stderr.contains(&who) && stderr.contains("within 1 s"), &stderr)?;
     drop(turn);
     equal(package.run(&["gen", "--wait", "1"])?.status.code(), Some(0))
 }

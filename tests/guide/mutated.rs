@@ -24,7 +24,7 @@ pub fn tests() -> Vec<Trial> {
 type Shown = (String, String);
 
 fn answered() -> Result<(), Failed> {
-    let mut told = Vec::new();
+    let mut problems = Vec::new();
     for page in pages().iter().filter(|page| !generated::is_generated(page)) {
         let text = fs::read_to_string(page)?;
         let lines: Vec<&str> = text.lines().collect();
@@ -35,9 +35,10 @@ fn answered() -> Result<(), Failed> {
                 _ => None,
             })
             .collect();
-        told.extend(of_page(&shown)?.iter().map(|problem| format!("{}: {problem}", stem(page))));
+        problems
+            .extend(of_page(&shown)?.iter().map(|problem| format!("{}: {problem}", stem(page))));
     }
-    if told.is_empty() { Ok(()) } else { Err(told.join("\n").into()) }
+    if problems.is_empty() { Ok(()) } else { Err(problems.join("\n").into()) }
 }
 
 fn of_page(shown: &[Shown]) -> Result<Vec<String>, Failed> {
@@ -45,18 +46,18 @@ fn of_page(shown: &[Shown]) -> Result<Vec<String>, Failed> {
     for (path, text) in shown {
         put(folder.path(), path, text)?;
     }
-    let mut told = Vec::new();
+    let mut problems = Vec::new();
     for (path, text) in shown {
         let Some(arguments) = command(path, shown) else { continue };
         for seed in 0..MISTAKES {
             let wrong = mistaken(text, seed);
             put(folder.path(), path, &wrong)?;
             let problem = problem(folder.path(), &arguments)?;
-            told.extend(problem.map(|problem| format!("{path}: {problem}\n{wrong}")));
+            problems.extend(problem.map(|problem| format!("{path}: {problem}\n{wrong}")));
         }
         put(folder.path(), path, text)?;
     }
-    Ok(told)
+    Ok(problems)
 }
 
 fn put(folder: &Path, path: &str, text: &str) -> Result<(), Failed> {
@@ -87,13 +88,13 @@ fn problem(folder: &Path, arguments: &[String]) -> Result<Option<String>, Failed
         .current_dir(folder)
         .args(arguments)
         .output()?;
-    let said = String::from_utf8_lossy(&output.stderr);
+    let stderr = String::from_utf8_lossy(&output.stderr);
     let problem = match output.status.code() {
         None => Some("killed by a signal".to_owned()),
-        Some(0 | 1 | 3) if said.contains("panicked") => Some(said.into_owned()),
+        Some(0 | 1 | 3) if stderr.contains("panicked") => Some(stderr.into_owned()),
         Some(0 | 1 | 3) if start.elapsed() < PATIENCE => None,
         Some(0 | 1 | 3) => Some(format!("took {:?}", start.elapsed())),
-        Some(code) => Some(format!("exit code {code}: {said}")),
+        Some(code) => Some(format!("exit code {code}: {stderr}")),
     };
     Ok(problem)
 }

@@ -34,8 +34,9 @@ pub fn check(path: &Path) -> Result<(), Failed> {
         (true, _) => Ok(()),
         (false, true) => Ok(fs::write(path, changed(&lines, &changes))?),
         (false, false) => {
-            let told: Vec<String> = changes.iter().map(|change| told(&lines, change)).collect();
-            Err(format!("{}\n{ACCEPT}", told.join("\n")).into())
+            let differences: Vec<String> =
+                changes.iter().map(|change| describe_change(&lines, change)).collect();
+            Err(format!("{}\n{ACCEPT}", differences.join("\n")).into())
         }
     }
 }
@@ -128,7 +129,7 @@ fn changed(lines: &[&str], changes: &[Change]) -> String {
     text
 }
 
-fn told(lines: &[&str], change: &Change) -> String {
+fn describe_change(lines: &[&str], change: &Change) -> String {
     let place = format!("line {}:", change.lines.start + 1);
     let old = lines[change.lines.clone()].iter().map(|line| format!("- {line}"));
     let new = change.becomes.iter().map(|line| format!("+ {line}"));

@@ -115,11 +115,11 @@ fn codes() -> Result<(), Failed> {
             return Err(format!("{} is not called `{}`", page.file, page.title).into());
         }
     }
-    let told = lamplight(&["explain", "unknown-axis"])?;
+    let explanation = lamplight(&["explain", "unknown-axis"])?;
     let ending = "\nGuide: Axes, constraints and the manifest\n";
-    match told.ends_with(ending) {
+    match explanation.ends_with(ending) {
         true => Ok(()),
-        false => Err(format!("`explain` should end with{ending}found:\n{told}").into()),
+        false => Err(format!("`explain` should end with{ending}found:\n{explanation}").into()),
     }
 }
 
@@ -159,10 +159,10 @@ fn errors() -> Result<(), Failed> {
     // `script` gives its command a terminal.
     let command = [&[env!("CARGO_BIN_EXE_lamplight")], &arguments[..]].concat().join(" ");
     let output = Command::new("script").args(["-qec", &command, "/dev/null"]).output()?;
-    let told = String::from_utf8_lossy(&output.stdout);
-    match told.lines().any(|told| told == line) {
+    let stdout = String::from_utf8_lossy(&output.stdout);
+    match stdout.lines().any(|stdout| stdout == line) {
         true => Ok(()),
-        false => Err(format!("on a terminal, expected the line `{line}` in:\n{told}").into()),
+        false => Err(format!("on a terminal, expected the line `{line}` in:\n{stdout}").into()),
     }
 }
 
@@ -232,9 +232,9 @@ fn noted(file: &str, text: &str, line: &str) -> Result<Vec<String>, Failed> {
     fs::write(folder.path().join("m.wesl"), "fn f() {}\n")?;
     let arguments = line.split_whitespace().chain(["--diagnostics", "json"]);
     let output = run(folder.path(), &arguments.collect::<Vec<_>>())?;
-    let told = String::from_utf8(output.stderr)?;
+    let stderr = String::from_utf8(output.stderr)?;
     const HEADS: [&str; 4] = ["known keys: ", "known are ", "domains are ", "modes: "];
-    for line in told.lines() {
+    for line in stderr.lines() {
         let error: serde_json::Value = serde_json::from_str(line)?;
         let notes =
             error["notes"].as_array().into_iter().flatten().filter_map(|note| note.as_str());
@@ -244,7 +244,7 @@ fn noted(file: &str, text: &str, line: &str) -> Result<Vec<String>, Failed> {
             }
         }
     }
-    Err(format!("no note of `{line}` has a list of names: {told}").into())
+    Err(format!("no note of `{line}` has a list of names: {stderr}").into())
 }
 
 /// The columns of the table that `check` prints.

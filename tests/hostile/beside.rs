@@ -14,7 +14,8 @@ use super::{Outcome, fails, run};
 type Case = (&'static str, fn() -> Outcome);
 
 pub fn tests() -> Vec<Trial> {
-    let cases: [Case; 2] = [("waiting_is_told", told), ("verified_while_it_is_written", verified)];
+    let cases: [Case; 2] =
+        [("waiting_is_reported", waiting), ("verified_while_it_is_written", verified)];
     let test = |(name, case): Case| Trial::test(format!("hostile::{name}"), case);
     cases.into_iter().map(test).collect()
 }
@@ -43,7 +44,7 @@ fn change(folder: &TempDir, number: usize) -> Outcome {
 
 /// A run that finds the bundle locked says that it waits for another run, and continues when the
 /// lock is released.
-fn told() -> Outcome {
+fn waiting() -> Outcome {
     let folder = package()?;
     change(&folder, 1)?;
     let turn = File::open(folder.path().join("out"))?;
@@ -56,8 +57,8 @@ fn told() -> Outcome {
         .stderr(Stdio::piped())
         .spawn()?;
     let mut line = String::new();
-    if let Some(said) = waiting.stderr.take() {
-        BufReader::new(said).read_line(&mut line)?;
+    if let Some(stderr) = waiting.stderr.take() {
+        BufReader::new(stderr).read_line(&mut line)?;
     }
     drop(turn);
     let status = waiting.wait()?;

@@ -20,7 +20,7 @@ fn edit() -> Value {
     json!({ "range": { "start": place, "end": place }, "text": "x" })
 }
 
-/// A message with too many edits is not applied, and the user is told. The server then gives no
+/// A message with too many edits is not applied, and the user is notified. The server then gives no
 /// answers about the document, since its text differs from the editor's.
 fn many() -> Outcome {
     let mut server = LanguageServer::new(Box::new(|_| None), lamplight::LIBRARY_FILES);
@@ -29,14 +29,14 @@ fn many() -> Outcome {
     server.receive(&json!({ "method": "textDocument/didOpen", "params": opened }));
     let few = changed(&mut server, 10);
     let many = changed(&mut server, EDITS);
-    let told = many.iter().any(|message| message["method"] == "window/showMessage");
+    let is_notified = many.iter().any(|message| message["method"] == "window/showMessage");
     let asked = server.receive(&json!({
         "id": 1,
         "method": "textDocument/documentSymbol",
         "params": { "textDocument": { "uri": URI } },
     }));
     let refused = asked.iter().any(|message| message["error"].is_object());
-    match (few.is_empty(), told, refused) {
+    match (few.is_empty(), is_notified, refused) {
         (true, true, true) => Ok(()),
         _ => {
             let what = format!("10 edits should give no message: {few:?}");

@@ -114,9 +114,9 @@ fn rules_for_make() -> Outcome {
     fs::write(folder.path().join(name), shader)?;
     let arguments = ["compile", name, "--target", "wgsl", "-o", "out", "--depfile", "rule.d"];
     let output = run(&folder, &arguments)?;
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("has a line end, which a rule for make cannot hold"), "{said}");
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(1), "{stderr}");
+    assert!(stderr.contains("has a line end, which a rule for make cannot hold"), "{stderr}");
     assert!(!folder.path().join("rule.d").exists(), "the rule was written");
     Ok(())
 }

@@ -57,8 +57,8 @@ pub fn tests() -> Vec<Trial> {
         ("mixed", Manner::Mixed, false),
         ("endless", Manner::Endless, true),
     ];
-    let served = manners.map(|(name, manner, is_told)| {
-        Trial::test(format!("hostile::store_that_is_{name}"), move || serves(manner, is_told))
+    let served = manners.map(|(name, manner, is_warned)| {
+        Trial::test(format!("hostile::store_that_is_{name}"), move || serves(manner, is_warned))
     });
     let dead = Trial::test("hostile::store_that_is_dead", dead);
     let mute = Trial::test("hostile::store_that_never_answers", mute);
@@ -85,7 +85,7 @@ fn generate(folder: &TempDir, name: &str, address: &str) -> Result<Output, Faile
     run_within(LITTLE_KIB, folder, &arguments)
 }
 
-fn serves(manner: Manner, is_told: bool) -> Outcome {
+fn serves(manner: Manner, is_expected: bool) -> Outcome {
     let folder = package()?;
     let alone = ["gen", "--no-cache", "-o", "alone.lamplight"];
     fails(&run_within(LITTLE_KIB, &folder, &alone)?, 0, "12 permutations")?;
@@ -111,11 +111,12 @@ fn serves(manner: Manner, is_told: bool) -> Outcome {
     if server.asked.load(Ordering::Relaxed) <= OPENING {
         return Err(format!("{manner:?}: the second run only opened the store").into());
     }
-    let told = String::from_utf8_lossy(&second.stderr).contains("the cache or the store refused");
-    match told == is_told {
+    let is_warned =
+        String::from_utf8_lossy(&second.stderr).contains("the cache or the store refused");
+    match is_warned == is_expected {
         true => Ok(()),
         false => {
-            let what = format!("the user was told: {told}, expected: {is_told}");
+            let what = format!("the user was warned: {is_warned}, expected: {is_expected}");
             Err(format!("{manner:?}: {what}").into())
         }
     }

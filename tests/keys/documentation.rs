@@ -40,9 +40,9 @@ pub fn is_no_code() -> Outcome {
     let path = folder.path().join("keys.rs");
     std::fs::write(&path, text)?;
     let path = path.to_string_lossy();
-    let told = execute(folder.path(), &["rustdoc", "--edition", "2024", "--test", &path], "")?;
-    match told.contains("running 0 tests") {
+    let stdout = execute(folder.path(), &["rustdoc", "--edition", "2024", "--test", &path], "")?;
+    match stdout.contains("running 0 tests") {
         true => Ok(()),
-        false => Err(told.into()),
+        false => Err(stdout.into()),
     }
 }

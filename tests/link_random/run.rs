@@ -111,7 +111,7 @@ struct Partner {
     validated: Validated,
     entry: &'static str,
     /// A fragment stage that writes its inputs; `None` if there are no inputs.
-    tells: Option<probe::Watched>,
+    input_stage: Option<probe::Watched>,
 }
 
 /// Items with the indices of their stages in a list.
@@ -123,7 +123,7 @@ struct Stages {
     vertex: Shipped,
     /// The fragment stage that is tried; `None` if it is the vertex stage.
     fragment: Option<Shipped>,
-    tells: Option<Shipped>,
+    input_stage: Option<Shipped>,
 }
 
 impl Stages {
@@ -227,17 +227,17 @@ fn made_ready(runnables: &[Runnable]) -> (Placed<Ready<'_>>, Placed<Finding>) {
 impl<'r> Ready<'r> {
     fn new(runnable: &'r Runnable) -> Result<Self, String> {
         let Runnable { seed, composed, entry, unit } = runnable;
-        let told = |problems: Vec<Diagnostic>| format!("seed {seed}: {problems:?}");
+        let with_seed = |problems: Vec<Diagnostic>| format!("seed {seed}: {problems:?}");
         // The crate validates the lean text too, since naga refuses some texts with aliases.
-        let validated = validate(&lean(composed)).map_err(told)?;
+        let validated = validate(&lean(composed)).map_err(with_seed)?;
         let mut random = Random(seed ^ 0xfeed);
         // The reflection is that of the whole text. An output leaves out what it does not need.
-        let whole = reflect(&validated, entry).map_err(|problem| told(vec![problem]))?;
+        let whole = reflect(&validated, entry).map_err(|problem| with_seed(vec![problem]))?;
         let (partner, mesh) = match runnable.is_fragment() {
             true => (fragment::partner(&validated, entry, &whole, &mut random), Mesh::default()),
             false => (vertex::partner(&whole), vertex::mesh(&mut random)),
         };
-        let partner = partner.map_err(told)?;
+        let partner = partner.map_err(with_seed)?;
         let (mut buffers, mut fixtures) = (Buffers::new(), BTreeMap::new());
         for binding in &unit.reflection.bindings {
             let place = (binding.group, binding.binding);
@@ -260,9 +260,12 @@ impl<'r> Ready<'r> {
 
     fn shipped(&self, target: Target) -> Result<Stages, Diagnostic> {
         let Runnable { unit, .. } = self.runnable;
-        let Partner { validated, entry, tells } = &self.partner;
-        let tells = tells.as_ref().map(|tells| {
-            Shipped::of(EntryPoint { module: &tells.module, entry: probe::TELLS }, target)
+        let Partner { validated, entry, input_stage } = &self.partner;
+        let input_stage = input_stage.as_ref().map(|input_stage| {
+            Shipped::of(
+                EntryPoint { module: &input_stage.module, entry: probe::INPUTS_ENTRY },
+                target,
+            )
         });
         let artifact = &unit.targets[target.name()];
         let own = Shipped {
@@ -278,7 +281,7 @@ impl<'r> Ready<'r> {
             }
             false => (own, None),
         };
-        Ok(Stages { vertex, fragment, tells: tells.transpose()? })
+        Ok(Stages { vertex, fragment, input_stage: input_stage.transpose()? })
     }
 
     /// Draws the stage and the one that writes its inputs. Gives the outputs and the inputs.
@@ -293,9 +296,9 @@ impl<'r> Ready<'r> {
                 let frames = session.draw_shipped(pair, drawing);
                 frames.map(|mut frames| frames.remove(0).targets)
             };
-            let told = stages.tells.as_ref().map(draw).transpose()?;
+            let inputs = stages.input_stage.as_ref().map(draw).transpose()?;
             let outputs = stages.fragment.as_ref().map(draw).transpose()?;
-            Ok((outputs.unwrap_or_default(), told.unwrap_or_default()))
+            Ok((outputs.unwrap_or_default(), inputs.unwrap_or_default()))
         })
     }
 

@@ -120,10 +120,10 @@ impl Case {
 
     fn made(&mut self, request: &Request) -> Result<Generated, String> {
         let made = in_memory(&mut self.sources, &self.packages, &self.manifest, request, &|_| ());
-        made.map_err(|problems| self.told(&problems))
+        made.map_err(|problems| self.rendered(&problems))
     }
 
-    fn told(&self, problems: &Diagnostics) -> String {
+    fn rendered(&self, problems: &Diagnostics) -> String {
         render(&self.sources, problems, Form::Short)
     }
 
@@ -164,7 +164,7 @@ impl Case {
         let root = program.wesl.iter().chain(glsl).next();
         let path = root.ok_or_else(|| Finding::new("manifest", "no file"))?.path.clone();
         let graph = resolve::load(&mut self.sources, &self.packages, &path, language);
-        let graph = graph.map_err(|problems| Finding::new("load", self.told(&problems)))?;
+        let graph = graph.map_err(|problems| Finding::new("load", self.rendered(&problems)))?;
         let mut places: Vec<(usize, String)> = Vec::new();
         let points = program.space.enumerate();
         for (index, point) in points.iter().enumerate() {
@@ -181,11 +181,11 @@ impl Case {
             let settings = program.space.settings(point);
             let composed = compose(&graph, &settings, &keeping(language, name));
             let composed =
-                composed.map_err(|problems| Finding::new("compose", self.told(&problems)))?;
+                composed.map_err(|problems| Finding::new("compose", self.rendered(&problems)))?;
             let lean = lean(&composed);
             let text = TextForms { composed: &composed, lean: &lean };
             let made = compile(&text, name, &source.targets, &linker)
-                .map_err(|problems| Finding::new("order: refused", self.told(&problems)))?;
+                .map_err(|problems| Finding::new("order: refused", self.rendered(&problems)))?;
             let known = &all[&(entry.clone(), program.space.key(point).to_string())];
             same(&made.unit, known).map_err(|(kind, about)| {
                 Finding::new(format!("order: {kind}"), format!("{entry} {index}\n{about}"))

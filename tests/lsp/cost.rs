@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::session::{MAIN, Session};
 use super::{Outcome, expect};
 
-/// Hover of an axis tells its recorded cost, and nothing of costs where none are recorded.
+/// Hover of an axis shows its recorded cost, and nothing of costs where none are recorded.
 pub fn recorded() -> Outcome {
     let mut session = Session::new(MAIN)?;
     let text = |found: &Value| found["contents"]["value"].as_str().unwrap_or_default().to_owned();
@@ -37,7 +37,7 @@ pub fn recorded() -> Outcome {
     expect(broken.contains("`hard`, `soft`") && !broken.contains("navi21"), &broken)
 }
 
-/// What `lamplight variants --cost --record` writes is what hover tells.
+/// What `lamplight variants --cost --record` writes is what hover shows.
 pub fn written() -> Outcome {
     let mut session = Session::new(MAIN)?;
     let valid = MAIN.replace("@if(TINT) sum = half(sum);", "").replace("half(sum)", "half(sum.x)");
@@ -55,8 +55,8 @@ pub fn written() -> Outcome {
         command.output()
     };
     let other = variants(&["--gpu", "navi10", "--record"])?;
-    let said = String::from_utf8_lossy(&other.stderr).into_owned();
-    expect(other.status.code() == Some(2) && said.contains("add it to `--gpu`"), &said)?;
+    let stderr = String::from_utf8_lossy(&other.stderr).into_owned();
+    expect(other.status.code() == Some(2) && stderr.contains("add it to `--gpu`"), &stderr)?;
     let done = variants(&["--gpu", "navi21", "--record"])?;
     expect(done.status.success(), &String::from_utf8_lossy(&done.stderr))?;
     let record = fs::read_to_string(session.folder.path().join("costs.toml"))?;

@@ -1,5 +1,5 @@
 //! The configuration of each editor in `editors/`: it has the form that the editor reads, names
-//! what the server offers, and the guide tells of it.
+//! what the server offers, and the guide describes it.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,7 +10,7 @@ use libtest_mimic::Failed;
 use serde_json::{Value, json};
 use toml::Table;
 
-use super::{Outcome, expect, said_by_neovim};
+use super::{Outcome, expect, neovim_output};
 
 /// What the server reads, by the names that editors have for it.
 const LANGUAGES: [&str; 3] = ["glsl", "wesl", "wgsl"];
@@ -112,8 +112,8 @@ pub fn vscode() -> Outcome {
     let contributes = &package["contributes"];
     let events: Vec<String> =
         LANGUAGES.iter().map(|language| format!("onLanguage:{language}")).collect();
-    let told: BTreeSet<String> = events.into_iter().map(|event| event.to_lowercase()).collect();
-    expect(words(&package["activationEvents"]) == told, &package)?;
+    let expected: BTreeSet<String> = events.into_iter().map(|event| event.to_lowercase()).collect();
+    expect(words(&package["activationEvents"]) == expected, &package)?;
     let mut named = BTreeSet::new();
     for language in contributes["languages"].as_array().ok_or("no languages")? {
         named.extend(language["id"].as_str().map(str::to_owned));
@@ -152,8 +152,9 @@ pub fn vsix() -> Outcome {
         let output = command
             .output()
             .map_err(|error| format!("{program}: {error}; install it with: apt-get install npm"))?;
-        let said = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
-        expect(output.status.success(), &(line, said))?;
+        let printed =
+            String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+        expect(output.status.success(), &(line, printed))?;
     }
     let name = format!("lamplight-{}.vsix", env!("CARGO_PKG_VERSION"));
     expect(guide.contains(&name), &name)?;
@@ -216,12 +217,12 @@ pub fn neovim() -> Outcome {
     let all =
         std::env::join_paths(std::iter::once(programs).chain(std::env::split_paths(&others)))?;
     let waits = "lua vim.wait(60000, function() return #vim.diagnostic.get(0) > 0 end, 50) \
-                 print(#vim.diagnostic.get(0) > 0 and vim.bo.filetype or 'nothing told')";
-    let said = said_by_neovim(|command| {
+                 print(#vim.diagnostic.get(0) > 0 and vim.bo.filetype or 'no diagnostics')";
+    let printed = neovim_output(|command| {
         command
             .arg(folder("editors/neovim/lamplight.lua"))
             .args(["main.wesl", "-c", waits, "-c", "qall!"])
             .env("PATH", all);
     })?;
-    expect(said.trim().ends_with("wesl"), &said)
+    expect(printed.trim().ends_with("wesl"), &printed)
 }

@@ -11,12 +11,12 @@ pub fn folder_that_is_not_there() -> Outcome {
     let mut session = Session::new(MAIN)?;
     let text = "import lamplight::brdf::diffuse::lambert;\nfn f(n: vec3f) -> vec4f { return lambert(n, n); }\n";
     session.open("not/there/new.wesl", text)?;
-    let found = session.told("not/there/new.wesl")?;
+    let found = session.diagnostics("not/there/new.wesl")?;
     let is_type = |found: &Value| found["code"] == "type-mismatch";
     expect(found.len() == 1 && found.iter().all(is_type), &found)?;
     let alone = session.uri("../no folder/of/new.wesl")?.replace(' ', "%20");
     let document = json!({ "uri": alone, "languageId": "wesl", "version": 1, "text": text });
-    session.tell("textDocument/didOpen", json!({ "textDocument": document }))?;
+    session.notify("textDocument/didOpen", json!({ "textDocument": document }))?;
     loop {
         let message = session.receive()?;
         if message["params"]["uri"].as_str().is_some_and(|uri| uri.ends_with("of/new.wesl")) {

@@ -127,7 +127,7 @@ pub fn completion() -> Outcome {
             "textDocument": { "uri": uri, "version": 2 },
             "contentChanges": [{ "text": text.replace('¤', "") }],
         });
-        session.tell("textDocument/didChange", change)?;
+        session.notify("textDocument/didChange", change)?;
         ask(&mut session, "textDocument/completion", &text, "¤")
     };
     let locals = complete("    colour =", "    u")?;
@@ -175,14 +175,14 @@ pub fn library() -> Outcome {
         let document = json!({ "textDocument": { "uri": session.uri(&name)? } });
         let found = session.ask("textDocument/documentSymbol", document.clone())?;
         let found: Vec<&Value> = found.as_array().into_iter().flatten().collect();
-        let told = module.items.iter().filter(|item| item.glsl.is_some());
-        for item in told {
+        let expected = module.items.iter().filter(|item| item.glsl.is_some());
+        for item in expected {
             expect(found.iter().any(|found| found["name"] == *item.name), &(&path, &item.name))?;
         }
         let half = text.floor_char_boundary(text.len() / 2);
         session.open(&name, &text[..half])?;
         session.ask("textDocument/documentSymbol", document.clone())?;
-        session.tell("textDocument/didClose", document)?;
+        session.notify("textDocument/didClose", document)?;
     }
     Ok(())
 }

@@ -255,8 +255,8 @@ pub fn refused() -> Outcome {
     ] {
         let place = at(&session, file, words, json!({ "newName": new }))?;
         let answer = session.answer("textDocument/rename", place)?;
-        let told = answer.as_ref().err().and_then(|error| error["message"].as_str());
-        expect(told.is_some_and(|told| told.contains(reason)), &(words, new, answer))?;
+        let message = answer.as_ref().err().and_then(|error| error["message"].as_str());
+        expect(message.is_some_and(|message| message.contains(reason)), &(words, new, answer))?;
     }
     refused_in(&mut session)
 }
@@ -281,8 +281,8 @@ fn refused_in(session: &mut Session) -> Outcome {
         let mut place = session.place(&text, words, json!({ "newName": "another" }))?;
         place["textDocument"]["uri"] = json!(session.uri("lamp.frag")?);
         let answer = session.answer("textDocument/rename", place)?;
-        let told = answer.as_ref().err().and_then(|error| error["message"].as_str());
-        expect(told.is_some_and(|told| told.contains(reason)), &(after, answer))?;
+        let message = answer.as_ref().err().and_then(|error| error["message"].as_str());
+        expect(message.is_some_and(|message| message.contains(reason)), &(after, answer))?;
     }
     Ok(())
 }

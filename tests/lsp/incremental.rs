@@ -44,27 +44,27 @@ impl Random {
     }
 }
 
-/// A server in this process, with what it told last of each file.
+/// A server in this process, with the diagnostics that it published last for each file.
 struct Editor {
     server: LanguageServer,
-    told: BTreeMap<String, Value>,
+    published: BTreeMap<String, Value>,
 }
 
 impl Editor {
     fn new() -> Self {
         Self {
             server: LanguageServer::new(Box::new(|_| None), lamplight::LIBRARY_FILES),
-            told: BTreeMap::new(),
+            published: BTreeMap::new(),
         }
     }
 
-    fn tell(&mut self, method: &str, parameters: Value) {
+    fn notify(&mut self, method: &str, parameters: Value) {
         self.server.receive(&json!({ "jsonrpc": "2.0", "method": method, "params": parameters }));
     }
 
     fn open(&mut self, uri: &str, text: &str) {
         let document = json!({ "uri": uri, "languageId": "wesl", "version": 1, "text": text });
-        self.tell("textDocument/didOpen", json!({ "textDocument": document }));
+        self.notify("textDocument/didOpen", json!({ "textDocument": document }));
     }
 
     fn ask(&mut self, method: &str, parameters: &Value) -> Value {
@@ -77,7 +77,7 @@ impl Editor {
         while !self.server.is_idle() {
             for message in self.server.look() {
                 let uri = message["params"]["uri"].as_str().unwrap_or_default().to_owned();
-                self.told.insert(uri, message["params"]["diagnostics"].clone());
+                self.published.insert(uri, message["params"]["diagnostics"].clone());
             }
         }
     }
@@ -159,14 +159,14 @@ impl Editing {
             (1, None) => {
                 let manifest = MANIFESTS[self.random.below(MANIFESTS.len())];
                 fs::write(self.folder.path().join("lamplight.toml"), manifest)?;
-                self.editor.tell("workspace/didChangeWatchedFiles", json!({ "changes": [] }));
+                self.editor.notify("workspace/didChangeWatchedFiles", json!({ "changes": [] }));
             }
             (5..=7, None) => self.change_silently(index)?,
             (1, Some(_)) if self.open.len() > 1 => {
                 self.open.remove(&index);
                 let document = json!({ "textDocument": { "uri": uri } });
-                self.editor.tell("textDocument/didClose", document);
-                self.editor.told.remove(&uri);
+                self.editor.notify("textDocument/didClose", document);
+                self.editor.published.remove(&uri);
             }
             (2..=4, None) => {
                 let text = fs::read_to_string(self.path(index)?)?;
@@ -177,7 +177,7 @@ impl Editing {
                 let text = fs::read_to_string(self.path(index)?)?;
                 let text = self.edited(&text, index);
                 fs::write(self.path(index)?, &text)?;
-                self.editor.tell("workspace/didChangeWatchedFiles", json!({ "changes": [] }));
+                self.editor.notify("workspace/didChangeWatchedFiles", json!({ "changes": [] }));
             }
             (_, Some(text)) => {
                 let text = self.edited(&text, index);
@@ -185,7 +185,7 @@ impl Editing {
                     "textDocument": { "uri": uri, "version": 2 },
                     "contentChanges": [{ "text": text }],
                 });
-                self.editor.tell("textDocument/didChange", change);
+                self.editor.notify("textDocument/didChange", change);
                 self.open.insert(index, text);
             }
         }
@@ -209,7 +209,7 @@ impl Editing {
             "textDocument": { "uri": self.uri(other)?, "version": 3 },
             "contentChanges": [{ "text": text }],
         });
-        self.editor.tell("textDocument/didChange", change);
+        self.editor.notify("textDocument/didChange", change);
         self.open.insert(other, text);
         Ok(())
     }
@@ -237,8 +237,11 @@ impl Editing {
         let open = self.open.clone();
         for (index, text) in &open {
             let uri = self.uri(*index)?;
-            let new = fresh.told.get(&uri).ok_or("a fresh server told nothing of an open file")?;
-            differs(step, "diagnostics", text, self.editor.told.get(&uri), new)?;
+            let new = fresh
+                .published
+                .get(&uri)
+                .ok_or("a fresh server published nothing for an open file")?;
+            differs(step, "diagnostics", text, self.editor.published.get(&uri), new)?;
             self.note_answer("diagnostics", new);
             let line = self.random.below(text.lines().count() + 1);
             let character = self.random.below(30);
@@ -319,7 +322,7 @@ pub fn module_becomes_item() -> Outcome {
         "textDocument": { "uri": uri("a.wesl"), "version": 2 },
         "contentChanges": [{ "text": item }],
     });
-    kept.tell("textDocument/didChange", change);
+    kept.notify("textDocument/didChange", change);
     kept.look();
     let mut new = Editor::new();
     new.open(&uri("x.wesl"), user);
@@ -334,6 +337,12 @@ pub fn module_becomes_item() -> Outcome {
         return Err(format!("a new server finds nothing: {}", asked[1]).into());
     }
     differs(1, "definition", user, Some(&asked[0]), &asked[1])?;
-    let told = [&kept, &new].map(|one| one.told.get(&uri("x.wesl")));
-    differs(1, "diagnostics", user, told[0], told[1].ok_or("nothing was told of x.wesl")?)
+    let published = [&kept, &new].map(|one| one.published.get(&uri("x.wesl")));
+    differs(
+        1,
+        "diagnostics",
+        user,
+        published[0],
+        published[1].ok_or("nothing was published for x.wesl")?,
+    )
 }

@@ -14,7 +14,7 @@ const FUNCTIONS: usize = 1500;
 /// that functions begin at every distance from a mark.
 const BEFORE: [&str; 4] = ["/* a */ ", "/* \u{e4}\u{f6} */ ", "/* \u{1d11e} */ ", ""];
 
-/// Every function is told at its place in UTF-16 units, in texts of ASCII and in others.
+/// Every function is listed at its place in UTF-16 units, in texts of ASCII and in others.
 pub fn long_lines() -> Outcome {
     let mut session = Session::new(MAIN)?;
     for before in [&BEFORE[..1], &BEFORE] {
@@ -34,7 +34,7 @@ pub fn long_lines() -> Outcome {
             let is_it = found["name"] == format!("f{index}") && start["character"] == *place;
             expect(is_it && start["line"] == 0, &(found, place))?;
         }
-        session.tell("textDocument/didClose", document)?;
+        session.notify("textDocument/didClose", document)?;
     }
     Ok(())
 }

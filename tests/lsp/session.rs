@@ -71,7 +71,7 @@ impl Session {
         let from = BufReader::new(child.stdout.take().ok_or("no output")?);
         let mut session = Self { folder, child, to, from, next: 0 };
         session.ask("initialize", json!({ "capabilities": {} }))?;
-        session.tell("initialized", json!({}))?;
+        session.notify("initialized", json!({}))?;
         session.open("main.wesl", main)?;
         Ok(session)
     }
@@ -84,14 +84,14 @@ impl Session {
         Ok(wire::write_message(self.to.as_mut().ok_or("closed")?, message)?)
     }
 
-    pub fn tell(&mut self, method: &str, parameters: Value) -> Outcome {
+    pub fn notify(&mut self, method: &str, parameters: Value) -> Outcome {
         self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": parameters }))
     }
 
     pub fn open(&mut self, name: &str, text: &str) -> Outcome {
         let uri = self.uri(name)?;
         let document = json!({ "uri": uri, "languageId": "wesl", "version": 1, "text": text });
-        self.tell("textDocument/didOpen", json!({ "textDocument": document }))
+        self.notify("textDocument/didOpen", json!({ "textDocument": document }))
     }
 
     pub fn receive(&mut self) -> Result<Value, Failed> {
@@ -151,7 +151,7 @@ impl Session {
     }
 
     /// The next diagnostics that the server publishes for a file.
-    pub fn told(&mut self, name: &str) -> Result<Vec<Value>, Failed> {
+    pub fn diagnostics(&mut self, name: &str) -> Result<Vec<Value>, Failed> {
         let uri = self.uri(name)?;
         loop {
             let message = self.receive()?;
@@ -172,7 +172,7 @@ impl Session {
             "textDocument": { "uri": uri, "version": 2 },
             "contentChanges": [{ "text": text }],
         });
-        self.tell("textDocument/didChange", parameters)
+        self.notify("textDocument/didChange", parameters)
     }
 }
 

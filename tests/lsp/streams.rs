@@ -33,10 +33,10 @@ fn ends(mut child: Child, words: &str) -> Outcome {
         std::thread::sleep(Duration::from_millis(50));
     }
     let output = child.wait_with_output()?;
-    let told = String::from_utf8_lossy(&output.stderr);
-    match output.status.code() == Some(1) && told.contains(words) {
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    match output.status.code() == Some(1) && stderr.contains(words) {
         true => Ok(()),
-        false => Err(format!("{:?}: {told}", output.status).into()),
+        false => Err(format!("{:?}: {stderr}", output.status).into()),
     }
 }
 

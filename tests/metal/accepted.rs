@@ -10,7 +10,7 @@ use lamplight::link::Linker;
 use lamplight::validate::{Validated, validate};
 use lamplight::{emit, link};
 
-use super::{Outcome, files, refusals_of, told};
+use super::{Outcome, fail_with, files, refusals_of};
 
 pub fn outputs() -> Outcome {
     let mut paths = files("accepted");
@@ -47,7 +47,7 @@ pub fn outputs() -> Outcome {
         })
         .collect();
     println!("{} outputs", texts.len());
-    told(&wrong)
+    fail_with(&wrong)
 }
 
 fn read(path: &PathBuf) -> Result<Validated, String> {

@@ -8,7 +8,7 @@ use lamplight::execute::kernel::{self, Kernel};
 use lamplight::execute::{executors, on_thread};
 use naga::ScalarKind;
 
-use super::{Outcome, told};
+use super::{Outcome, fail_with};
 
 /// The start of cases that cannot be run, and the reason.
 const OPEN: &[(&str, &str)] = &[
@@ -50,7 +50,7 @@ pub fn hold() -> Outcome {
             );
         }
         println!("{} cases", cases.len());
-        told(&wrong).map_err(|failed| failed.message().unwrap_or_default().to_owned())
+        fail_with(&wrong).map_err(|failed| failed.message().unwrap_or_default().to_owned())
     });
     Ok(outcome.ok_or("panicked")??)
 }

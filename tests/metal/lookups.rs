@@ -15,7 +15,7 @@ use lamplight::execute::compiled::CompiledProgram;
 use lamplight::execute::compiled::request::{FragmentInput, MetalResources};
 use lamplight::validate::{Validated, validate};
 
-use super::{Outcome, scrambled, told};
+use super::{Outcome, fail_with, scrambled};
 
 /// The number of quads for each text and each variant of samplers.
 const QUADS: u32 = 64;
@@ -42,7 +42,7 @@ pub fn compare(files: &[PathBuf]) -> Outcome {
             }
         }
     }
-    told(&wrong)
+    fail_with(&wrong)
 }
 
 fn read(file: &Path) -> Result<Text, String> {

@@ -8,11 +8,11 @@ use super::{Outcome, made, make, parsed, text};
 use crate::snapshot::root;
 
 /// A chain of GLSL that would take a new value in its `#else` has an error for it, and a chain that
-/// asks for something else is as it was. Each line that tests the axis is told with its place, also
+/// asks for something else is as it was. Each line that tests the axis is listed with its place, also
 /// in the folders of the programs. A sentence goes to the end of the description.
 pub fn is_an_error() -> Outcome {
-    let said = "`unheard_of` is new.";
-    let made = made::make(&root(), "axis-value", "forward::specular=unheard_of", &[said])?;
+    let sentence = "`unheard_of` is new.";
+    let made = made::make(&root(), "axis-value", "forward::specular=unheard_of", &[sentence])?;
     let (steps, files) = (made.next.join("\n"), made.files.into_iter().collect());
     let path = "shaderlib/programs/forward/lamps.glsl";
     let lamps = text(&files, path)?;
@@ -39,8 +39,8 @@ pub fn is_an_error() -> Outcome {
     let listed = text(&files, "shaderlib/lamplight.toml")?;
     let (_, axis) = listed.split_once("[program.forward.axis.specular]\n").ok_or("no axis")?;
     match axis.lines().next() {
-        Some(doc) if doc.ends_with(&format!(" {said}\"")) => Ok(()),
-        found => Err(format!("the description should end with `{said}`: {found:?}").into()),
+        Some(doc) if doc.ends_with(&format!(" {sentence}\"")) => Ok(()),
+        found => Err(format!("the description should end with `{sentence}`: {found:?}").into()),
     }
 }
 

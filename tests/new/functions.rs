@@ -126,7 +126,7 @@ pub fn in_glsl() -> Outcome {
         (" ; ", "the formula is empty"),
     ] {
         let made = make_body(body);
-        if !made.as_ref().is_err_and(|said| said.contains(expected)) {
+        if !made.as_ref().is_err_and(|message| message.contains(expected)) {
             return Err(format!("{body}: expected `{expected}`, found {made:?}").into());
         }
     }
@@ -198,7 +198,7 @@ pub fn reason() -> Outcome {
         ("brdf::diffuse::wrap", &[], "name a function and say why"),
     ] {
         let made = made::make(&root(), "reason", name, rest);
-        if !made.as_ref().is_err_and(|said| said.contains(expected)) {
+        if !made.as_ref().is_err_and(|message| message.contains(expected)) {
             return Err(format!("{name}: expected `{expected}`, found {made:?}").into());
         }
     }

@@ -11,7 +11,7 @@ use libtest_mimic::{Failed, Trial};
 use naga::proc::TypeResolution;
 use naga::{Expression, Function, Module, TypeInner};
 
-use super::{library, plan, said};
+use super::{library, plan, rendered};
 
 /// Structures of uniforms, the group of a preset's numbers for each, and fields that describe the
 /// scene, which a source does not give. `Cascades`, `Clusters`, `Probes` and `Room` are not among
@@ -52,7 +52,7 @@ fn numbers_read(preset: &Preset) -> Result<BTreeSet<(&'static str, String)>, Str
     for pass in &plan.passes {
         let program = library.programs.manifest().program(&pass.program).ok_or("no program")?;
         let stages = library.programs.stages(program, &pass.settings, Language::Wesl);
-        let Stages { vertex, fragment } = stages.map_err(said)?;
+        let Stages { vertex, fragment } = stages.map_err(rendered)?;
         for composed in [Some(vertex), fragment].into_iter().flatten() {
             read_by(&composed.validated, &mut found);
         }

@@ -40,11 +40,11 @@ fn lamplight(arguments: &[&str]) -> Command {
 }
 
 fn ends_with(output: &Output, code: i32, part: &str) -> Result<(), String> {
-    let said = String::from_utf8_lossy(&output.stderr);
-    if output.status.code() == Some(code) && said.contains(part) {
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    if output.status.code() == Some(code) && stderr.contains(part) {
         Ok(())
     } else {
-        Err(format!("expected exit code {code} and `{part}`, {}: {said}", output.status))
+        Err(format!("expected exit code {code} and `{part}`, {}: {stderr}", output.status))
     }
 }
 

@@ -6,7 +6,7 @@ use lamplight::picture::strip::{self, Comparison};
 use libtest_mimic::Trial;
 
 use super::difference::Difference;
-use super::{library, on_device, said, shot};
+use super::{library, on_device, rendered, shot};
 
 /// The size of a panel.
 const SIZE: [u32; 2] = [320, 240];
@@ -31,7 +31,7 @@ fn neighbours_differ(comparison: &Comparison) -> Result<(), String> {
     let shot = shot(SIZE, 1, Language::Wesl);
     let draw = |panel| {
         strip::draw_panel(painter.as_mut(), &library().programs, comparison, panel, &shot)
-            .map_err(said)
+            .map_err(rendered)
     };
     let pictures = comparison.panels.iter().map(draw).collect::<Result<Vec<_>, _>>()?;
     let mut alike = Vec::new();

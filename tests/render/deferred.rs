@@ -13,7 +13,7 @@ use lamplight::scene::sets::{self, Maps, Material};
 use lamplight::scene::{Layers, brick_materials, bricks};
 use libtest_mimic::Trial;
 
-use super::{BACKENDS, library, linear_plan, on_device, said, surface_pixels};
+use super::{BACKENDS, library, linear_plan, on_device, rendered, surface_pixels};
 
 /// Keys of `deferred`, and of `forward` for the same picture.
 const KEYS: &[(&str, &str, &str)] = &[
@@ -85,7 +85,7 @@ pub fn tests() -> Vec<Trial> {
 }
 
 fn plan_of(program: &str, key: &str) -> Result<Plan, String> {
-    let plan = Plan::of_key(&library().programs, program, key).map_err(said)?;
+    let plan = Plan::of_key(&library().programs, program, key).map_err(rendered)?;
     Ok(Plan { scene: "casters".to_owned(), ..plan })
 }
 
@@ -120,7 +120,7 @@ fn surface_pass(key: &str) -> Result<Pass, String> {
     let known = library().presets.first().ok_or("no preset")?;
     let (program, key) = ("gbuffer".to_owned(), key.to_owned());
     let preset = Preset { program, key, passes: Vec::new(), ..known.clone() };
-    let mut plan = Plan::of_preset(&library().programs, &preset, &[]).map_err(said)?;
+    let mut plan = Plan::of_preset(&library().programs, &preset, &[]).map_err(rendered)?;
     plan.passes.pop().ok_or_else(|| "no pass".to_owned())
 }
 

@@ -8,7 +8,7 @@ use lamplight::permute::{Quoted, key};
 use lamplight::picture::{Linear, Plan, PreparedPass, Shot, prepare_passes};
 use lamplight::source::SourceSet;
 
-use super::{library, said, shot, watched};
+use super::{library, rendered, shot, watched};
 use crate::fragments::{Watched, places};
 
 /// An executor, and the language in which it draws.
@@ -47,8 +47,8 @@ impl Bench<'_> {
         let forward = programs.manifest().program("forward").ok_or("no forward")?;
         let mut texts = SourceSet::default();
         let id = texts.add("key", text.to_owned());
-        let point = key::parse(&forward.space, &Quoted::whole(&texts, id)).map_err(said)?;
-        let mut plan = Plan::of_point(programs, forward, &point).map_err(said)?;
+        let point = key::parse(&forward.space, &Quoted::whole(&texts, id)).map_err(rendered)?;
+        let mut plan = Plan::of_point(programs, forward, &point).map_err(rendered)?;
         plan.scene = scene.to_owned();
         for (group, field, values) in numbers {
             let fields = plan.numbers.entry((*group).to_owned()).or_default();
@@ -64,17 +64,17 @@ impl Bench<'_> {
 
     pub fn prepared(&self, plan: &Plan, size: u32) -> Result<PreparedPass, String> {
         prepare_passes(self.painter, &library().programs, plan, &shot([size; 2], 1, self.language))
-            .map_err(said)
+            .map_err(rendered)
     }
 
     /// Prepares a frame with several shadow cascades.
     pub fn cascaded(&self, plan: &Plan, size: u32, cascades: u32) -> Result<PreparedPass, String> {
         let shot = Shot { cascades, ..shot([size; 2], 1, self.language) };
-        prepare_passes(self.painter, &library().programs, plan, &shot).map_err(said)
+        prepare_passes(self.painter, &library().programs, plan, &shot).map_err(rendered)
     }
 
     pub fn photograph(&self, prepared: &PreparedPass, size: u32) -> Result<Linear, String> {
-        prepared.photograph(self.painter, &shot([size; 2], 1, self.language)).map_err(said)
+        prepared.photograph(self.painter, &shot([size; 2], 1, self.language)).map_err(rendered)
     }
 
     pub fn fragments_of(

@@ -23,7 +23,7 @@ pub fn tests() -> Vec<Trial> {
         Trial::test("render/model/mirrored_is_the_same", mirrored_is_the_same),
         Trial::test("render/model/bumps_rise", bumps_rise),
         Trial::test("render/model/lamp_and_camera", lamp_and_camera),
-        Trial::test("render/model/what_is_left_out_is_said", what_is_left_out_is_said),
+        Trial::test("render/model/omissions_are_reported", omissions_are_reported),
         Trial::test("render/model/means_of_textures", means_of_textures),
         Trial::test("render/model/choices_of_the_user", choices_of_the_user),
     ];
@@ -118,11 +118,11 @@ fn render(folder: &Path, file: &[u8], arguments: &[&str]) -> Result<Output, Fail
 fn drawn(file: &[u8], arguments: &[&str]) -> Result<(Picture, String), Failed> {
     let folder = TempDir::new()?;
     let output = render(folder.path(), file, arguments)?;
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
     if !output.status.success() {
-        return Err(format!("{}: {said}", output.status).into());
+        return Err(format!("{}: {stderr}", output.status).into());
     }
-    Ok((super::read(&folder.path().join("out.png"))?, said))
+    Ok((super::read(&folder.path().join("out.png"))?, stderr))
 }
 
 /// A camera in front of the square, which then fills the middle half of the picture.
@@ -202,8 +202,8 @@ fn unlit_colors_are_multiplied() -> Result<(), Failed> {
     })?;
     let key = "`ambient=none,base_map,lights=none`";
     let output = render(TempDir::new()?.path(), &file, &BEFORE)?;
-    let said = String::from_utf8_lossy(&output.stdout);
-    demand(said.contains(key), || format!("expected {key}, found: {said}"))
+    let stdout = String::from_utf8_lossy(&output.stdout);
+    demand(stdout.contains(key), || format!("expected {key}, found: {stdout}"))
 }
 
 /// The view that is chosen for a model shows all of it, and fills a good part of the picture,
@@ -331,16 +331,16 @@ fn lamp_and_camera() -> Result<(), Failed> {
 }
 
 /// A note names the parts of the file that are not drawn.
-fn what_is_left_out_is_said() -> Result<(), Failed> {
+fn omissions_are_reported() -> Result<(), Failed> {
     let (mut document, buffer) = square(&[image([WHITE; 4])?]);
     document["materials"] = json!([{
         "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } },
         "emissiveTexture": { "index": 0, "texCoord": 1 },
         "alphaMode": "BLEND",
     }]);
-    let (_, said) = drawn(&glb(&document, &buffer), &[])?;
+    let (_, stderr) = drawn(&glb(&document, &buffer), &[])?;
     for part in ["note: `model.glb`: ", "other coordinates", "transparency"] {
-        demand(said.contains(part), || format!("expected `{part}` in `{said}`"))?;
+        demand(stderr.contains(part), || format!("expected `{part}` in `{stderr}`"))?;
     }
     Ok(())
 }
@@ -367,10 +367,10 @@ fn means_of_textures() -> Result<(), Failed> {
         document["materials"] = json!([material]);
         drawn(&glb(&document, &buffer), &arguments)
     };
-    let ((one, said), (other, _)) = (taken(&textured)?, taken(&factors)?);
+    let ((one, stderr), (other, _)) = (taken(&textured)?, taken(&factors)?);
     let note = "count with their mean, and those of extensions not at all: emission_map, \
         metallic_roughness_map";
-    demand(said.contains(note), || format!("expected `{note}` in `{said}`"))?;
+    demand(stderr.contains(note), || format!("expected `{note}` in `{stderr}`"))?;
     let (found, expected) = (pixel(&one, 0.5, 0.5), pixel(&other, 0.5, 0.5));
     demand(is_near(found, expected, 1), || format!("found {found:?}, by factors {expected:?}"))?;
     textured["occlusionTexture"] = json!({ "index": 2 });
@@ -385,10 +385,10 @@ fn choices_of_the_user() -> Result<(), Failed> {
     let folder = TempDir::new()?;
     for (set, key) in [("diffuse=wrap", "diffuse=wrap"), ("lights=none", "lights=none")] {
         let output = render(folder.path(), &glb(&document, &buffer), &["--set", set])?;
-        let told = String::from_utf8_lossy(&output.stdout).into_owned();
-        let is_taken = output.status.success() && told.contains(key);
+        let stdout = String::from_utf8_lossy(&output.stdout).into_owned();
+        let is_taken = output.status.success() && stdout.contains(key);
         demand(is_taken, || {
-            let found = format!("{told}{}", String::from_utf8_lossy(&output.stderr));
+            let found = format!("{stdout}{}", String::from_utf8_lossy(&output.stderr));
             format!("expected success and `{key}`, {}: {found}", output.status)
         })?;
     }

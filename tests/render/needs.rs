@@ -35,9 +35,9 @@ fn rows_are_demanded() -> Result<(), Failed> {
         let mut texts = library().programs.texts();
         let id = texts.add("pictures.toml", wrong.as_str());
         let problems = NeedsTable::parse(&texts, id, library().programs.manifest()).err();
-        let said = problems.map(|problems| render(&texts, &problems, Form::Short));
-        match said {
-            Some(said) if wrong != right && said.contains(expected) => {}
+        let messages = problems.map(|problems| render(&texts, &problems, Form::Short));
+        match messages {
+            Some(messages) if wrong != right && messages.contains(expected) => {}
             other => {
                 let what = format!("expected `{expected}`, found {other:?}");
                 return Err(format!("`{from}` replaced by `{to}`: {what}").into());

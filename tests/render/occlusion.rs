@@ -9,7 +9,7 @@ use lamplight::execute::Session;
 use lamplight::picture::{Linear, Plan, prepare_passes};
 use libtest_mimic::Trial;
 
-use super::{BACKENDS, library, on_device, said, shot, start};
+use super::{BACKENDS, library, on_device, rendered, shot, start};
 
 /// Permutations with every value of every axis.
 const KEYS: &[&str] =
@@ -48,11 +48,11 @@ fn drawn(
     scene: &str,
 ) -> Result<Vec<Option<f64>>, String> {
     let programs = &library().programs;
-    let mut plan = Plan::of_key(programs, "gtao", key).map_err(said)?;
+    let mut plan = Plan::of_key(programs, "gtao", key).map_err(rendered)?;
     plan.scene = scene.to_owned();
     let shot = shot(SIZE, 1, language);
-    let prepared = prepare_passes(painter, programs, &plan, &shot).map_err(said)?;
-    let frame: Linear = prepared.photograph(painter, &shot).map_err(said)?;
+    let prepared = prepare_passes(painter, programs, &plan, &shot).map_err(rendered)?;
+    let frame: Linear = prepared.photograph(painter, &shot).map_err(rendered)?;
     let places = (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y)));
     Ok(places.map(|(x, y)| frame.drawn(x, y).map(|color| color.x)).collect())
 }

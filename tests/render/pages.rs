@@ -10,7 +10,7 @@ use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 
 use super::difference::{Difference, is_recorded};
-use super::{library, on_device, plan, said, shot, start};
+use super::{library, on_device, plan, rendered, shot, start};
 
 /// Presets that the evaluator draws too. They have shading at vertices and at fragments, textures,
 /// cube maps, flat and cube shadow maps, blurred moments, and surfaces with two sides.
@@ -44,9 +44,9 @@ fn without_driver(name: &str) -> Result<(), Failed> {
         library().presets.iter().find(|preset| preset.name == name).ok_or("no such preset")?;
     on_device("vulkan", |vulkan| {
         let (plan, shot) = (plan(preset)?, shot([64, 64], 1, Language::Wesl));
-        let wanted = render_plan(vulkan, &library().programs, &plan, &shot).map_err(said)?;
+        let wanted = render_plan(vulkan, &library().programs, &plan, &shot).map_err(rendered)?;
         let found = render_plan(start("eval")?.as_ref(), &library().programs, &plan, &shot)
-            .map_err(said)?;
+            .map_err(rendered)?;
         let difference = Difference::new(&wanted, &found)?;
         let (mean, most) = (difference.mean(), difference.most());
         // There is one sample for each pixel, so a pixel at an edge may belong to either side.
@@ -142,10 +142,10 @@ pub fn gallery_cards() -> Result<(Vec<gallery::Card>, Vec<gallery::StripCard>), 
     let programs = &library().programs;
     let cards = library().presets.iter();
     let cards = cards.map(|preset| gallery::Card::new(programs, preset, Language::Wesl));
-    let strips = programs.with_texts(comparisons).map_err(said)?.into_iter();
+    let strips = programs.with_texts(comparisons).map_err(rendered)?.into_iter();
     let strips = strips.map(|one| gallery::StripCard::new(programs, one, Language::Wesl));
-    let cards = cards.collect::<Result<_, _>>().map_err(said)?;
-    Ok((cards, strips.collect::<Result<_, _>>().map_err(said)?))
+    let cards = cards.collect::<Result<_, _>>().map_err(rendered)?;
+    Ok((cards, strips.collect::<Result<_, _>>().map_err(rendered)?))
 }
 
 fn comparisons(texts: &mut SourceSet) -> Result<Vec<strip::Comparison>, Diagnostics> {

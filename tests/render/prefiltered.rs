@@ -9,7 +9,7 @@ use lamplight::picture::{Linear, Plan, Shot, Surroundings, prepare_passes};
 use lamplight::scene::{Clip, Depth, directions, perspective, sets, sh9_project};
 use libtest_mimic::Trial;
 
-use super::{BACKENDS, library, on_device, said, shot};
+use super::{BACKENDS, library, on_device, rendered, shot};
 
 /// Texels along an edge of the frames.
 const SIZE: u32 = 16;
@@ -46,11 +46,11 @@ pub fn tests() -> Vec<Trial> {
 fn drawn(painter: &dyn Session, language: Language, what: &str) -> Result<Linear, String> {
     let programs = &library().programs;
     let key = format!("samples=256,what={what}").replace(",what=specular", "");
-    let plan = Plan::of_key(programs, "prefilter", &key).map_err(said)?;
+    let plan = Plan::of_key(programs, "prefilter", &key).map_err(rendered)?;
     let surroundings = Surroundings::Formula(smooth_sky);
     let shot = Shot { surroundings, ..shot([SIZE; 2], 1, language) };
-    let prepared = prepare_passes(painter, programs, &plan, &shot).map_err(said)?;
-    prepared.photograph(painter, &shot).map_err(said)
+    let prepared = prepare_passes(painter, programs, &plan, &shot).map_err(rendered)?;
+    prepared.photograph(painter, &shot).map_err(rendered)
 }
 
 /// An environment that differs in every direction. It has no small bright lamps, so that a few

@@ -134,9 +134,9 @@ fn verdicts_of<const N: usize>(
     let refused: Vec<(&str, String)> = refused.flatten_iter().collect();
     let verdict = |(module, texts): (&String, &Texts<N>)| {
         let words = refused.iter().find(|(refused, _)| refused == module);
-        let said = words.map(|(_, words)| words.clone());
+        let refusal = words.map(|(_, words)| words.clone());
         let made = texts.as_ref().map(|_| ()).map_err(String::clone);
-        (module.clone(), made.and_then(|()| said.map_or(Ok(()), Err)))
+        (module.clone(), made.and_then(|()| refusal.map_or(Ok(()), Err)))
     };
     made.iter().map(verdict).collect()
 }

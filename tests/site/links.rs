@@ -157,8 +157,8 @@ pub fn links() -> Outcome {
     for link in &table.link {
         let hash = link.hash()?;
         if let Err(problem) = followed(&mut page, link, &hash) {
-            let said = problem.message().unwrap_or_default();
-            wrong.push(format!("{}: {said}", link.name(&hash)));
+            let reason = problem.message().unwrap_or_default();
+            wrong.push(format!("{}: {reason}", link.name(&hash)));
         }
     }
     assert!(wrong.is_empty(), "{} links:\n{}", wrong.len(), wrong.join("\n"));
@@ -169,13 +169,13 @@ pub fn links() -> Outcome {
 
 /// Seconds of processor time that the page has spent.
 fn spent(page: &BrowserPage) -> Result<f64, Failed> {
-    let said = page.call("Performance.getMetrics", json!({}))?;
-    let metrics = said["metrics"].as_array().ok_or("no metrics")?;
+    let answer = page.call("Performance.getMetrics", json!({}))?;
+    let metrics = answer["metrics"].as_array().ok_or("no metrics")?;
     let found = metrics.iter().find(|one| one["name"] == "TaskDuration");
     Ok(found.and_then(|one| one["value"].as_f64()).ok_or("no duration of tasks")?)
 }
 
-/// Opens a link, and waits until the page has said what it should.
+/// Opens a link, and waits until the page has answer what it should.
 fn followed(page: &mut BrowserPage, link: &Link, hash: &str) -> Outcome {
     let open = format!(
         "(async () => {{

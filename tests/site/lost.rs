@@ -69,8 +69,8 @@ fn unloaded() -> Outcome {
         copy_without(&site()?, folder.path(), lacking)?;
         let server = HttpServer::start(ServedFiles::Folder(folder.path().to_owned()))?;
         let page = Browser::shared()?.open(&server.address("#/catalogue"))?;
-        let said = "document.querySelector('main').textContent";
-        wait(&page, &format!("{said}.includes('the toolchain could not be loaded')"))?;
+        let text = "document.querySelector('main').textContent";
+        wait(&page, &format!("{text}.includes('the toolchain could not be loaded')"))?;
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! What screen readers are told of a page.
+//! What screen readers announce of a page.
 
 use lamplight::browser::BrowserPage;
 use serde_json::{Value, json};

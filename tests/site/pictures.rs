@@ -51,8 +51,8 @@ pub fn pictures() -> Outcome {
         without_errors(&mut page)?;
     }
     let mut page = opened.page("?device=none#/programs")?;
-    let said = "document.querySelector('[role=status].status').textContent";
-    wait(&page, &format!("{said}.includes('neither WebGPU nor WebGL2')"))?;
+    let status = "document.querySelector('[role=status].status').textContent";
+    wait(&page, &format!("{status}.includes('neither WebGPU nor WebGL2')"))?;
     without_errors(&mut page)
 }
 

@@ -179,11 +179,11 @@ fn replaced(page: &BrowserPage) -> Outcome {
     page.evaluate(&replace.replace("TEXT", &Value::from(endless()).to_string()), PATIENCE)?;
     page.evaluate(&expression("package::lit::slow()"), PATIENCE)?;
     let started = Instant::now();
-    let said = "document.querySelector('.status').textContent";
-    wait(page, &format!("{said}.includes('the toolchain was restarted')"))?;
+    let status = "document.querySelector('.status').textContent";
+    wait(page, &format!("{status}.includes('the toolchain was restarted')"))?;
     println!("the toolchain was given up after {:.1} s", started.elapsed().as_secs_f64());
     page.evaluate(&expression("package::lit::slow() + 1.0"), PATIENCE)?;
-    wait(page, &format!("{said} === 'Still computing …'"))?;
+    wait(page, &format!("{status} === 'Still computing …'"))?;
     let started = Instant::now();
     page.evaluate(&expression("2.0 + 1.0"), PATIENCE)?;
     wait(page, &format!("{VALUE} === '3' || {VALUE} === '3.0'"))?;

@@ -29,8 +29,9 @@ fn sampled_cells(name: &str) -> Result<Vec<(usize, usize)>, Failed> {
 
 /// The published error of each column. A single one holds for all columns.
 fn published_errors(name: &str) -> Result<Vec<f64>, Failed> {
-    let told: toml::Table = fs::read_to_string(folder().join(format!("{name}.toml")))?.parse()?;
-    let worst = told.get("worst").and_then(|worst| worst.as_array()).ok_or("no `worst`")?;
+    let description: toml::Table =
+        fs::read_to_string(folder().join(format!("{name}.toml")))?.parse()?;
+    let worst = description.get("worst").and_then(|worst| worst.as_array()).ok_or("no `worst`")?;
     let worst: Vec<f64> = worst.iter().filter_map(toml::Value::as_float).collect();
     match worst[..] {
         [one] => Ok(vec![one; SIDE]),

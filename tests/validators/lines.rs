@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use libtest_mimic::Failed;
 
-use super::{Outcome, Package, expect, told};
+use super::{Outcome, Package, expect, output_text};
 
 /// Two axes, each of which adds a line.
 const SHADER: &str = "
@@ -39,9 +39,9 @@ pub fn lines_of_few_permutations() -> Outcome {
     let sound = SHADER.replace("LOCATION", "1");
     let package = Package::new(MANIFEST, &sound)?;
     let arguments = ["gen", "--validate", "lines", "--no-cache"];
-    let said = package.run(&arguments)?;
-    expect(&said, 0, &["outputs validated, 0 known to pass"])?;
-    let now = validated(&told(&said), "essl300")?;
+    let output = package.run(&arguments)?;
+    expect(&output, 0, &["outputs validated, 0 known to pass"])?;
+    let now = validated(&output_text(&output), "essl300")?;
     if now >= 8 {
         return Err(format!("{now} of 8 outputs are validated, for lines alone").into());
     }
@@ -96,15 +96,15 @@ pub fn others_go_on() -> Outcome {
         };
         let missing = "not validated: `spirv-val` is not installed; \
                        install it with: apt-get install spirv-tools";
-        let said = run()?;
-        expect(&said, 4, &[missing, "not all outputs are validated", "by glslangValidator"])?;
-        validated(&told(&said), "essl300")?;
+        let output = run()?;
+        expect(&output, 4, &[missing, "not all outputs are validated", "by glslangValidator"])?;
+        validated(&output_text(&output), "essl300")?;
         let again = [missing, "0 outputs validated, 8 known to pass", "up to date"];
         expect(&run()?, 4, &again)?;
         // Once it is there, it is asked.
-        let said = package.run(&["gen", "--validate", asked, "--cache", "cache"])?;
-        expect(&said, 0, &["by spirv-val"])?;
-        validated(&told(&said), "spirv")?;
+        let output = package.run(&["gen", "--validate", asked, "--cache", "cache"])?;
+        expect(&output, 0, &["by spirv-val"])?;
+        validated(&output_text(&output), "spirv")?;
         if !package.path("bundle/manifest.json").exists() {
             return Err("no bundle is written although the other validators accept it".into());
         }
@@ -135,8 +135,8 @@ pub fn validated_once() -> Outcome {
         fs::write(tools.join("version"), format!("SPIRV-Tools v{version} of a test"))?;
         fs::write(tools.join("runs"), "")?;
         let mut command = package.command(&["gen", "--validate", asked, "--cache", "cache"]);
-        let said = command.env("PATH", &path).output()?;
-        expect(&said, 0, &[&format!("spirv-val {version}")])?;
+        let output = command.env("PATH", &path).output()?;
+        expect(&output, 0, &[&format!("spirv-val {version}")])?;
         Ok(fs::read_to_string(tools.join("runs"))?.lines().count())
     };
     // Each of the eight outputs is validated for two versions of Vulkan. Without texts beside them,

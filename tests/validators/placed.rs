@@ -1,4 +1,4 @@
-//! The refusal of an output is told at the line of the author's that causes it.
+//! The refusal of an output is reported at the author's line that causes it.
 
 use std::fs;
 

@@ -191,9 +191,9 @@ impl FaultPackage {
 
     /// What is wrong after a run, if anything is.
     fn problem_after(&self, output: &Output) -> Option<String> {
-        let said = String::from_utf8_lossy(&output.stderr);
-        if said.contains("panicked") || said.contains("internal error") {
-            return Some(format!("the run panics: {said}"));
+        let stderr = String::from_utf8_lossy(&output.stderr);
+        if stderr.contains("panicked") || stderr.contains("internal error") {
+            return Some(format!("the run panics: {stderr}"));
         }
         let mut command = Command::new(&self.program);
         command.args(["bundle", "verify", "bundle"]);

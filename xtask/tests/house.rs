@@ -87,7 +87,7 @@ const BINARIES: [&str; 13] = [
     "shaderlib/tables/sheen.ktx2",
     "tests/regressions/bundle/valid",
     "tests/regressions/picture/valid",
-    "tests/regressions/record/told",
+    "tests/regressions/record/diagnostics",
     "tests/regressions/record/valid",
 ];
 

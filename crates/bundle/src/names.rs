@@ -44,7 +44,7 @@ impl Stage {
         }
     }
 
-    /// The file extension from which glslang and Arm's compiler tell the stage.
+    /// The file extension from which glslang and Arm's compiler take the stage.
     pub fn suffix(self) -> &'static str {
         match self {
             Self::Vertex => "vert",

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde::{Deserialize, Serialize};
 
 /// Which parts of a bundle are here, and what they were made of. A whole bundle has none: its bytes
-/// do not tell how many runs made it.
+/// do not show how many runs made it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ShardOrigin {
     /// The numbers of the parts, from 1.

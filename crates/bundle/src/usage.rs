@@ -27,11 +27,11 @@ const MOST_BYTES: u64 = 256 << 20;
 pub fn usage_lines(text: &str) -> impl Iterator<Item = (usize, usize, &str)> {
     let mut start = 0;
     text.split_inclusive('\n').enumerate().filter_map(move |(index, line)| {
-        let said = line.trim();
+        let content = line.trim();
         let at = start + line.len() - line.trim_start().len();
         start += line.len();
-        let says = !said.is_empty() && !said.starts_with('#');
-        says.then_some((index + 1, at, said))
+        let is_entry = !content.is_empty() && !content.starts_with('#');
+        is_entry.then_some((index + 1, at, content))
     })
 }
 

@@ -325,13 +325,15 @@ fn differences() -> Outcome {
     entry.keys.insert("shadow=hard".into(), hash);
     entry.keys.remove("default");
     let changes = diff(&old, &new).permutations;
-    let told: Vec<String> = changes
+    let listed: Vec<String> = changes
         .iter()
         .map(|change| format!("{} {} {:?}", change.kind, change.key, change.parts))
         .collect();
     check(
-        told == ["removed default []", "changed shadow=hard [\"wgsl\"]"],
-        &format!("`default` was removed and `shadow=hard` changed in wgsl, `diff` tells {told:?}"),
+        listed == ["removed default []", "changed shadow=hard [\"wgsl\"]"],
+        &format!(
+            "`default` was removed and `shadow=hard` changed in wgsl, `diff` lists {listed:?}"
+        ),
     )
 }
 

@@ -340,8 +340,8 @@ fn mutilated() -> Result<(), Failed> {
         let outcome = load(&mut sources, &Packages::new(root, Vec::new()), "main.wesl")
             .and_then(|graph| compose(&graph, &settings, &options));
         if let Err(errors) = outcome {
-            let told = render(&sources, &errors, Form::Short);
-            assert!(!errors.is_empty() && !told.is_empty(), "a failure without a diagnostic");
+            let rendered = render(&sources, &errors, Form::Short);
+            assert!(!errors.is_empty() && !rendered.is_empty(), "a failure without a diagnostic");
         }
     }
     Ok(())

@@ -147,9 +147,10 @@ pub fn measure_subjects(
         for (device, figures) in devices.iter().zip(figures.chunks(distinct.pipelines.len())) {
             for stage in subject.stages.iter().copied() {
                 let of = |pipeline: &Pipeline| distinct.figures(figures, pipeline, stage);
-                let told = |reason| format!("`{}` on {}: {reason}", subject.name, device.gpu.name);
-                let stage_figures = of(&subject.pipeline).map_err(told)?;
-                let empty = subject.empty.as_ref().map(of).transpose().map_err(told)?;
+                let with_context =
+                    |reason| format!("`{}` on {}: {reason}", subject.name, device.gpu.name);
+                let stage_figures = of(&subject.pipeline).map_err(with_context)?;
+                let empty = subject.empty.as_ref().map(of).transpose().map_err(with_context)?;
                 let net = empty.map(|empty| stage_figures.less(&empty));
                 let name = subject.name.clone();
                 costs.push(Cost { name, gpu: device.gpu, stage, stage_figures, net });
@@ -195,7 +196,7 @@ impl<'s> Distinct<'s> {
         let place = self.places.get(pipeline).copied();
         let stages = place.and_then(|place| figures.get(place)).into_iter().flatten();
         let found = stages.into_iter().find(|(found, _)| *found == stage);
-        let missing = || format!("the driver tells no figures of the {stage:?} stage");
+        let missing = || format!("the driver reports no figures of the {stage:?} stage");
         found.map(|(_, figures)| *figures).ok_or_else(missing)
     }
 }

@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::pipeline::SpirvStage;
 use super::stages::settled_words;
 use lamplight_emit::spirv;
-use lamplight_tools::{Tool, printed_words};
+use lamplight_tools::{Tool, output_text};
 
 /// The compiler. No package of Debian has it.
 pub const MALIOC: Tool = Tool { program: "malioc", package: "" };
@@ -106,10 +106,10 @@ struct Property {
 /// The compiler's message where it refuses the stage, or what is wrong with its report.
 pub fn compile_stage(file: &Path, entry: &str, core: &str) -> Result<Vec<MaliVariant>, String> {
     let arguments = ["--vulkan", "--core", core, "--name", entry, "--format", "json"];
-    let said = MALIOC.run(&arguments, [file]);
-    let said = said.map_err(|error| format!("`malioc` could not be run: {error}"))?;
-    let printed = printed_words(&said);
-    parse_report(&String::from_utf8_lossy(&said.stdout)).map_err(|reason| match reason {
+    let output = MALIOC.run(&arguments, [file]);
+    let output = output.map_err(|error| format!("`malioc` could not be run: {error}"))?;
+    let printed = output_text(&output);
+    parse_report(&String::from_utf8_lossy(&output.stdout)).map_err(|reason| match reason {
         MaliRefusal::Shader(errors) => format!("`malioc` refuses the shader for {core}: {errors}"),
         MaliRefusal::Report(why) => {
             let printed: String = printed.chars().take(400).collect();

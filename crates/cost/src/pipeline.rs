@@ -81,9 +81,10 @@ impl ReflectedStage {
         entry: &str,
         conventions: Conventions,
     ) -> Result<Self, String> {
-        let told = |error: Diagnostic| error.message;
-        let reflection = emit::reflect(validated, entry).map_err(told)?;
-        let emitted = emit::emit_for(validated, entry, Target::SPIRV, conventions).map_err(told)?;
+        let message_of = |error: Diagnostic| error.message;
+        let reflection = emit::reflect(validated, entry).map_err(message_of)?;
+        let emitted =
+            emit::emit_for(validated, entry, Target::SPIRV, conventions).map_err(message_of)?;
         Self::new(&emitted.native.entry_name, &emitted.bytes, reflection)
     }
 }
@@ -161,9 +162,9 @@ fn scalar_and_count(ty: &str) -> Result<(ScalarKind, u8), String> {
 
 /// Compiles the WGSL text of a partner stage.
 fn partner_stage(text: &str) -> Result<ReflectedStage, String> {
-    let told = |error: &dyn std::fmt::Display| format!("the stage added to it: {error}");
-    let module = naga::front::wgsl::parse_str(text).map_err(|error| told(&error))?;
-    let info = info_of(&module).map_err(|error| told(&error))?;
+    let with_context = |error: &dyn std::fmt::Display| format!("the stage added to it: {error}");
+    let module = naga::front::wgsl::parse_str(text).map_err(|error| with_context(&error))?;
+    let info = info_of(&module).map_err(|error| with_context(&error))?;
     let validated = Validated { language: Language::Wesl, module, info };
     ReflectedStage::of_module(&validated, PARTNER, Conventions::default())
 }

@@ -38,12 +38,12 @@ pub fn ask_stages<'s, T: Clone + Send>(
     let asked = distinct
         .par_iter()
         .map(|(words, name)| ask(words).map_err(|reason| format!("`{name}`: {reason}")));
-    let told = asked.collect::<Result<Vec<T>, String>>()?;
+    let answers = asked.collect::<Result<Vec<T>, String>>()?;
     let mut found = Vec::new();
     for subject in subjects {
         for stage in subject.stages.iter().copied() {
             let mut of = words_of(subject, stage)
-                .filter_map(|words| told.get(places.get(words).copied()?).cloned());
+                .filter_map(|words| answers.get(places.get(words).copied()?).cloned());
             let whole = of.next().ok_or_else(|| no_stage(subject, stage))?;
             found.push(StageReport { subject, stage, whole, empty: of.next() });
         }

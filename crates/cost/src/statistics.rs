@@ -72,7 +72,7 @@ impl CostFigure {
 }
 
 impl Statistics {
-    /// From Mesa's names and values. What it does not tell on a GPU is 0.
+    /// From Mesa's names and values. What it does not report on a GPU is 0.
     pub fn from_named<'n>(named: impl IntoIterator<Item = (&'n str, i64)>) -> Self {
         let mut statistics = Self::default();
         for (name, value) in named {

@@ -88,15 +88,15 @@ impl Request {
         let Self { program, only, targets, conventions, shard: _ } = self;
         let AskedConventions { clip, bounds } = conventions;
         let names: Vec<&str> = targets.iter().map(|target| target.name()).collect();
-        let said = [
+        let parts = [
             program.as_ref().map(|program| format!("program {program}")),
             only.as_ref().map(|only| format!("only {}", only.text)),
             (!names.is_empty()).then(|| format!("targets {}", names.join(","))),
             clip.map(|clip| format!("clip {clip:?}")),
             bounds.map(|bounds| format!("bounds {bounds:?}")),
         ];
-        let said: Vec<String> = said.into_iter().flatten().collect();
-        if said.is_empty() { "of the manifest".to_owned() } else { said.join(", ") }
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        if parts.is_empty() { "of the manifest".to_owned() } else { parts.join(", ") }
     }
 
     /// The targets of a program, each once and in order.
@@ -264,7 +264,7 @@ pub fn in_memory(
     Ok(generated)
 }
 
-/// Composes every permutation asked for and compiles none: tells how many texts there are, and
+/// Composes every permutation asked for and compiles none: returns how many texts there are, and
 /// which axes each entry point asks for.
 ///
 /// # Errors

@@ -23,7 +23,7 @@ pub struct Summary {
     /// once.
     #[serde(default)]
     pub whole: Vec<WholeSummary>,
-    /// What validators said of the outputs, if they were asked.
+    /// The validators' verdicts on the outputs, if validators ran.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub validated: Option<Validation>,
     /// Whether there was nothing to do, since neither the inputs nor the bundle changed since the

@@ -63,7 +63,7 @@ pub struct Trace {
     /// The summary of the run that made the bundle.
     pub summary: Summary,
     /// The warnings of that run.
-    pub told: RunWarnings,
+    pub warnings: RunWarnings,
 }
 
 /// The warnings of a run. They are kept as text, since the author's files are not read when there
@@ -123,13 +123,13 @@ impl Trace {
         observer: &Observer,
         out: &Path,
         summary: Summary,
-        told: RunWarnings,
+        warnings: RunWarnings,
     ) -> Option<Self> {
         let reads = observer
             .answers()
             .into_iter()
             .map(|((package, question), answer)| (package, question, answer));
-        Some(Self { reads: reads.collect(), output: BundleStamp::of(out)?, summary, told })
+        Some(Self { reads: reads.collect(), output: BundleStamp::of(out)?, summary, warnings })
     }
 
     /// A name for the content of the bundle that was written.
@@ -147,7 +147,8 @@ impl Trace {
         let reads = trace.reads.iter().map(|(package, question, answer)| {
             ((package.clone(), question.clone()), answer.clone())
         });
-        let is_same = trace.told.is_of(run.manifest) && is_current(&reads.collect(), run.packages);
+        let is_same =
+            trace.warnings.is_of(run.manifest) && is_current(&reads.collect(), run.packages);
         let now = is_same.then(|| trace.output.renewed(run.out, look)).flatten()?;
         if now != trace.output {
             trace.output = now;

@@ -1,4 +1,4 @@
-//! What validators said of a run's outputs, as a part of its summary.
+//! The validators' verdicts on a run's outputs, as a part of its summary.
 
 use std::fmt;
 

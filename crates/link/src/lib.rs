@@ -22,7 +22,7 @@
 //!    another meaning ([`names`]). Two declarations of one name that differ are refused.
 //!
 //! Whatever is refused is compiled by naga as a whole, in that target only, and the [`Reason`] is
-//! told. The reason depends on the text and the target, so that those bytes too are a function of
+//! reported. The reason depends on the text and the target, so that those bytes too are a function of
 //! the text.
 //!
 //! # What this rests on in naga 30

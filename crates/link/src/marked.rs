@@ -111,7 +111,7 @@ fn mark_functions(
     }
 }
 
-/// Some languages have no arrays by value, so writers give each array type a name. This name tells
+/// Some languages have no arrays by value, so writers give each array type a name. This name says
 /// what the array holds.
 fn array_name(module: &Module, found: &Type) -> Option<String> {
     let TypeInner::Array { base, size, stride } = found.inner else { return None };

@@ -40,7 +40,7 @@ fn linted(files: &Files, whole: u64) -> (SourceSet, Linted) {
 }
 
 /// Every diagnostic as text.
-fn told(files: &Files, whole: u64) -> BTreeSet<String> {
+fn diagnostic_texts(files: &Files, whole: u64) -> BTreeSet<String> {
     let (sources, found) = linted(files, whole);
     let one = |diagnostic: &lamplight_diagnostic::Diagnostic| {
         let place = diagnostic.labels.first().map(|label| {
@@ -119,7 +119,7 @@ fn mistakes_in_a_chain() -> Outcome {
         let mut files = clean.clone();
         let text = files.get_mut(&module(broken)).ok_or("no such module")?;
         *text += "fn wrong() -> f32 { return 1u; }\n";
-        let (whole, reduced) = (told(&files, u64::MAX), told(&files, 0));
+        let (whole, reduced) = (diagnostic_texts(&files, u64::MAX), diagnostic_texts(&files, 0));
         if whole.len() != 1 || whole != reduced {
             return Err(format!("module {broken}: {whole:?} became {reduced:?}").into());
         }
@@ -132,7 +132,7 @@ fn alike() -> Outcome {
     let names = ["a.wesl", "b.wesl", "A.wesl", "c/Ab.wesl", "C/aB.wesl"];
     let files =
         names.iter().map(|name| ((*name).to_owned(), "const c = 1;\n".to_owned())).collect();
-    let found = told(&files, u64::MAX);
+    let found = diagnostic_texts(&files, u64::MAX);
     match found.len() == 2 && found.iter().all(|found| found.contains("differ only in case")) {
         true => Ok(()),
         false => Err(format!("{found:?}").into()),
@@ -211,7 +211,7 @@ fn random_packages() -> Outcome {
                 *text += MISTAKES[random.below(MISTAKES.len())];
             }
         }
-        let (whole, reduced) = (told(&files, u64::MAX), told(&files, 0));
+        let (whole, reduced) = (diagnostic_texts(&files, u64::MAX), diagnostic_texts(&files, 0));
         let same = if mistakes < 2 { whole == reduced } else { whole.is_subset(&reduced) };
         if !same {
             return Err(format!("round {round}: {whole:#?} became {reduced:#?}").into());

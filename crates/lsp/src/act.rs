@@ -24,8 +24,8 @@ pub fn code_actions(
     let uri = parameters.pointer("/textDocument/uri").cloned().unwrap_or_default();
     let lines = Lines::new(&text);
     let mut found = Vec::new();
-    let told = parameters.pointer("/context/diagnostics").and_then(Value::as_array);
-    for diagnostic in told.into_iter().flatten() {
+    let diagnostics = parameters.pointer("/context/diagnostics").and_then(Value::as_array);
+    for diagnostic in diagnostics.into_iter().flatten() {
         let start = diagnostic.pointer("/range/start");
         let start = start.and_then(|at| place::byte_of_position(&text, at));
         let Some(start) = start else { continue };

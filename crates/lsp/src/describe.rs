@@ -61,15 +61,15 @@ fn hover_member(server: &mut LanguageServer, parameters: &Value) -> Result<Value
     if found.is_empty() {
         return Ok(Value::Null);
     }
-    let told = found.iter().map(|member| {
+    let descriptions = found.iter().map(|member| {
         let owner = modules.graph.names.text(member.item.name);
         format!("```wgsl\n{}\n```\n`{}::{owner}`", member.text, member.node.label)
     });
-    let text = told.collect::<Vec<_>>().join("\n\n");
+    let text = descriptions.collect::<Vec<_>>().join("\n\n");
     Ok(hover_json(&text, &modules.sources.get(span.source).text, span.range()))
 }
 
-/// An item of the library as `show` tells it; any other by its comment and declaration.
+/// An item of the library as `show` prints it; any other by its comment and declaration.
 fn describe_item(
     modules: &PackageModules,
     symbol: WeslSymbol,

@@ -273,8 +273,8 @@ impl LanguageServer {
                 place.and_then(|id| report::address_of(sources, id, library)).as_deref()
                     == Some(uri)
             });
-            let told = |found| report::diagnostic_json(sources, found, note, &*self.library);
-            here.filter_map(told).collect::<Vec<_>>()
+            let to_json = |found| report::diagnostic_json(sources, found, note, &*self.library);
+            here.filter_map(to_json).collect::<Vec<_>>()
         };
         let mut opened = match self.open_package(&document.root) {
             Ok(opened) => opened,
@@ -288,9 +288,9 @@ impl LanguageServer {
         match self.graph(&mut opened, &document.path) {
             Ok(graph) => {
                 let found = look::module_problems(&graph, &settings, &document.path);
-                let mut told = shown(&opened.sources, &found, Some(&note));
-                told.extend(shade::inactive_hints(&document.text, &graph, &settings));
-                Some(told)
+                let mut diagnostics = shown(&opened.sources, &found, Some(&note));
+                diagnostics.extend(shade::inactive_hints(&document.text, &graph, &settings));
+                Some(diagnostics)
             }
             Err(found) => Some(shown(&opened.sources, &found, None)),
         }
@@ -347,7 +347,7 @@ impl LanguageServer {
         Some(whole)
     }
 
-    /// The library's items, as `show` tells them.
+    /// The library's items, as `show` prints them.
     fn items(&mut self) -> Arc<Vec<catalogue::CatalogueModule>> {
         Arc::clone(
             self.items.get_or_insert_with(|| Arc::new(catalogue::library_modules(self.files))),

@@ -15,7 +15,7 @@ const STEP: Duration = Duration::from_secs(2);
 /// Texts that are kept at most; with more, all are forgotten.
 const FILES: usize = 1 << 14;
 
-/// What the system tells of a file without reading it.
+/// The metadata by which a change of a file is noticed without reading it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Stamp {
     bytes: u64,

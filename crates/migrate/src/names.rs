@@ -34,7 +34,7 @@ pub enum PathDestination {
 impl FolderModules {
     pub fn new<'a>(
         files: impl Iterator<Item = (&'a str, &'a str, SourceId, &'a Scanned)>,
-        told: &mut Diagnostics,
+        warnings: &mut Diagnostics,
     ) -> Self {
         let mut modules = Self {
             paths: BTreeMap::new(),
@@ -60,7 +60,7 @@ impl FolderModules {
             if let Some(left) = left {
                 let message = format!("two files define `{name}`");
                 let warning = Diagnostic::warning(codes::MIGRATED_OTHERWISE, message);
-                told.push(warning.at(left, "imports do not lead here").at(kept, "but here"));
+                warnings.push(warning.at(left, "imports do not lead here").at(kept, "but here"));
             }
             if counts {
                 places.insert(segments.clone(), span);
@@ -69,13 +69,13 @@ impl FolderModules {
             }
         }
         for (id, import) in imports {
-            modules.look_up(Span::new(id, import.at.clone()), &import.path, told);
+            modules.look_up(Span::new(id, import.at.clone()), &import.path, warnings);
         }
         modules
     }
 
     /// Notes what an import names that is not there.
-    fn look_up(&mut self, span: Span, path: &[String], told: &mut Diagnostics) {
+    fn look_up(&mut self, span: Span, path: &[String], warnings: &mut Diagnostics) {
         if let Ok(PathDestination::Foreign) = self.place(path) {
             self.foreign.entry(path[0].clone()).or_insert(span);
         }
@@ -84,7 +84,7 @@ impl FolderModules {
         {
             let message = format!("`{}` has no `{last}`", module.join("::"));
             let warning = Diagnostic::warning(codes::MIGRATED_OTHERWISE, message);
-            told.push(warning.at(span, "not imported any more"));
+            warnings.push(warning.at(span, "not imported any more"));
         }
     }
 

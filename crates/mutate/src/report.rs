@@ -11,7 +11,7 @@
 //! mutation = "`max` in `...`"               # as printed
 //! reason = "why the value is the same"
 //!
-//! [[survivor]]                              # the same keys: why no case tells it
+//! [[survivor]]                              # the same keys: why no case notices it
 //! ```
 
 use lamplight_check::library::Library;

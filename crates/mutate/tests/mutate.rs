@@ -20,9 +20,9 @@ pub fn tests() -> Vec<Trial> {
         ("library_kills", library_kills),
         ("list_is_sound", list_is_sound),
         ("hidden_by_tolerance", hidden_by_tolerance),
-        ("survivors_are_told", survivors_are_told),
+        ("survivors_are_reported", survivors_are_reported),
         ("mistakes_run", mistakes_run),
-        ("stale_entries_are_told", stale_entries_are_told),
+        ("stale_entries_are_reported", stale_entries_are_reported),
         ("every_block_is_reached", every_block_is_reached),
     ];
     cases.into_iter().map(|(name, case)| Trial::test(format!("mutate::{name}"), case)).collect()
@@ -129,7 +129,7 @@ fn hidden_by_tolerance() -> Outcome {
 
 /// A case whose oracle is the evaluator kills no mutants, since it compares the code with itself. The
 /// report says if no case runs a function.
-fn survivors_are_told() -> Outcome {
+fn survivors_are_reported() -> Outcome {
     let module = format!("{HALF}fn other(x: f32) -> f32 {{\n    return 1.0 - x;\n}}\n");
     let cases = "[[case]]\nfunction = \"half\"\noracle = \"eval\"\ntolerance = { abs = 10 }\ninputs = { x = { grid = [0, 1], count = 9 } }\n";
     let report = mutants(&package(&[("mine.wesl", &module), ("mine.toml", cases)]), &["mine"])?;
@@ -198,7 +198,7 @@ fn outer(x: f32, y: f32, on: bool) -> f32 {
 
 /// An entry for a mutant that is killed is reported as stale, and an entry without a reason is
 /// refused.
-fn stale_entries_are_told() -> Outcome {
+fn stale_entries_are_reported() -> Outcome {
     let cases = "[[case]]\nfunction = \"half\"\nformula = \"0.5*x\"\ninputs = { x = 3 }\n";
     let entry = "[[equivalent]]\nfunction = \"mine::half\"\nline = \"return x * 0.5;\"\nmutation = \"`0.505` instead of `0.5`\"\nreason = \"none\"\n";
     let files = [("mine.wesl", HALF), ("mine.toml", cases), ("survivors.toml", entry)];

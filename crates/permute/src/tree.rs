@@ -1,4 +1,4 @@
-//! A decision tree over the settings that compositions asked for. It tells, without composing,
+//! A decision tree over the settings that compositions asked for. It predicts, without composing,
 //! whether another permutation gives a text that is known already.
 
 use std::collections::BTreeMap;

@@ -39,6 +39,11 @@ pub fn run_line(program: &str, folder: &Path, line: &str) -> Result<Output, Fail
     Ok(command.output()?)
 }
 
+/// What a program printed on standard error.
+pub fn stderr_text(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
 fn copy_folder(from: &Path, to: &Path) -> Result<(), Failed> {
     fs::create_dir_all(to)?;
     for entry in fs::read_dir(from)? {

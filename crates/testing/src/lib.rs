@@ -11,7 +11,13 @@ pub mod text;
 
 use std::process::ExitCode;
 
+use lamplight_diagnostic::Diagnostic;
 use libtest_mimic::{Arguments, Trial};
+
+/// The messages of errors, for the failure of a test.
+pub fn joined_messages(errors: &[Diagnostic]) -> String {
+    errors.iter().map(|error| error.message.clone()).collect::<Vec<_>>().join("; ")
+}
 
 /// Runs the tests that some functions list, with the arguments of this process.
 pub fn run_tests(lists: &[fn() -> Vec<Trial>]) -> ExitCode {

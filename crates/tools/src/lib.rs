@@ -43,17 +43,17 @@ impl Tool {
     /// The version that it reports, in one line. Another version may accept other outputs. Each
     /// program is asked once.
     pub fn version(self) -> String {
-        static TOLD: Mutex<BTreeMap<&str, Arc<OnceLock<String>>>> = Mutex::new(BTreeMap::new());
-        let told = {
-            let mut told = TOLD.lock().unwrap_or_else(PoisonError::into_inner);
-            told.entry(self.program).or_default().clone()
+        static VERSIONS: Mutex<BTreeMap<&str, Arc<OnceLock<String>>>> = Mutex::new(BTreeMap::new());
+        let slot = {
+            let mut slot = VERSIONS.lock().unwrap_or_else(PoisonError::into_inner);
+            slot.entry(self.program).or_default().clone()
         };
         let ask = || {
-            let said = Command::new(self.program).arg("--version").stdin(Stdio::null()).output();
-            let words = |said: Output| String::from_utf8_lossy(&said.stdout).replace('\n', " ");
-            said.map_or(String::new(), words)
+            let output = Command::new(self.program).arg("--version").stdin(Stdio::null()).output();
+            let words = |output: Output| String::from_utf8_lossy(&output.stdout).replace('\n', " ");
+            output.map_or(String::new(), words)
         };
-        told.get_or_init(ask).clone()
+        slot.get_or_init(ask).clone()
     }
 
     /// Its name and the number of its version, for people.
@@ -82,13 +82,13 @@ impl Tool {
             .spawn()
             .map_err(failed)?;
         let stdin = child.stdin.take();
-        let said = std::thread::scope(|scope| {
+        let output = std::thread::scope(|scope| {
             // The program may write before it has read everything, or may stop reading.
             scope.spawn(|| stdin.map(|mut stdin| stdin.write_all(input)));
             child.wait_with_output()
         });
-        let said = said.map_err(failed)?;
-        if said.status.success() { Ok(said.stdout) } else { Err(printed_words(&said)) }
+        let output = output.map_err(failed)?;
+        if output.status.success() { Ok(output.stdout) } else { Err(output_text(&output)) }
     }
 
     /// Runs it on files.
@@ -114,8 +114,8 @@ impl Tool {
 }
 
 /// Everything that a program printed.
-pub fn printed_words(said: &Output) -> String {
-    let all = [said.stdout.as_slice(), said.stderr.as_slice()].concat();
+pub fn output_text(output: &Output) -> String {
+    let all = [output.stdout.as_slice(), output.stderr.as_slice()].concat();
     String::from_utf8_lossy(&all).trim().to_owned()
 }
 

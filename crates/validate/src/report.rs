@@ -119,15 +119,15 @@ pub fn validation_error(
     spans.sort_by_key(|(range, words)| {
         (*words == TYPE, range.as_ref().map_or(usize::MAX, ExactSizeIterator::len))
     });
-    let said = words::validation_words(module, error.as_inner());
-    let diagnostic = Diagnostic::error(said.code.unwrap_or(fallback), said.message);
+    let sentence = words::validation_words(module, error.as_inner());
+    let diagnostic = Diagnostic::error(sentence.code.unwrap_or(fallback), sentence.message);
     let diagnostic = spans.into_iter().fold(diagnostic, |diagnostic, (range, words)| {
         label_or_note(diagnostic, composed, range, words)
     });
-    let diagnostic = said.beside.into_iter().fold(diagnostic, |diagnostic, (span, words)| {
+    let diagnostic = sentence.beside.into_iter().fold(diagnostic, |diagnostic, (span, words)| {
         label_or_note(diagnostic, composed, span.to_range(), &words)
     });
-    said.notes.into_iter().fold(diagnostic, Diagnostic::note)
+    sentence.notes.into_iter().fold(diagnostic, Diagnostic::note)
 }
 
 /// Adds a label if the range comes from an author's file, else a note that quotes the composed

@@ -36,28 +36,29 @@ pub fn blame(
     made: &OutputOrigin<'_>,
     refusals: &[Refusal],
 ) -> Diagnostics {
-    let mut told: Diagnostics = Vec::new();
+    let mut reported: Diagnostics = Vec::new();
     for refusal in refusals {
         let found = blame_one(sources, made, refusal);
-        let is_told = |error: &Diagnostic| {
-            told.iter()
+        let is_reported = |error: &Diagnostic| {
+            reported
+                .iter()
                 .any(|known| (&known.message, &known.labels) == (&error.message, &error.labels))
         };
-        if !found.iter().any(is_told) {
-            told.extend(found);
+        if !found.iter().any(is_reported) {
+            reported.extend(found);
         }
-        if told.len() >= REPORTED {
+        if reported.len() >= REPORTED {
             break;
         }
     }
-    let left = refusals.len().saturating_sub(told.len());
-    if let Some(last) = told.pop() {
-        told.push(match left {
+    let left = refusals.len().saturating_sub(reported.len());
+    if let Some(last) = reported.pop() {
+        reported.push(match left {
             0 => last,
             left => last.note(format!("{left} more outputs are refused, most for the same")),
         });
     }
-    told
+    reported
 }
 
 fn blame_one(sources: &mut SourceSet, made: &OutputOrigin<'_>, refusal: &Refusal) -> Diagnostics {

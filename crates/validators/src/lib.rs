@@ -103,10 +103,10 @@ impl Output {
     }
 
     fn text(&self) -> Result<String, String> {
-        let said = |error: &dyn fmt::Display| format!("`{}`: {error}", self.file.display());
+        let with_path = |error: &dyn fmt::Display| format!("`{}`: {error}", self.file.display());
         let bytes = lamplight_files::input::read_file(&self.file, u64::MAX)
-            .map_err(|error| said(&error))?;
-        String::from_utf8(bytes).map_err(|error| said(&error))
+            .map_err(|error| with_path(&error))?;
+        String::from_utf8(bytes).map_err(|error| with_path(&error))
     }
 }
 

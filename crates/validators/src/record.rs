@@ -32,13 +32,13 @@ impl BundleRecord {
         Self { keys: extents.iter().map(|extent| key(*extent)).collect() }
     }
 
-    /// What the validators said of it.
+    /// The recorded verdicts on it.
     pub fn find(&self, cache: &Cache) -> Option<Validation> {
         let found = self.keys.iter().find_map(|key| cache.get(KIND, *key))?;
         serde_json::from_slice::<Validation>(&found).ok().map(Validation::earlier)
     }
 
-    /// Keeps what they said for [`Self::find`].
+    /// Stores the verdicts for [`Self::find`].
     pub fn keep(&self, cache: &Cache, validation: &Validation) {
         if let Some(key) = self.keys.first() {
             cache.put(KIND, *key, serde_json::to_vec(validation).ok());

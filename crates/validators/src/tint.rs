@@ -21,7 +21,6 @@ pub struct Tint {
 
 /// A mistake that Tint finds.
 #[derive(Debug, Deserialize)]
-#[serde(rename = "Said")]
 pub struct TintMistake {
     /// Index of the text, in the order given.
     pub index: usize,
@@ -87,9 +86,9 @@ impl Tint {
         let lines: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
         let folder = folder.display().to_string();
         let arguments = ["--input-type=module", "--eval", SCRIPT, "--", &folder];
-        let said = NODE.pipe(&arguments, lines.join("\n").as_bytes())?;
-        let said = String::from_utf8_lossy(&said);
-        let mut lines: Vec<&str> = said.lines().collect();
+        let printed = NODE.pipe(&arguments, lines.join("\n").as_bytes())?;
+        let printed = String::from_utf8_lossy(&printed);
+        let mut lines: Vec<&str> = printed.lines().collect();
         let done = lines.pop().and_then(|line| serde_json::from_str::<Done>(line).ok());
         if done.is_none_or(|done| done.validated != files.len()) {
             return Err(format!("Tint validated not all of {} texts", files.len()));

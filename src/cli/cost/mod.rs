@@ -193,11 +193,11 @@ fn recorded_in(path: &Path) -> Result<Option<Baseline>, Failure> {
     if !path.exists() {
         return Ok(None);
     }
-    let told = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
-    let bytes = read_file(path, MOST_BYTES).map_err(|error| told(error.to_string()))?;
+    let with_path = |reason: String| Failure::input(format!("{}: {reason}", path.display()));
+    let bytes = read_file(path, MOST_BYTES).map_err(|error| with_path(error.to_string()))?;
     Baseline::parse(&bytes)
         .map(Some)
-        .map_err(|reason| told(format!("this is not a file of recorded costs: {reason}")))
+        .map_err(|reason| with_path(format!("this is not a file of recorded costs: {reason}")))
 }
 
 fn compare_costs(

@@ -16,7 +16,7 @@ use crate::cost::mali::{self, MALIOC, MaliVariant};
 use crate::cost::pipeline::SpirvStage;
 use crate::cost::stages::{StageReport, ask_stages};
 use crate::output::Scratch;
-use crate::tools::{SPIRV_OPT, printed_words};
+use crate::tools::{SPIRV_OPT, output_text};
 
 /// Runs the compiler that the arguments choose on all subjects, and prints its figures.
 pub fn run_offline(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Failure> {
@@ -37,8 +37,8 @@ pub fn run_offline(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Fa
 
 /// The version of the optimiser, which it prints on standard error.
 fn optimiser_version() -> String {
-    let said = SPIRV_OPT.run(&["--version"], std::iter::empty::<&Path>());
-    said.map_or_else(|_| String::new(), |said| printed_words(&said))
+    let output = SPIRV_OPT.run(&["--version"], std::iter::empty::<&Path>());
+    output.map_or_else(|_| String::new(), |output| output_text(&output))
 }
 
 fn print_counts(arguments: &Arguments, found: &[StageReport<'_, Counts>]) -> Result<(), Failure> {

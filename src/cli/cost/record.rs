@@ -77,17 +77,17 @@ fn by_function(devices: &[Device], costs: &[Cost]) -> BTreeMap<String, Vec<[i64;
 /// Measures the expressions that the catalogue plots.
 fn of_expressions(devices: &[Device]) -> Result<BTreeMap<String, [i64; FIGURES.len()]>, Failure> {
     let (library, sources) = (Library::shipped(LIBRARY_FILES), Mutex::new(SourceSet::default()));
-    let told = |problems| Failure::Input(lock_sources(&sources).clone(), problems);
+    let failure_of = |problems| Failure::Input(lock_sources(&sources).clone(), problems);
     let groups =
-        quality::library_groups(LIBRARY_FILES, &mut lock_sources(&sources)).map_err(told)?;
+        quality::library_groups(LIBRARY_FILES, &mut lock_sources(&sources)).map_err(failure_of)?;
     let mut subjects = Vec::new();
     for (group, entry) in
         groups.iter().flat_map(|group| group.entries.iter().map(move |entry| (group, entry)))
     {
-        let module = quality_module(&library, &sources, group, &entry.value).map_err(told)?;
+        let module = quality_module(&library, &sources, group, &entry.value).map_err(failure_of)?;
         let subject =
             cost::function_subject(&group.key(entry), &module, FUNCTION, Conventions::default());
-        subjects.push(subject.map_err(|error| told(vec![error]))?);
+        subjects.push(subject.map_err(|error| failure_of(vec![error]))?);
     }
     let costs = measure_costs(uncached(shown_device(devices)), &subjects)?;
     Ok(costs.iter().map(|cost| (cost.name.clone(), figures_row(cost))).collect())

@@ -125,18 +125,19 @@ fn file_subjects(
         Ok((shader.entry.as_str(), known))
     });
     let name = file.display();
-    let told = |reason: String| Failure::input(format!("{name}: {reason}"));
-    let known = known.collect::<Result<Vec<(&str, ReflectedStage)>, String>>().map_err(told)?;
+    let with_name = |reason: String| Failure::input(format!("{name}: {reason}"));
+    let known =
+        known.collect::<Result<Vec<(&str, ReflectedStage)>, String>>().map_err(with_name)?;
     let of = |stage| known.iter().filter(move |(_, known)| known.words.stage == stage).count();
     let is_pair = (of(Stage::Vertex), of(Stage::Fragment), known.len()) == (1, 1, 2);
     if is_pair {
         let pair = known.into_iter().map(|(_, known)| known).collect();
-        return Ok(vec![cost::stages_subject(&name.to_string(), pair).map_err(told)?]);
+        return Ok(vec![cost::stages_subject(&name.to_string(), pair).map_err(with_name)?]);
     }
     let each = known
         .into_iter()
         .map(|(entry, known)| cost::stages_subject(&format!("{name} {entry}"), vec![known]));
-    each.collect::<Result<_, _>>().map_err(told)
+    each.collect::<Result<_, _>>().map_err(with_name)
 }
 
 /// The functions that a module declares itself.

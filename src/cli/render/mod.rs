@@ -165,7 +165,7 @@ fn make_plan(programs: &Programs, arguments: &Arguments) -> Result<Plan, Failure
 fn write_picture(arguments: &Arguments, picture: &Picture) -> Result<PathBuf, Failure> {
     let name = arguments.preset.as_deref().unwrap_or("render");
     let path = arguments.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.png")));
-    told_form(&path);
+    warn_of_ending(&path);
     let png = picture.png().map_err(Failure::environment)?;
     output::write_file(&path, &png, is_own_png, arguments.overwrite.replace())?;
     Ok(path)
@@ -375,7 +375,7 @@ fn find_surroundings(name: Option<&str>) -> Result<Surroundings, Failure> {
 }
 
 /// Warns of a file name that promises another format. That is not an error.
-fn told_form(path: &std::path::Path) {
+fn warn_of_ending(path: &std::path::Path) {
     const OTHERS: [&str; 6] = ["jpg", "jpeg", "webp", "gif", "bmp", "hdr"];
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
     if ending.is_some_and(|ending| OTHERS.contains(&ending.as_str())) {

@@ -33,7 +33,7 @@ pub fn parse_view(text: &str) -> Result<View, String> {
     }
 }
 
-/// The model that is asked for; what is left out of it is said on standard error.
+/// The model that is asked for; what is left out of it is listed on standard error.
 pub fn read_model(arguments: &Arguments) -> Result<Option<Model>, Failure> {
     let Some(path) = &arguments.model else { return Ok(None) };
     let shown = path.display();
@@ -80,12 +80,12 @@ pub fn model_plan(
         let set = set.chain(arguments.set.iter().cloned()).collect();
         let chosen = Arguments { set, ..arguments.clone() };
         if let Ok(plan) = super::permutation_plan(programs, &chosen) {
-            tell_left_out(&left_out)?;
+            report_omissions(&left_out)?;
             return Ok(plan);
         }
     }
     let plan = super::permutation_plan(programs, arguments)?;
-    tell_left_out(&own)?;
+    report_omissions(&own)?;
     Ok(plan)
 }
 
@@ -106,7 +106,7 @@ pub fn model_scene(model: Model, plan: &Plan) -> Result<Scene, Failure> {
 
 /// Says on standard error which values of axes the model asks for and the permutation does not
 /// have.
-fn tell_left_out(values: &[&str]) -> Result<(), Failure> {
+fn report_omissions(values: &[&str]) -> Result<(), Failure> {
     if !values.is_empty() {
         let values = values.join(", ");
         let note = "the model asks for values that the permutation cannot have";

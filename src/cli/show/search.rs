@@ -15,8 +15,8 @@ pub fn search_library(library: &ShowIndex, asked: &str) -> Option<ShownItem> {
     let things = searchable_things(library);
     let (named, rest): (Vec<SearchEntry>, Vec<SearchEntry>) =
         things.into_iter().partition(|thing| has(&thing.path));
-    let told = rest.into_iter().filter(|thing| has(&thing.summary) || has(&thing.doc));
-    let found: Vec<SearchEntry> = named.into_iter().chain(told).collect();
+    let described = rest.into_iter().filter(|thing| has(&thing.summary) || has(&thing.doc));
+    let found: Vec<SearchEntry> = named.into_iter().chain(described).collect();
     if found.is_empty() || words.is_empty() {
         return None;
     }

@@ -101,16 +101,16 @@ fn quad(
     resources: &Resources,
     given: &[Vec<u32>; 4],
 ) -> Result<Wanted, String> {
-    let told = |error: lamplight::eval::Error| error.to_string();
-    let mut machine = Machine::<Bounded>::new(program).map_err(told)?;
-    machine.bind(resources.clone()).map_err(told)?;
+    let message_of = |error: lamplight::eval::Error| error.to_string();
+    let mut machine = Machine::<Bounded>::new(program).map_err(message_of)?;
+    machine.bind(resources.clone()).map_err(message_of)?;
     let slot = |(kind, word): (&Slot, &u32)| match kind {
         Slot::Float => Bounded::from_f64(f64::from(f32::from_bits(*word))),
         _ => Bounded::from_word(*word),
     };
     let arguments: [Vec<Bounded>; 4] =
         std::array::from_fn(|lane| function.arguments.iter().zip(&given[lane]).map(slot).collect());
-    let results = machine.quad(id, arguments.each_ref().map(Vec::as_slice)).map_err(told)?;
+    let results = machine.quad(id, arguments.each_ref().map(Vec::as_slice)).map_err(message_of)?;
     let placed = |values: Vec<Bounded>| {
         places.iter().zip(values).filter_map(|(place, value)| Some(((*place)?, value))).collect()
     };

@@ -20,8 +20,8 @@ pub fn partner(
 ) -> Result<Partner, Diagnostics> {
     let text = feeder(reflection, random);
     let feeder = validate(&Composed::of_text(Language::Wesl, None, text))?;
-    let tells = probe::told_inputs(&validated.module, entry);
-    Ok(Partner { validated: feeder, entry: "feed", tells })
+    let input_stage = probe::inputs_module(&validated.module, entry);
+    Ok(Partner { validated: feeder, entry: "feed", input_stage })
 }
 
 /// A vertex stage that draws one triangle over the whole frame. Its outputs fit the inputs of a

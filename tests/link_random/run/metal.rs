@@ -21,9 +21,11 @@ impl Metal {
     pub fn new(ready: &[Ready<'_>]) -> Result<Self, String> {
         let (mut stages, mut first) = (Vec::new(), BTreeMap::new());
         for (index, ready) in ready.iter().enumerate() {
-            if let Some(Ok(Stages { vertex, fragment, tells })) = ready.stages.get(&Target::MSL) {
+            if let Some(Ok(Stages { vertex, fragment, input_stage })) =
+                ready.stages.get(&Target::MSL)
+            {
                 first.insert(index, stages.len());
-                stages.extend([vertex].into_iter().chain(fragment).chain(tells).cloned());
+                stages.extend([vertex].into_iter().chain(fragment).chain(input_stage).cloned());
             }
         }
         let compiled = CompiledStages::new(stages).map_err(|missing| missing.reason)?;
@@ -41,13 +43,16 @@ impl Metal {
                 let frames = self.compiled.draw(first, Some(fragment), &drawing);
                 frames.map(|mut frames| frames.remove(0).targets)
             };
-            let tells = ready.partner.tells.as_ref();
+            let input_stage = ready.partner.input_stage.as_ref();
             if !ready.runnable.is_fragment() {
-                let told = tells.map(|tells| draw(first + 1, tells.targets)).transpose()?;
-                return Ok((Targets::new(), told.unwrap_or_default()));
+                let inputs = input_stage
+                    .map(|input_stage| draw(first + 1, input_stage.targets))
+                    .transpose()?;
+                return Ok((Targets::new(), inputs.unwrap_or_default()));
             }
-            let told = tells.map(|tells| draw(first + 2, tells.targets)).transpose()?;
-            Ok((draw(first + 1, count)?, told.unwrap_or_default()))
+            let inputs =
+                input_stage.map(|input_stage| draw(first + 2, input_stage.targets)).transpose()?;
+            Ok((draw(first + 1, count)?, inputs.unwrap_or_default()))
         })
     }
 }

@@ -35,8 +35,8 @@ pub fn partner(reflection: &Reflection) -> Result<Partner, Diagnostics> {
          @fragment fn read(fed: Fed) -> @location(0) vec4f {{ return vec4f(); }}\n"
     );
     let validated = validate(&Composed::of_text(Language::Wesl, None, text))?;
-    let tells = probe::told_inputs(&validated.module, "read");
-    Ok(Partner { validated, entry: "read", tells })
+    let input_stage = probe::inputs_module(&validated.module, "read");
+    Ok(Partner { validated, entry: "read", input_stage })
 }
 
 /// One triangle with the attributes that all vertex stages have.
@@ -70,13 +70,13 @@ pub struct Corners {
 
 impl Corners {
     pub fn new(ready: &Ready<'_>) -> Result<Self, String> {
-        let told = |error: lamplight::eval::Error| error.to_string();
+        let message_of = |error: lamplight::eval::Error| error.to_string();
         let (program, id, function) = entry_point(ready)?;
         let sources = components(&function.inputs);
         let mut doubt = false;
         let mut vertex = |index: u32| -> Result<Vec<Bounded>, String> {
-            let mut machine = Machine::<Bounded>::new(&program).map_err(told)?;
-            machine.bind(resources(ready)).map_err(told)?;
+            let mut machine = Machine::<Bounded>::new(&program).map_err(message_of)?;
+            machine.bind(resources(ready)).map_err(message_of)?;
             let mut given = Vec::new();
             for ((binding, place), kind) in
                 function.inputs.iter().zip(&sources).zip(&function.arguments)
@@ -93,7 +93,7 @@ impl Corners {
                     _ => Bounded::from_word(word),
                 });
             }
-            let results = machine.call(id, &given).map_err(told)?.to_vec();
+            let results = machine.call(id, &given).map_err(message_of)?.to_vec();
             doubt |= !machine.findings().is_empty();
             Ok(results)
         };

@@ -143,8 +143,8 @@ fn second_set() -> Result<(), Failed> {
         "pbrMetallicRoughness": { "baseColorTexture": { "index": 0, "texCoord": 1 } },
         "extensions": { "KHR_materials_unlit": {} },
     }]);
-    let (picture, said) = drawn(&glb(&document, &buffer), &BEFORE)?;
-    demand(!said.contains("other coordinates"), || format!("expected no note, found: {said}"))?;
+    let (picture, stderr) = drawn(&glb(&document, &buffer), &BEFORE)?;
+    demand(!stderr.contains("other coordinates"), || format!("expected no note, found: {stderr}"))?;
     has_quarters(&picture, [WHITE, BLUE, GREEN, RED])
 }
 
@@ -157,8 +157,10 @@ fn sets_beside_each_other() -> Result<(), Failed> {
         "emissiveFactor": [1, 1, 1],
         "emissiveTexture": { "index": 1, "texCoord": 1 },
     }]);
-    let (picture, said) = drawn(&glb(&document, &buffer), &BEFORE)?;
-    demand(said.contains("count with their mean"), || format!("expected a note, found: {said}"))?;
+    let (picture, stderr) = drawn(&glb(&document, &buffer), &BEFORE)?;
+    demand(stderr.contains("count with their mean"), || {
+        format!("expected a note, found: {stderr}")
+    })?;
     let [left, right] = [0.4, 0.6].map(|x| pixel(&picture, x, 0.6));
     demand(is_near(left, right, 12) && left[0] > 170 && left[0] < 225, || {
         format!("expected about half of the light on both sides, found {left:?} and {right:?}")
@@ -175,8 +177,10 @@ fn image_that_is_none() -> Result<(), Failed> {
         },
         "extensions": { "KHR_materials_unlit": {} },
     }]);
-    let (picture, said) = drawn(&glb(&document, &buffer), &BEFORE)?;
-    demand(said.contains("images[0] is left out"), || format!("expected a note, found: {said}"))?;
+    let (picture, stderr) = drawn(&glb(&document, &buffer), &BEFORE)?;
+    demand(stderr.contains("images[0] is left out"), || {
+        format!("expected a note, found: {stderr}")
+    })?;
     let found = pixel(&picture, 0.5, 0.5);
     demand(is_near(found, [137, 188, 255], 1), || {
         format!("expected the factor, [137, 188, 255], found {found:?}")

@@ -48,8 +48,8 @@ pub fn tests() -> impl Iterator<Item = Trial> {
         ("none_is_chosen_for_nothing", nothing_is_chosen),
         ("emission_has_its_strength", emission_has_its_strength),
         ("unlit_beside_lit", unlit_beside_lit),
-        ("what_is_left_out_is_said", what_is_left_out_is_said),
-        ("what_is_excluded_is_said", what_is_excluded_is_said),
+        ("omissions_are_reported", omissions_are_reported),
+        ("exclusions_are_reported", exclusions_are_reported),
     ];
     each.chain(others.map(|(name, run)| Trial::test(format!("render/model/layer/{name}"), run)))
 }
@@ -70,9 +70,9 @@ fn surface(extensions: &Value) -> Vec<u8> {
 fn is_drawn((axis, extensions): &Layer) -> Result<(), Failed> {
     let (file, folder) = (surface(&extensions()), TempDir::new()?);
     let output = render(folder.path(), &file, &BEFORE)?;
-    let told = String::from_utf8_lossy(&output.stdout).into_owned();
-    demand(told.split([',', ' ', '`', '\n']).any(|part| part == *axis), || {
-        format!("expected `{axis}`: {told}{}", String::from_utf8_lossy(&output.stderr))
+    let stdout = String::from_utf8_lossy(&output.stdout).into_owned();
+    demand(stdout.split([',', ' ', '`', '\n']).any(|part| part == *axis), || {
+        format!("expected `{axis}`: {stdout}{}", String::from_utf8_lossy(&output.stderr))
     })?;
     let without = format!("{axis}=false");
     let set = [BEFORE.as_slice(), &["--set", &without]].concat();
@@ -89,10 +89,10 @@ fn nothing_is_chosen() -> Result<(), Failed> {
     for extensions in [json!({}), idle] {
         let folder = TempDir::new()?;
         let output = render(folder.path(), &surface(&extensions), &[])?;
-        let told = String::from_utf8_lossy(&output.stdout).into_owned();
-        let has = |axis: &str| told.contains(axis);
+        let stdout = String::from_utf8_lossy(&output.stdout).into_owned();
+        let has = |axis: &str| stdout.contains(axis);
         let is_plain = has("metallic_roughness") && !LAYERS.iter().any(|(axis, _)| has(axis));
-        demand(is_plain, || format!("expected `metallic_roughness` and no layer: {told}"))?;
+        demand(is_plain, || format!("expected `metallic_roughness` and no layer: {stdout}"))?;
     }
     Ok(())
 }
@@ -135,26 +135,26 @@ fn unlit_beside_lit() -> Result<(), Failed> {
 }
 
 /// The texture of the coat's normals and unknown extensions are named.
-fn what_is_left_out_is_said() -> Result<(), Failed> {
+fn omissions_are_reported() -> Result<(), Failed> {
     let extensions = json!({ "KHR_materials_clearcoat":
         { "clearcoatFactor": 1.0, "clearcoatNormalTexture": { "index": 0 } }, "EXT_materials_fur": {} });
-    let (_, said) = drawn(&surface(&extensions), &[])?;
+    let (_, stderr) = drawn(&surface(&extensions), &[])?;
     for part in ["clearcoatNormalTexture of KHR_materials_clearcoat", "EXT_materials_fur"] {
-        demand(said.contains(part), || format!("expected `{part}` in `{said}`"))?;
+        demand(stderr.contains(part), || format!("expected `{part}` in `{stderr}`"))?;
     }
     Ok(())
 }
 
-/// Extensions, arguments, what is said, and what is not said.
-type Told<'a> = (&'a Value, &'a [&'a str], &'a [&'a str], &'a [&'a str]);
+/// Extensions, arguments, what standard error names, and what it does not name.
+type Excluded<'a> = (&'a Value, &'a [&'a str], &'a [&'a str], &'a [&'a str]);
 
 /// Values of axes that the user's choice excludes are named, and only those.
-fn what_is_excluded_is_said() -> Result<(), Failed> {
+fn exclusions_are_reported() -> Result<(), Failed> {
     let coat = json!({ "KHR_materials_clearcoat": { "clearcoatFactor": 1.0 } });
     let colors = json!({ "KHR_materials_transmission": { "transmissionFactor": 1.0 },
         "KHR_materials_volume": { "thicknessFactor": 1.0 },
         "KHR_materials_dispersion": { "dispersion": 20.0 } });
-    let tried: [Told<'_>; 3] = [
+    let tried: [Excluded<'_>; 3] = [
         (
             &coat,
             &["--set", "frequency=vertex"],
@@ -165,10 +165,10 @@ fn what_is_excluded_is_said() -> Result<(), Failed> {
         (&coat, &[], &[], &["cannot have"]),
     ];
     for (extensions, arguments, named, unnamed) in tried {
-        let (_, said) = drawn(&surface(extensions), arguments)?;
-        let is_right = named.iter().all(|part| said.contains(part))
-            && !unnamed.iter().any(|part| said.contains(part));
-        demand(is_right, || format!("expected {named:?} and not {unnamed:?} in `{said}`"))?;
+        let (_, stderr) = drawn(&surface(extensions), arguments)?;
+        let is_right = named.iter().all(|part| stderr.contains(part))
+            && !unnamed.iter().any(|part| stderr.contains(part));
+        demand(is_right, || format!("expected {named:?} and not {unnamed:?} in `{stderr}`"))?;
     }
     Ok(())
 }

@@ -250,8 +250,8 @@ fn none_there() -> Result<(), Failed> {
     };
     for texture in [json!({ "index": 7 }), json!({ "index": "0" }), json!(3)] {
         let place = "materials[0].extensions.KHR_materials_clearcoat.clearcoatTexture: ";
-        let said = coat(texture).unwrap_or_default();
-        demand(said.contains(place), || format!("expected `{place}` in `{said}`"))?;
+        let message = coat(texture).unwrap_or_default();
+        demand(message.contains(place), || format!("expected `{place}` in `{message}`"))?;
     }
     Ok(())
 }

@@ -21,9 +21,9 @@ fn far_away() -> Result<(), Failed> {
     let far = ["--camera", "1e39,0,0,0,0,0"];
     for (file, arguments) in [(large, &[][..]), (changed(|_| ()), &far[..])] {
         let folder = TempDir::new()?;
-        let said = render(folder.path(), &file, arguments)?.stderr;
-        let said = String::from_utf8_lossy(&said);
-        demand(said.contains("the picture may be empty"), || format!("no note: {said}"))?;
+        let stderr = render(folder.path(), &file, arguments)?.stderr;
+        let stderr = String::from_utf8_lossy(&stderr);
+        demand(stderr.contains("the picture may be empty"), || format!("no note: {stderr}"))?;
     }
     Ok(())
 }
@@ -147,13 +147,13 @@ const WRONG: &[Wrong] = &[
 fn refused(file: &[u8], words: &str) -> Result<(), Failed> {
     let folder = TempDir::new()?;
     let output = render(folder.path(), file, &[])?;
-    let said = String::from_utf8_lossy(&output.stderr);
-    let is_told = output.status.code() == Some(1)
-        && said.contains(words)
-        && said.contains("model.glb")
-        && !said.contains("panicked");
-    demand(is_told, || {
-        format!("expected exit code 1, `{words}` and model.glb, {}: {said}", output.status)
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    let is_reported = output.status.code() == Some(1)
+        && stderr.contains(words)
+        && stderr.contains("model.glb")
+        && !stderr.contains("panicked");
+    demand(is_reported, || {
+        format!("expected exit code 1, `{words}` and model.glb, {}: {stderr}", output.status)
     })?;
     demand(!folder.path().join("out.png").exists(), || {
         format!("a picture was written, expected only the error `{words}`")

@@ -108,7 +108,7 @@ fn watch(request: &FuzzRequest) -> CommandResult {
 
 /// Runs workers until the time is over. Each finding ends a worker.
 fn fuzz(kind: &Kind, seed: u64, seconds: u64) -> Result<usize, CommandFailure> {
-    let (started, mut told, mut round) = (Instant::now(), BTreeSet::new(), 0);
+    let (started, mut reasons, mut round) = (Instant::now(), BTreeSet::new(), 0);
     while started.elapsed().as_secs() < seconds {
         let rest = seconds - started.elapsed().as_secs();
         let worker = spawn(&[
@@ -120,11 +120,11 @@ fn fuzz(kind: &Kind, seed: u64, seconds: u64) -> Result<usize, CommandFailure> {
         let Some(reason) = outcome(worker, Some(&current(kind)))? else { break };
         round += 1;
         let input = fs::read(current(kind)).map_err(environment)?;
-        if told.insert(reason.clone()) {
+        if reasons.insert(reason.clone()) {
             keep(kind, input, &reason)?;
         }
     }
-    Ok(told.len())
+    Ok(reasons.len())
 }
 
 /// The file in which a worker leaves the input that it is about to check.
@@ -148,9 +148,10 @@ fn outcome(mut worker: Child, sign: Option<&Path>) -> Result<Option<String>, Com
     let started = Instant::now();
     loop {
         if let Ok(Some(status)) = worker.try_wait() {
-            let said = worker.wait_with_output().map(|output| output.stderr).unwrap_or_default();
-            let said = String::from_utf8_lossy(&said);
-            return ending::read_ending(status, said.trim()).map_err(CommandFailure::environment);
+            let message = worker.wait_with_output().map(|output| output.stderr).unwrap_or_default();
+            let message = String::from_utf8_lossy(&message);
+            return ending::read_ending(status, message.trim())
+                .map_err(CommandFailure::environment);
         }
         let alive = sign.and_then(|sign| fs::metadata(sign).ok()?.modified().ok()?.elapsed().ok());
         if started.elapsed() > PATIENCE && alive.is_none_or(|since| since > PATIENCE) {

@@ -120,7 +120,7 @@ impl Run {
 
     /// The summary of an earlier run, whose bundle is validated if it was not before.
     fn up_to_date(&mut self, trace: Trace) -> Result<Summary, CommandFailure> {
-        eprint!("{}", trace.told.text(Form::Human));
+        eprint!("{}", trace.warnings.text(Form::Human));
         let validated = match self.record(&trace, &tint_folder()).find(&self.cache) {
             Some(known) => Some(known),
             None if self.extent == Extent::Nothing => None,
@@ -158,8 +158,8 @@ impl Run {
         };
         writer.finish(&contents).map_err(environment)?;
         eprint!("{}", render(&self.sources, &warnings, Form::Human));
-        let told = RunWarnings::new(&self.path, &self.sources, &warnings);
-        if let Some(trace) = Trace::new(&self.observer, &self.out, summary.clone(), told) {
+        let warnings = RunWarnings::new(&self.path, &self.sources, &warnings);
+        if let Some(trace) = Trace::new(&self.observer, &self.out, summary.clone(), warnings) {
             trace.keep(&self.cache, self.traced());
             self.keep(&trace, validated.as_ref());
         }

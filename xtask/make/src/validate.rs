@@ -15,7 +15,7 @@ use crate::generate;
 use crate::progress::show_progress;
 
 /// How many refusals are printed.
-const TOLD: usize = 20;
+const MOST_LISTED: usize = 20;
 
 /// Validates all of a bundle directory, whatever passed before.
 pub fn run(arguments: &[String]) -> CommandResult {
@@ -29,7 +29,7 @@ pub fn run(arguments: &[String]) -> CommandResult {
         format!("{} ({target}): {validator}: {words}", file.display())
     };
     if !refusals.is_empty() {
-        let lines: Vec<String> = refusals.iter().take(TOLD).map(line).collect();
+        let lines: Vec<String> = refusals.iter().take(MOST_LISTED).map(line).collect();
         return Err(CommandFailure::check(lines.join("\n")));
     }
     match validation.missing().as_slice() {

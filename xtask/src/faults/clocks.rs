@@ -63,13 +63,13 @@ impl Clock {
         let mut compiler = Command::new("cc");
         compiler.args(["-shared", "-fPIC", "-O1", "-o"]).arg(&library).arg(&source);
         let made = compiler.output().map_err(environment)?;
-        let said = String::from_utf8_lossy(&made.stderr).into_owned();
+        let stderr = String::from_utf8_lossy(&made.stderr).into_owned();
         let clock = Self { library };
         let year = |days| clock.year(days);
         match made.status.success() {
             true if year(25_000)? != year(0)? => Ok(clock),
             true => Err(CommandFailure::environment("no program's clock can be set here")),
-            false => Err(CommandFailure::environment(format!("cc: {said}"))),
+            false => Err(CommandFailure::environment(format!("cc: {stderr}"))),
         }
     }
 
@@ -97,9 +97,9 @@ impl FaultPackage {
     /// What is wrong after a run that should have written this number into each of the three
     /// shaders.
     fn current(&self, output: &Output, number: usize) -> Result<Option<String>, CommandFailure> {
-        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
         Ok(match output.status.success() {
-            false => Some(format!("the run fails: {said}")),
+            false => Some(format!("the run fails: {stderr}")),
             true => self.problem_after(output).or(self.lacks(&self.folder.join("bundle"), number)?),
         })
     }
@@ -145,10 +145,12 @@ fn cached(
     let first = package.gen_with(clock, days).output().map_err(environment)?;
     fs::remove_dir_all(package.folder.join("bundle")).map_err(environment)?;
     let second = package.gen_with(clock, -days).output().map_err(environment)?;
-    let told = String::from_utf8_lossy(&second.stdout).into_owned();
+    let stdout = String::from_utf8_lossy(&second.stdout).into_owned();
     Ok(match package.current(&second, number)? {
         None if !first.status.success() => Some("the first run fails".to_owned()),
-        None if !told.contains("cache") => Some(format!("nothing comes from the cache: {told}")),
+        None if !stdout.contains("cache") => {
+            Some(format!("nothing comes from the cache: {stdout}"))
+        }
         outcome => outcome,
     })
 }

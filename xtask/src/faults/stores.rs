@@ -70,8 +70,8 @@ impl FaultPackage {
         command.args(if alone { &["--no-cache"][..] } else { &["--cache", "cache"][..] });
         let output = self.prepared(command).output().map_err(environment)?;
         if !output.status.success() {
-            let said = String::from_utf8_lossy(&output.stderr).into_owned();
-            return Err(CommandFailure::check(format!("a run with a wrong cache fails: {said}")));
+            let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
+            return Err(CommandFailure::check(format!("a run with a wrong cache fails: {stderr}")));
         }
         let read = |path: PathBuf| {
             let name = path.strip_prefix(&out).unwrap_or(&path).to_owned();

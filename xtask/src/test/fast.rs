@@ -133,9 +133,9 @@ fn package_of(path: &str) -> Option<String> {
 fn read_workspace() -> Result<Workspace, CommandFailure> {
     let mut command = process::cargo_command();
     command.args(["metadata", "--format-version", "1", "--no-deps", "--offline"]);
-    let said = command.output().map_err(|error| process::not_run("cargo metadata", &error))?;
-    process::succeeded(said.status, "cargo metadata")?;
-    let metadata: Value = serde_json::from_slice(&said.stdout)
+    let output = command.output().map_err(|error| process::not_run("cargo metadata", &error))?;
+    process::succeeded(output.status, "cargo metadata")?;
+    let metadata: Value = serde_json::from_slice(&output.stdout)
         .map_err(|error| CommandFailure::environment(format!("cargo metadata: {error}")))?;
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     let list = |value: &Value| value.as_array().cloned().unwrap_or_default();

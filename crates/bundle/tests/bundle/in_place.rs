@@ -64,8 +64,8 @@ fn truncated(path: &Path, bytes: &[u8]) -> Outcome {
         let bundle = Bundle::open(path)?;
         OpenOptions::new().write(true).open(path)?.set_len(length as u64)?;
         let outcome = read_all(&bundle);
-        let is_told = matches!(outcome, Err(Error::Corrupt { .. } | Error::Io(_)));
-        check(is_told, &format!("cut to {length} bytes: {outcome:?}"))?;
+        let is_reported = matches!(outcome, Err(Error::Corrupt { .. } | Error::Io(_)));
+        check(is_reported, &format!("cut to {length} bytes: {outcome:?}"))?;
     }
     Ok(())
 }

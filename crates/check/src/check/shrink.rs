@@ -220,11 +220,11 @@ fn describe_input(job: &CaseJob<'_>, words: &[u32], goal: &Goal, found: &[u32]) 
     let allowed = worst.map_or(0.0, |worst| worst.allowed);
     let (found, expected) =
         (decimal_words(found, &job.kernel().result_kinds()), toml_list(&goal.expected.value));
-    let said = format!(
+    let found_text = format!(
         "  found {found}\n  expected {expected}\n  allowed {}\n\n",
         law::amount_text(allowed)
     );
-    input.text.clone() + &said + &case_to_paste(job, &input, &expected, allowed)
+    input.text.clone() + &found_text + &case_to_paste(job, &input, &expected, allowed)
 }
 
 /// A case with the one row, and the fixtures that it names.

@@ -1,4 +1,4 @@
-//! Packages that npm or Cargo installed. Their own files tell where a package is. No program is
+//! Packages that npm or Cargo installed. Their own files say where a package is. No program is
 //! run, since the folder may be a stranger's.
 
 use std::path::{Path, PathBuf};

@@ -66,20 +66,20 @@ fn search_cycle(
 }
 
 /// The most steps of a cycle that a message lists.
-const TOLD: usize = 12;
+const MOST_LISTED: usize = 12;
 
 fn report_cycle(graph: &Graph, edges: &[Dependency], circle: &[(Thing, usize)]) -> Diagnostic {
     let text = |thing: Thing| graph.names.text(name_of(graph, thing));
     let first = text(circle[0].0);
     let mut chain: Vec<String> =
-        circle.iter().take(TOLD).map(|(thing, _)| format!("`{}`", text(*thing))).collect();
-    if circle.len() > TOLD {
-        chain.push(format!("{} more", circle.len() - TOLD));
+        circle.iter().take(MOST_LISTED).map(|(thing, _)| format!("`{}`", text(*thing))).collect();
+    if circle.len() > MOST_LISTED {
+        chain.push(format!("{} more", circle.len() - MOST_LISTED));
     }
     let chain = chain.join(" -> ");
     let message = format!("`{first}` needs itself: {chain} -> `{first}`");
     let mut error = Diagnostic::error(codes::CYCLIC_CONSTANT, message);
-    for (thing, next) in circle.iter().take(TOLD) {
+    for (thing, next) in circle.iter().take(MOST_LISTED) {
         let edge = &edges[next - 1];
         error = error.at(edge.span, format!("`{}` needs `{}`", text(*thing), text(edge.used)));
     }

@@ -38,7 +38,7 @@ fn write(source: &EmitSource<'_>) -> Result<Emitted, String> {
         None => text,
     };
     let text = filters::with_filters(&text, source.module)?;
-    // naga does not tell the names that it wrote, and it appends an underscore to names that end
+    // naga does not return the names that it wrote, and it appends an underscore to names that end
     // with a digit.
     let entry =
         declared_names(&text, "fn", Some("@")).next().ok_or("no entry point was written")?;

@@ -26,11 +26,11 @@ pub fn tests() -> Vec<Trial> {
 pub fn library_program(path: &str) -> Result<Program, Failed> {
     let root = Package { name: "lamplight".into(), files: Box::new(LIBRARY_FILES) };
     let packages = Packages::new(root, Vec::new());
-    let said = |errors| Failed::from(format!("{errors:?}"));
-    let graph = load(&mut SourceSet::default(), &packages, path).map_err(said)?;
+    let message_of = |errors| Failed::from(format!("{errors:?}"));
+    let graph = load(&mut SourceSet::default(), &packages, path).map_err(message_of)?;
     let composed =
         compose(&graph, &Settings::default(), &Options { keep: Keep::All, ..Options::default() })
-            .map_err(said)?;
+            .map_err(message_of)?;
     program(&composed.text)
 }
 

@@ -100,10 +100,10 @@ fn compare_quads(
     lanes: &[Vec<f32>],
     loop_limit: u64,
 ) -> Result<Option<Vec<Option<Vec<u32>>>>, String> {
-    let said = |error: Error| error.to_string();
+    let message_of = |error: Error| error.to_string();
     let machine = || -> Result<Machine<'_, f32>, String> {
-        let mut machine = Machine::<f32>::new(program).map_err(said)?;
-        machine.bind(resources()).map_err(said)?;
+        let mut machine = Machine::<f32>::new(program).map_err(message_of)?;
+        machine.bind(resources()).map_err(message_of)?;
         machine.loop_limit = loop_limit;
         Ok(machine)
     };
@@ -129,9 +129,9 @@ fn compare_quads(
     let outcome = Batch::new(machine()?).quads(id, &quads, &mut |lane, result, is_killed| {
         together[lane] = (!is_killed).then(|| bits_of(result));
     });
-    let told = outcome.err().map(|error| error.to_string());
-    if problem != told {
-        return Err(format!("by themselves {problem:?}, in lock-step {told:?}"));
+    let in_lockstep = outcome.err().map(|error| error.to_string());
+    if problem != in_lockstep {
+        return Err(format!("by themselves {problem:?}, in lock-step {in_lockstep:?}"));
     }
     if problem.is_some() {
         return Ok(None);
@@ -174,7 +174,7 @@ fn library_functions() -> Result<(), Failed> {
 }
 
 fn compare_calls(program: &Program, id: FunctionId) -> Result<(), String> {
-    let said = |error: Error| error.to_string();
+    let message_of = |error: Error| error.to_string();
     let function = program.signature(id).ok_or("no function")?;
     let mut random = Random(5);
     let lanes: Vec<Vec<f32>> = (0..3 * Batch::LANES + 5)
@@ -183,7 +183,7 @@ fn compare_calls(program: &Program, id: FunctionId) -> Result<(), String> {
             function.arguments.iter().map(word).collect()
         })
         .collect();
-    let mut machine = Machine::<f32>::new(program).map_err(said)?;
+    let mut machine = Machine::<f32>::new(program).map_err(message_of)?;
     let mut alone = Vec::new();
     for lane in &lanes {
         match machine.call(id, lane) {
@@ -196,7 +196,7 @@ fn compare_calls(program: &Program, id: FunctionId) -> Result<(), String> {
     }
     let slices: Vec<&[f32]> = lanes.iter().map(Vec::as_slice).collect();
     let mut together = Vec::new();
-    let mut batch = Batch::new(Machine::<f32>::new(program).map_err(said)?);
+    let mut batch = Batch::new(Machine::<f32>::new(program).map_err(message_of)?);
     if let Err(error) = batch.calls(id, &slices, &mut |_, result, _| together.push(bits_of(result)))
     {
         together.push(error.to_string().bytes().map(u32::from).collect());

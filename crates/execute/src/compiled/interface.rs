@@ -43,7 +43,7 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// Reads the only entry point of a text. The error tells what is not understood.
+    /// Reads the only entry point of a text. The error says what is not understood.
     pub fn read(text: &str) -> Result<Self, String> {
         let tokens = msl_tokens(text);
         let stages = [("vertex", Stage::Vertex), ("fragment", Stage::Fragment)];

@@ -159,8 +159,8 @@ impl CompiledProgram {
         let Some(mut child) = self.child.take() else { return error.to_owned() };
         drop(child.stdin.take());
         let _ = child.kill();
-        let told = child.wait_with_output();
-        told.map_or(error.to_owned(), |output| {
+        let output = child.wait_with_output();
+        output.map_or(error.to_owned(), |output| {
             let words = String::from_utf8_lossy(&output.stderr).trim().to_owned();
             format!("the program ended ({}): {words}", output.status)
         })
@@ -291,13 +291,13 @@ fn compile_unit(clang: &Clang, texts: &[&str], unit: &[TextInterface<'_>]) -> Ob
         let (object, output) = compile(&[*one])?;
         match output.status.success() {
             true => Ok(vec![object]),
-            false => Ok(vec![ObjectFile::Refused(one.0, output_text(&output))]),
+            false => Ok(vec![ObjectFile::Refused(one.0, stderr_text(&output))]),
         }
     };
     halve_refused(unit, &together, &alone)
 }
 
-fn output_text(output: &Output) -> String {
+fn stderr_text(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).trim().to_owned()
 }
 
@@ -321,7 +321,7 @@ fn check_output(output: Output) -> Result<(), ClangMissing> {
     if output.status.success() {
         Ok(())
     } else {
-        Err(ClangMissing { reason: output_text(&output) })
+        Err(ClangMissing { reason: stderr_text(&output) })
     }
 }
 

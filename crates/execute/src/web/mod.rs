@@ -194,23 +194,23 @@ impl Web {
             let made: Vec<Result<Value, Diagnostic>> =
                 on_large_stack(|| some.par_iter().map(emit).collect());
             let texts: Vec<&Value> = made.iter().flatten().collect();
-            let said = match texts.is_empty() {
+            let answers = match texts.is_empty() {
                 true => Value::Array(Vec::new()),
                 false => self.ask(state, &format!("lamplight.prepare({})", json!(texts)))?,
             };
-            let said: Vec<Answer> = serde_json::from_value(said)
+            let answers: Vec<Answer> = serde_json::from_value(answers)
                 .map_err(|error| WebFailure::Of(executor_failed(error.to_string())))?;
             if let Some(Answer::Lost(words)) =
-                said.iter().find(|one| matches!(one, Answer::Lost(_)))
+                answers.iter().find(|one| matches!(one, Answer::Lost(_)))
             {
                 let lost = executor_failed(words.clone());
                 *state = WebState::default();
                 return Err(WebFailure::Lost(lost));
             }
-            let mut said = said.into_iter();
+            let mut answers = answers.into_iter();
             for (kernel, made) in some.iter().zip(&made) {
                 let result =
-                    made.as_ref().map_err(Clone::clone).and_then(|_| check_kept(said.next()));
+                    made.as_ref().map_err(Clone::clone).and_then(|_| check_kept(answers.next()));
                 state.kept.insert(kernel.code, result);
             }
         }
@@ -222,14 +222,14 @@ impl Web {
         let texels = base64_of_words(texels);
         let question = json!({ "id": kernel.code, "rows": rows, "texels": texels });
         let call = format!("lamplight.run({question})");
-        let said = self.twice(|web, state| {
+        let answer = self.twice(|web, state| {
             web.compile(state, &[kernel])?;
             match state.kept.get(&kernel.code) {
                 Some(Err(error)) => Err(WebFailure::Of(error.clone())),
                 _ => web.ask(state, &call),
             }
         })?;
-        words_of_answer(&said).map_err(executor_failed)
+        words_of_answer(&answer).map_err(executor_failed)
     }
 }
 
@@ -255,14 +255,14 @@ impl Session for Web {
     ) -> Result<Vec<Frame>, Diagnostic> {
         let question = frames_question(self.api, pair, drawing)?;
         let call = format!("lamplight.frames({question})");
-        let said = self.twice(|web, state| web.ask(state, &call))?;
-        frames_answer(&said).map_err(executor_failed)
+        let answer = self.twice(|web, state| web.ask(state, &call))?;
+        frames_answer(&answer).map_err(executor_failed)
     }
 }
 
 /// Whether the page has a kernel, or why not.
-fn check_kept(said: Option<Answer>) -> Result<(), Diagnostic> {
-    match said {
+fn check_kept(answer: Option<Answer>) -> Result<(), Diagnostic> {
+    match answer {
         Some(Answer::Value(_)) => Ok(()),
         Some(Answer::Lacks(words)) => Err(Diagnostic::error(codes::EXECUTOR_LACKS, words)),
         Some(Answer::Error(words) | Answer::Lost(words)) => Err(executor_failed(words)),
@@ -332,16 +332,16 @@ fn frames_question(
 }
 
 /// The frames in an answer: the words of each target for each view.
-fn frames_answer(said: &Value) -> Result<Vec<Frame>, String> {
+fn frames_answer(answer: &Value) -> Result<Vec<Frame>, String> {
     let list = |value: &Value| match value {
         Value::Array(list) => Ok(list.clone()),
         other => Err(format!("no frames: {other}")),
     };
-    let frame = |said: &Value| {
-        let targets = list(said)?.iter().map(words_of_answer).collect::<Result<_, String>>()?;
+    let frame = |answer: &Value| {
+        let targets = list(answer)?.iter().map(words_of_answer).collect::<Result<_, String>>()?;
         Ok(Frame { targets, depth: Vec::new(), detour: None })
     };
-    list(said)?.iter().map(frame).collect()
+    list(answer)?.iter().map(frame).collect()
 }
 
 fn stage_json(shipped: &Shipped) -> Value {

@@ -30,7 +30,7 @@ void main() {
   }
 
   // A context that is lost answers wrongly for a moment before it says so.
-  const told = (make) => answered(async () => {
+  const unlessLost = (make) => answered(async () => {
     try {
       return await make();
     } catch (error) {
@@ -158,7 +158,7 @@ void main() {
     return Promise.all(all.map(async ({ kernel, begun }) => {
       const found = await begun;
       if (!found.value) return found;
-      return told(() => {
+      return unlessLost(() => {
         const program = linked(found.value);
         const units = placed(program, kernel.units, kernel.fixtures);
         check();
@@ -316,8 +316,8 @@ void main() {
 
   return {
     open,
-    prepare: (list) => told(() => prepare(list)),
-    run: (question) => told(() => run(question)),
-    frames: (question) => told(() => frames(question)),
+    prepare: (list) => unlessLost(() => prepare(list)),
+    run: (question) => unlessLost(() => run(question)),
+    frames: (question) => unlessLost(() => frames(question)),
   };
 })();

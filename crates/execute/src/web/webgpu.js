@@ -294,7 +294,7 @@ const lamplight = (() => {
   }
 
   // Waiting for a device that is lost fails in words of its own.
-  const told = (make) => answered(async () => {
+  const unlessLost = (make) => answered(async () => {
     if (lost) throw new Reason("lost", lost);
     try {
       return await make();
@@ -305,8 +305,8 @@ const lamplight = (() => {
 
   return {
     open,
-    prepare: (list) => told(() => prepare(list)),
-    run: (question) => told(() => run(question)),
-    frames: (question) => told(() => frames(question)),
+    prepare: (list) => unlessLost(() => prepare(list)),
+    run: (question) => unlessLost(() => run(question)),
+    frames: (question) => unlessLost(() => frames(question)),
   };
 })();

@@ -1,4 +1,4 @@
-//! Writes a folder of files without marks. A record beside them tells which ones are ours.
+//! Writes a folder of files without marks. A record beside them lists which ones are ours.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};

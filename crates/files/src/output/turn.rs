@@ -22,7 +22,7 @@ impl Default for Turns<'_> {
 }
 
 impl Turns<'_> {
-    /// How long to wait if nothing else is said: longer than a run on a slow machine takes.
+    /// The default wait: longer than a run on a slow machine takes.
     pub const MOST: Duration = Duration::from_secs(600);
 }
 
@@ -39,14 +39,14 @@ const PAUSE: Duration = Duration::from_millis(20);
 pub fn wait_for_turn(path: &Path, turns: &Turns<'_>) -> Result<Option<File>, Error> {
     let Ok(folder) = File::open(path) else { return Ok(None) };
     let start = Instant::now();
-    let mut is_told = false;
+    let mut is_notified = false;
     loop {
         match folder.try_lock() {
             Ok(()) => return Ok(Some(folder)),
             Err(TryLockError::Error(_)) => return Ok(None),
             Err(TryLockError::WouldBlock) => {}
         }
-        if !std::mem::replace(&mut is_told, true) {
+        if !std::mem::replace(&mut is_notified, true) {
             (turns.waiting)(holder_of(&folder));
         }
         if start.elapsed() >= turns.most {

@@ -9,7 +9,7 @@ use super::{KINDS, Storage, record};
 use lamplight_files::input;
 use lamplight_files::output::{self, Foreign, Scratch};
 
-/// The tag tells backup programs what the folder is, and tells the next run that the folder is
+/// The tag tells backup programs what the folder is, and shows the next run that the folder is
 /// ours.
 const TAG_FILE: &str = "CACHEDIR.TAG";
 const TAG: &[u8] = b"Signature: 8a477f597d28d172789f06886806bc55\n\

@@ -97,8 +97,8 @@ impl Cache {
     /// The result of an equal job, if it is known.
     pub fn find(&self, job: CompileJob<'_>) -> Option<Result<CachedUnit, Diagnostics>> {
         let key = unit_key(&self.build, job);
-        let told = |kind| {
-            let bytes = self.get(kind, told_key(key, job.composed))?;
+        let diagnostics_of = |kind| {
+            let bytes = self.get(kind, diagnostics_key(key, job.composed))?;
             let segments = job.composed.map.segments().iter();
             let known: BTreeSet<SourceId> =
                 segments.filter_map(|segment| Some(segment.span?.source)).collect();
@@ -107,9 +107,9 @@ impl Cache {
         let found = match self.get("units", key).and_then(|bytes| record::decode_unit(&bytes)) {
             Some((unit, false)) => Some(Ok(CachedUnit { unit, warnings: Vec::new() })),
             Some((unit, true)) => {
-                told("warnings").map(|warnings| Ok(CachedUnit { unit, warnings }))
+                diagnostics_of("warnings").map(|warnings| Ok(CachedUnit { unit, warnings }))
             }
-            None => told("errors").map(Err),
+            None => diagnostics_of("errors").map(Err),
         };
         self.hits.fetch_add(usize::from(found.is_some()), Ordering::Relaxed);
         found
@@ -118,17 +118,21 @@ impl Cache {
     /// Keeps a result.
     pub fn keep(&self, job: CompileJob<'_>, result: &Result<CachedUnit, Diagnostics>) {
         let key = unit_key(&self.build, job);
-        let tell = |kind, diagnostics| {
-            self.put(kind, told_key(key, job.composed), record::encode_diagnostics(diagnostics))
+        let put_diagnostics = |kind, diagnostics| {
+            self.put(
+                kind,
+                diagnostics_key(key, job.composed),
+                record::encode_diagnostics(diagnostics),
+            )
         };
         match result {
             Ok(CachedUnit { unit, warnings }) => {
                 self.put("units", key, record::encode_unit(unit, !warnings.is_empty()));
                 if !warnings.is_empty() {
-                    tell("warnings", warnings);
+                    put_diagnostics("warnings", warnings);
                 }
             }
-            Err(errors) => tell("errors", errors),
+            Err(errors) => put_diagnostics("errors", errors),
         }
     }
 
@@ -200,7 +204,7 @@ fn unit_key(build: &str, job: CompileJob<'_>) -> Hash {
 
 /// The key of a unit's diagnostics. They have places, so it covers where each part of the text came
 /// from.
-fn told_key(unit: Hash, composed: &Composed) -> Hash {
+fn diagnostics_key(unit: Hash, composed: &Composed) -> Hash {
     let mut places = Vec::new();
     for Segment { start, span, verbatim } in composed.map.segments() {
         let from = span.map_or([u32::MAX; 3], |span| [span.source.0, span.start, span.end]);
@@ -208,7 +212,7 @@ fn told_key(unit: Hash, composed: &Composed) -> Hash {
             places.extend_from_slice(&number.to_le_bytes());
         }
     }
-    hash_bytes(&[b"told", &unit, composed.text.as_bytes(), &places])
+    hash_bytes(&[b"diagnostics", &unit, composed.text.as_bytes(), &places])
 }
 
 /// 128 bits of a hash. Each part is hashed with its length, so parts cannot run into each other.

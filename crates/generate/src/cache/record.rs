@@ -138,8 +138,8 @@ pub fn decode_diagnostics(
     is_known: impl Fn(SourceId) -> bool,
 ) -> Option<Diagnostics> {
     let errors: Vec<WarningRecord> = serde_json::from_slice(payload).ok()?;
-    let is_placed = |told: &WarningRecord| {
-        let mut labels = told.labels.iter();
+    let is_placed = |diagnostic: &WarningRecord| {
+        let mut labels = diagnostic.labels.iter();
         labels.all(|(source, start, end, _)| start <= end && is_known(SourceId(*source)))
     };
     if !errors.iter().all(is_placed) {

@@ -100,9 +100,9 @@ impl<'a> Module<'a> {
         let defined = self.defined(id).and_then(|at| self.insts.get(at));
         let nameless =
             defined.is_some_and(|inst| inst.section == Global && inst.op != op::TYPE_STRUCT);
-        let is_told =
+        let is_described =
             |inst: &&Inst| !nameless || matches!(inst.op, op::DECORATE | op::MEMBER_DECORATE);
-        let mut about: Vec<&Inst> = self.about(id).filter(is_told).collect();
+        let mut about: Vec<&Inst> = self.about(id).filter(is_described).collect();
         about.sort_by_key(|inst| (inst.words.get(1..), inst.op));
         about.dedup_by_key(|inst| inst.words);
         about

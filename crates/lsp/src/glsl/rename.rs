@@ -134,8 +134,8 @@ fn why_fixed(
     match &asked.meant {
         Meant::Local(file, _, function) => {
             let text = text_of(units.module(*file), function);
-            let words = "a struct is declared in this function, whose members are not told from \
-                         variables";
+            let words = "a struct is declared in this function, and its members cannot be told \
+                         apart from variables";
             has_word(text, "struct").then(|| words.to_owned())
         }
         Meant::Member(_) => why_member_fixed(units, name, declared),
@@ -184,7 +184,7 @@ fn why_member_fixed(units: &Units, name: &str, declared: &[NamePlace]) -> Option
     }
     let [first, second, ..] = declared else { return None };
     Some(format!(
-        "members of {} and {} have this name, and their uses are not told from one another",
+        "members of {} and {} have this name, and their uses cannot be told apart",
         shown_place(units, first.file, first.start),
         shown_place(units, second.file, second.start)
     ))
@@ -215,7 +215,7 @@ fn why_interface_fixed(text: &str) -> Option<String> {
 /// else.
 fn check_locals(asked: &RequestedSymbol, files: &BTreeSet<usize>) -> Result<(), String> {
     let units = &asked.whole.units;
-    let told = |file: usize, byte: u32| {
+    let refuse = |file: usize, byte: u32| {
         let place = shown_place(units, file, byte);
         Err(format!("whether {place} declares it for its uses depends on a condition"))
     };
@@ -226,7 +226,7 @@ fn check_locals(asked: &RequestedSymbol, files: &BTreeSet<usize>) -> Result<(), 
                 let locals = units.names.outlines[*file].locals.iter();
                 let mut same = locals.filter(|local| local.name == *name);
                 if let Some(local) = same.find(|local| units.is_conditional(*file, &local.place)) {
-                    return told(*file, local.place.start);
+                    return refuse(*file, local.place.start);
                 }
             }
             Ok(())
@@ -248,7 +248,7 @@ fn check_locals(asked: &RequestedSymbol, files: &BTreeSet<usize>) -> Result<(), 
                 function.contains(&start) && units.use_of(*file, at) == Use::Global
             });
             if is_global || is_outside || is_reserved(&name) {
-                return told(*file, place.start);
+                return refuse(*file, place.start);
             }
             Ok(())
         }

@@ -31,22 +31,22 @@ pub fn watch_entry(module: &Module, entry: &str) -> Option<Watched> {
     Some(Watched { module, targets })
 }
 
-/// The name of an entry point of [`told_inputs`].
-pub const TELLS: &str = "lamplight_tells";
+/// The name of an entry point of [`inputs_module`].
+pub const INPUTS_ENTRY: &str = "lamplight_inputs";
 
-/// The module with a fragment entry point, named [`TELLS`], that only returns its inputs, from
+/// The module with a fragment entry point, named [`INPUTS_ENTRY`], that only returns its inputs, from
 /// location 0 on. `None` without a fragment entry point, or if that has no inputs.
-pub fn told_inputs(module: &Module, entry: &str) -> Option<Watched> {
+pub fn inputs_module(module: &Module, entry: &str) -> Option<Watched> {
     let (mut module, index) = (module.clone(), find_entry(module, entry)?);
     let mut body = entry_body(&mut module, index);
     let components = input_words(&mut body);
     let targets = components.len() as u32;
     (targets > 0).then(|| finish_entry(body, components, index))?;
     // No other declaration is left, so no writer changes the name.
-    let mut told = module.entry_points.swap_remove(index);
-    told.name = TELLS.to_owned();
+    let mut entry_point = module.entry_points.swap_remove(index);
+    entry_point.name = INPUTS_ENTRY.to_owned();
     (module.functions, module.global_variables) = Default::default();
-    module.entry_points = vec![told];
+    module.entry_points = vec![entry_point];
     Some(Watched { module, targets })
 }
 

@@ -53,9 +53,9 @@ impl Model {
             _ => lacks.maps,
         };
         let names: Vec<&str> = self.textures.iter().filter(shown).copied().collect();
-        let said = "textures that the permutation does not have count with their mean, and those of \
+        let note = "textures that the permutation does not have count with their mean, and those of \
             extensions not at all";
-        (self.scene, (!names.is_empty()).then(|| format!("{said}: {}", names.join(", "))))
+        (self.scene, (!names.is_empty()).then(|| format!("{note}: {}", names.join(", "))))
     }
 }
 
@@ -146,10 +146,10 @@ fn word_at(bytes: &[u8], at: usize) -> Result<u32, String> {
 fn document_error(error: &gltf::Error) -> String {
     const SHOWN: usize = 4;
     let gltf::Error::Validation(problems) = error else { return error.to_string() };
-    let told = |(path, problem): &(gltf::json::Path, gltf::json::validation::Error)| {
+    let message = |(path, problem): &(gltf::json::Path, gltf::json::validation::Error)| {
         format!("{path}: {problem}")
     };
-    let shown: Vec<String> = problems.iter().take(SHOWN).map(told).collect();
+    let shown: Vec<String> = problems.iter().take(SHOWN).map(message).collect();
     shown.join("; ")
 }
 

@@ -94,15 +94,15 @@ impl Browser {
     pub fn start_as(program: &str) -> Result<Arc<Self>, Problem> {
         let (process, stdin, stdout) = Process::start(program)?;
         let wire = Wire::new(stdin, stdout);
-        let said = wire.call(None, "Browser.getVersion", json!({}), PATIENCE);
-        let said = said.map_err(|problem| match problem {
+        let answer = wire.call(None, "Browser.getVersion", json!({}), PATIENCE);
+        let answer = answer.map_err(|problem| match problem {
             Problem::Gone(_) => {
                 Problem::Missing(format!("`{program}` does not start: {}", process.words()))
             }
             other => other,
         })?;
         let version =
-            said["product"].as_str().unwrap_or("Chromium").replace("Chrome/", "Chromium ");
+            answer["product"].as_str().unwrap_or("Chromium").replace("Chrome/", "Chromium ");
         Ok(Arc::new(Self { wire, version, process }))
     }
 
@@ -249,10 +249,10 @@ impl BrowserPage {
             "returnByValue": true,
         });
         let method = "Runtime.evaluate";
-        let mut said = self.browser.call(Some(&self.session), method, parameters, patience)?;
-        match said.get("exceptionDetails") {
+        let mut answer = self.browser.call(Some(&self.session), method, parameters, patience)?;
+        match answer.get("exceptionDetails") {
             Some(details) => Err(Problem::Threw(exception_text(details))),
-            None => Ok(said["result"]["value"].take()),
+            None => Ok(answer["result"]["value"].take()),
         }
     }
 
@@ -309,8 +309,8 @@ impl BrowserPage {
             "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))";
         self.evaluate(&format!("{drawn}.then(() => true)"), PATIENCE)?;
         let parameters = json!({ "format": "png", "captureBeyondViewport": whole });
-        let said = self.call("Page.captureScreenshot", parameters)?;
-        let text = said["data"].as_str().unwrap_or_default();
+        let answer = self.call("Page.captureScreenshot", parameters)?;
+        let text = answer["data"].as_str().unwrap_or_default();
         BASE64_STANDARD.decode(text).map_err(|error| Problem::Refused(error.to_string()))
     }
 

@@ -103,8 +103,8 @@ impl Process {
     pub fn words(&self) -> String {
         let words = self.words.lock().unwrap_or_else(PoisonError::into_inner);
         let text = String::from_utf8_lossy(&words);
-        let told = |line: &&str| !line.trim().is_empty() && !line.contains("/dbus/");
-        let mut last: Vec<&str> = text.lines().rev().filter(told).take(3).collect();
+        let is_relevant = |line: &&str| !line.trim().is_empty() && !line.contains("/dbus/");
+        let mut last: Vec<&str> = text.lines().rev().filter(is_relevant).take(3).collect();
         last.reverse();
         last.join("\n")
     }

@@ -180,7 +180,7 @@ pub fn shim_hash() -> String {
 /// The version that the installed clang reports.
 ///
 /// # Errors
-/// No clang can be run, or it does not tell its version.
+/// No clang can be run, or it does not print its version.
 pub fn clang_version() -> Result<String, ClangMissing> {
     let output = Command::new(CLANG.program).arg("--version").output().map_err(missing_reason)?;
     let text = String::from_utf8_lossy(&output.stdout);
@@ -188,7 +188,7 @@ pub fn clang_version() -> Result<String, ClangMissing> {
     if output.status.success() && version.contains("clang") {
         Ok(version)
     } else {
-        Err(ClangMissing { reason: format!("{} does not tell its version", CLANG.program) })
+        Err(ClangMissing { reason: format!("{} does not print its version", CLANG.program) })
     }
 }
 

@@ -153,7 +153,7 @@ fn local_words(
 fn call_words(module: &Module, handle: Handle<Function>, error: &CallError) -> Sentence {
     let called = &module.functions[handle];
     let name = called.name.as_deref().unwrap_or("the function");
-    let said = match error {
+    let sentence = match error {
         CallError::ArgumentCount { required, seen } => Sentence::coded(
             codes::CALL_MISMATCH,
             format!("`{name}` takes {required} arguments, not {seen}"),
@@ -173,7 +173,7 @@ fn call_words(module: &Module, handle: Handle<Function>, error: &CallError) -> S
             "internal error in naga: its parser made a call that its validator refuses; please report it",
         ),
     };
-    said.note(format!("declared: {}", signature_text(module, called)))
+    sentence.note(format!("declared: {}", signature_text(module, called)))
 }
 
 /// A function as its callers see it.

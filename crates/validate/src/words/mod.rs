@@ -66,13 +66,13 @@ pub fn validation_words(module: &Module, error: &ValidationError) -> Sentence {
             global::variable_words(module, name, source)
         }
         ValidationError::Function { handle, name, source } => {
-            let said = function::function_words(module, &module.functions[*handle], source);
-            said.note(format!("in function `{name}`"))
+            let sentence = function::function_words(module, &module.functions[*handle], source);
+            sentence.note(format!("in function `{name}`"))
         }
         ValidationError::EntryPoint { stage, name, source } => {
             let point = module.entry_points.iter().find(|point| point.name == *name);
-            let said = entry::entry_words(module, point.map(|point| &point.function), source);
-            said.note(format!("in entry point `{name}` ({})", stage_name(*stage)))
+            let sentence = entry::entry_words(module, point.map(|point| &point.function), source);
+            sentence.note(format!("in entry point `{name}` ({})", stage_name(*stage)))
         }
     }
 }

@@ -15,7 +15,7 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::Output as Said;
+use std::process::Output as ProcessOutput;
 
 use crate::novel::novel_outputs;
 use crate::{
@@ -23,7 +23,7 @@ use crate::{
     divide_group,
 };
 use lamplight_files::output::Scratch;
-use lamplight_tools::{GLSLANG, GLSLC, halve_refused, printed_words};
+use lamplight_tools::{GLSLANG, GLSLC, halve_refused, output_text};
 
 /// The validator, for the table of all.
 pub const VALIDATOR: ValidatorEntry = ValidatorEntry {
@@ -120,8 +120,8 @@ fn validate_compiled(options: &[String], alone: &[&str], outputs: &[&Output]) ->
         let options: Vec<&str> = given.chain(["-Werror", "-c"]).collect();
         let files = outputs.iter().map(|output| std::path::absolute(&output.file));
         let files = files.collect::<io::Result<Vec<PathBuf>>>();
-        let said = files.and_then(|files| GLSLC.run_in(&scratch.path(""), &options, files));
-        Ok(said.map_err(|error| error.to_string())?.status.success().then(Vec::new))
+        let result = files.and_then(|files| GLSLC.run_in(&scratch.path(""), &options, files));
+        Ok(result.map_err(|error| error.to_string())?.status.success().then(Vec::new))
     };
     halve_refused(outputs, &together, &|output| validate_one(alone, output))
 }
@@ -129,8 +129,8 @@ fn validate_compiled(options: &[String], alone: &[&str], outputs: &[&Output]) ->
 /// Validates texts in one run if it accepts them all.
 fn validate_together(arguments: &[&str], outputs: &[&Output]) -> ValidatorResult {
     let together = |outputs: &[&Output]| {
-        let said = run_glslang(arguments, outputs.iter().map(|output| &*output.file))?;
-        Ok(said.status.success().then(Vec::new))
+        let result = run_glslang(arguments, outputs.iter().map(|output| &*output.file))?;
+        Ok(result.status.success().then(Vec::new))
     };
     halve_refused(outputs, &together, &|output| validate_one(arguments, output))
 }
@@ -158,8 +158,8 @@ fn validate_later_version(
     let texts: Vec<(&Output, &Path)> =
         outputs.iter().copied().zip(files.iter().map(|file| &**file)).collect();
     let together = |texts: &[(&Output, &Path)]| {
-        let said = run_glslang(arguments, texts.iter().map(|(_, file)| *file))?;
-        Ok(said.status.success().then(Vec::new))
+        let result = run_glslang(arguments, texts.iter().map(|(_, file)| *file))?;
+        Ok(result.status.success().then(Vec::new))
     };
     let alone = |(output, file): &(&Output, &Path)| {
         Ok(make_refusal(output, file, &run_glslang(arguments, [*file])?).into_iter().collect())
@@ -176,9 +176,10 @@ fn validate_later_version(
 /// ignored.
 fn validate_parse(arguments: &[&str], outputs: &[&Output]) -> ValidatorResult {
     let together = |outputs: &[&Output]| {
-        let said = run_glslang(arguments, outputs.iter().map(|output| &*output.file))?;
+        let result = run_glslang(arguments, outputs.iter().map(|output| &*output.file))?;
         let of_a_text = |line: &str| line.starts_with("ERROR: ") && !line.contains(" Linking ");
-        let accepts = said.status.code().is_some() && !printed_words(&said).lines().any(of_a_text);
+        let accepts =
+            result.status.code().is_some() && !output_text(&result).lines().any(of_a_text);
         Ok(accepts.then(Vec::new))
     };
     halve_refused(outputs, &together, &|output| validate_one(arguments, output))
@@ -187,14 +188,14 @@ fn validate_parse(arguments: &[&str], outputs: &[&Output]) -> ValidatorResult {
 fn run_glslang<'f>(
     arguments: &[&str],
     files: impl IntoIterator<Item = &'f Path>,
-) -> Result<Said, String> {
+) -> Result<ProcessOutput, String> {
     GLSLANG.run(arguments, files).map_err(|error| error.to_string())
 }
 
-fn make_refusal(output: &Output, file: &Path, said: &Said) -> Option<Refusal> {
+fn make_refusal(output: &Output, file: &Path, result: &ProcessOutput) -> Option<Refusal> {
     let path = file.display().to_string();
-    let said = (!said.status.success()).then(|| printed_words(said))?;
-    let lines = said.lines().map(str::trim).filter(|line| !line.is_empty() && *line != path);
+    let printed = (!result.status.success()).then(|| output_text(result))?;
+    let lines = printed.lines().map(str::trim).filter(|line| !line.is_empty() && *line != path);
     let words = lines.collect::<Vec<_>>().join("\n").replace(&path, "0");
     let line = words.lines().find_map(line_of);
     Some(Refusal { output: output.clone(), validator: NAME, line, words })

@@ -50,14 +50,14 @@ fn validators(_: &[&str], tint: &Tint) -> Vec<String> {
 fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {
     let text = output.text()?;
     let validated = guard(&text, || {
-        let told = |line: Option<u32>, words: String| (line, words);
+        let at_line = |line: Option<u32>, words: String| (line, words);
         let module = wgsl::parse_str(&text).map_err(|error| {
             let line = error.location(&text).map(|place| place.line_number);
-            told(line, error.emit_to_string(&text))
+            at_line(line, error.emit_to_string(&text))
         })?;
         info_of(&module).map(|_| ()).map_err(|error| {
             let line = error.location(&text).map(|place| place.line_number);
-            told(line, error.emit_to_string(&text))
+            at_line(line, error.emit_to_string(&text))
         })
     });
     let validated = validated.unwrap_or_else(|error| Err((None, error.message)));
@@ -68,12 +68,17 @@ fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {
 
 fn by_tint(outputs: &[&Output], tint: &Tint) -> ValidatorResult {
     let files: Vec<_> = outputs.iter().map(|output| &*output.file).collect();
-    let said = tint.validate(&files)?;
-    let one = |said: TintMistake| {
+    let mistakes = tint.validate(&files)?;
+    let one = |mistake: TintMistake| {
         let output =
-            outputs.get(said.index).ok_or("Tint validated a text that it was not given")?;
-        let words = format!("{}:{}: error: {}", said.line, said.column, said.message);
-        Ok(Refusal { output: (*output).clone(), validator: "Tint", line: Some(said.line), words })
+            outputs.get(mistake.index).ok_or("Tint validated a text that it was not given")?;
+        let words = format!("{}:{}: error: {}", mistake.line, mistake.column, mistake.message);
+        Ok(Refusal {
+            output: (*output).clone(),
+            validator: "Tint",
+            line: Some(mistake.line),
+            words,
+        })
     };
-    said.into_iter().map(one).collect()
+    mistakes.into_iter().map(one).collect()
 }

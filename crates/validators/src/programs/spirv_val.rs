@@ -4,7 +4,7 @@
 use crate::{
     Output, OutputGroup, Refusal, ValidatorEntry, ValidatorResult, ValidatorWork, divide_group,
 };
-use lamplight_tools::{SPIRV_VAL, printed_words};
+use lamplight_tools::{SPIRV_VAL, output_text};
 
 /// The validator, for the table of all.
 pub const VALIDATOR: ValidatorEntry = ValidatorEntry {
@@ -33,10 +33,10 @@ fn plan<'w>(group: &OutputGroup<'w>) -> Result<Vec<ValidatorWork<'w>>, String> {
 /// The refusal of the first environment that does not accept it.
 fn first_refusal(output: &Output, environments: &[&str]) -> ValidatorResult {
     for environment in environments {
-        let said = SPIRV_VAL.run(&["--target-env", environment], [&output.file]);
-        let said = said.map_err(|error| error.to_string())?;
-        if !said.status.success() {
-            let words = format!("for {environment}: {}", printed_words(&said));
+        let result = SPIRV_VAL.run(&["--target-env", environment], [&output.file]);
+        let result = result.map_err(|error| error.to_string())?;
+        if !result.status.success() {
+            let words = format!("for {environment}: {}", output_text(&result));
             // Its line numbers count instructions, so they say nothing about the author's text.
             return Ok(vec![Refusal {
                 output: output.clone(),

@@ -107,7 +107,7 @@ fn problem_with(
     arguments: &[&str],
 ) -> Result<Option<String>, CommandFailure> {
     let limited = format!("ulimit -v {MEMORY_KIB}; ulimit -t {MOST_SECONDS}; exec \"$@\"");
-    let said = fs::File::create(folder.join("said")).map_err(environment)?;
+    let stderr = fs::File::create(folder.join("stderr")).map_err(environment)?;
     let mut child = Command::new("sh")
         .args(["-c", &limited, "sh"])
         .arg(program)
@@ -116,7 +116,7 @@ fn problem_with(
         .env("RAYON_NUM_THREADS", "1")
         .stdin(Stdio::null())
         .stdout(Stdio::null())
-        .stderr(said)
+        .stderr(stderr)
         .spawn()
         .map_err(environment)?;
     let started = Instant::now();
@@ -131,13 +131,13 @@ fn problem_with(
             None => std::thread::sleep(Duration::from_millis(2)),
         }
     };
-    let said = fs::read(folder.join("said")).map_err(environment)?;
-    let said = String::from_utf8_lossy(&said);
-    let is_bad = said.contains("panicked") || said.contains("internal error");
+    let stderr = fs::read(folder.join("stderr")).map_err(environment)?;
+    let stderr = String::from_utf8_lossy(&stderr);
+    let is_bad = stderr.contains("panicked") || stderr.contains("internal error");
     Ok(match status.code() {
         None => Some(format!("aborts ({status})")),
         Some(code) if code > 128 => Some(format!("aborts ({status})")),
-        Some(_) if is_bad => Some(format!("panics: {}", said.lines().next().unwrap_or_default())),
+        Some(_) if is_bad => Some(format!("panics: {}", stderr.lines().next().unwrap_or_default())),
         Some(_) => None,
     })
 }

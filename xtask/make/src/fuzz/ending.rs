@@ -10,11 +10,11 @@ const FOUND: i32 = 3;
 /// # Errors
 /// If the worker could not do its work. This is no finding, and no reason to believe that there are
 /// none.
-pub fn read_ending(status: ExitStatus, said: &str) -> Result<Option<String>, String> {
+pub fn read_ending(status: ExitStatus, message: &str) -> Result<Option<String>, String> {
     match status.code() {
         Some(0) => Ok(None),
-        Some(FOUND) => Ok(Some(said.to_owned())),
-        Some(code) => Err(format!("a worker ended with code {code}: {said}")),
+        Some(FOUND) => Ok(Some(message.to_owned())),
+        Some(code) => Err(format!("a worker ended with code {code}: {message}")),
         // A signal ended it.
         None => Ok(Some(format!("aborts ({status})"))),
     }

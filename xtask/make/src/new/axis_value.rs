@@ -40,9 +40,9 @@ impl<'n> NamedValue<'n> {
 }
 
 fn make(repository: &Repository<'_>, text: &str, rest: &[&str]) -> Result<NewFiles, String> {
-    let said = match rest {
+    let sentence = match rest {
         [] => None,
-        [said] => Some(*said),
+        [sentence] => Some(*sentence),
         _ => return Err("after the value: a sentence for `doc` of the axis, or nothing".to_owned()),
     };
     let named = NamedValue::read(text)?;
@@ -50,7 +50,7 @@ fn make(repository: &Repository<'_>, text: &str, rest: &[&str]) -> Result<NewFil
     let table = format!("[program.{program}.axis.{axis}]\n");
     let old = repository.read(MANIFEST)?;
     let text = in_manifest(&old, &table, value)?;
-    let text = said.map_or(Ok(text.clone()), |said| in_doc(&text, &table, said))?;
+    let text = sentence.map_or(Ok(text.clone()), |sentence| in_doc(&text, &table, sentence))?;
     let (text, ships) = shipping(text, program, axis, value)?;
     let lock = in_lock(&repository.read(LOCK)?, &format!("{program} {axis} "), value)?;
     let mut files = vec![(MANIFEST.to_owned(), text), (LOCK.to_owned(), lock)];
@@ -70,7 +70,7 @@ fn make(repository: &Repository<'_>, text: &str, rest: &[&str]) -> Result<NewFil
             "{PICTURES}: what a picture takes from `{value}`; its row is a copy of the last one: `{row}`"
         ));
     }
-    next.push(match said {
+    next.push(match sentence {
         Some(_) => format!("{MANIFEST}: {ships}"),
         None => format!("{MANIFEST}: {ships}; `doc` of the axis, if it describes values"),
     });
@@ -160,19 +160,19 @@ fn in_manifest(text: &str, table: &str, value: &str) -> Result<String, String> {
 }
 
 /// The manifest with a sentence at the end of the axis's description.
-fn in_doc(text: &str, table: &str, said: &str) -> Result<String, String> {
-    let said = said.trim();
-    if said.contains(['"', '\\', '\n']) {
-        return Err(format!("`{said}` must do without quotes and backslashes"));
+fn in_doc(text: &str, table: &str, sentence: &str) -> Result<String, String> {
+    let sentence = sentence.trim();
+    if sentence.contains(['"', '\\', '\n']) {
+        return Err(format!("`{sentence}` must do without quotes and backslashes"));
     }
     let start = text.find(table).map_or(text.len(), |at| at + table.len());
     let (before, after) = text.split_at(start);
     let Some(rest) = after.strip_prefix("doc = \"") else {
-        return Ok(format!("{before}doc = \"{said}\"\n{after}"));
+        return Ok(format!("{before}doc = \"{sentence}\"\n{after}"));
     };
     let end = rest.find("\"\n").ok_or("the description of the axis does not end in its line")?;
     let (doc, after) = rest.split_at(end);
-    Ok(format!("{before}doc = \"{doc} {said}{after}"))
+    Ok(format!("{before}doc = \"{doc} {sentence}{after}"))
 }
 
 /// The manifest in which some permutation with the value ships, and how many do. Where no slice has
@@ -188,10 +188,10 @@ fn shipping(
     let has = |keys: &[String]| keys.iter().filter(|key| key::has_value(key, axis, value)).count();
     let (all, with) = (shipped.len(), has(&shipped));
     if with > 0 {
-        let said = format!(
+        let message = format!(
             "complete; {with} of {all} permutations that ship have `{setting}`, by slices with `*`"
         );
-        return Ok((text, said));
+        return Ok((text, message));
     }
     // The setting alone, or else with the other settings of a shipped key that chooses another
     // value of the axis.
@@ -204,10 +204,10 @@ fn shipping(
     for key in keys.take(TRIED) {
         let included = in_include(&text, program, &key)?;
         if shipped_keys(&included, program).is_ok_and(|keys| has(&keys) > 0) {
-            let said = format!(
+            let message = format!(
                 "complete; no slice has `{setting}`, so `include` has `{key}` now; a slice would ship more"
             );
-            return Ok((included, said));
+            return Ok((included, message));
         }
     }
     Ok((text, format!("no permutation with `{setting}` ships yet: add it to a slice")))
@@ -262,6 +262,6 @@ fn with_row(text: &str, table: &str, value: &str) -> String {
     let rows = text[start..].find("\n[").map_or(text.len(), |at| start + at);
     let (before, after) = text.split_at(rows);
     let last = before[start..].trim_end().lines().next_back();
-    let said = last.and_then(|row| row.split_once(" = ")).map_or("{}", |(_, said)| said);
-    format!("{}\n{value} = {said}\n{after}", before.trim_end())
+    let given = last.and_then(|row| row.split_once(" = ")).map_or("{}", |(_, given)| given);
+    format!("{}\n{value} = {given}\n{after}", before.trim_end())
 }

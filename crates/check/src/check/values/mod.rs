@@ -63,7 +63,7 @@ pub struct RecordedRow {
     pub allowed: Vec<f64>,
 }
 
-/// A case as it is today, and what a comparison needs to tell about it.
+/// A case as it is today, and what a comparison needs to report about it.
 #[derive(Debug)]
 pub struct MeasuredCase {
     pub case: RecordedCase,
@@ -184,7 +184,7 @@ fn described_case(job: &CaseJob<'_>, language: Language, kernel: &Kernel) -> Rec
     }
 }
 
-/// A choice of the rows whose value is certain: a comparison of others would tell nothing.
+/// A choice of the rows whose value is certain: a comparison of others would prove nothing.
 fn chosen_rows(job: &CaseJob<'_>) -> Vec<usize> {
     let certain: Vec<usize> = (0..job.rows.len()).filter(|row| is_certain(job, *row)).collect();
     spread(certain.len()).into_iter().map(|at| certain[at]).collect()

@@ -64,7 +64,7 @@ fn absent_package<'l>(loader: &'l Loader<'_>, node: &ModuleNode, path: &Path) ->
 }
 
 /// Whether an import that leads nowhere is not an error: nothing uses it, and its package is not
-/// installed. The warning about unused imports tells of that.
+/// installed. The warning about unused imports covers that.
 pub fn is_harmless(loader: &mut Loader<'_>, node: u32, alias: Name, failure: u32) -> bool {
     loader.failures[failure as usize].code == codes::UNKNOWN_PACKAGE && !loader.is_used(node, alias)
 }

@@ -28,14 +28,14 @@ fn shader(condition: &str) -> String {
 /// says so and shows the condition that was meant.
 fn always_defined() -> Outcome {
     let package = Package::new(&[("lamplight.toml", GLSL)])?;
-    let told = [
+    let conditions = [
         ("#ifdef FOG", "always holds", "`#if FOG`"),
         ("#ifndef FOG", "never holds", "`#if !FOG`"),
         ("#if defined(FOG)", "always holds", "`#if FOG`"),
         ("#if !defined FOG", "never holds", "`#if !FOG`"),
         ("#ifdef SHADOW", "always holds", "`#if SHADOW`"),
     ];
-    for (condition, label, help) in told {
+    for (condition, label, help) in conditions {
         package.write("p.frag.glsl", &shader(condition))?;
         for command in ["gen --no-cache --force", "lint"] {
             let run = package.run(command)?.ends(0)?;

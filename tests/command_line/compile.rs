@@ -148,9 +148,9 @@ fn depfile_names() -> Outcome {
             equal((name, output.status.code()), (name, Some(1)))?;
             continue;
         }
-        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
         if output.status.code() != Some(0) {
-            return Err(format!("`{name}`: {told}").into());
+            return Err(format!("`{name}`: {stderr}").into());
         }
         read_by_make(&package, name, &file)?;
         read_by_ninja(&package, name)?;
@@ -173,12 +173,12 @@ fn read_by_make(package: &Package, name: &str, file: &str) -> Outcome {
     };
     let folder = package.path("");
     let made = run(&folder, &["-d", &output])?;
-    let told = String::from_utf8_lossy(&made.stdout).into_owned();
+    let stdout = String::from_utf8_lossy(&made.stdout).into_owned();
     for expected in [&output, file, "wesl.toml"] {
-        let considered = told.contains(&format!("Considering target file '{expected}'"));
+        let considered = stdout.contains(&format!("Considering target file '{expected}'"));
         equal((name, expected, considered), (name, expected, true))?;
     }
-    equal((name, told.contains("aXb")), (name, false))?;
+    equal((name, stdout.contains("aXb")), (name, false))?;
     equal((name, made.status.success()), (name, true))
 }
 
@@ -195,8 +195,8 @@ fn read_by_ninja(package: &Package, name: &str) -> Outcome {
         &format!("rule keep\n  command = true\n  depfile = rule.d\nbuild {output}: keep\n"),
     )?;
     let ran = std::process::Command::new("ninja").current_dir(package.path("")).output()?;
-    let told = String::from_utf8_lossy(&ran.stdout).into_owned();
-    equal((name, ran.status.success(), told.contains("error")), (name, true, false))
+    let stdout = String::from_utf8_lossy(&ran.stdout).into_owned();
+    equal((name, ran.status.success(), stdout.contains("error")), (name, true, false))
 }
 
 /// `-` reads the shader from standard input. The language, and for GLSL the stage, must be given.

@@ -1,14 +1,14 @@
 //! The command line as users meet it. Each test is named after what a user would expect of it.
 
 mod checks;
-mod command_line;
+mod compile;
 mod package;
 mod reload;
 mod roots;
 mod same_bytes;
 mod shaders;
-mod told;
 mod tools;
+mod warnings;
 
 use libtest_mimic::Trial;
 
@@ -20,14 +20,14 @@ type Case = (&'static str, fn() -> Outcome);
 pub fn tests() -> Vec<Trial> {
     let cases = [
         checks::CASES,
-        command_line::CASES,
+        compile::CASES,
         reload::CASES,
         roots::CASES,
         same_bytes::CASES,
         shaders::CASES,
-        told::CASES,
         tools::CASES,
+        warnings::CASES,
     ];
-    let named = |(name, case): &Case| Trial::test(format!("doors::{name}"), *case);
+    let named = |(name, case): &Case| Trial::test(format!("command_line::{name}"), *case);
     cases.into_iter().flatten().map(named).collect()
 }

@@ -8,7 +8,7 @@ use super::{Case, Outcome};
 
 pub const CASES: &[Case] = &[
     ("failures_have_a_place", places),
-    ("broken_laws_are_told_in_words", laws),
+    ("broken_laws_have_messages", laws),
     ("worst_error_is_the_largest", worst_error),
     ("failures_are_first_on_the_page", page),
     ("vectors_are_not_taken_for_numbers", vectors),
