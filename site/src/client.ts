@@ -34,7 +34,7 @@ export class Client {
     spent = 0;
     /** How often the toolchain was begun anew. What it knew, such as a picture that it had begun, is lost. */
     replaced = 0;
-    /** Told whenever the toolchain begins to load, and when it has loaded or cannot be loaded. */
+    /** Called whenever the toolchain begins to load, and when it has loaded or cannot be loaded. */
     onLoading: (isLoading: boolean) => void = () => {};
     #worker?: Worker;
     #isReady = false;
@@ -47,7 +47,7 @@ export class Client {
         this.#isWarm = false;
         const worker = new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
         const isCurrent = () => this.#worker === worker;
-        worker.onmessage = ({ data }: MessageEvent<Answer>) => { if (isCurrent()) this.#told(data); };
+        worker.onmessage = ({ data }: MessageEvent<Answer>) => { if (isCurrent()) this.#receive(data); };
         worker.onmessageerror = () => { if (isCurrent()) this.#fail("an answer of the toolchain could not be read"); };
         worker.onerror = (event) => { if (isCurrent()) this.#fail(event.message || "the toolchain could not be loaded"); };
         this.#worker = worker;
@@ -55,7 +55,7 @@ export class Client {
         return worker;
     }
 
-    #told(answer: Answer) {
+    #receive(answer: Answer) {
         if (answer.ready) {
             this.#isReady = true;
             this.onLoading(false);
@@ -80,7 +80,7 @@ export class Client {
         return this.#waiting.values().next().value;
     }
 
-    /** Whoever waits is told. The next call begins with a new worker. */
+    /** Whoever waits gets an error. The next call begins with a new worker. */
     #fail(reason: string) {
         this.#worker?.terminate();
         this.#worker = undefined;

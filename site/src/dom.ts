@@ -35,7 +35,7 @@ export const reason = (error: unknown): string => (error instanceof Error ? erro
 
 /** Tells screen readers something that others see. */
 export function say(text: string) {
-    const place = document.querySelector("#said");
+    const place = document.querySelector("#announcement");
     if (place) place.textContent = text;
 }
 

@@ -67,7 +67,7 @@ async function open() {
 
 const notice = document.querySelector<HTMLElement>("#notice")!;
 
-function tell(text: string) {
+function showNotice(text: string) {
     notice.textContent = text;
     notice.hidden = !text;
 }
@@ -77,13 +77,13 @@ const SLOW = 3000;
 let loading = 0;
 toolchain.onLoading = (isLoading) => {
     clearTimeout(loading);
-    if (isLoading) loading = window.setTimeout(() => tell("The toolchain is still loading."), SLOW);
-    else tell("");
+    if (isLoading) loading = window.setTimeout(() => showNotice("The toolchain is still loading."), SLOW);
+    else showNotice("");
 };
 
 // Nothing fails in silence.
-addEventListener("error", ({ message }) => tell(`Something failed: ${message}`));
-addEventListener("unhandledrejection", ({ reason: error }) => tell(`Something failed: ${reason(error)}`));
+addEventListener("error", ({ message }) => showNotice(`Something failed: ${message}`));
+addEventListener("unhandledrejection", ({ reason: error }) => showNotice(`Something failed: ${reason(error)}`));
 
 document.querySelector(".skip")!.addEventListener("click", (event) => {
     // Its address would be that of a page.

@@ -11,7 +11,7 @@ loading.then(
 
 onmessage = async ({ data }: MessageEvent<Call>) => {
     const { id, name, inputs } = data;
-    // If it cannot be loaded, the page was told already.
+    // If it cannot be loaded, the page was notified already.
     const toolchain = await loading.catch(() => undefined);
     if (!toolchain) return;
     try {

@@ -145,7 +145,7 @@ function preview(place: HTMLElement, item: ItemInfo, items: Map<string, ItemInfo
     let timer = 0;
     const seen = new IntersectionObserver((entries) => {
         clearTimeout(timer);
-        // A busy page is told several changes at once, of which only the last one holds.
+        // A busy page gets several changes at once, of which only the last one holds.
         if (!place.isConnected) seen.disconnect();
         else if (entries.at(-1)?.isIntersecting) timer = window.setTimeout(() => { seen.disconnect(); draw(); }, SETTLED);
     });
@@ -220,7 +220,7 @@ async function curves(live: HTMLElement, item: ItemInfo) {
     await draw();
     let width = live.clientWidth;
     // The letters have the same size on a screen that was turned. They are drawn in the next frame:
-    // drawing changes heights, which this observer must not do while it is told of them.
+    // drawing changes heights, which this observer must not do while it is notified of them.
     const turned = new ResizeObserver(() => {
         const again = last;
         if (!live.isConnected) turned.disconnect();

@@ -20,7 +20,7 @@ export async function page(into: HTMLElement, given?: Project) {
     const { project: state, refused } = given ? { project: given, refused: undefined } : await opened(route().query.get("state"));
     const outputs = h("div", { class: "texts" });
     const problems = h("ul", { class: "problems", "aria-label": "Diagnostics", "aria-live": "polite" });
-    const told = h("p", { role: "status", class: "status" });
+    const status = h("p", { role: "status", class: "status" });
     const value = h("output", {});
     const unkept = h("p", { class: "wrong", role: "alert", hidden: true },
         "The browser has no room to keep these files: they are lost when the page is closed. Save them as a zip.");
@@ -41,7 +41,7 @@ export async function page(into: HTMLElement, given?: Project) {
                 // Files that are too large already can be made smaller.
                 const isSmaller = change.newDoc.length < change.startState.doc.length;
                 if (!change.docChanged || isSmaller || change.newDoc.length + others() <= LARGEST) return change;
-                told.textContent = `Not inserted: the files would have more than ${LARGEST.toLocaleString("en")} letters together.`;
+                status.textContent = `Not inserted: the files would have more than ${LARGEST.toLocaleString("en")} letters together.`;
                 return [];
             }),
             keymap.of([...defaultKeymap, ...historyKeymap, indentWithTab]),
@@ -69,11 +69,11 @@ export async function page(into: HTMLElement, given?: Project) {
     const run = latest(async () => {
         const now = changes;
         const isOld = () => now !== changes || !into.isConnected;
-        const patience = window.setTimeout(() => { told.textContent = "Still computing …"; }, PATIENCE);
+        const patience = window.setTimeout(() => { status.textContent = "Still computing …"; }, PATIENCE);
         try {
             await compute(isOld);
         } catch (error) {
-            told.textContent = reason(error);
+            status.textContent = reason(error);
         }
         clearTimeout(patience);
         into.dataset.runs = String(Number(into.dataset.runs ?? 0) + 1);
@@ -98,16 +98,16 @@ export async function page(into: HTMLElement, given?: Project) {
         const found = `${made.ok ? "no errors" : "errors"}, ${Math.round(performance.now() - start)} ms`;
         mark(made.diagnostics);
         if (made.ok) outputs.replaceChildren(...output(made, target));
-        told.textContent = found;
+        status.textContent = found;
         const isDrawn = /@fragment|\.frag(\.|$)/.test(`${state.files[state.open]}${state.open}`);
         sketch.element.hidden = !isDrawn;
         try {
             const number = await toolchain.call(typed(isOld), "evaluate", { files: state.files, expression: state.expression });
             value.textContent = number.value ?? number.diagnostics[0]?.message ?? "";
-            told.textContent = found;
+            status.textContent = found;
         } catch (error) {
             value.textContent = "no value";
-            told.textContent = reason(error);
+            status.textContent = reason(error);
         }
         // Last, so that a picture which takes long does not keep the rest waiting.
         if (made.ok && isDrawn && !isOld()) sketch.draw({ files: state.files, root: state.open }, isOld);
@@ -164,7 +164,7 @@ export async function page(into: HTMLElement, given?: Project) {
         h("h1", { class: "quiet" }, "Playground"),
         refused === undefined ? "" : h("p", { class: "wrong refused", role: "alert" }, refused),
         h("div", { class: "columns wide" },
-            h("div", {}, files.element, panel, leaving, told, problems),
+            h("div", {}, files.element, panel, leaving, status, problems),
             h("div", {},
                 h("div", { class: "row" },
                     languages,

@@ -55,7 +55,7 @@ export async function page(into: HTMLElement) {
     const canvas = h("canvas", { width: 256, height: 256, role: "img", "aria-label": "The picture" });
     const screen = new Screen(canvas);
     const over = h("div", { class: "picture" }, canvas);
-    const told = h("p", { role: "status", class: "status" });
+    const status = h("p", { role: "status", class: "status" });
     const form = h("form", { class: "axes", "aria-label": "Axes" });
     const text = h("div", { class: "texts" });
     const info = h("p", { class: "note" });
@@ -104,15 +104,15 @@ export async function page(into: HTMLElement) {
                 wanted.controls ||= withControls;
                 return;
             }
-            told.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms, ${asked.key || "default"}`;
+            status.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms, ${asked.key || "default"}`;
             canvas.dataset.drawn = String(Number(canvas.dataset.drawn ?? 0) + 1);
             canvas.dataset.key = asked.key;
         } catch (error) {
-            told.textContent = reason(error);
+            status.textContent = reason(error);
         }
         if (!withControls) return;
         const controls: PictureControls = await toolchain.call(OWN, "pictureControls", { ...asked, target: "wgsl" });
-        if (controls.diagnostics.length) told.textContent = problems(controls.diagnostics);
+        if (controls.diagnostics.length) status.textContent = problems(controls.diagnostics);
         lamps.show(controls);
         uniforms.show(controls.uniforms);
         canvas.dataset.controls = String(controls.uniforms.length);
@@ -146,7 +146,7 @@ export async function page(into: HTMLElement) {
         try {
             await renew(now, isOld);
         } catch (error) {
-            told.textContent = reason(error);
+            status.textContent = reason(error);
         }
     });
     async function renew(now: typeof wanted, isOld: () => boolean) {
@@ -168,7 +168,7 @@ export async function page(into: HTMLElement) {
             compare.setAttribute("aria-pressed", String(state.against !== undefined));
         }
         if (!point.valid) {
-            told.textContent = point.broken.join(" ") || point.diagnostics[0]?.message || "";
+            status.textContent = point.broken.join(" ") || point.diagnostics[0]?.message || "";
             return;
         }
         await draw(now.controls, isOld);
@@ -184,7 +184,7 @@ export async function page(into: HTMLElement) {
     into.replaceChildren(
         h("h1", { class: "quiet" }, "Programs"),
         h("div", { class: "columns wide" },
-            h("div", {}, over, told,
+            h("div", {}, over, status,
                 h("div", { class: "row" }, programChoice, scene, around, reset), info, form, costNote,
                 h("details", {}, h("summary", {}, "Uniforms"), numbers)),
             h("div", {}, h("div", { class: "row" }, targets, compare), text)),

@@ -14,7 +14,7 @@ export class Files {
     #tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Files", onkeydown: (event: KeyboardEvent) => this.#key(event) });
     #remove: HTMLButtonElement;
 
-    /** `changed` is told when another file is open, or a file has another name. */
+    /** `changed` is called when another file is open, or a file has another name. */
     constructor(kept: Kept, changed: () => void) {
         this.#kept = kept;
         this.#changed = changed;

@@ -34,7 +34,7 @@ export class Sketch {
         "aria-label": "The picture. Dragging or the arrow keys turn the model; with Shift they move the light.",
     });
     #screen = new Screen(this.#canvas);
-    #told = h("p", { role: "status", class: "status" });
+    #status = h("p", { role: "status", class: "status" });
     #inputs = h("div", { class: "row" });
     #numbers = h("div", { class: "uniforms" });
     #uniforms: Uniforms;
@@ -55,7 +55,7 @@ export class Sketch {
     #known = "";
     #sources = "";
 
-    /** `changed` is told when somebody changed the look. A text that somebody types has inputs to
+    /** `changed` is called when somebody changed the look. A text that somebody types has inputs to
      * choose, and is given up if it takes long. */
     constructor(look: () => Look, changed: () => void, isTyped = true) {
         this.#keptLook = look;
@@ -73,7 +73,7 @@ export class Sketch {
         exposure.value = String(look().exposure ?? 0);
         this.#listen();
         this.element = h("section", { class: "sketch", "aria-label": "Picture" },
-            h("div", { class: "picture" }, this.#canvas), this.#told,
+            h("div", { class: "picture" }, this.#canvas), this.#status,
             h("div", { class: "row" }, this.#models, h("label", {}, h("span", {}, "exposure"), exposure),
                 ...this.#lights.map((input) => h("label", {}, h("span", {}, input.ariaLabel!), input))),
             this.#inputs, this.#numbers);
@@ -145,9 +145,9 @@ export class Sketch {
             if (withControls) this.#show(await toolchain.call(limit, "sketchControls", { ...request, target: "wgsl" }));
             if (!await this.#screen.show(take, isOld)) return;
             this.#canvas.dataset.drawn = String(Number(this.#canvas.dataset.drawn ?? 0) + 1);
-            this.#told.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms`;
+            this.#status.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms`;
         } catch (error) {
-            this.#told.textContent = reason(error);
+            this.#status.textContent = reason(error);
             this.#controls ||= withControls;
         }
     });

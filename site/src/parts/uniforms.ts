@@ -52,7 +52,7 @@ export class Uniforms {
         const step = whole(type) ? 1 : "any";
         const all: HTMLInputElement[][] = [];
         const last = [...numbers];
-        const tell = (from: HTMLInputElement, index: number) => {
+        const update = (from: HTMLInputElement, index: number) => {
             const value = Number(from.value);
             if (from.value === "" || !Number.isFinite(value)) return;
             for (const other of all[index]) if (other !== from) other.value = from.value;
@@ -64,7 +64,7 @@ export class Uniforms {
         numbers.forEach((value, index) => {
             const label = numbers.length > 1 ? `${path} ${PARTS[index] ?? index}` : path;
             const number = h("input", {
-                type: "number", step, value: shown(value), "aria-label": label, oninput: () => tell(number, index),
+                type: "number", step, value: shown(value), "aria-label": label, oninput: () => update(number, index),
             });
             all.push([number]);
         });
@@ -72,7 +72,7 @@ export class Uniforms {
             const [value] = numbers;
             const range = h("input", {
                 type: "range", min: Math.min(0, 2 * value), max: Math.abs(value) <= 1 ? 1 : 2 * Math.abs(value),
-                step: whole(type) ? 1 : "any", "aria-label": `${path}, slider`, oninput: () => tell(range, 0),
+                step: whole(type) ? 1 : "any", "aria-label": `${path}, slider`, oninput: () => update(range, 0),
             });
             range.value = String(value);
             all[0].push(range);

@@ -41,7 +41,7 @@ async function compiled(source) {
 }
 
 // Memory may be half written where a call was cut off (a deep nesting, an error of naga's): the
-// toolchain is begun anew, and the caller told.
+// toolchain is started anew, and the caller gets an error.
 function guarded(name, call) {
     return (...inputs) => {
         try {

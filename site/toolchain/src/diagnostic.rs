@@ -46,10 +46,10 @@ pub struct Position {
 
 /// All diagnostics, in their order.
 pub fn diagnostics(sources: &SourceSet, found: &Diagnostics) -> Vec<Diagnostic> {
-    found.iter().map(|one| told(sources, one)).collect()
+    found.iter().map(|one| diagnostic_of(sources, one)).collect()
 }
 
-fn told(sources: &SourceSet, found: &diagnostic::Diagnostic) -> Diagnostic {
+fn diagnostic_of(sources: &SourceSet, found: &diagnostic::Diagnostic) -> Diagnostic {
     let label = |label: &diagnostic::Label| Label {
         path: sources.get(label.span.source).path.clone(),
         message: label.message.clone(),

@@ -11,9 +11,9 @@
 
 mod controls;
 mod drawing;
+mod exchange;
 mod seen;
 mod sketch;
-mod told;
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -36,8 +36,8 @@ use wasm_bindgen::prelude::wasm_bindgen;
 use crate::diagnostic::{Diagnostic, diagnostics};
 use crate::{Answer, answer};
 use drawing::described;
+use exchange::{Drawing, Named, PictureRequest, Pixels, PresetInfo, Step, Studio};
 use seen::Known;
-use told::{Drawing, Named, PictureRequest, Pixels, PresetInfo, Step, Studio};
 
 /// What is the same for all pictures.
 struct Kept {
@@ -210,17 +210,17 @@ fn advance(kept: &Kept, current: &mut Current) -> Result<Step, Diagnostics> {
         let page = Page { given: &current.given, state: Mutex::default(), target };
         let (plan, shot) = (plan(kept, request)?, shot(request)?);
         let prepared = picture::prepare_passes(&page, &kept.programs, &plan, &shot);
-        let Told { count, wanted } = page.told();
+        let PageState { count, wanted } = page.into_state();
         if let Some(wanted) = wanted {
             return Ok(asked(current, wanted));
         }
         current.ready = Some(Ready { prepared: Box::new(prepared?), shot, before: count });
     }
     let Ready { prepared, shot, before } = current.ready.as_ref().ok_or_else(Vec::new)?;
-    let state = Mutex::new(Told { count: *before, wanted: None });
+    let state = Mutex::new(PageState { count: *before, wanted: None });
     let page = Page { given: &current.given, state, target };
     let photographed = prepared.photograph(&page, shot);
-    if let Some(wanted) = page.told().wanted {
+    if let Some(wanted) = page.into_state().wanted {
         return Ok(asked(current, wanted));
     }
     let picture = photographed?.develop();
@@ -307,19 +307,19 @@ fn shot(request: &PictureRequest) -> Result<Shot, Diagnostics> {
 /// A session that returns frames which were drawn before, and asks the page for the next ones.
 struct Page<'a> {
     given: &'a BTreeMap<usize, Arc<Vec<Frame>>>,
-    state: Mutex<Told>,
+    state: Mutex<PageState>,
     target: Target,
 }
 
 #[derive(Default)]
-struct Told {
+struct PageState {
     /// How many drawings there were.
     count: usize,
     wanted: Option<(Drawing, Asked)>,
 }
 
 impl Page<'_> {
-    fn told(self) -> Told {
+    fn into_state(self) -> PageState {
         self.state.into_inner().unwrap_or_default()
     }
 }
@@ -337,9 +337,9 @@ impl Session for Page<'_> {
         &self,
         drawing: &frame::Drawing<'_>,
     ) -> Result<Vec<Frame>, diagnostic::Diagnostic> {
-        let mut told = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let place = told.count;
-        told.count += 1;
+        let mut state = self.state.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let place = state.count;
+        state.count += 1;
         if let Some(frames) = self.given.get(&place) {
             return Ok(frames.to_vec());
         }
@@ -347,9 +347,9 @@ impl Session for Page<'_> {
         if let Some(frames) = known.as_ref().and_then(seen::find) {
             return Ok(frames.to_vec());
         }
-        if told.wanted.is_none() {
+        if state.wanted.is_none() {
             let asked = Asked { place, layout: layout(drawing), known };
-            told.wanted = Some((described(drawing, self.target)?, asked));
+            state.wanted = Some((described(drawing, self.target)?, asked));
         }
         Err(refused("not drawn yet"))
     }

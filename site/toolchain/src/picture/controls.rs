@@ -6,7 +6,7 @@ use serde::Serialize;
 use tsify::{Ts, Tsify};
 use wasm_bindgen::prelude::wasm_bindgen;
 
-use super::told::PictureRequest;
+use super::exchange::PictureRequest;
 use super::{plan, shot, with_kept};
 use crate::diagnostic::{Diagnostic, diagnostics};
 use crate::{Answer, answer};
@@ -58,7 +58,7 @@ pub fn picture_controls(request: Ts<PictureRequest>) -> Answer<PictureControls> 
             .map_err(|problems| diagnostics(&kept.programs.texts(), &problems))
     });
     answer(&match found.and_then(|found| found) {
-        Ok(controls) => told(controls),
+        Ok(controls) => page_controls(controls),
         Err(diagnostics) => PictureControls { diagnostics, ..PictureControls::default() },
     })
 }
@@ -73,7 +73,7 @@ pub fn uniform_info(uniform: picture::Uniform) -> UniformInfo {
     }
 }
 
-fn told(controls: picture::Controls) -> PictureControls {
+fn page_controls(controls: picture::Controls) -> PictureControls {
     let matrix = controls.clip_from_world;
     let lamp = |lamp: &picture::LampControl| LampInfo {
         index: lamp.index as u32,

@@ -8,7 +8,7 @@ use lamplight_execute::shipped::Shipped;
 
 use crate::linkers::LINKERS;
 
-use super::told::{Attribute, Buffer, Drawing, Level, Mesh, SamplerInfo, Stage, TextureInfo};
+use super::exchange::{Attribute, Buffer, Drawing, Level, Mesh, SamplerInfo, Stage, TextureInfo};
 
 /// A drawing with its shaders in a target.
 pub fn described(

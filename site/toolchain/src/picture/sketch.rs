@@ -14,7 +14,7 @@ use tsify::{Ts, Tsify};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 use super::controls::{UniformInfo, uniform_info};
-use super::told::Step;
+use super::exchange::Step;
 use super::{Ready, Work, begun, refused};
 use crate::diagnostic::{Diagnostic, diagnostics};
 use crate::shader::{ShaderRequest, composed_text};
