@@ -84,9 +84,9 @@
 //! let text = "fn half(x: f32) -> f32 {\n    return 0.5 * y;\n}\n";
 //! let packages = Packages::of_text("half.wesl", text.to_owned());
 //! let (paths, settings) = (["half.wesl".to_owned()], Settings::default());
-//! let asked = lint::Request { packages: &packages, manifest: None, settings: &settings, paths: &paths };
+//! let request = lint::Request { packages: &packages, manifest: None, settings: &settings, paths: &paths };
 //! let mut sources = SourceSet::default();
-//! let found = lint::lint(&mut sources, &asked).diagnostics;
+//! let found = lint::lint(&mut sources, &request).diagnostics;
 //! let place = found[0].labels[0].span;
 //! assert_eq!(sources.position(place.source, place.start as usize), (2, 18));
 //! ```

@@ -31,7 +31,7 @@ pub fn tests() -> Vec<Trial> {
         Trial::test("cost::taps_are_counted", offline::taps_are_counted),
         Trial::test("cost::constants_are_settled", offline::constants_are_settled),
         Trial::test("cost::missing_programs", offline::missing_programs),
-        Trial::test("cost::mali_is_asked", offline::mali_is_asked),
+        Trial::test("cost::mali_is_called", offline::mali_is_called),
         Trial::test("cost::bad_reports", offline::bad_reports),
         Trial::test("cost::wrong_names", wrong_names),
         Trial::test("cost::without_a_driver", without_a_driver),

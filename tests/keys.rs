@@ -161,16 +161,16 @@ fn of_manifest(harness: &Harness, manifest: &Manifest, lock: &Lock) -> Outcome {
     )?;
     std::fs::write(folder.path().join(harness.source), (harness.main)(manifest))?;
     execute(folder.path(), harness.compile, "")?;
-    let (mut asked, mut expected) = (String::new(), String::new());
+    let (mut input, mut expected) = (String::new(), String::new());
     for (index, program) in manifest.programs.iter().enumerate() {
         for point in program.space.enumerate() {
             let ordinals: Vec<String> = point.ordinals().iter().map(ToString::to_string).collect();
-            asked += &format!("{index} {}\n", ordinals.join(" "));
+            input += &format!("{index} {}\n", ordinals.join(" "));
             let number = lock.dense(&program.name, &program.space, &point).ok_or("no number")?;
             expected += &format!("{} {number} true\n", program.space.key(&point));
         }
     }
-    let found = execute(folder.path(), harness.run, &asked)?;
+    let found = execute(folder.path(), harness.run, &input)?;
     if found.lines().eq(expected.lines()) {
         println!("{}: {} keys", harness.language, expected.lines().count());
         return Ok(());

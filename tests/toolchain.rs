@@ -34,7 +34,7 @@ pub fn tests() -> Vec<Trial> {
 }
 
 /// The requests to the package, and the answers of the native tool, which are expected of it.
-struct Asked {
+struct Requests {
     linker: Linker<'static>,
     shaders: Vec<Value>,
     expressions: Vec<Value>,
@@ -45,7 +45,7 @@ struct Asked {
 
 fn same_bytes() -> Result<(), Failed> {
     let package = package()?;
-    let mut asked = Asked {
+    let mut requests = Requests {
         linker: Linker::new(Target::ALL),
         shaders: Vec::new(),
         expressions: Vec::new(),
@@ -54,11 +54,11 @@ fn same_bytes() -> Result<(), Failed> {
         expected: Vec::new(),
     };
     lamplight::validate::on_large_stack(|| {
-        permutations(&mut asked)?;
-        examples(&mut asked)?;
-        expressions(&mut asked)?;
-        mistakes(&mut asked)?;
-        formulas(&mut asked)
+        permutations(&mut requests)?;
+        examples(&mut requests)?;
+        expressions(&mut requests)?;
+        mistakes(&mut requests)?;
+        formulas(&mut requests)
     })?;
     let hostile = [
         format!("fn f() -> f32 {{ return {}1{}; }}", "(".repeat(100_000), ")".repeat(100_000)),
@@ -71,18 +71,20 @@ fn same_bytes() -> Result<(), Failed> {
     let hostile: Vec<Value> = hostile.iter().map(|text| json!({ "a.wesl": text })).collect();
     for index in 0..hostile.len() {
         // After each hostile text the script asks for `1.0 + 2.0`, which must still be answered.
-        asked.expected.push((format!("after hostile text {index}"), b"3".to_vec()));
+        requests.expected.push((format!("after hostile text {index}"), b"3".to_vec()));
     }
     let scratch = tempfile::tempdir()?;
-    let (requests, answers) = (scratch.path().join("requests"), scratch.path().join("answers"));
-    let Asked { shaders, expressions, mistakes, references, expected, .. } = asked;
+    let (requests_file, answers) =
+        (scratch.path().join("requests"), scratch.path().join("answers"));
+    let Requests { shaders, expressions, mistakes, references, expected, .. } = requests;
     let all = json!({
         "shaders": shaders, "expressions": expressions, "mistakes": mistakes,
         "references": references, "hostile": hostile,
     });
-    std::fs::write(&requests, all.to_string())?;
+    std::fs::write(&requests_file, all.to_string())?;
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/toolchain/answer.mjs");
-    let output = Command::new("node").arg(script).args([&package, &requests, &answers]).output()?;
+    let output =
+        Command::new("node").arg(script).args([&package, &requests_file, &answers]).output()?;
     if !output.status.success() {
         return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
     }
@@ -122,13 +124,13 @@ fn compare(answers: &[u8], expected: &[(String, Vec<u8>)]) -> Result<(), Failed>
 
 /// Asks for permutations of every program of the library, every second one in GLSL, and for the
 /// permutations of the published examples.
-fn permutations(asked: &mut Asked) -> Result<(), Failed> {
+fn permutations(requests: &mut Requests) -> Result<(), Failed> {
     let (mut sources, manifest) = library_manifest().map_err(|_| "the library's manifest")?;
     for program in &manifest.programs {
         let points = cover::pairwise(&program.space).points;
         for (index, point) in points.iter().take(PERMUTATIONS).enumerate() {
             let key = program.space.key(point).to_string();
-            permutation(asked, program, &key, index % 2 == 1)?;
+            permutation(requests, program, &key, index % 2 == 1)?;
         }
     }
     let (presets, _) =
@@ -138,7 +140,7 @@ fn permutations(asked: &mut Asked) -> Result<(), Failed> {
         let missing = || format!("an example names the unknown program `{}`", preset.program);
         let program = manifest.program(&preset.program).ok_or_else(missing)?;
         if seen.insert((preset.program.clone(), preset.key.clone())) {
-            permutation(asked, program, &preset.key, false)?;
+            permutation(requests, program, &preset.key, false)?;
         }
     }
     Ok(())
@@ -146,7 +148,7 @@ fn permutations(asked: &mut Asked) -> Result<(), Failed> {
 
 /// Asks for the roots of a permutation in one language.
 fn permutation(
-    asked: &mut Asked,
+    requests: &mut Requests,
     program: &Program,
     text: &str,
     is_glsl: bool,
@@ -162,10 +164,10 @@ fn permutation(
         .collect();
     for root in roots {
         let request = json!({ "root": root.path, "settings": settings, "targets": targets() });
-        asked.shaders.push(request);
+        requests.shaders.push(request);
         let settings = program.space.settings(&point);
         let name = format!("{} of {}", text, root.path);
-        shader(asked, &name, &project::library_packages(), &root.path, &settings)?;
+        shader(requests, &name, &project::library_packages(), &root.path, &settings)?;
     }
     Ok(())
 }
@@ -186,7 +188,7 @@ fn targets() -> Vec<&'static str> {
 /// Expects what the native tool makes of a root file: the composed text, and for each entry point its
 /// name, its reflection and its text in every target.
 fn shader(
-    asked: &mut Asked,
+    requests: &mut Requests,
     name: &str,
     packages: &Packages,
     root: &str,
@@ -199,9 +201,9 @@ fn shader(
     let composed = compose(&graph, settings, &options).map_err(message_of)?;
     let root = Root { graph: &graph, settings, options: &options, conventions: Default::default() };
     let entries = entry_points(&composed).map_err(message_of)?;
-    let shaders = root.compile_with(&entries, &asked.linker).map_err(message_of)?;
+    let shaders = root.compile_with(&entries, &requests.linker).map_err(message_of)?;
     let mut expect = |what: String, bytes: Vec<u8>| {
-        asked.expected.push((format!("{name}, {what}"), bytes));
+        requests.expected.push((format!("{name}, {what}"), bytes));
     };
     expect("text".to_owned(), composed.text.into_bytes());
     for shader in shaders {
@@ -226,7 +228,7 @@ fn own(files: &BTreeMap<String, String>) -> Packages {
 
 /// Asks for the packages in `examples/`: one with a manifest, in all its permutations, and one
 /// without a manifest.
-fn examples(asked: &mut Asked) -> Result<(), Failed> {
+fn examples(requests: &mut Requests) -> Result<(), Failed> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let read = |path: &str| std::fs::read_to_string(folder.join(path));
     let declared = ["lamp.wesl", project::MANIFEST]
@@ -238,31 +240,31 @@ fn examples(asked: &mut Asked) -> Result<(), Failed> {
     let program = manifest.program("lamp").ok_or("the example has no `lamp`")?;
     for point in program.space.enumerate() {
         let settings = program.space.settings(&point);
-        example(asked, &files, "lamp.wesl", &settings)?;
+        example(requests, &files, "lamp.wesl", &settings)?;
     }
     let text = read("wesl_crate/shaders/spot.wesl")?;
     let files = BTreeMap::from([("spot.wesl".to_owned(), text)]);
-    example(asked, &files, "spot.wesl", &Settings::default())?;
+    example(requests, &files, "spot.wesl", &Settings::default())?;
     Ok(())
 }
 
 fn example(
-    asked: &mut Asked,
+    requests: &mut Requests,
     files: &BTreeMap<String, String>,
     name: &str,
     settings: &Settings,
 ) -> Result<(), Failed> {
     let given: BTreeMap<&String, Value> =
         settings.values.iter().map(|(name, setting)| (name, value(setting))).collect();
-    asked.shaders.push(json!({
+    requests.shaders.push(json!({
         "files": files, "root": name, "settings": given, "targets": targets(),
     }));
-    shader(asked, name, &own(files), name, settings)
+    shader(requests, name, &own(files), name, settings)
 }
 
 /// Asks for the values of the expressions that the library's plots draw, at three places of each
 /// plot. At the second place the expression is read as GLSL, elsewhere as WESL.
-fn expressions(asked: &mut Asked) -> Result<(), Failed> {
+fn expressions(requests: &mut Requests) -> Result<(), Failed> {
     let (library, mut session) =
         (Library::shipped(LIBRARY_FILES), EXECUTOR.start().map_err(|_| "no evaluator")?);
     for module in catalogue::library_modules(LIBRARY_FILES) {
@@ -284,12 +286,12 @@ fn expressions(asked: &mut Asked) -> Result<(), Failed> {
                 else {
                     continue;
                 };
-                asked.expressions.push(json!({ "expression": text, "glsl": index == 1 }));
-                asked.expected.push((text, value.to_string().into_bytes()));
+                requests.expressions.push(json!({ "expression": text, "glsl": index == 1 }));
+                requests.expected.push((text, value.to_string().into_bytes()));
             }
         }
     }
-    match asked.expressions.len() {
+    match requests.expressions.len() {
         300.. => Ok(()),
         few => Err(format!("{few} expressions have a value, expected 300 or more").into()),
     }
@@ -326,7 +328,7 @@ fn substituted(
 
 /// Asks for the compilation of texts with mistakes. The package must report the same messages at the
 /// same places as the native tool.
-fn mistakes(asked: &mut Asked) -> Result<(), Failed> {
+fn mistakes(requests: &mut Requests) -> Result<(), Failed> {
     let texts = [
         "import lamplight::brdf::diffuse::lambrt;\n@fragment fn f() -> @location(0) vec4f { return vec4f(lambrt()); }",
         "@fragment fn f() -> @location(0) vec4f {\n    let ä = 1.0; return vec4f(ä, undefined_name, 1);\n}",
@@ -334,7 +336,7 @@ fn mistakes(asked: &mut Asked) -> Result<(), Failed> {
     ];
     for text in texts {
         let files = BTreeMap::from([("a.wesl".to_owned(), text.to_owned())]);
-        asked.mistakes.push(json!({ "files": files, "root": "a.wesl" }));
+        requests.mistakes.push(json!({ "files": files, "root": "a.wesl" }));
         let mut sources = SourceSet::default();
         let found = problems(&mut sources, &own(&files));
         if !found.iter().any(|one| one.severity == Severity::Error) {
@@ -344,7 +346,7 @@ fn mistakes(asked: &mut Asked) -> Result<(), Failed> {
             .iter()
             .map(|one| render(&sources, std::slice::from_ref(one), Form::Human))
             .collect();
-        asked.expected.push((text.to_owned(), rendered.into_bytes()));
+        requests.expected.push((text.to_owned(), rendered.into_bytes()));
     }
     Ok(())
 }
@@ -372,7 +374,7 @@ fn problems(sources: &mut SourceSet, packages: &Packages) -> Diagnostics {
 
 /// Asks for the values of two published formulas in f64. They have the same bits on both sides, since
 /// only operations whose rounding IEEE 754 prescribes are in them.
-fn formulas(asked: &mut Asked) -> Result<(), Failed> {
+fn formulas(requests: &mut Requests) -> Result<(), Failed> {
     let calls = [
         ("brdf::diffuse", "lambert", vec![0.0, 0.6, 0.8, 0.0, 0.0, 1.0]),
         ("brdf::specular", "f_schlick", vec![0.25, 0.04, 1.0]),
@@ -384,9 +386,9 @@ fn formulas(asked: &mut Asked) -> Result<(), Failed> {
         let path = format!("{module}::{function}");
         let mut call = vec![json!(path)];
         call.extend(words.iter().map(|word| json!(word)));
-        asked.references.push(Value::from(call));
+        requests.references.push(Value::from(call));
         let numbers: Vec<String> = value.iter().map(f64::to_string).collect();
-        asked.expected.push((path, numbers.join(" ").into_bytes()));
+        requests.expected.push((path, numbers.join(" ").into_bytes()));
     }
     Ok(())
 }

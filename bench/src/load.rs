@@ -30,16 +30,19 @@ pub fn run() -> Outcome {
     drop(contents);
     // Keys are asked in an order that the processor's caches cannot predict. They are copied in
     // that order too, so that the time is that of the bundle's memory and not of the benchmark's.
-    let asked: Vec<String> = (0..KEYS).map(|index| keys[index * 7_919 % KEYS].clone()).collect();
+    let requested: Vec<String> =
+        (0..KEYS).map(|index| keys[index * 7_919 % KEYS].clone()).collect();
     let open = median((0..OPENINGS).map(|_| timed(|| Bundle::open(&path).is_ok())))?;
     let bundle = Bundle::open(&path)?;
     let shader = bundle.program("forward")?.shader("fs_main")?;
-    let first = median([timed(|| shader.find(&asked[0]).is_ok())].into_iter())?;
+    let first = median([timed(|| shader.find(&requested[0]).is_ok())].into_iter())?;
     let lookup = median(
-        asked.chunks(BATCH).map(|batch| timed(|| batch.iter().all(|key| shader.find(key).is_ok()))),
+        requested
+            .chunks(BATCH)
+            .map(|batch| timed(|| batch.iter().all(|key| shader.find(key).is_ok()))),
     )?;
     let fetch = median(
-        asked
+        requested
             .iter()
             .take(FETCHES)
             .map(|key| timed(|| black_box(shader.get(key, Target::SPIRV)).is_ok())),

@@ -37,8 +37,8 @@ const BENCHMARKS: &[Benchmark] = &[
 ];
 
 fn main() -> ExitCode {
-    let asked = std::env::args().nth(1).unwrap_or_default();
-    let Some((_, run)) = BENCHMARKS.iter().find(|(name, _)| *name == asked) else {
+    let chosen = std::env::args().nth(1).unwrap_or_default();
+    let Some((_, run)) = BENCHMARKS.iter().find(|(name, _)| *name == chosen) else {
         let names: Vec<&str> = BENCHMARKS.iter().map(|(name, _)| *name).collect();
         eprintln!("usage: cargo xtask bench {}", names.join("|"));
         return ExitCode::from(2);

@@ -39,13 +39,13 @@ pub fn sealed(bytes: &[u8]) -> String {
 /// A storage that has the same record under every name, and keeps the names that it is asked for.
 struct Fixed {
     packed: Vec<u8>,
-    asked: Arc<Mutex<Vec<String>>>,
+    names: Arc<Mutex<Vec<String>>>,
 }
 
 impl Storage for Fixed {
     fn get(&self, name: &str) -> Result<Option<Vec<u8>>, String> {
-        if let Ok(mut asked) = self.asked.lock() {
-            asked.push(name.to_owned());
+        if let Ok(mut names) = self.names.lock() {
+            names.push(name.to_owned());
         }
         Ok(Some(seal::record(name, &self.packed)))
     }
@@ -57,9 +57,9 @@ impl Storage for Fixed {
 
 /// Reads the input as a record of a cache, with the correct checksum for the name it is asked for.
 pub fn record(bytes: &[u8]) -> String {
-    let asked = Arc::<Mutex<Vec<String>>>::default();
+    let names = Arc::<Mutex<Vec<String>>>::default();
     let cache =
-        Cache::new("fuzz", vec![Box::new(Fixed { packed: bytes.to_vec(), asked: asked.clone() })]);
+        Cache::new("fuzz", vec![Box::new(Fixed { packed: bytes.to_vec(), names: names.clone() })]);
     let composed = Composed::of_text(Language::Wesl, None, "fn f() {}".to_owned());
     let found = cache.find(CompileJob {
         text: "fn f() {}",
@@ -74,5 +74,5 @@ pub fn record(bytes: &[u8]) -> String {
         Some(Err(errors)) => render(&SourceSet::default(), errors, Form::Human),
         None => "none".to_owned(),
     };
-    answer + &asked.lock().map(|asked| asked.join(" ")).unwrap_or_default()
+    answer + &names.lock().map(|names| names.join(" ")).unwrap_or_default()
 }

@@ -90,8 +90,8 @@ pub fn run_check(arguments: Arguments) -> Result<(), Failure> {
     on_thread(|| match (&arguments.record, &arguments.against) {
         (Some(file), _) => values::record_values(&selections, file, arguments.replace()),
         (None, Some(file)) => {
-            let asked = |language| is_asked(&arguments, language);
-            values::compare_with_record(&selections, file, asked)
+            let requested = |language| is_requested(&arguments, language);
+            values::compare_with_record(&selections, file, requested)
         }
         (None, None) => check_selections(&selections, &arguments),
     })
@@ -255,7 +255,7 @@ fn parse_selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
         let languages = LANGUAGES
             .iter()
             .map(|(language, _)| *language)
-            .filter(|language| is_asked(arguments, *language))
+            .filter(|language| is_requested(arguments, *language))
             .collect();
         selections.push(Selection { library, root: None, files, languages });
     }
@@ -271,7 +271,7 @@ fn parse_selections(arguments: &Arguments) -> Result<Vec<Selection>, Failure> {
 const LANGUAGES: [(Language, &[&str]); 2] =
     [(Language::Wesl, &["wesl", "wgsl"]), (Language::Glsl, &["glsl"])];
 
-fn is_asked(arguments: &Arguments, language: Language) -> bool {
+fn is_requested(arguments: &Arguments, language: Language) -> bool {
     arguments.lang.is_none_or(|name| Language::from(name) == language)
 }
 
@@ -318,7 +318,7 @@ fn add_own(
     };
     let languages: Vec<Language> = LANGUAGES
         .iter()
-        .filter(|(language, extensions)| is_asked(arguments, *language) && present(extensions))
+        .filter(|(language, extensions)| is_requested(arguments, *language) && present(extensions))
         .map(|(language, _)| *language)
         .collect();
     if languages.is_empty() {
@@ -341,20 +341,20 @@ fn add_own(
 
 /// A case file without a module in the languages that are asked for.
 fn no_module(file: &Path, arguments: &Arguments) -> Failure {
-    let asked = LANGUAGES.iter().filter(|(language, _)| is_asked(arguments, *language));
+    let requested = LANGUAGES.iter().filter(|(language, _)| is_requested(arguments, *language));
     let name = |extension: &&str| format!("`{}`", file.with_extension(extension).display());
     let names: Vec<String> =
-        asked.filter_map(|(_, extensions)| extensions.first()).map(name).collect();
+        requested.filter_map(|(_, extensions)| extensions.first()).map(name).collect();
     Failure::input(format!("there is no {} next to `{}`", names.join(" or "), file.display()))
 }
 
-fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Failure> {
+fn library_files(library: &Library, requested: &[&String]) -> Result<Vec<String>, Failure> {
     let files = library.case_files();
-    if asked.is_empty() {
+    if requested.is_empty() {
         return Ok(files);
     }
     let mut found = Vec::new();
-    for path in asked {
+    for path in requested {
         let wanted = path.trim_start_matches("lamplight::").replace("::", "/");
         let stem = |file: &str| file.trim_end_matches(".toml").to_owned();
         let matching: Vec<String> = files
@@ -367,8 +367,8 @@ fn library_files(library: &Library, asked: &[&String]) -> Result<Vec<String>, Fa
         if matching.is_empty() {
             let known: Vec<String> =
                 files.iter().map(|file| stem(file).replace('/', "::")).collect();
-            let asked = wanted.replace('/', "::");
-            let near = nearest_name(&asked, known.iter().map(String::as_str));
+            let requested = wanted.replace('/', "::");
+            let near = nearest_name(&requested, known.iter().map(String::as_str));
             let near = near.map_or(String::new(), |near| format!("\nhelp: did you mean `{near}`?"));
             return Err(Failure::input(format!(
                 "`{path}` is neither a file nor a module of the library with numeric cases{near}"

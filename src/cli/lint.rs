@@ -61,15 +61,15 @@ pub fn run_lint(arguments: Arguments, form: DiagnosticForm) -> Result<(), Failur
 }
 
 /// Roots of packages, each with what was asked for below it.
-fn packages_of(asked: &[PathBuf]) -> Result<Vec<(PathBuf, Vec<PathBuf>)>, Failure> {
+fn packages_of(requested: &[PathBuf]) -> Result<Vec<(PathBuf, Vec<PathBuf>)>, Failure> {
     let mut found: Vec<(PathBuf, Vec<PathBuf>)> = Vec::new();
-    if asked.is_empty() {
+    if requested.is_empty() {
         let here = project::package_above(Path::new(""));
         let none = "there is no package here: name its folder, or modules";
         let root = here.ok_or_else(|| Failure::usage(none))?;
         return Ok(vec![(root.clone(), vec![root])]);
     }
-    for path in asked {
+    for path in requested {
         if !path.exists() {
             let message = format!("there is no file or folder `{}`", path.display());
             return Err(Failure::input(message));
@@ -92,7 +92,7 @@ fn packages_of(asked: &[PathBuf]) -> Result<Vec<(PathBuf, Vec<PathBuf>)>, Failur
 
 fn lint_package(
     root: &Path,
-    asked: &[PathBuf],
+    requested: &[PathBuf],
     settings: &Settings,
     sources: &mut SourceSet,
 ) -> Result<lint::Linted, Diagnostics> {
@@ -104,7 +104,7 @@ fn lint_package(
     }
     let all = packages.root.files.list(EXTENSIONS);
     let mut paths: Vec<String> = Vec::new();
-    for path in asked {
+    for path in requested {
         if path.is_dir() {
             let below = project::relative_folder(path, root).map_err(|error| vec![error])?;
             paths.extend(all.iter().filter(|file| file.starts_with(&below)).cloned());

@@ -125,12 +125,12 @@ impl Command {
 
 /// The command line with examples and pages in its help.
 fn described_command() -> clap::Command {
-    guide::in_help(Cli::command()).color(asked_for_color())
+    guide::in_help(Cli::command()).color(color_choice())
 }
 
 /// What `--color` says, read before the other options: help and wrong usage are printed before
 /// those are read.
-fn asked_for_color() -> clap::ColorChoice {
+fn color_choice() -> clap::ColorChoice {
     // Arguments need not be UTF-8, and those that matter here are.
     let arguments = std::env::args_os().skip(1);
     let arguments: Vec<String> =
@@ -192,7 +192,7 @@ fn print_usage(error: &clap::Error) -> ExitCode {
             Err(error) => Failure::from(error).report(failure::DiagnosticForm::default()),
         };
     }
-    let in_color = match asked_for_color() {
+    let in_color = match color_choice() {
         clap::ColorChoice::Always => true,
         clap::ColorChoice::Never => false,
         clap::ColorChoice::Auto => {

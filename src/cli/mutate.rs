@@ -29,7 +29,7 @@ pub struct Arguments {
 
 pub fn run_mutate(arguments: Arguments) -> Result<(), Failure> {
     let library = open_library(&arguments)?;
-    let modules = asked_modules(&library, &arguments.module)?;
+    let modules = requested_modules(&library, &arguments.module)?;
     if arguments.coverage {
         print_coverage(&library, &modules)
     } else {
@@ -45,17 +45,19 @@ fn open_library(arguments: &Arguments) -> Result<Library, Failure> {
 }
 
 /// The modules of those paths, or below them.
-fn asked_modules(library: &Library, asked: &[String]) -> Result<Vec<String>, Failure> {
+fn requested_modules(library: &Library, requested: &[String]) -> Result<Vec<String>, Failure> {
     let all = library.modules();
     let below = |module: &str, path: &str| {
         module.strip_prefix(path).is_some_and(|rest| rest.is_empty() || rest.starts_with("::"))
     };
-    if let Some(unknown) = asked.iter().find(|path| !all.iter().any(|module| below(module, path))) {
+    if let Some(unknown) =
+        requested.iter().find(|path| !all.iter().any(|module| below(module, path)))
+    {
         return Err(Failure::input(format!("there is no module `{unknown}`")));
     }
     Ok(all
         .into_iter()
-        .filter(|module| asked.is_empty() || asked.iter().any(|path| below(module, path)))
+        .filter(|module| requested.is_empty() || requested.iter().any(|path| below(module, path)))
         .collect())
 }
 

@@ -15,7 +15,7 @@ pub fn refuse_partial(manifest: &Manifest, request: &Request, out: &Path) -> Res
     for program in &manifest.programs {
         let Ok(known) = there.program(&program.name) else { continue };
         let Ok(Some(targets)) = targets_of_whole(&known, program) else { continue };
-        let (all, made) = (program.space.count(), asked_for(request, program));
+        let (all, made) = (program.space.count(), requested_count(request, program));
         let is_lost = |target: &&String| {
             let is = |one: &bundle::Target| one.name() == **target;
             !request.targets.is_empty()
@@ -57,7 +57,7 @@ fn targets_of_whole(
 }
 
 /// How many permutations of a program a run makes.
-fn asked_for(request: &Request, program: &Program) -> u128 {
+fn requested_count(request: &Request, program: &Program) -> u128 {
     let all = program.space.count();
     if request.program.as_ref().is_some_and(|name| *name != program.name) {
         return 0;

@@ -29,8 +29,8 @@ pub enum ValidatedOutputs {
 }
 
 impl From<ValidatedOutputs> for Extent {
-    fn from(asked: ValidatedOutputs) -> Self {
-        match asked {
+    fn from(extent: ValidatedOutputs) -> Self {
+        match extent {
             ValidatedOutputs::Lines => Self::Lines,
             ValidatedOutputs::All => Self::All,
             ValidatedOutputs::None => Self::Nothing,
@@ -38,7 +38,7 @@ impl From<ValidatedOutputs> for Extent {
     }
 }
 
-/// The validators, and how much they are asked.
+/// The validators, and how many outputs they check.
 pub struct Validators {
     tint: Tint,
     extent: Extent,

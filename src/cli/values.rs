@@ -44,12 +44,12 @@ pub fn record_values(
     Ok(())
 }
 
-/// Compares the functions of the selected cases with a record. `asked` says which languages the
+/// Compares the functions of the selected cases with a record. `has_language` says which languages the
 /// user chose.
 pub fn compare_with_record(
     selections: &[Selection],
     file: &Path,
-    asked: impl Fn(Language) -> bool,
+    has_language: impl Fn(Language) -> bool,
 ) -> Result<(), Failure> {
     let sources = Mutex::new(SourceSet::default());
     let old = read_record(&sources, file)?;
@@ -62,8 +62,9 @@ pub fn compare_with_record(
         )));
     }
     let measured = measure_selections(selections, &sources, Some(&old))?;
-    let is_asked = |case: &RecordedCase| asked(case.language) && is_selected(selections, case);
-    let compared = compare_values(&old, &measured, is_asked);
+    let is_requested =
+        |case: &RecordedCase| has_language(case.language) && is_selected(selections, case);
+    let compared = compare_values(&old, &measured, is_requested);
     let sources = sources.into_inner().unwrap_or_default();
     let comparison = match compared {
         Ok(comparison) => comparison,

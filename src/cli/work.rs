@@ -101,8 +101,8 @@ impl Work {
     /// Lets the validators check the outputs of later runs, before these replace a bundle.
     pub fn validate(&mut self, extent: Extent) {
         let cache = self.cache_folder.clone();
-        let asked = extent != Extent::Nothing;
-        self.validators = asked.then(|| Validators::new(extent, &self.path, cache));
+        let is_requested = extent != Extent::Nothing;
+        self.validators = is_requested.then(|| Validators::new(extent, &self.path, cache));
     }
 
     /// The summary of an earlier run, whose bundle is on disk. If validators are asked for, they

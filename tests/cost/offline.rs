@@ -139,7 +139,7 @@ fn ask_mali(folder: &Path, options: &[&str]) -> Result<Output, Failed> {
 
 /// malioc's report is read, and figures that it leaves open are `null`. The program was given a
 /// SPIR-V module in a file whose name ends with the stage.
-pub fn mali_is_asked() -> Outcome {
+pub fn mali_is_called() -> Outcome {
     let folder = tempfile::tempdir()?;
     stand_in(folder.path(), REPORT)?;
     let output = ask_mali(folder.path(), &["--json"])?;

@@ -30,18 +30,18 @@ fn many() -> Outcome {
     let few = changed(&mut server, 10);
     let many = changed(&mut server, EDITS);
     let is_notified = many.iter().any(|message| message["method"] == "window/showMessage");
-    let asked = server.receive(&json!({
+    let answers = server.receive(&json!({
         "id": 1,
         "method": "textDocument/documentSymbol",
         "params": { "textDocument": { "uri": URI } },
     }));
-    let refused = asked.iter().any(|message| message["error"].is_object());
+    let refused = answers.iter().any(|message| message["error"].is_object());
     match (few.is_empty(), is_notified, refused) {
         (true, true, true) => Ok(()),
         _ => {
             let what = format!("10 edits should give no message: {few:?}");
             let what = format!("{what}; {EDITS} should give `showMessage`: {many:?}");
-            Err(format!("{what}; a question after them should give an error: {asked:?}").into())
+            Err(format!("{what}; a question after them should give an error: {answers:?}").into())
         }
     }
 }

@@ -108,7 +108,7 @@ fn serves(manner: Manner, is_expected: bool) -> Outcome {
     if elapsed > SOON {
         return Err(format!("{manner:?}: the run took {elapsed:?}, at most {SOON:?}").into());
     }
-    if server.asked.load(Ordering::Relaxed) <= OPENING {
+    if server.requests.load(Ordering::Relaxed) <= OPENING {
         return Err(format!("{manner:?}: the second run only opened the store").into());
     }
     let is_warned =
@@ -151,21 +151,21 @@ struct Server {
     port: u16,
     manner: Arc<Mutex<Manner>>,
     /// The number of requests about records since the manner was set.
-    asked: Arc<AtomicUsize>,
+    requests: Arc<AtomicUsize>,
 }
 
 impl Server {
     fn start() -> Result<Self, Failed> {
         let listener = TcpListener::bind("127.0.0.1:0")?;
         let port = listener.local_addr()?.port();
-        let (manner, asked) = (Arc::new(Mutex::new(Manner::Honest)), Arc::default());
-        let server = Self { port, manner: Arc::clone(&manner), asked: Arc::clone(&asked) };
+        let (manner, requests) = (Arc::new(Mutex::new(Manner::Honest)), Arc::default());
+        let server = Self { port, manner: Arc::clone(&manner), requests: Arc::clone(&requests) };
         let records: Arc<Mutex<Records>> = Arc::default();
         thread::spawn(move || {
             for stream in listener.incoming().flatten() {
                 let guest = Guest {
                     manner: Arc::clone(&manner),
-                    asked: Arc::clone(&asked),
+                    requests: Arc::clone(&requests),
                     records: Arc::clone(&records),
                 };
                 // The result is not needed: an error ends the connection just as the client does.
@@ -177,14 +177,14 @@ impl Server {
 
     fn behave(&self, manner: Manner) {
         *self.manner.lock().unwrap_or_else(PoisonError::into_inner) = manner;
-        self.asked.store(0, Ordering::Relaxed);
+        self.requests.store(0, Ordering::Relaxed);
     }
 }
 
 /// One connection of a client.
 struct Guest {
     manner: Arc<Mutex<Manner>>,
-    asked: Arc<AtomicUsize>,
+    requests: Arc<AtomicUsize>,
     records: Arc<Mutex<Records>>,
 }
 
@@ -203,7 +203,7 @@ impl Guest {
         if !matches!(&command[..], b"EXISTS" | b"STRLEN" | b"GET" | b"GETRANGE" | b"SET") {
             return answers.write_all(b"+OK\r\n");
         }
-        let number = self.asked.fetch_add(1, Ordering::Relaxed);
+        let number = self.requests.fetch_add(1, Ordering::Relaxed);
         let manner = match number < OPENING {
             true => Manner::Honest,
             false => *self.manner.lock().unwrap_or_else(PoisonError::into_inner),

@@ -125,8 +125,8 @@ pub fn vscode() -> Outcome {
         let name = command["command"].as_str().ok_or("no name")?;
         expect(code.contains(&format!("registerCommand('{name}'")), &name)?;
     }
-    for asked in ["lamplight/permutation", "lamplight.composed", "args: ['lsp']"] {
-        expect(code.contains(asked), &asked)?;
+    for expected in ["lamplight/permutation", "lamplight.composed", "args: ['lsp']"] {
+        expect(code.contains(expected), &expected)?;
     }
     for grammar in contributes["grammars"].as_array().ok_or("no grammars")? {
         let file = grammar["path"].as_str().ok_or("no path")?;

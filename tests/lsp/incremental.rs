@@ -293,9 +293,9 @@ pub fn as_fresh() -> Outcome {
         editing.step()?;
         editing.compare(step)?;
     }
-    let asked = QUESTIONS.iter().chain(OF_FILES).chain(&["diagnostics", "workspace/symbol"]);
+    let questions = QUESTIONS.iter().chain(OF_FILES).chain(&["diagnostics", "workspace/symbol"]);
     let unanswered: Vec<_> =
-        asked.filter(|question| !editing.answered.contains(*question)).collect();
+        questions.filter(|question| !editing.answered.contains(*question)).collect();
     if edits >= EDITS && !unanswered.is_empty() {
         return Err(format!("only empty answers to {unanswered:?} in {edits} edits").into());
     }
@@ -332,11 +332,11 @@ pub fn module_becomes_item() -> Outcome {
         "textDocument": { "uri": uri("x.wesl") },
         "position": { "line": 1, "character": 24 },
     });
-    let asked = [&mut kept, &mut new].map(|one| one.ask("textDocument/definition", &call));
-    if asked[1]["result"].is_null() {
-        return Err(format!("a new server finds nothing: {}", asked[1]).into());
+    let answers = [&mut kept, &mut new].map(|one| one.ask("textDocument/definition", &call));
+    if answers[1]["result"].is_null() {
+        return Err(format!("a new server finds nothing: {}", answers[1]).into());
     }
-    differs(1, "definition", user, Some(&asked[0]), &asked[1])?;
+    differs(1, "definition", user, Some(&answers[0]), &answers[1])?;
     let published = [&kept, &new].map(|one| one.published.get(&uri("x.wesl")));
     differs(
         1,

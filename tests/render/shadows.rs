@@ -127,8 +127,8 @@ impl Casters {
         let on_floor = fragment.position.y < 1e-3;
         let on_box = !on_floor
             && self.object_from_box.transform_point3(from).abs().cmple(self.box_half + 0.01).all();
-        let asked = [true, !on_ball, !on_box, true];
-        let ways = || ways.iter().zip(asked).filter(|(_, asked)| *asked).map(|(way, _)| *way);
+        let wanted = [true, !on_ball, !on_box, true];
+        let ways = || ways.iter().zip(wanted).filter(|(_, wanted)| *wanted).map(|(way, _)| *way);
         if ways().any(|way| way == Way::Blocked) {
             Way::Blocked
         } else if ways().any(|way| way == Way::Unclear) {

@@ -87,11 +87,11 @@ pub fn path_without(package: &Package, absent: &str) -> Result<PathBuf, Failed> 
 /// If a validator is missing, it is named with its package. The other targets are validated, the
 /// bundle is written, and the exit code is 4.
 pub fn others_go_on() -> Outcome {
-    for asked in ["lines", "all"] {
+    for extent in ["lines", "all"] {
         let package = Package::new(MANIFEST, &SHADER.replace("LOCATION", "1"))?;
         let path = path_without(&package, "spirv-val")?;
         let run = || {
-            let mut command = package.command(&["gen", "--validate", asked, "--cache", "cache"]);
+            let mut command = package.command(&["gen", "--validate", extent, "--cache", "cache"]);
             command.env("PATH", &path).output()
         };
         let missing = "not validated: `spirv-val` is not installed; \
@@ -102,7 +102,7 @@ pub fn others_go_on() -> Outcome {
         let again = [missing, "0 outputs validated, 8 known to pass", "up to date"];
         expect(&run()?, 4, &again)?;
         // Once it is there, it is asked.
-        let output = package.run(&["gen", "--validate", asked, "--cache", "cache"])?;
+        let output = package.run(&["gen", "--validate", extent, "--cache", "cache"])?;
         expect(&output, 0, &["by spirv-val"])?;
         validated(&output_text(&output), "spirv")?;
         if !package.path("bundle/manifest.json").exists() {
@@ -131,10 +131,10 @@ pub fn validated_once() -> Outcome {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let path =
         std::env::join_paths([tools.clone()].into_iter().chain(std::env::split_paths(&path)))?;
-    let runs = |version: &str, asked: &str| -> Result<usize, Failed> {
+    let runs = |version: &str, extent: &str| -> Result<usize, Failed> {
         fs::write(tools.join("version"), format!("SPIRV-Tools v{version} of a test"))?;
         fs::write(tools.join("runs"), "")?;
-        let mut command = package.command(&["gen", "--validate", asked, "--cache", "cache"]);
+        let mut command = package.command(&["gen", "--validate", extent, "--cache", "cache"]);
         let output = command.env("PATH", &path).output()?;
         expect(&output, 0, &[&format!("spirv-val {version}")])?;
         Ok(fs::read_to_string(tools.join("runs"))?.lines().count())

@@ -61,17 +61,17 @@ pub struct Conventions {
     pub bounds: BoundsChecks,
 }
 
-/// Conventions that are asked for, such as on the command line. They override those of a program.
+/// Requested conventions, such as those of the command line. They override those of a program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
-pub struct AskedConventions {
+pub struct RequestedConventions {
     /// The clip space of vertex stages.
     pub clip: Option<ClipConvention>,
     /// Checks of indices and loops.
     pub bounds: Option<BoundsChecks>,
 }
 
-impl AskedConventions {
-    /// What is asked for; where nothing is, the program's own convention.
+impl RequestedConventions {
+    /// The requested convention; where there is none, the program's own.
     pub fn or(self, own: Conventions) -> Conventions {
         Conventions {
             clip: self.clip.unwrap_or(own.clip),

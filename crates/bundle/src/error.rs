@@ -49,11 +49,11 @@ pub enum Error {
     Conflict(String),
 }
 
-/// A permutation that was asked for and is not in the bundle.
+/// A requested permutation that is not in the bundle.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Miss {
-    /// The key that was asked for, in canonical form.
-    pub asked: String,
+    /// The requested key, in canonical form.
+    pub requested: String,
     /// The permutation that differs in the fewest axes; of several, the first by text. `None` if
     /// the entry point has no permutations.
     pub nearest: Option<String>,
@@ -90,7 +90,7 @@ impl fmt::Display for Error {
                 write!(f, "`{key}` is not a key of this program: {reason}")
             }
             Self::Miss(miss) => {
-                write!(f, "the bundle has no permutation `{}`", miss.asked)?;
+                write!(f, "the bundle has no permutation `{}`", miss.requested)?;
                 match &miss.nearest {
                     Some(nearest) => write!(f, "; the nearest is `{nearest}`"),
                     None => f.write_str("; it has none at all"),

@@ -35,7 +35,9 @@ mod target;
 mod usage;
 
 pub use contents::{Artifact, Axis, Contents, EntryContents, Hash, ProgramContents, Unit};
-pub use conventions::{AskedConventions, BoundsChecks, ClipConvention, Convention, Conventions};
+pub use conventions::{
+    BoundsChecks, ClipConvention, Convention, Conventions, RequestedConventions,
+};
 pub use diff::{Change, Difference, diff};
 pub use digest::{Digest, Digester};
 pub use directory::{BlobFile, blob_files};

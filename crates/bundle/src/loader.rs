@@ -267,11 +267,13 @@ impl Shader<'_> {
             self.note(key);
             return Ok(unit);
         }
-        let asked = key::canonical(self.axes, key)?;
-        self.note(&asked);
-        match self.store.find(self.entry, &asked)? {
+        let requested = key::canonical(self.axes, key)?;
+        self.note(&requested);
+        match self.store.find(self.entry, &requested)? {
             Some(unit) => Ok(unit),
-            None => Err(Error::Miss(Box::new(Miss { nearest: self.nearest(&asked)?, asked }))),
+            None => {
+                Err(Error::Miss(Box::new(Miss { nearest: self.nearest(&requested)?, requested })))
+            }
         }
     }
 
@@ -300,10 +302,10 @@ impl Shader<'_> {
         }
     }
 
-    fn nearest(&self, asked: &str) -> Result<Option<String>, Error> {
+    fn nearest(&self, requested: &str) -> Result<Option<String>, Error> {
         let mut best: Option<(usize, String)> = None;
         self.store.each_key(self.entry, &mut |known, _| {
-            let distance = key::distance(asked, known);
+            let distance = key::distance(requested, known);
             // Keys are sorted, so of several equally near ones the first stays.
             if best.as_ref().is_none_or(|(least, _)| distance < *least) {
                 best = Some((distance, known.to_owned()));

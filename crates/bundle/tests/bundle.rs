@@ -187,7 +187,7 @@ fn misses() -> Outcome {
             .err();
         let error = error.ok_or("a permutation that is not there was found")?;
         let miss = error.miss().ok_or_else(|| error.to_string())?;
-        check(miss.asked == "shadow=hard,taps=16,two_sided", &miss.asked)?;
+        check(miss.requested == "shadow=hard,taps=16,two_sided", &miss.requested)?;
         check(miss.nearest.as_deref() == Some("shadow=hard,taps=5,two_sided"), &error.to_string())?;
     }
     Ok(())

@@ -349,7 +349,7 @@ fn composed(
             keep.push("main".to_owned());
             compose::glsl::compose(
                 &graph,
-                &asked_settings(&graph, settings),
+                &relevant_settings(&graph, settings),
                 &Options { keep: Keep::Items(keep), ..Options::default() },
             )
         }
@@ -358,11 +358,11 @@ fn composed(
 
 /// The settings that the files of a GLSL graph may test. Other settings belong to other programs of
 /// the package, and their macros could replace names that this module declares.
-fn asked_settings(graph: &resolve::glsl::Graph, settings: &Settings) -> Settings {
-    let mut asked = settings.clone();
-    asked.values.retain(|name, _| graph.may_ask(name));
-    Arc::make_mut(&mut asked.enums).retain(|name, _| graph.may_ask(name));
-    asked
+fn relevant_settings(graph: &resolve::glsl::Graph, settings: &Settings) -> Settings {
+    let mut relevant = settings.clone();
+    relevant.values.retain(|name, _| graph.may_ask(name));
+    Arc::make_mut(&mut relevant.enums).retain(|name, _| graph.may_ask(name));
+    relevant
 }
 
 /// The files of a package, and texts that are added to them here.

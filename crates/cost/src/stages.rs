@@ -35,10 +35,10 @@ pub fn ask_stages<'s, T: Clone + Send>(
             }
         }
     }
-    let asked = distinct
+    let results = distinct
         .par_iter()
         .map(|(words, name)| ask(words).map_err(|reason| format!("`{name}`: {reason}")));
-    let answers = asked.collect::<Result<Vec<T>, String>>()?;
+    let answers = results.collect::<Result<Vec<T>, String>>()?;
     let mut found = Vec::new();
     for subject in subjects {
         for stage in subject.stages.iter().copied() {

@@ -65,8 +65,8 @@ pub fn write_glsl(
     }
     name_blocks(source, &mut text, &mut info);
     let mut native = glsl_reflection(source, &info, numbering);
-    let is_asked = text.contains(&format!("uniform uint {FIRST_INSTANCE};"));
-    native.first_instance = is_asked.then(|| FIRST_INSTANCE.to_owned());
+    let is_used = text.contains(&format!("uniform uint {FIRST_INSTANCE};"));
+    native.first_instance = is_used.then(|| FIRST_INSTANCE.to_owned());
     Ok(Emitted { bytes: text.into_bytes(), native })
 }
 

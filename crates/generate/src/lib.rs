@@ -53,7 +53,8 @@ use compositions::{ComposedForms, EntryResult};
 use entry::ShaderEntry;
 use lamplight_bundle::contents::to_hex;
 use lamplight_bundle::{
-    AskedConventions, Axis, Contents, Digest, EntryContents, ProgramContents, ShardOrigin, Target,
+    Axis, Contents, Digest, EntryContents, ProgramContents, RequestedConventions, ShardOrigin,
+    Target,
 };
 use lamplight_compose::resolve::Packages;
 use lamplight_diagnostic::source::SourceSet;
@@ -77,7 +78,7 @@ pub struct Request {
     /// Only these targets; each program's own targets where none are given.
     pub targets: Vec<Target>,
     /// Conventions of all programs, instead of what each declares.
-    pub conventions: AskedConventions,
+    pub conventions: RequestedConventions,
     /// Only this part of each program's permutations.
     pub shard: Option<Shard>,
 }
@@ -86,7 +87,7 @@ impl Request {
     /// What is asked for, without the shard, as one line.
     fn settings(&self) -> String {
         let Self { program, only, targets, conventions, shard: _ } = self;
-        let AskedConventions { clip, bounds } = conventions;
+        let RequestedConventions { clip, bounds } = conventions;
         let names: Vec<&str> = targets.iter().map(|target| target.name()).collect();
         let parts = [
             program.as_ref().map(|program| format!("program {program}")),
@@ -338,13 +339,13 @@ fn chosen_programs<'a>(
 
 fn wanted_points(program: &Program, request: &Request) -> Result<Vec<Assignment>, Diagnostics> {
     match &request.only {
-        Some(text) => Ok(vec![asked_point(program, text)?]),
+        Some(text) => Ok(vec![requested_point(program, text)?]),
         None => Ok(program.space.enumerate()),
     }
 }
 
 /// The point of a key that was asked for by name: it must satisfy the constraints.
-fn asked_point(program: &Program, text: &Quoted) -> Result<Assignment, Diagnostics> {
+fn requested_point(program: &Program, text: &Quoted) -> Result<Assignment, Diagnostics> {
     let point = key::parse(&program.space, text)?;
     let broken: Diagnostics = program
         .space

@@ -114,9 +114,9 @@ impl Lints {
         let is_open = |axis: &Axis| {
             axis.mode == Mode::Spec && entries.iter().any(|entry| entry.graph.may_ask(&axis.name))
         };
-        let asked = |axis: &Axis| read(&axis.name) || is_open(axis);
+        let is_read = |axis: &Axis| read(&axis.name) || is_open(axis);
         let unread =
-            program.space.axes().iter().filter(|axis| axis.mode != Mode::Dynamic && !asked(axis));
+            program.space.axes().iter().filter(|axis| axis.mode != Mode::Dynamic && !is_read(axis));
         self.found.extend(unread.map(|axis| {
             let message = format!(
                 "no entry point of program `{}` asks for the axis `{}`",

@@ -170,9 +170,9 @@ impl Trace {
 fn trace_key(cache: &Cache, sources: &SourceSet, request: &Request) -> lamplight_bundle::Hash {
     let only = request.only.as_ref().map(|only| &only.text);
     let Request { program, targets, conventions, shard, .. } = request;
-    let asked = format!("{program:?} {only:?} {targets:?} {conventions:?} {shard:?}");
+    let request = format!("{program:?} {only:?} {targets:?} {conventions:?} {shard:?}");
     let texts = sources.iter().map(|(_, source)| &*source.text);
-    hash_parts(&["run", cache.build(), &asked].into_iter().chain(texts).collect::<Vec<_>>())
+    hash_parts(&["run", cache.build(), &request].into_iter().chain(texts).collect::<Vec<_>>())
 }
 
 fn is_current(reads: &BTreeMap<FileQuestion, String>, packages: &Packages) -> bool {

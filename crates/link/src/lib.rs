@@ -93,7 +93,7 @@ pub struct Linker<'a> {
     conventions: Conventions,
     pool: Pool,
     /// Units asked for since the last batch, and how many of them were new.
-    asked: AtomicUsize,
+    requested: AtomicUsize,
     new: AtomicUsize,
 }
 
@@ -114,8 +114,8 @@ impl<'a> Linker<'a> {
 
     /// A linker whose outputs keep the given conventions.
     pub fn with(targets: &'a [Target], conventions: Conventions) -> Self {
-        let (asked, new) = (AtomicUsize::new(0), AtomicUsize::new(0));
-        Self { targets, conventions, pool: Pool::new(targets), asked, new }
+        let (requested, new) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        Self { targets, conventions, pool: Pool::new(targets), requested, new }
     }
 
     /// The targets that it translates to.
@@ -195,7 +195,7 @@ impl<'a> Linker<'a> {
         let recipe: Recipe<'_> = make_recipe(outline, unit, &summary)?;
         *left = left.checked_sub(recipe.bytes(outline)).ok_or(Reason::Large)?;
         let key = recipe.key(outline);
-        self.asked.fetch_add(1, Ordering::Relaxed);
+        self.requested.fetch_add(1, Ordering::Relaxed);
         if let Some(known) = self.pool.find(&key) {
             return known;
         }
@@ -217,9 +217,9 @@ impl<'a> Linker<'a> {
     /// Keeps the pool within its bound; no output depends on this. Call it between batches only: a
     /// text that is being linked needs the pool that its units came from.
     pub fn forget(&self) {
-        let (asked, new) =
-            (self.asked.swap(0, Ordering::Relaxed), self.new.swap(0, Ordering::Relaxed));
-        let bound = if 4 * new > asked { SIZE_UNSHARED } else { SIZE };
+        let (requested, new) =
+            (self.requested.swap(0, Ordering::Relaxed), self.new.swap(0, Ordering::Relaxed));
+        let bound = if 4 * new > requested { SIZE_UNSHARED } else { SIZE };
         if self.pool.size() > bound {
             self.pool.clear(self.targets);
         }

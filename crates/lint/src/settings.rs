@@ -15,10 +15,10 @@ const MOST: usize = 64;
 pub fn candidate_settings(graph: &Graph, request: &Request<'_>, path: &str) -> Vec<Settings> {
     let programs = || request.manifest.iter().flat_map(|manifest| &manifest.programs);
     let is_root = |program: &&Program| program.files().any(|file| file.path == path);
-    let asked =
+    let is_read =
         |program: &&Program| program.space.axes().iter().any(|axis| graph.may_ask(&axis.name));
     let roots: Vec<&Program> = programs().filter(is_root).collect();
-    let chosen = if roots.is_empty() { programs().filter(asked).collect() } else { roots };
+    let chosen = if roots.is_empty() { programs().filter(is_read).collect() } else { roots };
     if chosen.is_empty() {
         return vec![without_errors(request.settings.clone())];
     }

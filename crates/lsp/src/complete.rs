@@ -25,10 +25,10 @@ pub const STRUCT: u32 = 22;
 
 /// `textDocument/completion`.
 pub fn complete_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, RequestError> {
-    if glsl::is_asked(server, parameters) {
+    if glsl::is_glsl(server, parameters) {
         return glsl::complete_at(server, parameters);
     }
-    let (document, byte) = server.asked(parameters)?;
+    let (document, byte) = server.requested_place(parameters)?;
     let (root, path, text) = (document.root.clone(), document.path.clone(), document.text.clone());
     let word = place::word_at_byte(&text, byte).start;
     let line = text[..word].rfind('\n').map_or(0, |end| end + 1);

@@ -17,7 +17,7 @@ use lamplight_syntax::wesl::ItemKind;
 
 /// `textDocument/hover`.
 pub fn hover_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, RequestError> {
-    if glsl::is_asked(server, parameters) {
+    if glsl::is_glsl(server, parameters) {
         return glsl::hover_at(server, parameters);
     }
     let Some((modules, symbol, span)) = server.symbol(parameters)? else {
@@ -54,7 +54,7 @@ pub fn hover_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value
 
 /// Hover for a name after a dot: the members that it may mean, each with its struct.
 fn hover_member(server: &mut LanguageServer, parameters: &Value) -> Result<Value, RequestError> {
-    let Some((modules, node, byte)) = server.asked_module(parameters)? else {
+    let Some((modules, node, byte)) = server.requested_module(parameters)? else {
         return Ok(Value::Null);
     };
     let Some((span, found)) = members_at(&modules, node, byte) else { return Ok(Value::Null) };
@@ -156,10 +156,10 @@ pub fn signature_help(
     server: &mut LanguageServer,
     parameters: &Value,
 ) -> Result<Value, RequestError> {
-    if glsl::is_asked(server, parameters) {
+    if glsl::is_glsl(server, parameters) {
         return glsl::signature_help(server, parameters);
     }
-    let (document, byte) = server.asked(parameters)?;
+    let (document, byte) = server.requested_place(parameters)?;
     let Some((name, argument)) = call_around(&document.text, byte) else { return Ok(Value::Null) };
     let (root, path) = (document.root.clone(), document.path.clone());
     let word = document.text[name.clone()].to_owned();

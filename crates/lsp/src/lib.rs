@@ -355,7 +355,7 @@ impl LanguageServer {
     }
 
     /// The document that parameters name, and the byte of their position in it.
-    fn asked(&self, parameters: &Value) -> Result<(&Document, usize), RequestError> {
+    fn requested_place(&self, parameters: &Value) -> Result<(&Document, usize), RequestError> {
         let document = self.document(parameters)?;
         let wrong = RequestError::Parameter("position");
         let position = parameters.get("position");

@@ -24,7 +24,9 @@ impl LanguageServer {
         &mut self,
         parameters: &Value,
     ) -> Result<Option<(Arc<PackageModules>, WeslSymbol, Span)>, RequestError> {
-        let Some((modules, node, byte)) = self.asked_module(parameters)? else { return Ok(None) };
+        let Some((modules, node, byte)) = self.requested_module(parameters)? else {
+            return Ok(None);
+        };
         let found = modules
             .symbol(node, byte as u32)
             .map(|(symbol, range)| (symbol, modules.graph.nodes[node as usize].module.span(range)));
@@ -32,11 +34,11 @@ impl LanguageServer {
     }
 
     /// The modules of the package that parameters name, with the module and the byte in it.
-    pub(super) fn asked_module(
+    pub(super) fn requested_module(
         &mut self,
         parameters: &Value,
     ) -> Result<Option<(Arc<PackageModules>, u32, usize)>, RequestError> {
-        let (document, byte) = self.asked(parameters)?;
+        let (document, byte) = self.requested_place(parameters)?;
         let (root, path) = (document.root.clone(), document.path.clone());
         let Some(modules) = self.modules(&root) else { return Ok(None) };
         let node = modules.node(&path);
@@ -55,11 +57,11 @@ pub fn definition_at(
     server: &mut LanguageServer,
     parameters: &Value,
 ) -> Result<Value, RequestError> {
-    if glsl::is_asked(server, parameters) {
+    if glsl::is_glsl(server, parameters) {
         return glsl::definition_at(server, parameters);
     }
     let Some((modules, symbol, _)) = server.symbol(parameters)? else {
-        let Some((modules, node, byte)) = server.asked_module(parameters)? else {
+        let Some((modules, node, byte)) = server.requested_module(parameters)? else {
             return Ok(Value::Null);
         };
         let Some((_, found)) = members_at(&modules, node, byte) else { return Ok(Value::Null) };
@@ -75,7 +77,7 @@ pub fn references_at(
     server: &mut LanguageServer,
     parameters: &Value,
 ) -> Result<Value, RequestError> {
-    if glsl::is_asked(server, parameters) {
+    if glsl::is_glsl(server, parameters) {
         return glsl::references_at(server, parameters);
     }
     let Some((modules, symbol, _)) = server.symbol(parameters)? else { return Ok(json!([])) };
@@ -113,7 +115,7 @@ pub fn prepare_rename(
     parameters: &Value,
 ) -> Result<Value, RequestError> {
     refuse_copy(server, parameters)?;
-    if glsl::is_asked(server, parameters) {
+    if glsl::is_glsl(server, parameters) {
         return glsl::prepare_rename(server, parameters);
     }
     let Some((modules, symbol, span)) = server.symbol(parameters)? else {
@@ -140,7 +142,7 @@ pub fn rename_symbol(
     parameters: &Value,
 ) -> Result<Value, RequestError> {
     refuse_copy(server, parameters)?;
-    if glsl::is_asked(server, parameters) {
+    if glsl::is_glsl(server, parameters) {
         return glsl::rename_symbol(server, parameters);
     }
     let new = parameters
@@ -233,7 +235,7 @@ pub fn document_symbols(
     server: &mut LanguageServer,
     parameters: &Value,
 ) -> Result<Value, RequestError> {
-    if glsl::is_asked(server, parameters) {
+    if glsl::is_glsl(server, parameters) {
         return glsl::document_symbols(server, parameters);
     }
     let document = server.document(parameters)?;

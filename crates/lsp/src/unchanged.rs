@@ -41,11 +41,11 @@ impl Unchanged {
         {
             return Ok(Some(text.clone()));
         }
-        let asked = SystemTime::now();
+        let now = SystemTime::now();
         let text = read()?;
         known.remove(path);
         if let (Some(stamp), Some(text)) = (stamp, &text)
-            && asked.duration_since(stamp.modified).is_ok_and(|age| age > STEP)
+            && now.duration_since(stamp.modified).is_ok_and(|age| age > STEP)
         {
             if known.len() >= FILES {
                 known.clear();

@@ -10,7 +10,7 @@ use lamplight_diagnostic::{Diagnostic, codes};
 /// A test of a shader def: whether it is defined, or how its number compares.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ShaderDefTest {
-    pub asked: DefQuestion,
+    pub question: DefQuestion,
     pub negated: bool,
 }
 
@@ -24,8 +24,8 @@ pub struct DefQuestion {
 impl ShaderDefTest {
     /// `#ifdef NAME`.
     pub fn defined(name: &str) -> Self {
-        let asked = DefQuestion { name: name.to_owned(), compared: None };
-        Self { asked, negated: false }
+        let question = DefQuestion { name: name.to_owned(), compared: None };
+        Self { question, negated: false }
     }
 
     pub fn not(mut self) -> Self {
@@ -41,8 +41,8 @@ impl ShaderDefTest {
             ("==", "false") | ("!=", "true") => Some(defined.not()),
             ("==" | "!=" | "<" | "<=" | ">" | ">=", _) if value.parse::<i64>().is_ok() => {
                 let compared = Some((operator.to_owned(), value.to_owned()));
-                let asked = DefQuestion { name: name.to_owned(), compared };
-                Some(Self { asked, negated: false })
+                let question = DefQuestion { name: name.to_owned(), compared };
+                Some(Self { question, negated: false })
             }
             _ => None,
         }
@@ -50,12 +50,12 @@ impl ShaderDefTest {
 
     /// Whether no shader def can have that name.
     pub fn is_never(&self) -> bool {
-        self.asked.name.starts_with(|first: char| first.is_ascii_digit())
+        self.question.name.starts_with(|first: char| first.is_ascii_digit())
     }
 
     pub fn text(&self) -> String {
-        let name = &self.asked.name;
-        match &self.asked.compared {
+        let name = &self.question.name;
+        match &self.question.compared {
             _ if self.is_never() => self.negated.to_string(),
             None if self.negated => format!("!{name}"),
             None => name.clone(),
@@ -95,13 +95,13 @@ pub struct Facts(BTreeMap<DefQuestion, bool>);
 
 impl Facts {
     pub fn holds(&self, condition: &ShaderDefTest) -> Option<bool> {
-        self.0.get(&condition.asked).map(|known| *known != condition.negated)
+        self.0.get(&condition.question).map(|known| *known != condition.negated)
     }
 
     pub fn with(&self, conditions: &[ShaderDefTest]) -> Self {
         let mut facts = self.clone();
         for condition in conditions {
-            facts.0.insert(condition.asked.clone(), !condition.negated);
+            facts.0.insert(condition.question.clone(), !condition.negated);
         }
         facts
     }
@@ -117,12 +117,12 @@ pub struct ShaderDefs {
 
 impl ShaderDefs {
     pub fn note(&mut self, condition: &ShaderDefTest, source: SourceId, place: &ByteRange) {
-        let found = match condition.asked.compared {
+        let found = match condition.question.compared {
             Some(_) => &mut self.numbers,
             None => &mut self.features,
         };
         let span = Span::new(source, place.clone());
-        found.entry(condition.asked.name.clone()).or_insert(span);
+        found.entry(condition.question.name.clone()).or_insert(span);
     }
 
     pub fn add_to(&self, migrated: &mut Migrated) {
@@ -133,19 +133,19 @@ impl ShaderDefs {
 }
 
 /// An error for each name that is both compared with a number and tested with `#ifdef`.
-pub fn asked_twice<'a>(files: impl Iterator<Item = &'a Scanned>) -> Vec<Diagnostic> {
+pub fn used_both_ways<'a>(files: impl Iterator<Item = &'a Scanned>) -> Vec<Diagnostic> {
     let (mut features, mut numbers) = (BTreeMap::new(), BTreeMap::new());
     for file in files {
-        file.asked.features.iter().for_each(|(name, span)| {
+        file.defs.features.iter().for_each(|(name, span)| {
             features.entry(name).or_insert(*span);
         });
-        file.asked.numbers.iter().for_each(|(name, span)| {
+        file.defs.numbers.iter().for_each(|(name, span)| {
             numbers.entry(name).or_insert(*span);
         });
     }
     let both = numbers.into_iter().filter_map(|(name, number)| {
         let feature = features.get(name)?;
-        let message = format!("`{name}` is compared with a number, and asked for with `#ifdef`");
+        let message = format!("`{name}` is compared with a number, and tested with `#ifdef`");
         Some(
             Diagnostic::error(codes::NOT_MIGRATED, message)
                 .at(number, "a number here")

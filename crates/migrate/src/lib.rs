@@ -55,14 +55,16 @@ pub fn naga_oil(sources: &SourceSet, files: &[(String, SourceId)]) -> Migrated {
         {
             Ok(text) => {
                 migrated.files.insert((*path).clone(), text);
-                found.asked.add_to(&mut migrated);
+                found.defs.add_to(&mut migrated);
             }
             Err(error) => migrated.diagnostics.push(error),
         }
         migrated.diagnostics.extend(found.notes.iter().cloned());
     }
     migrated.diagnostics.extend(modules.foreign());
-    migrated.diagnostics.extend(condition::asked_twice(scanned.iter().map(|(_, _, found)| found)));
+    migrated
+        .diagnostics
+        .extend(condition::used_both_ways(scanned.iter().map(|(_, _, found)| found)));
     migrated
 }
 

@@ -215,7 +215,7 @@ impl MigrateScanner<'_> {
         })?;
         // `#ifdef 0` is never true.
         if !condition.is_never() {
-            self.found.asked.note(&condition, self.source, &line.words);
+            self.found.defs.note(&condition, self.source, &line.words);
         }
         Ok(condition)
     }
@@ -350,7 +350,7 @@ impl MigrateScanner<'_> {
             return Err(self.wrong("a name that is put together from a shader def", place));
         }
         let span = Span::new(self.source, place);
-        self.found.asked.constants.entry(name.to_owned()).or_insert(span);
+        self.found.defs.constants.entry(name.to_owned()).or_insert(span);
         Ok((TokenKind::Def, length))
     }
 }

@@ -21,7 +21,7 @@ pub struct Scanned {
     /// What `#define_import_path` says, and where.
     pub name: Option<(String, ByteRange)>,
     /// Shader defs that the file asks for.
-    pub asked: ShaderDefs,
+    pub defs: ShaderDefs,
     pub notes: Vec<Diagnostic>,
 }
 

@@ -41,7 +41,7 @@ impl<T> ReadTree<T> {
         for (depth, (name, answer)) in reads.iter().enumerate() {
             match self.nodes.get(node) {
                 None => return self.grow(&reads[depth..], value),
-                Some(TreeNode::Question { name: asked, answers }) if asked == name => match answers
+                Some(TreeNode::Question { name: known, answers }) if known == name => match answers
                     .get(answer)
                 {
                     Some(next) => node = *next,

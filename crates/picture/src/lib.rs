@@ -114,7 +114,7 @@ impl Surroundings {
             Self::Usual => {
                 environment(scene.around.unwrap_or(STUDIO)).map_or(Self::Usual, Self::Formula)
             }
-            asked => asked.clone(),
+            chosen => chosen.clone(),
         }
     }
 

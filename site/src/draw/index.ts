@@ -29,13 +29,13 @@ export function device(): Promise<Device | undefined> {
 
 async function choose(): Promise<Device | undefined> {
     // `?device=webgl2` in the address asks for the second choice.
-    const asked = new URLSearchParams(location.search).get("device");
-    if (asked !== "webgl2" && asked !== "none") {
+    const requested = new URLSearchParams(location.search).get("device");
+    if (requested !== "webgl2" && requested !== "none") {
         const { open } = await import("./webgpu");
         const found = await within(open(), OPENED, "WebGPU did not open").catch(() => undefined);
         if (found) return found;
     }
-    return asked === "none" ? undefined : (await import("./webgl2")).open();
+    return requested === "none" ? undefined : (await import("./webgl2")).open();
 }
 
 export const NO_DEVICE = "This browser has neither WebGPU nor WebGL2: pictures cannot be drawn. Everything else works.";

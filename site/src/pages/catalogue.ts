@@ -33,9 +33,9 @@ export async function page(into: HTMLElement) {
             go(item.path);
         },
     }, item.name);
-    let asked = 0;
+    let newest = 0;
     async function filter() {
-        const now = ++asked;
+        const now = ++newest;
         const text = search.value.trim();
         remember(into, "catalogue", place.dataset.path ?? "", { q: text });
         if (!text) {
@@ -45,7 +45,7 @@ export async function page(into: HTMLElement) {
             return;
         }
         const { hits } = await toolchain.call(OWN, "search", text);
-        if (now !== asked) return;
+        if (now !== newest) return;
         const found = hits.map((hit) => items.get(hit.path)!);
         list.replaceChildren(h("p", { role: "status" }, `${found.length} found`), ...found.map(link));
     }

@@ -96,22 +96,22 @@ export async function page(into: HTMLElement) {
     };
     async function draw(withControls: boolean, isOld: () => boolean) {
         const start = performance.now();
-        const asked = request();
+        const requested = request();
         try {
-            const take = (factor: number) => picture({ ...asked, width: asked.width / factor, height: asked.height / factor });
+            const take = (factor: number) => picture({ ...requested, width: requested.width / factor, height: requested.height / factor });
             await screen.show(take, isOld);
             if (isOld()) {
                 wanted.controls ||= withControls;
                 return;
             }
-            status.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms, ${asked.key || "default"}`;
+            status.textContent = `${(await device())?.name}: ${Math.round(performance.now() - start)} ms, ${requested.key || "default"}`;
             canvas.dataset.drawn = String(Number(canvas.dataset.drawn ?? 0) + 1);
-            canvas.dataset.key = asked.key;
+            canvas.dataset.key = requested.key;
         } catch (error) {
             status.textContent = reason(error);
         }
         if (!withControls) return;
-        const controls: PictureControls = await toolchain.call(OWN, "pictureControls", { ...asked, target: "wgsl" });
+        const controls: PictureControls = await toolchain.call(OWN, "pictureControls", { ...requested, target: "wgsl" });
         if (controls.diagnostics.length) status.textContent = problems(controls.diagnostics);
         lamps.show(controls);
         uniforms.show(controls.uniforms);

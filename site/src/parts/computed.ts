@@ -8,11 +8,11 @@ export type Computed = { name: string; rows: number[][] };
 
 /** Each pixel of a frame is a value: the column says the input, the row says the curve. */
 const stages = (module: string, columns: number, rows: number) => `${module}
-struct LamplightAsked {
+struct LamplightRequest {
     inputs: array<vec4f, ${Math.ceil(columns / 4)}>,
     values: array<vec4f, ${Math.ceil(rows / 4)}>,
 }
-@group(0) @binding(0) var<uniform> lamplight_asked: LamplightAsked;
+@group(0) @binding(0) var<uniform> lamplight_request: LamplightRequest;
 
 @vertex
 fn vs_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -23,8 +23,8 @@ fn vs_main(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 @fragment
 fn fs_main(@builtin(position) place: vec4f) -> @location(0) vec4u {
     let at = vec2u(place.xy);
-    let x = lamplight_asked.inputs[at.x / 4u][at.x % 4u];
-    let value = lamplight_asked.values[at.y / 4u][at.y % 4u];
+    let x = lamplight_request.inputs[at.x / 4u][at.x % 4u];
+    let value = lamplight_request.values[at.y / 4u][at.y % 4u];
     return vec4u(bitcast<u32>(lamplight_plot(x, value)), at, 0u);
 }
 `;

@@ -55,7 +55,7 @@ export class Files {
     }
 
     /** A name that no file has yet. */
-    #asked(suggested: string): string | undefined {
+    #askForName(suggested: string): string | undefined {
         const name = prompt("Name of the file", suggested)?.trim();
         if (!name || name === this.#kept.open) return undefined;
         if (Object.hasOwn(this.#kept.files, name)) alert(`There is a file ${name} already.`);
@@ -65,7 +65,7 @@ export class Files {
     }
 
     #added() {
-        const name = this.#asked("more.wesl");
+        const name = this.#askForName("more.wesl");
         if (name === undefined) return;
         this.#kept.files[name] = "";
         this.#open(name);
@@ -73,7 +73,7 @@ export class Files {
 
     #renamed() {
         const { files, open } = this.#kept;
-        const name = this.#asked(open);
+        const name = this.#askForName(open);
         if (name === undefined) return;
         this.#kept.files = Object.fromEntries(Object.entries(files).map(([path, text]) => [path === open ? name : path, text]));
         this.#open(name);

@@ -15,8 +15,8 @@ impl Linkers {
     /// long as the page.
     pub fn of(&mut self, targets: &[Target], conventions: Conventions) -> &Linker<'static> {
         let is_it =
-            |(known, asked): (&[Target], Conventions)| known == targets && asked == conventions;
-        let known = self.0.iter().position(|(known, asked, _)| is_it((known, *asked)));
+            |(known, used): (&[Target], Conventions)| known == targets && used == conventions;
+        let known = self.0.iter().position(|(known, used, _)| is_it((known, *used)));
         let index = known.unwrap_or_else(|| {
             let kept: &'static [Target] = Box::leak(targets.to_vec().into_boxed_slice());
             self.0.push((kept, conventions, Linker::with(kept, conventions)));

@@ -52,13 +52,13 @@ struct Current {
     /// What was drawn so far, by the place of the drawing in the picture.
     given: BTreeMap<usize, Arc<Vec<Frame>>>,
     /// What the page draws now.
-    wanted: Option<Asked>,
+    wanted: Option<RequestedDrawing>,
     /// The last pass, once all frames before it are there.
     ready: Option<Ready>,
 }
 
 /// A drawing that the page was asked for.
-struct Asked {
+struct RequestedDrawing {
     place: usize,
     layout: Layout,
     known: Option<Known>,
@@ -143,7 +143,7 @@ fn begun(work: Work, ready: Option<Ready>) -> Step {
 pub fn picture_frames(words: Vec<u32>, depths: Vec<f32>) -> Answer<Step> {
     CURRENT.with_borrow_mut(|current| {
         let Some(current) = current else { return };
-        let Some(Asked { place, layout, known }) = current.wanted.take() else { return };
+        let Some(RequestedDrawing { place, layout, known }) = current.wanted.take() else { return };
         let Layout { views, targets, pixels, depth } = layout;
         let target = |view: usize, index: usize| {
             let start = 4 * pixels * (view * targets + index);
@@ -212,7 +212,7 @@ fn advance(kept: &Kept, current: &mut Current) -> Result<Step, Diagnostics> {
         let prepared = picture::prepare_passes(&page, &kept.programs, &plan, &shot);
         let PageState { count, wanted } = page.into_state();
         if let Some(wanted) = wanted {
-            return Ok(asked(current, wanted));
+            return Ok(request_drawing(current, wanted));
         }
         current.ready = Some(Ready { prepared: Box::new(prepared?), shot, before: count });
     }
@@ -221,7 +221,7 @@ fn advance(kept: &Kept, current: &mut Current) -> Result<Step, Diagnostics> {
     let page = Page { given: &current.given, state, target };
     let photographed = prepared.photograph(&page, shot);
     if let Some(wanted) = page.into_state().wanted {
-        return Ok(asked(current, wanted));
+        return Ok(request_drawing(current, wanted));
     }
     let picture = photographed?.develop();
     let mut rgba = Vec::with_capacity(picture.pixels.len() / 3 * 4);
@@ -233,8 +233,11 @@ fn advance(kept: &Kept, current: &mut Current) -> Result<Step, Diagnostics> {
 }
 
 /// Asks the page for a drawing.
-fn asked(current: &mut Current, (drawing, asked): (Drawing, Asked)) -> Step {
-    current.wanted = Some(asked);
+fn request_drawing(
+    current: &mut Current,
+    (drawing, requested): (Drawing, RequestedDrawing),
+) -> Step {
+    current.wanted = Some(requested);
     Step { drawing: Some(drawing), picture: None, diagnostics: Vec::new() }
 }
 
@@ -315,7 +318,7 @@ struct Page<'a> {
 struct PageState {
     /// How many drawings there were.
     count: usize,
-    wanted: Option<(Drawing, Asked)>,
+    wanted: Option<(Drawing, RequestedDrawing)>,
 }
 
 impl Page<'_> {
@@ -348,8 +351,8 @@ impl Session for Page<'_> {
             return Ok(frames.to_vec());
         }
         if state.wanted.is_none() {
-            let asked = Asked { place, layout: layout(drawing), known };
-            state.wanted = Some((described(drawing, self.target)?, asked));
+            let requested = RequestedDrawing { place, layout: layout(drawing), known };
+            state.wanted = Some((described(drawing, self.target)?, requested));
         }
         Err(refused("not drawn yet"))
     }

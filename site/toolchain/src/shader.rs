@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use lamplight::bundle::{
-    AskedConventions, BoundsChecks, Convention, Conventions, Language, Native, Reflection, Target,
+    BoundsChecks, Convention, Conventions, Language, Native, Reflection, RequestedConventions,
+    Target,
 };
 use lamplight::compose::{self, Composed, Keep, Mangle, Options};
 use lamplight::diagnostic::{self, Diagnostics, Severity, codes};
@@ -198,7 +199,7 @@ fn run(
     let Chosen { settings, conventions, key, mut warnings } =
         chosen(request, manifest.get(), sources)?;
     made.key = key;
-    let conventions = asked(request)?.or(conventions);
+    let conventions = requested_conventions(request)?.or(conventions);
     let options = options(request);
     let explain = |errors: Diagnostics| graph.traced(errors);
     let mut composed = compose::compose(graph, &settings, &options).map_err(explain)?;
@@ -313,11 +314,11 @@ fn wanted(names: &[String]) -> Result<Vec<Target>, diagnostic::Diagnostic> {
     names.iter().map(one).collect()
 }
 
-fn asked(request: &ShaderRequest) -> Result<AskedConventions, Diagnostics> {
+fn requested_conventions(request: &ShaderRequest) -> Result<RequestedConventions, Diagnostics> {
     let clip = named(&request.clip, codes::UNKNOWN_CLIP, "there is no clip space");
     let bounds =
         named::<BoundsChecks>(&request.bounds, codes::UNKNOWN_BOUNDS, "there are no checks");
-    Ok(AskedConventions { clip: clip?, bounds: bounds? })
+    Ok(RequestedConventions { clip: clip?, bounds: bounds? })
 }
 
 fn named<C: Convention>(

@@ -1,11 +1,11 @@
 //! `lamplight compile FILE --target T`: shaders in the languages asked for.
 
-mod asked;
+mod conventions;
 mod depfile;
 mod files;
 mod target;
 
-pub use asked::ConventionArguments;
+pub use conventions::ConventionArguments;
 pub use files::file_ending;
 pub use target::{TargetChoice, parse_target, wanted_one, wanted_targets};
 

@@ -162,7 +162,7 @@ pub fn run_cost(
     let recorded = arguments.baseline.as_deref().filter(|_| !arguments.record);
     let recorded = recorded.map(recorded_in).transpose()?.flatten();
     let cache = arguments.cached.open(arguments.manifest.as_deref())?;
-    let subjects = subjects::asked_subjects(&arguments, form)?;
+    let subjects = subjects::requested_subjects(&arguments, form)?;
     let devices = opened.map_err(Failure::environment)?;
     let meter = Meter { devices: &devices, cache: cache.as_ref() };
     let costs = measure_costs(meter, &subjects)?;

@@ -27,7 +27,7 @@ pub fn run_offline(arguments: &Arguments, form: DiagnosticForm) -> Result<(), Fa
     if let Some(missing) = missing {
         return Err(Failure::environment(missing));
     }
-    let subjects = subjects::asked_subjects(arguments, form)?;
+    let subjects = subjects::requested_subjects(arguments, form)?;
     if arguments.spirv {
         let found = ask_stages(&subjects, count_optimised).map_err(Failure::input)?;
         return print_counts(arguments, &found);

@@ -27,7 +27,7 @@ use crate::source::SourceSet;
 use crate::validate::validate_every;
 
 /// What was asked for, in order.
-pub fn asked_subjects(
+pub fn requested_subjects(
     arguments: &Arguments,
     form: DiagnosticForm,
 ) -> Result<Vec<CostSubject>, Failure> {
@@ -42,7 +42,7 @@ pub fn asked_subjects(
     let (paths, keys) = separate_paths(arguments, &items, named)?;
     if arguments.subjects.is_empty() || !paths.is_empty() {
         let conventions = arguments.conventions.chosen().or(Conventions::default());
-        let language = asked_language(arguments);
+        let language = requested_language(arguments);
         subjects = function_subjects(&items, &paths, language, conventions)?;
     }
     for key in keys {
@@ -94,7 +94,7 @@ fn is_file(name: &str) -> bool {
     extension.is_some_and(|extension| lint::EXTENSIONS.contains(&extension))
 }
 
-fn asked_language(arguments: &Arguments) -> Language {
+fn requested_language(arguments: &Arguments) -> Language {
     arguments.input.chosen_language().unwrap_or(Language::Wesl)
 }
 
@@ -228,7 +228,7 @@ fn covering_subjects(arguments: &Arguments) -> Result<Vec<CostSubject>, Failure>
             conventions: arguments.conventions.chosen(),
             ..Request::default()
         };
-        let language = asked_language(arguments);
+        let language = requested_language(arguments);
         let (_, found) =
             permutations_of(&mut sources, &packages, &manifest, &request, language, None)?;
         subjects.extend(found.into_iter().map(|mut subject| {
@@ -252,7 +252,7 @@ fn permutation_subject(arguments: &Arguments, key: &str) -> Result<CostSubject, 
         conventions: arguments.conventions.chosen(),
         ..Request::default()
     };
-    let language = asked_language(arguments);
+    let language = requested_language(arguments);
     let subjects = permutations_of(&mut sources, &packages, &manifest, &request, language, None);
     subjects?.1.pop().ok_or_else(|| {
         Failure::input(format!("the permutation `{key}` has no stages in this language"))

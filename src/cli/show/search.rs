@@ -6,8 +6,8 @@ use super::{ShowIndex, ShownItem};
 use crate::cli::text;
 
 /// The items that contain every word of the search; `None` if there are none.
-pub fn search_library(library: &ShowIndex, asked: &str) -> Option<ShownItem> {
-    let words: Vec<String> = asked.split_whitespace().map(str::to_lowercase).collect();
+pub fn search_library(library: &ShowIndex, query: &str) -> Option<ShownItem> {
+    let words: Vec<String> = query.split_whitespace().map(str::to_lowercase).collect();
     let has = |text: &str| {
         let text = text.to_lowercase();
         words.iter().all(|word| text.contains(word.as_str()))

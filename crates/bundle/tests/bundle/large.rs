@@ -51,12 +51,13 @@ pub fn large() -> Outcome {
     let (_, first) = timed(|| shader.find(&keys[0]));
     // The keys are copied in the order in which they are asked for. Otherwise the time would
     // include cache misses on the test's own list.
-    let asked: Vec<String> =
+    let requested: Vec<String> =
         (0..keys.len()).map(|index| keys[index * 7919 % keys.len()].clone()).collect();
-    let (found, looking) = timed(|| asked.iter().filter(|key| shader.find(key).is_ok()).count());
+    let (found, looking) =
+        timed(|| requested.iter().filter(|key| shader.find(key).is_ok()).count());
     check(found == 100_000, &format!("only {found} of 100,000 keys were found"))?;
     let (_, fetching) = timed(|| {
-        asked.iter().take(1_000).filter(|key| shader.get(key, Target::SPIRV).is_ok()).count()
+        requested.iter().take(1_000).filter(|key| shader.get(key, Target::SPIRV).is_ok()).count()
     });
     let (_, verifying) = timed(|| bundle.verify());
     let size = std::fs::metadata(&path)?.len();

@@ -14,7 +14,7 @@ pub fn always_warning(
     index: usize,
 ) -> Option<Diagnostic> {
     let FilePart::Directive(directive, span) = module.parts.get(index)? else { return None };
-    let (name, negated) = asked_macro(module, directive)?;
+    let (name, negated) = tested_macro(module, directive)?;
     // If the setting is on, `defined` gives the same answer as its value, so nothing is odd.
     match expander.table.get(name)? {
         MacroMeaning::Setting(setting) if !expander.reads.is_on(setting) => {}
@@ -38,7 +38,7 @@ pub fn always_warning(
 
 /// The macro that a directive tests for being defined, and whether the test is negated. `None` if
 /// the directive tests anything else.
-fn asked_macro(module: &Module, directive: &Directive) -> Option<(Symbol, bool)> {
+fn tested_macro(module: &Module, directive: &Directive) -> Option<(Symbol, bool)> {
     match directive {
         Directive::Ifdef { name: Ok(name), negated, .. } => Some((*name, *negated)),
         Directive::If { condition, .. } | Directive::Elif { condition, .. } => {

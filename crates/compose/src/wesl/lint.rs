@@ -30,7 +30,7 @@ impl<'g> Outcomes<'g> {
     pub fn new(graph: &'g Graph) -> Self {
         let own = graph.nodes.iter().enumerate().filter(|(_, node)| node.package == 0);
         let conditions = own.flat_map(|(index, node)| {
-            asked_conditions(&node.module).map(move |id| (index as u32, id))
+            tested_conditions(&node.module).map(move |id| (index as u32, id))
         });
         let open = conditions.map(|(node, id)| LintCondition {
             node,
@@ -90,7 +90,7 @@ impl<'g> Outcomes<'g> {
     /// The places of the conditions that are evaluated.
     pub fn places(&self) -> impl Iterator<Item = Span> {
         self.graph.nodes.iter().filter(|node| node.package == 0).flat_map(|node| {
-            let conditions = asked_conditions(&node.module)
+            let conditions = tested_conditions(&node.module)
                 .filter_map(|id| node.module.conditions[id as usize].expression);
             conditions.filter_map(|expression| expression_span(&node.module, expression))
         })
@@ -126,7 +126,7 @@ fn is_later(graph: &Graph, condition: &LintCondition) -> bool {
 }
 
 /// The conditions that ask for a setting; one like `@if(true)` is meant as it stands.
-fn asked_conditions(module: &PlacedModule) -> impl Iterator<Item = ConditionId> {
+fn tested_conditions(module: &PlacedModule) -> impl Iterator<Item = ConditionId> {
     let asks = |(_, condition): &(usize, &lamplight_syntax::wesl::Condition)| {
         condition.expression.is_some_and(|root| expression_span(module, root).is_some())
     };

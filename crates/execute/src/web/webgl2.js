@@ -114,11 +114,11 @@ void main() {
       gl.samplerParameteri(made, axis, wrap);
     }
     if (compare) {
-      const asked = {
+      const comparison = {
         less: gl.LESS, "less-equal": gl.LEQUAL, greater: gl.GREATER, "greater-equal": gl.GEQUAL,
       }[compare];
       gl.samplerParameteri(made, gl.TEXTURE_COMPARE_MODE, gl.COMPARE_REF_TO_TEXTURE);
-      gl.samplerParameteri(made, gl.TEXTURE_COMPARE_FUNC, asked);
+      gl.samplerParameteri(made, gl.TEXTURE_COMPARE_FUNC, comparison);
     }
     return made;
   }

@@ -65,7 +65,7 @@ struct StoreServer {
 
 impl StoreServer {
     /// Waits for an answer, or fails once it takes too long.
-    fn asked<T>(
+    fn wait_for<T>(
         &self,
         answer: impl Future<Output = opendal::Result<T>>,
     ) -> Result<opendal::Result<T>, String> {
@@ -87,7 +87,7 @@ impl StoreServer {
 
 impl Storage for StoreServer {
     fn get(&self, name: &str) -> Result<Option<Vec<u8>>, String> {
-        match self.asked(self.bounded(name))? {
+        match self.wait_for(self.bounded(name))? {
             Ok(bytes) => Ok(Some(bytes)),
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
             Err(error) => Err(error.to_string()),
@@ -95,7 +95,7 @@ impl Storage for StoreServer {
     }
 
     fn put(&self, name: &str, bytes: &[u8]) -> Result<(), String> {
-        let written = self.asked(self.operator.write(name, bytes.to_vec()))?;
+        let written = self.wait_for(self.operator.write(name, bytes.to_vec()))?;
         written.map(|_| ()).map_err(|error| error.to_string())
     }
 }

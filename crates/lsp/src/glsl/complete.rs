@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::names::GlslNames;
 use super::outline::SymbolKind;
-use super::{OpenGlslFile, asked_spellings, read_names};
+use super::{OpenGlslFile, path_spellings, read_names};
 use crate::LanguageServer;
 use crate::complete::{
     CONSTANT, FIELD, FUNCTION, KEYWORD, MODULE, STRUCT, VARIABLE, completion_entry, of_library,
@@ -49,35 +49,35 @@ const WORDS: &[&str] = &[
 
 /// `textDocument/completion`.
 pub fn complete_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, RequestError> {
-    let (document, byte) = server.asked(parameters)?;
+    let (document, byte) = server.requested_place(parameters)?;
     let text = document.text.clone();
     let word = place::word_at_byte(&text, byte).start.min(byte);
     let line = &text[text[..word].rfind('\n').map_or(0, |end| end + 1)..word];
-    let Some(asked) = read_names(server, parameters)? else { return Ok(json!([])) };
+    let Some(requested) = read_names(server, parameters)? else { return Ok(json!([])) };
     if let Some(path) = line.trim_start().strip_prefix("#include") {
-        return Ok(complete_paths(&asked, path.trim_start()));
+        return Ok(complete_paths(&requested, path.trim_start()));
     }
     if line.trim() == "#" {
         let words = DIRECTIVES.iter().map(|word| completion_entry(word, KEYWORD, "directive"));
         return Ok(words.collect());
     }
     if line.trim_start().starts_with("#if") || line.trim_start().starts_with("#elif") {
-        return Ok(complete_axes(&asked));
+        return Ok(complete_axes(&requested));
     }
     if line.ends_with('.') {
-        return Ok(complete_members(&asked.names));
+        return Ok(complete_members(&requested.names));
     }
-    Ok(complete_names(server, &asked, &text, word..byte))
+    Ok(complete_names(server, &requested, &text, word..byte))
 }
 
 /// The files whose paths begin with what is written after `#include`.
-fn complete_paths(asked: &OpenGlslFile, written: &str) -> Value {
+fn complete_paths(requested: &OpenGlslFile, written: &str) -> Value {
     let Some(first) = written.chars().next().filter(|first| ['<', '"'].contains(first)) else {
         return json!([]);
     };
     let before = &written[1..];
     let mut parts = BTreeSet::new();
-    for path in asked_spellings(asked, first == '<') {
+    for path in path_spellings(requested, first == '<') {
         let Some(rest) = path.strip_prefix(before) else { continue };
         let end = rest.find('/').map_or(rest.len(), |at| at + 1);
         parts.insert(rest[..end].to_owned());
@@ -86,8 +86,8 @@ fn complete_paths(asked: &OpenGlslFile, written: &str) -> Value {
 }
 
 /// Macros that stand for axes and their values.
-fn complete_axes(asked: &OpenGlslFile) -> Value {
-    let programs = asked.opened.manifest.iter().flat_map(|manifest| &manifest.programs);
+fn complete_axes(requested: &OpenGlslFile) -> Value {
+    let programs = requested.opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     let mut found = BTreeSet::new();
     for axis in programs.flat_map(|program| program.space.axes()) {
         let name = axis.name.to_uppercase();
@@ -111,7 +111,7 @@ fn complete_members(names: &GlslNames) -> Value {
 /// Names in scope, those of the library with their includes, built-ins and keywords.
 fn complete_names(
     server: &mut LanguageServer,
-    asked: &OpenGlslFile,
+    requested: &OpenGlslFile,
     text: &str,
     written: std::ops::Range<usize>,
 ) -> Value {
@@ -123,14 +123,14 @@ fn complete_names(
             found.push(value);
         }
     };
-    let names = &asked.names;
+    let names = &requested.names;
     let spelt = |symbol| names.graph.symbols.text(symbol);
     for local in names.locals_at(written.start as u32) {
         add(spelt(local.name), completion_entry(spelt(local.name), VARIABLE, "local"));
     }
     for (file, outline) in names.outlines.iter().enumerate() {
         // The library's macros guard its files and give its names their prefix.
-        let is_library = asked.package_of(file) == Some(LIBRARY);
+        let is_library = requested.package_of(file) == Some(LIBRARY);
         let path = &names.graph.paths[file];
         let declared = outline.declarations.iter().filter(|found| {
             found.kind != SymbolKind::Member && !(is_library && found.kind == SymbolKind::Macro)

@@ -41,7 +41,7 @@ struct OpenGlslFile {
 }
 
 /// Whether parameters name a document of GLSL.
-pub fn is_asked(server: &LanguageServer, parameters: &Value) -> bool {
+pub fn is_glsl(server: &LanguageServer, parameters: &Value) -> bool {
     let document = server.document(parameters);
     document.is_ok_and(|document| lint::language(&document.path) == Some(Language::Glsl))
 }
@@ -124,28 +124,30 @@ fn comment_above(text: &str, byte: u32) -> String {
 
 /// `textDocument/hover`.
 pub fn hover_at(server: &mut LanguageServer, parameters: &Value) -> Result<Value, RequestError> {
-    let (_, byte) = server.asked(parameters)?;
-    let Some(asked) = read_names(server, parameters)? else { return Ok(Value::Null) };
-    let Some((meaning, place)) = asked.names.meaning(byte as u32) else { return Ok(Value::Null) };
-    let module = &asked.names.graph.modules[0];
+    let (_, byte) = server.requested_place(parameters)?;
+    let Some(requested) = read_names(server, parameters)? else { return Ok(Value::Null) };
+    let Some((meaning, place)) = requested.names.meaning(byte as u32) else {
+        return Ok(Value::Null);
+    };
+    let module = &requested.names.graph.modules[0];
     let text = match meaning {
         NameMeaning::Local(local) => {
             Some(format!("```glsl\n{}\n```", text_of(module, &local.range)))
         }
-        NameMeaning::Declared(found) => asked.describe_declared(server, &found),
-        NameMeaning::File(file) => Some(format!("`{}`", asked.names.graph.paths[file])),
-        NameMeaning::Macro(name) => describe_macro(server, &asked, name),
+        NameMeaning::Declared(found) => requested.describe_declared(server, &found),
+        NameMeaning::File(file) => Some(format!("`{}`", requested.names.graph.paths[file])),
+        NameMeaning::Macro(name) => describe_macro(server, &requested, name),
     };
     let Some(text) = text else { return Ok(Value::Null) };
     Ok(report::hover_json(&text, &module.text, place.start as usize..place.end as usize))
 }
 
 /// The axis that a macro is, or that it names a value of.
-fn describe_macro(server: &LanguageServer, asked: &OpenGlslFile, name: &str) -> Option<String> {
-    let programs = asked.opened.manifest.iter().flat_map(|manifest| &manifest.programs);
+fn describe_macro(server: &LanguageServer, requested: &OpenGlslFile, name: &str) -> Option<String> {
+    let programs = requested.opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     let mut axes = programs.flat_map(|program| program.space.axes());
     let axis = axes.find(|axis| is_macro_of(axis, name))?;
-    Some(describe::describe_flag(server, &asked.opened, &asked.path, &axis.name))
+    Some(describe::describe_flag(server, &requested.opened, &requested.path, &axis.name))
 }
 
 /// Whether a macro stands for an axis or for one of its values.
@@ -162,9 +164,9 @@ pub fn definition_at(
     server: &mut LanguageServer,
     parameters: &Value,
 ) -> Result<Value, RequestError> {
-    let (_, byte) = server.asked(parameters)?;
-    let Some(asked) = read_names(server, parameters)? else { return Ok(Value::Null) };
-    let Some((meaning, _)) = asked.names.meaning(byte as u32) else { return Ok(Value::Null) };
+    let (_, byte) = server.requested_place(parameters)?;
+    let Some(requested) = read_names(server, parameters)? else { return Ok(Value::Null) };
+    let Some((meaning, _)) = requested.names.meaning(byte as u32) else { return Ok(Value::Null) };
     let places: Vec<(usize, Range<u32>)> = match meaning {
         NameMeaning::Local(local) => vec![(0, local.place.clone())],
         NameMeaning::Declared(found) => {
@@ -173,7 +175,7 @@ pub fn definition_at(
         NameMeaning::File(file) => vec![(file, 0..0)],
         NameMeaning::Macro(_) => Vec::new(),
     };
-    let found = places.iter().filter_map(|(file, place)| asked.location(server, *file, place));
+    let found = places.iter().filter_map(|(file, place)| requested.location(server, *file, place));
     Ok(found.collect())
 }
 
@@ -182,13 +184,13 @@ pub fn document_symbols(
     server: &mut LanguageServer,
     parameters: &Value,
 ) -> Result<Value, RequestError> {
-    let Some(asked) = read_names(server, parameters)? else { return Ok(json!([])) };
-    let lines = Lines::new(&asked.names.graph.modules[0].text);
+    let Some(requested) = read_names(server, parameters)? else { return Ok(json!([])) };
+    let lines = Lines::new(&requested.names.graph.modules[0].text);
     let range = |range: &Range<u32>| lines.range(range.start as usize..range.end as usize);
-    let own = asked.names.outlines[0].declarations.iter();
+    let own = requested.names.outlines[0].declarations.iter();
     let symbols = own.filter(|found| found.kind != SymbolKind::Member).map(|found| {
         json!({
-            "name": asked.names.graph.symbols.text(found.name),
+            "name": requested.names.graph.symbols.text(found.name),
             "kind": symbol_kind(found.kind),
             "range": range(&found.whole),
             "selectionRange": range(&found.place),
@@ -209,6 +211,6 @@ fn symbol_kind(kind: SymbolKind) -> u32 {
 }
 
 /// How a file may be named in an `#include` of the root file.
-fn asked_spellings(asked: &OpenGlslFile, angled: bool) -> Vec<String> {
-    glsl::include_spellings(&asked.opened.packages, &asked.path, angled)
+fn path_spellings(requested: &OpenGlslFile, angled: bool) -> Vec<String> {
+    glsl::include_spellings(&requested.opened.packages, &requested.path, angled)
 }

@@ -46,11 +46,11 @@ pub struct RequestedSymbol {
 }
 
 /// The symbol at the position that the parameters name.
-pub fn asked_at(
+pub fn requested_symbol(
     server: &mut LanguageServer,
     parameters: &Value,
 ) -> Result<Option<RequestedSymbol>, RequestError> {
-    let (document, byte) = server.asked(parameters)?;
+    let (document, byte) = server.requested_place(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
     let Some(whole) = server.whole(&root) else { return Ok(None) };
     let Some(file) = whole.file(&path) else { return Ok(None) };
@@ -88,11 +88,11 @@ pub fn references_at(
     if let Some(found) = including_places(server, parameters)? {
         return Ok(found);
     }
-    let Some(asked) = asked_at(server, parameters)? else { return Ok(json!([])) };
-    let (all, declarations) = asked.whole.units.places(&asked.meant, asked.file);
+    let Some(requested) = requested_symbol(server, parameters)? else { return Ok(json!([])) };
+    let (all, declarations) = requested.whole.units.places(&requested.meant, requested.file);
     let places =
         all.iter().filter(|place| declared != Some(false) || !declarations.contains(place));
-    Ok(places.take(PLACES).filter_map(|place| asked.whole.location(server, place)).collect())
+    Ok(places.take(PLACES).filter_map(|place| requested.whole.location(server, place)).collect())
 }
 
 /// If an `#include` is at the position, all places that include the same file.
@@ -100,7 +100,7 @@ fn including_places(
     server: &mut LanguageServer,
     parameters: &Value,
 ) -> Result<Option<Value>, RequestError> {
-    let (document, byte) = server.asked(parameters)?;
+    let (document, byte) = server.requested_place(parameters)?;
     let (root, path) = (document.root.clone(), document.path.clone());
     let Some(whole) = server.whole(&root) else { return Ok(None) };
     let Some(file) = whole.file(&path) else { return Ok(None) };
@@ -158,16 +158,16 @@ pub fn signature_help(
     server: &mut LanguageServer,
     parameters: &Value,
 ) -> Result<Value, RequestError> {
-    let (document, byte) = server.asked(parameters)?;
+    let (document, byte) = server.requested_place(parameters)?;
     let Some((name, argument)) = describe::call_around(&document.text, byte) else {
         return Ok(Value::Null);
     };
     let word = document.text[name.clone()].to_owned();
-    let Some(asked) = read_names(server, parameters)? else { return Ok(Value::Null) };
-    let mut labels = match asked.names.meaning(name.start as u32) {
+    let Some(requested) = read_names(server, parameters)? else { return Ok(Value::Null) };
+    let mut labels = match requested.names.meaning(name.start as u32) {
         Some((NameMeaning::Declared(found), _)) => {
             let label = |(file, declaration): &(usize, &GlslDeclaration)| {
-                called_as(&asked.names.graph.modules[*file], declaration, &word)
+                called_as(&requested.names.graph.modules[*file], declaration, &word)
             };
             found.iter().filter_map(label).collect()
         }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use super::refer::{PLACES, RequestedSymbol, asked_at};
+use super::refer::{PLACES, RequestedSymbol, requested_symbol};
 use super::text_of;
 use super::units::{Meant, NamePlace, Units, Use};
 use super::words::is_reserved;
@@ -23,10 +23,10 @@ pub fn prepare_rename(
     server: &mut LanguageServer,
     parameters: &Value,
 ) -> Result<Value, RequestError> {
-    let Some(asked) = asked_at(server, parameters)? else { return Ok(Value::Null) };
-    renamed_places(&asked)?;
-    let lines = Lines::new(&asked.whole.units.module(asked.file).text);
-    Ok(lines.range(asked.range.start as usize..asked.range.end as usize))
+    let Some(requested) = requested_symbol(server, parameters)? else { return Ok(Value::Null) };
+    renamed_places(&requested)?;
+    let lines = Lines::new(&requested.whole.units.module(requested.file).text);
+    Ok(lines.range(requested.range.start as usize..requested.range.end as usize))
 }
 
 /// `textDocument/rename`: in all files of the package.
@@ -39,12 +39,13 @@ pub fn rename_symbol(
         .and_then(Value::as_str)
         .ok_or(RequestError::Parameter("newName"))?
         .to_owned();
-    let asked = asked_at(server, parameters)?.ok_or(RequestError::NoName)?;
-    let places = renamed_places(&asked)?;
-    check_new(&asked, &places, &new)?;
+    let requested = requested_symbol(server, parameters)?.ok_or(RequestError::NoName)?;
+    let places = renamed_places(&requested)?;
+    check_new(&requested, &places, &new)?;
     let places = places.iter().map(|place| {
-        let module = asked.whole.units.module(place.file);
-        let uri = report::address_of(&asked.whole.opened.sources, module.source, &*server.library);
+        let module = requested.whole.units.module(place.file);
+        let uri =
+            report::address_of(&requested.whole.opened.sources, module.source, &*server.library);
         (uri, &*module.text, place.start as usize..place.end as usize)
     });
     report::rename_json(&new, places)
@@ -54,9 +55,9 @@ pub fn rename_symbol(
 ///
 /// # Errors
 /// Why the symbol cannot be renamed.
-fn renamed_places(asked: &RequestedSymbol) -> Result<Vec<NamePlace>, String> {
-    let units = &asked.whole.units;
-    let (all, declared) = units.places(&asked.meant, asked.file);
+fn renamed_places(requested: &RequestedSymbol) -> Result<Vec<NamePlace>, String> {
+    let units = &requested.whole.units;
+    let (all, declared) = units.places(&requested.meant, requested.file);
     if all.len() > PLACES {
         return Err(format!("more than {PLACES} places name it"));
     }
@@ -74,10 +75,10 @@ fn renamed_places(asked: &RequestedSymbol) -> Result<Vec<NamePlace>, String> {
     let files: BTreeSet<usize> = all.iter().map(|place| place.file).collect();
     check_readable(units, &files)?;
     let name = spelt_at(units, first);
-    if let Some(reason) = why_fixed(asked, &name, &all, &declared) {
+    if let Some(reason) = why_fixed(requested, &name, &all, &declared) {
         return Err(reason);
     }
-    check_locals(asked, &files)?;
+    check_locals(requested, &files)?;
     Ok(all)
 }
 
@@ -117,21 +118,21 @@ fn check_readable(units: &Units, files: &BTreeSet<usize>) -> Result<(), String> 
 
 /// Why the symbol cannot be renamed; `None` if it can.
 fn why_fixed(
-    asked: &RequestedSymbol,
+    requested: &RequestedSymbol,
     name: &str,
     all: &[NamePlace],
     declared: &[NamePlace],
 ) -> Option<String> {
-    let units = &asked.whole.units;
+    let units = &requested.whole.units;
     let symbol = units.names.graph.symbols.find(name)?;
-    if name == "main" && matches!(asked.meant, Meant::Global(_)) {
+    if name == "main" && matches!(requested.meant, Meant::Global(_)) {
         return Some("`main` is the entry point of a stage".to_owned());
     }
     let files: BTreeSet<usize> = all.iter().map(|place| place.file).collect();
     if let Some(reason) = named_by_macro(units, &units.seen_files(&files), symbol) {
         return Some(reason);
     }
-    match &asked.meant {
+    match &requested.meant {
         Meant::Local(file, _, function) => {
             let text = text_of(units.module(*file), function);
             let words = "a struct is declared in this function, and its members cannot be told \
@@ -213,13 +214,13 @@ fn why_interface_fixed(text: &str) -> Option<String> {
 
 /// Fails if conditions of the preprocessor decide whether a use refers to a local or to something
 /// else.
-fn check_locals(asked: &RequestedSymbol, files: &BTreeSet<usize>) -> Result<(), String> {
-    let units = &asked.whole.units;
+fn check_locals(requested: &RequestedSymbol, files: &BTreeSet<usize>) -> Result<(), String> {
+    let units = &requested.whole.units;
     let refuse = |file: usize, byte: u32| {
         let place = shown_place(units, file, byte);
         Err(format!("whether {place} declares it for its uses depends on a condition"))
     };
-    match &asked.meant {
+    match &requested.meant {
         Meant::Member(_) => Ok(()),
         Meant::Global(name) => {
             for file in files {
@@ -256,8 +257,8 @@ fn check_locals(asked: &RequestedSymbol, files: &BTreeSet<usize>) -> Result<(), 
 }
 
 /// Fails unless the new name is a valid name that means nothing yet where the old one is used.
-fn check_new(asked: &RequestedSymbol, places: &[NamePlace], new: &str) -> Result<(), String> {
-    let units = &asked.whole.units;
+fn check_new(requested: &RequestedSymbol, places: &[NamePlace], new: &str) -> Result<(), String> {
+    let units = &requested.whole.units;
     let is_name = new.starts_with(|letter: char| letter.is_ascii_alphabetic() || letter == '_')
         && new.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
     if !is_name {
@@ -266,7 +267,7 @@ fn check_new(asked: &RequestedSymbol, places: &[NamePlace], new: &str) -> Result
     if is_reserved(new) {
         return Err(format!("GLSL has a meaning for `{new}`, or reserves it"));
     }
-    if is_axis(asked, new) {
+    if is_axis(requested, new) {
         return Err(format!("`{new}` is the macro of an axis"));
     }
     let Some(symbol) = units.names.graph.symbols.find(new) else { return Ok(()) };
@@ -275,7 +276,7 @@ fn check_new(asked: &RequestedSymbol, places: &[NamePlace], new: &str) -> Result
         for at in units.tokens_of(file, symbol) {
             let token = units.module(file).tokens[at];
             let found = units.use_of(file, at);
-            let is_taken = match &asked.meant {
+            let is_taken = match &requested.meant {
                 _ if found == Use::Directive => true,
                 Meant::Member(_) => found == Use::Member,
                 Meant::Local(own, _, function) => {
@@ -294,8 +295,8 @@ fn check_new(asked: &RequestedSymbol, places: &[NamePlace], new: &str) -> Result
 }
 
 /// Whether a name is the macro of an axis or of one of its values.
-fn is_axis(asked: &RequestedSymbol, name: &str) -> bool {
-    let programs = asked.whole.opened.manifest.iter().flat_map(|manifest| &manifest.programs);
+fn is_axis(requested: &RequestedSymbol, name: &str) -> bool {
+    let programs = requested.whole.opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     let mut axes = programs.flat_map(|program| program.space.axes());
     axes.any(|axis| super::is_macro_of(axis, name))
 }

@@ -61,7 +61,7 @@ impl Diagram {
     /// How many points there are if those that differ only in one axis count as one.
     pub fn count_without(&self, axis: usize) -> Result<u128, TooComplex> {
         let mut known = FxHashMap::default();
-        self.counts(|asked, children, counts| match asked == axis {
+        self.counts(|level_axis, children, counts| match level_axis == axis {
             true => self.merged(children.to_vec(), counts, &mut known),
             false => Ok(sum_counts(children, counts)),
         })

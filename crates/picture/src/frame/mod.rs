@@ -51,8 +51,8 @@ struct KeptPrograms {
 
 impl KeptPrograms {
     /// Stages that are kept. They become the most recently used ones.
-    fn again(&mut self, asked: &StagesKey) -> Option<Stages> {
-        let at = self.stages.iter().position(|(known, _)| known == asked)?;
+    fn again(&mut self, key: &StagesKey) -> Option<Stages> {
+        let at = self.stages.iter().position(|(known, _)| known == key)?;
         let found = self.stages.remove(at)?;
         let stages = found.1.clone();
         self.stages.push_back(found);
@@ -136,13 +136,13 @@ impl Programs {
         settings: &Settings,
         language: Language,
     ) -> Result<Stages, Diagnostics> {
-        let asked = (program.name.clone(), settings.clone(), language);
-        if let Some(stages) = self.kept().again(&asked) {
+        let key = (program.name.clone(), settings.clone(), language);
+        if let Some(stages) = self.kept().again(&key) {
             return Ok(stages);
         }
         let stages = self.composed_stages(program, settings, language)?;
         let mut kept = self.kept();
-        kept.stages.push_back((asked, stages.clone()));
+        kept.stages.push_back((key, stages.clone()));
         if kept.stages.len() > KEPT_STAGES {
             kept.stages.pop_front();
         }

@@ -100,16 +100,16 @@ fn push_line(text: &mut String, kind: &str, line: &str) {
     let _ = writeln!(text, "{kind:<9}  {line}");
 }
 
-/// Compares. `is_asked` says whether a case of the record belongs to what was measured, so that it
+/// Compares. `is_wanted` says whether a case of the record belongs to what was measured, so that it
 /// is gone if it was not.
 pub fn compare_values(
     old: &ValueRecord,
     measured: &[MeasuredCase],
-    is_asked: impl Fn(&RecordedCase) -> bool,
+    is_wanted: impl Fn(&RecordedCase) -> bool,
 ) -> Result<ValueComparison, Diagnostic> {
     let mut comparison = ValueComparison::default();
     let is_gone = |case: &&RecordedCase| {
-        is_asked(case) && !measured.iter().any(|new| new.case.is_same_case(case))
+        is_wanted(case) && !measured.iter().any(|new| new.case.is_same_case(case))
     };
     for case in old.cases.iter().filter(is_gone) {
         let mut known = measured.iter().map(|new| &new.case);

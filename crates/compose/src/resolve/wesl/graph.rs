@@ -54,7 +54,7 @@ impl Graph {
     pub fn may_ask(&self, name: &str) -> bool {
         let Some(name) = self.names.find(name) else { return false };
         let expressions = self.nodes.iter().flat_map(|node| &node.module.expressions);
-        expressions.flat_map(Expression::names).any(|asked| asked == name)
+        expressions.flat_map(Expression::names).any(|used| used == name)
             || self.constants.iter().any(|constant| constant.name == name)
     }
 

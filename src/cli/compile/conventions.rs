@@ -1,6 +1,6 @@
 //! The options for conventions of outputs.
 
-use crate::bundle::{AskedConventions, BoundsChecks, ClipConvention, Convention};
+use crate::bundle::{BoundsChecks, ClipConvention, Convention, RequestedConventions};
 
 #[derive(Debug, Clone, Copy, clap::Args)]
 pub struct ConventionArguments {
@@ -15,8 +15,8 @@ pub struct ConventionArguments {
 }
 
 impl ConventionArguments {
-    pub fn chosen(self) -> AskedConventions {
-        AskedConventions { clip: self.clip, bounds: self.bounds }
+    pub fn chosen(self) -> RequestedConventions {
+        RequestedConventions { clip: self.clip, bounds: self.bounds }
     }
 }
 
