@@ -286,7 +286,7 @@ fn case_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
             .collect();
         let none = || {
             Failure::input(format!(
-                "there is no case file in `{}`: cases are in a `.toml` beside a module (guide: Numeric cases)",
+                "there is no case file in `{}`: cases are in a `.toml` next to a module (guide: Numeric cases)",
                 path.display()
             ))
         };
@@ -297,7 +297,7 @@ fn case_files(path: &Path) -> Result<Vec<PathBuf>, Failure> {
         Ok(vec![file])
     } else {
         Err(Failure::input(format!(
-            "`{}` has no cases: they are in `{}`, beside the module",
+            "`{}` has no cases: they are in `{}`, next to the module",
             path.display(),
             file.display()
         )))

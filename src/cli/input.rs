@@ -280,7 +280,7 @@ impl InputArguments {
         let mut names: Vec<&str> = self.chosen().map(|(name, _)| name.as_str()).collect();
         names.sort_unstable();
         match names.windows(2).find(|pair| pair[0] == pair[1]) {
-            Some(pair) => Err(Failure::usage(format!("`{}` is chosen twice", pair[0]))),
+            Some(pair) => Err(Failure::usage(format!("`{}` is set twice", pair[0]))),
             None => Ok(()),
         }
     }

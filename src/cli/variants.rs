@@ -226,7 +226,7 @@ fn compose(
     let stages = composed.entries.iter().map(|entry| StageCount {
         stage: format!("{} ({})", entry.entry, format!("{:?}", entry.language).to_lowercase()),
         unique: entry.unique as u64,
-        blind: axes().filter(|axis| !entry.axes.contains(axis)).collect(),
+        unread: axes().filter(|axis| !entry.axes.contains(axis)).collect(),
     });
     report.stages = Some(stages.collect());
     report.unique_sources = Some(composed.entries.iter().map(|entry| entry.unique as u64).sum());

@@ -109,7 +109,7 @@ fn load(
 
 fn too_many_files(path: &str) -> Diagnostic {
     let most = LINT_WHOLE_FILES + LINT_FILES;
-    let message = format!("the modules of this package reach more than {most} files together");
+    let message = format!("the modules of this package reach more than {most} files in total");
     Diagnostic::error(codes::LIMIT_EXCEEDED, message)
         .note(format!("`{path}` and the modules after it were not checked"))
         .note("help: name folders or modules, to check a part of the package at a time")

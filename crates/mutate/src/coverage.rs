@@ -135,7 +135,7 @@ impl std::fmt::Display for Coverage {
                 Branch::Reject => "the condition always holds",
                 Branch::Case => "this case is never taken",
                 Branch::Body | Branch::Continuing => "the loop never runs so",
-                Branch::After => "never reached behind the branch",
+                Branch::After => "never reached after the branch",
             };
             writeln!(f, "  {}: {}: {what}", place.place, place.function)
         })

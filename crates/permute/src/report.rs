@@ -43,7 +43,7 @@ pub struct StageCount {
     /// How many distinct compositions it has.
     pub unique: u64,
     /// Axes that never change it.
-    pub blind: Vec<String>,
+    pub unread: Vec<String>,
 }
 
 /// What one axis does to the number of permutations.
@@ -130,8 +130,8 @@ impl fmt::Display for PermutationReport {
         let funnel =
             self.funnel().into_iter().map(|(name, count)| vec![name, count.to_string()]).collect();
         write_table(f, &[Align::Left, Align::Right], funnel)?;
-        for stage in self.stages.iter().flatten().filter(|stage| !stage.blind.is_empty()) {
-            writeln!(f, "  {} is blind to {}", stage.stage, stage.blind.join(", "))?;
+        for stage in self.stages.iter().flatten().filter(|stage| !stage.unread.is_empty()) {
+            writeln!(f, "  {} does not read {}", stage.stage, stage.unread.join(", "))?;
         }
         if self.axes.is_empty() {
             return Ok(());

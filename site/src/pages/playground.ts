@@ -41,7 +41,7 @@ export async function page(into: HTMLElement, given?: Project) {
                 // Files that are too large already can be made smaller.
                 const isSmaller = change.newDoc.length < change.startState.doc.length;
                 if (!change.docChanged || isSmaller || change.newDoc.length + others() <= LARGEST) return change;
-                status.textContent = `Not inserted: the files would have more than ${LARGEST.toLocaleString("en")} letters together.`;
+                status.textContent = `Not inserted: the files would have more than ${LARGEST.toLocaleString("en")} characters in total.`;
                 return [];
             }),
             keymap.of([...defaultKeymap, ...historyKeymap, indentWithTab]),

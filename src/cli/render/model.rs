@@ -26,7 +26,7 @@ pub fn parse_view(text: &str) -> Result<View, String> {
             let (position, target) = (DVec3::new(*a, *b, *c), DVec3::new(*x, *y, *z));
             match position == target {
                 false => Ok(View::At(position, target)),
-                true => Err("the viewer stands where it looks".to_owned()),
+                true => Err("the camera is at the point that it looks at".to_owned()),
             }
         }
         _ => Err("expected the number of a camera, or six numbers: X,Y,Z,X,Y,Z".to_owned()),

@@ -336,7 +336,7 @@ fn expected_goals(job: &CaseJob<'_>) -> Result<Vec<Goal>, Diagnostic> {
     match expected.iter().find(|goal| goal.expected.value.len() != words) {
         Some(wrong) => {
             let message = format!(
-                "`{}` returns {words} values, {} are expected of it",
+                "`{}` returns {words} values, but the case expects {}",
                 job.case.function,
                 wrong.expected.value.len()
             );

@@ -342,7 +342,7 @@ impl<'g> PreprocessorState<'g, '_> {
             chain.map(|module| format!("`{}`", self.graph.paths[module])).collect();
         Diagnostic::error(
             codes::INCLUDE_CYCLE,
-            format!("files include each other without end: {}", names.join(" -> ")),
+            format!("files include each other in a cycle: {}", names.join(" -> ")),
         )
         .at(place, "closes the cycle")
         .note("help: give the file an include guard or `#pragma once`")

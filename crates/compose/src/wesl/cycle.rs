@@ -77,11 +77,11 @@ fn report_cycle(graph: &Graph, edges: &[Dependency], circle: &[(Thing, usize)]) 
         chain.push(format!("{} more", circle.len() - MOST_LISTED));
     }
     let chain = chain.join(" -> ");
-    let message = format!("`{first}` needs itself: {chain} -> `{first}`");
+    let message = format!("`{first}` depends on itself: {chain} -> `{first}`");
     let mut error = Diagnostic::error(codes::CYCLIC_CONSTANT, message);
     for (thing, next) in circle.iter().take(MOST_LISTED) {
         let edge = &edges[next - 1];
-        error = error.at(edge.span, format!("`{}` needs `{}`", text(*thing), text(edge.used)));
+        error = error.at(edge.span, format!("`{}` uses `{}`", text(*thing), text(edge.used)));
     }
     error
 }

@@ -210,7 +210,7 @@ fn name_conflict(graph: &Graph, thing: Thing, other: Thing) -> Diagnostic {
 fn captured_name(graph: &Graph, thing: Thing) -> Diagnostic {
     let name = graph.names.text(name_of(graph, thing));
     let message = format!(
-        "`{name}` must keep its name, but something else that is kept means another thing by it"
+        "`{name}` must keep its name, but other code of the output refers to something else by it"
     );
     label_declaration(
         graph,

@@ -28,7 +28,7 @@ pub fn mesh_objects(
     for primitive in mesh.primitives() {
         let place = format!("meshes[{}].primitives[{}]", part.mesh, primitive.index());
         if primitive.morph_targets().next().is_some() {
-            reader.notes.insert("morph targets are left out".to_owned());
+            reader.notes.insert("morph targets are ignored".to_owned());
         }
         let Some(indices) = triangle_indices(reader, &primitive, &place)? else { continue };
         // Vertices that no triangle uses take memory too, again for each node that has the mesh.
@@ -105,7 +105,7 @@ fn triangle_indices(
             starts.flat_map(step).map(|at| listed[at]).collect()
         }
         _ => {
-            reader.notes.insert("points and lines are left out".to_owned());
+            reader.notes.insert("points and lines are ignored".to_owned());
             return Ok(None);
         }
     }))

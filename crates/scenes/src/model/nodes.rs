@@ -77,7 +77,7 @@ fn take_node(
     placed: &mut PlacedNodes,
 ) {
     if node.skin().is_some() {
-        reader.notes.insert("skins are left out: the model is drawn in its rest pose".to_owned());
+        reader.notes.insert("skins are ignored: the model is drawn in its rest pose".to_owned());
     }
     placed
         .parts
@@ -90,7 +90,7 @@ fn take_node(
             planes: (f64::from(view.znear()), view.zfar().map(f64::from)),
         }),
         Some(Projection::Orthographic(_)) => {
-            reader.notes.insert("orthographic cameras are left out".to_owned());
+            reader.notes.insert("orthographic cameras are ignored".to_owned());
         }
         None => {}
     }

@@ -33,7 +33,7 @@ pub fn read_surface(
     let emission = DVec3::from_array(material.emissive_factor().map(f64::from)) * strength;
     if material.unlit() {
         if !reader.all_unlit && own.base_color_texture().is_some() {
-            let what = "left out: textures of unlit materials beside lit ones";
+            let what = "ignored: textures of unlit materials, since other materials are lit";
             reader.notes.insert(what.to_owned());
         }
         let (color, material) = unlit_surface(reader.all_unlit, color);
@@ -138,7 +138,7 @@ fn texture_means(
 /// Notes on what the programs do not have.
 fn left_out(reader: &mut GltfReader<'_>, material: &gltf::Material<'_>) {
     if material.alpha_mode() != gltf::material::AlphaMode::Opaque {
-        let note = "left out, since the programs do not have it: transparency";
+        let note = "ignored, since no program supports it: transparency";
         reader.notes.insert(note.to_owned());
     }
 }
@@ -199,7 +199,7 @@ fn read_layers(
     };
     let known = |name: &&String| !READ.contains(&name.as_str());
     for name in material.extensions().into_iter().flat_map(|all| all.keys()).filter(known) {
-        reader.notes.insert(format!("left out, since the programs do not have it: {name}"));
+        reader.notes.insert(format!("ignored, since no program supports it: {name}"));
     }
     let mut layers = parsed_layers(material, &place)?;
     let mut values =
@@ -325,7 +325,7 @@ impl<'v> ExtensionValues<'v> {
         let fields = fields.ok_or_else(|| format!("{place}: expected an object, found {value}"))?;
         let left_out = |key: &&String| key.ends_with("Texture") && !is_drawn(name, key);
         for key in fields.keys().filter(left_out) {
-            let note = format!("left out, since the programs do not have it: {key} of {name}");
+            let note = format!("ignored, since no program supports it: {key} of {name}");
             reader.notes.insert(note);
         }
         Ok(Some(Self { fields, place }))

@@ -206,7 +206,7 @@ impl GltfReader<'_> {
         match decode_image(self, index, is_color)? {
             Ok(map) => Ok(Some(map)),
             Err(reason) => {
-                let note = format!("images[{index}] is left out: {reason}");
+                let note = format!("images[{index}] is ignored: {reason}");
                 self.notes.insert(note);
                 Ok(None)
             }

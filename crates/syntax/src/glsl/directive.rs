@@ -316,7 +316,7 @@ impl DirectiveTokens<'_> {
         for (offset, token) in self.module.tokens[start..self.end].iter().enumerate() {
             let paste = token.symbol == known::PASTE;
             if token.symbol == known::HASH {
-                let message = "GLSL has no operator `#` that makes a string";
+                let message = "GLSL has no stringizing operator `#`";
                 return Err(Diagnostic::error(codes::MALFORMED_DIRECTIVE, message)
                     .at(self.span_of(token), "in the body of a macro"));
             }

@@ -254,7 +254,7 @@ impl BodyScanner<'_, '_> {
     /// An attribute among other things: of a return type or a body.
     fn stray_attribute(&mut self, at: usize) -> Result<usize, Diagnostic> {
         if condition::is_conditional(self.tokens, at) {
-            let message = format!("`@{}` may not stand here", self.tokens.text(at + 1));
+            let message = format!("`@{}` is not allowed here", self.tokens.text(at + 1));
             return Err(condition::illegal_attribute(
                 self.tokens,
                 at + 1,
@@ -615,7 +615,7 @@ pub(crate) fn check_attributes(
     let odd = if condition::is_conditional(tokens, start) { first } else { start };
     let message = format!("a block of declarations has the attribute `@{}`", tokens.text(odd + 1));
     Err(Diagnostic::error(codes::SYNTAX_ERROR, message)
-        .at(tokens.span(odd + 1), "only a condition may stand before a block"))
+        .at(tokens.span(odd + 1), "only a condition may precede a block"))
 }
 
 /// The warning about braces without a condition.

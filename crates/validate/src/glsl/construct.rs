@@ -18,17 +18,17 @@ macro_rules! constructs {
 
 constructs! {
     SHORT_CIRCUIT {
-        "what stands to the right of `&&` or `||` has an effect, which would always happen",
-        "an effect that the left side may forbid",
+        "the right operand of `&&` or `||` has a side effect, which would always happen",
+        "a side effect that the left operand may skip",
         "write it as an `if`: `bool both = a; if (both) { both = f(); }`"
     }
     INDEX_EFFECT {
-        "the index of a compound assignment has an effect, which would happen twice",
+        "the index of a compound assignment has a side effect, which would happen twice",
         "this effect would happen twice",
         "compute the index first: `int k = i++; x[k] += v;`"
     }
     OUTPUT_EFFECT {
-        "an argument for an `out` or `inout` parameter has an effect, which would happen twice",
+        "an argument for an `out` or `inout` parameter has a side effect, which would happen twice",
         "this effect would happen twice",
         "compute the index first: `int k = i++; f(x[k]);`"
     }
@@ -48,7 +48,7 @@ constructs! {
         "declare each block with its own binding, or put an array into one block"
     }
     LONE_DECLARATION {
-        "a declaration that is the only statement of an `if`, an `else` or a loop would be seen behind it",
+        "a declaration that is the only statement of an `if`, an `else` or a loop would be visible after it",
         "declared without braces",
         "put it in braces, or leave it out: nothing can use it"
     }

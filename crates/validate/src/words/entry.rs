@@ -98,20 +98,20 @@ fn collision_words(module: &Module, handle: naga::Handle<naga::GlobalVariable>) 
 pub fn varying_words(module: &Module, error: &VaryingError) -> Sentence {
     let text = match error {
         VaryingError::InvalidType(handle) | VaryingError::NotIOShareableType(handle) => format!(
-            "{} cannot enter or leave a stage: scalars and vectors of numbers can",
+            "{} cannot be an input or output of a stage: scalars and vectors of numbers can",
             type_text(module, *handle)
         ),
         VaryingError::InvalidInterpolationInStage(_, stage) => {
             format!("this `@interpolate` is only allowed in {} shaders", stage_name(*stage))
         }
         VaryingError::InvalidInterpolationSamplingCombination { .. } => {
-            "these two parts of `@interpolate` do not go together".to_owned()
+            "these two parts of `@interpolate` cannot be combined".to_owned()
         }
         VaryingError::InvalidInterpolationForInteger => {
             "integers between stages need `@interpolate(flat)`".to_owned()
         }
         VaryingError::MissingInterpolation => {
-            "what goes from vertex to fragment shaders needs an interpolation".to_owned()
+            "values between vertex and fragment shaders need an interpolation".to_owned()
         }
         VaryingError::InvalidBuiltInStage(built_in) => {
             format!("this stage has no `{}`", built_in_name(*built_in))
@@ -121,7 +121,7 @@ pub fn varying_words(module: &Module, error: &VaryingError) -> Sentence {
             format!("`{}` does not have the type {found}", built_in_name(*built_in))
         }
         VaryingError::MissingBinding => {
-            "what enters or leaves an entry point needs `@location` or `@builtin`".to_owned()
+            "inputs and outputs of an entry point need `@location` or `@builtin`".to_owned()
         }
         VaryingError::MemberMissingBinding(index) => {
             format!("member {} needs `@location` or `@builtin`", index + 1)

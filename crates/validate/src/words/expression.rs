@@ -58,7 +58,7 @@ pub fn expression_words(module: &Module, error: &ExpressionError) -> Sentence {
         }
         E::InvalidBooleanVector(_) => return mismatch_words("this needs booleans"),
         E::InvalidFloatArgument(_) => return mismatch_words("this needs floating-point numbers"),
-        E::Type(_) => return mismatch_words("the types of this expression do not go together"),
+        E::Type(_) => return mismatch_words("the types in this expression do not match"),
         E::ExpectedGlobalVariable | E::ExpectedGlobalOrArgument => {
             "a texture or sampler must be named directly"
         }
@@ -117,7 +117,7 @@ pub fn expression_words(module: &Module, error: &ExpressionError) -> Sentence {
         E::InvalidRayQueryType(_) => return foreign_words("ray tracing"),
         E::InvalidCooperativeOperand(_) => return foreign_words("cooperative matrices"),
         E::NotInScope | E::FunctionArgumentDoesntExist(_) => {
-            "naga's parser gave the expression a form that naga's validator refuses"
+            "internal error in naga: its validator refuses an expression that its parser made"
         }
         E::InvalidWorkGroupUniformLoadResultType(_) => {
             "this type cannot be loaded for a whole workgroup"

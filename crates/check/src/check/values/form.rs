@@ -117,8 +117,9 @@ fn check_version(lines: &Lines<'_>, header: &Map<String, Value>) -> Result<(), D
     if version == VERSION {
         return Ok(());
     }
-    let message =
-        format!("the record has version {version} of its form, this program reads {VERSION}");
+    let message = format!(
+        "the record has format version {version}, but this program reads version {VERSION}"
+    );
     Err(lines.wrong(&message).note("compare with the version of Lamplight that wrote it, or later"))
 }
 

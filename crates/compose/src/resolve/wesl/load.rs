@@ -396,7 +396,7 @@ impl<'a> Loader<'a> {
 
 /// The error for a graph in which looking names up takes more than `most` steps.
 pub fn too_entangled(module: &PlacedModule, most: u64) -> Diagnostic {
-    let message = format!("what names mean here takes more than {most} steps to find");
+    let message = format!("resolving the names here takes more than {most} steps");
     Diagnostic::error(codes::LIMIT_EXCEEDED, message)
         .at(module.span(0..0), "in this file and what it imports")
 }
