@@ -89,8 +89,8 @@ pub fn run_within(kib: u64, folder: &TempDir, arguments: &[&str]) -> Result<Outp
 pub fn fails(output: &Output, code: i32, words: &str) -> Outcome {
     let output_text =
         String::from_utf8_lossy(&output.stderr) + String::from_utf8_lossy(&output.stdout);
-    let is_calm = !output_text.contains("panicked") && !output_text.contains("internal error");
-    if output.status.code() == Some(code) && output_text.contains(words) && is_calm {
+    let has_no_panic = !output_text.contains("panicked") && !output_text.contains("internal error");
+    if output.status.code() == Some(code) && output_text.contains(words) && has_no_panic {
         return Ok(());
     }
     let start: String = output_text.chars().take(2000).collect();

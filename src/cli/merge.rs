@@ -73,8 +73,8 @@ fn check_origins(arguments: &Arguments, inputs: &[Bundle]) -> Result<(), Failure
     let Some((first, bundle)) = named.next() else { return Ok(()) };
     for (path, other) in named {
         if let Some(mismatch) = ShardMismatch::between(bundle.shard(), other.shard()) {
-            let (first, path, words) = (first.display(), path.display(), mismatch.words());
-            let mut message = format!("`{first}` and `{path}` {words}");
+            let (first, path, reason) = (first.display(), path.display(), mismatch.message());
+            let mut message = format!("`{first}` and `{path}` {reason}");
             if let (Some(left), Some(right)) = (bundle.shard(), other.shard()) {
                 message += &values_of(mismatch, left, right);
             }

@@ -12,7 +12,7 @@ use super::{Outcome, fails, run, run_within};
 
 type Case = (&'static str, fn() -> Outcome);
 
-const CALM: &str = "@fragment fn calm() -> @location(0) vec4f { return vec4f(); }\n";
+const SMALL: &str = "@fragment fn small() -> @location(0) vec4f { return vec4f(); }\n";
 
 /// An address space in which naga has too little memory for an array of many values, in KiB.
 const LITTLE_KIB: u64 = 700 << 10;
@@ -55,13 +55,13 @@ fn values(count: usize) -> String {
 fn refused(large: &str, kib: u64, words: &str) -> Outcome {
     let folder = tempfile::tempdir()?;
     fs::write(folder.path().join("large.wgsl"), large)?;
-    fs::write(folder.path().join("calm.wgsl"), CALM)?;
-    let arguments = ["compile", "large.wgsl", "calm.wgsl", "--target", "hlsl"];
+    fs::write(folder.path().join("small.wgsl"), SMALL)?;
+    let arguments = ["compile", "large.wgsl", "small.wgsl", "--target", "hlsl"];
     let output = run_within(kib, &folder, &[&arguments[..], &["--diagnostics", "short"]].concat())?;
     fails(&output, 1, "error[naga-exhausted]")?;
     fails(&output, 1, words)?;
     fails(&output, 1, "large.wgsl:")?;
-    let alone = run_within(kib, &folder, &["compile", "calm.wgsl", "--target", "hlsl"])?;
+    let alone = run_within(kib, &folder, &["compile", "small.wgsl", "--target", "hlsl"])?;
     fails(&alone, 0, "SV_Target0")
 }
 

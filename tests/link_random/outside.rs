@@ -29,5 +29,5 @@ pub fn refused(outputs: &[&Output]) -> Result<Vec<Refusal>, String> {
     let index = |refusal: &validators::Refusal| {
         files.iter().position(|output| output.file == refusal.output.file).unwrap_or_default()
     };
-    Ok(refusals.iter().map(|refusal| (index(refusal), refusal.words.clone())).collect())
+    Ok(refusals.iter().map(|refusal| (index(refusal), refusal.message.clone())).collect())
 }

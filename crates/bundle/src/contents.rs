@@ -123,7 +123,7 @@ impl Contents {
     pub fn merge(&mut self, other: Self) -> Result<(), Error> {
         let Self { programs, shard: origin } = other;
         self.shard = shard::joined(self.shard.take(), origin).map_err(|mismatch| {
-            Error::Conflict(format!("their origin: they {}", mismatch.words()))
+            Error::Conflict(format!("their origin: they {}", mismatch.message()))
         })?;
         for (name, program) in programs {
             let mine = self.programs.entry(name.clone()).or_insert_with(|| ProgramContents {

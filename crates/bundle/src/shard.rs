@@ -55,7 +55,7 @@ impl ShardMismatch {
     }
 
     /// As the end of a sentence about two shards.
-    pub fn words(self) -> &'static str {
+    pub fn message(self) -> &'static str {
         match self {
             Self::Whole => "are not parts of one bundle: only one of them is a shard",
             Self::Count => "are parts of bundles that were divided differently",

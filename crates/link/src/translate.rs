@@ -22,7 +22,7 @@ use lamplight_compose::Composed;
 use lamplight_emit as emit;
 use lamplight_emit::spirv::words;
 use lamplight_validate::{
-    Validated, check_switches, guard, info_of, is_bounded, is_calm, may_alias, on_large_stack,
+    Validated, check_switches, guard, info_of, is_bounded, is_small, may_alias, on_large_stack,
     parse_glsl, store_loop_values,
 };
 
@@ -69,7 +69,7 @@ pub fn translate_unit(
         _ => lamplight_bundle::Stage::Fragment,
     });
     let composed = Composed::of_text(outline.language, stage, text);
-    if !is_calm(&composed).map_err(|_| Reason::Refused)? {
+    if !is_small(&composed).map_err(|_| Reason::Refused)? {
         return Err(Reason::Large);
     }
     on_large_stack(|| {

@@ -91,7 +91,7 @@ fn mutant_outcome(
         function: format!("{}::{}", suite.module, subject.name),
         place,
         line,
-        words: text.words(site),
+        mistake: text.describe(site),
         fate,
     };
     if let (Fate::Survived, Some(index)) =

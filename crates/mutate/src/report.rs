@@ -31,7 +31,7 @@ pub struct MutantOutcome {
     /// That line, trimmed.
     pub line: String,
     /// A description of the mistake.
-    pub words: String,
+    pub mistake: String,
     pub fate: Fate,
 }
 
@@ -104,7 +104,7 @@ impl MutantReport {
         });
         let line = |(outcome, why): (&MutantOutcome, &str)| {
             let why = if why.is_empty() { String::new() } else { format!(" ({why})") };
-            format!("{}: {}: {}{why}\n", outcome.place, outcome.function, outcome.words)
+            format!("{}: {}: {}{why}\n", outcome.place, outcome.function, outcome.mistake)
         };
         through.map(line).collect()
     }
@@ -139,7 +139,7 @@ impl Listed {
     pub fn is(&self, outcome: &MutantOutcome) -> bool {
         self.function == outcome.function
             && self.line == outcome.line
-            && self.mutation == outcome.words
+            && self.mutation == outcome.mistake
     }
 }
 

@@ -543,7 +543,7 @@ impl QuotedSource<'_> {
     }
 
     /// A description of the mistake.
-    pub fn words(&self, site: &Site) -> String {
+    pub fn describe(&self, site: &Site) -> String {
         let whole = self.excerpt(site.span);
         match &site.edit {
             Mutation::Expression { how, .. } => self.expression(*how, &whole),

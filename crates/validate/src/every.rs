@@ -5,7 +5,7 @@
 use std::cell::RefCell;
 use std::collections::VecDeque;
 
-use super::{Validated, is_calm, read_text, validate};
+use super::{Validated, is_small, read_text, validate};
 use lamplight_bundle::Language;
 use lamplight_compose::{Composed, PartKind};
 use lamplight_diagnostic::{Code, Diagnostic, Diagnostics, codes};
@@ -27,13 +27,13 @@ const STOPPING: [&Code; 4] =
 /// Each mistake once, in the order of the composed text's places.
 pub fn validate_every(composed: &Composed) -> Result<Validated, Diagnostics> {
     // A large text is tried in another process, and so would be each of its parts.
-    let is_calm = is_calm(composed).unwrap_or(false);
-    let first = match if is_calm { read_text(composed) } else { validate(composed) } {
+    let is_small = is_small(composed).unwrap_or(false);
+    let first = match if is_small { read_text(composed) } else { validate(composed) } {
         Ok(validated) => return Ok(validated),
         Err(errors) => errors,
     };
     let stops = |error: &Diagnostic| STOPPING.contains(&error.code);
-    if !is_calm || composed.parts.len() > PARTS || first.iter().any(stops) {
+    if !is_small || composed.parts.len() > PARTS || first.iter().any(stops) {
         return Err(first);
     }
     let mut search =

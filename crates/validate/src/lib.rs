@@ -87,11 +87,11 @@ fn read_text(composed: &Composed) -> Result<Validated, Diagnostics> {
     .and_then(|result| result)
 }
 
-/// Whether a text is below the calm part of every limit.
+/// Whether a text is small enough to be compiled without the sandbox.
 ///
 /// # Errors
 /// `limit-exceeded` where naga should not see it at all.
-pub fn is_calm(composed: &Composed) -> Result<bool, Diagnostic> {
+pub fn is_small(composed: &Composed) -> Result<bool, Diagnostic> {
     limits::check_limits(composed).map(|large| large.is_none())
 }
 

@@ -34,8 +34,8 @@ pub const LIMITS: NagaLimits = NagaLimits {
     bodies: limits::BODIES,
 };
 
-/// Refuses a text that might exhaust naga's stack. For a text that is accepted but exceeds the calm
-/// part of a limit, gives the place.
+/// Refuses a text that might exhaust naga's stack. For a text that is accepted but needs the
+/// sandbox, gives the place that exceeds the part of a limit.
 pub fn check_limits(composed: &Composed) -> Result<Option<Excess>, Diagnostic> {
     let text = &composed.text;
     if text.len() > LIMITS.bytes {

@@ -40,8 +40,8 @@ pub struct SandboxOutputs {
     pub bounds: String,
 }
 
-/// Tries a text in another process if it exceeds the calm part of any limit. Errors have the places
-/// of `placed`, whose lean form the text may be.
+/// Tries a text in another process if it is not small. Errors have the places of `placed`, whose
+/// lean form the text may be.
 ///
 /// # Errors
 /// `limit-exceeded` where it exceeds a limit, `naga-exhausted` where the other process died.

@@ -67,7 +67,7 @@ fn blame_one(sources: &mut SourceSet, made: &OutputOrigin<'_>, refusal: &Refusal
         format!("{} refuses the output for `{}`", refusal.validator, refusal.output.target),
     );
     let line = refused_line(refusal);
-    let words: Vec<&str> = refusal.words.lines().take(LINES).collect();
+    let words: Vec<&str> = refusal.message.lines().take(LINES).collect();
     let mut error = error.note(words.join("\n"));
     if let (Some(number), Some((_, text))) = (refusal.line, &line) {
         error = error.note(format!("line {number} of the output: `{}`", text.trim()));

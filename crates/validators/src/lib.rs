@@ -137,7 +137,7 @@ pub struct Refusal {
     /// The first line at fault, if the validator gives a line.
     pub line: Option<u32>,
     /// The validator's message.
-    pub words: String,
+    pub message: String,
 }
 
 /// Something that a validator needs and the machine lacks.

@@ -25,8 +25,8 @@ pub fn run(arguments: &[String]) -> CommandResult {
     let Verdict { validation, refusals } = validate(files, Extent::All, None, &tint())?;
     print!("{validation}");
     let line = |refusal: &Refusal| {
-        let Refusal { output: Output { target, file, .. }, validator, words, .. } = refusal;
-        format!("{} ({target}): {validator}: {words}", file.display())
+        let Refusal { output: Output { target, file, .. }, validator, message, .. } = refusal;
+        format!("{} ({target}): {validator}: {message}", file.display())
     };
     if !refusals.is_empty() {
         let lines: Vec<String> = refusals.iter().take(MOST_LISTED).map(line).collect();

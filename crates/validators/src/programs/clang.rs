@@ -34,7 +34,7 @@ fn validate_msl(clang: &Clang, outputs: &[&Output]) -> ValidatorResult {
         output: outputs[refused.index].clone(),
         validator: "clang",
         line: refused.errors.split(':').next().and_then(|line| line.parse().ok()),
-        words: refused.errors,
+        message: refused.errors,
     };
     Ok(refused.into_iter().map(one).collect())
 }

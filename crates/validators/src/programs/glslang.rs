@@ -196,12 +196,12 @@ fn make_refusal(output: &Output, file: &Path, result: &ProcessOutput) -> Option<
     let path = file.display().to_string();
     let printed = (!result.status.success()).then(|| output_text(result))?;
     let lines = printed.lines().map(str::trim).filter(|line| !line.is_empty() && *line != path);
-    let words = lines.collect::<Vec<_>>().join("\n").replace(&path, "0");
-    let line = words.lines().find_map(line_of);
-    Some(Refusal { output: output.clone(), validator: NAME, line, words })
+    let message = lines.collect::<Vec<_>>().join("\n").replace(&path, "0");
+    let line = message.lines().find_map(line_of);
+    Some(Refusal { output: output.clone(), validator: NAME, line, message })
 }
 
 /// The number in `ERROR: 0:12: ...`.
-fn line_of(words: &str) -> Option<u32> {
-    words.strip_prefix("ERROR: 0:")?.split(':').next()?.parse().ok()
+fn line_of(message: &str) -> Option<u32> {
+    message.strip_prefix("ERROR: 0:")?.split(':').next()?.parse().ok()
 }

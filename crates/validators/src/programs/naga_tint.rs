@@ -50,7 +50,7 @@ fn validators(_: &[&str], tint: &Tint) -> Vec<String> {
 fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {
     let text = output.text()?;
     let validated = guard(&text, || {
-        let at_line = |line: Option<u32>, words: String| (line, words);
+        let at_line = |line: Option<u32>, message: String| (line, message);
         let module = wgsl::parse_str(&text).map_err(|error| {
             let line = error.location(&text).map(|place| place.line_number);
             at_line(line, error.emit_to_string(&text))
@@ -62,7 +62,7 @@ fn by_naga(output: &Output) -> Result<Option<Refusal>, String> {
     });
     let validated = validated.unwrap_or_else(|error| Err((None, error.message)));
     let refusal =
-        |(line, words)| Refusal { output: output.clone(), validator: "naga", line, words };
+        |(line, message)| Refusal { output: output.clone(), validator: "naga", line, message };
     Ok(validated.err().map(refusal))
 }
 
@@ -72,12 +72,12 @@ fn by_tint(outputs: &[&Output], tint: &Tint) -> ValidatorResult {
     let one = |mistake: TintMistake| {
         let output =
             outputs.get(mistake.index).ok_or("Tint validated a text that it was not given")?;
-        let words = format!("{}:{}: error: {}", mistake.line, mistake.column, mistake.message);
+        let message = format!("{}:{}: error: {}", mistake.line, mistake.column, mistake.message);
         Ok(Refusal {
             output: (*output).clone(),
             validator: "Tint",
             line: Some(mistake.line),
-            words,
+            message,
         })
     };
     mistakes.into_iter().map(one).collect()

@@ -36,13 +36,13 @@ fn first_refusal(output: &Output, environments: &[&str]) -> ValidatorResult {
         let result = SPIRV_VAL.run(&["--target-env", environment], [&output.file]);
         let result = result.map_err(|error| error.to_string())?;
         if !result.status.success() {
-            let words = format!("for {environment}: {}", output_text(&result));
+            let message = format!("for {environment}: {}", output_text(&result));
             // Its line numbers count instructions, so they say nothing about the author's text.
             return Ok(vec![Refusal {
                 output: output.clone(),
                 validator: "spirv-val",
                 line: None,
-                words,
+                message,
             }]);
         }
     }
