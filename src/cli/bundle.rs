@@ -80,7 +80,7 @@ pub fn run_bundle(arguments: Arguments) -> Result<(), Failure> {
         Command::Get(get) => fetch_file(&get),
         Command::Verify { bundle } => {
             verify_bundle(&bundle)?;
-            Ok(writeln!(stdout(), "`{}` is whole", bundle.display())?)
+            Ok(writeln!(stdout(), "`{}` is intact", bundle.display())?)
         }
         Command::Pack { bundle, out, overwrite } => {
             let opened = open_bundle(&bundle)?;

@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use super::guide;
 use crate::cli::terminal::{colored_stderr, is_person, stderr};
 use crate::diagnostic::render::{Form, render};
-use crate::diagnostic::{Diagnostic, Diagnostics, codes, escape_obeyed};
+use crate::diagnostic::{Diagnostic, Diagnostics, codes, escape_controls};
 use crate::source::SourceSet;
 
 /// Why a command did not succeed.
@@ -69,7 +69,7 @@ impl Failure {
                         writeln!(stderr(), "error: {message}")
                     }
                     DiagnosticForm::Colored => {
-                        let message = escape_obeyed(&message);
+                        let message = escape_controls(&message);
                         writeln!(colored_stderr(), "\x1b[1;31merror\x1b[0m: {message}")
                     }
                 };

@@ -9,7 +9,7 @@
 
 use std::io::{self, IsTerminal, Write};
 
-use crate::diagnostic::{escape_obeyed, is_obeyed};
+use crate::diagnostic::{escape_controls, needs_escape};
 
 /// Standard output, for text.
 pub fn stdout() -> Escaping<io::Stdout> {
@@ -50,7 +50,7 @@ pub fn flush_stdout() -> io::Result<()> {
     io::stdout().flush()
 }
 
-/// Writes characters that a terminal would obey as `\u001b` and the like, which mean the same
+/// Writes control characters as `\u001b` and the like, which mean the same
 /// characters in JSON.
 #[derive(Debug)]
 pub struct Escaping<W: Write> {
@@ -68,14 +68,14 @@ impl<W: Write> Escaping<W> {
 
     fn text(&mut self, text: &str) -> io::Result<()> {
         let mut rest = text;
-        while let Some(at) = rest.find(is_obeyed) {
+        while let Some(at) = rest.find(needs_escape) {
             let color = if self.has_colors { color_length(&rest[at..]) } else { 0 };
-            // A character that is obeyed has at least one byte, and so has an own colour.
+            // A control character has at least one byte, and so has a colour of our own.
             let length = rest[at..].chars().next().map_or(0, char::len_utf8).max(color);
             let (before, found) = rest[..at + length].split_at(at);
             self.out.write_all(before.as_bytes())?;
             match color {
-                0 => self.out.write_all(escape_obeyed(found).as_bytes())?,
+                0 => self.out.write_all(escape_controls(found).as_bytes())?,
                 _ => self.out.write_all(found.as_bytes())?,
             }
             rest = &rest[at + length..];

@@ -25,7 +25,7 @@ pub fn tests() -> Vec<Trial> {
 }
 
 /// Whether a terminal or a browser obeys a letter of these texts instead of showing it.
-fn is_obeyed(letter: char) -> bool {
+fn is_control(letter: char) -> bool {
     letter != '\n' && letter.is_control() || letter == '\u{202e}'
 }
 
@@ -37,7 +37,7 @@ fn harmless(arguments: &[&str], file: &str) -> Outcome {
         let output = run(&folder, &[arguments, &["--diagnostics", form]].concat())?;
         for stream in [output.stdout, output.stderr] {
             let text = String::from_utf8(stream)?;
-            if let Some(found) = text.chars().find(|letter| is_obeyed(*letter)) {
+            if let Some(found) = text.chars().find(|letter| is_control(*letter)) {
                 return Err(format!("{arguments:?} as {form} prints {found:?}: {text}").into());
             }
         }
@@ -90,7 +90,7 @@ fn reports() -> Outcome {
     }
     for form in ["index.html", "junit.xml", "errors.md", "report.json"] {
         let text = fs::read_to_string(folder.path().join(&report).join(form))?;
-        if let Some(found) = text.chars().find(|letter| is_obeyed(*letter)) {
+        if let Some(found) = text.chars().find(|letter| is_control(*letter)) {
             return Err(format!("{form} has {found:?}").into());
         }
         let is_markup = form != "report.json";

@@ -40,7 +40,7 @@ const WATCH: &str = "addEventListener('securitypolicyviolation', (event) => {
 /// What was forbidden so far.
 const FORBIDDEN: &str = "(window.forbidden ?? []).join('; ')";
 
-/// What a page of a stranger's would like to do. None of it may happen.
+/// What an attacker would try in a page. None of it may happen.
 const ATTACK: &str = "(async () => {
     const script = document.createElement('script');
     script.textContent = 'window.ran = true';

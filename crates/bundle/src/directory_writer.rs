@@ -83,7 +83,7 @@ impl DirectoryWriter {
         let mut look = |left: &Path| remove_unfinished(left, &blobs, [&live, &retired]);
         let scratch = Scratch::after(path, &mut look)?;
         if !is_ours && retired.is_empty() && replace == Replace::Ours {
-            survey_strangers(path, &scratch, has_blobs)?;
+            survey_foreign_files(path, &scratch, has_blobs)?;
         }
         Ok(Self {
             path: path.to_owned(),
@@ -330,7 +330,7 @@ fn is_folder(place: &Path) -> Result<bool, Error> {
 }
 
 /// Refuses a folder that has something in it but no bundle of ours.
-fn survey_strangers(path: &Path, scratch: &Scratch, has_blobs: bool) -> Result<(), Error> {
+fn survey_foreign_files(path: &Path, scratch: &Scratch, has_blobs: bool) -> Result<(), Error> {
     let entries = |folder: &Path| {
         let entries = fs::read_dir(folder).map_err(|error| io_error(folder, &error))?;
         let mut names: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();

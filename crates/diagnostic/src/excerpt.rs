@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use codespan_reporting::files::{Error, Files};
 
-use super::obeyed::is_obeyed;
+use super::escape::needs_escape;
 use crate::source::{SourceId, SourceSet, Span};
 
 /// A line with more bytes than this is cut: the bytes that are kept before the label, and in all.
@@ -167,7 +167,7 @@ fn harmless_character(character: char) -> char {
         '\t' => character,
         '\0'..'\x20' | '\x7f' => '?',
         '\u{80}'..='\u{9f}' | '\u{61c}' => '¿',
-        other if is_obeyed(other) => char::REPLACEMENT_CHARACTER,
+        other if needs_escape(other) => char::REPLACEMENT_CHARACTER,
         _ => character,
     }
 }

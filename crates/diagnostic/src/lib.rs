@@ -4,14 +4,14 @@
 //! the title. `Page: NAME` names the page of the guide that explains it. The rest is what
 //! `lamplight explain` prints.
 
+mod escape;
 mod excerpt;
 pub mod guide;
-mod obeyed;
 mod read;
 pub mod render;
 pub mod source;
 
-pub use obeyed::{escape_markup, escape_obeyed, is_obeyed};
+pub use escape::{escape_controls, escape_markup, needs_escape};
 
 use crate::source::{SourceId, Span};
 

@@ -1,6 +1,6 @@
 //! Names of axes and values as identifiers.
 
-use lamplight_diagnostic::is_obeyed;
+use lamplight_diagnostic::needs_escape;
 use lamplight_permute::Setting;
 
 /// `pcf_3x3` as `Pcf3x3`.
@@ -56,7 +56,7 @@ pub fn comment_lines(prefix: &str, text: &str) -> String {
     // error in a comment of Rust.
     let text = text.replace("\r\n", "\n").replace(['\r', '\u{2028}', '\u{2029}'], "\n");
     text.lines()
-        .map(|line| line.replace(is_obeyed, "?"))
+        .map(|line| line.replace(needs_escape, "?"))
         .map(|line| format!("{}\n", format!("{prefix} {}", line.replace("*/", "* /")).trim_end()))
         .collect()
 }

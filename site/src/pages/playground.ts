@@ -34,7 +34,7 @@ export async function page(into: HTMLElement, given?: Project) {
     const begin = () => editor.setState(EditorState.create({
         doc: state.files[state.open] ?? "",
         extensions: [
-            // Marks of writing direction and control characters are seen, so that a text reads as it is.
+            // Bidirectional formatting characters and control characters are seen, so that a text reads as it is.
             highlightSpecialChars(), lineNumbers(), history(), drawSelection(), highlightActiveLine(), lintGutter(), EditorView.lineWrapping,
             EditorView.contentAttributes.of({ "aria-label": `Text of ${state.open}`, "aria-describedby": "leaving" }),
             EditorState.transactionFilter.of((change) => {

@@ -17,7 +17,7 @@ use lamplight_diagnostic::escape_markup;
 const STYLE: &str = include_str!("style.css");
 
 /// What a browser may do with the page: apply its own styles, and nothing else. The page has names
-/// and texts of modules, which may be a stranger's.
+/// and texts of modules, which may be untrusted.
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
 

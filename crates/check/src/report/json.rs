@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::ReportOrigin;
 use crate::check::{CaseVerdict, CheckReport, Outcome, ProfiledInput, Proof, Worst};
-use lamplight_diagnostic::escape_obeyed;
+use lamplight_diagnostic::escape_controls;
 
 pub fn json_report(report: &CheckReport, origin: &ReportOrigin<'_>) -> String {
     let value = json!({
@@ -17,7 +17,7 @@ pub fn json_report(report: &CheckReport, origin: &ReportOrigin<'_>) -> String {
         "untested": report.untested,
     });
     // JSON itself escapes fewer characters than terminals and editors obey.
-    escape_obeyed(&format!("{value:#}\n"))
+    escape_controls(&format!("{value:#}\n"))
 }
 
 fn outcome_json(outcome: &Outcome, origin: &ReportOrigin<'_>) -> Value {

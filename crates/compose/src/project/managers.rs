@@ -1,5 +1,5 @@
 //! Packages that npm or Cargo installed. Their own files say where a package is. No program is
-//! run, since the folder may be a stranger's.
+//! run, since the folder may be untrusted.
 
 use std::path::{Path, PathBuf};
 

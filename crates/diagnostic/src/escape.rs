@@ -1,8 +1,9 @@
-//! Characters that a program obeys instead of showing them, and those that markup gives a meaning.
+//! Escapes control characters for terminals and JSON, and reserved characters for markup.
 
-/// Whether a program would obey a character: control characters other than line ends and tabs, and
-/// marks of writing direction. All of them have 16 bits.
-pub fn is_obeyed(character: char) -> bool {
+/// Whether a terminal or an editor would act on a character instead of showing it: control
+/// characters other than line ends and tabs, and bidirectional formatting characters. All of them
+/// have 16 bits.
+pub fn needs_escape(character: char) -> bool {
     match character {
         '\n' | '\t' => false,
         '\u{61c}' | '\u{200e}' | '\u{200f}' => true,
@@ -11,12 +12,12 @@ pub fn is_obeyed(character: char) -> bool {
     }
 }
 
-/// Text in which each character that a program would obey is written as `\u001b` and the like,
-/// which mean the same characters in JSON.
-pub fn escape_obeyed(text: &str) -> String {
+/// Text in which each character that [`needs_escape`] is written as `\u001b` and the like, which
+/// mean the same characters in JSON.
+pub fn escape_controls(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
-        match is_obeyed(character) {
+        match needs_escape(character) {
             true => escaped += &format!("\\u{:04x}", u32::from(character)),
             false => escaped.push(character),
         }
@@ -24,7 +25,7 @@ pub fn escape_obeyed(text: &str) -> String {
     escaped
 }
 
-/// Text with the letters that HTML and XML give a meaning replaced, and those XML refuses left out.
+/// Text with the reserved characters of HTML and XML replaced, without those that XML refuses.
 pub fn escape_markup(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
@@ -33,7 +34,7 @@ pub fn escape_markup(text: &str) -> String {
             '<' => escaped += "&lt;",
             '>' => escaped += "&gt;",
             '"' => escaped += "&quot;",
-            letter if is_obeyed(letter) || matches!(letter, '\u{fffe}' | '\u{ffff}') => {}
+            letter if needs_escape(letter) || matches!(letter, '\u{fffe}' | '\u{ffff}') => {}
             letter => escaped.push(letter),
         }
     }
