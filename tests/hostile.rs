@@ -1,9 +1,9 @@
 //! Small inputs that ask for much memory, time or stack. Each gives an error with a place and the
 //! exit code of wrong input, in a process whose memory is limited.
 
-mod beside;
 mod bundles;
 mod cases;
+mod concurrent;
 mod edits;
 mod isolated;
 mod linear;
@@ -32,7 +32,7 @@ pub fn tests() -> Vec<Trial> {
         .flatten()
         .map(|case| Trial::test(format!("hostile::{}", case.name), move || case.check()));
     let others = [
-        beside::tests(),
+        concurrent::tests(),
         bundles::tests(),
         edits::tests(),
         isolated::tests(),

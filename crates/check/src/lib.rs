@@ -1,4 +1,4 @@
-//! Numeric proof: what a function should return, and how far each executor is from that.
+//! Numeric tests: what a function should return, and how far each executor is from that.
 //!
 //! `cases + modules -> jobs (kernels, rows, expected values) -> results -> verdicts -> report`
 //!

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::package::{OpenedPackage, PackageModules};
 use super::place::{self, Lines};
-use super::{LanguageServer, act, glsl};
+use super::{LanguageServer, actions, glsl};
 use lamplight_catalogue::CatalogueItemKind;
 use lamplight_diagnostic::source::Files;
 use lamplight_permute::Setting;
@@ -246,10 +246,10 @@ fn complete_names(
         add(name, value);
     }
     if !prefix.is_empty() {
-        let (lines, place) = (Lines::new(text), act::import_place(text));
+        let (lines, place) = (Lines::new(text), actions::import_place(text));
         let items = importable_items(server, modules, here).into_iter();
         for (path, name, kind) in items.filter(|(_, name, _)| fits(name)) {
-            let edit = act::import_edit_at(text, &lines, place, &path);
+            let edit = actions::import_edit_at(text, &lines, place, &path);
             let value = json!({
                 "label": name,
                 "kind": kind,

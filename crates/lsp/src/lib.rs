@@ -5,22 +5,22 @@
 //! [`LanguageServer::look`] returns the diagnostics of documents that changed. Nothing here reads
 //! or writes a stream, and a message that is not valid has an answer too.
 
-mod act;
+mod actions;
+mod capabilities;
 mod choose;
 mod complete;
-mod describe;
 mod failure;
+mod file_cache;
 mod format;
 mod glsl;
+mod hover;
+mod inactive;
 mod look;
 mod members;
 mod navigate;
-mod offers;
 mod package;
 mod place;
 mod report;
-mod shade;
-mod unchanged;
 pub mod wire;
 
 use std::cell::RefCell;
@@ -61,7 +61,7 @@ pub struct LanguageServer {
     choices: BTreeMap<PathBuf, ChosenValues>,
     /// By root folder of a package: what was parsed, which a keystroke in one file does not change.
     kept: RefCell<BTreeMap<PathBuf, KeptModules>>,
-    unchanged: Arc<unchanged::Unchanged>,
+    file_cache: Arc<file_cache::FileCache>,
     /// The modules of the package that was asked about last, kept until a document changes.
     modules: Option<(PathBuf, Arc<PackageModules>)>,
     /// The same for the GLSL files of a package.
@@ -80,8 +80,8 @@ type Handler = fn(&mut LanguageServer, &Value) -> Result<Value, RequestError>;
 
 /// What editors ask for.
 const REQUESTS: &[(&str, Handler)] = &[
-    ("textDocument/hover", describe::hover_at),
-    ("textDocument/signatureHelp", describe::signature_help),
+    ("textDocument/hover", hover::hover_at),
+    ("textDocument/signatureHelp", hover::signature_help),
     ("textDocument/definition", navigate::definition_at),
     ("textDocument/references", navigate::references_at),
     ("textDocument/prepareRename", navigate::prepare_rename),
@@ -89,10 +89,10 @@ const REQUESTS: &[(&str, Handler)] = &[
     ("textDocument/documentSymbol", navigate::document_symbols),
     ("workspace/symbol", navigate::workspace_symbols),
     ("textDocument/completion", complete::complete_at),
-    ("textDocument/codeAction", act::code_actions),
-    ("textDocument/formatting", act::format_document),
-    ("textDocument/semanticTokens/full", shade::semantic_tokens),
-    ("textDocument/inlayHint", shade::inlay_hints),
+    ("textDocument/codeAction", actions::code_actions),
+    ("textDocument/formatting", actions::format_document),
+    ("textDocument/semanticTokens/full", inactive::semantic_tokens),
+    ("textDocument/inlayHint", inactive::inlay_hints),
     ("textDocument/codeLens", choose::code_lenses),
     ("workspace/executeCommand", choose::execute_command),
     ("lamplight/permutation", choose::choose_permutation),
@@ -105,7 +105,7 @@ impl LanguageServer {
             documents: BTreeMap::new(),
             choices: BTreeMap::new(),
             kept: RefCell::default(),
-            unchanged: Arc::default(),
+            file_cache: Arc::default(),
             modules: None,
             whole: None,
             changed: VecDeque::new(),
@@ -139,7 +139,7 @@ impl LanguageServer {
 
     fn request(&mut self, method: &str, id: &Value, parameters: &Value) -> Value {
         match method {
-            "initialize" => return answer_message(id, offers::server_capabilities()),
+            "initialize" => return answer_message(id, capabilities::server_capabilities()),
             "shutdown" => {
                 self.is_shut_down = true;
                 return answer_message(id, Value::Null);
@@ -289,7 +289,7 @@ impl LanguageServer {
             Ok(graph) => {
                 let found = look::module_problems(&graph, &settings, &document.path);
                 let mut diagnostics = shown(&opened.sources, &found, Some(&note));
-                diagnostics.extend(shade::inactive_hints(&document.text, &graph, &settings));
+                diagnostics.extend(inactive::inactive_hints(&document.text, &graph, &settings));
                 Some(diagnostics)
             }
             Err(found) => Some(shown(&opened.sources, &found, None)),
@@ -311,7 +311,7 @@ impl LanguageServer {
     }
 
     fn open_package(&self, root: &Path) -> Result<OpenedPackage, (SourceSet, Diagnostics)> {
-        package::open_package(root, self.files, &self.texts(root), &self.unchanged)
+        package::open_package(root, self.files, &self.texts(root), &self.file_cache)
     }
 
     /// A graph with a module as its root.

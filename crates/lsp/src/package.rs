@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::unchanged::Unchanged;
+use super::file_cache::FileCache;
 use lamplight_compose::project;
 use lamplight_compose::resolve::Packages;
 use lamplight_compose::resolve::wesl::{Graph, KeptModules, ModuleNode, PathTarget, load_all};
@@ -23,7 +23,7 @@ struct EditorFiles {
     root: PathBuf,
     below: Box<dyn Files>,
     open: OpenTexts,
-    unchanged: Arc<Unchanged>,
+    file_cache: Arc<FileCache>,
 }
 
 impl Files for EditorFiles {
@@ -32,7 +32,7 @@ impl Files for EditorFiles {
             Some(text) => Ok(Some(text.clone())),
             None if self.below.on_disk(path) => {
                 let file = PathBuf::from(self.below.display(path));
-                self.unchanged.or_read(&file, || self.below.read(path))
+                self.file_cache.or_read(&file, || self.below.read(path))
             }
             None => self.below.read(path),
         }
@@ -84,7 +84,7 @@ pub fn open_package(
     root: &Path,
     library: Embedded,
     texts: &OpenTexts,
-    unchanged: &Arc<Unchanged>,
+    file_cache: &Arc<FileCache>,
 ) -> Result<OpenedPackage, (SourceSet, Diagnostics)> {
     let mut sources = SourceSet::default();
     let packages = match root.exists() {
@@ -100,7 +100,7 @@ pub fn open_package(
     let packages = packages.map(|package| {
         let none = OpenTexts::default();
         // The root comes first. Only its files may be open.
-        cover_files(package, root, own.take().unwrap_or(&none), unchanged)
+        cover_files(package, root, own.take().unwrap_or(&none), file_cache)
     });
     let mut problems = packages.warnings.clone();
     let manifest = project::manifest(root, &mut sources).unwrap_or_else(|more| {
@@ -123,13 +123,13 @@ fn cover_files(
     package: Package,
     root: &Path,
     texts: &OpenTexts,
-    unchanged: &Arc<Unchanged>,
+    file_cache: &Arc<FileCache>,
 ) -> Package {
     let files = Box::new(EditorFiles {
         root: root.to_owned(),
         below: package.files,
         open: Arc::clone(texts),
-        unchanged: Arc::clone(unchanged),
+        file_cache: Arc::clone(file_cache),
     });
     Package { name: package.name, files }
 }

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::{DMat4, DVec2, DVec3};
 
+use super::lathe::{Turn, profile_arcs, turned_shape, waved_shape};
 use super::shape::Shape;
-use super::turned::{Turn, profile_arcs, turned_shape, waved_shape};
 
 /// A kind of chessman. There is no knight, since a lathe cannot turn one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! The factors of a glTF material beside its colour, roughness and emission.
+//! The factors of a glTF material besides its colour, roughness and emission.
 
 use glam::{DVec2, DVec3};
 

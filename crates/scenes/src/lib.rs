@@ -7,6 +7,7 @@ mod chessmen;
 mod environment;
 mod field;
 mod interior;
+mod lathe;
 mod layers;
 mod maps;
 #[cfg(not(target_family = "wasm"))]
@@ -15,7 +16,6 @@ mod palette;
 mod rays;
 pub mod sets;
 mod shape;
-mod turned;
 
 pub use environment::{ENVIRONMENTS, Environment, environment};
 pub use field::{PROBE_SIDES, ProbeField, ProbeGrid};

@@ -3,7 +3,7 @@
 mod complete;
 mod names;
 mod outline;
-mod refer;
+mod references;
 mod rename;
 mod tokens;
 mod units;
@@ -17,12 +17,12 @@ use serde_json::{Value, json};
 pub use complete::complete_at;
 use names::{GlslNames, NameMeaning};
 use outline::{GlslDeclaration, SymbolKind};
-pub use refer::{Whole, read_whole, references_at, signature_help, workspace_symbols};
+pub use references::{Whole, read_whole, references_at, signature_help, workspace_symbols};
 pub use rename::{prepare_rename, rename_symbol};
 
 use super::package::OpenedPackage;
 use super::place::Lines;
-use super::{LanguageServer, describe, navigate, report};
+use super::{LanguageServer, hover, navigate, report};
 use lamplight_bundle::Language;
 use lamplight_compose::project::LIBRARY;
 use lamplight_compose::resolve::{Graph, ROOT, glsl};
@@ -79,7 +79,7 @@ impl OpenGlslFile {
         let module = known.iter().find(|module| module.path == path)?;
         let item = module.items.iter().find(|item| item.name == name)?;
         let code = item.glsl.as_deref()?;
-        Some(describe::of_library(item, "glsl", code, &item.include()))
+        Some(hover::of_library(item, "glsl", code, &item.include()))
     }
 
     fn describe_declared(
@@ -147,7 +147,7 @@ fn describe_macro(server: &LanguageServer, requested: &OpenGlslFile, name: &str)
     let programs = requested.opened.manifest.iter().flat_map(|manifest| &manifest.programs);
     let mut axes = programs.flat_map(|program| program.space.axes());
     let axis = axes.find(|axis| is_macro_of(axis, name))?;
-    Some(describe::describe_flag(server, &requested.opened, &requested.path, &axis.name))
+    Some(hover::describe_flag(server, &requested.opened, &requested.path, &axis.name))
 }
 
 /// Whether a macro stands for an axis or for one of its values.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use super::refer::{PLACES, RequestedSymbol, requested_symbol};
+use super::references::{PLACES, RequestedSymbol, requested_symbol};
 use super::text_of;
 use super::units::{Meant, NamePlace, Units, Use};
 use super::words::is_reserved;

@@ -8,10 +8,10 @@ use super::{
     placed_at,
 };
 use crate::chessmen::{Man, Standing, open_share};
+use crate::lathe::{Turn, framed_shape};
 use crate::layers::Layers;
 use crate::maps::{grid_noise, random_at};
 use crate::shape::Shape;
-use crate::turned::{Turn, framed_shape};
 
 /// The chessmen that stand: kind, whether white, and the place in squares from the middle of the
 /// board.

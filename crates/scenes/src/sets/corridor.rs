@@ -4,8 +4,8 @@ use glam::{DMat4, DVec3};
 
 use super::palette::{self, CHALK, LEAF};
 use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene};
+use crate::lathe::{Turn, turned_shape};
 use crate::shape::Shape;
-use crate::turned::{Turn, turned_shape};
 
 /// Columns of the row, and the distance between them.
 const COLUMNS: usize = 14;

@@ -5,8 +5,8 @@ use glam::{DMat4, DVec2, DVec3};
 use super::floor::tiles;
 use super::palette::{self, AMBER, CHALK, CORAL, LEAF};
 use super::{Eye, Lamp, LampKind, Material, Object, Scene, Set, base_scene, placed_at};
+use crate::lathe::{Turn, turned_shape};
 use crate::shape::Shape;
-use crate::turned::{Turn, turned_shape};
 
 /// The entry in the list of all scenes.
 pub const SET: Set = Set {

@@ -6,10 +6,10 @@ use std::sync::Arc;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::cache::{KeptModules, ParsedModule};
 use super::graph::{
     Bases, Candidate, ConstantUse, Graph, Importer, ModuleNode, PathTarget, certain_errors,
 };
-use super::kept::{KeptModules, ParsedModule};
 use super::lint;
 use super::reduce::Reductions;
 use super::replay::LoadNotes;

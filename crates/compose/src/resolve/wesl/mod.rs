@@ -1,16 +1,16 @@
 //! Builds the graph of WESL modules: every module that is reached under any condition, with every
 //! use resolved to the items that it may mean.
 
+mod cache;
 mod graph;
-mod kept;
 mod lint;
 mod load;
 mod locate;
 mod reduce;
 mod replay;
 
+pub use cache::KeptModules;
 pub use graph::{Candidate, ConstantUse, Graph, ModuleNode, PathTarget};
-pub use kept::KeptModules;
 pub use lint::{PLACES, flag_places, shown_at, undeclared_flags};
 pub use reduce::Reductions;
 

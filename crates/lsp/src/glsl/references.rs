@@ -12,7 +12,7 @@ use super::units::{Meant, NamePlace, Units};
 use super::{read_names, symbol_kind, text_of};
 use crate::package::OpenedPackage;
 use crate::place::Lines;
-use crate::{LanguageServer, describe, report};
+use crate::{LanguageServer, hover, report};
 use lamplight_catalogue as catalogue;
 use lamplight_compose::project::LIBRARY;
 use lamplight_compose::resolve::{ROOT, glsl};
@@ -159,7 +159,7 @@ pub fn signature_help(
     parameters: &Value,
 ) -> Result<Value, RequestError> {
     let (document, byte) = server.requested_place(parameters)?;
-    let Some((name, argument)) = describe::call_around(&document.text, byte) else {
+    let Some((name, argument)) = hover::call_around(&document.text, byte) else {
         return Ok(Value::Null);
     };
     let word = document.text[name.clone()].to_owned();

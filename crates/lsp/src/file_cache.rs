@@ -1,4 +1,4 @@
-//! Texts of files on the disk, kept while the files are as they were when they were read. A
+//! A cache of the files on the disk. A text is valid while its file is as it was when it was read. A
 //! keystroke asks for every file of a package, and asking the system whether a file has changed
 //! takes a fifth of reading it.
 
@@ -25,9 +25,9 @@ struct Stamp {
 
 /// Texts by path.
 #[derive(Debug, Default)]
-pub struct Unchanged(Mutex<HashMap<PathBuf, (Stamp, String)>>);
+pub struct FileCache(Mutex<HashMap<PathBuf, (Stamp, String)>>);
 
-impl Unchanged {
+impl FileCache {
     /// The cached text of a file if the file has not changed, or else the result of `read`.
     pub fn or_read<E>(
         &self,

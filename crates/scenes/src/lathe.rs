@@ -1,4 +1,4 @@
-//! Shapes as a lathe turns them: profiles of lines and arcs, whose corners stay sharp.
+//! Surfaces of revolution: profiles of lines and arcs, whose corners stay sharp.
 
 use std::f64::consts::{PI, TAU};
 
