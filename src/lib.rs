@@ -84,7 +84,8 @@
 //! let text = "fn half(x: f32) -> f32 {\n    return 0.5 * y;\n}\n";
 //! let packages = Packages::of_text("half.wesl", text.to_owned());
 //! let (paths, settings) = (["half.wesl".to_owned()], Settings::default());
-//! let request = lint::Request { packages: &packages, manifest: None, settings: &settings, paths: &paths };
+//! let request =
+//!     lint::Request { packages: &packages, manifest: None, settings: &settings, paths: &paths };
 //! let mut sources = SourceSet::default();
 //! let found = lint::lint(&mut sources, &request).diagnostics;
 //! let place = found[0].labels[0].span;
@@ -169,11 +170,11 @@ pub const LIBRARY_FILES: source::Embedded =
 #[doc(hidden)]
 pub use whole::*;
 
-/// What the command uses beside the stages above.
+/// What the command uses besides the stages above.
 #[cfg(feature = "cli")]
 mod whole {
     pub use lamplight_catalogue as catalogue;
-    pub use lamplight_check as proof;
+    pub use lamplight_check as check;
     pub use lamplight_check::report;
     pub use lamplight_cost as cost;
     pub use lamplight_execute as execute;

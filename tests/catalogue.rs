@@ -8,10 +8,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use lamplight::LIBRARY_FILES;
 use lamplight::catalogue::{self, CatalogueItemKind, preset, probe};
+use lamplight::check::catalogue::{CatalogueFiles, catalogue_files, made_modules};
 use lamplight::diagnostic::Diagnostic;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::project;
-use lamplight::proof::catalogue::{CatalogueFiles, catalogue_files, made_modules};
 use lamplight::source::SourceSet;
 use libtest_mimic::{Failed, Trial};
 

@@ -8,11 +8,11 @@ use std::sync::{Arc, Mutex};
 
 use lamplight::LIBRARY_FILES;
 use lamplight::bundle::Language;
+use lamplight::check::check;
+use lamplight::check::expression::CompiledExpression;
+use lamplight::check::library::Library;
 use lamplight::execute::frame::{Buffers, DrawItem, Drawing, EntryPoint, Mesh, PipelineState};
 use lamplight::execute::{self, Session, executors, kernel};
-use lamplight::proof::check;
-use lamplight::proof::expression::CompiledExpression;
-use lamplight::proof::library::Library;
 use lamplight::source::{Files as _, Memory, SourceSet};
 use libtest_mimic::{Failed, Trial};
 

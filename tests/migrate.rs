@@ -23,7 +23,7 @@ const TESTS: &[(&str, Run)] = &[
     ("text", text),
     ("same_modules", same_modules),
     ("mutants", mutants),
-    ("beside", beside),
+    ("next_to_originals", next_to_originals),
     ("many_values_in_one_line", one_line),
 ];
 
@@ -151,7 +151,7 @@ fn mutants() -> Outcome {
 
 /// The command writes new files beside the originals. A second run replaces the files of the first,
 /// and no others.
-fn beside() -> Outcome {
+fn next_to_originals() -> Outcome {
     let folder = tempfile::tempdir()?;
     let files = engine()?;
     for (path, text) in &files {

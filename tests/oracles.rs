@@ -10,9 +10,9 @@ use std::sync::Mutex;
 
 use lamplight::LIBRARY_FILES;
 use lamplight::bundle::Language;
+use lamplight::check::library::Library;
 use lamplight::execute::kernel::Kernel;
 use lamplight::execute::{Session, executors, kernel, on_thread};
-use lamplight::proof::library::Library;
 use lamplight::source::SourceSet;
 use lamplight_testing::joined_messages;
 use libtest_mimic::{Failed, Trial};

@@ -1,4 +1,4 @@
-//! The library has functions that reproduce a published form exactly, beside safe functions for the
+//! The library has functions that reproduce a published form exactly, besides safe functions for the
 //! same purpose. Each pair is evaluated at an input where the two differ, in both languages, as
 //! their documentation says.
 //!

@@ -1,14 +1,14 @@
 //! Inputs that once caused a failure, one file each in `tests/regressions/KIND/`. `cargo xtask fuzz`
 //! or a person found them. Each must give the same answer twice, without a panic, within seconds.
 
+#[path = "../fuzz/src/checks.rs"]
+mod checks;
 #[path = "../xtask/make/src/fuzz/ending.rs"]
 mod ending;
 #[path = "../fuzz/src/kinds.rs"]
 pub mod kinds;
 #[path = "../xtask/make/src/fuzz/mutate.rs"]
 mod mutate;
-#[path = "../fuzz/src/proofs.rs"]
-mod proofs;
 
 use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ pub fn tests() -> Vec<Trial> {
 }
 
 fn all() -> impl Iterator<Item = &'static Kind> {
-    KINDS.iter().chain(proofs::KINDS)
+    KINDS.iter().chain(checks::KINDS)
 }
 
 /// Every kind of fuzzing has valid inputs to start from and, except for the binary `bundle`, words to

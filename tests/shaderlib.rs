@@ -232,7 +232,7 @@ fn read(path: &str) -> String {
 
 /// A WESL text, composed with the library as the dependency `lamplight`, as for a user.
 fn composed_wesl(text: String) -> Result<String, Failed> {
-    let (mut sources, packages) = beside("main.wesl", text);
+    let (mut sources, packages) = with_library("main.wesl", text);
     let composed = resolve::wesl::load(&mut sources, &packages, "main.wesl").and_then(|graph| {
         compose::wesl::compose(&graph, &Settings::default(), &Options::default())
     });
@@ -241,14 +241,14 @@ fn composed_wesl(text: String) -> Result<String, Failed> {
 
 /// A GLSL text, composed with all that it includes.
 fn composed_glsl(text: String) -> Result<String, Failed> {
-    let (mut sources, packages) = beside("main.frag.glsl", text);
+    let (mut sources, packages) = with_library("main.frag.glsl", text);
     let options = Options { keep: Keep::All, ..Options::default() };
     let composed = resolve::glsl::load(&mut sources, &packages, "main.frag.glsl")
         .and_then(|graph| compose::glsl::compose(&graph, &Settings::default(), &options));
     written(&sources, composed)
 }
 
-fn beside(root: &str, text: String) -> (SourceSet, Packages) {
+fn with_library(root: &str, text: String) -> (SourceSet, Packages) {
     let mut packages = Packages::of_text(root, text);
     packages.add(lamplight::project::library_package());
     (SourceSet::default(), packages)

@@ -12,11 +12,11 @@ use std::sync::{Arc, Mutex};
 use glam::{DMat4, DVec4};
 use lamplight::LIBRARY_FILES;
 use lamplight::bundle::Language;
+use lamplight::check::library::Library;
 use lamplight::execute::fixture::{
     Address, Compare, Fixture, FixtureSampler, FixtureTexture, TextureKind,
 };
 use lamplight::execute::{Session, executors, kernel, on_thread};
-use lamplight::proof::library::Library;
 use lamplight::source::{Memory, SourceSet};
 use lamplight_testing::joined_messages;
 use libtest_mimic::{Failed, Trial};

@@ -27,7 +27,7 @@ const missing = (why: string): typeof PAGES[string] => ({
 
 /** The page of that name. */
 function named(page: string): typeof PAGES[string] {
-    if (location.hash.length > LONGEST) return missing(`The address has more than ${LONGEST.toLocaleString("en")} letters.`);
+    if (location.hash.length > LONGEST) return missing(`The address has more than ${LONGEST.toLocaleString("en")} characters.`);
     // A plain object has names that are none of its pages, such as `constructor`.
     return Object.hasOwn(PAGES, page) ? PAGES[page] : missing(`The site has no page ${repeated(page)}.`);
 }

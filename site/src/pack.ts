@@ -27,9 +27,9 @@ export async function packed(text: string): Promise<string> {
 
 /** The text, or an error if it is damaged or has more than `most` bytes. No more than that is unpacked. */
 export async function unpacked(text: string, most: number): Promise<string> {
-    const letters = atob(text.replaceAll("-", "+").replaceAll("_", "/"));
-    const bytes = new Uint8Array(letters.length);
-    for (let at = 0; at < bytes.length; at++) bytes[at] = letters.charCodeAt(at);
+    const characters = atob(text.replaceAll("-", "+").replaceAll("_", "/"));
+    const bytes = new Uint8Array(characters.length);
+    for (let at = 0; at < bytes.length; at++) bytes[at] = characters.charCodeAt(at);
     const reader = pieces(bytes).pipeThrough(new DecompressionStream("deflate-raw")).getReader();
     const decoder = new TextDecoder("utf-8", { fatal: true });
     const parts: string[] = [];

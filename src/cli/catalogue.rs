@@ -12,9 +12,9 @@ use super::terminal::stdout;
 use crate::LIBRARY_FILES;
 use crate::catalogue::cost::is_record;
 use crate::catalogue::{self as library, figure};
+use crate::check::catalogue::{self, CatalogueFiles};
 use crate::diagnostic::Diagnostics;
 use crate::picture::figure::{Pictures, draw_figures, stale_figures};
-use crate::proof::catalogue::{self, CatalogueFiles};
 use crate::source::{Embedded, SourceSet};
 use crate::{input, output};
 

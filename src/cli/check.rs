@@ -13,18 +13,18 @@ use super::input::{self, LanguageName};
 use super::values;
 use crate::LIBRARY_FILES;
 use crate::bundle::Language;
+use crate::check::check::{
+    CheckOptions, CheckReport, OpenExecutor, lacking_text, report_failures, report_table,
+    stricter_cases,
+};
+use crate::check::library::Library;
+use crate::check::ratchet::{FILE, Ratchet};
 use crate::cli::terminal::stdout;
 use crate::diagnostic::{Diagnostics, nearest_name, stopped_message};
 use crate::execute::on_thread;
 use crate::output::{self, Replace};
 use crate::permute::{Setting, Settings};
 use crate::project::{self, LIBRARY};
-use crate::proof::check::{
-    CheckOptions, CheckReport, OpenExecutor, lacking_text, report_failures, report_table,
-    stricter_cases,
-};
-use crate::proof::library::Library;
-use crate::proof::ratchet::{FILE, Ratchet};
 use crate::report;
 use crate::source::{Disk, SourceSet};
 

@@ -9,11 +9,11 @@ use super::executor;
 use super::failure::{DiagnosticForm, Failure, print_warnings};
 use super::input::LanguageName;
 use super::own::OwnPackage;
+use crate::check::expression::evaluate_expression;
+use crate::check::library::Library;
 use crate::cli::terminal::stdout;
 use crate::diagnostic::stopped_message;
 use crate::execute::{Session, on_thread};
-use crate::proof::expression::evaluate_expression;
-use crate::proof::library::Library;
 use crate::source::SourceSet;
 
 /// Evaluate WGSL expressions that call functions of the library and of your own package.

@@ -10,8 +10,8 @@ use clap::Args;
 use super::failure::Failure;
 use super::terminal::stdout;
 use crate::LIBRARY_FILES;
+use crate::check::library::Library;
 use crate::mutate::{measure_coverage, run_mutants};
-use crate::proof::library::Library;
 use crate::source::{Disk, SourceSet};
 
 /// Put mistakes into functions, one at a time, and see whether the numeric cases notice.

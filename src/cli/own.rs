@@ -6,9 +6,9 @@ use clap::Args;
 
 use super::failure::Failure;
 use crate::LIBRARY_FILES;
+use crate::check::library::Library;
 use crate::permute::Manifest;
 use crate::project::{self, LIBRARY};
-use crate::proof::library::Library;
 use crate::resolve::Packages;
 use crate::source::SourceSet;
 

@@ -8,14 +8,14 @@ use super::check::Selection;
 use super::executor;
 use super::failure::Failure;
 use crate::bundle::Language;
+use crate::check::check::values::{
+    MeasuredCase, RecordedCase, ValueRecord, compare_values, is_record, parse_record, record_text,
+};
+use crate::check::library::lock_sources;
 use crate::cli::terminal::stdout;
 use crate::input;
 use crate::output::{self, Replace};
 use crate::project::{self, LIBRARY};
-use crate::proof::check::values::{
-    MeasuredCase, RecordedCase, ValueRecord, compare_values, is_record, parse_record, record_text,
-};
-use crate::proof::library::lock_sources;
 use crate::source::SourceSet;
 
 /// The largest record that is read.

@@ -4,9 +4,9 @@ use std::sync::Mutex;
 
 use lamplight::LIBRARY_FILES;
 use lamplight::catalogue::{self, plot};
+use lamplight::check::library::Library;
+use lamplight::check::plots::plot_curves;
 use lamplight::execute::executors::eval::EXECUTOR;
-use lamplight::proof::library::Library;
-use lamplight::proof::plots::plot_curves;
 use lamplight::source::{Files as _, SourceSet};
 use libtest_mimic::{Failed, Trial};
 

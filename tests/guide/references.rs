@@ -5,8 +5,8 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use lamplight::check::{formula, laws, tolerance};
 use lamplight::diagnostic::guide;
-use lamplight::proof::{formula, laws, tolerance};
 use libtest_mimic::{Failed, Trial};
 
 use super::{folder, generated, pages, stem, title};

@@ -4,9 +4,9 @@ use std::sync::{Arc, Mutex};
 
 use lamplight::LIBRARY_FILES;
 use lamplight::bundle::Language;
+use lamplight::check::expression;
+use lamplight::check::library::Library;
 use lamplight::diagnostic::render::Form;
-use lamplight::proof::expression;
-use lamplight::proof::library::Library;
 use lamplight::source::{Memory, SourceSet};
 use libtest_mimic::Failed;
 

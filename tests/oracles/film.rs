@@ -98,7 +98,7 @@ impl Film {
 
 /// The reference of `film_sensitivity`, for a path difference in metres.
 fn seen_difference(difference: f64, sign: f64) -> Result<[f64; 3], String> {
-    use lamplight::proof::references::{CallArguments, find_reference};
+    use lamplight::check::references::{CallArguments, find_reference};
     let reference = find_reference("brdf::film", "film_sensitivity").ok_or("no reference")?;
     let found = reference(&mut CallArguments::new(&[difference * 1e9, sign, sign, sign], &[]));
     <[f64; 3]>::try_from(found.value).map_err(|found| format!("not a colour: {found:?}"))

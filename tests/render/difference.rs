@@ -128,7 +128,7 @@ pub fn reviewed(picture: &Picture, name: &str, backend: &str) -> Result<(), Stri
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
         .join("render")
         .join(format!("{name}.{backend}.png"));
-    let shown = beside(&[&wanted, picture, &difference.picture()]);
+    let shown = side_by_side(&[&wanted, picture, &difference.picture()]);
     lamplight::output::write(&path, &shown.png()?).map_err(|error| error.to_string())?;
     Err(format!(
         "{name} looks different from the reviewed picture: {:.2} on average, {:.1} for all but 1 %; see {} (reviewed, drawn, difference)",
@@ -139,7 +139,7 @@ pub fn reviewed(picture: &Picture, name: &str, backend: &str) -> Result<(), Stri
 }
 
 /// Pictures of the same size, side by side.
-fn beside(pictures: &[&Picture]) -> Picture {
+fn side_by_side(pictures: &[&Picture]) -> Picture {
     let (width, height) = (pictures[0].width, pictures[0].height);
     let row = |y: u32| {
         pictures.iter().flat_map(move |picture| {

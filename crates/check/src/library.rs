@@ -1,4 +1,4 @@
-//! Composes the modules of a package for proof: the shipped library, or a user's own package.
+//! Composes the modules of a package for numeric tests: the shipped library, or a user's own package.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};

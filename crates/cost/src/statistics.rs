@@ -18,7 +18,7 @@ pub struct Statistics {
     pub spilled_sgprs: i64,
     /// Bytes of machine code.
     pub code_size: i64,
-    /// Bytes of memory that a thread needs beside its registers.
+    /// Bytes of memory that a thread needs besides its registers.
     pub scratch: i64,
     /// Waves that fit on one SIMD at a time. More waves hide more latency.
     pub subgroups_per_simd: i64,

@@ -15,15 +15,15 @@
 //!    found in the function, or the text is compiled as a whole.
 //! 4. In the texts that naga writes, the author's names are marks ([`mark`]). [`cut`] divides an
 //!    output into declarations; marks are its only references to the author's declarations. All
-//!    declarations beside the author's functions come along with a unit, since its canonical text
+//!    declarations besides the author's functions come along with a unit, since its canonical text
 //!    needed them.
 //! 5. [`pool`] puts the units of a text together in an order that depends on their content. Each
 //!    name is written as naga writes it alone, or numbered where the text has that identifier with
 //!    another meaning ([`names`]). Two declarations of one name that differ are refused.
 //!
 //! Whatever is refused is compiled by naga as a whole, in that target only, and the [`Reason`] is
-//! reported. The reason depends on the text and the target, so that those bytes too are a function of
-//! the text.
+//! reported. The reason depends on the text and the target, so that those bytes too are a function
+//! of the text.
 //!
 //! # What this rests on in naga 30
 //!

@@ -1,4 +1,4 @@
-//! What callers can notice of a function beside its signature.
+//! What callers can notice of a function besides its signature.
 
 use std::collections::BTreeSet;
 

@@ -48,7 +48,7 @@ export async function page(into: HTMLElement) {
     }
     const long = ["key", "against"].find((name) => (query.get(name) ?? "").length > LONGEST_KEY);
     if (long) {
-        return into.replaceChildren(h("h1", {}, "Not found"), h("p", {}, `The ${long} of the address has more than ${LONGEST_KEY} letters.`));
+        return into.replaceChildren(h("h1", {}, "Not found"), h("p", {}, `The ${long} of the address has more than ${LONGEST_KEY} characters.`));
     }
     const state = begun(query, path, studio.presets.find((one) => one.name === query.get("preset")));
     type State = typeof state;

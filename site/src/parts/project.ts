@@ -46,7 +46,7 @@ const MOST_EARLIER = 4;
 /** Characters of a link that browsers and servers still take. */
 const LONGEST = 60000;
 
-/** Bytes of a state: a letter has at most three, and quotation marks and line ends have two letters in
+/** Bytes of a state: a character has at most three, and quotation marks and line ends have two characters in
  * JSON. */
 const MOST_BYTES = 3 * LARGEST;
 

@@ -62,8 +62,8 @@ function checked(files: Record<string, string>) {
     if (names.length > MOST_FILES) throw new WrongState(`it has more than ${MOST_FILES} files`);
     const wrong = names.find((name) => !NAME.test(name) || name.length > LONGEST_NAME);
     if (wrong !== undefined) throw new WrongState(`a file cannot be named "${repeated(wrong)}"`);
-    const letters = names.reduce((sum, name) => sum + files[name].length, 0);
-    if (letters > LARGEST) throw new WrongState(`its files have more than ${LARGEST.toLocaleString("en")} characters in total`);
+    const length = names.reduce((sum, name) => sum + files[name].length, 0);
+    if (length > LARGEST) throw new WrongState(`its files have more than ${LARGEST.toLocaleString("en")} characters in total`);
 }
 
 /** A project, completed with what `base` has; or an error that says what is wrong. Without `isStrict`,

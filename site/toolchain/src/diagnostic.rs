@@ -38,7 +38,7 @@ pub struct Label {
 pub struct Position {
     /// From 1.
     pub line: u32,
-    /// In letters, from 1.
+    /// In characters, from 1.
     pub column: u32,
     /// UTF-16 units from the start of the text, as editors count.
     pub offset: u32,

@@ -10,12 +10,12 @@ use crate::LIBRARY_FILES;
 use crate::bundle::{Conventions, Language};
 use crate::catalogue::cost::{AxisCost, Chip, Costs, FIGURES, SHOWN};
 use crate::catalogue::{self, CatalogueItem, quality};
+use crate::check::library::{Library, lock_sources};
+use crate::check::quality::{FUNCTION, quality_module};
 use crate::cost::device::Device;
 use crate::cost::permutations::CostChange;
 use crate::cost::{self, Cost, Meter};
 use crate::project;
-use crate::proof::library::{Library, lock_sources};
-use crate::proof::quality::{FUNCTION, quality_module};
 use crate::source::SourceSet;
 
 /// Measures every cost that the catalogue shows of the library.

@@ -14,7 +14,7 @@ use naga::ScalarKind;
 /// The most values of one domain.
 const MOST: u32 = CASE_ROWS as u32;
 
-/// A kind of domain in a case file: its key, the keys that may stand beside that, and how it is
+/// A kind of domain in a case file: its key, the keys that may accompany it, and how it is
 /// read.
 struct DomainKind {
     key: &'static str,

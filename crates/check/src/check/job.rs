@@ -64,7 +64,7 @@ pub enum BoundOracle {
 #[derive(Clone)]
 pub struct Goal {
     pub expected: Expected,
-    /// An error that is allowed for each word beside the terms of the case; may be empty.
+    /// An error that is allowed for each word in addition to the terms of the case; may be empty.
     pub errors: Vec<f64>,
     /// Whether rounding may decide a comparison on the way to the value.
     pub doubtful: bool,

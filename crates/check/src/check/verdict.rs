@@ -136,7 +136,7 @@ pub fn compare_goal(
 }
 
 /// Compares with one accepted value. `terms` has the values of the row's formulas. `of` is the
-/// accepted value, and for each word an error that is allowed beside the terms.
+/// accepted value, and for each word an error that is allowed in addition to the terms.
 fn compare_one(
     job: &CaseJob<'_>,
     terms: &[f64],

@@ -97,7 +97,7 @@ fn quantise(m: DVec4) -> DVec4 {
     DMat4::from_cols_array_2d(&ROWS) * m + OFFSET
 }
 
-/// By the numerical inverse of the matrix, not by the one that is printed beside it.
+/// By the numerical inverse of the matrix, not by the one that is printed next to it.
 fn dequantise(q: DVec4) -> DVec4 {
     DMat4::from_cols_array_2d(&ROWS).inverse() * (q - OFFSET)
 }

@@ -66,7 +66,7 @@ pub fn packages(
     dependencies::packages(root, root_package(Box::new(disk)), sources, library)
 }
 
-/// A package that has no folder yet, with the library beside it. Its files come from elsewhere,
+/// A package that has no folder yet, together with the library. Its files come from elsewhere,
 /// such as an editor.
 pub fn packages_without_folder(library: Embedded) -> Packages {
     Packages::new(root_package(Box::new(Memory::default())), vec![library_package(library)])

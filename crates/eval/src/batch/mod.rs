@@ -20,7 +20,7 @@ use lamplight_files::limits::EVAL_STEPS;
 /// The most slots of a program that runs in lock-step; larger ones run lane by lane.
 const MOST_SLOTS: usize = 1 << 18;
 
-/// A machine, and the memory of many lanes beside its own.
+/// A machine, and the memory of many lanes besides its own.
 #[derive(Debug)]
 pub struct Batch<'p> {
     machine: Machine<'p, f32>,

@@ -21,7 +21,7 @@
 //! require = "shadow != none => lights != none"
 //! doc = "A shadow needs a light."
 //!
-//! [features]                              # what conditions may name beside axes
+//! [features]                              # what conditions may name besides axes
 //! FOG = true                              # on, unless it is turned off
 //! MSAA = { doc = "Several samples.", default = false, excludes = ["WEBGL2"] }
 //! WEBGL2 = false

@@ -25,7 +25,7 @@ pub struct Sentence {
     pub code: Option<&'static Code>,
     pub message: String,
     pub notes: Vec<String>,
-    /// A second place, beside that of naga's error, with its label.
+    /// A second place, besides that of naga's error, with its label.
     pub beside: Option<(naga::Span, String)>,
 }
 

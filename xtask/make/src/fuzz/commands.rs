@@ -16,7 +16,7 @@ pub struct Surface {
     file: &'static str,
     arguments: &'static [&'static str],
     /// Files that must be beside it.
-    beside: &'static [(&'static str, &'static str)],
+    companions: &'static [(&'static str, &'static str)],
     /// A folder of the repository with valid files, and how their names end.
     corpus: (&'static str, &'static str),
     words: &'static str,
@@ -31,7 +31,7 @@ pub const SURFACES: &[Surface] = &[
         name: "cases",
         file: "m.toml",
         arguments: &["check", "m.toml"],
-        beside: &[("m.wesl", MODULE)],
+        companions: &[("m.wesl", MODULE)],
         corpus: ("tests/regressions/cases", ""),
         words: "[[case]] function inputs values grid log random unit hemisphere grazing same around \
             special count ulps seed formula rows expect oracle laws range rising where near margin \
@@ -53,7 +53,7 @@ pub const SURFACES: &[Surface] = &[
             "-o",
             "out.png",
         ],
-        beside: &[],
+        companions: &[],
         corpus: ("tests/regressions/picture", ""),
         words: "#?RADIANCE FORMAT=32-bit_rle_rgbe -Y +X 0 1 8 4294967295 \n EXPOSURE=",
     },
@@ -61,7 +61,7 @@ pub const SURFACES: &[Surface] = &[
         name: "package",
         file: "wesl.toml",
         arguments: &["compose", "m.wesl"],
-        beside: &[("m.wesl", MODULE)],
+        companions: &[("m.wesl", MODULE)],
         corpus: ("tests/regressions/package", ""),
         words: "[package] name root edition [dependencies] path = \"..\" \"/etc\" \".\" \"m\" { }",
     },
@@ -80,7 +80,7 @@ pub fn fuzz(surface: &Surface, seed: u64, seconds: u64) -> Result<usize, Command
     let program = beside_this()?;
     let folder = root().join("target/fuzz/commands").join(surface.name);
     fs::create_dir_all(&folder).map_err(environment)?;
-    for (name, text) in surface.beside {
+    for (name, text) in surface.companions {
         fs::write(folder.join(name), text).map_err(environment)?;
     }
     let corpus = mutate::corpus_of(&root(), &[surface.corpus]);

@@ -20,7 +20,7 @@ use lamplight_syntax::wesl::{
 /// The most modules that are read whole for one root module.
 const NEAR_MODULES: usize = 12;
 
-/// The most imports that these may have together, beside those of the root module.
+/// The most imports that these may have in total, besides those of the root module.
 const NEAR_IMPORTS: usize = 64;
 
 /// Reduces what is far from a root module, over many readings of one package.

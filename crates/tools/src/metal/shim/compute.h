@@ -1,4 +1,4 @@
-// What kernels use beside: atomics, barriers, functions over a simdgroup. They are declared for
+// What kernels use besides: atomics, barriers, functions over a simdgroup. They are declared for
 // the validator; nothing runs them here.
 #pragma once
 

@@ -6,13 +6,13 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 
 use lamplight::bundle::Language;
+use lamplight::check::check::{OpenExecutor, failures_as_text, report_failures};
+use lamplight::check::library::Library;
 use lamplight::diagnostic::render::{Form, render};
 use lamplight::execute::executors;
 use lamplight::lsp::LanguageServer;
 use lamplight::model::View;
 use lamplight::picture::Picture;
-use lamplight::proof::check::{OpenExecutor, failures_as_text, report_failures};
-use lamplight::proof::library::Library;
 use lamplight::scene::Equirect;
 use lamplight::source::{Memory, SourceSet};
 use serde_json::{Value, json};
