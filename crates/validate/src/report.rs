@@ -9,7 +9,8 @@ use naga::valid::ValidationError;
 
 use super::{hints, words};
 use lamplight_bundle::Language;
-use lamplight_compose::Composed;
+use lamplight_compose::{Composed, Part};
+use lamplight_diagnostic::source::Span;
 use lamplight_diagnostic::{Diagnostic, Diagnostics, codes};
 
 /// An error of the WGSL parser, with all its labels and notes.
@@ -127,7 +128,80 @@ pub fn validation_error(
     let diagnostic = sentence.beside.into_iter().fold(diagnostic, |diagnostic, (span, words)| {
         label_or_note(diagnostic, composed, span.to_range(), &words)
     });
+    let diagnostic = label_named(diagnostic, composed, error.as_inner());
     sentence.notes.into_iter().fold(diagnostic, Diagnostic::note)
+}
+
+/// Adds a label to a diagnostic that has none: at what naga names in the error, or else at the first
+/// declaration that an author wrote.
+fn label_named(diagnostic: Diagnostic, composed: &Composed, error: &ValidationError) -> Diagnostic {
+    if !diagnostic.labels.is_empty() {
+        return diagnostic;
+    }
+    let (name, words) = match error {
+        ValidationError::EntryPoint { name, .. } => (name.as_str(), "this entry point"),
+        ValidationError::Function { name, .. } => (name.as_str(), "this function"),
+        ValidationError::GlobalVariable { name, .. } => (name.as_str(), "this variable"),
+        ValidationError::Constant { name, .. } => (name.as_str(), "this constant"),
+        ValidationError::Override { name, .. } => (name.as_str(), "this override"),
+        ValidationError::Type { name, .. } => (name.as_str(), TYPE),
+        ValidationError::InvalidHandle(_)
+        | ValidationError::Corrupted
+        | ValidationError::Layouter(_)
+        | ValidationError::ConstExpression { .. }
+        | ValidationError::ArraySizeError { .. } => ("", "in this module"),
+    };
+    let place = name_place(composed, name).or_else(|| first_place(composed));
+    match place {
+        Some(span) => diagnostic.at(span, words),
+        None => diagnostic,
+    }
+}
+
+/// Where an author wrote the name in its declaration.
+fn name_place(composed: &Composed, name: &str) -> Option<Span> {
+    if name.is_empty() {
+        return None;
+    }
+    let declares = |part: &&Part| part.names.iter().any(|found| found == name);
+    let range = match composed.parts.iter().find(declares) {
+        Some(part) => part.range.clone(),
+        None => 0..composed.text.len(),
+    };
+    let text = composed.text.get(range.clone())?;
+    let found: Vec<usize> = text
+        .match_indices(name)
+        .map(|(at, _)| at)
+        .filter(|at| !continues(&text[..*at]) && !starts_word(&text[at + name.len()..]))
+        .collect();
+    // Comments before the declaration may have the name too.
+    let is_declared = |at: &&usize| {
+        let before = text[..**at].trim_end();
+        let keyword = DECLARING.iter().find_map(|keyword| before.strip_suffix(keyword));
+        before.ends_with('>') || keyword.is_some_and(|rest| !continues(rest))
+    };
+    let start = range.start + found.iter().find(is_declared).or(found.last())?;
+    composed.map.lookup(start..start + name.len())
+}
+
+/// What comes before a declared name.
+const DECLARING: [&str; 7] = ["fn", "var", "const", "override", "struct", "alias", "void"];
+
+/// Whether a word that ends a text could go on.
+fn continues(text: &str) -> bool {
+    text.chars().next_back().is_some_and(|last| last == '_' || last.is_alphanumeric())
+}
+
+fn starts_word(text: &str) -> bool {
+    text.chars().next().is_some_and(|first| first == '_' || first.is_alphanumeric())
+}
+
+/// The first declaration that comes from an author's file.
+fn first_place(composed: &Composed) -> Option<Span> {
+    let mut parts = composed.parts.iter();
+    parts
+        .find_map(|part| composed.map.lookup(part.range.clone()))
+        .or_else(|| composed.map.lookup(0..1))
 }
 
 /// Adds a label if the range comes from an author's file, else a note that quotes the composed

@@ -1,15 +1,19 @@
 //! Entry points, and what enters and leaves them.
 
 use naga::valid::{EntryPointError, VaryingError};
-use naga::{Function, Module};
+use naga::{EntryPoint, Function, Module};
 
 use super::{
     Sentence, foreign_words, function, inner_type_text, lacking_words, spaced_name, stage_name,
-    type_text,
+    stages, type_text,
 };
 use lamplight_diagnostic::codes;
 
-pub fn entry_words(module: &Module, of: Option<&Function>, error: &EntryPointError) -> Sentence {
+pub fn entry_words(
+    module: &Module,
+    point: Option<&EntryPoint>,
+    error: &EntryPointError,
+) -> Sentence {
     let text = match error {
         EntryPointError::Conflict => "two entry points of one stage have this name".to_owned(),
         EntryPointError::MissingVertexOutputPosition => {
@@ -22,11 +26,7 @@ pub fn entry_words(module: &Module, of: Option<&Function>, error: &EntryPointErr
             "only compute shaders have a workgroup size".to_owned()
         }
         EntryPointError::OutOfRangeWorkgroupSize => "the workgroup size is out of range".to_owned(),
-        EntryPointError::ForbiddenStageOperations => {
-            "this stage cannot do what the function does: derivatives, and sampling without a \
-             level, are for fragment shaders"
-                .to_owned()
-        }
+        EntryPointError::ForbiddenStageOperations => return stage_words(module, point),
         EntryPointError::InvalidGlobalUsage(handle, _) => {
             format!("{} is used in a way that it does not allow", variable_words(module, *handle))
         }
@@ -38,7 +38,8 @@ pub fn entry_words(module: &Module, of: Option<&Function>, error: &EntryPointErr
         EntryPointError::Result(error) => return varying_words(module, error),
         EntryPointError::Function(error) => {
             let nothing = Function::default();
-            return function::function_words(module, of.unwrap_or(&nothing), error);
+            let of = point.map_or(&nothing, |point| &point.function);
+            return function::function_words(module, of, error);
         }
         EntryPointError::UnsupportedCapability(capabilities) => {
             return lacking_words(*capabilities);
@@ -64,6 +65,19 @@ pub fn entry_words(module: &Module, of: Option<&Function>, error: &EntryPointErr
         }
     };
     Sentence::plain(text)
+}
+
+/// The message for an operation that the stage of an entry point does not have.
+fn stage_words(module: &Module, point: Option<&EntryPoint>) -> Sentence {
+    let found =
+        point.and_then(|point| stages::forbidden_operation(module, &point.function, point.stage));
+    match found {
+        Some((span, sentence)) => {
+            let beside = Some((span, "not in this stage".to_owned()));
+            Sentence { beside, ..Sentence::plain(sentence) }
+        }
+        None => Sentence::plain("this stage cannot do what the function does"),
+    }
 }
 
 fn variable_words(module: &Module, handle: naga::Handle<naga::GlobalVariable>) -> String {

@@ -8,6 +8,7 @@ mod entry;
 mod expression;
 mod function;
 mod global;
+mod stages;
 mod tokens;
 mod types;
 
@@ -71,7 +72,7 @@ pub fn validation_words(module: &Module, error: &ValidationError) -> Sentence {
         }
         ValidationError::EntryPoint { stage, name, source } => {
             let point = module.entry_points.iter().find(|point| point.name == *name);
-            let sentence = entry::entry_words(module, point.map(|point| &point.function), source);
+            let sentence = entry::entry_words(module, point, source);
             sentence.note(format!("in entry point `{name}` ({})", stage_name(*stage)))
         }
     }
