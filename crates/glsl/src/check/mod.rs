@@ -1,0 +1,424 @@
+//! The checker: resolves names, gives every expression its type, and makes conversions explicit.
+//!
+//! It reports in the words of GLSL, and goes on after an error with the next statement.
+
+mod call;
+mod construct;
+mod decl;
+pub(crate) mod fold;
+mod function;
+mod expr;
+mod layout;
+mod operator;
+mod stmt;
+mod version;
+
+use std::collections::BTreeSet;
+
+use lamplight_diagnostic::source::{SourceId, Span};
+use lamplight_diagnostic::{Code, Diagnostic, Diagnostics, codes};
+use rustc_hash::FxHashMap;
+
+use crate::ast;
+use crate::builtin::variables::{CONSTANTS, find_builtin};
+use crate::lexer::At;
+use crate::parse::Parsed;
+use crate::tree::{
+    Access, Expr, ExprKind, Interpolation, Known, Layout, Number, Place, Shader, Stage, Var,
+};
+use crate::types::{INT, Type};
+pub use version::Version;
+
+/// An error that was reported.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Failed;
+
+pub(crate) type Res<T> = Result<T, Failed>;
+
+/// What a name means.
+#[derive(Debug, Clone)]
+enum Symbol {
+    Var(u32),
+    Struct(u32),
+    /// A member of a block without an instance name: the variable and the member.
+    Member(u32, u32),
+    Functions(Vec<u32>),
+}
+
+/// What checking gives.
+#[derive(Debug)]
+pub struct Checked {
+    /// The typed tree.
+    pub shader: Shader,
+    /// Warnings.
+    pub warnings: Diagnostics,
+}
+
+/// Checks a parsed text of a stage. The spans of diagnostics are in `source`.
+///
+/// # Errors
+/// Every mistake of the text: of its grammar, or of its types.
+pub fn check(
+    text: &str,
+    parsed: &Parsed<'_>,
+    stage: Stage,
+    source: SourceId,
+) -> Result<Checked, Diagnostics> {
+    let version = Version::read(text, &parsed.lexed);
+    let mut checker = Checker::new(stage, version, source);
+    for error in &parsed.errors {
+        checker.report(codes::GLSL_ERROR, error.at, &error.message, "");
+    }
+    for (item, at) in &parsed.items {
+        let _: Res<()> = checker.item(item, *at);
+    }
+    checker.finish();
+    let Checker { shader, problems, warnings, .. } = checker;
+    if problems.is_empty() { Ok(Checked { shader, warnings }) } else { Err(problems) }
+}
+
+pub(crate) struct Checker<'a> {
+    source: SourceId,
+    version: Version,
+    shader: Shader,
+    scopes: Vec<FxHashMap<&'a str, Symbol>>,
+    /// Variables of the language that the text names.
+    builtins: FxHashMap<&'a str, u32>,
+    /// Default values of specialisation constants, for sizes.
+    defaults: FxHashMap<u32, Known>,
+    /// How large arrays without a size must be for the constant indices into them.
+    grown: FxHashMap<u32, u32>,
+    /// Whether specialisation constants count with their default values.
+    sizing: bool,
+    /// The function that is read, and what it calls.
+    function: Option<u32>,
+    calls: BTreeSet<u32>,
+    effects: bool,
+    /// How packing and matrices lie in blocks, as `layout(...) uniform;` sets it.
+    packing: [Layout; 2],
+    /// How many loops and switches are around.
+    loops: u32,
+    switches: u32,
+    problems: Diagnostics,
+    warnings: Diagnostics,
+}
+
+impl<'a> Checker<'a> {
+    fn new(stage: Stage, version: Version, source: SourceId) -> Self {
+        let shader = Shader {
+            stage,
+            version: version.number,
+            es: version.es,
+            structs: Vec::new(),
+            vars: Vec::new(),
+            functions: Vec::new(),
+            order: Vec::new(),
+            local_size: [1; 3],
+            local_size_ids: [None; 3],
+            early_tests: false,
+            depth_mode: None,
+        };
+        Self {
+            source,
+            version,
+            shader,
+            scopes: vec![FxHashMap::default()],
+            builtins: FxHashMap::default(),
+            defaults: FxHashMap::default(),
+            grown: FxHashMap::default(),
+            sizing: false,
+            function: None,
+            calls: BTreeSet::new(),
+            effects: false,
+            packing: [Layout::default(), Layout::default()],
+            loops: 0,
+            switches: 0,
+            problems: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
+    fn report(&mut self, code: &'static Code, at: At, message: &str, note: &str) {
+        let mut problem = Diagnostic::error(code, message).at(self.span(at), "here");
+        if !note.is_empty() {
+            problem = problem.note(format!("help: {note}"));
+        }
+        if self.problems.len() < 100 {
+            self.problems.push(problem);
+        }
+    }
+
+    fn span(&self, at: At) -> Span {
+        Span::new(self.source, at.range())
+    }
+
+    /// A mistake by the rules of GLSL.
+    fn fail<T>(&mut self, at: At, message: impl AsRef<str>) -> Res<T> {
+        self.report(codes::GLSL_ERROR, at, message.as_ref(), "");
+        Err(Failed)
+    }
+
+    /// Valid GLSL that has no translation.
+    fn refuse<T>(&mut self, at: At, message: impl AsRef<str>) -> Res<T> {
+        self.report(codes::GLSL_NOT_TRANSLATED, at, message.as_ref(), "");
+        Err(Failed)
+    }
+
+    fn warn(&mut self, at: At, message: impl Into<String>) {
+        let span = self.span(at);
+        self.warnings.push(Diagnostic::warning(codes::GLSL_NOT_TRANSLATED, message).at(span, "here"));
+    }
+
+    /// A type in the words of the text.
+    fn type_name(&self, ty: &Type) -> String {
+        let name = |index: u32| self.shader.structs[index as usize].name.clone();
+        match ty {
+            Type::Struct(index) => name(*index),
+            Type::Array(..) => match ty.innermost() {
+                Type::Struct(index) => format!("{}[]", name(*index)),
+                _ => ty.to_string(),
+            },
+            _ => ty.to_string(),
+        }
+    }
+
+    /// Declares a name in the innermost scope.
+    fn declare(&mut self, name: ast::Name<'a>, symbol: Symbol) -> Res<()> {
+        if name.text.starts_with("gl_") {
+            return self.fail(name.at, "names that begin with `gl_` are reserved");
+        }
+        if name.text.len() > 1000 {
+            return self.fail(name.at, "the name is longer than 1000 bytes");
+        }
+        let Some(scope) = self.scopes.last_mut() else { return Ok(()) };
+        if scope.contains_key(name.text) {
+            return self.fail(name.at, format!("`{}` is declared twice in this scope", name.text));
+        }
+        scope.insert(name.text, symbol);
+        Ok(())
+    }
+
+    fn lookup(&self, name: &str) -> Option<&Symbol> {
+        self.scopes.iter().rev().find_map(|scope| scope.get(name))
+    }
+
+    fn scoped<T>(&mut self, check: impl FnOnce(&mut Self) -> T) -> T {
+        self.scopes.push(FxHashMap::default());
+        let result = check(self);
+        self.scopes.pop();
+        result
+    }
+
+    fn new_var(&mut self, name: &str, ty: Type, place: Place, at: At) -> u32 {
+        let var = Var {
+            name: name.to_owned(),
+            ty,
+            place,
+            at,
+            init: None,
+            known: None,
+            layout: Layout::default(),
+            interpolation: Interpolation::default(),
+            access: Access::default(),
+            written: false,
+            indexed: false,
+            users: Vec::new(),
+            open: false,
+        };
+        self.shader.vars.push(var);
+        self.shader.vars.len() as u32 - 1
+    }
+
+    fn var(&self, index: u32) -> &Var {
+        &self.shader.vars[index as usize]
+    }
+
+    fn var_mut(&mut self, index: u32) -> &mut Var {
+        &mut self.shader.vars[index as usize]
+    }
+
+    /// The expression that a name is.
+    fn name_expr(&mut self, name: &'a str, at: At) -> Res<Expr> {
+        match self.lookup(name).cloned() {
+            Some(Symbol::Var(var)) => Ok(self.var_expr(var, at)),
+            Some(Symbol::Member(var, member)) => {
+                let base = self.var_expr(var, at);
+                let Type::Struct(index) = base.ty else { return Err(Failed) };
+                let ty = self.shader.structs[index as usize].members[member as usize].ty.clone();
+                Ok(Expr { kind: ExprKind::Member(Box::new(base), member), ty, at, known: None })
+            }
+            Some(Symbol::Struct(_)) => self.fail(at, format!("`{name}` is a type")),
+            Some(Symbol::Functions(_)) => {
+                self.fail(at, format!("`{name}` is a function, and is not called here"))
+            }
+            None => match self.builtin_var(name, at)? {
+                Some(expr) => Ok(expr),
+                None => self.fail_unknown(name, at),
+            },
+        }
+    }
+
+    fn fail_unknown<T>(&mut self, name: &str, at: At) -> Res<T> {
+        let known: Vec<&str> = self.scopes.iter().flat_map(|scope| scope.keys().copied()).collect();
+        let mut sorted = known;
+        sorted.sort_unstable();
+        let problem = Diagnostic::error(codes::GLSL_ERROR, format!("`{name}` is not declared"))
+            .at(self.span(at), "here")
+            .suggest(name, sorted);
+        self.problems.push(problem);
+        Err(Failed)
+    }
+
+    fn builtin_var(&mut self, name: &'a str, at: At) -> Res<Option<Expr>> {
+        if let Some((_, value)) = CONSTANTS.iter().find(|(constant, _)| *constant == name) {
+            let number = Number::Int(*value);
+            return Ok(Some(literal(number, at)));
+        }
+        if name == "gl_WorkGroupSize" && self.shader.stage == Stage::Compute {
+            return Ok(Some(self.group_size(at)));
+        }
+        let Some(index) = self.builtin_index(name, at)? else { return Ok(None) };
+        Ok(Some(self.var_expr(index, at)))
+    }
+
+    fn group_size(&self, at: At) -> Expr {
+        let numbers: Vec<Expr> =
+            self.shader.local_size.iter().map(|size| literal(Number::Uint(*size), at)).collect();
+        let known = self.shader.local_size.iter().map(|size| Number::Uint(*size)).collect();
+        let ty = Type::Vector(crate::types::Scalar::Uint, 3);
+        Expr { kind: ExprKind::Construct(numbers), ty, at, known: Some(known) }
+    }
+
+    /// The variable of the language with that name.
+    fn builtin_index(&mut self, name: &'a str, at: At) -> Res<Option<u32>> {
+        if let Some(index) = self.builtins.get(name) {
+            return Ok(Some(*index));
+        }
+        let Some(builtin) = find_builtin(name, self.shader.stage) else { return Ok(None) };
+        let Some(ty) = crate::types::named_type(builtin.ty) else { return Ok(None) };
+        let ty = match builtin.array {
+            Some(0) => ty.array(None),
+            Some(size) => ty.array(Some(size)),
+            None if name == "gl_SampleMaskIn" => ty.array(Some(1)),
+            None => ty,
+        };
+        let index = self.new_var(name, ty, Place::Builtin(builtin), at);
+        self.builtins.insert(name, index);
+        Ok(Some(index))
+    }
+
+    fn var_expr(&mut self, index: u32, at: At) -> Expr {
+        if let Some(function) = self.function {
+            let users = &mut self.var_mut(index).users;
+            if users.last() != Some(&function) {
+                users.push(function);
+            }
+        }
+        let var = self.var(index);
+        let mut known = var.known.clone();
+        if known.is_none() && self.sizing {
+            known = self.defaults.get(&index).cloned();
+        }
+        Expr { kind: ExprKind::Var(index), ty: var.ty.clone(), at, known }
+    }
+
+    /// Facts that need the whole text.
+    fn finish(&mut self) {
+        let mut changed = true;
+        while changed {
+            changed = false;
+            for index in 0..self.shader.functions.len() {
+                let function = &self.shader.functions[index];
+                let reached =
+                    function.calls.iter().any(|call| self.shader.functions[*call as usize].effects);
+                if reached && !function.effects {
+                    self.shader.functions[index].effects = true;
+                    changed = true;
+                }
+            }
+        }
+        self.shader.vars.iter_mut().for_each(|var| {
+            var.users.sort_unstable();
+            var.users.dedup();
+        });
+        self.size_arrays();
+        self.refuse_recursion();
+        let unfinished: Vec<(At, String)> = self
+            .shader
+            .functions
+            .iter()
+            .filter(|callee| callee.body.is_none())
+            .filter(|callee| self.is_called(callee.name.as_str()))
+            .map(|callee| (callee.at, format!("`{}` has no definition", callee.name)))
+            .collect();
+        for (at, message) in unfinished {
+            let _: Res<()> = self.fail(at, message);
+        }
+        let is_main = |function: &&crate::tree::Function| function.name == "main";
+        if self.problems.is_empty() && !self.shader.functions.iter().any(|f| is_main(&f)) {
+            let end = At::default();
+            let _: Res<()> = self.fail(end, "the text has no function `main`");
+        }
+    }
+
+    /// Arrays without a size get that of the largest index into them.
+    fn size_arrays(&mut self) {
+        for (index, var) in self.shader.vars.iter_mut().enumerate() {
+            if let Type::Array(element, None) = &var.ty
+                && let Some(size) = self.grown.get(&(index as u32))
+            {
+                var.ty = Type::Array(std::rc::Rc::clone(element), Some(*size));
+            }
+        }
+    }
+
+    fn is_called(&self, name: &str) -> bool {
+        let functions = &self.shader.functions;
+        functions.iter().any(|caller| {
+            caller.calls.iter().any(|call| functions[*call as usize].name == name)
+                && caller.body.is_some()
+        }) && functions.iter().filter(|f| f.name == name).all(|f| f.body.is_none())
+    }
+
+    /// Functions must not call themselves, not even through others.
+    fn refuse_recursion(&mut self) {
+        let functions = &self.shader.functions;
+        let mut reached: Vec<BTreeSet<u32>> =
+            functions.iter().map(|f| f.calls.iter().copied().collect()).collect();
+        for _ in 0..functions.len() {
+            let next: Vec<BTreeSet<u32>> = reached
+                .iter()
+                .map(|set| {
+                    let further = set.iter().flat_map(|call| reached[*call as usize].iter());
+                    set.iter().chain(further).copied().collect()
+                })
+                .collect();
+            if next == reached {
+                break;
+            }
+            reached = next;
+        }
+        let found = (0..functions.len()).find(|index| reached[*index].contains(&(*index as u32)));
+        if let Some(index) = found {
+            let (at, name) = (functions[index].at, functions[index].name.clone());
+            let _: Res<()> = self.fail(at, format!("`{name}` calls itself"));
+        }
+    }
+}
+
+/// A number that stands in the text.
+pub(crate) fn literal(number: Number, at: At) -> Expr {
+    Expr {
+        kind: ExprKind::Literal(number, None),
+        ty: Type::Scalar(number.scalar()),
+        at,
+        known: Some([number].into()),
+    }
+}
+
+/// An `int` that stands in the text.
+pub(crate) fn int_literal(value: i32, at: At) -> Expr {
+    let expr = literal(Number::Int(value), at);
+    debug_assert!(expr.ty == INT);
+    expr
+}
