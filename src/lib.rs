@@ -144,6 +144,7 @@ pub use lamplight_eval as eval;
 pub use lamplight_files::{input, limits, output, sandbox};
 pub use lamplight_generate as generate;
 pub use lamplight_generate::{cache, store};
+pub use lamplight_glsl as glsl;
 pub use lamplight_keys as keys;
 #[doc(hidden)]
 pub use lamplight_link as link;

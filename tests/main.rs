@@ -29,6 +29,7 @@ mod examples;
 mod fragments;
 mod frames;
 mod generate;
+mod glsl_values;
 mod glslang;
 mod guide;
 mod harness;
@@ -91,6 +92,7 @@ const KINDS: &[fn() -> Vec<Trial>] = &[
     hostile::tests,
     keys::tests,
     library::tests,
+    glsl_values::tests,
     link::tests,
     link_random::tests,
     lsp::tests,

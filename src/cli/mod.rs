@@ -38,6 +38,7 @@ mod show;
 mod stream;
 mod terminal;
 mod text;
+mod translate;
 mod validated;
 mod values;
 mod variants;
@@ -74,6 +75,7 @@ enum Command {
     Show(show::Arguments),
     Compose(compose::Arguments),
     Compile(compile::Arguments),
+    Translate(translate::Arguments),
     Lint(lint::Arguments),
     Migrate(migrate::Arguments),
     Gen(generate::Arguments),
@@ -218,6 +220,7 @@ fn dispatch_command(
         Command::Show(arguments) => show::run_show(arguments),
         Command::Compose(arguments) => compose::run_compose(arguments, form),
         Command::Compile(arguments) => compile::run_compile(arguments, form),
+        Command::Translate(arguments) => translate::run_translate(arguments, form),
         Command::Lint(arguments) => lint::run_lint(arguments, form),
         Command::Migrate(arguments) => migrate::run_migrate(arguments, form),
         Command::Gen(arguments) => generate::run_generate(arguments, form),

@@ -72,6 +72,11 @@ const COMMANDS: &[XtaskCommand] = &[
         |arguments| make::run("fuzz", arguments),
     ),
     (
+        "conformance",
+        "how much GLSL of other projects is translated to WGSL, beside glslang: [-I DIR]... DIR...",
+        |arguments| make::run("conformance", arguments),
+    ),
+    (
         "frames",
         "draw permutations of `forward` from the bytes of every target: [--permutations N] [--target T]",
         frames::run,

@@ -76,7 +76,8 @@ pub const fn mark(text: &str) -> Kind {
 
 /// Splits a text. Whatever cannot be a token becomes [`Kind::Bad`].
 pub fn tokenize(text: &str) -> Lexed {
-    let mut lexer = Lexer { bytes: text.as_bytes(), at: 0, line_start: true, out: Lexed::default() };
+    let mut lexer =
+        Lexer { bytes: text.as_bytes(), at: 0, line_start: true, out: Lexed::default() };
     lexer.out.tokens.reserve(text.len() / 4);
     while lexer.at < lexer.bytes.len() {
         lexer.step();

@@ -230,9 +230,8 @@ fn opaque_type(name: &str) -> Option<Type> {
     if let Some(rest) = rest.strip_prefix("subpassInput") {
         let multisampled = rest == "MS";
         let known = rest.is_empty() || multisampled;
-        return known.then(|| {
-            opaque(OpaqueKind::Subpass, scalar, Dim::D2, [false, multisampled, false])
-        });
+        return known
+            .then(|| opaque(OpaqueKind::Subpass, scalar, Dim::D2, [false, multisampled, false]));
     }
     const KINDS: [(&str, OpaqueKind); 3] = [
         ("sampler", OpaqueKind::Combined),
@@ -246,7 +245,8 @@ fn opaque_type(name: &str) -> Option<Type> {
     let (arrayed, rest) = take_suffix(rest, "Array");
     let (shadow, rest) = take_suffix(rest, "Shadow");
     let sensible = !shadow || (scalar == Scalar::Float && kind == OpaqueKind::Combined);
-    (rest.is_empty() && sensible).then(|| opaque(kind, scalar, dim, [arrayed, multisampled, shadow]))
+    (rest.is_empty() && sensible)
+        .then(|| opaque(kind, scalar, dim, [arrayed, multisampled, shadow]))
 }
 
 fn opaque(kind: OpaqueKind, scalar: Scalar, dim: Dim, flags: [bool; 3]) -> Type {

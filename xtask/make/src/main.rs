@@ -3,6 +3,7 @@
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod conformance;
 mod create;
 mod fuzz;
 mod generate;
@@ -16,6 +17,7 @@ use xtask::XtaskCommand;
 
 const COMMANDS: &[XtaskCommand] = &[
     ("gen", "write the library's bundle", generate::run),
+    ("conformance", "translate GLSL of other projects", conformance::run),
     ("fuzz", "hostile inputs for every parser", fuzz::run),
     ("new", "write the files for a new entry", create::run),
     ("validate", "let the validators check a bundle", validate::run),

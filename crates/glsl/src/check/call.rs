@@ -250,18 +250,11 @@ impl<'a> Checker<'a> {
         Ok(Expr { kind: ExprKind::Builtin(name, arguments), ty, at, known: None })
     }
 
-    fn texture_call(
-        &mut self,
-        name: &str,
-        access: Access,
-        values: Vec<Expr>,
-        at: At,
-    ) -> Res<Expr> {
+    fn texture_call(&mut self, name: &str, access: Access, values: Vec<Expr>, at: At) -> Res<Expr> {
         let Some(Type::Opaque(opaque)) = values.first().map(|value| value.ty.clone()) else {
             return self.fail_arguments(name, &values, at);
         };
-        let bias_outside =
-            self.shader.stage != Stage::Fragment && access == Access::QueryLod;
+        let bias_outside = self.shader.stage != Stage::Fragment && access == Access::QueryLod;
         if bias_outside {
             return self.fail(at, format!("`{name}` is only known in fragment shaders"));
         }
@@ -287,16 +280,17 @@ impl<'a> Checker<'a> {
             let mut ret = form.ret;
             if opaque.shadow && name.starts_with("shadow") {
                 ret = Type::Vector(Scalar::Float, 4);
-                let scalar = Expr {
-                    kind: ExprKind::Texture(access, arguments),
-                    ty: FLOAT,
-                    at,
-                    known: None,
-                };
+                let scalar =
+                    Expr { kind: ExprKind::Texture(access, arguments), ty: FLOAT, at, known: None };
                 let kind = ExprKind::Construct(vec![scalar]);
                 return Ok(Expr { kind, ty: ret, at, known: None });
             }
-            return Ok(Expr { kind: ExprKind::Texture(access, arguments), ty: ret, at, known: None });
+            return Ok(Expr {
+                kind: ExprKind::Texture(access, arguments),
+                ty: ret,
+                at,
+                known: None,
+            });
         }
         if opaque.kind == OpaqueKind::Other {
             return self.refuse(at, format!("`{name}` of this type has no counterpart in WGSL"));
@@ -309,5 +303,4 @@ impl<'a> Checker<'a> {
             self.var_mut(index).written = true;
         }
     }
-
 }

@@ -21,7 +21,10 @@ impl<'a> Checker<'a> {
         let mut ty = match self.lookup(name) {
             Some(super::Symbol::Struct(index)) => Type::Struct(*index),
             Some(_) => return None,
-            None => named_type(name)?,
+            // `texture2D` is a type of Vulkan and a function of older versions.
+            None => named_type(name).filter(
+                |ty| !matches!(ty, Type::Opaque(opaque) if opaque.kind != OpaqueKind::Combined),
+            )?,
         };
         // The sizes were read from the last to the first, and the last is the innermost.
         for size in sizes {

@@ -98,6 +98,11 @@ impl<'a> Checker<'a> {
         if members.is_empty() {
             return self.fail(at, "a structure has at least one member");
         }
+        let shape = self.shape_of(&members);
+        if shape.0 > NESTED || shape.1 > PARTS {
+            return self.fail(at, "the structure is too large");
+        }
+        self.shapes.push(shape);
         let text = name.map_or(String::new(), |name| name.text.to_owned());
         let index = self.shader.structs.len() as u32;
         self.shader.structs.push(Struct { name: text, at, members, block: false });
@@ -106,6 +111,16 @@ impl<'a> Checker<'a> {
             self.declare(name, Symbol::Struct(index))?;
         }
         Ok(Type::Struct(index))
+    }
+
+    /// How deep members nest, and how many there are with those of inner structures.
+    fn shape_of(&self, members: &[Field]) -> (u32, u32) {
+        let of = |field: &Field| match field.ty.innermost() {
+            Type::Struct(index) => self.shapes[*index as usize],
+            _ => (0, 1),
+        };
+        let depth = members.iter().map(|field| of(field).0).max().unwrap_or(0);
+        (depth + 1, members.iter().map(|field| of(field).1).sum())
     }
 
     fn fields(&mut self, members: &'a [ast::Member<'a>]) -> Res<Vec<Field>> {
@@ -119,7 +134,8 @@ impl<'a> Checker<'a> {
                     return self.fail(declarator.name.at, "a member is not `void`");
                 }
                 if fields.iter().any(|field| field.name == declarator.name.text) {
-                    let message = format!("the member `{}` is declared twice", declarator.name.text);
+                    let message =
+                        format!("the member `{}` is declared twice", declarator.name.text);
                     return self.fail(declarator.name.at, message);
                 }
                 fields.push(Field {
@@ -270,6 +286,11 @@ impl<'a> Checker<'a> {
         }
         self.check_block_members(place, &members)?;
         let content = self.shader.structs.len() as u32;
+        let shape = self.shape_of(&members);
+        if shape.1 > PARTS {
+            return self.fail(block.name.at, "the block is too large");
+        }
+        self.shapes.push(shape);
         let name = block.name.text.to_owned();
         self.shader.structs.push(Struct { name, at: block.name.at, members, block: true });
         let (name, ty) = match &block.instance {
@@ -294,14 +315,9 @@ impl<'a> Checker<'a> {
         self.shader.order.push(Item::Var(index));
         match block.instance {
             Some(_) => self.declare(name, Symbol::Var(index)),
-            None => block
-                .members
-                .iter()
-                .flat_map(|member| &member.names)
-                .enumerate()
-                .try_for_each(|(at, member)| {
-                    self.declare(member.name, Symbol::Member(index, at as u32))
-                }),
+            None => block.members.iter().flat_map(|member| &member.names).enumerate().try_for_each(
+                |(at, member)| self.declare(member.name, Symbol::Member(index, at as u32)),
+            ),
         }
     }
 
@@ -347,6 +363,11 @@ impl<'a> Checker<'a> {
         }
     }
 }
+
+/// How deep structures may nest.
+const NESTED: u32 = 16;
+/// How many members a structure may have, with those of the structures in it.
+const PARTS: u32 = 4096;
 
 /// No sizes.
 pub(super) const NO_SIZES: &ast::Sizes<'static> = &Vec::new();

@@ -102,13 +102,7 @@ impl<'a> Checker<'a> {
         Ok(Expr { kind, ty, at, known })
     }
 
-    fn step(
-        &mut self,
-        op: &str,
-        before: bool,
-        operand: &'a ast::Expr<'a>,
-        at: At,
-    ) -> Res<Expr> {
+    fn step(&mut self, op: &str, before: bool, operand: &'a ast::Expr<'a>, at: At) -> Res<Expr> {
         let operand = self.value(operand)?;
         if matches!(operand.ty.scalar(), None | Some(Scalar::Bool)) {
             let name = self.type_name(&operand.ty);
@@ -143,7 +137,8 @@ impl<'a> Checker<'a> {
         // The left operand may only have been converted if the result fits into it again.
         if result.ty != ty || matches!(left.kind, ExprKind::Convert(_)) {
             let (found, wanted) = (self.type_name(&result.ty), self.type_name(&ty));
-            let message = format!("`{}=` gives `{found}`, which is assigned to `{wanted}`", op.text());
+            let message =
+                format!("`{}=` gives `{found}`, which is assigned to `{wanted}`", op.text());
             return self.fail(at, message);
         }
         Ok(Expr { kind: ExprKind::Assign(Some(op), left, right), ty, at, known: None })
@@ -200,15 +195,14 @@ impl<'a> Checker<'a> {
         match &base.ty {
             Type::Struct(index) => {
                 let content = &self.shader.structs[*index as usize];
-                let mut found = 0;
-                for field in &content.members {
+                for (found, field) in content.members.iter().enumerate() {
+                    let found = found as u32;
                     if field.name == name.text {
                         let ty = field.ty.clone();
                         let known = self.member_known(&base, *index, found);
                         let kind = ExprKind::Member(Box::new(base), found);
                         return Ok(Expr { kind, ty, at, known });
                     }
-                    found += 1;
                 }
                 let known: Vec<String> = content.members.iter().map(|m| m.name.clone()).collect();
                 let message = format!("`{}` has no member `{}`", content.name, name.text);
@@ -263,10 +257,9 @@ impl<'a> Checker<'a> {
             let found = self.type_name(&base.ty);
             return self.fail(name.at, format!("`{found}` has no components `{}`", name.text));
         };
-        let known = base
-            .known
-            .as_ref()
-            .and_then(|known| letters.iter().map(|at| known.get(usize::from(*at)).copied()).collect());
+        let known = base.known.as_ref().and_then(|known| {
+            letters.iter().map(|at| known.get(usize::from(*at)).copied()).collect()
+        });
         let ty = Type::vector(scalar, letters.len() as u8);
         Ok(Expr { kind: ExprKind::Swizzle(Box::new(base), letters), ty, at, known })
     }
@@ -278,7 +271,8 @@ impl<'a> Checker<'a> {
         };
         if index.ty != INT && index.ty != UINT {
             let found = self.type_name(&index.ty);
-            return self.fail(index.at, format!("an index is `int` or `uint`, and this is `{found}`"));
+            return self
+                .fail(index.at, format!("an index is `int` or `uint`, and this is `{found}`"));
         }
         let size = match &base.ty {
             Type::Vector(_, size) => Some(u32::from(*size)),

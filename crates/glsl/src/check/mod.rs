@@ -5,9 +5,9 @@
 mod call;
 mod construct;
 mod decl;
+mod expr;
 pub(crate) mod fold;
 mod function;
-mod expr;
 mod layout;
 mod operator;
 mod stmt;
@@ -82,6 +82,8 @@ pub(crate) struct Checker<'a> {
     version: Version,
     shader: Shader,
     scopes: Vec<FxHashMap<&'a str, Symbol>>,
+    /// How deep each structure nests, and how many members it has with those of inner ones.
+    shapes: Vec<(u32, u32)>,
     /// Variables of the language that the text names.
     builtins: FxHashMap<&'a str, u32>,
     /// Default values of specialisation constants, for sizes.
@@ -123,6 +125,7 @@ impl<'a> Checker<'a> {
             version,
             shader,
             scopes: vec![FxHashMap::default()],
+            shapes: Vec::new(),
             builtins: FxHashMap::default(),
             defaults: FxHashMap::default(),
             grown: FxHashMap::default(),
@@ -162,11 +165,6 @@ impl<'a> Checker<'a> {
     fn refuse<T>(&mut self, at: At, message: impl AsRef<str>) -> Res<T> {
         self.report(codes::GLSL_NOT_TRANSLATED, at, message.as_ref(), "");
         Err(Failed)
-    }
-
-    fn warn(&mut self, at: At, message: impl Into<String>) {
-        let span = self.span(at);
-        self.warnings.push(Diagnostic::warning(codes::GLSL_NOT_TRANSLATED, message).at(span, "here"));
     }
 
     /// A type in the words of the text.

@@ -130,8 +130,9 @@ impl<'a> Checker<'a> {
     }
 
     fn shift(&mut self, op: Op, left: Expr, right: Expr, at: At) -> Res<Expr> {
-        let integer =
-            |expr: &Expr| expr.ty.as_vector().filter(|(s, _)| matches!(s, Scalar::Int | Scalar::Uint));
+        let integer = |expr: &Expr| {
+            expr.ty.as_vector().filter(|(s, _)| matches!(s, Scalar::Int | Scalar::Uint))
+        };
         match (integer(&left), integer(&right)) {
             (Some((_, size)), Some((_, count))) if count == size || count == 1 => {
                 let ty = left.ty.clone();

@@ -147,7 +147,8 @@ impl<'a> Checker<'a> {
             Cond::Declared(vars) => {
                 let mut out = Vec::new();
                 self.local_vars(vars, &mut out)?;
-                let Some(Stmt { kind: StmtKind::Declare(index), at }) = out.into_iter().next() else {
+                let Some(Stmt { kind: StmtKind::Declare(index), at }) = out.into_iter().next()
+                else {
                     return Err(super::Failed);
                 };
                 let value = self.var_expr(index, at);
@@ -176,12 +177,7 @@ impl<'a> Checker<'a> {
         Ok(StmtKind::Switch(selector, cases?))
     }
 
-    fn cases(
-        &mut self,
-        list: &'a [ast::Stmt<'a>],
-        selector: &Expr,
-        at: At,
-    ) -> Res<Vec<Case>> {
+    fn cases(&mut self, list: &'a [ast::Stmt<'a>], selector: &Expr, at: At) -> Res<Vec<Case>> {
         let mut cases: Vec<Case> = Vec::new();
         let mut seen: Vec<Option<i64>> = Vec::new();
         for statement in list {
@@ -219,12 +215,7 @@ impl<'a> Checker<'a> {
         })
     }
 
-    fn local_item(
-        &mut self,
-        item: &'a ast::Item<'a>,
-        at: At,
-        out: &mut Vec<Stmt>,
-    ) -> Res<()> {
+    fn local_item(&mut self, item: &'a ast::Item<'a>, at: At, out: &mut Vec<Stmt>) -> Res<()> {
         match item {
             ast::Item::Vars(vars) => self.local_vars(vars, out),
             ast::Item::Nothing => Ok(()),
@@ -253,7 +244,8 @@ impl<'a> Checker<'a> {
             let init = match &declarator.init {
                 Some(init) => Some(self.initializer(init, &ty)?),
                 None if place == Place::Const => {
-                    return self.fail(name.at, format!("the constant `{}` has no value", name.text));
+                    return self
+                        .fail(name.at, format!("the constant `{}` has no value", name.text));
                 }
                 None => None,
             };

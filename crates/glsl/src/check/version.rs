@@ -29,10 +29,8 @@ impl Version {
                 }
                 Some("extension") => {
                     let name = words.next().unwrap_or_default().trim_end_matches(':');
-                    version.converts |= matches!(
-                        name,
-                        "GL_EXT_shader_implicit_conversions" | "GL_ARB_gpu_shader5"
-                    );
+                    version.converts |=
+                        matches!(name, "GL_EXT_shader_implicit_conversions" | "GL_ARB_gpu_shader5");
                 }
                 _ => {}
             }

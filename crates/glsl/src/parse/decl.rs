@@ -8,11 +8,38 @@ use crate::lexer::{Kind, mark};
 
 /// Words that stand before a type.
 const QUALIFIERS: &[&str] = &[
-    "const", "in", "out", "inout", "uniform", "buffer", "shared", "attribute", "varying",
-    "centroid", "flat", "smooth", "noperspective", "sample", "patch", "invariant", "precise",
-    "highp", "mediump", "lowp", "coherent", "volatile", "restrict", "readonly", "writeonly",
-    "nonuniformEXT", "perprimitiveEXT", "subroutine",
+    "const",
+    "in",
+    "out",
+    "inout",
+    "uniform",
+    "buffer",
+    "shared",
+    "attribute",
+    "varying",
+    "centroid",
+    "flat",
+    "smooth",
+    "noperspective",
+    "sample",
+    "patch",
+    "invariant",
+    "precise",
+    "highp",
+    "mediump",
+    "lowp",
+    "coherent",
+    "volatile",
+    "restrict",
+    "readonly",
+    "writeonly",
+    "nonuniformEXT",
+    "perprimitiveEXT",
+    "subroutine",
 ];
+
+/// How many sizes an array may have.
+const DIMENSIONS: usize = 8;
 
 /// Whether a word is a qualifier, `layout` included.
 pub(super) fn is_qualifier(word: &str) -> bool {
@@ -141,6 +168,10 @@ impl<'a> Parser<'a, '_> {
     fn sizes(&mut self) -> Res<Sizes<'a>> {
         let mut sizes: Vec<Option<Expr<'a>>> = Vec::new();
         while self.take("[") {
+            if sizes.len() >= DIMENSIONS {
+                let at = self.token().at;
+                return self.fail(at, format!("an array has at most {DIMENSIONS} sizes here"));
+            }
             if self.take("]") {
                 sizes.push(None);
                 continue;

@@ -95,7 +95,7 @@ impl<'a> Parser<'a, '_> {
                 return Ok(left);
             };
             length += 1;
-            if length > 4 * super::NESTING {
+            if length > 2 * super::NESTING {
                 let at = self.token().at;
                 return self.fail(at, "too many operators in one expression".to_owned());
             }

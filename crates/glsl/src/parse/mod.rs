@@ -9,7 +9,7 @@ use crate::ast::{Item, Name};
 use crate::lexer::{At, Kind, Lexed, Token, mark, tokenize};
 
 /// How deep brackets, operators and statements may nest.
-pub const NESTING: u32 = 200;
+pub const NESTING: u32 = 100;
 
 /// An error of the grammar.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,8 +40,7 @@ pub(crate) type Res<T> = Result<T, Failed>;
 /// Parses a preprocessed text.
 pub fn parse(text: &str) -> Parsed<'_> {
     let lexed = tokenize(text);
-    let mut parser =
-        Parser { text, tokens: &lexed.tokens, at: 0, depth: 0, errors: Vec::new() };
+    let mut parser = Parser { text, tokens: &lexed.tokens, at: 0, depth: 0, errors: Vec::new() };
     let mut items = Vec::new();
     while !parser.at_end() {
         let start = parser.token().at;

@@ -88,9 +88,7 @@ impl<'a> Parser<'a, '_> {
             "return" => self.return_statement()?,
             "break" => self.jump(StmtKind::Break)?,
             "continue" => self.jump(StmtKind::Continue)?,
-            "discard" | "demote" | "terminateInvocation"
-                if self.ahead(1).kind == mark(";") =>
-            {
+            "discard" | "demote" | "terminateInvocation" if self.ahead(1).kind == mark(";") => {
                 self.jump(StmtKind::Discard)?
             }
             _ => return Ok(None),

@@ -19,10 +19,8 @@ impl Writer<'_> {
             })
             .map(|(argument, _)| argument)
             .collect();
-        let copies = callee
-            .params
-            .iter()
-            .any(|param| !matches!(self.place(*param), Place::Param(Dir::In)));
+        let copies =
+            callee.params.iter().any(|param| !matches!(self.place(*param), Place::Param(Dir::In)));
         let pinned = self.pinned;
         self.pinned |= copies;
         let mut values = self.operands(&inputs).into_iter();
@@ -252,7 +250,8 @@ impl Writer<'_> {
 impl Value {
     /// In brackets unless it binds strongly.
     fn wrapped(self) -> Self {
-        let plain = self.text.chars().all(|letter| letter.is_ascii_alphanumeric() || "_.".contains(letter));
+        let plain =
+            self.text.chars().all(|letter| letter.is_ascii_alphanumeric() || "_.".contains(letter));
         if plain {
             return Self::primary(self.text, self.stable);
         }

@@ -72,8 +72,7 @@ impl Writer<'_> {
 /// integers that wrap, shifts that lose bits, results that are not finite.
 pub(super) fn is_risky(expr: &Expr) -> bool {
     let Some(known) = &expr.known else { return false };
-    let infinite =
-        |number: &Number| matches!(number, Number::Float(value) if !value.is_finite());
+    let infinite = |number: &Number| matches!(number, Number::Float(value) if !value.is_finite());
     if known.iter().any(infinite) {
         return true;
     }

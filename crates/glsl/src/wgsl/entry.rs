@@ -148,8 +148,12 @@ impl<'s> Writer<'s> {
         {
             root.location = Some(0);
         }
+        let count = self.location_count(&var.ty);
+        if count > 64 {
+            self.refuse(var.at, "so many inputs or outputs are not translated");
+            return;
+        }
         if root.location.is_none() {
-            let count = self.location_count(&var.ty);
             while (*next..*next + count).any(|location| used.contains(&location)) {
                 *next += 1;
             }
@@ -233,10 +237,15 @@ impl<'s> Writer<'s> {
     fn location_count(&self, ty: &Type) -> u32 {
         match ty {
             Type::Matrix(_, columns, _) => u32::from(*columns),
-            Type::Array(element, size) => size.unwrap_or(1) * self.location_count(element),
+            Type::Array(element, size) => {
+                size.unwrap_or(1).saturating_mul(self.location_count(element))
+            }
             Type::Struct(index) => {
                 let members = &self.shader.structs[*index as usize].members;
-                members.iter().map(|field| self.location_count(&field.ty)).sum()
+                members
+                    .iter()
+                    .map(|field| self.location_count(&field.ty))
+                    .fold(0, u32::saturating_add)
             }
             _ => 1,
         }
@@ -456,8 +465,8 @@ impl<'s> Writer<'s> {
     pub(super) fn entry_return(&mut self, at: At) {
         if let Some(index) = self.entry.position {
             let name = self.var_name(index);
-            match self.options.clip {
-                Clip::Kept => {}
+            match self.source_clip() {
+                Clip::Kept | Clip::Source => {}
                 Clip::OpenGl => {
                     self.line(at, format!("{name}.z = ({name}.z + {name}.w) * 0.5;"));
                 }
@@ -472,6 +481,26 @@ impl<'s> Writer<'s> {
             _ => format!("return {}({});", self.entry.result, values.join(", ")),
         };
         self.line(at, text);
+    }
+
+    /// The clip space that the position is converted from.
+    fn source_clip(&self) -> Clip {
+        let vulkan = |var: &Var| {
+            let names = matches!(var.name.as_str(), "gl_VertexIndex" | "gl_InstanceIndex");
+            let separate = match var.ty.innermost() {
+                Type::Opaque(opaque) => {
+                    use crate::types::OpaqueKind::{Sampler, Subpass, Texture};
+                    matches!(opaque.kind, Sampler | Subpass | Texture)
+                }
+                _ => false,
+            };
+            names || separate || var.layout.set.is_some() || var.layout.push
+        };
+        match self.options.clip {
+            Clip::Source if self.shader.vars.iter().any(vulkan) => Clip::Vulkan,
+            Clip::Source => Clip::OpenGl,
+            other => other,
+        }
     }
 
     /// Whether `main` returns anything.

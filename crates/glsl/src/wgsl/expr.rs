@@ -99,7 +99,10 @@ impl Writer<'_> {
             }
         };
         if let (Type::Vector(..), Some(number)) = (&base.ty, constant) {
-            return Value::primary(format!("{text}.{}", letter_name(number as u8)), values[0].stable);
+            return Value::primary(
+                format!("{text}.{}", letter_name(number as u8)),
+                values[0].stable,
+            );
         }
         Value::primary(format!("{text}[{place}]"), values[0].stable && values[1].stable)
     }
@@ -203,18 +206,12 @@ impl Writer<'_> {
             Op::Mul | Op::Div | Op::Mod => {
                 (Strength::Product, (Strength::Product, Strength::Unary))
             }
-            Op::ShiftLeft | Op::ShiftRight => {
-                (Strength::Shift, (Strength::Unary, Strength::Unary))
-            }
+            Op::ShiftLeft | Op::ShiftRight => (Strength::Shift, (Strength::Unary, Strength::Unary)),
             Op::And | Op::Or | Op::Xor => (Strength::Bits, (Strength::Unary, Strength::Unary)),
             _ => (Strength::Relation, (Strength::Shift, Strength::Shift)),
         };
-        let text = format!(
-            "{} {} {}",
-            left.at_least(needed.0),
-            op.text(),
-            right.at_least(needed.1)
-        );
+        let text =
+            format!("{} {} {}", left.at_least(needed.0), op.text(), right.at_least(needed.1));
         Value { text, strength, stable }
     }
 

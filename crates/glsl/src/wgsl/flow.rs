@@ -2,10 +2,10 @@
 
 use rustc_hash::FxHashSet;
 
+use super::Writer;
 use super::output::Lines;
 use super::stmt::falls_through;
 use super::value::{Strength, Value};
-use super::Writer;
 use crate::lexer::At;
 use crate::tree::{Case, Expr, ExprKind, Loop, Number, Shader, Stmt, StmtKind, Var};
 
@@ -68,7 +68,8 @@ impl Writer<'_> {
         body: Lines,
         at: At,
     ) {
-        let bare = |lines: &Lines| lines.single().unwrap_or_default().trim_end_matches(';').to_owned();
+        let bare =
+            |lines: &Lines| lines.single().unwrap_or_default().trim_end_matches(';').to_owned();
         let test = condition.map(|value| value.text);
         let head = match (first.is_empty() && step.is_empty(), test) {
             (true, Some(test)) => format!("while {test} {{"),
@@ -304,15 +305,13 @@ pub(super) fn each_expr<'e>(list: &'e [Stmt], shader: &'e Shader, visit: &mut dy
             }
             StmtKind::Loop(content) => {
                 each_expr(&content.first, shader, visit);
-                let declared = content.declared.and_then(|at| shader.vars[at as usize].init.as_ref());
+                let declared =
+                    content.declared.and_then(|at| shader.vars[at as usize].init.as_ref());
                 let parts = [declared, content.condition.as_ref(), content.step.as_ref()];
                 parts.into_iter().flatten().for_each(|part| each_part(part, visit));
                 each_expr(&content.body, shader, visit);
             }
-            StmtKind::Return(None)
-            | StmtKind::Break
-            | StmtKind::Continue
-            | StmtKind::Discard => {}
+            StmtKind::Return(None) | StmtKind::Break | StmtKind::Continue | StmtKind::Discard => {}
         }
     }
 }

@@ -206,8 +206,11 @@ impl Writer<'_> {
         match ty {
             Type::Opaque(opaque) => self.declare_opaque(index, path, opaque, uses, bindings),
             Type::Array(element, Some(size)) if self.has_opaque(element) => {
-                if *size > 64 {
-                    self.refuse(self.var(index).at, "so large an array of textures is not translated");
+                if *size > 64 || self.opaque.len() > 256 {
+                    self.refuse(
+                        self.var(index).at,
+                        "so large an array of textures is not translated",
+                    );
                     return;
                 }
                 for at in 0..*size {
@@ -286,14 +289,19 @@ impl Writer<'_> {
             _ => names::texture_type(opaque, depth),
         };
         let Some(text) = text else {
-            if self.problems.iter().all(|known| known.labels.iter().all(|l| l.span.range() != var.at.range())) {
+            if self
+                .problems
+                .iter()
+                .all(|known| known.labels.iter().all(|l| l.span.range() != var.at.range()))
+            {
                 let name = opaque.glsl_name();
                 self.refuse(var.at, format!("`{name}` has no counterpart in WGSL"));
             }
             return;
         };
         let group = var.layout.set.unwrap_or(0);
-        let offset = path.last().copied().filter(|_| path.len() == 1 && matches!(var.ty, Type::Array(..)));
+        let offset =
+            path.last().copied().filter(|_| path.len() == 1 && matches!(var.ty, Type::Array(..)));
         let wanted = match (path.is_empty(), offset) {
             (true, _) => var.layout.binding,
             (_, Some(0)) => var.layout.binding,
@@ -542,9 +550,11 @@ impl Writer<'_> {
     fn stored_members(&mut self, index: u32, interface: bool) -> Vec<String> {
         let shader = self.shader;
         let content = &shader.structs[index as usize];
-        let owner = shader.vars.iter().enumerate().find(|(_, var)| {
-            content.block && *var.ty.innermost() == Type::Struct(index)
-        });
+        let owner = shader
+            .vars
+            .iter()
+            .enumerate()
+            .find(|(_, var)| content.block && *var.ty.innermost() == Type::Struct(index));
         let rules = owner.map(|(_, var)| Rules {
             packing: var.layout.packing.unwrap_or(Packing::Std140),
             row_major: var.layout.row_major.unwrap_or(false),
@@ -552,8 +562,8 @@ impl Writer<'_> {
         });
         let mut texts = Vec::with_capacity(content.members.len());
         for (at, field) in content.members.iter().enumerate() {
-            let atomic = owner
-                .is_some_and(|(var, _)| self.atomics.contains(&(var as u32, Some(at as u32))));
+            let atomic =
+                owner.is_some_and(|(var, _)| self.atomics.contains(&(var as u32, Some(at as u32))));
             let text = match rules {
                 _ if atomic => self.atomic_type(&field.ty),
                 Some(rules) if !interface => {

@@ -56,7 +56,7 @@ impl Writer<'_> {
         let result = self.type_text(ty);
         self.helper_for("load_array", &format!("{result} {name}"), |helper| {
             format!(
-                "fn {helper}(from: {name}) -> {result} {{\n    var stored = from;\n    \
+                "fn {helper}(given: {name}) -> {result} {{\n    var stored = given;\n    \
                  var loaded: {result};\n    for (var i = 0u; i < {size}u; i++) {{\n        \
                  loaded[i] = {loaded};\n    }}\n    return loaded;\n}}"
             )

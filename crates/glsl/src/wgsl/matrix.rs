@@ -27,9 +27,9 @@ impl Writer<'_> {
                 _ => {}
             }
         }
-        let whole = parts.iter().all(|part| {
-            matches!(&part.ty, Type::Vector(Scalar::Float, size) if *size == rows)
-        });
+        let whole = parts
+            .iter()
+            .all(|part| matches!(&part.ty, Type::Vector(Scalar::Float, size) if *size == rows));
         if whole {
             let texts: Vec<&str> = values.iter().map(|value| value.text.as_str()).collect();
             return Value::primary(format!("{name}({})", texts.join(", ")), stable);
@@ -60,7 +60,11 @@ impl Writer<'_> {
                 for letter in 0..*size {
                     let name = super::path::letter_name(letter);
                     let text = format!("{kept}.{name}");
-                    texts.push(if *scalar == Scalar::Float { text } else { format!("f32({text})") });
+                    texts.push(if *scalar == Scalar::Float {
+                        text
+                    } else {
+                        format!("f32({text})")
+                    });
                 }
             }
             Type::Matrix(_, columns, rows) => {

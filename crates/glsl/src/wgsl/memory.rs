@@ -154,7 +154,7 @@ impl Writer<'_> {
         let align = inner.align.max(least);
         let stride = round_up(inner.size, align);
         let own_stride = round_up(inner.own_size, inner.own_align);
-        if stride < own_stride || (rules.uniform && stride % 16 != 0) {
+        if stride < own_stride || (rules.uniform && !stride.is_multiple_of(16)) {
             let message = format!("an array with {stride} bytes for each element is not in WGSL");
             self.refuse(at, message);
             return None;
@@ -297,7 +297,7 @@ impl Placed {
     fn add_sizes(&mut self, offsets: &[u32], size: u32) {
         let own_align = self.cells.iter().map(|cell| cell.own_align).max().unwrap_or(1);
         for (index, cell) in self.cells.iter().enumerate() {
-            let end = offsets[index] + cell.own_size;
+            let end = offsets[index].saturating_add(cell.own_size);
             let later = self.cells.iter().zip(offsets).skip(index + 1);
             let mut later = later.filter(|(next, _)| !next.text.is_empty());
             let attribute = match later.next().unzip() {

@@ -44,6 +44,8 @@ pub enum Clip {
     /// The position stays as it is written.
     #[default]
     Kept,
+    /// Vulkan's for texts with features of Vulkan, else OpenGL's.
+    Source,
     /// From OpenGL's, whose depth is from -1 to 1.
     OpenGl,
     /// From Vulkan's, whose second coordinate points down.
@@ -182,9 +184,8 @@ impl<'s> Writer<'s> {
     fn refuse(&mut self, at: At, message: impl Into<String>) {
         if self.problems.len() < 100 {
             let span = Span::new(self.source, at.range());
-            self.problems.push(
-                Diagnostic::error(codes::GLSL_NOT_TRANSLATED, message).at(span, "here"),
-            );
+            self.problems
+                .push(Diagnostic::error(codes::GLSL_NOT_TRANSLATED, message).at(span, "here"));
         }
     }
 

@@ -73,7 +73,9 @@ pub(super) fn value_type(ty: &Type, structs: &[String]) -> String {
         Type::Vector(Scalar::Bool, size) => format!("vec{size}<bool>"),
         Type::Vector(scalar, size) => format!("vec{size}{}", scalar_letter(*scalar)),
         Type::Matrix(_, columns, rows) => format!("mat{columns}x{rows}f"),
-        Type::Array(element, Some(size)) => format!("array<{}, {size}>", value_type(element, structs)),
+        Type::Array(element, Some(size)) => {
+            format!("array<{}, {size}>", value_type(element, structs))
+        }
         Type::Array(element, None) => format!("array<{}>", value_type(element, structs)),
         Type::Struct(index) => structs[*index as usize].clone(),
         Type::Opaque(_) => String::new(),

@@ -146,8 +146,7 @@ impl Writer<'_> {
         };
         let plain = *path.mem == Mem::Value && path.column.is_none();
         let matrices = |expr: &Expr| matches!(expr.ty, Type::Matrix(..));
-        let product = op == Op::Mul
-            || (matches!(op, Op::Add | Op::Sub) && left.ty == right.ty);
+        let product = op == Op::Mul || (matches!(op, Op::Add | Op::Sub) && left.ty == right.ty);
         let direct = (!matrices(left) && !matrices(right)) || product;
         let bits = matches!(op, Op::And | Op::Or | Op::Xor) && left.ty != right.ty;
         let folds = left.known.is_some();

@@ -217,9 +217,8 @@ impl Writer<'_> {
     }
 
     fn return_statement(&mut self, value: Option<&crate::tree::Expr>, at: At) {
-        let is_main = self
-            .function
-            .is_some_and(|index| self.shader.functions[index as usize].name == "main");
+        let is_main =
+            self.function.is_some_and(|index| self.shader.functions[index as usize].name == "main");
         match value {
             Some(value) => {
                 let value = self.value(value);

@@ -101,7 +101,8 @@ impl Writer<'_> {
             if opaque.arrayed {
                 self.refuse(rest[0].at, "`texelFetchOffset` of an array is not translated");
             }
-            let text = format!("{} + {}", place.at_least(Strength::Sum), last.at_least(Strength::Product));
+            let text =
+                format!("{} + {}", place.at_least(Strength::Sum), last.at_least(Strength::Product));
             place = Value { text, strength: Strength::Sum, stable: false };
         }
         let place = self.texel(opaque, rest, &place);

@@ -1,0 +1,73 @@
+//! Mistakes: each message names types and rules of GLSL, and points to the place.
+
+use lamplight_diagnostic::source::SourceId;
+use lamplight_glsl::tree::Stage;
+use lamplight_glsl::{parse, translate};
+use libtest_mimic::{Failed, Trial};
+
+pub fn tests() -> Vec<Trial> {
+    vec![
+        Trial::test("glsl::messages", each_message),
+        Trial::test("glsl::parser_goes_on", parser_goes_on),
+    ]
+}
+
+/// The content of `main`, or a whole text with `main`; the place, and the message.
+const MISTAKES: &[(&str, &str, &str)] = &[
+    ("float a = vec2(1.0);", "vec2(1.0)", "the initial value is `vec2` and should be `float`"),
+    (
+        "vec3 a = vec3(1.0) + vec2(1.0);",
+        "vec3(1.0) + vec2(1.0)",
+        "`+` does not take `vec3` and `vec2`",
+    ),
+    ("float a = b;", "b", "`b` is not declared"),
+    ("float a = 1.0; float a = 2.0;", "a", "`a` is declared twice in this scope"),
+    ("const float a = 1.0; a = 2.0;", "a", "`a` is a constant, and cannot be written to"),
+    ("vec2 a; a.xx = vec2(1.0);", "a.xx", "a component is written twice"),
+    ("vec2 a; float b = a.z;", "z", "`vec2` has no components `z`"),
+    ("float a[2]; a[2] = 1.0;", "2", "the index is out of bounds"),
+    ("if (1) discard;", "1", "a condition is `bool`, and this is `int`"),
+    ("break;", "break;", "`break` belongs into a loop or a `switch`"),
+    ("float a = sin(true);", "sin(true)", "`sin` does not take (bool)"),
+    ("float a = 1.0 % 2.0;", "1.0 % 2.0", "`%` does not take `float` and `float`"),
+    (
+        "int a = 3; switch (a) { case 1: break; case 1: break; }",
+        "case 1:",
+        "this label stands twice in the `switch`",
+    ),
+    ("double a = 1.0lf;", "double", "`double` has no counterpart in WGSL"),
+    ("vec3 a = vec3(1.0, 2.0);", "vec3(1.0, 2.0)", "`vec3` needs 3 numbers, and gets 2"),
+    ("int gl_a = 1;", "gl_a", "names that begin with `gl_` are reserved"),
+    (
+        "vec4 a = gl_PointCoord.xyxy;",
+        "gl_PointCoord",
+        "`gl_PointCoord` is not in WGSL: WGSL has no word for it",
+    ),
+    ("return 1.0;", "return 1.0;", "the function returns no value"),
+    ("1.0 = 2.0;", "1.0", "this cannot be written to"),
+    ("float a = (1.0;", ";", "expected `)`, found `;`"),
+];
+
+fn each_message() -> Result<(), Failed> {
+    for (body, place, message) in MISTAKES {
+        let text = format!("#version 450\nvoid main() {{ {body} }}\n");
+        let found = translate(&text, Stage::Fragment, SourceId(0), Default::default());
+        let Err(problems) = found else { return Err(format!("accepted: {body}").into()) };
+        let problem = &problems[0];
+        let at = problem.labels.first().map_or("", |label| &text[label.span.range()]);
+        if problem.message != *message || at != *place {
+            return Err(format!("{body}: `{at}`: {}", problem.message).into());
+        }
+    }
+    Ok(())
+}
+
+/// After a mistake, the parser reads what follows it.
+fn parser_goes_on() -> Result<(), Failed> {
+    let text = "void a() { float x = ; float y = 1.0; }\nfloat (;\nvoid b() { }\nint c;\n";
+    let parsed = parse::parse(text);
+    if parsed.errors.len() != 2 || parsed.items.len() != 3 {
+        return Err(format!("{:?}", parsed.errors).into());
+    }
+    Ok(())
+}

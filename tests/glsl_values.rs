@@ -1,0 +1,122 @@
+//! The translation of GLSL computes what the original computes.
+//!
+//! `GLSL -> glslang -> SPIR-V -> lavapipe` gives the words that are right, and
+//! `GLSL -> our WGSL -> naga -> lavapipe` those that are compared with them. Each program is a
+//! compute shader that writes words to a buffer.
+
+mod cases;
+mod device;
+mod program;
+
+use device::Device;
+use lamplight_diagnostic::source::SourceId;
+use lamplight_glsl::translate;
+use lamplight_glsl::tree::Stage;
+use lamplight_testing::random::Random;
+use libtest_mimic::{Failed, Trial};
+
+/// How many random programs the tests make; `LAMPLIGHT_GLSL_PROGRAMS` asks for another number.
+const PROGRAMS: u64 = 200;
+/// The seed of the first program; `LAMPLIGHT_GLSL_SEED` chooses another one.
+const SEED: u64 = 1;
+
+pub fn tests() -> Vec<Trial> {
+    vec![
+        Trial::test("glsl_values::random", random_programs),
+        Trial::test("glsl_values::cases", written_cases),
+        Trial::test("glsl_values::functions", functions_of_the_language),
+    ]
+}
+
+fn number_of(variable: &str, default: u64) -> u64 {
+    std::env::var(variable).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
+}
+
+/// Random programs without undefined behaviour.
+fn random_programs() -> Result<(), Failed> {
+    let first = number_of("LAMPLIGHT_GLSL_SEED", SEED);
+    let count = number_of("LAMPLIGHT_GLSL_PROGRAMS", PROGRAMS);
+    let device = Device::open()?;
+    let mut wrong = Vec::new();
+    for seed in first..first + count {
+        let text = program::write_program(&mut Random(seed.wrapping_mul(0x9e37_79b9)));
+        if let Err(message) = compare(&device, &text) {
+            wrong.push(format!("seed {seed}: {message}\n{text}"));
+        }
+    }
+    report(&wrong, count as usize)
+}
+
+/// Programs that were written for one construct each.
+fn written_cases() -> Result<(), Failed> {
+    let device = Device::open()?;
+    let mut wrong = Vec::new();
+    for (name, body) in cases::CASES {
+        let text = cases::whole_text(body);
+        if let Err(message) = compare(&device, &text) {
+            wrong.push(format!("{name}: {message}\n{text}"));
+        }
+    }
+    report(&wrong, cases::CASES.len())
+}
+
+/// Every function of the language over a few values.
+fn functions_of_the_language() -> Result<(), Failed> {
+    let device = Device::open()?;
+    let mut wrong = Vec::new();
+    for call in cases::CALLS {
+        let text = cases::text_of_call(call);
+        if let Err(message) = compare_within(&device, &text, 1e-4) {
+            wrong.push(format!("{call}: {message}\n{text}"));
+        }
+    }
+    report(&wrong, cases::CALLS.len())
+}
+
+fn report(wrong: &[String], count: usize) -> Result<(), Failed> {
+    match wrong.first() {
+        None => Ok(()),
+        Some(first) => Err(format!("{} of {count} are wrong; {first}", wrong.len()).into()),
+    }
+}
+
+/// Both ways of a program give the same words.
+fn compare(device: &Device, text: &str) -> Result<(), String> {
+    compare_within(device, text, 0.0)
+}
+
+/// Both ways give the same words, or floats that differ by so much of their size.
+fn compare_within(device: &Device, text: &str, tolerance: f32) -> Result<(), String> {
+    let (written, _) =
+        translate(text, Stage::Compute, SourceId(0), Default::default()).map_err(|problems| {
+            let first = &problems[0];
+            let place = first.labels.first().map(|label| &text[label.span.range()]);
+            format!("refused: {} at `{}`", first.message, place.unwrap_or_default())
+        })?;
+    let right = device.run_original(text)?;
+    let found =
+        device.run_wgsl(&written.text).map_err(|message| format!("{message}\n{}", written.text))?;
+    let differs = |(a, b): (&u32, &u32)| !is_near(*a, *b, tolerance);
+    match right.iter().zip(&found).position(differs) {
+        None => Ok(()),
+        Some(at) => Err(format!(
+            "word {at} is {:#x} ({}) and should be {:#x} ({})\n{}",
+            found[at],
+            f32::from_bits(found[at]),
+            right[at],
+            f32::from_bits(right[at]),
+            written.text
+        )),
+    }
+}
+
+fn is_near(a: u32, b: u32, tolerance: f32) -> bool {
+    if a == b {
+        return true;
+    }
+    let (a, b) = (f32::from_bits(a), f32::from_bits(b));
+    if a.is_nan() && b.is_nan() || a == b {
+        return true;
+    }
+    tolerance > 0.0 && (a - b).abs() <= tolerance * a.abs().max(b.abs()).max(1e-3)
+}
