@@ -100,19 +100,7 @@ impl Device {
         let storage = self.buffer(STORAGE_BYTES, wgpu::BufferUsages::STORAGE, input_word);
         let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST;
         let back = self.buffer(bytes, usage, |_| 0);
-        let entries = [&output, &uniform, &storage];
-        let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
-            .zip(entries)
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding,
-                resource: buffer.as_entire_binding(),
-            })
-            .collect();
-        let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &self.layout,
-            entries: &entries,
-        });
+        let group = self.group([&output, &uniform, &storage]);
         let mut encoder = device.create_command_encoder(&Default::default());
         let mut pass = encoder.begin_compute_pass(&Default::default());
         pass.set_pipeline(&pipeline);
@@ -127,6 +115,21 @@ impl Device {
         let view = back.slice(..).get_mapped_range().map_err(|error| error.to_string())?;
         let word = |bytes: &[u8]| u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]);
         Ok(view.chunks_exact(4).map(word).collect())
+    }
+
+    fn group(&self, buffers: [&wgpu::Buffer; 3]) -> wgpu::BindGroup {
+        let entries: Vec<wgpu::BindGroupEntry<'_>> = (0..)
+            .zip(buffers)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &self.layout,
+            entries: &entries,
+        })
     }
 
     fn buffer(&self, size: u64, usage: wgpu::BufferUsages, word: fn(u32) -> u32) -> wgpu::Buffer {

@@ -8,6 +8,37 @@ use lamplight_testing::random::Random;
 const TYPES: [&str; 11] =
     ["int", "uint", "float", "bool", "vec2", "vec3", "vec4", "ivec3", "uvec2", "mat2", "mat3"];
 
+/// What values of each type are made of: constants, members of blocks and variables of the text.
+const LEAVES: [(&str, &[&str]); 9] = [
+    ("bool", &["true", "false", "block.flag", "flag"]),
+    (
+        "float",
+        &[
+            "block.list[1]",
+            "list[calls % 3]",
+            "block.part.weight",
+            "block.rows[1][calls & 1]",
+            "parts[calls & 1].weight",
+        ],
+    ),
+    (
+        "vec2",
+        &["vec2(1.5, -2.0)", "pairs[calls & 1]", "block.small[1]", "wide[1].xy", "block.pairs[0]"],
+    ),
+    (
+        "vec3",
+        &["vec3(1.0, 2.5, -1.0)", "block.color", "rows[2]", "wide[0]", "block.rows[calls % 3]"],
+    ),
+    ("vec4", &["vec4(0.5)", "block.whole[2]", "grid[1][2]", "block.grid[0][calls % 3]"]),
+    ("ivec3", &["ivec3(1, 2, 3)", "kept.count", "ivec3(block.color)"]),
+    ("uvec2", &["uvec2(3u, 9u)"]),
+    (
+        "mat2",
+        &["mat2(2.0)", "block.small", "small", "kept.turn", "parts[1].turn", "block.part.turn"],
+    ),
+    ("mat3", &["mat3(1.0)", "block.rows", "rows", "mat3(block.whole)"]),
+];
+
 /// A variable that statements may use.
 #[derive(Clone)]
 struct Variable {
@@ -461,52 +492,11 @@ impl Writer<'_> {
         match ty {
             "int" => number.to_string(),
             "uint" => format!("{}u", self.random.below(9)),
-            "bool" => (*self.random.pick(&["true", "false", "block.flag", "flag"])).to_owned(),
-            "float" => match self.random.below(6) {
-                0 => "block.list[1]".to_owned(),
-                1 => "list[calls % 3]".to_owned(),
-                2 => "block.part.weight".to_owned(),
-                3 => "block.rows[1][calls & 1]".to_owned(),
-                4 => "parts[calls & 1].weight".to_owned(),
-                _ => format!("{number}.5"),
-            },
-            "vec2" => (*self.random.pick(&[
-                "vec2(1.5, -2.0)",
-                "pairs[calls & 1]",
-                "block.small[1]",
-                "wide[1].xy",
-                "block.pairs[0]",
-            ]))
-            .to_owned(),
-            "vec3" => (*self.random.pick(&[
-                "vec3(1.0, 2.5, -1.0)",
-                "block.color",
-                "rows[2]",
-                "wide[0]",
-                "block.rows[calls % 3]",
-            ]))
-            .to_owned(),
-            "vec4" => (*self.random.pick(&[
-                "vec4(0.5)",
-                "block.whole[2]",
-                "grid[1][2]",
-                "block.grid[0][calls % 3]",
-            ]))
-            .to_owned(),
-            "ivec3" => (*self.random.pick(&["ivec3(1, 2, 3)", "kept.count", "ivec3(block.color)"]))
-                .to_owned(),
-            "uvec2" => "uvec2(3u, 9u)".to_owned(),
-            "mat2" => (*self.random.pick(&[
-                "mat2(2.0)",
-                "block.small",
-                "small",
-                "kept.turn",
-                "parts[1].turn",
-                "block.part.turn",
-            ]))
-            .to_owned(),
-            _ => (*self.random.pick(&["mat3(1.0)", "block.rows", "rows", "mat3(block.whole)"]))
-                .to_owned(),
+            "float" if self.random.chance(30) => format!("{number}.5"),
+            _ => {
+                let (_, texts) = LEAVES.iter().find(|(known, _)| *known == ty).unwrap();
+                (*self.random.pick(texts)).to_owned()
+            }
         }
     }
 
@@ -589,8 +579,7 @@ impl Writer<'_> {
             2 => format!("(limited({a}) * 2.0)"),
             3 => format!("min({a}, abs({b}))"),
             4 => format!("limited({}).y", self.expr("vec3", depth)),
-            5 => format!("float(({}) % 100)", self.expr("uint", depth).replace("100", "100"))
-                .replace("% 100)", "% 100u)"),
+            5 => format!("float({} % 100u)", self.expr("uint", depth)),
             6 => format!("float({})", self.expr("bool", depth)),
             7 => format!("floor({a})"),
             _ => self.choice("float", depth),

@@ -298,6 +298,21 @@ impl<'a> Checker<'a> {
             None => (block.name, Type::Struct(content)),
         };
         let index = self.new_var(name.text, ty, place, name.at);
+        self.set_block_layout(index, quals);
+        self.var_mut(index).open = block.instance.is_none();
+        self.shader.order.push(Item::Struct(content));
+        self.shader.order.push(Item::Var(index));
+        match block.instance {
+            Some(_) => self.declare(name, Symbol::Var(index)),
+            None => block.members.iter().flat_map(|member| &member.names).enumerate().try_for_each(
+                |(at, member)| self.declare(member.name, Symbol::Member(index, at as u32)),
+            ),
+        }
+    }
+
+    /// The layout of a block: what is written before it, else what holds for the whole text.
+    fn set_block_layout(&mut self, index: u32, quals: Quals) {
+        let place = self.var(index).place;
         let kept = &self.packing[usize::from(place == Place::StorageBlock)];
         let (packing, rows) = (kept.packing, kept.row_major);
         let var = &mut self.shader.vars[index as usize];
@@ -310,15 +325,6 @@ impl<'a> Checker<'a> {
         var.layout.row_major = var.layout.row_major.or(rows);
         var.interpolation = quals.interpolation;
         var.access = quals.access;
-        var.open = block.instance.is_none();
-        self.shader.order.push(Item::Struct(content));
-        self.shader.order.push(Item::Var(index));
-        match block.instance {
-            Some(_) => self.declare(name, Symbol::Var(index)),
-            None => block.members.iter().flat_map(|member| &member.names).enumerate().try_for_each(
-                |(at, member)| self.declare(member.name, Symbol::Member(index, at as u32)),
-            ),
-        }
     }
 
     fn check_block_members(&mut self, place: Place, members: &[Field]) -> Res<()> {

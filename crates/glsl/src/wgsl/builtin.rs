@@ -28,7 +28,6 @@ const RENAMED: &[(&str, &str)] = &[
     ("unpackUnorm4x8", "unpack4x8unorm"),
     ("unpackSnorm4x8", "unpack4x8snorm"),
     ("unpackHalf2x16", "unpack2x16float"),
-    ("bitfieldReverse", "reverseBits"),
 ];
 
 /// Functions that are operators in WGSL.
@@ -98,11 +97,11 @@ impl Writer<'_> {
             let text = format!("{left} {op} {right}");
             return Value { text, strength: Strength::Relation, stable: false };
         }
+        if name == "not" {
+            let text = format!("!{}", values[0].at_least(Strength::Unary));
+            return Value { text, strength: Strength::Unary, stable: false };
+        }
         let call = match (name, arguments.len()) {
-            ("not", _) => {
-                let text = format!("!{}", values[0].at_least(Strength::Unary));
-                return Value { text, strength: Strength::Unary, stable: false };
-            }
             ("atan", 2) => format!("atan2({list})"),
             ("mix", _) if arguments[2].ty.scalar() == Some(Scalar::Bool) => {
                 format!("select({list})")
@@ -110,16 +109,9 @@ impl Writer<'_> {
             ("floatBitsToInt" | "floatBitsToUint" | "intBitsToFloat" | "uintBitsToFloat", _) => {
                 format!("bitcast<{}>({list})", self.type_text(&expr.ty))
             }
-            ("bitCount", _) => format!("{}(countOneBits({list}))", self.type_text(&expr.ty)),
-            ("findLSB", _) => format!("{}(firstTrailingBit({list}))", self.type_text(&expr.ty)),
-            ("findMSB", _) => format!("{}(firstLeadingBit({list}))", self.type_text(&expr.ty)),
-            ("bitfieldExtract", _) => {
-                format!("extractBits({}, u32({}), u32({}))", texts[0], texts[1], texts[2])
+            (_, _) if name.starts_with("bit") || name.starts_with("find") => {
+                self.bits(name, &texts, &expr.ty)
             }
-            ("bitfieldInsert", _) => format!(
-                "insertBits({}, {}, u32({}), u32({}))",
-                texts[0], texts[1], texts[2], texts[3]
-            ),
             ("length", _) if scalar => format!("abs({list})"),
             ("normalize", _) if scalar => format!("sign({list})"),
             ("mod" | "isnan" | "isinf" | "matrixCompMult" | "inverse" | "outerProduct", _) => {
@@ -134,6 +126,25 @@ impl Writer<'_> {
             }
         };
         Value::primary(call, false)
+    }
+
+    /// Functions of single bits.
+    fn bits(&mut self, name: &str, texts: &[String], ty: &Type) -> String {
+        let list = texts.join(", ");
+        let result = self.type_text(ty);
+        match name {
+            "bitCount" => format!("{result}(countOneBits({list}))"),
+            "findLSB" => format!("{result}(firstTrailingBit({list}))"),
+            "findMSB" => format!("{result}(firstLeadingBit({list}))"),
+            "bitfieldExtract" => {
+                format!("extractBits({}, u32({}), u32({}))", texts[0], texts[1], texts[2])
+            }
+            "bitfieldInsert" => format!(
+                "insertBits({}, {}, u32({}), u32({}))",
+                texts[0], texts[1], texts[2], texts[3]
+            ),
+            _ => format!("reverseBits({list})"),
+        }
     }
 
     /// Functions of vectors in WGSL that GLSL has for numbers too.
@@ -165,7 +176,7 @@ impl Writer<'_> {
         let argument = self.type_text(&arguments[0].ty);
         let result = self.type_text(ty);
         let size = arguments[0].ty.components();
-        let title = if size > 1 && name != "inverse" && name != "outerProduct" {
+        let title = if size > 1 && name != "inverse" {
             format!("{}_{argument}", plain_title(name))
         } else {
             plain_title(name).to_owned()
@@ -191,30 +202,7 @@ impl Writer<'_> {
                     )
                 })
             }
-            "matrixCompMult" => {
-                let Type::Matrix(_, columns, _) = ty else { return title };
-                let parts: Vec<String> =
-                    (0..*columns).map(|at| format!("a[{at}] * b[{at}]")).collect();
-                self.helper_for(&title, "", |name| {
-                    format!(
-                        "fn {name}(a: {result}, b: {result}) -> {result} {{\n    \
-                         return {result}({});\n}}",
-                        parts.join(", ")
-                    )
-                })
-            }
-            "outerProduct" => {
-                let row = self.type_text(&arguments[1].ty);
-                let count = arguments[1].ty.components();
-                let parts: Vec<String> = (0..count).map(|at| format!("c * r[{at}]")).collect();
-                self.helper_for(&format!("outer_product_{result}"), "", |name| {
-                    format!(
-                        "fn {name}(c: {argument}, r: {row}) -> {result} {{\n    \
-                         return {result}({});\n}}",
-                        parts.join(", ")
-                    )
-                })
-            }
+            "matrixCompMult" | "outerProduct" => self.added_product(name, arguments, ty),
             _ => {
                 let text = match ty {
                     Type::Matrix(_, 2, _) => INVERSE_2,
@@ -224,6 +212,29 @@ impl Writer<'_> {
                 self.helper(&format!("inverse_{result}"), text)
             }
         }
+    }
+
+    /// Products of matrices and vectors that WGSL lacks.
+    fn added_product(&mut self, name: &str, arguments: &[Expr], ty: &Type) -> String {
+        let Type::Matrix(_, columns, _) = ty else { return String::new() };
+        let result = self.type_text(ty);
+        let (left, right) = (self.type_text(&arguments[0].ty), self.type_text(&arguments[1].ty));
+        let parts: Vec<String> = (0..*columns)
+            .map(|at| match name {
+                "outerProduct" => format!("a * b[{at}]"),
+                _ => format!("a[{at}] * b[{at}]"),
+            })
+            .collect();
+        let title = match name {
+            "outerProduct" => format!("outer_product_{result}"),
+            _ => format!("matrix_comp_mult_{result}"),
+        };
+        self.helper_for(&title, "", |name| {
+            format!(
+                "fn {name}(a: {left}, b: {right}) -> {result} {{\n    return {result}({});\n}}",
+                parts.join(", ")
+            )
+        })
     }
 
     /// Functions with a second result: WGSL gives structures.
@@ -328,7 +339,6 @@ fn plain_title(name: &str) -> &str {
     match name {
         "isnan" => "is_nan",
         "isinf" => "is_inf",
-        "matrixCompMult" => "matrix_comp_mult",
         other => other,
     }
 }

@@ -133,34 +133,9 @@ impl<'s> Writer<'s> {
             self.refuse(var.at, "`component` and `index` have no counterpart in WGSL");
             return;
         }
-        let name = self.var_name(index);
+        let Some(root) = self.located(index, var, used, next) else { return };
+        let name = root.name.clone();
         let mut leaves = Vec::new();
-        let mut root = Leaf {
-            path: name.clone(),
-            name: name.clone(),
-            ty: var.ty.clone(),
-            location: var.layout.location,
-            interpolation: var.interpolation,
-        };
-        if let Type::Struct(content) = &var.ty
-            && root.location.is_none()
-            && self.shader.structs[*content as usize].members.iter().all(|m| m.location.is_some())
-        {
-            root.location = Some(0);
-        }
-        let count = self.location_count(&var.ty);
-        if count > 64 {
-            self.refuse(var.at, "so many inputs or outputs are not translated");
-            return;
-        }
-        if root.location.is_none() {
-            while (*next..*next + count).any(|location| used.contains(&location)) {
-                *next += 1;
-            }
-            root.location = Some(*next);
-            self.facts.list.push(Fact::Location(var.name.clone(), *next));
-            *next += count;
-        }
         self.flatten(root, &mut leaves, var.at);
         let simple = leaves.len() == 1 && leaves[0].path == name;
         let direct = simple && self.only_main(var);
@@ -179,6 +154,44 @@ impl<'s> Writer<'s> {
         for leaf in leaves {
             self.plan_leaf(leaf, input, direct, var.at);
         }
+    }
+
+    /// An input or output with its first location.
+    fn located(
+        &mut self,
+        index: u32,
+        var: &Var,
+        used: &BTreeSet<u32>,
+        next: &mut u32,
+    ) -> Option<Leaf> {
+        let name = self.var_name(index);
+        let mut root = Leaf {
+            path: name.clone(),
+            name: name.clone(),
+            ty: var.ty.clone(),
+            location: var.layout.location,
+            interpolation: var.interpolation,
+        };
+        if let Type::Struct(content) = &var.ty
+            && root.location.is_none()
+            && self.shader.structs[*content as usize].members.iter().all(|m| m.location.is_some())
+        {
+            root.location = Some(0);
+        }
+        let count = self.location_count(&var.ty);
+        if count > 64 {
+            self.refuse(var.at, "so many inputs or outputs are not translated");
+            return None;
+        }
+        if root.location.is_none() {
+            while (*next..*next + count).any(|location| used.contains(&location)) {
+                *next += 1;
+            }
+            root.location = Some(*next);
+            self.facts.list.push(Fact::Location(var.name.clone(), *next));
+            *next += count;
+        }
+        Some(root)
     }
 
     fn plan_leaf(&mut self, leaf: Leaf, input: bool, direct: bool, at: At) {

@@ -278,35 +278,11 @@ impl Writer<'_> {
         bindings: &mut Bindings,
     ) {
         let var = self.var(index);
+        let Some(text) = self.opaque_type(index, opaque, uses) else { return };
         let depth = opaque.shadow || uses.compared.contains(&index);
-        let text = match opaque.kind {
-            OpaqueKind::Sampler if opaque.shadow || uses.comparing.contains(&index) => {
-                Some("sampler_comparison".to_owned())
-            }
-            OpaqueKind::Sampler => Some("sampler".to_owned()),
-            OpaqueKind::Image => self.image_type(index, opaque, uses),
-            OpaqueKind::Other => None,
-            _ => names::texture_type(opaque, depth),
-        };
-        let Some(text) = text else {
-            if self
-                .problems
-                .iter()
-                .all(|known| known.labels.iter().all(|l| l.span.range() != var.at.range()))
-            {
-                let name = opaque.glsl_name();
-                self.refuse(var.at, format!("`{name}` has no counterpart in WGSL"));
-            }
-            return;
-        };
         let group = var.layout.set.unwrap_or(0);
-        let offset =
-            path.last().copied().filter(|_| path.len() == 1 && matches!(var.ty, Type::Array(..)));
-        let wanted = match (path.is_empty(), offset) {
-            (true, _) => var.layout.binding,
-            (_, Some(0)) => var.layout.binding,
-            _ => None,
-        };
+        let is_first = path.len() == 1 && path[0] == 0 && matches!(var.ty, Type::Array(..));
+        let wanted = var.layout.binding.filter(|_| path.is_empty() || is_first);
         let binding = bindings.take(group, wanted);
         let (glsl, name) = self.part_name(index, path);
         let name = if path.is_empty() { self.var_name(index) } else { self.global_name(&name) };
@@ -321,6 +297,29 @@ impl Writer<'_> {
         let depth = depth && !opaque.shadow && opaque.kind == OpaqueKind::Texture;
         self.opaque
             .insert((index, path.to_vec()), OpaqueNames { texture: name, sampler: None, depth });
+    }
+
+    /// The type of a texture, sampler or image; what WGSL lacks is refused.
+    fn opaque_type(&mut self, index: u32, opaque: &Opaque, uses: &Uses) -> Option<String> {
+        let var = self.var(index);
+        let before = self.problems.len();
+        let text = match opaque.kind {
+            OpaqueKind::Sampler if opaque.shadow || uses.comparing.contains(&index) => {
+                Some("sampler_comparison".to_owned())
+            }
+            OpaqueKind::Sampler => Some("sampler".to_owned()),
+            OpaqueKind::Image => self.image_type(index, opaque, uses),
+            OpaqueKind::Other => None,
+            _ => {
+                let depth = opaque.shadow || uses.compared.contains(&index);
+                names::texture_type(opaque, depth)
+            }
+        };
+        if text.is_none() && self.problems.len() == before {
+            let name = opaque.glsl_name();
+            self.refuse(var.at, format!("`{name}` has no counterpart in WGSL"));
+        }
+        text
     }
 
     fn image_type(&mut self, index: u32, opaque: &Opaque, uses: &Uses) -> Option<String> {

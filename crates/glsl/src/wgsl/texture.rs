@@ -161,9 +161,8 @@ impl Writer<'_> {
         let separate = usize::from(opaque.shadow && !projected && opaque.coordinates() >= 4);
         let mut further = values[1 + separate..].iter().map(|value| value.text.clone());
         let mut exprs = rest[1 + separate..].iter();
-        let mut list = vec![names.texture.clone()];
-        list.push(names.sampler.clone().unwrap_or_default());
-        list.push(coordinate.place);
+        let sampler = names.sampler.clone().unwrap_or_default();
+        let mut list = vec![names.texture.clone(), sampler, coordinate.place];
         list.extend(coordinate.layer);
         let levels: Vec<String> = match lod {
             Lod::Level => further.by_ref().take(1).collect(),
@@ -186,25 +185,35 @@ impl Writer<'_> {
                 self.refuse(at, "WGSL compares with a depth texture at level 0 or by derivatives");
             }
             list.push(reference);
-            let implicit = lod == Lod::Implicit && self.is_fragment();
-            self.derivatives |= implicit;
-            let name = if implicit { "textureSampleCompare" } else { "textureSampleCompareLevel" };
             list.extend(shift);
-            return Value::primary(format!("{name}({})", list.join(", ")), false);
+            return self.compared(lod, &list);
         }
-        let name = match (lod, &bias) {
-            (Lod::Level, _) => "textureSampleLevel",
-            (Lod::Gradient, _) => "textureSampleGrad",
-            _ if !self.is_fragment() => "textureSampleLevel",
-            (_, Some(_)) => "textureSampleBias",
-            _ => "textureSample",
-        };
+        let name = self.sampling_function(lod, bias.is_some());
         self.derivatives |= matches!(name, "textureSampleBias" | "textureSample");
         let zero = name == "textureSampleLevel" && levels.is_empty() && bias.is_none();
         list.extend(levels);
         list.extend(bias);
         list.extend(zero.then(|| "0.0".to_owned()));
         list.extend(shift);
+        Value::primary(format!("{name}({})", list.join(", ")), false)
+    }
+
+    /// Only fragment shaders take derivatives.
+    fn sampling_function(&self, lod: Lod, bias: bool) -> &'static str {
+        match (lod, bias) {
+            (Lod::Level, _) => "textureSampleLevel",
+            (Lod::Gradient, _) => "textureSampleGrad",
+            _ if !self.is_fragment() => "textureSampleLevel",
+            (_, true) => "textureSampleBias",
+            _ => "textureSample",
+        }
+    }
+
+    /// A comparison with a depth texture.
+    fn compared(&mut self, lod: Lod, list: &[String]) -> Value {
+        let implicit = lod == Lod::Implicit && self.is_fragment();
+        self.derivatives |= implicit;
+        let name = if implicit { "textureSampleCompare" } else { "textureSampleCompareLevel" };
         Value::primary(format!("{name}({})", list.join(", ")), false)
     }
 
