@@ -185,6 +185,12 @@ impl<'a> Checker<'a> {
             let kind = ExprKind::Builtin(function.name, arguments);
             return Ok(Expr { kind, ty, at, known });
         }
+        // Every index may differ between invocations in WGSL.
+        if name == "nonuniformEXT"
+            && let [_] = values.as_slice()
+        {
+            return values.into_iter().next().ok_or(super::Failed);
+        }
         match name {
             "transpose" | "outerProduct" => self.matrix_call(name, values, at),
             _ if BARRIERS.contains(&name) => self.barrier(name, values, at),

@@ -6,8 +6,11 @@ use super::path::swizzled;
 use super::value::{Strength, Value};
 use crate::builtin::textures::{Access, Lod};
 use crate::lexer::At;
-use crate::tree::{Expr, Number};
+use crate::tree::{Expr, ExprKind, Number};
 use crate::types::{Dim, Opaque, Scalar, Type};
+
+/// How many textures an array may have that is indexed by what is not constant.
+const MOST_ELEMENTS: u32 = 16;
 
 /// What a coordinate of GLSL holds, as texts.
 struct Coordinate {
@@ -19,6 +22,12 @@ struct Coordinate {
 impl Writer<'_> {
     pub(super) fn texture(&mut self, access: Access, arguments: &[Expr], expr: &Expr) -> Value {
         let Type::Opaque(opaque) = arguments[0].ty else { return Value::primary("", true) };
+        if let ExprKind::Index(base, index) = &arguments[0].kind
+            && index.known.is_none()
+            && let Some(value) = self.indexed_texture(access, (base, index), arguments, expr)
+        {
+            return value;
+        }
         let Some(names) = self.opaque_names(&arguments[0]) else { return Value::primary("", true) };
         let rest: Vec<&Expr> = arguments[1..].iter().collect();
         let values = self.operands(&rest);
@@ -62,6 +71,94 @@ impl Writer<'_> {
                 Value::primary(text, false)
             }
         }
+    }
+
+    /// A texture of an array by an index that is not constant: a `switch` over its elements, with
+    /// the derivatives taken before it.
+    fn indexed_texture(
+        &mut self,
+        access: Access,
+        (base, index): (&Expr, &Expr),
+        arguments: &[Expr],
+        expr: &Expr,
+    ) -> Option<Value> {
+        let Type::Array(_, Some(size @ 1..=MOST_ELEMENTS)) = base.ty else { return None };
+        let Type::Opaque(opaque) = arguments[0].ty else { return None };
+        let Access::Sample { projected: false, lod, offset: false } = access else { return None };
+        let implicit = lod == Lod::Implicit && self.is_fragment();
+        if implicit && (opaque.shadow || arguments.len() > 2) {
+            return None;
+        }
+        let selector = self.value(index);
+        let selector = self.kept(index.at, &selector);
+        let mut rest: Vec<Expr> = Vec::new();
+        for argument in &arguments[1..] {
+            let value = self.value(argument);
+            let kept = self.kept(argument.at, &value);
+            rest.push(Expr { kind: ExprKind::Kept(kept), ..argument.clone() });
+        }
+        let mut access = access;
+        if implicit {
+            access = Access::Sample { projected: false, lod: Lod::Gradient, offset: false };
+            let slopes = self.slopes(&opaque, &rest[0]);
+            rest.extend(slopes);
+        }
+        let suffix = if index.ty == crate::types::UINT { "u" } else { "" };
+        let elements = (0..size).map(|number| {
+            let at = crate::check::int_literal(number as i32, index.at);
+            let kind = ExprKind::Index(Box::new(base.clone()), Box::new(at));
+            let element = Expr { kind, ..arguments[0].clone() };
+            let list: Vec<Expr> = std::iter::once(element).chain(rest.iter().cloned()).collect();
+            let label = match number + 1 == size {
+                true => "default: {".to_owned(),
+                false => format!("case {number}{suffix}: {{"),
+            };
+            (label, list)
+        });
+        Some(self.texture_switch(access, &selector, elements.collect(), expr))
+    }
+
+    /// A `switch` whose clauses read a texture each.
+    fn texture_switch(
+        &mut self,
+        access: Access,
+        selector: &str,
+        elements: Vec<(String, Vec<Expr>)>,
+        expr: &Expr,
+    ) -> Value {
+        let name = self.temporary();
+        let ty = self.type_text(&expr.ty);
+        self.line(expr.at, format!("var {name}: {ty};"));
+        self.line(expr.at, format!("switch {selector} {{"));
+        for (label, list) in elements {
+            let ((), lines) = self.capture(|writer| {
+                let value = writer.texture(access, &list, expr);
+                writer.line(expr.at, format!("{name} = {};", value.text));
+            });
+            self.line(expr.at, label);
+            self.lines.nest(lines);
+            self.line(expr.at, "}");
+        }
+        self.line(expr.at, "}");
+        Value::primary(name, true)
+    }
+
+    /// The derivatives of a coordinate, as values that are kept.
+    fn slopes(&mut self, opaque: &Opaque, coordinate: &Expr) -> [Expr; 2] {
+        self.derivatives = true;
+        let value = self.value(coordinate);
+        let letters: Vec<u8> = (0..opaque.flat()).collect();
+        let place = match opaque.arrayed {
+            true => swizzled(&value, opaque.coordinates(), &letters).text,
+            false => value.text,
+        };
+        let ty = Type::vector(Scalar::Float, opaque.flat());
+        ["dpdx", "dpdy"].map(|function| {
+            let name = self.temporary();
+            self.line(coordinate.at, format!("let {name} = {function}({place});"));
+            let (kind, at) = (ExprKind::Kept(name), coordinate.at);
+            Expr { kind, ty: ty.clone(), at, known: None }
+        })
     }
 
     fn dimensions(&mut self, texture: &str, opaque: &Opaque, level: &str, ty: &Type) -> Value {
