@@ -242,7 +242,15 @@ impl<'a> Checker<'a> {
                 return self.fail(name.at, format!("a variable of a function is not `{found}`"));
             }
             let init = match &declarator.init {
-                Some(init) => Some(self.initializer(init, &ty)?),
+                Some(init) => match self.initializer(init, &ty) {
+                    Ok(init) => Some(init),
+                    Err(failed) => {
+                        // What names the variable is no mistake of its own.
+                        let index = self.new_var(name.text, ty, Place::Local, name.at);
+                        self.declare(name, Symbol::Var(index))?;
+                        return Err(failed);
+                    }
+                },
                 None if place == Place::Const => {
                     return self
                         .fail(name.at, format!("the constant `{}` has no value", name.text));
