@@ -64,13 +64,15 @@ impl Writer<'_> {
                 let last = values.last().map_or("", |value| value.text.as_str());
                 Value::primary(format!("textureStore({texture}, {place}, {last})"), false)
             }
-            Access::Subpass => {
-                let position = self.entry.fragment_position.clone();
-                let sample = values.first().map_or("0", |value| value.text.as_str());
-                let text = format!("textureLoad({texture}, vec2i({position}.xy), {sample})");
-                Value::primary(text, false)
-            }
+            Access::Subpass => self.subpass(&texture, &values),
         }
+    }
+
+    /// An input attachment at the pixel.
+    fn subpass(&self, texture: &str, values: &[Value]) -> Value {
+        let position = &self.entry.fragment_position;
+        let sample = values.first().map_or("0", |value| value.text.as_str());
+        Value::primary(format!("textureLoad({texture}, vec2i({position}.xy), {sample})"), false)
     }
 
     /// A texture of an array by an index that is not constant: a `switch` over its elements, with
