@@ -47,6 +47,9 @@ struct Variable {
     writable: bool,
 }
 
+/// A function that was written: result, name, parameters; `true` for `inout`.
+type Function = (&'static str, String, Vec<(&'static str, bool)>);
+
 struct Writer<'r> {
     random: &'r mut Random,
     text: String,
@@ -54,8 +57,7 @@ struct Writer<'r> {
     depth: usize,
     loops: usize,
     next: usize,
-    /// Functions that were written: result, name, parameters; `true` for `inout`.
-    functions: Vec<(&'static str, String, Vec<(&'static str, bool)>)>,
+    functions: Vec<Function>,
     /// Whether expressions may have effects.
     effects: bool,
 }
